@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Finds ARPACK and its MPI layer PARPACK (Debian's pkg-config files carry no MPI): target PARPACK::PARPACK.
+find_path(PARPACK_INCLUDE_DIR parpack.h PATH_SUFFIXES arpack arpack-ng)
+find_library(PARPACK_LIBRARY parpack)
+find_library(ARPACK_LIBRARY arpack)
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(PARPACK
+  REQUIRED_VARS PARPACK_LIBRARY ARPACK_LIBRARY PARPACK_INCLUDE_DIR)
+if(PARPACK_FOUND AND NOT TARGET PARPACK::PARPACK)
+  add_library(PARPACK::PARPACK UNKNOWN IMPORTED)
+  set_target_properties(PARPACK::PARPACK PROPERTIES
+    IMPORTED_LOCATION "${PARPACK_LIBRARY}"
+    INTERFACE_INCLUDE_DIRECTORIES "${PARPACK_INCLUDE_DIR}"
+    INTERFACE_LINK_LIBRARIES "${ARPACK_LIBRARY}")
+endif()
+mark_as_advanced(PARPACK_INCLUDE_DIR PARPACK_LIBRARY ARPACK_LIBRARY)

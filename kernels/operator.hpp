@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The fast operator: blocks, threads, choice of instruction set.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "reference.hpp"
+
+namespace kacanov {
+
+struct OperatorOptions {
+  int threads = 1;                    ///< threads of this operator, ≥ 1
+  std::string_view instruction_set;   ///< "avx512", "avx2", "plain"; empty: the best there is
+};
+
+/// y = B(g) x and what a solver needs round it. The body's arrays are copied as far as needed:
+/// they may go once the constructor is done. Vectors are nodes × dim, interleaved, in the caller's
+/// numbering. Throws std::invalid_argument on bad input.
+class Operator {
+ public:
+  explicit Operator(const Body& body, const OperatorOptions& options = {});
+  ~Operator();
+  Operator(Operator&&) noexcept;
+  Operator& operator=(Operator&&) noexcept;
+
+  std::size_t unknowns() const noexcept;
+  /// Freezes g at ω. Starts as g = mu.
+  void update(std::span<const double> omega);
+  /// Frozen g: elements × points, the caller's element order.
+  void secant(std::span<double> g) const;
+  void set_secant(std::span<const double> g);
+  /// y = B(g) x (overwrites y).
+  void apply(std::span<const double> x, std::span<double> y) const;
+  /// y = B(g) x and returns xᵀ y.
+  double apply_dot(std::span<const double> x, std::span<double> y) const;
+  /// Freezes the tangent (and g) at ω for apply_tangent.
+  void update_tangent(std::span<const double> omega);
+  /// y = B_T x with the tangent frozen last.
+  void apply_tangent(std::span<const double> x, std::span<double> y) const;
+  void diagonal(std::span<double> d) const;
+  void block_diagonal(std::span<double> blocks) const;
+  /// Internal force of the true law at ω.
+  void residual(std::span<const double> omega, std::span<double> f) const;
+  double energy(std::span<const double> omega) const;
+  /// Residual, energy and new g in one pass; returns the energy.
+  double residual_energy_update(std::span<const double> omega, std::span<double> f);
+
+  std::string_view instruction_set() const noexcept;
+  /// Bytes this operator holds, index data included.
+  std::size_t bytes() const noexcept;
+  /// How often B was applied (secant and tangent) since construction.
+  std::uint64_t applications() const noexcept;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> impl_;
+};
+
+}  // namespace kacanov

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Sums over nodes shared by several ranks, and copies from their owners.
+#pragma once
+
+#include <mpi.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace kacanov {
+
+/// Exchange plan over shared nodes. With one rank every call returns at once.
+struct Halo {
+  struct Neighbour {
+    int rank = 0;
+    std::vector<std::int32_t> shared;   ///< local nodes shared with it, in an order both agree on
+    std::vector<std::int32_t> send;     ///< owned here, ghost there
+    std::vector<std::int32_t> receive;  ///< owned there, ghost here
+  };
+  MPI_Comm comm = MPI_COMM_SELF;
+  int rank = 0, ranks = 1;
+  std::vector<Neighbour> neighbours;  ///< ascending rank
+
+  /// Adds up the contributions of all ranks, in rank order so that every copy ends with the same bits.
+  void sum(std::span<double> x, int components) const;
+  /// Overwrites ghosts with their owners' values.
+  void copy_from_owner(std::span<double> x, int components) const;
+
+  double sum_all(double value) const;
+  double max_all(double value) const;
+  std::int64_t sum_all(std::int64_t value) const;
+};
+
+}  // namespace kacanov

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One rank's share of a problem: its elements, all their nodes, and who shares them.
+#pragma once
+
+#include <mpi.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "halo.hpp"
+#include "problem.hpp"
+#include "reference.hpp"
+
+namespace kacanov {
+
+/// Elements are split without overlap; a node lies on every rank that has one of its elements and is
+/// owned by one of them. Owned nodes come first. Vectors over a part are consistent: every copy of a
+/// shared entry holds the same bits.
+struct Part {
+  ElementType type = ElementType::tet4;
+  std::vector<double> coordinates;       ///< nodes × dim
+  std::vector<std::int32_t> elements;
+  std::vector<std::int32_t> node_index;     ///< index in Problem::mesh
+  std::vector<std::int32_t> element_index;  ///< likewise
+  std::vector<std::int64_t> node_tags, element_tags;  ///< the user's numbers
+  std::int32_t owned_nodes = 0;
+  std::int64_t first_owned = 0;          ///< owned nodes are numbered first_owned … over all ranks
+  std::int64_t total_nodes = 0, total_elements = 0;
+  std::vector<std::int64_t> global_node; ///< that numbering, for every local node
+  Halo halo;
+  std::vector<Law> laws;
+  std::vector<std::uint16_t> law_of_element;
+  std::vector<double> load, prescribed;  ///< nodes × dim, consistent
+  std::vector<std::uint8_t> held;        ///< nodes × dim
+  std::vector<ContactPoint> contact;     ///< of local nodes; those of owned nodes first
+  std::int32_t owned_contact = 0;
+  std::vector<std::int32_t> contact_index;  ///< index in Problem::contact
+  std::int64_t total_contact = 0;
+  std::vector<Probe> probes;             ///< those in this rank's elements
+  std::vector<std::int32_t> probe_index;
+  std::int32_t total_probes = 0;
+  int loose_modes = 0;
+
+  int dim() const noexcept { return dimension(type); }
+  std::size_t nodes() const noexcept { return node_index.size(); }
+  std::size_t unknowns() const noexcept { return coordinates.size(); }
+  std::size_t owned_unknowns() const noexcept {
+    return static_cast<std::size_t>(owned_nodes) * static_cast<std::size_t>(dim());
+  }
+  Body body() const noexcept { return {{type, coordinates, elements}, laws, law_of_element}; }
+};
+
+/// Splits the problem (given on rank 0 only, null elsewhere) over the ranks of `comm` with METIS and
+/// hands every rank its part. Collective.
+Part distribute(const Problem* problem, MPI_Comm comm);
+
+/// Collects nodes × components (owned entries) or elements × components on rank 0, in the numbering
+/// of Problem::mesh; empty elsewhere. Collective.
+std::vector<double> gather_nodal(const Part& part, std::span<const double> local, int components,
+                                 MPI_Comm comm);
+std::vector<double> gather_elements(const Part& part, std::span<const double> local, int components,
+                                    MPI_Comm comm);
+/// Contact points × components, in the numbering of Problem::contact.
+std::vector<double> gather_contact(const Part& part, std::span<const double> local, int components,
+                                   MPI_Comm comm);
+
+}  // namespace kacanov

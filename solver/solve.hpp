@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The solver's front door: a part of a problem in, a solution with its certificate out.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "part.hpp"
+#include "result.hpp"
+
+namespace kacanov {
+
+/// One line of progress; sent on rank 0 only.
+struct ProgressStep {
+  std::string phase;         ///< "spectrum", "outer", "done", "note"
+  std::string note;          ///< phase "note": a sentence for the user
+  int outer = 0;
+  std::int64_t contact_iterations = 0;  ///< of this outer step
+  std::int64_t cg_iterations = 0;       ///< of this outer step
+  double r = 0.0;
+  double energy = 0.0;
+  Certificate certificate;   ///< at the end of the step
+  double seconds = 0.0;      ///< since the start of the run
+};
+using Progress = std::function<void(const ProgressStep&)>;
+
+/// How to use the machine, as against what to solve.
+struct RunOptions {
+  int threads = 1;              ///< a rank
+  std::string instruction_set;  ///< empty: the best there is
+  Progress progress;            ///< may be empty
+};
+
+/// Solves the problem of which `part` is this rank's share. Collective over part.halo.comm. Not
+/// converging is a status, not an error.
+Solution solve(const Part& part, const SolverOptions& options, const RunOptions& run);
+
+/// Extreme eigenvalues of K for the elastic body, no contact solve. Collective. One entry for N, a
+/// second for [N; T] where the problem has friction.
+std::vector<SpectrumResult> analyse_spectrum(const Part& part, const SolverOptions& options,
+                                             const RunOptions& run);
+
+}  // namespace kacanov
