@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# What `cmake --install` puts where: libraries, headers, the package files of find_package and pkg-config.
+include(CMakePackageConfigHelpers)
+
+set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/kacanov")
+set(header_dir "${CMAKE_INSTALL_INCLUDEDIR}/kacanov")
+
+# One export set a component, so that a consumer meets the dependencies of what it asks for and no others.
+function(kacanov_install_component component target)
+  install(TARGETS ${target} EXPORT kacanov-${component}
+    ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+    LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+  install(EXPORT kacanov-${component} NAMESPACE kacanov:: DESTINATION "${package_dir}"
+    FILE kacanov-${component}.cmake)
+endfunction()
+
+kacanov_install_component(kernels kacanov_kernels)
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/kernels/" DESTINATION "${header_dir}"
+  FILES_MATCHING PATTERN "*.hpp" PATTERN "simd" EXCLUDE PATTERN "elements" EXCLUDE)
+if(KACANOV_SOLVER)
+  kacanov_install_component(solver kacanov_solver)
+  install(DIRECTORY "${PROJECT_SOURCE_DIR}/solver/" DESTINATION "${header_dir}" FILES_MATCHING PATTERN "*.hpp")
+endif()
+
+configure_package_config_file(cmake/kacanovConfig.cmake.in kacanovConfig.cmake
+  INSTALL_DESTINATION "${package_dir}")
+write_basic_package_version_file(kacanovConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES
+  "${CMAKE_CURRENT_BINARY_DIR}/kacanovConfig.cmake"
+  "${CMAKE_CURRENT_BINARY_DIR}/kacanovConfigVersion.cmake"
+  cmake/FindMETIS.cmake cmake/FindHYPRE.cmake cmake/FindPARPACK.cmake
+  DESTINATION "${package_dir}")
+
+# pkg-config files find their prefix by their own place, so an installed tree may be moved.
+file(RELATIVE_PATH prefix_from_pkgconfig "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
+string(REGEX REPLACE "/$" "" prefix_from_pkgconfig "${prefix_from_pkgconfig}")
+configure_file(cmake/kacanov-kernels.pc.in kacanov-kernels.pc @ONLY)
+install(FILES "${CMAKE_CURRENT_BINARY_DIR}/kacanov-kernels.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
