@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Puts a model on a mesh, step by step, and checks that what results can be solved.
+#include "problem.hpp"
+
+#include "error.hpp"
+#include "problem/conditions.hpp"
+#include "problem/contact_points.hpp"
+#include "problem/probes.hpp"
+#include "problem/rigid_modes.hpp"
+#include "problem/selection.hpp"
+
+namespace kacanov {
+
+Problem build_problem(Mesh mesh, const Model& model) {
+  check_mesh(mesh);
+  Problem problem;
+  problem.mesh = std::move(mesh);
+  const std::size_t unknowns = problem.mesh.coordinates.size();
+  problem.load.assign(unknowns, 0.0);
+  problem.held.assign(unknowns, 0);
+  problem.prescribed.assign(unknowns, 0.0);
+
+  const Selection selection(problem.mesh);
+  assign_materials(problem, model, selection);
+  assemble_load(problem, model, selection);
+  hold_displacements(problem, model, selection);
+  find_contact_points(problem, model, selection);
+  check_rigid_modes(problem);
+  problem.probes = locate_probes(problem.mesh, model);
+  return problem;
+}
+
+}  // namespace kacanov

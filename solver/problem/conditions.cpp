@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Materials, loads and given displacements: the entries of a model carried over to a mesh.
+#include "problem/conditions.hpp"
+
+#include <limits>
+#include <optional>
+#include <sstream>
+
+#include "error.hpp"
+#include "problem/integration.hpp"
+#include "problem/vector3.hpp"
+
+namespace kacanov {
+namespace {
+
+std::string path_of(const char* list, std::size_t index) {
+  return std::string(list) + "[" + std::to_string(index) + "]";
+}
+
+void check_law(const Law& law, const std::string& path) {
+  if (!(law.bulk > 0.0 && law.shear > 0.0)) {
+    throw InputError(path + ": expected a positive bulk and shear modulus");
+  }
+}
+
+void add(std::vector<double>& load, int dim, std::int32_t node, const Vector3& force) {
+  for (int c = 0; c < dim; ++c) {
+    load[static_cast<std::size_t>(node) * static_cast<std::size_t>(dim) + static_cast<std::size_t>(c)] +=
+        force[static_cast<std::size_t>(c)];
+  }
+}
+
+void add_facet_loads(Problem& problem, const BoundaryEntry& entry, std::span<const std::int32_t> facets) {
+  const Mesh& mesh = problem.mesh;
+  for (const std::int32_t f : facets) {
+    const FacetWeights weights = consistent_weights(mesh, static_cast<std::size_t>(f));
+    const auto nodes = mesh.facet(static_cast<std::size_t>(f));
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      if (entry.traction) add(problem.load, mesh.dim(), nodes[k], weights.area[k] * *entry.traction);
+      if (entry.pressure) add(problem.load, mesh.dim(), nodes[k], -*entry.pressure * weights.normal[k]);
+    }
+  }
+}
+
+void add_body_force(Problem& problem, const Vector3& force, std::span<const std::int32_t> elements) {
+  const Mesh& mesh = problem.mesh;
+  const auto n = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  for (const std::int32_t e : elements) {
+    const std::array<double, 10> weights = volume_weights(mesh, static_cast<std::size_t>(e));
+    for (std::size_t k = 0; k < n; ++k) {
+      add(problem.load, mesh.dim(), mesh.elements[static_cast<std::size_t>(e) * n + k], weights[k] * force);
+    }
+  }
+}
+
+}  // namespace
+
+void assign_materials(Problem& problem, const Model& model, const Selection& selection) {
+  if (model.materials.empty()) throw InputError("material: expected at least one entry");
+  constexpr std::uint16_t none = std::numeric_limits<std::uint16_t>::max();
+  if (model.materials.size() >= none) throw InputError("material: expected fewer than 65535 entries");
+  const Mesh& mesh = problem.mesh;
+  problem.law_of_element.assign(mesh.element_count(), none);
+  for (std::size_t i = 0; i < model.materials.size(); ++i) {
+    const std::string path = path_of("material", i);
+    const MaterialEntry& entry = model.materials[i];
+    check_law(entry.law, path);
+    problem.laws.push_back(entry.law);
+    for (const std::int32_t e : selection.elements(entry.on, path)) {
+      std::uint16_t& law = problem.law_of_element[static_cast<std::size_t>(e)];
+      if (law != none && model.materials[law].on.kind != Selector::Kind::all) {
+        throw InputError(path + ".on: element " +
+                         std::to_string(mesh.element_tag(static_cast<std::size_t>(e))) +
+                         " already has the material of " + path_of("material", law) +
+                         " (only an entry on \"all\" may be overridden)");
+      }
+      law = static_cast<std::uint16_t>(i);
+    }
+  }
+  std::size_t bare = 0, first = 0;
+  for (std::size_t e = mesh.element_count(); e-- > 0;) {
+    if (problem.law_of_element[e] != none) continue;
+    ++bare;
+    first = e;
+  }
+  if (bare > 0) {
+    throw InputError("material: element " + std::to_string(mesh.element_tag(first)) + " has no material (" +
+                     std::to_string(bare) + " of " + std::to_string(mesh.element_count()) +
+                     " elements have none)");
+  }
+}
+
+void assemble_load(Problem& problem, const Model& model, const Selection& selection) {
+  for (std::size_t i = 0; i < model.boundary.size(); ++i) {
+    const BoundaryEntry& entry = model.boundary[i];
+    const std::string path = path_of("boundary", i);
+    if (entry.traction || entry.pressure) add_facet_loads(problem, entry, selection.facets(entry.on, path));
+    if (entry.body_force) add_body_force(problem, *entry.body_force, selection.elements(entry.on, path));
+  }
+}
+
+void hold_displacements(Problem& problem, const Model& model, const Selection& selection) {
+  const Mesh& mesh = problem.mesh;
+  const auto dim = static_cast<std::size_t>(mesh.dim());
+  std::vector<std::int32_t> holder(problem.held.size(), -1);
+  for (std::size_t i = 0; i < model.boundary.size(); ++i) {
+    const BoundaryEntry& entry = model.boundary[i];
+    if (!entry.displacement) continue;
+    const std::string path = path_of("boundary", i);
+    for (const std::int32_t node : selection.nodes(entry.on, path)) {
+      for (std::size_t c = 0; c < dim; ++c) {
+        const std::optional<double>& value = (*entry.displacement)[c];
+        if (!value) continue;
+        const std::size_t k = static_cast<std::size_t>(node) * dim + c;
+        if (problem.held[k] != 0 && problem.prescribed[k] != *value) {
+          std::ostringstream text;
+          text << path << ".displacement: node " << mesh.node_tag(static_cast<std::size_t>(node)) << " at "
+               << to_text(position(mesh, node), mesh.dim()) << " is given "
+               << "xyz"[c] << " = " << *value << " here and " << problem.prescribed[k] << " by "
+               << path_of("boundary", static_cast<std::size_t>(holder[k]));
+          throw InputError(text.str());
+        }
+        problem.held[k] = 1;
+        problem.prescribed[k] = *value;
+        holder[k] = static_cast<std::int32_t>(i);
+      }
+    }
+  }
+}
+
+}  // namespace kacanov

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From contact entries to contact points: normals, gaps, masses and the rows of N and T.
+#include "problem/contact_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <tuple>
+
+#include "error.hpp"
+#include "problem/integration.hpp"
+#include "problem/vector3.hpp"
+
+namespace kacanov {
+namespace {
+
+/// Below this length a trace row cannot carry a contact force: its node is held in that direction.
+constexpr double negligible_trace = 1e-8;
+
+struct Facing {
+  Vector3 normal{};  ///< unit, towards the obstacle
+  double gap = 0.0;
+};
+
+Vector3 unit(const Vector3& v, const std::string& path) {
+  const double length = norm(v);
+  if (!(length > 0.0)) throw InputError(path + ": expected a vector that is not zero");
+  return (1.0 / length) * v;
+}
+
+/// How an obstacle faces a node at x whose outer normal (of any length) is given; nothing where it is missed.
+class Faces {
+ public:
+  Faces(const Mesh& mesh, const Obstacle& obstacle, std::string path)
+      : mesh_(mesh), obstacle_(obstacle), path_(std::move(path) + ".obstacle") {
+    if (const auto* plane = std::get_if<Plane>(&obstacle_))
+      direction_ = -1.0 * unit(plane->normal, path_ + ".plane.normal");
+    if (const auto* sphere = std::get_if<Sphere>(&obstacle_)) {
+      if (!(sphere->radius > 0.0)) throw InputError(path_ + ".sphere.radius: expected a number > 0");
+      if (sphere->direction) direction_ = unit(*sphere->direction, path_ + ".sphere.direction");
+    }
+  }
+
+  std::optional<Facing> at(std::int32_t node, const Vector3& outer) const {
+    const Vector3 x = position(mesh_, node);
+    if (const auto* plane = std::get_if<Plane>(&obstacle_)) {
+      return Facing{direction_, dot(plane->point - x, direction_)};
+    }
+    if (const auto* sphere = std::get_if<Sphere>(&obstacle_)) return at_sphere(*sphere, x, node);
+    const double length = norm(outer);
+    if (!(length > 0.0)) {
+      throw InputError(path_ + ".gap: the outer normal at node " +
+                       std::to_string(mesh_.node_tag(static_cast<std::size_t>(node))) + " is zero");
+    }
+    return Facing{(1.0 / length) * outer, std::get<ConstantGap>(obstacle_).gap};
+  }
+
+ private:
+  std::optional<Facing> at_sphere(const Sphere& sphere, const Vector3& x, std::int32_t node) const {
+    const Vector3 to_centre = sphere.centre - x;
+    if (sphere.direction) {
+      const double along = dot(to_centre, direction_);
+      const double inside = sphere.radius * sphere.radius - (dot(to_centre, to_centre) - along * along);
+      if (inside < 0.0) return std::nullopt;
+      return Facing{direction_, along - std::sqrt(inside)};
+    }
+    const double distance = norm(to_centre);
+    if (!(distance > 0.0)) {
+      throw InputError(path_ + ".sphere: node " +
+                       std::to_string(mesh_.node_tag(static_cast<std::size_t>(node))) +
+                       " lies at the centre, where no direction leads out; give a \"direction\"");
+    }
+    return Facing{(1.0 / distance) * to_centre, distance - sphere.radius};
+  }
+
+  const Mesh& mesh_;
+  const Obstacle& obstacle_;
+  std::string path_;
+  Vector3 direction_{};
+};
+
+/// Fills trace and tangents from the normal and the free components, and takes from the gap what the
+/// prescribed ones close. False where the node cannot move along the normal.
+bool restrict_to_free(ContactPoint& point, const Problem& problem, bool friction) {
+  const auto dim = static_cast<std::size_t>(problem.mesh.dim());
+  const std::size_t base = static_cast<std::size_t>(point.node) * dim;
+  std::array<bool, 3> free{};
+  for (std::size_t c = 0; c < dim; ++c) {
+    free[c] = problem.held[base + c] == 0;
+    point.trace[c] = free[c] ? point.normal[c] : 0.0;
+    if (!free[c]) point.gap -= point.normal[c] * problem.prescribed[base + c];
+  }
+  const double length = norm(point.trace);
+  if (length < negligible_trace) return false;
+  if (!friction) return true;
+  // Gram–Schmidt of the free axes against the trace and each other, the least aligned axis first.
+  std::array<std::size_t, 3> axes{0, 1, 2};
+  std::sort(axes.begin(), axes.end(), [&](std::size_t a, std::size_t b) {
+    return std::abs(point.trace[a]) < std::abs(point.trace[b]);
+  });
+  const Vector3 along = (1.0 / length) * point.trace;
+  for (const std::size_t axis : axes) {
+    if (!free[axis]) continue;
+    Vector3 t{};
+    t[axis] = 1.0;
+    t = t - dot(t, along) * along;
+    for (int k = 0; k < point.tangents; ++k) {
+      const Vector3& other = point.tangent[static_cast<std::size_t>(k)];
+      t = t - dot(t, other) * other;
+    }
+    // The last free axis is spanned by the trace and the tangents so far.
+    if (norm(t) < negligible_trace || point.tangents == 2) continue;
+    point.tangent[static_cast<std::size_t>(point.tangents++)] = (1.0 / norm(t)) * t;
+  }
+  return true;
+}
+
+/// Joins points of one node that face the same way at the same gap: masses add up, bounds are averaged by
+/// mass.
+std::vector<ContactPoint> merge_equal(const std::vector<ContactPoint>& points, double size) {
+  std::vector<ContactPoint> merged;
+  for (const ContactPoint& point : points) {
+    ContactPoint* twin = nullptr;
+    for (std::size_t k = merged.size(); k-- > 0 && merged[k].node == point.node;) {
+      if (norm(merged[k].normal - point.normal) < 1e-9 && std::abs(merged[k].gap - point.gap) < 1e-9 * size) {
+        twin = &merged[k];
+      }
+    }
+    if (twin == nullptr) {
+      merged.push_back(point);
+      continue;
+    }
+    const double mass = twin->mass + point.mass;
+    twin->tresca = (twin->mass * twin->tresca + point.mass * point.tresca) / mass;
+    twin->coulomb = (twin->mass * twin->coulomb + point.mass * point.coulomb) / mass;
+    if (twin->tangents == 0) {
+      twin->tangents = point.tangents;
+      twin->tangent = point.tangent;
+    }
+    twin->mass = mass;
+  }
+  return merged;
+}
+
+std::vector<ContactPoint> points_of_entry(const Problem& problem, const ContactEntry& entry,
+                                          std::size_t index, std::span<const std::int32_t> facets,
+                                          const std::string& path) {
+  const Mesh& mesh = problem.mesh;
+  const Faces faces(mesh, entry.obstacle, path);
+  const bool friction = entry.friction && (entry.friction->tresca > 0.0 || entry.friction->coulomb > 0.0);
+  const std::vector<std::int32_t> nodes = nodes_of_facets(mesh, facets);
+  std::vector<double> mass(nodes.size());
+  std::vector<Vector3> outer(nodes.size());
+  for (const std::int32_t f : facets) {
+    const FacetWeights weights = lumped_weights(mesh, static_cast<std::size_t>(f));
+    const auto facet = mesh.facet(static_cast<std::size_t>(f));
+    for (std::size_t k = 0; k < facet.size(); ++k) {
+      const auto place =
+          static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), facet[k]) - nodes.begin());
+      mass[place] += weights.area[k];
+      outer[place] = outer[place] + weights.normal[k];
+    }
+  }
+  std::vector<ContactPoint> points;
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const std::optional<Facing> facing = faces.at(nodes[k], outer[k]);
+    if (!facing) continue;
+    ContactPoint point;
+    point.node = nodes[k];
+    point.entry = static_cast<std::int32_t>(index);
+    point.normal = facing->normal;
+    point.gap = facing->gap;
+    point.mass = mass[k];
+    if (friction) {
+      point.tresca = entry.friction->tresca;
+      point.coulomb = entry.friction->coulomb;
+    }
+    if (restrict_to_free(point, problem, friction)) points.push_back(point);
+  }
+  if (points.empty()) {
+    throw InputError(path + ": none of the " + std::to_string(nodes.size()) +
+                     " nodes can touch the obstacle: each is held by a displacement or misses it");
+  }
+  return points;
+}
+
+}  // namespace
+
+void find_contact_points(Problem& problem, const Model& model, const Selection& selection) {
+  std::vector<std::int32_t> entry_of_facet(problem.mesh.facet_count(), -1);
+  std::vector<ContactPoint> points;
+  for (std::size_t i = 0; i < model.contact.size(); ++i) {
+    const std::string path = "contact[" + std::to_string(i) + "]";
+    const std::vector<std::int32_t> facets = selection.facets(model.contact[i].on, path);
+    for (const std::int32_t f : facets) {
+      std::int32_t& owner = entry_of_facet[static_cast<std::size_t>(f)];
+      if (owner >= 0) {
+        const auto element =
+            static_cast<std::size_t>(problem.mesh.facet_element[static_cast<std::size_t>(f)]);
+        throw InputError(path + ".on: the facet of element " +
+                         std::to_string(problem.mesh.element_tag(element)) + " already belongs to contact[" +
+                         std::to_string(owner) + "]");
+      }
+      owner = static_cast<std::int32_t>(i);
+    }
+    const std::vector<ContactPoint> more = points_of_entry(problem, model.contact[i], i, facets, path);
+    points.insert(points.end(), more.begin(), more.end());
+  }
+  std::stable_sort(points.begin(), points.end(),
+                   [](const ContactPoint& a, const ContactPoint& b) { return a.node < b.node; });
+  problem.contact = merge_equal(points, extent(problem.mesh).size);
+}
+
+}  // namespace kacanov

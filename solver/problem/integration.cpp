@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Integrals of shape functions over facets and elements: what loads and contact masses are made of.
+#include "problem/integration.hpp"
+
+#include <span>
+#include <vector>
+
+#include "problem/shapes.hpp"
+#include "problem/vector3.hpp"
+
+namespace kacanov {
+namespace {
+
+struct Point {
+  Vector3 at;
+  double weight;
+};
+
+// Gauss–Legendre on [−1, 1].
+constexpr std::array<std::array<double, 2>, 2> gauss2{
+    {{-0.57735026918962576451, 1.0}, {0.57735026918962576451, 1.0}}};
+constexpr std::array<std::array<double, 2>, 4> gauss4{{{-0.86113631159405257522, 0.34785484513745385737},
+                                                       {-0.33998104358485626480, 0.65214515486254614263},
+                                                       {0.33998104358485626480, 0.65214515486254614263},
+                                                       {0.86113631159405257522, 0.34785484513745385737}}};
+
+/// Products of two-point rules over a line, a square or a cube: degree 3 in each direction.
+std::vector<Point> tensor_rule(int dim) {
+  std::vector<Point> rule{{{0.0, 0.0, 0.0}, 1.0}};
+  for (std::size_t c = 0; c < static_cast<std::size_t>(dim); ++c) {
+    std::vector<Point> finer;
+    for (const Point& point : rule) {
+      for (const auto& [x, w] : gauss2) {
+        finer.push_back(point);
+        finer.back().at[c] = x;
+        finer.back().weight *= w;
+      }
+    }
+    rule = finer;
+  }
+  return rule;
+}
+
+/// The cube's four-point rules collapsed onto the unit simplex: degree 5 in 3D, 6 in 2D.
+std::vector<Point> simplex_rule(int dim) {
+  std::vector<Point> rule;
+  for (const auto& [gu, wu] : gauss4) {
+    for (const auto& [gv, wv] : gauss4) {
+      const double u = 0.5 * (1.0 + gu), v = 0.5 * (1.0 + gv);
+      if (dim == 2) {
+        rule.push_back({{u, v * (1.0 - u), 0.0}, 0.25 * wu * wv * (1.0 - u)});
+        continue;
+      }
+      for (const auto& [gw, ww] : gauss4) {
+        const double w = 0.5 * (1.0 + gw);
+        rule.push_back({{u, v * (1.0 - u), w * (1.0 - u) * (1.0 - v)},
+                        0.125 * wu * wv * ww * (1.0 - u) * (1.0 - u) * (1.0 - v)});
+      }
+    }
+  }
+  return rule;
+}
+
+const std::vector<Point>& facet_rule(ElementType type) {
+  static const std::vector<Point> line = tensor_rule(1), square = tensor_rule(2), triangle = simplex_rule(2);
+  switch (type) {
+    case ElementType::tri3: return line;
+    case ElementType::hex8: return square;
+    case ElementType::tet4:
+    case ElementType::tet10: break;
+  }
+  return triangle;
+}
+
+/// Outer normal times the area of a flat triangle.
+Vector3 area_vector(const Vector3& a, const Vector3& b, const Vector3& c) {
+  return 0.5 * cross(b - a, c - a);
+}
+
+}  // namespace
+
+FacetWeights consistent_weights(const Mesh& mesh, std::size_t facet) {
+  FacetWeights weights;
+  const auto nodes = mesh.facet(facet);
+  if (mesh.type == ElementType::tet4) {  // by far the most frequent, and constant
+    const Vector3 third = (1.0 / 3.0) * area_vector(position(mesh, nodes[0]), position(mesh, nodes[1]),
+                                                    position(mesh, nodes[2]));
+    for (std::size_t k = 0; k < 3; ++k) {
+      weights.normal[k] = third;
+      weights.area[k] = norm(third);
+    }
+    return weights;
+  }
+  for (const Point& point : facet_rule(mesh.type)) {
+    const Shapes shapes = facet_shapes(mesh.type, point.at[0], point.at[1]);
+    Vector3 along{}, across{};
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      const Vector3 x = position(mesh, nodes[k]);
+      along = along + shapes.gradient[k][0] * x;
+      across = across + shapes.gradient[k][1] * x;
+    }
+    // In 2D the body lies to the left of the edge.
+    const Vector3 normal = mesh.dim() == 2 ? Vector3{along[1], -along[0], 0.0} : cross(along, across);
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      weights.normal[k] = weights.normal[k] + point.weight * shapes.value[k] * normal;
+      weights.area[k] += point.weight * shapes.value[k] * norm(normal);
+    }
+  }
+  return weights;
+}
+
+FacetWeights lumped_weights(const Mesh& mesh, std::size_t facet) {
+  if (mesh.type != ElementType::tet10) return consistent_weights(mesh, facet);
+  constexpr std::array<std::array<std::size_t, 3>, 4> parts{{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
+  FacetWeights weights;
+  const auto nodes = mesh.facet(facet);
+  for (const auto& part : parts) {
+    const Vector3 third =
+        (1.0 / 3.0) * area_vector(position(mesh, nodes[part[0]]), position(mesh, nodes[part[1]]),
+                                  position(mesh, nodes[part[2]]));
+    for (const std::size_t k : part) {
+      weights.normal[k] = weights.normal[k] + third;
+      weights.area[k] += norm(third);
+    }
+  }
+  return weights;
+}
+
+std::array<double, 10> volume_weights(const Mesh& mesh, std::size_t element) {
+  static const std::vector<Point> cube = tensor_rule(3), tetrahedron = simplex_rule(3);
+  // The mean of the element stands for any rule where the shapes are linear.
+  static const std::vector<Point> mean3{{{0.25, 0.25, 0.25}, 1.0 / 6.0}};
+  static const std::vector<Point> mean2{{{1.0 / 3.0, 1.0 / 3.0, 0.0}, 0.5}};
+  const auto rule_of = [&]() -> const std::vector<Point>& {
+    switch (mesh.type) {
+      case ElementType::tri3: return mean2;
+      case ElementType::tet4: return mean3;
+      case ElementType::tet10: return tetrahedron;
+      case ElementType::hex8: break;
+    }
+    return cube;
+  };
+  const std::vector<Point>& rule = rule_of();
+  std::array<double, 10> weights{};
+  const auto n = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  const auto nodes = std::span(mesh.elements).subspan(element * n, n);
+  for (const Point& point : rule) {
+    const Shapes shapes = element_shapes(mesh.type, point.at);
+    std::array<Vector3, 3> jacobian{};  // columns: derivatives of the position
+    for (std::size_t k = 0; k < n; ++k) {
+      const Vector3 x = position(mesh, nodes[k]);
+      for (std::size_t c = 0; c < 3; ++c) jacobian[c] = jacobian[c] + shapes.gradient[k][c] * x;
+    }
+    if (mesh.dim() == 2) jacobian[2] = {0.0, 0.0, 1.0};
+    const double volume = point.weight * dot(jacobian[0], cross(jacobian[1], jacobian[2]));
+    for (std::size_t k = 0; k < n; ++k) weights[k] += volume * shapes.value[k];
+  }
+  return weights;
+}
+
+}  // namespace kacanov

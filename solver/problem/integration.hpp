@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Integrals of shape functions over facets and elements: what loads and contact masses are made of.
+#pragma once
+
+#include <array>
+
+#include "mesh.hpp"
+#include "model.hpp"
+
+namespace kacanov {
+
+/// One entry a node of a facet, in the facet's order; the rest is unused.
+struct FacetWeights {
+  std::array<double, 6> area{};     ///< ∫ Nᵢ dS (a length in 2D)
+  std::array<Vector3, 6> normal{};  ///< ∫ Nᵢ n dS, n the outer normal
+};
+
+/// Consistent weights: exact for planar facets, and for `normal` on curved ones too.
+FacetWeights consistent_weights(const Mesh& mesh, std::size_t facet);
+
+/// Weights of the lumped contact mass. They differ from the consistent ones for the six-node triangle alone,
+/// whose corners would weigh nothing: there each of its four sub-triangles is lumped, so that all are
+/// positive.
+FacetWeights lumped_weights(const Mesh& mesh, std::size_t facet);
+
+/// ∫ Nᵢ dV (an area in 2D), one entry a node of the element.
+std::array<double, 10> volume_weights(const Mesh& mesh, std::size_t element);
+
+}  // namespace kacanov

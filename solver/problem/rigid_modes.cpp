@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which rigid motions nothing holds, found before the solver meets them.
+#include "problem/rigid_modes.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+
+#include "error.hpp"
+#include "problem/vector3.hpp"
+
+namespace kacanov {
+namespace {
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+/// A mode is free when the constraints see less than this of it (the square root: singular values of the
+/// scaled rows).
+constexpr double free_below = 1e-12;
+
+/// One piece of the mesh whose elements hang together through nodes.
+struct Piece {
+  std::int64_t nodes = 0, elements = 0;
+  std::size_t first_element = 0;
+  Vector3 centre{};
+  double radius = 0.0;
+  Matrix6 by_displacement = Matrix6::Zero();  ///< Gram matrices of the constraint rows
+  Matrix6 by_contact = Matrix6::Zero();
+};
+
+/// What a force along `direction` at x does on the modes: rotations (about the piece's centre, scaled
+/// by its radius) first, so that reduction names them first, then translations.
+Vector6 row(const Piece& piece, const Vector3& x, const Vector3& direction) {
+  const Vector3 turn = (1.0 / piece.radius) * cross(x - piece.centre, direction);
+  Vector6 values;
+  values << turn[0], turn[1], turn[2], direction[0], direction[1], direction[2];
+  return values;
+}
+
+std::int32_t find_root(std::vector<std::int32_t>& parent, std::int32_t node) {
+  while (parent[static_cast<std::size_t>(node)] != node) {
+    std::int32_t& up = parent[static_cast<std::size_t>(node)];
+    up = parent[static_cast<std::size_t>(up)];
+    node = up;
+  }
+  return node;
+}
+
+/// Pieces, and the piece of every node.
+std::vector<Piece> find_pieces(const Mesh& mesh, std::vector<std::int32_t>& piece_of_node) {
+  std::vector<std::int32_t> parent(mesh.node_count());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto n = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  for (std::size_t e = 0; e < mesh.element_count(); ++e) {
+    const std::int32_t first = find_root(parent, mesh.elements[e * n]);
+    for (std::size_t k = 1; k < n; ++k) {
+      parent[static_cast<std::size_t>(find_root(parent, mesh.elements[e * n + k]))] = first;
+    }
+  }
+  std::vector<Piece> pieces;
+  piece_of_node.assign(mesh.node_count(), -1);
+  const auto piece_of = [&](std::int32_t node) -> Piece& {
+    const auto root = static_cast<std::size_t>(find_root(parent, node));
+    if (piece_of_node[root] < 0) {
+      piece_of_node[root] = static_cast<std::int32_t>(pieces.size());
+      pieces.emplace_back();
+    }
+    piece_of_node[static_cast<std::size_t>(node)] = piece_of_node[root];
+    return pieces[static_cast<std::size_t>(piece_of_node[root])];
+  };
+  for (std::size_t e = 0; e < mesh.element_count(); ++e) {
+    Piece& piece = piece_of(mesh.elements[e * n]);
+    if (piece.elements++ == 0) piece.first_element = e;
+  }
+  const auto nodes = static_cast<std::int32_t>(mesh.node_count());
+  for (std::int32_t node = 0; node < nodes; ++node) {
+    Piece& piece = piece_of(node);
+    ++piece.nodes;
+    piece.centre = piece.centre + position(mesh, node);
+  }
+  for (Piece& piece : pieces) piece.centre = (1.0 / static_cast<double>(piece.nodes)) * piece.centre;
+  for (std::int32_t node = 0; node < nodes; ++node) {
+    Piece& piece = piece_of(node);
+    piece.radius = std::max(piece.radius, norm(position(mesh, node) - piece.centre));
+  }
+  return pieces;
+}
+
+void add_row(Matrix6& gram, const Vector6& values) { gram.noalias() += values * values.transpose(); }
+
+void collect_rows(const Problem& problem, std::vector<Piece>& pieces,
+                  std::span<const std::int32_t> piece_of_node) {
+  const Mesh& mesh = problem.mesh;
+  const auto dim = static_cast<std::size_t>(mesh.dim());
+  for (std::size_t k = 0; k < problem.held.size(); ++k) {
+    if (problem.held[k] == 0) continue;
+    const std::size_t node = k / dim;
+    Piece& piece = pieces[static_cast<std::size_t>(piece_of_node[node])];
+    Vector3 axis{};
+    axis[k % dim] = 1.0;
+    add_row(piece.by_displacement, row(piece, position(mesh, static_cast<std::int32_t>(node)), axis));
+  }
+  for (const ContactPoint& point : problem.contact) {
+    Piece& piece = pieces[static_cast<std::size_t>(piece_of_node[static_cast<std::size_t>(point.node)])];
+    const Vector3 x = position(mesh, point.node);
+    // The whole normal: what is held of it is in the displacements' rows already.
+    add_row(piece.by_contact, row(piece, x, point.normal));
+    for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k) {
+      add_row(piece.by_contact, row(piece, x, point.tangent[k]));
+    }
+  }
+}
+
+/// Free modes as rows, in reduced echelon form: axis-aligned motions come out as such.
+Eigen::MatrixXd free_modes(const Matrix6& gram, int dim) {
+  // In the plane: rotation about z, translations along x and y.
+  const std::vector<Eigen::Index> kept =
+      dim == 3 ? std::vector<Eigen::Index>{0, 1, 2, 3, 4, 5} : std::vector<Eigen::Index>{2, 3, 4};
+  const Eigen::MatrixXd reduced = gram(kept, kept);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(reduced);
+  const double scale = std::max(eigen.eigenvalues().maxCoeff(), 1e-300);
+  Eigen::Index count = 0;
+  while (count < eigen.eigenvalues().size() && eigen.eigenvalues()[count] <= free_below * scale) ++count;
+  Eigen::MatrixXd modes = Eigen::MatrixXd::Zero(count, 6);
+  for (Eigen::Index m = 0; m < count; ++m) {
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      modes(m, kept[k]) = eigen.eigenvectors()(static_cast<Eigen::Index>(k), m);
+    }
+  }
+  Eigen::Index lead = 0;
+  for (Eigen::Index column = 0; column < 6 && lead < count; ++column) {
+    Eigen::Index pivot = 0;
+    const double largest = modes.col(column).tail(count - lead).cwiseAbs().maxCoeff(&pivot);
+    if (largest < 1e-6) continue;
+    modes.row(lead).swap(modes.row(lead + pivot));
+    modes.row(lead) /= modes(lead, column);
+    for (Eigen::Index other = 0; other < count; ++other) {
+      if (other != lead) modes.row(other) -= modes(other, column) * modes.row(lead).eval();
+    }
+    ++lead;
+  }
+  return modes;
+}
+
+/// "x", or "(0.6, 0.8, 0)" for a direction off the axes.
+std::string direction_name(Vector3 direction, int dim) {
+  direction = (1.0 / norm(direction)) * direction;
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (std::abs(std::abs(direction[c]) - 1.0) < 1e-9) return std::string(1, "xyz"[c]);
+  }
+  for (double& value : direction) value = std::abs(value) < 1e-9 ? 0.0 : value;
+  return to_text(direction, dim);
+}
+
+/// The motion of one mode in words, with the axis through the point nearest to the centre.
+std::string describe(const Piece& piece, const Eigen::VectorXd& mode, int dim) {
+  const Vector3 turn{mode[0], mode[1], mode[2]};
+  const Vector3 shift{mode[3] * piece.radius, mode[4] * piece.radius, mode[5] * piece.radius};
+  if (norm(turn) < 1e-6) return "translation along " + direction_name(shift, dim);
+  const double squared = dot(turn, turn);
+  const Vector3 along = (dot(shift, turn) / squared) * turn;
+  Vector3 through = piece.centre + (1.0 / squared) * cross(turn, shift);
+  for (double& value : through) value = std::abs(value) < 1e-9 * piece.radius ? 0.0 : value;
+  std::string text = "rotation about " + (dim == 2 ? "z" : direction_name(turn, dim));
+  if (norm(shift) > 1e-6 * piece.radius) text += " through " + to_text(through, dim);
+  if (norm(along) > 1e-6 * piece.radius) text += " together with a translation along its axis";
+  return text;
+}
+
+std::string list_modes(const Piece& piece, const Eigen::MatrixXd& modes, int dim) {
+  std::string text;
+  for (Eigen::Index m = 0; m < modes.rows(); ++m) {
+    text += (m > 0 ? ", " : "") + describe(piece, modes.row(m), dim);
+  }
+  return text;
+}
+
+std::string name_piece(const Piece& piece, const Mesh& mesh, std::size_t pieces) {
+  if (pieces == 1) return "the body";
+  return "the piece of the body with element " + std::to_string(mesh.element_tag(piece.first_element)) +
+         " (" + std::to_string(piece.elements) + " of " + std::to_string(mesh.element_count()) +
+         " elements; the mesh falls into " + std::to_string(pieces) + " pieces)";
+}
+
+}  // namespace
+
+void check_rigid_modes(Problem& problem) {
+  std::vector<std::int32_t> piece_of_node;
+  std::vector<Piece> pieces = find_pieces(problem.mesh, piece_of_node);
+  collect_rows(problem, pieces, piece_of_node);
+  const int dim = problem.mesh.dim();
+  for (const Piece& piece : pieces) {
+    const Eigen::MatrixXd loose = free_modes(piece.by_displacement, dim);
+    if (loose.rows() == 0) continue;
+    const std::string name = name_piece(piece, problem.mesh, pieces.size());
+    const Eigen::MatrixXd free = free_modes(piece.by_displacement + piece.by_contact, dim);
+    if (free.rows() > 0) {
+      throw InputError("boundary: nothing holds " + name + " against " + list_modes(piece, free, dim) +
+                       "; add displacements (or contact) that do");
+    }
+    problem.loose_modes += static_cast<int>(loose.rows());
+    problem.warnings.push_back("only the contact holds " + name + " against " +
+                               list_modes(piece, loose, dim) +
+                               "; there is a solution only if the loads press it on");
+  }
+}
+
+}  // namespace kacanov
