@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "error.hpp"
+#include "problem/closest_word.hpp"
 #include "problem/vector3.hpp"
 
 namespace kacanov {
@@ -29,21 +30,6 @@ std::string kind_of(int group_dimension, int dim) {
   return group_dimension == dim - 1 ? "boundary facets" : "nodes";
 }
 
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t above = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      diagonal = above;
-    }
-  }
-  return row[b.size()];
-}
-
 }  // namespace
 
 std::string to_text(const Vector3& v, int dim) {
@@ -52,20 +38,6 @@ std::string to_text(const Vector3& v, int dim) {
   if (dim == 3) text << ", " << v[2];
   text << ')';
   return text.str();
-}
-
-std::string closest_word(const std::string& word, std::span<const std::string> candidates) {
-  std::string best;
-  std::size_t least = std::max<std::size_t>(1, word.size() / 3) + 1;
-  for (const std::string& candidate : candidates) {
-    const std::size_t distance = edit_distance(word, candidate);
-    // A transposition counts two, so that short words get two as well.
-    if (distance < least || (best.empty() && distance == 2 && word.size() > 2)) {
-      least = distance;
-      best = candidate;
-    }
-  }
-  return best;
 }
 
 Extent extent(const Mesh& mesh) {

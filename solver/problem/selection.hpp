@@ -43,7 +43,4 @@ class Selection {
 /// Distinct nodes of facets, ascending.
 std::vector<std::int32_t> nodes_of_facets(const Mesh& mesh, std::span<const std::int32_t> facets);
 
-/// The candidate closest to a mistyped word, or an empty string when none is near.
-std::string closest_word(const std::string& word, std::span<const std::string> candidates);
-
 }  // namespace kacanov

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A JSON value that knows its path, so that whatever is wrong with it can be said in the user's terms.
+#pragma once
+
+#include <functional>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kacanov {
+
+/// Parses one JSON object, refusing repeated keys. `label` (the file's name) starts every message: InputError
+/// "label:line:column: ..." for text that is no JSON.
+nlohmann::json parse_json(const std::string& text, const std::string& label);
+
+/// A value and its path ("contact[0].friction.tresca"). The value must outlive the node. Every accessor
+/// throws InputError "path: expected ..., got ..." when the value is something else.
+class Node {
+ public:
+  Node(const nlohmann::json& value, std::string path) : value_(&value), path_(std::move(path)) {}
+
+  const std::string& path() const noexcept { return path_; }
+  const nlohmann::json& value() const noexcept { return *value_; }
+
+  /// A finite number for which `holds` is true; `expected` says what that is ("a number > 0").
+  double number(const std::string& expected, const std::function<bool(double)>& holds) const;
+  double number() const;
+  int integer(int least) const;  ///< a whole number ≥ least, also when written 1e4
+  bool boolean() const;
+  std::string text() const;                                   ///< a string that is not empty
+  std::vector<Node> list(const std::string& expected) const;  ///< the entries of an array
+  /// A string out of a few; returns its place among them.
+  std::size_t choice(std::initializer_list<const char*> words) const;
+
+  [[noreturn]] void expected(const std::string& what) const;
+
+ private:
+  const nlohmann::json* value_;
+  std::string path_;
+};
+
+/// An object with a closed set of keys: the constructor refuses any other.
+class Object {
+ public:
+  Object(const Node& node, std::initializer_list<const char*> keys);
+  Node required(const std::string& key) const;
+  std::optional<Node> optional(const std::string& key) const;
+  /// The one of several keys that is there; none or several are errors.
+  std::string only_one_of(std::initializer_list<const char*> keys) const;
+
+ private:
+  std::string path_of(const std::string& key) const;
+  Node node_;
+};
+
+}  // namespace kacanov
