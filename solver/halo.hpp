@@ -21,6 +21,7 @@ struct Halo {
   MPI_Comm comm = MPI_COMM_SELF;
   int rank = 0, ranks = 1;
   std::vector<Neighbour> neighbours;  ///< ascending rank
+  std::vector<std::int32_t> shared;   ///< every local node that another rank has too
 
   /// Adds up the contributions of all ranks, in rank order so that every copy ends with the same bits.
   void sum(std::span<double> x, int components) const;
@@ -28,6 +29,7 @@ struct Halo {
   void copy_from_owner(std::span<double> x, int components) const;
 
   double sum_all(double value) const;
+  void sum_all(std::span<double> values) const;
   double max_all(double value) const;
   std::int64_t sum_all(std::int64_t value) const;
 };

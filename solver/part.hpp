@@ -56,12 +56,9 @@ Part distribute(const Problem* problem, MPI_Comm comm);
 
 /// Collects nodes × components (owned entries) or elements × components on rank 0, in the numbering
 /// of Problem::mesh; empty elsewhere. Collective.
-std::vector<double> gather_nodal(const Part& part, std::span<const double> local, int components,
-                                 MPI_Comm comm);
-std::vector<double> gather_elements(const Part& part, std::span<const double> local, int components,
-                                    MPI_Comm comm);
+std::vector<double> gather_nodal(const Part& part, std::span<const double> local, int components);
+std::vector<double> gather_elements(const Part& part, std::span<const double> local, int components);
 /// Contact points × components, in the numbering of Problem::contact.
-std::vector<double> gather_contact(const Part& part, std::span<const double> local, int components,
-                                   MPI_Comm comm);
+std::vector<double> gather_contact(const Part& part, std::span<const double> local, int components);
 
 }  // namespace kacanov

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Preconditioned conjugate gradients over anything that can be applied.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "space.hpp"
+
+namespace kacanov {
+
+struct CgOptions {
+  double absolute = 0.0;     ///< stop at ‖r‖ ≤ absolute ...
+  double relative = 1e-8;    ///< ... or at ‖r‖ ≤ relative · ‖r₀‖
+  int max_iterations = 2000;
+};
+
+struct CgResult {
+  int iterations = 0;
+  double first_residual = 0.0, residual = 0.0;
+  bool converged = false;
+};
+
+/// Work vectors, kept between solves.
+struct CgWork {
+  Vector residual, direction, image, preconditioned;
+  void resize(std::size_t n) {
+    for (Vector* v : {&residual, &direction, &image, &preconditioned}) v->resize(n);
+  }
+};
+
+/// Solves P A P δ = P r for the correction of x. On entry `work.residual` holds b − A x (projected here); on exit the
+/// residual of the new x. `apply(p, q)`: q = A p, consistent, not projected. `precondition(r, z)`: z ≈ A⁻¹ r,
+/// symmetric positive definite, consistent. A breakdown (pᵀAp not positive: the operator has lost its
+/// definiteness) ends the loop unconverged.
+template <class Apply, class Precondition>
+CgResult conjugate_gradients(const Space& space, const Apply& apply, const Precondition& precondition,
+                             std::span<double> x, CgWork& work, const CgOptions& options) {
+  CgResult result;
+  auto& [r, p, q, z] = work;
+  const std::size_t n = x.size();
+  space.project(r);
+  result.first_residual = result.residual = space.norm(r);
+  const double target = std::max(options.absolute, options.relative * result.first_residual);
+  result.converged = result.residual <= target;
+  double rz = 0.0;
+  while (!result.converged && result.iterations < options.max_iterations) {
+    precondition(r, z);
+    space.project(z);
+    const double rz_new = space.dot(r, z);
+    if (!(rz_new > 0.0) || !std::isfinite(rz_new)) return result;
+    if (result.iterations == 0) {
+      for (std::size_t i = 0; i < n; ++i) p[i] = z[i];
+    } else {
+      const double beta = rz_new / rz;
+      for (std::size_t i = 0; i < n; ++i) p[i] = z[i] + beta * p[i];
+    }
+    rz = rz_new;
+    apply(p, q);
+    space.project(q);
+    const double pq = space.dot(p, q);
+    if (!(pq > 0.0) || !std::isfinite(pq)) return result;
+    const double alpha = rz / pq;
+    for (std::size_t i = 0; i < n; ++i) {
+      x[i] += alpha * p[i];
+      r[i] -= alpha * q[i];
+    }
+    ++result.iterations;
+    result.residual = space.norm(r);
+    result.converged = result.residual <= target;
+  }
+  return result;
+}
+
+}  // namespace kacanov

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Algorithm 1 of the paper on one linearised contact problem, with inexact solves.
+#include "contact/admm.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "contact/projections.hpp"
+
+namespace kacanov {
+namespace {
+
+constexpr double solve_reduction = 0.1;
+
+/// Σ weight (new − old)² and Σ weight new² for (15).
+struct StepNorm {
+  double change = 0.0, size = 0.0;
+  void add(double weight, double before, double after) {
+    change += weight * (after - before) * (after - before);
+    size += weight * after * after;
+  }
+};
+
+/// Steps 2 and 3 at every point. `shift` becomes r(φ₊ − φ) − (λ₊ − λ), what the right side of step 1 changes by;
+/// `dual` becomes r(φ − w) + λ₊ − λ, minus which the linear equilibrium is left with.
+void update_multipliers(const Traces& traces, ContactState& state, const Penalty& r, double alpha,
+                        ContactValues& shift, ContactValues& dual, double& trace_residual, StepNorm& norm) {
+  const auto points = traces.points();
+  trace_residual = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool owned = i < traces.owned();
+    const auto& point = points[i];
+    {
+      double& phi = state.phi.normal[i];
+      double& lambda = state.lambda.normal[i];
+      const double w = state.trace.normal[i];
+      const NormalStep next = normal_step(alpha * w + (1.0 - alpha) * phi, lambda, point.gap, r.normal);
+      shift.normal[i] = r.normal * (next.phi - phi) - (next.lambda - lambda);
+      dual.normal[i] = r.normal * (phi - w) + next.lambda - lambda;
+      if (owned) norm.add(point.mass, phi, next.phi);
+      phi = next.phi;
+      lambda = next.lambda;
+      trace_residual = std::max(trace_residual, std::abs(w - phi));
+    }
+    if (point.tangents == 0) continue;
+    double* phi = &state.phi.tangential[2 * i];
+    double* lambda = &state.lambda.tangential[2 * i];
+    const double* w = &state.trace.tangential[2 * i];
+    const double relaxed[2] = {alpha * w[0] + (1.0 - alpha) * phi[0], alpha * w[1] + (1.0 - alpha) * phi[1]};
+    const TangentialStep next = tangential_step(relaxed, lambda, state.bound[i], r.tangential);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k) {
+      shift.tangential[2 * i + k] = r.tangential * (next.phi[k] - phi[k]) - (next.lambda[k] - lambda[k]);
+      dual.tangential[2 * i + k] = r.tangential * (phi[k] - w[k]) + next.lambda[k] - lambda[k];
+      if (owned) norm.add(point.mass, phi[k], next.phi[k]);
+      phi[k] = next.phi[k];
+      lambda[k] = next.lambda[k];
+      trace_residual = std::max(trace_residual, std::abs(w[k] - phi[k]));
+    }
+  }
+  trace_residual = traces.halo().max_all(trace_residual);
+}
+
+}  // namespace
+
+AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work, const AdmmOptions& options) {
+  const Space& space = *problem.space;
+  const Traces& traces = *problem.traces;
+  const auto dim = static_cast<std::size_t>(space.part().dim());
+  const bool stop_by_step = options.step_tolerance > 0.0;
+  const auto apply = [&](std::span<const double> p, std::span<double> q) {
+    problem.apply(p, q);
+    traces.add_penalty(options.r, p, q);
+  };
+
+  ContactValues shift(traces.size()), dual(traces.size());
+  for (std::size_t i = 0; i < traces.size(); ++i) {
+    shift.normal[i] = options.r.normal * (state.phi.normal[i] - state.trace.normal[i]);
+    for (std::size_t k = 2 * i; k < 2 * i + 2; ++k)
+      shift.tangential[k] = options.r.tangential * (state.phi.tangential[k] - state.trace.tangential[k]);
+  }
+  traces.add_force(shift, 1.0, work.residual);
+
+  AdmmResult result;
+  Vector before(stop_by_step ? state.omega.size() : 0);
+  while (!result.converged && result.iterations < options.max_iterations) {
+    if (stop_by_step) before = state.omega;
+    CgOptions cg;
+    cg.absolute = 0.2 * options.force_tolerance;
+    // The first residual is what the last projection changed: a tenth of it is exact enough (inexact ADMM), where
+    // the loop is judged by residuals and not by its steps.
+    cg.relative = stop_by_step ? 1e-12 : solve_reduction;
+    const CgResult solve = conjugate_gradients(space, apply, problem.precondition, state.omega, work, cg);
+    result.cg_iterations += solve.iterations;
+    if (solve.iterations > 0 && solve.residual > 0.0)
+      result.cg_digits += std::log10(solve.first_residual / solve.residual);
+    result.solves_converged = result.solves_converged && solve.converged;
+    traces.evaluate(state.omega, state.trace);
+
+    StepNorm norm;
+    update_multipliers(traces, state, options.r, options.relaxation, shift, dual, result.trace_residual, norm);
+    result.force_residual = solve.residual + traces.force_norm(dual);
+    traces.add_force(shift, 1.0, work.residual);
+    ++result.iterations;
+    if (stop_by_step) {
+      for (std::size_t i = 0; i < space.part().owned_unknowns(); ++i)
+        norm.add(options.volume[i / dim], before[i], state.omega[i]);
+      std::array<double, 2> sums{norm.change, norm.size};
+      traces.halo().sum_all(sums);
+      result.step = sums[1] > 0.0 ? std::sqrt(sums[0] / sums[1]) : 0.0;
+      result.converged = result.step < options.step_tolerance;
+    } else {
+      result.converged =
+          result.force_residual <= options.force_tolerance && result.trace_residual <= options.trace_tolerance;
+    }
+    if (!std::isfinite(result.force_residual)) break;
+  }
+  // Back to the residual without penalty terms.
+  for (std::size_t i = 0; i < traces.size(); ++i) {
+    shift.normal[i] = options.r.normal * (state.phi.normal[i] - state.trace.normal[i]);
+    for (std::size_t k = 2 * i; k < 2 * i + 2; ++k)
+      shift.tangential[k] = options.r.tangential * (state.phi.tangential[k] - state.trace.tangential[k]);
+  }
+  traces.add_force(shift, -1.0, work.residual);
+  return result;
+}
+
+}  // namespace kacanov

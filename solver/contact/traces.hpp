@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Normal and tangential traces N, T on the contact points, with the lumped mass M.
+#pragma once
+
+#include <span>
+
+#include "space.hpp"
+
+namespace kacanov {
+
+/// Penalties of the augmented Lagrangian: one for N, one for T.
+struct Penalty {
+  double normal = 0.0, tangential = 0.0;
+};
+
+/// Values at the contact points of a part, ghosts included: every copy holds the same bits.
+struct ContactValues {
+  Vector normal;      ///< points
+  Vector tangential;  ///< points × 2; unused entries stay 0
+  explicit ContactValues(std::size_t points = 0) : normal(points, 0.0), tangential(2 * points, 0.0) {}
+};
+
+class Traces {
+ public:
+  explicit Traces(const Part& part) : part_(&part) {}
+
+  std::span<const ContactPoint> points() const noexcept { return part_->contact; }
+  std::size_t size() const noexcept { return part_->contact.size(); }
+  std::size_t owned() const noexcept { return static_cast<std::size_t>(part_->owned_contact); }
+  const Halo& halo() const noexcept { return part_->halo; }
+
+  /// values = (Nω, Tω); N takes prescribed components along.
+  void evaluate(std::span<const double> omega, ContactValues& values) const;
+  /// y += factor · (Nᵀ M λ_n + Tᵀ M λ_t), in free components.
+  void add_force(const ContactValues& lambda, double factor, std::span<double> y) const;
+  /// y += (r_n NᵀMN + r_t TᵀMT) x for x in the space of free components.
+  void add_penalty(const Penalty& r, std::span<const double> x, std::span<double> y) const;
+  /// ‖Nᵀ M λ_n + Tᵀ M λ_t‖ over all ranks (points of one node added up only where they share it).
+  double force_norm(const ContactValues& lambda) const;
+  /// Σ M over owned points of all ranks.
+  double area() const;
+
+ private:
+  const Part* part_;
+};
+
+}  // namespace kacanov

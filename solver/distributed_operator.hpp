@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The operator over all ranks: each applies its elements, the halo adds up shared nodes.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "operator.hpp"
+#include "part.hpp"
+
+namespace kacanov {
+
+/// Input and output vectors are consistent (Part).
+class DistributedOperator {
+ public:
+  DistributedOperator(const Part& part, int threads, const std::string& instruction_set)
+      : part_(&part), local_(part.body(), OperatorOptions{threads, instruction_set}) {}
+
+  /// y = B(g) x, or B_T x between use_tangent(true) and use_tangent(false).
+  void apply(std::span<const double> x, std::span<double> y) {
+    if (tangent_)
+      local_.apply_tangent(x, y);
+    else
+      local_.apply(x, y);
+    part_->halo.sum(y, part_->dim());
+    ++applications_;
+  }
+  void use_tangent(bool on) noexcept { tangent_ = on; }
+  bool tangent() const noexcept { return tangent_; }
+
+  /// Freezes g (and the tangent, if in use) at ω.
+  void update(std::span<const double> omega) {
+    if (tangent_)
+      local_.update_tangent(omega);
+    else
+      local_.update(omega);
+  }
+  /// Internal force of the true law; counts as an application.
+  void residual(std::span<const double> omega, std::span<double> f) {
+    local_.residual(omega, f);
+    part_->halo.sum(f, part_->dim());
+    ++applications_;
+  }
+  double energy(std::span<const double> omega) const { return part_->halo.sum_all(local_.energy(omega)); }
+
+  const Operator& local() const noexcept { return local_; }
+  std::uint64_t applications() const noexcept { return applications_; }
+
+ private:
+  const Part* part_;
+  Operator local_;
+  bool tangent_ = false;
+  std::uint64_t applications_ = 0;
+};
+
+}  // namespace kacanov

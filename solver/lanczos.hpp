@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Largest eigenvalues of a distributed symmetric operator: ARPACK in reverse communication.
+#pragma once
+
+#include <mpi.h>
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace kacanov {
+
+struct LanczosOptions {
+  double tolerance = 1e-2;  ///< Ritz bound relative to the value
+  int wanted = 1;           ///< how many of the largest
+  int max_products = 500;
+};
+
+struct LanczosResult {
+  std::vector<double> values;  ///< descending
+  std::vector<double> bounds;  ///< absolute Ritz residual bounds
+  int products = 0;
+  bool converged = false;
+};
+
+/// y = K x on the entries this rank owns (possibly none). Collective.
+using Product = std::function<void(std::span<const double> x, std::span<double> y)>;
+
+/// `index` numbers this rank's entries over all ranks, so that the start vector does not depend on
+/// the partition. Small operators (up to 24 rows in all) are formed column by column and solved densely: there ARPACK has
+/// no room to work, and breaks down on K = c·I.
+LanczosResult largest_eigenvalues(const Product& product, std::span<const std::int64_t> index, MPI_Comm comm,
+                                  const LanczosOptions& options);
+
+}  // namespace kacanov

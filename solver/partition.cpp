@@ -1,0 +1,426 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// METIS over the ranks: splits a problem and hands every rank its part.
+#include <metis.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <numeric>
+#include <type_traits>
+
+#include "error.hpp"
+#include "part.hpp"
+
+namespace kacanov {
+namespace {
+
+using Index = std::int32_t;
+
+/// Messages of any length: MPI counts are 32-bit.
+constexpr std::size_t chunk_bytes = std::size_t{1} << 30;
+
+void send_bytes(const void* data, std::size_t bytes, int to, MPI_Comm comm) {
+  const char* p = static_cast<const char*>(data);
+  for (std::size_t at = 0; at < bytes; at += chunk_bytes)
+    MPI_Send(p + at, static_cast<int>(std::min(chunk_bytes, bytes - at)), MPI_BYTE, to, 1, comm);
+}
+
+void receive_bytes(void* data, std::size_t bytes, int from, MPI_Comm comm) {
+  char* p = static_cast<char*>(data);
+  for (std::size_t at = 0; at < bytes; at += chunk_bytes)
+    MPI_Recv(p + at, static_cast<int>(std::min(chunk_bytes, bytes - at)), MPI_BYTE, from, 1, comm, MPI_STATUS_IGNORE);
+}
+
+class Sender {
+ public:
+  Sender(int rank, MPI_Comm comm) : rank_(rank), comm_(comm) {}
+  template <class T>
+  void operator()(const T& value) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    send_bytes(&value, sizeof(T), rank_, comm_);
+  }
+  template <class T>
+  void operator()(const std::vector<T>& values) const {
+    (*this)(values.size());
+    if constexpr (std::is_trivially_copyable_v<T>)
+      send_bytes(values.data(), values.size() * sizeof(T), rank_, comm_);
+    else
+      for (const T& v : values) exchange_fields(v, *this);
+  }
+
+ private:
+  int rank_;
+  MPI_Comm comm_;
+};
+
+class Receiver {
+ public:
+  explicit Receiver(MPI_Comm comm) : comm_(comm) {}
+  template <class T>
+  void operator()(T& value) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    receive_bytes(&value, sizeof(T), 0, comm_);
+  }
+  template <class T>
+  void operator()(std::vector<T>& values) const {
+    std::size_t n = 0;
+    (*this)(n);
+    values.resize(n);
+    if constexpr (std::is_trivially_copyable_v<T>)
+      receive_bytes(values.data(), n * sizeof(T), 0, comm_);
+    else
+      for (T& v : values) exchange_fields(v, *this);
+  }
+
+ private:
+  MPI_Comm comm_;
+};
+
+/// One list of fields serves both directions.
+template <class L, class Stream>
+  requires std::is_same_v<std::remove_const_t<L>, Law>
+void exchange_fields(L& law, const Stream& stream) {
+  stream(law.kind);
+  stream(law.argument);
+  for (auto* x : {&law.bulk, &law.shear, &law.x0, &law.gamma, &law.n, &law.q}) stream(*x);
+  stream(law.table_x);
+  stream(law.table_s);
+}
+
+template <class N, class Stream>
+  requires std::is_same_v<std::remove_const_t<N>, Halo::Neighbour>
+void exchange_fields(N& n, const Stream& stream) {
+  stream(n.rank);
+  stream(n.shared);
+  stream(n.send);
+  stream(n.receive);
+}
+
+template <class P, class Stream>
+  requires std::is_same_v<std::remove_const_t<P>, Part>
+void exchange_fields(P& part, const Stream& stream) {
+  stream(part.type);
+  stream(part.coordinates);
+  stream(part.elements);
+  stream(part.node_index);
+  stream(part.element_index);
+  stream(part.node_tags);
+  stream(part.element_tags);
+  stream(part.owned_nodes);
+  stream(part.first_owned);
+  stream(part.total_nodes);
+  stream(part.total_elements);
+  stream(part.global_node);
+  stream(part.halo.neighbours);
+  stream(part.halo.shared);
+  stream(part.laws);
+  stream(part.law_of_element);
+  stream(part.load);
+  stream(part.prescribed);
+  stream(part.held);
+  stream(part.contact);
+  stream(part.owned_contact);
+  stream(part.contact_index);
+  stream(part.total_contact);
+  stream(part.probes);
+  stream(part.probe_index);
+  stream(part.total_probes);
+  stream(part.loose_modes);
+}
+
+/// METIS part of every element. Corner nodes suffice for the dual graph.
+std::vector<Index> partition_elements(const Mesh& mesh, int ranks) {
+  const auto count = mesh.element_count();
+  std::vector<Index> part(count, 0);
+  if (ranks == 1) return part;
+  static_assert(sizeof(idx_t) == 4, "METIS is expected to be a 32-bit build");
+  const auto stride = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  const std::size_t corners = mesh.type == ElementType::tet10 ? 4 : stride;
+  if (count * corners > static_cast<std::size_t>(std::numeric_limits<idx_t>::max()))
+    throw InputError("the mesh has too many elements for a 32-bit METIS: run with --ranks 1");
+  std::vector<idx_t> start(count + 1), corner(count * corners);
+  for (std::size_t e = 0; e <= count; ++e) start[e] = static_cast<idx_t>(e * corners);
+  for (std::size_t e = 0; e < count; ++e)
+    std::copy_n(mesh.elements.begin() + static_cast<std::ptrdiff_t>(e * stride), corners,
+                corner.begin() + static_cast<std::ptrdiff_t>(e * corners));
+  auto elements = static_cast<idx_t>(count), nodes = static_cast<idx_t>(mesh.node_count());
+  idx_t common = mesh.type == ElementType::hex8 ? 4 : static_cast<idx_t>(mesh.dim());
+  idx_t parts = ranks, cut = 0;
+  std::vector<idx_t> node_part(mesh.node_count());
+  const int status = METIS_PartMeshDual(&elements, &nodes, start.data(), corner.data(), nullptr, nullptr, &common,
+                                        &parts, nullptr, nullptr, &cut, part.data(), node_part.data());
+  if (status != METIS_OK) throw InternalError("METIS could not partition the mesh");
+  return part;
+}
+
+/// Which ranks have each node, ascending: compressed rows.
+struct Sharers {
+  std::vector<std::size_t> start;
+  std::vector<int> rank;
+  std::span<const int> of(std::size_t node) const {
+    return std::span(rank).subspan(start[node], start[node + 1] - start[node]);
+  }
+  /// Shared nodes are dealt out in turn, so that no rank owns a whole interface.
+  int owner(std::size_t node) const {
+    const auto s = of(node);
+    return s[node % s.size()];
+  }
+};
+
+Sharers find_sharers(const Mesh& mesh, std::span<const Index> part, int ranks) {
+  Sharers sharers;
+  const std::size_t nodes = mesh.node_count();
+  const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  sharers.start.assign(nodes + 1, 0);
+  if (ranks == 1) {
+    std::iota(sharers.start.begin(), sharers.start.end(), std::size_t{0});
+    sharers.rank.assign(nodes, 0);
+    return sharers;
+  }
+  // Elements by rank, so that each node sees its ranks in ascending order.
+  std::vector<Index> order(part.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+    return part[static_cast<std::size_t>(a)] < part[static_cast<std::size_t>(b)];
+  });
+  std::vector<int> last(nodes, -1);
+  const auto visit = [&](auto&& on_new) {
+    std::fill(last.begin(), last.end(), -1);
+    for (const Index e : order) {
+      const int p = part[static_cast<std::size_t>(e)];
+      for (std::size_t a = 0; a < npe; ++a) {
+        const auto n = static_cast<std::size_t>(mesh.elements[static_cast<std::size_t>(e) * npe + a]);
+        if (last[n] == p) continue;
+        last[n] = p;
+        on_new(n, p);
+      }
+    }
+  };
+  visit([&](std::size_t n, int) { ++sharers.start[n + 1]; });
+  std::partial_sum(sharers.start.begin(), sharers.start.end(), sharers.start.begin());
+  sharers.rank.resize(sharers.start.back());
+  std::vector<std::size_t> at(sharers.start.begin(), sharers.start.end() - 1);
+  visit([&](std::size_t n, int p) { sharers.rank[at[n]++] = p; });
+  return sharers;
+}
+
+class Splitter {
+ public:
+  Splitter(const Problem& problem, int ranks)
+      : problem_(problem),
+        ranks_(ranks),
+        part_of_(partition_elements(problem.mesh, ranks)),
+        sharers_(find_sharers(problem.mesh, part_of_, ranks)),
+        first_(static_cast<std::size_t>(ranks) + 1, 0),
+        global_(problem.mesh.node_count()),
+        local_(problem.mesh.node_count(), -1) {
+    const std::size_t nodes = problem.mesh.node_count();
+    for (std::size_t n = 0; n < nodes; ++n) ++first_[static_cast<std::size_t>(sharers_.owner(n)) + 1];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    auto next = first_;
+    for (std::size_t n = 0; n < nodes; ++n) global_[n] = next[static_cast<std::size_t>(sharers_.owner(n))]++;
+  }
+
+  Part part(int rank) {
+    Part part;
+    take_nodes(part, rank);
+    take_elements(part, rank);
+    plan_halo(part, rank);
+    take_contact(part, rank);
+    take_probes(part, rank);
+    part.laws = problem_.laws;
+    part.loose_modes = problem_.loose_modes;
+    for (const Index n : part.node_index) local_[static_cast<std::size_t>(n)] = -1;
+    return part;
+  }
+
+ private:
+  void take_nodes(Part& part, int rank) {
+    const Mesh& mesh = problem_.mesh;
+    const auto dim = static_cast<std::size_t>(mesh.dim());
+    part.type = mesh.type;
+    part.total_nodes = static_cast<std::int64_t>(mesh.node_count());
+    part.total_elements = static_cast<std::int64_t>(mesh.element_count());
+    part.first_owned = first_[static_cast<std::size_t>(rank)];
+    for (const bool owned : {true, false}) {
+      for (std::size_t n = 0; n < mesh.node_count(); ++n) {
+        const auto s = sharers_.of(n);
+        if ((sharers_.owner(n) == rank) != owned || !std::binary_search(s.begin(), s.end(), rank)) continue;
+        local_[n] = static_cast<Index>(part.node_index.size());
+        part.node_index.push_back(static_cast<Index>(n));
+      }
+      if (owned) part.owned_nodes = static_cast<Index>(part.node_index.size());
+    }
+    const std::size_t count = part.node_index.size();
+    part.coordinates.reserve(count * dim);
+    part.node_tags.reserve(count);
+    part.global_node.reserve(count);
+    for (const Index index : part.node_index) {
+      const auto n = static_cast<std::size_t>(index);
+      part.node_tags.push_back(mesh.node_tag(n));
+      part.global_node.push_back(global_[n]);
+      for (std::size_t c = n * dim; c < (n + 1) * dim; ++c) {
+        part.coordinates.push_back(mesh.coordinates[c]);
+        part.load.push_back(problem_.load[c]);
+        part.prescribed.push_back(problem_.prescribed[c]);
+        part.held.push_back(problem_.held[c]);
+      }
+    }
+  }
+
+  void take_elements(Part& part, int rank) const {
+    const Mesh& mesh = problem_.mesh;
+    const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
+    for (std::size_t e = 0; e < part_of_.size(); ++e) {
+      if (part_of_[e] != rank) continue;
+      part.element_index.push_back(static_cast<Index>(e));
+      part.element_tags.push_back(mesh.element_tag(e));
+      part.law_of_element.push_back(problem_.law_of_element[e]);
+      for (std::size_t a = 0; a < npe; ++a)
+        part.elements.push_back(local_[static_cast<std::size_t>(mesh.elements[e * npe + a])]);
+    }
+  }
+
+  void plan_halo(Part& part, int rank) const {
+    std::vector<Halo::Neighbour> all(static_cast<std::size_t>(ranks_));
+    // Both sides walk their nodes in the mesh's order, so the lists match.
+    std::vector<Index> ascending = part.node_index;
+    std::sort(ascending.begin(), ascending.end());
+    for (const Index index : ascending) {
+      const auto n = static_cast<std::size_t>(index);
+      const auto s = sharers_.of(n);
+      if (s.size() == 1) continue;
+      const Index here = local_[n];
+      part.halo.shared.push_back(here);
+      const int owner = sharers_.owner(n);
+      for (const int other : s) {
+        if (other == rank) continue;
+        auto& neighbour = all[static_cast<std::size_t>(other)];
+        neighbour.shared.push_back(here);
+        if (owner == rank) neighbour.send.push_back(here);
+        if (owner == other) neighbour.receive.push_back(here);
+      }
+    }
+    for (int other = 0; other < ranks_; ++other) {
+      auto& neighbour = all[static_cast<std::size_t>(other)];
+      neighbour.rank = other;
+      if (!neighbour.shared.empty()) part.halo.neighbours.push_back(std::move(neighbour));
+    }
+  }
+
+  void take_contact(Part& part, int rank) const {
+    part.total_contact = static_cast<std::int64_t>(problem_.contact.size());
+    // Points of one node are kept together: Traces and Space rely on it.
+    std::vector<Index> order(problem_.contact.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+      return problem_.contact[static_cast<std::size_t>(a)].node < problem_.contact[static_cast<std::size_t>(b)].node;
+    });
+    for (const bool owned : {true, false}) {
+      for (const Index index : order) {
+        const auto i = static_cast<std::size_t>(index);
+        ContactPoint point = problem_.contact[i];
+        const auto n = static_cast<std::size_t>(point.node);
+        if (local_[n] < 0 || (sharers_.owner(n) == rank) != owned) continue;
+        point.node = local_[n];
+        part.contact.push_back(point);
+        part.contact_index.push_back(static_cast<Index>(i));
+      }
+      if (owned) part.owned_contact = static_cast<Index>(part.contact.size());
+    }
+  }
+
+  void take_probes(Part& part, int rank) const {
+    part.total_probes = static_cast<Index>(problem_.probes.size());
+    for (std::size_t i = 0; i < problem_.probes.size(); ++i) {
+      const auto e = static_cast<std::size_t>(problem_.probes[i].element);
+      if (part_of_[e] != rank) continue;
+      Probe probe = problem_.probes[i];
+      probe.element = static_cast<Index>(
+          std::lower_bound(part.element_index.begin(), part.element_index.end(), probe.element) -
+          part.element_index.begin());
+      part.probes.push_back(probe);
+      part.probe_index.push_back(static_cast<Index>(i));
+    }
+  }
+
+  const Problem& problem_;
+  int ranks_;
+  std::vector<Index> part_of_;
+  Sharers sharers_;
+  std::vector<std::int64_t> first_, global_;
+  std::vector<Index> local_;
+};
+
+}  // namespace
+
+Part distribute(const Problem* problem, MPI_Comm comm) {
+  int rank = 0, ranks = 1;
+  MPI_Comm_rank(comm, &rank);
+  MPI_Comm_size(comm, &ranks);
+  Part part;
+  if (rank == 0) {
+    Splitter splitter(*problem, ranks);
+    for (int other = 1; other < ranks; ++other) {
+      const Part theirs = splitter.part(other);
+      exchange_fields(theirs, Sender(other, comm));
+    }
+    part = splitter.part(0);
+  } else {
+    exchange_fields(part, Receiver(comm));
+  }
+  part.halo.comm = comm;
+  part.halo.rank = rank;
+  part.halo.ranks = ranks;
+  return part;
+}
+
+namespace {
+
+std::vector<double> gather(std::span<const Index> index, std::span<const double> local, std::size_t width,
+                           std::size_t total, const Halo& halo) {
+  std::vector<double> all;
+  if (halo.rank == 0) {
+    all.resize(total * width);
+    const auto place = [&](std::span<const Index> where, std::span<const double> what) {
+      for (std::size_t i = 0; i < where.size(); ++i)
+        std::copy_n(what.begin() + static_cast<std::ptrdiff_t>(i * width), width,
+                    all.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(where[i]) * width));
+    };
+    place(index, local);
+    for (int other = 1; other < halo.ranks; ++other) {
+      std::size_t n = 0;
+      receive_bytes(&n, sizeof n, other, halo.comm);
+      std::vector<Index> where(n);
+      std::vector<double> what(n * width);
+      receive_bytes(where.data(), n * sizeof(Index), other, halo.comm);
+      receive_bytes(what.data(), n * width * sizeof(double), other, halo.comm);
+      place(where, what);
+    }
+  } else {
+    const std::size_t n = index.size();
+    send_bytes(&n, sizeof n, 0, halo.comm);
+    send_bytes(index.data(), n * sizeof(Index), 0, halo.comm);
+    send_bytes(local.data(), n * width * sizeof(double), 0, halo.comm);
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<double> gather_nodal(const Part& part, std::span<const double> local, int components) {
+  return gather(std::span(part.node_index).first(static_cast<std::size_t>(part.owned_nodes)), local,
+                static_cast<std::size_t>(components), static_cast<std::size_t>(part.total_nodes), part.halo);
+}
+
+std::vector<double> gather_elements(const Part& part, std::span<const double> local, int components) {
+  return gather(part.element_index, local, static_cast<std::size_t>(components),
+                static_cast<std::size_t>(part.total_elements), part.halo);
+}
+
+std::vector<double> gather_contact(const Part& part, std::span<const double> local, int components) {
+  return gather(std::span(part.contact_index).first(static_cast<std::size_t>(part.owned_contact)), local,
+                static_cast<std::size_t>(components), static_cast<std::size_t>(part.total_contact), part.halo);
+}
+
+}  // namespace kacanov

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The outer loop: Kacanov's method (7) round the contact loop, with the penalty and the preconditioner it needs.
+#pragma once
+
+#include "certificate.hpp"
+#include "solve.hpp"
+#include "spectrum.hpp"
+
+namespace kacanov {
+
+/// Everything a run works with, and the state it leaves.
+class OuterLoop {
+ public:
+  OuterLoop(const Part& part, const SolverOptions& options, const RunOptions& run);
+
+  /// Runs until the certificate meets the tolerance, or max_outer steps. Fills the loop's entries of the result.
+  void run(Result& result);
+
+  const ContactState& state() const noexcept { return state_; }
+  const Space& space() const noexcept { return space_; }
+  const Traces& traces() const noexcept { return traces_; }
+  const DistributedOperator& op() const noexcept { return op_; }
+  double spectrum_seconds() const noexcept { return spectrum_seconds_; }
+  double setup_seconds() const noexcept { return amg_.setup_seconds(); }
+
+ private:
+  void choose_first_penalty(Result& result);
+  bool improve_penalty(Result& result, int outer);
+  void set_up_preconditioner();
+  void update_bounds();
+  void refresh_secant();
+  Residuals evaluate();
+  void report(const Result& result, const ProgressStep& step) const;
+  void note(const std::string& text) const;
+
+  const Part& part_;
+  const SolverOptions& options_;
+  const RunOptions& run_;
+  double start_;
+  Space space_;
+  Traces traces_;
+  DistributedOperator op_;
+  Amg amg_;
+  ContactState state_;
+  CgWork work_;
+  Vector internal_;          // R(ω)
+  Vector secant_;            // frozen g, elements × points
+  Vector volume_;            // lumped nodal volumes, for (15)
+  Penalty penalty_;
+  bool friction_ = false;
+  bool preconditioner_stale_ = true;
+  double digits_per_cg_ = 0.0;   // right after the last setup
+  int estimates_ = 0;            // of r_A
+  double spectrum_seconds_ = 0.0;
+};
+
+}  // namespace kacanov

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The solver's front door: runs the loops, then certifies and collects the result.
+#include "solve.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "certificate.hpp"
+#include "secant.hpp"
+
+namespace kacanov {
+namespace {
+
+/// Peak resident memory of this process, from the kernel's VmHWM.
+std::uint64_t peak_memory() {
+  std::ifstream status("/proc/self/status");
+  std::string word;
+  while (status >> word)
+    if (word == "VmHWM:") {
+      std::uint64_t kib = 0;
+      status >> kib;
+      return kib * 1024;
+    }
+  return 0;
+}
+
+void collect_fields(const Part& part, const ContactState& state, Solution& solution) {
+  const std::size_t elements = part.element_index.size();
+  solution.displacement = state.omega;
+  solution.stress.resize(6 * elements);
+  for (auto* field : {&solution.von_mises, &solution.dev_strain, &solution.secant}) field->resize(elements);
+  solution.plastic.resize(elements);
+  reference::fields(part.body(), state.omega,
+                    {solution.stress, solution.von_mises, solution.dev_strain, solution.secant, solution.plastic});
+  const auto points = std::span(part.contact);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    solution.gap.push_back(points[i].gap - state.trace.normal[i]);
+    solution.pressure.push_back(state.lambda.normal[i]);
+    const double* friction = &state.lambda.tangential[2 * i];
+    Vector3 traction{};
+    for (std::size_t k = 0; k < static_cast<std::size_t>(points[i].tangents); ++k)
+      for (std::size_t c = 0; c < 3; ++c) traction[c] -= friction[k] * points[i].tangent[k][c];
+    solution.traction.push_back(traction);
+    // The projection leaves |λ_f| = ψ to rounding where it slips.
+    const bool slips = points[i].tangents == 0 ||
+                       std::hypot(friction[0], friction[1]) >= state.bound[i] * (1.0 - 1e-10);
+    const bool touches = state.lambda.normal[i] > 0.0;
+    solution.contact_status.push_back(!touches && points[i].tangents == 0 ? ContactStatus::open
+                                      : slips                             ? ContactStatus::slip
+                                                                          : ContactStatus::stick);
+    if (!touches && points[i].tangents > 0 && state.bound[i] == 0.0) solution.contact_status.back() = ContactStatus::open;
+  }
+}
+
+void collect_totals(const Part& part, const ContactState& state, const Solution& solution, Result& result) {
+  const auto dim = static_cast<std::size_t>(part.dim());
+  std::array<double, 9> sums{};  // contact force, friction force, active, slip, plastic
+  double pressure = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_contact); ++i) {
+    const auto& point = part.contact[i];
+    for (std::size_t c = 0; c < 3; ++c) {
+      sums[c] -= point.mass * state.lambda.normal[i] * point.trace[c];
+      sums[3 + c] += point.mass * solution.traction[i][c];
+    }
+    sums[6] += state.lambda.normal[i] > 0.0 ? 1.0 : 0.0;
+    sums[7] += point.tangents > 0 && solution.contact_status[i] == ContactStatus::slip ? 1.0 : 0.0;
+    pressure = std::max(pressure, state.lambda.normal[i]);
+  }
+  for (const std::uint8_t p : solution.plastic) sums[8] += p;
+  part.halo.sum_all(sums);
+  for (std::size_t c = 0; c < 3; ++c) {
+    result.contact_force[c] = sums[c];
+    result.friction_force[c] = sums[3 + c];
+  }
+  result.active_nodes = std::llround(sums[6]);
+  result.slip_nodes = std::llround(sums[7]);
+  result.plastic_elements = std::llround(sums[8]);
+  result.max_contact_pressure = part.halo.max_all(pressure);
+  double von_mises = 0.0;
+  for (const double v : solution.von_mises) von_mises = std::max(von_mises, v);
+  result.max_von_mises = part.halo.max_all(von_mises);
+
+  std::int64_t softening = 0;
+  for (std::size_t e = 0; e < solution.dev_strain.size(); ++e)
+    softening += part.laws[part.law_of_element[e]].softens(solution.dev_strain[e]) ? 1 : 0;
+  result.softening_elements = part.halo.sum_all(softening);
+
+  std::vector<double> probes(3 * static_cast<std::size_t>(part.total_probes), 0.0);
+  const auto npe = static_cast<std::size_t>(nodes_per_element(part.type));
+  for (std::size_t i = 0; i < part.probes.size(); ++i)
+    for (std::size_t a = 0; a < npe; ++a) {
+      const auto node = static_cast<std::size_t>(
+          part.elements[static_cast<std::size_t>(part.probes[i].element) * npe + a]);
+      for (std::size_t c = 0; c < dim; ++c)
+        probes[3 * static_cast<std::size_t>(part.probe_index[i]) + c] +=
+            part.probes[i].weights[a] * state.omega[node * dim + c];
+    }
+  part.halo.sum_all(probes);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(part.total_probes); ++i)
+    result.probe.push_back({probes[3 * i], probes[3 * i + 1], probes[3 * i + 2]});
+}
+
+std::string verdict(const Result& result, const SolverOptions& options) {
+  std::ostringstream text;
+  text.precision(2);
+  text << std::scientific;
+  if (result.status == Status::converged) {
+    text << "all KKT residuals are at most " << result.certificate.worst() << " (tolerance " << options.tolerance
+         << ")";
+  } else if (options.stop == SolverOptions::Stop::paper) {
+    text << "stopped by (15) with tolerance " << options.tolerance << ", but the worst KKT residual is "
+         << result.certificate.worst() << ": the step was small, the error is not";
+  } else {
+    text << "after " << result.outer_iterations << " outer steps the worst KKT residual is "
+         << result.certificate.worst() << ", above the tolerance " << options.tolerance;
+  }
+  if (result.softening_elements > 0)
+    text << "; " << result.softening_elements
+         << " elements are in the softening range of their law (squared argument), where the problem is not monotone";
+  return text.str();
+}
+
+}  // namespace
+
+Solution solve(const Part& part, const SolverOptions& options, const RunOptions& run) {
+  const double start = MPI_Wtime();
+  Solution solution;
+  Result& result = solution.result;
+  OuterLoop loop(part, options, run);
+  const double prepared = MPI_Wtime();
+  loop.run(result);
+  const double looped = MPI_Wtime();
+
+  // The certificate trusts the reference operator only, not the one the loop ran on.
+  Vector internal(part.unknowns());
+  reference::residual(part.body(), loop.state().omega, internal);
+  part.halo.sum(internal, part.dim());
+  const double energy = part.halo.sum_all(reference::energy(part.body(), loop.state().omega));
+  result.certificate = kkt_residuals(loop.space(), loop.traces(), loop.state(), internal, energy).certificate;
+  result.status = result.certificate.worst() <= options.tolerance ? Status::converged : Status::not_converged;
+
+  collect_fields(part, loop.state(), solution);
+  collect_totals(part, loop.state(), solution, result);
+  if (result.message.empty()) result.message = verdict(result, options);
+  result.unknowns = part.total_nodes * part.dim();
+  result.elements = part.total_elements;
+  result.contact_nodes = part.total_contact;
+  result.operator_applications = loop.op().applications();
+  result.ranks = part.halo.ranks;
+  result.threads = run.threads;
+  result.instruction_set = loop.op().local().instruction_set();
+  result.peak_memory_bytes =
+      static_cast<std::uint64_t>(part.halo.sum_all(static_cast<std::int64_t>(peak_memory())));
+  const double end = MPI_Wtime();
+  result.seconds = {{"total", end - start},
+                    {"prepare", prepared - start},
+                    {"spectrum", loop.spectrum_seconds()},
+                    {"preconditioner_setup", loop.setup_seconds()},
+                    {"solve", looped - prepared - loop.spectrum_seconds()},
+                    {"certificate", end - looped}};
+  return solution;
+}
+
+std::vector<SpectrumResult> analyse_spectrum(const Part& part, const SolverOptions& options, const RunOptions& run) {
+  DistributedOperator op(part, run.threads, run.instruction_set);
+  Amg amg(part);
+  std::vector<double> secant(part.body().secant_count());
+  op.local().secant(secant);
+  std::vector<SpectrumResult> results;
+  if (part.total_contact == 0) return results;
+  results.push_back(estimate_spectrum(part, op, amg, secant, false, options.spectrum_tolerance));
+  double slides = 0.0;
+  for (const auto& point : part.contact) slides = std::max(slides, point.tangents > 0 ? 1.0 : 0.0);
+  if (part.halo.max_all(slides) > 0.0)
+    results.push_back(estimate_spectrum(part, op, amg, secant, true, options.spectrum_tolerance));
+  return results;
+}
+
+}  // namespace kacanov
