@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Writes a file under a temporary name and gives it its own only when it is whole.
+#pragma once
+
+#include <cstddef>
+#include <cstdio>
+#include <string>
+#include <string_view>
+
+namespace kacanov {
+
+/// Every function throws InternalError naming the file where the system refuses. Without commit() nothing
+/// stays.
+class AtomicFile {
+ public:
+  explicit AtomicFile(std::string path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  void write(const void* data, std::size_t bytes);
+  void write(std::string_view text) { write(text.data(), text.size()); }
+  /// Closes the file and renames it; to be called last.
+  void commit();
+
+ private:
+  [[noreturn]] void fail(int error);
+
+  std::string path_, temporary_;
+  std::FILE* file_ = nullptr;
+};
+
+/// The whole of a small file at once.
+void write_file(const std::string& path, std::string_view text);
+
+}  // namespace kacanov
