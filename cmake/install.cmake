@@ -9,7 +9,8 @@ set(header_dir "${CMAKE_INSTALL_INCLUDEDIR}/kacanov")
 function(kacanov_install_component component target)
   install(TARGETS ${target} EXPORT kacanov-${component}
     ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
-    LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+    LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}"
+    PUBLIC_HEADER DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
   install(EXPORT kacanov-${component} NAMESPACE kacanov:: DESTINATION "${package_dir}"
     FILE kacanov-${component}.cmake)
 endfunction()
@@ -17,6 +18,7 @@ endfunction()
 kacanov_install_component(kernels kacanov_kernels)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/kernels/" DESTINATION "${header_dir}"
   FILES_MATCHING PATTERN "*.hpp" PATTERN "simd" EXCLUDE PATTERN "elements" EXCLUDE)
+kacanov_install_component(c kacanov_c)
 if(KACANOV_SOLVER)
   kacanov_install_component(solver kacanov_solver)
   install(DIRECTORY "${PROJECT_SOURCE_DIR}/solver/" DESTINATION "${header_dir}" FILES_MATCHING PATTERN "*.hpp")
@@ -34,5 +36,7 @@ install(FILES
 # pkg-config files find their prefix by their own place, so an installed tree may be moved.
 file(RELATIVE_PATH prefix_from_pkgconfig "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
 string(REGEX REPLACE "/$" "" prefix_from_pkgconfig "${prefix_from_pkgconfig}")
-configure_file(cmake/kacanov-kernels.pc.in kacanov-kernels.pc @ONLY)
-install(FILES "${CMAKE_CURRENT_BINARY_DIR}/kacanov-kernels.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+foreach(package kacanov kacanov-kernels)
+  configure_file(cmake/${package}.pc.in ${package}.pc @ONLY)
+  install(FILES "${CMAKE_CURRENT_BINARY_DIR}/${package}.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+endforeach()
