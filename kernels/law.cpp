@@ -183,7 +183,10 @@ double Law::energy(double x) const {
   return 0.5 * shear * below * below + (beyond ? energy_beyond_yield(*this, a) : 0.0);
 }
 
-bool Law::softens(double x) const { return secant(x) + x * secant_derivative(x) < 0.0; }
+bool Law::softens(double x) const {
+  const double g = secant(x);
+  return g + x * secant_derivative(x) < -1e-12 * g;  // a saturated law must not soften by rounding
+}
 
 bool Law::plastic(double x) const { return argument_of(*this, x) > yield_argument(*this); }
 

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Generated meshes for benchmarks and tests: boxes of every element type, perturbed and irregular ones.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "mesh_view.hpp"
+
+namespace kacanov::meshes {
+
+struct OwnedMesh {
+  ElementType type = ElementType::tet4;
+  std::vector<double> coordinates;         ///< nodes × dim
+  std::vector<std::int32_t> connectivity;  ///< elements × nodes an element
+
+  MeshView view() const noexcept { return {type, coordinates, connectivity}; }
+};
+
+/// A box of `cells` cubes (squares in 2D, third entry ignored), each cut into six tetrahedra round its
+/// diagonal, two triangles, or kept as a hexahedron. tet10 gets straight sides.
+OwnedMesh box(ElementType type, std::array<int, 3> cells, std::array<double, 3> size);
+
+/// Moves every node, mid-side ones too, by up to `amount` × the smallest extent an element has along each
+/// axis.
+void jitter(OwnedMesh& mesh, double amount, unsigned seed);
+
+/// Puts the mid-side nodes of a tet10 mesh halfway between their vertices.
+void straighten(OwnedMesh& mesh);
+
+/// Random 2–3 and 3–2 flips of a tet4 mesh: the irregular connectivity of an unstructured mesh. `rounds`
+/// sweeps over the elements; every tetrahedron keeps a positive volume.
+void flip(OwnedMesh& mesh, int rounds, unsigned seed);
+
+/// Shuffles nodes and elements: the worst numbering a caller can have.
+void shuffle(OwnedMesh& mesh, unsigned seed);
+
+}  // namespace kacanov::meshes

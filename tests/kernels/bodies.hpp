@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bodies for the kernels' tests: a mesh with its materials, random vectors and how vectors are compared.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <span>
+#include <vector>
+
+#include "../../perf/meshes.hpp"
+#include "reference.hpp"
+
+namespace kacanov::test {
+
+inline constexpr ElementType all_types[] = {ElementType::tri3, ElementType::tet4, ElementType::tet10,
+                                            ElementType::hex8};
+
+/// One law of every kind that stays monotone, E = 1, nu = 0.3.
+inline std::vector<Law> every_law() {
+  std::vector<Law> laws(6, elastic_law(1.0, 0.3));
+  for (Law& law : laws) law.x0 = 0.01;
+  laws[1].kind = Law::Kind::logarithmic;
+  laws[2].kind = Law::Kind::linear_hardening;
+  laws[2].gamma = 0.1;
+  laws[3].kind = Law::Kind::power;
+  laws[3].n = 0.3;
+  laws[4].kind = Law::Kind::saturating;
+  laws[4].q = 0.4;
+  laws[5].kind = Law::Kind::table;
+  const double mu = laws[5].shear;
+  laws[5].table_x = {0.0, 0.01, 0.02, 0.05};
+  laws[5].table_s = {0.0, 0.02 * mu, 0.03 * mu, 0.04 * mu};
+  return laws;
+}
+
+struct OwnedBody {
+  meshes::OwnedMesh mesh;
+  std::vector<Law> laws;
+  std::vector<std::uint16_t> law_of_element;
+
+  Body body() const { return {mesh.view(), laws, law_of_element}; }
+};
+
+inline OwnedBody with_one_law(meshes::OwnedMesh mesh, const Law& law) {
+  OwnedBody body{std::move(mesh), {law}, {}};
+  body.law_of_element.assign(body.mesh.view().element_count(), 0);
+  return body;
+}
+
+/// Every law of `every_law`, scattered over the elements.
+inline OwnedBody with_every_law(meshes::OwnedMesh mesh, unsigned seed) {
+  OwnedBody body{std::move(mesh), every_law(), {}};
+  std::mt19937 random(seed);
+  for (std::size_t e = 0; e < body.mesh.view().element_count(); ++e)
+    body.law_of_element.push_back(static_cast<std::uint16_t>(random() % body.laws.size()));
+  return body;
+}
+
+inline std::vector<double> random_vector(std::size_t size, unsigned seed, double scale = 1.0) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-scale, scale);
+  std::vector<double> v(size);
+  for (double& value : v) value = uniform(random);
+  return v;
+}
+
+/// max |a − b| / max |b|.
+template <class A, class B>
+double difference(const A& a, const B& b) {
+  double worst = 0.0, largest = 0.0;
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    const double d = std::abs(static_cast<double>(a[i]) - static_cast<double>(b[i]));
+    worst = d > worst || std::isnan(d) ? d : worst;
+    largest = std::max(largest, std::abs(static_cast<double>(b[i])));
+  }
+  return largest > 0.0 ? worst / largest : worst;
+}
+
+inline double dot(std::span<const double> a, std::span<const double> b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+/// A small perturbed box with displacements that take about half of its points beyond yield.
+inline OwnedBody small_body(ElementType type, unsigned seed) {
+  meshes::OwnedMesh mesh = meshes::box(type, {3, 2, 2}, {1.5, 1.0, 1.0});
+  meshes::jitter(mesh, type == ElementType::tet10 ? 0.04 : 0.12, seed);
+  return with_every_law(std::move(mesh), seed);
+}
+
+}  // namespace kacanov::test
