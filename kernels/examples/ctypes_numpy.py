@@ -1,0 +1,134 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The C interface from Python: ctypes on numpy arrays, nothing to compile.
+
+usage: ctypes_numpy.py libkacanov.so
+"""
+import ctypes as ct
+import sys
+
+import numpy as np
+
+Doubles = ct.POINTER(ct.c_double)
+
+
+class Law(ct.Structure):  # kacanov_law
+    _fields_ = [
+        ("kind", ct.c_int32), ("squared", ct.c_int32),
+        ("bulk", ct.c_double), ("shear", ct.c_double), ("x0", ct.c_double),
+        ("gamma", ct.c_double), ("n", ct.c_double), ("q", ct.c_double),
+        ("table_size", ct.c_size_t), ("table_x", Doubles), ("table_s", Doubles)]
+
+
+class Description(ct.Structure):  # kacanov_description
+    _fields_ = [
+        ("element", ct.c_int32), ("threads", ct.c_int32),
+        ("nodes", ct.c_size_t), ("coordinates", Doubles),
+        ("node_stride", ct.c_size_t), ("component_stride", ct.c_size_t),
+        ("elements", ct.c_size_t), ("connectivity", ct.POINTER(ct.c_int32)),
+        ("element_stride", ct.c_size_t), ("index_base", ct.c_int32), ("borrow", ct.c_int32),
+        ("laws", ct.c_size_t), ("law", ct.POINTER(Law)), ("law_of_element", ct.POINTER(ct.c_uint16)),
+        ("instruction_set", ct.c_char_p)]
+
+
+class Operator:
+    """Vectors are float64 arrays of nodes * 3 entries, interleaved."""
+
+    def __init__(self, library, points, tetrahedra, young, poisson, threads=1):
+        self.library, self.handle = library, ct.c_void_p()
+        # A caller's own layout: one array a component, as numpy often has it.
+        columns = np.ascontiguousarray(points.T, dtype=np.float64)
+        tetrahedra = np.ascontiguousarray(tetrahedra, dtype=np.int32)
+        law = Law()
+        if library.kacanov_elastic_law(ct.c_double(young), ct.c_double(poisson), ct.byref(law)):
+            raise ValueError("Young's modulus or Poisson's ratio is out of range")
+        body = Description(
+            element=1, threads=threads, nodes=len(points), coordinates=columns.ctypes.data_as(Doubles),
+            node_stride=1, component_stride=len(points), elements=len(tetrahedra),
+            connectivity=tetrahedra.ctypes.data_as(ct.POINTER(ct.c_int32)), laws=1, law=ct.pointer(law))
+        message = ct.create_string_buffer(256)
+        if library.kacanov_create(ct.byref(body), ct.byref(self.handle), message, ct.c_size_t(len(message))):
+            raise ValueError(message.value.decode())
+        self.size = points.size
+
+    def __del__(self):
+        self.library.kacanov_destroy(self.handle)
+
+    def call(self, name, *arrays):
+        """kacanov_NAME(handle, n, array...)"""
+        for a in arrays:
+            if a.dtype != np.float64 or not a.flags.c_contiguous:
+                raise TypeError("expected contiguous float64 arrays")
+        pointers = [a.ctypes.data_as(Doubles) for a in arrays]
+        if getattr(self.library, "kacanov_" + name)(self.handle, ct.c_size_t(arrays[0].size), *pointers):
+            raise ValueError(self.library.kacanov_message(self.handle).decode())
+
+    def apply(self, x):
+        y = np.empty_like(x)
+        self.call("apply", x, y)
+        return y
+
+    def energy(self, omega):
+        value = np.zeros(1)
+        self.call("energy", omega, value)
+        return value[0]
+
+
+def load(path):
+    library = ct.CDLL(path)
+    library.kacanov_message.restype = ct.c_char_p
+    library.kacanov_message.argtypes = [ct.c_void_p]
+    library.kacanov_destroy.restype = None
+    library.kacanov_destroy.argtypes = [ct.c_void_p]
+    return library
+
+
+def unit_cube(n):
+    """Points and tetrahedra of n^3 cubes, six tetrahedra each."""
+    side = np.linspace(0.0, 1.0, n + 1)
+    z, y, x = np.meshgrid(side, side, side, indexing="ij")
+    points = np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
+    index = np.arange((n + 1) ** 3).reshape(n + 1, n + 1, n + 1)
+    corner = [index[c >> 2:n + (c >> 2), c >> 1 & 1:n + (c >> 1 & 1), c & 1:n + (c & 1)].ravel() for c in range(8)]
+    round_diagonal = [1, 3, 2, 6, 4, 5, 1]
+    tetrahedra = [np.stack([corner[0], corner[a], corner[b], corner[7]], axis=1)
+                  for a, b in zip(round_diagonal, round_diagonal[1:])]
+    return points, np.concatenate(tetrahedra)
+
+
+def main():
+    library = load(sys.argv[1])
+    points, tetrahedra = unit_cube(8)
+    young, poisson = 2.0, 0.3
+    op = Operator(library, points, tetrahedra, young, poisson, threads=2)
+
+    # Uniform strain: the energy is known, inner nodes are in equilibrium.
+    strain = np.array([[0.010, 0.002, 0.0], [0.002, -0.004, 0.001], [0.0, 0.001, 0.003]])
+    omega = (points @ strain).ravel()
+    lame = young * poisson / ((1 + poisson) * (1 - 2 * poisson))
+    exact = 0.5 * lame * np.trace(strain) ** 2 + young / (2 * (1 + poisson)) * np.sum(strain**2)
+    assert abs(op.energy(omega) - exact) < 1e-12 * exact
+    force = op.apply(omega).reshape(-1, 3)
+    inside = np.all((points > 0) & (points < 1), axis=1)
+    assert np.abs(force[inside]).max() < 1e-14 * np.abs(force).max() * 100
+    assert abs(omega @ force.ravel() - 2 * exact) < 1e-12 * exact
+
+    # Symmetric, and blind to rigid motion.
+    rng = np.random.default_rng(0)
+    a, b = rng.standard_normal((2, op.size))
+    assert abs(a @ op.apply(b) - b @ op.apply(a)) < 1e-10 * abs(a @ op.apply(a))
+    rotation = np.cross([0.3, -0.2, 0.5], points).ravel()
+    assert np.abs(op.apply(rotation)).max() < 1e-13
+
+    # Errors come as exceptions with the library's own words.
+    try:
+        op.energy(np.full(op.size, np.nan))
+    except ValueError as error:
+        print("as it should:", error)
+    else:
+        raise AssertionError("a displacement that is not a number was accepted")
+    print(f"{op.size} unknowns, energy {op.energy(omega):.12e}, exact {exact:.12e}")
+
+
+if __name__ == "__main__":
+    main()
