@@ -5,6 +5,10 @@ include(CMakePackageConfigHelpers)
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/kacanov")
 set(header_dir "${CMAKE_INSTALL_INCLUDEDIR}/kacanov")
 
+# What a consumer may include; everything else is the libraries' own affair.
+set(KACANOV_KERNEL_HEADERS law.hpp mesh_view.hpp operator.hpp reference.hpp)
+set(KACANOV_SOLVER_HEADERS error.hpp halo.hpp mesh.hpp model.hpp part.hpp problem.hpp result.hpp solve.hpp)
+
 # One export set a component, so that a consumer meets the dependencies of what it asks for and no others.
 function(kacanov_install_component component target)
   install(TARGETS ${target} EXPORT kacanov-${component}
@@ -16,12 +20,16 @@ function(kacanov_install_component component target)
 endfunction()
 
 kacanov_install_component(kernels kacanov_kernels)
-install(DIRECTORY "${PROJECT_SOURCE_DIR}/kernels/" DESTINATION "${header_dir}"
-  FILES_MATCHING PATTERN "*.hpp" PATTERN "simd" EXCLUDE PATTERN "elements" EXCLUDE)
+list(TRANSFORM KACANOV_KERNEL_HEADERS PREPEND "${PROJECT_SOURCE_DIR}/kernels/")
+install(FILES ${KACANOV_KERNEL_HEADERS} DESTINATION "${header_dir}")
 kacanov_install_component(c kacanov_c)
 if(KACANOV_SOLVER)
   kacanov_install_component(solver kacanov_solver)
-  install(DIRECTORY "${PROJECT_SOURCE_DIR}/solver/" DESTINATION "${header_dir}" FILES_MATCHING PATTERN "*.hpp")
+  list(TRANSFORM KACANOV_SOLVER_HEADERS PREPEND "${PROJECT_SOURCE_DIR}/solver/")
+  install(FILES ${KACANOV_SOLVER_HEADERS} DESTINATION "${header_dir}")
+endif()
+if(TARGET kacanov)
+  install(TARGETS kacanov RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
 endif()
 
 configure_package_config_file(cmake/kacanovConfig.cmake.in kacanovConfig.cmake
