@@ -17,7 +17,8 @@ template <class E>
 double shape_of_map(const MeshView& mesh, std::size_t element, const double* xi) {
   constexpr std::size_t dim = E::dim;
   const auto gradients = E::gradients(xi);
-  std::array<std::array<double, 3>, 3> column{{{0, 0, 0}, {0, 0, 0}, {0, 0, 1}}};
+  std::array<std::array<double, 3>, 3> column{};
+  if constexpr (dim == 2) column[2][2] = 1.0;
   for (std::size_t k = 0; k < dim; ++k)
     for (std::size_t i = 0; i < dim; ++i)
       for (std::size_t a = 0; a < E::nodes; ++a) {

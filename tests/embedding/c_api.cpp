@@ -374,6 +374,31 @@ TEST_CASE("a hexahedron inverted at one point only is found") {
   CHECK(text.find("element 0 is inverted") != std::string::npos);
 }
 
+TEST_CASE("meshes of any size, place and direction are accepted, their mirror images are not") {
+  for (const std::int32_t element : {KACANOV_TRI3, KACANOV_TET4, KACANOV_TET10, KACANOV_HEX8})
+    for (const double size : {1e-6, 1.0, 1e6})
+      for (const double angle : {0.0, 1.0, 2.5, 4.0}) {
+        CAPTURE(element);
+        CAPTURE(size);
+        CAPTURE(angle);
+        Example example(element);
+        const std::size_t dim = example.mesh.dim;
+        for (std::size_t i = 0; i < example.n(); i += dim)
+          for (std::size_t c = 0; c + 1 < dim; ++c) {  // turned about z, then about x
+            double &p = example.mesh.coordinates[i + c], &q = example.mesh.coordinates[i + c + 1];
+            const double turned = p * std::cos(angle) - q * std::sin(angle);
+            q = p * std::sin(angle) + q * std::cos(angle);
+            p = turned;
+          }
+        for (double& v : example.mesh.coordinates) v = size * (v - 5.0);
+        example.create();
+        for (std::size_t i = 0; i < example.n(); i += dim) example.mesh.coordinates[i] *= -1.0;
+        std::string text;
+        CHECK(example.fault(text) == KACANOV_ERROR_MESH);
+        CHECK(text.find("element 0 is inverted") != std::string::npos);
+      }
+}
+
 TEST_CASE("bad vectors have a code and leave the state alone") {
   const Example example;
   const Handle op = example.create();

@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* A PETSc program: the operator as a MatShell, solved by KSP's conjugate gradients with Jacobi. A bar of trilinear
+ * hexahedra on rollers is pulled along x, for which the exact displacement is known and linear. */
+#include <petscksp.h>
+
+#include "kacanov.h"
+
+/* What the shell needs: the operator, and which unknowns are held (their rows and columns are those of 1). */
+typedef struct Shell {
+  kacanov_operator *op;
+  size_t n;
+  const char *held;
+  double *masked; /* work vector */
+} Shell;
+
+#define KACANOV(op, call)                                                            \
+  do {                                                                               \
+    if ((call) != KACANOV_OK)                                                        \
+      SETERRQ(PETSC_COMM_SELF, PETSC_ERR_LIB, "kacanov: %s", kacanov_message(op));   \
+  } while (0)
+
+static PetscErrorCode multiply(Mat matrix, Vec in, Vec out) {
+  Shell *shell;
+  const PetscScalar *x;
+  PetscScalar *y;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(matrix, &shell));
+  PetscCall(VecGetArrayRead(in, &x));
+  PetscCall(VecGetArrayWrite(out, &y));
+  for (size_t i = 0; i < shell->n; ++i) shell->masked[i] = shell->held[i] ? 0.0 : x[i];
+  KACANOV(shell->op, kacanov_apply(shell->op, shell->n, shell->masked, y));
+  for (size_t i = 0; i < shell->n; ++i)
+    if (shell->held[i]) y[i] = x[i];
+  PetscCall(VecRestoreArrayWrite(out, &y));
+  PetscCall(VecRestoreArrayRead(in, &x));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode get_diagonal(Mat matrix, Vec diagonal) {
+  Shell *shell;
+  PetscScalar *d;
+  PetscFunctionBeginUser;
+  PetscCall(MatShellGetContext(matrix, &shell));
+  PetscCall(VecGetArrayWrite(diagonal, &d));
+  KACANOV(shell->op, kacanov_diagonal(shell->op, shell->n, d));
+  for (size_t i = 0; i < shell->n; ++i)
+    if (shell->held[i]) d[i] = 1.0;
+  PetscCall(VecRestoreArrayWrite(diagonal, &d));
+  PetscFunctionReturn(0);
+}
+
+int main(int argc, char **argv) {
+  enum { nx = 24, n = 6 };
+  const double length = 4.0, young = 2.0, poisson = 0.3, stress = 0.01;
+  const size_t nodes = (nx + 1) * (n + 1) * (n + 1), elements = nx * n * n, unknowns = 3 * nodes;
+  PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
+
+  double *coordinates, *load, *masked;
+  int32_t *connectivity;
+  char *held;
+  PetscCall(PetscCalloc3(unknowns, &coordinates, unknowns, &load, unknowns, &masked));
+  PetscCall(PetscCalloc2(8 * elements, &connectivity, unknowns, &held));
+  for (int k = 0, node = 0; k <= n; ++k)
+    for (int j = 0; j <= n; ++j)
+      for (int i = 0; i <= nx; ++i, ++node) {
+        const double share_y = (j == 0 || j == n) ? 0.5 : 1.0, share_z = (k == 0 || k == n) ? 0.5 : 1.0;
+        coordinates[3 * node] = length * i / nx;
+        coordinates[3 * node + 1] = (double)j / n;
+        coordinates[3 * node + 2] = (double)k / n;
+        held[3 * node] = i == 0;
+        held[3 * node + 1] = j == 0;
+        held[3 * node + 2] = k == 0;
+        if (i == nx) load[3 * node] = stress * share_y * share_z / (n * n);
+      }
+  for (int k = 0, at = 0; k < n; ++k)
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < nx; ++i)
+        for (int layer = 0; layer < 2; ++layer) { /* Gmsh's order: round the bottom, then round the top */
+          const int32_t corner = ((k + layer) * (n + 1) + j) * (nx + 1) + i;
+          connectivity[at++] = corner;
+          connectivity[at++] = corner + 1;
+          connectivity[at++] = corner + nx + 2;
+          connectivity[at++] = corner + nx + 1;
+        }
+
+  kacanov_law law;
+  PetscCheck(kacanov_elastic_law(young, poisson, &law) == KACANOV_OK, PETSC_COMM_SELF, PETSC_ERR_LIB, "law");
+  kacanov_description body = {0};
+  body.element = KACANOV_HEX8;
+  body.threads = 2;
+  body.nodes = nodes;
+  body.coordinates = coordinates;
+  body.elements = elements;
+  body.connectivity = connectivity;
+  body.laws = 1;
+  body.law = &law;
+  body.borrow = 1; /* the arrays live as long as the operator */
+  Shell shell = {NULL, unknowns, held, masked};
+  char message[256];
+  if (kacanov_create(&body, &shell.op, message, sizeof message) != KACANOV_OK)
+    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_LIB, "kacanov: %s", message);
+
+  Mat matrix;
+  Vec f, u;
+  KSP ksp;
+  PC preconditioner;
+  const PetscInt size = (PetscInt)unknowns;
+  PetscCall(MatCreateShell(PETSC_COMM_SELF, size, size, size, size, &shell, &matrix));
+  PetscCall(MatShellSetOperation(matrix, MATOP_MULT, (void (*)(void))multiply));
+  PetscCall(MatShellSetOperation(matrix, MATOP_GET_DIAGONAL, (void (*)(void))get_diagonal));
+  PetscCall(MatSetOption(matrix, MAT_SPD, PETSC_TRUE));
+  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 3, size, load, &f));
+  PetscCall(VecDuplicate(f, &u));
+  PetscCall(KSPCreate(PETSC_COMM_SELF, &ksp));
+  PetscCall(KSPSetOperators(ksp, matrix, matrix));
+  PetscCall(KSPSetType(ksp, KSPCG));
+  PetscCall(KSPGetPC(ksp, &preconditioner));
+  PetscCall(PCSetType(preconditioner, PCJACOBI));
+  PetscCall(KSPSetTolerances(ksp, 1e-12, PETSC_DEFAULT, PETSC_DEFAULT, 5000));
+  PetscCall(KSPSetFromOptions(ksp));
+  PetscCall(KSPSolve(ksp, f, u));
+
+  PetscInt iterations;
+  KSPConvergedReason reason;
+  PetscCall(KSPGetIterationNumber(ksp, &iterations));
+  PetscCall(KSPGetConvergedReason(ksp, &reason));
+  const PetscScalar *omega;
+  double error = 0.0;
+  PetscCall(VecGetArrayRead(u, &omega));
+  for (size_t i = 0; i < unknowns; ++i) {
+    const double exact = stress / young * coordinates[i] * (i % 3 == 0 ? 1.0 : -poisson);
+    error = PetscMax(error, PetscAbsReal(omega[i] - exact) / (stress / young * length));
+  }
+  PetscCall(VecRestoreArrayRead(u, &omega));
+  PetscCall(PetscPrintf(PETSC_COMM_SELF, "%d unknowns: %s after %d iterations, largest relative error %.2e\n",
+                        (int)unknowns, KSPConvergedReasons[reason], (int)iterations, error));
+
+  PetscCall(KSPDestroy(&ksp));
+  PetscCall(VecDestroy(&u));
+  PetscCall(VecDestroy(&f));
+  PetscCall(MatDestroy(&matrix));
+  kacanov_destroy(shell.op);
+  PetscCall(PetscFree2(connectivity, held));
+  PetscCall(PetscFree3(coordinates, load, masked));
+  PetscCall(PetscFinalize());
+  return reason > 0 && error < 1e-9 ? 0 : 1;
+}
