@@ -72,7 +72,7 @@ void apply_override(json& document, const std::string& assignment) {
                          " entries, counted from 0");
       }
       place = &(*place)[step.index];
-      walked += "[" + std::to_string(step.index) + "]";
+      walked.append("[").append(std::to_string(step.index)).append("]");
     } else {
       if (!place->is_null() && !place->is_object()) {
         throw InputError("--set " + path + ": " + walked + " is no object in the case file");

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The command line of the program.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kacanov {
+
+struct Command {
+  enum class Kind { run, spectrum, sweep, check };
+  Kind kind = Kind::run;
+  std::string case_file;
+  std::string output;  ///< folder; empty: results/<case name>
+  std::optional<int> ranks, threads;
+  std::vector<std::string> overrides;  ///< --set
+  std::optional<double> tolerance;     ///< spectrum: relative, on λ_min and λ_max
+  bool json = false;                   ///< spectrum: print JSON
+  std::optional<double> r_min, r_max;  ///< sweep
+  int points = 21;                     ///< sweep
+};
+
+/// What the command line asks for, or a text to print and the exit code to leave with.
+struct ParsedCommand {
+  std::optional<Command> command;
+  std::string output, error;
+  int exit_code = 0;
+};
+ParsedCommand parse_command(int argc, const char* const* argv);
+
+/// The exit codes of the program.
+enum ExitCode : int { exit_converged = 0, exit_not_converged = 1, exit_bad_input = 2, exit_failure = 3 };
+
+}  // namespace kacanov

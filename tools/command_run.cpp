@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// kacanov run: solves a case and writes everything about it.
+#include <iostream>
+
+#include "atomic_file.hpp"
+#include "commands.hpp"
+#include "field_files.hpp"
+#include "loaded_case.hpp"
+#include "output_folder.hpp"
+#include "picture.hpp"
+#include "report.hpp"
+#include "result_json.hpp"
+#include "solve.hpp"
+
+namespace kacanov {
+namespace {
+
+/// Takes away what an earlier run left under names that this one may not write again.
+void clear_folder(const std::filesystem::path& folder) {
+  for (const char* name :
+       {"result.json", "summary.txt", "result.pvd", "body.vtu", "body.pvtu", "contact.vtu", "deformed.svg"}) {
+    std::filesystem::remove(folder / name);
+  }
+  for (int rank = 0; std::filesystem::remove(folder / ("body_" + std::to_string(rank) + ".vtu")); ++rank) {
+  }
+}
+
+void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& json) {
+  write_file(file.string(), json.dump(2) + "\n");
+}
+
+std::string picture(const Case& input, const Mesh& mesh, std::span<const double> displacement,
+                    std::span<const double> von_mises) {
+  DeformedPicture picture;
+  picture.title = input.name;
+  picture.mesh = &mesh;
+  picture.displacement = displacement;
+  picture.von_mises = von_mises;
+  for (const ContactEntry& entry : input.model.contact) {
+    if (const auto* plane = std::get_if<Plane>(&entry.obstacle))
+      picture.planes.push_back({plane->point, plane->normal});
+  }
+  return deformed_svg(picture);
+}
+
+}  // namespace
+
+int run_command(const Command& command, const Case& input, const MpiSession& mpi) {
+  const double start = MPI_Wtime();
+  LoadedCase loaded = load_case(input, mpi);
+  const std::filesystem::path folder = output_folder(command, input);
+  together(mpi, [&] {
+    if (!mpi.first()) return;
+    prepare_folder(folder);
+    clear_folder(folder);
+  });
+
+  RunOptions options;
+  options.threads = threads_of(command);
+  options.progress = ProgressTable();
+  Solution solution;
+  collectively(mpi, [&] {
+    try {
+      solution = solve(loaded.part, input.model.solver, options);
+    } catch (...) {
+      if (mpi.first()) write_json(folder / "result.json", failure_json(current_failure().text));
+      throw;
+    }
+  });
+
+  const double solved = MPI_Wtime();
+  Result& result = solution.result;
+  const int dim = loaded.part.dim();
+  const ContactFields contact = gather_contact_fields(loaded.part, solution);
+  std::vector<double> displacement, von_mises;
+  if (input.output.report) {
+    displacement = gather_nodal(loaded.part, solution.displacement, dim);
+    von_mises = gather_elements(loaded.part, solution.von_mises, 1);
+  }
+  if (input.output.fields) together(mpi, [&] { write_body(folder, loaded.part, solution); });
+  together(mpi, [&] {
+    if (!mpi.first()) return;
+    if (input.output.fields) write_collection(folder, *loaded.problem, input.model, contact, mpi.ranks());
+    if (input.output.report) {
+      write_file((folder / "deformed.svg").string(),
+                 picture(input, loaded.problem->mesh, displacement, von_mises));
+    }
+    const double end = MPI_Wtime();
+    result.seconds.front().first = "solver";
+    result.seconds.insert(
+        result.seconds.begin(),
+        {{"total", end - start}, {"read", loaded.read_seconds}, {"distribute", loaded.distribute_seconds}});
+    result.seconds.emplace_back("output", end - solved);
+    write_json(folder / "result.json", result_json(result, dim));
+    const std::string text = summary(result, input.model, dim);
+    if (input.output.report) write_file((folder / "summary.txt").string(), text);
+    std::cout << "\n" + text + "  files         " + folder.string() + "\n";
+  });
+  return result.status == Status::converged ? exit_converged : exit_not_converged;
+}
+
+}  // namespace kacanov

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The subcommands of the program. Each returns an exit code and throws InputError, InternalError or
+// ReportedFailure.
+#pragma once
+
+#include "case_file.hpp"
+#include "command.hpp"
+#include "parallel.hpp"
+
+namespace kacanov {
+
+int run_command(const Command& command, const Case& input, const MpiSession& mpi);
+int spectrum_command(const Command& command, const Case& input, const MpiSession& mpi);
+int sweep_command(const Command& command, const Case& input, const MpiSession& mpi);
+/// Needs no MPI: everything happens on one rank.
+int check_command(const Case& input);
+
+}  // namespace kacanov

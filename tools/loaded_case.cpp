@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From a case and its mesh to a problem on the first rank and parts on all.
+#include "loaded_case.hpp"
+
+#include <cstdlib>
+#include <iostream>
+
+#include "gmsh_reader.hpp"
+
+namespace kacanov {
+
+Mesh load_mesh(const MeshSource& source) {
+  return source.file ? read_gmsh(*source.file) : make_box(*source.box);
+}
+
+Problem load_problem(const Case& input) {
+  check_supported(input.model);
+  Mesh mesh = load_mesh(input.mesh);
+  check_dimension(input, mesh.dim());
+  Problem problem = build_problem(std::move(mesh), input.model);
+  for (const std::string& warning : input.warnings) std::cerr << "kacanov: warning: " + warning + "\n";
+  for (const std::string& warning : problem.warnings) std::cerr << "kacanov: warning: " + warning + "\n";
+  return problem;
+}
+
+LoadedCase load_case(const Case& input, const MpiSession& mpi) {
+  LoadedCase loaded;
+  const double start = MPI_Wtime();
+  together(mpi, [&] {
+    if (mpi.first()) loaded.problem = load_problem(input);
+  });
+  const double read = MPI_Wtime();
+  collectively(mpi,
+               [&] { loaded.part = distribute(loaded.problem ? &*loaded.problem : nullptr, mpi.comm()); });
+  loaded.read_seconds = read - start;
+  loaded.distribute_seconds = MPI_Wtime() - read;
+  return loaded;
+}
+
+int threads_of(const Command& command) {
+  if (command.threads) return *command.threads;
+  const char* variable = std::getenv("OMP_NUM_THREADS");
+  const int threads = variable != nullptr ? std::atoi(variable) : 1;
+  return threads >= 1 ? threads : 1;
+}
+
+}  // namespace kacanov

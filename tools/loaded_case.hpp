@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From a case and its mesh to a problem on the first rank and parts on all.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "case_file.hpp"
+#include "command.hpp"
+#include "parallel.hpp"
+#include "part.hpp"
+
+namespace kacanov {
+
+/// Reads or generates the mesh.
+Mesh load_mesh(const MeshSource& source);
+
+/// Reads the mesh and puts the model on it, after checking that the one fits the other. Prints warnings.
+Problem load_problem(const Case& input);
+
+/// A problem split over the ranks.
+struct LoadedCase {
+  std::optional<Problem> problem;  ///< on the first rank
+  Part part;
+  double read_seconds = 0.0, distribute_seconds = 0.0;
+};
+
+/// Collective; failures are printed and end as ReportedFailure on all ranks.
+LoadedCase load_case(const Case& input, const MpiSession& mpi);
+
+/// Threads a rank: as the command says, else OMP_NUM_THREADS, else 1.
+int threads_of(const Command& command);
+
+}  // namespace kacanov

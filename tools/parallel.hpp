@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// MPI from start to end of the program, and failures that all ranks learn of.
+#pragma once
+
+#include <mpi.h>
+
+#include <functional>
+#include <string>
+
+namespace kacanov {
+
+/// MPI_Init to MPI_Finalize.
+class MpiSession {
+ public:
+  MpiSession();
+  ~MpiSession();
+  MpiSession(const MpiSession&) = delete;
+  MpiSession& operator=(const MpiSession&) = delete;
+
+  MPI_Comm comm() const noexcept { return MPI_COMM_WORLD; }
+  int rank() const noexcept { return rank_; }
+  int ranks() const noexcept { return ranks_; }
+  bool first() const noexcept { return rank_ == 0; }
+
+ private:
+  int rank_ = 0, ranks_ = 1;
+};
+
+/// Thrown on all ranks once the cause has been printed.
+struct ReportedFailure {
+  int exit_code;
+};
+
+/// Does `work`, which must not communicate, on every rank; where it throws on any, one message is printed and
+/// every rank throws ReportedFailure. Collective.
+void together(const MpiSession& mpi, const std::function<void()>& work);
+
+/// Does `work`, which communicates. Where it throws, the message is printed; with several ranks the rest
+/// cannot be waited for, and the whole job ends there with its exit code.
+void collectively(const MpiSession& mpi, const std::function<void()>& work);
+
+/// Exit code and text of the exception being handled: 2 for InputError, else 3.
+struct Failure {
+  int exit_code = 0;
+  std::string text;
+};
+Failure current_failure();
+
+/// "kacanov: error: ..." on standard error.
+void print_failure(const Failure& failure);
+
+}  // namespace kacanov
