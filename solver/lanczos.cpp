@@ -74,7 +74,8 @@ LanczosResult largest_eigenvalues(const Product& product, std::span<const std::i
   const auto length = static_cast<std::size_t>(n);
   const a_int wanted = options.wanted;
   // ARPACK looks at its values only when a whole basis stands: a loose tolerance wants a short one.
-  const a_int basis = std::min<a_int>(static_cast<a_int>(rows), wanted + (options.tolerance >= 1e-3 ? 7 : 19));
+  const int extra = options.basis > 0 ? options.basis : options.tolerance >= 1e-3 ? 7 : 19;
+  const a_int basis = std::min<a_int>(static_cast<a_int>(rows), wanted + extra);
   std::vector<double> residual(length, 0.0), v(length * static_cast<std::size_t>(basis)), work(3 * length, 0.0);
   for (std::size_t i = 0; i < own; ++i) residual[i] = start_entry(index[i]);
   const a_int space = basis * (basis + 8);

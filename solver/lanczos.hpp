@@ -14,6 +14,7 @@ namespace kacanov {
 struct LanczosOptions {
   double tolerance = 1e-2;  ///< Ritz bound relative to the value
   int wanted = 1;           ///< how many of the largest
+  int basis = 0;            ///< vectors kept beyond `wanted`; 0: 7, or 19 where the tolerance is below 1e-3
   int max_products = 500;
 };
 

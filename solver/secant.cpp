@@ -12,10 +12,18 @@ namespace {
 
 /// The contact loop of an outer step is taken this far below the residual of the step before.
 constexpr double inner_reduction = 0.2;
-/// AMG is rebuilt when a CG iteration gains less than this share of the digits it gained after the last setup.
-constexpr double rebuild_share = 0.6;
+/// AMG is rebuilt once a step needs this many CG iterations more than it would have right after the last setup: what
+/// a setup costs.
+constexpr double setup_worth = 5.0;
 /// Contact iterations with (32) before the active set is good enough to estimate r_A from it.
 constexpr int settling_iterations = 25;
+/// Tolerance of the spectrum where only a penalty hangs on it.
+constexpr double rough_spectrum = 0.1;
+/// Relative accuracy of a semismooth Newton step.
+constexpr double solve_reduction = 0.1;
+/// Newton steps without a new best residual before ADMM takes over.
+constexpr int patience = 6;
+constexpr int max_damping_trials = 6;
 
 Vector lumped_volume(const Part& part) {
   Vector volume(part.nodes(), 0.0), element(part.element_index.size());
@@ -53,11 +61,13 @@ OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOp
   bool slides = false;
   for (const auto& point : part.contact) slides = slides || point.tangents > 0;
   friction_ = part.halo.max_all(slides ? 1.0 : 0.0) > 0.0;
+  linear_ = std::all_of(part.laws.begin(), part.laws.end(),
+                        [](const Law& law) { return law.kind == Law::Kind::linear; });
   if (options.stop == SolverOptions::Stop::paper) volume_ = lumped_volume(part);
   update_bounds();
-  // The first secant is the elastic one: prescribed displacements put in at once would look like huge
-  // strains in the first layer of elements.
   op_.local().secant(secant_);
+  problem_ = {&space_, &traces_, [this](std::span<const double> x, std::span<double> y) { op_.apply(x, y); },
+              [this](std::span<const double> r, std::span<double> z) { amg_.apply(r, z); }};
 }
 
 void OuterLoop::update_bounds() {
@@ -65,23 +75,18 @@ void OuterLoop::update_bounds() {
     state_.bound[i] = part_.contact[i].tresca + part_.contact[i].coulomb * state_.lambda.normal[i];
 }
 
-void OuterLoop::note(const std::string& text) const {
-  if (!run_.progress || part_.halo.rank != 0) return;
-  ProgressStep step;
-  step.phase = "note";
-  step.note = text;
-  step.seconds = MPI_Wtime() - start_;
-  run_.progress(step);
-}
-
-void OuterLoop::report(const Result&, const ProgressStep& step) const {
+void OuterLoop::report(const ProgressStep& step) const {
   if (run_.progress && part_.halo.rank == 0) run_.progress(step);
 }
 
 void OuterLoop::choose_first_penalty(Result& result) {
   if (part_.total_contact == 0) return;
   const double before = MPI_Wtime();
-  const auto spectrum = estimate_spectrum(part_, op_, amg_, secant_, friction_, options_.spectrum_tolerance);
+  // The penalty needs λ_min and λ_max roughly only: the count of iterations moves slowly with r.
+  const double tolerance = options_.penalty == SolverOptions::Penalty::automatic
+                               ? std::max(options_.spectrum_tolerance, rough_spectrum)
+                               : options_.spectrum_tolerance;
+  const auto spectrum = estimate_spectrum(part_, op_, amg_, secant_, friction_, tolerance);
   preconditioner_stale_ = true;
   result.lambda_min = spectrum.lambda_min;
   result.lambda_max = spectrum.lambda_max;
@@ -92,9 +97,8 @@ void OuterLoop::choose_first_penalty(Result& result) {
   penalty_ = {r, r};
 }
 
-bool OuterLoop::improve_penalty(Result& result, int outer) {
+bool OuterLoop::improve_penalty(Result& result) {
   if (part_.total_contact == 0 || options_.penalty != SolverOptions::Penalty::automatic) return false;
-  static_cast<void>(outer);
   const double before = MPI_Wtime();
   std::vector<TraceChoice> active(part_.contact.size()), free(part_.contact.size());
   for (std::size_t i = 0; i < part_.contact.size(); ++i) {
@@ -106,8 +110,7 @@ bool OuterLoop::improve_penalty(Result& result, int outer) {
   }
   const TraceRows held(part_, active), open(part_, free);
   if (held.total() == 0) return false;
-  const double tolerance = std::max(options_.spectrum_tolerance, 5e-2);
-  Spectrum spectrum(part_, op_, amg_, secant_, tolerance);
+  Spectrum spectrum(part_, op_, amg_, secant_, std::max(options_.spectrum_tolerance, rough_spectrum));
   const Eigenvalue low = spectrum.smallest(held);
   Eigenvalue high;
   if (open.total() > 0) high = spectrum.largest(open, held, low.value > 0.0 ? 0.01 / low.value : 1.0, part_.loose_modes > 0);
@@ -124,8 +127,7 @@ bool OuterLoop::improve_penalty(Result& result, int outer) {
   return true;
 }
 
-void OuterLoop::set_up_preconditioner() {
-  const std::vector<TraceChoice> all(part_.contact.size(), {true, true});
+std::vector<NodeBlock> OuterLoop::penalty_blocks() const {
   const auto dim = static_cast<std::size_t>(part_.dim());
   std::vector<NodeBlock> blocks;
   for (const auto& point : std::span(part_.contact).first(static_cast<std::size_t>(part_.owned_contact))) {
@@ -139,104 +141,169 @@ void OuterLoop::set_up_preconditioner() {
       }
     blocks.push_back(block);
   }
+  return blocks;
+}
+
+void OuterLoop::set_up_preconditioner(std::span<const NodeBlock> blocks) {
+  op_.local().secant(secant_);
   amg_.setup(secant_, blocks);
   preconditioner_stale_ = false;
   digits_per_cg_ = 0.0;
 }
 
-void OuterLoop::refresh_secant() {
-  op_.update(state_.omega);
-  op_.local().secant(secant_);
+void OuterLoop::watch_preconditioner(double digits, std::int64_t iterations) {
+  if (iterations == 0) return;
+  if (digits_per_cg_ == 0.0) digits_per_cg_ = digits / static_cast<double>(iterations);
+  const double excess = static_cast<double>(iterations) - digits / digits_per_cg_;
+  preconditioner_stale_ = preconditioner_stale_ || excess > setup_worth;
 }
 
-Residuals OuterLoop::evaluate() {
-  op_.residual(state_.omega, internal_);
+Residuals OuterLoop::certify() const {
   return kkt_residuals(space_, traces_, state_, internal_, op_.energy(state_.omega));
+}
+
+void OuterLoop::take_admm_step(Result& result, ProgressStep& line, const Residuals& before) {
+  const bool by_step = options_.stop == SolverOptions::Stop::paper;
+  const bool automatic = options_.penalty == SolverOptions::Penalty::automatic;
+  const bool first = result.outer_iterations == 0;
+  // The first step is elastic: prescribed displacements put in at once look like huge strains in the first
+  // layer of elements. Later ones freeze g at the last iterate.
+  op_.use_tangent(false);
+  if (!first && !linear_) op_.update(state_.omega);
+  if (!first && automatic && estimates_ == 0) improve_penalty(result);
+  if (preconditioner_stale_) set_up_preconditioner(penalty_blocks());
+
+  AdmmOptions options;
+  options.r = penalty_;
+  options.relaxation =
+      options_.relaxation.value_or(by_step || options_.penalty == SolverOptions::Penalty::paper ? 1.0 : 1.7);
+  options.max_iterations = options_.max_contact;
+  const Scales& scales = before.scales;
+  if (by_step) {
+    options.step_tolerance = options_.tolerance;
+    options.force_tolerance = 1e-2 * options_.tolerance * scales.force;
+    options.volume = volume_;
+  } else {
+    const double worst = scales.displacement > 0.0 ? std::min(before.certificate.worst(), 1.0) : 1.0;
+    const double reach = std::max(0.5 * options_.tolerance, inner_reduction * worst);
+    options.force_tolerance = reach * scales.force;
+    // With no displacement yet, any trace will do: the first step ends by its forces.
+    options.trace_tolerance = scales.displacement > 0.0 ? reach * scales.displacement : HUGE_VAL;
+    if (automatic && estimates_ == 0) options.max_iterations = std::min(settling_iterations, options_.max_contact);
+  }
+  if (first) op_.apply(state_.omega, internal_);  // the elastic force, not R(ω)
+  for (std::size_t i = 0; i < work_.residual.size(); ++i) work_.residual[i] = part_.load[i] - internal_[i];
+  traces_.add_force(state_.lambda, -1.0, work_.residual);
+  const AdmmResult step = admm(problem_, state_, work_, options);
+  watch_preconditioner(step.cg_digits, step.cg_iterations);
+  op_.residual(state_.omega, internal_);
+  line.phase = "admm";
+  line.contact_iterations = step.iterations;
+  line.cg_iterations = step.cg_iterations;
+}
+
+void OuterLoop::take_damped_step(std::span<const double> delta, double curvature) {
+  // Along δ the energy of the linear model falls with slope −q (1 − t). A step is too long where the true force has
+  // grown past half of q more than the model says (unloading is stiffer than the tangent).
+  const Vector from = state_.omega, force = internal_;
+  double t = 1.0;
+  for (int trial = 0;; ++trial) {
+    for (std::size_t i = 0; i < from.size(); ++i) state_.omega[i] = from[i] + t * delta[i];
+    op_.residual(state_.omega, internal_);
+    if (linear_ || trial == max_damping_trials) return;
+    const std::array<double, 2> work = space_.dot2(delta, internal_, delta, force);
+    const double grown = work[0] - work[1];
+    if (std::isfinite(grown) && grown <= 1.5 * curvature) return;
+    t *= std::isfinite(grown) ? std::clamp(curvature / grown, 0.1, 0.7) : 0.1;
+  }
+}
+
+void OuterLoop::take_newton_step(ProgressStep& line, const Residuals& before) {
+  const bool tangent = options_.outer != SolverOptions::Outer::kacanov && !linear_;
+  if (!linear_) {
+    op_.use_tangent(tangent);
+    op_.update(state_.omega);
+  }
+  const ActiveSet set = decide(traces_, state_, penalty_.normal);
+  if (preconditioner_stale_) {
+    Vector diagonal(part_.unknowns());
+    op_.local().diagonal(diagonal);
+    part_.halo.sum(diagonal, part_.dim());
+    auto blocks = TraceRows(part_, set.held).pinning_blocks(diagonal);
+    const auto slip = slip_blocks(part_, set);
+    blocks.insert(blocks.end(), slip.begin(), slip.end());
+    set_up_preconditioner(blocks);
+  }
+  Vector residual(part_.unknowns()), delta(part_.unknowns());
+  for (std::size_t i = 0; i < residual.size(); ++i) residual[i] = part_.load[i] - internal_[i];
+  const double floor = 0.3 * options_.tolerance * before.scales.force;
+  const ActiveSetStep step =
+      active_set_step(problem_, part_, set, state_, residual, solve_reduction, floor, work_, delta);
+  line.phase = tangent ? "newton" : "active_set";
+  line.contact_iterations = 1;
+  line.cg_iterations = step.cg_iterations;
+  newton_failed_ = !step.solved;
+  if (newton_failed_) return;
+  watch_preconditioner(step.cg_digits, step.cg_iterations);
+  take_damped_step(delta, step.curvature);
+  traces_.evaluate(state_.omega, state_.trace);
+  for (std::size_t i = 0; i < residual.size(); ++i) residual[i] = part_.load[i] - internal_[i];
+  recover_multipliers(part_, traces_, set, residual, state_);
 }
 
 void OuterLoop::run(Result& result) {
   choose_first_penalty(result);
   const bool by_step = options_.stop == SolverOptions::Stop::paper;
-  const bool automatic = options_.penalty == SolverOptions::Penalty::automatic;
-  const double alpha =
-      options_.relaxation.value_or(by_step || options_.penalty == SolverOptions::Penalty::paper ? 1.0 : 1.7);
-  const bool linear = std::all_of(part_.laws.begin(), part_.laws.end(),
-                                  [](const Law& law) { return law.kind == Law::Kind::linear; });
-  const LinearProblem problem{&space_, &traces_,
-                              [this](std::span<const double> x, std::span<double> y) { op_.apply(x, y); },
-                              [this](std::span<const double> r, std::span<double> z) { amg_.apply(r, z); }};
-  Residuals residuals = evaluate();
+  const bool may_newton = !by_step && (options_.contact == SolverOptions::Contact::automatic ||
+                                       options_.contact == SolverOptions::Contact::active_set);
+  op_.residual(state_.omega, internal_);
+  Residuals residuals = certify();
+  double best = HUGE_VAL;
+  int stalled = 0, retreat = 0, retreats = 0;
   bool done = false;
   Vector previous;
   while (!done && result.outer_iterations < options_.max_outer) {
-    const int outer = result.outer_iterations;
-    // The elastic secant serves the first step; later ones freeze g at the last iterate.
-    if (outer > 0 && !linear) refresh_secant();
-    const bool settled = outer > 0 && estimates_ == 0 && automatic;
-    if (settled) improve_penalty(result, outer);
-    if (preconditioner_stale_) set_up_preconditioner();
-
-    AdmmOptions admm_options;
-    admm_options.r = penalty_;
-    admm_options.relaxation = alpha;
-    const double worst = std::max(residuals.certificate.worst(), residuals.scales.displacement == 0.0 ? 1.0 : 0.0);
-    const double reach = std::max(0.5 * options_.tolerance, inner_reduction * std::min(worst, 1.0));
-    admm_options.max_iterations = options_.max_contact;
-    if (by_step) {
-      admm_options.step_tolerance = options_.tolerance;
-      admm_options.force_tolerance = 1e-2 * options_.tolerance * residuals.scales.force;
-      admm_options.volume = volume_;
-      previous = state_.omega;
-    } else {
-      admm_options.force_tolerance = reach * residuals.scales.force;
-      // With no displacement yet, any trace will do: the first step ends by its forces.
-      admm_options.trace_tolerance =
-          residuals.scales.displacement > 0.0 ? reach * residuals.scales.displacement : HUGE_VAL;
-      if (automatic && estimates_ == 0) admm_options.max_iterations = std::min(settling_iterations, options_.max_contact);
-    }
-    work_.residual = part_.load;
-    for (std::size_t i = 0; i < work_.residual.size(); ++i) work_.residual[i] -= internal_[i];
-    traces_.add_force(state_.lambda, -1.0, work_.residual);
-    if (outer == 0) {
-      // internal_ is the true R(ω) of a state with prescribed displacements only; the first step is elastic.
-      op_.apply(state_.omega, internal_);
-      work_.residual = part_.load;
-      for (std::size_t i = 0; i < work_.residual.size(); ++i) work_.residual[i] -= internal_[i];
-    }
-    const AdmmResult step = admm(problem, state_, work_, admm_options);
-    ++result.outer_iterations;
-    result.contact_iterations += step.iterations;
-    result.cg_iterations += step.cg_iterations;
-    result.r.push_back(penalty_.normal);
-    if (step.cg_iterations > 0) {
-      const double rate = step.cg_digits / static_cast<double>(step.cg_iterations);
-      if (digits_per_cg_ == 0.0) digits_per_cg_ = rate;
-      if (rate < rebuild_share * digits_per_cg_) preconditioner_stale_ = true;
-    }
-    update_bounds();
-    residuals = evaluate();
+    if (by_step) previous = state_.omega;
     ProgressStep line;
-    line.phase = "outer";
+    const bool newton = may_newton && result.outer_iterations > 0 && retreat == 0;
+    if (newton)
+      take_newton_step(line, residuals);
+    else
+      take_admm_step(result, line, residuals);
+    if (retreat > 0) --retreat;
+    ++result.outer_iterations;
+    result.contact_iterations += line.contact_iterations;
+    result.cg_iterations += line.cg_iterations;
+    result.r.push_back(penalty_.normal);
+    update_bounds();
+    residuals = certify();
+    const double worst = residuals.certificate.worst();
     line.outer = result.outer_iterations;
-    line.contact_iterations = step.iterations;
-    line.cg_iterations = step.cg_iterations;
     line.r = penalty_.normal;
     line.energy = op_.energy(state_.omega);
     line.certificate = residuals.certificate;
     line.seconds = MPI_Wtime() - start_;
-    report(result, line);
-    if (!std::isfinite(residuals.certificate.worst())) {
+    report(line);
+    if (!std::isfinite(worst) && !newton) {
       result.message = "the iteration broke down: residuals are not finite";
       return;
     }
     if (by_step) {
-      double change = 0.0, size = 0.0;
       for (std::size_t i = 0; i < previous.size(); ++i) previous[i] -= state_.omega[i];
-      change = space_.norm(previous);
-      size = space_.norm(state_.omega);
-      done = linear || change <= options_.tolerance * size;
-    } else {
-      done = residuals.certificate.worst() <= options_.tolerance;
+      done = linear_ || space_.norm(previous) <= options_.tolerance * space_.norm(state_.omega);
+      continue;
+    }
+    done = worst <= options_.tolerance;
+    if (!newton) continue;
+    stalled = worst < 0.7 * best ? 0 : stalled + 1;
+    best = std::min(best, worst);
+    if (newton_failed_ || stalled >= patience || !std::isfinite(worst)) {
+      // ADMM converges from anywhere; every retreat is longer than the last.
+      stalled = 0;
+      best = HUGE_VAL;
+      retreat = 4 << std::min(retreats++, 6);
+      preconditioner_stale_ = true;
+      for (double& lambda : state_.lambda.normal) lambda = std::max(lambda, 0.0);
     }
   }
 }

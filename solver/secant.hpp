@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The outer loop: Kacanov's method (7) round the contact loop, with the penalty and the preconditioner it needs.
+// The outer loop: Kacanov's method (7) or Newton's round a contact step, with the penalty and preconditioner it needs.
 #pragma once
 
 #include "certificate.hpp"
+#include "contact/active_set.hpp"
 #include "solve.hpp"
 #include "spectrum.hpp"
 
@@ -25,13 +26,16 @@ class OuterLoop {
 
  private:
   void choose_first_penalty(Result& result);
-  bool improve_penalty(Result& result, int outer);
-  void set_up_preconditioner();
+  bool improve_penalty(Result& result);
+  void set_up_preconditioner(std::span<const NodeBlock> blocks);
+  std::vector<NodeBlock> penalty_blocks() const;
+  void watch_preconditioner(double digits, std::int64_t iterations);
   void update_bounds();
-  void refresh_secant();
-  Residuals evaluate();
-  void report(const Result& result, const ProgressStep& step) const;
-  void note(const std::string& text) const;
+  Residuals certify() const;
+  void take_admm_step(Result& result, ProgressStep& line, const Residuals& before);
+  void take_newton_step(ProgressStep& line, const Residuals& before);
+  void take_damped_step(std::span<const double> delta, double curvature);
+  void report(const ProgressStep& step) const;
 
   const Part& part_;
   const SolverOptions& options_;
@@ -47,10 +51,12 @@ class OuterLoop {
   Vector secant_;            // frozen g, elements × points
   Vector volume_;            // lumped nodal volumes, for (15)
   Penalty penalty_;
-  bool friction_ = false;
+  LinearProblem problem_;
+  bool friction_ = false, linear_ = false;
   bool preconditioner_stale_ = true;
   double digits_per_cg_ = 0.0;   // right after the last setup
   int estimates_ = 0;            // of r_A
+  bool newton_failed_ = false;   // the last semismooth step could not be solved
   double spectrum_seconds_ = 0.0;
 };
 

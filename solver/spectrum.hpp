@@ -35,10 +35,12 @@ class TraceRows {
   void transpose(std::span<const double> x, std::span<double> y) const;
   /// x = D^½ C y.
   void apply(std::span<const double> y, std::span<double> x) const;
-  /// y = (D^½ C)⁺ x, node by node; consistent.
+  /// y = (D^½ C)⁺ x, node by node; consistent. `x` holds the owned rows or all local ones.
   void lift(std::span<const double> x, std::span<double> y) const;
-  /// x = ((D^½ C)⁺)ᵀ y.
+  /// x = ((D^½ C)⁺)ᵀ y, as many rows as `x` has.
   void lift_transpose(std::span<const double> y, std::span<double> x) const;
+  /// Rows of all local points: owned ones, then those of ghosts.
+  std::size_t local() const noexcept { return local_; }
   /// r CᵀDC as diagonal blocks of owned nodes.
   std::vector<NodeBlock> penalty_blocks(double r) const;
   /// Blocks that pin the rows' directions for a preconditioner: 10³ times the node's `diagonal` entry.
@@ -47,14 +49,14 @@ class TraceRows {
  private:
   struct Group {                ///< rows of one node
     std::int32_t node = 0;
-    std::size_t first = 0;      ///< in index_; meaningless for ghosts
+    std::size_t first = 0;      ///< its first row
     int rows = 0;
     std::array<Vector3, 9> row{};      ///< scaled by √mass
     std::array<Vector3, 9> inverse{};  ///< columns of the pseudo-inverse
   };
   const Part* part_;
   std::vector<Group> groups_;   ///< owned first
-  std::size_t owned_groups_ = 0;
+  std::size_t owned_groups_ = 0, local_ = 0;
   std::vector<std::int64_t> index_;
   std::int64_t total_ = 0;
 };

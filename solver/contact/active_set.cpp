@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One primal–dual active set (semismooth Newton) step for contact and Tresca friction.
+#include "contact/active_set.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kacanov {
+namespace {
+
+/// Force of the slipping points: y −= Tᵀ M (ψŝ + k (I − ŝŝᵀ) w); without `constant`, only the part linear in w.
+void subtract_slip_force(const Traces& traces, const ActiveSet& set, const Vector& tangential, bool constant,
+                         std::span<double> y) {
+  ContactValues force(traces.size());
+  for (std::size_t i = 0; i < traces.size(); ++i) {
+    const double* w = &tangential[2 * i];
+    const double* s = &set.slip_direction[2 * i];
+    const double along = w[0] * s[0] + w[1] * s[1];
+    for (std::size_t k = 0; k < 2; ++k)
+      force.tangential[2 * i + k] =
+          (constant ? set.slip_force[2 * i + k] : 0.0) + set.slip_stiffness[i] * (w[k] - along * s[k]);
+  }
+  traces.add_force(force, -1.0, y);
+}
+
+}  // namespace
+
+std::int64_t ActiveSet::differences(const ActiveSet& other, const Traces& traces) const {
+  std::int64_t count = 0;
+  for (std::size_t i = 0; i < traces.owned(); ++i)
+    count += held[i].normal != other.held[i].normal || held[i].tangential != other.held[i].tangential ? 1 : 0;
+  return traces.halo().sum_all(count);
+}
+
+ActiveSet decide(const Traces& traces, const ContactState& state, double c) {
+  const auto points = traces.points();
+  ActiveSet set;
+  set.held.resize(points.size());
+  set.slip_force.assign(2 * points.size(), 0.0);
+  set.slip_stiffness.assign(points.size(), 0.0);
+  set.slip_direction.assign(2 * points.size(), 0.0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    set.held[i].normal = state.lambda.normal[i] + c * (state.trace.normal[i] - points[i].gap) > 0.0;
+    if (points[i].tangents == 0) continue;
+    const double s[2] = {state.lambda.tangential[2 * i] + c * state.trace.tangential[2 * i],
+                         state.lambda.tangential[2 * i + 1] + c * state.trace.tangential[2 * i + 1]};
+    const double length = std::hypot(s[0], s[1]), bound = state.bound[i];
+    set.held[i].tangential = length <= bound && bound > 0.0;
+    if (set.held[i].tangential || length == 0.0) continue;
+    for (std::size_t k = 0; k < 2; ++k) {
+      set.slip_direction[2 * i + k] = s[k] / length;
+      set.slip_force[2 * i + k] = bound * s[k] / length;
+    }
+    if (points[i].tangents == 2) set.slip_stiffness[i] = c * bound / (length - bound);
+  }
+  return set;
+}
+
+std::vector<NodeBlock> slip_blocks(const Part& part, const ActiveSet& set) {
+  const auto dim = static_cast<std::size_t>(part.dim());
+  std::vector<NodeBlock> blocks;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_contact); ++i) {
+    if (set.slip_stiffness[i] == 0.0) continue;
+    const auto& point = part.contact[i];
+    NodeBlock block{point.node, {}};
+    const double* s = &set.slip_direction[2 * i];
+    Vector3 across{};  // the tangent orthogonal to the slip
+    for (std::size_t c = 0; c < dim; ++c) across[c] = s[0] * point.tangent[1][c] - s[1] * point.tangent[0][c];
+    for (std::size_t c = 0; c < dim; ++c)
+      for (std::size_t d = 0; d < dim; ++d)
+        block.value[c * dim + d] = point.mass * set.slip_stiffness[i] * across[c] * across[d];
+    blocks.push_back(block);
+  }
+  return blocks;
+}
+
+ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, const ActiveSet& set,
+                              const ContactState& state, std::span<const double> residual, double reduction,
+                              double absolute, CgWork& work, std::span<double> delta) {
+  const Traces& traces = *problem.traces;
+  const TraceRows rows(part, set.held);
+  Space space(part);
+  rows.hold_in(space);
+
+  // The held rows first: the smallest nodal displacement that closes the gap and undoes the slip.
+  Vector closing(rows.local());
+  std::size_t at = 0;
+  double furthest = 0.0;
+  for (std::size_t i = 0; i < traces.size(); ++i) {
+    const auto& point = traces.points()[i];
+    const double root = std::sqrt(point.mass);
+    if (set.held[i].normal) closing[at++] = root * (point.gap - state.trace.normal[i]);
+    if (set.held[i].tangential)
+      for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k)
+        closing[at++] = -root * state.trace.tangential[2 * i + k];
+  }
+  for (const double v : closing) furthest = std::max(furthest, std::abs(v));
+  furthest = part.halo.max_all(furthest);
+
+  ContactValues trace(traces.size());
+  const auto apply = [&](std::span<const double> p, std::span<double> q) {
+    problem.apply(p, q);
+    traces.evaluate(p, trace);
+    for (double& v : trace.tangential) v = -v;
+    subtract_slip_force(traces, set, trace.tangential, false, q);
+  };
+  std::copy(residual.begin(), residual.end(), work.residual.begin());
+  subtract_slip_force(traces, set, state.trace.tangential, true, work.residual);
+  rows.lift(closing, delta);
+  if (furthest > 0.0) {
+    apply(delta, work.image);
+    for (std::size_t i = 0; i < delta.size(); ++i) work.residual[i] -= work.image[i];
+  }
+  const CgResult solve =
+      conjugate_gradients(space, apply, problem.precondition, delta, work, CgOptions{absolute, reduction, 2000});
+  ActiveSetStep step;
+  step.cg_iterations = solve.iterations;
+  step.solved = solve.converged;
+  if (solve.iterations > 0 && solve.residual > 0.0) step.cg_digits = std::log10(solve.first_residual / solve.residual);
+  apply(delta, work.image);
+  step.curvature = space.dot(delta, work.image);
+  return step;
+}
+
+void recover_multipliers(const Part& part, const Traces& traces, const ActiveSet& set, std::span<const double> residual,
+                         ContactState& state) {
+  const TraceRows rows(part, set.held);
+  // Forces at held rows are what is left once the slipping points have taken theirs.
+  Vector left(residual.begin(), residual.end());
+  subtract_slip_force(traces, set, state.trace.tangential, true, left);
+  Vector force(rows.local());
+  rows.lift_transpose(left, force);
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < traces.size(); ++i) {
+    const auto& point = traces.points()[i];
+    const double root = std::sqrt(point.mass);
+    state.lambda.normal[i] = set.held[i].normal ? force[at++] / root : 0.0;
+    state.phi.normal[i] = std::min(state.trace.normal[i], point.gap);
+    double* friction = &state.lambda.tangential[2 * i];
+    const double* w = &state.trace.tangential[2 * i];
+    const double* s = &set.slip_direction[2 * i];
+    if (set.held[i].tangential) {
+      for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k) friction[k] = force[at++] / root;
+    } else if (point.tangents > 0) {
+      const double along = w[0] * s[0] + w[1] * s[1];
+      for (std::size_t k = 0; k < 2; ++k)
+        friction[k] = set.slip_force[2 * i + k] + set.slip_stiffness[i] * (w[k] - along * s[k]);
+      const double length = std::hypot(friction[0], friction[1]);
+      if (length > state.bound[i])
+        for (std::size_t k = 0; k < 2; ++k) friction[k] *= state.bound[i] / length;
+    }
+    for (std::size_t k = 0; k < 2; ++k) state.phi.tangential[2 * i + k] = set.held[i].tangential ? 0.0 : w[k];
+  }
+}
+
+}  // namespace kacanov

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One primal–dual active set (semismooth Newton) step for contact and Tresca friction, the disc in 3D included.
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "contact/admm.hpp"
+#include "spectrum.hpp"
+
+namespace kacanov {
+
+/// What each contact point does in the step: decided by λ + c(Cω − ρ), as in the projections of ADMM.
+struct ActiveSet {
+  std::vector<TraceChoice> held;  ///< normal: touches; tangential: sticks
+  Vector slip_force;              ///< points × 2: ψ ŝ where it slips
+  Vector slip_stiffness;          ///< points: k of λ_f = ψ ŝ + k (I − ŝŝᵀ) Tω, 0 in 2D
+  Vector slip_direction;          ///< points × 2: ŝ
+
+  /// Number of owned points (all ranks) where `other` decides differently.
+  std::int64_t differences(const ActiveSet& other, const Traces& traces) const;
+};
+
+/// c is a penalty like ADMM's; any positive value has the same fixed points.
+ActiveSet decide(const Traces& traces, const ContactState& state, double c);
+
+/// Slip stiffness k M (I − ŝŝᵀ) as blocks of owned nodes, for a preconditioner.
+std::vector<NodeBlock> slip_blocks(const Part& part, const ActiveSet& set);
+
+struct ActiveSetStep {
+  std::int64_t cg_iterations = 0;
+  double cg_digits = 0.0;
+  bool solved = false;            ///< CG met its tolerance
+  double curvature = 0.0;         ///< δᵀ B δ of the linear model
+};
+
+/// Solves the linearised problem with the rows of `set` held: B δ + slip terms = F − R(ω) − CᵀMλ, Cω + Cδ on the obstacle
+/// or at rest. On entry `residual` is F − R(ω), without contact forces; `delta` receives the step. `reduction` is CG's relative tolerance, `absolute`
+/// its floor.
+ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, const ActiveSet& set,
+                              const ContactState& state, std::span<const double> residual, double reduction,
+                              double absolute, CgWork& work, std::span<double> delta);
+
+/// Multipliers after a step: from the forces F − R(ω) at held rows, from the friction law at slipping ones (projected
+/// onto the disc), zero elsewhere. Uses state.trace at the new ω; φ is set so that ADMM can go on from here.
+void recover_multipliers(const Part& part, const Traces& traces, const ActiveSet& set, std::span<const double> residual,
+                         ContactState& state);
+
+}  // namespace kacanov
