@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Boundary, checks and generated boxes: closed surfaces, volumes by the divergence theorem, errors that name
+// elements.
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <set>
+#include <string>
+
+#include "error.hpp"
+#include "mesh.hpp"
+
+using namespace kacanov;
+
+namespace {
+
+using Vector = std::array<double, 3>;
+
+constexpr std::array all_types{ElementType::tri3, ElementType::tet4, ElementType::tet10, ElementType::hex8};
+
+Vector at(const Mesh& mesh, std::int32_t node) {
+  Vector x{};
+  for (int k = 0; k < mesh.dim(); ++k)
+    x[static_cast<std::size_t>(k)] =
+        mesh.coordinates[static_cast<std::size_t>(node) * static_cast<std::size_t>(mesh.dim()) +
+                         static_cast<std::size_t>(k)];
+  return x;
+}
+
+/// Area times outward normal of a flat facet, from its corners.
+Vector area_vector(const Mesh& mesh, std::size_t facet) {
+  const auto n = mesh.facet(facet);
+  if (mesh.dim() == 2) {
+    const Vector a = at(mesh, n[0]), b = at(mesh, n[1]);
+    return {b[1] - a[1], a[0] - b[0], 0};
+  }
+  const std::size_t corners = mesh.type == ElementType::hex8 ? 4 : 3;
+  Vector sum{};
+  const Vector o = at(mesh, n[0]);
+  for (std::size_t k = 1; k + 1 < corners; ++k) {
+    Vector a = at(mesh, n[k]), b = at(mesh, n[k + 1]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      a[c] -= o[c];
+      b[c] -= o[c];
+    }
+    sum[0] += (a[1] * b[2] - a[2] * b[1]) / 2;
+    sum[1] += (a[2] * b[0] - a[0] * b[2]) / 2;
+    sum[2] += (a[0] * b[1] - a[1] * b[0]) / 2;
+  }
+  return sum;
+}
+
+double norm(const Vector& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+/// What check_mesh says, empty if nothing.
+std::string complaint(const Mesh& mesh) {
+  try {
+    check_mesh(mesh);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// A mesh from its parts, with numbers that differ from the indices.
+Mesh mesh_of(ElementType type, std::vector<double> coordinates, std::vector<std::int32_t> elements) {
+  Mesh mesh;
+  mesh.type = type;
+  mesh.coordinates = std::move(coordinates);
+  mesh.elements = std::move(elements);
+  for (std::size_t i = 0; i < mesh.node_count(); ++i)
+    mesh.node_tags.push_back(100 + static_cast<std::int64_t>(i));
+  for (std::size_t e = 0; e < mesh.element_count(); ++e)
+    mesh.element_tags.push_back(70 + static_cast<std::int64_t>(e));
+  find_boundary(mesh);
+  return mesh;
+}
+
+/// Five points: two tetrahedra 0123 and 0214 on both sides of the triangle 012.
+const std::vector<double> two_tetrahedra{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1};
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("a box is a valid mesh whose closed boundary encloses its volume") {
+  for (const ElementType type : all_types) {
+    const BoxSpec spec{{4, 0.5, 2}, {3, 2, 4}, type};
+    const Mesh mesh = make_box(spec);
+    CAPTURE(static_cast<int>(type));
+    CHECK(complaint(mesh).empty());
+    const double volume = mesh.dim() == 2 ? 2.0 : 4.0;
+    Vector sum{};
+    double flux = 0, area = 0;
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+      const Vector a = area_vector(mesh, f), x = at(mesh, mesh.facet(f)[0]);
+      for (std::size_t k = 0; k < 3; ++k) sum[k] += a[k];
+      flux += x[0] * a[0] + x[1] * a[1] + x[2] * a[2];
+      area += norm(a);
+    }
+    CHECK(norm(sum) == doctest::Approx(0).epsilon(1e-12));
+    CHECK(flux / mesh.dim() == doctest::Approx(volume));
+    CHECK(area == doctest::Approx(mesh.dim() == 2 ? 9.0 : 2 * (4 * 0.5 + 4 * 2 + 0.5 * 2)));
+  }
+}
+
+TEST_CASE("the sides of a box are named, complete and turned outwards") {
+  for (const ElementType type : all_types) {
+    const Mesh mesh = make_box({{4, 0.5, 2}, {2, 3, 1}, type});
+    CAPTURE(static_cast<int>(type));
+    const bool flat = mesh.dim() == 2;
+    const std::vector<std::string> names =
+        flat ? std::vector<std::string>{"left", "right", "bottom", "top"}
+             : std::vector<std::string>{"left", "right", "front", "back", "bottom", "top"};
+    const Vector full = flat ? Vector{0.5, 4, 0} : Vector{1, 8, 2};
+    REQUIRE(mesh.groups.size() == names.size());
+    std::size_t members = 0;
+    for (std::size_t g = 0; g < names.size(); ++g) {
+      CHECK(mesh.groups[g].name == names[g]);
+      CHECK(mesh.groups[g].dimension == mesh.dim() - 1);
+      CHECK(std::is_sorted(mesh.groups[g].members.begin(), mesh.groups[g].members.end()));
+      Vector sum{};
+      for (const std::int32_t f : mesh.groups[g].members) {
+        const Vector a = area_vector(mesh, static_cast<std::size_t>(f));
+        for (std::size_t k = 0; k < 3; ++k) sum[k] += a[k];
+      }
+      const std::size_t axis = g / 2;
+      CHECK(sum[axis] == doctest::Approx(g % 2 == 0 ? -full[axis] : full[axis]));
+      CHECK(norm(sum) == doctest::Approx(full[axis]));
+      members += mesh.groups[g].members.size();
+    }
+    CHECK(members == mesh.facet_count());
+  }
+}
+
+TEST_CASE("the nodes of a box run along x first, and its diagonals from the lowest corner to the highest") {
+  const Mesh flat = make_box({{3, 1, 1}, {3, 1, 1}, ElementType::tri3});
+  CHECK(flat.node_count() == 8);
+  for (int i = 0; i < 4; ++i) CHECK(flat.coordinates[2 * static_cast<std::size_t>(i)] == i);
+  CHECK(std::vector(flat.elements.begin(), flat.elements.begin() + 6) ==
+        std::vector<std::int32_t>{0, 1, 5, 0, 5, 4});
+  const Mesh cube = make_box({{1, 1, 1}, {1, 1, 1}, ElementType::tet4});
+  CHECK(cube.element_count() == 6);
+  for (std::size_t e = 0; e < 6; ++e) {
+    const auto begin = cube.elements.begin() + static_cast<std::ptrdiff_t>(4 * e);
+    CHECK(std::find(begin, begin + 4, 0) != begin + 4);
+    CHECK(std::find(begin, begin + 4, 7) != begin + 4);
+  }
+  CHECK(make_box({{1, 1, 1}, {2, 3, 4}, ElementType::hex8}).node_count() == 60);
+  CHECK(make_box({{1, 1, 1}, {2, 3, 4}, ElementType::tet10}).node_count() == 5 * 7 * 9);
+}
+
+TEST_CASE("midside nodes of elements and facets lie in the middle of their edges") {
+  const Mesh mesh = make_box({{1, 2, 3}, {2, 2, 2}, ElementType::tet10});
+  const auto check = [&](std::span<const std::int32_t> nodes, std::size_t corners,
+                         const std::vector<std::array<std::size_t, 2>>& edges) {
+    for (std::size_t e = 0; e < edges.size(); ++e)
+      for (std::size_t k = 0; k < 3; ++k)
+        CHECK(at(mesh, nodes[corners + e])[k] ==
+              doctest::Approx((at(mesh, nodes[edges[e][0]])[k] + at(mesh, nodes[edges[e][1]])[k]) / 2));
+  };
+  for (std::size_t e = 0; e < mesh.element_count(); ++e)
+    check(std::span(mesh.elements).subspan(10 * e, 10), 4, {{0, 1}, {1, 2}, {2, 0}, {3, 0}, {3, 2}, {3, 1}});
+  for (std::size_t f = 0; f < mesh.facet_count(); ++f) check(mesh.facet(f), 3, {{0, 1}, {1, 2}, {2, 0}});
+}
+
+TEST_CASE("the boundary does not depend on the order of the elements") {
+  for (const ElementType type : all_types) {
+    Mesh mesh = make_box({{1, 1, 1}, {3, 3, 3}, type});
+    const auto boundary = [](const Mesh& m) {
+      std::set<std::vector<std::int32_t>> facets;
+      for (std::size_t f = 0; f < m.facet_count(); ++f) {
+        std::vector<std::int32_t> nodes(m.facet(f).begin(), m.facet(f).end());
+        std::sort(nodes.begin(), nodes.end());
+        facets.insert(nodes);
+      }
+      return facets;
+    };
+    const auto before = boundary(mesh);
+    std::vector<std::size_t> order(mesh.element_count());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::shuffle(order.begin(), order.end(), std::mt19937(1));
+    const auto n = static_cast<std::size_t>(nodes_per_element(type));
+    std::vector<std::int32_t> shuffled;
+    for (const std::size_t e : order)
+      shuffled.insert(shuffled.end(), mesh.elements.begin() + static_cast<std::ptrdiff_t>(e * n),
+                      mesh.elements.begin() + static_cast<std::ptrdiff_t>((e + 1) * n));
+    mesh.elements = shuffled;
+    find_boundary(mesh);
+    CHECK(before == boundary(mesh));
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+      const auto element =
+          std::span(mesh.elements).subspan(static_cast<std::size_t>(mesh.facet_element[f]) * n, n);
+      for (const std::int32_t node : mesh.facet(f))
+        CHECK(std::find(element.begin(), element.end(), node) != element.end());
+    }
+  }
+}
+
+TEST_CASE("an inverted, degenerate or folded element is named by its number") {
+  CHECK(complaint(mesh_of(ElementType::tet4, two_tetrahedra, {0, 1, 2, 3, 0, 2, 1, 4})).empty());
+  const std::string one = complaint(mesh_of(ElementType::tet4, two_tetrahedra, {0, 1, 2, 3, 0, 1, 2, 4}));
+  CHECK(contains(one, "element 71 is inverted"));
+  CHECK(!contains(one, "all others"));
+  const std::string both = complaint(mesh_of(ElementType::tet4, two_tetrahedra, {0, 2, 1, 3, 0, 1, 2, 4}));
+  CHECK(contains(both, "element 70 is inverted"));
+  CHECK(contains(both, "so are all others"));
+  CHECK(contains(complaint(mesh_of(ElementType::tri3, {0, 0, 1, 0, 1, 1}, {0, 2, 1})),
+                 "element 70 is inverted"));
+
+  auto flat = two_tetrahedra;
+  flat[14] = -1e-15;
+  CHECK(contains(complaint(mesh_of(ElementType::tet4, flat, {0, 1, 2, 3, 0, 2, 1, 4})),
+                 "element 71 is degenerate"));
+  flat[14] = -1e-10;  // thin, but far from rounding
+  CHECK(complaint(mesh_of(ElementType::tet4, flat, {0, 1, 2, 3, 0, 2, 1, 4})).empty());
+
+  Mesh folded = make_box({{1, 1, 1}, {1, 1, 1}, ElementType::hex8});
+  for (std::size_t k = 0; k < 3; ++k)
+    folded.coordinates[3 * 7 + k] = 0.02;  // the highest corner pushed to the lowest
+  CHECK(contains(complaint(folded), "element 1 is folded"));
+}
+
+TEST_CASE("nodes without an element, wrong coordinates and wrong indices are named") {
+  auto more = two_tetrahedra;
+  more.insert(more.end(), {5, 5, 5, 6, 6, 6});
+  const std::string unused = complaint(mesh_of(ElementType::tet4, more, {0, 1, 2, 3, 0, 2, 1, 4}));
+  CHECK(contains(unused, "node 105 belongs to no element"));
+  CHECK(contains(unused, "2 nodes"));
+  Mesh mesh = mesh_of(ElementType::tet4, two_tetrahedra, {0, 1, 2, 3, 0, 2, 1, 4});
+  mesh.coordinates[10] = std::numeric_limits<double>::quiet_NaN();
+  CHECK(contains(complaint(mesh), "node 103"));
+  mesh.coordinates[10] = 1e200;
+  CHECK(contains(complaint(mesh), "element 70 is too large"));
+  mesh = mesh_of(ElementType::tet4, two_tetrahedra, {0, 1, 2, 3, 0, 2, 1, 4});
+  mesh.elements[7] = 5;
+  CHECK(contains(complaint(mesh), "element 71 refers to a node that does not exist"));
+  CHECK(contains(complaint(Mesh()), "no elements"));
+}
+
+TEST_CASE("elements that overlap or do not fit are named") {
+  const std::string twice =
+      complaint(mesh_of(ElementType::tet4, two_tetrahedra, {0, 1, 2, 3, 0, 2, 1, 4, 0, 1, 2, 3}));
+  CHECK(contains(twice, "elements 70"));
+  CHECK(contains(twice, "overlaps itself"));
+  auto above = two_tetrahedra;
+  above[14] = 2;  // the fifth point on the same side as the fourth
+  const std::string same = complaint(mesh_of(ElementType::tet4, above, {0, 1, 2, 3, 0, 1, 2, 4}));
+  CHECK(contains(same, "elements 70 and 71 lie on the same side"));
+
+  Mesh quadratic = make_box({{1, 1, 1}, {1, 1, 1}, ElementType::tet10});
+  const auto nodes = static_cast<std::int32_t>(quadratic.node_count());
+  // The first element gets its own copy of the node on the diagonal of the cube.
+  const auto middle = std::find(quadratic.elements.begin(), quadratic.elements.begin() + 10, 13);
+  REQUIRE(middle != quadratic.elements.begin() + 10);
+  *middle = nodes;
+  quadratic.coordinates.insert(quadratic.coordinates.end(), {0.5, 0.5, 0.5});
+  CHECK(contains(complaint(quadratic), "share a side but not its midside nodes"));
+}
+
+TEST_CASE("impossible boxes are refused before anything is allocated") {
+  const auto refused = [](const BoxSpec& spec, const std::string& part) {
+    try {
+      make_box(spec);
+    } catch (const InputError& error) {
+      return contains(error.what(), part);
+    }
+    return false;
+  };
+  CHECK(refused({{1, 0, 1}, {1, 1, 1}, ElementType::tet4}, "size[1]"));
+  CHECK(refused({{-1, 1, 1}, {1, 1, 1}, ElementType::tri3}, "size[0]"));
+  CHECK(refused({{1, 1, std::nan("")}, {1, 1, 1}, ElementType::hex8}, "size[2]"));
+  CHECK(refused({{1, 1, std::numeric_limits<double>::infinity()}, {1, 1, 1}, ElementType::hex8}, "size[2]"));
+  CHECK(refused({{1, 1, 1}, {1, 1, 0}, ElementType::tet4}, "cells[2]"));
+  CHECK(refused({{1, 1, 1}, {2000, 2000, 2000}, ElementType::tet4}, "32-bit"));
+  CHECK(refused({{1, 1, 1}, {2147483647, 2147483647, 2147483647}, ElementType::tet10}, "32-bit"));
+  CHECK(make_box({{1, 1, 0}, {1, 1, 0}, ElementType::tri3}).element_count() == 2);  // 2D has no third entry
+}
