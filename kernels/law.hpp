@@ -14,13 +14,13 @@ struct Law {
   enum class Argument : std::uint8_t { norm, squared };
 
   Kind kind = Kind::linear;
-  Argument argument = Argument::norm;  ///< what the formula of g is fed with: x or x²
-  double bulk = 0.0;                   ///< k0
-  double shear = 0.0;                  ///< mu = g(0)
-  double x0 = 0.0;                     ///< yield strain, compared with the argument
-  double gamma = 0.0;                  ///< linear_hardening
-  double n = 1.0;                      ///< power
-  double q = 1.0;                      ///< saturating
+  Argument argument = Argument::norm;    ///< what the formula of g is fed with: x or x²
+  double bulk = 0.0;                     ///< k0
+  double shear = 0.0;                    ///< mu = g(0)
+  double x0 = 0.0;                       ///< yield strain, compared with the argument
+  double gamma = 0.0;                    ///< linear_hardening
+  double n = 1.0;                        ///< power
+  double q = 1.0;                        ///< saturating
   std::vector<double> table_x, table_s;  ///< table: strain norms and ‖dev tau‖, from (0, 0)
 
   /// Secant modulus g.

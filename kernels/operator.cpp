@@ -1,107 +1,147 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The operator behind its interface: checks what it is given, keeps the frozen state.
+// The operator behind its interface: what it is given is checked here, the work is the engine's.
 #include "operator.hpp"
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "engine.hpp"
+#include "mesh_check.hpp"
+
 namespace kacanov {
+namespace {
 
-struct Operator::Implementation {
-  ElementType type;
-  std::vector<double> coordinates;
-  std::vector<std::int32_t> connectivity;
-  std::vector<Law> laws;
-  std::vector<std::uint16_t> law_of_element;
-  std::vector<double> g, tangent_at;
-  std::uint64_t applications = 0;
+void expect_size(std::size_t actual, std::size_t wanted, const char* what) {
+  if (actual != wanted)
+    throw std::invalid_argument(std::string(what) + ": expected " + std::to_string(wanted) +
+                                " entries, got " + std::to_string(actual));
+}
 
-  Body body() const { return {{type, coordinates, connectivity}, laws, law_of_element}; }
-};
-
-Operator::Operator(const Body& body, const OperatorOptions& options) {
+const Body& checked(const Body& body, const OperatorOptions& options) {
   if (options.threads < 1) throw std::invalid_argument("threads: expected at least 1");
-  const MeshView& mesh = body.mesh;
-  if (body.law_of_element.size() != mesh.element_count())
-    throw std::invalid_argument("law_of_element: expected one entry an element");
-  for (const std::int32_t node : mesh.connectivity)
-    if (node < 0 || static_cast<std::size_t>(node) >= mesh.node_count())
-      throw std::invalid_argument("connectivity: node " + std::to_string(node) + " does not exist");
+  if (const std::string fault = mesh_fault(body.mesh); !fault.empty()) throw std::invalid_argument(fault);
+  expect_size(body.law_of_element.size(), body.mesh.element_count(), "law_of_element");
   for (const std::uint16_t law : body.law_of_element)
     if (law >= body.laws.size())
-      throw std::invalid_argument("law " + std::to_string(law) + " does not exist");
-  impl_ = std::make_unique<Implementation>();
-  impl_->type = mesh.type;
-  impl_->coordinates.assign(mesh.coordinates.begin(), mesh.coordinates.end());
-  impl_->connectivity.assign(mesh.connectivity.begin(), mesh.connectivity.end());
-  impl_->laws.assign(body.laws.begin(), body.laws.end());
-  impl_->law_of_element.assign(body.law_of_element.begin(), body.law_of_element.end());
-  impl_->g.resize(body.secant_count());
-  update(std::vector<double>(unknowns(), 0.0));
+      throw std::invalid_argument("law_of_element: there is no law " + std::to_string(law));
+  return body;
 }
+
+}  // namespace
+
+struct Operator::Implementation {
+  Engine<double> engine;
+  std::uint64_t applications = 0;
+
+  Implementation(const Body& body, const OperatorOptions& options)
+      : engine(checked(body, options), options.threads,
+               simd::choose_instruction_set(options.instruction_set)) {}
+
+  void expect_vector(std::size_t size) const { expect_size(size, engine.unknowns(), "vector"); }
+};
+
+Operator::Operator(const Body& body, const OperatorOptions& options)
+    : impl_(std::make_unique<Implementation>(body, options)) {}
 
 Operator::~Operator() = default;
 Operator::Operator(Operator&&) noexcept = default;
 Operator& Operator::operator=(Operator&&) noexcept = default;
 
-std::size_t Operator::unknowns() const noexcept { return impl_->coordinates.size(); }
+std::size_t Operator::unknowns() const noexcept { return impl_->engine.unknowns(); }
 
-void Operator::update(std::span<const double> omega) { reference::secant(impl_->body(), omega, impl_->g); }
+void Operator::update(std::span<const double> omega) {
+  impl_->expect_vector(omega.size());
+  impl_->engine.nonlinear(omega.data(), nullptr, true, false);
+}
 
-void Operator::secant(std::span<double> g) const { std::copy(impl_->g.begin(), impl_->g.end(), g.begin()); }
+void Operator::secant(std::span<double> g) const {
+  expect_size(g.size(), impl_->engine.points(), "g");
+  impl_->engine.get_secant(g);
+}
 
-void Operator::set_secant(std::span<const double> g) { impl_->g.assign(g.begin(), g.end()); }
+void Operator::set_secant(std::span<const double> g) {
+  expect_size(g.size(), impl_->engine.points(), "g");
+  impl_->engine.set_secant(g);
+}
 
 void Operator::apply(std::span<const double> x, std::span<double> y) const {
+  impl_->expect_vector(x.size());
+  impl_->expect_vector(y.size());
   ++impl_->applications;
-  reference::apply(impl_->body(), impl_->g, x, y);
+  impl_->engine.apply(x.data(), y.data(), 1, false);
 }
 
 double Operator::apply_dot(std::span<const double> x, std::span<double> y) const {
-  apply(x, y);
-  double sum = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) sum += x[i] * y[i];
-  return sum;
+  impl_->expect_vector(x.size());
+  impl_->expect_vector(y.size());
+  ++impl_->applications;
+  return impl_->engine.apply(x.data(), y.data(), 1, true);
+}
+
+void Operator::apply_many(std::span<const double> x, std::span<double> y, int vectors) const {
+  if (vectors < 1) throw std::invalid_argument("vectors: expected at least 1");
+  const std::size_t n = unknowns();
+  expect_size(x.size(), n * static_cast<std::size_t>(vectors), "x");
+  expect_size(y.size(), n * static_cast<std::size_t>(vectors), "y");
+  impl_->applications += static_cast<std::uint64_t>(vectors);
+  for (int done = 0; done < vectors;) {
+    const int left = vectors - done, step = left >= 4 ? 4 : left >= 2 ? 2 : 1;
+    const std::size_t offset = n * static_cast<std::size_t>(done);
+    impl_->engine.apply(x.data() + offset, y.data() + offset, step, false);
+    done += step;
+  }
 }
 
 void Operator::update_tangent(std::span<const double> omega) {
-  update(omega);
-  impl_->tangent_at.assign(omega.begin(), omega.end());
+  impl_->expect_vector(omega.size());
+  impl_->engine.nonlinear(omega.data(), nullptr, true, true);
 }
 
 void Operator::apply_tangent(std::span<const double> x, std::span<double> y) const {
+  if (!impl_->engine.has_tangent()) throw std::logic_error("apply_tangent before update_tangent");
+  impl_->expect_vector(x.size());
+  impl_->expect_vector(y.size());
   ++impl_->applications;
-  reference::apply_tangent(impl_->body(), impl_->tangent_at, x, y);
+  impl_->engine.apply_tangent(x.data(), y.data());
 }
 
-void Operator::diagonal(std::span<double> d) const { reference::diagonal(impl_->body(), impl_->g, d); }
+void Operator::diagonal(std::span<double> d) const {
+  impl_->expect_vector(d.size());
+  const std::size_t dim = impl_->engine.dim();
+  std::vector<double> blocks(d.size() * dim);
+  impl_->engine.block_diagonal(blocks);
+  for (std::size_t i = 0; i < d.size(); ++i) d[i] = blocks[i * dim + i % dim];
+}
 
 void Operator::block_diagonal(std::span<double> blocks) const {
-  reference::block_diagonal(impl_->body(), impl_->g, blocks);
+  expect_size(blocks.size(), unknowns() * impl_->engine.dim(), "blocks");
+  impl_->engine.block_diagonal(blocks);
 }
 
 void Operator::residual(std::span<const double> omega, std::span<double> f) const {
-  reference::residual(impl_->body(), omega, f);
+  impl_->expect_vector(omega.size());
+  impl_->expect_vector(f.size());
+  std::as_const(impl_->engine).nonlinear(omega.data(), f.data());
 }
 
 double Operator::energy(std::span<const double> omega) const {
-  return reference::energy(impl_->body(), omega);
+  impl_->expect_vector(omega.size());
+  return std::as_const(impl_->engine).nonlinear(omega.data(), nullptr);
 }
 
 double Operator::residual_energy_update(std::span<const double> omega, std::span<double> f) {
-  update(omega);
-  residual(omega, f);
-  return energy(omega);
+  impl_->expect_vector(omega.size());
+  impl_->expect_vector(f.size());
+  return impl_->engine.nonlinear(omega.data(), f.data(), true, false);
 }
 
-std::string_view Operator::instruction_set() const noexcept { return "plain"; }
-
-std::size_t Operator::bytes() const noexcept {
-  return impl_->coordinates.size() * sizeof(double) + impl_->connectivity.size() * sizeof(std::int32_t) +
-         impl_->law_of_element.size() * sizeof(std::uint16_t) +
-         (impl_->g.size() + impl_->tangent_at.size()) * sizeof(double);
+std::string_view Operator::instruction_set() const noexcept {
+  return simd::name(impl_->engine.instruction_set());
 }
+
+std::size_t Operator::bytes() const noexcept { return impl_->engine.bytes(); }
 
 std::uint64_t Operator::applications() const noexcept { return impl_->applications; }
 

@@ -13,13 +13,16 @@
 namespace kacanov {
 
 struct OperatorOptions {
-  int threads = 1;                    ///< threads of this operator, ≥ 1
-  std::string_view instruction_set;   ///< "avx512", "avx2", "plain"; empty: the best there is
+  int threads = 1;  ///< threads of this operator, ≥ 1
+  /// "avx512", "avx2", "plain"; empty: what KACANOV_INSTRUCTION_SET says, else the best there is
+  std::string_view instruction_set;
 };
 
 /// y = B(g) x and what a solver needs round it. The body's arrays are copied as far as needed:
 /// they may go once the constructor is done. Vectors are nodes × dim, interleaved, in the caller's
-/// numbering. Throws std::invalid_argument on bad input.
+/// numbering; any numbering will do, that of locality_order() is the fastest. Results are the same bits in
+/// every run with the same threads and instruction set. One call at a time: members share scratch memory.
+/// Throws std::invalid_argument on bad input.
 class Operator {
  public:
   explicit Operator(const Body& body, const OperatorOptions& options = {});
@@ -37,9 +40,14 @@ class Operator {
   void apply(std::span<const double> x, std::span<double> y) const;
   /// y = B(g) x and returns xᵀ y.
   double apply_dot(std::span<const double> x, std::span<double> y) const;
+  /// y_v = B(g) x_v for `vectors` ≥ 1 right sides, stored one after another; the geometry is worked out once
+  /// for up to four of them.
+  void apply_many(std::span<const double> x, std::span<double> y, int vectors) const;
   /// Freezes the tangent (and g) at ω for apply_tangent.
   void update_tangent(std::span<const double> omega);
-  /// y = B_T x with the tangent frozen last.
+  /// y = B_T x with the tangent frozen last, whatever became of g since. The direction of dev ε in its
+  /// rank-one term is kept in single precision (relative error 1e-7 of that term). Throws std::logic_error
+  /// before the first update_tangent.
   void apply_tangent(std::span<const double> x, std::span<double> y) const;
   void diagonal(std::span<double> d) const;
   void block_diagonal(std::span<double> blocks) const;

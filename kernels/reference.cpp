@@ -8,9 +8,13 @@
 #include <vector>
 
 #include "elements/dispatch.hpp"
+#include "elements/point.hpp"
 
 namespace kacanov::reference {
 namespace {
+
+using elements::Nodal;
+using elements::Point;
 
 /// Symmetric 3×3 tensor, components (not engineering shears) xx yy zz xy yz zx.
 using Sym = std::array<double, 6>;
@@ -50,60 +54,27 @@ Sym tangent_stress(const Law& law, const Strain& at, const Strain& strain) {
   return tau;
 }
 
-/// Nodal values of one element, nodes × dim.
 template <class E>
-using Nodal = std::array<double, static_cast<std::size_t>(E::nodes* E::dim)>;
-
-/// Gradients of the shape functions in space, and the volume that belongs to the point.
-template <class E>
-struct Point {
-  double gradient[E::nodes][E::dim];
-  double volume;
-
-  Point(const Nodal<E>& x, std::size_t q) {
-    const auto d = E::gradients(E::point[q].data());
-    double j[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // j[i][k] = ∂x_i/∂ξ_k
+Strain strain_at(const Point<E>& point, const Nodal<E>& u) {
+  double h[3][3] = {};
+  for (int a = 0; a < E::nodes; ++a)
     for (int i = 0; i < E::dim; ++i)
-      for (int k = 0; k < E::dim; ++k) {
-        j[i][k] = 0.0;
-        for (int a = 0; a < E::nodes; ++a) j[i][k] += x[at(a, i)] * d[at(a, k)];
-      }
-    double cofactor[3][3];  // inverse = transposed cofactor / det
-    for (int i = 0; i < 3; ++i)
-      for (int k = 0; k < 3; ++k) {
-        const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
-        cofactor[i][k] = j[i1][k1] * j[i2][k2] - j[i1][k2] * j[i2][k1];
-      }
-    const double det = j[0][0] * cofactor[0][0] + j[0][1] * cofactor[0][1] + j[0][2] * cofactor[0][2];
-    volume = det * E::weight;
-    for (int a = 0; a < E::nodes; ++a)
-      for (int i = 0; i < E::dim; ++i) {
-        gradient[a][i] = 0.0;
-        for (int k = 0; k < E::dim; ++k) gradient[a][i] += cofactor[i][k] * d[at(a, k)] / det;
-      }
-  }
+      for (int k = 0; k < E::dim; ++k) h[i][k] += u[point.at(a, i)] * point.gradient[a][k];
+  Strain s;
+  s.trace = h[0][0] + h[1][1] + h[2][2];
+  s.dev = {h[0][0] - s.trace / 3.0,   h[1][1] - s.trace / 3.0,   h[2][2] - s.trace / 3.0,
+           0.5 * (h[0][1] + h[1][0]), 0.5 * (h[1][2] + h[2][1]), 0.5 * (h[2][0] + h[0][2])};
+  return s;
+}
 
-  Strain strain(const Nodal<E>& u) const {
-    double h[3][3] = {};
-    for (int a = 0; a < E::nodes; ++a)
-      for (int i = 0; i < E::dim; ++i)
-        for (int k = 0; k < E::dim; ++k) h[i][k] += u[at(a, i)] * gradient[a][k];
-    Strain s;
-    s.trace = h[0][0] + h[1][1] + h[2][2];
-    s.dev = {h[0][0] - s.trace / 3.0,   h[1][1] - s.trace / 3.0,   h[2][2] - s.trace / 3.0,
-             0.5 * (h[0][1] + h[1][0]), 0.5 * (h[1][2] + h[2][1]), 0.5 * (h[2][0] + h[0][2])};
-    return s;
-  }
-
-  /// f += the forces of the stress τ at this point.
-  void add_force(const Sym& tau, Nodal<E>& f) const {
-    for (int a = 0; a < E::nodes; ++a)
-      for (int i = 0; i < E::dim; ++i)
-        for (int k = 0; k < E::dim; ++k) f[at(a, i)] += volume * component(tau, i, k) * gradient[a][k];
-  }
-
-  static std::size_t at(int a, int i) { return static_cast<std::size_t>(a * E::dim + i); }
-};
+/// f += the forces of the stress τ at this point.
+template <class E>
+void add_force(const Point<E>& point, const Sym& tau, Nodal<E>& f) {
+  for (int a = 0; a < E::nodes; ++a)
+    for (int i = 0; i < E::dim; ++i)
+      for (int k = 0; k < E::dim; ++k)
+        f[point.at(a, i)] += point.volume * component(tau, i, k) * point.gradient[a][k];
+}
 
 const std::int32_t* nodes_of(const Body& body, std::size_t element) {
   return body.mesh.connectivity.data() +
@@ -136,7 +107,7 @@ void for_each_point(const Body& body, std::span<const double> omega, Visit&& vis
     const Nodal<E> u = gather<E>(body, e, omega);
     for (std::size_t q = 0; q < E::points; ++q) {
       const Point<E> point(x, q);
-      visit(e, law_of(body, e), q, point, point.strain(u));
+      visit(e, law_of(body, e), q, point, strain_at<E>(point, u));
     }
   }
 }
@@ -149,7 +120,7 @@ void assemble(const Body& body, std::span<const double> x, std::span<double> y, 
       body, x,
       [&](std::size_t e, const Law& law, std::size_t q, const Point<E>& point, const Strain& strain) {
         Nodal<E> f{};
-        point.add_force(stress_of(e, law, q, point, strain), f);
+        add_force<E>(point, stress_of(e, law, q, point, strain), f);
         scatter_add<E>(body, e, f, y);
       });
 }
@@ -165,7 +136,7 @@ void fill_matrix(const Body& body, std::size_t element, std::span<double> matrix
     for (std::size_t column = 0; column < n; ++column) {
       Nodal<E> unit{}, f{};
       unit[column] = 1.0;
-      point.add_force(stress_of(q, point, point.strain(unit)), f);
+      add_force<E>(point, stress_of(q, point, strain_at<E>(point, unit)), f);
       for (std::size_t row = 0; row < n; ++row) matrix[row * n + column] += f[row];
     }
   }
@@ -195,7 +166,7 @@ void apply_tangent(const Body& body, std::span<const double> omega, std::span<co
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     assemble<E>(body, x, y,
                 [&](std::size_t e, const Law& law, std::size_t, const Point<E>& point, const Strain& strain) {
-                  return tangent_stress(law, point.strain(gather<E>(body, e, omega)), strain);
+                  return tangent_stress(law, strain_at<E>(point, gather<E>(body, e, omega)), strain);
                 });
   });
 }
@@ -210,16 +181,17 @@ void diagonal(const Body& body, std::span<const double> g, std::span<double> d) 
 void block_diagonal(const Body& body, std::span<const double> g, std::span<double> blocks) {
   std::fill(blocks.begin(), blocks.end(), 0.0);
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
-    constexpr std::size_t n = std::tuple_size_v<Nodal<E>>;
-    std::array<double, n * n> matrix;
     for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
-      element_matrix(body, e, g.subspan(e * E::points, E::points), matrix);
+      const Nodal<E> x = gather<E>(body, e, body.mesh.coordinates);
       const std::int32_t* node = nodes_of(body, e);
-      for (int a = 0; a < E::nodes; ++a)
-        for (int i = 0; i < E::dim; ++i)
-          for (int j = 0; j < E::dim; ++j)
-            blocks[Point<E>::at(node[a], i) * E::dim + static_cast<std::size_t>(j)] +=
-                matrix[Point<E>::at(a, i) * n + Point<E>::at(a, j)];
+      for (std::size_t q = 0; q < E::points; ++q) {
+        const Point<E> point(x, q);
+        for (int a = 0; a < E::nodes; ++a)
+          for (int i = 0; i < E::dim; ++i)
+            for (int j = 0; j < E::dim; ++j)
+              blocks[Point<E>::at(node[a], i) * E::dim + static_cast<std::size_t>(j)] +=
+                  point.diagonal_block(a, i, j, law_of(body, e).bulk, g[e * E::points + q]);
+      }
     }
   });
 }
@@ -262,7 +234,7 @@ void element_tangent(const Body& body, std::size_t element, std::span<const doub
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     const Nodal<E> u = gather<E>(body, element, omega);
     fill_matrix<E>(body, element, matrix, [&](std::size_t, const Point<E>& point, const Strain& strain) {
-      return tangent_stress(law, point.strain(u), strain);
+      return tangent_stress(law, strain_at<E>(point, u), strain);
     });
   });
 }
@@ -288,7 +260,7 @@ void fields(const Body& body, std::span<const double> omega, const ElementFields
       bool plastic = false;
       for (std::size_t q = 0; q < E::points; ++q) {
         const Point<E> point(x, q);
-        const Strain strain = point.strain(u);
+        const Strain strain = strain_at<E>(point, u);
         const double norm = strain.norm(), g = law.secant(norm);
         const Sym point_tau = stress(law, g, strain);
         for (std::size_t i = 0; i < 6; ++i) tau[i] += point.volume * point_tau[i];

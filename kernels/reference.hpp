@@ -27,8 +27,7 @@ namespace reference {
 /// g from ω: `g` has elements × points entries, point index fastest.
 void secant(const Body& body, std::span<const double> omega, std::span<double> g);
 /// y = B(g) x (overwrites y). Vectors are nodes × dim, interleaved.
-void apply(const Body& body, std::span<const double> g, std::span<const double> x,
-           std::span<double> y);
+void apply(const Body& body, std::span<const double> g, std::span<const double> x, std::span<double> y);
 /// y = B_T(ω) x, the consistent tangent 2g I_dev + (2g'/x) dev ε ⊗ dev ε of the law at ω.
 void apply_tangent(const Body& body, std::span<const double> omega, std::span<const double> x,
                    std::span<double> y);
@@ -51,10 +50,10 @@ void volumes(const Body& body, std::span<double> volume);
 
 /// What a picture or an output file wants to know of an element: means over its points.
 struct ElementFields {
-  std::span<double> stress;      ///< elements × 6: xx yy zz xy yz zx (zz also in plane strain)
-  std::span<double> von_mises;   ///< elements
-  std::span<double> dev_strain;  ///< elements: ‖dev ε‖
-  std::span<double> secant;      ///< elements: g
+  std::span<double> stress;         ///< elements × 6: xx yy zz xy yz zx (zz also in plane strain)
+  std::span<double> von_mises;      ///< elements
+  std::span<double> dev_strain;     ///< elements: ‖dev ε‖
+  std::span<double> secant;         ///< elements: g
   std::span<std::uint8_t> plastic;  ///< elements: 1 if any point is beyond yield
 };
 /// Fills the spans that are not empty.

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One quadrature point of an element in space: gradients of its shape functions and its volume.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace kacanov::elements {
+
+/// Nodal values of one element, nodes × dim.
+template <class E>
+using Nodal = std::array<double, static_cast<std::size_t>(E::nodes* E::dim)>;
+
+template <class E>
+struct Point {
+  double gradient[E::nodes][E::dim];
+  double volume;  ///< that belongs to the point; not positive where the element is inverted
+
+  Point(const Nodal<E>& x, std::size_t q) {
+    const auto d = E::gradients(E::point[q].data());
+    double j[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // j[i][k] = ∂x_i/∂ξ_k
+    for (int i = 0; i < E::dim; ++i)
+      for (int k = 0; k < E::dim; ++k) {
+        j[i][k] = 0.0;
+        for (int a = 0; a < E::nodes; ++a) j[i][k] += x[at(a, i)] * d[at(a, k)];
+      }
+    double cofactor[3][3];  // inverse = transposed cofactor / det
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k) {
+        const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+        cofactor[i][k] = j[i1][k1] * j[i2][k2] - j[i1][k2] * j[i2][k1];
+      }
+    const double det = j[0][0] * cofactor[0][0] + j[0][1] * cofactor[0][1] + j[0][2] * cofactor[0][2];
+    volume = det * E::weight;
+    for (int a = 0; a < E::nodes; ++a)
+      for (int i = 0; i < E::dim; ++i) {
+        gradient[a][i] = 0.0;
+        for (int k = 0; k < E::dim; ++k) gradient[a][i] += cofactor[i][k] * d[at(a, k)] / det;
+      }
+  }
+
+  /// Entry (i, j) of the block node a has on the diagonal of B: volume [(k0 + g/3) ∇ᵢ∇ⱼ + g |∇|² δᵢⱼ].
+  double diagonal_block(int a, int i, int j, double bulk, double g) const {
+    double square = 0.0;
+    for (int k = 0; k < E::dim; ++k) square += gradient[a][k] * gradient[a][k];
+    return volume * ((bulk + g / 3.0) * gradient[a][i] * gradient[a][j] + (i == j ? g * square : 0.0));
+  }
+
+  static constexpr std::size_t at(int a, int i) { return static_cast<std::size_t>(a * E::dim + i); }
+};
+
+}  // namespace kacanov::elements

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What an element loop sees of a block: plain arrays, so that code built for one instruction set shares no
+// inline function with code built for another.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace kacanov::simd {
+
+/// What a lane holds: an open or closed fan of tetrahedra, or one element. `tet10` has straight sides.
+enum class Shape : std::uint8_t { open_fan, closed_fan, tri3, tet10, curved_tet10, hex8 };
+
+/// The law of a group, as far as the loops evaluate it themselves.
+struct LawView {
+  double bulk;      ///< k0
+  double shear;     ///< g up to `elastic`
+  double elastic;   ///< strain norm up to which g is constant
+  const void* law;  ///< handed back to `evaluate`
+  /// g, dg/dx and G at the strain norm x.
+  void (*evaluate)(const void* law, double x, double* g, double* slope, double* energy);
+};
+
+/// Batches of one shape, length and law, one unit a lane.
+struct Group {
+  Shape shape;
+  std::uint8_t length;  ///< tetrahedra of a fan; 1 for elements
+  std::uint16_t law;    ///< index of its LawView
+  std::uint32_t batches;
+  std::uint32_t first_index;  ///< in Block::index
+  std::uint32_t first_slot;   ///< in Block::secant
+};
+
+/// Local nodes are records of four values, the last one unused. `index` holds, batch by batch, node by
+/// node, lane by lane, the offset of a record (four times the local node). `secant` holds, batch by batch,
+/// point by point, lane by lane, g; `tangent` six vectors (xx yy xy yz zx of dev ε/x, then 2 g' x) for each.
+template <class Real>
+struct Block {
+  const Group* groups;
+  std::size_t group_count;
+  const LawView* laws;
+  const std::uint16_t* index;
+  const Real* coordinates;
+  Real* secant;
+  float* tangent;
+  const std::int32_t* nodes;   ///< the caller's number of every local node
+  const std::int32_t* shared;  ///< slot in the thread's private sums, for nodes from `again` on
+  std::uint32_t first;         ///< local nodes [0, first) are met for the first time by this thread
+  std::uint32_t again;         ///< [first, again) were met before, [again, count) are other threads' too
+  std::uint32_t count;
+  std::uint32_t padding;  ///< records behind `count` that lanes without a unit work on
+};
+
+/// What the nonlinear pass leaves behind, besides forces.
+struct Nonlinear {
+  bool keep_secant = false;
+  bool keep_tangent = false;
+  double energy = 0.0;  ///< added to
+};
+
+/// The loops of one instruction set. `u` and `f` are records of local nodes; `dim` 2 or 3.
+template <class Real>
+struct Kernels {
+  int lanes;
+  /// u = x at the block's nodes, f = 0.
+  void (*gather)(const Block<Real>&, int dim, const Real* x, Real* u, Real* f);
+  /// y = f or y += f at the block's nodes, private sums += f for shared ones.
+  void (*scatter)(const Block<Real>&, int dim, const Real* f, Real* y, Real* sums);
+  /// Σ uᵀ f over the block's local nodes.
+  double (*dot)(const Block<Real>&, const Real* u, const Real* f);
+  /// f += B u for `vectors` (1, 2 or 4) right sides, `stride` values apart in u and in f.
+  void (*apply)(const Block<Real>&, const Real* u, Real* f, int vectors, std::size_t stride);
+  /// f += B_T u.
+  void (*apply_tangent)(const Block<Real>&, const Real* u, Real* f);
+  /// f += internal force of the true law at u.
+  void (*nonlinear)(const Block<Real>&, const Real* u, Real* f, Nonlinear*);
+};
+
+}  // namespace kacanov::simd

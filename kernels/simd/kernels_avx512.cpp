@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The element loops built for AVX-512 (F, DQ).
+#include "kernels.hpp"
+#include "vector_avx512.hpp"
+
+#include "loops.hpp"
+
+namespace kacanov::simd {
+
+const Kernels<double>& kernels_avx512(double) { return Loops<double>::table; }
+const Kernels<float>& kernels_avx512(float) { return Loops<float>::table; }
+
+}  // namespace kacanov::simd

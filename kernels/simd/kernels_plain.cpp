@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The element loops built for the compiler's baseline.
+#include "kernels.hpp"
+#include "vector_plain.hpp"
+
+#include "loops.hpp"
+
+namespace kacanov::simd {
+
+const Kernels<double>& kernels_plain(double) { return Loops<double>::table; }
+const Kernels<float>& kernels_plain(float) { return Loops<float>::table; }
+
+}  // namespace kacanov::simd

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The table of loops of one instruction set, built from its `Lanes`. Included once by each of its sources.
+#pragma once
+
+#include "element.hpp"
+
+namespace {
+
+using kacanov::elements::Hex8;
+using kacanov::elements::Tet10;
+using kacanov::elements::Tri3;
+using kacanov::simd::Kernels;
+using kacanov::simd::Shape;
+
+template <class Real>
+struct Loops {
+  using L = Lanes<Real>;
+
+  static void gather(const Block<Real>& block, int dim, const Real* x, Real* u, Real* f) {
+    const std::int32_t* nodes = block.nodes;
+    if (dim == 3)
+      for (std::uint32_t i = 0; i < block.count; ++i) {
+        const Real* from = x + 3 * std::ptrdiff_t{nodes[i]};
+        Real* to = u + 4 * std::size_t{i};
+        to[0] = from[0], to[1] = from[1], to[2] = from[2];
+      }
+    else
+      for (std::uint32_t i = 0; i < block.count; ++i) {
+        const Real* from = x + 2 * std::ptrdiff_t{nodes[i]};
+        Real* to = u + 4 * std::size_t{i};
+        to[0] = from[0], to[1] = from[1], to[2] = 0;
+      }
+    const std::size_t end = 4 * std::size_t{block.count + block.padding};
+    for (std::size_t i = 4 * std::size_t{block.count}; i < end; ++i) u[i] = 0;
+    for (std::size_t i = 0; i < end; ++i) f[i] = 0;
+  }
+
+  template <int dim>
+  static void scatter_in(const Block<Real>& block, const Real* f, Real* y, Real* sums) {
+    const std::int32_t* nodes = block.nodes;
+    std::uint32_t i = 0;
+    for (; i < block.first; ++i)
+      for (int k = 0; k < dim; ++k) y[dim * std::ptrdiff_t{nodes[i]} + k] = f[4 * std::size_t{i} + k];
+    for (; i < block.again; ++i)
+      for (int k = 0; k < dim; ++k) y[dim * std::ptrdiff_t{nodes[i]} + k] += f[4 * std::size_t{i} + k];
+    const std::int32_t* slot = block.shared;
+    for (; i < block.count; ++i, ++slot)
+      for (int k = 0; k < dim; ++k) sums[3 * std::ptrdiff_t{*slot} + k] += f[4 * std::size_t{i} + k];
+  }
+  static void scatter(const Block<Real>& block, int dim, const Real* f, Real* y, Real* sums) {
+    if (dim == 3)
+      scatter_in<3>(block, f, y, sums);
+    else
+      scatter_in<2>(block, f, y, sums);
+  }
+
+  static double dot(const Block<Real>& block, const Real* u, const Real* f) {
+    double sum[4] = {};  // one for each place of a record; the last place of f is zero
+    for (std::size_t i = 0; i < block.count; ++i)
+      for (std::size_t k = 0; k < 3; ++k) sum[k] += double(u[4 * i + k]) * double(f[4 * i + k]);
+    return sum[0] + sum[1] + sum[2];
+  }
+
+  template <int vectors, class MakeMaterial>
+  static void sweep(const Block<Real>& block, const Real* u, Real* f, std::size_t stride,
+                    MakeMaterial&& make) {
+    for (std::size_t i = 0; i < block.group_count; ++i) {
+      const Group& group = block.groups[i];
+      const auto material = make(group);
+      switch (group.shape) {
+        case Shape::open_fan: fan_loop<L, Real, false, vectors>(block, group, material, u, f, stride); break;
+        case Shape::closed_fan: fan_loop<L, Real, true, vectors>(block, group, material, u, f, stride); break;
+        case Shape::tri3: element_loop<L, Real, Tri3, vectors>(block, group, material, u, f, stride); break;
+        case Shape::tet10:
+        case Shape::curved_tet10:
+          element_loop<L, Real, Tet10, vectors>(block, group, material, u, f, stride);
+          break;
+        case Shape::hex8: element_loop<L, Real, Hex8, vectors>(block, group, material, u, f, stride); break;
+      }
+    }
+  }
+
+  static void apply(const Block<Real>& block, const Real* u, Real* f, int vectors, std::size_t stride) {
+    const auto make = [&](const Group& group) { return SecantMaterial<L, Real>(block, group); };
+    if (vectors == 1)
+      sweep<1>(block, u, f, stride, make);
+    else if (vectors == 2)
+      sweep<2>(block, u, f, stride, make);
+    else
+      sweep<4>(block, u, f, stride, make);
+  }
+  static void apply_tangent(const Block<Real>& block, const Real* u, Real* f) {
+    sweep<1>(block, u, f, 0, [&](const Group& group) { return TangentMaterial<L, Real>(block, group); });
+  }
+  static void nonlinear(const Block<Real>& block, const Real* u, Real* f, Nonlinear* out) {
+    sweep<1>(block, u, f, 0,
+             [&](const Group& group) { return NonlinearMaterial<L, Real>(block, group, *out); });
+  }
+
+  static constexpr Kernels<Real> table{L::width, gather, scatter, dot, apply, apply_tangent, nonlinear};
+};
+
+}  // namespace

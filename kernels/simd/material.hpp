@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Stress at a batch of quadrature points: the frozen law, its tangent, and the true law.
+#pragma once
+
+#include "block.hpp"
+
+namespace {
+
+using kacanov::simd::Block;
+using kacanov::simd::Group;
+using kacanov::simd::LawView;
+using kacanov::simd::Nonlinear;
+
+/// Symmetric tensor of vectors.
+template <class V>
+struct Sym {
+  V xx, yy, zz, xy, yz, zx;
+};
+
+/// v = s n.
+template <class V>
+inline void multiply(const Sym<V>& s, const V* n, V* v) {
+  v[0] = s.xx * n[0] + s.xy * n[1] + s.zx * n[2];
+  v[1] = s.xy * n[0] + s.yy * n[1] + s.yz * n[2];
+  v[2] = s.zx * n[0] + s.yz * n[1] + s.zz * n[2];
+}
+
+// A material turns h = det ∇u (h[3 i + j] = det ∂u_i/∂x_j) at one point of each lane into
+// weight·τ: forces are that times det ∇N. `weight` is the point's on the reference element. `slot` counts
+// vectors of points from the start of the block.
+
+template <class L, class Real, class V = typename L::V>
+inline Sym<V> frozen_stress(const V* h, V g, V bulk, V w) {
+  const V gg = g * w, gg2 = gg + gg;
+  const V mean = (h[0] + h[4] + h[8]) * (bulk * w - gg2 * Real(1.0 / 3.0));
+  return {gg2 * h[0] + mean,  gg2 * h[4] + mean,  gg2 * h[8] + mean,
+          gg * (h[1] + h[3]), gg * (h[5] + h[7]), gg * (h[2] + h[6])};
+}
+
+template <class L, class Real>
+struct SecantMaterial {
+  using V = typename L::V;
+  const Real* secant;
+  V bulk;
+
+  SecantMaterial(const Block<Real>& block, const Group& group)
+      : secant(block.secant + group.first_slot), bulk(Real(block.laws[group.law].bulk) - V{}) {}
+
+  Sym<V> stress(const V* h, V det, Real weight, std::size_t point) const {
+    return frozen_stress<L, Real>(h, L::load(secant + point * L::width), bulk, weight / det);
+  }
+};
+
+template <class L, class Real>
+struct TangentMaterial {
+  using V = typename L::V;
+  SecantMaterial<L, Real> frozen;
+  const float* tangent;
+
+  TangentMaterial(const Block<Real>& block, const Group& group)
+      : frozen(block, group), tangent(block.tangent + 6 * std::size_t{group.first_slot}) {}
+
+  Sym<V> stress(const V* h, V det, Real weight, std::size_t point) const {
+    const V w = weight / det;
+    Sym<V> s = frozen_stress<L, Real>(h, L::load(frozen.secant + point * L::width), frozen.bulk, w);
+    const float* t = tangent + 6 * point * L::width;
+    const V xx = L::widen(t), yy = L::widen(t + L::width), xy = L::widen(t + 2 * L::width),
+            yz = L::widen(t + 3 * L::width), zx = L::widen(t + 4 * L::width), c = L::widen(t + 5 * L::width);
+    const V zz = -(xx + yy);
+    const V along =
+        c * w *
+        (xx * h[0] + yy * h[4] + zz * h[8] + xy * (h[1] + h[3]) + yz * (h[5] + h[7]) + zx * (h[2] + h[6]));
+    s.xx += along * xx, s.yy += along * yy, s.zz += along * zz;
+    s.xy += along * xy, s.yz += along * yz, s.zx += along * zx;
+    return s;
+  }
+};
+
+template <class L, class Real>
+struct NonlinearMaterial {
+  using V = typename L::V;
+  const LawView& law;
+  Nonlinear& out;
+  Real* secant;
+  float* tangent;
+
+  NonlinearMaterial(const Block<Real>& block, const Group& group, Nonlinear& nonlinear)
+      : law(block.laws[group.law]),
+        out(nonlinear),
+        secant(block.secant + group.first_slot),
+        tangent(block.tangent + 6 * std::size_t{group.first_slot}) {}
+
+  Sym<V> stress(const V* h, V det, Real weight, std::size_t point) const {
+    const V inverse = Real(1) / det, half = Real(0.5) * inverse;
+    const V trace = (h[0] + h[4] + h[8]) * inverse, mean = trace * Real(1.0 / 3.0);
+    const V xx = h[0] * inverse - mean, yy = h[4] * inverse - mean, zz = h[8] * inverse - mean;
+    const V xy = (h[1] + h[3]) * half, yz = (h[5] + h[7]) * half, zx = (h[2] + h[6]) * half;
+    const V x = L::sqrt(xx * xx + yy * yy + zz * zz + Real(2) * (xy * xy + yz * yz + zx * zx));
+    V g = Real(law.shear) - V{}, slope = V{}, energy = Real(0.5 * law.shear) * x * x;
+    for (int l = 0; l < L::width; ++l)
+      if (double(x[l]) > law.elastic) {
+        double lane_g, lane_slope, lane_energy;
+        law.evaluate(law.law, double(x[l]), &lane_g, &lane_slope, &lane_energy);
+        g[l] = Real(lane_g), slope[l] = Real(lane_slope), energy[l] = Real(lane_energy);
+      }
+    const V density = det * weight * (Real(0.5 * law.bulk) * trace * trace + Real(2) * energy);
+    for (int l = 0; l < L::width; ++l) out.energy += double(density[l]);
+    if (out.keep_secant) L::store(secant + point * L::width, g);
+    if (out.keep_tangent) keep(Sym<V>{xx, yy, zz, xy, yz, zx}, x, slope, tangent + 6 * point * L::width);
+    return frozen_stress<L, Real>(h, g, Real(law.bulk) - V{}, weight * inverse);
+  }
+
+  /// The direction dev ε/x and 2 g' x; zero where g' is.
+  static void keep(const Sym<V>& dev, V x, V slope, float* t) {
+    const V values[6] = {dev.xx, dev.yy, dev.xy, dev.yz, dev.zx, Real(2) * slope * x};
+    for (int l = 0; l < L::width; ++l) {
+      const bool active = slope[l] != Real(0);
+      for (int k = 0; k < 6; ++k)
+        t[k * L::width + l] = !active ? 0.0f : static_cast<float>(k < 5 ? values[k][l] / x[l] : values[k][l]);
+    }
+  }
+};
+
+}  // namespace

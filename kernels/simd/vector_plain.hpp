@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Portable lanes of 16 bytes: what every compiler target has, one by one where records are concerned.
+#pragma once
+
+#include <cstdint>
+
+namespace {
+
+template <class Real>
+struct Lanes {
+  typedef Real V __attribute__((vector_size(16)));
+  static constexpr int width = 16 / static_cast<int>(sizeof(Real));
+
+  static V load(const Real* p) {
+    V v;
+    __builtin_memcpy(&v, p, sizeof v);
+    return v;
+  }
+  static void store(Real* p, V v) { __builtin_memcpy(p, &v, sizeof v); }
+  static V widen(const float* p) {
+    V v{};
+    for (int l = 0; l < width; ++l) v[l] = p[l];
+    return v;
+  }
+  static V sqrt(V v) {
+    for (int l = 0; l < width; ++l) v[l] = static_cast<Real>(__builtin_sqrt(v[l]));
+    return v;
+  }
+  static void load3(const Real* base, const std::uint16_t* at, V* v) {
+    for (int k = 0; k < 3; ++k) {
+      Real lane[width];
+      for (int l = 0; l < width; ++l) lane[l] = base[at[l] + k];
+      v[k] = load(lane);
+    }
+  }
+  static void add3(Real* base, const std::uint16_t* at, const V* v) {
+    for (int l = 0; l < width; ++l)
+      for (int k = 0; k < 3; ++k) base[at[l] + k] += v[k][l];
+  }
+};
+
+}  // namespace

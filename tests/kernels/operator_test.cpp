@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The fast operator against the reference: every element, instruction set, thread count and kind of mesh.
+#include "operator.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "bodies.hpp"
+
+using namespace kacanov;
+using test::difference;
+using test::OwnedBody;
+
+namespace {
+
+/// The instruction sets this processor and build have.
+std::vector<std::string> instruction_sets() {
+  meshes::OwnedMesh mesh{ElementType::tri3, {0, 0, 1, 0, 0, 1}, {0, 1, 2}};
+  const auto body = test::with_one_law(mesh, elastic_law(1, 0.3));
+  std::vector<std::string> sets;
+  for (const std::string name : {"plain", "avx2", "avx512"}) {
+    try {
+      const Operator op(body.body(), {1, name});
+      sets.push_back(name);
+    } catch (const std::invalid_argument&) {
+    }
+  }
+  return sets;
+}
+
+/// The first `count` elements of a shuffled mesh: pieces that hang together loosely, and nodes of no element.
+meshes::OwnedMesh some_elements(meshes::OwnedMesh mesh, std::size_t count, unsigned seed) {
+  meshes::shuffle(mesh, seed);
+  mesh.connectivity.resize(count * static_cast<std::size_t>(nodes_per_element(mesh.type)));
+  return mesh;
+}
+
+void stretch(meshes::OwnedMesh& mesh, double factor) {
+  const auto dim = static_cast<std::size_t>(dimension(mesh.type));
+  for (std::size_t i = 0; i < mesh.coordinates.size(); i += dim) mesh.coordinates[i] *= factor;
+}
+
+/// Meshes of 1 to some hundred elements, perturbed, irregular and stretched.
+std::vector<OwnedBody> bodies(ElementType type) {
+  std::vector<OwnedBody> all;
+  const double amount = type == ElementType::tet10 ? 0.04 : 0.12;
+  auto whole = meshes::box(type, {3, 2, 3}, {1, 1, 1});
+  meshes::jitter(whole, amount, 1);
+  const std::size_t count = whole.view().element_count();
+  for (const std::size_t size : {1, 2, 3, 5, 7, 8, 9, 12, 16, 17, 25, 40})
+    if (size <= count)
+      all.push_back(test::with_one_law(some_elements(whole, size, unsigned(size)), test::every_law()[1]));
+  all.push_back(test::with_every_law(whole, 2));
+  auto long_box = meshes::box(type, {9, 4, 4}, {4, 1, 1});
+  meshes::jitter(long_box, amount, 3);
+  if (type == ElementType::tet4) meshes::flip(long_box, 3, 4);
+  if (type == ElementType::tet10) meshes::straighten(long_box);
+  meshes::shuffle(long_box, 5);
+  all.push_back(test::with_one_law(long_box, test::every_law()[4]));
+  stretch(long_box, 1000.0);
+  all.push_back(test::with_one_law(long_box, test::every_law()[1]));
+  return all;
+}
+
+std::vector<double> some_secant(std::size_t count) {
+  auto g = test::random_vector(count, 21, 0.15);
+  for (double& value : g) value += 0.25;
+  return g;
+}
+
+/// Calls check(body, operator) for everything the operator can be.
+template <class Check>
+void for_every_operator(Check&& check) {
+  for (const ElementType type : test::all_types)
+    for (const OwnedBody& owned : bodies(type))
+      for (const std::string& set : instruction_sets())
+        for (const int threads : {1, 2}) {
+          CAPTURE(static_cast<int>(type));
+          CAPTURE(owned.mesh.view().element_count());
+          CAPTURE(set);
+          CAPTURE(threads);
+          Operator op(owned.body(), {threads, set});
+          CHECK(op.instruction_set() == set);
+          check(owned.body(), op);
+        }
+}
+
+/// Displacements that take some points beyond yield, on a stretched mesh too.
+std::vector<double> some_state(const Body& body, unsigned seed) {
+  double longest = 0.0;
+  for (const double x : body.mesh.coordinates) longest = std::max(longest, std::abs(x));
+  return test::random_vector(body.unknowns(), seed, longest > 100.0 ? 1e-4 : 0.005);
+}
+
+}  // namespace
+
+TEST_CASE("y = B x, its dot product and several right sides") {
+  for_every_operator([](const Body& body, Operator& op) {
+    const std::size_t n = body.unknowns();
+    CHECK(op.unknowns() == n);
+    const auto g = some_secant(body.secant_count());
+    op.set_secant(g);
+    std::vector<double> back(g.size()), many_x, expected_many, y(n, -1.0), expected(n);
+    op.secant(back);
+    CHECK(back == g);
+    for (unsigned v = 0; v < 7; ++v) {
+      const auto x = test::random_vector(n, v);
+      reference::apply(body, g, x, expected);
+      many_x.insert(many_x.end(), x.begin(), x.end());
+      expected_many.insert(expected_many.end(), expected.begin(), expected.end());
+    }
+    const auto x = std::span(many_x).first(n);
+    const auto first = std::span(expected_many).first(n);
+    op.apply(x, y);
+    CHECK(difference(y, first) < 1e-13);
+    std::vector<double> again(n, 7.0);
+    const double xy = op.apply_dot(x, again);
+    CHECK(again == y);
+    CHECK(xy == doctest::Approx(test::dot(x, first)).epsilon(1e-12));
+    std::vector<double> many_y(7 * n);
+    op.apply_many(many_x, many_y, 7);
+    CHECK(difference(many_y, expected_many) < 1e-13);
+    CHECK(op.applications() == 9);
+  });
+}
+
+TEST_CASE("residual, energy, new g and tangent at a state") {
+  for_every_operator([](const Body& body, Operator& op) {
+    const std::size_t n = body.unknowns();
+    const auto omega = some_state(body, 31), x = test::random_vector(n, 32);
+    std::vector<double> f(n), expected(n), g(body.secant_count()), expected_g(g.size()), y(n);
+    reference::residual(body, omega, expected);
+    reference::secant(body, omega, expected_g);
+    const double energy = reference::energy(body, omega);
+
+    op.residual(omega, f);
+    CHECK(difference(f, expected) < 1e-13);
+    CHECK(op.energy(omega) == doctest::Approx(energy).epsilon(1e-12));
+    const std::vector<double> zero(n, 0.0);
+    std::vector<double> elastic(g.size());
+    reference::secant(body, zero, elastic);
+    op.secant(g);
+    CHECK(difference(g, elastic) < 1e-14);  // neither residual nor energy changed g = mu
+
+    std::vector<double> fused(n);
+    CHECK(op.residual_energy_update(omega, fused) == doctest::Approx(energy).epsilon(1e-12));
+    CHECK(fused == f);
+    op.secant(g);
+    CHECK(difference(g, expected_g) < 1e-12);
+    op.apply(omega, y);
+    CHECK(difference(y, expected) < 1e-13);
+
+    op.update(zero);
+    op.update_tangent(omega);
+    reference::apply_tangent(body, omega, x, expected);
+    op.apply_tangent(x, y);
+    CHECK(difference(y, expected) < 3e-7);  // the rank-one term is kept in single precision
+    const auto first = y;
+    op.update(zero);  // the tangent stays what it was frozen as
+    op.apply_tangent(x, y);
+    CHECK(y == first);
+  });
+}
+
+TEST_CASE("diagonals") {
+  for_every_operator([](const Body& body, Operator& op) {
+    const auto g = some_secant(body.secant_count());
+    const std::size_t n = body.unknowns(), dim = static_cast<std::size_t>(dimension(body.mesh.type));
+    op.set_secant(g);
+    std::vector<double> actual(n), expected(n), blocks(n * dim), expected_blocks(n * dim);
+    op.diagonal(actual);
+    reference::diagonal(body, g, expected);
+    CHECK(difference(actual, expected) < 1e-13);
+    op.block_diagonal(blocks);
+    reference::block_diagonal(body, g, expected_blocks);
+    CHECK(difference(blocks, expected_blocks) < 1e-13);
+  });
+}
+
+TEST_CASE("the same bits in every run, on a mesh of many blocks") {
+  auto mesh = meshes::box(ElementType::tet4, {40, 20, 20}, {2, 1, 1});
+  meshes::jitter(mesh, 0.1, 7);
+  meshes::flip(mesh, 1, 8);
+  meshes::shuffle(mesh, 9);
+  const auto owned = test::with_every_law(std::move(mesh), 10);
+  const Body body = owned.body();
+  const auto x = test::random_vector(body.unknowns(), 11), g = some_secant(body.secant_count());
+  std::vector<double> expected(x.size()), y(x.size());
+  reference::apply(body, g, x, expected);
+  for (const int threads : {1, 2, 3, 7}) {
+    CAPTURE(threads);
+    Operator op(body, {threads, {}}), twin(body, {threads, {}});
+    op.set_secant(g);
+    twin.set_secant(g);
+    const double dot = op.apply_dot(x, y);
+    CHECK(difference(y, expected) < 1e-13);
+    std::vector<double> z(x.size());
+    for (int run = 0; run < 3; ++run) {
+      CHECK(twin.apply_dot(x, z) == dot);
+      CHECK(z == y);
+    }
+    CHECK(op.bytes() > 0);
+  }
+}
+
+TEST_CASE("bad input is named") {
+  const auto owned = test::small_body(ElementType::tet4, 1);
+  Body body = owned.body();
+  CHECK_THROWS_WITH_AS(Operator(body, {0, {}}), doctest::Contains("threads"), std::invalid_argument);
+  CHECK_THROWS_WITH_AS(Operator(body, {1, "sse9"}), doctest::Contains("sse9"), std::invalid_argument);
+  setenv("KACANOV_INSTRUCTION_SET", "neon", 1);
+  CHECK_THROWS_WITH_AS(Operator(body, {1, {}}), doctest::Contains("neon"), std::invalid_argument);
+  setenv("KACANOV_INSTRUCTION_SET", "plain", 1);
+  CHECK(Operator(body).instruction_set() == "plain");
+  unsetenv("KACANOV_INSTRUCTION_SET");
+  auto wrong = owned;
+  wrong.mesh.connectivity[5] = 12345;
+  CHECK_THROWS_WITH_AS(Operator{wrong.body()}, doctest::Contains("12345"), std::invalid_argument);
+  wrong = owned;
+  std::swap(wrong.mesh.connectivity[4], wrong.mesh.connectivity[5]);
+  CHECK_THROWS_AS(Operator{wrong.body()}, std::invalid_argument);
+  wrong = owned;
+  wrong.mesh.coordinates[7] = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_AS(Operator{wrong.body()}, std::invalid_argument);
+  wrong = owned;
+  wrong.law_of_element[3] = 99;
+  CHECK_THROWS_WITH_AS(Operator{wrong.body()}, doctest::Contains("99"), std::invalid_argument);
+  wrong.law_of_element.pop_back();
+  CHECK_THROWS_AS(Operator{wrong.body()}, std::invalid_argument);
+  Operator op(body);
+  std::vector<double> x(op.unknowns()), y(op.unknowns() - 1);
+  CHECK_THROWS_AS(op.apply(x, y), std::invalid_argument);
+  CHECK_THROWS_AS(op.set_secant(x), std::invalid_argument);
+  CHECK_THROWS_AS(op.apply_tangent(x, x), std::logic_error);
+}
