@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Any number of ranks: partition, halo and gathers by what they must do, and the same answer as on one rank.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+
+#include "amg.hpp"
+#include "space.hpp"
+#include "support.hpp"
+
+using namespace kacanov;
+using namespace kacanov::testing;
+
+namespace {
+
+int this_rank() {
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  return rank;
+}
+
+Part over_all_ranks(const Problem& problem) {
+  return distribute(this_rank() == 0 ? &problem : nullptr, MPI_COMM_WORLD);
+}
+
+Problem beam_problem(int dim, int n, double tresca = 0.0) {
+  return build_problem(beam_mesh(dim, n), beam(dim, logarithmic_law(0.01), 0.05, tresca));
+}
+
+/// A value that belongs to a node of the mesh, wherever it is kept.
+double signature(std::int64_t node, int component) {
+  return std::sin(static_cast<double>(node)) + 10.0 * component;
+}
+
+}  // namespace
+
+TEST_CASE("every element lies on one rank, every node has one owner") {
+  const Problem problem = beam_problem(3, 3);
+  const Part part = over_all_ranks(problem);
+  std::vector<int> elements(problem.mesh.element_count(), 0), owners(problem.mesh.node_count(), 0),
+      points(problem.contact.size(), 0);
+  for (const auto e : part.element_index) ++elements[static_cast<std::size_t>(e)];
+  for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_nodes); ++i)
+    ++owners[static_cast<std::size_t>(part.node_index[i])];
+  for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_contact); ++i)
+    ++points[static_cast<std::size_t>(part.contact_index[i])];
+  for (auto* count : {&elements, &owners, &points}) {
+    MPI_Allreduce(MPI_IN_PLACE, count->data(), static_cast<int>(count->size()), MPI_INT, MPI_SUM,
+                  MPI_COMM_WORLD);
+    CHECK(std::all_of(count->begin(), count->end(), [](int c) { return c == 1; }));
+  }
+  CHECK(part.total_elements == static_cast<std::int64_t>(problem.mesh.element_count()));
+  CHECK(part.total_nodes == static_cast<std::int64_t>(problem.mesh.node_count()));
+  CHECK(part.total_contact == static_cast<std::int64_t>(problem.contact.size()));
+
+  // The part is the mesh seen through its index arrays.
+  const auto npe = static_cast<std::size_t>(nodes_per_element(part.type));
+  std::size_t wrong = 0;
+  for (std::size_t k = 0; k < part.elements.size(); ++k) {
+    const auto e = static_cast<std::size_t>(part.element_index[k / npe]);
+    if (part.node_index[static_cast<std::size_t>(part.elements[k])] !=
+        problem.mesh.elements[e * npe + k % npe])
+      ++wrong;
+  }
+  for (std::size_t i = 0; i < part.unknowns(); ++i) {
+    const std::size_t there = 3 * static_cast<std::size_t>(part.node_index[i / 3]) + i % 3;
+    if (part.coordinates[i] != problem.mesh.coordinates[there] || part.load[i] != problem.load[there] ||
+        part.held[i] != problem.held[there] || part.prescribed[i] != problem.prescribed[there])
+      ++wrong;
+  }
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("owned nodes are numbered on through the ranks, and ghosts know their owners' numbers") {
+  const Problem problem = beam_problem(2, 4);
+  const Part part = over_all_ranks(problem);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_nodes); ++i)
+    CHECK(part.global_node[i] == part.first_owned + static_cast<std::int64_t>(i));
+  std::vector<double> number(part.nodes());
+  for (std::size_t i = 0; i < part.nodes(); ++i) number[i] = static_cast<double>(part.global_node[i]);
+  const std::vector<double> expected = number;
+  for (std::size_t i = static_cast<std::size_t>(part.owned_nodes); i < part.nodes(); ++i) number[i] = -1.0;
+  part.halo.copy_from_owner(number, 1);
+  CHECK(number == expected);
+}
+
+TEST_CASE("halo sums count the ranks that share a node, with the same bits on each") {
+  const Problem problem = beam_problem(3, 2);
+  const Part part = over_all_ranks(problem);
+  // Each rank adds a number that rounds: a sum in another order would differ in its last bits.
+  std::vector<double> x(2 * part.nodes());
+  for (std::size_t i = 0; i < part.nodes(); ++i) {
+    x[2 * i] = 1.0;
+    x[2 * i + 1] = 0.1 * (1 + part.halo.rank) * (1.0 + signature(part.node_index[i], 0));
+  }
+  part.halo.sum(x, 2);
+  // All copies, gathered by mesh node.
+  const std::size_t nodes = problem.mesh.node_count();
+  std::vector<double> sharers(nodes, 0.0), largest(nodes, -1e300), smallest(nodes, 1e300);
+  for (std::size_t i = 0; i < part.nodes(); ++i) {
+    const auto n = static_cast<std::size_t>(part.node_index[i]);
+    sharers[n] = 1.0;
+    largest[n] = smallest[n] = x[2 * i + 1];
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sharers.data(), static_cast<int>(nodes), MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+  MPI_Allreduce(MPI_IN_PLACE, largest.data(), static_cast<int>(nodes), MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+  MPI_Allreduce(MPI_IN_PLACE, smallest.data(), static_cast<int>(nodes), MPI_DOUBLE, MPI_MIN, MPI_COMM_WORLD);
+  CHECK(std::memcmp(largest.data(), smallest.data(), nodes * sizeof(double)) == 0);
+  for (std::size_t i = 0; i < part.nodes(); ++i)
+    CHECK(x[2 * i] == sharers[static_cast<std::size_t>(part.node_index[i])]);
+  // `shared` lists exactly the nodes with more than one copy.
+  std::vector<std::int32_t> listed = part.halo.shared, found;
+  for (std::size_t i = 0; i < part.nodes(); ++i)
+    if (x[2 * i] > 1.5) found.push_back(static_cast<std::int32_t>(i));
+  std::sort(listed.begin(), listed.end());
+  CHECK(listed == found);
+}
+
+TEST_CASE("reductions over the ranks") {
+  const Problem problem = beam_problem(2, 2);
+  const Halo halo = over_all_ranks(problem).halo;
+  const int n = halo.ranks;
+  CHECK(halo.sum_all(1.0 + halo.rank) == 0.5 * n * (n + 1));
+  CHECK(halo.sum_all(std::int64_t{1} << 40) == n * (std::int64_t{1} << 40));
+  CHECK(halo.max_all(-1.0 - halo.rank) == -1.0);
+  std::array<double, 2> pair{1.0, static_cast<double>(halo.rank)};
+  halo.sum_all(pair);
+  CHECK(pair[0] == n);
+  CHECK(pair[1] == 0.5 * n * (n - 1));
+}
+
+TEST_CASE("gathers return to the numbering of the problem") {
+  const Problem problem = beam_problem(3, 2);
+  const Part part = over_all_ranks(problem);
+  std::vector<double> nodal(2 * part.nodes()), elements(part.element_index.size()),
+      contact(3 * part.contact.size());
+  for (std::size_t i = 0; i < nodal.size(); ++i)
+    nodal[i] = signature(part.node_index[i / 2], static_cast<int>(i % 2));
+  for (std::size_t i = 0; i < elements.size(); ++i) elements[i] = signature(part.element_index[i], 0);
+  for (std::size_t i = 0; i < contact.size(); ++i)
+    contact[i] = signature(part.contact_index[i / 3], static_cast<int>(i % 3));
+  const auto all_nodal = gather_nodal(part, nodal, 2);
+  const auto all_elements = gather_elements(part, elements, 1);
+  const auto all_contact = gather_contact(part, contact, 3);
+  if (part.halo.rank > 0) {
+    CHECK(all_nodal.empty());
+    CHECK(all_elements.empty());
+    CHECK(all_contact.empty());
+    return;
+  }
+  REQUIRE(all_nodal.size() == 2 * problem.mesh.node_count());
+  REQUIRE(all_elements.size() == problem.mesh.element_count());
+  REQUIRE(all_contact.size() == 3 * problem.contact.size());
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < all_nodal.size(); ++i)
+    wrong += all_nodal[i] != signature(static_cast<std::int64_t>(i / 2), static_cast<int>(i % 2));
+  for (std::size_t i = 0; i < all_elements.size(); ++i)
+    wrong += all_elements[i] != signature(static_cast<std::int64_t>(i), 0);
+  for (std::size_t i = 0; i < all_contact.size(); ++i)
+    wrong += all_contact[i] != signature(static_cast<std::int64_t>(i / 3), static_cast<int>(i % 3));
+  CHECK(wrong == 0);
+}
+
+TEST_CASE("multigrid over the ranks is symmetric, positive definite and consistent") {
+  const Problem problem = beam_problem(3, 3);
+  const Part part = over_all_ranks(problem);
+  const Space space(part);
+  std::vector<double> g(part.body().secant_count());
+  reference::secant(part.body(), std::vector<double>(part.unknowns(), 0.0), g);
+  Amg amg(part);
+  amg.setup(g, {});
+  Vector x(part.unknowns()), y(part.unknowns()), mx(part.unknowns()), my(part.unknowns());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    x[i] = signature(part.node_index[i / 3], static_cast<int>(i % 3));
+    y[i] = signature(7 * part.node_index[i / 3] + 1, static_cast<int>(2 - i % 3));
+  }
+  space.project(x);
+  space.project(y);
+  amg.apply(x, mx);
+  amg.apply(y, my);
+  CHECK(space.dot(mx, y) == doctest::Approx(space.dot(x, my)).epsilon(1e-10));
+  CHECK(space.dot(mx, x) > 0.0);
+  Vector copy = mx;
+  part.halo.copy_from_owner(copy, 3);
+  CHECK(copy == mx);
+}
+
+TEST_CASE("the spectrum does not depend on the partition") {
+  for (const int dim : {2, 3}) {
+    const Problem problem = beam_problem(dim, dim == 2 ? 8 : 3, 0.01);
+    SolverOptions options;
+    options.spectrum_tolerance = 1e-7;
+    const auto all = analyse_spectrum(over_all_ranks(problem), options, {});
+    const auto alone = analyse_spectrum(distribute(&problem, MPI_COMM_SELF), options, {});
+    REQUIRE(all.size() == 2);
+    for (std::size_t i = 0; i < 2; ++i) {
+      CHECK(all[i].lambda_min == doctest::Approx(alone[i].lambda_min).epsilon(1e-6));
+      CHECK(all[i].lambda_max == doctest::Approx(alone[i].lambda_max).epsilon(1e-6));
+      CHECK(all[i].traces == alone[i].traces);
+    }
+  }
+}
+
+TEST_CASE("one contact node: the other ranks have no rows") {
+  Model model = elastic_model();
+  model.boundary.push_back(moved(box({0.3, -1, -1}, {4, 1, 1}), 2));
+  model.contact.push_back(on_plane(named("left"), {-0.1, 0, 0}, {1, 0, 0}));
+  model.boundary.push_back(moved(box({0, 0.5, 0}, {4, 1, 0}), 2));
+  const Problem problem = build_problem(make_box({{4, 1, 1}, {16, 4, 1}, ElementType::tri3}), model);
+  SolverOptions options;
+  options.spectrum_tolerance = 1e-6;
+  const auto all = analyse_spectrum(over_all_ranks(problem), options, {});
+  const auto alone = analyse_spectrum(distribute(&problem, MPI_COMM_SELF), options, {});
+  CHECK(all[0].lambda_max == doctest::Approx(alone[0].lambda_max).epsilon(1e-5));
+  CHECK(all[0].lambda_min == doctest::Approx(alone[0].lambda_min).epsilon(1e-5));
+}
+
+TEST_CASE("the answer does not depend on the partition or on threads") {
+  struct Case {
+    int dim, n;
+    double tresca;
+  };
+  for (const auto& [dim, n, tresca] : {Case{2, 8, 0.0}, Case{2, 8, 0.01}, Case{3, 3, 0.01}}) {
+    CAPTURE(dim);
+    CAPTURE(tresca);
+    const Problem problem = beam_problem(dim, n, tresca);
+    SolverOptions options;
+    options.tolerance = 1e-8;
+    const Part all = over_all_ranks(problem), alone = distribute(&problem, MPI_COMM_SELF);
+    const Solution reference = solve(alone, options, {});
+    REQUIRE(reference.result.status == Status::converged);
+    for (const int threads : {1, 2}) {
+      RunOptions run;
+      run.threads = threads;
+      const Solution solution = solve(all, options, run);
+      const Result& result = solution.result;
+      CHECK(result.status == Status::converged);
+      CHECK(result.ranks == all.halo.ranks);
+      CHECK(result.threads == threads);
+      CHECK(distance(result.probe.at(0), reference.result.probe.at(0)) <
+            1e-6 * length(reference.result.probe.at(0)));
+      CHECK(distance(result.contact_force, reference.result.contact_force) <
+            1e-6 * length(reference.result.contact_force));
+      CHECK(distance(result.friction_force, reference.result.friction_force) <
+            1e-5 * length(reference.result.contact_force));
+      CHECK(std::abs(result.active_nodes - reference.result.active_nodes) <= 1);
+      CHECK(std::abs(result.slip_nodes - reference.result.slip_nodes) <= 1);
+      CHECK(std::abs(result.plastic_elements - reference.result.plastic_elements) <= 1);
+      CHECK(result.elements == reference.result.elements);
+      CHECK(result.unknowns == reference.result.unknowns);
+      // Every copy of a shared displacement holds the same bits.
+      std::vector<double> copy = solution.displacement;
+      all.halo.copy_from_owner(copy, dim);
+      CHECK(std::memcmp(copy.data(), solution.displacement.data(), copy.size() * sizeof(double)) == 0);
+    }
+  }
+}
+
+TEST_CASE("progress is told on rank 0 only") {
+  const Problem problem = beam_problem(2, 4);
+  const Part part = over_all_ranks(problem);
+  RunOptions run;
+  int lines = 0;
+  run.progress = [&](const ProgressStep&) { ++lines; };
+  const Solution solution = solve(part, {}, run);
+  if (part.halo.rank == 0)
+    CHECK(lines >= solution.result.outer_iterations);
+  else
+    CHECK(lines == 0);
+}
