@@ -2,8 +2,8 @@
 # The C interface: a shared library of its own that shows C functions only and brings all it needs.
 add_library(kacanov_c SHARED
   "${PROJECT_SOURCE_DIR}/kernels/c_api.cpp"
-  "${PROJECT_SOURCE_DIR}/kernels/c_laws.cpp"
-  "${PROJECT_SOURCE_DIR}/kernels/mesh_check.cpp")
+  "${PROJECT_SOURCE_DIR}/kernels/c_create.cpp"
+  "${PROJECT_SOURCE_DIR}/kernels/c_laws.cpp")
 add_library(kacanov::c ALIAS kacanov_c)
 set_target_properties(kacanov_c PROPERTIES
   EXPORT_NAME c OUTPUT_NAME kacanov LIBRARY_OUTPUT_DIRECTORY "${PROJECT_BINARY_DIR}/kernels"

@@ -1,83 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The C interface over Operator and the reference: checks, copies, turns exceptions into codes.
+// The C interface's calls on a handle: arguments checked, then the work is Operator's or the reference's.
 #include "kacanov.h"
 
+#include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
-#include <limits>
-#include <memory>
-#include <new>
-#include <optional>
 #include <span>
 #include <string>
-#include <utility>
-#include <vector>
 
-#include "c_laws.hpp"
-#include "mesh_check.hpp"
-#include "operator.hpp"
-#include "reference.hpp"
+#include "c_handle.hpp"
+#include "locality.hpp"
 
 #ifndef KACANOV_VERSION
 #error "the build has to define KACANOV_VERSION"
 #endif
 
 namespace k = kacanov;
-using k::c_api::Fault;
-
-/// Everything a handle holds. The mesh stays for the recovery of stress and for new laws.
-struct kacanov_operator {
-  k::MeshView mesh;  ///< of the vectors below, or of the caller's arrays
-  std::vector<double> coordinates;
-  std::vector<std::int32_t> connectivity;
-  std::vector<k::Law> laws;
-  std::vector<std::uint16_t> own_law_of_element;
-  std::span<const std::uint16_t> law_of_element;
-  k::OperatorOptions options;
-  std::string instruction_set;      ///< what options.instruction_set points to: as asked, then as got
-  std::optional<k::Operator> fast;  ///< empty until there are laws
-  bool has_tangent = false;
-  char message[512] = "";
-
-  std::size_t unknowns() const noexcept { return mesh.coordinates.size(); }
-  k::Body body() const noexcept { return {mesh, laws, law_of_element}; }
-};
+using namespace kacanov::c_api;
 
 namespace {
 
-void copy_message(const char* text, char* to, std::size_t size) noexcept {
-  if (to != nullptr && size > 0) std::snprintf(to, size, "%s", text);
-}
-
-/// Runs `work`; what it throws becomes a code and a message.
-template <class Work>
-int guarded(char* message, std::size_t size, Work&& work) noexcept {
-  try {
-    work();
-    return KACANOV_OK;
-  } catch (const Fault& fault) {
-    copy_message(fault.what(), message, size);
-    return fault.code();
-  } catch (const std::invalid_argument& error) {
-    copy_message(error.what(), message, size);
-    return KACANOV_ERROR_VALUE;
-  } catch (const std::bad_alloc&) {
-    copy_message("out of memory", message, size);
-    return KACANOV_ERROR_MEMORY;
-  } catch (const std::length_error&) {
-    copy_message("out of memory: a size is beyond any memory", message, size);
-    return KACANOV_ERROR_MEMORY;
-  } catch (const std::exception& error) {
-    copy_message(error.what(), message, size);
-    return KACANOV_ERROR_INTERNAL;
-  } catch (...) {
-    copy_message("unknown failure", message, size);
-    return KACANOV_ERROR_INTERNAL;
-  }
-}
-
-/// The same for calls on a handle that has laws.
+/// Runs `work` on a handle that has laws; see guarded().
 template <class Work>
 int on(kacanov_operator* op, Work&& work) noexcept {
   if (op == nullptr) return KACANOV_ERROR_NULL;
@@ -85,16 +28,6 @@ int on(kacanov_operator* op, Work&& work) noexcept {
     if (!op->fast) throw Fault(KACANOV_ERROR_STATE, "the operator has no laws yet: kacanov_set_laws first");
     work(*op->fast);
   });
-}
-
-void require(const void* pointer, const char* name) {
-  if (pointer == nullptr) throw Fault(KACANOV_ERROR_NULL, std::string(name) + ": null pointer");
-}
-
-void require_size(std::size_t got, std::size_t expected, const char* name) {
-  if (got != expected)
-    throw Fault(KACANOV_ERROR_SIZE, std::string(name) + ": expected " + std::to_string(expected) + ", got " +
-                                        std::to_string(got));
 }
 
 std::span<const double> input(const double* data, std::size_t n, const char* name) {
@@ -127,120 +60,10 @@ std::span<const double> state(const kacanov_operator& op, std::size_t n, const d
   return span;
 }
 
-k::ElementType element_type(std::int32_t element) {
-  if (element < KACANOV_TRI3 || element > KACANOV_HEX8)
-    throw Fault(KACANOV_ERROR_VALUE, "element: there is no element type " + std::to_string(element));
-  return static_cast<k::ElementType>(element);
-}
-
-void check_description(const kacanov_description& d) {
-  constexpr auto most = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
-  if (d.threads < 0 || d.threads > 4096)
-    throw Fault(KACANOV_ERROR_VALUE, "threads: expected 0 to 4096, got " + std::to_string(d.threads));
-  if (d.index_base != 0 && d.index_base != 1) throw Fault(KACANOV_ERROR_VALUE, "index_base: expected 0 or 1");
-  if (d.borrow != 0 && d.borrow != 1) throw Fault(KACANOV_ERROR_VALUE, "borrow: expected 0 or 1");
-  require(d.coordinates, "coordinates");
-  require(d.connectivity, "connectivity");
-  if (d.laws > 0) require(d.law, "law");
-  if (d.nodes == 0 || d.nodes > most / 3)
-    throw Fault(KACANOV_ERROR_SIZE, "nodes: expected 1 to " + std::to_string(most / 3) + " (32-bit indices)");
-  if (d.elements == 0 || d.elements > most / 10)
-    throw Fault(KACANOV_ERROR_SIZE,
-                "elements: expected 1 to " + std::to_string(most / 10) + " (32-bit indices)");
-}
-
-/// Fills the mesh of the handle with copies, or with the caller's arrays where they are borrowed.
-void take_mesh(const kacanov_description& d, kacanov_operator& op) {
-  const k::ElementType type = element_type(d.element);
-  const auto dim = static_cast<std::size_t>(k::dimension(type));
-  const auto per_element = static_cast<std::size_t>(k::nodes_per_element(type));
-  const std::size_t node_stride = d.node_stride == 0 ? dim : d.node_stride;
-  const std::size_t component_stride = d.component_stride == 0 ? 1 : d.component_stride;
-  const std::size_t element_stride = d.element_stride == 0 ? per_element : d.element_stride;
-  if (element_stride < per_element)
-    throw Fault(KACANOV_ERROR_SIZE, "element_stride: expected at least " + std::to_string(per_element));
-  if (d.borrow != 0) {
-    if (node_stride != dim || component_stride != 1 || element_stride != per_element || d.index_base != 0)
-      throw Fault(KACANOV_ERROR_VALUE, "borrow: needs default strides and index_base 0");
-    op.mesh = {type, {d.coordinates, d.nodes * dim}, {d.connectivity, d.elements * per_element}};
-    return;
-  }
-  op.coordinates.resize(d.nodes * dim);
-  for (std::size_t i = 0; i < d.nodes; ++i)
-    for (std::size_t c = 0; c < dim; ++c)
-      op.coordinates[i * dim + c] = d.coordinates[i * node_stride + c * component_stride];
-  op.connectivity.resize(d.elements * per_element);
-  for (std::size_t e = 0; e < d.elements; ++e)
-    for (std::size_t a = 0; a < per_element; ++a) {
-      const std::int32_t node = d.connectivity[e * element_stride + a];
-      op.connectivity[e * per_element + a] = node < 0 ? node : node - d.index_base;
-    }
-  op.mesh = {type, op.coordinates, op.connectivity};
-}
-
-/// Gives the handle its laws and makes the operator; the handle changes only if all goes well.
-void take_laws(kacanov_operator& op, std::span<const kacanov_law> laws, const std::uint16_t* law_of_element,
-               bool borrow) {
-  std::vector<k::Law> checked = k::c_api::checked_laws(laws);
-  const std::size_t elements = op.mesh.element_count();
-  std::vector<std::uint16_t> own;
-  if (law_of_element == nullptr)
-    own.assign(elements, 0);
-  else if (!borrow)
-    own.assign(law_of_element, law_of_element + elements);
-  const std::span<const std::uint16_t> of_element =
-      own.empty() ? std::span(law_of_element, elements) : std::span<const std::uint16_t>(own);
-  k::c_api::check_law_of_element(of_element, checked.size());
-
-  k::Operator made({op.mesh, checked, of_element}, op.options);
-  std::string got(made.instruction_set());
-  op.fast.emplace(std::move(made));
-  op.instruction_set.swap(got);
-  op.options.instruction_set = op.instruction_set;
-  op.laws.swap(checked);
-  op.own_law_of_element.swap(own);  // keeps the address `of_element` may point to
-  op.law_of_element = of_element;
-  op.has_tangent = false;
-}
-
 }  // namespace
-
-int kacanov_create(const kacanov_description* description, kacanov_operator** op, char* message,
-                   size_t message_size) {
-  copy_message("", message, message_size);
-  if (op != nullptr) *op = nullptr;
-  return guarded(message, message_size, [&] {
-    require(description, "description");
-    require(op, "op");
-    const kacanov_description& d = *description;
-    check_description(d);
-    auto made = std::make_unique<kacanov_operator>();
-    take_mesh(d, *made);
-    if (const std::string fault = k::mesh_fault(made->mesh); !fault.empty())
-      throw Fault(KACANOV_ERROR_MESH, fault);
-    made->options.threads = d.threads == 0 ? 1 : d.threads;
-    if (d.instruction_set != nullptr) made->instruction_set = d.instruction_set;
-    made->options.instruction_set = made->instruction_set;
-    if (d.laws > 0) take_laws(*made, {d.law, d.laws}, d.law_of_element, d.borrow != 0);
-    *op = made.release();
-  });
-}
-
-void kacanov_destroy(kacanov_operator* op) { delete op; }
 
 const char* kacanov_message(const kacanov_operator* op) {
   return op == nullptr ? "op: null pointer" : op->message;
-}
-
-int kacanov_set_laws(kacanov_operator* op, size_t laws, const kacanov_law* law, size_t elements,
-                     const uint16_t* law_of_element) {
-  if (op == nullptr) return KACANOV_ERROR_NULL;
-  return guarded(op->message, sizeof op->message, [&] {
-    require(law, "law");
-    if (laws == 0) throw Fault(KACANOV_ERROR_SIZE, "laws: expected at least 1");
-    require_size(elements, op->mesh.element_count(), "elements");
-    take_laws(*op, {law, laws}, law_of_element, false);
-  });
 }
 
 int kacanov_update(kacanov_operator* op, size_t n, const double* omega) {
@@ -283,6 +106,17 @@ int kacanov_apply_dot(kacanov_operator* op, size_t n, const double* x, double* y
     require(dot, "dot");
     require_disjoint(in, out, "x and y");
     *dot = fast.apply_dot(in, out);
+  });
+}
+
+int kacanov_apply_many(kacanov_operator* op, size_t n, int32_t vectors, const double* x, double* y) {
+  return on(op, [&](k::Operator& fast) {
+    require_size(n, op->unknowns(), "n");
+    if (vectors < 1) throw Fault(KACANOV_ERROR_VALUE, "vectors: expected at least 1");
+    const auto in = input(x, n * static_cast<std::size_t>(vectors), "x");
+    const auto out = output(y, in.size(), "y");
+    require_disjoint(in, out, "x and y");
+    fast.apply_many(in, out, vectors);
   });
 }
 
@@ -381,6 +215,17 @@ int kacanov_inspect(kacanov_operator* op, kacanov_information* information) {
                              op->connectivity.size() * sizeof(std::int32_t) +
                              op->own_law_of_element.size() * sizeof(std::uint16_t),
                     .instruction_set = op->instruction_set.c_str()};
+  });
+}
+
+int kacanov_locality_order(kacanov_operator* op, size_t nodes, int32_t* node_order, size_t elements,
+                           int32_t* element_order) {
+  return on(op, [&](k::Operator&) {
+    require_size(nodes, op->mesh.node_count(), "nodes");
+    require_size(elements, op->mesh.element_count(), "elements");
+    const k::LocalityOrder order = k::locality_order(op->mesh);
+    if (node_order != nullptr) std::copy(order.nodes.begin(), order.nodes.end(), node_order);
+    if (element_order != nullptr) std::copy(order.elements.begin(), order.elements.end(), element_order);
   });
 }
 

@@ -105,7 +105,8 @@ typedef struct kacanov_description {
   const kacanov_law *law;
   const uint16_t *law_of_element; /* one entry an element, from 0; null: all follow law 0 */
 
-  const char *instruction_set; /* "avx512", "avx2", "plain"; null: the best the machine has */
+  const char *instruction_set; /* "avx512", "avx2", "plain"; null: what the environment variable
+                                  KACANOV_INSTRUCTION_SET says, or else the best the machine has */
 } kacanov_description;
 
 typedef struct kacanov_operator kacanov_operator;
@@ -141,7 +142,11 @@ KACANOV_API int kacanov_apply(kacanov_operator *op, size_t n, const double *x, d
 /* The same, and dot = x . y */
 KACANOV_API int kacanov_apply_dot(kacanov_operator *op, size_t n, const double *x, double *y, double *dot);
 
-/* Freezes g and the consistent tangent at omega; then y = B_T x. */
+/* Several right sides, one after another in x and in y (vectors * n entries each); quicker than one at a time. */
+KACANOV_API int kacanov_apply_many(kacanov_operator *op, size_t n, int32_t vectors, const double *x, double *y);
+
+/* Freezes g and the consistent tangent at omega; then y = B_T x, whatever becomes of g. The direction of the strain
+ * in the tangent's rank-one term is kept in single precision (relative error 1e-7 of that term). */
 KACANOV_API int kacanov_update_tangent(kacanov_operator *op, size_t n, const double *omega);
 KACANOV_API int kacanov_apply_tangent(kacanov_operator *op, size_t n, const double *x, double *y);
 
@@ -183,6 +188,11 @@ typedef struct kacanov_information {
   const char *instruction_set; /* valid as long as the handle */
 } kacanov_information;
 KACANOV_API int kacanov_inspect(kacanov_operator *op, kacanov_information *information);
+
+/* The numbering the operator likes best, for callers who are free to choose theirs: entry i is the present number,
+ * from 0, of what should be node (element) i. Arrays that are null are left out. */
+KACANOV_API int kacanov_locality_order(kacanov_operator *op, size_t nodes, int32_t *node_order, size_t elements,
+                                       int32_t *element_order);
 
 /* The linear law of Young's modulus > 0 and Poisson's ratio in (-1, 1/2). */
 KACANOV_API int kacanov_elastic_law(double young, double poisson, kacanov_law *law);
