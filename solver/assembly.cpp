@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The assembled secant stiffness of one rank's elements, in blocks of nodes.
+// Assembled secant stiffness of one rank's elements.
 #include "assembly.hpp"
 
 #include <algorithm>
@@ -8,15 +8,13 @@
 
 namespace kacanov {
 
-double* BlockMatrix::block(std::int32_t row, std::int32_t column_node) {
+std::size_t NodeGraph::position(std::int32_t row, std::int32_t column_node) const {
   const auto first = column.begin() + start[static_cast<std::size_t>(row)];
   const auto last = column.begin() + start[static_cast<std::size_t>(row) + 1];
-  const auto at = std::lower_bound(first, last, column_node) - column.begin();
-  return value.data() + static_cast<std::size_t>(at) * static_cast<std::size_t>(dim * dim);
+  return static_cast<std::size_t>(std::lower_bound(first, last, column_node) - column.begin());
 }
 
-BlockMatrix node_graph(const Body& body) {
-  const auto& mesh = body.mesh;
+NodeGraph node_graph(const MeshView& mesh) {
   const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
   const std::size_t nodes = mesh.node_count(), elements = mesh.element_count();
 
@@ -30,10 +28,9 @@ BlockMatrix node_graph(const Body& body) {
       element_of[static_cast<std::size_t>(at[static_cast<std::size_t>(mesh.connectivity[e * npe + a])]++)] =
           static_cast<std::int32_t>(e);
 
-  BlockMatrix matrix;
-  matrix.dim = dimension(mesh.type);
-  matrix.start.reserve(nodes + 1);
-  matrix.start.push_back(0);
+  NodeGraph graph;
+  graph.start.reserve(nodes + 1);
+  graph.start.push_back(0);
   std::vector<std::int32_t> row;
   for (std::size_t n = 0; n < nodes; ++n) {
     row.clear();
@@ -43,31 +40,54 @@ BlockMatrix node_graph(const Body& body) {
       row.insert(row.end(), element.begin(), element.end());
     }
     std::sort(row.begin(), row.end());
-    matrix.column.insert(matrix.column.end(), row.begin(), std::unique(row.begin(), row.end()));
-    matrix.start.push_back(static_cast<std::int64_t>(matrix.column.size()));
+    graph.column.insert(graph.column.end(), row.begin(), std::unique(row.begin(), row.end()));
+    graph.start.push_back(static_cast<std::int64_t>(graph.column.size()));
   }
-  matrix.value.assign(matrix.column.size() * static_cast<std::size_t>(matrix.dim * matrix.dim), 0.0);
-  return matrix;
+  return graph;
 }
 
-void assemble(const Body& body, std::span<const double> g, BlockMatrix& matrix) {
+namespace {
+
+/// Calls add(position in the graph, pointer to the dim × dim block with row stride `width`) for every pair of nodes
+/// of every element.
+template <class Add>
+void for_each_block(const Body& body, std::span<const double> g, const NodeGraph& graph, Add&& add) {
   const auto& mesh = body.mesh;
   const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
   const auto points = static_cast<std::size_t>(points_per_element(mesh.type));
-  const auto dim = static_cast<std::size_t>(matrix.dim);
+  const auto dim = static_cast<std::size_t>(dimension(mesh.type));
   const std::size_t width = npe * dim;
   std::vector<double> local(width * width);
-  std::fill(matrix.value.begin(), matrix.value.end(), 0.0);
   for (std::size_t e = 0; e < mesh.element_count(); ++e) {
     reference::element_matrix(body, e, g.subspan(e * points, points), local);
     const auto element = mesh.connectivity.subspan(e * npe, npe);
     for (std::size_t a = 0; a < npe; ++a)
-      for (std::size_t b = 0; b < npe; ++b) {
-        double* to = matrix.block(element[a], element[b]);
-        for (std::size_t i = 0; i < dim; ++i)
-          for (std::size_t j = 0; j < dim; ++j) to[i * dim + j] += local[(a * dim + i) * width + b * dim + j];
-      }
+      for (std::size_t b = 0; b < npe; ++b)
+        add(graph.position(element[a], element[b]), local.data() + a * dim * width + b * dim, width);
   }
+}
+
+}  // namespace
+
+std::vector<double> assemble_blocks(const Body& body, std::span<const double> g, const NodeGraph& graph) {
+  const auto dim = static_cast<std::size_t>(dimension(body.mesh.type));
+  std::vector<double> value(graph.column.size() * dim * dim, 0.0);
+  for_each_block(body, g, graph, [&](std::size_t at, const double* block, std::size_t width) {
+    for (std::size_t i = 0; i < dim; ++i)
+      for (std::size_t j = 0; j < dim; ++j) value[at * dim * dim + i * dim + j] += block[i * width + j];
+  });
+  return value;
+}
+
+std::array<std::vector<double>, 3> assemble_components(const Body& body, std::span<const double> g,
+                                                       const NodeGraph& graph) {
+  const auto dim = static_cast<std::size_t>(dimension(body.mesh.type));
+  std::array<std::vector<double>, 3> value;
+  for (std::size_t c = 0; c < dim; ++c) value[c].assign(graph.column.size(), 0.0);
+  for_each_block(body, g, graph, [&](std::size_t at, const double* block, std::size_t width) {
+    for (std::size_t c = 0; c < dim; ++c) value[c][at] += block[c * width + c];
+  });
+  return value;
 }
 
 }  // namespace kacanov

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The assembled secant stiffness of one rank's elements, in blocks of nodes: what algebraic multigrid needs.
+// Assembled secant stiffness of one rank's elements: what algebraic multigrid needs.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,21 +11,27 @@
 
 namespace kacanov {
 
-/// Block CSR over local nodes; the rows of shared nodes hold this rank's contributions only.
-struct BlockMatrix {
-  int dim = 3;
+/// Which local nodes share an element: compressed rows, columns ascending, the diagonal included.
+struct NodeGraph {
   std::vector<std::int64_t> start;   ///< nodes + 1
-  std::vector<std::int32_t> column;  ///< ascending within a row
-  std::vector<double> value;         ///< entries × dim × dim, row-major blocks
+  std::vector<std::int32_t> column;
 
   std::size_t rows() const noexcept { return start.size() - 1; }
-  /// Block at (row, column), which must be in the pattern.
-  double* block(std::int32_t row, std::int32_t column_node);
+  std::size_t row_size(std::size_t row) const noexcept {
+    return static_cast<std::size_t>(start[row + 1] - start[row]);
+  }
+  /// Where (row, column) stands; it must be in the graph.
+  std::size_t position(std::int32_t row, std::int32_t column_node) const;
 };
 
-/// Pattern of the node graph, values zero.
-BlockMatrix node_graph(const Body& body);
-/// Overwrites the values with the sum of the element matrices for frozen g (elements × points).
-void assemble(const Body& body, std::span<const double> g, BlockMatrix& matrix);
+NodeGraph node_graph(const MeshView& mesh);
+
+/// Sum of the element matrices for frozen g (elements × points): one dim × dim block (row-major) an entry of the
+/// graph. Rows of shared nodes hold this rank's contributions only.
+std::vector<double> assemble_blocks(const Body& body, std::span<const double> g, const NodeGraph& graph);
+
+/// The diagonal blocks A_cc alone, one value an entry of the graph, for each component c.
+std::array<std::vector<double>, 3> assemble_components(const Body& body, std::span<const double> g,
+                                                       const NodeGraph& graph);
 
 }  // namespace kacanov

@@ -45,7 +45,7 @@ OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOp
       space_(part),
       traces_(part),
       op_(part, run.threads, run.instruction_set),
-      amg_(part),
+      amg_(make_preconditioner(options.preconditioner, part)),
       internal_(part.unknowns()),
       secant_(part.body().secant_count()) {
   const std::size_t points = part.contact.size();
@@ -67,7 +67,7 @@ OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOp
   update_bounds();
   op_.local().secant(secant_);
   problem_ = {&space_, &traces_, [this](std::span<const double> x, std::span<double> y) { op_.apply(x, y); },
-              [this](std::span<const double> r, std::span<double> z) { amg_.apply(r, z); }};
+              [this](std::span<const double> r, std::span<double> z) { amg_->apply(r, z); }};
 }
 
 void OuterLoop::update_bounds() {
@@ -86,7 +86,7 @@ void OuterLoop::choose_first_penalty(Result& result) {
   const double tolerance = options_.penalty == SolverOptions::Penalty::automatic
                                ? std::max(options_.spectrum_tolerance, rough_spectrum)
                                : options_.spectrum_tolerance;
-  const auto spectrum = estimate_spectrum(part_, op_, amg_, secant_, friction_, tolerance);
+  const auto spectrum = estimate_spectrum(part_, op_, *amg_, secant_, friction_, tolerance);
   preconditioner_stale_ = true;
   result.lambda_min = spectrum.lambda_min;
   result.lambda_max = spectrum.lambda_max;
@@ -110,7 +110,7 @@ bool OuterLoop::improve_penalty(Result& result) {
   }
   const TraceRows held(part_, active), open(part_, free);
   if (held.total() == 0) return false;
-  Spectrum spectrum(part_, op_, amg_, secant_, std::max(options_.spectrum_tolerance, rough_spectrum));
+  Spectrum spectrum(part_, op_, *amg_, secant_, std::max(options_.spectrum_tolerance, rough_spectrum));
   const Eigenvalue low = spectrum.smallest(held);
   Eigenvalue high;
   if (open.total() > 0) high = spectrum.largest(open, held, low.value > 0.0 ? 0.01 / low.value : 1.0, part_.loose_modes > 0);
@@ -144,9 +144,9 @@ std::vector<NodeBlock> OuterLoop::penalty_blocks() const {
   return blocks;
 }
 
-void OuterLoop::set_up_preconditioner(std::span<const NodeBlock> blocks) {
+void OuterLoop::set_up_preconditioner(std::span<const NodeBlock> blocks, const Space& space) {
   op_.local().secant(secant_);
-  amg_.setup(secant_, blocks);
+  amg_->setup(secant_, blocks, space);
   preconditioner_stale_ = false;
   digits_per_cg_ = 0.0;
 }
@@ -171,7 +171,7 @@ void OuterLoop::take_admm_step(Result& result, ProgressStep& line, const Residua
   op_.use_tangent(false);
   if (!first && !linear_) op_.update(state_.omega);
   if (!first && automatic && estimates_ == 0) improve_penalty(result);
-  if (preconditioner_stale_) set_up_preconditioner(penalty_blocks());
+  if (preconditioner_stale_) set_up_preconditioner(penalty_blocks(), space_);
 
   AdmmOptions options;
   options.r = penalty_;
@@ -229,10 +229,13 @@ void OuterLoop::take_newton_step(ProgressStep& line, const Residuals& before) {
     Vector diagonal(part_.unknowns());
     op_.local().diagonal(diagonal);
     part_.halo.sum(diagonal, part_.dim());
-    auto blocks = TraceRows(part_, set.held).pinning_blocks(diagonal);
+    const TraceRows rows(part_, set.held);
+    Space space(part_);
+    rows.hold_in(space);
+    auto blocks = rows.pinning_blocks(diagonal);
     const auto slip = slip_blocks(part_, set);
     blocks.insert(blocks.end(), slip.begin(), slip.end());
-    set_up_preconditioner(blocks);
+    set_up_preconditioner(blocks, space);
   }
   Vector residual(part_.unknowns()), delta(part_.unknowns());
   for (std::size_t i = 0; i < residual.size(); ++i) residual[i] = part_.load[i] - internal_[i];

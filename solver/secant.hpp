@@ -22,12 +22,12 @@ class OuterLoop {
   const Traces& traces() const noexcept { return traces_; }
   const DistributedOperator& op() const noexcept { return op_; }
   double spectrum_seconds() const noexcept { return spectrum_seconds_; }
-  double setup_seconds() const noexcept { return amg_.setup_seconds(); }
+  double setup_seconds() const noexcept { return amg_->setup_seconds(); }
 
  private:
   void choose_first_penalty(Result& result);
   bool improve_penalty(Result& result);
-  void set_up_preconditioner(std::span<const NodeBlock> blocks);
+  void set_up_preconditioner(std::span<const NodeBlock> blocks, const Space& space);
   std::vector<NodeBlock> penalty_blocks() const;
   void watch_preconditioner(double digits, std::int64_t iterations);
   void update_bounds();
@@ -44,7 +44,7 @@ class OuterLoop {
   Space space_;
   Traces traces_;
   DistributedOperator op_;
-  Amg amg_;
+  std::unique_ptr<Preconditioner> amg_;
   ContactState state_;
   CgWork work_;
   Vector internal_;          // R(ω)

@@ -169,16 +169,16 @@ Solution solve(const Part& part, const SolverOptions& options, const RunOptions&
 
 std::vector<SpectrumResult> analyse_spectrum(const Part& part, const SolverOptions& options, const RunOptions& run) {
   DistributedOperator op(part, run.threads, run.instruction_set);
-  Amg amg(part);
+  const auto amg = make_preconditioner(options.preconditioner, part);
   std::vector<double> secant(part.body().secant_count());
   op.local().secant(secant);
   std::vector<SpectrumResult> results;
   if (part.total_contact == 0) return results;
-  results.push_back(estimate_spectrum(part, op, amg, secant, false, options.spectrum_tolerance));
+  results.push_back(estimate_spectrum(part, op, *amg, secant, false, options.spectrum_tolerance));
   double slides = 0.0;
   for (const auto& point : part.contact) slides = std::max(slides, point.tangents > 0 ? 1.0 : 0.0);
   if (part.halo.max_all(slides) > 0.0)
-    results.push_back(estimate_spectrum(part, op, amg, secant, true, options.spectrum_tolerance));
+    results.push_back(estimate_spectrum(part, op, *amg, secant, true, options.spectrum_tolerance));
   return results;
 }
 

@@ -23,6 +23,14 @@ class Space {
   /// that has a copy of the node.
   void hold(std::int32_t node, const Vector3& direction);
 
+  /// Directions held at one local node besides its held components.
+  struct HeldDirections {
+    std::int32_t node = 0;
+    int count = 0;
+    std::array<Vector3, 3> basis{};  ///< orthonormal, in free components only
+  };
+  std::span<const HeldDirections> held_directions() const noexcept { return held_; }
+
   std::size_t size() const noexcept { return part_->unknowns(); }
   const Part& part() const noexcept { return *part_; }
 
@@ -36,11 +44,6 @@ class Space {
   double max_abs(std::span<const double> x) const;
 
  private:
-  struct HeldDirections {
-    std::int32_t node = 0;
-    int count = 0;
-    std::array<Vector3, 3> basis{};  ///< orthonormal, in free components only
-  };
   double local_dot(std::span<const double> x, std::span<const double> y) const;
 
   const Part* part_;

@@ -137,7 +137,7 @@ std::vector<NodeBlock> TraceRows::pinning_blocks(std::span<const double> diagona
   return blocks;
 }
 
-Spectrum::Spectrum(const Part& part, DistributedOperator& op, Amg& amg, std::span<const double> g, double tolerance)
+Spectrum::Spectrum(const Part& part, DistributedOperator& op, Preconditioner& amg, std::span<const double> g, double tolerance)
     : part_(&part), op_(&op), amg_(&amg), g_(g), tolerance_(tolerance) {}
 
 CgResult Spectrum::solve(const Space& space, std::span<double> x, CgWork& work, const TraceRows* penalised,
@@ -171,7 +171,7 @@ Eigenvalue Spectrum::largest(const TraceRows& rows, const TraceRows& held, doubl
     const auto more = rows.penalty_blocks(r0);
     blocks.insert(blocks.end(), more.begin(), more.end());
   }
-  amg_->setup(g_, blocks);
+  amg_->setup(g_, blocks, space);
 
   CgWork work;
   work.resize(part_->unknowns());
@@ -210,7 +210,7 @@ Eigenvalue Spectrum::smallest(const TraceRows& rows) {
   Vector diagonal(part_->unknowns());
   op_->local().diagonal(diagonal);
   part_->halo.sum(diagonal, part_->dim());
-  amg_->setup(g_, rows.pinning_blocks(diagonal));
+  amg_->setup(g_, rows.pinning_blocks(diagonal), space);
 
   CgWork work;
   work.resize(part_->unknowns());
@@ -235,7 +235,7 @@ Eigenvalue Spectrum::smallest(const TraceRows& rows) {
   return {1.0 / largest, found.bounds[0] / (largest * largest)};
 }
 
-SpectrumResult estimate_spectrum(const Part& part, DistributedOperator& op, Amg& amg, std::span<const double> g,
+SpectrumResult estimate_spectrum(const Part& part, DistributedOperator& op, Preconditioner& amg, std::span<const double> g,
                                  bool friction, double tolerance) {
   const double start = MPI_Wtime();
   const auto applications = op.applications();

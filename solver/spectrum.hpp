@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "amg.hpp"
+#include "preconditioner.hpp"
 #include "cg.hpp"
 #include "contact/traces.hpp"
 #include "distributed_operator.hpp"
@@ -75,7 +75,7 @@ struct Eigenvalue {
 class Spectrum {
  public:
   /// Uses (and re-sets) `amg`; works with the secant frozen in `op` and `g`.
-  Spectrum(const Part& part, DistributedOperator& op, Amg& amg, std::span<const double> g, double tolerance);
+  Spectrum(const Part& part, DistributedOperator& op, Preconditioner& amg, std::span<const double> g, double tolerance);
 
   /// λ_max of D^½ C B⁻¹ Cᵀ D^½ with the rows `held` held at zero. Where rigid modes are loose (`loose`), B⁻¹ does not
   /// exist; the largest finite eigenvalue is taken from B + r₀ CᵀDC, whose eigenvalues are λ/(1 + r₀ λ).
@@ -90,14 +90,14 @@ class Spectrum {
 
   const Part* part_;
   DistributedOperator* op_;
-  Amg* amg_;
+  Preconditioner* amg_;
   std::span<const double> g_;
   double tolerance_;
   SpectrumCost cost_;
 };
 
 /// λ_min, λ_max, r* of (32) for N, or for [N; T] with `friction`.
-SpectrumResult estimate_spectrum(const Part& part, DistributedOperator& op, Amg& amg, std::span<const double> g,
+SpectrumResult estimate_spectrum(const Part& part, DistributedOperator& op, Preconditioner& amg, std::span<const double> g,
                                  bool friction, double tolerance);
 
 }  // namespace kacanov

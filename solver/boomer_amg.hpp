@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One hypre matrix with its BoomerAMG hierarchy, owned by RAII, return codes checked.
+#pragma once
+
+#include <HYPRE.h>
+#include <HYPRE_IJ_mv.h>
+#include <HYPRE_parcsr_ls.h>
+
+#include <cstdint>
+#include <span>
+
+namespace kacanov {
+
+struct BoomerAmgOptions {
+  int functions = 1;              ///< unknowns a node, interleaved
+  double strong_threshold = 0.5;
+  int aggressive_levels = 0;
+};
+
+/// Filled row by row, then one V-cycle at a time. Contributions to rows of other ranks are sent to them.
+class BoomerAmg {
+ public:
+  /// This rank owns the global rows first … first + count − 1. Throws InputError where 32-bit hypre cannot
+  /// number `total` rows.
+  BoomerAmg(MPI_Comm comm, std::int64_t first, std::int64_t count, std::int64_t total);
+  ~BoomerAmg();
+  BoomerAmg(const BoomerAmg&) = delete;
+  BoomerAmg& operator=(const BoomerAmg&) = delete;
+
+  /// Drops the last matrix and starts a new one; upper bounds of the owned rows' lengths.
+  void begin(std::span<const HYPRE_Int> row_sizes);
+  void add_row(HYPRE_BigInt row, std::span<HYPRE_BigInt> columns, std::span<double> values);
+  void finish(const BoomerAmgOptions& options);
+  /// z = one V-cycle on r from zero; `count` owned entries each.
+  void apply(const double* r, double* z);
+
+ private:
+  void release();
+
+  MPI_Comm comm_;
+  HYPRE_BigInt first_ = 0, count_ = 0;
+  HYPRE_IJMatrix matrix_ = nullptr;
+  HYPRE_ParCSRMatrix object_ = nullptr;
+  HYPRE_Solver solver_ = nullptr;
+  HYPRE_IJVector right_ = nullptr, left_ = nullptr;
+  HYPRE_ParVector right_object_ = nullptr, left_object_ = nullptr;
+};
+
+}  // namespace kacanov

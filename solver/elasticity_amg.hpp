@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Unknown-based BoomerAMG on the assembled penalised secant stiffness: robust, heavy; the yardstick.
+#pragma once
+
+#include "assembly.hpp"
+#include "boomer_amg.hpp"
+#include "preconditioner.hpp"
+
+namespace kacanov {
+
+class ElasticityAmg final : public Preconditioner {
+ public:
+  explicit ElasticityAmg(const Part& part);
+  void apply(std::span<const double> r, std::span<double> z) override;
+
+ private:
+  void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) override;
+
+  const Part& part_;
+  BoomerAmg amg_;
+};
+
+}  // namespace kacanov

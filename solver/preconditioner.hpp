@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the loops ask of a preconditioner for B + r CᵀMC.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "model.hpp"
+#include "space.hpp"
+
+namespace kacanov {
+
+/// A dim × dim block added to the diagonal of a node: a contact penalty, a slip stiffness, or a direction held.
+struct NodeBlock {
+  std::int32_t node = 0;
+  std::array<double, 9> value{};  ///< dim × dim, row-major
+};
+
+/// Symmetric positive definite and fixed between two setups. Vectors are consistent (Part). Calls are collective.
+class Preconditioner {
+ public:
+  virtual ~Preconditioner() = default;
+  /// For frozen g (elements × points of this part), the blocks of *owned* nodes (several may name one), and the space the
+  /// solves live in.
+  void setup(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space);
+  /// z ≈ A⁻¹ r.
+  virtual void apply(std::span<const double> r, std::span<double> z) = 0;
+
+  int setups() const noexcept { return setups_; }
+  double setup_seconds() const noexcept { return seconds_; }
+
+ private:
+  virtual void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) = 0;
+  int setups_ = 0;
+  double seconds_ = 0.0;
+};
+
+/// `elasticity`: unknown-based BoomerAMG on the assembled matrix. `components`: a scalar BoomerAMG for each
+/// displacement component with a coarse space of rigid motions of aggregates; the elasticity matrix is never stored.
+std::unique_ptr<Preconditioner> make_preconditioner(SolverOptions::Preconditioner kind, const Part& part);
+
+}  // namespace kacanov
