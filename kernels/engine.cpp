@@ -8,7 +8,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
+#include "checks.hpp"
 #include "elements/dispatch.hpp"
 #include "elements/point.hpp"
 
@@ -212,6 +214,19 @@ double Engine<Real>::apply(const Real* x, Real* y, int vectors, bool with_dot) c
 }
 
 template <class Real>
+void Engine<Real>::apply_many(std::span<const Real> x, std::span<Real> y, int vectors) const {
+  if (vectors < 1) throw std::invalid_argument("vectors: expected at least 1");
+  expect_size(x.size(), unknowns_ * static_cast<std::size_t>(vectors), "x");
+  expect_size(y.size(), unknowns_ * static_cast<std::size_t>(vectors), "y");
+  for (int done = 0; done < vectors;) {
+    const int left = vectors - done, step = left >= 4 ? 4 : left >= 2 ? 2 : 1;
+    const std::size_t offset = unknowns_ * static_cast<std::size_t>(done);
+    apply(x.data() + offset, y.data() + offset, step, false);
+    done += step;
+  }
+}
+
+template <class Real>
 void Engine<Real>::apply_tangent(const Real* x, Real* y) const {
   pass(x, y, 1, [&](simd::Block<Real> at, const Real* u, Real* f, std::size_t) {
     if (!tangent_secant_.empty())
@@ -290,6 +305,14 @@ void Engine<Real>::add_diagonals(const BlockRange& range, const simd::Group& gro
                   point.diagonal_block(a, r, c, laws_[group.law].bulk, static_cast<double>(secant_[slot])));
         }
       }
+}
+
+template <class Real>
+void Engine<Real>::diagonal(std::span<Real> d) const {
+  const auto dim = static_cast<std::size_t>(dim_);
+  std::vector<Real> blocks(d.size() * dim);
+  block_diagonal(blocks);
+  for (std::size_t i = 0; i < d.size(); ++i) d[i] = blocks[i * dim + i % dim];
 }
 
 template class Engine<double>;

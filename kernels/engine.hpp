@@ -36,12 +36,15 @@ class Engine {
   /// y_v = B x_v for `vectors` right sides (1, 2 or 4), one after another in x and y. Returns Σ x_vᵀ y_v if
   /// `with_dot`, else 0.
   double apply(const Real* x, Real* y, int vectors, bool with_dot) const;
+  /// Any number of right sides, which are checked. Throws std::invalid_argument.
+  void apply_many(std::span<const Real> x, std::span<Real> y, int vectors) const;
   void apply_tangent(const Real* x, Real* y) const;
   /// Internal force at ω into f, unless that is null; what to keep. Returns the energy.
   double nonlinear(const Real* omega, Real* f, bool keep_secant, bool keep_tangent);
   double nonlinear(const Real* omega, Real* f) const;
   /// dim × dim diagonal blocks of B, row-major.
   void block_diagonal(std::span<Real> blocks) const;
+  void diagonal(std::span<Real> d) const;
 
  private:
   struct Scratch {

@@ -3,34 +3,13 @@
 #include "operator.hpp"
 
 #include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
+#include "checks.hpp"
 #include "engine.hpp"
-#include "mesh_check.hpp"
 
 namespace kacanov {
-namespace {
-
-void expect_size(std::size_t actual, std::size_t wanted, const char* what) {
-  if (actual != wanted)
-    throw std::invalid_argument(std::string(what) + ": expected " + std::to_string(wanted) +
-                                " entries, got " + std::to_string(actual));
-}
-
-const Body& checked(const Body& body, const OperatorOptions& options) {
-  if (options.threads < 1) throw std::invalid_argument("threads: expected at least 1");
-  if (const std::string fault = mesh_fault(body.mesh); !fault.empty()) throw std::invalid_argument(fault);
-  expect_size(body.law_of_element.size(), body.mesh.element_count(), "law_of_element");
-  for (const std::uint16_t law : body.law_of_element)
-    if (law >= body.laws.size())
-      throw std::invalid_argument("law_of_element: there is no law " + std::to_string(law));
-  return body;
-}
-
-}  // namespace
-
 struct Operator::Implementation {
   Engine<double> engine;
   std::uint64_t applications = 0;
@@ -81,17 +60,8 @@ double Operator::apply_dot(std::span<const double> x, std::span<double> y) const
 }
 
 void Operator::apply_many(std::span<const double> x, std::span<double> y, int vectors) const {
-  if (vectors < 1) throw std::invalid_argument("vectors: expected at least 1");
-  const std::size_t n = unknowns();
-  expect_size(x.size(), n * static_cast<std::size_t>(vectors), "x");
-  expect_size(y.size(), n * static_cast<std::size_t>(vectors), "y");
+  impl_->engine.apply_many(x, y, vectors);
   impl_->applications += static_cast<std::uint64_t>(vectors);
-  for (int done = 0; done < vectors;) {
-    const int left = vectors - done, step = left >= 4 ? 4 : left >= 2 ? 2 : 1;
-    const std::size_t offset = n * static_cast<std::size_t>(done);
-    impl_->engine.apply(x.data() + offset, y.data() + offset, step, false);
-    done += step;
-  }
 }
 
 void Operator::update_tangent(std::span<const double> omega) {
@@ -109,10 +79,7 @@ void Operator::apply_tangent(std::span<const double> x, std::span<double> y) con
 
 void Operator::diagonal(std::span<double> d) const {
   impl_->expect_vector(d.size());
-  const std::size_t dim = impl_->engine.dim();
-  std::vector<double> blocks(d.size() * dim);
-  impl_->engine.block_diagonal(blocks);
-  for (std::size_t i = 0; i < d.size(); ++i) d[i] = blocks[i * dim + i % dim];
+  impl_->engine.diagonal(d);
 }
 
 void Operator::block_diagonal(std::span<double> blocks) const {

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The single precision operator behind its interface.
+#include "float_operator.hpp"
+
+#include <vector>
+
+#include "checks.hpp"
+#include "engine.hpp"
+
+namespace kacanov {
+
+struct FloatOperator::Implementation {
+  Engine<float> engine;
+
+  Implementation(const Body& body, const OperatorOptions& options)
+      : engine(checked(body, options), options.threads,
+               simd::choose_instruction_set(options.instruction_set)) {}
+
+  double apply(std::span<const float> x, std::span<float> y, bool with_dot) const {
+    expect_size(x.size(), engine.unknowns(), "x");
+    expect_size(y.size(), engine.unknowns(), "y");
+    return engine.apply(x.data(), y.data(), 1, with_dot);
+  }
+};
+
+FloatOperator::FloatOperator(const Body& body, const OperatorOptions& options)
+    : impl_(std::make_unique<Implementation>(body, options)) {}
+
+FloatOperator::~FloatOperator() = default;
+FloatOperator::FloatOperator(FloatOperator&&) noexcept = default;
+FloatOperator& FloatOperator::operator=(FloatOperator&&) noexcept = default;
+
+std::size_t FloatOperator::unknowns() const noexcept { return impl_->engine.unknowns(); }
+
+void FloatOperator::set_secant(std::span<const double> g) {
+  expect_size(g.size(), impl_->engine.points(), "g");
+  impl_->engine.set_secant(g);
+}
+
+void FloatOperator::apply(std::span<const float> x, std::span<float> y) const { impl_->apply(x, y, false); }
+
+double FloatOperator::apply_dot(std::span<const float> x, std::span<float> y) const {
+  return impl_->apply(x, y, true);
+}
+
+void FloatOperator::apply_many(std::span<const float> x, std::span<float> y, int vectors) const {
+  impl_->engine.apply_many(x, y, vectors);
+}
+
+void FloatOperator::diagonal(std::span<float> d) const {
+  expect_size(d.size(), unknowns(), "d");
+  impl_->engine.diagonal(d);
+}
+
+std::string_view FloatOperator::instruction_set() const noexcept {
+  return simd::name(impl_->engine.instruction_set());
+}
+
+std::size_t FloatOperator::bytes() const noexcept { return impl_->engine.bytes(); }
+
+}  // namespace kacanov

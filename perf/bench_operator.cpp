@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Unknowns a second of the operator against assembled matrices, all in one run, as JSON or as a table.
+#include <CLI/CLI.hpp>
+#include <Eigen/Sparse>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <iostream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "float_operator.hpp"
+#include "locality.hpp"
+#include "machine.hpp"
+#include "matrices.hpp"
+#include "meshes.hpp"
+#include "operator.hpp"
+
+using namespace kacanov;
+using nlohmann::json;
+
+namespace {
+
+struct Settings {
+  std::vector<std::string> elements{"tri3", "tet4", "tet10", "hex8"};
+  std::vector<std::size_t> unknowns{182'000, 812'000};
+  std::vector<std::string> meshes{"box", "irregular"};
+  int threads = static_cast<int>(std::thread::hardware_concurrency());
+  int rounds = 20;
+  std::string instruction_set;
+  bool print_json = false;
+  bool no_matrix = false;
+};
+
+ElementType type_of(const std::string& name) {
+  if (name == "tri3") return ElementType::tri3;
+  if (name == "tet4") return ElementType::tet4;
+  if (name == "tet10") return ElementType::tet10;
+  return ElementType::hex8;
+}
+
+/// A beam 4 × 1 × 1 (4 × 1 in 2D) with about this many unknowns.
+meshes::OwnedMesh make_mesh(ElementType type, std::size_t unknowns, bool irregular) {
+  const auto dim = static_cast<std::size_t>(dimension(type));
+  const double nodes = static_cast<double>(unknowns / dim);
+  const bool flat = dim == 2;
+  int n = static_cast<int>(std::lround(flat ? std::sqrt(nodes / 4) : std::cbrt(nodes / 4)));
+  if (type == ElementType::tet10) n = static_cast<int>(std::lround(std::cbrt(nodes / 32)));
+  n = std::max(n, 1);
+  auto mesh = meshes::box(type, {4 * n, n, n}, {4, 1, 1});
+  if (!irregular) return mesh;
+  meshes::jitter(mesh, type == ElementType::tet10 ? 0.05 : 0.15, 1);
+  if (type == ElementType::tet4) meshes::flip(mesh, 2, 2);
+  if (type == ElementType::tet10) meshes::straighten(mesh);
+  meshes::shuffle(mesh, 3);
+  const LocalityOrder order = locality_order(mesh.view());  // the matrices gain from it too
+  meshes::OwnedMesh ordered = mesh;
+  std::vector<std::int32_t> rank(order.nodes.size());
+  for (std::size_t i = 0; i < rank.size(); ++i) {
+    const auto old = static_cast<std::size_t>(order.nodes[i]);
+    rank[old] = static_cast<std::int32_t>(i);
+    std::copy_n(mesh.coordinates.begin() + static_cast<std::ptrdiff_t>(old * dim), dim,
+                ordered.coordinates.begin() + static_cast<std::ptrdiff_t>(i * dim));
+  }
+  const auto per_element = static_cast<std::size_t>(nodes_per_element(type));
+  for (std::size_t e = 0; e < order.elements.size(); ++e)
+    for (std::size_t a = 0; a < per_element; ++a)
+      ordered.connectivity[e * per_element + a] = rank[static_cast<std::size_t>(
+          mesh.connectivity[static_cast<std::size_t>(order.elements[e]) * per_element + a])];
+  return ordered;
+}
+
+struct Timed {
+  std::function<void()> run;
+  double seconds = std::numeric_limits<double>::max();
+};
+
+/// Runs all in turn, so that a noisy moment hits each alike, and keeps the best time of each.
+void time_interleaved(std::vector<Timed>& all, int rounds) {
+  for (Timed& timed : all) timed.run();
+  for (int round = 0; round < rounds; ++round)
+    for (Timed& timed : all) {
+      const double start = perf::now();
+      timed.run();
+      timed.seconds = std::min(timed.seconds, perf::now() - start);
+    }
+}
+
+/// Bytes an application has to move at least: x and y once, coordinates, g, indices.
+double traffic(const Body& body, std::size_t held, double real) {
+  return static_cast<double>(held) + 3.0 * real * static_cast<double>(body.unknowns());
+}
+
+/// Fused multiply-adds and other operations of a tetrahedron in a long fan, of a quadrature point elsewhere;
+/// divisions count as one.
+double flops_an_element(ElementType type) {
+  switch (type) {
+    case ElementType::tri3: return 80;
+    case ElementType::tet4: return 155;
+    case ElementType::tet10: return 4 * 190;
+    case ElementType::hex8: return 8 * 190;
+  }
+  return 0;
+}
+
+json measure(const std::string& element, std::size_t unknowns, const std::string& kind,
+             const Settings& settings, const std::vector<double>& triad, const std::vector<double>& fma) {
+  const ElementType type = type_of(element);
+  const auto mesh = make_mesh(type, unknowns, kind == "irregular");
+  const std::vector<Law> laws{elastic_law(1.0, 0.3)};
+  const std::vector<std::uint16_t> law_of_element(mesh.view().element_count(), 0);
+  const Body body{mesh.view(), laws, law_of_element};
+  const std::size_t n = body.unknowns();
+  std::vector<double> x(n), y(n), expected(n);
+  std::mt19937 random(1);
+  for (double& value : x) value = std::uniform_real_distribution<double>(-1, 1)(random);
+  const std::vector<float> xf(x.begin(), x.end());
+  std::vector<float> yf(n);
+  std::vector<double> x4, y4(4 * n);
+  for (int v = 0; v < 4; ++v) x4.insert(x4.end(), x.begin(), x.end());
+
+  std::vector<int> teams{1};
+  if (settings.threads > 1) teams.push_back(settings.threads);
+  std::vector<Operator> doubles;
+  std::vector<FloatOperator> floats;
+  double setup = 0.0;
+  for (const int threads : teams) {
+    const double start = perf::now();
+    doubles.emplace_back(body, OperatorOptions{threads, settings.instruction_set});
+    setup = perf::now() - start;
+    floats.emplace_back(body, OperatorOptions{threads, settings.instruction_set});
+    doubles.back().update_tangent(x);
+  }
+  const int most = teams.back();
+  std::vector<Timed> timed;
+  for (const Operator& op : doubles) timed.push_back({[&] { op.apply(x, y); }});
+  for (const FloatOperator& op : floats) timed.push_back({[&] { op.apply(xf, yf); }});
+  const Operator& op = doubles.back();
+  timed.push_back({[&] { op.apply_tangent(x, y); }});
+  timed.push_back({[&] { op.apply_dot(x, y); }});
+  timed.push_back({[&] { op.apply_many(std::span(x4).first(2 * n), std::span(y4).first(2 * n), 2); }});
+  timed.push_back({[&] { op.apply_many(x4, y4, 4); }});
+  timed.push_back({[&] { op.residual(x, y); }});
+  perf::Matrices matrices;
+  if (!settings.no_matrix) {
+    std::vector<double> g(body.secant_count());
+    op.secant(g);
+    matrices = perf::assemble(body, g);
+    op.apply(x, y);
+    matrices.apply_blocks(x, expected, most);
+    double worst = 0.0, largest = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      worst = std::max(worst, std::abs(y[i] - expected[i]));
+      largest = std::max(largest, std::abs(expected[i]));
+    }
+    if (!(worst < 1e-12 * largest)) throw std::runtime_error("operator and matrix differ");
+    const auto size = static_cast<Eigen::Index>(n);
+    timed.push_back({[&] { matrices.apply_blocks(x, y, most); }});
+    timed.push_back({[&, size] {
+      Eigen::setNbThreads(most);
+      const Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor, std::int32_t>> csr(
+          size, size, static_cast<Eigen::Index>(matrices.value.size()), matrices.first.data(),
+          matrices.column.data(), matrices.value.data());
+      Eigen::Map<Eigen::VectorXd>(y.data(), size).noalias() =
+          csr * Eigen::Map<const Eigen::VectorXd>(x.data(), size);
+    }});
+  }
+  time_interleaved(timed, settings.rounds);
+
+  const auto rate = [&](double seconds) { return static_cast<double>(n) / seconds; };
+  json entries = json::array();
+  std::size_t next = 0;
+  const double bsr = settings.no_matrix ? 0.0 : timed[timed.size() - 2].seconds;
+  const double csr = settings.no_matrix ? 0.0 : timed.back().seconds;
+  const auto add = [&](const std::string& form, const std::string& precision, int threads, double seconds,
+                       double bytes, double flops) {
+    const std::size_t team = threads == 1 ? 0 : teams.size() - 1;
+    json entry{{"element", element},
+               {"mesh", kind},
+               {"form", form},
+               {"unknowns", n},
+               {"elements", body.mesh.element_count()},
+               {"precision", precision},
+               {"threads", threads},
+               {"seconds", seconds},
+               {"unknowns_per_second", rate(seconds)},
+               {"bytes_per_unknown", bytes / static_cast<double>(n)},
+               {"share_of_triad", bytes / seconds / triad[team]},
+               {"share_of_fma_peak", flops / seconds / fma[team] / (precision == "float" ? 2.0 : 1.0)}};
+    if (bsr > 0.0 && threads == most) {
+      entry["ratio_to_csr"] = csr / seconds;
+      entry["ratio_to_bsr3"] = bsr / seconds;
+    }
+    entries.push_back(entry);
+  };
+  const double flops = flops_an_element(type) * static_cast<double>(body.mesh.element_count());
+  for (std::size_t i = 0; i < doubles.size(); ++i)
+    add("apply", "double", teams[i], timed[next++].seconds, traffic(body, doubles[i].bytes(), 8), flops);
+  for (std::size_t i = 0; i < floats.size(); ++i)
+    add("apply", "float", teams[i], timed[next++].seconds, traffic(body, floats[i].bytes(), 4), flops);
+  for (const char* form : {"tangent", "apply_dot", "two_right_sides", "four_right_sides", "residual"})
+    add(form, "double", most, timed[next++].seconds, traffic(body, op.bytes(), 8), flops);
+  if (!settings.no_matrix) {
+    const double vectors = 16.0 * static_cast<double>(n);
+    add("bsr3", "double", most, bsr, matrices.bytes_of_blocks() + vectors,
+        2.0 * static_cast<double>(matrices.block.size()));
+    add("csr", "double", most, csr, matrices.bytes_of_csr() + vectors,
+        2.0 * static_cast<double>(matrices.value.size()));
+  }
+  for (json& entry : entries) {
+    entry["instruction_set"] = op.instruction_set();
+    entry["setup_seconds"] = setup;
+  }
+  return entries;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Settings settings;
+  CLI::App app{"Unknowns a second of the operator against assembled matrices"};
+  app.add_option("--element", settings.elements, "tri3, tet4, tet10, hex8")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"tri3", "tet4", "tet10", "hex8"}));
+  app.add_option("--unknowns", settings.unknowns, "sizes, met approximately")->delimiter(',');
+  app.add_option("--mesh", settings.meshes, "box, irregular")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"box", "irregular"}));
+  app.add_option("--threads", settings.threads, "threads of the larger team")->check(CLI::PositiveNumber);
+  app.add_option("--rounds", settings.rounds, "interleaved repetitions; the best counts")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--instruction-set", settings.instruction_set, "avx512, avx2, plain");
+  app.add_flag("--json", settings.print_json, "JSON on standard output instead of a table");
+  app.add_flag("--no-matrix", settings.no_matrix, "leave the assembled matrices out");
+  CLI11_PARSE(app, argc, argv);
+
+  std::vector<double> triad{perf::triad_bytes_per_second(1)}, fma{perf::fma_flops_per_second(1)};
+  if (settings.threads > 1) {
+    triad.push_back(perf::triad_bytes_per_second(settings.threads));
+    fma.push_back(perf::fma_flops_per_second(settings.threads));
+  }
+  json result{{"triad_bytes_per_second", triad}, {"fma_flops_per_second", fma}, {"entries", json::array()}};
+  for (const std::string& element : settings.elements)
+    for (const std::size_t unknowns : settings.unknowns)
+      for (const std::string& kind : settings.meshes) {
+        const json entries = measure(element, unknowns, kind, settings, triad, fma);
+        result["entries"].insert(result["entries"].end(), entries.begin(), entries.end());
+      }
+  if (settings.print_json) {
+    std::cout << result.dump(2) << "\n";
+    return 0;
+  }
+  std::printf("triad %.1f GB/s, fused multiply-adds %.1f Gflop/s (%d threads)\n", triad.back() / 1e9,
+              fma.back() / 1e9, settings.threads);
+  std::printf("%-6s %-10s %-17s %-7s %3s %9s %9s %8s %7s %7s %7s %7s\n", "", "mesh", "form", "", "thr",
+              "unknowns", "ms", "M/s", "B/unk", "/csr", "/bsr3", "fma %");
+  for (const json& e : result["entries"])
+    std::printf("%-6s %-10s %-17s %-7s %3d %9zu %9.3f %8.1f %7.1f %7.2f %7.2f %7.1f\n",
+                e["element"].get<std::string>().c_str(), e["mesh"].get<std::string>().c_str(),
+                e["form"].get<std::string>().c_str(), e["precision"].get<std::string>().c_str(),
+                e["threads"].get<int>(), e["unknowns"].get<std::size_t>(), e["seconds"].get<double>() * 1e3,
+                e["unknowns_per_second"].get<double>() / 1e6, e["bytes_per_unknown"].get<double>(),
+                e.value("ratio_to_csr", 0.0), e.value("ratio_to_bsr3", 0.0),
+                100 * e["share_of_fma_peak"].get<double>());
+  return 0;
+}
