@@ -3,6 +3,7 @@
 add_library(kacanov_c SHARED
   "${PROJECT_SOURCE_DIR}/kernels/c_api.cpp"
   "${PROJECT_SOURCE_DIR}/kernels/c_create.cpp"
+  "${PROJECT_SOURCE_DIR}/kernels/c_float.cpp"
   "${PROJECT_SOURCE_DIR}/kernels/c_laws.cpp")
 add_library(kacanov::c ALIAS kacanov_c)
 set_target_properties(kacanov_c PROPERTIES

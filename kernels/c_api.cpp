@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <span>
 #include <string>
 
@@ -19,32 +18,6 @@ namespace k = kacanov;
 using namespace kacanov::c_api;
 
 namespace {
-
-/// Runs `work` on a handle that has laws; see guarded().
-template <class Work>
-int on(kacanov_operator* op, Work&& work) noexcept {
-  if (op == nullptr) return KACANOV_ERROR_NULL;
-  return guarded(op->message, sizeof op->message, [&] {
-    if (!op->fast) throw Fault(KACANOV_ERROR_STATE, "the operator has no laws yet: kacanov_set_laws first");
-    work(*op->fast);
-  });
-}
-
-std::span<const double> input(const double* data, std::size_t n, const char* name) {
-  require(data, name);
-  return {data, n};
-}
-
-std::span<double> output(double* data, std::size_t n, const char* name) {
-  require(data, name);
-  return {data, n};
-}
-
-void require_disjoint(std::span<const double> x, std::span<const double> y, const char* names) {
-  const std::less<> before;
-  if (before(x.data(), y.data() + y.size()) && before(y.data(), x.data() + x.size()))
-    throw Fault(KACANOV_ERROR_SIZE, std::string(names) + " overlap");
-}
 
 void require_finite(std::span<const double> values, const char* name) {
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -67,7 +40,10 @@ const char* kacanov_message(const kacanov_operator* op) {
 }
 
 int kacanov_update(kacanov_operator* op, size_t n, const double* omega) {
-  return on(op, [&](k::Operator& fast) { fast.update(state(*op, n, omega)); });
+  return on(op, [&](k::Operator& fast) {
+    fast.update(state(*op, n, omega));
+    op->single_is_current = false;
+  });
 }
 
 int kacanov_secant(kacanov_operator* op, size_t count, double* g) {
@@ -85,6 +61,7 @@ int kacanov_set_secant(kacanov_operator* op, size_t count, const double* g) {
     for (std::size_t i = 0; i < count; ++i)
       if (values[i] < 0.0) throw Fault(KACANOV_ERROR_VALUE, "g[" + std::to_string(i) + "] is negative");
     fast.set_secant(values);
+    op->single_is_current = false;
   });
 }
 
@@ -123,6 +100,7 @@ int kacanov_apply_many(kacanov_operator* op, size_t n, int32_t vectors, const do
 int kacanov_update_tangent(kacanov_operator* op, size_t n, const double* omega) {
   return on(op, [&](k::Operator& fast) {
     fast.update_tangent(state(*op, n, omega));
+    op->single_is_current = false;
     op->has_tangent = true;
   });
 }
@@ -178,6 +156,7 @@ int kacanov_residual_energy_update(kacanov_operator* op, size_t n, const double*
     require(energy, "energy");
     require_disjoint(at, out, "omega and f");
     *energy = fast.residual_energy_update(at, out);
+    op->single_is_current = false;
   });
 }
 
@@ -211,7 +190,8 @@ int kacanov_inspect(kacanov_operator* op, kacanov_information* information) {
                     .points_per_element = k::points_per_element(mesh.type),
                     .threads = op->options.threads,
                     .applications = fast.applications(),
-                    .bytes = fast.bytes() + op->coordinates.size() * sizeof(double) +
+                    .bytes = fast.bytes() + (op->single ? op->single->bytes() : 0) +
+                             op->coordinates.size() * sizeof(double) +
                              op->connectivity.size() * sizeof(std::int32_t) +
                              op->own_law_of_element.size() * sizeof(std::uint16_t),
                     .instruction_set = op->instruction_set.c_str()};

@@ -26,6 +26,7 @@ void check_description(const kacanov_description& d) {
     throw Fault(KACANOV_ERROR_VALUE, "threads: expected 0 to 4096, got " + std::to_string(d.threads));
   if (d.index_base != 0 && d.index_base != 1) throw Fault(KACANOV_ERROR_VALUE, "index_base: expected 0 or 1");
   if (d.borrow != 0 && d.borrow != 1) throw Fault(KACANOV_ERROR_VALUE, "borrow: expected 0 or 1");
+  if (d.single != 0 && d.single != 1) throw Fault(KACANOV_ERROR_VALUE, "single: expected 0 or 1");
   require(d.coordinates, "coordinates");
   require(d.connectivity, "connectivity");
   if (d.laws > 0) require(d.law, "law");
@@ -80,6 +81,8 @@ void take_laws(kacanov_operator& op, std::span<const kacanov_law> laws, const st
   k::c_api::check_law_of_element(of_element, checked.size());
 
   k::Operator made({op.mesh, checked, of_element}, op.options);
+  std::optional<k::FloatOperator> single;
+  if (op.wants_single) single.emplace(k::Body{op.mesh, checked, of_element}, op.options);
   std::string got(made.instruction_set());
   op.fast.emplace(std::move(made));
   op.instruction_set.swap(got);
@@ -87,6 +90,8 @@ void take_laws(kacanov_operator& op, std::span<const kacanov_law> laws, const st
   op.laws.swap(checked);
   op.own_law_of_element.swap(own);  // keeps the address `of_element` may point to
   op.law_of_element = of_element;
+  op.single = std::move(single);
+  op.single_is_current = true;  // both start with g = mu
   op.has_tangent = false;
 }
 
@@ -108,6 +113,7 @@ int kacanov_create(const kacanov_description* description, kacanov_operator** op
     made->options.threads = d.threads == 0 ? 1 : d.threads;
     if (d.instruction_set != nullptr) made->instruction_set = d.instruction_set;
     made->options.instruction_set = made->instruction_set;
+    made->wants_single = d.single != 0;
     if (d.laws > 0) take_laws(*made, {d.law, d.laws}, d.law_of_element, d.borrow != 0);
     *op = made.release();
   });

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <exception>
+#include <functional>
 #include <new>
 #include <optional>
 #include <span>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "c_laws.hpp"
+#include "float_operator.hpp"
 #include "kacanov.h"
 #include "operator.hpp"
 #include "reference.hpp"
@@ -29,6 +31,9 @@ struct kacanov_operator {
   kacanov::OperatorOptions options;
   std::string instruction_set;            ///< what options.instruction_set points to: as asked, then as got
   std::optional<kacanov::Operator> fast;  ///< empty until there are laws
+  std::optional<kacanov::FloatOperator> single;  ///< where asked for, as soon as there are laws
+  bool wants_single = false;
+  bool single_is_current = false;  ///< its g is that of `fast`
   bool has_tangent = false;
   char message[512] = "";
 
@@ -77,6 +82,35 @@ inline void require_size(std::size_t got, std::size_t expected, const char* name
   if (got != expected)
     throw Fault(KACANOV_ERROR_SIZE, std::string(name) + ": expected " + std::to_string(expected) + ", got " +
                                         std::to_string(got));
+}
+
+/// Runs `work` on a handle that has laws; see guarded().
+template <class Work>
+int on(kacanov_operator* op, Work&& work) noexcept {
+  if (op == nullptr) return KACANOV_ERROR_NULL;
+  return guarded(op->message, sizeof op->message, [&] {
+    if (!op->fast) throw Fault(KACANOV_ERROR_STATE, "the operator has no laws yet: kacanov_set_laws first");
+    work(*op->fast);
+  });
+}
+
+template <class Real>
+std::span<const Real> input(const Real* data, std::size_t n, const char* name) {
+  require(data, name);
+  return {data, n};
+}
+
+template <class Real>
+std::span<Real> output(Real* data, std::size_t n, const char* name) {
+  require(data, name);
+  return {data, n};
+}
+
+template <class Real>
+void require_disjoint(std::span<const Real> x, std::span<Real> y, const char* names) {
+  const std::less<const Real*> before;
+  if (before(x.data(), y.data() + y.size()) && before(y.data(), x.data() + x.size()))
+    throw Fault(KACANOV_ERROR_SIZE, std::string(names) + " overlap");
 }
 
 }  // namespace kacanov::c_api

@@ -6,7 +6,7 @@
  * with bulk modulus k0 and secant shear modulus g. A handle keeps g (one value a quadrature point), frozen at a
  * displacement by kacanov_update, and then applies the linear operator B(g) to vectors.
  *
- * Vectors have nodes * dimension entries, interleaved (all components of node 0, then of node 1, ...), in the
+ * Vectors are of double, or of float in the calls that end in _float. They have nodes * dimension entries, interleaved (all components of node 0, then of node 1, ...), in the
  * caller's node order. Units are the caller's; in 2D (plane strain) everything is for unit thickness.
  *
  * Every function that returns int returns a kacanov_code: KACANOV_OK, or what went wrong; the handle then has
@@ -101,6 +101,8 @@ typedef struct kacanov_description {
   int32_t borrow; /* 1: coordinates, connectivity and law_of_element are not copied but used where they are;
                      they must then have default strides, base 0, and outlive the handle */
 
+  int32_t single; /* 1: keeps the operator in single precision too, for the calls that end in _float */
+
   size_t laws; /* may be 0 here: then kacanov_set_laws has to come before everything else */
   const kacanov_law *law;
   const uint16_t *law_of_element; /* one entry an element, from 0; null: all follow law 0 */
@@ -162,6 +164,13 @@ KACANOV_API int kacanov_energy(kacanov_operator *op, size_t n, const double *ome
 /* Both in one pass, which also freezes g at omega. */
 KACANOV_API int kacanov_residual_energy_update(kacanov_operator *op, size_t n, const double *omega, double *f,
                                                double *energy);
+
+/* The frozen operator on vectors of floats, for preconditioners and mixed-precision solvers: about 1e-6 relative on
+ * well-shaped elements. Needs `single` in the description; g is always that of the operator in double precision. */
+KACANOV_API int kacanov_apply_float(kacanov_operator *op, size_t n, const float *x, float *y);
+KACANOV_API int kacanov_apply_dot_float(kacanov_operator *op, size_t n, const float *x, float *y, double *dot);
+KACANOV_API int kacanov_apply_many_float(kacanov_operator *op, size_t n, int32_t vectors, const float *x, float *y);
+KACANOV_API int kacanov_diagonal_float(kacanov_operator *op, size_t n, float *diagonal);
 
 /* Means over each element at a displacement; arrays that are null are left out. */
 typedef struct kacanov_fields {

@@ -299,6 +299,51 @@ TEST_CASE("several right sides are applied as if one at a time") {
   CHECK(kacanov_apply_many(op.get(), n, 0, x.data(), y.data()) == KACANOV_ERROR_VALUE);
 }
 
+TEST_CASE("single precision follows the double one") {
+  for (const std::int32_t element : {KACANOV_TRI3, KACANOV_TET4, KACANOV_TET10, KACANOV_HEX8}) {
+    CAPTURE(element);
+    Example example(element);
+    example.description.single = 1;
+    const Handle op = example.create();
+    const std::size_t n = example.n();
+    const Vector x = random_vector(n, 9);
+    const std::vector<float> x_float(x.begin(), x.end());
+    std::vector<float> y_float(n);
+    const auto check = [&] {
+      REQUIRE(kacanov_apply_float(op.get(), n, x_float.data(), y_float.data()) == KACANOV_OK);
+      const Vector want = applied(op, x);
+      CHECK(distance(Vector(y_float.begin(), y_float.end()), want) < 1e-5);
+    };
+    check();
+    const Vector omega = random_vector(n, 10, 0.1), doubled = random_vector(n, 11, 0.2);
+    REQUIRE(kacanov_update(op.get(), n, omega.data()) == KACANOV_OK);
+    check();
+    REQUIRE(kacanov_update_tangent(op.get(), n, doubled.data()) == KACANOV_OK);
+    check();
+    double energy = 0.0, dot = 0.0, want_dot = 0.0;
+    Vector y(n), diagonal(n);
+    REQUIRE(kacanov_residual_energy_update(op.get(), n, omega.data(), y.data(), &energy) == KACANOV_OK);
+    check();
+    REQUIRE(kacanov_apply_dot(op.get(), n, x.data(), y.data(), &want_dot) == KACANOV_OK);
+    REQUIRE(kacanov_apply_dot_float(op.get(), n, x_float.data(), y_float.data(), &dot) == KACANOV_OK);
+    CHECK(dot == doctest::Approx(want_dot).epsilon(1e-5));
+    REQUIRE(kacanov_diagonal(op.get(), n, diagonal.data()) == KACANOV_OK);
+    REQUIRE(kacanov_diagonal_float(op.get(), n, y_float.data()) == KACANOV_OK);
+    CHECK(distance(Vector(y_float.begin(), y_float.end()), diagonal) < 1e-5);
+    std::vector<float> twice(x_float), both(2 * n);
+    twice.insert(twice.end(), x_float.begin(), x_float.end());
+    REQUIRE(kacanov_apply_many_float(op.get(), n, 2, twice.data(), both.data()) == KACANOV_OK);
+    CHECK(std::equal(both.begin(), both.begin() + static_cast<std::ptrdiff_t>(n),
+                     both.begin() + static_cast<std::ptrdiff_t>(n)));
+
+    CHECK(kacanov_apply_float(op.get(), n, x_float.data(), nullptr) == KACANOV_ERROR_NULL);
+    CHECK(kacanov_apply_float(op.get(), n + 1, x_float.data(), y_float.data()) == KACANOV_ERROR_SIZE);
+    CHECK(kacanov_apply_float(op.get(), n, y_float.data(), y_float.data()) == KACANOV_ERROR_SIZE);
+    const Handle plain = Example(element).create();
+    CHECK(kacanov_apply_float(plain.get(), n, x_float.data(), y_float.data()) == KACANOV_ERROR_STATE);
+  }
+}
+
 TEST_CASE("the preferred numbering names every node and element once") {
   const Example example(KACANOV_TET10, 3);
   const Handle op = example.create();
