@@ -23,3 +23,12 @@ kacanov_test(parallel
 kacanov_test(mesh
   SOURCES solver/mesh_test.cpp
   LIBRARIES kacanov_solver)
+
+find_package(nlohmann_json REQUIRED)
+kacanov_test(reference_cases
+  SOURCES solver/mpi_main.cpp cases/reference_test.cpp
+  LIBRARIES kacanov_io kacanov_solver nlohmann_json::nlohmann_json)
+target_include_directories(test_reference_cases PRIVATE solver)
+target_compile_definitions(test_reference_cases PRIVATE
+  KACANOV_REFERENCE="${CMAKE_CURRENT_SOURCE_DIR}/cases/reference"
+  KACANOV_ROCKER="${PROJECT_SOURCE_DIR}/tools/examples/rocker.msh")
