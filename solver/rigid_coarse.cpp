@@ -208,8 +208,9 @@ void RigidCoarse::build(std::span<const double> g, std::span<const NodeBlock> bl
         if (row == column && i == j) largest = std::max(largest, block(i, i));
       }
   }
-  // Modes that a hold has emptied, and rounding: a shift far below anything that moves.
-  for (Eigen::Index i = 0; i < size; ++i) entries.emplace_back(i, i, 1e-10 * largest);
+  // Modes that holds have emptied, and rounding: a shift far below anything that moves.
+  const double shift = largest > 0.0 ? 1e-10 * largest : 1.0;
+  for (Eigen::Index i = 0; i < size; ++i) entries.emplace_back(i, i, shift);
   Eigen::SparseMatrix<double> e(size, size);
   e.setFromTriplets(entries.begin(), entries.end());
   factor_.compute(e);
