@@ -32,3 +32,6 @@ target_include_directories(test_reference_cases PRIVATE solver)
 target_compile_definitions(test_reference_cases PRIVATE
   KACANOV_REFERENCE="${CMAKE_CURRENT_SOURCE_DIR}/cases/reference"
   KACANOV_ROCKER="${PROJECT_SOURCE_DIR}/tools/examples/rocker.msh")
+kacanov_test(closed_solutions
+  SOURCES solver/mpi_main.cpp solver/closed_test.cpp
+  LIBRARIES kacanov_solver)
