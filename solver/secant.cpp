@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <sstream>
+#include <string>
+
+#include "contact/dual_admm.hpp"
 
 namespace kacanov {
 namespace {
@@ -24,6 +26,8 @@ constexpr double solve_reduction = 0.1;
 /// Newton steps without a new best residual before ADMM takes over.
 constexpr int patience = 6;
 constexpr int max_damping_trials = 6;
+/// A displacement of this many body sizes is a run that goes nowhere.
+constexpr double most_displacement = 1e3;
 
 /// How much further than the tolerance the residuals have to fall for the duality gap to meet it. Where a body moves far
 /// and strains little, their work along the motion is large beside the stored energy.
@@ -43,6 +47,21 @@ Vector lumped_volume(const Part& part) {
   return volume;
 }
 
+/// Longest side of the body's bounding box.
+double body_extent(const Part& part) {
+  const auto dim = static_cast<std::size_t>(part.dim());
+  double extent = 0.0;
+  for (std::size_t c = 0; c < dim; ++c) {
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (std::size_t i = c; i < part.coordinates.size(); i += dim) {
+      low = std::min(low, part.coordinates[i]);
+      high = std::max(high, part.coordinates[i]);
+    }
+    extent = std::max(extent, part.halo.max_all(high) + part.halo.max_all(-low));
+  }
+  return extent;
+}
+
 }  // namespace
 
 OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOptions& run)
@@ -56,6 +75,7 @@ OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOp
       amg_(make_preconditioner(options.preconditioner, part)),
       internal_(part.unknowns()),
       secant_(part.body().secant_count()) {
+  extent_ = body_extent(part);
   const std::size_t points = part.contact.size();
   state_.omega = part.prescribed;
   for (std::size_t i = 0; i < part.unknowns(); ++i)
@@ -202,10 +222,11 @@ void OuterLoop::take_admm_step(Result& result, ProgressStep& line, const Residua
   if (first) op_.apply(state_.omega, internal_);  // the elastic force, not R(ω)
   for (std::size_t i = 0; i < work_.residual.size(); ++i) work_.residual[i] = part_.load[i] - internal_[i];
   traces_.add_force(state_.lambda, -1.0, work_.residual);
-  const AdmmResult step = admm(problem_, state_, work_, options);
+  const bool dual = options_.contact == SolverOptions::Contact::dual_admm;
+  const AdmmResult step = dual ? dual_admm(problem_, state_, work_, options) : admm(problem_, state_, work_, options);
   watch_preconditioner(step.cg_digits, step.cg_iterations);
   op_.residual(state_.omega, internal_);
-  line.phase = "admm";
+  line.phase = dual ? "dual_admm" : "admm";
   line.contact_iterations = step.iterations;
   line.cg_iterations = step.cg_iterations;
 }
@@ -305,6 +326,11 @@ void OuterLoop::run(Result& result) {
       continue;
     }
     done = worst <= options_.tolerance;
+    if (!done && residuals.scales.displacement > most_displacement * extent_) {
+      result.message = "the displacement has grown to " + std::to_string(residuals.scales.displacement / extent_) +
+                       " times the body's size: the load is beyond what the material or the supports can carry";
+      return;
+    }
     if (!newton) continue;
     stalled = worst < 0.7 * best ? 0 : stalled + 1;
     best = std::min(best, worst);

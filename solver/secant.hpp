@@ -57,6 +57,7 @@ class OuterLoop {
   double digits_per_cg_ = 0.0;   // right after the last setup
   int estimates_ = 0;            // of r_A
   bool newton_failed_ = false;   // the last semismooth step could not be solved
+  double extent_ = 0.0;           // of the body
   double spectrum_seconds_ = 0.0;
 };
 

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Algorithm 2 of the paper: the dual form of ADMM, on multipliers alone, extended to friction.
+#pragma once
+
+#include "contact/admm.hpp"
+
+namespace kacanov {
+
+/// Iterates (25) and (26) from state.lambda and state.phi: λ = λ₊ + λ₋ ← λ₊ − r C B_r⁻¹ CᵀM (λ₊ − λ₋) + r (Ca − ρ), with
+/// a = B_r⁻¹ (F + r NᵀMρ) once and one solve with B_r an iteration. λ₊ is the projection of λ onto the multipliers (pressure, or
+/// the friction disc), λ₋ the rest. The same sequence as Algorithm 1 with α = 1, up to the accuracy of the solves.
+/// Entry and exit as for admm(); ω appears at the end only.
+AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& work, const AdmmOptions& options);
+
+}  // namespace kacanov
