@@ -1,1 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
+find_package(nlohmann_json REQUIRED)
+kacanov_test(case
+  SOURCES tools/case_main.cpp tools/case_errors.cpp tools/case_values.cpp
+  LIBRARIES kacanov_case)
+foreach(area program_errors program_runs)
+  kacanov_test(${area} SOURCES tools/${area}.cpp LIBRARIES nlohmann_json::nlohmann_json)
+  target_compile_definitions(test_${area} PRIVATE
+    KACANOV_PROGRAM="$<TARGET_FILE:kacanov>" KACANOV_MPIEXEC="${MPIEXEC_EXECUTABLE}")
+  add_dependencies(test_${area} kacanov)
+  set_tests_properties(${area} PROPERTIES PROCESSORS 2)
+endforeach()

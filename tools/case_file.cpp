@@ -193,7 +193,7 @@ class CaseParser {
   void parse_solver(const Node& node) {
     using Options = SolverOptions;
     const Object object(node, {"tolerance", "outer", "contact", "r", "stop", "max_outer", "max_contact",
-                               "spectrum_tolerance", "relaxation"});
+                               "spectrum_tolerance", "relaxation", "preconditioner"});
     Options& options = result_.model.solver;
     const auto inside = [](double v) { return v > 0.0 && v < 1.0; };
     if (const auto v = object.optional("tolerance"))
@@ -214,6 +214,10 @@ class CaseParser {
       options.stop = v->choice({"kkt", "paper"}) == 0 ? Options::Stop::kkt : Options::Stop::paper;
     }
     if (const auto v = object.optional("r")) parse_penalty(*v);
+    if (const auto v = object.optional("preconditioner")) {
+      constexpr std::array values{Options::Preconditioner::components, Options::Preconditioner::elasticity};
+      options.preconditioner = values[v->choice({"components", "elasticity"})];
+    }
     if (const auto v = object.optional("max_outer")) options.max_outer = v->integer(1);
     if (const auto v = object.optional("max_contact")) options.max_contact = v->integer(1);
     if (const auto v = object.optional("relaxation")) {
@@ -278,16 +282,19 @@ void check_dimension(const Case& input, int dim) {
 
 void check_supported(const Model& model) {
   const auto refuse = [](const std::string& path, const std::string& value, const std::string& instead) {
-    throw InputError(path + ": " + value + " is not available in this version; use " + instead);
+    throw InputError(path + ": " + value + " is not available; use " + instead);
   };
   using Options = SolverOptions;
-  if (model.solver.outer == Options::Outer::newton)
-    refuse("solver.outer", "\"newton\"", "\"auto\" or \"kacanov\"");
-  if (model.solver.contact == Options::Contact::dual_admm) {
-    refuse("solver.contact", "\"dual_admm\"", "\"auto\" or \"admm\"");
+  const Options& solver = model.solver;
+  // Both are the semismooth Newton method, which has no use for Algorithm 1's loop and its stop.
+  const bool by_step = solver.stop == Options::Stop::paper;
+  if (solver.contact == Options::Contact::active_set && by_step) {
+    refuse("solver.contact", "\"active_set\" together with the stop \"paper\"", "the stop \"kkt\"");
   }
-  if (model.solver.contact == Options::Contact::active_set) {
-    refuse("solver.contact", "\"active_set\"", "\"auto\" or \"admm\"");
+  const bool admm = solver.contact == Options::Contact::admm || solver.contact == Options::Contact::dual_admm;
+  if (solver.outer == Options::Outer::newton && (by_step || admm)) {
+    const char* other = by_step ? "the stop \"paper\"" : "this value of solver.contact";
+    refuse("solver.outer", std::string("\"newton\" together with ") + other, "\"auto\" or \"kacanov\"");
   }
   for (std::size_t i = 0; i < model.contact.size(); ++i) {
     if (model.contact[i].friction && model.contact[i].friction->coulomb > 0.0) {

@@ -135,6 +135,8 @@ void set_mpi_environment() {
       {"OMPI_MCA_btl", "self,vader"},
       {"OMPI_MCA_pml", "ob1"},
       {"OMPI_MCA_btl_base_warn_component_unused", "0"},
+      // Waiting ranks let others work: on a busy machine spinning ones hold up the run.
+      {"OMPI_MCA_mpi_yield_when_idle", "1"},
       {"HWLOC_HIDE_ERRORS", "2"},
   };
   for (const auto& [name, value] : settings) setenv(name, value, 0);

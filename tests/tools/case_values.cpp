@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a case file says arrives in the model, defaults included.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "case_samples.hpp"
+
+using namespace kacanov;
+using namespace kacanov::testing;
+
+namespace {
+
+Case changed(const std::vector<std::string>& changes) {
+  nlohmann::json document = complete_case();
+  for (const std::string& change : changes) apply_override(document, change);
+  return parse_case(document, "folder");
+}
+
+Law law_of(const std::string& law) { return changed({"material[0].law=" + law}).model.materials[0].law; }
+
+}  // namespace
+
+TEST_CASE("every entry of the sample arrives") {
+  const Case input = changed({});
+  REQUIRE(input.mesh.box.has_value());
+  CHECK(input.mesh.box->type == ElementType::tet4);
+  CHECK(input.mesh.box->cells == std::array<int, 3>{8, 2, 2});
+  const Model& model = input.model;
+  REQUIRE(model.materials.size() == 1);
+  CHECK(model.materials[0].law.kind == Law::Kind::logarithmic);
+  CHECK(model.materials[0].law.x0 == 0.01);
+  CHECK(model.materials[0].law.shear == doctest::Approx(1.0 / 2.6));
+  CHECK(model.materials[0].law.bulk == doctest::Approx(1.0 / 1.2));
+  REQUIRE(model.boundary.size() == 4);
+  CHECK((*model.boundary[0].displacement)[0] == 0.0);
+  CHECK_FALSE((*model.boundary[0].displacement)[1].has_value());
+  CHECK(model.boundary[1].on.kind == Selector::Kind::box);
+  CHECK(model.boundary[1].traction == Vector3{0.0, 0.0, -0.05});
+  CHECK(model.boundary[2].pressure == 0.5);
+  CHECK(model.boundary[3].on.kind == Selector::Kind::all);
+  CHECK(model.boundary[3].body_force == Vector3{0.0, 0.0, -1.0});
+  REQUIRE(model.contact.size() == 3);
+  CHECK(std::get<Plane>(model.contact[0].obstacle).normal == Vector3{0.0, 0.0, 1.0});
+  CHECK(model.contact[0].friction->tresca == 0.01);
+  CHECK(std::get<Sphere>(model.contact[1].obstacle).radius == 2.0);
+  CHECK(std::get<ConstantGap>(model.contact[2].obstacle).gap == -0.01);
+  CHECK_FALSE(model.contact[2].friction.has_value());
+  const SolverOptions& solver = model.solver;
+  CHECK(solver.tolerance == 1e-7);
+  CHECK(solver.outer == SolverOptions::Outer::kacanov);
+  CHECK(solver.contact == SolverOptions::Contact::admm);
+  CHECK(solver.penalty == SolverOptions::Penalty::fixed);
+  CHECK(solver.r == 0.5);
+  CHECK(solver.stop == SolverOptions::Stop::paper);
+  CHECK(solver.max_outer == 50);
+  CHECK(solver.max_contact == 100000);
+  CHECK(solver.spectrum_tolerance == 1e-3);
+  CHECK(solver.relaxation == 1.5);
+  CHECK(model.probes == std::vector<Vector3>{{4.0, 0.5, 1.0}});
+  CHECK_FALSE(input.output.fields);
+  CHECK_FALSE(input.output.report);
+}
+
+TEST_CASE("a short case has the defaults of the structs") {
+  const Case input = parse_case(
+      parse_json(R"({"mesh": {"file": "a.msh"}, "material": [{"on": "body", "young": 2, "poisson": 0}]})",
+                 "x"),
+      "cases");
+  CHECK(input.mesh.file == "cases/a.msh");
+  CHECK(input.model.materials[0].on.name == "body");
+  CHECK(input.model.materials[0].law.kind == Law::Kind::linear);
+  CHECK(input.model.boundary.empty());
+  CHECK(input.model.solver.tolerance == SolverOptions().tolerance);
+  CHECK(input.model.solver.penalty == SolverOptions::Penalty::automatic);
+  CHECK(input.output.fields);
+  CHECK(input.output.report);
+}
+
+TEST_CASE("absolute mesh paths stay, relative ones are taken from the case's folder") {
+  const auto with_file = [](const std::string& file) {
+    return parse_case(nlohmann::json{{"mesh", {{"file", file}}},
+                                     {"material", {{{"on", "all"}, {"young", 1}, {"poisson", 0}}}}},
+                      "folder")
+        .mesh.file;
+  };
+  CHECK(with_file("sub/a.msh") == "folder/sub/a.msh");
+  CHECK(with_file("/tmp/a.msh") == "/tmp/a.msh");
+}
+
+TEST_CASE("a yield stress becomes the strain at which the norm of the deviator reaches it") {
+  const double young = 1.0, mu = young / 2.6, stress = 0.02;
+  const double norm = std::sqrt(2.0 / 3.0) * stress / (2.0 * mu);
+  CHECK(law_of(R"({"type":"logarithmic","yield_stress":0.02})").x0 == doctest::Approx(norm).epsilon(1e-14));
+  const Law squared = law_of(R"({"type":"saturating","yield_stress":0.02,"q":2,"argument":"squared"})");
+  CHECK(squared.x0 == doctest::Approx(norm * norm).epsilon(1e-14));
+  // Uniaxial stress sigma has ‖dev tau‖ = sqrt(2/3) sigma: the law leaves its elastic range right there.
+  CHECK(squared.plastic(norm * 1.000001));
+  CHECK_FALSE(squared.plastic(norm * 0.999999));
+  CHECK(2.0 * squared.secant(norm) * norm == doctest::Approx(std::sqrt(2.0 / 3.0) * stress));
+}
+
+TEST_CASE("every law takes its own constants") {
+  CHECK(law_of(R"({"type":"linear"})").kind == Law::Kind::linear);
+  CHECK(law_of(R"({"type":"linear_hardening","x0":0.01,"gamma":0.1})").gamma == 0.1);
+  CHECK(law_of(R"({"type":"power","x0":0.01,"n":0.2})").n == 0.2);
+  CHECK(law_of(R"({"type":"saturating","x0":0.01,"q":3})").q == 3.0);
+  const Law table = law_of(R"({"type":"table","points":[[0,0],[0.01,0.0076923],[0.1,0.02]]})");
+  CHECK(table.table_x == std::vector<double>{0.0, 0.01, 0.1});
+  CHECK(table.secant(0.1) == doctest::Approx(0.1));
+}
+
+TEST_CASE("a table that contradicts the elastic constants is warned of") {
+  CHECK(changed({R"(material[0].law={"type":"table","points":[[0,0],[0.01,0.0077],[0.1,0.02]]})"})
+            .warnings.empty());
+  CHECK(changed({R"(material[0].law={"type":"table","points":[[0,0],[0.01,0.5],[0.1,0.6]]})"})
+            .warnings.size() == 1);
+}
+
+TEST_CASE("overrides change, add and take any JSON value or a plain word") {
+  const Case input =
+      changed({"solver.tolerance=1e-9", "contact[0].friction.tresca=0.02", "contact[1].friction.tresca=0.5",
+               "boundary[2].on=left", "probe=[[1,2,3],[4,5,6]]", "solver.r=auto"});
+  CHECK(input.model.solver.tolerance == 1e-9);
+  CHECK(input.model.contact[0].friction->tresca == 0.02);
+  CHECK(input.model.contact[1].friction->tresca == 0.5);
+  CHECK(input.model.boundary[2].on.name == "left");
+  CHECK(input.model.probes.size() == 2);
+  CHECK(input.model.solver.penalty == SolverOptions::Penalty::automatic);
+}
