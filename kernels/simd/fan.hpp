@@ -7,14 +7,14 @@
 namespace {
 
 template <class V>
-inline void cross(const V* a, const V* b, V* c) {
+KACANOV_INLINE inline void cross(const V* a, const V* b, V* c) {
   c[0] = a[1] * b[2] - a[2] * b[1];
   c[1] = a[2] * b[0] - a[0] * b[2];
   c[2] = a[0] * b[1] - a[1] * b[0];
 }
 
 template <class V>
-inline V inner(const V* a, const V* b) {
+KACANOV_INLINE inline V inner(const V* a, const V* b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
@@ -45,7 +45,8 @@ inline void fan_loop(const Block<Real>& block, const Group& group, const Materia
       L::load3(u + v * stride, at + width, dq[v]);
       for (int k = 0; k < 3; ++k) dq[v][k] -= up[v][k];
     }
-    const auto load_ring = [&](const std::uint16_t* node, RingNode<V, vectors>& r) {
+    const auto load_ring = [&](const std::uint16_t* node, RingNode<V, vectors>& r)
+        __attribute__((always_inline)) {
       L::load3(block.coordinates, node, r.e);
       for (int k = 0; k < 3; ++k) r.e[k] -= p[k];
       for (int v = 0; v < vectors; ++v) {
@@ -54,7 +55,8 @@ inline void fan_loop(const Block<Real>& block, const Group& group, const Materia
       }
       cross(eq, r.e, r.w);
     };
-    const auto tetrahedron = [&](RingNode<V, vectors>& a, RingNode<V, vectors>& b) {
+    const auto tetrahedron = [&](RingNode<V, vectors> & a, RingNode<V, vectors> & b)
+        __attribute__((always_inline)) {
       V c[3];
       cross(a.e, b.e, c);
       const V det = inner(eq, c);
@@ -73,7 +75,8 @@ inline void fan_loop(const Block<Real>& block, const Group& group, const Materia
       }
       ++point;
     };
-    const auto store_ring = [&](const std::uint16_t* node, const RingNode<V, vectors>& r) {
+    const auto store_ring = [&](const std::uint16_t* node, const RingNode<V, vectors>& r)
+        __attribute__((always_inline)) {
       for (int v = 0; v < vectors; ++v) {
         L::add3(f + v * stride, node, r.f[v]);
         for (int k = 0; k < 3; ++k) sum[v][k] += r.f[v][k];

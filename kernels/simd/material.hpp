@@ -3,6 +3,7 @@
 #pragma once
 
 #include "block.hpp"
+#include "inline.hpp"
 
 namespace {
 
@@ -19,7 +20,7 @@ struct Sym {
 
 /// v = s n.
 template <class V>
-inline void multiply(const Sym<V>& s, const V* n, V* v) {
+KACANOV_INLINE inline void multiply(const Sym<V>& s, const V* n, V* v) {
   v[0] = s.xx * n[0] + s.xy * n[1] + s.zx * n[2];
   v[1] = s.xy * n[0] + s.yy * n[1] + s.yz * n[2];
   v[2] = s.zx * n[0] + s.yz * n[1] + s.zz * n[2];
@@ -30,7 +31,7 @@ inline void multiply(const Sym<V>& s, const V* n, V* v) {
 // vectors of points from the start of the block.
 
 template <class L, class Real, class V = typename L::V>
-inline Sym<V> frozen_stress(const V* h, V g, V bulk, V w) {
+KACANOV_INLINE inline Sym<V> frozen_stress(const V* h, V g, V bulk, V w) {
   const V gg = g * w, gg2 = gg + gg;
   const V mean = (h[0] + h[4] + h[8]) * (bulk * w - gg2 * Real(1.0 / 3.0));
   return {gg2 * h[0] + mean,  gg2 * h[4] + mean,  gg2 * h[8] + mean,
@@ -46,7 +47,7 @@ struct SecantMaterial {
   SecantMaterial(const Block<Real>& block, const Group& group)
       : secant(block.secant + group.first_slot), bulk(Real(block.laws[group.law].bulk) - V{}) {}
 
-  Sym<V> stress(const V* h, V det, Real weight, std::size_t point) const {
+  KACANOV_INLINE Sym<V> stress(const V* h, V det, Real weight, std::size_t point) const {
     return frozen_stress<L, Real>(h, L::load(secant + point * L::width), bulk, weight / det);
   }
 };
@@ -60,7 +61,7 @@ struct TangentMaterial {
   TangentMaterial(const Block<Real>& block, const Group& group)
       : frozen(block, group), tangent(block.tangent + 6 * std::size_t{group.first_slot}) {}
 
-  Sym<V> stress(const V* h, V det, Real weight, std::size_t point) const {
+  KACANOV_INLINE Sym<V> stress(const V* h, V det, Real weight, std::size_t point) const {
     const V w = weight / det;
     Sym<V> s = frozen_stress<L, Real>(h, L::load(frozen.secant + point * L::width), frozen.bulk, w);
     const float* t = tangent + 6 * point * L::width;
@@ -90,7 +91,7 @@ struct NonlinearMaterial {
         secant(block.secant + group.first_slot),
         tangent(block.tangent + 6 * std::size_t{group.first_slot}) {}
 
-  Sym<V> stress(const V* h, V det, Real weight, std::size_t point) const {
+  KACANOV_INLINE Sym<V> stress(const V* h, V det, Real weight, std::size_t point) const {
     const V inverse = Real(1) / det, half = Real(0.5) * inverse;
     const V trace = (h[0] + h[4] + h[8]) * inverse, mean = trace * Real(1.0 / 3.0);
     const V xx = h[0] * inverse - mean, yy = h[4] * inverse - mean, zz = h[8] * inverse - mean;

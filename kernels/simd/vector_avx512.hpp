@@ -6,6 +6,8 @@
 
 #include <cstdint>
 
+#include "inline.hpp"
+
 namespace {
 
 template <class Real>
@@ -19,16 +21,16 @@ struct Lanes<double> {
   typedef double V __attribute__((vector_size(64)));
   static constexpr int width = 8;
 
-  static V load(const double* p) { return (V)_mm512_loadu_pd(p); }
-  static void store(double* p, V v) { _mm512_storeu_pd(p, (__m512d)v); }
-  static V widen(const float* p) { return (V)_mm512_cvtps_pd(_mm256_loadu_ps(p)); }
-  static V sqrt(V v) { return (V)_mm512_sqrt_pd((__m512d)v); }
+  KACANOV_INLINE static V load(const double* p) { return (V)_mm512_loadu_pd(p); }
+  KACANOV_INLINE static void store(double* p, V v) { _mm512_storeu_pd(p, (__m512d)v); }
+  KACANOV_INLINE static V widen(const float* p) { return (V)_mm512_cvtps_pd(_mm256_loadu_ps(p)); }
+  KACANOV_INLINE static V sqrt(V v) { return (V)_mm512_sqrt_pd((__m512d)v); }
 
-  static __m512d pair(const double* base, std::uint16_t low, std::uint16_t high) {
+  KACANOV_INLINE static __m512d pair(const double* base, std::uint16_t low, std::uint16_t high) {
     return _mm512_mask_broadcast_f64x4(_mm512_castpd256_pd512(_mm256_load_pd(base + low)), 0xF0,
                                        _mm256_load_pd(base + high));
   }
-  static void load3(const double* base, const std::uint16_t* at, V* v) {
+  KACANOV_INLINE static void load3(const double* base, const std::uint16_t* at, V* v) {
     const __m512d a = pair(base, at[0], at[2]), b = pair(base, at[1], at[3]);
     const __m512d c = pair(base, at[4], at[6]), d = pair(base, at[5], at[7]);
     const __m512d ab = _mm512_unpacklo_pd(a, b), cd = _mm512_unpacklo_pd(c, d);
@@ -36,8 +38,10 @@ struct Lanes<double> {
     v[2] = (V)_mm512_shuffle_f64x2(ab, cd, 0xDD);
     v[1] = (V)_mm512_shuffle_f64x2(_mm512_unpackhi_pd(a, b), _mm512_unpackhi_pd(c, d), 0x88);
   }
-  static void add(double* p, __m256d v) { _mm256_store_pd(p, _mm256_add_pd(_mm256_load_pd(p), v)); }
-  static void add3(double* base, const std::uint16_t* at, const V* v) {
+  KACANOV_INLINE static void add(double* p, __m256d v) {
+    _mm256_store_pd(p, _mm256_add_pd(_mm256_load_pd(p), v));
+  }
+  KACANOV_INLINE static void add3(double* base, const std::uint16_t* at, const V* v) {
     const __m512d x = (__m512d)v[0], y = (__m512d)v[1], z = (__m512d)v[2], zero = _mm512_setzero_pd();
     const __m512d xy0 = _mm512_unpacklo_pd(x, y), xy1 = _mm512_unpackhi_pd(x, y);
     const __m512d z0 = _mm512_unpacklo_pd(z, zero), z1 = _mm512_unpackhi_pd(z, zero);
@@ -61,34 +65,34 @@ struct Lanes<float> {
   typedef float V __attribute__((vector_size(64)));
   static constexpr int width = 16;
 
-  static V load(const float* p) { return (V)_mm512_loadu_ps(p); }
-  static void store(float* p, V v) { _mm512_storeu_ps(p, (__m512)v); }
-  static V widen(const float* p) { return load(p); }
-  static V sqrt(V v) { return (V)_mm512_sqrt_ps((__m512)v); }
+  KACANOV_INLINE static V load(const float* p) { return (V)_mm512_loadu_ps(p); }
+  KACANOV_INLINE static void store(float* p, V v) { _mm512_storeu_ps(p, (__m512)v); }
+  KACANOV_INLINE static V widen(const float* p) { return load(p); }
+  KACANOV_INLINE static V sqrt(V v) { return (V)_mm512_sqrt_ps((__m512)v); }
 
   /// Lanes k, k+4, k+8, k+12 of a batch, so that the in-lane transposition leaves them in order.
-  static __m512 four(const float* base, const std::uint16_t* at) {
+  KACANOV_INLINE static __m512 four(const float* base, const std::uint16_t* at) {
     __m512 r = _mm512_castps128_ps512(_mm_load_ps(base + at[0]));
     r = _mm512_mask_broadcast_f32x4(r, 0x00F0, _mm_load_ps(base + at[4]));
     r = _mm512_mask_broadcast_f32x4(r, 0x0F00, _mm_load_ps(base + at[8]));
     return _mm512_mask_broadcast_f32x4(r, 0xF000, _mm_load_ps(base + at[12]));
   }
-  static __m512d as_pd(__m512 v) { return _mm512_castps_pd(v); }
-  static void load3(const float* base, const std::uint16_t* at, V* v) {
+  KACANOV_INLINE static __m512d as_pd(__m512 v) { return _mm512_castps_pd(v); }
+  KACANOV_INLINE static void load3(const float* base, const std::uint16_t* at, V* v) {
     const __m512 a = four(base, at), b = four(base, at + 1), c = four(base, at + 2), d = four(base, at + 3);
     const __m512 ab = _mm512_unpacklo_ps(a, b), cd = _mm512_unpacklo_ps(c, d);
     v[0] = (V)_mm512_unpacklo_pd(as_pd(ab), as_pd(cd));
     v[1] = (V)_mm512_unpackhi_pd(as_pd(ab), as_pd(cd));
     v[2] = (V)_mm512_unpacklo_pd(as_pd(_mm512_unpackhi_ps(a, b)), as_pd(_mm512_unpackhi_ps(c, d)));
   }
-  static void add(float* p, __m128 v) { _mm_store_ps(p, _mm_add_ps(_mm_load_ps(p), v)); }
-  static void add_four(float* base, const std::uint16_t* at, __m512 v) {
+  KACANOV_INLINE static void add(float* p, __m128 v) { _mm_store_ps(p, _mm_add_ps(_mm_load_ps(p), v)); }
+  KACANOV_INLINE static void add_four(float* base, const std::uint16_t* at, __m512 v) {
     add(base + at[0], _mm512_castps512_ps128(v));
     add(base + at[4], _mm512_extractf32x4_ps(v, 1));
     add(base + at[8], _mm512_extractf32x4_ps(v, 2));
     add(base + at[12], _mm512_extractf32x4_ps(v, 3));
   }
-  static void add3(float* base, const std::uint16_t* at, const V* v) {
+  KACANOV_INLINE static void add3(float* base, const std::uint16_t* at, const V* v) {
     const __m512 x = (__m512)v[0], y = (__m512)v[1], z = (__m512)v[2], zero = _mm512_setzero_ps();
     const __m512d xy0 = as_pd(_mm512_unpacklo_ps(x, y)), xy1 = as_pd(_mm512_unpackhi_ps(x, y));
     const __m512d z0 = as_pd(_mm512_unpacklo_ps(z, zero)), z1 = as_pd(_mm512_unpackhi_ps(z, zero));

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 
+#include "inline.hpp"
+
 namespace {
 
 template <class Real>
@@ -11,29 +13,29 @@ struct Lanes {
   typedef Real V __attribute__((vector_size(16)));
   static constexpr int width = 16 / static_cast<int>(sizeof(Real));
 
-  static V load(const Real* p) {
+  KACANOV_INLINE static V load(const Real* p) {
     V v;
     __builtin_memcpy(&v, p, sizeof v);
     return v;
   }
-  static void store(Real* p, V v) { __builtin_memcpy(p, &v, sizeof v); }
-  static V widen(const float* p) {
+  KACANOV_INLINE static void store(Real* p, V v) { __builtin_memcpy(p, &v, sizeof v); }
+  KACANOV_INLINE static V widen(const float* p) {
     V v{};
     for (int l = 0; l < width; ++l) v[l] = p[l];
     return v;
   }
-  static V sqrt(V v) {
+  KACANOV_INLINE static V sqrt(V v) {
     for (int l = 0; l < width; ++l) v[l] = static_cast<Real>(__builtin_sqrt(v[l]));
     return v;
   }
-  static void load3(const Real* base, const std::uint16_t* at, V* v) {
+  KACANOV_INLINE static void load3(const Real* base, const std::uint16_t* at, V* v) {
     for (int k = 0; k < 3; ++k) {
       Real lane[width];
       for (int l = 0; l < width; ++l) lane[l] = base[at[l] + k];
       v[k] = load(lane);
     }
   }
-  static void add3(Real* base, const std::uint16_t* at, const V* v) {
+  KACANOV_INLINE static void add3(Real* base, const std::uint16_t* at, const V* v) {
     for (int l = 0; l < width; ++l)
       for (int k = 0; k < 3; ++k) base[at[l] + k] += v[k][l];
   }

@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Everything inside an element loop has to be part of it: a call would spill some thirty vector registers.
+// Left to itself the compiler made calls, at twice the time.
+#pragma once
+
+#define KACANOV_INLINE [[gnu::always_inline]]
