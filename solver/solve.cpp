@@ -30,7 +30,8 @@ std::uint64_t peak_memory() {
   return 0;
 }
 
-void collect_fields(const Part& part, const ContactState& state, Solution& solution) {
+/// `least_slip`: a tangential displacement beyond it is slip, whatever rounding says of the bound.
+void collect_fields(const Part& part, const ContactState& state, double least_slip, Solution& solution) {
   const std::size_t elements = part.element_index.size();
   solution.displacement = state.omega;
   solution.stress.resize(6 * elements);
@@ -47,9 +48,12 @@ void collect_fields(const Part& part, const ContactState& state, Solution& solut
     for (std::size_t k = 0; k < static_cast<std::size_t>(points[i].tangents); ++k)
       for (std::size_t c = 0; c < 3; ++c) traction[c] -= friction[k] * points[i].tangent[k][c];
     solution.traction.push_back(traction);
-    // The projection leaves |λ_f| = ψ to rounding where it slips.
+    // The projection leaves |λ_f| = ψ to rounding where it slips; Coulomb's ψ has moved on since by what the solver
+    // tolerates.
+    const double* slip = &state.trace.tangential[2 * i];
     const bool slips = points[i].tangents == 0 ||
-                       std::hypot(friction[0], friction[1]) >= state.bound[i] * (1.0 - 1e-10);
+                       std::hypot(friction[0], friction[1]) >= state.bound[i] * (1.0 - 1e-10) ||
+                       std::hypot(slip[0], slip[1]) > least_slip;
     const bool touches = state.lambda.normal[i] > 0.0;
     solution.contact_status.push_back(!touches && points[i].tangents == 0 ? ContactStatus::open
                                       : slips                             ? ContactStatus::slip
@@ -120,9 +124,6 @@ std::string verdict(const Result& result, const SolverOptions& options) {
     text << "after " << result.outer_iterations << " outer steps the worst KKT residual is "
          << result.certificate.worst() << ", above the tolerance " << options.tolerance;
   }
-  if (result.softening_elements > 0)
-    text << "; " << result.softening_elements
-         << " elements are in the softening range of their law (squared argument), where the problem is not monotone";
   return text.str();
 }
 
@@ -145,9 +146,13 @@ Solution solve(const Part& part, const SolverOptions& options, const RunOptions&
   result.certificate = kkt_residuals(loop.space(), loop.traces(), loop.state(), internal, energy).certificate;
   result.status = result.certificate.worst() <= options.tolerance ? Status::converged : Status::not_converged;
 
-  collect_fields(part, loop.state(), solution);
+  collect_fields(part, loop.state(), 10.0 * options.tolerance * loop.space().max_abs(loop.state().omega), solution);
   collect_totals(part, loop.state(), solution, result);
   if (result.message.empty()) result.message = verdict(result, options);
+  if (result.softening_elements > 0)
+    result.message += "; " + std::to_string(result.softening_elements) +
+                      " elements are in the softening range of their law (squared argument), where the problem is not "
+                      "monotone";
   result.unknowns = part.total_nodes * part.dim();
   result.elements = part.total_elements;
   result.contact_nodes = part.total_contact;
