@@ -35,3 +35,12 @@ target_compile_definitions(test_reference_cases PRIVATE
 kacanov_test(closed_solutions
   SOURCES solver/mpi_main.cpp solver/closed_test.cpp
   LIBRARIES kacanov_solver)
+kacanov_test(contact
+  SOURCES solver/mpi_main.cpp solver/contact_test.cpp
+  LIBRARIES kacanov_solver)
+kacanov_test(certificate
+  SOURCES solver/mpi_main.cpp solver/certificate_test.cpp
+  LIBRARIES kacanov_solver)
+kacanov_test(outer
+  SOURCES solver/mpi_main.cpp solver/outer_test.cpp
+  LIBRARIES kacanov_solver)

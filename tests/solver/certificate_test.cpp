@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The certificate sees every way a state can be wrong, and no run is called converged that is not.
+#include "certificate.hpp"
+
+#include <doctest/doctest.h>
+
+#include <numeric>
+
+#include "support.hpp"
+
+using namespace kacanov;
+using namespace kacanov::testing;
+
+namespace {
+
+constexpr double tolerance = 1e-9;
+
+/// A solved problem whose state can be spoilt and certified again.
+struct Solved {
+  Run run;
+  Space space;
+  Traces traces;
+  ContactState state;
+
+  explicit Solved(Run solved) : run(std::move(solved)), space(run.part), traces(run.part) {
+    const auto& points = run.part.contact;
+    state.omega = run.solution.displacement;
+    state.lambda = ContactValues(points.size());
+    state.lambda.normal = run.solution.pressure;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      for (std::size_t k = 0; k < static_cast<std::size_t>(points[i].tangents); ++k)
+        for (std::size_t c = 0; c < 3; ++c)
+          state.lambda.tangential[2 * i + k] -= run.solution.traction[i][c] * points[i].tangent[k][c];
+      state.bound.push_back(points[i].tresca);
+    }
+    state.trace = ContactValues(points.size());
+    traces.evaluate(state.omega, state.trace);
+  }
+
+  Certificate certify() {
+    traces.evaluate(state.omega, state.trace);
+    Vector internal(state.omega.size());
+    reference::residual(run.part.body(), state.omega, internal);
+    return kkt_residuals(space, traces, state, internal, reference::energy(run.part.body(), state.omega))
+        .certificate;
+  }
+  /// A contact point under pressure that sticks, one that slips, or an open one.
+  std::size_t find(ContactStatus status, bool pressed) const {
+    std::size_t i = 0;
+    while (run.solution.contact_status[i] != status || (run.solution.pressure[i] > 1e-3) != pressed) ++i;
+    return i;
+  }
+};
+
+Solved solved_beam(double tresca) {
+  Model model = beam(2, logarithmic_law(0.01), 0.05, tresca);
+  model.solver.tolerance = tolerance;
+  return Solved(run_alone(beam_mesh(2, 8), model));
+}
+
+}  // namespace
+
+TEST_CASE("a solved state certifies itself, by the numbers the run reports") {
+  Solved beam = solved_beam(0.01);
+  REQUIRE(beam.run.result().status == Status::converged);
+  const Certificate again = beam.certify(), told = beam.run.result().certificate;
+  CHECK(again.worst() <= tolerance);
+  CHECK(again.equilibrium == doctest::Approx(told.equilibrium).epsilon(1e-2).scale(tolerance));
+  CHECK(again.duality_gap == doctest::Approx(told.duality_gap).epsilon(1e-2).scale(tolerance));
+}
+
+TEST_CASE("each fault shows in its entry") {
+  Solved beam = solved_beam(0.01);
+  const double pressure = beam.run.result().max_contact_pressure;
+  const std::size_t stick = beam.find(ContactStatus::stick, true),
+                    slip = beam.find(ContactStatus::slip, true);
+  SUBCASE("a free node moved") {
+    std::size_t i = beam.state.omega.size() / 2;
+    while (beam.run.part.held[i]) ++i;
+    beam.state.omega[i] += 1e-3;
+    const Certificate c = beam.certify();
+    CHECK(c.equilibrium > 1e-4);
+    CHECK(c.duality_gap > 1e-5);
+  }
+  SUBCASE("a node pushed into the obstacle") {
+    const ContactPoint& point = beam.run.part.contact[stick];
+    beam.state.omega[2 * static_cast<std::size_t>(point.node) + 1] -= 1e-3;
+    const Certificate c = beam.certify();
+    double largest = 0.0;
+    for (const double u : beam.state.omega) largest = std::max(largest, std::abs(u));
+    CHECK(c.penetration == doctest::Approx(1e-3 / largest).epsilon(1e-3));
+    CHECK(c.complementarity > 1e-6);
+  }
+  SUBCASE("an obstacle that pulls") {
+    beam.state.lambda.normal[stick] = -0.1 * pressure;
+    const Certificate c = beam.certify();
+    CHECK(c.tension == doctest::Approx(0.1).epsilon(1e-6));
+    CHECK(c.equilibrium > 1e-4);
+  }
+  SUBCASE("pressure across a gap") {
+    const std::size_t open = static_cast<std::size_t>(
+        std::max_element(beam.run.solution.gap.begin(), beam.run.solution.gap.end()) -
+        beam.run.solution.gap.begin());
+    REQUIRE(beam.run.solution.gap[open] > 1e-6);
+    beam.state.lambda.normal[open] = pressure;
+    CHECK(beam.certify().complementarity > 1e-8);
+    CHECK(beam.certify().tension == 0.0);
+  }
+  SUBCASE("friction beyond its bound") {
+    beam.state.lambda.tangential[2 * slip] *= 1.5;
+    CHECK(beam.certify().friction_cone == doctest::Approx(0.5 * 0.01 / pressure).epsilon(1e-3));
+  }
+  SUBCASE("friction along the slip") {
+    // Where the way is longest, most work is wrong.
+    const auto& slips = beam.state.trace.tangential;
+    const auto most = static_cast<std::size_t>(
+        std::max_element(slips.begin(), slips.end(),
+                         [](double a, double b) { return std::abs(a) < std::abs(b); }) -
+        slips.begin());
+    beam.state.lambda.tangential[most] *= -1.0;
+    const Certificate c = beam.certify();
+    CHECK(c.friction_cone < tolerance);
+    CHECK(c.complementarity > 1e-4);
+    CHECK(c.equilibrium > 1e-4);
+  }
+  SUBCASE("a node that sticks, moved") {
+    const ContactPoint& point = beam.run.part.contact[stick];
+    beam.state.omega[2 * static_cast<std::size_t>(point.node)] += 1e-3;
+    CHECK(beam.certify().complementarity > 1e-6);
+  }
+  SUBCASE("all multipliers forgotten") {
+    std::fill(beam.state.lambda.normal.begin(), beam.state.lambda.normal.end(), 0.0);
+    CHECK(beam.certify().equilibrium > 0.1);
+  }
+}
+
+TEST_CASE("a state that is not a number is the worst of all") {
+  Solved beam = solved_beam(0.0);
+  beam.state.omega[100] = NAN;
+  CHECK(std::isinf(beam.certify().worst()));
+}
+
+TEST_CASE("a run that is cut short says so") {
+  Model model = beam(2, logarithmic_law(0.01), 0.05, 0.01);
+  for (const int steps : {1, 2}) {
+    model.solver.max_outer = steps;
+    const Run run = run_alone(beam_mesh(2, 8), model);
+    CHECK(run.result().status == Status::not_converged);
+    CHECK(run.result().outer_iterations == steps);
+    CHECK(run.result().certificate.worst() > model.solver.tolerance);
+    CHECK(mentions(run.result().message, "above the tolerance"));
+    CHECK(run.result().r.size() == static_cast<std::size_t>(steps));
+  }
+}
+
+TEST_CASE(
+    "the stop by steps (15) with the r of (32) ends far from the solution, and is not called converged") {
+  Model model = beam(2, elastic_law(1.0, 0.3), 0.05);
+  model.solver.stop = SolverOptions::Stop::paper;
+  model.solver.penalty = SolverOptions::Penalty::paper;
+  model.solver.contact = SolverOptions::Contact::admm;
+  model.solver.tolerance = 1e-5;
+  const Run early = run_alone(beam_mesh(2, 16), model);
+  CHECK(early.result().status == Status::not_converged);
+  CHECK(early.result().certificate.worst() > 10 * model.solver.tolerance);
+  CHECK(mentions(early.result().message, "the step was small, the error is not"));
+  // The same iteration, judged by residuals, is far longer and right.
+  model.solver.stop = SolverOptions::Stop::kkt;
+  model.solver.tolerance = 1e-6;
+  model.solver.relaxation = 1.0;
+  const Run exact = run_alone(beam_mesh(2, 16), model);
+  CHECK(exact.result().status == Status::converged);
+  CHECK(exact.result().contact_iterations > 3 * early.result().contact_iterations);
+  CHECK(distance(early.probe(), exact.probe()) > 1e-5 * length(exact.probe()));
+}

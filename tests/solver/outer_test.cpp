@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The outer loop: energy along Kacanov's steps, and answers that do not depend on how the mesh is written
+// down.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "support.hpp"
+
+using namespace kacanov;
+using namespace kacanov::testing;
+
+namespace {
+
+/// Stored energy less the work of the loads.
+double total_energy(const Run& run) {
+  double work = 0.0;
+  for (std::size_t i = 0; i < run.part.unknowns(); ++i)
+    work += run.part.load[i] * run.solution.displacement[i];
+  return reference::energy(run.part.body(), run.solution.displacement) - work;
+}
+
+std::vector<Law> laws() {
+  Law power = elastic_law(1.0, 0.3), saturating = elastic_law(1.0, 0.3);
+  power.kind = Law::Kind::power;
+  power.x0 = 0.01;
+  power.n = 0.4;
+  saturating.kind = Law::Kind::saturating;
+  saturating.x0 = 0.01;
+  saturating.q = 5.0;
+  return {logarithmic_law(0.01), hardening_law(0.01, 0.1), power, saturating};
+}
+
+/// The mesh with nodes, elements and the corners within an element written down in another order.
+Mesh shuffled(const Mesh& mesh, unsigned seed) {
+  std::mt19937 engine(seed);
+  const auto dim = static_cast<std::size_t>(mesh.dim());
+  const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  std::vector<std::int32_t> node(mesh.node_count()), element(mesh.element_count());
+  std::iota(node.begin(), node.end(), 0);
+  std::iota(element.begin(), element.end(), 0);
+  std::shuffle(node.begin(), node.end(), engine);
+  std::shuffle(element.begin(), element.end(), engine);
+  Mesh other;
+  other.type = mesh.type;
+  other.coordinates.resize(mesh.coordinates.size());
+  for (std::size_t i = 0; i < node.size(); ++i)
+    for (std::size_t c = 0; c < dim; ++c)
+      other.coordinates[static_cast<std::size_t>(node[i]) * dim + c] = mesh.coordinates[i * dim + c];
+  for (const auto e : element) {
+    std::vector<std::int32_t> corners;
+    for (std::size_t a = 0; a < npe; ++a)
+      corners.push_back(node[static_cast<std::size_t>(mesh.elements[static_cast<std::size_t>(e) * npe + a])]);
+    std::rotate(corners.begin(), corners.begin() + 1, corners.begin() + 3);  // even: the orientation stays
+    other.elements.insert(other.elements.end(), corners.begin(), corners.end());
+  }
+  find_boundary(other);
+  check_mesh(other);
+  return other;
+}
+
+}  // namespace
+
+TEST_CASE("the energy falls with every step of Kacanov's method") {
+  for (const int dim : {2, 3})
+    for (const Law& law : laws()) {
+      CAPTURE(dim);
+      CAPTURE(static_cast<int>(law.kind));
+      Model model = beam(dim, law, 0.003);
+      model.contact.clear();
+      model.solver.outer = SolverOptions::Outer::kacanov;
+      double before = 0.0;
+      for (int steps = 1; steps <= 8; ++steps) {
+        model.solver.max_outer = steps;
+        const Run run = run_alone(beam_mesh(dim, dim == 2 ? 4 : 2), model);
+        if (run.result().outer_iterations < steps) break;
+        const double energy = total_energy(run);
+        CAPTURE(steps);
+        CHECK(energy < before + 1e-14 * std::abs(before));
+        before = energy;
+      }
+      CHECK(before < 0.0);
+    }
+}
+
+TEST_CASE("Newton and Kacanov end at the same minimum") {
+  for (const Law& law : laws()) {
+    CAPTURE(static_cast<int>(law.kind));
+    Model model = beam(3, law, 0.003);
+    model.contact.clear();
+    model.solver.tolerance = 1e-8;
+    model.solver.outer = SolverOptions::Outer::newton;
+    const Run newton = run_alone(beam_mesh(3, 2), model);
+    model.solver.outer = SolverOptions::Outer::kacanov;
+    model.solver.max_outer = 400;
+    const Run kacanov = run_alone(beam_mesh(3, 2), model);
+    CHECK(newton.result().status == Status::converged);
+    CHECK(kacanov.result().status == Status::converged);
+    CHECK(newton.result().outer_iterations <= kacanov.result().outer_iterations);
+    CHECK(distance(newton.probe(), kacanov.probe()) < 1e-5 * length(newton.probe()));
+    CHECK(total_energy(newton) == doctest::Approx(total_energy(kacanov)).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("numbering changes nothing but rounding") {
+  for (const int dim : {2, 3}) {
+    CAPTURE(dim);
+    Model model = beam(dim, logarithmic_law(0.01), 0.05, 0.01);
+    model.solver.tolerance = 1e-8;
+    const Mesh mesh = beam_mesh(dim, dim == 2 ? 8 : 3);
+    const Run first = run_alone(mesh, model), second = run_alone(shuffled(mesh, 17), model);
+    CHECK(first.result().status == Status::converged);
+    CHECK(second.result().status == Status::converged);
+    CHECK(distance(first.probe(), second.probe()) < 1e-6 * length(first.probe()));
+    CHECK(distance(first.result().contact_force, second.result().contact_force) <
+          1e-6 * length(first.result().contact_force));
+    CHECK(std::abs(first.result().slip_nodes - second.result().slip_nodes) <= 1);
+    CHECK(std::abs(first.result().plastic_elements - second.result().plastic_elements) <= 1);
+  }
+}
+
+TEST_CASE("a run repeats itself bit by bit") {
+  Model model = beam(3, logarithmic_law(0.01), 0.05, 0.01);
+  for (const int threads : {1, 2}) {
+    RunOptions options;
+    options.threads = threads;
+    const Run first = run_alone(beam_mesh(3, 3), model, options),
+              second = run_alone(beam_mesh(3, 3), model, options);
+    CHECK(first.solution.displacement == second.solution.displacement);
+  }
+}
+
+TEST_CASE("units of length and force scale out") {
+  const double length_unit = 1e3, stress_unit = 1e-5;
+  Model model = beam(2, logarithmic_law(0.01), 0.05, 0.01), scaled = model;
+  scaled.materials[0].law = logarithmic_law(0.01, stress_unit);
+  (*scaled.boundary[1].traction)[1] *= stress_unit;
+  scaled.contact[0].friction->tresca *= stress_unit;
+  const auto grow = [&](Vector3& x) {
+    for (double& v : x) v *= length_unit;
+  };
+  for (Selector* on : {&scaled.boundary[0].on, &scaled.boundary[1].on, &scaled.contact[0].on}) {
+    grow(on->lower);
+    grow(on->upper);
+  }
+  grow(scaled.probes[0]);
+  Mesh large = beam_mesh(2, 8);
+  for (double& x : large.coordinates) x *= length_unit;
+  const Run first = run_alone(beam_mesh(2, 8), model), second = run_alone(std::move(large), scaled);
+  CHECK(first.result().status == Status::converged);
+  CHECK(second.result().status == Status::converged);
+  for (std::size_t c = 0; c < 2; ++c)
+    CHECK(second.probe()[c] / length_unit == doctest::Approx(first.probe()[c]).epsilon(1e-5));
+  CHECK(second.result().r_star ==
+        doctest::Approx(first.result().r_star * stress_unit / length_unit).epsilon(1e-2));
+}
+
+TEST_CASE("softening of the squared argument is reported") {
+  Model model = beam(2, logarithmic_law(1e-4), 0.005);
+  model.materials[0].law.argument = Law::Argument::squared;
+  model.materials[0].law.x0 = 1e-6;
+  model.contact.clear();
+  model.solver.max_outer = 20;
+  const Run run = run_alone(beam_mesh(2, 4), model);
+  REQUIRE(run.result().softening_elements > 0);
+  CHECK(mentions(run.result().message, "softening"));
+}
