@@ -10,3 +10,8 @@ foreach(area program_errors program_runs)
   add_dependencies(test_${area} kacanov)
   set_tests_properties(${area} PROPERTIES PROCESSORS 2)
 endforeach()
+
+kacanov_test(gmsh
+  SOURCES tools/mesh_roundtrip.cpp tools/mesh_messages.cpp tools/mesh_writer.cpp
+  LIBRARIES kacanov_io)
+target_compile_definitions(test_gmsh PRIVATE KACANOV_EXAMPLES="${PROJECT_SOURCE_DIR}/tools/examples")
