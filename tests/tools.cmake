@@ -15,3 +15,5 @@ kacanov_test(gmsh
   SOURCES tools/mesh_roundtrip.cpp tools/mesh_messages.cpp tools/mesh_writer.cpp
   LIBRARIES kacanov_io)
 target_compile_definitions(test_gmsh PRIVATE KACANOV_EXAMPLES="${PROJECT_SOURCE_DIR}/tools/examples")
+
+kacanov_test(vtu SOURCES tools/vtu_test.cpp LIBRARIES kacanov_io)
