@@ -17,3 +17,5 @@ kacanov_test(gmsh
 target_compile_definitions(test_gmsh PRIVATE KACANOV_EXAMPLES="${PROJECT_SOURCE_DIR}/tools/examples")
 
 kacanov_test(vtu SOURCES tools/vtu_test.cpp LIBRARIES kacanov_io)
+
+kacanov_test(picture SOURCES tools/picture_test.cpp LIBRARIES kacanov_io)

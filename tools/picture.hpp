@@ -39,12 +39,12 @@ struct SweepPicture {
   std::vector<bool> converged;
   struct Mark {
     std::string name;  ///< what follows an underscore becomes a subscript: "r_A"
-    double value;      ///< > 0
+    double value;      ///< not drawn unless > 0
   };
   std::vector<Mark> marks;  ///< vertical lines
 };
 
-/// Throws InternalError if the vectors are empty or differ in length, or an r or mark is not positive.
+/// Throws InternalError if the vectors are empty or differ in length, or an r is not positive.
 std::string sweep_svg(const SweepPicture& picture);
 
 }  // namespace kacanov

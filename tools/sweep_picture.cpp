@@ -2,6 +2,7 @@
 // The picture of a sweep: two panels over one logarithmic axis of r.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "error.hpp"
@@ -72,15 +73,14 @@ LogAxis axis_of(const std::vector<double>& values, double begin, double end) {
   return low == 0 ? LogAxis(1, 1, begin, end) : LogAxis(low, high, begin, end);
 }
 
+bool drawable(double v) { return v > 0 && std::isfinite(v); }
+
 void check(const SweepPicture& picture) {
   const std::size_t n = picture.r.size();
   if (n == 0 || picture.iterations.size() != n || picture.seconds.size() != n ||
       picture.converged.size() != n)
     throw InternalError("sweep picture: the vectors are empty or of different length");
-  const auto positive = [](double v) { return v > 0 && std::isfinite(v); };
-  if (!std::all_of(picture.r.begin(), picture.r.end(), positive) ||
-      !std::all_of(picture.marks.begin(), picture.marks.end(),
-                   [&](const SweepPicture::Mark& m) { return positive(m.value); }))
+  if (!std::all_of(picture.r.begin(), picture.r.end(), drawable))
     throw InternalError("sweep picture: expected r > 0");
 }
 
@@ -120,7 +120,8 @@ class Drawing {
  private:
   static std::vector<double> all_r(const SweepPicture& picture) {
     std::vector<double> r = picture.r;
-    for (const auto& mark : picture.marks) r.push_back(mark.value);
+    for (const auto& mark : picture.marks)
+      if (drawable(mark.value)) r.push_back(mark.value);
     return r;
   }
 
@@ -179,7 +180,9 @@ class Drawing {
   /// Vertical lines through both panels, their labels above in as many rows as they need.
   void marks() {
     const double base = top + 2 * panel_height + between;
-    auto sorted = picture_.marks;
+    std::vector<SweepPicture::Mark> sorted;
+    std::copy_if(picture_.marks.begin(), picture_.marks.end(), std::back_inserter(sorted),
+                 [](const auto& mark) { return drawable(mark.value); });
     std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.value < b.value; });
     double row_end = -1e9;
     int row = 0;
