@@ -11,6 +11,7 @@ namespace kacanov {
 
 int run_command(const Command& command, const Case& input, const MpiSession& mpi);
 int spectrum_command(const Command& command, const Case& input, const MpiSession& mpi);
+/// Not converged means here that no penalty led to convergence.
 int sweep_command(const Command& command, const Case& input, const MpiSession& mpi);
 /// Needs no MPI: everything happens on one rank.
 int check_command(const Case& input);

@@ -133,6 +133,9 @@ void set_mpi_environment() {
       // Containers forbid the system call behind single copies; shared memory alone does.
       {"OMPI_MCA_btl_vader_single_copy_mechanism", "none"},
       {"OMPI_MCA_btl", "self,vader"},
+      // Without these, even one process looks for ssh and starts a daemon.
+      {"OMPI_MCA_plm", "isolated"},
+      {"OMPI_MCA_ess_singleton_isolated", "1"},
       {"OMPI_MCA_pml", "ob1"},
       {"OMPI_MCA_btl_base_warn_component_unused", "0"},
       // Waiting ranks let others work: on a busy machine spinning ones hold up the run.
@@ -159,9 +162,14 @@ int run_under_mpiexec(const std::string& mpiexec, Shape shape, int argc, const c
   set_mpi_environment();
   setenv(started_mark, "1", 1);
 
-  struct sigaction action {};
+  struct sigaction action {
+  }, before{};
   action.sa_handler = pass_on;
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    // What was to be ignored, as under nohup, still is.
+    if (sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
+      sigaction(signal, &action, nullptr);
+  }
   const pid_t child = fork();
   if (child < 0) throw InternalError(std::string("cannot start mpiexec: ") + std::strerror(errno));
   if (child == 0) become_mpiexec(words);
