@@ -17,6 +17,8 @@ constexpr double inner_reduction = 0.2;
 /// AMG is rebuilt once a step needs this many CG iterations more than it would have right after the last setup: what
 /// a setup costs.
 constexpr double setup_worth = 5.0;
+/// AMG is rebuilt before a step where g has moved by this share in the mean.
+constexpr double drift_worth = 0.25;
 /// Contact iterations with (32) before the active set is good enough to estimate r_A from it.
 constexpr int settling_iterations = 25;
 /// Tolerance of the spectrum where only a penalty hangs on it.
@@ -25,6 +27,7 @@ constexpr double rough_spectrum = 0.1;
 constexpr double solve_reduction = 0.1;
 /// Newton steps without a new best residual before ADMM takes over.
 constexpr int patience = 6;
+constexpr int creep_patience = 2;
 constexpr int max_damping_trials = 6;
 /// A displacement of this many body sizes is a run that goes nowhere.
 constexpr double most_displacement = 1e3;
@@ -138,10 +141,14 @@ bool OuterLoop::improve_penalty(Result& result) {
   }
   const TraceRows held(part_, active), open(part_, free);
   if (held.total() == 0) return false;
-  Spectrum spectrum(part_, op_, *amg_, secant_, std::max(options_.spectrum_tolerance, rough_spectrum));
-  const Eigenvalue low = spectrum.smallest(held);
-  Eigenvalue high;
-  if (open.total() > 0) high = spectrum.largest(open, held, low.value > 0.0 ? 0.01 / low.value : 1.0, part_.loose_modes > 0);
+  // Where Newton does the rest, λ_min of all traces stands for λ_min(K_AA): both are the compliance of a mesh width.
+  const bool alone = options_.contact != SolverOptions::Contact::automatic &&
+                     options_.contact != SolverOptions::Contact::active_set;
+  Spectrum spectrum(part_, op_, *amg_, secant_, std::max(options_.spectrum_tolerance, alone ? rough_spectrum : 0.5));
+  Eigenvalue low{result.lambda_min, 0.0}, high;
+  if (alone) low = spectrum.smallest(held);
+  if (open.total() > 0)
+    high = spectrum.largest(open, held, low.value > 0.0 ? 0.01 / low.value : 1.0, part_.loose_modes > 0);
   preconditioner_stale_ = true;
   result.cg_iterations += spectrum.cost().cg_iterations;
   spectrum_seconds_ += MPI_Wtime() - before;
@@ -172,6 +179,19 @@ std::vector<NodeBlock> OuterLoop::penalty_blocks() const {
   return blocks;
 }
 
+/// Whether the secant has moved so far from the one the preconditioner was built with that a setup pays at once.
+bool OuterLoop::secant_drifted() const {
+  Vector now(secant_.size());
+  op_.local().secant(now);
+  std::array<double, 2> sums{};
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    sums[0] += std::abs(now[i] - secant_[i]);
+    sums[1] += secant_[i];
+  }
+  part_.halo.sum_all(sums);
+  return sums[0] > drift_worth * sums[1];
+}
+
 void OuterLoop::set_up_preconditioner(std::span<const NodeBlock> blocks, const Space& space) {
   op_.local().secant(secant_);
   amg_->setup(secant_, blocks, space);
@@ -194,12 +214,13 @@ void OuterLoop::take_admm_step(Result& result, ProgressStep& line, const Residua
   const bool by_step = options_.stop == SolverOptions::Stop::paper;
   const bool automatic = options_.penalty == SolverOptions::Penalty::automatic;
   const bool first = result.outer_iterations == 0;
+  const bool dual = options_.contact == SolverOptions::Contact::dual_admm;
   // The first step is elastic: prescribed displacements put in at once look like huge strains in the first
   // layer of elements. Later ones freeze g at the last iterate.
   op_.use_tangent(false);
   if (!first && !linear_) op_.update(state_.omega);
   if (!first && automatic && estimates_ == 0) improve_penalty(result);
-  if (preconditioner_stale_) set_up_preconditioner(penalty_blocks(), space_);
+  if (preconditioner_stale_ || (!first && !linear_ && secant_drifted())) set_up_preconditioner(penalty_blocks(), space_);
 
   AdmmOptions options;
   options.r = penalty_;
@@ -222,7 +243,6 @@ void OuterLoop::take_admm_step(Result& result, ProgressStep& line, const Residua
   if (first) op_.apply(state_.omega, internal_);  // the elastic force, not R(ω)
   for (std::size_t i = 0; i < work_.residual.size(); ++i) work_.residual[i] = part_.load[i] - internal_[i];
   traces_.add_force(state_.lambda, -1.0, work_.residual);
-  const bool dual = options_.contact == SolverOptions::Contact::dual_admm;
   const AdmmResult step = dual ? dual_admm(problem_, state_, work_, options) : admm(problem_, state_, work_, options);
   watch_preconditioner(step.cg_digits, step.cg_iterations);
   op_.residual(state_.omega, internal_);
@@ -254,7 +274,7 @@ void OuterLoop::take_newton_step(ProgressStep& line, const Residuals& before) {
     op_.update(state_.omega);
   }
   const ActiveSet set = decide(traces_, state_, penalty_.normal);
-  if (preconditioner_stale_) {
+  if (preconditioner_stale_ || (!linear_ && secant_drifted())) {
     Vector diagonal(part_.unknowns());
     op_.local().diagonal(diagonal);
     part_.halo.sum(diagonal, part_.dim());
@@ -290,8 +310,8 @@ void OuterLoop::run(Result& result) {
                                        options_.contact == SolverOptions::Contact::active_set);
   op_.residual(state_.omega, internal_);
   Residuals residuals = certify();
-  double best = HUGE_VAL;
-  int stalled = 0, retreat = 0, retreats = 0;
+  double best = HUGE_VAL, last_cone = 0.0;
+  int stalled = 0, creeping = 0, retreat = 0, retreats = 0;
   bool done = false;
   Vector previous;
   while (!done && result.outer_iterations < options_.max_outer) {
@@ -334,9 +354,14 @@ void OuterLoop::run(Result& result) {
     if (!newton) continue;
     stalled = worst < 0.7 * best ? 0 : stalled + 1;
     best = std::min(best, worst);
-    if (newton_failed_ || stalled >= patience || !std::isfinite(worst)) {
+    // Slip creeps inwards by one row of nodes a step where all nodes within stick too firmly: ADMM gives them way at once.
+    const Certificate& c = residuals.certificate;
+    creeping = c.friction_cone > std::max(10.0 * c.equilibrium, 0.5 * last_cone) ? creeping + 1 : 0;
+    last_cone = c.friction_cone;
+    if (newton_failed_ || stalled >= patience || creeping >= creep_patience || !std::isfinite(worst)) {
       // ADMM converges from anywhere; every retreat is longer than the last.
-      stalled = 0;
+      stalled = creeping = 0;
+      last_cone = 0.0;
       best = HUGE_VAL;
       retreat = 4 << std::min(retreats++, 6);
       preconditioner_stale_ = true;

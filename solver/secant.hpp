@@ -29,6 +29,7 @@ class OuterLoop {
   bool improve_penalty(Result& result);
   void set_up_preconditioner(std::span<const NodeBlock> blocks, const Space& space);
   std::vector<NodeBlock> penalty_blocks() const;
+  bool secant_drifted() const;
   void watch_preconditioner(double digits, std::int64_t iterations);
   void update_bounds();
   Residuals certify() const;
