@@ -8,7 +8,6 @@
 
 #include "error.hpp"
 #include "gmsh_cursor.hpp"
-#include "mapped_file.hpp"
 #include "node_index.hpp"
 
 namespace kacanov {
@@ -383,9 +382,8 @@ class Parser {
 
 }  // namespace
 
-GmshContent parse_gmsh(const std::string& path) {
-  const MappedFile file(path);
-  return Parser(path, file.bytes()).parse();
+GmshContent parse_gmsh(const std::string& path, std::string_view bytes) {
+  return Parser(path, bytes).parse();
 }
 
 }  // namespace kacanov

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "gmsh_content.hpp"
 
 namespace kacanov {
 
+/// `bytes` is the whole file, `path` its name in messages.
 /// Throws InputError naming the line (ASCII) or byte (binary) of what is wrong.
-GmshContent parse_gmsh(const std::string& path);
+GmshContent parse_gmsh(const std::string& path, std::string_view bytes);
 
 }  // namespace kacanov

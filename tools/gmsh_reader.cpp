@@ -7,6 +7,7 @@
 
 #include "error.hpp"
 #include "gmsh_parser.hpp"
+#include "mapped_file.hpp"
 
 namespace kacanov {
 namespace {
@@ -209,7 +210,12 @@ bool plain_numbers(const std::vector<std::int64_t>& tags) {
 }  // namespace
 
 Mesh read_gmsh(const std::string& path) {
-  GmshContent content = parse_gmsh(path);
+  const MappedFile file(path);
+  return read_gmsh(path, file.bytes());
+}
+
+Mesh read_gmsh(const std::string& path, std::string_view bytes) {
+  GmshContent content = parse_gmsh(path, bytes);
   const GmshShape body = body_shape(path, content);
   Mesh mesh;
   mesh.type = element_type(body);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "mesh.hpp"
 
@@ -15,5 +16,7 @@ namespace kacanov {
 /// yet checked: see check_mesh. Throws InputError: `path: line N: ...` (ASCII), `path: byte N: ...` (binary),
 /// or naming the element or node.
 Mesh read_gmsh(const std::string& path);
+/// The same from the bytes of a file; `name` takes the place of its path in messages.
+Mesh read_gmsh(const std::string& name, std::string_view bytes);
 
 }  // namespace kacanov
