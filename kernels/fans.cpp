@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 
 namespace kacanov {
 namespace {
@@ -107,7 +106,7 @@ struct Cover {
   std::vector<Arc> arcs;
 
   void add_fan(bool closed, Index p, Index q, std::span<const Arc> chain) {
-    constexpr std::size_t longest = std::numeric_limits<std::uint8_t>::max();
+    constexpr auto longest = static_cast<std::size_t>(simd::longest_fan);
     if (chain.size() > longest) {
       add_fan(false, p, q, chain.first(longest));
       add_fan(false, p, q, chain.subspan(longest));

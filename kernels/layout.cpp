@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <map>
 #include <tuple>
 
@@ -111,14 +110,13 @@ struct Builder {
       }
     };
     if (body.mesh.type != ElementType::tet4) return classes;
-    constexpr int longest = std::numeric_limits<std::uint8_t>::max();
     std::vector<std::uint16_t> laws;
     for (const auto& [key, pieces] : classes)
       if (laws.empty() || laws.back() != std::get<0>(key)) laws.push_back(std::get<0>(key));
     for (const std::uint16_t law : laws) {
-      for (int length = longest; length >= 3; --length)
+      for (int length = simd::longest_fan; length >= 3; --length)
         cut_rest(law, Shape::closed_fan, static_cast<std::uint8_t>(length));
-      for (int length = longest; length >= 2; --length)
+      for (int length = simd::longest_fan; length >= 2; --length)
         cut_rest(law, Shape::open_fan, static_cast<std::uint8_t>(length));
     }
     return classes;

@@ -51,6 +51,9 @@ struct Block {
   std::uint32_t padding;  ///< records behind `count` that lanes without a unit work on
 };
 
+/// Tetrahedra of the longest fan: the loops keep the geometry of a batch of them.
+inline constexpr int longest_fan = 16;
+
 /// What the nonlinear pass leaves behind, besides forces.
 struct Nonlinear {
   bool keep_secant = false;

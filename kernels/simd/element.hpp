@@ -49,7 +49,7 @@ inline void element_loop(const Block<Real>& block, const Group& group, const Mat
       cross(j[1], j[2], c[0]);
       cross(j[2], j[0], c[1]);
       cross(j[0], j[1], c[2]);
-      const V det = inner(j[0], c[0]);
+      const V det = inner(j[0], c[0]), w = Real(E::weight) / det;
       for (int v = 0; v < vectors; ++v) {
         V h[9] = {};
         for (int k = 0; k < E::dim; ++k) {
@@ -59,7 +59,7 @@ inline void element_loop(const Block<Real>& block, const Group& group, const Mat
           for (int i = 0; i < E::dim; ++i)
             for (int m = 0; m < E::dim; ++m) h[3 * i + m] += slope[i] * c[k][m];
         }
-        const Sym<V> s = material.stress(h, det, Real(E::weight), point);
+        const Sym<V> s = material.stress(h, det, w, Real(E::weight), point);
         for (int k = 0; k < E::dim; ++k) {
           V t[3];
           multiply(s, c[k], t);

@@ -18,98 +18,143 @@ KACANOV_INLINE inline V inner(const V* a, const V* b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// A ring node: its edge from p, q's edge × that, and for each right side its displacement over p's and
-/// the force gathered so far.
-template <class V, int vectors>
-struct RingNode {
-  V e[3], w[3], d[vectors][3], f[vectors][3];
+/// e_i × e_{i+1}, the point's weight over the determinant, and that.
+template <class V>
+struct Wedge {
+  V c[3], w, det;
 };
 
-/// Two cross products a tetrahedron instead of three: those with the edge pq serve both neighbours. p takes
-/// minus the sum of all other forces.
-template <class L, class Real, bool closed, int vectors, class Material>
+/// The geometry of a batch of fans, with edges e_i = r_i − p and e_q = q − p: e_q × e_i for every ring node,
+/// a wedge for every tetrahedron.
+template <class V>
+struct FanGeometry {
+  V spoke[longest_fan + 1][3];
+  Wedge<V> wedge[longest_fan];
+};
+
+template <class L, class Real, bool closed, class V = typename L::V>
+KACANOV_INLINE inline void measure_fan(const Real* coordinates, const std::uint16_t* at, int length,
+                                       FanGeometry<V>& geometry) {
+  V p[3], eq[3], e[3], first[3];
+  const std::uint16_t* ring = at + 2 * L::width;
+  L::load3(coordinates, at, p);
+  L::load3(coordinates, at + L::width, eq);
+  L::load3(coordinates, ring, e);
+  for (int k = 0; k < 3; ++k) eq[k] -= p[k], e[k] -= p[k], first[k] = e[k];
+  cross(eq, e, geometry.spoke[0]);
+  const auto measure = [&](const V* a, const V* b, Wedge<V>& wedge) __attribute__((always_inline)) {
+    cross(a, b, wedge.c);
+    wedge.det = inner(eq, wedge.c);
+    wedge.w = Real(1.0 / 6.0) / wedge.det;
+  };
+  const int ring_nodes = length + (closed ? 0 : 1);
+#pragma GCC unroll 8
+  for (int i = 1; i < ring_nodes; ++i) {
+    V next[3];
+    L::load3(coordinates, ring + i * L::width, next);
+    for (int k = 0; k < 3; ++k) next[k] -= p[k];
+    cross(eq, next, geometry.spoke[i]);
+    measure(e, next, geometry.wedge[i - 1]);
+    for (int k = 0; k < 3; ++k) e[k] = next[k];
+  }
+  if constexpr (closed) measure(e, first, geometry.wedge[length - 1]);
+}
+
+/// Forces of one right side. p takes minus the sum of all others. A ring node's force is stored one step
+/// late, when it has long been ready.
+template <class L, class Real, bool closed, class Material, class V = typename L::V>
+KACANOV_INLINE inline void load_fan(const Material& material, const FanGeometry<V>& geometry,
+                                    std::size_t point, const std::uint16_t* at, int length, const Real* u,
+                                    Real* f) {
+  const std::uint16_t* ring = at + 2 * L::width;
+  V p[3], dq[3], d[3], first[3];
+  V fq[3] = {}, carry[3] = {}, done[3] = {}, first_force[3] = {}, sum[3] = {};
+  L::load3(u, at, p);
+  L::load3(u, at + L::width, dq);
+  L::load3(u, ring, d);
+  for (int k = 0; k < 3; ++k) dq[k] -= p[k], d[k] -= p[k], first[k] = d[k];
+#pragma GCC unroll 8
+  for (int i = 0; i < length; ++i) {
+    const bool closing = closed && i == length - 1;
+    const V* spoke = geometry.spoke[i];
+    const V* next_spoke = geometry.spoke[closing ? 0 : i + 1];
+    const Wedge<V>& wedge = geometry.wedge[i];
+    V next[3];
+    if (closing) {
+      for (int k = 0; k < 3; ++k) next[k] = first[k];
+    } else {
+      L::load3(u, ring + (i + 1) * L::width, next);
+      for (int k = 0; k < 3; ++k) next[k] -= p[k];
+    }
+    V h[9];
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c)
+        h[3 * r + c] = dq[r] * wedge.c[c] - d[r] * next_spoke[c] + next[r] * spoke[c];
+    if (i > 1) L::add3(f, ring + (i - 1) * L::width, done);
+    const Sym<V> s =
+        material.stress(h, wedge.det, wedge.w, Real(1.0 / 6.0), point + static_cast<std::size_t>(i));
+    subtract_product(s, next_spoke, carry);
+    for (int k = 0; k < 3; ++k) {
+      sum[k] += carry[k];
+      if (i == 0)
+        first_force[k] = carry[k];
+      else
+        done[k] = carry[k];
+    }
+    add_product(s, wedge.c, fq);
+    multiply(s, spoke, carry);
+    for (int k = 0; k < 3; ++k) d[k] = next[k];
+  }
+  if (length > 1) L::add3(f, ring + (length - 1) * L::width, done);
+  if constexpr (closed)
+    for (int k = 0; k < 3; ++k) first_force[k] += carry[k];
+  else
+    L::add3(f, ring + length * L::width, carry);
+  L::add3(f, ring, first_force);
+  L::add3(f, at + L::width, fq);
+  for (int k = 0; k < 3; ++k) sum[k] = -(sum[k] + carry[k] + fq[k]);
+  L::add3(f, at, sum);
+}
+
+/// Geometry first, kept in the first-level cache, then every right side: the divisions no longer hold up the
+/// stresses behind them (a processor looks ahead some 60 vector operations, less than one tetrahedron), which
+/// took the loop from 149 to 113 cycles for 8 tetrahedra (Zen 4; 81 multiply-adds are the floor). A `fixed`
+/// length above zero unrolls the ring, worth 15 %.
+template <class L, class Real, bool closed, int vectors, int fixed, class Material>
 inline void fan_loop(const Block<Real>& block, const Group& group, const Material& material, const Real* u,
                      Real* f, std::size_t stride) {
-  using V = typename L::V;
-  constexpr int width = L::width;
-  const int length = group.length, nodes = length + (closed ? 2 : 3);
+  const int length = fixed > 0 ? fixed : int{group.length};
   const std::uint16_t* at = block.index + group.first_index;
   std::size_t point = 0;
-  for (std::uint32_t batch = 0; batch < group.batches; ++batch, at += nodes * width) {
-    V p[3], up[vectors][3], eq[3], dq[vectors][3], fq[vectors][3] = {}, sum[vectors][3] = {};
-    L::load3(block.coordinates, at, p);
-    L::load3(block.coordinates, at + width, eq);
-    for (int k = 0; k < 3; ++k) eq[k] -= p[k];
-    for (int v = 0; v < vectors; ++v) {
-      L::load3(u + v * stride, at, up[v]);
-      L::load3(u + v * stride, at + width, dq[v]);
-      for (int k = 0; k < 3; ++k) dq[v][k] -= up[v][k];
-    }
-    const auto load_ring = [&](const std::uint16_t* node, RingNode<V, vectors>& r)
-        __attribute__((always_inline)) {
-      L::load3(block.coordinates, node, r.e);
-      for (int k = 0; k < 3; ++k) r.e[k] -= p[k];
-      for (int v = 0; v < vectors; ++v) {
-        L::load3(u + v * stride, node, r.d[v]);
-        for (int k = 0; k < 3; ++k) r.d[v][k] -= up[v][k];
-      }
-      cross(eq, r.e, r.w);
-    };
-    const auto tetrahedron = [&](RingNode<V, vectors> & a, RingNode<V, vectors> & b)
-        __attribute__((always_inline)) {
-      V c[3];
-      cross(a.e, b.e, c);
-      const V det = inner(eq, c);
-      for (int v = 0; v < vectors; ++v) {
-        V h[9];
-        for (int i = 0; i < 3; ++i)
-          for (int j = 0; j < 3; ++j)
-            h[3 * i + j] = dq[v][i] * c[j] - a.d[v][i] * b.w[j] + b.d[v][i] * a.w[j];
-        const Sym<V> s = material.stress(h, det, Real(1.0 / 6.0), point);
-        V t[3];
-        multiply(s, c, t);
-        for (int k = 0; k < 3; ++k) fq[v][k] += t[k];
-        multiply(s, b.w, t);
-        for (int k = 0; k < 3; ++k) a.f[v][k] -= t[k];
-        multiply(s, a.w, b.f[v]);
-      }
-      ++point;
-    };
-    const auto store_ring = [&](const std::uint16_t* node, const RingNode<V, vectors>& r)
-        __attribute__((always_inline)) {
-      for (int v = 0; v < vectors; ++v) {
-        L::add3(f + v * stride, node, r.f[v]);
-        for (int k = 0; k < 3; ++k) sum[v][k] += r.f[v][k];
-      }
-    };
-    const std::uint16_t* ring = at + 2 * width;
-    RingNode<V, vectors> first, last, next;
-    load_ring(ring, first);
-    for (int v = 0; v < vectors; ++v)
-      for (int k = 0; k < 3; ++k) first.f[v][k] = V{};
-    load_ring(ring + width, last);
-    tetrahedron(first, last);
-    for (int i = 2; i < length + (closed ? 0 : 1); ++i) {
-      load_ring(ring + i * width, next);
-      tetrahedron(last, next);
-      store_ring(ring + (i - 1) * width, last);
-      last = next;
-    }
-    const std::uint16_t* end = ring + (closed ? length - 1 : length) * width;
-    if constexpr (closed) {
-      RingNode<V, vectors> again = first;
-      tetrahedron(last, again);
-      for (int v = 0; v < vectors; ++v)
-        for (int k = 0; k < 3; ++k) first.f[v][k] += again.f[v][k];
-    }
-    store_ring(end, last);
-    store_ring(ring, first);
-    for (int v = 0; v < vectors; ++v) {
-      L::add3(f + v * stride, at + width, fq[v]);
-      for (int k = 0; k < 3; ++k) sum[v][k] = -(sum[v][k] + fq[v][k]);
-      L::add3(f + v * stride, at, sum[v]);
+  for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
+    FanGeometry<typename L::V> geometry;
+    measure_fan<L, Real, closed>(block.coordinates, at, length, geometry);
+    for (std::size_t v = 0; v < vectors; ++v)
+      load_fan<L, Real, closed>(material, geometry, point, at, length, u + v * stride, f + v * stride);
+    at += (length + (closed ? 2 : 3)) * L::width;
+    point += static_cast<std::size_t>(length);
+  }
+}
+
+/// The lengths that make up most of a mesh have loops of their own; several right sides and the true law,
+/// which are bound by other things, do with one for all.
+template <class L, class Real, bool closed, int vectors, class Material>
+inline void fan_loop_of_length(const Block<Real>& block, const Group& group, const Material& material,
+                               const Real* u, Real* f, std::size_t stride) {
+  const auto run = [&]<int fixed>() {
+    fan_loop<L, Real, closed, vectors, fixed>(block, group, material, u, f, stride);
+  };
+  if constexpr (vectors == 1 && Material::frozen) {
+    switch (group.length - (closed ? 3 : 0)) {
+      case 1: return run.template operator()<1 + (closed ? 3 : 0)>();
+      case 2: return run.template operator()<2 + (closed ? 3 : 0)>();
+      case 3: return run.template operator()<3 + (closed ? 3 : 0)>();
+      case 4: return run.template operator()<4 + (closed ? 3 : 0)>();
+      case 5: return run.template operator()<5 + (closed ? 3 : 0)>();
+      default: break;
     }
   }
+  run.template operator()<0>();
 }
 
 }  // namespace

@@ -68,8 +68,12 @@ struct Loops {
       const Group& group = block.groups[i];
       const auto material = make(group);
       switch (group.shape) {
-        case Shape::open_fan: fan_loop<L, Real, false, vectors>(block, group, material, u, f, stride); break;
-        case Shape::closed_fan: fan_loop<L, Real, true, vectors>(block, group, material, u, f, stride); break;
+        case Shape::open_fan:
+          fan_loop_of_length<L, Real, false, vectors>(block, group, material, u, f, stride);
+          break;
+        case Shape::closed_fan:
+          fan_loop_of_length<L, Real, true, vectors>(block, group, material, u, f, stride);
+          break;
         case Shape::tri3: element_loop<L, Real, Tri3, vectors>(block, group, material, u, f, stride); break;
         case Shape::tet10:
         case Shape::curved_tet10:

@@ -10,6 +10,7 @@ namespace {
 using kacanov::simd::Block;
 using kacanov::simd::Group;
 using kacanov::simd::LawView;
+using kacanov::simd::longest_fan;
 using kacanov::simd::Nonlinear;
 
 /// Symmetric tensor of vectors.
@@ -26,9 +27,24 @@ KACANOV_INLINE inline void multiply(const Sym<V>& s, const V* n, V* v) {
   v[2] = s.zx * n[0] + s.yz * n[1] + s.zz * n[2];
 }
 
+/// v += s n.
+template <class V>
+KACANOV_INLINE inline void add_product(const Sym<V>& s, const V* n, V* v) {
+  v[0] = v[0] + s.xx * n[0] + s.xy * n[1] + s.zx * n[2];
+  v[1] = v[1] + s.xy * n[0] + s.yy * n[1] + s.yz * n[2];
+  v[2] = v[2] + s.zx * n[0] + s.yz * n[1] + s.zz * n[2];
+}
+/// v -= s n.
+template <class V>
+KACANOV_INLINE inline void subtract_product(const Sym<V>& s, const V* n, V* v) {
+  v[0] = v[0] - s.xx * n[0] - s.xy * n[1] - s.zx * n[2];
+  v[1] = v[1] - s.xy * n[0] - s.yy * n[1] - s.yz * n[2];
+  v[2] = v[2] - s.zx * n[0] - s.yz * n[1] - s.zz * n[2];
+}
+
 // A material turns h = det ∇u (h[3 i + j] = det ∂u_i/∂x_j) at one point of each lane into
-// weight·τ: forces are that times det ∇N. `weight` is the point's on the reference element. `slot` counts
-// vectors of points from the start of the block.
+// weight·τ: forces are that times det ∇N. `weight` is the point's on the reference element, `w` = weight/det.
+// `point` counts vectors of points from the start of the group.
 
 template <class L, class Real, class V = typename L::V>
 KACANOV_INLINE inline Sym<V> frozen_stress(const V* h, V g, V bulk, V w) {
@@ -40,6 +56,7 @@ KACANOV_INLINE inline Sym<V> frozen_stress(const V* h, V g, V bulk, V w) {
 
 template <class L, class Real>
 struct SecantMaterial {
+  static constexpr bool frozen = true;
   using V = typename L::V;
   const Real* secant;
   V bulk;
@@ -47,23 +64,23 @@ struct SecantMaterial {
   SecantMaterial(const Block<Real>& block, const Group& group)
       : secant(block.secant + group.first_slot), bulk(Real(block.laws[group.law].bulk) - V{}) {}
 
-  KACANOV_INLINE Sym<V> stress(const V* h, V det, Real weight, std::size_t point) const {
-    return frozen_stress<L, Real>(h, L::load(secant + point * L::width), bulk, weight / det);
+  KACANOV_INLINE Sym<V> stress(const V* h, V, V w, Real, std::size_t point) const {
+    return frozen_stress<L, Real>(h, L::load(secant + point * L::width), bulk, w);
   }
 };
 
 template <class L, class Real>
 struct TangentMaterial {
+  static constexpr bool frozen = true;
   using V = typename L::V;
-  SecantMaterial<L, Real> frozen;
+  SecantMaterial<L, Real> base;
   const float* tangent;
 
   TangentMaterial(const Block<Real>& block, const Group& group)
-      : frozen(block, group), tangent(block.tangent + 6 * std::size_t{group.first_slot}) {}
+      : base(block, group), tangent(block.tangent + 6 * std::size_t{group.first_slot}) {}
 
-  KACANOV_INLINE Sym<V> stress(const V* h, V det, Real weight, std::size_t point) const {
-    const V w = weight / det;
-    Sym<V> s = frozen_stress<L, Real>(h, L::load(frozen.secant + point * L::width), frozen.bulk, w);
+  KACANOV_INLINE Sym<V> stress(const V* h, V, V w, Real, std::size_t point) const {
+    Sym<V> s = frozen_stress<L, Real>(h, L::load(base.secant + point * L::width), base.bulk, w);
     const float* t = tangent + 6 * point * L::width;
     const V xx = L::widen(t), yy = L::widen(t + L::width), xy = L::widen(t + 2 * L::width),
             yz = L::widen(t + 3 * L::width), zx = L::widen(t + 4 * L::width), c = L::widen(t + 5 * L::width);
@@ -79,6 +96,7 @@ struct TangentMaterial {
 
 template <class L, class Real>
 struct NonlinearMaterial {
+  static constexpr bool frozen = false;
   using V = typename L::V;
   const LawView& law;
   Nonlinear& out;
@@ -91,8 +109,8 @@ struct NonlinearMaterial {
         secant(block.secant + group.first_slot),
         tangent(block.tangent + 6 * std::size_t{group.first_slot}) {}
 
-  KACANOV_INLINE Sym<V> stress(const V* h, V det, Real weight, std::size_t point) const {
-    const V inverse = Real(1) / det, half = Real(0.5) * inverse;
+  KACANOV_INLINE Sym<V> stress(const V* h, V det, V w, Real weight, std::size_t point) const {
+    const V inverse = w * (Real(1) / weight), half = Real(0.5) * inverse;
     const V trace = (h[0] + h[4] + h[8]) * inverse, mean = trace * Real(1.0 / 3.0);
     const V xx = h[0] * inverse - mean, yy = h[4] * inverse - mean, zz = h[8] * inverse - mean;
     const V xy = (h[1] + h[3]) * half, yz = (h[5] + h[7]) * half, zx = (h[2] + h[6]) * half;
@@ -108,7 +126,7 @@ struct NonlinearMaterial {
     for (int l = 0; l < L::width; ++l) out.energy += double(density[l]);
     if (out.keep_secant) L::store(secant + point * L::width, g);
     if (out.keep_tangent) keep(Sym<V>{xx, yy, zz, xy, yz, zx}, x, slope, tangent + 6 * point * L::width);
-    return frozen_stress<L, Real>(h, g, Real(law.bulk) - V{}, weight * inverse);
+    return frozen_stress<L, Real>(h, g, Real(law.bulk) - V{}, w);
   }
 
   /// The direction dev ε/x and 2 g' x; zero where g' is.
