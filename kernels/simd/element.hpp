@@ -27,49 +27,57 @@ constexpr ReferenceGradients<E, Real> reference_gradients() {
   return table;
 }
 
-template <class L, class Real, class E, int vectors, class Material>
+/// Geometry of all points first, then every right side, as for fans.
+template <class L, class Real, class E, class Material>
 inline void element_loop(const Block<Real>& block, const Group& group, const Material& material,
-                         const Real* u, Real* f, std::size_t stride) {
+                         const Real* u, Real* f, int vectors, std::size_t stride) {
   using V = typename L::V;
   constexpr int width = L::width;
   static constexpr auto gradients = reference_gradients<E, Real>();
   const std::uint16_t* at = block.index + group.first_index;
   std::size_t point = 0;
-  for (std::uint32_t batch = 0; batch < group.batches; ++batch, at += E::nodes * width) {
-    V x[E::nodes][3], d[vectors][E::nodes][3], force[vectors][E::nodes][3] = {};
-    for (int a = 0; a < E::nodes; ++a) L::load3(block.coordinates, at + a * width, x[a]);
-    for (int v = 0; v < vectors; ++v)
-      for (int a = 0; a < E::nodes; ++a) L::load3(u + v * stride, at + a * width, d[v][a]);
-    for (int q = 0; q < E::points; ++q, ++point) {
-      V j[3][3] = {}, c[3][3];  // ∂x/∂ξ_k, and what det ∇ξ_k is
-      for (int a = 0; a < E::nodes; ++a)
-        for (int k = 0; k < E::dim; ++k)
-          for (int i = 0; i < E::dim; ++i) j[k][i] += x[a][i] * gradients.at[q][a][k];
-      if constexpr (E::dim == 2) j[2][2] = Real(1) - V{};
-      cross(j[1], j[2], c[0]);
-      cross(j[2], j[0], c[1]);
-      cross(j[0], j[1], c[2]);
-      const V det = inner(j[0], c[0]), w = Real(E::weight) / det;
-      for (int v = 0; v < vectors; ++v) {
-        V h[9] = {};
-        for (int k = 0; k < E::dim; ++k) {
-          V slope[3] = {};
-          for (int a = 0; a < E::nodes; ++a)
-            for (int i = 0; i < E::dim; ++i) slope[i] += d[v][a][i] * gradients.at[q][a][k];
-          for (int i = 0; i < E::dim; ++i)
-            for (int m = 0; m < E::dim; ++m) h[3 * i + m] += slope[i] * c[k][m];
-        }
-        const Sym<V> s = material.stress(h, det, w, Real(E::weight), point);
-        for (int k = 0; k < E::dim; ++k) {
-          V t[3];
-          multiply(s, c[k], t);
-          for (int a = 0; a < E::nodes; ++a)
-            for (int i = 0; i < E::dim; ++i) force[v][a][i] += t[i] * gradients.at[q][a][k];
-        }
+  for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
+    V c[E::points][3][3], det[E::points], w[E::points];  // c: det ∇ξ_k
+    {
+      V x[E::nodes][3];
+      for (int a = 0; a < E::nodes; ++a) L::load3(block.coordinates, at + a * width, x[a]);
+      for (int q = 0; q < E::points; ++q) {
+        V j[3][3] = {};  // ∂x/∂ξ_k
+        for (int a = 0; a < E::nodes; ++a)
+          for (int k = 0; k < E::dim; ++k)
+            for (int i = 0; i < E::dim; ++i) j[k][i] += x[a][i] * gradients.at[q][a][k];
+        if constexpr (E::dim == 2) j[2][2] = Real(1) - V{};
+        for (int k = 0; k < 3; ++k) cross(j[(k + 1) % 3], j[(k + 2) % 3], c[q][k]);
+        det[q] = inner(j[0], c[q][0]);
+        w[q] = Real(E::weight) / det[q];
       }
     }
-    for (int v = 0; v < vectors; ++v)
-      for (int a = 0; a < E::nodes; ++a) L::add3(f + v * stride, at + a * width, force[v][a]);
+    for (int v = 0; v < vectors; ++v) {
+      const std::size_t offset = static_cast<std::size_t>(v) * stride;
+      V d[E::nodes][3], force[E::nodes][3] = {};
+      for (int a = 0; a < E::nodes; ++a) L::load3(u + offset, at + a * width, d[a]);
+      for (int q = 0; q < E::points; ++q) {
+        V h[9] = {};
+        for (int k = 0; k < E::dim; ++k) {
+          V slope[3] = {};  // ∂u/∂ξ_k
+          for (int a = 0; a < E::nodes; ++a)
+            for (int i = 0; i < E::dim; ++i) slope[i] += d[a][i] * gradients.at[q][a][k];
+          for (int i = 0; i < E::dim; ++i)
+            for (int m = 0; m < E::dim; ++m) h[3 * i + m] += slope[i] * c[q][k][m];
+        }
+        const Sym<V> s =
+            material.stress(h, det[q], w[q], Real(E::weight), point + static_cast<std::size_t>(q));
+        for (int k = 0; k < E::dim; ++k) {
+          V t[3];
+          multiply(s, c[q][k], t);
+          for (int a = 0; a < E::nodes; ++a)
+            for (int i = 0; i < E::dim; ++i) force[a][i] += t[i] * gradients.at[q][a][k];
+        }
+      }
+      for (int a = 0; a < E::nodes; ++a) L::add3(f + offset, at + a * width, force[a]);
+    }
+    at += E::nodes * width;
+    point += E::points;
   }
 }
 

@@ -120,17 +120,19 @@ KACANOV_INLINE inline void load_fan(const Material& material, const FanGeometry<
 /// stresses behind them (a processor looks ahead some 60 vector operations, less than one tetrahedron), which
 /// took the loop from 149 to 113 cycles for 8 tetrahedra (Zen 4; 81 multiply-adds are the floor). A `fixed`
 /// length above zero unrolls the ring, worth 15 %.
-template <class L, class Real, bool closed, int vectors, int fixed, class Material>
+template <class L, class Real, bool closed, int fixed, class Material>
 inline void fan_loop(const Block<Real>& block, const Group& group, const Material& material, const Real* u,
-                     Real* f, std::size_t stride) {
+                     Real* f, int vectors, std::size_t stride) {
   const int length = fixed > 0 ? fixed : int{group.length};
   const std::uint16_t* at = block.index + group.first_index;
   std::size_t point = 0;
   for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
     FanGeometry<typename L::V> geometry;
     measure_fan<L, Real, closed>(block.coordinates, at, length, geometry);
-    for (std::size_t v = 0; v < vectors; ++v)
-      load_fan<L, Real, closed>(material, geometry, point, at, length, u + v * stride, f + v * stride);
+    for (int v = 0; v < vectors; ++v) {
+      const std::size_t offset = static_cast<std::size_t>(v) * stride;
+      load_fan<L, Real, closed>(material, geometry, point, at, length, u + offset, f + offset);
+    }
     at += (length + (closed ? 2 : 3)) * L::width;
     point += static_cast<std::size_t>(length);
   }
@@ -138,13 +140,13 @@ inline void fan_loop(const Block<Real>& block, const Group& group, const Materia
 
 /// The lengths that make up most of a mesh have loops of their own; several right sides and the true law,
 /// which are bound by other things, do with one for all.
-template <class L, class Real, bool closed, int vectors, class Material>
+template <class L, class Real, bool closed, class Material>
 inline void fan_loop_of_length(const Block<Real>& block, const Group& group, const Material& material,
-                               const Real* u, Real* f, std::size_t stride) {
+                               const Real* u, Real* f, int vectors, std::size_t stride) {
   const auto run = [&]<int fixed>() {
-    fan_loop<L, Real, closed, vectors, fixed>(block, group, material, u, f, stride);
+    fan_loop<L, Real, closed, fixed>(block, group, material, u, f, vectors, stride);
   };
-  if constexpr (vectors == 1 && Material::frozen) {
+  if constexpr (Material::frozen) {
     switch (group.length - (closed ? 3 : 0)) {
       case 1: return run.template operator()<1 + (closed ? 3 : 0)>();
       case 2: return run.template operator()<2 + (closed ? 3 : 0)>();

@@ -61,44 +61,40 @@ struct Loops {
     return sum[0] + sum[1] + sum[2];
   }
 
-  template <int vectors, class MakeMaterial>
-  static void sweep(const Block<Real>& block, const Real* u, Real* f, std::size_t stride,
+  template <class MakeMaterial>
+  static void sweep(const Block<Real>& block, const Real* u, Real* f, int vectors, std::size_t stride,
                     MakeMaterial&& make) {
     for (std::size_t i = 0; i < block.group_count; ++i) {
       const Group& group = block.groups[i];
       const auto material = make(group);
+      const auto elements = [&]<class E>() {
+        element_loop<L, Real, E>(block, group, material, u, f, vectors, stride);
+      };
       switch (group.shape) {
         case Shape::open_fan:
-          fan_loop_of_length<L, Real, false, vectors>(block, group, material, u, f, stride);
+          fan_loop_of_length<L, Real, false>(block, group, material, u, f, vectors, stride);
           break;
         case Shape::closed_fan:
-          fan_loop_of_length<L, Real, true, vectors>(block, group, material, u, f, stride);
+          fan_loop_of_length<L, Real, true>(block, group, material, u, f, vectors, stride);
           break;
-        case Shape::tri3: element_loop<L, Real, Tri3, vectors>(block, group, material, u, f, stride); break;
+        case Shape::tri3: elements.template operator()<Tri3>(); break;
         case Shape::tet10:
-        case Shape::curved_tet10:
-          element_loop<L, Real, Tet10, vectors>(block, group, material, u, f, stride);
-          break;
-        case Shape::hex8: element_loop<L, Real, Hex8, vectors>(block, group, material, u, f, stride); break;
+        case Shape::curved_tet10: elements.template operator()<Tet10>(); break;
+        case Shape::hex8: elements.template operator()<Hex8>(); break;
       }
     }
   }
 
   static void apply(const Block<Real>& block, const Real* u, Real* f, int vectors, std::size_t stride) {
-    const auto make = [&](const Group& group) { return SecantMaterial<L, Real>(block, group); };
-    if (vectors == 1)
-      sweep<1>(block, u, f, stride, make);
-    else if (vectors == 2)
-      sweep<2>(block, u, f, stride, make);
-    else
-      sweep<4>(block, u, f, stride, make);
+    sweep(block, u, f, vectors, stride,
+          [&](const Group& group) { return SecantMaterial<L, Real>(block, group); });
   }
   static void apply_tangent(const Block<Real>& block, const Real* u, Real* f) {
-    sweep<1>(block, u, f, 0, [&](const Group& group) { return TangentMaterial<L, Real>(block, group); });
+    sweep(block, u, f, 1, 0, [&](const Group& group) { return TangentMaterial<L, Real>(block, group); });
   }
   static void nonlinear(const Block<Real>& block, const Real* u, Real* f, Nonlinear* out) {
-    sweep<1>(block, u, f, 0,
-             [&](const Group& group) { return NonlinearMaterial<L, Real>(block, group, *out); });
+    sweep(block, u, f, 1, 0,
+          [&](const Group& group) { return NonlinearMaterial<L, Real>(block, group, *out); });
   }
 
   static constexpr Kernels<Real> table{L::width, gather, scatter, dot, apply, apply_tangent, nonlinear};
