@@ -32,6 +32,11 @@ constexpr int max_damping_trials = 6;
 /// A displacement of this many body sizes is a run that goes nowhere.
 constexpr double most_displacement = 1e3;
 
+/// A contact set that differs from the one r_A was estimated for by less than this share has settled.
+constexpr double settled_share = 0.02;
+/// Estimates of r_A in one run.
+constexpr int most_estimates = 5;
+
 /// How much further than the tolerance the residuals have to fall for the duality gap to meet it. Where a body moves far
 /// and strains little, their work along the motion is large beside the stored energy.
 double gap_share(const Certificate& c) {
@@ -130,15 +135,23 @@ void OuterLoop::choose_first_penalty(Result& result) {
 
 bool OuterLoop::improve_penalty(Result& result) {
   if (part_.total_contact == 0 || options_.penalty != SolverOptions::Penalty::automatic) return false;
+  if (estimates_ >= most_estimates) return false;
   const double before = MPI_Wtime();
   std::vector<TraceChoice> active(part_.contact.size()), free(part_.contact.size());
+  double changes = 0.0;
   for (std::size_t i = 0; i < part_.contact.size(); ++i) {
     const bool pressed = state_.lambda.normal[i] > 0.0;
     const bool stick = std::hypot(state_.lambda.tangential[2 * i], state_.lambda.tangential[2 * i + 1]) <
                        state_.bound[i] * (1.0 - 1e-12);
     active[i] = {pressed, stick};
     free[i] = {!pressed, !stick};
+    if (estimates_ > 0 && i < traces_.owned())
+      changes += active[i].normal != estimated_set_[i].normal || active[i].tangential != estimated_set_[i].tangential;
   }
+  // r_A of a set that is far off can be ten times wrong: it is estimated again until the set has settled.
+  if (estimates_ > 0 && part_.halo.sum_all(changes) <= settled_share * static_cast<double>(part_.total_contact))
+    return false;
+  estimated_set_ = active;
   const TraceRows held(part_, active), open(part_, free);
   if (held.total() == 0) return false;
   // Where Newton does the rest, λ_min of all traces stands for λ_min(K_AA): both are the compliance of a mesh width.
@@ -219,7 +232,7 @@ void OuterLoop::take_admm_step(Result& result, ProgressStep& line, const Residua
   // layer of elements. Later ones freeze g at the last iterate.
   op_.use_tangent(false);
   if (!first && !linear_) op_.update(state_.omega);
-  if (!first && automatic && estimates_ == 0) improve_penalty(result);
+  if (!first && automatic) improve_penalty(result);
   if (preconditioner_stale_ || (!first && !linear_ && secant_drifted())) set_up_preconditioner(penalty_blocks(), space_);
 
   AdmmOptions options;

@@ -57,6 +57,7 @@ class OuterLoop {
   bool preconditioner_stale_ = true;
   double digits_per_cg_ = 0.0;   // right after the last setup
   int estimates_ = 0;            // of r_A
+  std::vector<TraceChoice> estimated_set_;  // that of the last one
   bool newton_failed_ = false;   // the last semismooth step could not be solved
   double extent_ = 0.0;           // of the body
   double spectrum_seconds_ = 0.0;
