@@ -211,3 +211,26 @@ TEST_CASE("rows of traces: transpose and pseudo-inverse") {
         penalty(3 * block.node + i, 3 * block.node + j) -= block.value[static_cast<std::size_t>(3 * i + j)];
   CHECK(penalty.norm() < 1e-12);
 }
+
+TEST_CASE("r_A of a run is that of its contact set") {
+  Model model = beam(2, elastic_law(1.0, 0.3), 0.05);
+  model.solver.contact = SolverOptions::Contact::admm;
+  const Run run = run_alone(beam_mesh(2, 8), model);
+  REQUIRE(run.result().status == Status::converged);
+  std::vector<double> g(run.part.body().secant_count());
+  reference::secant(run.part.body(), std::vector<double>(run.part.unknowns(), 0.0), g);
+  const auto components = free_components(run.part);
+  const Eigen::MatrixXd b = dense_stiffness(run.part, g)(components, components);
+  const Eigen::MatrixXd c = dense_traces(run.part, false)(Eigen::all, components);
+  const Eigen::MatrixXd k = c * b.ldlt().solve(c.transpose());
+  std::vector<int> active, open;
+  for (std::size_t i = 0; i < run.part.contact.size(); ++i)
+    (run.solution.pressure[i] > 0.0 ? active : open).push_back(static_cast<int>(i));
+  const Eigen::MatrixXd held = k(active, active);
+  const Eigen::MatrixXd rest = k(open, open) - k(open, active) * held.ldlt().solve(k(active, open));
+  const double low = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(held).eigenvalues().minCoeff();
+  const double high = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(rest).eigenvalues().maxCoeff();
+  // A node that changes sides moves it by a few per cent.
+  CHECK(run.result().r_active == doctest::Approx(1.0 / std::sqrt(low * high)).epsilon(0.15));
+  CHECK(run.result().r.back() == run.result().r_active);
+}
