@@ -280,12 +280,11 @@ void check_dimension(const Case& input, int dim) {
   }
 }
 
-void check_supported(const Model& model) {
+void check_supported(const SolverOptions& solver) {
   const auto refuse = [](const std::string& path, const std::string& value, const std::string& instead) {
     throw InputError(path + ": " + value + " is not available; use " + instead);
   };
   using Options = SolverOptions;
-  const Options& solver = model.solver;
   // Both are the semismooth Newton method, which has no use for Algorithm 1's loop and its stop.
   const bool by_step = solver.stop == Options::Stop::paper;
   if (solver.contact == Options::Contact::active_set && by_step) {
@@ -295,11 +294,6 @@ void check_supported(const Model& model) {
   if (solver.outer == Options::Outer::newton && (by_step || admm)) {
     const char* other = by_step ? "the stop \"paper\"" : "this value of solver.contact";
     refuse("solver.outer", std::string("\"newton\" together with ") + other, "\"auto\" or \"kacanov\"");
-  }
-  for (std::size_t i = 0; i < model.contact.size(); ++i) {
-    if (model.contact[i].friction && model.contact[i].friction->coulomb > 0.0) {
-      refuse("contact[" + std::to_string(i) + "].friction", "Coulomb friction", "\"tresca\"");
-    }
   }
 }
 

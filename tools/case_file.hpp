@@ -54,7 +54,7 @@ void apply_override(nlohmann::json& document, const std::string& assignment);
 /// Throws InputError naming the first vector that does not fit a mesh of this dimension.
 void check_dimension(const Case& input, int dim);
 
-/// Throws InputError naming the first thing the case asks for that the solver does not offer.
-void check_supported(const Model& model);
+/// Throws InputError naming the first combination of options that the solver does not offer.
+void check_supported(const SolverOptions& solver);
 
 }  // namespace kacanov

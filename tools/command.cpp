@@ -5,7 +5,10 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
 #include <sstream>
+
+#include "problem/closest_word.hpp"
 
 namespace kacanov {
 namespace {
@@ -35,6 +38,10 @@ void add_parallel(CLI::App& app, Command& command) {
 void add_output(CLI::App& app, Command& command) {
   app.add_option("--output", command.output, "folder for all files (default: results/<case name>)")
       ->type_name("DIR");
+}
+
+std::string usage_error(const std::string& what) {
+  return "kacanov: error: " + what + "; kacanov --help says more\n";
 }
 
 }  // namespace
@@ -77,6 +84,16 @@ ParsedCommand parse_command(int argc, const char* const* argv) {
   add_common(*check, command);
 
   ParsedCommand parsed;
+  const std::vector<std::string> names{"run", "spectrum", "sweep", "check"};
+  const std::string first = argc > 1 ? argv[1] : "";
+  if (!first.empty() && first[0] != '-' && std::find(names.begin(), names.end(), first) == names.end()) {
+    const std::string guess = closest_word(first, names);
+    parsed.error = usage_error("there is no command \"" + first + "\"" +
+                               (guess.empty() ? "" : " (did you mean \"" + guess + "\"?)") +
+                               "; there are: run, spectrum, sweep, check");
+    parsed.exit_code = exit_bad_input;
+    return parsed;
+  }
   try {
     app.parse(argc, argv);
     if (command.r_min && command.r_max && *command.r_min >= *command.r_max) {
@@ -84,10 +101,12 @@ ParsedCommand parse_command(int argc, const char* const* argv) {
     }
   } catch (const CLI::ParseError& error) {
     std::ostringstream output, message;
-    const bool wanted = app.exit(error, output, message) == 0;
-    parsed.output = output.str();
-    parsed.error = message.str();
-    parsed.exit_code = wanted ? 0 : exit_bad_input;
+    if (app.exit(error, output, message) == 0) {  // --help and --version end the parsing, too
+      parsed.output = output.str();
+      return parsed;
+    }
+    parsed.error = usage_error(error.what());
+    parsed.exit_code = exit_bad_input;
     return parsed;
   }
   if (spectrum->parsed()) command.kind = Command::Kind::spectrum;

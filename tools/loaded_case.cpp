@@ -14,7 +14,7 @@ Mesh load_mesh(const MeshSource& source) {
 }
 
 Problem load_problem(const Case& input) {
-  check_supported(input.model);
+  check_supported(input.model.solver);
   Mesh mesh = load_mesh(input.mesh);
   check_dimension(input, mesh.dim());
   Problem problem = build_problem(std::move(mesh), input.model);

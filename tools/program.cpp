@@ -48,7 +48,7 @@ int run_here(const Command& command, const std::optional<Case>& known) {
 /// Started by hand: validates what is quickly validated, then goes on alone or under mpiexec.
 int run_alone(const Command& command, int argc, const char* const* argv) {
   const Case input = read_case(command.case_file, command.overrides);
-  check_supported(input.model);
+  check_supported(input.model.solver);
   if (command.kind == Command::Kind::check) return check_command(input);
   Shape shape = choose_shape(input, command.ranks, command.threads, usable_cores());
   if (shape.ranks > 1) {

@@ -134,7 +134,6 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
       // What the solver does not offer.
       {"solver.contact=active_set",
        "solver.contact: \"active_set\" together with the stop \"paper\" is not available"},
-      {"contact[0].friction={\"coulomb\":0.3}", "contact[0].friction: Coulomb friction is not available"},
       {"solver.outer=newton", "solver.outer: \"newton\" together with the stop \"paper\" is not available"},
   };
   for (const Row& row : rows) {

@@ -131,6 +131,23 @@ TEST_CASE("not converged is exit code 1, with all output") {
   }
 }
 
+TEST_CASE("Coulomb friction: Newton's method and Algorithm 1 agree, within the cone") {
+  const Workplace place;
+  place.put_json("beam.json", small_beam());
+  const std::string arguments =
+      "run beam.json --set contact[0].friction='{\"coulomb\":0.2}' --set solver.tolerance=1e-8 --output ";
+  REQUIRE(place.run(arguments + "newton").exit_code == 0);
+  REQUIRE(place.run(arguments + "admm --set solver.outer=kacanov --set solver.contact=admm").exit_code == 0);
+  const nlohmann::json newton = place.json("newton/result.json"), admm = place.json("admm/result.json");
+  for (const std::size_t c : {0, 1}) {
+    CHECK(newton["probe"][0][c].get<double>() ==
+          doctest::Approx(admm["probe"][0][c].get<double>()).epsilon(1e-5));
+  }
+  const double friction = newton["friction_force"][0], normal = newton["contact_force"][1];
+  CHECK(std::abs(friction) > 0.0);
+  CHECK(std::abs(friction) <= 0.2 * normal * (1.0 + 1e-6));
+}
+
 TEST_CASE("output options leave out fields and report") {
   const Workplace place;
   place.put_json("beam.json", small_beam());
