@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Elements one by one, an element a lane, by the isoparametric map at their quadrature points.
+// Any element, one a lane, by the isoparametric map at its quadrature points: tri3 and curved tet10.
 #pragma once
 
-#include "elements/hex8.hpp"
 #include "elements/tet10.hpp"
 #include "elements/tri3.hpp"
 #include "fan.hpp"

@@ -3,10 +3,11 @@
 #pragma once
 
 #include "element.hpp"
+#include "hex8.hpp"
+#include "tet10.hpp"
 
 namespace {
 
-using kacanov::elements::Hex8;
 using kacanov::elements::Tet10;
 using kacanov::elements::Tri3;
 using kacanov::simd::Kernels;
@@ -78,9 +79,9 @@ struct Loops {
           fan_loop_of_length<L, Real, true>(block, group, material, u, f, vectors, stride);
           break;
         case Shape::tri3: elements.template operator()<Tri3>(); break;
-        case Shape::tet10:
+        case Shape::tet10: tet10_loop<L, Real>(block, group, material, u, f, vectors, stride); break;
         case Shape::curved_tet10: elements.template operator()<Tet10>(); break;
-        case Shape::hex8: elements.template operator()<Hex8>(); break;
+        case Shape::hex8: hex_loop<L, Real>(block, group, material, u, f, vectors, stride); break;
       }
     }
   }

@@ -10,6 +10,8 @@
 #include <string>
 
 #include "bodies.hpp"
+#include "float_operator.hpp"
+#include "locality.hpp"
 
 using namespace kacanov;
 using test::difference;
@@ -236,4 +238,55 @@ TEST_CASE("bad input is named") {
   CHECK_THROWS_AS(op.apply(x, y), std::invalid_argument);
   CHECK_THROWS_AS(op.set_secant(x), std::invalid_argument);
   CHECK_THROWS_AS(op.apply_tangent(x, x), std::logic_error);
+}
+
+TEST_CASE("single precision agrees to five digits") {
+  for (const ElementType type : test::all_types)
+    for (const OwnedBody& owned : bodies(type))
+      for (const std::string& set : instruction_sets())
+        for (const int threads : {1, 2}) {
+          CAPTURE(static_cast<int>(type));
+          CAPTURE(owned.mesh.view().element_count());
+          CAPTURE(set);
+          CAPTURE(threads);
+          const Body body = owned.body();
+          FloatOperator op(body, {threads, set});
+          const auto g = some_secant(body.secant_count()), x = test::random_vector(body.unknowns(), 51);
+          const std::vector<float> xf(x.begin(), x.end());
+          std::vector<double> expected(x.size());
+          std::vector<float> y(x.size()), z(x.size());
+          op.set_secant(g);
+          reference::apply(body, g, x, expected);
+          op.apply(xf, y);
+          CHECK(difference(y, expected) < 1e-5);
+          CHECK(op.apply_dot(xf, z) == doctest::Approx(test::dot(x, expected)).epsilon(1e-5));
+          CHECK(z == y);
+          reference::diagonal(body, g, expected);
+          op.diagonal(z);
+          CHECK(difference(z, expected) < 1e-5);
+        }
+}
+
+TEST_CASE("the locality order is a renumbering that brings neighbours together") {
+  auto mesh = meshes::box(ElementType::tet4, {12, 12, 12}, {1, 1, 1});
+  meshes::shuffle(mesh, 61);
+  const LocalityOrder order = locality_order(mesh.view());
+  const auto is_permutation = [](std::vector<std::int32_t> v, std::size_t size) {
+    std::sort(v.begin(), v.end());
+    for (std::size_t i = 0; i < v.size(); ++i)
+      if (v[i] != static_cast<std::int32_t>(i)) return false;
+    return v.size() == size;
+  };
+  CHECK(is_permutation(order.nodes, mesh.view().node_count()));
+  CHECK(is_permutation(order.elements, mesh.view().element_count()));
+  std::vector<double> rank(order.nodes.size());
+  for (std::size_t i = 0; i < rank.size(); ++i)
+    rank[static_cast<std::size_t>(order.nodes[i])] = static_cast<double>(i);
+  double before = 0.0, after = 0.0;  // mean distance of an element's first two nodes
+  for (std::size_t e = 0; e < mesh.view().element_count(); ++e) {
+    const auto a = mesh.connectivity[4 * e], b = mesh.connectivity[4 * e + 1];
+    before += std::abs(static_cast<double>(a - b));
+    after += std::abs(rank[static_cast<std::size_t>(a)] - rank[static_cast<std::size_t>(b)]);
+  }
+  CHECK(after < 0.2 * before);
 }
