@@ -74,6 +74,7 @@ KACANOV_INLINE inline void hex_interpolate(V (&v)[2][2][3]) {
 template <class L, class Real, class V = typename L::V>
 KACANOV_INLINE inline void hex_slopes(const Real* values, const std::uint16_t* at, HexSlopes<V>& slopes) {
   V x[8][3];
+#pragma GCC unroll 8
   for (int a = 0; a < 8; ++a) L::load3(values, at + a * L::width, x[a]);
 #pragma GCC unroll 3
   for (int direction = 0; direction < 3; ++direction) {
@@ -104,6 +105,7 @@ KACANOV_INLINE inline void hex_forces(HexSlopes<V>& t, const std::uint16_t* at, 
       }
     }
   }
+#pragma GCC unroll 8
   for (int a = 0; a < 8; ++a) L::add3(f, at + a * L::width, force[a]);
 }
 
@@ -120,6 +122,7 @@ inline void hex_loop(const Block<Real>& block, const Group& group, const Materia
     V c[8][3][3], det[8], w[8];  // c: det ∇ξ_k
     HexSlopes<V> j;
     hex_slopes<L>(block.coordinates, at, j);
+#pragma GCC unroll 8
     for (int q = 0; q < 8; ++q) {
       const V *a = j.at(0, corner[q]), *b = j.at(1, corner[q]), *d = j.at(2, corner[q]);
       cross(b, d, c[q][0]);
@@ -132,6 +135,7 @@ inline void hex_loop(const Block<Real>& block, const Group& group, const Materia
       const std::size_t offset = static_cast<std::size_t>(v) * stride;
       HexSlopes<V> slopes, forces = {};
       hex_slopes<L>(u + offset, at, slopes);
+#pragma GCC unroll 8
       for (int q = 0; q < 8; ++q) {
         const V *a = slopes.at(0, corner[q]), *b = slopes.at(1, corner[q]), *d = slopes.at(2, corner[q]);
         V h[9];

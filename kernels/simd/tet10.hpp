@@ -22,22 +22,14 @@ constexpr TetMiddles tet_middles = [] {
   return table;
 }();
 
-/// From values at the four vertices to those at the four points, in place. Symmetric: it serves stresses too.
-template <class Real, int count, class V>
-KACANOV_INLINE inline void tet_interpolate(V (&v)[4][count]) {
-  constexpr Real far = Real(kacanov::elements::Tet10::far);
-  constexpr Real rest = Real(kacanov::elements::Tet10::near - kacanov::elements::Tet10::far);
-  for (int k = 0; k < count; ++k) {
-    const V sum = far * ((v[0][k] + v[1][k]) + (v[2][k] + v[3][k]));
-    for (int q = 0; q < 4; ++q) v[q][k] = rest * v[q][k] + sum;
-  }
-}
-
-/// ∂u/∂λ_i at vertex j is 4 u_ij − u_i, and 3 u_i for i = j.
+/// ∂u/∂λ_i at vertex j is 4 u_ij − u_i, and 3 u_i for i = j. A point's value of a linear function is `rest`
+/// times the value at its vertex plus `far` times the sum of all four; the transpose of that is the same.
 template <class L, class Real, class Material>
 inline void tet10_loop(const Block<Real>& block, const Group& group, const Material& material, const Real* u,
                        Real* f, int vectors, std::size_t stride) {
   using V = typename L::V;
+  constexpr Real far = Real(kacanov::elements::Tet10::far);
+  constexpr Real rest = Real(kacanov::elements::Tet10::near - kacanov::elements::Tet10::far);
   const std::uint16_t* at = block.index + group.first_index;
   std::size_t point = 0;
   for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
@@ -51,48 +43,59 @@ inline void tet10_loop(const Block<Real>& block, const Group& group, const Mater
     const V det = inner(x[1], c[0]), w = Real(1.0 / 24.0) / det;
     for (int v = 0; v < vectors; ++v) {
       const std::size_t offset = static_cast<std::size_t>(v) * stride;
-      V d[10][3], h[4][9], s[4][6];
+      V d[10][3], h[4][9], h_sum[9], s[4][6], s_sum[6];
+#pragma GCC unroll 10
       for (int a = 0; a < 10; ++a) L::load3(u + offset, at + a * L::width, d[a]);
-      for (int m = 4; m < 10; ++m)
-        for (int k = 0; k < 3; ++k) d[m][k] *= Real(4);
 #pragma GCC unroll 4
       for (int j = 0; j < 4; ++j) {
         V r[3][3];  // ∂u/∂λ_{i+1} − ∂u/∂λ_0 at vertex j
+#pragma GCC unroll 3
         for (int i = 1; i < 4; ++i)
+#pragma GCC unroll 3
           for (int k = 0; k < 3; ++k) {
-            const V own = i == j ? Real(3) * d[i][k] : d[tet_middles.between[i][j]][k] - d[i][k];
-            const V base = j == 0 ? Real(3) * d[0][k] : d[tet_middles.between[0][j]][k] - d[0][k];
+            const V own = i == j ? Real(3) * d[i][k] : Real(4) * d[tet_middles.between[i][j]][k] - d[i][k];
+            const V base = j == 0 ? Real(3) * d[0][k] : Real(4) * d[tet_middles.between[0][j]][k] - d[0][k];
             r[i - 1][k] = own - base;
           }
-        for (int i = 0; i < 3; ++i)
-          for (int m = 0; m < 3; ++m)
-            h[j][3 * i + m] = r[0][i] * c[0][m] + r[1][i] * c[1][m] + r[2][i] * c[2][m];
+#pragma GCC unroll 9
+        for (int n = 0; n < 9; ++n) {
+          h[j][n] = r[0][n / 3] * c[0][n % 3] + r[1][n / 3] * c[1][n % 3] + r[2][n / 3] * c[2][n % 3];
+          h_sum[n] = j == 0 ? h[j][n] : h_sum[n] + h[j][n];
+        }
       }
-      tet_interpolate<Real>(h);
+      for (int n = 0; n < 9; ++n) h_sum[n] *= far;
+#pragma GCC unroll 4
       for (int q = 0; q < 4; ++q) {
-        const Sym<V> t = material.stress(h[q], det, w, Real(1.0 / 24.0), point + static_cast<std::size_t>(q));
+        V at_point[9];
+        for (int n = 0; n < 9; ++n) at_point[n] = rest * h[q][n] + h_sum[n];
+        const Sym<V> t =
+            material.stress(at_point, det, w, Real(1.0 / 24.0), point + static_cast<std::size_t>(q));
         s[q][0] = t.xx, s[q][1] = t.yy, s[q][2] = t.zz, s[q][3] = t.xy, s[q][4] = t.yz, s[q][5] = t.zx;
+        for (int n = 0; n < 6; ++n) s_sum[n] = q == 0 ? s[q][n] : s_sum[n] + s[q][n];
       }
-      tet_interpolate<Real>(s);
+      for (int n = 0; n < 6; ++n) s_sum[n] *= far;
       V force[10][3] = {};
 #pragma GCC unroll 4
       for (int j = 0; j < 4; ++j) {
-        const Sym<V> stress{s[j][0], s[j][1], s[j][2], s[j][3], s[j][4], s[j][5]};
+        const Sym<V> stress{rest * s[j][0] + s_sum[0], rest * s[j][1] + s_sum[1], rest * s[j][2] + s_sum[2],
+                            rest * s[j][3] + s_sum[3], rest * s[j][4] + s_sum[4], rest * s[j][5] + s_sum[5]};
         V t[4][3];
+#pragma GCC unroll 3
         for (int i = 1; i < 4; ++i) multiply(stress, c[i - 1], t[i]);
         for (int k = 0; k < 3; ++k) t[0][k] = -(t[1][k] + t[2][k] + t[3][k]);
+#pragma GCC unroll 4
         for (int i = 0; i < 4; ++i)
+#pragma GCC unroll 3
           for (int k = 0; k < 3; ++k) {
             if (i == j) {
               force[i][k] += Real(3) * t[i][k];
             } else {
               force[i][k] -= t[i][k];
-              force[tet_middles.between[i][j]][k] += t[i][k];
+              force[tet_middles.between[i][j]][k] += Real(4) * t[i][k];
             }
           }
       }
-      for (int m = 4; m < 10; ++m)
-        for (int k = 0; k < 3; ++k) force[m][k] *= Real(4);
+#pragma GCC unroll 10
       for (int a = 0; a < 10; ++a) L::add3(f + offset, at + a * L::width, force[a]);
     }
     at += 10 * L::width;
