@@ -48,7 +48,9 @@ struct Block {
   std::uint32_t first;         ///< local nodes [0, first) are met for the first time by this thread
   std::uint32_t again;         ///< [first, again) were met before, [again, count) are other threads' too
   std::uint32_t count;
-  std::uint32_t padding;  ///< records behind `count` that lanes without a unit work on
+  std::uint32_t padding;      ///< records behind `count` that lanes without a unit work on
+  const char* ahead;          ///< what the thread's next block will want and no stream of this one brings
+  std::uint32_t ahead_lines;  ///< cache lines of it to fetch beside each batch
 };
 
 /// Tetrahedra of the longest fan: the loops keep the geometry of a batch of them.

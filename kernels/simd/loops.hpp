@@ -65,23 +65,24 @@ struct Loops {
   template <class MakeMaterial>
   static void sweep(const Block<Real>& block, const Real* u, Real* f, int vectors, std::size_t stride,
                     MakeMaterial&& make) {
+    Ahead ahead{block.ahead, block.ahead_lines};
     for (std::size_t i = 0; i < block.group_count; ++i) {
       const Group& group = block.groups[i];
       const auto material = make(group);
       const auto elements = [&]<class E>() {
-        element_loop<L, Real, E>(block, group, material, u, f, vectors, stride);
+        element_loop<L, Real, E>(block, group, material, u, f, vectors, stride, ahead);
       };
       switch (group.shape) {
         case Shape::open_fan:
-          fan_loop_of_length<L, Real, false>(block, group, material, u, f, vectors, stride);
+          fan_loop_of_length<L, Real, false>(block, group, material, u, f, vectors, stride, ahead);
           break;
         case Shape::closed_fan:
-          fan_loop_of_length<L, Real, true>(block, group, material, u, f, vectors, stride);
+          fan_loop_of_length<L, Real, true>(block, group, material, u, f, vectors, stride, ahead);
           break;
         case Shape::tri3: elements.template operator()<Tri3>(); break;
-        case Shape::tet10: tet10_loop<L, Real>(block, group, material, u, f, vectors, stride); break;
+        case Shape::tet10: tet10_loop<L, Real>(block, group, material, u, f, vectors, stride, ahead); break;
         case Shape::curved_tet10: elements.template operator()<Tet10>(); break;
-        case Shape::hex8: hex_loop<L, Real>(block, group, material, u, f, vectors, stride); break;
+        case Shape::hex8: hex_loop<L, Real>(block, group, material, u, f, vectors, stride, ahead); break;
       }
     }
   }
