@@ -3,4 +3,9 @@
 // Left to itself the compiler made calls, at twice the time.
 #pragma once
 
+// Under the address sanitizer, whose checks multiply with every copy, compiling that takes minutes: there calls do.
+#ifdef __SANITIZE_ADDRESS__
+#define KACANOV_INLINE
+#else
 #define KACANOV_INLINE [[gnu::always_inline]]
+#endif
