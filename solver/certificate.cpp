@@ -18,6 +18,9 @@ double Certificate::worst() const noexcept {
 
 namespace {
 
+/// Share of ‖diag(B) ∘ ω‖ below which a force is rounding.
+constexpr double rounding = 1e-9;
+
 /// Products and extremes over the contact points.
 struct ContactSums {
   double normal_product = 0.0;    // Σ M λ_n |Nω − ρ|
@@ -66,7 +69,7 @@ ContactSums contact_sums(const Traces& traces, const ContactState& state) {
 }  // namespace
 
 Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactState& state,
-                        std::span<const double> internal, double energy) {
+                        std::span<const double> internal, double energy, std::span<const double> diagonal) {
   const Part& part = space.part();
   const auto dim = static_cast<std::size_t>(part.dim());
   const std::size_t n = part.unknowns();
@@ -83,7 +86,10 @@ Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactS
   Residuals out;
   const double contact_norm = space.norm(contact), reaction_norm = space.norm(reaction);
   Scales& scales = out.scales;
-  scales.force = std::max({space.norm(part.load), reaction_norm, contact_norm});
+  Vector stiff(n);
+  for (std::size_t i = 0; i < n; ++i) stiff[i] = rounding * diagonal[i] * state.omega[i];
+  const auto [stiff_force, stiff_energy] = space.dot2(stiff, stiff, stiff, state.omega);
+  scales.force = std::max({space.norm(part.load), reaction_norm, contact_norm, std::sqrt(stiff_force)});
   scales.displacement = space.max_abs(state.omega);
 
   // Sums of forces: the load, the obstacles, the supports; and what the supports work on.
@@ -108,10 +114,10 @@ Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactS
   c.complementarity = (sums.normal_product + sums.friction_product) /
                       std::max(pressure * displacement * sums.area, tiny);
   c.force_balance = std::sqrt(totals[0] * totals[0] + totals[1] * totals[1] + totals[2] * totals[2]) /
-                    std::max(totals[3], tiny);
+                    std::max({totals[3], std::sqrt(stiff_force), tiny});
   // Primal minus dual energy. With τ = τ(ω) the stored energies add up to R·ω, and
   // what is left is the work of the equilibrium residual and the contact products.
-  c.duality_gap = std::abs(sums.dual_work - totals[4]) / std::max({energy, 0.5 * std::abs(totals[5]), tiny});
+  c.duality_gap = std::abs(sums.dual_work - totals[4]) / std::max({energy, 0.5 * std::abs(totals[5]), stiff_energy, tiny});
   return out;
 }
 

@@ -21,8 +21,10 @@ struct Residuals {
   Scales scales;
 };
 
-/// `internal` is R(ω) from the operator that is to be trusted, consistent over ranks; `energy` the stored energy at ω.
+/// `internal` is R(ω) from the operator that is to be trusted, consistent over ranks; `energy` the stored energy at ω;
+/// `diagonal` that of the elastic B, consistent: forces of 10⁻⁹ ‖diagonal ∘ ω‖ and energies likewise are
+/// rounding, so that a body moved without strain has small residuals, and not noise over noise.
 Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactState& state,
-                        std::span<const double> internal, double energy);
+                        std::span<const double> internal, double energy, std::span<const double> diagonal);
 
 }  // namespace kacanov

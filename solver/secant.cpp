@@ -82,8 +82,11 @@ OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOp
       op_(part, run.threads, run.instruction_set),
       amg_(make_preconditioner(options.preconditioner, part)),
       internal_(part.unknowns()),
+      diagonal_(part.unknowns()),
       secant_(part.body().secant_count()) {
   extent_ = body_extent(part);
+  op_.local().diagonal(diagonal_);
+  part.halo.sum(diagonal_, part.dim());
   const std::size_t points = part.contact.size();
   state_.omega = part.prescribed;
   for (std::size_t i = 0; i < part.unknowns(); ++i)
@@ -220,7 +223,7 @@ void OuterLoop::watch_preconditioner(double digits, std::int64_t iterations) {
 }
 
 Residuals OuterLoop::certify() const {
-  return kkt_residuals(space_, traces_, state_, internal_, op_.energy(state_.omega));
+  return kkt_residuals(space_, traces_, state_, internal_, op_.energy(state_.omega), diagonal_);
 }
 
 void OuterLoop::take_admm_step(Result& result, ProgressStep& line, const Residuals& before) {
@@ -288,13 +291,10 @@ void OuterLoop::take_newton_step(ProgressStep& line, const Residuals& before) {
   }
   const ActiveSet set = decide(traces_, state_, penalty_.normal);
   if (preconditioner_stale_ || (!linear_ && secant_drifted())) {
-    Vector diagonal(part_.unknowns());
-    op_.local().diagonal(diagonal);
-    part_.halo.sum(diagonal, part_.dim());
     const TraceRows rows(part_, set.held);
     Space space(part_);
     rows.hold_in(space);
-    auto blocks = rows.pinning_blocks(diagonal);
+    auto blocks = rows.pinning_blocks(diagonal_);
     const auto slip = slip_blocks(part_, set);
     blocks.insert(blocks.end(), slip.begin(), slip.end());
     set_up_preconditioner(blocks, space);

@@ -18,6 +18,7 @@ class OuterLoop {
   void run(Result& result);
 
   const ContactState& state() const noexcept { return state_; }
+  std::span<const double> diagonal() const noexcept { return diagonal_; }
   const Space& space() const noexcept { return space_; }
   const Traces& traces() const noexcept { return traces_; }
   const DistributedOperator& op() const noexcept { return op_; }
@@ -49,6 +50,7 @@ class OuterLoop {
   ContactState state_;
   CgWork work_;
   Vector internal_;          // R(ω)
+  Vector diagonal_;          // of the elastic B
   Vector secant_;            // frozen g, elements × points
   Vector volume_;            // lumped nodal volumes, for (15)
   Penalty penalty_;

@@ -143,7 +143,7 @@ Solution solve(const Part& part, const SolverOptions& options, const RunOptions&
   reference::residual(part.body(), loop.state().omega, internal);
   part.halo.sum(internal, part.dim());
   const double energy = part.halo.sum_all(reference::energy(part.body(), loop.state().omega));
-  result.certificate = kkt_residuals(loop.space(), loop.traces(), loop.state(), internal, energy).certificate;
+  result.certificate = kkt_residuals(loop.space(), loop.traces(), loop.state(), internal, energy, loop.diagonal()).certificate;
   result.status = result.certificate.worst() <= options.tolerance ? Status::converged : Status::not_converged;
 
   collect_fields(part, loop.state(), 10.0 * options.tolerance * loop.space().max_abs(loop.state().omega), solution);
