@@ -58,7 +58,7 @@ print(json.dumps(first))
         drift = [1.5 if i > rounds / 2 else 1.0 for i in range(rounds)]
         speeds = [[[entry(unknowns_per_second=1e8 * f * d * (1 + noise * rng.uniform(-1, 1)))] for d in drift]
                   for f in (1.0, factor)]
-        done = run("compare", self.build("old", speeds[0]), self.build("new", speeds[1]), "--rounds", rounds, "--json")
+        done = run("compare_builds", self.build("old", speeds[0]), self.build("new", speeds[1]), "--rounds", rounds, "--json")
         self.assertIn(done.returncode, (0, 1), done.stderr)
         (only,) = json.loads(done.stdout).values()
         self.assertEqual(done.returncode, 1 if only["verdict"] == "worse" else 0)
@@ -83,13 +83,13 @@ print(json.dumps(first))
     def test_nothing_in_common(self):
         old = self.build("old", [[entry()]] * 6)
         new = self.build("new", [[entry(element="hex8")]] * 6)
-        done = run("compare", old, new, "--rounds", 6)
+        done = run("compare_builds", old, new, "--rounds", 6)
         self.assertEqual(done.returncode, 2)
         self.assertIn("in common", done.stderr)
 
     def test_missing_build_and_too_few_rounds(self):
-        self.assertEqual(run("compare", "nowhere", "nowhere").returncode, 2)
-        self.assertEqual(run("compare", "nowhere", "nowhere", "--rounds", 5).returncode, 2)
+        self.assertEqual(run("compare_builds", "nowhere", "nowhere").returncode, 2)
+        self.assertEqual(run("compare_builds", "nowhere", "nowhere", "--rounds", 5).returncode, 2)
 
 
 class Roofline(unittest.TestCase):
