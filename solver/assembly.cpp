@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <numeric>
 
+#include "element_stiffness.hpp"
+
 namespace kacanov {
 
 std::size_t NodeGraph::position(std::int32_t row, std::int32_t column_node) const {
@@ -59,7 +61,7 @@ void for_each_block(const Body& body, std::span<const double> g, const NodeGraph
   const std::size_t width = npe * dim;
   std::vector<double> local(width * width);
   for (std::size_t e = 0; e < mesh.element_count(); ++e) {
-    reference::element_matrix(body, e, g.subspan(e * points, points), local);
+    element_stiffness(body, e, g.subspan(e * points, points), local);
     const auto element = mesh.connectivity.subspan(e * npe, npe);
     for (std::size_t a = 0; a < npe; ++a)
       for (std::size_t b = 0; b < npe; ++b)

@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "assembly.hpp"
+#include "element_stiffness.hpp"
 #include "error.hpp"
 
 namespace kacanov {
@@ -174,7 +175,7 @@ void RigidCoarse::build(std::span<const double> g, std::span<const NodeBlock> bl
     for (const std::int32_t n : element)
       rigid = rigid && aggregate_[static_cast<std::size_t>(n)] == first && bound[static_cast<std::size_t>(n)] == 0;
     if (rigid) continue;
-    reference::element_matrix(body, e, g.subspan(e * points, points), matrix);
+    element_stiffness(body, e, g.subspan(e * points, points), matrix);
     for (std::size_t a = 0; a < npe; ++a) z[a] = modes_of(element[a]);
     for (std::size_t a = 0; a < npe; ++a)
       for (std::size_t b = 0; b < npe; ++b) {

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "bodies.hpp"
+#include "element_stiffness.hpp"
 #include "elements/dispatch.hpp"
 
 using namespace kacanov;
@@ -36,6 +37,25 @@ std::vector<double> some_secant(const Body& body, unsigned seed) {
 }
 
 }  // namespace
+
+TEST_CASE("element matrices in closed form are those of the reference") {
+  for (const ElementType type : test::all_types) {
+    auto mesh = meshes::box(type, {2, 2, 2}, {1.0, 0.7, 1.3});
+    meshes::jitter(mesh, 0.04, 3);
+    const test::OwnedBody owned = test::with_every_law(std::move(mesh), 5);
+    const Body body = owned.body();
+    const auto points = static_cast<std::size_t>(points_per_element(type));
+    const auto width = static_cast<std::size_t>(nodes_per_element(type) * dimension(type));
+    const std::vector<double> g = some_secant(body, 11);
+    std::vector<double> plain(width * width), closed(width * width, 7.0);
+    for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
+      const auto own = std::span(g).subspan(e * points, points);
+      reference::element_matrix(body, e, own, plain);
+      element_stiffness(body, e, own, closed);
+      CHECK(difference(closed, plain) < 1e-13);
+    }
+  }
+}
 
 TEST_CASE("shape functions are one at their node, sum to one, and their gradients to zero") {
   for (const ElementType type : test::all_types)
