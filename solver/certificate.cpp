@@ -84,6 +84,7 @@ Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactS
   const ContactSums sums = contact_sums(traces, state);
 
   Residuals out;
+  out.energy = energy;
   const double contact_norm = space.norm(contact), reaction_norm = space.norm(reaction);
   Scales& scales = out.scales;
   Vector stiff(n);

@@ -19,6 +19,7 @@ struct Scales {
 struct Residuals {
   Certificate certificate;
   Scales scales;
+  double energy = 0.0;  ///< stored, as it was given
 };
 
 /// `internal` is R(ω) from the operator that is to be trusted, consistent over ranks; `energy` the stored energy at ω;

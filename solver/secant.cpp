@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
 
 #include "contact/dual_admm.hpp"
@@ -136,9 +135,9 @@ void OuterLoop::choose_first_penalty(Result& result) {
   penalty_ = {r, r};
 }
 
-bool OuterLoop::improve_penalty(Result& result) {
-  if (part_.total_contact == 0 || options_.penalty != SolverOptions::Penalty::automatic) return false;
-  if (estimates_ >= most_estimates) return false;
+void OuterLoop::improve_penalty(Result& result) {
+  if (part_.total_contact == 0 || options_.penalty != SolverOptions::Penalty::automatic) return;
+  if (estimates_ >= most_estimates) return;
   const double before = MPI_Wtime();
   std::vector<TraceChoice> active(part_.contact.size()), free(part_.contact.size());
   double changes = 0.0;
@@ -153,10 +152,10 @@ bool OuterLoop::improve_penalty(Result& result) {
   }
   // r_A of a set that is far off can be ten times wrong: it is estimated again until the set has settled.
   if (estimates_ > 0 && part_.halo.sum_all(changes) <= settled_share * static_cast<double>(part_.total_contact))
-    return false;
+    return;
   estimated_set_ = active;
   const TraceRows held(part_, active), open(part_, free);
-  if (held.total() == 0) return false;
+  if (held.total() == 0) return;
   // Where Newton does the rest, λ_min of all traces stands for λ_min(K_AA): both are the compliance of a mesh width.
   const bool alone = options_.contact != SolverOptions::Contact::automatic &&
                      options_.contact != SolverOptions::Contact::active_set;
@@ -168,30 +167,21 @@ bool OuterLoop::improve_penalty(Result& result) {
   preconditioner_stale_ = true;
   result.cg_iterations += spectrum.cost().cg_iterations;
   spectrum_seconds_ += MPI_Wtime() - before;
-  if (!(low.value > 0.0)) return false;
+  if (!(low.value > 0.0)) return;
   // With nothing free the larger r the better, until CG pays for it: three times 1/λ_min contracts by a quarter.
   const double r = high.value > 0.0 ? 1.0 / std::sqrt(low.value * high.value) : 3.0 / low.value;
-  if (!std::isfinite(r)) return false;
+  if (!std::isfinite(r)) return;
   penalty_ = {r, r};
   result.r_active = r;
   ++estimates_;
-  return true;
 }
 
 std::vector<NodeBlock> OuterLoop::penalty_blocks() const {
-  const auto dim = static_cast<std::size_t>(part_.dim());
-  std::vector<NodeBlock> blocks;
-  for (const auto& point : std::span(part_.contact).first(static_cast<std::size_t>(part_.owned_contact))) {
-    NodeBlock block{point.node, {}};
-    for (std::size_t i = 0; i < dim; ++i)
-      for (std::size_t j = 0; j < dim; ++j) {
-        double& v = block.value[i * dim + j];
-        v = penalty_.normal * point.mass * point.trace[i] * point.trace[j];
-        for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k)
-          v += penalty_.tangential * point.mass * point.tangent[k][i] * point.tangent[k][j];
-      }
-    blocks.push_back(block);
-  }
+  const std::size_t points = part_.contact.size();
+  auto blocks = TraceRows(part_, std::vector<TraceChoice>(points, {true, false})).penalty_blocks(penalty_.normal);
+  const auto tangential =
+      TraceRows(part_, std::vector<TraceChoice>(points, {false, true})).penalty_blocks(penalty_.tangential);
+  blocks.insert(blocks.end(), tangential.begin(), tangential.end());
   return blocks;
 }
 
@@ -348,7 +338,7 @@ void OuterLoop::run(Result& result) {
     const double worst = residuals.certificate.worst();
     line.outer = result.outer_iterations;
     line.r = penalty_.normal;
-    line.energy = op_.energy(state_.omega);
+    line.energy = residuals.energy;
     line.certificate = residuals.certificate;
     line.seconds = MPI_Wtime() - start_;
     report(line);

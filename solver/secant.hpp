@@ -27,7 +27,7 @@ class OuterLoop {
 
  private:
   void choose_first_penalty(Result& result);
-  bool improve_penalty(Result& result);
+  void improve_penalty(Result& result);
   void set_up_preconditioner(std::span<const NodeBlock> blocks, const Space& space);
   std::vector<NodeBlock> penalty_blocks() const;
   bool secant_drifted() const;

@@ -25,13 +25,6 @@ void subtract_slip_force(const Traces& traces, const ActiveSet& set, const Vecto
 
 }  // namespace
 
-std::int64_t ActiveSet::differences(const ActiveSet& other, const Traces& traces) const {
-  std::int64_t count = 0;
-  for (std::size_t i = 0; i < traces.owned(); ++i)
-    count += held[i].normal != other.held[i].normal || held[i].tangential != other.held[i].tangential ? 1 : 0;
-  return traces.halo().sum_all(count);
-}
-
 ActiveSet decide(const Traces& traces, const ContactState& state, double c) {
   const auto points = traces.points();
   ActiveSet set;

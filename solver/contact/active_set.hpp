@@ -16,9 +16,6 @@ struct ActiveSet {
   Vector slip_force;              ///< points × 2: ψ ŝ where it slips
   Vector slip_stiffness;          ///< points: k of λ_f = ψ ŝ + k (I − ŝŝᵀ) Tω, 0 in 2D
   Vector slip_direction;          ///< points × 2: ŝ
-
-  /// Number of owned points (all ranks) where `other` decides differently.
-  std::int64_t differences(const ActiveSet& other, const Traces& traces) const;
 };
 
 /// c is a penalty like ADMM's; any positive value has the same fixed points.

@@ -73,12 +73,16 @@ AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work,
   };
 
   ContactValues shift(traces.size()), dual(traces.size());
-  for (std::size_t i = 0; i < traces.size(); ++i) {
-    shift.normal[i] = options.r.normal * (state.phi.normal[i] - state.trace.normal[i]);
-    for (std::size_t k = 2 * i; k < 2 * i + 2; ++k)
-      shift.tangential[k] = options.r.tangential * (state.phi.tangential[k] - state.trace.tangential[k]);
-  }
-  traces.add_force(shift, 1.0, work.residual);
+  // The penalty's part of the residual, CᵀM r(φ − Cω), in (factor 1) or out (−1).
+  const auto add_penalty_residual = [&](double factor) {
+    for (std::size_t i = 0; i < traces.size(); ++i) {
+      shift.normal[i] = options.r.normal * (state.phi.normal[i] - state.trace.normal[i]);
+      for (std::size_t k = 2 * i; k < 2 * i + 2; ++k)
+        shift.tangential[k] = options.r.tangential * (state.phi.tangential[k] - state.trace.tangential[k]);
+    }
+    traces.add_force(shift, factor, work.residual);
+  };
+  add_penalty_residual(1.0);
 
   AdmmResult result;
   Vector before(stop_by_step ? state.omega.size() : 0);
@@ -114,13 +118,7 @@ AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work,
     }
     if (!std::isfinite(result.force_residual)) break;
   }
-  // Back to the residual without penalty terms.
-  for (std::size_t i = 0; i < traces.size(); ++i) {
-    shift.normal[i] = options.r.normal * (state.phi.normal[i] - state.trace.normal[i]);
-    for (std::size_t k = 2 * i; k < 2 * i + 2; ++k)
-      shift.tangential[k] = options.r.tangential * (state.phi.tangential[k] - state.trace.tangential[k]);
-  }
-  traces.add_force(shift, -1.0, work.residual);
+  add_penalty_residual(-1.0);
   return result;
 }
 
