@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "operator.hpp"
 #include "part.hpp"
@@ -25,7 +27,10 @@ class DistributedOperator {
       local_.apply(x, y);
     part_->halo.sum(y, part_->dim());
     ++applications_;
+    if (watcher_) watcher_();
   }
+  /// Called after every application, on all ranks alike. It may throw to leave whatever loops go on.
+  void watch(std::function<void()> watcher) { watcher_ = std::move(watcher); }
   void use_tangent(bool on) noexcept { tangent_ = on; }
   bool tangent() const noexcept { return tangent_; }
 
@@ -52,6 +57,7 @@ class DistributedOperator {
   Operator local_;
   bool tangent_ = false;
   std::uint64_t applications_ = 0;
+  std::function<void()> watcher_;
 };
 
 }  // namespace kacanov

@@ -11,7 +11,7 @@
 
 namespace kacanov {
 
-enum class Status { converged, not_converged };
+enum class Status { converged, not_converged, interrupted };
 
 /// All relative; small numbers, and nothing else, mean that the problem is solved.
 struct Certificate {
@@ -45,6 +45,7 @@ struct Result {
   std::int64_t unknowns = 0, elements = 0;
   std::int64_t contact_nodes = 0, active_nodes = 0, slip_nodes = 0;
   int outer_iterations = 0;
+  int restarted_after = -1;  ///< outer steps before a restart, which the counts include; −1 without one
   std::int64_t contact_iterations = 0, cg_iterations = 0;
   std::uint64_t operator_applications = 0;
   std::vector<double> r;  ///< one an outer step

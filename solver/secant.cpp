@@ -33,6 +33,9 @@ constexpr double most_displacement = 1e3;
 
 /// A contact set that differs from the one r_A was estimated for by less than this share has settled.
 constexpr double settled_share = 0.02;
+/// Operator applications between two looks at whether the run is to stop, which cost a reduction.
+constexpr std::uint64_t applications_per_question = 4;
+
 /// Estimates of r_A in one run.
 constexpr int most_estimates = 5;
 
@@ -106,6 +109,11 @@ OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOp
   op_.local().secant(secant_);
   problem_ = {&space_, &traces_, [this](std::span<const double> x, std::span<double> y) { op_.apply(x, y); },
               [this](std::span<const double> r, std::span<double> z) { amg_->apply(r, z); }};
+  if (run.stop_requested) {
+    op_.watch([this] {
+      if (op_.applications() % applications_per_question == 0 && stop_agreed()) throw Interrupted{};
+    });
+  }
 }
 
 void OuterLoop::update_bounds() {
@@ -309,18 +317,20 @@ void OuterLoop::take_newton_step(ProgressStep& line, const Residuals& before) {
   recover_multipliers(part_, traces_, set, residual, state_);
 }
 
-void OuterLoop::run(Result& result) {
-  choose_first_penalty(result);
+void OuterLoop::iterate(Result& result) {
+  keep(result);
+  const int before_this_call = result.outer_iterations;
+  if (result.outer_iterations == 0) choose_first_penalty(result);
   const bool by_step = options_.stop == SolverOptions::Stop::paper;
   const bool may_newton = !by_step && (options_.contact == SolverOptions::Contact::automatic ||
                                        options_.contact == SolverOptions::Contact::active_set);
   op_.residual(state_.omega, internal_);
   Residuals residuals = certify();
-  double best = HUGE_VAL, last_cone = 0.0;
-  int stalled = 0, creeping = 0, retreat = 0, retreats = 0;
+  auto& [best, last_cone, stalled, creeping, retreat, retreats, first_outer] = loop_;
   bool done = false;
   Vector previous;
-  while (!done && result.outer_iterations < options_.max_outer) {
+  while (!done && result.outer_iterations - first_outer < options_.max_outer) {
+    if (result.outer_iterations > before_this_call) keep(result);
     if (by_step) previous = state_.omega;
     ProgressStep line;
     const bool newton = may_newton && result.outer_iterations > 0 && retreat == 0;

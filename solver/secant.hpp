@@ -2,6 +2,9 @@
 // The outer loop: Kacanov's method (7) or Newton's round a contact step, with the penalty and preconditioner it needs.
 #pragma once
 
+#include <cmath>
+#include <memory>
+
 #include "certificate.hpp"
 #include "contact/active_set.hpp"
 #include "solve.hpp"
@@ -9,23 +12,56 @@
 
 namespace kacanov {
 
+/// What decides how the loop goes on besides the state itself. A checkpoint holds every entry: `visit` names them.
+struct LoopState {
+  double best = HUGE_VAL;   ///< smallest residual since the last retreat
+  double last_cone = 0.0;
+  int stalled = 0;          ///< Newton steps without a new best residual
+  int creeping = 0;         ///< Newton steps that let slip move on by a row of nodes
+  int retreat = 0;          ///< ADMM steps still to take
+  int retreats = 0;
+  int first_outer = 0;      ///< outer steps before this load step
+
+  template <class Visitor>
+  void visit(Visitor&& entry) {
+    entry("best", best);
+    entry("last_cone", last_cone);
+    entry("stalled", stalled);
+    entry("creeping", creeping);
+    entry("retreat", retreat);
+    entry("retreats", retreats);
+    entry("first_outer", first_outer);
+  }
+};
+
 /// Everything a run works with, and the state it leaves.
 class OuterLoop {
  public:
   OuterLoop(const Part& part, const SolverOptions& options, const RunOptions& run);
 
-  /// Runs until the certificate meets the tolerance, or max_outer steps. Fills the loop's entries of the result.
-  void run(Result& result);
+  /// Runs until the certificate meets the tolerance, or max_outer steps. Fills the loop's entries of the result. Where
+  /// the run is to stop, state and result are those after the last whole outer step, and false is returned.
+  bool run(Result& result);
+  /// Goes on from a checkpoint, which rank 0 has. Collective.
+  void restore(const Checkpoint* from, Result& result);
+  /// What restore() needs, on rank 0. Collective.
+  Checkpoint checkpoint(const Result& result) const;
 
   const ContactState& state() const noexcept { return state_; }
   std::span<const double> diagonal() const noexcept { return diagonal_; }
   const Space& space() const noexcept { return space_; }
   const Traces& traces() const noexcept { return traces_; }
   const DistributedOperator& op() const noexcept { return op_; }
+  /// Of the operator, those before a restart included.
+  std::uint64_t applications() const noexcept { return earlier_applications_ + op_.applications(); }
   double spectrum_seconds() const noexcept { return spectrum_seconds_; }
   double setup_seconds() const noexcept { return amg_->setup_seconds(); }
 
  private:
+  struct Interrupted {};  ///< thrown through the loops, on all ranks alike
+  void iterate(Result& result);
+  void keep(const Result& result);
+  bool stop_agreed() const;
   void choose_first_penalty(Result& result);
   void improve_penalty(Result& result);
   void set_up_preconditioner(std::span<const NodeBlock> blocks, const Space& space);
@@ -61,6 +97,18 @@ class OuterLoop {
   int estimates_ = 0;            // of r_A
   std::vector<TraceChoice> estimated_set_;  // that of the last one
   bool newton_failed_ = false;   // the last semismooth step could not be solved
+  LoopState loop_;
+  std::uint64_t earlier_applications_ = 0;
+  struct Kept {
+    ContactState state;
+    LoopState loop;
+    Penalty penalty;
+    int estimates = 0;
+    std::vector<TraceChoice> estimated_set;
+    bool newton_failed = false;
+    Result result;
+  };
+  Kept kept_;  // after the last whole outer step; only where a run may be stopped
   double extent_ = 0.0;           // of the body
   double spectrum_seconds_ = 0.0;
 };

@@ -117,6 +117,9 @@ std::string verdict(const Result& result, const SolverOptions& options) {
   if (result.status == Status::converged) {
     text << "all KKT residuals are at most " << result.certificate.worst() << " (tolerance " << options.tolerance
          << ")";
+  } else if (result.status == Status::interrupted) {
+    text << "interrupted after " << result.outer_iterations << " outer steps, with the worst KKT residual at "
+         << result.certificate.worst();
   } else if (options.stop == SolverOptions::Stop::paper) {
     text << "stopped by (15) with tolerance " << options.tolerance << ", but the worst KKT residual is "
          << result.certificate.worst() << ": the step was small, the error is not";
@@ -135,7 +138,10 @@ Solution solve(const Part& part, const SolverOptions& options, const RunOptions&
   Result& result = solution.result;
   OuterLoop loop(part, options, run);
   const double prepared = MPI_Wtime();
-  loop.run(result);
+  double restart = part.halo.rank == 0 && run.start != nullptr ? 1.0 : 0.0;
+  restart = part.halo.max_all(restart);
+  if (restart > 0.0) loop.restore(run.start, result);
+  const bool finished = loop.run(result);
   const double looped = MPI_Wtime();
 
   // The certificate trusts the reference operator only, not the one the loop ran on.
@@ -145,6 +151,13 @@ Solution solve(const Part& part, const SolverOptions& options, const RunOptions&
   const double energy = part.halo.sum_all(reference::energy(part.body(), loop.state().omega));
   result.certificate = kkt_residuals(loop.space(), loop.traces(), loop.state(), internal, energy, loop.diagonal()).certificate;
   result.status = result.certificate.worst() <= options.tolerance ? Status::converged : Status::not_converged;
+  if (!finished) result.status = Status::interrupted;
+  // What has not converged can be continued with more steps; what has broken down cannot.
+  const bool wanted = part.halo.max_all(part.halo.rank == 0 && run.checkpoint ? 1.0 : 0.0) > 0.0;
+  if (wanted && result.status != Status::converged && std::isfinite(result.certificate.worst())) {
+    const Checkpoint all = loop.checkpoint(result);
+    if (part.halo.rank == 0) run.checkpoint(all);
+  }
 
   collect_fields(part, loop.state(), 10.0 * options.tolerance * loop.space().max_abs(loop.state().omega), solution);
   collect_totals(part, loop.state(), solution, result);
@@ -156,7 +169,7 @@ Solution solve(const Part& part, const SolverOptions& options, const RunOptions&
   result.unknowns = part.total_nodes * part.dim();
   result.elements = part.total_elements;
   result.contact_nodes = part.total_contact;
-  result.operator_applications = loop.op().applications();
+  result.operator_applications = loop.applications();
   result.ranks = part.halo.ranks;
   result.threads = run.threads;
   result.instruction_set = loop.op().local().instruction_set();

@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "checkpoint.hpp"
 #include "part.hpp"
 #include "result.hpp"
 
@@ -29,6 +30,16 @@ struct RunOptions {
   int threads = 1;              ///< a rank
   std::string instruction_set;  ///< empty: the best there is
   Progress progress;            ///< may be empty
+
+  /// Asked on every rank between operator applications; the first rank that says yes ends the run of all with the
+  /// state after the last whole outer step and Status::interrupted. Empty: never.
+  std::function<bool()> stop_requested;
+  /// Called on rank 0 with what a later run needs to go on: after outer steps for which `checkpoint_due` says yes
+  /// (empty: all; asked on rank 0), and at the end of a run that has not converged.
+  std::function<void(const Checkpoint&)> checkpoint;
+  std::function<bool()> checkpoint_due;
+  /// Where to go on from; on rank 0, of the same problem.
+  const Checkpoint* start = nullptr;
 };
 
 /// Solves the problem of which `part` is this rank's share. Collective over part.halo.comm. Not

@@ -20,6 +20,11 @@ kacanov_test(parallel
   LIBRARIES kacanov_solver
   RANKS 1 2 3 4)
 
+kacanov_test(checkpoint
+  SOURCES solver/mpi_main.cpp solver/checkpoint_test.cpp
+  LIBRARIES kacanov_solver
+  RANKS 1 2)
+
 kacanov_test(mesh
   SOURCES solver/mesh_test.cpp
   LIBRARIES kacanov_solver)

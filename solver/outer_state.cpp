@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The outer loop's state on its way into a checkpoint and out of it.
+#include <vector>
+
+#include "secant.hpp"
+
+namespace kacanov {
+namespace {
+
+/// The counts of a result that go on after a restart.
+template <class R, class Visitor>
+void visit_counts(R& result, Visitor&& entry) {
+  entry("outer_iterations", result.outer_iterations);
+  entry("contact_iterations", result.contact_iterations);
+  entry("cg_iterations", result.cg_iterations);
+  entry("operator_applications", result.operator_applications);
+  entry("lambda_min", result.lambda_min);
+  entry("lambda_max", result.lambda_max);
+  entry("r_star", result.r_star);
+  entry("r_active", result.r_active);
+}
+
+}  // namespace
+
+bool OuterLoop::stop_agreed() const {
+  return part_.halo.max_all(run_.stop_requested && run_.stop_requested() ? 1.0 : 0.0) > 0.0;
+}
+
+void OuterLoop::keep(const Result& result) {
+  if (run_.stop_requested) {
+    kept_ = {state_, loop_, penalty_, estimates_, estimated_set_, newton_failed_, result};
+    if (stop_agreed()) throw Interrupted{};
+  }
+  if (result.outer_iterations == 0) return;
+  const bool due = part_.halo.rank == 0 && run_.checkpoint && (!run_.checkpoint_due || run_.checkpoint_due());
+  if (part_.halo.max_all(due ? 1.0 : 0.0) == 0.0) return;
+  const Checkpoint all = checkpoint(result);
+  if (due) run_.checkpoint(all);
+}
+
+bool OuterLoop::run(Result& result) {
+  try {
+    iterate(result);
+  } catch (const Interrupted&) {
+    state_ = kept_.state;
+    loop_ = kept_.loop;
+    penalty_ = kept_.penalty;
+    estimates_ = kept_.estimates;
+    estimated_set_ = kept_.estimated_set;
+    newton_failed_ = kept_.newton_failed;
+    result = kept_.result;
+    return false;
+  }
+  return true;
+}
+
+Checkpoint OuterLoop::checkpoint(const Result& result) const {
+  Checkpoint out;
+  const auto put = [&](const char* name, const auto& value) { out.numbers[name] = static_cast<double>(value); };
+  visit_counts(result, put);
+  LoopState loop = loop_;
+  loop.visit(put);
+  put("operator_applications", applications());
+  put("penalty_normal", penalty_.normal);
+  put("penalty_tangential", penalty_.tangential);
+  put("estimates", estimates_);
+  put("newton_failed", newton_failed_);
+  out.fields["r"] = result.r;
+  out.fields["displacement"] = gather_nodal(part_, state_.omega, part_.dim());
+  out.fields["pressure"] = gather_contact(part_, state_.lambda.normal, 1);
+  out.fields["friction"] = gather_contact(part_, state_.lambda.tangential, 2);
+  out.fields["phi_normal"] = gather_contact(part_, state_.phi.normal, 1);
+  out.fields["phi_tangential"] = gather_contact(part_, state_.phi.tangential, 2);
+  out.fields["bound"] = gather_contact(part_, state_.bound, 1);
+  Vector estimated(2 * part_.contact.size(), 0.0);
+  for (std::size_t i = 0; i < estimated_set_.size(); ++i) {
+    estimated[2 * i] = estimated_set_[i].normal;
+    estimated[2 * i + 1] = estimated_set_[i].tangential;
+  }
+  out.fields["estimated_set"] = gather_contact(part_, estimated, 2);
+  return out;
+}
+
+void OuterLoop::restore(const Checkpoint* from, Result& result) {
+  const bool here = part_.halo.rank == 0;
+  const auto get = [&](const char* name, auto& value) {
+    double number = here ? from->number(name) : 0.0;
+    if (part_.halo.ranks > 1) MPI_Bcast(&number, 1, MPI_DOUBLE, 0, part_.halo.comm);
+    value = static_cast<std::remove_reference_t<decltype(value)>>(number);
+  };
+  visit_counts(result, get);
+  loop_.visit(get);
+  get("operator_applications", earlier_applications_);
+  get("penalty_normal", penalty_.normal);
+  get("penalty_tangential", penalty_.tangential);
+  get("estimates", estimates_);
+  get("newton_failed", newton_failed_);
+  result.restarted_after = result.outer_iterations;
+  result.r.resize(static_cast<std::size_t>(result.outer_iterations));
+  if (here) result.r = from->field("r", result.r.size());
+  if (part_.halo.ranks > 1)
+    MPI_Bcast(result.r.data(), static_cast<int>(result.r.size()), MPI_DOUBLE, 0, part_.halo.comm);
+
+  const auto points = static_cast<std::size_t>(part_.total_contact);
+  const auto contact = [&](const char* name, int components) {
+    const auto width = static_cast<std::size_t>(components);
+    return scatter_contact(part_, here ? from->field(name, points * width) : Vector(), components);
+  };
+  const auto unknowns = static_cast<std::size_t>(part_.total_nodes) * static_cast<std::size_t>(part_.dim());
+  state_.omega = scatter_nodal(part_, here ? from->field("displacement", unknowns) : Vector(), part_.dim());
+  state_.lambda.normal = contact("pressure", 1);
+  state_.lambda.tangential = contact("friction", 2);
+  state_.phi.normal = contact("phi_normal", 1);
+  state_.phi.tangential = contact("phi_tangential", 2);
+  state_.bound = contact("bound", 1);
+  const Vector estimated = contact("estimated_set", 2);
+  estimated_set_.resize(part_.contact.size());
+  for (std::size_t i = 0; i < estimated_set_.size(); ++i)
+    estimated_set_[i] = {estimated[2 * i] != 0.0, estimated[2 * i + 1] != 0.0};
+  traces_.evaluate(state_.omega, state_.trace);
+  preconditioner_stale_ = true;
+}
+
+}  // namespace kacanov

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Checkpoints: a run that was stopped goes on to the same answer, on any number of ranks.
+#include <doctest/doctest.h>
+
+#include "support.hpp"
+
+using namespace kacanov;
+using namespace kacanov::testing;
+
+namespace {
+
+Part part_of(const Mesh& mesh, const Model& model, MPI_Comm comm) {
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  std::optional<Problem> problem;
+  if (rank == 0) problem = build_problem(mesh, model);
+  return distribute(problem ? &*problem : nullptr, comm);
+}
+
+struct Ending {
+  Result result;
+  std::vector<double> displacement;  ///< on rank 0, the user's numbering
+};
+
+/// Runs, or goes on from `start` (rank 0).
+Ending run(const Part& part, const Model& model, RunOptions options = {}, const Checkpoint* start = nullptr) {
+  options.start = start;
+  const Solution solution = solve(part, model.solver, options);
+  return {solution.result, gather_nodal(part, solution.displacement, part.dim())};
+}
+
+double difference(const std::vector<double>& a, const std::vector<double>& b) {
+  REQUIRE(a.size() == b.size());
+  double most = 0.0, size = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    most = std::max(most, std::abs(a[i] - b[i]));
+    size = std::max(size, std::abs(b[i]));
+  }
+  return most == 0.0 ? 0.0 : most / size;
+}
+
+Model with(const Model& model, SolverOptions::Outer outer, SolverOptions::Contact contact) {
+  Model other = model;
+  other.solver.outer = outer;
+  other.solver.contact = contact;
+  return other;
+}
+
+}  // namespace
+
+TEST_CASE("a run goes on from any of its checkpoints to the same answer, on other ranks too") {
+  using Options = SolverOptions;
+  const Mesh mesh = beam_mesh(2, 4);
+  Model model = beam(2, logarithmic_law(0.01), 0.05, 0.01);
+  model.solver.tolerance = 1e-8;
+  Model coulomb = model;
+  coulomb.contact[0].friction = Friction{0.0, 0.3};
+  for (const Model& each : {model, coulomb, with(model, Options::Outer::kacanov, Options::Contact::admm)}) {
+    const Part together = part_of(mesh, each, MPI_COMM_WORLD), alone = part_of(mesh, each, MPI_COMM_SELF);
+    const bool first = together.halo.rank == 0;
+    std::vector<Checkpoint> checkpoints;
+    RunOptions options;
+    if (first) options.checkpoint = [&](const Checkpoint& c) { checkpoints.push_back(c); };
+    const Ending whole = run(together, each, options);
+    REQUIRE(whole.result.status == Status::converged);
+    // One after each step but the last.
+    const int steps = whole.result.outer_iterations;
+    if (first) REQUIRE(static_cast<int>(checkpoints.size()) == steps - 1);
+    for (const int at : {1, steps / 2, steps - 1}) {
+      CAPTURE(at);
+      Checkpoint from;
+      if (first) from = checkpoints[static_cast<std::size_t>(at - 1)];
+      const Ending rest = run(together, each, {}, first ? &from : nullptr);
+      CHECK(rest.result.status == Status::converged);
+      CHECK(rest.result.restarted_after == at);
+      // The preconditioner is a new one, and nothing else is different.
+      CHECK(std::abs(rest.result.outer_iterations - steps) <= 3);
+      CHECK(rest.result.r.size() == static_cast<std::size_t>(rest.result.outer_iterations));
+      CHECK(rest.result.r_star == whole.result.r_star);
+      if (first) CHECK(difference(rest.displacement, whole.displacement) < 1e-6);
+      if (!first) continue;
+      const Ending elsewhere = run(alone, each, {}, &from);
+      CHECK(elsewhere.result.status == Status::converged);
+      CHECK(difference(elsewhere.displacement, whole.displacement) < 1e-6);
+    }
+  }
+}
+
+TEST_CASE("a stop leaves the last whole step, on all ranks, wherever it comes") {
+  const Mesh mesh = beam_mesh(2, 4);
+  const Model model = beam(2, logarithmic_law(0.01), 0.05, 0.01);
+  const Part part = part_of(mesh, model, MPI_COMM_WORLD);
+  const bool first = part.halo.rank == 0, last = part.halo.rank == part.halo.ranks - 1;
+  int questions = 0;
+  RunOptions counting;
+  counting.stop_requested = [&] { return ++questions < 0; };
+  const Ending whole = run(part, model, counting);
+  REQUIRE(whole.result.status == Status::converged);
+  for (const double share : {0.0, 0.2, 0.6, 0.8, 0.95}) {
+    CAPTURE(share);
+    const int patience = static_cast<int>(share * questions);
+    Checkpoint left;
+    int asked = 0, written = 0;
+    RunOptions options;
+    // The signal reaches one rank only.
+    options.stop_requested = [&] { return last && asked++ >= patience; };
+    options.checkpoint_due = [] { return false; };
+    options.checkpoint = [&](const Checkpoint& c) {
+      left = c;
+      ++written;
+    };
+    const Ending stopped = run(part, model, options);
+    REQUIRE(stopped.result.status == Status::interrupted);
+    CHECK((stopped.result.outer_iterations > 0 || share < 0.8));
+    CHECK(stopped.result.outer_iterations < whole.result.outer_iterations);
+    CHECK(written == (first ? 1 : 0));
+    if (first) CHECK(difference(stopped.displacement, left.fields.at("displacement")) < 1e-15);
+    const Ending rest = run(part, model, {}, first ? &left : nullptr);
+    CHECK(rest.result.status == Status::converged);
+    if (first) CHECK(difference(rest.displacement, whole.displacement) < 1e-5);
+  }
+}
+
+TEST_CASE("what has not converged can be continued with more steps") {
+  const Mesh mesh = beam_mesh(2, 4);
+  Model model = beam(2, logarithmic_law(0.01), 0.05, 0.01);
+  const Part part = part_of(mesh, model, MPI_COMM_WORLD);
+  const Ending whole = run(part, model);
+  Checkpoint left;
+  RunOptions options;
+  options.checkpoint = [&](const Checkpoint& c) { left = c; };
+  model.solver.max_outer = 3;
+  CHECK(run(part, model, options).result.status == Status::not_converged);
+  model.solver.max_outer = 100;
+  const Ending rest = run(part, model, {}, part.halo.rank == 0 ? &left : nullptr);
+  CHECK(rest.result.status == Status::converged);
+  CHECK(rest.result.restarted_after == 3);
+  if (part.halo.rank == 0) CHECK(difference(rest.displacement, whole.displacement) < 1e-5);
+}
+
+TEST_CASE("a fingerprint knows what differs") {
+  const Mesh mesh = beam_mesh(2, 2);
+  const Model model = beam(2, logarithmic_law(0.01), 0.05, 0.01);
+  const auto print = [&](const Mesh& body, const Model& of) { return fingerprint(build_problem(body, of)); };
+  const Fingerprint base = print(mesh, model);
+  CHECK(base.differences(print(mesh, model)).empty());
+  using Names = std::vector<std::string>;
+  Model other = model;
+  other.solver.tolerance = 1e-3;
+  CHECK(base.differences(print(mesh, other)).empty());
+  other.materials[0].law.x0 = 0.02;
+  CHECK(base.differences(print(mesh, other)) == Names{"material"});
+  other = model;
+  other.boundary[1].traction = Vector3{0.0, -0.06, 0.0};
+  CHECK(base.differences(print(mesh, other)) == Names{"boundary"});
+  other = model;
+  other.contact[0].friction->tresca = 0.02;
+  CHECK(base.differences(print(mesh, other)) == Names{"contact"});
+  Mesh moved = mesh;
+  map_nodes(moved, [](const Vector3& x) { return Vector3{x[0] * (1.0 + 1e-12), x[1], 0.0}; });
+  const Names names = base.differences(print(moved, model));
+  CHECK(std::find(names.begin(), names.end(), "mesh") != names.end());
+}
