@@ -78,6 +78,8 @@ struct SolverOptions {
   int max_outer = 100;
   int max_contact = 10000;           ///< contact iterations within an outer step
   double spectrum_tolerance = 1e-2;  ///< relative, on λ_min and λ_max
+  /// Factors on loads, prescribed displacements and indentation, one after the other; the last is 1. Empty: at once.
+  std::vector<double> load_steps;
   /// Over-relaxation of ADMM, 1 ≤ α < 2. Unset: 1 with r: paper or stop: paper (Algorithm 1 as printed), else 1.7.
   std::optional<double> relaxation;
 };

@@ -32,10 +32,12 @@ void OuterLoop::keep(const Result& result) {
     if (stop_agreed()) throw Interrupted{};
   }
   if (result.outer_iterations == 0) return;
+  const double before = MPI_Wtime();
   const bool due = part_.halo.rank == 0 && run_.checkpoint && (!run_.checkpoint_due || run_.checkpoint_due());
   if (part_.halo.max_all(due ? 1.0 : 0.0) == 0.0) return;
   const Checkpoint all = checkpoint(result);
   if (due) run_.checkpoint(all);
+  checkpoint_seconds_ += MPI_Wtime() - before;
 }
 
 bool OuterLoop::run(Result& result) {
@@ -96,6 +98,7 @@ void OuterLoop::restore(const Checkpoint* from, Result& result) {
   get("estimates", estimates_);
   get("newton_failed", newton_failed_);
   result.restarted_after = result.outer_iterations;
+  loop_.first_outer = result.outer_iterations;  // who asks for a restart asks for more steps
   result.r.resize(static_cast<std::size_t>(result.outer_iterations));
   if (here) result.r = from->field("r", result.r.size());
   if (part_.halo.ranks > 1)

@@ -20,7 +20,7 @@ struct LoopState {
   int creeping = 0;         ///< Newton steps that let slip move on by a row of nodes
   int retreat = 0;          ///< ADMM steps still to take
   int retreats = 0;
-  int first_outer = 0;      ///< outer steps before this load step
+  int first_outer = 0;      ///< outer steps before this load step, or before a restart
 
   template <class Visitor>
   void visit(Visitor&& entry) {
@@ -55,6 +55,7 @@ class OuterLoop {
   /// Of the operator, those before a restart included.
   std::uint64_t applications() const noexcept { return earlier_applications_ + op_.applications(); }
   double spectrum_seconds() const noexcept { return spectrum_seconds_; }
+  double checkpoint_seconds() const noexcept { return checkpoint_seconds_; }
   double setup_seconds() const noexcept { return amg_->setup_seconds(); }
 
  private:
@@ -110,7 +111,7 @@ class OuterLoop {
   };
   Kept kept_;  // after the last whole outer step; only where a run may be stopped
   double extent_ = 0.0;           // of the body
-  double spectrum_seconds_ = 0.0;
+  double spectrum_seconds_ = 0.0, checkpoint_seconds_ = 0.0;
 };
 
 }  // namespace kacanov

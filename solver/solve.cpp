@@ -180,7 +180,8 @@ Solution solve(const Part& part, const SolverOptions& options, const RunOptions&
                     {"prepare", prepared - start},
                     {"spectrum", loop.spectrum_seconds()},
                     {"preconditioner_setup", loop.setup_seconds()},
-                    {"solve", looped - prepared - loop.spectrum_seconds()},
+                    {"solve", looped - prepared - loop.spectrum_seconds() - loop.checkpoint_seconds()},
+                    {"checkpoint", loop.checkpoint_seconds()},
                     {"certificate", end - looped}};
   return solution;
 }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "atomic_file.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <utility>
 
 #include "error.hpp"
@@ -31,15 +33,23 @@ void AtomicFile::write(const void* data, std::size_t bytes) {
   if (bytes > 0 && std::fwrite(data, 1, bytes, file_) != bytes) fail(errno);
 }
 
-void AtomicFile::commit() {
+void AtomicFile::commit(Durable durable) {
   // What is still buffered meets a full disk here.
   if (std::fflush(file_) != 0) fail(errno);
+  if (durable == Durable::yes && ::fsync(::fileno(file_)) != 0) fail(errno);
   const bool closed = std::fclose(std::exchange(file_, nullptr)) == 0;
   if (!closed || std::rename(temporary_.c_str(), path_.c_str()) != 0) {
     const int error = errno;
     std::remove(temporary_.c_str());
     fail(error);
   }
+  if (durable == Durable::no) return;
+  // The new name is on the disk with its folder. Not all file systems can do that; the file is whole in any case.
+  const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
+  const int handle = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY);
+  if (handle < 0) return;
+  ::fsync(handle);
+  ::close(handle);
 }
 
 void write_file(const std::string& path, std::string_view text) {

@@ -239,9 +239,10 @@ class CaseParser {
   }
 
   void parse_output(const Node& node) {
-    const Object object(node, {"fields", "report"});
+    const Object object(node, {"fields", "report", "checkpoint"});
     if (const auto v = object.optional("fields")) result_.output.fields = v->choice({"vtu", "none"}) == 0;
     if (const auto v = object.optional("report")) result_.output.report = v->boolean();
+    if (const auto v = object.optional("checkpoint")) result_.output.checkpoint = v->boolean();
   }
 
   std::string folder_;
@@ -269,6 +270,7 @@ Case read_case(const std::string& path, std::span<const std::string> overrides) 
   for (const std::string& assignment : overrides) apply_override(document, assignment);
   Case input = parse_case(document, file.parent_path().string());
   input.name = file.stem().string();
+  input.document = std::move(document);
   return input;
 }
 

@@ -22,6 +22,7 @@ struct MeshSource {
 struct OutputOptions {
   bool fields = true;  ///< `fields`: "vtu" or "none"
   bool report = true;  ///< pictures
+  bool checkpoint = true;
 };
 
 /// A vector of the case file, whose number of entries can be checked only once the mesh is known.
@@ -38,6 +39,7 @@ struct Case {
   OutputOptions output;
   std::vector<VectorEntry> vectors;
   std::vector<std::string> warnings;
+  nlohmann::json document;  ///< what it was read from, --set included
 };
 
 /// Makes a Case of a JSON object. `folder` is where relative mesh files are looked for. Throws InputError

@@ -57,6 +57,7 @@ ParsedCommand parse_command(int argc, const char* const* argv) {
   CLI::App* run = app.add_subcommand("run", "solve a case; writes result.json, fields and pictures");
   add_common(*run, command);
   add_output(*run, command);
+  run->add_flag("--restart", command.restart, "go on from the checkpoint that an unfinished run left in the folder");
   add_parallel(*run, command);
 
   CLI::App* spectrum =

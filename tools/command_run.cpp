@@ -3,8 +3,10 @@
 #include <iostream>
 
 #include "atomic_file.hpp"
+#include "checkpoint_file.hpp"
 #include "commands.hpp"
 #include "field_files.hpp"
+#include "interrupt.hpp"
 #include "loaded_case.hpp"
 #include "output_folder.hpp"
 #include "picture.hpp"
@@ -43,19 +45,35 @@ std::string picture(const Case& input, const Mesh& mesh, std::span<const double>
   return deformed_svg(picture);
 }
 
+std::string checkpoint_line(const CheckpointFile& file) {
+  return file.written() ? "  checkpoint    " + file.path().string() + "; the option --restart goes on from there\n" : "";
+}
+
 }  // namespace
 
 int run_command(const Command& command, const Case& input, const MpiSession& mpi) {
   const double start = MPI_Wtime();
   LoadedCase loaded = load_case(input, mpi);
   const std::filesystem::path folder = output_folder(command, input);
+  std::optional<CheckpointFile> file;  // on the first rank
+  std::optional<Checkpoint> left;
   together(mpi, [&] {
     if (!mpi.first()) return;
+    file.emplace(folder, input, *loaded.problem);
+    if (command.restart) left = file->read();
     prepare_folder(folder);
     clear_folder(folder);
+    if (!command.restart) file->remove();
   });
 
+  listen_for_interrupts();
   RunOptions options;
+  options.stop_requested = interrupt_came;
+  if (mpi.first() && input.output.checkpoint) {
+    options.checkpoint_due = [&] { return file->due(); };
+    options.checkpoint = [&](const Checkpoint& checkpoint) { file->write(checkpoint); };
+  }
+  if (left) options.start = &*left;
   options.threads = threads_of(command);
   options.progress = ProgressTable();
   Solution solution;
@@ -69,6 +87,7 @@ int run_command(const Command& command, const Case& input, const MpiSession& mpi
   });
 
   const double solved = MPI_Wtime();
+  left.reset();
   Result& result = solution.result;
   const int dim = loaded.part.dim();
   const ContactFields contact = gather_contact_fields(loaded.part, solution);
@@ -91,8 +110,9 @@ int run_command(const Command& command, const Case& input, const MpiSession& mpi
         result.seconds.begin(),
         {{"total", end - start}, {"read", loaded.read_seconds}, {"distribute", loaded.distribute_seconds}});
     result.seconds.emplace_back("output", end - solved);
+    if (result.status == Status::converged) file->remove();
     write_json(folder / "result.json", result_json(result, dim));
-    const std::string text = summary(result, input.model, dim);
+    const std::string text = summary(result, input.model, dim) + (result.status == Status::converged ? "" : checkpoint_line(*file));
     if (input.output.report) write_file((folder / "summary.txt").string(), text);
     std::cout << "\n" + text + "  files         " + folder.string() + "\n";
   });

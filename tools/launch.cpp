@@ -22,6 +22,7 @@
 
 #include "command.hpp"
 #include "error.hpp"
+#include "interrupt.hpp"
 
 namespace kacanov {
 namespace {
@@ -35,9 +36,17 @@ constexpr int code_offset = 80;
 volatile std::sig_atomic_t running_child = 0;
 volatile std::sig_atomic_t caught_signal = 0;
 
+timespec first_caught{};
+volatile std::sig_atomic_t insisting = 0;
+
+/// Asks the ranks to stop, through mpiexec and once a second: it or they may not listen yet. Asked again, mpiexec ends them.
 extern "C" void pass_on(int signal) {
-  caught_signal = signal;
-  if (running_child > 0) kill(static_cast<pid_t>(running_child), SIGTERM);
+  if (signal != SIGALRM) {
+    caught_signal = signal;
+    if (asks_again(first_caught)) insisting = 1;
+  }
+  if (running_child > 0) kill(static_cast<pid_t>(running_child), insisting != 0 ? SIGTERM : stop_signal);
+  alarm(1);
 }
 
 /// CPUs a control group's quota amounts to; a large number without one.
@@ -53,6 +62,7 @@ int quota_cores() {
   // program is killed outright.
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGTERM);
+  std::signal(stop_signal, SIG_IGN);  // until mpiexec listens to it
   const int nothing = open("/dev/null", O_RDONLY);
   if (nothing >= 0) dup2(nothing, STDIN_FILENO);
   std::vector<char*> pointers;
@@ -170,23 +180,24 @@ int run_under_mpiexec(const std::string& mpiexec, Shape shape, int argc, const c
     if (sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
       sigaction(signal, &action, nullptr);
   }
+  sigaction(SIGALRM, &action, nullptr);
   const pid_t child = fork();
   if (child < 0) throw InternalError(std::string("cannot start mpiexec: ") + std::strerror(errno));
   if (child == 0) become_mpiexec(words);
   running_child = child;
-  if (caught_signal != 0) kill(child, SIGTERM);
+  if (caught_signal != 0) kill(child, stop_signal);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   running_child = 0;
-  if (caught_signal != 0) {
+  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  if (code == 0) return 0;
+  if (code > code_offset && code <= code_offset + exit_failure) return code - code_offset;
+  if (caught_signal != 0) {  // it came when there was nothing yet to stop in order
     const int signal = caught_signal;
     std::signal(signal, SIG_DFL);
     std::raise(signal);
   }
-  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  if (code == 0) return 0;
-  if (code > code_offset && code <= code_offset + exit_failure) return code - code_offset;
   std::string reason = "mpiexec failed with exit code " + std::to_string(code);
   if (code > 128)
     reason = "a process was ended by signal " + std::to_string(code - 128) +

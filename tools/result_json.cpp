@@ -13,6 +13,15 @@ ordered_json entries(const Vector3& v, int dim) {
   return list;
 }
 
+const char* status_name(Status status) {
+  switch (status) {
+    case Status::converged: return "converged";
+    case Status::not_converged: return "not_converged";
+    case Status::interrupted: break;
+  }
+  return "interrupted";
+}
+
 ordered_json estimate_json(const SpectrumResult& result) {
   return {{"traces", result.friction ? "normal and tangential" : "normal"},
           {"rows", result.traces},
@@ -31,7 +40,7 @@ ordered_json estimate_json(const SpectrumResult& result) {
 
 ordered_json result_json(const Result& result, int dim) {
   ordered_json json;
-  json["status"] = result.status == Status::converged ? "converged" : "not_converged";
+  json["status"] = status_name(result.status);
   json["message"] = result.message;
   json["unknowns"] = result.unknowns;
   json["elements"] = result.elements;
@@ -39,6 +48,7 @@ ordered_json result_json(const Result& result, int dim) {
   json["active_nodes"] = result.active_nodes;
   json["slip_nodes"] = result.slip_nodes;
   json["outer_iterations"] = result.outer_iterations;
+  if (result.restarted_after >= 0) json["restarted_after"] = result.restarted_after;
   json["contact_iterations"] = result.contact_iterations;
   json["cg_iterations"] = result.cg_iterations;
   json["operator_applications"] = result.operator_applications;

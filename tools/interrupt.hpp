@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Signals that ask a run to stop.
+#pragma once
+
+#include <csignal>
+
+namespace kacanov {
+
+/// What the starting process sends through mpiexec, which passes it on to every rank, instead of the signals that would
+/// make mpiexec kill them.
+constexpr int stop_signal = SIGUSR1;
+
+/// From now on SIGINT, SIGTERM, SIGHUP (unless they are ignored) and stop_signal only ask for a stop. One more than a second
+/// later ends the process as it would without this.
+void listen_for_interrupts();
+
+/// Whether one has come.
+bool interrupt_came() noexcept;
+
+/// For signal handlers: whether this signal comes as a second request. `timeout` and terminals may send one request twice
+/// within moments.
+bool asks_again(timespec& first) noexcept;
+
+}  // namespace kacanov
