@@ -7,7 +7,7 @@ set(header_dir "${CMAKE_INSTALL_INCLUDEDIR}/kacanov")
 
 # What a consumer may include; everything else is the libraries' own affair.
 set(KACANOV_KERNEL_HEADERS float_operator.hpp law.hpp locality.hpp mesh_view.hpp operator.hpp reference.hpp)
-set(KACANOV_SOLVER_HEADERS error.hpp halo.hpp mesh.hpp model.hpp part.hpp problem.hpp result.hpp solve.hpp)
+set(KACANOV_SOLVER_HEADERS checkpoint.hpp error.hpp halo.hpp mesh.hpp model.hpp part.hpp problem.hpp result.hpp solve.hpp)
 
 # One export set a component, so that a consumer meets the dependencies of what it asks for and no others.
 function(kacanov_install_component component target)
