@@ -2,8 +2,11 @@
 // Units of elements other than tet4; fans.cpp has those.
 #include "units.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "elements/hex8.hpp"
 #include "elements/tet10.hpp"
 #include "fans.hpp"
 
@@ -28,6 +31,24 @@ bool straight(const MeshView& mesh, const std::int32_t* node) {
   return true;
 }
 
+/// Whether a hex8 is a parallelepiped: each edge is that of the first corner along its direction, to rounding
+/// of the element's own extent along each axis.
+bool affine(const MeshView& mesh, const std::int32_t* node) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    std::array<double, 8> x;
+    for (std::size_t a = 0; a < 8; ++a) x[a] = mesh.coordinates[3 * static_cast<std::size_t>(node[a]) + k];
+    const auto [low, high] = std::minmax_element(x.begin(), x.end());
+    const double along[3] = {x[1] - x[0], x[3] - x[0], x[4] - x[0]};
+    for (std::size_t a = 0; a < 8; ++a) {
+      double expected = x[0];
+      for (std::size_t direction = 0; direction < 3; ++direction)
+        if (elements::Hex8::corner[a][direction] > 0) expected += along[direction];
+      if (std::abs(x[a] - expected) > 1e-13 * (*high - *low)) return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 std::uint32_t nodes_of(simd::Shape shape, std::uint32_t length) noexcept {
@@ -37,7 +58,8 @@ std::uint32_t nodes_of(simd::Shape shape, std::uint32_t length) noexcept {
     case simd::Shape::tri3: return 3;
     case simd::Shape::tet10:
     case simd::Shape::curved_tet10: return 10;
-    case simd::Shape::hex8: return 8;
+    case simd::Shape::hex8:
+    case simd::Shape::affine_hex8: return 8;
   }
   return 0;
 }
@@ -49,7 +71,8 @@ std::uint32_t points_of(simd::Shape shape, std::uint32_t length) noexcept {
     case simd::Shape::tri3: return 1;
     case simd::Shape::tet10:
     case simd::Shape::curved_tet10: return 4;
-    case simd::Shape::hex8: return 8;
+    case simd::Shape::hex8:
+    case simd::Shape::affine_hex8: return 8;
   }
   return 0;
 }
@@ -64,6 +87,8 @@ Units make_units(const MeshView& mesh, std::span<const std::uint16_t> law_of_ele
   for (std::uint32_t e = 0; e < mesh.element_count(); ++e) {
     simd::Shape shape = simd::Shape::hex8;
     if (mesh.type == ElementType::tri3) shape = simd::Shape::tri3;
+    if (mesh.type == ElementType::hex8 && affine(mesh, &mesh.connectivity[std::size_t{e} * nodes]))
+      shape = simd::Shape::affine_hex8;
     if (mesh.type == ElementType::tet10)
       shape = straight(mesh, &mesh.connectivity[std::size_t{e} * nodes]) ? simd::Shape::tet10
                                                                          : simd::Shape::curved_tet10;

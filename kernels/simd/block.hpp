@@ -8,8 +8,9 @@
 
 namespace kacanov::simd {
 
-/// What a lane holds: an open or closed fan of tetrahedra, or one element. `tet10` has straight sides.
-enum class Shape : std::uint8_t { open_fan, closed_fan, tri3, tet10, curved_tet10, hex8 };
+/// What a lane holds: an open or closed fan of tetrahedra, or one element. `tet10` has straight sides,
+/// `affine_hex8` is a parallelepiped.
+enum class Shape : std::uint8_t { open_fan, closed_fan, tri3, tet10, curved_tet10, hex8, affine_hex8 };
 
 /// The law of a group, as far as the loops evaluate it themselves.
 struct LawView {

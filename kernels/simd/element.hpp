@@ -66,7 +66,7 @@ inline void element_loop(const Block<Real>& block, const Group& group, const Mat
             for (int m = 0; m < E::dim; ++m) h[3 * i + m] += slope[i] * c[q][k][m];
         }
         const Sym<V> s =
-            material.stress(h, det[q], w[q], Real(E::weight), point + static_cast<std::size_t>(q));
+            material.stress(strain_of(h), det[q], w[q], Real(E::weight), point + static_cast<std::size_t>(q));
         for (int k = 0; k < E::dim; ++k) {
           V t[3];
           multiply(s, c[q][k], t);

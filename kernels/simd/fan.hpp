@@ -103,7 +103,7 @@ KACANOV_INLINE inline void load_fan(const Material& material, const FanGeometry<
         h[3 * r + c] = dq[r] * wedge.c[c] - d[r] * next_spoke[c] + next[r] * spoke[c];
     if (i > 1) L::add3(f, ring + (i - 1) * L::width, done);
     const Sym<V> s =
-        material.stress(h, wedge.det, wedge.w, Real(1.0 / 6.0), point + static_cast<std::size_t>(i));
+        material.stress(strain_of(h), wedge.det, wedge.w, Real(1.0 / 6.0), point + static_cast<std::size_t>(i));
     subtract_product(s, next_spoke, carry);
     for (int k = 0; k < 3; ++k) {
       sum[k] += carry[k];

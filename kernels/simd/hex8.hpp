@@ -1,152 +1,349 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trilinear hexahedra, one a lane: derivatives at the 2×2×2 points by one-dimensional sums.
+// Trilinear hexahedra, one a lane: derivatives at the 2×2×2 points by sums and differences.
 #pragma once
+
+#include <array>
 
 #include "elements/hex8.hpp"
 #include "fan.hpp"
 
 namespace {
 
-/// Whether corner (or point) a lies on the upper side in each direction.
-struct HexCorner {
-  int x, y, z;
-};
-
-constexpr HexCorner hex_corner(int a) {
-  const auto& c = kacanov::elements::Hex8::corner[static_cast<std::size_t>(a)];
-  return {c[0] > 0, c[1] > 0, c[2] > 0};
-}
-
-constexpr int hex_node(int x, int y, int z) {
-  for (int a = 0; a < 8; ++a)
-    if (const HexCorner c = hex_corner(a); c.x == x && c.y == y && c.z == z) return a;
-  return -1;
-}
-
-/// A derivative along direction k does not depend on ξ_k: four values, by place in the other two directions.
-template <class V>
-struct HexSlopes {
-  V along[3][2][2][3];
-
-  V* at(int direction, const HexCorner& c) {
-    return direction == 0 ? along[0][c.y][c.z] : direction == 1 ? along[1][c.x][c.z] : along[2][c.x][c.y];
+/// Corners and points by place: bit 0 is set on the upper side in ξ, bit 1 in η, bit 2 in ζ.
+constexpr std::array<std::uint8_t, 8> hex_place = [] {
+  std::array<std::uint8_t, 8> place{};
+  for (std::size_t a = 0; a < 8; ++a) {
+    const auto& c = kacanov::elements::Hex8::corner[a];
+    place[a] = static_cast<std::uint8_t>((c[0] > 0) + 2 * (c[1] > 0) + 4 * (c[2] > 0));
   }
-};
-
-/// Nodes at the lower and upper ends of the four edges along each direction. A table: the compiler folds its
-/// entries where it would not run a search.
-struct HexEdges {
-  int end[3][2][2][2];
-};
-
-constexpr HexEdges hex_edges = [] {
-  HexEdges table{};
-  for (int p = 0; p < 2; ++p)
-    for (int q = 0; q < 2; ++q)
-      for (int upper = 0; upper < 2; ++upper) {
-        table.end[0][p][q][upper] = hex_node(upper, p, q);
-        table.end[1][p][q][upper] = hex_node(p, upper, q);
-        table.end[2][p][q][upper] = hex_node(p, q, upper);
-      }
-  return table;
+  return place;
 }();
 
-/// From edges to Gauss points in two directions; symmetric, so that it serves forces too. The half of a
-/// derivative's difference is in it.
-template <class Real, class V>
-KACANOV_INLINE inline void hex_interpolate(V (&v)[2][2][3]) {
-  constexpr Real gauss = Real(kacanov::elements::Hex8::gauss);
-  constexpr Real near = (1 + gauss) / 2, far = (1 - gauss) / 2;
-  for (int k = 0; k < 3; ++k) {
-    for (int p = 0; p < 2; ++p) {
-      const V a = v[p][0][k], b = v[p][1][k];
-      v[p][0][k] = near / 2 * a + far / 2 * b;
-      v[p][1][k] = far / 2 * a + near / 2 * b;
-    }
-    for (int q = 0; q < 2; ++q) {
-      const V a = v[0][q][k], b = v[1][q][k];
-      v[0][q][k] = near * a + far * b;
-      v[1][q][k] = far * a + near * b;
-    }
-  }
+/// The corner at a place.
+constexpr std::array<std::uint8_t, 8> hex_corner = [] {
+  std::array<std::uint8_t, 8> corner{};
+  for (std::size_t a = 0; a < 8; ++a) corner[hex_place[a]] = static_cast<std::uint8_t>(a);
+  return corner;
+}();
+
+// A trilinear function is a sum of eight modes: 1, ξ, η, ξη, ζ, ξζ, ηζ, ξηζ, by the bits of their index. Sums
+// of nodal values times ±1 give them (times eight); derivatives know nothing of the first.
+
+/// Keeps the compiler from holding indices it has read before: it would spill them.
+KACANOV_INLINE inline const std::uint16_t* read_anew(const std::uint16_t* at) {
+  __asm__("" : "+r"(at));
+  return at;
 }
 
-template <class L, class Real, class V = typename L::V>
-KACANOV_INLINE inline void hex_slopes(const Real* values, const std::uint16_t* at, HexSlopes<V>& slopes) {
-  V x[8][3];
+/// From values at the eight places to modes and, since the map is symmetric but for the sign of bits, back.
+/// Additions only.
+template <class V>
+KACANOV_INLINE inline void hex_modes(V* v) {
+#pragma GCC unroll 3
+  for (int bit = 4; bit > 0; bit /= 2)
 #pragma GCC unroll 8
-  for (int a = 0; a < 8; ++a) L::load3(values, at + a * L::width, x[a]);
-#pragma GCC unroll 3
-  for (int direction = 0; direction < 3; ++direction) {
-#pragma GCC unroll 4
-    for (int edge = 0; edge < 4; ++edge) {
-      const int low = hex_edges.end[direction][edge / 2][edge % 2][0],
-                high = hex_edges.end[direction][edge / 2][edge % 2][1];
-      for (int k = 0; k < 3; ++k) slopes.along[direction][edge / 2][edge % 2][k] = x[high][k] - x[low][k];
-    }
-    hex_interpolate<Real>(slopes.along[direction]);
-  }
-}
-
-/// The transpose of hex_slopes: f += forces of what belongs to each derivative.
-template <class L, class Real, class V = typename L::V>
-KACANOV_INLINE inline void hex_forces(HexSlopes<V>& t, const std::uint16_t* at, Real* f) {
-  V force[8][3] = {};
-#pragma GCC unroll 3
-  for (int direction = 0; direction < 3; ++direction) {
-    hex_interpolate<Real>(t.along[direction]);
-#pragma GCC unroll 4
-    for (int edge = 0; edge < 4; ++edge) {
-      const int low = hex_edges.end[direction][edge / 2][edge % 2][0],
-                high = hex_edges.end[direction][edge / 2][edge % 2][1];
-      for (int k = 0; k < 3; ++k) {
-        force[low][k] -= t.along[direction][edge / 2][edge % 2][k];
-        force[high][k] += t.along[direction][edge / 2][edge % 2][k];
+    for (int i = 0; i < 8; ++i)
+      if ((i & bit) == 0) {
+        const V low = v[i], high = v[i + bit];
+        v[i] = low + high;
+        v[i + bit] = high - low;
       }
-    }
-  }
-#pragma GCC unroll 8
-  for (int a = 0; a < 8; ++a) L::add3(f, at + a * L::width, force[a]);
 }
 
-/// Some 850 multiply-adds and 500 additions for the 8 points of each lane, against 3500 by shape functions.
+/// The mode `none`, first or last, is taken to be zero.
+template <int none, class V>
+KACANOV_INLINE inline void hex_values(V* m) {
+#pragma GCC unroll 3
+  for (int bit = 1; bit < 8; bit *= 2)
+#pragma GCC unroll 8
+    for (int i = 0; i < 8; ++i)
+      if ((i & bit) == 0) {
+        const V even = m[i], odd = m[i + bit];
+        const bool all_even = bit == 1 && i + bit == none, all_odd = bit == 1 && i == none;
+        m[i] = all_even ? even : all_odd ? -odd : even - odd;
+        m[i + bit] = all_even ? even : all_odd ? odd : even + odd;
+      }
+}
+
+/// Modes of a nodal field, components last; those of several bits shrink as the Gauss points move in.
+template <class L, class Real, class V = typename L::V>
+KACANOV_INLINE inline void hex_load(const Real* values, const std::uint16_t* at, V (&m)[3][8]) {
+  at = read_anew(at);
+  constexpr Real gauss = Real(kacanov::elements::Hex8::gauss);
+#pragma GCC unroll 8
+  for (int p = 0; p < 8; ++p) {
+    V x[3];
+    L::load3(values, at + hex_corner[p] * L::width, x);
+    for (int k = 0; k < 3; ++k) m[k][p] = x[k];
+  }
+#pragma GCC unroll 3
+  for (int k = 0; k < 3; ++k) {
+    hex_modes(m[k]);
+    m[k][3] *= gauss, m[k][5] *= gauss, m[k][6] *= gauss, m[k][7] *= gauss * gauss;
+  }
+}
+
+/// The transpose: nodal forces from those of the modes.
+template <class L, class Real, class V = typename L::V>
+KACANOV_INLINE inline void hex_add(V (&m)[3][8], const std::uint16_t* at, Real* f) {
+  at = read_anew(at);
+  constexpr Real gauss = Real(kacanov::elements::Hex8::gauss);
+#pragma GCC unroll 3
+  for (int k = 0; k < 3; ++k) {
+    m[k][3] *= gauss, m[k][5] *= gauss, m[k][6] *= gauss, m[k][7] *= gauss * gauss;
+    hex_values<0>(m[k]);
+  }
+#pragma GCC unroll 8
+  for (int p = 0; p < 8; ++p) {
+    const V force[3] = {m[0][p], m[1][p], m[2][p]};
+    L::add3(f, at + hex_corner[p] * L::width, force);
+  }
+}
+
+/// Eight times the derivatives along ξ, η, ζ at the points. That along direction k does not depend on ξ_k:
+/// four values, by the upper sides in the other two directions.
+template <class V>
+struct HexSlopes {
+  V along[3][4][3];
+
+  static constexpr int slot(int direction, int place) {
+    const int x = place & 1, y = place >> 1 & 1, z = place >> 2;
+    return direction == 0 ? y + 2 * z : direction == 1 ? x + 2 * z : x + 2 * y;
+  }
+  KACANOV_INLINE V* at(int direction, int place) { return along[direction][slot(direction, place)]; }
+  KACANOV_INLINE const V* at(int direction, int place) const {
+    return along[direction][slot(direction, place)];
+  }
+};
+
+/// Modes of the derivative along a direction: itself, and with the other two directions' bits.
+constexpr int hex_slope_modes[3][4] = {{1, 3, 5, 7}, {2, 3, 6, 7}, {4, 5, 6, 7}};
+
+template <class V>
+KACANOV_INLINE inline void hex_slopes(const V (&m)[3][8], HexSlopes<V>& slopes) {
+#pragma GCC unroll 3
+  for (int direction = 0; direction < 3; ++direction)
+#pragma GCC unroll 3
+    for (int k = 0; k < 3; ++k) {
+      const auto& mode = hex_slope_modes[direction];
+      const V low = m[k][mode[0]] - m[k][mode[1]], high = m[k][mode[0]] + m[k][mode[1]];
+      const V low_change = m[k][mode[2]] - m[k][mode[3]], high_change = m[k][mode[2]] + m[k][mode[3]];
+      slopes.along[direction][0][k] = low - low_change;
+      slopes.along[direction][1][k] = high - high_change;
+      slopes.along[direction][2][k] = low + low_change;
+      slopes.along[direction][3][k] = high + high_change;
+    }
+}
+
+/// The transpose of hex_slopes.
+template <class V>
+KACANOV_INLINE inline void hex_gather(const HexSlopes<V>& t, V (&m)[3][8]) {
+#pragma GCC unroll 3
+  for (int k = 0; k < 3; ++k) {
+    V part[3][4];
+#pragma GCC unroll 3
+    for (int direction = 0; direction < 3; ++direction) {
+      const auto& s = t.along[direction];
+      const V low = s[0][k] + s[2][k], low_change = s[2][k] - s[0][k];
+      const V high = s[1][k] + s[3][k], high_change = s[3][k] - s[1][k];
+      part[direction][0] = low + high;
+      part[direction][1] = high - low;
+      part[direction][2] = low_change + high_change;
+      part[direction][3] = high_change - low_change;
+    }
+    m[k][1] = part[0][0], m[k][2] = part[1][0], m[k][4] = part[2][0];
+    m[k][3] = part[0][1] + part[1][1];
+    m[k][5] = part[0][2] + part[2][1];
+    m[k][6] = part[1][2] + part[2][2];
+    m[k][7] = part[0][3] + part[1][3] + part[2][3];
+  }
+}
+
+/// det ∇ξ_k, det and weight/det at a point, of the slopes of the coordinates.
+template <class V>
+struct HexPoint {
+  V c[3][3], det, w;
+};
+
+template <class Real, class V>
+KACANOV_INLINE inline void hex_measure(const HexSlopes<V>& j, int place, HexPoint<V>& point) {
+  const V *a = j.at(0, place), *b = j.at(1, place), *d = j.at(2, place);
+  cross(b, d, point.c[0]);
+  cross(d, a, point.c[1]);
+  cross(a, b, point.c[2]);
+  point.det = inner(a, point.c[0]);
+  point.w = Real(1.0 / 512.0) / point.det;
+}
+
+/// det ε with doubled shears of the slopes at a point.
+template <class V>
+KACANOV_INLINE inline Sym<V> hex_strain(const V* a, const V* b, const V* d, const V (&c)[3][3]) {
+  const auto shear = [&](int i, int k) __attribute__((always_inline)) {
+    return a[i] * c[0][k] + a[k] * c[0][i] + b[i] * c[1][k] + b[k] * c[1][i] + d[i] * c[2][k] +
+           d[k] * c[2][i];
+  };
+  const auto stretch = [&](int i) __attribute__((always_inline)) {
+    return a[i] * c[0][i] + b[i] * c[1][i] + d[i] * c[2][i];
+  };
+  return {stretch(0), stretch(1), stretch(2), shear(0, 1), shear(1, 2), shear(2, 0)};
+}
+
+/// Slopes are eight times too large, so determinants are 512 times: the weight takes that back.
 template <class L, class Real, class Material>
 inline void hex_loop(const Block<Real>& block, const Group& group, const Material& material, const Real* u,
                      Real* f, int vectors, std::size_t stride, Ahead& ahead) {
   using V = typename L::V;
-  static constexpr HexCorner corner[8] = {hex_corner(0), hex_corner(1), hex_corner(2), hex_corner(3),
-                                          hex_corner(4), hex_corner(5), hex_corner(6), hex_corner(7)};
   const std::uint16_t* at = block.index + group.first_index;
   std::size_t point = 0;
   for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
     ahead.step();
-    V c[8][3][3], det[8], w[8];  // c: det ∇ξ_k
     HexSlopes<V> j;
-    hex_slopes<L>(block.coordinates, at, j);
-#pragma GCC unroll 8
-    for (int q = 0; q < 8; ++q) {
-      const V *a = j.at(0, corner[q]), *b = j.at(1, corner[q]), *d = j.at(2, corner[q]);
-      cross(b, d, c[q][0]);
-      cross(d, a, c[q][1]);
-      cross(a, b, c[q][2]);
-      det[q] = inner(a, c[q][0]);
-      w[q] = Real(1) / det[q];
+    {
+      V m[3][8];
+      hex_load<L>(block.coordinates, at, m);
+      hex_slopes(m, j);
     }
     for (int v = 0; v < vectors; ++v) {
       const std::size_t offset = static_cast<std::size_t>(v) * stride;
-      HexSlopes<V> slopes, forces = {};
-      hex_slopes<L>(u + offset, at, slopes);
+      HexSlopes<V> slopes, forces;
+      {
+        V m[3][8];
+        hex_load<L>(u + offset, at, m);
+        hex_slopes(m, slopes);
+      }
 #pragma GCC unroll 8
       for (int q = 0; q < 8; ++q) {
-        const V *a = slopes.at(0, corner[q]), *b = slopes.at(1, corner[q]), *d = slopes.at(2, corner[q]);
-        V h[9];
-        for (int i = 0; i < 3; ++i)
-          for (int m = 0; m < 3; ++m)
-            h[3 * i + m] = a[i] * c[q][0][m] + b[i] * c[q][1][m] + d[i] * c[q][2][m];
-        const Sym<V> s = material.stress(h, det[q], w[q], Real(1), point + static_cast<std::size_t>(q));
-        for (int k = 0; k < 3; ++k) add_product(s, c[q][k], forces.at(k, corner[q]));
+        HexPoint<V> p;
+        hex_measure<Real>(j, q, p);
+        const Sym<V> e = hex_strain(slopes.at(0, q), slopes.at(1, q), slopes.at(2, q), p.c);
+        const Sym<V> s = material.stress(e, p.det, p.w, Real(1.0 / 512.0), point + hex_corner[q]);
+        for (int k = 0; k < 3; ++k) {
+          const bool first = (q & (1 << k)) == 0;
+          if (first)
+            multiply(s, p.c[k], forces.at(k, q));
+          else
+            add_product(s, p.c[k], forces.at(k, q));
+        }
       }
-      hex_forces<L>(forces, at, f + offset);
+      V m[3][8];
+      hex_gather(forces, m);
+      hex_add<L>(m, at, f + offset);
+    }
+    at += 8 * L::width;
+    point += 8;
+  }
+}
+
+/// From the modes of deviatoric strains (xx yy xy yz zx, shears doubled) to those of half the stresses (of
+/// the stresses, for shears). For g alone each component goes its own way, in registers.
+template <class L, class Real, class V>
+KACANOV_INLINE inline void affine_stress(const SecantMaterial<L, Real>& material, std::size_t point,
+                                         V (&e)[5][8]) {
+#pragma GCC unroll 5
+  for (int n = 0; n < 5; ++n) {
+    hex_values<7>(e[n]);
+#pragma GCC unroll 8
+    for (int q = 0; q < 8; ++q) e[n][q] *= L::load(material.secant + (point + hex_corner[q]) * L::width);
+    hex_modes(e[n]);
+  }
+}
+
+template <class L, class Real, class V>
+KACANOV_INLINE inline void affine_stress(const TangentMaterial<L, Real>& material, std::size_t point,
+                                         V (&e)[5][8]) {
+#pragma GCC unroll 5
+  for (int n = 0; n < 5; ++n) hex_values<7>(e[n]);
+#pragma GCC unroll 8
+  for (int q = 0; q < 8; ++q) {
+    const std::size_t slot = point + hex_corner[q];
+    const V g = L::load(material.base.secant + slot * L::width);
+    const float* t = material.tangent + 6 * slot * L::width;
+    V d[5];
+    for (int n = 0; n < 5; ++n) d[n] = L::widen(t + n * L::width);
+    const V along =
+        L::widen(t + 5 * L::width) * (d[0] * e[0][q] + d[1] * e[1][q] + (d[0] + d[1]) * (e[0][q] + e[1][q]) +
+                                      d[2] * e[2][q] + d[3] * e[3][q] + d[4] * e[4][q]);
+    const V half = Real(0.5) * along;
+    for (int n = 0; n < 5; ++n) e[n][q] = g * e[n][q] + (n < 2 ? half : along) * d[n];
+  }
+#pragma GCC unroll 5
+  for (int n = 0; n < 5; ++n) hex_modes(e[n]);
+}
+
+/// Parallelepipeds: det ∇ξ_k is the same at all points, so strains are taken mode by mode before they are
+/// spread to the points, and stresses are gathered into modes before they become forces. What k0 adds is
+/// diagonal in the modes. Some 350 multiplications and 390 additions a batch.
+template <class L, class Real, class Material>
+inline void affine_hex_loop(const Block<Real>& block, const Group& group, const Material& material,
+                            const Real* u, Real* f, int vectors, std::size_t stride, Ahead& ahead) {
+  using V = typename L::V;
+  const std::uint16_t* at = block.index + group.first_index;
+  const V bulk = Real(8) * material.bulk();
+  std::size_t point = 0;
+  for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
+    ahead.step();
+    V c[3][3], w;  // c: of the edges, and thus four times too small; det is so eight times
+    {
+      V o[3], x[3][3];
+      const std::uint16_t* from = read_anew(at);
+      L::load3(block.coordinates, from, o);
+#pragma GCC unroll 3
+      for (int direction = 0; direction < 3; ++direction) {
+        L::load3(block.coordinates, from + hex_corner[1 << direction] * L::width, x[direction]);
+        for (int k = 0; k < 3; ++k) x[direction][k] -= o[k];
+      }
+      for (int k = 0; k < 3; ++k) cross(x[(k + 1) % 3], x[(k + 2) % 3], c[k]);
+      w = Real(1.0 / 128.0) / inner(x[0], c[0]);
+    }
+    for (int v = 0; v < vectors; ++v) {
+      const std::size_t offset = static_cast<std::size_t>(v) * stride;
+      V m[3][8], e[5][8], trace[8];
+      hex_load<L>(u + offset, at, m);
+#pragma GCC unroll 8
+      for (int s = 0; s < 7; ++s) {
+        // ∂u/∂ξ_k has a mode for each of u that has bit k, without that bit.
+        const auto sum = [&](int i, int k) __attribute__((always_inline)) {
+          V value{};
+#pragma GCC unroll 3
+          for (int direction = 0; direction < 3; ++direction)
+            if ((s >> direction & 1) == 0) {
+              value += m[i][s | 1 << direction] * c[direction][k];
+              if (i != k) value += m[k][s | 1 << direction] * c[direction][i];
+            }
+          return value;
+        };
+        const V xx = sum(0, 0), yy = sum(1, 1), zz = sum(2, 2);
+        trace[s] = xx + yy + zz;
+        const V mean = Real(1.0 / 3.0) * trace[s];
+        e[0][s] = xx - mean, e[1][s] = yy - mean;
+        e[2][s] = sum(0, 1), e[3][s] = sum(1, 2), e[4][s] = sum(2, 0);
+      }
+      affine_stress<L, Real>(material, point, e);
+      V cw[3][3];
+      for (int k = 0; k < 3; ++k)
+        for (int i = 0; i < 3; ++i) cw[k][i] = w * c[k][i];
+#pragma GCC unroll 3
+      for (int k = 0; k < 3; ++k)
+#pragma GCC unroll 8
+        for (int i = 0; i < 8; ++i) m[k][i] = V{};
+#pragma GCC unroll 8
+      for (int s = 0; s < 7; ++s) {
+        const V pressure = bulk * trace[s];
+        const Sym<V> t{pressure + Real(2) * e[0][s],
+                       pressure + Real(2) * e[1][s],
+                       pressure - Real(2) * (e[0][s] + e[1][s]),
+                       e[2][s],
+                       e[3][s],
+                       e[4][s]};
+#pragma GCC unroll 3
+        for (int direction = 0; direction < 3; ++direction)
+          if ((s >> direction & 1) == 0) {
+            V force[3] = {m[0][s | 1 << direction], m[1][s | 1 << direction], m[2][s | 1 << direction]};
+            add_product(t, cw[direction], force);
+            for (int k = 0; k < 3; ++k) m[k][s | 1 << direction] = force[k];
+          }
+      }
+      hex_add<L>(m, at, f + offset);
     }
     at += 8 * L::width;
     point += 8;

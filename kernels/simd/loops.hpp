@@ -83,6 +83,12 @@ struct Loops {
         case Shape::tet10: tet10_loop<L, Real>(block, group, material, u, f, vectors, stride, ahead); break;
         case Shape::curved_tet10: elements.template operator()<Tet10>(); break;
         case Shape::hex8: hex_loop<L, Real>(block, group, material, u, f, vectors, stride, ahead); break;
+        case Shape::affine_hex8:
+          if constexpr (decltype(material)::frozen)
+            affine_hex_loop<L, Real>(block, group, material, u, f, vectors, stride, ahead);
+          else
+            hex_loop<L, Real>(block, group, material, u, f, vectors, stride, ahead);
+          break;
       }
     }
   }

@@ -42,16 +42,21 @@ KACANOV_INLINE inline void subtract_product(const Sym<V>& s, const V* n, V* v) {
   v[2] = v[2] - s.zx * n[0] - s.yz * n[1] - s.zz * n[2];
 }
 
-// A material turns h = det ∇u (h[3 i + j] = det ∂u_i/∂x_j) at one point of each lane into
-// weight·τ: forces are that times det ∇N. `weight` is the point's on the reference element, `w` = weight/det.
-// `point` counts vectors of points from the start of the group.
+// A material turns the strain at one point of each lane, times det and with doubled shears, into weight·τ:
+// forces are that times det ∇N. `weight` is the point's on the reference element, `w` = weight/det. `point`
+// counts vectors of points from the start of the group.
+
+/// That strain from h[3 i + j] = det ∂u_i/∂x_j.
+template <class V>
+KACANOV_INLINE inline Sym<V> strain_of(const V* h) {
+  return {h[0], h[4], h[8], h[1] + h[3], h[5] + h[7], h[2] + h[6]};
+}
 
 template <class L, class Real, class V = typename L::V>
-KACANOV_INLINE inline Sym<V> frozen_stress(const V* h, V g, V bulk, V w) {
+KACANOV_INLINE inline Sym<V> frozen_stress(const Sym<V>& e, V g, V bulk, V w) {
   const V gg = g * w, gg2 = gg + gg;
-  const V mean = (h[0] + h[4] + h[8]) * (bulk * w - gg2 * Real(1.0 / 3.0));
-  return {gg2 * h[0] + mean,  gg2 * h[4] + mean,  gg2 * h[8] + mean,
-          gg * (h[1] + h[3]), gg * (h[5] + h[7]), gg * (h[2] + h[6])};
+  const V mean = (e.xx + e.yy + e.zz) * (bulk * w - gg2 * Real(1.0 / 3.0));
+  return {gg2 * e.xx + mean, gg2 * e.yy + mean, gg2 * e.zz + mean, gg * e.xy, gg * e.yz, gg * e.zx};
 }
 
 template <class L, class Real>
@@ -59,13 +64,15 @@ struct SecantMaterial {
   static constexpr bool frozen = true;
   using V = typename L::V;
   const Real* secant;
-  V bulk;
+  V k0;
 
   SecantMaterial(const Block<Real>& block, const Group& group)
-      : secant(block.secant + group.first_slot), bulk(Real(block.laws[group.law].bulk) - V{}) {}
+      : secant(block.secant + group.first_slot), k0(Real(block.laws[group.law].bulk) - V{}) {}
 
-  KACANOV_INLINE Sym<V> stress(const V* h, V, V w, Real, std::size_t point) const {
-    return frozen_stress<L, Real>(h, L::load(secant + point * L::width), bulk, w);
+  V bulk() const { return k0; }
+
+  KACANOV_INLINE Sym<V> stress(const Sym<V>& e, V, V w, Real, std::size_t point) const {
+    return frozen_stress<L, Real>(e, L::load(secant + point * L::width), k0, w);
   }
 };
 
@@ -79,15 +86,15 @@ struct TangentMaterial {
   TangentMaterial(const Block<Real>& block, const Group& group)
       : base(block, group), tangent(block.tangent + 6 * std::size_t{group.first_slot}) {}
 
-  KACANOV_INLINE Sym<V> stress(const V* h, V, V w, Real, std::size_t point) const {
-    Sym<V> s = frozen_stress<L, Real>(h, L::load(base.secant + point * L::width), base.bulk, w);
+  V bulk() const { return base.bulk(); }
+
+  KACANOV_INLINE Sym<V> stress(const Sym<V>& e, V, V w, Real, std::size_t point) const {
+    Sym<V> s = frozen_stress<L, Real>(e, L::load(base.secant + point * L::width), base.k0, w);
     const float* t = tangent + 6 * point * L::width;
     const V xx = L::widen(t), yy = L::widen(t + L::width), xy = L::widen(t + 2 * L::width),
             yz = L::widen(t + 3 * L::width), zx = L::widen(t + 4 * L::width), c = L::widen(t + 5 * L::width);
     const V zz = -(xx + yy);
-    const V along =
-        c * w *
-        (xx * h[0] + yy * h[4] + zz * h[8] + xy * (h[1] + h[3]) + yz * (h[5] + h[7]) + zx * (h[2] + h[6]));
+    const V along = c * w * (xx * e.xx + yy * e.yy + zz * e.zz + xy * e.xy + yz * e.yz + zx * e.zx);
     s.xx += along * xx, s.yy += along * yy, s.zz += along * zz;
     s.xy += along * xy, s.yz += along * yz, s.zx += along * zx;
     return s;
@@ -109,11 +116,11 @@ struct NonlinearMaterial {
         secant(block.secant + group.first_slot),
         tangent(block.tangent + 6 * std::size_t{group.first_slot}) {}
 
-  KACANOV_INLINE Sym<V> stress(const V* h, V det, V w, Real weight, std::size_t point) const {
+  KACANOV_INLINE Sym<V> stress(const Sym<V>& e, V det, V w, Real weight, std::size_t point) const {
     const V inverse = w * (Real(1) / weight), half = Real(0.5) * inverse;
-    const V trace = (h[0] + h[4] + h[8]) * inverse, mean = trace * Real(1.0 / 3.0);
-    const V xx = h[0] * inverse - mean, yy = h[4] * inverse - mean, zz = h[8] * inverse - mean;
-    const V xy = (h[1] + h[3]) * half, yz = (h[5] + h[7]) * half, zx = (h[2] + h[6]) * half;
+    const V trace = (e.xx + e.yy + e.zz) * inverse, mean = trace * Real(1.0 / 3.0);
+    const V xx = e.xx * inverse - mean, yy = e.yy * inverse - mean, zz = e.zz * inverse - mean;
+    const V xy = e.xy * half, yz = e.yz * half, zx = e.zx * half;
     const V x = L::sqrt(xx * xx + yy * yy + zz * zz + Real(2) * (xy * xy + yz * yz + zx * zx));
     V g = Real(law.shear) - V{}, slope = V{}, energy = Real(0.5 * law.shear) * x * x;
     for (int l = 0; l < L::width; ++l)
@@ -126,7 +133,7 @@ struct NonlinearMaterial {
     for (int l = 0; l < L::width; ++l) out.energy += double(density[l]);
     if (out.keep_secant) L::store(secant + point * L::width, g);
     if (out.keep_tangent) keep(Sym<V>{xx, yy, zz, xy, yz, zx}, x, slope, tangent + 6 * point * L::width);
-    return frozen_stress<L, Real>(h, g, Real(law.bulk) - V{}, w);
+    return frozen_stress<L, Real>(e, g, Real(law.bulk) - V{}, w);
   }
 
   /// The direction dev ε/x and 2 g' x; zero where g' is.

@@ -70,7 +70,7 @@ inline void tet10_loop(const Block<Real>& block, const Group& group, const Mater
         V at_point[9];
         for (int n = 0; n < 9; ++n) at_point[n] = rest * h[q][n] + h_sum[n];
         const Sym<V> t =
-            material.stress(at_point, det, w, Real(1.0 / 24.0), point + static_cast<std::size_t>(q));
+            material.stress(strain_of(at_point), det, w, Real(1.0 / 24.0), point + static_cast<std::size_t>(q));
         s[q][0] = t.xx, s[q][1] = t.yy, s[q][2] = t.zz, s[q][3] = t.xy, s[q][4] = t.yz, s[q][5] = t.zx;
         for (int n = 0; n < 6; ++n) s_sum[n] = q == 0 ? s[q][n] : s_sum[n] + s[q][n];
       }

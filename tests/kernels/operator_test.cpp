@@ -65,6 +65,16 @@ std::vector<OwnedBody> bodies(ElementType type) {
   all.push_back(test::with_one_law(long_box, test::every_law()[4]));
   stretch(long_box, 1000.0);
   all.push_back(test::with_one_law(long_box, test::every_law()[1]));
+  auto sheared = meshes::box(type, {7, 4, 3}, {1, 1, 1});  // hex8: parallelepipeds, and others further below
+  const auto dim = static_cast<std::size_t>(dimension(type));
+  for (std::size_t i = 0; i < sheared.coordinates.size(); i += dim) {
+    double* x = &sheared.coordinates[i];
+    x[0] += 0.4 * x[1], x[1] += 0.3 * x[dim - 1];
+    if (dim == 3 && x[2] < 0.4) x[2] *= 1.0 + 0.2 * x[0] * x[1];
+  }
+  all.push_back(test::with_every_law(sheared, 6));
+  stretch(sheared, 1000.0);
+  all.push_back(test::with_one_law(sheared, test::every_law()[3]));
   return all;
 }
 
