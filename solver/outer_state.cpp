@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The outer loop's state on its way into a checkpoint and out of it.
+#include <algorithm>
 #include <vector>
 
 #include "secant.hpp"
@@ -18,6 +19,22 @@ void visit_counts(R& result, Visitor&& entry) {
   entry("lambda_max", result.lambda_max);
   entry("r_star", result.r_star);
   entry("r_active", result.r_active);
+}
+
+template <class Visitor>
+void visit_load_step(LoadStep& step, Visitor&& entry) {
+  entry(step.factor);
+  entry(step.outer_iterations);
+  entry(step.cg_iterations);
+  entry(step.active_nodes);
+  entry(step.slip_nodes);
+  entry(step.max_contact_pressure);
+  entry(step.plastic_elements);
+  entry(step.worst_residual);
+  for (double& value : step.contact_force) entry(value);
+  for (double& value : step.friction_force) entry(value);
+  for (Vector3& probe : step.probe)
+    for (double& value : probe) entry(value);
 }
 
 }  // namespace
@@ -56,6 +73,19 @@ bool OuterLoop::run(Result& result) {
   return true;
 }
 
+void OuterLoop::scale(double ratio, const Result& result) {
+  for (std::size_t i = 0; i < state_.omega.size(); ++i)
+    state_.omega[i] = part_.held[i] ? part_.prescribed[i] : ratio * state_.omega[i];
+  for (Vector* v : {&state_.lambda.normal, &state_.lambda.tangential, &state_.phi.tangential})
+    for (double& value : *v) value *= ratio;
+  traces_.evaluate(state_.omega, state_.trace);
+  for (std::size_t i = 0; i < part_.contact.size(); ++i)
+    state_.phi.normal[i] = std::min(state_.trace.normal[i], part_.contact[i].gap);
+  update_bounds();
+  loop_ = {};
+  loop_.first_outer = result.outer_iterations;
+}
+
 Checkpoint OuterLoop::checkpoint(const Result& result) const {
   Checkpoint out;
   const auto put = [&](const char* name, const auto& value) { out.numbers[name] = static_cast<double>(value); };
@@ -66,8 +96,13 @@ Checkpoint OuterLoop::checkpoint(const Result& result) const {
   put("penalty_normal", penalty_.normal);
   put("penalty_tangential", penalty_.tangential);
   put("estimates", estimates_);
+  put("load_steps_over", result.load_steps.size());
   put("newton_failed", newton_failed_);
   out.fields["r"] = result.r;
+  out.fields["load_steps"] = {};
+  for (LoadStep step : result.load_steps) {
+    visit_load_step(step, [&](auto& value) { out.fields["load_steps"].push_back(static_cast<double>(value)); });
+  }
   out.fields["displacement"] = gather_nodal(part_, state_.omega, part_.dim());
   out.fields["pressure"] = gather_contact(part_, state_.lambda.normal, 1);
   out.fields["friction"] = gather_contact(part_, state_.lambda.tangential, 2);
@@ -99,6 +134,21 @@ void OuterLoop::restore(const Checkpoint* from, Result& result) {
   get("newton_failed", newton_failed_);
   result.restarted_after = result.outer_iterations;
   loop_.first_outer = result.outer_iterations;  // who asks for a restart asks for more steps
+  double steps = 0.0;
+  get("load_steps_over", steps);
+  result.load_steps.resize(static_cast<std::size_t>(steps));
+  std::size_t entries = 0;
+  for (LoadStep& step : result.load_steps) {
+    step.probe.resize(static_cast<std::size_t>(part_.total_probes));
+    visit_load_step(step, [&](auto&) { ++entries; });
+  }
+  Vector history(entries);
+  if (here) history = from->field("load_steps", entries);
+  if (part_.halo.ranks > 1) MPI_Bcast(history.data(), static_cast<int>(entries), MPI_DOUBLE, 0, part_.halo.comm);
+  auto next = history.begin();
+  for (LoadStep& step : result.load_steps) {
+    visit_load_step(step, [&](auto& value) { value = static_cast<std::remove_reference_t<decltype(value)>>(*next++); });
+  }
   result.r.resize(static_cast<std::size_t>(result.outer_iterations));
   if (here) result.r = from->field("r", result.r.size());
   if (part_.halo.ranks > 1)

@@ -39,6 +39,19 @@ struct SpectrumResult {
   std::int64_t traces = 0;                  ///< rows of C
 };
 
+/// The end of one load step.
+struct LoadStep {
+  double factor = 1.0;
+  int outer_iterations = 0;         ///< of this step
+  std::int64_t cg_iterations = 0;   ///< likewise
+  std::int64_t active_nodes = 0, slip_nodes = 0;
+  Vector3 contact_force{}, friction_force{};
+  double max_contact_pressure = 0.0;
+  std::int64_t plastic_elements = 0;
+  double worst_residual = 0.0;      ///< of the certificate, by the operator of the loop
+  std::vector<Vector3> probe;
+};
+
 struct Result {
   Status status = Status::not_converged;
   std::string message;
@@ -56,6 +69,7 @@ struct Result {
   std::int64_t plastic_elements = 0;
   std::int64_t softening_elements = 0;  ///< in the softening range of a squared-argument law
   std::vector<Vector3> probe;
+  std::vector<LoadStep> load_steps;     ///< those that are over; empty where the load is put on at once
   Certificate certificate;
   std::vector<std::pair<std::string, double>> seconds;  ///< phases in order; "total" first
   std::uint64_t peak_memory_bytes = 0;  ///< all ranks

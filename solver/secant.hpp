@@ -42,6 +42,11 @@ class OuterLoop {
   /// Runs until the certificate meets the tolerance, or max_outer steps. Fills the loop's entries of the result. Where
   /// the run is to stop, state and result are those after the last whole outer step, and false is returned.
   bool run(Result& result);
+  /// After the part's loads have been multiplied by `ratio`: starts the next load step from the same multiple of the last
+  /// one's solution.
+  void scale(double ratio, const Result& result);
+  /// By the loop's own operator.
+  Residuals certify() const;
   /// Goes on from a checkpoint, which rank 0 has. Collective.
   void restore(const Checkpoint* from, Result& result);
   /// What restore() needs, on rank 0. Collective.
@@ -70,7 +75,6 @@ class OuterLoop {
   bool secant_drifted() const;
   void watch_preconditioner(double digits, std::int64_t iterations);
   void update_bounds();
-  Residuals certify() const;
   void take_admm_step(Result& result, ProgressStep& line, const Residuals& before);
   void take_newton_step(ProgressStep& line, const Residuals& before);
   void take_damped_step(std::span<const double> delta, double curvature);

@@ -8,10 +8,12 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <string>
 
 #include "certificate.hpp"
+#include "load_steps.hpp"
 #include "secant.hpp"
 
 namespace kacanov {
@@ -110,6 +112,55 @@ void collect_totals(const Part& part, const ContactState& state, const Solution&
     result.probe.push_back({probes[3 * i], probes[3 * i + 1], probes[3 * i + 2]});
 }
 
+/// A tangential displacement beyond it is slip.
+double least_slip(const OuterLoop& loop, const SolverOptions& options) {
+  return 10.0 * options.tolerance * loop.space().max_abs(loop.state().omega);
+}
+
+/// Load steps that the run to go on from has behind it, on all ranks.
+std::size_t steps_over(const Part& part, const RunOptions& run) {
+  const bool here = part.halo.rank == 0 && run.start != nullptr;
+  return static_cast<std::size_t>(part.halo.max_all(here ? run.start->number("load_steps_over") : 0.0));
+}
+
+/// Whether the next load step has something to start from.
+bool worth_going_on(const OuterLoop& loop, const SolverOptions& options, const Result& result) {
+  if (!result.message.empty()) return false;
+  return options.stop == SolverOptions::Stop::paper || loop.certify().certificate.worst() <= options.tolerance;
+}
+
+/// The line of the history for a finished load step; `result` has its totals and those of the steps before.
+LoadStep load_step_of(const Result& result, double factor) {
+  LoadStep step;
+  step.factor = factor;
+  step.outer_iterations = result.outer_iterations;
+  step.cg_iterations = result.cg_iterations;
+  for (const LoadStep& before : result.load_steps) {
+    step.outer_iterations -= before.outer_iterations;
+    step.cg_iterations -= before.cg_iterations;
+  }
+  step.active_nodes = result.active_nodes;
+  step.slip_nodes = result.slip_nodes;
+  step.contact_force = result.contact_force;
+  step.friction_force = result.friction_force;
+  step.max_contact_pressure = result.max_contact_pressure;
+  step.plastic_elements = result.plastic_elements;
+  step.worst_residual = result.certificate.worst();
+  step.probe = result.probe;
+  return step;
+}
+
+/// The same in the middle of a run.
+LoadStep load_step(const Part& part, const OuterLoop& loop, const SolverOptions& options, double factor,
+                   const Result& result) {
+  Solution now;
+  now.result = result;
+  collect_fields(part, loop.state(), least_slip(loop, options), now);
+  collect_totals(part, loop.state(), now, now.result);
+  now.result.certificate = loop.certify().certificate;
+  return load_step_of(now.result, factor);
+}
+
 std::string verdict(const Result& result, const SolverOptions& options) {
   std::ostringstream text;
   text.precision(2);
@@ -132,16 +183,29 @@ std::string verdict(const Result& result, const SolverOptions& options) {
 
 }  // namespace
 
-Solution solve(const Part& part, const SolverOptions& options, const RunOptions& run) {
+Solution solve(const Part& full, const SolverOptions& options, const RunOptions& run) {
   const double start = MPI_Wtime();
   Solution solution;
   Result& result = solution.result;
+  const bool restart = full.halo.max_all(full.halo.rank == 0 && run.start != nullptr ? 1.0 : 0.0) > 0.0;
+  const std::vector<double> factors = options.load_steps.empty() ? std::vector{1.0} : options.load_steps;
+  std::optional<LoadPath> path;
+  if (factors.size() > 1) {
+    path.emplace(full);
+    path->set(factors[steps_over(full, run)]);
+  }
+  const Part& part = path ? path->part() : full;
   OuterLoop loop(part, options, run);
   const double prepared = MPI_Wtime();
-  double restart = part.halo.rank == 0 && run.start != nullptr ? 1.0 : 0.0;
-  restart = part.halo.max_all(restart);
-  if (restart > 0.0) loop.restore(run.start, result);
-  const bool finished = loop.run(result);
+  if (restart) loop.restore(run.start, result);
+  bool finished = loop.run(result);
+  while (finished && result.load_steps.size() + 1 < factors.size() && worth_going_on(loop, options, result)) {
+    const std::size_t over = result.load_steps.size();
+    result.load_steps.push_back(load_step(part, loop, options, factors[over], result));
+    path->set(factors[over + 1]);
+    loop.scale(factors[over + 1] / factors[over], result);
+    finished = loop.run(result);
+  }
   const double looped = MPI_Wtime();
 
   // The certificate trusts the reference operator only, not the one the loop ran on.
@@ -159,9 +223,16 @@ Solution solve(const Part& part, const SolverOptions& options, const RunOptions&
     if (part.halo.rank == 0) run.checkpoint(all);
   }
 
-  collect_fields(part, loop.state(), 10.0 * options.tolerance * loop.space().max_abs(loop.state().omega), solution);
+  collect_fields(part, loop.state(), least_slip(loop, options), solution);
   collect_totals(part, loop.state(), solution, result);
   if (result.message.empty()) result.message = verdict(result, options);
+  if (path) {
+    const std::size_t over = result.load_steps.size();
+    if (finished) result.load_steps.push_back(load_step_of(result, factors[over]));
+    std::ostringstream place;
+    place << "load step " << over + 1 << " of " << factors.size() << " (factor " << factors[over] << "): ";
+    if (over + 1 < factors.size() || !finished) result.message = place.str() + result.message;
+  }
   if (result.softening_elements > 0)
     result.message += "; " + std::to_string(result.softening_elements) +
                       " elements are in the softening range of their law (squared argument), where the problem is not "

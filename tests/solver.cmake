@@ -25,6 +25,10 @@ kacanov_test(checkpoint
   LIBRARIES kacanov_solver
   RANKS 1 2)
 
+kacanov_test(load_steps
+  SOURCES solver/mpi_main.cpp solver/load_steps_test.cpp
+  LIBRARIES kacanov_solver)
+
 kacanov_test(mesh
   SOURCES solver/mesh_test.cpp
   LIBRARIES kacanov_solver)

@@ -193,7 +193,7 @@ class CaseParser {
   void parse_solver(const Node& node) {
     using Options = SolverOptions;
     const Object object(node, {"tolerance", "outer", "contact", "r", "stop", "max_outer", "max_contact",
-                               "spectrum_tolerance", "relaxation", "preconditioner"});
+                               "spectrum_tolerance", "relaxation", "preconditioner", "load_steps"});
     Options& options = result_.model.solver;
     const auto inside = [](double v) { return v > 0.0 && v < 1.0; };
     if (const auto v = object.optional("tolerance"))
@@ -220,10 +220,23 @@ class CaseParser {
     }
     if (const auto v = object.optional("max_outer")) options.max_outer = v->integer(1);
     if (const auto v = object.optional("max_contact")) options.max_contact = v->integer(1);
+    if (const auto v = object.optional("load_steps")) parse_load_steps(*v);
     if (const auto v = object.optional("relaxation")) {
       options.relaxation =
           v->number("a number ≥ 1 and below 2", [](double a) { return a >= 1.0 && a < 2.0; });
     }
+  }
+
+  void parse_load_steps(const Node& node) {
+    std::vector<double>& factors = result_.model.solver.load_steps;
+    if (node.value().is_number()) {
+      const int steps = node.integer(1);
+      for (int i = 1; i <= steps; ++i) factors.push_back(static_cast<double>(i) / steps);
+      return;
+    }
+    for (const Node& factor : node.list("a whole number ≥ 1 or a list of factors"))
+      factors.push_back(factor.number("a factor > 0", [](double v) { return v > 0.0; }));
+    if (factors.empty() || factors.back() != 1.0) node.expected("factors on the load of which the last is 1");
   }
 
   void parse_penalty(const Node& node) {

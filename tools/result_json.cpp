@@ -65,6 +65,21 @@ ordered_json result_json(const Result& result, int dim) {
   json["softening_elements"] = result.softening_elements;
   json["probe"] = ordered_json::array();
   for (const Vector3& u : result.probe) json["probe"].push_back(entries(u, dim));
+  for (const LoadStep& step : result.load_steps) {
+    ordered_json line{{"factor", step.factor},
+                      {"outer_iterations", step.outer_iterations},
+                      {"cg_iterations", step.cg_iterations},
+                      {"active_nodes", step.active_nodes},
+                      {"slip_nodes", step.slip_nodes},
+                      {"contact_force", entries(step.contact_force, dim)},
+                      {"friction_force", entries(step.friction_force, dim)},
+                      {"max_contact_pressure", step.max_contact_pressure},
+                      {"plastic_elements", step.plastic_elements},
+                      {"worst_residual", step.worst_residual},
+                      {"probe", ordered_json::array()}};
+    for (const Vector3& u : step.probe) line["probe"].push_back(entries(u, dim));
+    json["load_steps"].push_back(line);
+  }
   const Certificate& c = result.certificate;
   json["certificate"] = {{"equilibrium", c.equilibrium},
                          {"penetration", c.penetration},

@@ -21,6 +21,16 @@ Law law_of(const std::string& law) { return changed({"material[0].law=" + law}).
 
 }  // namespace
 
+TEST_CASE("load steps are a number or a list of factors") {
+  const auto steps = [](const std::string& value) {
+    return changed({"solver.load_steps=" + value}).model.solver.load_steps;
+  };
+  CHECK(changed({}).model.solver.load_steps.empty());
+  CHECK(steps("1") == std::vector<double>{1.0});
+  CHECK(steps("4") == std::vector<double>{0.25, 0.5, 0.75, 1.0});
+  CHECK(steps("[0.1, 1.5, 1]") == std::vector<double>{0.1, 1.5, 1.0});
+}
+
 TEST_CASE("every entry of the sample arrives") {
   const Case input = changed({});
   REQUIRE(input.mesh.box.has_value());

@@ -84,6 +84,25 @@ TEST_CASE("a run that has used up its steps goes on with more of them") {
   check_equal(place.json("out/result.json"), place.json("whole/result.json"));
 }
 
+TEST_CASE("load steps: the same answer, their history, and a restart among them") {
+  const Workplace place;
+  place.put_json("beam.json", small_beam());
+  REQUIRE(place.run("run beam.json --output whole --set solver.tolerance=1e-8").exit_code == 0);
+  CHECK_FALSE(place.json("whole/result.json").contains("load_steps"));
+  const std::string steps = "run beam.json --output out --set solver.tolerance=1e-8 --set solver.load_steps=3";
+  CHECK(place.run(steps + " --set solver.max_outer=2").exit_code == 1);
+  const Outcome other = place.run(steps + " --set solver.load_steps=2 --restart");
+  CHECK(other.exit_code == 2);
+  CHECK(other.error.find("solver.load_steps differs (factors [") != std::string::npos);
+  CHECK(place.run(steps + " --restart").exit_code == 0);
+  const nlohmann::json result = place.json("out/result.json");
+  check_equal(result, place.json("whole/result.json"));
+  REQUIRE(result["load_steps"].size() == 3);
+  CHECK(result["load_steps"][2]["factor"] == 1.0);
+  CHECK(result["load_steps"][2]["probe"] == result["probe"]);
+  CHECK(result["load_steps"][0]["contact_force"][1] < result["load_steps"][1]["contact_force"][1]);
+}
+
 TEST_CASE("without checkpoints there is none, and --restart says which file it expected") {
   const Workplace place;
   place.put_json("beam.json", small_beam());

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Load steps: the way to the full load does not change where it ends, and every step is the solution of its own problem.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "load_steps.hpp"
+#include "support.hpp"
+
+using namespace kacanov;
+using namespace kacanov::testing;
+
+namespace {
+
+/// A block pressed by a prescribed displacement, a load and a ball that sits in it by 0.03 at rest.
+Model pressed_block(int dim, const Law& law) {
+  const auto up = static_cast<std::size_t>(dim - 1);
+  Vector3 load{}, under{};
+  load[0] = 0.004;
+  under[up] = -1.0;
+  Model model;
+  model.materials.push_back({everything(), law});
+  std::array<std::optional<double>, 3> push{};
+  push[up] = -0.02;
+  model.boundary.push_back(moved(named("left"), dim));
+  model.boundary.push_back(displacement(named("top"), push));
+  model.boundary.push_back(traction(named("right"), load));
+  ContactEntry ball;
+  ball.on = named("bottom");
+  Sphere sphere;
+  sphere.radius = 1.0;
+  sphere.centre = {1.0, 0.5, 0.25};
+  sphere.centre[up] = -1.0 + 0.03;
+  sphere.direction = under;
+  ball.obstacle = sphere;
+  ball.friction = Friction{0.002, 0.0};
+  model.contact.push_back(ball);
+  model.probes.push_back({2.0, 0.5, dim == 3 ? 0.25 : 0.0});
+  model.solver.tolerance = 1e-9;
+  return model;
+}
+
+double difference(const Run& a, const Run& b) {
+  double most = 0.0, size = 0.0;
+  for (std::size_t i = 0; i < a.solution.displacement.size(); ++i) {
+    most = std::max(most, std::abs(a.solution.displacement[i] - b.solution.displacement[i]));
+    size = std::max(size, std::abs(b.solution.displacement[i]));
+  }
+  return most / size;
+}
+
+}  // namespace
+
+TEST_CASE("the answer does not depend on the load steps") {
+  for (const ElementType type : {ElementType::tri3, ElementType::hex8})
+    for (const Law& law : {elastic_law(1.0, 0.3), logarithmic_law(0.005), hardening_law(0.005, 0.05)}) {
+      const int dim = dimension(type);
+      CAPTURE(dim);
+      CAPTURE(static_cast<int>(law.kind));
+      Model model = pressed_block(dim, law);
+      // Nothing prescribed on the left of the top where it is held already.
+      model.boundary[1].on = box({0.5, 0.0, 0.0}, {2.0, 1.0, 0.5});
+      if (dim == 2) std::get<Sphere>(model.contact[0].obstacle).centre[2] = 0.0;
+      model.boundary[1].on.lower[static_cast<std::size_t>(dim - 1)] = dim == 2 ? 1.0 : 0.5;
+      const Run at_once = run_alone(box_mesh(type), model);
+      REQUIRE(at_once.result().status == Status::converged);
+      CHECK(at_once.result().load_steps.empty());
+      for (const std::vector<double>& factors : {std::vector{0.25, 0.5, 0.75, 1.0}, std::vector{0.9, 1.0}}) {
+        model.solver.load_steps = factors;
+        const Run in_steps = run_alone(box_mesh(type), model);
+        CHECK(in_steps.result().status == Status::converged);
+        CHECK(difference(in_steps, at_once) < 1e-7);
+        const auto& history = in_steps.result().load_steps;
+        REQUIRE(history.size() == factors.size());
+        int steps = 0;
+        for (std::size_t i = 0; i < factors.size(); ++i) {
+          CHECK(history[i].factor == factors[i]);
+          CHECK(history[i].worst_residual <= model.solver.tolerance);
+          steps += history[i].outer_iterations;
+        }
+        CHECK(steps == in_steps.result().outer_iterations);
+        CHECK(history.back().probe.at(0) == in_steps.probe());
+        CHECK(history.back().contact_force == in_steps.result().contact_force);
+      }
+    }
+}
+
+TEST_CASE("a load step is the problem with its share of load, displacement and indentation") {
+  Model model = pressed_block(2, logarithmic_law(0.005));
+  std::get<Sphere>(model.contact[0].obstacle).centre[2] = 0.0;
+  model.boundary[1].on = box({0.5, 1.0, 0.0}, {2.0, 1.0, 0.0});
+  model.solver.load_steps = {0.4, 1.0};
+  const Run run = run_alone(box_mesh(ElementType::tri3), model);
+  Model share = model;
+  share.solver.load_steps.clear();
+  (*share.boundary[1].displacement)[1] = 0.4 * -0.02;
+  share.boundary[2].traction = Vector3{0.4 * 0.004, 0.0, 0.0};
+  std::get<Sphere>(share.contact[0].obstacle).centre[1] = -1.0 + 0.4 * 0.03;
+  const Run alone = run_alone(box_mesh(ElementType::tri3), share);
+  const LoadStep& first = run.result().load_steps.at(0);
+  CHECK(distance(first.probe.at(0), alone.probe()) < 1e-7 * length(alone.probe()));
+  CHECK(distance(first.contact_force, alone.result().contact_force) < 1e-7 * length(alone.result().contact_force));
+  CHECK(first.active_nodes == alone.result().active_nodes);
+  CHECK(first.plastic_elements == alone.result().plastic_elements);
+}
+
+TEST_CASE("with the factor 1 a load path is the full problem to the bit") {
+  const Model model = pressed_block(3, elastic_law(1.0, 0.3));
+  Model other = model;
+  other.boundary[1].on = box({0.5, 0.0, 0.5}, {2.0, 1.0, 0.5});
+  const Problem problem = build_problem(box_mesh(ElementType::tet4), other);
+  const Part part = distribute(&problem, MPI_COMM_SELF);
+  LoadPath path(part);
+  path.set(0.3);
+  CHECK(path.part().load != part.load);
+  path.set(1.0);
+  CHECK(path.part().load == part.load);
+  CHECK(path.part().prescribed == part.prescribed);
+  for (std::size_t i = 0; i < part.contact.size(); ++i) CHECK(path.part().contact[i].gap == part.contact[i].gap);
+}
+
+TEST_CASE("a load step that does not converge is the last one, and named") {
+  Model model = beam(2, logarithmic_law(0.01), 0.05, 0.01);
+  model.solver.load_steps = {0.5, 1.0};
+  model.solver.max_outer = 2;
+  const Run run = run_alone(beam_mesh(2, 2), model);
+  CHECK(run.result().status == Status::not_converged);
+  CHECK(run.result().message.find("load step 1 of 2 (factor 0.5): ") == 0);
+  CHECK(run.result().load_steps.size() == 1);
+  CHECK(run.result().load_steps[0].worst_residual > model.solver.tolerance);
+}
+
+TEST_CASE("a run goes on in the middle of its load steps") {
+  Model model = beam(2, logarithmic_law(0.01), 0.05, 0.01);
+  model.solver.tolerance = 1e-8;
+  model.solver.load_steps = {0.3, 0.6, 1.0};
+  const Problem problem = build_problem(beam_mesh(2, 4), model);
+  const Part part = distribute(&problem, MPI_COMM_SELF);
+  std::vector<Checkpoint> all;
+  RunOptions options;
+  options.checkpoint = [&](const Checkpoint& c) { all.push_back(c); };
+  const Solution whole = solve(part, model.solver, options);
+  REQUIRE(whole.result.status == Status::converged);
+  for (const std::size_t at : {all.size() / 3, all.size() / 2, all.size() - 1}) {
+    RunOptions rest;
+    rest.start = &all[at];
+    const Solution solution = solve(part, model.solver, rest);
+    CHECK(solution.result.status == Status::converged);
+    REQUIRE(solution.result.load_steps.size() == 3);
+    for (std::size_t i = 0; i < 3; ++i)
+      CHECK(distance(solution.result.load_steps[i].probe[0], whole.result.load_steps[i].probe[0]) <
+            1e-6 * length(whole.result.load_steps[i].probe[0]));
+  }
+}
