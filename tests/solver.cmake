@@ -29,6 +29,10 @@ kacanov_test(load_steps
   SOURCES solver/mpi_main.cpp solver/load_steps_test.cpp
   LIBRARIES kacanov_solver)
 
+kacanov_test(random_problems
+  SOURCES solver/mpi_main.cpp solver/random_test.cpp
+  LIBRARIES kacanov_solver Eigen3::Eigen)
+
 kacanov_test(mesh
   SOURCES solver/mesh_test.cpp
   LIBRARIES kacanov_solver)

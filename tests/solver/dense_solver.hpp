@@ -1,0 +1,366 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A second solver for small problems that shares no line with the first but the list of loads and contact points:
+// dense matrices, elements assembled here, sequential quadratic programs whose duals are solved by projected
+// Gauss–Seidel on the dense compliance of the contact points (Jean and Moreau's way), energy line search.
+#pragma once
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "problem.hpp"
+
+namespace kacanov::testing {
+
+/// g, dg/dx and ∫ g s ds of a law, from the formulas of the case file.
+struct LawValues {
+  double g, slope, energy;
+};
+inline LawValues evaluate_law(const Law& law, double x) {
+  const double mu = law.shear, x0 = law.x0;
+  if (law.kind == Law::Kind::linear || x <= x0) return {mu, 0.0, 0.5 * mu * x * x};
+  const double below = 0.5 * mu * x0 * x0;
+  switch (law.kind) {
+    case Law::Kind::logarithmic: {
+      const double l = std::log(x / x0);
+      return {mu * x0 / x * (l + 1.0), -mu * x0 * l / (x * x), below + mu * x0 * x * l};
+    }
+    case Law::Kind::linear_hardening:
+      return {mu * (law.gamma + (1.0 - law.gamma) * x0 / x), -mu * (1.0 - law.gamma) * x0 / (x * x),
+              below + mu * (0.5 * law.gamma * (x * x - x0 * x0) + (1.0 - law.gamma) * x0 * (x - x0))};
+    case Law::Kind::power:
+      return {mu * std::pow(x / x0, law.n - 1.0), mu * (law.n - 1.0) / x * std::pow(x / x0, law.n - 1.0),
+              below + mu * x0 * x0 * (std::pow(x / x0, law.n + 1.0) - 1.0) / (law.n + 1.0)};
+    default: return {NAN, NAN, NAN};
+  }
+}
+
+class DenseSolver {
+ public:
+  using Matrix = Eigen::MatrixXd;
+  using Vector = Eigen::VectorXd;
+
+  explicit DenseSolver(const Problem& problem) : problem_(problem), dim_(problem.mesh.dim()) {
+    const auto n = static_cast<Eigen::Index>(problem.load.size());
+    load_ = Eigen::Map<const Vector>(problem.load.data(), n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      if (!problem.held[static_cast<std::size_t>(i)]) free_.push_back(i);
+    find_points();
+    find_rows();
+  }
+
+  struct Answer {
+    Vector u;
+    Vector forces;              ///< contact forces, a row each: M λ_n, M λ_t
+    bool converged = false;
+    double softest = 0.0;       ///< smallest eigenvalue of the tangent in free components, without contact
+    double force_scale = 0.0;   ///< ‖·‖₂ of loads, reactions or contact forces, the largest
+  };
+
+  /// The conditions of the problem for any displacement and contact pressures and tractions (λ_n and λ_t, the force
+  /// of the body on the obstacle): how far they are from being met, relative to what the state itself sets.
+  struct Defects {
+    double equilibrium = 0.0, penetration = 0.0, tension = 0.0, cone = 0.0, products = 0.0;
+    double worst() const { return std::max({equilibrium, penetration, tension, cone, products}); }
+  };
+  Defects defects(const Vector& u, const Vector& lambda) const {
+    Vector force, scaled = lambda;
+    Matrix tangent;
+    linearise(Vector::Zero(u.size()), true, force, tangent);
+    const double rounding = 1e-9 * tangent.diagonal().cwiseProduct(u).norm();
+    linearise(u, false, force, tangent);
+    double area = 0.0, pressure = 1e-300;
+    for (std::size_t i = 0; i < problem_.contact.size(); ++i) {
+      const ContactPoint& point = problem_.contact[i];
+      scaled.segment(first_row_[i], 1 + point.tangents) *= point.mass;
+      area += point.mass;
+      pressure = std::max({pressure, std::abs(lambda(first_row_[i])), lambda.segment(first_row_[i] + 1, point.tangents).norm()});
+    }
+    const Vector contact = rows_.transpose() * scaled, trace = rows_ * u;
+    Vector reaction = force - load_ + contact, residual = reaction;
+    for (const auto i : free_) reaction(i) = 0.0;
+    residual -= reaction;
+    Vector free_contact = contact;
+    for (Eigen::Index i = 0; i < u.size(); ++i)
+      if (problem_.held[static_cast<std::size_t>(i)]) free_contact(i) = 0.0;
+    Defects out;
+    // What the rounding of the forces themselves comes to is no defect.
+    out.equilibrium = std::max(0.0, residual.norm() - 1e-6 * rounding) /
+                      std::max({load_.norm(), reaction.norm(), free_contact.norm(), rounding, 1e-300});
+    const double size = std::max(u.cwiseAbs().maxCoeff(), 1e-300);
+    double products = 0.0;
+    for (std::size_t i = 0; i < problem_.contact.size(); ++i) {
+      const ContactPoint& point = problem_.contact[i];
+      const double normal = lambda(first_row_[i]), open = point.gap - trace(first_row_[i]);
+      const Vector t = lambda.segment(first_row_[i] + 1, point.tangents), w = trace.segment(first_row_[i] + 1, point.tangents);
+      const double bound = point.tresca + point.coulomb * normal;
+      out.penetration = std::max(out.penetration, -open / size);
+      out.tension = std::max(out.tension, -normal / pressure);
+      out.cone = std::max(out.cone, (t.norm() - bound) / pressure);
+      products += point.mass * (std::abs(normal * open) + (point.tangents > 0 ? std::abs(bound * w.norm() - t.dot(w)) : 0.0));
+    }
+    out.products = area > 0.0 ? products / (pressure * size * area) : 0.0;
+    return out;
+  }
+  const std::vector<Eigen::Index>& first_rows() const { return first_row_; }
+
+  Answer solve() {
+    Vector bound(static_cast<Eigen::Index>(problem_.contact.size()));
+    bool coulomb = false;
+    for (std::size_t i = 0; i < problem_.contact.size(); ++i) {
+      bound(static_cast<Eigen::Index>(i)) = problem_.contact[i].mass * problem_.contact[i].tresca;
+      coulomb = coulomb || problem_.contact[i].coulomb > 0.0;
+    }
+    Answer answer;
+    answer.u = Eigen::Map<const Vector>(problem_.prescribed.data(), load_.size());
+    for (const auto i : free_) answer.u(i) = 0.0;
+    answer.forces = Vector::Zero(rows_.rows());
+    // Coulomb: the bound of the pressure before, until it stays.
+    for (int pass = 0; pass < (coulomb ? 300 : 1); ++pass) {
+      answer.converged = minimise(bound, pass == 0, answer);
+      if (!answer.converged) break;
+      double change = 0.0, size = 0.0;
+      for (std::size_t i = 0; i < problem_.contact.size(); ++i) {
+        const auto k = static_cast<Eigen::Index>(i);
+        const ContactPoint& point = problem_.contact[i];
+        const double next = point.mass * point.tresca + point.coulomb * answer.forces(first_row_[i]);
+        change = std::max(change, std::abs(next - bound(k)));
+        size = std::max(size, next);
+        bound(k) = next;
+      }
+      answer.converged = change <= 1e-11 * size;
+      if (answer.converged) break;
+    }
+    measure(answer);
+    return answer;
+  }
+
+ private:
+  struct Point {
+    double weight = 0.0;
+    std::size_t element = 0;
+    Matrix b;  ///< 6 × (nodes · dim): strain in Mandel's notation
+  };
+
+  /// Shape functions' gradients in the reference element: nodes × dim.
+  static Matrix reference_gradients(ElementType type, const Eigen::Vector3d& x) {
+    if (type == ElementType::tri3) return (Matrix(3, 2) << -1, -1, 1, 0, 0, 1).finished();
+    if (type == ElementType::tet4) return (Matrix(4, 3) << -1, -1, -1, 1, 0, 0, 0, 1, 0, 0, 0, 1).finished();
+    // hex8 on [−1, 1]³, the lower face counter-clockwise first.
+    constexpr int corner[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
+                                  {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
+    Matrix gradients(8, 3);
+    for (int a = 0; a < 8; ++a)
+      for (int c = 0; c < 3; ++c) {
+        double value = corner[a][c] / 8.0;
+        for (int d = 0; d < 3; ++d)
+          if (d != c) value *= 1.0 + corner[a][d] * x(d);
+        gradients(a, c) = value;
+      }
+    return gradients;
+  }
+
+  void find_points() {
+    const Mesh& mesh = problem_.mesh;
+    const int npe = nodes_per_element(mesh.type);
+    std::vector<std::pair<Eigen::Vector3d, double>> rule;
+    if (mesh.type == ElementType::hex8) {
+      const double p = 1.0 / std::sqrt(3.0);
+      for (const double x : {-p, p})
+        for (const double y : {-p, p})
+          for (const double z : {-p, p}) rule.emplace_back(Eigen::Vector3d(x, y, z), 1.0);
+    } else {
+      rule.emplace_back(Eigen::Vector3d::Zero(), mesh.type == ElementType::tri3 ? 0.5 : 1.0 / 6.0);
+    }
+    for (std::size_t e = 0; e < mesh.element_count(); ++e) {
+      Matrix x(npe, dim_);
+      std::vector<Eigen::Index> unknowns;
+      for (int a = 0; a < npe; ++a) {
+        const auto node = static_cast<std::size_t>(
+            mesh.elements[e * static_cast<std::size_t>(npe) + static_cast<std::size_t>(a)]);
+        for (int c = 0; c < dim_; ++c) {
+          x(a, c) = mesh.coordinates[node * static_cast<std::size_t>(dim_) + static_cast<std::size_t>(c)];
+          unknowns.push_back(static_cast<Eigen::Index>(node) * dim_ + c);
+        }
+      }
+      unknowns_.push_back(unknowns);
+      for (const auto& [at, weight] : rule) {
+        const Matrix gradients = reference_gradients(mesh.type, at);
+        const Matrix jacobian = x.transpose() * gradients;  // dx_c / dξ_d
+        const Matrix physical = gradients * jacobian.inverse();
+        Point point;
+        point.weight = weight * jacobian.determinant();
+        point.element = e;
+        point.b = Matrix::Zero(6, npe * dim_);
+        const double half = 1.0 / std::sqrt(2.0);
+        for (int a = 0; a < npe; ++a) {
+          for (int c = 0; c < dim_; ++c) point.b(c, a * dim_ + c) = physical(a, c);
+          constexpr int pair[3][2] = {{0, 1}, {1, 2}, {0, 2}};
+          for (int k = 0; k < 3; ++k) {
+            const int c = pair[k][0], d = pair[k][1];
+            if (c >= dim_ || d >= dim_) continue;
+            point.b(3 + k, a * dim_ + c) += half * physical(a, d);
+            point.b(3 + k, a * dim_ + d) += half * physical(a, c);
+          }
+        }
+        points_.push_back(point);
+      }
+    }
+  }
+
+  /// Rows of [N; T], point after point: one for the normal, then those of the tangents.
+  void find_rows() {
+    Eigen::Index count = 0;
+    for (const ContactPoint& point : problem_.contact) {
+      first_row_.push_back(count);
+      count += 1 + point.tangents;
+    }
+    rows_ = Matrix::Zero(count, load_.size());
+    for (std::size_t i = 0; i < problem_.contact.size(); ++i) {
+      const ContactPoint& point = problem_.contact[i];
+      for (int k = 0; k <= point.tangents; ++k) {
+        const Vector3& direction = k == 0 ? point.trace : point.tangent[static_cast<std::size_t>(k - 1)];
+        for (int c = 0; c < dim_; ++c)
+          rows_(first_row_[i] + k, static_cast<Eigen::Index>(point.node) * dim_ + c) =
+              direction[static_cast<std::size_t>(c)];
+      }
+    }
+    free_rows_ = rows_(Eigen::all, free_);
+  }
+
+  const Law& law(std::size_t element) const { return problem_.laws[problem_.law_of_element[element]]; }
+
+  static Vector local(const Vector& u, const std::vector<Eigen::Index>& unknowns) { return u(unknowns); }
+
+  double stored_energy(const Vector& u) const {
+    double sum = 0.0;
+    for (const Point& point : points_) {
+      const Vector strain = point.b * local(u, unknowns_[point.element]);
+      const double trace = strain.head<3>().sum();
+      Vector dev = strain;
+      dev.head<3>().array() -= trace / 3.0;
+      const Law& of = law(point.element);
+      sum += point.weight * (0.5 * of.bulk * trace * trace + 2.0 * evaluate_law(of, dev.norm()).energy);
+    }
+    return sum;
+  }
+
+  /// Internal forces and tangent; with `elastic`, of the body with g = μ.
+  void linearise(const Vector& u, bool elastic, Vector& force, Matrix& tangent) const {
+    force = Vector::Zero(u.size());
+    tangent = Matrix::Zero(u.size(), u.size());
+    Eigen::Matrix<double, 6, 1> ones;
+    ones << 1, 1, 1, 0, 0, 0;
+    const Eigen::Matrix<double, 6, 6> volume = ones * ones.transpose(),
+                                      deviator = Eigen::Matrix<double, 6, 6>::Identity() - volume / 3.0;
+    for (const Point& point : points_) {
+      const auto& unknowns = unknowns_[point.element];
+      const Eigen::Matrix<double, 6, 1> strain = point.b * local(u, unknowns), dev = deviator * strain;
+      const Law& of = law(point.element);
+      const double x = dev.norm();
+      const LawValues values = elastic ? LawValues{of.shear, 0.0, 0.0} : evaluate_law(of, x);
+      Eigen::Matrix<double, 6, 6> c = of.bulk * volume + 2.0 * values.g * deviator;
+      const Eigen::Matrix<double, 6, 1> stress = c * strain;
+      if (x > 0.0) c += (2.0 * values.slope / x) * dev * dev.transpose();
+      force(unknowns) += point.weight * (point.b.transpose() * stress);
+      tangent(unknowns, unknowns) += point.weight * (point.b.transpose() * c * point.b);
+    }
+  }
+
+  /// J(u) = stored energy − work of the loads + friction.
+  double energy(const Vector& u, const Vector& bound) const {
+    double sum = stored_energy(u) - load_.dot(u);
+    const Vector trace = rows_ * u;
+    for (std::size_t i = 0; i < problem_.contact.size(); ++i)
+      sum += bound(static_cast<Eigen::Index>(i)) * trace.segment(first_row_[i] + 1, problem_.contact[i].tangents).norm();
+    return sum;
+  }
+
+  /// Projected Gauss–Seidel: forces f with v = start − W f, v_n ≤ gap ⊥ f_n ≥ 0 and f_t on its disc along v_t.
+  void sweep_forces(const Matrix& w, const Vector& start, const Vector& bound, Vector& f) const {
+    Vector v = start - w * f;
+    const auto change_by = [&](Eigen::Index row, double delta) {
+      if (delta == 0.0) return;
+      f(row) += delta;
+      v -= delta * w.col(row);
+    };
+    for (int sweep = 0; sweep < 100000; ++sweep) {
+      double moved = 0.0, size = 0.0;
+      for (std::size_t i = 0; i < problem_.contact.size(); ++i) {
+        const Eigen::Index n = first_row_[i];
+        const double next = std::max(0.0, f(n) + (v(n) - problem_.contact[i].gap) / w(n, n));
+        moved = std::max(moved, std::abs(next - f(n)));
+        change_by(n, next - f(n));
+        size = std::max(size, next);
+        const int tangents = problem_.contact[i].tangents;
+        if (tangents == 0) continue;
+        const double stiff = 1.0 / w.block(n + 1, n + 1, tangents, tangents).trace();
+        Vector t = f.segment(n + 1, tangents) + stiff * v.segment(n + 1, tangents);
+        const double length = t.norm(), most = bound(static_cast<Eigen::Index>(i));
+        if (length > most) t *= most / length;
+        for (int k = 0; k < tangents; ++k) {
+          moved = std::max(moved, std::abs(t(k) - f(n + 1 + k)));
+          change_by(n + 1 + k, t(k) - f(n + 1 + k));
+        }
+        size = std::max(size, t.norm());
+      }
+      if (moved <= 1e-14 * size) return;
+      if (sweep % 100 == 99) v = start - w * f;
+    }
+  }
+
+  bool minimise(const Vector& bound, bool from_rest, Answer& answer) {
+    Vector& u = answer.u;
+    Vector force;
+    Matrix tangent;
+    for (int step = 0; step < 200; ++step) {
+      const bool elastic = from_rest && step == 0;
+      linearise(u, elastic, force, tangent);
+      const Matrix k = tangent(free_, free_);
+      const Eigen::LLT<Matrix> factor(k);
+      if (factor.info() != Eigen::Success) return false;
+      const Matrix lifted = factor.solve(free_rows_.transpose());
+      const Vector unbalanced = (load_ - force)(free_);
+      const Vector free_step = factor.solve(unbalanced);
+      const Vector start = rows_ * u + free_rows_ * free_step;
+      if (rows_.rows() > 0) sweep_forces(free_rows_ * lifted, start, bound, answer.forces);
+      Vector d = Vector::Zero(u.size());
+      d(free_) = free_step - lifted * answer.forces;
+      const double size = (u + d).cwiseAbs().maxCoeff();
+      // The start may lie within an obstacle, and has to leave it whatever the energy says.
+      double t = 1.0;
+      if (!elastic) {
+        const double before = energy(u, bound), noise = 1e-13 * (std::abs(before) + std::abs(load_.dot(u)));
+        while (t > 1e-6 && energy(u + t * d, bound) > before + noise) t *= 0.5;
+      }
+      u += t * d;
+      if (d.cwiseAbs().maxCoeff() <= 1e-11 * size) return true;
+    }
+    return false;
+  }
+
+  void measure(Answer& answer) const {
+    Vector force;
+    Matrix tangent;
+    linearise(answer.u, false, force, tangent);
+    answer.softest =
+        Eigen::SelfAdjointEigenSolver<Matrix>(tangent(free_, free_), Eigen::EigenvaluesOnly).eigenvalues()(0);
+    const Vector contact = rows_.transpose() * answer.forces;
+    Vector reaction = force - load_ + contact;
+    for (const auto i : free_) reaction(i) = 0.0;
+    answer.force_scale = std::max({load_.norm(), contact.norm(), reaction.norm()});
+  }
+
+  const Problem& problem_;
+  int dim_;
+  Vector load_;
+  std::vector<Eigen::Index> free_;
+  std::vector<Point> points_;
+  std::vector<std::vector<Eigen::Index>> unknowns_;  ///< of the elements
+  std::vector<Eigen::Index> first_row_;
+  Matrix rows_, free_rows_;
+};
+
+}  // namespace kacanov::testing
