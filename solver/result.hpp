@@ -60,10 +60,12 @@ struct Result {
   int outer_iterations = 0;
   int restarted_after = -1;  ///< outer steps before a restart, which the counts include; −1 without one
   std::int64_t contact_iterations = 0, cg_iterations = 0;
-  std::uint64_t operator_applications = 0;
+  std::uint64_t operator_applications = 0;    ///< all purposes together
+  std::uint64_t spectrum_applications = 0;    ///< of these: estimates of λ_min, λ_max, r_A
+  std::uint64_t contact_applications = 0;     ///< of these: solves inside the contact loop; the rest are true residuals
   std::vector<double> r;  ///< one an outer step
   double lambda_min = 0.0, lambda_max = 0.0, r_star = 0.0;
-  double r_active = 0.0;  ///< the penalty r_A of the settled active set, 0 where not estimated
+  double r_active = 0.0;  ///< r_n as ADMM ended with it, adapted to the contact set; 0 where only the first step used ADMM
   Vector3 contact_force{}, friction_force{};  ///< what the obstacles do to the body
   double max_contact_pressure = 0.0, max_von_mises = 0.0;
   std::int64_t plastic_elements = 0;

@@ -52,6 +52,10 @@ ordered_json result_json(const Result& result, int dim) {
   json["contact_iterations"] = result.contact_iterations;
   json["cg_iterations"] = result.cg_iterations;
   json["operator_applications"] = result.operator_applications;
+  json["applications"] = {
+      {"spectrum", result.spectrum_applications},
+      {"contact", result.contact_applications},
+      {"outer", result.operator_applications - result.spectrum_applications - result.contact_applications}};
   json["r"] = result.r;
   json["lambda_min"] = result.lambda_min;
   json["lambda_max"] = result.lambda_max;

@@ -34,6 +34,7 @@ TEST_CASE("a run converges, says so, and writes every file and key") {
                           "contact_iterations",
                           "cg_iterations",
                           "operator_applications",
+                          "applications",
                           "r",
                           "lambda_min",
                           "lambda_max",
@@ -58,6 +59,10 @@ TEST_CASE("a run converges, says so, and writes every file and key") {
                           "force_balance", "duality_gap"}) {
     CHECK(result["certificate"][key].get<double>() <= 1e-6);
   }
+  const nlohmann::json& applications = result["applications"];
+  CHECK(applications["spectrum"].get<int>() + applications["contact"].get<int>() +
+            applications["outer"].get<int>() ==
+        result["operator_applications"].get<int>());
   CHECK(result["status"] == "converged");
   CHECK(result["unknowns"] == 170);
   CHECK(result["elements"] == 128);
