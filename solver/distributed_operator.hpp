@@ -47,6 +47,13 @@ class DistributedOperator {
     part_->halo.sum(f, part_->dim());
     ++applications_;
   }
+  /// The same with the stored energy, which is returned, and g frozen at ω, in one pass.
+  double residual_energy_update(std::span<const double> omega, std::span<double> f) {
+    const double energy = local_.residual_energy_update(omega, f);
+    part_->halo.sum(f, part_->dim());
+    ++applications_;
+    return part_->halo.sum_all(energy);
+  }
   double energy(std::span<const double> omega) const { return part_->halo.sum_all(local_.energy(omega)); }
 
   const Operator& local() const noexcept { return local_; }

@@ -15,6 +15,8 @@ void visit_counts(R& result, Visitor&& entry) {
   entry("contact_iterations", result.contact_iterations);
   entry("cg_iterations", result.cg_iterations);
   entry("operator_applications", result.operator_applications);
+  entry("spectrum_applications", result.spectrum_applications);
+  entry("contact_applications", result.contact_applications);
   entry("lambda_min", result.lambda_min);
   entry("lambda_max", result.lambda_max);
   entry("r_star", result.r_star);
@@ -45,7 +47,7 @@ bool OuterLoop::stop_agreed() const {
 
 void OuterLoop::keep(const Result& result) {
   if (run_.stop_requested) {
-    kept_ = {state_, loop_, penalty_, estimates_, estimated_set_, newton_failed_, result};
+    kept_ = {state_, loop_, penalty_, newton_failed_, result};
     if (stop_agreed()) throw Interrupted{};
   }
   if (result.outer_iterations == 0) return;
@@ -64,8 +66,6 @@ bool OuterLoop::run(Result& result) {
     state_ = kept_.state;
     loop_ = kept_.loop;
     penalty_ = kept_.penalty;
-    estimates_ = kept_.estimates;
-    estimated_set_ = kept_.estimated_set;
     newton_failed_ = kept_.newton_failed;
     result = kept_.result;
     return false;
@@ -95,7 +95,6 @@ Checkpoint OuterLoop::checkpoint(const Result& result) const {
   put("operator_applications", applications());
   put("penalty_normal", penalty_.normal);
   put("penalty_tangential", penalty_.tangential);
-  put("estimates", estimates_);
   put("load_steps_over", result.load_steps.size());
   put("newton_failed", newton_failed_);
   out.fields["r"] = result.r;
@@ -109,12 +108,6 @@ Checkpoint OuterLoop::checkpoint(const Result& result) const {
   out.fields["phi_normal"] = gather_contact(part_, state_.phi.normal, 1);
   out.fields["phi_tangential"] = gather_contact(part_, state_.phi.tangential, 2);
   out.fields["bound"] = gather_contact(part_, state_.bound, 1);
-  Vector estimated(2 * part_.contact.size(), 0.0);
-  for (std::size_t i = 0; i < estimated_set_.size(); ++i) {
-    estimated[2 * i] = estimated_set_[i].normal;
-    estimated[2 * i + 1] = estimated_set_[i].tangential;
-  }
-  out.fields["estimated_set"] = gather_contact(part_, estimated, 2);
   return out;
 }
 
@@ -130,7 +123,6 @@ void OuterLoop::restore(const Checkpoint* from, Result& result) {
   get("operator_applications", earlier_applications_);
   get("penalty_normal", penalty_.normal);
   get("penalty_tangential", penalty_.tangential);
-  get("estimates", estimates_);
   get("newton_failed", newton_failed_);
   result.restarted_after = result.outer_iterations;
   loop_.first_outer = result.outer_iterations;  // who asks for a restart asks for more steps
@@ -166,10 +158,6 @@ void OuterLoop::restore(const Checkpoint* from, Result& result) {
   state_.phi.normal = contact("phi_normal", 1);
   state_.phi.tangential = contact("phi_tangential", 2);
   state_.bound = contact("bound", 1);
-  const Vector estimated = contact("estimated_set", 2);
-  estimated_set_.resize(part_.contact.size());
-  for (std::size_t i = 0; i < estimated_set_.size(); ++i)
-    estimated_set_[i] = {estimated[2 * i] != 0.0, estimated[2 * i + 1] != 0.0};
   traces_.evaluate(state_.omega, state_.trace);
   preconditioner_stale_ = true;
 }

@@ -13,38 +13,51 @@ namespace {
 
 /// The contact loop of an outer step is taken this far below the residual of the step before.
 constexpr double inner_reduction = 0.2;
-/// AMG is rebuilt once a step needs this many CG iterations more than it would have right after the last setup: what
-/// a setup costs.
+/// The first, elastic one only has to find roughly who touches.
+constexpr double first_reduction = 0.5;
+/// AMG is rebuilt once a step needs this many CG iterations more than it would have right after the last
+/// setup: what a setup costs.
 constexpr double setup_worth = 5.0;
 /// AMG is rebuilt before a step where g has moved by this share in the mean.
 constexpr double drift_worth = 0.25;
-/// Contact iterations with (32) before the active set is good enough to estimate r_A from it.
-constexpr int settling_iterations = 25;
-/// Tolerance of the spectrum where only a penalty hangs on it.
-constexpr double rough_spectrum = 0.1;
+/// Semismooth Newton steps take the secant while the residual of equilibrium is above this: the tangent of a
+/// state that is far off sends them too far, and contact and slip with them.
+constexpr double tangent_reach = 0.3;
+/// First penalty, times λ_min over the root of the mesh width relative to the contact surface. Three times as
+/// much is as good for beams, and worse for the half ball; a third costs a few per cent more (operator
+/// applications of whole runs).
+constexpr double first_penalty = 0.1;
+/// CG iterations of a rough estimate of λ_max.
+constexpr int rough_iterations = 4;
+/// ADMM iterations between two looks at the penalties' balance (and, in Kacanov's method, at g).
+constexpr int balancing_iterations = 10;
+/// Penalties stay between this over λ_min, which contracts errors at held rows to a quarter (more costs CG
+/// iterations), and that share of it.
+constexpr double largest_penalty = 3.0;
+constexpr double smallest_share = 1e-4;
 /// Relative accuracy of a semismooth Newton step.
 constexpr double solve_reduction = 0.1;
+/// Semismooth Newton decides by λ + c(w − ρ), c this share of ADMM's penalty. A whole penalty makes slipping
+/// points flip on the half ball (338 applications instead of 145), a tenth costs steps on beams.
+constexpr double decision_share = 0.3;
 /// Newton steps without a new best residual before ADMM takes over.
 constexpr int patience = 6;
-constexpr int creep_patience = 2;
+constexpr int creep_patience = 3;
 constexpr int max_damping_trials = 6;
 /// A displacement of this many body sizes is a run that goes nowhere.
 constexpr double most_displacement = 1e3;
 
-/// A contact set that differs from the one r_A was estimated for by less than this share has settled.
-constexpr double settled_share = 0.02;
 /// Operator applications between two looks at whether the run is to stop, which cost a reduction.
 constexpr std::uint64_t applications_per_question = 4;
 
-/// Estimates of r_A in one run.
-constexpr int most_estimates = 5;
-
-/// How much further than the tolerance the residuals have to fall for the duality gap to meet it. Where a body moves far
-/// and strains little, their work along the motion is large beside the stored energy.
+/// How much further than the tolerance the residuals have to fall for the duality gap to meet it. Where a
+/// body moves far and strains little, their work along the motion is large beside the stored energy.
 double gap_share(const Certificate& c) {
-  const double others = std::max({c.equilibrium, c.penetration, c.tension, c.complementarity, c.friction_cone});
-  return others > 0.0 && std::isfinite(c.duality_gap) ? std::clamp(others / std::max(others, c.duality_gap), 1e-4, 1.0)
-                                                      : 1.0;
+  const double others =
+      std::max({c.equilibrium, c.penetration, c.tension, c.complementarity, c.friction_cone});
+  return others > 0.0 && std::isfinite(c.duality_gap)
+             ? std::clamp(others / std::max(others, c.duality_gap), 1e-4, 1.0)
+             : 1.0;
 }
 
 Vector lumped_volume(const Part& part) {
@@ -128,73 +141,65 @@ void OuterLoop::report(const ProgressStep& step) const {
 void OuterLoop::choose_first_penalty(Result& result) {
   if (part_.total_contact == 0) return;
   const double before = MPI_Wtime();
-  // The penalty needs λ_min and λ_max roughly only: the count of iterations moves slowly with r.
-  const double tolerance = options_.penalty == SolverOptions::Penalty::automatic
-                               ? std::max(options_.spectrum_tolerance, rough_spectrum)
-                               : options_.spectrum_tolerance;
-  const auto spectrum = estimate_spectrum(part_, op_, *amg_, secant_, friction_, tolerance);
-  preconditioner_stale_ = true;
-  result.lambda_min = spectrum.lambda_min;
-  result.lambda_max = spectrum.lambda_max;
-  result.r_star = spectrum.r_star;
-  result.cg_iterations += spectrum.cg_iterations;
+  const auto applications = op_.applications();
+  if (options_.penalty == SolverOptions::Penalty::paper) {
+    const auto spectrum =
+        estimate_spectrum(part_, op_, *amg_, secant_, friction_, options_.spectrum_tolerance);
+    preconditioner_stale_ = true;
+    result.lambda_min = spectrum.lambda_min;
+    result.lambda_max = spectrum.lambda_max;
+    result.r_star = spectrum.r_star;
+    result.cg_iterations += spectrum.cg_iterations;
+    penalty_ = {result.r_star, result.r_star};
+  } else {
+    // λ_max(K_I|A), the compliance of the part that lifts off, is to λ_min as its size to the mesh width: r_A
+    // goes with 1/λ_min and the root of that.
+    const auto points = part_.contact.size();
+    const double width = std::pow(static_cast<double>(part_.total_contact), -1.0 / (part_.dim() - 1));
+    result.lambda_min = rough_lambda_min(part_, diagonal_, friction_);
+    const double normal_min = rough_lambda_min(part_, diagonal_, false);
+    double r = options_.r;
+    if (options_.penalty == SolverOptions::Penalty::automatic)
+      r = normal_min > 0.0 ? first_penalty * std::sqrt(width) / normal_min : 1.0;
+    penalty_ = {r, r};
+    set_up_preconditioner(penalty_blocks(), space_);
+    if (part_.loose_modes == 0)
+      result.lambda_max = rough_lambda_max(
+          part_, op_, *amg_, TraceRows(part_, std::vector<TraceChoice>(points, {true, false})),
+          TraceRows(part_, std::vector<TraceChoice>(points)), rough_iterations);
+    if (result.lambda_min > 0.0 && result.lambda_max > 0.0)
+      result.r_star = 1.0 / std::sqrt(result.lambda_min * result.lambda_max);
+  }
+  result.spectrum_applications += op_.applications() - applications;
   spectrum_seconds_ += MPI_Wtime() - before;
-  const double r = options_.penalty == SolverOptions::Penalty::fixed ? options_.r : spectrum.r_star;
-  penalty_ = {r, r};
 }
 
-void OuterLoop::improve_penalty(Result& result) {
-  if (part_.total_contact == 0 || options_.penalty != SolverOptions::Penalty::automatic) return;
-  if (estimates_ >= most_estimates) return;
-  const double before = MPI_Wtime();
-  std::vector<TraceChoice> active(part_.contact.size()), free(part_.contact.size());
-  double changes = 0.0;
-  for (std::size_t i = 0; i < part_.contact.size(); ++i) {
-    const bool pressed = state_.lambda.normal[i] > 0.0;
-    const bool stick = std::hypot(state_.lambda.tangential[2 * i], state_.lambda.tangential[2 * i + 1]) <
-                       state_.bound[i] * (1.0 - 1e-12);
-    active[i] = {pressed, stick};
-    free[i] = {!pressed, !stick};
-    if (estimates_ > 0 && i < traces_.owned())
-      changes += active[i].normal != estimated_set_[i].normal || active[i].tangential != estimated_set_[i].tangential;
-  }
-  // r_A of a set that is far off can be ten times wrong: it is estimated again until the set has settled.
-  if (estimates_ > 0 && part_.halo.sum_all(changes) <= settled_share * static_cast<double>(part_.total_contact))
-    return;
-  estimated_set_ = active;
-  const TraceRows held(part_, active), open(part_, free);
-  if (held.total() == 0) return;
-  // Where Newton does the rest, λ_min of all traces stands for λ_min(K_AA): both are the compliance of a mesh width.
-  const bool alone = options_.contact != SolverOptions::Contact::automatic &&
-                     options_.contact != SolverOptions::Contact::active_set;
-  Spectrum spectrum(part_, op_, *amg_, secant_, std::max(options_.spectrum_tolerance, alone ? rough_spectrum : 0.5));
-  Eigenvalue low{result.lambda_min, 0.0}, high;
-  if (alone) low = spectrum.smallest(held);
-  if (open.total() > 0)
-    high = spectrum.largest(open, held, low.value > 0.0 ? 0.01 / low.value : 1.0, part_.loose_modes > 0);
-  preconditioner_stale_ = true;
-  result.cg_iterations += spectrum.cost().cg_iterations;
-  spectrum_seconds_ += MPI_Wtime() - before;
-  if (!(low.value > 0.0)) return;
-  // With nothing free the larger r the better, until CG pays for it: three times 1/λ_min contracts by a quarter.
-  const double r = high.value > 0.0 ? 1.0 / std::sqrt(low.value * high.value) : 3.0 / low.value;
-  if (!std::isfinite(r)) return;
-  penalty_ = {r, r};
-  result.r_active = r;
-  ++estimates_;
+void OuterLoop::balance_penalty(const AdmmResult& step, Result& result) {
+  if (!(result.lambda_min > 0.0)) return;
+  const double largest = largest_penalty / result.lambda_min;
+  const auto balanced = [&](double r, double behind) {
+    const double factor = std::exp(std::clamp(0.5 * behind, -1.0, 1.0));
+    return std::clamp(r * factor, smallest_share * largest, largest);
+  };
+  penalty_ = {balanced(penalty_.normal, step.balance[0]), balanced(penalty_.tangential, step.balance[1])};
+  if (result.outer_iterations > 0) result.r_active = penalty_.normal;
 }
 
 std::vector<NodeBlock> OuterLoop::penalty_blocks() const {
   const std::size_t points = part_.contact.size();
-  auto blocks = TraceRows(part_, std::vector<TraceChoice>(points, {true, false})).penalty_blocks(penalty_.normal);
+  auto blocks =
+      TraceRows(part_, std::vector<TraceChoice>(points, {true, false})).penalty_blocks(penalty_.normal);
   const auto tangential =
       TraceRows(part_, std::vector<TraceChoice>(points, {false, true})).penalty_blocks(penalty_.tangential);
   blocks.insert(blocks.end(), tangential.begin(), tangential.end());
   return blocks;
 }
 
-/// Whether the secant has moved so far from the one the preconditioner was built with that a setup pays at once.
-bool OuterLoop::secant_drifted() const {
+/// Whether a new preconditioner pays: because it is `wanted`, has served its time, or g has moved too far
+/// from the one it was built with. If so, the g of now is in secant_.
+bool OuterLoop::setup_pays(bool wanted) {
+  wanted = wanted || preconditioner_stale_;
+  if (linear_) return wanted;
   Vector now(secant_.size());
   op_.local().secant(now);
   std::array<double, 2> sums{};
@@ -203,11 +208,22 @@ bool OuterLoop::secant_drifted() const {
     sums[1] += secant_[i];
   }
   part_.halo.sum_all(sums);
-  return sums[0] > drift_worth * sums[1];
+  if (!wanted && sums[0] <= drift_worth * sums[1]) return false;
+  secant_.swap(now);
+  return true;
+}
+
+/// How many nodes the preconditioner pins that are free in `set`, or the other way round.
+std::int64_t OuterLoop::set_moved(std::span<const TraceChoice> set) const {
+  std::int64_t moved = 0;
+  if (pinned_set_.size() == set.size())
+    for (std::size_t i = 0; i < traces_.owned(); ++i)
+      moved +=
+          set[i].normal != pinned_set_[i].normal || set[i].tangential != pinned_set_[i].tangential ? 1 : 0;
+  return part_.halo.sum_all(moved);
 }
 
 void OuterLoop::set_up_preconditioner(std::span<const NodeBlock> blocks, const Space& space) {
-  op_.local().secant(secant_);
   amg_->setup(secant_, blocks, space);
   preconditioner_stale_ = false;
   digits_per_cg_ = 0.0;
@@ -220,8 +236,14 @@ void OuterLoop::watch_preconditioner(double digits, std::int64_t iterations) {
   preconditioner_stale_ = preconditioner_stale_ || excess > setup_worth;
 }
 
+/// R(ω), the energy and g at the ω of now, in one pass.
+void OuterLoop::update_residual() {
+  energy_ = op_.residual_energy_update(state_.omega, internal_);
+  secant_current_ = true;
+}
+
 Residuals OuterLoop::certify() const {
-  return kkt_residuals(space_, traces_, state_, internal_, op_.energy(state_.omega), diagonal_);
+  return kkt_residuals(space_, traces_, state_, internal_, energy_, diagonal_);
 }
 
 void OuterLoop::take_admm_step(Result& result, ProgressStep& line, const Residuals& before) {
@@ -232,9 +254,8 @@ void OuterLoop::take_admm_step(Result& result, ProgressStep& line, const Residua
   // The first step is elastic: prescribed displacements put in at once look like huge strains in the first
   // layer of elements. Later ones freeze g at the last iterate.
   op_.use_tangent(false);
-  if (!first && !linear_) op_.update(state_.omega);
-  if (!first && automatic) improve_penalty(result);
-  if (preconditioner_stale_ || (!first && !linear_ && secant_drifted())) set_up_preconditioner(penalty_blocks(), space_);
+  if (!first && !linear_ && !secant_current_) op_.update(state_.omega);
+  if (first ? preconditioner_stale_ : setup_pays(false)) set_up_preconditioner(penalty_blocks(), space_);
 
   AdmmOptions options;
   options.r = penalty_;
@@ -248,31 +269,39 @@ void OuterLoop::take_admm_step(Result& result, ProgressStep& line, const Residua
     options.volume = volume_;
   } else {
     const double worst = scales.displacement > 0.0 ? std::min(before.certificate.worst(), 1.0) : 1.0;
-    const double reach = std::max(0.5 * options_.tolerance, inner_reduction * worst) * gap_share(before.certificate);
+    const double reduction = first ? first_reduction : inner_reduction;
+    const double reach =
+        std::max(0.5 * options_.tolerance, reduction * worst) * gap_share(before.certificate);
     options.force_tolerance = reach * scales.force;
     // With no displacement yet, any trace will do: the first step ends by its forces.
     options.trace_tolerance = scales.displacement > 0.0 ? reach * scales.displacement : HUGE_VAL;
-    if (automatic && estimates_ == 0) options.max_iterations = std::min(settling_iterations, options_.max_contact);
+    options.force_reduction = scales.force > 0.0 ? 0.0 : first_reduction;
+    if (automatic) options.max_iterations = std::min(balancing_iterations, options_.max_contact);
   }
   if (first) op_.apply(state_.omega, internal_);  // the elastic force, not R(ω)
   for (std::size_t i = 0; i < work_.residual.size(); ++i) work_.residual[i] = part_.load[i] - internal_[i];
   traces_.add_force(state_.lambda, -1.0, work_.residual);
-  const AdmmResult step = dual ? dual_admm(problem_, state_, work_, options) : admm(problem_, state_, work_, options);
+  const auto applications = op_.applications();
+  const AdmmResult step =
+      dual ? dual_admm(problem_, state_, work_, options) : admm(problem_, state_, work_, options);
+  result.contact_applications += op_.applications() - applications;
   watch_preconditioner(step.cg_digits, step.cg_iterations);
-  op_.residual(state_.omega, internal_);
+  update_residual();
   line.phase = dual ? "dual_admm" : "admm";
+  line.r = penalty_.normal;
+  if (automatic && !by_step) balance_penalty(step, result);
   line.contact_iterations = step.iterations;
   line.cg_iterations = step.cg_iterations;
 }
 
 void OuterLoop::take_damped_step(std::span<const double> delta, double curvature) {
-  // Along δ the energy of the linear model falls with slope −q (1 − t). A step is too long where the true force has
-  // grown past half of q more than the model says (unloading is stiffer than the tangent).
+  // Along δ the energy of the linear model falls with slope −q (1 − t). A step is too long where the true
+  // force has grown past half of q more than the model says (unloading is stiffer than the tangent).
   const Vector from = state_.omega, force = internal_;
   double t = 1.0;
   for (int trial = 0;; ++trial) {
     for (std::size_t i = 0; i < from.size(); ++i) state_.omega[i] = from[i] + t * delta[i];
-    op_.residual(state_.omega, internal_);
+    update_residual();
     if (linear_ || trial == max_damping_trials) return;
     const std::array<double, 2> work = space_.dot2(delta, internal_, delta, force);
     const double grown = work[0] - work[1];
@@ -281,14 +310,17 @@ void OuterLoop::take_damped_step(std::span<const double> delta, double curvature
   }
 }
 
-void OuterLoop::take_newton_step(ProgressStep& line, const Residuals& before) {
-  const bool tangent = options_.outer != SolverOptions::Outer::kacanov && !linear_;
+void OuterLoop::take_newton_step(Result& result, ProgressStep& line, const Residuals& before) {
+  const bool far =
+      options_.outer == SolverOptions::Outer::automatic && before.certificate.equilibrium > tangent_reach;
+  const bool tangent = options_.outer != SolverOptions::Outer::kacanov && !linear_ && !far;
   if (!linear_) {
     op_.use_tangent(tangent);
-    op_.update(state_.omega);
+    if (tangent || !secant_current_) op_.update(state_.omega);
   }
-  const ActiveSet set = decide(traces_, state_, penalty_.normal);
-  if (preconditioner_stale_ || (!linear_ && secant_drifted())) {
+  const ActiveSet set = decide(traces_, state_, decision_share * penalty_.normal);
+  if (setup_pays(static_cast<double>(set_moved(set.held)) >= setup_worth)) {
+    pinned_set_ = set.held;
     const TraceRows rows(part_, set.held);
     Space space(part_);
     rows.hold_in(space);
@@ -303,9 +335,12 @@ void OuterLoop::take_newton_step(ProgressStep& line, const Residuals& before) {
   // threads to more than that; any other to a tenth of its residual.
   const double floor = 0.05 * options_.tolerance * gap_share(before.certificate) * before.scales.force;
   const bool last = before.certificate.worst() * solve_reduction <= options_.tolerance;
-  const ActiveSetStep step = active_set_step(problem_, part_, set, state_, residual, last ? 1e-3 : solve_reduction,
-                                             floor, work_, delta);
+  const auto applications = op_.applications();
+  const ActiveSetStep step = active_set_step(problem_, part_, set, state_, residual,
+                                             last ? 1e-3 : solve_reduction, floor, work_, delta);
+  result.contact_applications += op_.applications() - applications;
   line.phase = tangent ? "newton" : "active_set";
+  line.r = penalty_.normal;
   line.contact_iterations = 1;
   line.cg_iterations = step.cg_iterations;
   newton_failed_ = !step.solved;
@@ -325,6 +360,8 @@ void OuterLoop::iterate(Result& result) {
   const bool may_newton = !by_step && (options_.contact == SolverOptions::Contact::automatic ||
                                        options_.contact == SolverOptions::Contact::active_set);
   op_.residual(state_.omega, internal_);
+  energy_ = op_.energy(state_.omega);
+  secant_current_ = false;  // the first step is elastic
   Residuals residuals = certify();
   auto& [best, last_cone, stalled, creeping, retreat, retreats, first_outer] = loop_;
   bool done = false;
@@ -335,19 +372,18 @@ void OuterLoop::iterate(Result& result) {
     ProgressStep line;
     const bool newton = may_newton && result.outer_iterations > 0 && retreat == 0;
     if (newton)
-      take_newton_step(line, residuals);
+      take_newton_step(result, line, residuals);
     else
       take_admm_step(result, line, residuals);
     if (retreat > 0) --retreat;
     ++result.outer_iterations;
     result.contact_iterations += line.contact_iterations;
     result.cg_iterations += line.cg_iterations;
-    result.r.push_back(penalty_.normal);
+    result.r.push_back(line.r);
     update_bounds();
     residuals = certify();
     const double worst = residuals.certificate.worst();
     line.outer = result.outer_iterations;
-    line.r = penalty_.normal;
     line.energy = residuals.energy;
     line.certificate = residuals.certificate;
     line.seconds = MPI_Wtime() - start_;
@@ -363,14 +399,16 @@ void OuterLoop::iterate(Result& result) {
     }
     done = worst <= options_.tolerance;
     if (!done && residuals.scales.displacement > most_displacement * extent_) {
-      result.message = "the displacement has grown to " + std::to_string(residuals.scales.displacement / extent_) +
-                       " times the body's size: the load is beyond what the material or the supports can carry";
+      result.message =
+          "the displacement has grown to " + std::to_string(residuals.scales.displacement / extent_) +
+          " times the body's size: the load is beyond what the material or the supports can carry";
       return;
     }
     if (!newton) continue;
     stalled = worst < 0.7 * best ? 0 : stalled + 1;
     best = std::min(best, worst);
-    // Slip creeps inwards by one row of nodes a step where all nodes within stick too firmly: ADMM gives them way at once.
+    // Slip creeps inwards by one row of nodes a step where all nodes within stick too firmly: ADMM gives them
+    // way at once.
     const Certificate& c = residuals.certificate;
     creeping = c.friction_cone > std::max(10.0 * c.equilibrium, 0.5 * last_cone) ? creeping + 1 : 0;
     last_cone = c.friction_cone;
@@ -379,7 +417,7 @@ void OuterLoop::iterate(Result& result) {
       stalled = creeping = 0;
       last_cone = 0.0;
       best = HUGE_VAL;
-      retreat = 4 << std::min(retreats++, 6);
+      retreat = 2 << std::min(retreats++, 6);
       preconditioner_stale_ = true;
       for (double& lambda : state_.lambda.normal) lambda = std::max(lambda, 0.0);
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The outer loop: Kacanov's method (7) or Newton's round a contact step, with the penalty and preconditioner it needs.
+// The outer loop: Kacanov's method (7) or Newton's round a contact step, with the penalty and preconditioner
+// it needs.
 #pragma once
 
 #include <cmath>
@@ -12,15 +13,16 @@
 
 namespace kacanov {
 
-/// What decides how the loop goes on besides the state itself. A checkpoint holds every entry: `visit` names them.
+/// What decides how the loop goes on besides the state itself. A checkpoint holds every entry: `visit` names
+/// them.
 struct LoopState {
-  double best = HUGE_VAL;   ///< smallest residual since the last retreat
+  double best = HUGE_VAL;  ///< smallest residual since the last retreat
   double last_cone = 0.0;
-  int stalled = 0;          ///< Newton steps without a new best residual
-  int creeping = 0;         ///< Newton steps that let slip move on by a row of nodes
-  int retreat = 0;          ///< ADMM steps still to take
+  int stalled = 0;   ///< Newton steps without a new best residual
+  int creeping = 0;  ///< Newton steps that let slip move on by a row of nodes
+  int retreat = 0;   ///< ADMM steps still to take
   int retreats = 0;
-  int first_outer = 0;      ///< outer steps before this load step, or before a restart
+  int first_outer = 0;  ///< outer steps before this load step, or before a restart
 
   template <class Visitor>
   void visit(Visitor&& entry) {
@@ -39,13 +41,15 @@ class OuterLoop {
  public:
   OuterLoop(const Part& part, const SolverOptions& options, const RunOptions& run);
 
-  /// Runs until the certificate meets the tolerance, or max_outer steps. Fills the loop's entries of the result. Where
-  /// the run is to stop, state and result are those after the last whole outer step, and false is returned.
+  /// Runs until the certificate meets the tolerance, or max_outer steps. Fills the loop's entries of the
+  /// result. Where the run is to stop, state and result are those after the last whole outer step, and false
+  /// is returned.
   bool run(Result& result);
-  /// After the part's loads have been multiplied by `ratio`: starts the next load step from the same multiple of the last
-  /// one's solution.
+  /// After the part's loads have been multiplied by `ratio`: starts the next load step from the same multiple
+  /// of the last one's solution.
   void scale(double ratio, const Result& result);
   /// By the loop's own operator.
+  void update_residual();
   Residuals certify() const;
   /// Goes on from a checkpoint, which rank 0 has. Collective.
   void restore(const Checkpoint* from, Result& result);
@@ -69,14 +73,15 @@ class OuterLoop {
   void keep(const Result& result);
   bool stop_agreed() const;
   void choose_first_penalty(Result& result);
-  void improve_penalty(Result& result);
+  void balance_penalty(const AdmmResult& step, Result& result);
   void set_up_preconditioner(std::span<const NodeBlock> blocks, const Space& space);
   std::vector<NodeBlock> penalty_blocks() const;
-  bool secant_drifted() const;
+  bool setup_pays(bool wanted);
+  std::int64_t set_moved(std::span<const TraceChoice> set) const;
   void watch_preconditioner(double digits, std::int64_t iterations);
   void update_bounds();
   void take_admm_step(Result& result, ProgressStep& line, const Residuals& before);
-  void take_newton_step(ProgressStep& line, const Residuals& before);
+  void take_newton_step(Result& result, ProgressStep& line, const Residuals& before);
   void take_damped_step(std::span<const double> delta, double curvature);
   void report(const ProgressStep& step) const;
 
@@ -90,31 +95,30 @@ class OuterLoop {
   std::unique_ptr<Preconditioner> amg_;
   ContactState state_;
   CgWork work_;
-  Vector internal_;          // R(ω)
-  Vector diagonal_;          // of the elastic B
-  Vector secant_;            // frozen g, elements × points
-  Vector volume_;            // lumped nodal volumes, for (15)
+  Vector internal_;              // R(ω)
+  double energy_ = 0.0;          // stored, at ω
+  bool secant_current_ = false;  // the operator's g is that of ω
+  Vector diagonal_;              // of the elastic B
+  Vector secant_;                // frozen g, elements × points
+  Vector volume_;                // lumped nodal volumes, for (15)
   Penalty penalty_;
   LinearProblem problem_;
   bool friction_ = false, linear_ = false;
   bool preconditioner_stale_ = true;
-  double digits_per_cg_ = 0.0;   // right after the last setup
-  int estimates_ = 0;            // of r_A
-  std::vector<TraceChoice> estimated_set_;  // that of the last one
-  bool newton_failed_ = false;   // the last semismooth step could not be solved
+  double digits_per_cg_ = 0.0;           // right after the last setup
+  std::vector<TraceChoice> pinned_set_;  // that the preconditioner was set up for
+  bool newton_failed_ = false;           // the last semismooth step could not be solved
   LoopState loop_;
   std::uint64_t earlier_applications_ = 0;
   struct Kept {
     ContactState state;
     LoopState loop;
     Penalty penalty;
-    int estimates = 0;
-    std::vector<TraceChoice> estimated_set;
     bool newton_failed = false;
     Result result;
   };
-  Kept kept_;  // after the last whole outer step; only where a run may be stopped
-  double extent_ = 0.0;           // of the body
+  Kept kept_;            // after the last whole outer step; only where a run may be stopped
+  double extent_ = 0.0;  // of the body
   double spectrum_seconds_ = 0.0, checkpoint_seconds_ = 0.0;
 };
 

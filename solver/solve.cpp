@@ -272,4 +272,26 @@ std::vector<SpectrumResult> analyse_spectrum(const Part& part, const SolverOptio
   return results;
 }
 
+double active_penalty(const Part& part, const Solution& solution, const SolverOptions& options,
+                      const RunOptions& run) {
+  DistributedOperator op(part, run.threads, run.instruction_set);
+  op.update(solution.displacement);
+  const auto amg = make_preconditioner(options.preconditioner, part);
+  std::vector<double> secant(part.body().secant_count());
+  op.local().secant(secant);
+  std::vector<TraceChoice> active(part.contact.size()), open(part.contact.size());
+  for (std::size_t i = 0; i < active.size(); ++i) {
+    active[i] = {solution.pressure[i] > 0.0, solution.contact_status[i] == ContactStatus::stick};
+    open[i] = {!active[i].normal, !active[i].tangential};
+  }
+  const TraceRows held(part, active), free(part, open);
+  if (held.total() == 0) return 0.0;
+  Spectrum spectrum(part, op, *amg, secant, options.spectrum_tolerance);
+  const double low = spectrum.smallest(held).value;
+  if (!(low > 0.0)) return 0.0;
+  const double high =
+      free.total() > 0 ? spectrum.largest(free, held, 0.01 / low, part.loose_modes > 0).value : 0.0;
+  return 1.0 / std::sqrt(low * (high > 0.0 ? high : low));
+}
+
 }  // namespace kacanov

@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "preconditioner.hpp"
 #include "cg.hpp"
 #include "contact/traces.hpp"
 #include "distributed_operator.hpp"
 #include "lanczos.hpp"
+#include "preconditioner.hpp"
 #include "result.hpp"
 
 namespace kacanov {
@@ -28,6 +28,8 @@ class TraceRows {
   std::size_t owned() const noexcept { return index_.size(); }
   std::span<const std::int64_t> index() const noexcept { return index_; }
   std::int64_t total() const noexcept { return total_; }
+  /// √mass of the owned rows.
+  std::span<const double> root_mass() const noexcept { return root_mass_; }
 
   /// Holds every row's direction in `space`.
   void hold_in(Space& space) const;
@@ -47,17 +49,18 @@ class TraceRows {
   std::vector<NodeBlock> pinning_blocks(std::span<const double> diagonal) const;
 
  private:
-  struct Group {                ///< rows of one node
+  struct Group {  ///< rows of one node
     std::int32_t node = 0;
-    std::size_t first = 0;      ///< its first row
+    std::size_t first = 0;  ///< its first row
     int rows = 0;
     std::array<Vector3, 9> row{};      ///< scaled by √mass
     std::array<Vector3, 9> inverse{};  ///< columns of the pseudo-inverse
   };
   const Part* part_;
-  std::vector<Group> groups_;   ///< owned first
+  std::vector<Group> groups_;  ///< owned first
   std::size_t owned_groups_ = 0, local_ = 0;
   std::vector<std::int64_t> index_;
+  std::vector<double> root_mass_;
   std::int64_t total_ = 0;
 };
 
@@ -75,10 +78,12 @@ struct Eigenvalue {
 class Spectrum {
  public:
   /// Uses (and re-sets) `amg`; works with the secant frozen in `op` and `g`.
-  Spectrum(const Part& part, DistributedOperator& op, Preconditioner& amg, std::span<const double> g, double tolerance);
+  Spectrum(const Part& part, DistributedOperator& op, Preconditioner& amg, std::span<const double> g,
+           double tolerance);
 
-  /// λ_max of D^½ C B⁻¹ Cᵀ D^½ with the rows `held` held at zero. Where rigid modes are loose (`loose`), B⁻¹ does not
-  /// exist; the largest finite eigenvalue is taken from B + r₀ CᵀDC, whose eigenvalues are λ/(1 + r₀ λ).
+  /// λ_max of D^½ C B⁻¹ Cᵀ D^½ with the rows `held` held at zero. Where rigid modes are loose (`loose`), B⁻¹
+  /// does not exist; the largest finite eigenvalue is taken from B + r₀ CᵀDC, whose eigenvalues are λ/(1 + r₀
+  /// λ).
   Eigenvalue largest(const TraceRows& rows, const TraceRows& held, double r0, bool loose);
   /// λ_min (smallest nonzero) of the same without held rows: 1/λ_max of the inverse, by the Schur complement.
   Eigenvalue smallest(const TraceRows& rows);
@@ -86,7 +91,8 @@ class Spectrum {
   const SpectrumCost& cost() const noexcept { return cost_; }
 
  private:
-  CgResult solve(const Space& space, std::span<double> x, CgWork& work, const TraceRows* penalised, double r0);
+  CgResult solve(const Space& space, std::span<double> x, CgWork& work, const TraceRows* penalised,
+                 double r0);
 
   const Part* part_;
   DistributedOperator* op_;
@@ -96,8 +102,15 @@ class Spectrum {
   SpectrumCost cost_;
 };
 
+/// 1/λ_min from above and below alike, without a solve: the stiffest contact row, nᵀ diag(B) n / mass.
+double rough_lambda_min(const Part& part, std::span<const double> diagonal, bool friction);
+/// λ_max with the rows `held` at zero, from below: uᵀCᵀDCu / uᵀBu for what at most `steps` CG iterations make
+/// of an even pressure on `rows`. `amg` as it stands: it may hold penalties.
+double rough_lambda_max(const Part& part, DistributedOperator& op, Preconditioner& amg, const TraceRows& rows,
+                        const TraceRows& held, int steps);
+
 /// λ_min, λ_max, r* of (32) for N, or for [N; T] with `friction`.
-SpectrumResult estimate_spectrum(const Part& part, DistributedOperator& op, Preconditioner& amg, std::span<const double> g,
-                                 bool friction, double tolerance);
+SpectrumResult estimate_spectrum(const Part& part, DistributedOperator& op, Preconditioner& amg,
+                                 std::span<const double> g, bool friction, double tolerance);
 
 }  // namespace kacanov

@@ -18,7 +18,7 @@ namespace {
 
 const char* status_name(Status status) { return status == Status::converged ? "converged" : "not_converged"; }
 
-/// What the sweep is compared with: r* of the elastic body and r_A of a run that chooses for itself.
+/// What the sweep is compared with: r* of the elastic body and r_A of the solution.
 struct Landmarks {
   double r_star = 0.0, r_active = 0.0;
 };
@@ -83,7 +83,7 @@ int sweep_command(const Command& command, const Case& input, const MpiSession& m
   collectively(mpi, [&] {
     landmarks.r_star = analyse_spectrum(loaded.part, solver, options).back().r_star;
     solver.penalty = SolverOptions::Penalty::automatic;
-    landmarks.r_active = solve(loaded.part, solver, options).result.r_active;
+    landmarks.r_active = active_penalty(loaded.part, solve(loaded.part, solver, options), solver, options);
     const double low = command.r_min.value_or(landmarks.r_star / 10.0);
     const double high = command.r_max.value_or(landmarks.r_star * 100.0);
     if (!(low < high))

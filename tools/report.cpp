@@ -83,7 +83,7 @@ std::string summary(const Result& result, const Model& model, int dim) {
     text += format(", pressure up to %.6g\n", result.max_contact_pressure);
     text += "  forces        normal " + vector_text(result.contact_force, dim) + ", friction " +
             vector_text(result.friction_force, dim) + "\n";
-    text += format("  penalty       r* = %.4g, r_A = %.4g (lambda %.4g to %.4g)\n", result.r_star,
+    text += format("  penalty       r* = %.3g, adapted %.3g (rough lambda %.4g to %.4g)\n", result.r_star,
                    result.r_active, result.lambda_min, result.lambda_max);
   }
   text += format("  stress        von Mises up to %.6g, ", result.max_von_mises) +

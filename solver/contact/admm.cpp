@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/balance.hpp"
 #include "contact/projections.hpp"
 
 namespace kacanov {
@@ -21,10 +22,11 @@ struct StepNorm {
   }
 };
 
-/// Steps 2 and 3 at every point. `shift` becomes r(φ₊ − φ) − (λ₊ − λ), what the right side of step 1 changes by;
-/// `dual` becomes r(φ − w) + λ₊ − λ, minus which the linear equilibrium is left with.
+/// Steps 2 and 3 at every point. `shift` becomes r(φ₊ − φ) − (λ₊ − λ), what the right side of step 1 changes
+/// by; `dual` becomes r(φ − w) + λ₊ − λ, minus which the linear equilibrium is left with.
 void update_multipliers(const Traces& traces, ContactState& state, const Penalty& r, double alpha,
-                        ContactValues& shift, ContactValues& dual, double& trace_residual, StepNorm& norm) {
+                        ContactValues& shift, ContactValues& dual, double& trace_residual, StepNorm& norm,
+                        Balance& balance) {
   const auto points = traces.points();
   trace_residual = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -38,6 +40,8 @@ void update_multipliers(const Traces& traces, ContactState& state, const Penalty
       shift.normal[i] = r.normal * (next.phi - phi) - (next.lambda - lambda);
       dual.normal[i] = r.normal * (phi - w) + next.lambda - lambda;
       if (owned) norm.add(point.mass, phi, next.phi);
+      const bool touches = next.lambda > 0.0;
+      balance.normal(i, touches ? w - next.phi : 0.0, touches ? 0.0 : r.normal * (phi - w));
       phi = next.phi;
       lambda = next.lambda;
       trace_residual = std::max(trace_residual, std::abs(w - phi));
@@ -48,6 +52,14 @@ void update_multipliers(const Traces& traces, ContactState& state, const Penalty
     const double* w = &state.trace.tangential[2 * i];
     const double relaxed[2] = {alpha * w[0] + (1.0 - alpha) * phi[0], alpha * w[1] + (1.0 - alpha) * phi[1]};
     const TangentialStep next = tangential_step(relaxed, lambda, state.bound[i], r.tangential);
+    const double slip = std::hypot(next.phi[0], next.phi[1]);
+    if (slip == 0.0) {
+      balance.tangential(i, std::hypot(w[0], w[1]), {});
+    } else {
+      const double along[2] = {next.phi[0] / slip, next.phi[1] / slip};
+      const double force = r.tangential * (along[0] * (phi[0] - w[0]) + along[1] * (phi[1] - w[1]));
+      balance.tangential(i, along[0] * w[1] - along[1] * w[0], {force * along[0], force * along[1]});
+    }
     for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k) {
       shift.tangential[2 * i + k] = r.tangential * (next.phi[k] - phi[k]) - (next.lambda[k] - lambda[k]);
       dual.tangential[2 * i + k] = r.tangential * (phi[k] - w[k]) + next.lambda[k] - lambda[k];
@@ -85,13 +97,14 @@ AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work,
   add_penalty_residual(1.0);
 
   AdmmResult result;
+  Balance balance(traces.size());
   Vector before(stop_by_step ? state.omega.size() : 0);
   while (!result.converged && result.iterations < options.max_iterations) {
     if (stop_by_step) before = state.omega;
     CgOptions cg;
     cg.absolute = 0.2 * options.force_tolerance;
-    // The first residual is what the last projection changed: a tenth of it is exact enough (inexact ADMM), where
-    // the loop is judged by residuals and not by its steps.
+    // The first residual is what the last projection changed: a tenth of it is exact enough (inexact ADMM),
+    // where the loop is judged by residuals and not by its steps.
     cg.relative = stop_by_step ? 1e-12 : solve_reduction;
     const CgResult solve = conjugate_gradients(space, apply, problem.precondition, state.omega, work, cg);
     result.cg_iterations += solve.iterations;
@@ -101,7 +114,9 @@ AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work,
     traces.evaluate(state.omega, state.trace);
 
     StepNorm norm;
-    update_multipliers(traces, state, options.r, options.relaxation, shift, dual, result.trace_residual, norm);
+    update_multipliers(traces, state, options.r, options.relaxation, shift, dual, result.trace_residual, norm,
+                       balance);
+    balance.finish(traces, options.trace_tolerance, options.force_tolerance);
     result.force_residual = solve.residual + traces.force_norm(dual);
     traces.add_force(shift, 1.0, work.residual);
     ++result.iterations;
@@ -113,12 +128,15 @@ AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work,
       result.step = sums[1] > 0.0 ? std::sqrt(sums[0] / sums[1]) : 0.0;
       result.converged = result.step < options.step_tolerance;
     } else {
-      result.converged =
-          result.force_residual <= options.force_tolerance && result.trace_residual <= options.trace_tolerance;
+      const double enough =
+          options.force_reduction > 0.0 ? options.force_reduction * traces.force_norm(state.lambda) : 0.0;
+      result.converged = result.force_residual <= std::max(options.force_tolerance, enough) &&
+                         result.trace_residual <= options.trace_tolerance;
     }
     if (!std::isfinite(result.force_residual)) break;
   }
   add_penalty_residual(-1.0);
+  result.balance = balance.mean();
   return result;
 }
 

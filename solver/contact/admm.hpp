@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Algorithm 1 of the paper: ADMM (Uzawa block relaxation) on one linearised contact problem, with inexact solves.
+// Algorithm 1 of the paper: ADMM (Uzawa block relaxation) on one linearised contact problem, with inexact
+// solves.
 #pragma once
 
+#include <array>
 #include <functional>
 
 #include "cg.hpp"
@@ -11,10 +13,10 @@ namespace kacanov {
 
 /// ω with its auxiliary and multiplier fields; kept from one linearisation to the next.
 struct ContactState {
-  Vector omega;                 ///< takes prescribed components along
-  ContactValues trace;          ///< (Nω, Tω)
+  Vector omega;         ///< takes prescribed components along
+  ContactValues trace;  ///< (Nω, Tω)
   ContactValues phi, lambda;
-  Vector bound;                 ///< ψ of each contact point
+  Vector bound;  ///< ψ of each contact point
 };
 
 /// A linearised problem: B, frozen, and its preconditioner for B + r CᵀMC.
@@ -27,9 +29,10 @@ struct LinearProblem {
 
 struct AdmmOptions {
   Penalty r;
-  double relaxation = 1.0;         ///< α: Nω is replaced by α Nω + (1 − α) φ in steps 2 and 3
-  double force_tolerance = 0.0;    ///< absolute, on the residual of the linear equilibrium
-  double trace_tolerance = 0.0;    ///< absolute, on max |Cω − φ|
+  double relaxation = 1.0;       ///< α: Nω is replaced by α Nω + (1 − α) φ in steps 2 and 3
+  double force_tolerance = 0.0;  ///< absolute, on the residual of the linear equilibrium
+  double force_reduction = 0.0;  ///< or relative to the contact force: where nothing else sets a scale
+  double trace_tolerance = 0.0;  ///< absolute, on max |Cω − φ|
   int max_iterations = 10000;
   /// With ε > 0 the stop is (15), and the solves are as exact as the tolerances above.
   double step_tolerance = 0.0;
@@ -39,16 +42,17 @@ struct AdmmOptions {
 struct AdmmResult {
   int iterations = 0;
   std::int64_t cg_iterations = 0;
-  double cg_digits = 0.0;          ///< decimal digits gained by all solves together
-  double force_residual = 0.0;     ///< ‖linear equilibrium with the new multipliers‖
-  double trace_residual = 0.0;     ///< max |Cω − φ|
-  double step = 0.0;               ///< left side of (15), square root
+  double cg_digits = 0.0;           ///< decimal digits gained by all solves together
+  double force_residual = 0.0;      ///< ‖linear equilibrium with the new multipliers‖
+  double trace_residual = 0.0;      ///< max |Cω − φ|
+  std::array<double, 2> balance{};  ///< Balance::mean()
+  double step = 0.0;                ///< left side of (15), square root
   bool converged = false;
   bool solves_converged = true;
 };
 
-/// Iterates until both tolerances (or (15)) are met. `work.residual` holds F − R(ω) − CᵀMλ for the linearisation
-/// at state.omega on entry, the same with the frozen B on exit (up to held components).
+/// Iterates until both tolerances (or (15)) are met. `work.residual` holds F − R(ω) − CᵀMλ for the
+/// linearisation at state.omega on entry, the same with the frozen B on exit (up to held components).
 AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work, const AdmmOptions& options);
 
 }  // namespace kacanov
