@@ -51,6 +51,9 @@ kacanov_test(closed_solutions
 kacanov_test(contact
   SOURCES solver/mpi_main.cpp solver/contact_test.cpp
   LIBRARIES kacanov_solver)
+kacanov_test(dual
+  SOURCES solver/mpi_main.cpp solver/dual_test.cpp
+  LIBRARIES kacanov_solver)
 kacanov_test(certificate
   SOURCES solver/mpi_main.cpp solver/certificate_test.cpp
   LIBRARIES kacanov_solver)

@@ -11,8 +11,6 @@
 namespace kacanov {
 namespace {
 
-constexpr double solve_reduction = 0.1;
-
 /// Σ weight (new − old)² and Σ weight new² for (15).
 struct StepNorm {
   double change = 0.0, size = 0.0;
@@ -101,12 +99,8 @@ AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work,
   Vector before(stop_by_step ? state.omega.size() : 0);
   while (!result.converged && result.iterations < options.max_iterations) {
     if (stop_by_step) before = state.omega;
-    CgOptions cg;
-    cg.absolute = 0.2 * options.force_tolerance;
-    // The first residual is what the last projection changed: a tenth of it is exact enough (inexact ADMM),
-    // where the loop is judged by residuals and not by its steps.
-    cg.relative = stop_by_step ? 1e-12 : solve_reduction;
-    const CgResult solve = conjugate_gradients(space, apply, problem.precondition, state.omega, work, cg);
+    const CgResult solve =
+        conjugate_gradients(space, apply, problem.precondition, state.omega, work, solve_options(options));
     result.cg_iterations += solve.iterations;
     if (solve.iterations > 0 && solve.residual > 0.0)
       result.cg_digits += std::log10(solve.first_residual / solve.residual);
@@ -128,10 +122,7 @@ AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work,
       result.step = sums[1] > 0.0 ? std::sqrt(sums[0] / sums[1]) : 0.0;
       result.converged = result.step < options.step_tolerance;
     } else {
-      const double enough =
-          options.force_reduction > 0.0 ? options.force_reduction * traces.force_norm(state.lambda) : 0.0;
-      result.converged = result.force_residual <= std::max(options.force_tolerance, enough) &&
-                         result.trace_residual <= options.trace_tolerance;
+      result.converged = meets_tolerances(result, options, traces, state.lambda);
     }
     if (!std::isfinite(result.force_residual)) break;
   }

@@ -3,6 +3,7 @@
 // solves.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <functional>
 
@@ -50,6 +51,21 @@ struct AdmmResult {
   bool converged = false;
   bool solves_converged = true;
 };
+
+/// How exact each solve is: the first residual is what the last projection changed, a tenth of it is exact
+/// enough (inexact ADMM) where the loop is judged by residuals and not by its steps.
+inline CgOptions solve_options(const AdmmOptions& options) {
+  return {0.2 * options.force_tolerance, options.step_tolerance > 0.0 ? 1e-12 : 0.1, 2000};
+}
+
+/// Whether the residuals of `result` meet the tolerances; `lambda` as it is now.
+inline bool meets_tolerances(const AdmmResult& result, const AdmmOptions& options, const Traces& traces,
+                             const ContactValues& lambda) {
+  const double enough =
+      options.force_reduction > 0.0 ? options.force_reduction * traces.force_norm(lambda) : 0.0;
+  return result.force_residual <= std::max(options.force_tolerance, enough) &&
+         result.trace_residual <= options.trace_tolerance;
+}
 
 /// Iterates until both tolerances (or (15)) are met. `work.residual` holds F − R(ω) − CᵀMλ for the
 /// linearisation at state.omega on entry, the same with the frozen B on exit (up to held components).

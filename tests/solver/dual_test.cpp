@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Algorithm 2 is Algorithm 1 without over-relaxation: the same iterates, step by step.
+#include "contact/dual_admm.hpp"
+
+#include <doctest/doctest.h>
+
+#include "distributed_operator.hpp"
+#include "preconditioner.hpp"
+#include "spectrum.hpp"
+#include "support.hpp"
+
+using namespace kacanov;
+using namespace kacanov::testing;
+
+namespace {
+
+/// The elastic beam with everything the contact loops ask for.
+struct Setting {
+  Problem problem;
+  Part part;
+  Space space;
+  Traces traces;
+  DistributedOperator op;
+  std::unique_ptr<Preconditioner> amg;
+  LinearProblem linear;
+
+  Setting(int dim, double gap, double tresca, const Penalty& r)
+      : problem(make(dim, gap, tresca)),
+        part(distribute(&problem, MPI_COMM_SELF)),
+        space(part),
+        traces(part),
+        op(part, 1, ""),
+        amg(make_preconditioner(SolverOptions::Preconditioner::components, part)) {
+    std::vector<double> secant(part.body().secant_count());
+    op.local().secant(secant);
+    const std::size_t points = part.contact.size();
+    auto blocks = TraceRows(part, std::vector<TraceChoice>(points, {true, false})).penalty_blocks(r.normal);
+    const auto more =
+        TraceRows(part, std::vector<TraceChoice>(points, {false, true})).penalty_blocks(r.tangential);
+    blocks.insert(blocks.end(), more.begin(), more.end());
+    amg->setup(secant, blocks, space);
+    linear = {&space, &traces, [this](std::span<const double> x, std::span<double> y) { op.apply(x, y); },
+              [this](std::span<const double> x, std::span<double> y) { amg->apply(x, y); }};
+  }
+
+  static Problem make(int dim, double gap, double tresca) {
+    Model model = beam(dim, elastic_law(1.0, 0.3), 0.05, tresca);
+    std::get<Plane>(model.contact[0].obstacle).point[static_cast<std::size_t>(dim - 1)] = -gap;
+    // A prescribed displacement that lifts the clamped end: it must go through both loops alike.
+    (*model.boundary[0].displacement)[static_cast<std::size_t>(dim - 1)] = 0.002;
+    return build_problem(beam_mesh(dim, dim == 2 ? 6 : 2), model);
+  }
+
+  /// ω with its prescribed components, and multipliers that may be none.
+  ContactState start(double pressure) const {
+    ContactState state;
+    const std::size_t points = part.contact.size();
+    state.omega = part.prescribed;
+    for (std::size_t i = 0; i < part.unknowns(); ++i)
+      if (!part.held[i]) state.omega[i] = 0.0;
+    state.trace = state.phi = state.lambda = ContactValues(points);
+    state.bound.resize(points);
+    traces.evaluate(state.omega, state.trace);
+    for (std::size_t i = 0; i < points; ++i) {
+      state.bound[i] = part.contact[i].tresca;
+      state.phi.normal[i] = part.contact[i].gap;
+      if (i % 2 == 0) state.lambda.normal[i] = pressure;
+    }
+    return state;
+  }
+
+  /// F − B ω − CᵀMλ, as the loops want it on entry.
+  void residual(const ContactState& state, CgWork& work) {
+    work.resize(part.unknowns());
+    op.apply(state.omega, work.image);
+    for (std::size_t i = 0; i < work.residual.size(); ++i) work.residual[i] = part.load[i] - work.image[i];
+    traces.add_force(state.lambda, -1.0, work.residual);
+  }
+};
+
+double largest(const Vector& x) {
+  double most = 0.0;
+  for (const double v : x) most = std::max(most, std::abs(v));
+  return most;
+}
+
+double difference(const Vector& a, const Vector& b) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
+  return most;
+}
+
+}  // namespace
+
+TEST_CASE("every iterate of Algorithm 2 is that of Algorithm 1, with exact and with inexact solves") {
+  for (const int dim : {2, 3})
+    for (const double tresca : {0.0, 0.01})
+      for (const double pressure : {0.0, 0.02}) {
+        const Penalty r{2.0, 0.7};
+        Setting setting(dim, 0.01, tresca, r);
+        const Vector volume(setting.part.nodes(), 1.0);
+        for (const bool exact : {true, false})
+          for (const int iterations : {1, 2, 3, 5, 9, 14}) {
+            CAPTURE(dim);
+            CAPTURE(tresca);
+            CAPTURE(pressure);
+            CAPTURE(exact);
+            CAPTURE(iterations);
+            AdmmOptions options;
+            options.r = r;
+            options.max_iterations = iterations;
+            if (exact) {
+              options.step_tolerance = 1e-300;  // solves to 1e-12, and no end before max_iterations
+              options.volume = volume;
+            }
+            ContactState one = setting.start(pressure), two = one;
+            CgWork work;
+            setting.residual(one, work);
+            const AdmmResult first = admm(setting.linear, one, work, options);
+            setting.residual(two, work);
+            const AdmmResult second = dual_admm(setting.linear, two, work, options);
+            CHECK(first.iterations == iterations);
+            CHECK(second.iterations == iterations);
+            const double u = largest(one.omega), p = largest(one.lambda.normal);
+            CHECK(difference(one.omega, two.omega) < 1e-8 * u);
+            CHECK(difference(one.phi.normal, two.phi.normal) < 1e-8 * u);
+            CHECK(difference(one.phi.tangential, two.phi.tangential) < 1e-8 * u);
+            CHECK(difference(one.lambda.normal, two.lambda.normal) < 1e-8 * p);
+            CHECK(difference(one.lambda.tangential, two.lambda.tangential) < 1e-8 * p);
+            CHECK(second.cg_iterations == first.cg_iterations);
+            CHECK(second.trace_residual == doctest::Approx(first.trace_residual).epsilon(1e-6).scale(u));
+            CHECK(second.force_residual == doctest::Approx(first.force_residual).epsilon(1e-6));
+            if (exact) CHECK(second.step == doctest::Approx(first.step).epsilon(1e-6));
+          }
+      }
+}
+
+TEST_CASE("whole runs of both take the same iterations, also when (15) stops them") {
+  for (const auto stop : {SolverOptions::Stop::kkt, SolverOptions::Stop::paper})
+    for (const double tresca : {0.0, 0.01}) {
+      CAPTURE(static_cast<int>(stop));
+      CAPTURE(tresca);
+      Model model = beam(2, logarithmic_law(0.01), 0.05, tresca);
+      model.solver.outer = SolverOptions::Outer::kacanov;
+      model.solver.penalty = SolverOptions::Penalty::paper;
+      model.solver.relaxation = 1.0;
+      model.solver.stop = stop;
+      model.solver.tolerance = stop == SolverOptions::Stop::kkt ? 1e-6 : 1e-4;
+      model.solver.contact = SolverOptions::Contact::admm;
+      const Run one = run_alone(beam_mesh(2, 4), model);
+      model.solver.contact = SolverOptions::Contact::dual_admm;
+      const Run two = run_alone(beam_mesh(2, 4), model);
+      if (stop == SolverOptions::Stop::kkt) CHECK(two.result().status == Status::converged);
+      CHECK(two.result().outer_iterations == one.result().outer_iterations);
+      CHECK(two.result().contact_iterations == one.result().contact_iterations);
+      CHECK(distance(one.probe(), two.probe()) < 1e-7 * length(one.probe()));
+    }
+}
