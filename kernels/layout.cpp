@@ -163,10 +163,15 @@ struct Builder {
                              static_cast<std::uint32_t>(layout.index.size() - range.first_index),
                              static_cast<std::uint32_t>(layout.element_point.size() - range.first_slot)});
     const auto points_an_element = static_cast<std::size_t>(points_per_element(body.mesh.type));
+    // Neighbouring tet10 share up to six nodes, whose sums wait for each other: their lanes work far apart.
+    const bool apart = shape == Shape::tet10 || shape == Shape::curved_tet10;
+    const auto piece_of = [&](std::size_t batch, std::size_t lane) {
+      return apart ? lane * batches + batch : batch * lanes + lane;
+    };
     for (std::size_t batch = 0; batch < batches; ++batch) {
       for (std::uint32_t k = 0; k < nodes; ++k)
         for (std::size_t lane = 0; lane < lanes; ++lane) {
-          const std::size_t i = batch * lanes + lane;
+          const std::size_t i = piece_of(batch, lane);
           const std::uint32_t record =
               i < pieces.size() ? static_cast<std::uint32_t>(local[at(piece_node(pieces[i], shape, k))])
                                 : range.count + idle_record(shape, length, k);
@@ -174,7 +179,7 @@ struct Builder {
         }
       for (std::uint32_t point = 0; point < points; ++point)
         for (std::size_t lane = 0; lane < lanes; ++lane) {
-          const std::size_t i = batch * lanes + lane;
+          const std::size_t i = piece_of(batch, lane);
           std::int32_t target = -1;
           if (i < pieces.size()) {
             const std::size_t offset = (pieces[i].from + point) / points_an_element;

@@ -29,12 +29,6 @@ constexpr std::array<std::uint8_t, 8> hex_corner = [] {
 // A trilinear function is a sum of eight modes: 1, ξ, η, ξη, ζ, ξζ, ηζ, ξηζ, by the bits of their index. Sums
 // of nodal values times ±1 give them (times eight); derivatives know nothing of the first.
 
-/// Keeps the compiler from holding indices it has read before: it would spill them.
-KACANOV_INLINE inline const std::uint16_t* read_anew(const std::uint16_t* at) {
-  __asm__("" : "+r"(at));
-  return at;
-}
-
 /// From values at the eight places to modes and, since the map is symmetric but for the sign of bits, back.
 /// Additions only.
 template <class V>

@@ -44,9 +44,10 @@ inline void tet10_loop(const Block<Real>& block, const Group& group, const Mater
     const V det = inner(x[1], c[0]), w = Real(1.0 / 24.0) / det;
     for (int v = 0; v < vectors; ++v) {
       const std::size_t offset = static_cast<std::size_t>(v) * stride;
+      const std::uint16_t* from = read_anew(at);
       V d[10][3], h[4][9], h_sum[9], s[4][6], s_sum[6];
 #pragma GCC unroll 10
-      for (int a = 0; a < 10; ++a) L::load3(u + offset, at + a * L::width, d[a]);
+      for (int a = 0; a < 10; ++a) L::load3(u + offset, from + a * L::width, d[a]);
 #pragma GCC unroll 4
       for (int j = 0; j < 4; ++j) {
         V r[3][3];  // ∂u/∂λ_{i+1} − ∂u/∂λ_0 at vertex j
@@ -69,8 +70,8 @@ inline void tet10_loop(const Block<Real>& block, const Group& group, const Mater
       for (int q = 0; q < 4; ++q) {
         V at_point[9];
         for (int n = 0; n < 9; ++n) at_point[n] = rest * h[q][n] + h_sum[n];
-        const Sym<V> t =
-            material.stress(strain_of(at_point), det, w, Real(1.0 / 24.0), point + static_cast<std::size_t>(q));
+        const Sym<V> t = material.stress(strain_of(at_point), det, w, Real(1.0 / 24.0),
+                                         point + static_cast<std::size_t>(q));
         s[q][0] = t.xx, s[q][1] = t.yy, s[q][2] = t.zz, s[q][3] = t.xy, s[q][4] = t.yz, s[q][5] = t.zx;
         for (int n = 0; n < 6; ++n) s_sum[n] = q == 0 ? s[q][n] : s_sum[n] + s[q][n];
       }
@@ -96,8 +97,9 @@ inline void tet10_loop(const Block<Real>& block, const Group& group, const Mater
             }
           }
       }
+      from = read_anew(at);
 #pragma GCC unroll 10
-      for (int a = 0; a < 10; ++a) L::add3(f + offset, at + a * L::width, force[a]);
+      for (int a = 0; a < 10; ++a) L::add3(f + offset, from + a * L::width, force[a]);
     }
     at += 10 * L::width;
     point += 4;
