@@ -110,12 +110,6 @@ std::size_t Engine<Real>::bytes() const noexcept {
 template <class Real>
 simd::Block<Real> Engine<Real>::block(std::size_t b) const {
   const BlockRange& range = layout_.blocks[b];
-  // The last block fetches its own first records again, for the next pass.
-  const BlockRange& next = layout_.blocks[b + 1 < layout_.blocks.size() ? b + 1 : b];
-  std::uint32_t batches = 0;
-  for (std::size_t i = 0; i < range.group_count; ++i)
-    batches += layout_.groups[range.first_group + i].batches;
-  const auto lines = static_cast<std::uint32_t>(4 * sizeof(Real) * next.count / 64);
   return {layout_.groups.data() + range.first_group,
           range.group_count,
           views_.data(),
@@ -128,9 +122,7 @@ simd::Block<Real> Engine<Real>::block(std::size_t b) const {
           range.first,
           range.again,
           range.count,
-          layout_.padding,
-          reinterpret_cast<const char*>(coordinates_.data() + 4 * next.first_record),
-          lines / std::max(batches, 1u)};
+          layout_.padding};
 }
 
 template <class Real>

@@ -347,6 +347,7 @@ Layout make_layout(const Body& body, int lanes, int threads, std::size_t record_
     for (std::size_t b = layout.share[t]; b < layout.share[t + 1]; ++b)
       builder.add_block(blocks[b], state, slot[t]);
   }
+  layout.nodes.resize(layout.nodes.size() + simd::nodes_ahead, 0);
   return std::move(builder.layout);
 }
 

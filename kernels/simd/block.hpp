@@ -44,15 +44,16 @@ struct Block {
   const Real* coordinates;
   Real* secant;
   float* tangent;
-  const std::int32_t* nodes;   ///< the caller's number of every local node
+  const std::int32_t* nodes;   ///< the caller's number of every local node; `nodes_ahead` more may be read
   const std::int32_t* shared;  ///< slot in the thread's private sums, for nodes from `again` on
   std::uint32_t first;         ///< local nodes [0, first) are met for the first time by this thread
   std::uint32_t again;         ///< [first, again) were met before, [again, count) are other threads' too
   std::uint32_t count;
-  std::uint32_t padding;      ///< records behind `count` that lanes without a unit work on
-  const char* ahead;          ///< what the thread's next block will want and no stream of this one brings
-  std::uint32_t ahead_lines;  ///< cache lines of it to fetch beside each batch
+  std::uint32_t padding;  ///< records behind `count` that lanes without a unit work on
 };
+
+/// How far the copies between vectors and records fetch ahead.
+inline constexpr int nodes_ahead = 64;
 
 /// Tetrahedra of the longest fan: the loops keep the geometry of a batch of them.
 inline constexpr int longest_fan = 16;

@@ -29,14 +29,13 @@ constexpr ReferenceGradients<E, Real> reference_gradients() {
 /// Geometry of all points first, then every right side, as for fans.
 template <class L, class Real, class E, class Material>
 inline void element_loop(const Block<Real>& block, const Group& group, const Material& material,
-                         const Real* u, Real* f, int vectors, std::size_t stride, Ahead& ahead) {
+                         const Real* u, Real* f, int vectors, std::size_t stride) {
   using V = typename L::V;
   constexpr int width = L::width;
   static constexpr auto gradients = reference_gradients<E, Real>();
   const std::uint16_t* at = block.index + group.first_index;
   std::size_t point = 0;
   for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
-    ahead.step();
     V c[E::points][3][3], det[E::points], w[E::points];  // c: det ∇ξ_k
     {
       V x[E::nodes][3];

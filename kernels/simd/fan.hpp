@@ -18,17 +18,6 @@ KACANOV_INLINE inline V inner(const V* a, const V* b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Fetches the next block's coordinates little by little, beside the arithmetic of this one. Without it a
-/// mesh beyond the caches waits for memory at the start of every block.
-struct Ahead {
-  const char* next;
-  std::uint32_t lines;
-
-  KACANOV_INLINE void step() {
-    for (std::uint32_t i = 0; i < lines; ++i, next += 64) __builtin_prefetch(next, 0, 2);
-  }
-};
-
 /// e_i × e_{i+1}, the point's weight over the determinant, and that.
 template <class V>
 struct Wedge {
@@ -102,8 +91,8 @@ KACANOV_INLINE inline void load_fan(const Material& material, const FanGeometry<
       for (int c = 0; c < 3; ++c)
         h[3 * r + c] = dq[r] * wedge.c[c] - d[r] * next_spoke[c] + next[r] * spoke[c];
     if (i > 1) L::add3(f, ring + (i - 1) * L::width, done);
-    const Sym<V> s =
-        material.stress(strain_of(h), wedge.det, wedge.w, Real(1.0 / 6.0), point + static_cast<std::size_t>(i));
+    const Sym<V> s = material.stress(strain_of(h), wedge.det, wedge.w, Real(1.0 / 6.0),
+                                     point + static_cast<std::size_t>(i));
     subtract_product(s, next_spoke, carry);
     for (int k = 0; k < 3; ++k) {
       sum[k] += carry[k];
@@ -133,12 +122,13 @@ KACANOV_INLINE inline void load_fan(const Material& material, const FanGeometry<
 /// length above zero unrolls the ring, worth 15 %.
 template <class L, class Real, bool closed, int fixed, class Material>
 inline void fan_loop(const Block<Real>& block, const Group& group, const Material& material, const Real* u,
-                     Real* f, int vectors, std::size_t stride, Ahead& ahead) {
+                     Real* f, int vectors, std::size_t stride) {
   const int length = fixed > 0 ? fixed : int{group.length};
   const std::uint16_t* at = block.index + group.first_index;
   std::size_t point = 0;
   for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
-    ahead.step();
+    fetch_ahead(at, (length + 3) * L::width);
+    material.fetch_ahead(point, length * L::width);
     FanGeometry<typename L::V> geometry;
     measure_fan<L, Real, closed>(block.coordinates, at, length, geometry);
     for (int v = 0; v < vectors; ++v) {
@@ -154,9 +144,9 @@ inline void fan_loop(const Block<Real>& block, const Group& group, const Materia
 /// which are bound by other things, do with one for all.
 template <class L, class Real, bool closed, class Material>
 inline void fan_loop_of_length(const Block<Real>& block, const Group& group, const Material& material,
-                               const Real* u, Real* f, int vectors, std::size_t stride, Ahead& ahead) {
+                               const Real* u, Real* f, int vectors, std::size_t stride) {
   const auto run = [&]<int fixed>() {
-    fan_loop<L, Real, closed, fixed>(block, group, material, u, f, vectors, stride, ahead);
+    fan_loop<L, Real, closed, fixed>(block, group, material, u, f, vectors, stride);
   };
   if constexpr (Material::frozen) {
     switch (group.length - (closed ? 3 : 0)) {

@@ -185,12 +185,11 @@ KACANOV_INLINE inline Sym<V> hex_strain(const V* a, const V* b, const V* d, cons
 /// Slopes are eight times too large, so determinants are 512 times: the weight takes that back.
 template <class L, class Real, class Material>
 inline void hex_loop(const Block<Real>& block, const Group& group, const Material& material, const Real* u,
-                     Real* f, int vectors, std::size_t stride, Ahead& ahead) {
+                     Real* f, int vectors, std::size_t stride) {
   using V = typename L::V;
   const std::uint16_t* at = block.index + group.first_index;
   std::size_t point = 0;
   for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
-    ahead.step();
     HexSlopes<V> j;
     {
       V m[3][8];
@@ -269,13 +268,12 @@ KACANOV_INLINE inline void affine_stress(const TangentMaterial<L, Real>& materia
 /// diagonal in the modes. Some 350 multiplications and 390 additions a batch.
 template <class L, class Real, class Material>
 inline void affine_hex_loop(const Block<Real>& block, const Group& group, const Material& material,
-                            const Real* u, Real* f, int vectors, std::size_t stride, Ahead& ahead) {
+                            const Real* u, Real* f, int vectors, std::size_t stride) {
   using V = typename L::V;
   const std::uint16_t* at = block.index + group.first_index;
   const V bulk = Real(8) * material.bulk();
   std::size_t point = 0;
   for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
-    ahead.step();
     V c[3][3], w;  // c: of the edges, and thus four times too small; det is so eight times
     {
       V o[3], x[3][3];

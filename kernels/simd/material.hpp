@@ -42,6 +42,13 @@ KACANOV_INLINE inline void subtract_product(const Sym<V>& s, const V* n, V* v) {
   v[2] = v[2] - s.zx * n[0] - s.yz * n[1] - s.zz * n[2];
 }
 
+/// Fetches what a stream will bring some 2 KiB on: processors do so themselves, but stop at every page.
+template <class T>
+KACANOV_INLINE inline void fetch_ahead(const T* stream, int count) {
+  constexpr int line = 64 / sizeof(T);
+  for (int i = 0; i < count; i += line) __builtin_prefetch(stream + 32 * line + i);
+}
+
 // A material turns the strain at one point of each lane, times det and with doubled shears, into weight·τ:
 // forces are that times det ∇N. `weight` is the point's on the reference element, `w` = weight/det. `point`
 // counts vectors of points from the start of the group.
@@ -71,6 +78,9 @@ struct SecantMaterial {
 
   V bulk() const { return k0; }
 
+  KACANOV_INLINE void fetch_ahead(std::size_t point, int count) const {
+    ::fetch_ahead(secant + point * L::width, count);
+  }
   KACANOV_INLINE Sym<V> stress(const Sym<V>& e, V, V w, Real, std::size_t point) const {
     return frozen_stress<L, Real>(e, L::load(secant + point * L::width), k0, w);
   }
@@ -88,6 +98,10 @@ struct TangentMaterial {
 
   V bulk() const { return base.bulk(); }
 
+  KACANOV_INLINE void fetch_ahead(std::size_t point, int count) const {
+    base.fetch_ahead(point, count);
+    ::fetch_ahead(tangent + 6 * point * L::width, 6 * count);
+  }
   KACANOV_INLINE Sym<V> stress(const Sym<V>& e, V, V w, Real, std::size_t point) const {
     Sym<V> s = frozen_stress<L, Real>(e, L::load(base.secant + point * L::width), base.k0, w);
     const float* t = tangent + 6 * point * L::width;
@@ -116,6 +130,7 @@ struct NonlinearMaterial {
         secant(block.secant + group.first_slot),
         tangent(block.tangent + 6 * std::size_t{group.first_slot}) {}
 
+  KACANOV_INLINE void fetch_ahead(std::size_t, int) const {}
   KACANOV_INLINE Sym<V> stress(const Sym<V>& e, V det, V w, Real weight, std::size_t point) const {
     const V inverse = w * (Real(1) / weight), half = Real(0.5) * inverse;
     const V trace = (e.xx + e.yy + e.zz) * inverse, mean = trace * Real(1.0 / 3.0);

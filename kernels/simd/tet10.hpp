@@ -26,14 +26,13 @@ constexpr TetMiddles tet_middles = [] {
 /// times the value at its vertex plus `far` times the sum of all four; the transpose of that is the same.
 template <class L, class Real, class Material>
 inline void tet10_loop(const Block<Real>& block, const Group& group, const Material& material, const Real* u,
-                       Real* f, int vectors, std::size_t stride, Ahead& ahead) {
+                       Real* f, int vectors, std::size_t stride) {
   using V = typename L::V;
   constexpr Real far = Real(kacanov::elements::Tet10::far);
   constexpr Real rest = Real(kacanov::elements::Tet10::near - kacanov::elements::Tet10::far);
   const std::uint16_t* at = block.index + group.first_index;
   std::size_t point = 0;
   for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
-    ahead.step();
     V x[4][3], c[3][3];  // c: det ∇λ_{k+1}
     for (int a = 0; a < 4; ++a) L::load3(block.coordinates, at + a * L::width, x[a]);
     for (int a = 1; a < 4; ++a)

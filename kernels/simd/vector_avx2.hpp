@@ -23,6 +23,18 @@ struct Lanes<double> {
   KACANOV_INLINE static V widen(const float* p) { return (V)_mm256_cvtps_pd(_mm_loadu_ps(p)); }
   KACANOV_INLINE static V sqrt(V v) { return (V)_mm256_sqrt_pd((__m256d)v); }
 
+  // A row is three values of the caller's, a record four aligned ones of a block.
+  typedef double Record __attribute__((vector_size(32)));
+  KACANOV_INLINE static Record load_row(const double* p) {
+    return (Record)_mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(p)), _mm_load_sd(p + 2), 1);
+  }
+  KACANOV_INLINE static void store_row(double* p, Record r) {
+    _mm_storeu_pd(p, _mm256_castpd256_pd128((__m256d)r));
+    _mm_store_sd(p + 2, _mm256_extractf128_pd((__m256d)r, 1));
+  }
+  KACANOV_INLINE static Record load_record(const double* p) { return (Record)_mm256_load_pd(p); }
+  KACANOV_INLINE static void store_record(double* p, Record r) { _mm256_store_pd(p, (__m256d)r); }
+
   /// The halves of two records: an insertion from memory costs a load and a blend, no shuffle.
   KACANOV_INLINE static __m256d halves(const double* low, const double* high) {
     return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_load_pd(low)), _mm_load_pd(high), 1);
@@ -58,6 +70,18 @@ struct Lanes<float> {
   KACANOV_INLINE static void store(float* p, V v) { _mm256_storeu_ps(p, (__m256)v); }
   KACANOV_INLINE static V widen(const float* p) { return load(p); }
   KACANOV_INLINE static V sqrt(V v) { return (V)_mm256_sqrt_ps((__m256)v); }
+
+  typedef float Record __attribute__((vector_size(16)));
+  KACANOV_INLINE static Record load_row(const float* p) {
+    const __m128 xy = _mm_castpd_ps(_mm_load_sd(reinterpret_cast<const double*>(p)));
+    return (Record)_mm_movelh_ps(xy, _mm_load_ss(p + 2));
+  }
+  KACANOV_INLINE static void store_row(float* p, Record r) {
+    _mm_storel_pi(reinterpret_cast<__m64*>(p), (__m128)r);
+    _mm_store_ss(p + 2, _mm_movehl_ps((__m128)r, (__m128)r));
+  }
+  KACANOV_INLINE static Record load_record(const float* p) { return (Record)_mm_load_ps(p); }
+  KACANOV_INLINE static void store_record(float* p, Record r) { _mm_store_ps(p, (__m128)r); }
 
   KACANOV_INLINE static __m256 two(const float* base, std::uint16_t low, std::uint16_t high) {
     return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(base + low)), _mm_load_ps(base + high), 1);

@@ -26,6 +26,13 @@ struct Lanes<double> {
   KACANOV_INLINE static V widen(const float* p) { return (V)_mm512_cvtps_pd(_mm256_loadu_ps(p)); }
   KACANOV_INLINE static V sqrt(V v) { return (V)_mm512_sqrt_pd((__m512d)v); }
 
+  // A row is three values of the caller's, a record four aligned ones of a block.
+  typedef double Record __attribute__((vector_size(32)));
+  KACANOV_INLINE static Record load_row(const double* p) { return (Record)_mm256_maskz_loadu_pd(7, p); }
+  KACANOV_INLINE static void store_row(double* p, Record r) { _mm256_mask_storeu_pd(p, 7, (__m256d)r); }
+  KACANOV_INLINE static Record load_record(const double* p) { return (Record)_mm256_load_pd(p); }
+  KACANOV_INLINE static void store_record(double* p, Record r) { _mm256_store_pd(p, (__m256d)r); }
+
   KACANOV_INLINE static __m512d pair(const double* base, std::uint16_t low, std::uint16_t high) {
     return _mm512_mask_broadcast_f64x4(_mm512_castpd256_pd512(_mm256_load_pd(base + low)), 0xF0,
                                        _mm256_load_pd(base + high));
@@ -69,6 +76,12 @@ struct Lanes<float> {
   KACANOV_INLINE static void store(float* p, V v) { _mm512_storeu_ps(p, (__m512)v); }
   KACANOV_INLINE static V widen(const float* p) { return load(p); }
   KACANOV_INLINE static V sqrt(V v) { return (V)_mm512_sqrt_ps((__m512)v); }
+
+  typedef float Record __attribute__((vector_size(16)));
+  KACANOV_INLINE static Record load_row(const float* p) { return (Record)_mm_maskz_loadu_ps(7, p); }
+  KACANOV_INLINE static void store_row(float* p, Record r) { _mm_mask_storeu_ps(p, 7, (__m128)r); }
+  KACANOV_INLINE static Record load_record(const float* p) { return (Record)_mm_load_ps(p); }
+  KACANOV_INLINE static void store_record(float* p, Record r) { _mm_store_ps(p, (__m128)r); }
 
   /// Lanes k, k+4, k+8, k+12 of a batch, so that the in-lane transposition leaves them in order.
   KACANOV_INLINE static __m512 four(const float* base, const std::uint16_t* at) {

@@ -28,6 +28,20 @@ struct Lanes {
     for (int l = 0; l < width; ++l) v[l] = static_cast<Real>(__builtin_sqrt(v[l]));
     return v;
   }
+
+  // A row is three values of the caller's, a record four aligned ones of a block.
+  struct Record {
+    Real at[4];
+    Real operator[](int i) const { return at[i]; }
+    Record operator+(const Record& o) const {
+      return {{at[0] + o[0], at[1] + o[1], at[2] + o[2], at[3] + o[3]}};
+    }
+  };
+  KACANOV_INLINE static Record load_row(const Real* p) { return {{p[0], p[1], p[2], 0}}; }
+  KACANOV_INLINE static void store_row(Real* p, Record r) { p[0] = r[0], p[1] = r[1], p[2] = r[2]; }
+  KACANOV_INLINE static Record load_record(const Real* p) { return {{p[0], p[1], p[2], p[3]}}; }
+  KACANOV_INLINE static void store_record(Real* p, Record r) { __builtin_memcpy(p, r.at, sizeof r); }
+
   KACANOV_INLINE static void load3(const Real* base, const std::uint16_t* at, V* v) {
     for (int k = 0; k < 3; ++k) {
       Real lane[width];
