@@ -67,6 +67,7 @@ struct Result {
   double lambda_min = 0.0, lambda_max = 0.0, r_star = 0.0;
   double r_active = 0.0;  ///< r_n as ADMM ended with it, adapted to the contact set; 0 where only the first step used ADMM
   Vector3 contact_force{}, friction_force{};  ///< what the obstacles do to the body
+  double bound_change = 0.0;  ///< Coulomb: what ψ moved by in the last step / largest pressure; 0 without
   double max_contact_pressure = 0.0, max_von_mises = 0.0;
   std::int64_t plastic_elements = 0;
   std::int64_t softening_elements = 0;  ///< in the softening range of a squared-argument law

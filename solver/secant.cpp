@@ -129,9 +129,17 @@ OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOp
   }
 }
 
-void OuterLoop::update_bounds() {
-  for (std::size_t i = 0; i < part_.contact.size(); ++i)
-    state_.bound[i] = part_.contact[i].tresca + part_.contact[i].coulomb * state_.lambda.normal[i];
+double OuterLoop::update_bounds() {
+  double change = 0.0, pressure = 0.0;
+  for (std::size_t i = 0; i < part_.contact.size(); ++i) {
+    const double bound = part_.contact[i].tresca + part_.contact[i].coulomb * state_.lambda.normal[i];
+    change = std::max(change, std::abs(bound - state_.bound[i]));
+    pressure = std::max(pressure, state_.lambda.normal[i]);
+    state_.bound[i] = bound;
+  }
+  change = part_.halo.max_all(change);
+  pressure = part_.halo.max_all(pressure);
+  return pressure > 0.0 ? change / pressure : 0.0;
 }
 
 void OuterLoop::report(const ProgressStep& step) const {
@@ -380,7 +388,7 @@ void OuterLoop::iterate(Result& result) {
     result.contact_iterations += line.contact_iterations;
     result.cg_iterations += line.cg_iterations;
     result.r.push_back(line.r);
-    update_bounds();
+    result.bound_change = update_bounds();
     residuals = certify();
     const double worst = residuals.certificate.worst();
     line.outer = result.outer_iterations;

@@ -177,6 +177,8 @@ std::string verdict(const Result& result, const SolverOptions& options) {
   } else {
     text << "after " << result.outer_iterations << " outer steps the worst KKT residual is "
          << result.certificate.worst() << ", above the tolerance " << options.tolerance;
+    if (result.bound_change > options.tolerance)
+      text << "; Coulomb's bound still moves by " << result.bound_change << " of the pressure a step";
   }
   return text.str();
 }

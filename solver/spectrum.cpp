@@ -275,7 +275,7 @@ double rough_lambda_max(const Part& part, DistributedOperator& op, Preconditione
   const Vector force = work.residual;
   const auto apply = [&](std::span<const double> p, std::span<double> q) { op.apply(p, q); };
   const auto precondition = [&](std::span<const double> r, std::span<double> z) { amg.apply(r, z); };
-  conjugate_gradients(space, apply, precondition, u, work, CgOptions{0.0, 0.1, steps});
+  conjugate_gradients(space, apply, precondition, u, work, CgOptions{0.0, 0.3, steps});
   // B u = force − residual.
   rows.apply(u, trace);
   double square = 0.0;

@@ -63,6 +63,7 @@ ordered_json result_json(const Result& result, int dim) {
   json["r_active"] = result.r_active;
   json["contact_force"] = entries(result.contact_force, dim);
   json["friction_force"] = entries(result.friction_force, dim);
+  json["bound_change"] = result.bound_change;
   json["max_contact_pressure"] = result.max_contact_pressure;
   json["max_von_mises"] = result.max_von_mises;
   json["plastic_elements"] = result.plastic_elements;

@@ -2,6 +2,10 @@
 // Signorini and friction laws on solved problems: what must hold at every contact point, whatever the answer.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <string>
+#include <vector>
+
 #include "contact/traces.hpp"
 #include "support.hpp"
 
@@ -142,6 +146,70 @@ TEST_CASE("Coulomb: a sliding block feels the coefficient times the normal force
   const double normal = run.result().contact_force[2];
   CHECK(normal > 0.0);
   CHECK(run.result().friction_force[0] == doctest::Approx(-coefficient * normal).epsilon(0.02));
+}
+
+TEST_CASE("Coulomb: the laws hold, and the solution is Tresca's with the bound it found") {
+  for (const int dim : {2, 3})
+    for (const double coefficient : {0.1, 0.3, 1.0}) {
+      CAPTURE(dim);
+      CAPTURE(coefficient);
+      Model model = beam(dim, logarithmic_law(0.01), 0.05);
+      if (dim == 3) (*model.boundary[1].traction)[1] = 0.004;  // askew, so that slip turns
+      model.contact[0].friction = Friction{0.0, coefficient};
+      model.solver.tolerance = 1e-8;
+      const Run run = run_alone(beam_mesh(dim, dim == 2 ? 8 : 3), model);
+      CHECK(run.result().status == Status::converged);
+      CHECK(run.result().slip_nodes > 0);
+      CHECK(run.result().bound_change < 1e-6);
+      check_contact_laws(run, 1e-6);
+
+      Part frozen = distribute(&run.problem, MPI_COMM_SELF);
+      for (std::size_t i = 0; i < frozen.contact.size(); ++i) {
+        frozen.contact[i].coulomb = 0.0;
+        frozen.contact[i].tresca = coefficient * std::max(0.0, run.solution.pressure[i]);
+      }
+      const Solution tresca = solve(frozen, model.solver, {});
+      CHECK(tresca.result.status == Status::converged);
+      CHECK(distance(tresca.result.probe[0], run.probe()) < 1e-5 * length(run.probe()));
+      CHECK(distance(tresca.result.friction_force, run.result().friction_force) <
+            1e-5 * length(run.result().contact_force));
+
+      model.solver.outer = SolverOptions::Outer::kacanov;
+      model.solver.contact = SolverOptions::Contact::admm;
+      model.solver.max_outer = 400;
+      const Run admm = run_alone(beam_mesh(dim, dim == 2 ? 8 : 3), model);
+      CHECK(admm.result().status == Status::converged);
+      CHECK(distance(admm.probe(), run.probe()) < 1e-5 * length(run.probe()));
+    }
+}
+
+TEST_CASE("Coulomb: a run cut short says that its bound still moves") {
+  Model model = beam(2, elastic_law(1.0, 0.3), 0.05);
+  model.contact[0].friction = Friction{0.0, 0.3};
+  model.solver.max_outer = 5;
+  const Run run = run_alone(beam_mesh(2, 8), model);
+  CHECK(run.result().status == Status::not_converged);
+  CHECK(run.result().bound_change > 1e-6);
+  CHECK(mentions(run.result().message, "Coulomb's bound still moves"));
+}
+
+TEST_CASE("an active set that goes round in circles is left for ADMM, and the answer is the same") {
+  // Decisions by λ + c(w − ρ) with a c this large make slipping nodes flip from one side to the other.
+  Model model = beam(2, elastic_law(1.0, 0.3), 0.05, 0.01);
+  model.solver.tolerance = 1e-7;
+  const Run straight = run_alone(beam_mesh(2, 8), model);
+  model.solver.penalty = SolverOptions::Penalty::fixed;
+  model.solver.r = 1000.0;
+  std::vector<std::string> phases;
+  RunOptions options;
+  options.progress = [&](const ProgressStep& step) { phases.push_back(step.phase); };
+  const Run circles = run_alone(beam_mesh(2, 8), model, options);
+  REQUIRE(phases.size() > 1);
+  CHECK(std::count(phases.begin() + 1, phases.end(), "admm") > 0);
+  CHECK(phases.back() == "active_set");
+  CHECK(circles.result().status == Status::converged);
+  CHECK(distance(straight.probe(), circles.probe()) < 1e-5 * length(straight.probe()));
+  check_contact_laws(circles, 1e-5);
 }
 
 TEST_CASE("an obstacle out of reach changes nothing") {

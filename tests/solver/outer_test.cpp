@@ -166,3 +166,76 @@ TEST_CASE("softening of the squared argument is reported") {
   REQUIRE(run.result().softening_elements > 0);
   CHECK(mentions(run.result().message, "softening"));
 }
+
+namespace {
+
+/// deal.II's step-42: a cube whose top a rigid sphere is pressed into by 0.01, linear hardening with γ =
+/// 0.01.
+Model indented_cube() {
+  const double mu = 2e5 / 2.6;
+  Law law = elastic_law(2e5, 0.3);
+  law.kind = Law::Kind::linear_hardening;
+  law.x0 = 400.0 / (2 * mu);
+  law.gamma = 0.01;
+  Model model;
+  model.materials.push_back({everything(), law});
+  model.boundary.push_back(moved(named("bottom"), 3));
+  for (const char* side : {"left", "right", "front", "back"})
+    model.boundary.push_back(displacement(named(side), {0.0, 0.0, std::nullopt}));
+  ContactEntry contact;
+  contact.on = named("top");
+  contact.obstacle = Sphere{{0.5, 0.5, 1.59}, 0.6, Vector3{0, 0, 1}};
+  model.contact.push_back(contact);
+  return model;
+}
+
+Mesh cube_mesh(int n) { return make_box({{1, 1, 1}, {n, n, n}, ElementType::hex8}); }
+
+}  // namespace
+
+TEST_CASE("step-42 of deal.II: its force, in at most 12 steps on any mesh") {
+  for (const int n : {8, 16}) {
+    CAPTURE(n);
+    const Run run = run_alone(cube_mesh(n), indented_cube());
+    CHECK(run.result().status == Status::converged);
+    CHECK(run.result().outer_iterations <= 12);
+    if (n == 8) CHECK(std::abs(run.result().contact_force[2]) == doctest::Approx(37.3058).epsilon(1e-5));
+  }
+}
+
+TEST_CASE("a first step that nothing but a penetration sets the scale of comes to an end") {
+  // No load, no prescribed displacement: at ω = 0 there is no force to measure residuals by.
+  for (const auto contact : {SolverOptions::Contact::admm, SolverOptions::Contact::dual_admm}) {
+    Model model = indented_cube();
+    model.solver.outer = SolverOptions::Outer::kacanov;
+    model.solver.contact = contact;
+    model.solver.penalty = SolverOptions::Penalty::paper;
+    const Run run = run_alone(cube_mesh(4), model);
+    CHECK(run.result().status == Status::converged);
+    CHECK(run.result().contact_iterations < 500);
+  }
+}
+
+TEST_CASE("iterations hardly grow with the mesh, and are few beside Algorithm 1 with (32)") {
+  for (const double tresca : {0.0, 0.01}) {
+    CAPTURE(tresca);
+    Model model = beam(2, logarithmic_law(0.01), 0.05, tresca);
+    const Run coarse = run_alone(beam_mesh(2, 8), model), fine = run_alone(beam_mesh(2, 32), model);
+    CHECK(coarse.result().status == Status::converged);
+    CHECK(fine.result().status == Status::converged);
+    CHECK(static_cast<double>(fine.result().contact_iterations) <=
+          1.5 * static_cast<double>(coarse.result().contact_iterations));
+    CHECK(static_cast<double>(fine.result().outer_iterations) <=
+          1.5 * static_cast<double>(coarse.result().outer_iterations));
+    model.solver.outer = SolverOptions::Outer::kacanov;
+    model.solver.contact = SolverOptions::Contact::admm;
+    model.solver.penalty = SolverOptions::Penalty::paper;
+    const Run paper = run_alone(beam_mesh(2, 32), model);
+    CHECK(paper.result().status == Status::converged);
+    CHECK(3 * fine.result().operator_applications < paper.result().operator_applications);
+    model.solver.penalty = SolverOptions::Penalty::automatic;
+    const Run balanced = run_alone(beam_mesh(2, 32), model);
+    CHECK(balanced.result().status == Status::converged);
+    CHECK(2 * balanced.result().contact_iterations < paper.result().contact_iterations);
+  }
+}
