@@ -77,6 +77,7 @@ class OuterLoop {
   void set_up_preconditioner(std::span<const NodeBlock> blocks, const Space& space);
   std::vector<NodeBlock> penalty_blocks() const;
   bool setup_pays(bool wanted);
+  bool penalty_moved() const;
   std::int64_t set_moved(std::span<const TraceChoice> set) const;
   void watch_preconditioner(double digits, std::int64_t iterations);
   double update_bounds();
@@ -102,6 +103,7 @@ class OuterLoop {
   Vector secant_;                // frozen g, elements × points
   Vector volume_;                // lumped nodal volumes, for (15)
   Penalty penalty_;
+  Penalty setup_penalty_;    // that the preconditioner was built with
   LinearProblem problem_;
   bool friction_ = false, linear_ = false;
   bool preconditioner_stale_ = true;
