@@ -36,6 +36,8 @@ inline void element_loop(const Block<Real>& block, const Group& group, const Mat
   const std::uint16_t* at = block.index + group.first_index;
   std::size_t point = 0;
   for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
+    fetch_ahead(at, E::nodes * width);
+    material.fetch_ahead(point, E::points * width);
     V c[E::points][3][3], det[E::points], w[E::points];  // c: det ∇ξ_k
     {
       V x[E::nodes][3];

@@ -190,6 +190,8 @@ inline void hex_loop(const Block<Real>& block, const Group& group, const Materia
   const std::uint16_t* at = block.index + group.first_index;
   std::size_t point = 0;
   for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
+    fetch_ahead(at, 8 * L::width);
+    material.fetch_ahead(point, 8 * L::width);
     HexSlopes<V> j;
     {
       V m[3][8];
@@ -274,6 +276,8 @@ inline void affine_hex_loop(const Block<Real>& block, const Group& group, const 
   const V bulk = Real(8) * material.bulk();
   std::size_t point = 0;
   for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
+    fetch_ahead(at, 8 * L::width);
+    material.fetch_ahead(point, 8 * L::width);
     V c[3][3], w;  // c: of the edges, and thus four times too small; det is so eight times
     {
       V o[3], x[3][3];

@@ -33,6 +33,8 @@ inline void tet10_loop(const Block<Real>& block, const Group& group, const Mater
   const std::uint16_t* at = block.index + group.first_index;
   std::size_t point = 0;
   for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
+    fetch_ahead(at, 10 * L::width);
+    material.fetch_ahead(point, 4 * L::width);
     V x[4][3], c[3][3];  // c: det ∇λ_{k+1}
     for (int a = 0; a < 4; ++a) L::load3(block.coordinates, at + a * L::width, x[a]);
     for (int a = 1; a < 4; ++a)
