@@ -33,6 +33,10 @@ kacanov_test(random_problems
   SOURCES solver/mpi_main.cpp solver/random_test.cpp
   LIBRARIES kacanov_solver Eigen3::Eigen)
 
+kacanov_test(half_space
+  SOURCES solver/mpi_main.cpp solver/half_space_test.cpp
+  LIBRARIES kacanov_solver)
+
 kacanov_test(mesh
   SOURCES solver/mesh_test.cpp
   LIBRARIES kacanov_solver)

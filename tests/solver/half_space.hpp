@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Bodies that stand for elastic half-spaces: blocks whose meshes are fine near the contact and grow outwards.
+#pragma once
+
+#include <cmath>
+#include <functional>
+
+#include "support.hpp"
+
+namespace kacanov::testing {
+
+/// The body fills y > 0 (z > 0 in 3D) up to `extent`; lengths are in units of the contact's. Up to `fine` the cells
+/// measure 1/n; beyond, as many as n of them grow exponentially, and smoothly, so that meshes of different n are a family.
+struct HalfSpace {
+  int n = 8;
+  double extent = 10.0;
+  static constexpr double fine = 1.25;
+
+  int fine_cells() const { return static_cast<int>(std::lround(fine * n)); }
+  int cells() const { return fine_cells() + n; }
+  double coordinate(double index) const {
+    const double beyond = (index - fine_cells()) / n;
+    if (beyond <= 0.0) return index / n;
+    // The first cell beyond measures 1/n too.
+    const double growth = growth_rate();
+    return fine + (extent - fine) * std::expm1(growth * beyond) / std::expm1(growth);
+  }
+  /// β of β / (e^β − 1) = 1 / (extent − fine).
+  double growth_rate() const {
+    double beta = 1.0;
+    for (int i = 0; i < 100; ++i) beta = std::log1p(beta * (extent - fine));
+    return beta;
+  }
+
+  /// Both halves x < 0 and x > 0; sides left, right, top; the surface is bottom.
+  Mesh plane() const {
+    Mesh mesh = make_box({{2.0 * cells(), 1.0 * cells(), 0.0}, {2 * cells(), cells(), 1}, ElementType::tri3});
+    map_nodes(mesh, [&](const Vector3& x) {
+      const double i = x[0] - cells();
+      return Vector3{std::copysign(coordinate(std::abs(i)), i), coordinate(x[1]), 0.0};
+    });
+    return mesh;
+  }
+
+  /// The quarter x, y > 0; symmetry at left and front; the surface is bottom.
+  Mesh quarter() const {
+    const double m = cells();
+    Mesh mesh = make_box({{m, m, m}, {cells(), cells(), cells()}, ElementType::hex8});
+    map_nodes(mesh, [&](const Vector3& x) { return Vector3{coordinate(x[0]), coordinate(x[1]), coordinate(x[2])}; });
+    return mesh;
+  }
+};
+
+/// Boussinesq: displacement of the half-space z > 0 under a force F in z at its origin.
+inline Vector3 boussinesq(const Law& law, double force, const Vector3& x) {
+  const double nu = (3 * law.bulk - 2 * law.shear) / (6 * law.bulk + 2 * law.shear);
+  const double r = std::hypot(x[0], x[1]), rho = std::hypot(r, x[2]), factor = force / (4 * M_PI * law.shear);
+  const double along = factor * (x[2] / std::pow(rho, 3) - (1 - 2 * nu) / (rho * (rho + x[2])));
+  return {along * x[0], along * x[1], factor * (x[2] * x[2] / std::pow(rho, 3) + 2 * (1 - nu) / rho)};
+}
+
+/// E / (1 − ν²).
+inline double plane_modulus(const Law& law) {
+  const double nu = (3 * law.bulk - 2 * law.shear) / (6 * law.bulk + 2 * law.shear);
+  return 2 * law.shear * (1 + nu) / (1 - nu * nu);
+}
+
+/// Builds the problem, lets `change` rewrite what a case file cannot say (values that vary from node to node), solves.
+inline Run run_changed(Mesh mesh, const Model& model, const std::function<void(Problem&)>& change) {
+  Run run;
+  run.problem = build_problem(std::move(mesh), model);
+  change(run.problem);
+  run.part = distribute(&run.problem, MPI_COMM_SELF);
+  run.solution = solve(run.part, model.solver, {});
+  return run;
+}
+
+inline const double* node_of(const Run& run, std::size_t point) {
+  return &run.part.coordinates[static_cast<std::size_t>(run.part.contact[point].node) *
+                               static_cast<std::size_t>(run.part.dim())];
+}
+
+}  // namespace kacanov::testing
