@@ -93,6 +93,7 @@ Checkpoint OuterLoop::checkpoint(const Result& result) const {
   LoopState loop = loop_;
   loop.visit(put);
   put("operator_applications", applications());
+  put("penalty_rule", options_.penalty);
   put("penalty_normal", penalty_.normal);
   put("penalty_tangential", penalty_.tangential);
   put("load_steps_over", result.load_steps.size());
@@ -124,6 +125,10 @@ void OuterLoop::restore(const Checkpoint* from, Result& result) {
   get("penalty_normal", penalty_.normal);
   get("penalty_tangential", penalty_.tangential);
   get("newton_failed", newton_failed_);
+  // A penalty that another rule has chosen, or the user, is none to go on with.
+  double rule = 0.0;
+  get("penalty_rule", rule);
+  if (options_.penalty == SolverOptions::Penalty::fixed || rule != static_cast<double>(options_.penalty)) penalty_ = {};
   result.restarted_after = result.outer_iterations;
   loop_.first_outer = result.outer_iterations;  // who asks for a restart asks for more steps
   double steps = 0.0;

@@ -376,7 +376,7 @@ void OuterLoop::take_newton_step(Result& result, ProgressStep& line, const Resid
 void OuterLoop::iterate(Result& result) {
   keep(result);
   const int before_this_call = result.outer_iterations;
-  if (result.outer_iterations == 0) choose_first_penalty(result);
+  if (result.outer_iterations == 0 || penalty_.normal == 0.0) choose_first_penalty(result);
   const bool by_step = options_.stop == SolverOptions::Stop::paper;
   const bool may_newton = !by_step && (options_.contact == SolverOptions::Contact::automatic ||
                                        options_.contact == SolverOptions::Contact::active_set);

@@ -138,6 +138,27 @@ TEST_CASE("what has not converged can be continued with more steps") {
   if (part.halo.rank == 0) CHECK(difference(rest.displacement, whole.displacement) < 1e-5);
 }
 
+TEST_CASE("a run goes on by another method, with a penalty of its own") {
+  Model model = beam(2, logarithmic_law(0.01), 0.05, 0.01);
+  const Part part = part_of(beam_mesh(2, 4), model, MPI_COMM_WORLD);
+  const Ending whole = run(part, model);
+  Model slow = with(model, SolverOptions::Outer::kacanov, SolverOptions::Contact::admm);
+  slow.solver.penalty = SolverOptions::Penalty::fixed;
+  slow.solver.r = 1e-6;
+  slow.solver.max_contact = 2;
+  slow.solver.max_outer = 20;
+  Checkpoint left;
+  RunOptions options;
+  options.checkpoint = [&](const Checkpoint& c) { left = c; };
+  CHECK(run(part, slow, options).result.status == Status::not_converged);
+  const Ending rest = run(part, model, {}, part.halo.rank == 0 ? &left : nullptr);
+  CHECK(rest.result.status == Status::converged);
+  CHECK(rest.result.restarted_after == 20);
+  CHECK(rest.result.r.at(19) == 1e-6);
+  CHECK(rest.result.r.at(20) > 1e-3);
+  if (part.halo.rank == 0) CHECK(difference(rest.displacement, whole.displacement) < 1e-5);
+}
+
 TEST_CASE("a fingerprint knows what differs") {
   const Mesh mesh = beam_mesh(2, 2);
   const Model model = beam(2, logarithmic_law(0.01), 0.05, 0.01);
