@@ -70,6 +70,9 @@ void take_mesh(const kacanov_description& d, kacanov_operator& op) {
 void take_laws(kacanov_operator& op, std::span<const kacanov_law> laws, const std::uint16_t* law_of_element,
                bool borrow) {
   std::vector<k::Law> checked = k::c_api::checked_laws(laws);
+  for (std::size_t i = 0; i < checked.size(); ++i)
+    if (checked[i].mean_dilatation && op.mesh.type != k::ElementType::hex8)
+      throw Fault(KACANOV_ERROR_LAW, "law[" + std::to_string(i) + "].mean_dilatation: is for hex8 only");
   const std::size_t elements = op.mesh.element_count();
   std::vector<std::uint16_t> own;
   if (law_of_element == nullptr)

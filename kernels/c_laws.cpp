@@ -48,11 +48,14 @@ Law checked_law(const kacanov_law& from, const std::string& where) {
     throw Fault(KACANOV_ERROR_LAW, where + "kind: there is no law " + std::to_string(from.kind));
   if (from.squared != 0 && from.squared != 1)
     throw Fault(KACANOV_ERROR_LAW, where + "squared: expected 0 or 1");
+  if (from.mean_dilatation != 0 && from.mean_dilatation != 1)
+    throw Fault(KACANOV_ERROR_LAW, where + "mean_dilatation: expected 0 or 1");
   check_positive("bulk", from.bulk, where);
   check_positive("shear", from.shear, where);
 
   Law law;
   law.argument = from.squared != 0 ? Law::Argument::squared : Law::Argument::norm;
+  law.mean_dilatation = from.mean_dilatation != 0;
   law.bulk = from.bulk;
   law.shear = from.shear;
   if (from.kind != KACANOV_LINEAR && from.kind != KACANOV_TABLE) {

@@ -22,6 +22,9 @@ const Body& checked(const Body& body, const OperatorOptions& options) {
   for (const std::uint16_t law : body.law_of_element)
     if (law >= body.laws.size())
       throw std::invalid_argument("law_of_element: there is no law " + std::to_string(law));
+  for (const Law& law : body.laws)
+    if (law.mean_dilatation && body.mesh.type != ElementType::hex8)
+      throw std::invalid_argument("laws: mean dilatation (B-bar) is for hex8 only");
   return body;
 }
 

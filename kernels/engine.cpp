@@ -63,7 +63,7 @@ Engine<Real>::Engine(const Body& body, int threads, simd::InstructionSet set)
       laws_(body.laws.begin(), body.laws.end()),
       layout_(make_layout(body, kernels_.lanes, threads, 4 * sizeof(Real))) {
   for (const Law& law : laws_)
-    views_.push_back({law.bulk, law.secant(0.0), elastic_limit(law), &law, evaluate});
+    views_.push_back({law.bulk, law.secant(0.0), elastic_limit(law), law.mean_dilatation, &law, evaluate});
   coordinates_.resize(4 * layout_.records());
   fill_coordinates<Real>(layout_, body.mesh, coordinates_);
   secant_.resize(layout_.element_point.size());
@@ -283,20 +283,25 @@ void Engine<Real>::add_diagonals(const BlockRange& range, const simd::Group& gro
   const std::uint16_t* index = layout_.index.data() + range.first_index + group.first_index;
   const Real* coordinates = coordinates_.data() + 4 * range.first_record;
   for (std::size_t batch = 0; batch < group.batches; ++batch)
-    for (std::size_t lane = 0; lane < lanes; ++lane)
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      std::array<std::size_t, E::nodes> record{};
+      std::array<Point<E>, E::points> at{};  // of the element at hand
       for (std::size_t p = 0; p < points; ++p) {
         const std::size_t slot = range.first_slot + group.first_slot + (batch * points + p) * lanes + lane;
         if (layout_.element_point[slot] < 0) continue;
-        std::array<std::size_t, E::nodes> record;
-        elements::Nodal<E> x;
-        for (int a = 0; a < E::nodes; ++a) {
-          const auto k = static_cast<std::size_t>(a);
-          const std::size_t node = fan && k >= 2 ? 2 + (p + k - 2) % (nodes - 2) : k;
-          record[k] = index[(batch * nodes + node) * lanes + lane];
-          for (int c = 0; c < E::dim; ++c)
-            x[Point<E>::at(a, c)] = static_cast<double>(coordinates[record[k] + static_cast<std::size_t>(c)]);
+        if (fan || p == 0) {
+          elements::Nodal<E> x;
+          for (int a = 0; a < E::nodes; ++a) {
+            const auto k = static_cast<std::size_t>(a);
+            const std::size_t node = fan && k >= 2 ? 2 + (p + k - 2) % (nodes - 2) : k;
+            record[k] = index[(batch * nodes + node) * lanes + lane];
+            for (int c = 0; c < E::dim; ++c)
+              x[Point<E>::at(a, c)] =
+                  static_cast<double>(coordinates[record[k] + static_cast<std::size_t>(c)]);
+          }
+          at = elements::points_of<E>(x, laws_[group.law].mean_dilatation);
         }
-        const Point<E> point(x, fan ? 0 : p);
+        const Point<E>& point = at[fan ? 0 : p];
         for (int a = 0; a < E::nodes; ++a) {
           const std::int32_t id = layout_.nodes[range.first_node + record[static_cast<std::size_t>(a)] / 4];
           for (int r = 0; r < E::dim; ++r)
@@ -305,6 +310,7 @@ void Engine<Real>::add_diagonals(const BlockRange& range, const simd::Group& gro
                   point.diagonal_block(a, r, c, laws_[group.law].bulk, static_cast<double>(secant_[slot])));
         }
       }
+    }
 }
 
 template <class Real>

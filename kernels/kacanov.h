@@ -81,6 +81,8 @@ typedef struct kacanov_law {
   size_t table_size; /* table: points, from (0, 0); table_s/table_x must not increase */
   const double *table_x;
   const double *table_s; /* |dev tau| = 2 g a at table_x */
+  int32_t mean_dilatation; /* 1: k0 acts on the mean of tr(eps) over the element (B-bar), against locking of nearly
+                              incompressible and of plastic bodies; hex8 only */
 } kacanov_law;
 
 /* The body. Zero everywhere is a valid start: every field for which zero makes sense may stay so. */

@@ -21,6 +21,7 @@ struct Law {
   double gamma = 0.0;                    ///< linear_hardening
   double n = 1.0;                        ///< power
   double q = 1.0;                        ///< saturating
+  bool mean_dilatation = false;          ///< hex8 only: k0 sees the element's mean of tr(eps) (B-bar)
   std::vector<double> table_x, table_s;  ///< table: strain norms and ‖dev tau‖, from (0, 0)
 
   /// Secant modulus g.

@@ -15,6 +15,7 @@ namespace {
 
 using elements::Nodal;
 using elements::Point;
+using elements::points_of;
 
 /// Symmetric 3×3 tensor, components (not engineering shears) xx yy zz xy yz zx.
 using Sym = std::array<double, 6>;
@@ -61,19 +62,24 @@ Strain strain_at(const Point<E>& point, const Nodal<E>& u) {
     for (int i = 0; i < E::dim; ++i)
       for (int k = 0; k < E::dim; ++k) h[i][k] += u[point.at(a, i)] * point.gradient[a][k];
   Strain s;
-  s.trace = h[0][0] + h[1][1] + h[2][2];
-  s.dev = {h[0][0] - s.trace / 3.0,   h[1][1] - s.trace / 3.0,   h[2][2] - s.trace / 3.0,
+  const double trace = h[0][0] + h[1][1] + h[2][2];
+  s.dev = {h[0][0] - trace / 3.0,     h[1][1] - trace / 3.0,     h[2][2] - trace / 3.0,
            0.5 * (h[0][1] + h[1][0]), 0.5 * (h[1][2] + h[2][1]), 0.5 * (h[2][0] + h[0][2])};
+  for (int a = 0; a < E::nodes; ++a)
+    for (int i = 0; i < E::dim; ++i) s.trace += u[point.at(a, i)] * point.dilatation[a][i];
   return s;
 }
 
 /// f += the forces of the stress τ at this point.
 template <class E>
 void add_force(const Point<E>& point, const Sym& tau, Nodal<E>& f) {
+  const double mean = (tau[0] + tau[1] + tau[2]) / 3.0;
   for (int a = 0; a < E::nodes; ++a)
-    for (int i = 0; i < E::dim; ++i)
+    for (int i = 0; i < E::dim; ++i) {
+      f[point.at(a, i)] += point.volume * mean * (point.dilatation[a][i] - point.gradient[a][i]);
       for (int k = 0; k < E::dim; ++k)
         f[point.at(a, i)] += point.volume * component(tau, i, k) * point.gradient[a][k];
+    }
 }
 
 const std::int32_t* nodes_of(const Body& body, std::size_t element) {
@@ -105,10 +111,9 @@ void for_each_point(const Body& body, std::span<const double> omega, Visit&& vis
   for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
     const Nodal<E> x = gather<E>(body, e, body.mesh.coordinates);
     const Nodal<E> u = gather<E>(body, e, omega);
-    for (std::size_t q = 0; q < E::points; ++q) {
-      const Point<E> point(x, q);
-      visit(e, law_of(body, e), q, point, strain_at<E>(point, u));
-    }
+    const auto points = points_of<E>(x, law_of(body, e).mean_dilatation);
+    for (std::size_t q = 0; q < E::points; ++q)
+      visit(e, law_of(body, e), q, points[q], strain_at<E>(points[q], u));
   }
 }
 
@@ -131,8 +136,9 @@ void fill_matrix(const Body& body, std::size_t element, std::span<double> matrix
   const Nodal<E> x = gather<E>(body, element, body.mesh.coordinates);
   constexpr std::size_t n = std::tuple_size_v<Nodal<E>>;
   std::fill(matrix.begin(), matrix.end(), 0.0);
+  const auto points = points_of<E>(x, law_of(body, element).mean_dilatation);
   for (std::size_t q = 0; q < E::points; ++q) {
-    const Point<E> point(x, q);
+    const Point<E>& point = points[q];
     for (std::size_t column = 0; column < n; ++column) {
       Nodal<E> unit{}, f{};
       unit[column] = 1.0;
@@ -184,8 +190,9 @@ void block_diagonal(const Body& body, std::span<const double> g, std::span<doubl
     for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
       const Nodal<E> x = gather<E>(body, e, body.mesh.coordinates);
       const std::int32_t* node = nodes_of(body, e);
+      const auto points = points_of<E>(x, law_of(body, e).mean_dilatation);
       for (std::size_t q = 0; q < E::points; ++q) {
-        const Point<E> point(x, q);
+        const Point<E>& point = points[q];
         for (int a = 0; a < E::nodes; ++a)
           for (int i = 0; i < E::dim; ++i)
             for (int j = 0; j < E::dim; ++j)
@@ -258,8 +265,9 @@ void fields(const Body& body, std::span<const double> omega, const ElementFields
       Sym tau{};
       double volume = 0.0, dev_strain = 0.0, g_mean = 0.0, von_mises = 0.0;
       bool plastic = false;
+      const auto points = points_of<E>(x, law.mean_dilatation);
       for (std::size_t q = 0; q < E::points; ++q) {
-        const Point<E> point(x, q);
+        const Point<E>& point = points[q];
         const Strain strain = strain_at<E>(point, u);
         const double norm = strain.norm(), g = law.secant(norm);
         const Sym point_tau = stress(law, g, strain);

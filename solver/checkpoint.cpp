@@ -109,7 +109,7 @@ Fingerprint fingerprint(const Problem& problem) {
   std::vector<double> laws;
   for (const Law& law : problem.laws) {
     laws.insert(laws.end(), {static_cast<double>(law.kind), static_cast<double>(law.argument), law.shear, law.bulk,
-                             law.x0, law.gamma, law.n, law.q, static_cast<double>(law.table_x.size())});
+                             law.x0, law.gamma, law.n, law.q, law.mean_dilatation ? 1.0 : 0.0, static_cast<double>(law.table_x.size())});
     laws.insert(laws.end(), law.table_x.begin(), law.table_x.end());
     laws.insert(laws.end(), law.table_s.begin(), law.table_s.end());
   }

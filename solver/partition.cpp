@@ -82,6 +82,7 @@ template <class L, class Stream>
 void exchange_fields(L& law, const Stream& stream) {
   stream(law.kind);
   stream(law.argument);
+  stream(law.mean_dilatation);
   for (auto* x : {&law.bulk, &law.shear, &law.x0, &law.gamma, &law.n, &law.q}) stream(*x);
   stream(law.table_x);
   stream(law.table_s);

@@ -120,7 +120,7 @@ class CaseParser {
   }
 
   void parse_material(const Node& node) {
-    const Object object(node, {"on", "young", "poisson", "law"});
+    const Object object(node, {"on", "young", "poisson", "law", "bbar"});
     MaterialEntry entry;
     entry.on = selector(object.required("on"));
     const double young = object.required("young").number("a number > 0", [](double v) { return v > 0.0; });
@@ -129,6 +129,7 @@ class CaseParser {
     entry.law = elastic_law(young, poisson);
     if (const auto law = object.optional("law"))
       entry.law = parse_law(young, poisson, *law, result_.warnings);
+    if (const auto bbar = object.optional("bbar")) entry.law.mean_dilatation = bbar->boolean();
     result_.model.materials.push_back(entry);
   }
 

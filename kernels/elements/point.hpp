@@ -14,8 +14,10 @@ using Nodal = std::array<double, static_cast<std::size_t>(E::nodes* E::dim)>;
 template <class E>
 struct Point {
   double gradient[E::nodes][E::dim];
+  double dilatation[E::nodes][E::dim];  ///< gradients for k0 and tr ε: the same, or their means (B-bar)
   double volume;  ///< that belongs to the point; not positive where the element is inverted
 
+  Point() = default;
   Point(const Nodal<E>& x, std::size_t q) {
     const auto d = E::gradients(E::point[q].data());
     double j[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // j[i][k] = ∂x_i/∂ξ_k
@@ -36,17 +38,37 @@ struct Point {
       for (int i = 0; i < E::dim; ++i) {
         gradient[a][i] = 0.0;
         for (int k = 0; k < E::dim; ++k) gradient[a][i] += cofactor[i][k] * d[at(a, k)] / det;
+        dilatation[a][i] = gradient[a][i];
       }
   }
 
-  /// Entry (i, j) of the block node a has on the diagonal of B: volume [(k0 + g/3) ∇ᵢ∇ⱼ + g |∇|² δᵢⱼ].
+  /// Entry (i, j) of the block node a has on the diagonal of B: volume [k0 ∇ᵢ∇ⱼ + g (∇ᵢ∇ⱼ/3 + |∇|² δᵢⱼ)].
   double diagonal_block(int a, int i, int j, double bulk, double g) const {
     double square = 0.0;
     for (int k = 0; k < E::dim; ++k) square += gradient[a][k] * gradient[a][k];
-    return volume * ((bulk + g / 3.0) * gradient[a][i] * gradient[a][j] + (i == j ? g * square : 0.0));
+    return volume * (bulk * dilatation[a][i] * dilatation[a][j] +
+                     g * (gradient[a][i] * gradient[a][j] / 3.0 + (i == j ? square : 0.0)));
   }
 
   static constexpr std::size_t at(int a, int i) { return static_cast<std::size_t>(a * E::dim + i); }
 };
+
+/// All points of an element. With `mean_dilatation` (the selective B-bar method of Hughes, 1980) tr ε is its
+/// mean over the element, so that k0 puts one condition on it instead of one a point.
+template <class E>
+std::array<Point<E>, E::points> points_of(const Nodal<E>& x, bool mean_dilatation) {
+  std::array<Point<E>, E::points> points;
+  for (std::size_t q = 0; q < E::points; ++q) points[q] = Point<E>(x, q);
+  if (!mean_dilatation) return points;
+  double volume = 0.0;
+  for (const Point<E>& point : points) volume += point.volume;
+  for (int a = 0; a < E::nodes; ++a)
+    for (int i = 0; i < E::dim; ++i) {
+      double sum = 0.0;
+      for (const Point<E>& point : points) sum += point.volume * point.gradient[a][i];
+      for (Point<E>& point : points) point.dilatation[a][i] = sum / volume;
+    }
+  return points;
+}
 
 }  // namespace kacanov::elements

@@ -14,10 +14,11 @@ enum class Shape : std::uint8_t { open_fan, closed_fan, tri3, tet10, curved_tet1
 
 /// The law of a group, as far as the loops evaluate it themselves.
 struct LawView {
-  double bulk;      ///< k0
-  double shear;     ///< g up to `elastic`
-  double elastic;   ///< strain norm up to which g is constant
-  const void* law;  ///< handed back to `evaluate`
+  double bulk;           ///< k0
+  double shear;          ///< g up to `elastic`
+  double elastic;        ///< strain norm up to which g is constant
+  bool mean_dilatation;  ///< k0 sees the element's mean of tr ε
+  const void* law;       ///< handed back to `evaluate`
   /// g, dg/dx and G at the strain norm x.
   void (*evaluate)(const void* law, double x, double* g, double* slope, double* energy);
 };

@@ -187,6 +187,9 @@ template <class L, class Real, class Material>
 inline void hex_loop(const Block<Real>& block, const Group& group, const Material& material, const Real* u,
                      Real* f, int vectors, std::size_t stride) {
   using V = typename L::V;
+  constexpr Real weight = Real(1.0 / 512.0);
+  const bool mean = block.laws[group.law].mean_dilatation;
+  const Material at_point = mean ? material.without_bulk() : material;
   const std::uint16_t* at = block.index + group.first_index;
   std::size_t point = 0;
   for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
@@ -206,12 +209,26 @@ inline void hex_loop(const Block<Real>& block, const Group& group, const Materia
         hex_load<L>(u + offset, at, m);
         hex_slopes(m, slopes);
       }
+      V pressure{};  // weight times that of the mean dilatation
+      if (mean) {
+        V change{}, volume{};
+#pragma GCC unroll 8
+        for (int q = 0; q < 8; ++q) {
+          HexPoint<V> p;
+          hex_measure<Real>(j, q, p);
+          for (int k = 0; k < 3; ++k) change += inner(slopes.at(k, q), p.c[k]);
+          volume += p.det;
+        }
+        pressure = weight * material.bulk() * change / volume;
+        material.add_energy(Real(0.5) * pressure * change);
+      }
 #pragma GCC unroll 8
       for (int q = 0; q < 8; ++q) {
         HexPoint<V> p;
         hex_measure<Real>(j, q, p);
         const Sym<V> e = hex_strain(slopes.at(0, q), slopes.at(1, q), slopes.at(2, q), p.c);
-        const Sym<V> s = material.stress(e, p.det, p.w, Real(1.0 / 512.0), point + hex_corner[q]);
+        Sym<V> s = at_point.stress(e, p.det, p.w, weight, point + hex_corner[q]);
+        if (mean) s.xx += pressure, s.yy += pressure, s.zz += pressure;
         for (int k = 0; k < 3; ++k) {
           const bool first = (q & (1 << k)) == 0;
           if (first)
@@ -274,6 +291,7 @@ inline void affine_hex_loop(const Block<Real>& block, const Group& group, const 
   using V = typename L::V;
   const std::uint16_t* at = block.index + group.first_index;
   const V bulk = Real(8) * material.bulk();
+  const V higher = block.laws[group.law].mean_dilatation ? V{} : bulk;  // the mean is the first mode
   std::size_t point = 0;
   for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
     fetch_ahead(at, 8 * L::width);
@@ -324,7 +342,7 @@ inline void affine_hex_loop(const Block<Real>& block, const Group& group, const 
         for (int i = 0; i < 8; ++i) m[k][i] = V{};
 #pragma GCC unroll 8
       for (int s = 0; s < 7; ++s) {
-        const V pressure = bulk * trace[s];
+        const V pressure = (s == 0 ? bulk : higher) * trace[s];
         const Sym<V> t{pressure + Real(2) * e[0][s],
                        pressure + Real(2) * e[1][s],
                        pressure - Real(2) * (e[0][s] + e[1][s]),

@@ -77,6 +77,13 @@ struct SecantMaterial {
       : secant(block.secant + group.first_slot), k0(Real(block.laws[group.law].bulk) - V{}) {}
 
   V bulk() const { return k0; }
+  SecantMaterial without_bulk() const {
+    SecantMaterial other = *this;
+    other.k0 = V{};
+    return other;
+  }
+  /// Energies of the mean dilatation count in the true law only.
+  void add_energy(V) const {}
 
   KACANOV_INLINE void fetch_ahead(std::size_t point, int count) const {
     ::fetch_ahead(secant + point * L::width, count);
@@ -97,6 +104,12 @@ struct TangentMaterial {
       : base(block, group), tangent(block.tangent + 6 * std::size_t{group.first_slot}) {}
 
   V bulk() const { return base.bulk(); }
+  TangentMaterial without_bulk() const {
+    TangentMaterial other = *this;
+    other.base.k0 = V{};
+    return other;
+  }
+  void add_energy(V) const {}
 
   KACANOV_INLINE void fetch_ahead(std::size_t point, int count) const {
     base.fetch_ahead(point, count);
@@ -123,12 +136,24 @@ struct NonlinearMaterial {
   Nonlinear& out;
   Real* secant;
   float* tangent;
+  double k0;
 
   NonlinearMaterial(const Block<Real>& block, const Group& group, Nonlinear& nonlinear)
       : law(block.laws[group.law]),
         out(nonlinear),
         secant(block.secant + group.first_slot),
-        tangent(block.tangent + 6 * std::size_t{group.first_slot}) {}
+        tangent(block.tangent + 6 * std::size_t{group.first_slot}),
+        k0(law.bulk) {}
+
+  V bulk() const { return Real(k0) - V{}; }
+  NonlinearMaterial without_bulk() const {
+    NonlinearMaterial other = *this;
+    other.k0 = 0.0;
+    return other;
+  }
+  void add_energy(V density) const {
+    for (int l = 0; l < L::width; ++l) out.energy += double(density[l]);
+  }
 
   KACANOV_INLINE void fetch_ahead(std::size_t, int) const {}
   KACANOV_INLINE Sym<V> stress(const Sym<V>& e, V det, V w, Real weight, std::size_t point) const {
@@ -144,11 +169,10 @@ struct NonlinearMaterial {
         law.evaluate(law.law, double(x[l]), &lane_g, &lane_slope, &lane_energy);
         g[l] = Real(lane_g), slope[l] = Real(lane_slope), energy[l] = Real(lane_energy);
       }
-    const V density = det * weight * (Real(0.5 * law.bulk) * trace * trace + Real(2) * energy);
-    for (int l = 0; l < L::width; ++l) out.energy += double(density[l]);
+    add_energy(det * weight * (Real(0.5 * k0) * trace * trace + Real(2) * energy));
     if (out.keep_secant) L::store(secant + point * L::width, g);
     if (out.keep_tangent) keep(Sym<V>{xx, yy, zz, xy, yz, zx}, x, slope, tangent + 6 * point * L::width);
-    return frozen_stress<L, Real>(e, g, Real(law.bulk) - V{}, w);
+    return frozen_stress<L, Real>(e, g, bulk(), w);
   }
 
   /// The direction dev ε/x and 2 g' x; zero where g' is.

@@ -65,6 +65,8 @@ void assign_materials(Problem& problem, const Model& model, const Selection& sel
     const std::string path = path_of("material", i);
     const MaterialEntry& entry = model.materials[i];
     check_law(entry.law, path);
+    if (entry.law.mean_dilatation && mesh.type != ElementType::hex8)
+      throw InputError(path + ".bbar: expected false, or a mesh of hex8: other elements have no B-bar here");
     problem.laws.push_back(entry.law);
     for (const std::int32_t e : selection.elements(entry.on, path)) {
       std::uint16_t& law = problem.law_of_element[static_cast<std::size_t>(e)];

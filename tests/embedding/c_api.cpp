@@ -111,6 +111,7 @@ TEST_CASE("every element type gives the numbers of the reference") {
     CAPTURE(element);
     Example example(element);
     example.description.threads = 2;
+    example.laws[0].mean_dilatation = element == KACANOV_HEX8;
     const Handle op = example.create();
     const SmallMesh& mesh = example.mesh;
     const std::size_t n = example.n();
@@ -118,6 +119,7 @@ TEST_CASE("every element type gives the numbers of the reference") {
     std::vector<kacanov::Law> laws(2, kacanov::elastic_law(2.0, 0.3));
     laws[0].kind = kacanov::Law::Kind::logarithmic;
     laws[0].x0 = 0.02;
+    laws[0].mean_dilatation = element == KACANOV_HEX8;
     const kacanov::Body body{
         {static_cast<kacanov::ElementType>(element), mesh.coordinates, mesh.connectivity},
         laws,
@@ -398,6 +400,8 @@ TEST_CASE("bad descriptions have a code and name what is wrong") {
       {[](Example& e) { e.law_of_element[3] = 2; }, KACANOV_ERROR_LAW, "law_of_element[3]"},
       {[](Example& e) { e.laws[0].kind = 17; }, KACANOV_ERROR_LAW, "law[0].kind"},
       {[](Example& e) { e.laws[0].squared = 7; }, KACANOV_ERROR_LAW, "law[0].squared"},
+      {[](Example& e) { e.laws[1].mean_dilatation = 2; }, KACANOV_ERROR_LAW, "law[1].mean_dilatation"},
+      {[](Example& e) { e.laws[1].mean_dilatation = 1; }, KACANOV_ERROR_LAW, "law[1].mean_dilatation"},  // tet4
       {[](Example& e) { e.laws[0].bulk = 0.0; }, KACANOV_ERROR_LAW, "law[0].bulk"},
       {[](Example& e) { e.laws[0].shear = inf; }, KACANOV_ERROR_LAW, "law[0].shear"},
       {[](Example& e) { e.laws[0].x0 = nan_value; }, KACANOV_ERROR_LAW, "law[0].x0"},

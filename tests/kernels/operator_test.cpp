@@ -241,6 +241,10 @@ TEST_CASE("bad input is named") {
   wrong = owned;
   wrong.law_of_element[3] = 99;
   CHECK_THROWS_WITH_AS(Operator{wrong.body()}, doctest::Contains("99"), std::invalid_argument);
+  wrong = owned;
+  wrong.laws[2].mean_dilatation = true;
+  CHECK_THROWS_WITH_AS(Operator{wrong.body()}, doctest::Contains("hex8"), std::invalid_argument);
+  wrong = owned;
   wrong.law_of_element.pop_back();
   CHECK_THROWS_AS(Operator{wrong.body()}, std::invalid_argument);
   Operator op(body);

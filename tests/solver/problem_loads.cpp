@@ -176,6 +176,9 @@ TEST_CASE("every element has one material; only \"all\" may be overridden") {
   CHECK(mentions(refusal(mesh, model), "material[2].on: element 1 already has the material of material[1]"));
   model.materials.erase(model.materials.begin());
   model.materials.pop_back();
+  Model locked = model;
+  locked.materials[0].law.mean_dilatation = true;
+  CHECK(mentions(refusal(mesh, locked), "material[0].bbar: expected false"));
   const std::string bare = refusal(mesh, model);
   CHECK(mentions(bare, "has no material (" + std::to_string(mesh.element_count() / 2)));
   CHECK(mentions(bare, "material: element "));

@@ -46,6 +46,7 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
       // Wrong types.
       {"mesh=3", "mesh: expected an object with the keys file, box, got 3"},
       {"material={}", "material: expected a list of materials, got {}"},
+      {"material[0].bbar=yes", "material[0].bbar: expected true or false, got \"yes\""},
       {"material[0].young=[1]", "material[0].young: expected a number > 0, got [1]"},
       {"contact[0].friction.tresca=high", "contact[0].friction.tresca: expected a number ≥ 0, got \"high\""},
       {"boundary[0].displacement[1]=free",
