@@ -17,6 +17,9 @@
 #include <vector>
 
 #include "float_operator.hpp"
+#ifdef KACANOV_BENCH_GMSH
+#include "gmsh_reader.hpp"
+#endif
 #include "locality.hpp"
 #include "machine.hpp"
 #include "matrices.hpp"
@@ -46,6 +49,44 @@ ElementType type_of(const std::string& name) {
   return ElementType::hex8;
 }
 
+std::string name_of(ElementType type) {
+  for (const char* name : {"tri3", "tet4", "tet10"})
+    if (type_of(name) == type) return name;
+  return "hex8";
+}
+
+/// Nodes and elements in the operator's order; the matrices gain from it too.
+meshes::OwnedMesh in_order(const meshes::OwnedMesh& mesh) {
+  const auto dim = static_cast<std::size_t>(dimension(mesh.type));
+  const LocalityOrder order = locality_order(mesh.view());
+  meshes::OwnedMesh ordered = mesh;
+  std::vector<std::int32_t> rank(order.nodes.size());
+  for (std::size_t i = 0; i < rank.size(); ++i) {
+    const auto old = static_cast<std::size_t>(order.nodes[i]);
+    rank[old] = static_cast<std::int32_t>(i);
+    std::copy_n(mesh.coordinates.begin() + static_cast<std::ptrdiff_t>(old * dim), dim,
+                ordered.coordinates.begin() + static_cast<std::ptrdiff_t>(i * dim));
+  }
+  const auto per_element = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  for (std::size_t e = 0; e < order.elements.size(); ++e)
+    for (std::size_t a = 0; a < per_element; ++a)
+      ordered.connectivity[e * per_element + a] = rank[static_cast<std::size_t>(
+          mesh.connectivity[static_cast<std::size_t>(order.elements[e]) * per_element + a])];
+  return ordered;
+}
+
+#ifdef KACANOV_BENCH_GMSH
+/// The body of a Gmsh file; the program says what is wrong with one that is not usable.
+meshes::OwnedMesh read_mesh(const std::string& path) {
+  Mesh mesh = read_gmsh(path);
+  return in_order({mesh.type, std::move(mesh.coordinates), std::move(mesh.elements)});
+}
+#else
+meshes::OwnedMesh read_mesh(const std::string& path) {
+  throw std::runtime_error(path + ": this build has no reader of meshes (KACANOV_SOLVER=OFF)");
+}
+#endif
+
 /// A beam 4 × 1 × 1 (4 × 1 in 2D) with about this many unknowns.
 meshes::OwnedMesh make_mesh(ElementType type, std::size_t unknowns, bool irregular) {
   const auto dim = static_cast<std::size_t>(dimension(type));
@@ -60,21 +101,7 @@ meshes::OwnedMesh make_mesh(ElementType type, std::size_t unknowns, bool irregul
   if (type == ElementType::tet4) meshes::flip(mesh, 2, 2);
   if (type == ElementType::tet10) meshes::straighten(mesh);
   meshes::shuffle(mesh, 3);
-  const LocalityOrder order = locality_order(mesh.view());  // the matrices gain from it too
-  meshes::OwnedMesh ordered = mesh;
-  std::vector<std::int32_t> rank(order.nodes.size());
-  for (std::size_t i = 0; i < rank.size(); ++i) {
-    const auto old = static_cast<std::size_t>(order.nodes[i]);
-    rank[old] = static_cast<std::int32_t>(i);
-    std::copy_n(mesh.coordinates.begin() + static_cast<std::ptrdiff_t>(old * dim), dim,
-                ordered.coordinates.begin() + static_cast<std::ptrdiff_t>(i * dim));
-  }
-  const auto per_element = static_cast<std::size_t>(nodes_per_element(type));
-  for (std::size_t e = 0; e < order.elements.size(); ++e)
-    for (std::size_t a = 0; a < per_element; ++a)
-      ordered.connectivity[e * per_element + a] = rank[static_cast<std::size_t>(
-          mesh.connectivity[static_cast<std::size_t>(order.elements[e]) * per_element + a])];
-  return ordered;
+  return in_order(mesh);
 }
 
 struct Timed {
@@ -110,10 +137,10 @@ double flops_an_element(ElementType type) {
   return 0;
 }
 
-json measure(const std::string& element, std::size_t unknowns, const std::string& kind,
-             const Settings& settings, const std::vector<double>& triad, const std::vector<double>& fma) {
-  const ElementType type = type_of(element);
-  const auto mesh = make_mesh(type, unknowns, kind == "irregular");
+json measure(const meshes::OwnedMesh& mesh, const std::string& kind, const Settings& settings,
+             const std::vector<double>& triad, const std::vector<double>& fma) {
+  const ElementType type = mesh.type;
+  const std::string element = name_of(type);
   const std::vector<Law> laws{elastic_law(1.0, 0.3)};
   const std::vector<std::uint16_t> law_of_element(mesh.view().element_count(), 0);
   const Body body{mesh.view(), laws, law_of_element};
@@ -232,13 +259,13 @@ json measure(const std::string& element, std::size_t unknowns, const std::string
 int main(int argc, char** argv) {
   Settings settings;
   CLI::App app{"Unknowns a second of the operator against assembled matrices"};
-  app.add_option("--element", settings.elements, "tri3, tet4, tet10, hex8")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"tri3", "tet4", "tet10", "hex8"}));
+  const auto* element_option = app.add_option("--element", settings.elements, "tri3, tet4, tet10, hex8")
+                                   ->delimiter(',')
+                                   ->check(CLI::IsMember({"tri3", "tet4", "tet10", "hex8"}));
   app.add_option("--unknowns", settings.unknowns, "sizes, met approximately")->delimiter(',');
-  app.add_option("--mesh", settings.meshes, "box, irregular")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"box", "irregular"}));
+  app.add_option("--mesh", settings.meshes,
+                 "box, irregular, or a Gmsh file: its element and size are then those of the file")
+      ->delimiter(',');
   app.add_option("--threads", settings.threads, "threads of the larger team")->check(CLI::PositiveNumber);
   app.add_option("--rounds", settings.rounds, "interleaved repetitions; the best counts")
       ->check(CLI::PositiveNumber);
@@ -246,6 +273,7 @@ int main(int argc, char** argv) {
   app.add_flag("--json", settings.print_json, "JSON on standard output instead of a table");
   app.add_flag("--no-matrix", settings.no_matrix, "leave the assembled matrices out");
   CLI11_PARSE(app, argc, argv);
+  const bool asked = element_option->count() > 0;
 
   std::vector<double> triad{perf::triad_bytes_per_second(1)}, fma{perf::fma_flops_per_second(1)};
   if (settings.threads > 1) {
@@ -253,12 +281,29 @@ int main(int argc, char** argv) {
     fma.push_back(perf::fma_flops_per_second(settings.threads));
   }
   json result{{"triad_bytes_per_second", triad}, {"fma_flops_per_second", fma}, {"entries", json::array()}};
+  const auto add = [&](const meshes::OwnedMesh& mesh, const std::string& kind) {
+    const json entries = measure(mesh, kind, settings, triad, fma);
+    result["entries"].insert(result["entries"].end(), entries.begin(), entries.end());
+  };
+  const auto generated = [](const std::string& kind) { return kind == "box" || kind == "irregular"; };
   for (const std::string& element : settings.elements)
     for (const std::size_t unknowns : settings.unknowns)
-      for (const std::string& kind : settings.meshes) {
-        const json entries = measure(element, unknowns, kind, settings, triad, fma);
-        result["entries"].insert(result["entries"].end(), entries.begin(), entries.end());
+      for (const std::string& kind : settings.meshes)
+        if (generated(kind)) add(make_mesh(type_of(element), unknowns, kind == "irregular"), kind);
+  for (const std::string& file : settings.meshes)
+    if (!generated(file)) {
+      try {
+        const meshes::OwnedMesh mesh = read_mesh(file);
+        if (asked && std::find(settings.elements.begin(), settings.elements.end(), name_of(mesh.type)) ==
+                         settings.elements.end())
+          throw std::runtime_error(file + ": has elements " + name_of(mesh.type) +
+                                   ", none that --element asks for");
+        add(mesh, file);
+      } catch (const std::exception& error) {
+        std::cerr << "bench_operator: --mesh " << error.what() << "\n";
+        return 2;
       }
+    }
   if (settings.print_json) {
     std::cout << result.dump(2) << "\n";
     return 0;
