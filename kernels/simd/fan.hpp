@@ -66,6 +66,7 @@ template <class L, class Real, bool closed, class Material, class V = typename L
 KACANOV_INLINE inline void load_fan(const Material& material, const FanGeometry<V>& geometry,
                                     std::size_t point, const std::uint16_t* at, int length, const Real* u,
                                     Real* f) {
+  at = read_anew(at);
   const std::uint16_t* ring = at + 2 * L::width;
   V p[3], dq[3], d[3], first[3];
   V fq[3] = {}, carry[3] = {}, done[3] = {}, first_force[3] = {}, sum[3] = {};
