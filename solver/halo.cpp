@@ -7,7 +7,11 @@
 namespace kacanov {
 namespace {
 
+MPI_Datatype type_of(double) { return MPI_DOUBLE; }
+MPI_Datatype type_of(float) { return MPI_FLOAT; }
+
 /// Starts one receive and one send a neighbour and waits for all. Buffers are sized by the lists.
+template <class S>
 class Exchange {
  public:
   Exchange(const Halo& halo, int components, bool owner_to_ghost)
@@ -22,7 +26,7 @@ class Exchange {
     requests_.reserve(2 * halo.neighbours.size());
   }
 
-  void post(std::span<const double> x, bool owner_to_ghost) {
+  void post(std::span<const S> x, bool owner_to_ghost) {
     std::size_t in = 0, out = 0;
     for (const auto& n : halo_.neighbours) {
       const auto& receive_list = owner_to_ghost ? n.receive : n.shared;
@@ -30,14 +34,14 @@ class Exchange {
       const std::size_t in_count = receive_list.size() * width_, out_count = send_list.size() * width_;
       MPI_Request request;
       if (in_count > 0) {
-        MPI_Irecv(receive_.data() + in, static_cast<int>(in_count), MPI_DOUBLE, n.rank, 0, halo_.comm, &request);
+        MPI_Irecv(receive_.data() + in, static_cast<int>(in_count), type_of(S{}), n.rank, 0, halo_.comm, &request);
         requests_.push_back(request);
       }
-      double* to = send_.data() + out;
+      S* to = send_.data() + out;
       for (const std::int32_t node : send_list)
         for (std::size_t c = 0; c < width_; ++c) *to++ = x[static_cast<std::size_t>(node) * width_ + c];
       if (out_count > 0) {
-        MPI_Isend(send_.data() + out, static_cast<int>(out_count), MPI_DOUBLE, n.rank, 0, halo_.comm, &request);
+        MPI_Isend(send_.data() + out, static_cast<int>(out_count), type_of(S{}), n.rank, 0, halo_.comm, &request);
         requests_.push_back(request);
       }
       in += in_count;
@@ -46,27 +50,29 @@ class Exchange {
     MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
   }
 
-  const double* received() const noexcept { return receive_.data(); }
+  const S* received() const noexcept { return receive_.data(); }
 
  private:
   const Halo& halo_;
   std::size_t width_;
-  std::vector<double> send_, receive_;
+  std::vector<S> send_, receive_;
   std::vector<MPI_Request> requests_;
 };
 
-}  // namespace
-
-void Halo::sum(std::span<double> x, int components) const {
+template <class S>
+void sum_shared(const Halo& halo, std::span<S> x, int components) {
+  const auto& neighbours = halo.neighbours;
+  const auto& shared = halo.shared;
+  const int rank = halo.rank;
   if (neighbours.empty()) return;
   const auto width = static_cast<std::size_t>(components);
-  Exchange exchange(*this, components, false);
+  Exchange<S> exchange(halo, components, false);
   exchange.post(x, false);
 
-  std::vector<double> own(shared.size() * width);
+  std::vector<S> own(shared.size() * width);
   for (std::size_t i = 0; i < shared.size(); ++i)
     for (std::size_t c = 0; c < width; ++c) {
-      double& entry = x[static_cast<std::size_t>(shared[i]) * width + c];
+      S& entry = x[static_cast<std::size_t>(shared[i]) * width + c];
       own[i * width + c] = entry;
       entry = 0.0;
     }
@@ -75,7 +81,7 @@ void Halo::sum(std::span<double> x, int components) const {
       for (std::size_t c = 0; c < width; ++c)
         x[static_cast<std::size_t>(shared[i]) * width + c] += own[i * width + c];
   };
-  const double* from = exchange.received();
+  const S* from = exchange.received();
   bool own_added = false;
   for (const auto& n : neighbours) {
     if (!own_added && n.rank > rank) {
@@ -88,16 +94,25 @@ void Halo::sum(std::span<double> x, int components) const {
   if (!own_added) add_own();
 }
 
-void Halo::copy_from_owner(std::span<double> x, int components) const {
+template <class S>
+void copy_shared(const Halo& halo, std::span<S> x, int components) {
+  const auto& neighbours = halo.neighbours;
   if (neighbours.empty()) return;
   const auto width = static_cast<std::size_t>(components);
-  Exchange exchange(*this, components, true);
+  Exchange<S> exchange(halo, components, true);
   exchange.post(x, true);
-  const double* from = exchange.received();
+  const S* from = exchange.received();
   for (const auto& n : neighbours)
     for (const std::int32_t node : n.receive)
       for (std::size_t c = 0; c < width; ++c) x[static_cast<std::size_t>(node) * width + c] = *from++;
 }
+
+}  // namespace
+
+void Halo::sum(std::span<double> x, int components) const { sum_shared(*this, x, components); }
+void Halo::sum(std::span<float> x, int components) const { sum_shared(*this, x, components); }
+void Halo::copy_from_owner(std::span<double> x, int components) const { copy_shared(*this, x, components); }
+void Halo::copy_from_owner(std::span<float> x, int components) const { copy_shared(*this, x, components); }
 
 double Halo::sum_all(double value) const {
   if (ranks > 1) MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_SUM, comm);

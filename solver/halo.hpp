@@ -25,8 +25,10 @@ struct Halo {
 
   /// Adds up the contributions of all ranks, in rank order so that every copy ends with the same bits.
   void sum(std::span<double> x, int components) const;
+  void sum(std::span<float> x, int components) const;
   /// Overwrites ghosts with their owners' values.
   void copy_from_owner(std::span<double> x, int components) const;
+  void copy_from_owner(std::span<float> x, int components) const;
 
   double sum_all(double value) const;
   void sum_all(std::span<double> values) const;

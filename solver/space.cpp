@@ -30,20 +30,28 @@ void Space::hold(std::int32_t node, const Vector3& direction) {
   entry.basis[static_cast<std::size_t>(entry.count++)] = d;
 }
 
-void Space::project(std::span<double> x) const {
+namespace {
+
+template <class S>
+void project_out(const Part& part, std::span<const Space::HeldDirections> held, std::span<S> x) {
   for (std::size_t i = 0; i < x.size(); ++i)
-    if (part_->held[i]) x[i] = 0.0;
-  const auto dim = static_cast<std::size_t>(part_->dim());
-  for (const auto& entry : held_) {
-    double* u = x.data() + static_cast<std::size_t>(entry.node) * dim;
+    if (part.held[i]) x[i] = S{0};
+  const auto dim = static_cast<std::size_t>(part.dim());
+  for (const auto& entry : held) {
+    S* u = x.data() + static_cast<std::size_t>(entry.node) * dim;
     for (int k = 0; k < entry.count; ++k) {
       const auto& b = entry.basis[static_cast<std::size_t>(k)];
       double s = 0.0;
-      for (std::size_t c = 0; c < dim; ++c) s += b[c] * u[c];
-      for (std::size_t c = 0; c < dim; ++c) u[c] -= s * b[c];
+      for (std::size_t c = 0; c < dim; ++c) s += b[c] * static_cast<double>(u[c]);
+      for (std::size_t c = 0; c < dim; ++c) u[c] = static_cast<S>(static_cast<double>(u[c]) - s * b[c]);
     }
   }
 }
+
+}  // namespace
+
+void Space::project(std::span<double> x) const { project_out(*part_, held_, x); }
+void Space::project(std::span<float> x) const { project_out(*part_, held_, x); }
 
 double Space::local_dot(std::span<const double> x, std::span<const double> y) const {
   // Eight sums: the compiler may not reorder one.

@@ -36,6 +36,7 @@ class Space {
 
   /// Orthogonal projection onto the space, node by node.
   void project(std::span<double> x) const;
+  void project(std::span<float> x) const;
   double dot(std::span<const double> x, std::span<const double> y) const;
   double norm(std::span<const double> x) const;
   /// a·b and c·d for the price of one reduction.
