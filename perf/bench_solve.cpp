@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The penalised solve: setup, iterations and memory of the preconditioners, one after the other in one run.
+#include <malloc.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cg.hpp"
+#include "contact/traces.hpp"
+#include "distributed_operator.hpp"
+#include "gmsh_reader.hpp"
+#include "launch.hpp"
+#include "parallel.hpp"
+#include "preconditioner.hpp"
+#include "problem.hpp"
+#include "spectrum.hpp"
+
+namespace {
+
+using namespace kacanov;
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::vector<int> cells{40};
+  std::string element = "tet4", mesh;
+  std::vector<std::string> kinds{"multigrid", "elasticity"};
+  std::vector<double> poisson{0.3}, penalty{0.0}, jump{1.0}, aspect{1.0};
+  double tolerance = 1e-8;
+  int ranks = 0, threads = 1, repeat = 1;
+  bool json = false;
+};
+
+SolverOptions::Preconditioner preconditioner(const std::string& name) {
+  if (name == "elasticity") return SolverOptions::Preconditioner::elasticity;
+  return SolverOptions::Preconditioner::multigrid;
+}
+
+ElementType element_type(const std::string& name) {
+  if (name == "tet10") return ElementType::tet10;
+  if (name == "hex8") return ElementType::hex8;
+  if (name == "tri3") return ElementType::tri3;
+  return ElementType::tet4;
+}
+
+/// A beam held at one end and pressed down on the far half of its top; its bottom may carry a penalty.
+Problem make_problem(const Options& options, int cells, double poisson, double aspect) {
+  Mesh mesh;
+  if (options.mesh.empty()) {
+    BoxSpec box;
+    box.type = element_type(options.element);
+    const bool flat = box.type == ElementType::tri3;
+    box.size = {4.0 * aspect, 1.0, 1.0};
+    box.cells = {4 * cells, cells, flat ? 1 : cells};
+    mesh = make_box(box);
+  } else {
+    mesh = read_gmsh(options.mesh);
+  }
+  const auto dim = static_cast<std::size_t>(mesh.dim());
+  Vector3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
+  for (std::size_t i = 0; i < mesh.coordinates.size(); ++i) {
+    low[i % dim] = std::min(low[i % dim], mesh.coordinates[i]);
+    high[i % dim] = std::max(high[i % dim], mesh.coordinates[i]);
+  }
+  const auto side = [&](std::size_t axis, bool upper, double from_x) {
+    Selector on;
+    on.kind = Selector::Kind::box;
+    on.lower = low;
+    on.upper = high;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double slack = 1e-6 * (dim > c ? high[c] - low[c] : 1.0);
+      on.lower[c] -= slack;
+      on.upper[c] += slack;
+    }
+    const double slack = 1e-6 * (high[axis] - low[axis]);
+    (upper ? on.lower : on.upper)[axis] = (upper ? high : low)[axis] + (upper ? -slack : slack);
+    if (from_x > 0.0) on.lower[0] = low[0] + from_x * (high[0] - low[0]);
+    return on;
+  };
+  const std::size_t up = dim - 1;
+  Model model;
+  MaterialEntry material;
+  material.law.bulk = 1.0 / (3.0 * (1.0 - 2.0 * poisson));
+  material.law.shear = 1.0 / (2.0 * (1.0 + poisson));
+  model.materials.push_back(material);
+  BoundaryEntry held, loaded;
+  held.on = side(0, false, 0.0);
+  held.displacement = std::array<std::optional<double>, 3>{0.0, 0.0, 0.0};
+  loaded.on = side(up, true, 0.5);
+  Vector3 traction{};
+  traction[up] = -1e-3;
+  loaded.traction = traction;
+  model.boundary = {held, loaded};
+  ContactEntry contact;
+  contact.on = side(up, false, 0.0);
+  Plane plane;
+  plane.point = low;
+  plane.normal[up] = 1.0;
+  contact.obstacle = plane;
+  model.contact.push_back(contact);
+  return build_problem(std::move(mesh), model);
+}
+
+/// Secant moduli that vary smoothly by a factor `jump` over the body.
+Vector secant(const Part& part, double jump) {
+  const Body body = part.body();
+  const auto npe = static_cast<std::size_t>(nodes_per_element(part.type));
+  const auto points = static_cast<std::size_t>(points_per_element(part.type));
+  const auto dim = static_cast<std::size_t>(part.dim());
+  Vector g(body.secant_count());
+  for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
+    double wave = 1.0;
+    for (std::size_t c = 0; c < dim; ++c)
+      wave *= std::sin(6.0 * part.coordinates[static_cast<std::size_t>(part.elements[e * npe]) * dim + c] + 1.0);
+    for (std::size_t q = 0; q < points; ++q)
+      g[e * points + q] = body.laws[body.law_of_element[e]].shear * std::pow(jump, -0.5 - 0.5 * wave);
+  }
+  return g;
+}
+
+std::int64_t heap_bytes() {
+  const auto info = mallinfo2();
+  return static_cast<std::int64_t>(info.uordblks + info.hblkhd);
+}
+
+std::int64_t status_bytes(const std::string& key) {
+  std::ifstream status("/proc/self/status");
+  std::string word;
+  std::int64_t kib = 0;
+  while (status >> word)
+    if (word == key) status >> kib;
+  return kib * 1024;
+}
+
+void reset_peak() { std::ofstream("/proc/self/clear_refs") << "5"; }
+
+Json measure(const Part& part, DistributedOperator& op, const std::string& kind, const Vector& g, double penalty,
+             const Options& options) {
+  const Space space(part);
+  const TraceRows rows(part, std::vector<TraceChoice>(part.contact.size(), {true, false}));
+  const auto blocks = penalty > 0.0 ? rows.penalty_blocks(penalty) : std::vector<NodeBlock>{};
+  malloc_trim(0);
+  reset_peak();
+  const std::int64_t heap = heap_bytes(), resident = status_bytes("VmRSS:");
+  const auto amg = make_preconditioner(preconditioner(kind), part, options.threads, "");
+  MPI_Barrier(part.halo.comm);
+  const double start = MPI_Wtime();
+  amg->setup(g, blocks, space);
+  const double ready = MPI_Wtime();
+  const std::int64_t held = part.halo.sum_all(heap_bytes() - heap);
+  const std::int64_t peak = part.halo.sum_all(status_bytes("VmHWM:") - resident);
+  CgWork work;
+  work.resize(part.unknowns());
+  Vector x(part.unknowns(), 0.0);
+  work.residual = part.load;
+  Vector trace(rows.owned()), image(part.unknowns());
+  const auto apply = [&](std::span<const double> p, std::span<double> q) {
+    op.apply(p, q);
+    if (penalty == 0.0) return;
+    rows.apply(p, trace);
+    for (double& v : trace) v *= penalty;
+    rows.transpose(trace, image);
+    for (std::size_t i = 0; i < q.size(); ++i) q[i] += image[i];
+  };
+  const auto precondition = [&](std::span<const double> r, std::span<double> z) { amg->apply(r, z); };
+  const double before = MPI_Wtime();
+  const CgResult cg = conjugate_gradients(space, apply, precondition, x, work, {0.0, options.tolerance, 2000});
+  const double seconds = MPI_Wtime() - before;
+  return {{"preconditioner", kind},
+          {"unknowns", part.total_nodes * part.dim()},
+          {"ranks", part.halo.ranks},
+          {"threads", options.threads},
+          {"iterations", cg.iterations},
+          {"converged", cg.converged},
+          {"setup_seconds", ready - start},
+          {"solve_seconds", seconds},
+          {"total_seconds", ready - start + seconds},
+          {"seconds_per_iteration", seconds / std::max(1, cg.iterations)},
+          {"bytes_per_unknown", static_cast<double>(held) / static_cast<double>(part.total_nodes * part.dim())},
+          {"peak_bytes_per_unknown", static_cast<double>(peak) / static_cast<double>(part.total_nodes * part.dim())}};
+}
+
+void run(const Options& options, const MpiSession& mpi) {
+  Json entries = Json::array();
+  if (mpi.first() && !options.json)
+    std::printf("%-12s %9s %6s %8s %7s %7s | %5s %8s %8s %8s %9s %9s\n", "", "unknowns", "nu", "r", "g jump", "aspect", "its",
+                "setup s", "solve s", "total s", "B/unknown", "peak B/u");
+  for (const int cells : options.cells)
+    for (const double poisson : options.poisson)
+      for (const double aspect : options.aspect) {
+        Part part;
+        {
+          std::optional<Problem> problem;
+          if (mpi.first()) problem = make_problem(options, cells, poisson, aspect);
+          part = distribute(problem ? &*problem : nullptr, mpi.comm());
+        }
+        DistributedOperator op(part, options.threads, "");
+        for (const double jump : options.jump) {
+          const Vector g = secant(part, jump);
+          op.set_secant(g);
+          for (const double penalty : options.penalty)
+            for (int turn = 0; turn < options.repeat; ++turn)
+              for (const std::string& kind : options.kinds) {
+                Json entry = measure(part, op, kind, g, penalty, options);
+                entry["element"] = options.mesh.empty() ? options.element : options.mesh;
+                entry["poisson"] = poisson;
+                entry["penalty"] = penalty;
+                entry["jump"] = jump;
+                entry["aspect"] = aspect;
+                if (mpi.first() && !options.json) {
+                  std::printf("%-12s %9lld %6.3g %8.3g %7.3g %7.3g | %5d%s %7.2f %8.2f %8.2f %9.0f %9.0f\n", kind.c_str(),
+                              entry["unknowns"].get<long long>(), poisson, penalty, jump, aspect,
+                              entry["iterations"].get<int>(), entry["converged"].get<bool>() ? " " : "!",
+                              entry["setup_seconds"].get<double>(), entry["solve_seconds"].get<double>(),
+                              entry["total_seconds"].get<double>(), entry["bytes_per_unknown"].get<double>(),
+                              entry["peak_bytes_per_unknown"].get<double>());
+                  std::fflush(stdout);
+                }
+                entries.push_back(std::move(entry));
+              }
+        }
+      }
+  if (mpi.first() && options.json) std::cout << Json{{"entries", entries}}.dump(2) << "\n";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app("The penalised solve by preconditioner: seconds, iterations, bytes");
+  app.add_option("--cells", options.cells, "cells across a beam of 4 x 1 x 1 (40: 811,923 unknowns with tet4)");
+  app.add_option("--element", options.element)->check(CLI::IsMember({"tri3", "tet4", "tet10", "hex8"}));
+  app.add_option("--mesh", options.mesh, "a Gmsh file instead of the beam; held at its lowest x, pressed from above");
+  app.add_option("--preconditioner", options.kinds)->check(CLI::IsMember({"multigrid", "elasticity"}));
+  app.add_option("--poisson", options.poisson);
+  app.add_option("--penalty", options.penalty, "r on the whole bottom");
+  app.add_option("--jump", options.jump, "g varies by this factor");
+  app.add_option("--aspect", options.aspect, "length of a cell over its width");
+  app.add_option("--tolerance", options.tolerance);
+  app.add_option("--ranks", options.ranks, "0: one a core");
+  app.add_option("--threads", options.threads);
+  app.add_option("--repeat", options.repeat, "turns");
+  app.add_flag("--json", options.json);
+  CLI11_PARSE(app, argc, argv);
+  if (!started_by_mpi()) {
+    const int ranks = options.ranks > 0 ? options.ranks : usable_cores();
+    if (ranks > 1) return run_under_mpiexec(find_mpiexec(), {ranks, options.threads}, argc, argv);
+    set_mpi_environment();
+  }
+  const MpiSession mpi;
+  try {
+    run(options, mpi);
+  } catch (const std::exception& e) {
+    std::cerr << "bench_solve: error: " << e.what() << "\n";
+    if (mpi.ranks() > 1) MPI_Abort(mpi.comm(), 2);
+    return 2;
+  }
+  return coded_exit(0);
+}
