@@ -48,47 +48,23 @@ NodeGraph node_graph(const MeshView& mesh) {
   return graph;
 }
 
-namespace {
-
-/// Calls add(position in the graph, pointer to the dim × dim block with row stride `width`) for every pair of nodes
-/// of every element.
-template <class Add>
-void for_each_block(const Body& body, std::span<const double> g, const NodeGraph& graph, Add&& add) {
+std::vector<double> assemble_blocks(const Body& body, std::span<const double> g, const NodeGraph& graph) {
   const auto& mesh = body.mesh;
   const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
   const auto points = static_cast<std::size_t>(points_per_element(mesh.type));
   const auto dim = static_cast<std::size_t>(dimension(mesh.type));
   const std::size_t width = npe * dim;
-  std::vector<double> local(width * width);
+  std::vector<double> value(graph.column.size() * dim * dim, 0.0), local(width * width);
   for (std::size_t e = 0; e < mesh.element_count(); ++e) {
     element_stiffness(body, e, g.subspan(e * points, points), local);
     const auto element = mesh.connectivity.subspan(e * npe, npe);
     for (std::size_t a = 0; a < npe; ++a)
-      for (std::size_t b = 0; b < npe; ++b)
-        add(graph.position(element[a], element[b]), local.data() + a * dim * width + b * dim, width);
+      for (std::size_t b = 0; b < npe; ++b) {
+        double* to = &value[graph.position(element[a], element[b]) * dim * dim];
+        for (std::size_t i = 0; i < dim; ++i)
+          for (std::size_t j = 0; j < dim; ++j) to[i * dim + j] += local[(a * dim + i) * width + b * dim + j];
+      }
   }
-}
-
-}  // namespace
-
-std::vector<double> assemble_blocks(const Body& body, std::span<const double> g, const NodeGraph& graph) {
-  const auto dim = static_cast<std::size_t>(dimension(body.mesh.type));
-  std::vector<double> value(graph.column.size() * dim * dim, 0.0);
-  for_each_block(body, g, graph, [&](std::size_t at, const double* block, std::size_t width) {
-    for (std::size_t i = 0; i < dim; ++i)
-      for (std::size_t j = 0; j < dim; ++j) value[at * dim * dim + i * dim + j] += block[i * width + j];
-  });
-  return value;
-}
-
-std::array<std::vector<double>, 3> assemble_components(const Body& body, std::span<const double> g,
-                                                       const NodeGraph& graph) {
-  const auto dim = static_cast<std::size_t>(dimension(body.mesh.type));
-  std::array<std::vector<double>, 3> value;
-  for (std::size_t c = 0; c < dim; ++c) value[c].assign(graph.column.size(), 0.0);
-  for_each_block(body, g, graph, [&](std::size_t at, const double* block, std::size_t width) {
-    for (std::size_t c = 0; c < dim; ++c) value[c][at] += block[c * width + c];
-  });
   return value;
 }
 

@@ -2,7 +2,6 @@
 // Assembled secant stiffness of one rank's elements: what algebraic multigrid needs.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -29,9 +28,5 @@ NodeGraph node_graph(const MeshView& mesh);
 /// Sum of the element matrices for frozen g (elements × points): one dim × dim block (row-major) an entry of the
 /// graph. Rows of shared nodes hold this rank's contributions only.
 std::vector<double> assemble_blocks(const Body& body, std::span<const double> g, const NodeGraph& graph);
-
-/// The diagonal blocks A_cc alone, one value an entry of the graph, for each component c.
-std::array<std::vector<double>, 3> assemble_components(const Body& body, std::span<const double> g,
-                                                       const NodeGraph& graph);
 
 }  // namespace kacanov

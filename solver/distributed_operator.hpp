@@ -41,6 +41,7 @@ class DistributedOperator {
     else
       local_.update(omega);
   }
+  void set_secant(std::span<const double> g) { local_.set_secant(g); }
   /// Internal force of the true law; counts as an application.
   void residual(std::span<const double> omega, std::span<double> f) {
     local_.residual(omega, f);

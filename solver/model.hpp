@@ -66,7 +66,7 @@ struct SolverOptions {
   enum class Contact { automatic, admm, dual_admm, active_set };
   enum class Penalty { automatic, paper, fixed };
   enum class Stop { kkt, paper };
-  enum class Preconditioner { components, elasticity };
+  enum class Preconditioner { multigrid, elasticity };
 
   double tolerance = 1e-6;  ///< on every entry of the certificate (stop: kkt), on (15) (stop: paper)
   Outer outer = Outer::automatic;
@@ -74,7 +74,7 @@ struct SolverOptions {
   Penalty penalty = Penalty::automatic;  ///< `r`: automatic is r_A, paper is (32)
   double r = 0.0;                        ///< the number, with Penalty::fixed
   Stop stop = Stop::kkt;
-  Preconditioner preconditioner = Preconditioner::components;
+  Preconditioner preconditioner = Preconditioner::multigrid;
   int max_outer = 100;
   int max_contact = 10000;           ///< contact iterations within an outer step
   double spectrum_tolerance = 1e-2;  ///< relative, on λ_min and λ_max

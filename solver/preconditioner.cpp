@@ -2,8 +2,8 @@
 // The choice of a preconditioner, and the clock of its setups.
 #include "preconditioner.hpp"
 
-#include "component_amg.hpp"
 #include "elasticity_amg.hpp"
+#include "multigrid/rigid_multigrid.hpp"
 
 namespace kacanov {
 
@@ -14,9 +14,13 @@ void Preconditioner::setup(std::span<const double> g, std::span<const NodeBlock>
   seconds_ += MPI_Wtime() - start;
 }
 
-std::unique_ptr<Preconditioner> make_preconditioner(SolverOptions::Preconditioner kind, const Part& part) {
+std::unique_ptr<Preconditioner> make_preconditioner(SolverOptions::Preconditioner kind, const Part& part, int threads,
+                                                    const std::string& instruction_set) {
   if (kind == SolverOptions::Preconditioner::elasticity) return std::make_unique<ElasticityAmg>(part);
-  return std::make_unique<ComponentAmg>(part);
+  MultigridOptions options;
+  options.threads = threads;
+  options.instruction_set = instruction_set;
+  return std::make_unique<RigidMultigrid>(part, options);
 }
 
 }  // namespace kacanov

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 
 #include "model.hpp"
 #include "space.hpp"
@@ -37,8 +38,9 @@ class Preconditioner {
   double seconds_ = 0.0;
 };
 
-/// `elasticity`: unknown-based BoomerAMG on the assembled matrix. `components`: a scalar BoomerAMG for each
-/// displacement component with a coarse space of rigid motions of aggregates; the elasticity matrix is never stored.
-std::unique_ptr<Preconditioner> make_preconditioner(SolverOptions::Preconditioner kind, const Part& part);
+/// `multigrid`: Chebyshev on the matrix-free operator over rigid motions of aggregates (RigidMultigrid). `elasticity`:
+/// unknown-based BoomerAMG on the assembled matrix, the yardstick. Threads and instruction set are the operator's.
+std::unique_ptr<Preconditioner> make_preconditioner(SolverOptions::Preconditioner kind, const Part& part, int threads,
+                                                    const std::string& instruction_set);
 
 }  // namespace kacanov

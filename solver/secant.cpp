@@ -97,7 +97,7 @@ OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOp
       space_(part),
       traces_(part),
       op_(part, run.threads, run.instruction_set),
-      amg_(make_preconditioner(options.preconditioner, part)),
+      amg_(make_preconditioner(options.preconditioner, part, run.threads, run.instruction_set)),
       internal_(part.unknowns()),
       diagonal_(part.unknowns()),
       secant_(part.body().secant_count()) {

@@ -261,7 +261,7 @@ Solution solve(const Part& full, const SolverOptions& options, const RunOptions&
 
 std::vector<SpectrumResult> analyse_spectrum(const Part& part, const SolverOptions& options, const RunOptions& run) {
   DistributedOperator op(part, run.threads, run.instruction_set);
-  const auto amg = make_preconditioner(options.preconditioner, part);
+  const auto amg = make_preconditioner(options.preconditioner, part, run.threads, run.instruction_set);
   std::vector<double> secant(part.body().secant_count());
   op.local().secant(secant);
   std::vector<SpectrumResult> results;
@@ -278,7 +278,7 @@ double active_penalty(const Part& part, const Solution& solution, const SolverOp
                       const RunOptions& run) {
   DistributedOperator op(part, run.threads, run.instruction_set);
   op.update(solution.displacement);
-  const auto amg = make_preconditioner(options.preconditioner, part);
+  const auto amg = make_preconditioner(options.preconditioner, part, run.threads, run.instruction_set);
   std::vector<double> secant(part.body().secant_count());
   op.local().secant(secant);
   std::vector<TraceChoice> active(part.contact.size()), open(part.contact.size());

@@ -8,6 +8,10 @@ find_package(Eigen3 3.4 REQUIRED)
 kacanov_test(algebra
   SOURCES solver/mpi_main.cpp solver/algebra_test.cpp
   LIBRARIES kacanov_solver Eigen3::Eigen)
+kacanov_test(multigrid
+  SOURCES solver/mpi_main.cpp solver/multigrid_test.cpp
+  LIBRARIES kacanov_solver Eigen3::Eigen
+  RANKS 1 2 3)
 kacanov_test(spectrum
   SOURCES solver/mpi_main.cpp solver/spectrum_test.cpp
   LIBRARIES kacanov_solver Eigen3::Eigen)

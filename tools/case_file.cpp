@@ -216,8 +216,8 @@ class CaseParser {
     }
     if (const auto v = object.optional("r")) parse_penalty(*v);
     if (const auto v = object.optional("preconditioner")) {
-      constexpr std::array values{Options::Preconditioner::components, Options::Preconditioner::elasticity};
-      options.preconditioner = values[v->choice({"components", "elasticity"})];
+      constexpr std::array values{Options::Preconditioner::multigrid, Options::Preconditioner::elasticity};
+      options.preconditioner = values[v->choice({"multigrid", "elasticity"})];
     }
     if (const auto v = object.optional("max_outer")) options.max_outer = v->integer(1);
     if (const auto v = object.optional("max_contact")) options.max_contact = v->integer(1);

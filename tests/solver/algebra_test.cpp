@@ -164,13 +164,15 @@ TEST_CASE("multigrid is a symmetric positive definite map, and CG solves with it
   Vector x = random_vector(part.unknowns(), 9), y = random_vector(part.unknowns(), 10);
   space.project(x);
   space.project(y);
-  for (const auto kind : {SolverOptions::Preconditioner::components, SolverOptions::Preconditioner::elasticity}) {
-    const auto amg = make_preconditioner(kind, part);
+  for (const auto kind : {SolverOptions::Preconditioner::multigrid, SolverOptions::Preconditioner::elasticity}) {
+    const auto amg = make_preconditioner(kind, part, 1, "");
     amg->setup(g, blocks, space);
     Vector mx(x.size()), my(y.size());
     amg->apply(x, mx);
     amg->apply(y, my);
-    CHECK(space.dot(mx, y) == doctest::Approx(space.dot(x, my)).epsilon(1e-10));
+    // Multigrid works in single precision.
+    const double rounding = kind == SolverOptions::Preconditioner::multigrid ? 1e-5 : 1e-10;
+    CHECK(std::abs(space.dot(mx, y) - space.dot(x, my)) <= rounding * std::sqrt(space.dot(mx, x) * space.dot(my, y)));
     CHECK(space.dot(mx, x) > 0.0);
     for (std::size_t i = 0; i < mx.size(); ++i)
       if (part.held[i]) CHECK(mx[i] == 0.0);

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Groups of strongly coupled nodes, by pairwise matching.
+#include "multigrid/aggregation.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+
+namespace kacanov {
+namespace {
+
+/// Elements of each of the first `nodes` nodes.
+struct ElementsOfNodes {
+  std::vector<std::int64_t> start;
+  std::vector<std::int32_t> element;
+
+  ElementsOfNodes(const MeshView& mesh, std::int32_t nodes) : start(static_cast<std::size_t>(nodes) + 1, 0) {
+    const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
+    for (const std::int32_t n : mesh.connectivity)
+      if (n < nodes) ++start[static_cast<std::size_t>(n) + 1];
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    element.resize(static_cast<std::size_t>(start.back()));
+    for (std::size_t k = mesh.connectivity.size(); k-- > 0;)
+      if (const std::int32_t n = mesh.connectivity[k]; n < nodes)
+        element[static_cast<std::size_t>(--start[static_cast<std::size_t>(n) + 1])] = static_cast<std::int32_t>(k / npe);
+    // Filling from behind has moved every start by one row.
+    start.erase(start.begin());
+    start.push_back(static_cast<std::int64_t>(element.size()));
+  }
+};
+
+constexpr std::int32_t none = -1;
+constexpr float weak = 0.2F;  ///< of a row's heaviest edge
+
+/// Group of each row: it and its partner along its heaviest edge, or itself. Small rows choose first, so that none is left
+/// over in round after round.
+std::vector<std::int32_t> match(const WeightedGraph& graph, std::span<const std::int32_t> size) {
+  const std::int32_t rows = graph.rows();
+  std::vector<std::int32_t> group(static_cast<std::size_t>(rows), none);
+  std::int32_t groups = 0;
+  std::vector<std::int32_t> order(group.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+    return size[static_cast<std::size_t>(a)] < size[static_cast<std::size_t>(b)];
+  });
+  for (const std::int32_t i : order) {
+    if (group[static_cast<std::size_t>(i)] != none) continue;
+    std::int32_t best = none;
+    // A row whose strong neighbours are all taken waits for the next round.
+    float heaviest = 0.0F;
+    for (auto k = graph.start[static_cast<std::size_t>(i)]; k < graph.start[static_cast<std::size_t>(i) + 1]; ++k)
+      heaviest = std::max(heaviest, graph.weight[static_cast<std::size_t>(k)]);
+    heaviest *= weak;
+    for (auto k = graph.start[static_cast<std::size_t>(i)]; k < graph.start[static_cast<std::size_t>(i) + 1]; ++k) {
+      const std::int32_t j = graph.column[static_cast<std::size_t>(k)];
+      const float w = graph.weight[static_cast<std::size_t>(k)];
+      if (group[static_cast<std::size_t>(j)] == none && w > heaviest) {
+        heaviest = w;
+        best = j;
+      }
+    }
+    group[static_cast<std::size_t>(i)] = groups;
+    if (best != none) group[static_cast<std::size_t>(best)] = groups;
+    ++groups;
+  }
+  // Numbered by first rows.
+  std::vector<std::int32_t> number(static_cast<std::size_t>(groups), none);
+  std::int32_t next = 0;
+  for (std::int32_t& g : group) {
+    auto& n = number[static_cast<std::size_t>(g)];
+    if (n == none) n = next++;
+    g = n;
+  }
+  return group;
+}
+
+/// Rows of one group become one row, weights between groups are summed.
+WeightedGraph contract(const WeightedGraph& graph, std::span<const std::int32_t> group, std::int32_t groups) {
+  std::vector<std::int32_t> first(static_cast<std::size_t>(groups) + 1, 0), member(group.size());
+  for (const std::int32_t g : group) ++first[static_cast<std::size_t>(g) + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  auto next = first;
+  for (std::size_t i = 0; i < group.size(); ++i)
+    member[static_cast<std::size_t>(next[static_cast<std::size_t>(group[i])]++)] = static_cast<std::int32_t>(i);
+
+  WeightedGraph coarse;
+  coarse.start.reserve(static_cast<std::size_t>(groups) + 1);
+  coarse.start.push_back(0);
+  std::vector<std::int64_t> place(static_cast<std::size_t>(groups), none);
+  for (std::int32_t i = 0; i < groups; ++i) {
+    const std::int64_t begin = coarse.start.back();
+    for (auto m = first[static_cast<std::size_t>(i)]; m < first[static_cast<std::size_t>(i) + 1]; ++m) {
+      const auto row = static_cast<std::size_t>(member[static_cast<std::size_t>(m)]);
+      for (auto k = graph.start[row]; k < graph.start[row + 1]; ++k) {
+        const std::int32_t j = group[static_cast<std::size_t>(graph.column[static_cast<std::size_t>(k)])];
+        if (j == i) continue;
+        auto& at = place[static_cast<std::size_t>(j)];
+        if (at < begin) {
+          at = static_cast<std::int64_t>(coarse.column.size());
+          coarse.column.push_back(j);
+          coarse.weight.push_back(0.0F);
+        }
+        coarse.weight[static_cast<std::size_t>(at)] += graph.weight[static_cast<std::size_t>(k)];
+      }
+    }
+    coarse.start.push_back(static_cast<std::int64_t>(coarse.column.size()));
+  }
+  return coarse;
+}
+
+}  // namespace
+
+WeightedGraph coupling_graph(const Body& body, std::span<const double> g, std::int32_t nodes) {
+  const auto& mesh = body.mesh;
+  const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  const auto points = static_cast<std::size_t>(points_per_element(mesh.type));
+  const auto dim = static_cast<std::size_t>(dimension(mesh.type));
+  const ElementsOfNodes elements(mesh, nodes);
+
+  WeightedGraph graph;
+  graph.start.reserve(static_cast<std::size_t>(nodes) + 1);
+  graph.start.push_back(0);
+  std::vector<std::int64_t> place(static_cast<std::size_t>(nodes), none);
+  for (std::int32_t n = 0; n < nodes; ++n) {
+    const auto begin = static_cast<std::int64_t>(graph.column.size());
+    const double* x = mesh.coordinates.data() + static_cast<std::size_t>(n) * dim;
+    for (auto k = elements.start[static_cast<std::size_t>(n)]; k < elements.start[static_cast<std::size_t>(n) + 1]; ++k) {
+      const auto e = static_cast<std::size_t>(elements.element[static_cast<std::size_t>(k)]);
+      double stiffness = 0.0;
+      for (std::size_t q = 0; q < points; ++q) stiffness += g[e * points + q];
+      for (const std::int32_t m : mesh.connectivity.subspan(e * npe, npe)) {
+        if (m == n || m >= nodes) continue;
+        const double* y = mesh.coordinates.data() + static_cast<std::size_t>(m) * dim;
+        double square = 0.0;
+        for (std::size_t c = 0; c < dim; ++c) square += (x[c] - y[c]) * (x[c] - y[c]);
+        auto& at = place[static_cast<std::size_t>(m)];
+        if (at < begin) {
+          at = static_cast<std::int64_t>(graph.column.size());
+          graph.column.push_back(m);
+          graph.weight.push_back(0.0F);
+        }
+        graph.weight[static_cast<std::size_t>(at)] += static_cast<float>(stiffness / square);
+      }
+    }
+    graph.start.push_back(static_cast<std::int64_t>(graph.column.size()));
+  }
+  return graph;
+}
+
+std::vector<std::int32_t> aggregate(WeightedGraph graph, double size) {
+  const std::int32_t rows = graph.rows();
+  std::vector<std::int32_t> result(static_cast<std::size_t>(rows));
+  std::iota(result.begin(), result.end(), 0);
+  std::vector<std::int32_t> members(result.size(), 1);
+  std::int32_t before = rows;
+  while (static_cast<double>(before) * size > static_cast<double>(rows) * 1.4) {
+    const std::vector<std::int32_t> group = match(graph, members);
+    const std::int32_t groups = group.empty() ? 0 : 1 + *std::max_element(group.begin(), group.end());
+    if (groups == before) break;
+    graph = contract(graph, group, groups);
+    for (std::int32_t& r : result) r = group[static_cast<std::size_t>(r)];
+    members.assign(static_cast<std::size_t>(groups), 0);
+    for (const std::int32_t r : result) ++members[static_cast<std::size_t>(r)];
+    before = groups;
+  }
+  return result;
+}
+
+}  // namespace kacanov

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The fine level of the multigrid: B(g) and node blocks in single precision, with its block diagonal.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "float_operator.hpp"
+#include "multigrid/chebyshev.hpp"
+#include "preconditioner.hpp"
+
+namespace kacanov {
+
+struct MultigridOptions;
+
+/// A = B(g) + blocks on free components, in single precision, never stored. Directions that the space of the setup holds are
+/// held by stiff blocks here, so that the smoother stays definite in the spaces of later solves; corrections from below
+/// are projected. Vectors are consistent (Part).
+class FineLevel {
+ public:
+  FineLevel(const Part& part, const MultigridOptions& options);
+  void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space);
+  /// y = A x for x that is zero in held components.
+  void multiply(std::span<const float> x, std::span<float> y) const;
+  /// y = D⁻¹ x, D the dim × dim diagonal blocks of A.
+  void scale(std::span<const float> x, std::span<float> y) const;
+  /// Zero in held components.
+  void hold(std::span<float> x) const;
+  /// Onto the space of the setup.
+  void project(std::span<float> x) const;
+  /// Estimates the largest eigenvalue of D⁻¹A.
+  void choose_smoother(int degree, double range);
+  const Chebyshev& smoother() const noexcept { return smoother_; }
+
+ private:
+  const Part& part_;
+  FloatOperator op_;
+  Space space_;
+  std::vector<NodeBlock> blocks_;
+  std::vector<float> inverse_;  ///< nodes × 6 (3 in 2D): the upper triangles of the inverse blocks, by rows
+  Chebyshev smoother_;
+};
+
+}  // namespace kacanov

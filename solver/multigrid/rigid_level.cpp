@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One level of the hierarchy: a symmetric block matrix over the rigid motions of aggregates, its rows spread over the ranks.
+#include "multigrid/rigid_level.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "multigrid/aggregation.hpp"
+#include "multigrid/largest_eigenvalue.hpp"
+
+namespace kacanov {
+namespace {
+
+template <int M>
+using Dense = Eigen::Matrix<double, M, M, Eigen::RowMajor>;
+
+template <int M>
+Dense<M> dense(const typename BlockSums<M>::Block& block) {
+  return Eigen::Map<const Dense<M>>(block.data());
+}
+
+/// Coefficients of the fine aggregate's motion from those of the group it belongs to.
+template <int M>
+Dense<M> restriction_of_motion(const Vector3& offset, double inverse_length) {
+  Dense<M> p = Dense<M>::Identity();
+  for (int k = 0; k < M; ++k) {
+    std::array<double, M> q{}, u{};
+    q[static_cast<std::size_t>(k)] = 1.0;
+    RigidMotion<M>::add_motion(q.data(), offset.data(), inverse_length, u.data());
+    for (int c = 0; c < RigidMotion<M>::dim; ++c) p(c, k) = u[static_cast<std::size_t>(c)];
+  }
+  return p;
+}
+
+/// Sends each rank its bytes and returns all that came.
+template <class T>
+std::vector<T> exchange(const std::vector<std::vector<T>>& to, MPI_Comm comm) {
+  const std::size_t ranks = to.size();
+  std::vector<int> out(ranks), in(ranks), out_at(ranks, 0), in_at(ranks, 0);
+  std::vector<T> sent;
+  for (std::size_t r = 0; r < ranks; ++r) {
+    out[r] = static_cast<int>(to[r].size());
+    sent.insert(sent.end(), to[r].begin(), to[r].end());
+  }
+  MPI_Alltoall(out.data(), 1, MPI_INT, in.data(), 1, MPI_INT, comm);
+  std::exclusive_scan(out.begin(), out.end(), out_at.begin(), 0);
+  std::exclusive_scan(in.begin(), in.end(), in_at.begin(), 0);
+  std::vector<T> received(static_cast<std::size_t>(in_at.back() + in.back()));
+  MPI_Datatype type;
+  MPI_Type_contiguous(static_cast<int>(sizeof(T)), MPI_BYTE, &type);
+  MPI_Type_commit(&type);
+  MPI_Alltoallv(sent.data(), out.data(), out_at.data(), type, received.data(), in.data(), in_at.data(), type, comm);
+  MPI_Type_free(&type);
+  return received;
+}
+
+}  // namespace
+
+template <int M>
+RigidLevel<M>::RigidLevel(std::vector<Vector3> centres, BlockSums<M> sums, MPI_Comm comm)
+    : comm_(comm), centres_(std::move(centres)) {
+  MPI_Comm_rank(comm, &rank_);
+  MPI_Comm_size(comm, &ranks_);
+  first_.assign(static_cast<std::size_t>(ranks_) + 1, 0);
+  const auto mine = static_cast<std::int64_t>(centres_.size());
+  MPI_Allgather(&mine, 1, MPI_INT64_T, first_.data() + 1, 1, MPI_INT64_T, comm);
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  send_to_owners(sums);
+  build_rows(sums);
+  plan_exchange();
+  invert_diagonal();
+}
+
+template <int M>
+int RigidLevel<M>::owner(std::int64_t row) const {
+  return static_cast<int>(std::upper_bound(first_.begin(), first_.end(), row) - first_.begin()) - 1;
+}
+
+template <int M>
+void RigidLevel<M>::send_to_owners(BlockSums<M>& sums) const {
+  if (ranks_ == 1) return;
+  std::vector<std::vector<typename BlockSums<M>::Entry>> to(static_cast<std::size_t>(ranks_));
+  for (const auto& entry : sums.entries()) {
+    const int row = owner(entry.row), column = owner(entry.column);
+    if (row != rank_) to[static_cast<std::size_t>(row)].push_back(entry);
+    if (column != rank_ && column != row) to[static_cast<std::size_t>(column)].push_back(entry);
+  }
+  for (const auto& entry : exchange(to, comm_)) {
+    auto& sum = sums.at(entry.row, entry.column);
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += entry.block[k];
+  }
+}
+
+template <int M>
+void RigidLevel<M>::build_rows(const BlockSums<M>& sums) {
+  const std::int64_t begin = first(), end = begin + rows();
+  const auto mine = [&](std::int64_t row) { return row >= begin && row < end; };
+  start_.assign(static_cast<std::size_t>(rows()) + 1, 0);
+  for (const auto& entry : sums.entries()) {
+    if (mine(entry.row)) ++start_[static_cast<std::size_t>(entry.row - begin) + 1];
+    if (entry.row == entry.column) continue;
+    if (mine(entry.column)) ++start_[static_cast<std::size_t>(entry.column - begin) + 1];
+    if (mine(entry.row) && !mine(entry.column)) ghosts_.push_back(entry.column);
+    if (!mine(entry.row) && mine(entry.column)) ghosts_.push_back(entry.row);
+  }
+  std::sort(ghosts_.begin(), ghosts_.end());
+  ghosts_.erase(std::unique(ghosts_.begin(), ghosts_.end()), ghosts_.end());
+  ghosts_.shrink_to_fit();
+  std::partial_sum(start_.begin(), start_.end(), start_.begin());
+
+  const auto local = [&](std::int64_t row) {
+    return mine(row) ? static_cast<std::int32_t>(row - begin)
+                     : rows() + static_cast<std::int32_t>(std::lower_bound(ghosts_.begin(), ghosts_.end(), row) - ghosts_.begin());
+  };
+  column_.resize(static_cast<std::size_t>(start_.back()));
+  block_.resize(column_.size());
+  auto next = start_;
+  for (const auto& entry : sums.entries()) {
+    if (mine(entry.row)) {
+      const auto k = static_cast<std::size_t>(next[static_cast<std::size_t>(entry.row - begin)]++);
+      column_[k] = local(entry.column);
+      block_[k] = entry.block;
+    }
+    if (entry.row != entry.column && mine(entry.column)) {
+      const auto k = static_cast<std::size_t>(next[static_cast<std::size_t>(entry.column - begin)]++);
+      column_[k] = local(entry.row);
+      for (std::size_t i = 0; i < M; ++i)
+        for (std::size_t j = 0; j < M; ++j) block_[k][j * M + i] = entry.block[i * M + j];
+    }
+  }
+}
+
+template <int M>
+void RigidLevel<M>::plan_exchange() {
+  if (ranks_ == 1) return;
+  std::vector<std::vector<std::int64_t>> wanted(static_cast<std::size_t>(ranks_));
+  for (std::size_t i = 0; i < ghosts_.size(); ++i) {
+    const int from = owner(ghosts_[i]);
+    if (wanted[static_cast<std::size_t>(from)].empty())
+      neighbours_.push_back({from, {}, rows() + static_cast<std::int32_t>(i), 0});
+    ++neighbours_.back().ghosts;
+    wanted[static_cast<std::size_t>(from)].push_back(ghosts_[i]);
+  }
+  // The couplings are symmetric: who is wanted from wants something too.
+  for (auto& n : neighbours_) {
+    auto& ids = wanted[static_cast<std::size_t>(n.rank)];
+    std::int32_t count = 0;
+    MPI_Sendrecv(&n.ghosts, 1, MPI_INT32_T, n.rank, 2, &count, 1, MPI_INT32_T, n.rank, 2, comm_, MPI_STATUS_IGNORE);
+    std::vector<std::int64_t> asked(static_cast<std::size_t>(count));
+    MPI_Sendrecv(ids.data(), n.ghosts, MPI_INT64_T, n.rank, 3, asked.data(), count, MPI_INT64_T, n.rank, 3, comm_,
+                 MPI_STATUS_IGNORE);
+    for (const std::int64_t id : asked) n.send.push_back(static_cast<std::int32_t>(id - first()));
+  }
+}
+
+template <int M>
+void RigidLevel<M>::invert_diagonal() {
+  inverse_diagonal_.resize(centres_.size());
+  for (std::size_t i = 0; i < centres_.size(); ++i) {
+    Dense<M> d = Dense<M>::Zero();
+    for (auto k = start_[i]; k < start_[i + 1]; ++k)
+      if (column_[static_cast<std::size_t>(k)] == static_cast<std::int32_t>(i)) d = dense<M>(block_[static_cast<std::size_t>(k)]);
+    // Motions that boundary conditions leave no node for have no stiffness: they stay where they are.
+    const double largest = d.diagonal().maxCoeff();
+    Eigen::SelfAdjointEigenSolver<Dense<M>> solver(d);
+    Dense<M> inverse = Dense<M>::Zero();
+    for (int k = 0; k < M; ++k) {
+      const double value = solver.eigenvalues()[k];
+      if (value > 1e-6 * largest) inverse += solver.eigenvectors().col(k) * solver.eigenvectors().col(k).transpose() / value;
+    }
+    for (int k = 0; k < M * M; ++k) inverse_diagonal_[i][static_cast<std::size_t>(k)] = inverse.data()[k];
+  }
+}
+
+template <int M>
+void RigidLevel<M>::fill_ghosts(std::span<double> x) const {
+  if (neighbours_.empty()) return;
+  std::vector<MPI_Request> requests;
+  std::vector<std::vector<double>> sent;
+  sent.reserve(neighbours_.size());
+  for (const auto& n : neighbours_) {
+    MPI_Irecv(x.data() + static_cast<std::size_t>(n.first_ghost) * M, n.ghosts * M, MPI_DOUBLE, n.rank, 4, comm_,
+              &requests.emplace_back());
+    auto& buffer = sent.emplace_back();
+    buffer.reserve(n.send.size() * M);
+    for (const std::int32_t row : n.send)
+      buffer.insert(buffer.end(), x.begin() + static_cast<std::ptrdiff_t>(row) * M,
+                    x.begin() + static_cast<std::ptrdiff_t>(row + 1) * M);
+    MPI_Isend(buffer.data(), static_cast<int>(buffer.size()), MPI_DOUBLE, n.rank, 4, comm_, &requests.emplace_back());
+  }
+  MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+}
+
+namespace {
+
+/// y += B x.
+template <int M>
+inline void add_product(const double* block, const double* x, double* y) {
+  for (int i = 0; i < M; ++i) {
+    double sum = 0.0;
+    for (int j = 0; j < M; ++j) sum += block[i * M + j] * x[j];
+    y[i] += sum;
+  }
+}
+
+}  // namespace
+
+template <int M>
+void RigidLevel<M>::multiply(std::span<double> x, std::span<double> y) const {
+  fill_ghosts(x);
+  for (std::size_t i = 0; i < centres_.size(); ++i) {
+    std::array<double, M> sum{};
+    for (auto k = static_cast<std::size_t>(start_[i]); k < static_cast<std::size_t>(start_[i + 1]); ++k)
+      add_product<M>(block_[k].data(), x.data() + static_cast<std::size_t>(column_[k]) * M, sum.data());
+    std::copy(sum.begin(), sum.end(), y.begin() + static_cast<std::ptrdiff_t>(i * M));
+  }
+}
+
+template <int M>
+void RigidLevel<M>::scale(std::span<const double> x, std::span<double> y) const {
+  for (std::size_t i = 0; i < centres_.size(); ++i) {
+    std::array<double, M> sum{};
+    add_product<M>(inverse_diagonal_[i].data(), x.data() + i * M, sum.data());
+    std::copy(sum.begin(), sum.end(), y.begin() + static_cast<std::ptrdiff_t>(i * M));
+  }
+}
+
+template <int M>
+RigidLevel<M> RigidLevel<M>::coarsened(std::span<const std::int32_t> group, double length) const {
+  const double inverse_length = 1.0 / length;
+  const std::int32_t groups = group.empty() ? 0 : 1 + *std::max_element(group.begin(), group.end());
+  std::vector<Vector3> centre(static_cast<std::size_t>(groups), Vector3{});
+  std::vector<double> members(centre.size(), 0.0);
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    const auto to = static_cast<std::size_t>(group[i]);
+    members[to] += 1.0;
+    for (std::size_t c = 0; c < 3; ++c) centre[to][c] += centres_[i][c];
+  }
+  for (std::size_t i = 0; i < centre.size(); ++i)
+    for (double& c : centre[i]) c /= members[i];
+
+  std::int64_t first_group = 0;
+  const auto mine = static_cast<std::int64_t>(groups);
+  MPI_Exscan(&mine, &first_group, 1, MPI_INT64_T, MPI_SUM, comm_);
+  if (rank_ == 0) first_group = 0;
+
+  // Of every row, ghosts included: its group over all ranks and where it lies in it.
+  struct Place {
+    std::int64_t group = 0;
+    Vector3 offset{};
+  };
+  std::vector<Place> place(centres_.size() + ghosts_.size());
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    const auto& c = centre[static_cast<std::size_t>(group[i])];
+    place[i] = {first_group + group[i], {centres_[i][0] - c[0], centres_[i][1] - c[1], centres_[i][2] - c[2]}};
+  }
+  for (const auto& n : neighbours_) {
+    std::vector<Place> out;
+    for (const std::int32_t row : n.send) out.push_back(place[static_cast<std::size_t>(row)]);
+    MPI_Sendrecv(out.data(), static_cast<int>(out.size() * sizeof(Place)), MPI_BYTE, n.rank, 5,
+                 place.data() + n.first_ghost, static_cast<int>(static_cast<std::size_t>(n.ghosts) * sizeof(Place)),
+                 MPI_BYTE, n.rank, 5, comm_, MPI_STATUS_IGNORE);
+  }
+
+  BlockSums<M> sums;
+  for (std::size_t i = 0; i < centres_.size(); ++i) {
+    const Dense<M> row = restriction_of_motion<M>(place[i].offset, inverse_length).transpose();
+    for (auto k = static_cast<std::size_t>(start_[i]); k < static_cast<std::size_t>(start_[i + 1]); ++k) {
+      const Place& other = place[static_cast<std::size_t>(column_[k])];
+      if (place[i].group > other.group) continue;  // the owner of the column's row has it
+      const Dense<M> product = row * dense<M>(block_[k]) * restriction_of_motion<M>(other.offset, inverse_length);
+      auto& sum = sums.at(place[i].group, other.group);
+      for (std::size_t e = 0; e < sum.size(); ++e) sum[e] += product.data()[e];
+    }
+  }
+  return RigidLevel(std::move(centre), std::move(sums), comm_);
+}
+
+template <int M>
+WeightedGraph RigidLevel<M>::couplings() const {
+  constexpr int dim = RigidMotion<M>::dim;
+  WeightedGraph graph;
+  graph.start.push_back(0);
+  for (std::int32_t i = 0; i < rows(); ++i) {
+    for (auto k = start_[static_cast<std::size_t>(i)]; k < start_[static_cast<std::size_t>(i) + 1]; ++k) {
+      const std::int32_t j = column_[static_cast<std::size_t>(k)];
+      if (j == i || j >= rows()) continue;
+      double square = 0.0;
+      for (int a = 0; a < dim; ++a)
+        for (int b = 0; b < dim; ++b) {
+          const double v = block_[static_cast<std::size_t>(k)][static_cast<std::size_t>(a * M + b)];
+          square += v * v;
+        }
+      graph.column.push_back(j);
+      graph.weight.push_back(static_cast<float>(std::sqrt(square)));
+    }
+    graph.start.push_back(static_cast<std::int64_t>(graph.column.size()));
+  }
+  return graph;
+}
+
+template <int M>
+double RigidLevel<M>::largest_eigenvalue() const {
+  std::vector<double> start(size());
+  for (std::size_t i = 0; i < owned_size(); ++i)
+    start[i] = scatter(static_cast<std::uint64_t>(first()) * M + i);
+  return kacanov::largest_eigenvalue(
+      start, [this](std::span<double> x, std::span<double> y) { multiply(x, y); },
+      [this](std::span<const double> x, std::span<double> y) { scale(x, y); },
+      [this](const std::vector<double>& x, const std::vector<double>& y) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < owned_size(); ++i) sum += x[i] * y[i];
+        MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, comm_);
+        return sum;
+      });
+}
+
+template <int M>
+std::vector<typename BlockSums<M>::Entry> RigidLevel<M>::gathered() const {
+  std::vector<typename BlockSums<M>::Entry> mine;
+  for (std::int32_t i = 0; i < rows(); ++i)
+    for (auto k = static_cast<std::size_t>(start_[static_cast<std::size_t>(i)]);
+         k < static_cast<std::size_t>(start_[static_cast<std::size_t>(i) + 1]); ++k) {
+      const std::int32_t j = column_[k];
+      mine.push_back({first() + i, j < rows() ? first() + j : ghosts_[static_cast<std::size_t>(j - rows())], block_[k]});
+    }
+  return exchange(std::vector(static_cast<std::size_t>(ranks_), mine), comm_);
+}
+
+template <int M>
+std::size_t RigidLevel<M>::bytes() const noexcept {
+  return centres_.size() * (sizeof(Vector3) + sizeof(Block)) + column_.size() * (sizeof(Block) + 4) + start_.size() * 4;
+}
+
+template class RigidLevel<3>;
+template class RigidLevel<6>;
+
+}  // namespace kacanov

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One level of the hierarchy: a symmetric block matrix over the rigid motions of aggregates, its rows spread over the ranks.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "halo.hpp"
+#include "multigrid/rigid_motion.hpp"
+
+namespace kacanov {
+
+/// Sums of blocks (row, column), rows numbered over all ranks; only row ≤ column is kept, the rest follows by symmetry.
+template <int M>
+class BlockSums {
+ public:
+  using Block = std::array<double, static_cast<std::size_t>(M* M)>;
+  struct Entry {
+    std::int64_t row = 0, column = 0;
+    Block block{};
+  };
+  /// The sum at (row, column), zero at first; valid until the next call. row ≤ column < 2³².
+  Block& at(std::int64_t row, std::int64_t column) {
+    const auto key = static_cast<std::uint64_t>(row) << 32 | static_cast<std::uint64_t>(column);
+    const auto [place, fresh] = index_.try_emplace(key, static_cast<std::uint32_t>(entries_.size()));
+    if (fresh) entries_.push_back({row, column, {}});
+    return entries_[place->second].block;
+  }
+  std::span<const Entry> entries() const noexcept { return entries_; }
+
+ private:
+  std::unordered_map<std::uint64_t, std::uint32_t> index_;
+  std::vector<Entry> entries_;
+};
+
+/// Vectors have M entries a row; those handed to multiply have room for the ghosts behind the owned rows. All is double: a long
+/// body bends with 1e-8 of the energy that the entries suggest, which single precision rounds away.
+template <int M>
+class RigidLevel {
+ public:
+  using Block = typename BlockSums<M>::Block;
+
+  /// This rank owns rows first … first + rows − 1, the motions of aggregates with these centres. `sums` are its
+  /// contributions to any rows; they are sent to their owners. Collective.
+  RigidLevel(std::vector<Vector3> centres, BlockSums<M> sums, MPI_Comm comm);
+
+  std::int32_t rows() const noexcept { return static_cast<std::int32_t>(centres_.size()); }
+  std::int64_t first() const noexcept { return first_.at(static_cast<std::size_t>(rank_)); }
+  std::int64_t total() const noexcept { return first_.back(); }
+  std::span<const Vector3> centres() const noexcept { return centres_; }
+  std::size_t size() const noexcept { return (centres_.size() + ghosts_.size()) * M; }  ///< of a vector
+  std::size_t owned_size() const noexcept { return centres_.size() * M; }
+
+  /// y = A x on owned rows; fills x's ghosts.
+  void multiply(std::span<double> x, std::span<double> y) const;
+  /// y = D⁻¹ x on owned rows, D the block diagonal.
+  void scale(std::span<const double> x, std::span<double> y) const;
+  /// Largest eigenvalue of D⁻¹A, by a few power steps, somewhat from above.
+  double largest_eigenvalue() const;
+
+  /// The next level: `group` of each row, groups numbered from 0.
+  RigidLevel coarsened(std::span<const std::int32_t> group, double length) const;
+  /// Couplings between owned rows, for grouping.
+  struct WeightedGraph couplings() const;
+
+  /// The whole matrix on every rank, for a direct solve.
+  std::vector<typename BlockSums<M>::Entry> gathered() const;
+
+  MPI_Comm comm() const noexcept { return comm_; }
+  std::size_t bytes() const noexcept;
+
+ private:
+  void send_to_owners(BlockSums<M>& sums) const;
+  void build_rows(const BlockSums<M>& sums);
+  void plan_exchange();
+  void invert_diagonal();
+  int owner(std::int64_t row) const;
+
+  MPI_Comm comm_;
+  int rank_ = 0, ranks_ = 1;
+  std::vector<std::int64_t> first_;  ///< of each rank, and the total
+  std::vector<Vector3> centres_;
+  std::vector<std::int64_t> ghosts_;  ///< rows of other ranks in `column_`, ascending
+  std::vector<std::int32_t> start_, column_;
+  std::vector<Block> block_, inverse_diagonal_;
+  struct Neighbour {
+    int rank = 0;
+    std::vector<std::int32_t> send;
+    std::int32_t first_ghost = 0, ghosts = 0;
+  };
+  std::vector<Neighbour> neighbours_;
+  void fill_ghosts(std::span<double> x) const;
+};
+
+extern template class RigidLevel<3>;
+extern template class RigidLevel<6>;
+
+}  // namespace kacanov

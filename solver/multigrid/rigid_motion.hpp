@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rigid motions of an aggregate, and the small dense blocks that act on them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "model.hpp"
+
+namespace kacanov {
+
+/// M = 3 (2D: two translations, a rotation) or 6 (3D) coefficients of a rigid motion u(x) = t + θ × (x − centre) / length.
+template <int M>
+struct RigidMotion {
+  static constexpr int modes = M;
+  static constexpr int dim = M == 6 ? 3 : 2;
+
+  /// u += the motion with coefficients q at x − centre = d.
+  template <class S>
+  static void add_motion(const S* q, const double* d, double inverse_length, S* u) {
+    if constexpr (M == 6) {
+      const S x = static_cast<S>(d[0] * inverse_length), y = static_cast<S>(d[1] * inverse_length),
+              z = static_cast<S>(d[2] * inverse_length);
+      u[0] += q[0] + q[4] * z - q[5] * y;
+      u[1] += q[1] + q[5] * x - q[3] * z;
+      u[2] += q[2] + q[3] * y - q[4] * x;
+    } else {
+      const S x = static_cast<S>(d[0] * inverse_length), y = static_cast<S>(d[1] * inverse_length);
+      u[0] += q[0] - q[2] * y;
+      u[1] += q[1] + q[2] * x;
+    }
+  }
+  /// q += what the force f at x − centre = d does on the motions: the transpose of add_motion.
+  template <class S>
+  static void add_force(const S* f, const double* d, double inverse_length, S* q) {
+    if constexpr (M == 6) {
+      const S x = static_cast<S>(d[0] * inverse_length), y = static_cast<S>(d[1] * inverse_length),
+              z = static_cast<S>(d[2] * inverse_length);
+      q[0] += f[0];
+      q[1] += f[1];
+      q[2] += f[2];
+      q[3] += f[2] * y - f[1] * z;
+      q[4] += f[0] * z - f[2] * x;
+      q[5] += f[1] * x - f[0] * y;
+    } else {
+      const S x = static_cast<S>(d[0] * inverse_length), y = static_cast<S>(d[1] * inverse_length);
+      q[0] += f[0];
+      q[1] += f[1];
+      q[2] += f[1] * x - f[0] * y;
+    }
+  }
+};
+
+}  // namespace kacanov

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Aggregates, Galerkin levels over the ranks, and what the whole cycle is for: few iterations on any mesh.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "cg.hpp"
+#include "multigrid/aggregation.hpp"
+#include "multigrid/rigid_level.hpp"
+#include "operator.hpp"
+#include "preconditioner.hpp"
+#include "support.hpp"
+
+using namespace kacanov;
+using namespace kacanov::testing;
+
+namespace {
+
+/// A chain of `rows` springs a rank, joined across the ranks, each block 6 × 6 positive definite.
+RigidLevel<6> chain(std::int32_t rows) {
+  int rank = 0, ranks = 1;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  const std::int64_t first = static_cast<std::int64_t>(rank) * rows, total = static_cast<std::int64_t>(ranks) * rows;
+  std::vector<Vector3> centres;
+  BlockSums<6> sums;
+  for (std::int64_t i = first; i < first + rows; ++i) {
+    centres.push_back({static_cast<double>(i), 0.1 * static_cast<double>(i % 3), 0.0});
+    for (std::size_t k = 0; k < 6; ++k) {
+      sums.at(i, i)[7 * k] += 2.5 + 0.1 * static_cast<double>(k);
+      // Each rank also adds to rows of the next.
+      if (i + 1 < total) sums.at(i, i + 1)[7 * k] -= 1.0;
+      if (i + 1 < total) sums.at(i + 1, i + 1)[7 * k] += 0.25;
+    }
+    if (i + 1 < total) sums.at(i, i + 1)[1] = 0.125;
+  }
+  return {std::move(centres), std::move(sums), MPI_COMM_WORLD};
+}
+
+double sum_all(double v) {
+  MPI_Allreduce(MPI_IN_PLACE, &v, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+  return v;
+}
+
+double dot(const std::vector<double>& x, const std::vector<double>& y, std::size_t n) {
+  return sum_all(std::inner_product(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n), y.begin(), 0.0));
+}
+
+std::vector<double> wave(const RigidLevel<6>& level, double frequency) {
+  std::vector<double> x(level.size(), 0.0);
+  for (std::size_t i = 0; i < level.owned_size(); ++i)
+    x[i] = std::sin(frequency * static_cast<double>(level.first() * 6 + static_cast<std::int64_t>(i)) + 0.3);
+  return x;
+}
+
+int iterations(const Part& part, double stretch) {
+  const Space space(part);
+  Operator op(part.body());
+  Vector g(part.body().secant_count());
+  op.secant(g);
+  for (std::size_t e = 0; e < g.size(); ++e) g[e] *= e % 7 == 0 ? stretch : 1.0;
+  op.set_secant(g);
+  const auto amg = make_preconditioner(SolverOptions::Preconditioner::multigrid, part, 1, "");
+  amg->setup(g, {}, space);
+  CgWork work;
+  work.resize(part.unknowns());
+  for (std::size_t i = 0; i < part.unknowns(); ++i)
+    work.residual[i] = std::sin(static_cast<double>(part.node_index[i / static_cast<std::size_t>(part.dim())]) + static_cast<double>(i % static_cast<std::size_t>(part.dim())));
+  Vector u(part.unknowns(), 0.0);
+  const CgResult solve = conjugate_gradients(
+      space,
+      [&](std::span<const double> p, std::span<double> q) {
+        op.apply(p, q);
+        part.halo.sum(q, part.dim());
+      },
+      [&](std::span<const double> p, std::span<double> q) { amg->apply(p, q); }, u, work, {0.0, 1e-8, 400});
+  CHECK(solve.converged);
+  return solve.iterations;
+}
+
+Part beam(int cells, double length, ElementType type) {
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  Model model = elastic_model();
+  model.boundary.push_back(moved(named("left"), type == ElementType::tri3 ? 2 : 3));
+  if (rank > 0) return distribute(nullptr, MPI_COMM_WORLD);
+  const Problem problem = build_problem(make_box({{length, 1, 1}, {3 * cells, cells, cells}, type}), model);
+  return distribute(&problem, MPI_COMM_WORLD);
+}
+
+}  // namespace
+
+TEST_CASE("aggregates follow the strong couplings and leave nobody out") {
+  // Cells ten times longer than wide: aggregates lie across.
+  const Mesh mesh = make_box({{30, 1, 1}, {30, 10, 10}, ElementType::tet4});
+  const std::vector<Law> laws{Law{}};
+  const std::vector<std::uint16_t> law(mesh.element_count(), 0);
+  const std::vector<double> g(mesh.element_count(), 1.0);
+  const auto nodes = static_cast<std::int32_t>(mesh.node_count());
+  const auto group = aggregate(coupling_graph({mesh.view(), laws, law}, g, nodes), 12.0);
+  const std::int32_t groups = 1 + *std::max_element(group.begin(), group.end());
+  std::vector<int> members(static_cast<std::size_t>(groups), 0);
+  std::vector<double> low(members.size(), HUGE_VAL), high(members.size(), -HUGE_VAL);
+  for (std::size_t n = 0; n < group.size(); ++n) {
+    const auto a = static_cast<std::size_t>(group[n]);
+    ++members[a];
+    low[a] = std::min(low[a], mesh.coordinates[3 * n]);
+    high[a] = std::max(high[a], mesh.coordinates[3 * n]);
+  }
+  CHECK(*std::min_element(members.begin(), members.end()) >= 1);
+  CHECK(static_cast<double>(nodes) / groups >= 8.0);
+  int across = 0;
+  for (std::size_t a = 0; a < members.size(); ++a) across += high[a] == low[a] ? 1 : 0;
+  CHECK(across > groups * 9 / 10);
+}
+
+TEST_CASE("a level is symmetric, and the next one is its Galerkin matrix, on any number of ranks") {
+  const auto level = chain(9);
+  auto x = wave(level, 0.7), y = wave(level, 1.9);
+  std::vector<double> ax(level.owned_size()), ay(ax);
+  level.multiply(x, ax);
+  level.multiply(y, ay);
+  CHECK(dot(ax, y, ax.size()) == doctest::Approx(dot(ay, x, ax.size())).epsilon(1e-12));
+  CHECK(dot(ax, x, ax.size()) > 0.0);
+
+  std::vector<std::int32_t> group(static_cast<std::size_t>(level.rows()));
+  for (std::size_t i = 0; i < group.size(); ++i) group[i] = static_cast<std::int32_t>(i / 3);
+  const double length = 0.8;
+  const auto next = level.coarsened(group, length);
+  CHECK(next.total() * 3 == level.total());
+  auto c = wave(next, 1.1);
+  std::vector<double> ac(next.owned_size()), p(level.size(), 0.0);
+  next.multiply(c, ac);
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    const auto a = static_cast<std::size_t>(group[i]);
+    Vector3 offset{};
+    for (std::size_t k = 0; k < 3; ++k) offset[k] = level.centres()[i][k] - next.centres()[a][k];
+    RigidMotion<6>::add_motion(&c[6 * a], offset.data(), 1.0 / length, &p[6 * i]);
+    for (std::size_t k = 3; k < 6; ++k) p[6 * i + k] += c[6 * a + k];
+  }
+  level.multiply(p, ax);
+  CHECK(dot(ac, c, ac.size()) == doctest::Approx(dot(ax, p, ax.size())).epsilon(1e-12));
+}
+
+TEST_CASE("iterations hardly depend on the mesh: size, element, stretch, contrast") {
+  for (const auto type : {ElementType::tet4, ElementType::hex8, ElementType::tri3}) {
+    CAPTURE(static_cast<int>(type));
+    const int fine = type == ElementType::tri3 ? 40 : 12;
+    const int small = iterations(beam(fine / 2, 3.0, type), 1.0), large = iterations(beam(fine, 3.0, type), 1.0);
+    CHECK(small <= 40);
+    CHECK(large <= 1.5 * small);
+    CHECK(iterations(beam(fine / 2, 30.0, type), 1.0) <= 4 * small);
+    CHECK(iterations(beam(fine / 2, 3.0, type), 0.1) <= 3 * small);
+  }
+}
