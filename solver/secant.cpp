@@ -38,7 +38,7 @@ constexpr int balancing_iterations = 10;
 constexpr double largest_penalty = 3.0;
 constexpr double smallest_share = 1e-4;
 /// Relative accuracy of a semismooth Newton step.
-constexpr double solve_reduction = 0.1;
+constexpr double solve_reduction = 0.03;
 /// Semismooth Newton decides by λ + c(w − ρ), c this share of ADMM's penalty. A whole penalty makes slipping
 /// points flip on the half ball (338 applications instead of 145), a tenth costs steps on beams.
 constexpr double decision_share = 0.3;
