@@ -341,15 +341,20 @@ RigidLevel<M> ModesHierarchy<M>::first_level(std::span<const double> g, std::spa
           z[a] = motions(node[a]);
           for (std::size_t c = 0; c < dim; ++c) x[a * dim + c] = body.mesh.coordinates[static_cast<std::size_t>(node[a]) * dim + c];
         }
-        const double bulk = body.laws[body.law_of_element[e]].bulk;
+        const Law& law = body.laws[body.law_of_element[e]];
+        const auto points = elements::points_of<E>(x, law.mean_dilatation);
         for (std::size_t q = 0; q < E::points; ++q) {
-          const elements::Point<E> point(x, q);
+          const auto& point = points[q];
           std::array<Strain, npe> strain{};
+          std::array<std::array<double, M>, npe> dilatation{};
           for (std::size_t a = 0; a < npe; ++a) {
             Strain& s = strain[local[a]];
             const double* d = point.gradient[a];
             for (std::size_t m = 0; m < M; ++m) {
-              for (std::size_t c = 0; c < dim; ++c) s[c][m] += d[c] * z[a][c][m];
+              for (std::size_t c = 0; c < dim; ++c) {
+                s[c][m] += d[c] * z[a][c][m];
+                dilatation[local[a]][m] += point.dilatation[a][c] * z[a][c][m];
+              }
               s[3][m] += (d[0] * z[a][1][m] + d[1] * z[a][0][m]) / root;
               if constexpr (dim == 3) {
                 s[4][m] += (d[1] * z[a][2][m] + d[2] * z[a][1][m]) / root;
@@ -358,17 +363,18 @@ RigidLevel<M> ModesHierarchy<M>::first_level(std::span<const double> g, std::spa
             }
           }
           const double shear = 2.0 * g[e * static_cast<std::size_t>(E::points) + q] * point.volume;
-          const double lambda = bulk * point.volume - shear / 3.0;
+          const double bulk = law.bulk * point.volume;
           for (std::size_t a = 0; a < count; ++a) {
-            std::array<double, M> trace{};
-            for (std::size_t m = 0; m < M; ++m) trace[m] = lambda * (strain[a][0][m] + strain[a][1][m] + strain[a][2][m]);
             for (std::size_t b = 0; b < count; ++b) {
               if (which[a] > which[b]) continue;
               auto& sum = sums.at(which[a], which[b]);
               for (std::size_t i = 0; i < M; ++i)
                 for (std::size_t j = 0; j < M; ++j) {
-                  double v = trace[i] * (strain[b][0][j] + strain[b][1][j] + strain[b][2][j]);
-                  for (std::size_t k = 0; k < 6; ++k) v += shear * strain[a][k][i] * strain[b][k][j];
+                  const auto& r = strain[a];
+                  const auto& c = strain[b];
+                  double v = (r[0][i] + r[1][i] + r[2][i]) * (c[0][j] + c[1][j] + c[2][j]) / -3.0;
+                  for (std::size_t k = 0; k < 6; ++k) v += r[k][i] * c[k][j];
+                  v = shear * v + bulk * dilatation[a][i] * dilatation[b][j];
                   sum[i * M + j] += v;
                 }
             }
