@@ -73,11 +73,11 @@ struct Lanes<float> {
 
   typedef float Record __attribute__((vector_size(16)));
   KACANOV_INLINE static Record load_row(const float* p) {
-    const __m128 xy = _mm_castpd_ps(_mm_load_sd(reinterpret_cast<const double*>(p)));
+    const __m128 xy = _mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i_u*>(p)));  // aligned to a float only
     return (Record)_mm_movelh_ps(xy, _mm_load_ss(p + 2));
   }
   KACANOV_INLINE static void store_row(float* p, Record r) {
-    _mm_storel_pi(reinterpret_cast<__m64*>(p), (__m128)r);
+    _mm_storel_epi64(reinterpret_cast<__m128i_u*>(p), _mm_castps_si128((__m128)r));
     _mm_store_ss(p + 2, _mm_movehl_ps((__m128)r, (__m128)r));
   }
   KACANOV_INLINE static Record load_record(const float* p) { return (Record)_mm_load_ps(p); }
