@@ -3,7 +3,6 @@
 #include "multigrid/fine_level.hpp"
 
 #include <Eigen/Dense>
-#include <cmath>
 
 #include "multigrid/largest_eigenvalue.hpp"
 #include "multigrid/rigid_multigrid.hpp"
@@ -71,10 +70,7 @@ void FineLevel::scale(std::span<const float> x, std::span<float> y) const {
   }
 }
 
-void FineLevel::hold(std::span<float> x) const {
-  for (std::size_t i = 0; i < x.size(); ++i)
-    if (part_.held[i]) x[i] = 0.0F;
-}
+void FineLevel::hold(std::span<float> x) const { Space(part_).project(x); }
 
 void FineLevel::project(std::span<float> x) const { space_.project(x); }
 

@@ -21,15 +21,15 @@ Dense<M> dense(const typename BlockSums<M>::Block& block) {
   return Eigen::Map<const Dense<M>>(block.data());
 }
 
-/// Coefficients of the fine aggregate's motion from those of the group it belongs to.
+/// Takes coefficients of a group's motion to those of an aggregate in it.
 template <int M>
-Dense<M> restriction_of_motion(const Vector3& offset, double inverse_length) {
-  Dense<M> p = Dense<M>::Identity();
+Dense<M> prolongation(const Vector3& offset, double inverse_length) {
+  Dense<M> p;
   for (int k = 0; k < M; ++k) {
-    std::array<double, M> q{}, u{};
-    q[static_cast<std::size_t>(k)] = 1.0;
-    RigidMotion<M>::add_motion(q.data(), offset.data(), inverse_length, u.data());
-    for (int c = 0; c < RigidMotion<M>::dim; ++c) p(c, k) = u[static_cast<std::size_t>(c)];
+    std::array<double, M> group{}, member{};
+    group[static_cast<std::size_t>(k)] = 1.0;
+    RigidMotion<M>::add_to_part(group.data(), offset.data(), inverse_length, member.data());
+    p.col(k) = Eigen::Map<const Eigen::Matrix<double, M, 1>>(member.data());
   }
   return p;
 }
@@ -266,11 +266,11 @@ RigidLevel<M> RigidLevel<M>::coarsened(std::span<const std::int32_t> group, doub
 
   BlockSums<M> sums;
   for (std::size_t i = 0; i < centres_.size(); ++i) {
-    const Dense<M> row = restriction_of_motion<M>(place[i].offset, inverse_length).transpose();
+    const Dense<M> row = prolongation<M>(place[i].offset, inverse_length).transpose();
     for (auto k = static_cast<std::size_t>(start_[i]); k < static_cast<std::size_t>(start_[i + 1]); ++k) {
       const Place& other = place[static_cast<std::size_t>(column_[k])];
       if (place[i].group > other.group) continue;  // the owner of the column's row has it
-      const Dense<M> product = row * dense<M>(block_[k]) * restriction_of_motion<M>(other.offset, inverse_length);
+      const Dense<M> product = row * dense<M>(block_[k]) * prolongation<M>(other.offset, inverse_length);
       auto& sum = sums.at(place[i].group, other.group);
       for (std::size_t e = 0; e < sum.size(); ++e) sum[e] += product.data()[e];
     }
@@ -327,11 +327,6 @@ std::vector<typename BlockSums<M>::Entry> RigidLevel<M>::gathered() const {
       mine.push_back({first() + i, j < rows() ? first() + j : ghosts_[static_cast<std::size_t>(j - rows())], block_[k]});
     }
   return exchange(std::vector(static_cast<std::size_t>(ranks_), mine), comm_);
-}
-
-template <int M>
-std::size_t RigidLevel<M>::bytes() const noexcept {
-  return centres_.size() * (sizeof(Vector3) + sizeof(Block)) + column_.size() * (sizeof(Block) + 4) + start_.size() * 4;
 }
 
 template class RigidLevel<3>;

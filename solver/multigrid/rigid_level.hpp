@@ -69,7 +69,6 @@ class RigidLevel {
   std::vector<typename BlockSums<M>::Entry> gathered() const;
 
   MPI_Comm comm() const noexcept { return comm_; }
-  std::size_t bytes() const noexcept;
 
  private:
   void send_to_owners(BlockSums<M>& sums) const;

@@ -49,6 +49,19 @@ struct RigidMotion {
       q[2] += f[1] * x - f[0] * y;
     }
   }
+
+  /// q += the coefficients that the motion `from` of a larger aggregate has in a part of it, whose centre lies at d.
+  template <class S>
+  static void add_to_part(const S* from, const double* d, double inverse_length, S* q) {
+    add_motion(from, d, inverse_length, q);
+    for (int m = dim; m < M; ++m) q[m] += from[m];
+  }
+  /// Its transpose: q += what the forces `f` on the motions of the part do on those of the larger aggregate.
+  template <class S>
+  static void add_from_part(const S* f, const double* d, double inverse_length, S* q) {
+    add_force(f, d, inverse_length, q);
+    for (int m = dim; m < M; ++m) q[m] += f[m];
+  }
 };
 
 }  // namespace kacanov

@@ -164,8 +164,7 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
         std::array<double, M> force{};
         for (std::size_t m = 0; m < M; ++m) force[m] = stage.b[i * M + m] - stage.image[i * M + m];
         double* to = next.b.data() + static_cast<std::size_t>(stage.group[i]) * M;
-        RigidMotion<M>::add_force(force.data(), stage.offset[i].data(), 1.0 / length_, to);
-        for (std::size_t m = RigidMotion<M>::dim; m < M; ++m) to[m] += force[m];
+        RigidMotion<M>::add_from_part(force.data(), stage.offset[i].data(), 1.0 / length_, to);
       }
       cycle(k + 1);
       for (std::size_t i = 0; i < stage.group.size(); ++i) {
@@ -173,8 +172,7 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
         double* to = stage.x.data() + i * M;
         std::array<double, M> scaled{};
         for (std::size_t m = 0; m < M; ++m) scaled[m] = options_.coarse_gain * from[m];
-        RigidMotion<M>::add_motion(scaled.data(), stage.offset[i].data(), 1.0 / length_, to);
-        for (std::size_t m = RigidMotion<M>::dim; m < M; ++m) to[m] += scaled[m];
+        RigidMotion<M>::add_to_part(scaled.data(), stage.offset[i].data(), 1.0 / length_, to);
       }
     }
     smooth(false);

@@ -137,8 +137,7 @@ TEST_CASE("a level is symmetric, and the next one is its Galerkin matrix, on any
     const auto a = static_cast<std::size_t>(group[i]);
     Vector3 offset{};
     for (std::size_t k = 0; k < 3; ++k) offset[k] = level.centres()[i][k] - next.centres()[a][k];
-    RigidMotion<6>::add_motion(&c[6 * a], offset.data(), 1.0 / length, &p[6 * i]);
-    for (std::size_t k = 3; k < 6; ++k) p[6 * i + k] += c[6 * a + k];
+    RigidMotion<6>::add_to_part(&c[6 * a], offset.data(), 1.0 / length, &p[6 * i]);
   }
   level.multiply(p, ax);
   CHECK(dot(ac, c, ac.size()) == doctest::Approx(dot(ax, p, ax.size())).epsilon(1e-12));
