@@ -18,6 +18,7 @@
 #include "parallel.hpp"
 #include "preconditioner.hpp"
 #include "problem.hpp"
+#include "problem/selection.hpp"
 #include "spectrum.hpp"
 
 namespace {
@@ -61,12 +62,8 @@ Problem make_problem(const Options& options, int cells, double poisson, double a
     mesh = read_gmsh(options.mesh);
   }
   const auto dim = static_cast<std::size_t>(mesh.dim());
-  Vector3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
-  for (std::size_t i = 0; i < mesh.coordinates.size(); ++i) {
-    low[i % dim] = std::min(low[i % dim], mesh.coordinates[i]);
-    high[i % dim] = std::max(high[i % dim], mesh.coordinates[i]);
-  }
-  const auto side = [&](std::size_t axis, bool upper, double from_x) {
+  const Extent box = extent(mesh);
+  const auto side = [&, low = box.lower, high = box.upper](std::size_t axis, bool upper, double from_x) {
     Selector on;
     on.kind = Selector::Kind::box;
     on.lower = low;
@@ -98,7 +95,7 @@ Problem make_problem(const Options& options, int cells, double poisson, double a
   ContactEntry contact;
   contact.on = side(up, false, 0.0);
   Plane plane;
-  plane.point = low;
+  plane.point = box.lower;
   plane.normal[up] = 1.0;
   contact.obstacle = plane;
   model.contact.push_back(contact);
@@ -157,14 +154,10 @@ Json measure(const Part& part, DistributedOperator& op, const std::string& kind,
   work.resize(part.unknowns());
   Vector x(part.unknowns(), 0.0);
   work.residual = part.load;
-  Vector trace(rows.owned()), image(part.unknowns());
+  const Traces traces(part);
   const auto apply = [&](std::span<const double> p, std::span<double> q) {
     op.apply(p, q);
-    if (penalty == 0.0) return;
-    rows.apply(p, trace);
-    for (double& v : trace) v *= penalty;
-    rows.transpose(trace, image);
-    for (std::size_t i = 0; i < q.size(); ++i) q[i] += image[i];
+    traces.add_penalty({penalty, 0.0}, p, q);
   };
   const auto precondition = [&](std::span<const double> r, std::span<double> z) { amg->apply(r, z); };
   const double before = MPI_Wtime();
