@@ -11,12 +11,11 @@
 #include "loaded_case.hpp"
 #include "output_folder.hpp"
 #include "picture.hpp"
+#include "result_json.hpp"
 #include "solve.hpp"
 
 namespace kacanov {
 namespace {
-
-const char* status_name(Status status) { return status == Status::converged ? "converged" : "not_converged"; }
 
 /// What the sweep is compared with: r* of the elastic body and r_A of the solution.
 struct Landmarks {

@@ -13,15 +13,6 @@ ordered_json entries(const Vector3& v, int dim) {
   return list;
 }
 
-const char* status_name(Status status) {
-  switch (status) {
-    case Status::converged: return "converged";
-    case Status::not_converged: return "not_converged";
-    case Status::interrupted: break;
-  }
-  return "interrupted";
-}
-
 ordered_json estimate_json(const SpectrumResult& result) {
   return {{"traces", result.friction ? "normal and tangential" : "normal"},
           {"rows", result.traces},
@@ -37,6 +28,15 @@ ordered_json estimate_json(const SpectrumResult& result) {
 }
 
 }  // namespace
+
+const char* status_name(Status status) {
+  switch (status) {
+    case Status::converged: return "converged";
+    case Status::not_converged: return "not_converged";
+    case Status::interrupted: break;
+  }
+  return "interrupted";
+}
 
 ordered_json result_json(const Result& result, int dim) {
   ordered_json json;

@@ -11,6 +11,9 @@
 
 namespace kacanov {
 
+/// As the file's `status` says it.
+const char* status_name(Status status);
+
 /// Every key of the file. Vectors have `dim` entries; numbers that are not finite become null.
 nlohmann::ordered_json result_json(const Result& result, int dim);
 
