@@ -353,7 +353,7 @@ void OuterLoop::take_newton_step(Result& result, ProgressStep& line, const Resid
   Vector residual(part_.unknowns()), delta(part_.unknowns());
   for (std::size_t i = 0; i < residual.size(); ++i) residual[i] = part_.load[i] - internal_[i];
   // A step that may be the last is solved well below the tolerance, so that answers do not depend on ranks or
-  // threads to more than that; any other to a tenth of its residual.
+  // threads to more than that.
   const double floor = 0.05 * options_.tolerance * gap_share(before.certificate) * before.scales.force;
   const bool last = before.certificate.worst() * solve_reduction <= options_.tolerance;
   const auto applications = op_.applications();

@@ -49,7 +49,6 @@ class OuterLoop {
   /// of the last one's solution.
   void scale(double ratio, const Result& result);
   /// By the loop's own operator.
-  void update_residual();
   Residuals certify() const;
   /// Goes on from a checkpoint, which rank 0 has. Collective.
   void restore(const Checkpoint* from, Result& result);
@@ -76,6 +75,7 @@ class OuterLoop {
   void balance_penalty(const AdmmResult& step, Result& result);
   void set_up_preconditioner(std::span<const NodeBlock> blocks, const Space& space);
   std::vector<NodeBlock> penalty_blocks() const;
+  void update_residual();
   bool setup_pays(bool wanted);
   bool penalty_moved() const;
   std::int64_t set_moved(std::span<const TraceChoice> set) const;
