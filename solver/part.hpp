@@ -14,7 +14,7 @@
 namespace kacanov {
 
 /// Elements are split without overlap; a node lies on every rank that has one of its elements and is
-/// owned by one of them. Owned nodes come first. Vectors over a part are consistent: every copy of a
+/// owned by one of them. Owned nodes come first, neighbours close to each other (node_order). Vectors over a part are consistent: every copy of a
 /// shared entry holds the same bits.
 struct Part {
   ElementType type = ElementType::tet4;
@@ -22,7 +22,7 @@ struct Part {
   std::vector<std::int32_t> elements;
   std::vector<std::int32_t> node_index;     ///< index in Problem::mesh
   std::vector<std::int32_t> element_index;  ///< likewise
-  std::vector<std::int64_t> node_tags, element_tags;  ///< the user's numbers
+  std::vector<std::int64_t> node_tags, element_tags;  ///< the user's numbers; empty: index + 1
   std::int32_t owned_nodes = 0;
   std::int64_t first_owned = 0;          ///< owned nodes are numbered first_owned … over all ranks
   std::int64_t total_nodes = 0, total_elements = 0;
@@ -43,6 +43,13 @@ struct Part {
 
   int dim() const noexcept { return dimension(type); }
   std::size_t nodes() const noexcept { return node_index.size(); }
+  std::size_t element_count() const noexcept { return element_index.size(); }
+  std::int64_t node_tag(std::size_t i) const noexcept {
+    return node_tags.empty() ? std::int64_t{node_index[i]} + 1 : node_tags[i];
+  }
+  std::int64_t element_tag(std::size_t i) const noexcept {
+    return element_tags.empty() ? std::int64_t{element_index[i]} + 1 : element_tags[i];
+  }
   std::size_t unknowns() const noexcept { return coordinates.size(); }
   std::size_t owned_unknowns() const noexcept {
     return static_cast<std::size_t>(owned_nodes) * static_cast<std::size_t>(dim());
@@ -54,10 +61,8 @@ struct Part {
 /// hands every rank its part. Collective.
 Part distribute(const Problem* problem, MPI_Comm comm);
 
-/// Collects nodes × components (owned entries) or elements × components on rank 0, in the numbering
-/// of Problem::mesh; empty elsewhere. Collective.
+/// Collects nodes × components (owned entries) on rank 0, in the numbering of Problem::mesh; empty elsewhere. Collective.
 std::vector<double> gather_nodal(const Part& part, std::span<const double> local, int components);
-std::vector<double> gather_elements(const Part& part, std::span<const double> local, int components);
 /// Contact points × components, in the numbering of Problem::contact.
 std::vector<double> gather_contact(const Part& part, std::span<const double> local, int components);
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// METIS over the ranks: splits a problem and hands every rank its part.
-#include <metis.h>
-
+// Splits a problem and hands every rank its part.
 #include <algorithm>
+#include <array>
 #include <cstddef>
-#include <limits>
+#include <map>
 #include <numeric>
+#include <set>
 #include <type_traits>
 
-#include "error.hpp"
+#include "locality.hpp"
 #include "part.hpp"
 
 namespace kacanov {
@@ -129,28 +129,26 @@ void exchange_fields(P& part, const Stream& stream) {
   stream(part.loose_modes);
 }
 
-/// METIS part of every element. Corner nodes suffice for the dual graph.
-std::vector<Index> partition_elements(const Mesh& mesh, int ranks) {
-  const auto count = mesh.element_count();
-  std::vector<Index> part(count, 0);
+/// Part of every element: the one most of its corners lie in, as METIS splits the nodes (in groups along `order`, so that its
+/// graph stays small beside the mesh). Equal shares go by turns.
+std::vector<std::uint16_t> partition_elements(const Mesh& mesh, std::span<const Index> order, int ranks) {
+  std::vector<std::uint16_t> part(mesh.element_count(), 0);
   if (ranks == 1) return part;
-  static_assert(sizeof(idx_t) == 4, "METIS is expected to be a 32-bit build");
+  const std::vector<Index> node_part = partition_nodes(mesh.view(), order, ranks);
   const auto stride = static_cast<std::size_t>(nodes_per_element(mesh.type));
   const std::size_t corners = mesh.type == ElementType::tet10 ? 4 : stride;
-  if (count * corners > static_cast<std::size_t>(std::numeric_limits<idx_t>::max()))
-    throw InputError("the mesh has too many elements for a 32-bit METIS: run with --ranks 1");
-  std::vector<idx_t> start(count + 1), corner(count * corners);
-  for (std::size_t e = 0; e <= count; ++e) start[e] = static_cast<idx_t>(e * corners);
-  for (std::size_t e = 0; e < count; ++e)
-    std::copy_n(mesh.elements.begin() + static_cast<std::ptrdiff_t>(e * stride), corners,
-                corner.begin() + static_cast<std::ptrdiff_t>(e * corners));
-  auto elements = static_cast<idx_t>(count), nodes = static_cast<idx_t>(mesh.node_count());
-  idx_t common = mesh.type == ElementType::hex8 ? 4 : static_cast<idx_t>(mesh.dim());
-  idx_t parts = ranks, cut = 0;
-  std::vector<idx_t> node_part(mesh.node_count());
-  const int status = METIS_PartMeshDual(&elements, &nodes, start.data(), corner.data(), nullptr, nullptr, &common,
-                                        &parts, nullptr, nullptr, &cut, part.data(), node_part.data());
-  if (status != METIS_OK) throw InternalError("METIS could not partition the mesh");
+  for (std::size_t e = 0; e < part.size(); ++e) {
+    std::array<Index, 8> of{};
+    for (std::size_t a = 0; a < corners; ++a) of[a] = node_part[static_cast<std::size_t>(mesh.elements[e * stride + a])];
+    std::ptrdiff_t most = 0;
+    for (std::size_t k = 0; k < corners; ++k) {
+      const Index candidate = of[(e + k) % corners];
+      const auto votes = std::count(of.begin(), of.begin() + static_cast<std::ptrdiff_t>(corners), candidate);
+      if (votes <= most) continue;
+      most = votes;
+      part[e] = static_cast<std::uint16_t>(candidate);
+    }
+  }
   return part;
 }
 
@@ -168,7 +166,7 @@ struct Sharers {
   }
 };
 
-Sharers find_sharers(const Mesh& mesh, std::span<const Index> part, int ranks) {
+Sharers find_sharers(const Mesh& mesh, std::span<const std::uint16_t> part, int ranks) {
   Sharers sharers;
   const std::size_t nodes = mesh.node_count();
   const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
@@ -178,30 +176,27 @@ Sharers find_sharers(const Mesh& mesh, std::span<const Index> part, int ranks) {
     sharers.rank.assign(nodes, 0);
     return sharers;
   }
-  // Elements by rank, so that each node sees its ranks in ascending order.
-  std::vector<Index> order(part.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
-    return part[static_cast<std::size_t>(a)] < part[static_cast<std::size_t>(b)];
-  });
-  std::vector<int> last(nodes, -1);
-  const auto visit = [&](auto&& on_new) {
-    std::fill(last.begin(), last.end(), -1);
-    for (const Index e : order) {
-      const int p = part[static_cast<std::size_t>(e)];
-      for (std::size_t a = 0; a < npe; ++a) {
-        const auto n = static_cast<std::size_t>(mesh.elements[static_cast<std::size_t>(e) * npe + a]);
-        if (last[n] == p) continue;
-        last[n] = p;
-        on_new(n, p);
-      }
-    }
-  };
-  visit([&](std::size_t n, int) { ++sharers.start[n + 1]; });
-  std::partial_sum(sharers.start.begin(), sharers.start.end(), sharers.start.begin());
-  sharers.rank.resize(sharers.start.back());
-  std::vector<std::size_t> at(sharers.start.begin(), sharers.start.end() - 1);
-  visit([&](std::size_t n, int p) { sharers.rank[at[n]++] = p; });
+  // A first pass tells the inner nodes, which are most, by their only rank; the few others have lists.
+  constexpr int none = -1, several = -2;
+  std::vector<int> only(nodes, none);
+  for (std::size_t k = 0; k < mesh.elements.size(); ++k) {
+    int& rank = only[static_cast<std::size_t>(mesh.elements[k])];
+    const int here = part[k / npe];
+    if (rank == none) rank = here;
+    if (rank != here) rank = several;
+  }
+  std::map<std::size_t, std::set<int>> lists;
+  for (std::size_t k = 0; k < mesh.elements.size(); ++k) {
+    const auto n = static_cast<std::size_t>(mesh.elements[k]);
+    if (only[n] == several) lists[n].insert(part[k / npe]);
+  }
+  for (std::size_t n = 0; n < nodes; ++n) {
+    if (only[n] == several)
+      sharers.rank.insert(sharers.rank.end(), lists[n].begin(), lists[n].end());
+    else
+      sharers.rank.push_back(only[n]);
+    sharers.start[n + 1] = sharers.rank.size();
+  }
   return sharers;
 }
 
@@ -210,7 +205,8 @@ class Splitter {
   Splitter(const Problem& problem, int ranks)
       : problem_(problem),
         ranks_(ranks),
-        part_of_(partition_elements(problem.mesh, ranks)),
+        order_(node_order(problem.mesh.view())),
+        part_of_(partition_elements(problem.mesh, order_, ranks)),
         sharers_(find_sharers(problem.mesh, part_of_, ranks)),
         first_(static_cast<std::size_t>(ranks) + 1, 0),
         global_(problem.mesh.node_count()),
@@ -219,7 +215,10 @@ class Splitter {
     for (std::size_t n = 0; n < nodes; ++n) ++first_[static_cast<std::size_t>(sharers_.owner(n)) + 1];
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
     auto next = first_;
-    for (std::size_t n = 0; n < nodes; ++n) global_[n] = next[static_cast<std::size_t>(sharers_.owner(n))]++;
+    for (const Index index : order_) {
+      const auto n = static_cast<std::size_t>(index);
+      global_[n] = next[static_cast<std::size_t>(sharers_.owner(n))]++;
+    }
   }
 
   Part part(int rank) {
@@ -244,21 +243,24 @@ class Splitter {
     part.total_elements = static_cast<std::int64_t>(mesh.element_count());
     part.first_owned = first_[static_cast<std::size_t>(rank)];
     for (const bool owned : {true, false}) {
-      for (std::size_t n = 0; n < mesh.node_count(); ++n) {
+      for (const Index index : order_) {
+        const auto n = static_cast<std::size_t>(index);
         const auto s = sharers_.of(n);
         if ((sharers_.owner(n) == rank) != owned || !std::binary_search(s.begin(), s.end(), rank)) continue;
         local_[n] = static_cast<Index>(part.node_index.size());
-        part.node_index.push_back(static_cast<Index>(n));
+        part.node_index.push_back(index);
       }
       if (owned) part.owned_nodes = static_cast<Index>(part.node_index.size());
     }
+    part.node_index.shrink_to_fit();
     const std::size_t count = part.node_index.size();
-    part.coordinates.reserve(count * dim);
-    part.node_tags.reserve(count);
+    for (auto* v : {&part.coordinates, &part.load, &part.prescribed}) v->reserve(count * dim);
+    part.held.reserve(count * dim);
+    if (!mesh.node_tags.empty()) part.node_tags.reserve(count);
     part.global_node.reserve(count);
     for (const Index index : part.node_index) {
       const auto n = static_cast<std::size_t>(index);
-      part.node_tags.push_back(mesh.node_tag(n));
+      if (!mesh.node_tags.empty()) part.node_tags.push_back(mesh.node_tags[n]);
       part.global_node.push_back(global_[n]);
       for (std::size_t c = n * dim; c < (n + 1) * dim; ++c) {
         part.coordinates.push_back(mesh.coordinates[c]);
@@ -272,10 +274,15 @@ class Splitter {
   void take_elements(Part& part, int rank) const {
     const Mesh& mesh = problem_.mesh;
     const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
+    const auto count = static_cast<std::size_t>(std::count(part_of_.begin(), part_of_.end(), rank));
+    part.element_index.reserve(count);
+    if (!mesh.element_tags.empty()) part.element_tags.reserve(count);
+    part.law_of_element.reserve(count);
+    part.elements.reserve(count * npe);
     for (std::size_t e = 0; e < part_of_.size(); ++e) {
       if (part_of_[e] != rank) continue;
       part.element_index.push_back(static_cast<Index>(e));
-      part.element_tags.push_back(mesh.element_tag(e));
+      if (!mesh.element_tags.empty()) part.element_tags.push_back(mesh.element_tags[e]);
       part.law_of_element.push_back(problem_.law_of_element[e]);
       for (std::size_t a = 0; a < npe; ++a)
         part.elements.push_back(local_[static_cast<std::size_t>(mesh.elements[e * npe + a])]);
@@ -347,7 +354,8 @@ class Splitter {
 
   const Problem& problem_;
   int ranks_;
-  std::vector<Index> part_of_;
+  std::vector<Index> order_;  // neighbours close to each other
+  std::vector<std::uint16_t> part_of_;
   Sharers sharers_;
   std::vector<std::int64_t> first_, global_;
   std::vector<Index> local_;
@@ -412,11 +420,6 @@ std::vector<double> gather(std::span<const Index> index, std::span<const double>
 std::vector<double> gather_nodal(const Part& part, std::span<const double> local, int components) {
   return gather(std::span(part.node_index).first(static_cast<std::size_t>(part.owned_nodes)), local,
                 static_cast<std::size_t>(components), static_cast<std::size_t>(part.total_nodes), part.halo);
-}
-
-std::vector<double> gather_elements(const Part& part, std::span<const double> local, int components) {
-  return gather(part.element_index, local, static_cast<std::size_t>(components),
-                static_cast<std::size_t>(part.total_elements), part.halo);
 }
 
 std::vector<double> gather_contact(const Part& part, std::span<const double> local, int components) {

@@ -2,6 +2,8 @@
 // Puts a model on a mesh, step by step, and checks that what results can be solved.
 #include "problem.hpp"
 
+#include <type_traits>
+
 #include "error.hpp"
 #include "problem/conditions.hpp"
 #include "problem/contact_points.hpp"
@@ -28,6 +30,18 @@ Problem build_problem(Mesh mesh, const Model& model) {
   check_rigid_modes(problem);
   problem.probes = locate_probes(problem.mesh, model);
   return problem;
+}
+
+void keep_boundary(Problem& problem) {
+  const auto free = [](auto& array) { std::remove_reference_t<decltype(array)>().swap(array); };
+  if (problem.mesh.dim() == 3) {
+    free(problem.mesh.elements);
+    free(problem.mesh.element_tags);
+  }
+  free(problem.law_of_element);
+  free(problem.load);
+  free(problem.held);
+  free(problem.prescribed);
 }
 
 }  // namespace kacanov

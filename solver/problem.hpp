@@ -46,6 +46,10 @@ struct Problem {
   std::vector<std::string> warnings;
 };
 
+/// Frees what only the parts need once they are made: in 3D the elements, in any case the arrays over nodes and elements. What
+/// is left serves pictures and output: nodes, boundary, contact points.
+void keep_boundary(Problem& problem);
+
 /// Resolves every `on`, assembles the load, finds traces and gaps. Throws InputError in the words of the case
 /// file ("boundary[1].on: ..."): unknown names with those that exist, empty selections, contact
 /// without facets, materials that overlap or leave elements without one, rigid modes that nothing

@@ -83,13 +83,10 @@ struct Result {
 /// State of a contact point.
 enum class ContactStatus : std::uint8_t { open, stick, slip };  ///< frictionless contact: slip
 
-/// This rank's fields, in the numbering of its Part.
+/// This rank's fields, in the numbering of its Part. Those of elements follow from the displacement: element_fields.hpp.
 struct Solution {
   Result result;                         ///< the same on every rank
   std::vector<double> displacement;      ///< nodes × dim
-  std::vector<double> stress;            ///< elements × 6
-  std::vector<double> von_mises, dev_strain, secant;  ///< elements
-  std::vector<std::uint8_t> plastic;     ///< elements
   std::vector<double> gap;               ///< contact points: ρ − Nω, the open distance
   std::vector<double> pressure;          ///< contact points: λ_n
   std::vector<Vector3> traction;         ///< contact points: −λ_f, what the obstacle does to the body

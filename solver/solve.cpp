@@ -13,6 +13,7 @@
 #include <string>
 
 #include "certificate.hpp"
+#include "element_fields.hpp"
 #include "load_steps.hpp"
 #include "secant.hpp"
 
@@ -32,15 +33,8 @@ std::uint64_t peak_memory() {
   return 0;
 }
 
-/// `least_slip`: a tangential displacement beyond it is slip, whatever rounding says of the bound.
-void collect_fields(const Part& part, const ContactState& state, double least_slip, Solution& solution) {
-  const std::size_t elements = part.element_index.size();
-  solution.displacement = state.omega;
-  solution.stress.resize(6 * elements);
-  for (auto* field : {&solution.von_mises, &solution.dev_strain, &solution.secant}) field->resize(elements);
-  solution.plastic.resize(elements);
-  reference::fields(part.body(), state.omega,
-                    {solution.stress, solution.von_mises, solution.dev_strain, solution.secant, solution.plastic});
+/// Fields of the contact points. `least_slip`: a tangential displacement beyond it is slip, whatever rounding says of the bound.
+void collect_contact(const Part& part, const ContactState& state, double least_slip, Solution& solution) {
   const auto points = std::span(part.contact);
   for (std::size_t i = 0; i < points.size(); ++i) {
     solution.gap.push_back(points[i].gap - state.trace.normal[i]);
@@ -78,7 +72,14 @@ void collect_totals(const Part& part, const ContactState& state, const Solution&
     sums[7] += point.tangents > 0 && solution.contact_status[i] == ContactStatus::slip ? 1.0 : 0.0;
     pressure = std::max(pressure, state.lambda.normal[i]);
   }
-  for (const std::uint8_t p : solution.plastic) sums[8] += p;
+  double von_mises = 0.0;
+  std::int64_t softening = 0;
+  visit_element_fields(part, state.omega, [&](const ElementRun& run) {
+    for (const std::uint8_t p : run.plastic) sums[8] += p;
+    for (const double v : run.von_mises) von_mises = std::max(von_mises, v);
+    for (std::size_t e = 0; e < run.dev_strain.size(); ++e)
+      softening += part.laws[part.law_of_element[run.first + e]].softens(run.dev_strain[e]) ? 1 : 0;
+  });
   part.halo.sum_all(sums);
   for (std::size_t c = 0; c < 3; ++c) {
     result.contact_force[c] = sums[c];
@@ -88,13 +89,7 @@ void collect_totals(const Part& part, const ContactState& state, const Solution&
   result.slip_nodes = std::llround(sums[7]);
   result.plastic_elements = std::llround(sums[8]);
   result.max_contact_pressure = part.halo.max_all(pressure);
-  double von_mises = 0.0;
-  for (const double v : solution.von_mises) von_mises = std::max(von_mises, v);
   result.max_von_mises = part.halo.max_all(von_mises);
-
-  std::int64_t softening = 0;
-  for (std::size_t e = 0; e < solution.dev_strain.size(); ++e)
-    softening += part.laws[part.law_of_element[e]].softens(solution.dev_strain[e]) ? 1 : 0;
   result.softening_elements = part.halo.sum_all(softening);
 
   std::vector<double> probes(3 * static_cast<std::size_t>(part.total_probes), 0.0);
@@ -155,7 +150,7 @@ LoadStep load_step(const Part& part, const OuterLoop& loop, const SolverOptions&
                    const Result& result) {
   Solution now;
   now.result = result;
-  collect_fields(part, loop.state(), least_slip(loop, options), now);
+  collect_contact(part, loop.state(), least_slip(loop, options), now);
   collect_totals(part, loop.state(), now, now.result);
   now.result.certificate = loop.certify().certificate;
   return load_step_of(now.result, factor);
@@ -225,7 +220,8 @@ Solution solve(const Part& full, const SolverOptions& options, const RunOptions&
     if (part.halo.rank == 0) run.checkpoint(all);
   }
 
-  collect_fields(part, loop.state(), least_slip(loop, options), solution);
+  solution.displacement = loop.state().omega;
+  collect_contact(part, loop.state(), least_slip(loop, options), solution);
   collect_totals(part, loop.state(), solution, result);
   if (result.message.empty()) result.message = verdict(result, options);
   if (path) {

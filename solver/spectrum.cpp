@@ -30,7 +30,7 @@ TraceRows::TraceRows(const Part& part, std::span<const TraceChoice> choice) : pa
     auto& group = groups_.back();
     if (static_cast<std::size_t>(group.rows) + count > group.row.size())
       throw InputError("contact: node " +
-                       std::to_string(part.node_tags[static_cast<std::size_t>(point.node)]) +
+                       std::to_string(part.node_tag(static_cast<std::size_t>(point.node))) +
                        " belongs to more than three contact surfaces");
     for (std::size_t k = 0; k < count; ++k) {
       for (std::size_t c = 0; c < dim; ++c)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The file of a checkpoint. Layout: a line with name and version; the length of the header, 8 bytes; the header, JSON,
-// with the names and lengths of the fields; the fields, doubles; a hash of all before, 8 bytes.
+// with the names and lengths of the fields; the fields, doubles; a hash, 8 bytes, chained from all before the fields through field after field.
 #include "checkpoint_file.hpp"
 
 #include <bit>
@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::string_view magic = "kacanov checkpoint 1\n";
+constexpr std::string_view magic = "kacanov checkpoint 2\n";
 constexpr double share_of_time = 0.02;
 /// The sections of a case that have to be the same; solver options may change, but for the path of the load.
 constexpr std::array sections{"mesh", "material", "boundary", "contact"};
@@ -102,11 +102,6 @@ std::string whole_file(const std::filesystem::path& path) {
 
 }  // namespace
 
-const Fingerprint& CheckpointFile::print() const {
-  if (!print_) print_ = fingerprint(*problem_);
-  return *print_;
-}
-
 Checkpoint CheckpointFile::read() const {
   const std::string file = path_.string(), bytes = whole_file(path_);
   Cursor cursor(bytes, file);
@@ -114,6 +109,7 @@ Checkpoint CheckpointFile::read() const {
     throw InputError(file + ": this is no checkpoint that this version of kacanov can read");
   const std::string_view header_text = cursor.take(cursor.take_value<std::uint64_t>());
   const json header = json::parse(header_text, nullptr, false);
+  std::uint64_t hash = hash_bytes(bytes.data(), cursor.at());
   Checkpoint checkpoint;
   // A damaged header may be no JSON, or JSON with the wrong things in it; the hash tells, where one can be read.
   try {
@@ -126,19 +122,19 @@ Checkpoint CheckpointFile::read() const {
       auto& field = checkpoint.fields[name];
       field.resize(entries);
       if (entries > 0) std::memcpy(field.data(), data.data(), data.size());
+      hash = hash_bytes(data.data(), data.size(), hash);
     }
-    const std::size_t hashed = cursor.at();
-    if (cursor.take_value<std::uint64_t>() != hash_bytes(bytes.data(), hashed) || cursor.at() != bytes.size())
+    if (cursor.take_value<std::uint64_t>() != hash || cursor.at() != bytes.size())
       throw InputError(file + ": this checkpoint is damaged: its content does not match its hash");
   } catch (const json::exception&) {
     throw InputError(file + ": this checkpoint is damaged: its header cannot be read");
   }
 
   Fingerprint there;
-  for (const auto& [name, hash] : header.at("problem").items()) there.sections[name] = hash.get<std::uint64_t>();
+  for (const auto& [name, value] : header.at("problem").items()) there.sections[name] = value.get<std::uint64_t>();
   const json& document = header.at("case");
   std::string text;
-  for (const std::string& name : print().differences(there)) {
+  for (const std::string& name : print_.differences(there)) {
     const std::string keys = differing_keys(document, input_->document, name);
     text += (text.empty() ? "" : "; ") + name + " differs" + (keys.empty() ? "" : " (" + keys + ")");
   }
@@ -156,7 +152,7 @@ bool CheckpointFile::due() const { return Clock::now() - last_ > cost_ / share_o
 void CheckpointFile::write(const Checkpoint& checkpoint) {
   const auto start = Clock::now();
   json header;
-  header["problem"] = fingerprint_json(print());
+  header["problem"] = fingerprint_json(print_);
   header["load_steps"] = input_->model.solver.load_steps;
   for (const char* section : sections)
     if (input_->document.contains(section)) header["case"][section] = input_->document[section];
@@ -168,13 +164,15 @@ void CheckpointFile::write(const Checkpoint& checkpoint) {
   const std::uint64_t length = text.size();
   bytes.append(reinterpret_cast<const char*>(&length), sizeof length);
   bytes += text;
-  for (const auto& [name, values] : checkpoint.fields)
-    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(double));
-  const std::uint64_t hash = hash_bytes(bytes.data(), bytes.size());
-  bytes.append(reinterpret_cast<const char*>(&hash), sizeof hash);
+  std::uint64_t hash = hash_bytes(bytes.data(), bytes.size());
   try {
     AtomicFile file(path_.string());
     file.write(bytes);
+    for (const auto& [name, values] : checkpoint.fields) {
+      file.write(values.data(), values.size() * sizeof(double));
+      hash = hash_bytes(values.data(), values.size() * sizeof(double), hash);
+    }
+    file.write(&hash, sizeof hash);
     file.commit(AtomicFile::Durable::yes);
     written_ = true;
   } catch (const InternalError& refusal) {

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "case_file.hpp"
 #include "checkpoint.hpp"
@@ -16,11 +15,11 @@ namespace kacanov {
 /// Name of the file in the output folder.
 constexpr const char* checkpoint_name = "checkpoint.kacanov";
 
-/// The checkpoint of one run. Everything happens on the first rank. Case and problem have to outlive it.
+/// The checkpoint of one run. Everything happens on the first rank. The case has to outlive it.
 class CheckpointFile {
  public:
   CheckpointFile(const std::filesystem::path& folder, const Case& input, const Problem& problem)
-      : path_(folder / checkpoint_name), input_(&input), problem_(&problem) {}
+      : path_(folder / checkpoint_name), input_(&input), print_(fingerprint(problem)) {}
 
   /// Throws InputError: no such file, not a checkpoint, cut short, damaged, or of another case, with what differs.
   Checkpoint read() const;
@@ -37,12 +36,9 @@ class CheckpointFile {
  private:
   using Clock = std::chrono::steady_clock;
 
-  const Fingerprint& print() const;
-
   std::filesystem::path path_;
   const Case* input_;
-  const Problem* problem_;
-  mutable std::optional<Fingerprint> print_;
+  Fingerprint print_;
   Clock::time_point last_ = Clock::now();
   std::chrono::duration<double> cost_{2e-3};  // a guess, until there is one
   bool written_ = false;

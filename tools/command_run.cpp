@@ -5,6 +5,7 @@
 #include "atomic_file.hpp"
 #include "checkpoint_file.hpp"
 #include "commands.hpp"
+#include "element_fields.hpp"
 #include "field_files.hpp"
 #include "interrupt.hpp"
 #include "loaded_case.hpp"
@@ -32,12 +33,13 @@ void write_json(const std::filesystem::path& file, const nlohmann::ordered_json&
 }
 
 std::string picture(const Case& input, const Mesh& mesh, std::span<const double> displacement,
-                    std::span<const double> von_mises) {
+                    std::span<const double> von_mises, double largest_von_mises) {
   DeformedPicture picture;
   picture.title = input.name;
   picture.mesh = &mesh;
   picture.displacement = displacement;
   picture.von_mises = von_mises;
+  picture.largest_von_mises = largest_von_mises;
   for (const ContactEntry& entry : input.model.contact) {
     if (const auto* plane = std::get_if<Plane>(&entry.obstacle))
       picture.planes.push_back({plane->point, plane->normal});
@@ -65,6 +67,7 @@ int run_command(const Command& command, const Case& input, const MpiSession& mpi
     clear_folder(folder);
     if (!command.restart) file->remove();
   });
+  keep_boundary(loaded);
 
   listen_for_interrupts();
   RunOptions options;
@@ -94,7 +97,7 @@ int run_command(const Command& command, const Case& input, const MpiSession& mpi
   std::vector<double> displacement, von_mises;
   if (input.output.report) {
     displacement = gather_nodal(loaded.part, solution.displacement, dim);
-    von_mises = gather_elements(loaded.part, solution.von_mises, 1);
+    von_mises = gather_nodal(loaded.part, nodal_von_mises(loaded.part, solution.displacement), 1);
   }
   if (input.output.fields) together(mpi, [&] { write_body(folder, loaded.part, solution); });
   together(mpi, [&] {
@@ -102,7 +105,7 @@ int run_command(const Command& command, const Case& input, const MpiSession& mpi
     if (input.output.fields) write_collection(folder, *loaded.problem, input.model, contact, mpi.ranks());
     if (input.output.report) {
       write_file((folder / "deformed.svg").string(),
-                 picture(input, loaded.problem->mesh, displacement, von_mises));
+                 picture(input, loaded.problem->mesh, displacement, von_mises, result.max_von_mises));
     }
     const double end = MPI_Wtime();
     result.seconds.front().first = "solver";

@@ -119,8 +119,7 @@ class Drawing {
         mesh_(*picture.mesh),
         dim_(mesh_.dim()),
         displacement_(finite_or_zero(picture.displacement)),
-        element_values_(finite_or_zero(picture.von_mises)),
-        nodal_values_(nodal_average(mesh_, element_values_)),
+        nodal_values_(finite_or_zero(picture.von_mises)),
         box_(body_box(mesh_)),
         view_(View::of(mesh_)),
         largest_(largest_norm(displacement_, static_cast<std::size_t>(dim_))),
@@ -252,11 +251,9 @@ class Drawing {
   }
 
   std::string caption() const {
-    const double stress =
-        element_values_.empty() ? 0 : *std::max_element(element_values_.begin(), element_values_.end());
     std::string text = scale_ == 1 ? "Displacement to scale" : "Displacement × " + short_number(scale_);
     text += ", largest " + short_number(largest_) + "; largest von Mises stress of an element " +
-            short_number(stress) + "; grey: undeformed";
+            short_number(picture_.largest_von_mises) + "; grey: undeformed";
     return text;
   }
 
@@ -265,7 +262,7 @@ class Drawing {
   const DeformedPicture& picture_;
   const Mesh& mesh_;
   int dim_;
-  std::vector<double> displacement_, element_values_, nodal_values_;
+  std::vector<double> displacement_, nodal_values_;
   Box box_;
   View view_;
   double largest_, scale_;
@@ -279,7 +276,7 @@ class Drawing {
 
 std::string deformed_svg(const DeformedPicture& picture) {
   if (!picture.mesh || picture.displacement.size() != picture.mesh->coordinates.size() ||
-      picture.von_mises.size() != picture.mesh->element_count() || picture.mesh->element_count() == 0)
+      picture.von_mises.size() != picture.mesh->node_count() || picture.mesh->facet_count() == 0)
     throw InternalError("picture: the displacement or the stress does not fit the mesh");
   return Drawing(picture).draw();
 }

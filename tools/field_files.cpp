@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "element_fields.hpp"
 #include "problem/selection.hpp"
 #include "vtu_writer.hpp"
 
@@ -16,9 +17,9 @@ std::string piece_name(int rank, int ranks) {
 
 /// Names and types of the body's fields; the values are filled in by the caller.
 Grid body_grid(ElementType type) {
-  using Real = std::span<const double>;
-  using Number = std::span<const std::int64_t>;
-  using Flag = std::span<const std::uint8_t>;
+  using Real = Values<double>;
+  using Number = Values<std::int64_t>;
+  using Flag = Values<std::uint8_t>;
   const int dim = dimension(type);
   Grid grid;
   grid.dim = dim;
@@ -27,6 +28,14 @@ Grid body_grid(ElementType type) {
   grid.cell_fields = {{"stress", 6, Real()}, {"von_mises", 1, Real()}, {"dev_strain", 1, Real()},
                       {"g", 1, Real()},      {"plastic", 1, Flag()},   {"element_id", 1, Number()}};
   return grid;
+}
+
+/// The user's numbers, worked out while they are written.
+template <typename Tag>
+Values<std::int64_t> tags(std::size_t count, const Tag& tag) {
+  return {count, [tag](std::size_t first, std::span<std::int64_t> out) {
+            for (std::size_t i = 0; i < out.size(); ++i) out[i] = tag(first + i);
+          }};
 }
 
 /// The facets of one contact entry with values at their nodes.
@@ -85,11 +94,11 @@ void write_surface(const std::filesystem::path& file, const Surface& surface, co
   grid.shape = facet_cells(mesh.type);
   grid.points = surface.points;
   grid.cells = surface.cells;
-  grid.point_fields = {{"gap", 1, std::span<const double>(surface.gap)},
-                       {"pressure", 1, std::span<const double>(surface.pressure)},
-                       {"tangential_traction", 3, std::span<const double>(surface.traction)},
-                       {"status", 1, std::span<const std::int64_t>(surface.status)},
-                       {"node_id", 1, std::span<const std::int64_t>(surface.node_id)}};
+  grid.point_fields = {{"gap", 1, surface.gap},
+                       {"pressure", 1, surface.pressure},
+                       {"tangential_traction", 3, surface.traction},
+                       {"status", 1, surface.status},
+                       {"node_id", 1, surface.node_id}};
   write_vtu(file.string(), grid);
 }
 
@@ -107,14 +116,27 @@ void write_body(const std::filesystem::path& folder, const Part& part, const Sol
   Grid grid = body_grid(part.type);
   grid.points = part.coordinates;
   grid.cells = part.elements;
-  grid.point_fields[0].values = std::span<const double>(solution.displacement);
-  grid.point_fields[1].values = std::span<const std::int64_t>(part.node_tags);
-  grid.cell_fields[0].values = std::span<const double>(solution.stress);
-  grid.cell_fields[1].values = std::span<const double>(solution.von_mises);
-  grid.cell_fields[2].values = std::span<const double>(solution.dev_strain);
-  grid.cell_fields[3].values = std::span<const double>(solution.secant);
-  grid.cell_fields[4].values = std::span<const std::uint8_t>(solution.plastic);
-  grid.cell_fields[5].values = std::span<const std::int64_t>(part.element_tags);
+  grid.point_fields[0].values = Values<double>(solution.displacement);
+  grid.point_fields[1].values = tags(part.nodes(), [&part](std::size_t i) { return part.node_tag(i); });
+  const auto element_field = [&](int components, std::span<double> reference::ElementFields::*which) {
+    const auto width = static_cast<std::size_t>(components);
+    return Values<double>(part.element_count() * width, [&part, &solution, which, width](std::size_t first, std::span<double> out) {
+      reference::ElementFields wanted;
+      wanted.*which = out;
+      element_fields(part, solution.displacement, first / width, out.size() / width, wanted);
+    });
+  };
+  using Fields = reference::ElementFields;
+  grid.cell_fields[0].values = element_field(6, &Fields::stress);
+  grid.cell_fields[1].values = element_field(1, &Fields::von_mises);
+  grid.cell_fields[2].values = element_field(1, &Fields::dev_strain);
+  grid.cell_fields[3].values = element_field(1, &Fields::secant);
+  grid.cell_fields[4].values = Values<std::uint8_t>(part.element_count(), [&](std::size_t first, std::span<std::uint8_t> out) {
+    reference::ElementFields wanted;
+    wanted.plastic = out;
+    element_fields(part, solution.displacement, first, out.size(), wanted);
+  });
+  grid.cell_fields[5].values = tags(part.element_count(), [&part](std::size_t e) { return part.element_tag(e); });
   write_vtu((folder / piece_name(part.halo.rank, part.halo.ranks)).string(), grid);
 }
 

@@ -2,6 +2,8 @@
 // From a case and its mesh to a problem on the first rank and parts on all.
 #include "loaded_case.hpp"
 
+#include <malloc.h>
+
 #include <cstdlib>
 #include <iostream>
 
@@ -35,6 +37,11 @@ LoadedCase load_case(const Case& input, const MpiSession& mpi) {
   loaded.read_seconds = read - start;
   loaded.distribute_seconds = MPI_Wtime() - read;
   return loaded;
+}
+
+void keep_boundary(LoadedCase& loaded) {
+  if (loaded.problem) keep_boundary(*loaded.problem);
+  malloc_trim(0);  // back to the system, before the solver asks for more
 }
 
 int threads_of(const Command& command) {

@@ -25,6 +25,9 @@ struct LoadedCase {
   double read_seconds = 0.0, distribute_seconds = 0.0;
 };
 
+/// Frees what of the problem the parts have taken over, see keep_boundary(). Collective.
+void keep_boundary(LoadedCase& loaded);
+
 /// Collective; failures are printed and end as ReportedFailure on all ranks.
 LoadedCase load_case(const Case& input, const MpiSession& mpi);
 

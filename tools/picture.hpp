@@ -11,12 +11,13 @@
 
 namespace kacanov {
 
-/// A body to be drawn. Nothing is owned; everything in the numbering of the mesh.
+/// A body to be drawn. Nothing is owned; everything in the numbering of the mesh, of which 3D needs the boundary only.
 struct DeformedPicture {
   std::string title;
   const Mesh* mesh = nullptr;
   std::span<const double> displacement;  ///< nodes × dim
-  std::span<const double> von_mises;     ///< elements
+  std::span<const double> von_mises;     ///< nodes
+  double largest_von_mises = 0.0;        ///< of an element, for the caption
   /// A flat obstacle: a point on it and its normal to the body's side (in 2D the third entries are 0).
   struct Plane {
     std::array<double, 3> point{}, normal{};

@@ -183,29 +183,4 @@ Surface visible_surface(const Mesh& mesh, const View& view, std::span<const doub
   return surface;
 }
 
-std::vector<double> nodal_average(const Mesh& mesh, std::span<const double> element_values) {
-  const auto n = static_cast<std::size_t>(nodes_per_element(mesh.type));
-  const auto dim = static_cast<std::size_t>(mesh.dim());
-  std::vector<double> sum(mesh.node_count(), 0.0), weight(mesh.node_count(), 0.0);
-  for (std::size_t e = 0; e < mesh.element_count(); ++e) {
-    const std::int32_t* node = mesh.elements.data() + e * n;
-    // The corner tetrahedron (triangle) stands for the size of the element.
-    std::array<Vector, 3> edge{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-    constexpr std::array<std::size_t, 3> tetrahedron{1, 2, 3}, hexahedron{1, 3, 4};
-    const auto& corner = mesh.type == ElementType::hex8 ? hexahedron : tetrahedron;
-    for (std::size_t a = 0; a < dim; ++a)
-      for (std::size_t k = 0; k < dim; ++k)
-        edge[a][k] = mesh.coordinates[static_cast<std::size_t>(node[corner[a]]) * dim + k] -
-                     mesh.coordinates[static_cast<std::size_t>(node[0]) * dim + k];
-    const double size = std::abs(dot(cross(edge[0], edge[1]), edge[2]));
-    for (std::size_t i = 0; i < n; ++i) {
-      sum[static_cast<std::size_t>(node[i])] += size * element_values[e];
-      weight[static_cast<std::size_t>(node[i])] += size;
-    }
-  }
-  for (std::size_t i = 0; i < sum.size(); ++i)
-    if (weight[i] > 0) sum[i] /= weight[i];
-  return sum;
-}
-
 }  // namespace kacanov

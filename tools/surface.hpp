@@ -43,7 +43,4 @@ struct Surface {
 Surface visible_surface(const Mesh& mesh, const View& view, std::span<const double> displacement,
                         double scale, std::span<const double> values);
 
-/// Element values averaged to the nodes, weighted by volume.
-std::vector<double> nodal_average(const Mesh& mesh, std::span<const double> element_values);
-
 }  // namespace kacanov

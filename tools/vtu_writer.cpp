@@ -141,15 +141,17 @@ class VtuFile {
   void append_size(std::uint64_t bytes) { file_.write(&bytes, sizeof bytes); }
 
   template <typename T>
-  void append_padded(std::span<const T> values, std::size_t from, std::size_t to) {
+  void append_padded(const Values<T>& values, std::size_t from, std::size_t to) {
     append_size(values.size() / from * to * sizeof(T));
-    if (from == to) {
-      file_.write(values.data(), values.size_bytes());
-      return;
-    }
     Buffer<T> buffer(file_);
-    for (std::size_t i = 0; i < values.size(); i += from)
-      for (std::size_t k = 0; k < to; ++k) buffer.push(k < from ? values[i + k] : T{0});
+    values.visit(entries_at_a_time * from, [&](std::span<const T> some) {
+      if (from == to) {
+        file_.write(some.data(), some.size_bytes());
+        return;
+      }
+      for (std::size_t i = 0; i < some.size(); i += from)
+        for (std::size_t k = 0; k < to; ++k) buffer.push(k < from ? some[i + k] : T{0});
+    });
     buffer.flush();
   }
 
@@ -161,7 +163,7 @@ class VtuFile {
         field.values);
   }
 
-  void append_points() { append_padded(grid_.points.first(points_ * dim_), dim_, 3); }
+  void append_points() { append_padded(Values<double>(grid_.points.first(points_ * dim_)), dim_, 3); }
 
   void append_cells() {
     append_size(cells_ * nodes_ * 4);
@@ -182,6 +184,8 @@ class VtuFile {
     for (std::size_t c = 0; c < cells_; ++c) types.push(cell_.type);
     types.flush();
   }
+
+  static constexpr std::size_t entries_at_a_time = 4096;
 
   const std::string& path_;
   const Grid& grid_;

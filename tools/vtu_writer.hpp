@@ -3,9 +3,14 @@
 // collections (.pvd).
 #pragma once
 
+#include <algorithm>
+#include <concepts>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -17,16 +22,51 @@ enum class CellShape : std::uint8_t { line2, tri3, tri6, quad4, tet4, tet10, hex
 CellShape body_cells(ElementType type);
 CellShape facet_cells(ElementType type);
 
+/// An array for a file: one that lies there, or one that is worked out while it is written, some entries at a time.
+template <typename T>
+class Values {
+ public:
+  using Fill = std::function<void(std::size_t first, std::span<T> out)>;
+
+  Values() = default;
+  template <typename Array>
+    requires std::convertible_to<const Array&, std::span<const T>>
+  Values(const Array& array) : there_(array), size_(there_.size()) {}
+  /// `fill(first, out)` writes entries first, first + 1 ...; both are multiples of the field's components.
+  Values(std::size_t size, Fill fill) : size_(size), fill_(std::move(fill)) {}
+
+  std::size_t size() const noexcept { return size_; }
+  /// Calls visit(span) for all entries, front to back, `most` of them at a time at the most.
+  template <typename Visit>
+  void visit(std::size_t most, const Visit& visit) const {
+    if (!fill_) {
+      visit(there_);
+      return;
+    }
+    std::vector<T> some(std::min(most, size_));
+    for (std::size_t first = 0; first < size_; first += most) {
+      const auto out = std::span(some).first(std::min(most, size_ - first));
+      fill_(first, out);
+      visit(std::span<const T>(out));
+    }
+  }
+
+ private:
+  std::span<const T> there_;
+  std::size_t size_ = 0;
+  Fill fill_;
+};
+
 /// A named array with `components` values for every point or cell, component fastest. In a 2D grid two
 /// components are padded by a zero third, so that ParaView takes them for a vector. Six are a symmetric
 /// tensor: xx yy zz xy yz zx.
 struct Field {
   std::string name;
   int components = 1;
-  std::variant<std::span<const double>, std::span<const std::int64_t>, std::span<const std::uint8_t>> values;
+  std::variant<Values<double>, Values<std::int64_t>, Values<std::uint8_t>> values;
 };
 
-/// A grid and its fields. Nothing is owned.
+/// A grid and its fields. No array is owned.
 struct Grid {
   int dim = 3;
   CellShape shape = CellShape::tet4;

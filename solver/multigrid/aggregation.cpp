@@ -33,36 +33,87 @@ struct ElementsOfNodes {
 constexpr std::int32_t none = -1;
 constexpr float weak = 0.2F;  ///< of a row's heaviest edge
 
-/// Group of each row: it and its partner along its heaviest edge, or itself. Small rows choose first, so that none is left
-/// over in round after round.
+/// Rows in first-in-first-out queues by a small number; a row can be taken out of the middle.
+class Queues {
+ public:
+  Queues(std::int32_t rows, std::int32_t queues)
+      : first_(static_cast<std::size_t>(queues), none), last_(first_), next_(static_cast<std::size_t>(rows), none), previous_(next_) {}
+
+  void push(std::int32_t row, std::int32_t queue) {
+    const auto q = static_cast<std::size_t>(queue), r = static_cast<std::size_t>(row);
+    previous_[r] = last_[q];
+    next_[r] = none;
+    (last_[q] == none ? first_[q] : next_[static_cast<std::size_t>(last_[q])]) = row;
+    last_[q] = row;
+    lowest_ = std::min(lowest_, q);
+  }
+  void remove(std::int32_t row, std::int32_t queue) {
+    const auto q = static_cast<std::size_t>(queue), r = static_cast<std::size_t>(row);
+    (previous_[r] == none ? first_[q] : next_[static_cast<std::size_t>(previous_[r])]) = next_[r];
+    (next_[r] == none ? last_[q] : previous_[static_cast<std::size_t>(next_[r])]) = previous_[r];
+  }
+  /// The first row of the lowest queue, `none` if all are empty.
+  std::int32_t front() {
+    while (lowest_ < first_.size() && first_[lowest_] == none) ++lowest_;
+    return lowest_ < first_.size() ? first_[lowest_] : none;
+  }
+
+ private:
+  std::vector<std::int32_t> first_, last_, next_, previous_;
+  std::size_t lowest_ = 0;
+};
+
+/// Group of each row: it and its partner along its heaviest edge, or itself. Small rows choose first, and among them those with
+/// the fewest strong neighbours left to choose from (Notay 2010): few are left over, whatever the numbering.
 std::vector<std::int32_t> match(const WeightedGraph& graph, std::span<const std::int32_t> size) {
   const std::int32_t rows = graph.rows();
-  std::vector<std::int32_t> group(static_cast<std::size_t>(rows), none);
+  constexpr std::int32_t most_choices = 63;
+  std::vector<std::int32_t> group(static_cast<std::size_t>(rows), none), choices(group.size(), 0);
+  std::vector<float> strong(group.size(), 0.0F);  // edges heavier than this
+  const auto begin = [&](std::int32_t i) { return static_cast<std::size_t>(graph.start[static_cast<std::size_t>(i)]); };
+  const auto end = [&](std::int32_t i) { return static_cast<std::size_t>(graph.start[static_cast<std::size_t>(i) + 1]); };
+  for (std::int32_t i = 0; i < rows; ++i) {
+    float& least = strong[static_cast<std::size_t>(i)];
+    for (auto k = begin(i); k < end(i); ++k) least = std::max(least, weak * graph.weight[k]);
+    for (auto k = begin(i); k < end(i); ++k) choices[static_cast<std::size_t>(i)] += graph.weight[k] > least ? 1 : 0;
+  }
+  std::vector<std::int32_t> classes(size.begin(), size.end());
+  std::sort(classes.begin(), classes.end());
+  classes.erase(std::unique(classes.begin(), classes.end()), classes.end());
+
   std::int32_t groups = 0;
-  std::vector<std::int32_t> order(group.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-    return size[static_cast<std::size_t>(a)] < size[static_cast<std::size_t>(b)];
-  });
-  for (const std::int32_t i : order) {
-    if (group[static_cast<std::size_t>(i)] != none) continue;
-    std::int32_t best = none;
-    // A row whose strong neighbours are all taken waits for the next round.
-    float heaviest = 0.0F;
-    for (auto k = graph.start[static_cast<std::size_t>(i)]; k < graph.start[static_cast<std::size_t>(i) + 1]; ++k)
-      heaviest = std::max(heaviest, graph.weight[static_cast<std::size_t>(k)]);
-    heaviest *= weak;
-    for (auto k = graph.start[static_cast<std::size_t>(i)]; k < graph.start[static_cast<std::size_t>(i) + 1]; ++k) {
-      const std::int32_t j = graph.column[static_cast<std::size_t>(k)];
-      const float w = graph.weight[static_cast<std::size_t>(k)];
-      if (group[static_cast<std::size_t>(j)] == none && w > heaviest) {
-        heaviest = w;
-        best = j;
+  Queues queues(rows, most_choices + 1);
+  const auto queue_of = [&](std::int32_t i) { return std::min(choices[static_cast<std::size_t>(i)], most_choices); };
+  for (const std::int32_t now : classes) {
+    const auto waits = [&](std::int32_t i) {
+      return group[static_cast<std::size_t>(i)] == none && size[static_cast<std::size_t>(i)] == now;
+    };
+    const auto take = [&](std::int32_t i) {
+      if (waits(i)) queues.remove(i, queue_of(i));
+      group[static_cast<std::size_t>(i)] = groups;
+      for (auto k = begin(i); k < end(i); ++k) {
+        const std::int32_t j = graph.column[k];
+        if (graph.weight[k] <= strong[static_cast<std::size_t>(j)] || group[static_cast<std::size_t>(j)] != none) continue;
+        if (waits(j)) queues.remove(j, queue_of(j));
+        --choices[static_cast<std::size_t>(j)];
+        if (waits(j)) queues.push(j, queue_of(j));
       }
+    };
+    for (std::int32_t i = 0; i < rows; ++i)
+      if (waits(i)) queues.push(i, queue_of(i));
+    for (std::int32_t i = queues.front(); i != none; i = queues.front()) {
+      std::int32_t best = none;
+      // A row whose strong neighbours are all taken waits for the next round.
+      float heaviest = strong[static_cast<std::size_t>(i)];
+      for (auto k = begin(i); k < end(i); ++k)
+        if (group[static_cast<std::size_t>(graph.column[k])] == none && graph.weight[k] > heaviest) {
+          heaviest = graph.weight[k];
+          best = graph.column[k];
+        }
+      take(i);
+      if (best != none) take(best);
+      ++groups;
     }
-    group[static_cast<std::size_t>(i)] = groups;
-    if (best != none) group[static_cast<std::size_t>(best)] = groups;
-    ++groups;
   }
   // Numbered by first rows.
   std::vector<std::int32_t> number(static_cast<std::size_t>(groups), none);

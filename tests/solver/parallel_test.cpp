@@ -134,30 +134,23 @@ TEST_CASE("reductions over the ranks") {
 TEST_CASE("gathers return to the numbering of the problem") {
   const Problem problem = beam_problem(3, 2);
   const Part part = over_all_ranks(problem);
-  std::vector<double> nodal(2 * part.nodes()), elements(part.element_index.size()),
-      contact(3 * part.contact.size());
+  std::vector<double> nodal(2 * part.nodes()), contact(3 * part.contact.size());
   for (std::size_t i = 0; i < nodal.size(); ++i)
     nodal[i] = signature(part.node_index[i / 2], static_cast<int>(i % 2));
-  for (std::size_t i = 0; i < elements.size(); ++i) elements[i] = signature(part.element_index[i], 0);
   for (std::size_t i = 0; i < contact.size(); ++i)
     contact[i] = signature(part.contact_index[i / 3], static_cast<int>(i % 3));
   const auto all_nodal = gather_nodal(part, nodal, 2);
-  const auto all_elements = gather_elements(part, elements, 1);
   const auto all_contact = gather_contact(part, contact, 3);
   if (part.halo.rank > 0) {
     CHECK(all_nodal.empty());
-    CHECK(all_elements.empty());
     CHECK(all_contact.empty());
     return;
   }
   REQUIRE(all_nodal.size() == 2 * problem.mesh.node_count());
-  REQUIRE(all_elements.size() == problem.mesh.element_count());
   REQUIRE(all_contact.size() == 3 * problem.contact.size());
   std::size_t wrong = 0;
   for (std::size_t i = 0; i < all_nodal.size(); ++i)
     wrong += all_nodal[i] != signature(static_cast<std::int64_t>(i / 2), static_cast<int>(i % 2));
-  for (std::size_t i = 0; i < all_elements.size(); ++i)
-    wrong += all_elements[i] != signature(static_cast<std::int64_t>(i), 0);
   for (std::size_t i = 0; i < all_contact.size(); ++i)
     wrong += all_contact[i] != signature(static_cast<std::int64_t>(i / 3), static_cast<int>(i % 3));
   CHECK(wrong == 0);

@@ -144,8 +144,8 @@ std::size_t big_endian(const std::string& bytes, std::size_t at) {
 
 struct Bent {
   Mesh mesh;
-  std::vector<double> displacement, stress;
-  DeformedPicture picture() const { return {"a <beam> & \"more\"", &mesh, displacement, stress, {}, 0}; }
+  std::vector<double> displacement, stress;  // at the nodes
+  DeformedPicture picture() const { return {"a <beam> & \"more\"", &mesh, displacement, stress, 7.0, {}, 0}; }
 };
 
 /// A box bent down, with a stress that grows along it.
@@ -156,7 +156,7 @@ Bent bent_box(const BoxSpec& spec, double amount) {
   for (std::size_t i = 0; i < bent.mesh.node_count(); ++i)
     bent.displacement[dim * i + dim - 1] =
         -amount * std::pow(bent.mesh.coordinates[dim * i] / spec.size[0], 2);
-  for (std::size_t e = 0; e < bent.mesh.element_count(); ++e) bent.stress.push_back(static_cast<double>(e));
+  for (std::size_t i = 0; i < bent.mesh.node_count(); ++i) bent.stress.push_back(bent.mesh.coordinates[dim * i]);
   return bent;
 }
 
@@ -173,7 +173,7 @@ TEST_CASE("the picture of a deformed body is well formed for every element type"
     CHECK(well_formed(svg));
     CHECK(finite(svg));
     CHECK(svg.find("a &lt;beam&gt; &amp; &quot;more&quot;") != std::string::npos);
-    CHECK(svg.find("Displacement to scale, largest 0.5") != std::string::npos);
+    CHECK(svg.find("Displacement to scale, largest 0.5; largest von Mises stress of an element 7;") != std::string::npos);
   }
 }
 
@@ -209,10 +209,9 @@ TEST_CASE("a large mesh becomes an image, and the file stays small") {
 
 TEST_CASE("bands of colour cover the body exactly once") {
   const Bent bent = bent_box({{4, 1, 0}, {32, 8, 0}, ElementType::tri3}, 0.5);  // shearing keeps the area
-  const auto values = nodal_average(bent.mesh, bent.stress);
   const View view = View::of(bent.mesh);
-  const Surface surface = visible_surface(bent.mesh, view, bent.displacement, 1, values);
-  const ColourScale colours(values);
+  const Surface surface = visible_surface(bent.mesh, view, bent.displacement, 1, bent.stress);
+  const ColourScale colours(bent.stress);
   const Frame frame{10, 20, 400, 150, 0, 1, 100};
   CHECK(surface.faces.size() == bent.mesh.element_count());
   std::string paths = draw_as_paths(surface, colours, frame, true);
@@ -225,7 +224,7 @@ TEST_CASE("of a convex body, the visible faces project onto its shadow once") {
     const Bent bent = bent_box({{3, 2, 1}, {3, 2, 2}, type}, 0.0);
     const View view = View::of(bent.mesh);
     const Surface surface =
-        visible_surface(bent.mesh, view, bent.displacement, 1, nodal_average(bent.mesh, bent.stress));
+        visible_surface(bent.mesh, view, bent.displacement, 1, bent.stress);
     double area = 0;
     for (const Face& f : surface.faces) {
       const auto& c = f.corners;

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Stress and strain of a solution, a run of elements at a time.
+#include "element_fields.hpp"
+
+#include <algorithm>
+
+namespace kacanov {
+namespace {
+
+constexpr std::size_t elements_a_run = 4096;
+
+Body elements_of(const Part& part, std::size_t first, std::size_t count) {
+  const auto npe = static_cast<std::size_t>(nodes_per_element(part.type));
+  Body body = part.body();
+  body.mesh.connectivity = body.mesh.connectivity.subspan(first * npe, count * npe);
+  body.law_of_element = body.law_of_element.subspan(first, count);
+  return body;
+}
+
+}  // namespace
+
+void element_fields(const Part& part, std::span<const double> omega, std::size_t first, std::size_t count,
+                    const reference::ElementFields& out) {
+  reference::fields(elements_of(part, first, count), omega, out);
+}
+
+void visit_element_fields(const Part& part, std::span<const double> omega,
+                          const std::function<void(const ElementRun&)>& visit) {
+  const std::size_t elements = part.element_count();
+  ElementRun run;
+  for (run.first = 0; run.first < elements; run.first += elements_a_run) {
+    const std::size_t count = std::min(elements_a_run, elements - run.first);
+    run.stress.resize(6 * count);
+    for (auto* field : {&run.von_mises, &run.dev_strain, &run.secant}) field->resize(count);
+    run.plastic.resize(count);
+    element_fields(part, omega, run.first, count,
+                   {run.stress, run.von_mises, run.dev_strain, run.secant, run.plastic});
+    visit(run);
+  }
+}
+
+std::vector<double> nodal_von_mises(const Part& part, std::span<const double> omega) {
+  const auto npe = static_cast<std::size_t>(nodes_per_element(part.type));
+  std::vector<double> mean(part.nodes(), 0.0), weight(part.nodes(), 0.0), volume;
+  visit_element_fields(part, omega, [&](const ElementRun& run) {
+    const std::size_t count = run.von_mises.size();
+    volume.resize(count);
+    reference::volumes(elements_of(part, run.first, count), volume);
+    for (std::size_t k = 0; k < count * npe; ++k) {
+      const auto node = static_cast<std::size_t>(part.elements[run.first * npe + k]);
+      mean[node] += volume[k / npe] * run.von_mises[k / npe];
+      weight[node] += volume[k / npe];
+    }
+  });
+  part.halo.sum(mean, 1);
+  part.halo.sum(weight, 1);
+  for (std::size_t n = 0; n < mean.size(); ++n) mean[n] /= weight[n];
+  return mean;
+}
+
+}  // namespace kacanov
