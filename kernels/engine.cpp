@@ -138,6 +138,12 @@ void Engine<Real>::detach_tangent() {
 }
 
 template <class Real>
+void Engine<Real>::forget_tangent() noexcept {
+  Aligned<float>().swap(tangent_);  // assigning {} would keep the memory
+  Aligned<Real>().swap(tangent_secant_);
+}
+
+template <class Real>
 void Engine<Real>::set_secant(std::span<const double> g) {
   detach_tangent();
   for (std::size_t slot = 0; slot < secant_.size(); ++slot)
@@ -249,7 +255,7 @@ template <class Real>
 double Engine<Real>::nonlinear(const Real* omega, Real* f, bool keep_secant, bool keep_tangent) {
   if (keep_tangent) {
     tangent_.resize(6 * secant_.size());
-    tangent_secant_ = {};
+    Aligned<Real>().swap(tangent_secant_);
   } else if (keep_secant) {
     detach_tangent();
   }

@@ -29,6 +29,7 @@ class Engine {
   std::size_t bytes() const noexcept;
   simd::InstructionSet instruction_set() const noexcept { return set_; }
   bool has_tangent() const noexcept { return !tangent_.empty(); }
+  void forget_tangent() noexcept;
   std::size_t dim() const noexcept { return static_cast<std::size_t>(dim_); }
 
   void get_secant(std::span<double> g) const;

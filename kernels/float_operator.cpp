@@ -47,9 +47,19 @@ void FloatOperator::apply_many(std::span<const float> x, std::span<float> y, int
   impl_->engine.apply_many(x, y, vectors);
 }
 
+void FloatOperator::secant(std::span<double> g) const {
+  expect_size(g.size(), impl_->engine.points(), "g");
+  impl_->engine.get_secant(g);
+}
+
 void FloatOperator::diagonal(std::span<float> d) const {
   expect_size(d.size(), unknowns(), "d");
   impl_->engine.diagonal(d);
+}
+
+void FloatOperator::block_diagonal(std::span<float> blocks) const {
+  expect_size(blocks.size(), unknowns() * impl_->engine.dim(), "blocks");
+  impl_->engine.block_diagonal(blocks);
 }
 
 std::string_view FloatOperator::instruction_set() const noexcept {

@@ -29,7 +29,11 @@ class FloatOperator {
   double apply_dot(std::span<const float> x, std::span<float> y) const;
   /// As Operator::apply_many.
   void apply_many(std::span<const float> x, std::span<float> y, int vectors) const;
+  /// The g set last, rounded.
+  void secant(std::span<double> g) const;
   void diagonal(std::span<float> d) const;
+  /// dim × dim diagonal blocks of B, row-major: nodes × dim × dim.
+  void block_diagonal(std::span<float> blocks) const;
   std::string_view instruction_set() const noexcept;
   /// Bytes this operator holds, index data included.
   std::size_t bytes() const noexcept;

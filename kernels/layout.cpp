@@ -348,6 +348,9 @@ Layout make_layout(const Body& body, int lanes, int threads, std::size_t record_
       builder.add_block(blocks[b], state, slot[t]);
   }
   layout.nodes.resize(layout.nodes.size() + simd::nodes_ahead, 0);
+  layout.index.shrink_to_fit();
+  layout.nodes.shrink_to_fit();
+  layout.element_point.shrink_to_fit();
   return std::move(builder.layout);
 }
 

@@ -77,6 +77,8 @@ void Operator::apply_tangent(std::span<const double> x, std::span<double> y) con
   impl_->engine.apply_tangent(x.data(), y.data());
 }
 
+void Operator::forget_tangent() noexcept { impl_->engine.forget_tangent(); }
+
 void Operator::diagonal(std::span<double> d) const {
   impl_->expect_vector(d.size());
   impl_->engine.diagonal(d);

@@ -77,36 +77,33 @@ Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactS
                         std::span<const double> internal, double energy, std::span<const double> diagonal) {
   const Part& part = space.part();
   const auto dim = static_cast<std::size_t>(part.dim());
-  const std::size_t n = part.unknowns();
-  Vector contact(n, 0.0), residual(n), reaction(n, 0.0);
+  Vector contact(part.unknowns(), 0.0);
   traces.add_force(state.lambda, 1.0, contact);
-  for (std::size_t i = 0; i < n; ++i) residual[i] = part.load[i] - internal[i] - contact[i];
-  for (std::size_t i = 0; i < n; ++i)
-    if (part.held[i]) {
-      reaction[i] = -residual[i];
-      residual[i] = 0.0;
-    }
   const ContactSums sums = contact_sums(traces, state);
 
   Residuals out;
   out.energy = energy;
-  const double contact_norm = space.norm(contact), reaction_norm = space.norm(reaction);
   Scales& scales = out.scales;
-  Vector stiff(n);
-  for (std::size_t i = 0; i < n; ++i) stiff[i] = rounding * diagonal[i] * state.omega[i];
-  const auto [stiff_force, stiff_energy] = space.dot2(stiff, stiff, stiff, state.omega);
-  scales.force = std::max({space.norm(part.load), reaction_norm, contact_norm, std::sqrt(stiff_force)});
-  scales.displacement = space.max_abs(state.omega);
-
-  // Sums of forces: the load, the obstacles, the supports; and what the supports work on.
-  std::array<double, 6> totals{};  // three balances, Σ|force|, ω·residual, ω_D·reaction
+  // Sums of forces: the load, the obstacles, the supports; what they work; squares of their norms.
+  std::array<double, 12> totals{};  // three balances, Σ|force|, ω·residual, ω·R, |·|²: residual, reaction, contact, load, stiff; ω·stiff
   for (std::size_t i = 0; i < part.owned_unknowns(); ++i) {
-    totals[i % dim] += part.load[i] - contact[i] + reaction[i];
-    totals[3] += std::abs(part.load[i]) + std::abs(contact[i]) + std::abs(reaction[i]);
-    totals[4] += residual[i] * state.omega[i];
+    const double unbalanced = part.load[i] - internal[i] - contact[i], stiff = rounding * diagonal[i] * state.omega[i];
+    const double reaction = part.held[i] ? -unbalanced : 0.0, residual = part.held[i] ? 0.0 : unbalanced;
+    totals[i % dim] += part.load[i] - contact[i] + reaction;
+    totals[3] += std::abs(part.load[i]) + std::abs(contact[i]) + std::abs(reaction);
+    totals[4] += residual * state.omega[i];
     totals[5] += internal[i] * state.omega[i];
+    totals[6] += residual * residual;
+    totals[7] += reaction * reaction;
+    totals[8] += contact[i] * contact[i];
+    totals[9] += part.load[i] * part.load[i];
+    totals[10] += stiff * stiff;
+    totals[11] += stiff * state.omega[i];
   }
   part.halo.sum_all(totals);
+  const double stiff_force = totals[10], stiff_energy = totals[11];
+  scales.force = std::sqrt(*std::max_element(totals.begin() + 7, totals.begin() + 11));
+  scales.displacement = space.max_abs(state.omega);
 
   const double tiny = 1e-300;
   scales.pressure = std::max(sums.pressure, sums.area > 0.0 ? 0.5 * totals[3] / sums.area * 1e-3 : 0.0);
@@ -114,7 +111,7 @@ Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactS
   const double pressure = std::max(scales.pressure, tiny);
   Certificate& c = out.certificate;
   const double force_noise = noise / rounding * std::sqrt(stiff_force), energy_noise = noise / rounding * stiff_energy;
-  c.equilibrium = without(space.norm(residual), force_noise) / force;
+  c.equilibrium = without(std::sqrt(totals[6]), force_noise) / force;
   c.penetration = std::max(0.0, sums.penetration) / displacement;
   c.tension = std::max(0.0, sums.tension) / pressure;
   c.friction_cone = std::max(0.0, sums.cone) / pressure;

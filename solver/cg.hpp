@@ -24,9 +24,9 @@ struct CgResult {
 
 /// Work vectors, kept between solves.
 struct CgWork {
-  Vector residual, direction, image, preconditioned;
+  Vector residual, direction, image;  // image: A p, and before it M⁻¹ r
   void resize(std::size_t n) {
-    for (Vector* v : {&residual, &direction, &image, &preconditioned}) v->resize(n);
+    for (Vector* v : {&residual, &direction, &image}) v->resize(n);
   }
 };
 
@@ -38,7 +38,8 @@ template <class Apply, class Precondition>
 CgResult conjugate_gradients(const Space& space, const Apply& apply, const Precondition& precondition,
                              std::span<double> x, CgWork& work, const CgOptions& options) {
   CgResult result;
-  auto& [r, p, q, z] = work;
+  auto& [r, p, q] = work;
+  auto& z = q;  // wanted one after the other
   const std::size_t n = x.size();
   space.project(r);
   result.first_residual = result.residual = space.norm(r);

@@ -41,6 +41,8 @@ class DistributedOperator {
     else
       local_.update(omega);
   }
+  /// Gives the tangent's memory back until the next update.
+  void forget_tangent() noexcept { local_.forget_tangent(); }
   void set_secant(std::span<const double> g) { local_.set_secant(g); }
   /// Internal force of the true law; counts as an application.
   void residual(std::span<const double> omega, std::span<double> f) {

@@ -12,11 +12,13 @@ class ElasticityAmg final : public Preconditioner {
  public:
   explicit ElasticityAmg(const Part& part);
   void apply(std::span<const double> r, std::span<double> z) override;
+  void secant(std::span<double> g) const override;
 
  private:
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) override;
 
   const Part& part_;
+  std::vector<double> g_;
   BoomerAmg amg_;
 };
 

@@ -13,7 +13,7 @@ double closed_by_prescription(const Part& part, const ContactPoint& point) {
   double closed = 0.0;
   for (std::size_t c = 0; c < dim; ++c) {
     const std::size_t i = static_cast<std::size_t>(point.node) * dim + c;
-    if (part.held[i]) closed += point.normal[c] * part.prescribed[i];
+    if (part.held[i]) closed += point.normal[c] * part.prescribed_at(i);
   }
   return closed;
 }
@@ -33,10 +33,8 @@ LoadPath::LoadPath(const Part& full) : full_(&full), part_(full) {
 
 void LoadPath::set(double factor) {
   const double missing = 1.0 - factor;
-  for (std::size_t i = 0; i < part_.load.size(); ++i) {
-    part_.load[i] = factor * full_->load[i];
-    part_.prescribed[i] = factor * full_->prescribed[i];
-  }
+  for (std::size_t i = 0; i < part_.load.size(); ++i) part_.load[i] = factor * full_->load[i];
+  for (std::size_t i = 0; i < part_.prescribed.size(); ++i) part_.prescribed[i].value = factor * full_->prescribed[i].value;
   for (std::size_t i = 0; i < part_.contact.size(); ++i) {
     const ContactPoint& point = full_->contact[i];
     part_.contact[i].gap =

@@ -74,8 +74,8 @@ bool OuterLoop::run(Result& result) {
 }
 
 void OuterLoop::scale(double ratio, const Result& result) {
-  for (std::size_t i = 0; i < state_.omega.size(); ++i)
-    state_.omega[i] = part_.held[i] ? part_.prescribed[i] : ratio * state_.omega[i];
+  for (double& u : state_.omega) u *= ratio;
+  part_.prescribe(state_.omega);
   for (Vector* v : {&state_.lambda.normal, &state_.lambda.tangential, &state_.phi.tangential})
     for (double& value : *v) value *= ratio;
   traces_.evaluate(state_.omega, state_.trace);

@@ -17,6 +17,11 @@ namespace kacanov {
 /// owned by one of them. Owned nodes come first, neighbours close to each other (node_order). Vectors over a part are consistent: every copy of a
 /// shared entry holds the same bits.
 struct Part {
+  struct Prescribed {
+    std::int32_t component = 0;  ///< node · dim + c
+    double value = 0.0;
+    bool operator==(const Prescribed&) const = default;
+  };
   ElementType type = ElementType::tet4;
   std::vector<double> coordinates;       ///< nodes × dim
   std::vector<std::int32_t> elements;
@@ -26,12 +31,13 @@ struct Part {
   std::int32_t owned_nodes = 0;
   std::int64_t first_owned = 0;          ///< owned nodes are numbered first_owned … over all ranks
   std::int64_t total_nodes = 0, total_elements = 0;
-  std::vector<std::int64_t> global_node; ///< that numbering, for every local node
+  std::vector<std::int64_t> ghost_number; ///< that number, of every local node that another rank owns
   Halo halo;
   std::vector<Law> laws;
   std::vector<std::uint16_t> law_of_element;
-  std::vector<double> load, prescribed;  ///< nodes × dim, consistent
+  std::vector<double> load;              ///< nodes × dim, consistent
   std::vector<std::uint8_t> held;        ///< nodes × dim
+  std::vector<Prescribed> prescribed;    ///< of every held component, ascending
   std::vector<ContactPoint> contact;     ///< of local nodes; those of owned nodes first
   std::int32_t owned_contact = 0;
   std::vector<std::int32_t> contact_index;  ///< index in Problem::contact
@@ -53,6 +59,16 @@ struct Part {
   std::size_t unknowns() const noexcept { return coordinates.size(); }
   std::size_t owned_unknowns() const noexcept {
     return static_cast<std::size_t>(owned_nodes) * static_cast<std::size_t>(dim());
+  }
+  std::int64_t node_number(std::size_t i) const noexcept {
+    const auto owned = static_cast<std::size_t>(owned_nodes);
+    return i < owned ? first_owned + static_cast<std::int64_t>(i) : ghost_number[i - owned];
+  }
+  /// The given displacement of a held component.
+  double prescribed_at(std::size_t component) const noexcept;
+  /// Sets held components of ω.
+  void prescribe(std::span<double> omega) const noexcept {
+    for (const auto& p : prescribed) omega[static_cast<std::size_t>(p.component)] = p.value;
   }
   Body body() const noexcept { return {{type, coordinates, elements}, laws, law_of_element}; }
 };

@@ -111,7 +111,7 @@ void exchange_fields(P& part, const Stream& stream) {
   stream(part.first_owned);
   stream(part.total_nodes);
   stream(part.total_elements);
-  stream(part.global_node);
+  stream(part.ghost_number);
   stream(part.halo.neighbours);
   stream(part.halo.shared);
   stream(part.laws);
@@ -254,18 +254,17 @@ class Splitter {
     }
     part.node_index.shrink_to_fit();
     const std::size_t count = part.node_index.size();
-    for (auto* v : {&part.coordinates, &part.load, &part.prescribed}) v->reserve(count * dim);
+    for (auto* v : {&part.coordinates, &part.load}) v->reserve(count * dim);
     part.held.reserve(count * dim);
     if (!mesh.node_tags.empty()) part.node_tags.reserve(count);
-    part.global_node.reserve(count);
     for (const Index index : part.node_index) {
       const auto n = static_cast<std::size_t>(index);
       if (!mesh.node_tags.empty()) part.node_tags.push_back(mesh.node_tags[n]);
-      part.global_node.push_back(global_[n]);
+      if (static_cast<Index>(local_[n]) >= part.owned_nodes) part.ghost_number.push_back(global_[n]);
       for (std::size_t c = n * dim; c < (n + 1) * dim; ++c) {
         part.coordinates.push_back(mesh.coordinates[c]);
         part.load.push_back(problem_.load[c]);
-        part.prescribed.push_back(problem_.prescribed[c]);
+        if (problem_.held[c] != 0) part.prescribed.push_back({static_cast<Index>(part.held.size()), problem_.prescribed[c]});
         part.held.push_back(problem_.held[c]);
       }
     }
@@ -362,6 +361,13 @@ class Splitter {
 };
 
 }  // namespace
+
+double Part::prescribed_at(std::size_t component) const noexcept {
+  const auto at = std::lower_bound(prescribed.begin(), prescribed.end(), component, [](const Prescribed& p, std::size_t c) {
+    return static_cast<std::size_t>(p.component) < c;
+  });
+  return at->value;
+}
 
 Part distribute(const Problem* problem, MPI_Comm comm) {
   int rank = 0, ranks = 1;

@@ -29,6 +29,9 @@ class Preconditioner {
   /// z ≈ A⁻¹ r.
   virtual void apply(std::span<const double> r, std::span<double> z) = 0;
 
+  /// The g of the last setup, in single precision at the least; mu before the first.
+  virtual void secant(std::span<double> g) const = 0;
+
   int setups() const noexcept { return setups_; }
   double setup_seconds() const noexcept { return seconds_; }
 

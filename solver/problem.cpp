@@ -2,6 +2,8 @@
 // Puts a model on a mesh, step by step, and checks that what results can be solved.
 #include "problem.hpp"
 
+#include <algorithm>
+#include <numeric>
 #include <type_traits>
 
 #include "error.hpp"
@@ -32,16 +34,45 @@ Problem build_problem(Mesh mesh, const Model& model) {
   return problem;
 }
 
-void keep_boundary(Problem& problem) {
+std::vector<std::int32_t> keep_boundary(Problem& problem) {
   const auto free = [](auto& array) { std::remove_reference_t<decltype(array)>().swap(array); };
-  if (problem.mesh.dim() == 3) {
-    free(problem.mesh.elements);
-    free(problem.mesh.element_tags);
-  }
   free(problem.law_of_element);
   free(problem.load);
   free(problem.held);
   free(problem.prescribed);
+  Mesh& mesh = problem.mesh;
+  std::vector<std::int32_t> left;
+  if (mesh.dim() == 2) {
+    left.resize(mesh.node_count());
+    std::iota(left.begin(), left.end(), 0);
+    return left;
+  }
+  left = mesh.facets;
+  std::sort(left.begin(), left.end());
+  left.erase(std::unique(left.begin(), left.end()), left.end());
+  left.shrink_to_fit();
+  const auto renumber = [&left](std::int32_t& node) {
+    node = static_cast<std::int32_t>(std::lower_bound(left.begin(), left.end(), node) - left.begin());
+  };
+  std::vector<double> coordinates;
+  std::vector<std::int64_t> tags;
+  coordinates.reserve(3 * left.size());
+  tags.reserve(left.size());
+  for (const std::int32_t old : left) {
+    const auto n = static_cast<std::size_t>(old);
+    coordinates.insert(coordinates.end(), mesh.coordinates.begin() + static_cast<std::ptrdiff_t>(3 * n),
+                       mesh.coordinates.begin() + static_cast<std::ptrdiff_t>(3 * n + 3));
+    tags.push_back(mesh.node_tag(n));
+  }
+  mesh.coordinates.swap(coordinates);
+  mesh.node_tags.swap(tags);
+  std::for_each(mesh.facets.begin(), mesh.facets.end(), renumber);
+  for (ContactPoint& point : problem.contact) renumber(point.node);
+  free(mesh.elements);
+  free(mesh.element_tags);
+  free(mesh.facet_element);
+  std::erase_if(mesh.groups, [](const Group& group) { return group.dimension != 2; });
+  return left;
 }
 
 }  // namespace kacanov

@@ -46,9 +46,10 @@ struct Problem {
   std::vector<std::string> warnings;
 };
 
-/// Frees what only the parts need once they are made: in 3D the elements, in any case the arrays over nodes and elements. What
-/// is left serves pictures and output: nodes, boundary, contact points.
-void keep_boundary(Problem& problem);
+/// Frees what only the parts need once they are made: the arrays over nodes and elements, and in 3D the elements and inner nodes
+/// themselves. What is left serves pictures and output: the boundary, contact points, named facets; nodes are renumbered. Returns the
+/// former number of each node that is left.
+std::vector<std::int32_t> keep_boundary(Problem& problem);
 
 /// Resolves every `on`, assembles the load, finds traces and gaps. Throws InputError in the words of the case
 /// file ("boundary[1].on: ..."): unknown names with those that exist, empty selections, contact

@@ -99,15 +99,13 @@ OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOp
       op_(part, run.threads, run.instruction_set),
       amg_(make_preconditioner(options.preconditioner, part, run.threads, run.instruction_set)),
       internal_(part.unknowns()),
-      diagonal_(part.unknowns()),
-      secant_(part.body().secant_count()) {
+      diagonal_(part.unknowns()) {
   extent_ = body_extent(part);
   op_.local().diagonal(diagonal_);
   part.halo.sum(diagonal_, part.dim());
   const std::size_t points = part.contact.size();
-  state_.omega = part.prescribed;
-  for (std::size_t i = 0; i < part.unknowns(); ++i)
-    if (!part.held[i]) state_.omega[i] = 0.0;
+  state_.omega.assign(part.unknowns(), 0.0);
+  part.prescribe(state_.omega);
   state_.trace = state_.phi = state_.lambda = ContactValues(points);
   state_.bound.resize(points);
   work_.resize(part.unknowns());
@@ -121,7 +119,6 @@ OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOp
                         [](const Law& law) { return law.kind == Law::Kind::linear; });
   if (options.stop == SolverOptions::Stop::paper) volume_ = lumped_volume(part);
   update_bounds();
-  op_.local().secant(secant_);
   problem_ = {&space_, &traces_, [this](std::span<const double> x, std::span<double> y) { op_.apply(x, y); },
               [this](std::span<const double> r, std::span<double> z) { amg_->apply(r, z); }};
   if (run.stop_requested) {
@@ -154,7 +151,7 @@ void OuterLoop::choose_first_penalty(Result& result) {
   const auto applications = op_.applications();
   if (options_.penalty == SolverOptions::Penalty::paper) {
     const auto spectrum =
-        estimate_spectrum(part_, op_, *amg_, secant_, friction_, options_.spectrum_tolerance);
+        estimate_spectrum(part_, op_, *amg_, secant(), friction_, options_.spectrum_tolerance);
     preconditioner_stale_ = true;
     result.lambda_min = spectrum.lambda_min;
     result.lambda_max = spectrum.lambda_max;
@@ -207,21 +204,27 @@ std::vector<NodeBlock> OuterLoop::penalty_blocks() const {
 }
 
 /// Whether a new preconditioner pays: because it is `wanted`, has served its time, or g has moved too far
-/// from the one it was built with. If so, the g of now is in secant_.
+/// from the one it was built with.
 bool OuterLoop::setup_pays(bool wanted) {
   wanted = wanted || preconditioner_stale_;
   if (linear_) return wanted;
-  Vector now(secant_.size());
-  op_.local().secant(now);
+  if (wanted) return true;
+  const Vector now = secant();
+  Vector then(now.size());
+  amg_->secant(then);
   std::array<double, 2> sums{};
   for (std::size_t i = 0; i < now.size(); ++i) {
-    sums[0] += std::abs(now[i] - secant_[i]);
-    sums[1] += secant_[i];
+    sums[0] += std::abs(now[i] - then[i]);
+    sums[1] += then[i];
   }
   part_.halo.sum_all(sums);
-  if (!wanted && sums[0] <= drift_worth * sums[1]) return false;
-  secant_.swap(now);
-  return true;
+  return sums[0] > drift_worth * sums[1];
+}
+
+Vector OuterLoop::secant() const {
+  Vector g(part_.body().secant_count());
+  op_.local().secant(g);
+  return g;
 }
 
 /// How many nodes the preconditioner pins that are free in `set`, or the other way round.
@@ -242,7 +245,7 @@ bool OuterLoop::penalty_moved() const {
 }
 
 void OuterLoop::set_up_preconditioner(std::span<const NodeBlock> blocks, const Space& space) {
-  amg_->setup(secant_, blocks, space);
+  amg_->setup(secant(), blocks, space);
   preconditioner_stale_ = false;
   digits_per_cg_ = 0.0;
 }
@@ -318,7 +321,10 @@ void OuterLoop::take_admm_step(Result& result, ProgressStep& line, const Residua
 void OuterLoop::take_damped_step(std::span<const double> delta, double curvature) {
   // Along δ the energy of the linear model falls with slope −q (1 − t). A step is too long where the true
   // force has grown past half of q more than the model says (unloading is stiffer than the tangent).
-  const Vector from = state_.omega, force = internal_;
+  // The solve is over: its vectors are free.
+  Vector &from = work_.direction, &force = work_.image;
+  from = state_.omega;
+  force = internal_;
   double t = 1.0;
   for (int trial = 0;; ++trial) {
     for (std::size_t i = 0; i < from.size(); ++i) state_.omega[i] = from[i] + t * delta[i];
@@ -335,9 +341,9 @@ void OuterLoop::take_newton_step(Result& result, ProgressStep& line, const Resid
   const bool far =
       options_.outer == SolverOptions::Outer::automatic && before.certificate.equilibrium > tangent_reach;
   const bool tangent = options_.outer != SolverOptions::Outer::kacanov && !linear_ && !far;
-  if (!linear_) {
-    op_.use_tangent(tangent);
-    if (tangent || !secant_current_) op_.update(state_.omega);
+  if (!linear_ && !secant_current_) {
+    op_.use_tangent(false);
+    op_.update(state_.omega);
   }
   const ActiveSet set = decide(traces_, state_, decision_share * penalty_.normal);
   if (setup_pays(static_cast<double>(set_moved(set.held)) >= setup_worth)) {
@@ -350,27 +356,34 @@ void OuterLoop::take_newton_step(Result& result, ProgressStep& line, const Resid
     blocks.insert(blocks.end(), slip.begin(), slip.end());
     set_up_preconditioner(blocks, space);
   }
-  Vector residual(part_.unknowns()), delta(part_.unknowns());
-  for (std::size_t i = 0; i < residual.size(); ++i) residual[i] = part_.load[i] - internal_[i];
+  // After the setup: the two do not have to fit into memory at once.
+  op_.use_tangent(tangent);
+  if (tangent) op_.update(state_.omega);
+  const auto take_residual = [this] {
+    for (std::size_t i = 0; i < internal_.size(); ++i) work_.residual[i] = part_.load[i] - internal_[i];
+  };
+  take_residual();
+  Vector delta(part_.unknowns());
   // A step that may be the last is solved well below the tolerance, so that answers do not depend on ranks or
   // threads to more than that.
   const double floor = 0.05 * options_.tolerance * gap_share(before.certificate) * before.scales.force;
   const bool last = before.certificate.worst() * solve_reduction <= options_.tolerance;
   const auto applications = op_.applications();
-  const ActiveSetStep step = active_set_step(problem_, part_, set, state_, residual,
-                                             last ? 1e-3 : solve_reduction, floor, work_, delta);
+  const ActiveSetStep step =
+      active_set_step(problem_, part_, set, state_, last ? 1e-3 : solve_reduction, floor, work_, delta);
   result.contact_applications += op_.applications() - applications;
   line.phase = tangent ? "newton" : "active_set";
   line.r = penalty_.normal;
   line.contact_iterations = 1;
   line.cg_iterations = step.cg_iterations;
+  op_.forget_tangent();
   newton_failed_ = !step.solved;
   if (newton_failed_) return;
   watch_preconditioner(step.cg_digits, step.cg_iterations);
   take_damped_step(delta, step.curvature);
   traces_.evaluate(state_.omega, state_.trace);
-  for (std::size_t i = 0; i < residual.size(); ++i) residual[i] = part_.load[i] - internal_[i];
-  recover_multipliers(part_, traces_, set, residual, state_);
+  take_residual();
+  recover_multipliers(part_, traces_, set, work_.residual, state_);
 }
 
 void OuterLoop::iterate(Result& result) {

@@ -73,7 +73,9 @@ class OuterLoop {
   bool stop_agreed() const;
   void choose_first_penalty(Result& result);
   void balance_penalty(const AdmmResult& step, Result& result);
+  /// With the g that the operator has frozen.
   void set_up_preconditioner(std::span<const NodeBlock> blocks, const Space& space);
+  Vector secant() const;
   std::vector<NodeBlock> penalty_blocks() const;
   void update_residual();
   bool setup_pays(bool wanted);
@@ -100,7 +102,6 @@ class OuterLoop {
   double energy_ = 0.0;          // stored, at ω
   bool secant_current_ = false;  // the operator's g is that of ω
   Vector diagonal_;              // of the elastic B
-  Vector secant_;                // frozen g, elements × points
   Vector volume_;                // lumped nodal volumes, for (15)
   Penalty penalty_;
   Penalty setup_penalty_;    // that the preconditioner was built with

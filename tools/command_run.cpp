@@ -47,6 +47,18 @@ std::string picture(const Case& input, const Mesh& mesh, std::span<const double>
   return deformed_svg(picture);
 }
 
+/// Values of some nodes; of none where there are no values.
+std::vector<double> picked(std::span<const double> all, std::span<const std::int32_t> nodes, int components) {
+  const auto width = static_cast<std::size_t>(components);
+  std::vector<double> some;
+  some.reserve(nodes.size() * width);
+  for (const std::int32_t n : nodes) {
+    const auto values = all.subspan(static_cast<std::size_t>(n) * width, width);
+    some.insert(some.end(), values.begin(), values.end());
+  }
+  return some;
+}
+
 std::string checkpoint_line(const CheckpointFile& file) {
   return file.written() ? "  checkpoint    " + file.path().string() + "; the option --restart goes on from there\n" : "";
 }
@@ -96,8 +108,11 @@ int run_command(const Command& command, const Case& input, const MpiSession& mpi
   const ContactFields contact = gather_contact_fields(loaded.part, solution);
   std::vector<double> displacement, von_mises;
   if (input.output.report) {
-    displacement = gather_nodal(loaded.part, solution.displacement, dim);
-    von_mises = gather_nodal(loaded.part, nodal_von_mises(loaded.part, solution.displacement), 1);
+    const auto at_boundary = [&](std::span<const double> local, int components) {
+      return picked(gather_nodal(loaded.part, local, components), loaded.boundary_nodes, components);
+    };
+    displacement = at_boundary(solution.displacement, dim);
+    von_mises = at_boundary(nodal_von_mises(loaded.part, solution.displacement), 1);
   }
   if (input.output.fields) together(mpi, [&] { write_body(folder, loaded.part, solution); });
   together(mpi, [&] {

@@ -40,7 +40,7 @@ LoadedCase load_case(const Case& input, const MpiSession& mpi) {
 }
 
 void keep_boundary(LoadedCase& loaded) {
-  if (loaded.problem) keep_boundary(*loaded.problem);
+  if (loaded.problem) loaded.boundary_nodes = keep_boundary(*loaded.problem);
   malloc_trim(0);  // back to the system, before the solver asks for more
 }
 

@@ -21,11 +21,12 @@ Problem load_problem(const Case& input);
 /// A problem split over the ranks.
 struct LoadedCase {
   std::optional<Problem> problem;  ///< on the first rank
+  std::vector<std::int32_t> boundary_nodes;  ///< there, after keep_boundary: their numbers in the whole problem
   Part part;
   double read_seconds = 0.0, distribute_seconds = 0.0;
 };
 
-/// Frees what of the problem the parts have taken over, see keep_boundary(). Collective.
+/// Frees what of the problem the parts have taken over, see keep_boundary(Problem&).
 void keep_boundary(LoadedCase& loaded);
 
 /// Collective; failures are printed and end as ReportedFailure on all ranks.

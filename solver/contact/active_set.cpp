@@ -68,8 +68,8 @@ std::vector<NodeBlock> slip_blocks(const Part& part, const ActiveSet& set) {
 }
 
 ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, const ActiveSet& set,
-                              const ContactState& state, std::span<const double> residual, double reduction,
-                              double absolute, CgWork& work, std::span<double> delta) {
+                              const ContactState& state, double reduction, double absolute, CgWork& work,
+                              std::span<double> delta) {
   const Traces& traces = *problem.traces;
   const TraceRows rows(part, set.held);
   Space space(part);
@@ -97,7 +97,6 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
     for (double& v : trace.tangential) v = -v;
     subtract_slip_force(traces, set, trace.tangential, false, q);
   };
-  std::copy(residual.begin(), residual.end(), work.residual.begin());
   subtract_slip_force(traces, set, state.trace.tangential, true, work.residual);
   rows.lift(closing, delta);
   if (furthest > 0.0) {
@@ -115,14 +114,13 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
   return step;
 }
 
-void recover_multipliers(const Part& part, const Traces& traces, const ActiveSet& set, std::span<const double> residual,
+void recover_multipliers(const Part& part, const Traces& traces, const ActiveSet& set, std::span<double> residual,
                          ContactState& state) {
   const TraceRows rows(part, set.held);
   // Forces at held rows are what is left once the slipping points have taken theirs.
-  Vector left(residual.begin(), residual.end());
-  subtract_slip_force(traces, set, state.trace.tangential, true, left);
+  subtract_slip_force(traces, set, state.trace.tangential, true, residual);
   Vector force(rows.local());
-  rows.lift_transpose(left, force);
+  rows.lift_transpose(residual, force);
   std::size_t at = 0;
   for (std::size_t i = 0; i < traces.size(); ++i) {
     const auto& point = traces.points()[i];

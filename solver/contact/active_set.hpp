@@ -32,15 +32,16 @@ struct ActiveSetStep {
 };
 
 /// Solves the linearised problem with the rows of `set` held: B δ + slip terms = F − R(ω) − CᵀMλ, Cω + Cδ on the obstacle
-/// or at rest. On entry `residual` is F − R(ω), without contact forces; `delta` receives the step. `reduction` is CG's relative tolerance, `absolute`
-/// its floor.
+/// or at rest. On entry `work.residual` is F − R(ω), without contact forces; `delta` receives the step. `reduction` is CG's relative tolerance,
+/// `absolute` its floor.
 ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, const ActiveSet& set,
-                              const ContactState& state, std::span<const double> residual, double reduction,
-                              double absolute, CgWork& work, std::span<double> delta);
+                              const ContactState& state, double reduction, double absolute, CgWork& work,
+                              std::span<double> delta);
 
 /// Multipliers after a step: from the forces F − R(ω) at held rows, from the friction law at slipping ones (projected
-/// onto the disc), zero elsewhere. Uses state.trace at the new ω; φ is set so that ADMM can go on from here.
-void recover_multipliers(const Part& part, const Traces& traces, const ActiveSet& set, std::span<const double> residual,
+/// onto the disc), zero elsewhere. Uses state.trace at the new ω; φ is set so that ADMM can go on from here. `residual`, F − R(ω), is
+/// used up.
+void recover_multipliers(const Part& part, const Traces& traces, const ActiveSet& set, std::span<double> residual,
                          ContactState& state);
 
 }  // namespace kacanov

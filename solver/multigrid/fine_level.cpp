@@ -18,18 +18,18 @@ void FineLevel::build(std::span<const double> g, std::span<const NodeBlock> bloc
   blocks_.assign(blocks.begin(), blocks.end());
   const auto dim = static_cast<std::size_t>(part_.dim());
   const std::size_t packed = dim * (dim + 1) / 2;
-  Vector diagonal(part_.nodes() * dim * dim, 0.0);
-  reference::block_diagonal(part_.body(), g, diagonal);
+  std::vector<float> diagonal(part_.nodes() * dim * dim);
+  op_.block_diagonal(diagonal);
   for (const auto& b : blocks_)
-    for (std::size_t k = 0; k < dim * dim; ++k) diagonal[static_cast<std::size_t>(b.node) * dim * dim + k] += b.value[k];
-  part_.halo.sum(diagonal, static_cast<int>(dim * dim));
+    for (std::size_t k = 0; k < dim * dim; ++k) diagonal[static_cast<std::size_t>(b.node) * dim * dim + k] += static_cast<float>(b.value[k]);
+  part_.halo.sum(std::span<float>(diagonal), static_cast<int>(dim * dim));
   inverse_.resize(part_.nodes() * packed);
   for (std::size_t n = 0; n < part_.nodes(); ++n) {
     Eigen::Matrix3d d = Eigen::Matrix3d::Identity();
     for (std::size_t i = 0; i < dim; ++i)
       for (std::size_t j = 0; j < dim; ++j)
         if (part_.held[n * dim + i] == 0 && part_.held[n * dim + j] == 0)
-          d(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = diagonal[(n * dim + i) * dim + j];
+          d(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = static_cast<double>(diagonal[(n * dim + i) * dim + j]);
     const Eigen::Matrix3d inverse = d.inverse();
     float* to = &inverse_[n * packed];
     for (std::size_t i = 0; i < dim; ++i)
@@ -78,7 +78,7 @@ void FineLevel::choose_smoother(int degree, double range) {
   std::vector<float> x(part_.unknowns());
   const auto dim = static_cast<std::size_t>(part_.dim());
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const auto id = part_.global_node[i / dim] * static_cast<std::int64_t>(dim) + static_cast<std::int64_t>(i % dim);
+    const auto id = part_.node_number(i / dim) * static_cast<std::int64_t>(dim) + static_cast<std::int64_t>(i % dim);
     x[i] = scatter(static_cast<std::uint64_t>(id));
   }
   hold(x);

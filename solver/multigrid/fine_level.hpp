@@ -21,6 +21,7 @@ class FineLevel {
  public:
   FineLevel(const Part& part, const MultigridOptions& options);
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space);
+  void secant(std::span<double> g) const { op_.secant(g); }
   /// y = A x for x that is zero in held components.
   void multiply(std::span<const float> x, std::span<float> y) const;
   /// y = D⁻¹ x, D the dim × dim diagonal blocks of A.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "multigrid/aggregation.hpp"
 #include "multigrid/largest_eigenvalue.hpp"
@@ -19,6 +20,14 @@ using Dense = Eigen::Matrix<double, M, M, Eigen::RowMajor>;
 template <int M>
 Dense<M> dense(const typename BlockSums<M>::Block& block) {
   return Eigen::Map<const Dense<M>>(block.data());
+}
+
+template <int M>
+typename BlockSums<M>::Block transposed(const typename BlockSums<M>::Block& block) {
+  typename BlockSums<M>::Block result;
+  for (std::size_t i = 0; i < M; ++i)
+    for (std::size_t j = 0; j < M; ++j) result[j * M + i] = block[i * M + j];
+  return result;
 }
 
 /// Takes coefficients of a group's motion to those of an aggregate in it.
@@ -36,7 +45,7 @@ Dense<M> prolongation(const Vector3& offset, double inverse_length) {
 
 /// Sends each rank its bytes and returns all that came.
 template <class T>
-std::vector<T> exchange(const std::vector<std::vector<T>>& to, MPI_Comm comm) {
+std::vector<T> exchange_entries(const std::vector<std::vector<T>>& to, MPI_Comm comm) {
   const std::size_t ranks = to.size();
   std::vector<int> out(ranks), in(ranks), out_at(ranks, 0), in_at(ranks, 0);
   std::vector<T> sent;
@@ -87,7 +96,7 @@ void RigidLevel<M>::send_to_owners(BlockSums<M>& sums) const {
     if (row != rank_) to[static_cast<std::size_t>(row)].push_back(entry);
     if (column != rank_ && column != row) to[static_cast<std::size_t>(column)].push_back(entry);
   }
-  for (const auto& entry : exchange(to, comm_)) {
+  for (const auto& entry : exchange_entries(to, comm_)) {
     auto& sum = sums.at(entry.row, entry.column);
     for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += entry.block[k];
   }
@@ -99,11 +108,10 @@ void RigidLevel<M>::build_rows(const BlockSums<M>& sums) {
   const auto mine = [&](std::int64_t row) { return row >= begin && row < end; };
   start_.assign(static_cast<std::size_t>(rows()) + 1, 0);
   for (const auto& entry : sums.entries()) {
-    if (mine(entry.row)) ++start_[static_cast<std::size_t>(entry.row - begin) + 1];
-    if (entry.row == entry.column) continue;
-    if (mine(entry.column)) ++start_[static_cast<std::size_t>(entry.column - begin) + 1];
-    if (mine(entry.row) && !mine(entry.column)) ghosts_.push_back(entry.column);
-    if (!mine(entry.row) && mine(entry.column)) ghosts_.push_back(entry.row);
+    const bool row = mine(entry.row), column = mine(entry.column);
+    if (row || column) ++start_[static_cast<std::size_t>((row ? entry.row : entry.column) - begin) + 1];
+    if (row && !column) ghosts_.push_back(entry.column);
+    if (!row && column) ghosts_.push_back(entry.row);
   }
   std::sort(ghosts_.begin(), ghosts_.end());
   ghosts_.erase(std::unique(ghosts_.begin(), ghosts_.end()), ghosts_.end());
@@ -118,17 +126,11 @@ void RigidLevel<M>::build_rows(const BlockSums<M>& sums) {
   block_.resize(column_.size());
   auto next = start_;
   for (const auto& entry : sums.entries()) {
-    if (mine(entry.row)) {
-      const auto k = static_cast<std::size_t>(next[static_cast<std::size_t>(entry.row - begin)]++);
-      column_[k] = local(entry.column);
-      block_[k] = entry.block;
-    }
-    if (entry.row != entry.column && mine(entry.column)) {
-      const auto k = static_cast<std::size_t>(next[static_cast<std::size_t>(entry.column - begin)]++);
-      column_[k] = local(entry.row);
-      for (std::size_t i = 0; i < M; ++i)
-        for (std::size_t j = 0; j < M; ++j) block_[k][j * M + i] = entry.block[i * M + j];
-    }
+    const bool row = mine(entry.row);
+    if (!row && !mine(entry.column)) continue;
+    const auto k = static_cast<std::size_t>(next[static_cast<std::size_t>((row ? entry.row : entry.column) - begin)]++);
+    column_[k] = local(row ? entry.column : entry.row);
+    block_[k] = row ? entry.block : transposed<M>(entry.block);
   }
 }
 
@@ -205,16 +207,30 @@ inline void add_product(const double* block, const double* x, double* y) {
   }
 }
 
+/// y += Bᵀ x.
+template <int M>
+inline void add_transposed(const double* block, const double* x, double* y) {
+  for (int i = 0; i < M; ++i)
+    for (int j = 0; j < M; ++j) y[j] += block[i * M + j] * x[i];
+}
+
 }  // namespace
 
 template <int M>
 void RigidLevel<M>::multiply(std::span<double> x, std::span<double> y) const {
   fill_ghosts(x);
-  for (std::size_t i = 0; i < centres_.size(); ++i) {
+  const auto mine = y.first(owned_size());
+  std::fill(mine.begin(), mine.end(), 0.0);
+  const std::size_t owned = centres_.size();
+  for (std::size_t i = 0; i < owned; ++i) {
     std::array<double, M> sum{};
-    for (auto k = static_cast<std::size_t>(start_[i]); k < static_cast<std::size_t>(start_[i + 1]); ++k)
-      add_product<M>(block_[k].data(), x.data() + static_cast<std::size_t>(column_[k]) * M, sum.data());
-    std::copy(sum.begin(), sum.end(), y.begin() + static_cast<std::ptrdiff_t>(i * M));
+    const double* here = x.data() + i * M;
+    for (auto k = static_cast<std::size_t>(start_[i]); k < static_cast<std::size_t>(start_[i + 1]); ++k) {
+      const auto j = static_cast<std::size_t>(column_[k]);
+      add_product<M>(block_[k].data(), x.data() + j * M, sum.data());
+      if (j < owned && j != i) add_transposed<M>(block_[k].data(), here, y.data() + j * M);
+    }
+    for (std::size_t m = 0; m < M; ++m) y[i * M + m] += sum[m];
   }
 }
 
@@ -268,11 +284,19 @@ RigidLevel<M> RigidLevel<M>::coarsened(std::span<const std::int32_t> group, doub
   for (std::size_t i = 0; i < centres_.size(); ++i) {
     const Dense<M> row = prolongation<M>(place[i].offset, inverse_length).transpose();
     for (auto k = static_cast<std::size_t>(start_[i]); k < static_cast<std::size_t>(start_[i + 1]); ++k) {
-      const Place& other = place[static_cast<std::size_t>(column_[k])];
-      if (place[i].group > other.group) continue;  // the owner of the column's row has it
+      const auto j = static_cast<std::size_t>(column_[k]);
+      const Place& other = place[j];
+      const bool with_transpose = j != i && j < centres_.size();
       const Dense<M> product = row * dense<M>(block_[k]) * prolongation<M>(other.offset, inverse_length);
-      auto& sum = sums.at(place[i].group, other.group);
-      for (std::size_t e = 0; e < sum.size(); ++e) sum[e] += product.data()[e];
+      if (place[i].group <= other.group) {  // else the owner of the column's row has it
+        auto& sum = sums.at(place[i].group, other.group);
+        for (std::size_t e = 0; e < sum.size(); ++e) sum[e] += product.data()[e];
+      }
+      if (with_transpose && other.group <= place[i].group) {
+        const Dense<M> transpose = product.transpose();
+        auto& sum = sums.at(other.group, place[i].group);
+        for (std::size_t e = 0; e < sum.size(); ++e) sum[e] += transpose.data()[e];
+      }
     }
   }
   return RigidLevel(std::move(centre), std::move(sums), comm_);
@@ -281,23 +305,34 @@ RigidLevel<M> RigidLevel<M>::coarsened(std::span<const std::int32_t> group, doub
 template <int M>
 WeightedGraph RigidLevel<M>::couplings() const {
   constexpr int dim = RigidMotion<M>::dim;
+  const auto visit = [this](auto&& edge) {
+    for (std::int32_t i = 0; i < rows(); ++i)
+      for (auto k = start_[static_cast<std::size_t>(i)]; k < start_[static_cast<std::size_t>(i) + 1]; ++k)
+        if (const std::int32_t j = column_[static_cast<std::size_t>(k)]; j != i && j < rows()) edge(i, j, block_[static_cast<std::size_t>(k)]);
+  };
   WeightedGraph graph;
-  graph.start.push_back(0);
-  for (std::int32_t i = 0; i < rows(); ++i) {
-    for (auto k = start_[static_cast<std::size_t>(i)]; k < start_[static_cast<std::size_t>(i) + 1]; ++k) {
-      const std::int32_t j = column_[static_cast<std::size_t>(k)];
-      if (j == i || j >= rows()) continue;
-      double square = 0.0;
-      for (int a = 0; a < dim; ++a)
-        for (int b = 0; b < dim; ++b) {
-          const double v = block_[static_cast<std::size_t>(k)][static_cast<std::size_t>(a * M + b)];
-          square += v * v;
-        }
-      graph.column.push_back(j);
-      graph.weight.push_back(static_cast<float>(std::sqrt(square)));
+  graph.start.assign(static_cast<std::size_t>(rows()) + 1, 0);
+  visit([&](std::int32_t i, std::int32_t j, const Block&) {
+    ++graph.start[static_cast<std::size_t>(i) + 1];
+    ++graph.start[static_cast<std::size_t>(j) + 1];
+  });
+  std::partial_sum(graph.start.begin(), graph.start.end(), graph.start.begin());
+  graph.column.resize(static_cast<std::size_t>(graph.start.back()));
+  graph.weight.resize(graph.column.size());
+  auto next = graph.start;
+  visit([&](std::int32_t i, std::int32_t j, const Block& block) {
+    double square = 0.0;
+    for (int a = 0; a < dim; ++a)
+      for (int b = 0; b < dim; ++b) {
+        const double v = block[static_cast<std::size_t>(a * M + b)];
+        square += v * v;
+      }
+    for (const auto& [from, to] : {std::pair{i, j}, std::pair{j, i}}) {
+      const auto at = static_cast<std::size_t>(next[static_cast<std::size_t>(from)]++);
+      graph.column[at] = to;
+      graph.weight[at] = static_cast<float>(std::sqrt(square));
     }
-    graph.start.push_back(static_cast<std::int64_t>(graph.column.size()));
-  }
+  });
   return graph;
 }
 
@@ -325,8 +360,9 @@ std::vector<typename BlockSums<M>::Entry> RigidLevel<M>::gathered() const {
          k < static_cast<std::size_t>(start_[static_cast<std::size_t>(i) + 1]); ++k) {
       const std::int32_t j = column_[k];
       mine.push_back({first() + i, j < rows() ? first() + j : ghosts_[static_cast<std::size_t>(j - rows())], block_[k]});
+      if (j < rows() && j != i) mine.push_back({first() + j, first() + i, transposed<M>(block_[k])});
     }
-  return exchange(std::vector(static_cast<std::size_t>(ranks_), mine), comm_);
+  return exchange_entries(std::vector(static_cast<std::size_t>(ranks_), mine), comm_);
 }
 
 template class RigidLevel<3>;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -28,11 +29,11 @@ class BlockSums {
     if (fresh) entries_.push_back({row, column, {}});
     return entries_[place->second].block;
   }
-  std::span<const Entry> entries() const noexcept { return entries_; }
+  const std::deque<Entry>& entries() const noexcept { return entries_; }
 
  private:
   std::unordered_map<std::uint64_t, std::uint32_t> index_;
-  std::vector<Entry> entries_;
+  std::deque<Entry> entries_;  // never moved: they are most of the memory of a setup
 };
 
 /// Vectors have M entries a row; those handed to multiply have room for the ghosts behind the owned rows. All is double: a long
@@ -82,6 +83,7 @@ class RigidLevel {
   std::vector<std::int64_t> first_;  ///< of each rank, and the total
   std::vector<Vector3> centres_;
   std::vector<std::int64_t> ghosts_;  ///< rows of other ranks in `column_`, ascending
+  /// Of owned row i: entries whose column is i, a later owned row (which the symmetric one follows from), or a ghost.
   std::vector<std::int32_t> start_, column_;
   std::vector<Block> block_, inverse_diagonal_;
   struct Neighbour {

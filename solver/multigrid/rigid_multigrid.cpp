@@ -23,6 +23,7 @@ struct RigidMultigrid::Hierarchy {
   virtual ~Hierarchy() = default;
   virtual void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) = 0;
   virtual void apply(std::span<const double> r, std::span<double> z) = 0;
+  virtual void secant(std::span<double> g) const = 0;
 };
 
 namespace {
@@ -122,6 +123,8 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
     fine_.choose_smoother(options_.fine_degree, options_.fine_range);
     for (auto* v : {&b_, &x_, &step_, &image_}) v->resize(part_.unknowns());
   }
+
+  void secant(std::span<double> g) const override { fine_.secant(g); }
 
   void apply(std::span<const double> r, std::span<double> z) override {
     for (std::size_t i = 0; i < r.size(); ++i) b_[i] = static_cast<float>(r[i]);
@@ -262,13 +265,18 @@ RigidLevel<M> ModesHierarchy<M>::first_level(std::span<const double> g, std::spa
   if (part_.halo.rank == 0) first = 0;
 
   // Aggregate and centre of every local node, ghosts from their owners.
-  std::vector<double> place(part_.nodes() * (1 + dim), 0.0);
-  for (std::size_t n = 0; n < group_.size(); ++n) {
-    place[n * (1 + dim)] = static_cast<double>(first + group_[n]);
-    for (std::size_t c = 0; c < dim; ++c) place[n * (1 + dim) + 1 + c] = centre_[static_cast<std::size_t>(group_[n])][c];
+  const std::size_t owned = group_.size();
+  std::vector<Vector3> ghost_centre(part_.nodes() - owned);
+  Vector number(part_.nodes());
+  for (std::size_t c = 0; c <= dim; ++c) {  // the aggregate last: its vector stays
+    for (std::size_t n = 0; n < owned; ++n) {
+      const auto a = static_cast<std::size_t>(group_[n]);
+      number[n] = c < dim ? centre_[a][c] : static_cast<double>(first + group_[n]);
+    }
+    part_.halo.copy_from_owner(std::span<double>(number), 1);
+    for (std::size_t n = owned; n < number.size() && c < dim; ++n) ghost_centre[n - owned][c] = number[n];
   }
-  part_.halo.copy_from_owner(place, static_cast<int>(1 + dim));
-  const auto aggregate_of = [&](std::int32_t n) { return static_cast<std::int64_t>(place[static_cast<std::size_t>(n) * (1 + dim)]); };
+  const auto aggregate_of = [&](std::int32_t n) { return static_cast<std::int64_t>(number[static_cast<std::size_t>(n)]); };
 
   std::unordered_map<std::int32_t, Eigen::Matrix<double, 3, 3>> projector;
   for (const auto& entry : space.held_directions()) {
@@ -286,8 +294,7 @@ RigidLevel<M> ModesHierarchy<M>::first_level(std::span<const double> g, std::spa
   using Rows = std::array<std::array<double, M>, dim>;  // displacement of a node for each motion
   const auto motions = [&](std::int32_t node) {
     const auto n = static_cast<std::size_t>(node);
-    Vector3 d{};
-    for (std::size_t c = 0; c < dim; ++c) d[c] = part_.coordinates[n * dim + c] - place[n * (1 + dim) + 1 + c];
+    const Vector3 d = offset_of(n, n < owned ? centre_[static_cast<std::size_t>(group_[n])] : ghost_centre[n - owned]);
     Rows z{};
     for (std::size_t m = 0; m < M; ++m) {
       std::array<double, M> q{};
@@ -409,6 +416,8 @@ RigidMultigrid::~RigidMultigrid() = default;
 void RigidMultigrid::build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) {
   hierarchy_->build(g, blocks, space);
 }
+
+void RigidMultigrid::secant(std::span<double> g) const { hierarchy_->secant(g); }
 
 void RigidMultigrid::apply(std::span<const double> r, std::span<double> z) { hierarchy_->apply(r, z); }
 

@@ -32,6 +32,7 @@ class RigidMultigrid final : public Preconditioner {
   RigidMultigrid(const Part& part, const MultigridOptions& options);
   ~RigidMultigrid() override;
   void apply(std::span<const double> r, std::span<double> z) override;
+  void secant(std::span<double> g) const override;
 
   struct Hierarchy;  ///< for three or six rigid motions
 

@@ -55,9 +55,8 @@ struct Setting {
   ContactState start(double pressure) const {
     ContactState state;
     const std::size_t points = part.contact.size();
-    state.omega = part.prescribed;
-    for (std::size_t i = 0; i < part.unknowns(); ++i)
-      if (!part.held[i]) state.omega[i] = 0.0;
+    state.omega.assign(part.unknowns(), 0.0);
+    part.prescribe(state.omega);
     state.trace = state.phi = state.lambda = ContactValues(points);
     state.bound.resize(points);
     traces.evaluate(state.omega, state.trace);
