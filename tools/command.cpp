@@ -57,6 +57,7 @@ ParsedCommand parse_command(int argc, const char* const* argv) {
   CLI::App* run = app.add_subcommand("run", "solve a case; writes result.json, fields and pictures");
   add_common(*run, command);
   add_output(*run, command);
+  run->add_flag("!--no-memory-check", command.memory_check, "run even where the memory does not seem to be enough");
   run->add_flag("--restart", command.restart, "go on from the checkpoint that an unfinished run left in the folder");
   add_parallel(*run, command);
 
@@ -83,6 +84,9 @@ ParsedCommand parse_command(int argc, const char* const* argv) {
   CLI::App* check =
       app.add_subcommand("check", "validate a case, show what it selects, estimate memory and time");
   add_common(*check, command);
+  check->add_option("--ranks", command.ranks, "estimate for this many processes (default: what run would take)")
+      ->check(CLI::Range(1, 100000).description(""))
+      ->type_name("N");
 
   ParsedCommand parsed;
   const std::vector<std::string> names{"run", "spectrum", "sweep", "check"};

@@ -17,6 +17,7 @@ struct Command {
   std::vector<std::string> overrides;  ///< --set
   std::optional<double> tolerance;     ///< spectrum: relative, on λ_min and λ_max
   bool restart = false;                ///< run: go on from the checkpoint in the folder
+  bool memory_check = true;            ///< run: refuse what does not fit
   bool json = false;                   ///< spectrum: print JSON
   std::optional<double> r_min, r_max;  ///< sweep
   int points = 21;                     ///< sweep

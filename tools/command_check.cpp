@@ -5,8 +5,8 @@
 #include <iostream>
 
 #include "commands.hpp"
-#include "launch.hpp"
 #include "loaded_case.hpp"
+#include "memory_model.hpp"
 #include "problem/integration.hpp"
 #include "problem/selection.hpp"
 #include "problem/vector3.hpp"
@@ -95,31 +95,24 @@ void print_contact_gaps(const Problem& problem) {
   print_range("initial gap", low->gap, high->gap);
 }
 
-// A rough model of the cost, fitted to runs of the beam in 2D and 3D between 2,000 and 180,000 unknowns:
-// memory is a process and so much an unknown, time is CG iterations with their preconditioner. Iterations
-// depend on the case most.
-constexpr double bytes_per_process = 25e6, bytes_per_unknown_3d = 1150.0, bytes_per_unknown_2d = 800.0;
-constexpr double seconds_per_iteration = 2.5e-7;  ///< an unknown, on one core
-constexpr double iterations_elastic = 300.0, iterations_plastic = 1300.0;
+// A rough model of the time, fitted to runs of the beam in 2D and 3D: seconds of a core an unknown. The case decides more.
+constexpr double seconds_elastic = 1e-5, seconds_plastic = 4e-5;
 
-void print_estimate(const Problem& problem, const Case& input) {
+void print_estimate(const Problem& problem, const Case& input, int ranks) {
   const auto unknowns = static_cast<double>(problem.mesh.coordinates.size());
-  const Shape shape = choose_shape(input, std::nullopt, std::nullopt, usable_cores());
-  const bool linear = std::all_of(problem.laws.begin(), problem.laws.end(),
-                                  [](const Law& law) { return law.kind == Law::Kind::linear; });
-  const double memory = shape.ranks * bytes_per_process +
-                        unknowns * (problem.mesh.dim() == 3 ? bytes_per_unknown_3d : bytes_per_unknown_2d);
-  const double seconds =
-      unknowns * seconds_per_iteration * (linear ? iterations_elastic : iterations_plastic) / shape.ranks;
-  std::printf("  estimate       %s, %s on %d %s (rough: within a factor of three for a usual case)\n",
-              readable_bytes(memory).c_str(), readable_seconds(std::max(seconds, 0.05)).c_str(), shape.ranks,
-              shape.ranks == 1 ? "rank" : "ranks");
+  ProblemSize size = size_of(problem.mesh);
+  size.nonlinear = nonlinear(input.model);
+  size.contact_points = static_cast<double>(problem.contact.size());
+  const double seconds = unknowns * (size.nonlinear ? seconds_plastic : seconds_elastic) / ranks;
+  std::printf("  estimate       %s of memory, %s on %d %s (time within a factor of three for a usual case); available: %s\n",
+              readable_bytes(estimated_memory(size, ranks)).c_str(), readable_seconds(std::max(seconds, 0.05)).c_str(), ranks,
+              ranks == 1 ? "rank" : "ranks", readable_bytes(available_memory()).c_str());
 }
 
 }  // namespace
 
-int check_command(const Case& input) {
-  const Problem problem = load_problem(input);
+int check_command(const Case& input, int ranks) {
+  const Problem problem = load_problem(input, {ranks, ranks});
   const Mesh& mesh = problem.mesh;
   const int dim = mesh.dim();
   const Extent box = extent(mesh);
@@ -143,7 +136,7 @@ int check_command(const Case& input) {
                 to_text(problem.probes[i].point, dim).c_str(),
                 static_cast<long long>(mesh.element_tag(element)));
   }
-  print_estimate(problem, input);
+  print_estimate(problem, input, ranks);
   std::fflush(stdout);
   return exit_converged;
 }

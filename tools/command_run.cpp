@@ -67,7 +67,7 @@ std::string checkpoint_line(const CheckpointFile& file) {
 
 int run_command(const Command& command, const Case& input, const MpiSession& mpi) {
   const double start = MPI_Wtime();
-  LoadedCase loaded = load_case(input, mpi);
+  LoadedCase loaded = load_case(input, mpi, command.memory_check);
   const std::filesystem::path folder = output_folder(command, input);
   std::optional<CheckpointFile> file;  // on the first rank
   std::optional<Checkpoint> left;

@@ -14,6 +14,6 @@ int spectrum_command(const Command& command, const Case& input, const MpiSession
 /// Not converged means here that no penalty led to convergence.
 int sweep_command(const Command& command, const Case& input, const MpiSession& mpi);
 /// Needs no MPI: everything happens on one rank.
-int check_command(const Case& input);
+int check_command(const Case& input, int ranks);
 
 }  // namespace kacanov

@@ -8,6 +8,7 @@
 #include <iostream>
 
 #include "gmsh_reader.hpp"
+#include "memory_model.hpp"
 
 namespace kacanov {
 
@@ -15,9 +16,15 @@ Mesh load_mesh(const MeshSource& source) {
   return source.file ? read_gmsh(*source.file) : make_box(*source.box);
 }
 
-Problem load_problem(const Case& input) {
+Problem load_problem(const Case& input, RankCount ranks) {
   check_supported(input.model.solver);
+  const auto check_memory = [&](ProblemSize size) {
+    size.nonlinear = nonlinear(input.model);
+    if (ranks.here > 0) refuse_what_cannot_fit(size, ranks.all, ranks.here);
+  };
+  if (input.mesh.box) check_memory(size_of(*input.mesh.box));
   Mesh mesh = load_mesh(input.mesh);
+  check_memory(size_of(mesh));
   check_dimension(input, mesh.dim());
   Problem problem = build_problem(std::move(mesh), input.model);
   for (const std::string& warning : input.warnings) std::cerr << "kacanov: warning: " + warning + "\n";
@@ -25,11 +32,18 @@ Problem load_problem(const Case& input) {
   return problem;
 }
 
-LoadedCase load_case(const Case& input, const MpiSession& mpi) {
+LoadedCase load_case(const Case& input, const MpiSession& mpi, bool memory_check) {
   LoadedCase loaded;
+  RankCount ranks{mpi.ranks(), 0};
+  if (memory_check) {
+    MPI_Comm machine;
+    MPI_Comm_split_type(mpi.comm(), MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+    MPI_Comm_size(machine, &ranks.here);
+    MPI_Comm_free(&machine);
+  }
   const double start = MPI_Wtime();
   together(mpi, [&] {
-    if (mpi.first()) loaded.problem = load_problem(input);
+    if (mpi.first()) loaded.problem = load_problem(input, ranks);
   });
   const double read = MPI_Wtime();
   collectively(mpi,

@@ -15,8 +15,13 @@ namespace kacanov {
 /// Reads or generates the mesh.
 Mesh load_mesh(const MeshSource& source);
 
-/// Reads the mesh and puts the model on it, after checking that the one fits the other. Prints warnings.
-Problem load_problem(const Case& input);
+/// Ranks of a run, and how many of them share this machine's memory. 0 here: memory is not checked.
+struct RankCount {
+  int all = 1, here = 1;
+};
+
+/// Reads the mesh and puts the model on it, after checking that the one fits the other, and the run the memory. Prints warnings.
+Problem load_problem(const Case& input, RankCount ranks);
 
 /// A problem split over the ranks.
 struct LoadedCase {
@@ -30,7 +35,7 @@ struct LoadedCase {
 void keep_boundary(LoadedCase& loaded);
 
 /// Collective; failures are printed and end as ReportedFailure on all ranks.
-LoadedCase load_case(const Case& input, const MpiSession& mpi);
+LoadedCase load_case(const Case& input, const MpiSession& mpi, bool memory_check = true);
 
 /// Threads a rank: as the command says, else OMP_NUM_THREADS, else 1.
 int threads_of(const Command& command);

@@ -21,7 +21,7 @@ int dispatch(const Command& command, const Case& input, const MpiSession& mpi) {
     case Command::Kind::check: break;
   }
   together(mpi, [&] {
-    if (mpi.first()) check_command(input);
+    if (mpi.first()) check_command(input, mpi.ranks());
   });
   return exit_converged;
 }
@@ -49,8 +49,8 @@ int run_here(const Command& command, const std::optional<Case>& known) {
 int run_alone(const Command& command, int argc, const char* const* argv) {
   const Case input = read_case(command.case_file, command.overrides);
   check_supported(input.model.solver);
-  if (command.kind == Command::Kind::check) return check_command(input);
   Shape shape = choose_shape(input, command.ranks, command.threads, usable_cores());
+  if (command.kind == Command::Kind::check) return check_command(input, shape.ranks);
   if (shape.ranks > 1) {
     const std::string mpiexec = find_mpiexec();
     if (!mpiexec.empty()) return run_under_mpiexec(mpiexec, shape, argc, argv);

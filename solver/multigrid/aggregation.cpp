@@ -10,23 +10,27 @@
 namespace kacanov {
 namespace {
 
-/// Elements of each of the first `nodes` nodes.
-struct ElementsOfNodes {
-  std::vector<std::int64_t> start;
+/// Elements with a node in each of the sections first[c] … first[c + 1], compressed rows.
+struct ElementsOfSections {
+  std::vector<std::size_t> start;
   std::vector<std::int32_t> element;
 
-  ElementsOfNodes(const MeshView& mesh, std::int32_t nodes) : start(static_cast<std::size_t>(nodes) + 1, 0) {
-    const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
-    for (const std::int32_t n : mesh.connectivity)
-      if (n < nodes) ++start[static_cast<std::size_t>(n) + 1];
+  ElementsOfSections(const MeshView& mesh, std::span<const std::int32_t> first) : start(first.size(), 0) {
+    const auto visit = [&](auto&& in_section) {
+      const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
+      std::vector<std::int32_t> last(first.size() - 1, -1);  // element seen last
+      for (std::size_t k = 0; k < mesh.connectivity.size(); ++k) {
+        if (mesh.connectivity[k] >= first.back()) continue;
+        const auto c = static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), mesh.connectivity[k]) - first.begin()) - 1;
+        const auto e = static_cast<std::int32_t>(k / npe);
+        if (std::exchange(last[c], e) != e) in_section(c, e);
+      }
+    };
+    visit([&](std::size_t c, std::int32_t) { ++start[c + 1]; });
     std::partial_sum(start.begin(), start.end(), start.begin());
-    element.resize(static_cast<std::size_t>(start.back()));
-    for (std::size_t k = mesh.connectivity.size(); k-- > 0;)
-      if (const std::int32_t n = mesh.connectivity[k]; n < nodes)
-        element[static_cast<std::size_t>(--start[static_cast<std::size_t>(n) + 1])] = static_cast<std::int32_t>(k / npe);
-    // Filling from behind has moved every start by one row.
-    start.erase(start.begin());
-    start.push_back(static_cast<std::int64_t>(element.size()));
+    element.resize(start.back());
+    std::vector<std::size_t> next(start.begin(), start.end() - 1);
+    visit([&](std::size_t c, std::int32_t e) { element[next[c]++] = e; });
   }
 };
 
@@ -162,33 +166,47 @@ WeightedGraph contract(const WeightedGraph& graph, std::span<const std::int32_t>
 
 }  // namespace
 
-WeightedGraph coupling_graph(const Body& body, std::span<const double> g, std::int32_t nodes) {
+WeightedGraph coupling_graph(const Body& body, std::span<const double> g, std::int32_t first, std::int32_t last,
+                             std::span<const std::int32_t> elements) {
   const auto& mesh = body.mesh;
   const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
   const auto points = static_cast<std::size_t>(points_per_element(mesh.type));
   const auto dim = static_cast<std::size_t>(dimension(mesh.type));
-  const ElementsOfNodes elements(mesh, nodes);
+  const auto rows = static_cast<std::size_t>(last - first);
+  const auto row_of = [&](std::int32_t node) { return static_cast<std::size_t>(node - first); };
+  const auto inside = [&](std::int32_t node) { return node >= first && node < last; };
+
+  std::vector<std::int32_t> start(rows + 1, 0), element;  // of each node
+  for (const std::int32_t e : elements)
+    for (const std::int32_t n : mesh.connectivity.subspan(static_cast<std::size_t>(e) * npe, npe))
+      if (inside(n)) ++start[row_of(n) + 1];
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  element.resize(static_cast<std::size_t>(start.back()));
+  std::vector<std::int32_t> next(start.begin(), start.end() - 1);
+  for (const std::int32_t e : elements)
+    for (const std::int32_t n : mesh.connectivity.subspan(static_cast<std::size_t>(e) * npe, npe))
+      if (inside(n)) element[static_cast<std::size_t>(next[row_of(n)]++)] = e;
 
   WeightedGraph graph;
-  graph.start.reserve(static_cast<std::size_t>(nodes) + 1);
+  graph.start.reserve(rows + 1);
   graph.start.push_back(0);
-  std::vector<std::int64_t> place(static_cast<std::size_t>(nodes), none);
-  for (std::int32_t n = 0; n < nodes; ++n) {
+  std::vector<std::int64_t> place(rows, none);
+  for (std::int32_t n = first; n < last; ++n) {
     const auto begin = static_cast<std::int64_t>(graph.column.size());
     const double* x = mesh.coordinates.data() + static_cast<std::size_t>(n) * dim;
-    for (auto k = elements.start[static_cast<std::size_t>(n)]; k < elements.start[static_cast<std::size_t>(n) + 1]; ++k) {
-      const auto e = static_cast<std::size_t>(elements.element[static_cast<std::size_t>(k)]);
+    for (auto k = start[row_of(n)]; k < start[row_of(n) + 1]; ++k) {
+      const auto e = static_cast<std::size_t>(element[static_cast<std::size_t>(k)]);
       double stiffness = 0.0;
       for (std::size_t q = 0; q < points; ++q) stiffness += g[e * points + q];
       for (const std::int32_t m : mesh.connectivity.subspan(e * npe, npe)) {
-        if (m == n || m >= nodes) continue;
+        if (m == n || !inside(m)) continue;
         const double* y = mesh.coordinates.data() + static_cast<std::size_t>(m) * dim;
         double square = 0.0;
         for (std::size_t c = 0; c < dim; ++c) square += (x[c] - y[c]) * (x[c] - y[c]);
-        auto& at = place[static_cast<std::size_t>(m)];
+        auto& at = place[row_of(m)];
         if (at < begin) {
           at = static_cast<std::int64_t>(graph.column.size());
-          graph.column.push_back(m);
+          graph.column.push_back(m - first);
           graph.weight.push_back(0.0F);
         }
         graph.weight[static_cast<std::size_t>(at)] += static_cast<float>(stiffness / square);
@@ -197,6 +215,28 @@ WeightedGraph coupling_graph(const Body& body, std::span<const double> g, std::i
     graph.start.push_back(static_cast<std::int64_t>(graph.column.size()));
   }
   return graph;
+}
+
+std::vector<std::int32_t> aggregate_nodes(const Body& body, std::span<const double> g, std::int32_t nodes, double size,
+                                          std::int32_t section) {
+  const std::int32_t sections = std::max(1, (nodes + section - 1) / section);
+  std::vector<std::int32_t> first;
+  for (std::int32_t c = 0; c <= sections; ++c)
+    first.push_back(static_cast<std::int32_t>(std::int64_t{nodes} * c / sections));
+  const ElementsOfSections elements(body.mesh, first);
+  std::vector<std::int32_t> group;
+  group.reserve(static_cast<std::size_t>(nodes));
+  std::int32_t groups = 0;
+  for (std::size_t c = 0; c + 1 < first.size(); ++c) {
+    const auto mine = std::span(elements.element).subspan(elements.start[c], elements.start[c + 1] - elements.start[c]);
+    const auto local = aggregate(coupling_graph(body, g, first[c], first[c + 1], mine), size);
+    const std::int32_t before = groups;
+    for (const std::int32_t a : local) {
+      group.push_back(before + a);
+      groups = std::max(groups, before + a + 1);
+    }
+  }
+  return group;
 }
 
 std::vector<std::int32_t> aggregate(WeightedGraph graph, double size) {

@@ -19,12 +19,18 @@ struct WeightedGraph {
   std::int32_t rows() const noexcept { return static_cast<std::int32_t>(start.size()) - 1; }
 };
 
-/// Couplings of the first `nodes` nodes of a body: Σ g / distance² over the elements two nodes share, g (elements ×
-/// points) taken in the mean. In flat or stretched elements the short edges are the strong ones.
-WeightedGraph coupling_graph(const Body& body, std::span<const double> g, std::int32_t nodes);
+/// Couplings of nodes first … last − 1 of a body: Σ g / distance² over the elements two nodes share, g (elements × points) taken in
+/// the mean. In flat or stretched elements the short edges are the strong ones. `elements`: those with one of the nodes.
+WeightedGraph coupling_graph(const Body& body, std::span<const double> g, std::int32_t first, std::int32_t last,
+                             std::span<const std::int32_t> elements);
 
 /// Group of each row. Rows, then pairs, then fours ... are joined along their heaviest edges until groups have `size` rows
 /// in the mean or nothing is left to join. Groups are numbered in the order of their first rows.
 std::vector<std::int32_t> aggregate(WeightedGraph graph, double size);
+
+/// The same for the first `nodes` nodes of a body by their couplings, some `section` nodes at a time, neighbours in the numbering: a
+/// graph of all would be the largest array of a run.
+std::vector<std::int32_t> aggregate_nodes(const Body& body, std::span<const double> g, std::int32_t nodes, double size,
+                                          std::int32_t section = 1 << 16);
 
 }  // namespace kacanov

@@ -219,7 +219,7 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
   /// Aggregates of the owned nodes, their centres, and a length that makes rotations comparable to translations.
   void group_nodes(std::span<const double> g) {
     constexpr auto dim = static_cast<std::size_t>(RigidMotion<M>::dim);
-    group_ = aggregate(coupling_graph(part_.body(), g, part_.owned_nodes), options_.fine_size);
+    group_ = aggregate_nodes(part_.body(), g, part_.owned_nodes, options_.fine_size);
     const std::int32_t groups = group_.empty() ? 0 : 1 + *std::max_element(group_.begin(), group_.end());
     centre_.assign(static_cast<std::size_t>(groups), Vector3{});
     std::vector<double> members(centre_.size(), 0.0);

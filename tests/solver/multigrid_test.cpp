@@ -99,7 +99,11 @@ TEST_CASE("aggregates follow the strong couplings and leave nobody out") {
   const std::vector<std::uint16_t> law(mesh.element_count(), 0);
   const std::vector<double> g(mesh.element_count(), 1.0);
   const auto nodes = static_cast<std::int32_t>(mesh.node_count());
-  const auto group = aggregate(coupling_graph({mesh.view(), laws, law}, g, nodes), 12.0);
+  std::int32_t section = nodes;
+  SUBCASE("all at once") {}
+  SUBCASE("in sections of the numbering") { section = 1000; }
+  const auto group = aggregate_nodes({mesh.view(), laws, law}, g, nodes, 12.0, section);
+  REQUIRE(group.size() == mesh.node_count());
   const std::int32_t groups = 1 + *std::max_element(group.begin(), group.end());
   std::vector<int> members(static_cast<std::size_t>(groups), 0);
   std::vector<double> low(members.size(), HUGE_VAL), high(members.size(), -HUGE_VAL);
