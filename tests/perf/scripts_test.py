@@ -168,5 +168,46 @@ else:
         self.assertIn("--list", done.stderr)
 
 
+class Runs(unittest.TestCase):
+    """bench_run with a program that knows the answers, and fails for the linear beam."""
+
+    PROGRAM = """#!{python}
+import json, pathlib, sys
+command, path, *options = sys.argv[1:]
+case = json.loads(pathlib.Path(path).read_text())
+cells = case["mesh"]["box"]["cells"]
+if command == "check":
+    print("  estimate       2.5 MB of memory, 1 s on 1 rank")
+elif case["material"][0]["law"]["type"] == "linear":
+    sys.exit("kacanov: error: no such luck")
+else:
+    n = 3 * (cells[0] + 1) * (cells[1] + 1) * (cells[2] + 1)
+    (pathlib.Path(options[1]) / "result.json").write_text(json.dumps(dict(status="converged", unknowns=n, outer_iterations=3, cg_iterations=9,
+        operator_applications=20, peak_memory_bytes=100 * n, seconds=dict(total=2e-6 * n, preconditioner_setup=5e-7 * n),
+        certificate=dict(equilibrium=1e-8, tension=0.0))))
+"""
+
+    def test_sizes_and_a_failure(self):
+        with tempfile.TemporaryDirectory() as folder:
+            program, results = pathlib.Path(folder) / "kacanov", pathlib.Path(folder) / "results.json"
+            program.write_text(self.PROGRAM.format(python=sys.executable))
+            program.chmod(0o755)
+            done = run("bench_run", program, "--problem", "beam3d", "--problem", "beam3d-linear", "--unknowns", 20000,
+                       "--unknowns", 100000, "--json", results, "--output", pathlib.Path(folder) / "out")
+            entries = json.loads(results.read_text())["entries"] if results.exists() else self.fail(done.stderr)
+            self.assertTrue((pathlib.Path(folder) / "out/beam3d-20000/log.txt").exists())
+        self.assertEqual(done.returncode, 1, done.stderr)
+        for entry, wanted in zip(entries, (20000, 100000)):
+            self.assertLess(abs(entry["unknowns"] - wanted), 0.2 * wanted)
+            self.assertEqual(entry["expected_memory_bytes"], 2.5e6)
+        self.assertIn("no such luck", entries[2]["status"])
+        first = [c.strip() for c in done.stdout.splitlines()[2].split("|")[1:-1]]
+        self.assertEqual(first[3:6] + [first[7], first[8], first[10]], ["3", "9", "20", "2.0", "25 %", "100"])
+
+    def test_bad_usage(self):
+        self.assertEqual(run("bench_run", "nowhere").returncode, 2)
+        self.assertEqual(run("bench_run", "nowhere", "--problem", "cake").returncode, 2)
+
+
 if __name__ == "__main__":
     unittest.main()
