@@ -9,27 +9,29 @@ set(header_dir "${CMAKE_INSTALL_INCLUDEDIR}/kacanov")
 set(KACANOV_KERNEL_HEADERS float_operator.hpp law.hpp locality.hpp mesh_view.hpp operator.hpp reference.hpp)
 set(KACANOV_SOLVER_HEADERS checkpoint.hpp error.hpp halo.hpp mesh.hpp model.hpp part.hpp problem.hpp result.hpp solve.hpp)
 
-# One export set a component, so that a consumer meets the dependencies of what it asks for and no others.
-function(kacanov_install_component component target)
-  install(TARGETS ${target} EXPORT kacanov-${component}
-    ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}"
-    LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}"
-    PUBLIC_HEADER DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
-  install(EXPORT kacanov-${component} NAMESPACE kacanov:: DESTINATION "${package_dir}"
-    FILE kacanov-${component}.cmake)
+# One export set a target, so that a consumer meets the dependencies of what it asks for and no others; what belongs
+# together is installed together: `cmake --install BUILD --component kernels|solver|program`.
+function(kacanov_install_target name target component)
+  install(TARGETS ${target} EXPORT kacanov-${name}
+    ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT ${component}
+    LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT ${component}
+    PUBLIC_HEADER DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT ${component})
+  install(EXPORT kacanov-${name} NAMESPACE kacanov:: DESTINATION "${package_dir}"
+    FILE kacanov-${name}.cmake COMPONENT ${component})
 endfunction()
 
-kacanov_install_component(kernels kacanov_kernels)
+kacanov_install_target(kernels kacanov_kernels kernels)
 list(TRANSFORM KACANOV_KERNEL_HEADERS PREPEND "${PROJECT_SOURCE_DIR}/kernels/")
-install(FILES ${KACANOV_KERNEL_HEADERS} DESTINATION "${header_dir}")
-kacanov_install_component(c kacanov_c)
+install(FILES ${KACANOV_KERNEL_HEADERS} DESTINATION "${header_dir}" COMPONENT kernels)
+kacanov_install_target(c kacanov_c kernels)
 if(KACANOV_SOLVER)
-  kacanov_install_component(solver kacanov_solver)
+  kacanov_install_target(solver kacanov_solver solver)
   list(TRANSFORM KACANOV_SOLVER_HEADERS PREPEND "${PROJECT_SOURCE_DIR}/solver/")
-  install(FILES ${KACANOV_SOLVER_HEADERS} DESTINATION "${header_dir}")
+  install(FILES ${KACANOV_SOLVER_HEADERS} DESTINATION "${header_dir}" COMPONENT solver)
+  install(FILES cmake/FindHYPRE.cmake cmake/FindPARPACK.cmake DESTINATION "${package_dir}" COMPONENT solver)
 endif()
 if(TARGET kacanov)
-  install(TARGETS kacanov RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}")
+  install(TARGETS kacanov RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT program)
 endif()
 
 configure_package_config_file(cmake/kacanovConfig.cmake.in kacanovConfig.cmake
@@ -38,13 +40,14 @@ write_basic_package_version_file(kacanovConfigVersion.cmake COMPATIBILITY SameMi
 install(FILES
   "${CMAKE_CURRENT_BINARY_DIR}/kacanovConfig.cmake"
   "${CMAKE_CURRENT_BINARY_DIR}/kacanovConfigVersion.cmake"
-  cmake/FindMETIS.cmake cmake/FindHYPRE.cmake cmake/FindPARPACK.cmake
-  DESTINATION "${package_dir}")
+  cmake/FindMETIS.cmake
+  DESTINATION "${package_dir}" COMPONENT kernels)
 
 # pkg-config files find their prefix by their own place, so an installed tree may be moved.
 file(RELATIVE_PATH prefix_from_pkgconfig "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
 string(REGEX REPLACE "/$" "" prefix_from_pkgconfig "${prefix_from_pkgconfig}")
 foreach(package kacanov kacanov-kernels)
   configure_file(cmake/${package}.pc.in ${package}.pc @ONLY)
-  install(FILES "${CMAKE_CURRENT_BINARY_DIR}/${package}.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+  install(FILES "${CMAKE_CURRENT_BINARY_DIR}/${package}.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig"
+    COMPONENT kernels)
 endforeach()

@@ -17,7 +17,8 @@ class Law(ct.Structure):  # kacanov_law
         ("kind", ct.c_int32), ("squared", ct.c_int32),
         ("bulk", ct.c_double), ("shear", ct.c_double), ("x0", ct.c_double),
         ("gamma", ct.c_double), ("n", ct.c_double), ("q", ct.c_double),
-        ("table_size", ct.c_size_t), ("table_x", Doubles), ("table_s", Doubles)]
+        ("table_size", ct.c_size_t), ("table_x", Doubles), ("table_s", Doubles),
+        ("mean_dilatation", ct.c_int32)]
 
 
 class Description(ct.Structure):  # kacanov_description
