@@ -13,13 +13,14 @@ namespace {
 
 /// The contact loop of an outer step is taken this far below the residual of the step before.
 constexpr double inner_reduction = 0.2;
-/// The first, elastic one only has to find roughly who touches.
-constexpr double first_reduction = 0.5;
-/// AMG is rebuilt once a step needs this many CG iterations more than it would have right after the last
-/// setup: what a setup costs.
+/// The first, elastic one only has to find roughly who touches and slips. A half leaves slip on fine meshes to Newton
+/// steps that move it on by a few rows of nodes each, a tenth costs more than it saves.
+constexpr double first_reduction = 0.2;
+/// The preconditioner is rebuilt once a step needs this many CG iterations more than it would have right after the
+/// last setup: half of what a setup costs.
 constexpr double setup_worth = 5.0;
-/// AMG is rebuilt before a step where g has moved by this share in the mean.
-constexpr double drift_worth = 0.25;
+/// It is rebuilt before a step where g has moved by this share in the mean.
+constexpr double drift_worth = 0.05;
 /// ... or where a penalty has moved by this factor (elastic beam, ADMM: 144 applications instead of 212).
 constexpr double penalty_worth = 3.0;
 /// Semismooth Newton steps take the secant while the residual of equilibrium is above this: the tangent of a
@@ -30,7 +31,7 @@ constexpr double tangent_reach = 0.3;
 /// applications of whole runs).
 constexpr double first_penalty = 0.1;
 /// CG iterations of a rough estimate of λ_max.
-constexpr int rough_iterations = 4;
+constexpr int rough_iterations = 2;
 /// ADMM iterations between two looks at the penalties' balance (and, in Kacanov's method, at g).
 constexpr int balancing_iterations = 10;
 /// Penalties stay between this over λ_min, which contracts errors at held rows to a quarter (more costs CG
@@ -39,12 +40,14 @@ constexpr double largest_penalty = 3.0;
 constexpr double smallest_share = 1e-4;
 /// Relative accuracy of a semismooth Newton step.
 constexpr double solve_reduction = 0.03;
+/// A step that starts within this factor of the tolerance is solved to a fifth of the tolerance: it may be the last.
+constexpr double last_reach = 100.0;
+constexpr double last_share = 0.2;
 /// Semismooth Newton decides by λ + c(w − ρ), c this share of ADMM's penalty. A whole penalty makes slipping
 /// points flip on the half ball (338 applications instead of 145), a tenth costs steps on beams.
 constexpr double decision_share = 0.3;
 /// Newton steps without a new best residual before ADMM takes over.
 constexpr int patience = 6;
-constexpr int creep_patience = 3;
 constexpr int max_damping_trials = 6;
 /// A displacement of this many body sizes is a run that goes nowhere.
 constexpr double most_displacement = 1e3;
@@ -227,14 +230,11 @@ Vector OuterLoop::secant() const {
   return g;
 }
 
-/// How many nodes the preconditioner pins that are free in `set`, or the other way round.
-std::int64_t OuterLoop::set_moved(std::span<const TraceChoice> set) const {
-  std::int64_t moved = 0;
-  if (pinned_set_.size() == set.size())
-    for (std::size_t i = 0; i < traces_.owned(); ++i)
-      moved +=
-          set[i].normal != pinned_set_[i].normal || set[i].tangential != pinned_set_[i].tangential ? 1 : 0;
-  return part_.halo.sum_all(moved);
+/// Whether the preconditioner pins other nodes than `set`, or none at all. Every node it gets wrong costs CG a few
+/// iterations.
+bool OuterLoop::set_moved(std::span<const TraceChoice> set) const {
+  const bool moved = pinned_set_.size() != set.size() || !std::equal(set.begin(), set.end(), pinned_set_.begin());
+  return part_.halo.max_all(moved ? 1.0 : 0.0) > 0.0;
 }
 
 /// Whether the preconditioner was built with penalties that are far from those of now.
@@ -279,6 +279,7 @@ void OuterLoop::take_admm_step(Result& result, ProgressStep& line, const Residua
   if (first ? preconditioner_stale_ : setup_pays(penalty_moved())) {
     set_up_preconditioner(penalty_blocks(), space_);
     setup_penalty_ = penalty_;
+    pinned_set_.clear();
   }
 
   AdmmOptions options;
@@ -346,7 +347,7 @@ void OuterLoop::take_newton_step(Result& result, ProgressStep& line, const Resid
     op_.update(state_.omega);
   }
   const ActiveSet set = decide(traces_, state_, decision_share * penalty_.normal);
-  if (setup_pays(static_cast<double>(set_moved(set.held)) >= setup_worth)) {
+  if (setup_pays(set_moved(set.held))) {
     pinned_set_ = set.held;
     const TraceRows rows(part_, set.held);
     Space space(part_);
@@ -364,10 +365,9 @@ void OuterLoop::take_newton_step(Result& result, ProgressStep& line, const Resid
   };
   take_residual();
   Vector delta(part_.unknowns());
-  // A step that may be the last is solved well below the tolerance, so that answers do not depend on ranks or
-  // threads to more than that.
-  const double floor = 0.05 * options_.tolerance * gap_share(before.certificate) * before.scales.force;
-  const bool last = before.certificate.worst() * solve_reduction <= options_.tolerance;
+  // Well below the tolerance, so that answers do not depend on ranks or threads to more than that.
+  const double floor = last_share * options_.tolerance * gap_share(before.certificate) * before.scales.force;
+  const bool last = before.certificate.worst() <= last_reach * options_.tolerance;
   const auto applications = op_.applications();
   const ActiveSetStep step =
       active_set_step(problem_, part_, set, state_, last ? 1e-3 : solve_reduction, floor, work_, delta);
@@ -397,7 +397,7 @@ void OuterLoop::iterate(Result& result) {
   energy_ = op_.energy(state_.omega);
   secant_current_ = false;  // the first step is elastic
   Residuals residuals = certify();
-  auto& [best, last_cone, stalled, creeping, retreat, retreats, first_outer] = loop_;
+  auto& [best, stalled, retreat, retreats, first_outer] = loop_;
   bool done = false;
   Vector previous;
   while (!done && result.outer_iterations - first_outer < options_.max_outer) {
@@ -441,15 +441,9 @@ void OuterLoop::iterate(Result& result) {
     if (!newton) continue;
     stalled = worst < 0.7 * best ? 0 : stalled + 1;
     best = std::min(best, worst);
-    // Slip creeps inwards by one row of nodes a step where all nodes within stick too firmly: ADMM gives them
-    // way at once.
-    const Certificate& c = residuals.certificate;
-    creeping = c.friction_cone > std::max(10.0 * c.equilibrium, 0.5 * last_cone) ? creeping + 1 : 0;
-    last_cone = c.friction_cone;
-    if (newton_failed_ || stalled >= patience || creeping >= creep_patience || !std::isfinite(worst)) {
+    if (newton_failed_ || stalled >= patience || !std::isfinite(worst)) {
       // ADMM converges from anywhere; every retreat is longer than the last.
-      stalled = creeping = 0;
-      last_cone = 0.0;
+      stalled = 0;
       best = HUGE_VAL;
       retreat = 2 << std::min(retreats++, 6);
       preconditioner_stale_ = true;

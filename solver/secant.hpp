@@ -17,9 +17,7 @@ namespace kacanov {
 /// them.
 struct LoopState {
   double best = HUGE_VAL;  ///< smallest residual since the last retreat
-  double last_cone = 0.0;
   int stalled = 0;   ///< Newton steps without a new best residual
-  int creeping = 0;  ///< Newton steps that let slip move on by a row of nodes
   int retreat = 0;   ///< ADMM steps still to take
   int retreats = 0;
   int first_outer = 0;  ///< outer steps before this load step, or before a restart
@@ -27,9 +25,7 @@ struct LoopState {
   template <class Visitor>
   void visit(Visitor&& entry) {
     entry("best", best);
-    entry("last_cone", last_cone);
     entry("stalled", stalled);
-    entry("creeping", creeping);
     entry("retreat", retreat);
     entry("retreats", retreats);
     entry("first_outer", first_outer);
@@ -80,7 +76,7 @@ class OuterLoop {
   void update_residual();
   bool setup_pays(bool wanted);
   bool penalty_moved() const;
-  std::int64_t set_moved(std::span<const TraceChoice> set) const;
+  bool set_moved(std::span<const TraceChoice> set) const;
   void watch_preconditioner(double digits, std::int64_t iterations);
   double update_bounds();
   void take_admm_step(Result& result, ProgressStep& line, const Residuals& before);

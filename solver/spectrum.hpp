@@ -17,6 +17,7 @@ namespace kacanov {
 /// Which traces of a contact point take part.
 struct TraceChoice {
   bool normal = false, tangential = false;
+  bool operator==(const TraceChoice&) const = default;
 };
 
 /// Rows of D^½ C for a choice of traces, over the local points, owned ones first. D is the lumped mass.
