@@ -18,7 +18,40 @@ namespace kacanov::testing {
 struct LawValues {
   double g, slope, energy;
 };
+/// The table's stress at x by its straight pieces, the last one going on.
+inline LawValues evaluate_table(const Law& law, double x) {
+  double energy = 0.0;
+  for (std::size_t i = 1;; ++i) {
+    const double from = law.table_x[i - 1], to = law.table_x[i], start = law.table_s[i - 1];
+    const double rise = (law.table_s[i] - start) / (to - from);
+    const bool here = x <= to || i + 1 == law.table_x.size();
+    const double end = here ? x : to, stress = start + rise * (end - from);
+    energy += 0.25 * (start + stress) * (end - from);
+    if (here && i == 1) return {0.5 * rise, 0.0, energy};
+    if (here) return {0.5 * stress / x, 0.5 * (rise - stress / x) / x, energy};
+  }
+}
+/// The squared argument a = x², for the laws that the tests use it with.
+inline LawValues evaluate_squared(const Law& law, double x) {
+  const double mu = law.shear, x0 = law.x0, a = x * x;
+  if (law.kind == Law::Kind::linear || a <= x0) return {mu, 0.0, 0.5 * mu * a};
+  const double l = std::log(a / x0);
+  switch (law.kind) {
+    case Law::Kind::logarithmic:
+      return {mu * x0 / a * (l + 1.0), -2.0 * x * mu * x0 * l / (a * a), 0.5 * mu * x0 * (1.0 + l + 0.5 * l * l)};
+    case Law::Kind::linear_hardening:
+      return {mu * (law.gamma + (1.0 - law.gamma) * x0 / a), -2.0 * x * mu * (1.0 - law.gamma) * x0 / (a * a),
+              0.5 * mu * (x0 + law.gamma * (a - x0) + (1.0 - law.gamma) * x0 * l)};
+    case Law::Kind::power: {
+      const double g = mu * std::pow(a / x0, law.n - 1.0);
+      return {g, 2.0 * x * (law.n - 1.0) * g / a, 0.5 * mu * x0 * (1.0 + (std::pow(a / x0, law.n) - 1.0) / law.n)};
+    }
+    default: return {NAN, NAN, NAN};
+  }
+}
 inline LawValues evaluate_law(const Law& law, double x) {
+  if (law.kind == Law::Kind::table) return evaluate_table(law, x);
+  if (law.argument == Law::Argument::squared) return evaluate_squared(law, x);
   const double mu = law.shear, x0 = law.x0;
   if (law.kind == Law::Kind::linear || x <= x0) return {mu, 0.0, 0.5 * mu * x * x};
   const double below = 0.5 * mu * x0 * x0;
@@ -33,6 +66,11 @@ inline LawValues evaluate_law(const Law& law, double x) {
     case Law::Kind::power:
       return {mu * std::pow(x / x0, law.n - 1.0), mu * (law.n - 1.0) / x * std::pow(x / x0, law.n - 1.0),
               below + mu * x0 * x0 * (std::pow(x / x0, law.n + 1.0) - 1.0) / (law.n + 1.0)};
+    case Law::Kind::saturating: {
+      const double decay = std::exp(-(x - x0) / (law.q * x0)), stress = mu * x0 * (1.0 + law.q * (1.0 - decay));
+      return {stress / x, (mu * decay - stress / x) / x,
+              below + mu * x0 * ((1.0 + law.q) * (x - x0) - law.q * law.q * x0 * (1.0 - decay))};
+    }
     default: return {NAN, NAN, NAN};
   }
 }
@@ -148,6 +186,17 @@ class DenseSolver {
   static Matrix reference_gradients(ElementType type, const Eigen::Vector3d& x) {
     if (type == ElementType::tri3) return (Matrix(3, 2) << -1, -1, 1, 0, 0, 1).finished();
     if (type == ElementType::tet4) return (Matrix(4, 3) << -1, -1, -1, 1, 0, 0, 0, 1, 0, 0, 0, 1).finished();
+    if (type == ElementType::tet10) {
+      // Products of the barycentric coordinates of the ends: vertices (2λ − 1)λ, then the middles of edges.
+      constexpr int ends[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {2, 3}, {1, 3}};
+      const Eigen::Vector4d l(1.0 - x.sum(), x(0), x(1), x(2));
+      const Matrix corners = (Matrix(4, 3) << -1, -1, -1, 1, 0, 0, 0, 1, 0, 0, 0, 1).finished();
+      Matrix gradients(10, 3);
+      for (int a = 0; a < 4; ++a) gradients.row(a) = (4.0 * l(a) - 1.0) * corners.row(a);
+      for (int e = 0; e < 6; ++e)
+        gradients.row(4 + e) = 4.0 * (l(ends[e][0]) * corners.row(ends[e][1]) + l(ends[e][1]) * corners.row(ends[e][0]));
+      return gradients;
+    }
     // hex8 on [−1, 1]³, the lower face counter-clockwise first.
     constexpr int corner[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
                                   {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
@@ -171,6 +220,13 @@ class DenseSolver {
       for (const double x : {-p, p})
         for (const double y : {-p, p})
           for (const double z : {-p, p}) rule.emplace_back(Eigen::Vector3d(x, y, z), 1.0);
+    } else if (mesh.type == ElementType::tet10) {
+      const double off = (5.0 - std::sqrt(5.0)) / 20.0;
+      for (int vertex = -1; vertex < 3; ++vertex) {
+        Eigen::Vector3d at = Eigen::Vector3d::Constant(off);
+        if (vertex >= 0) at(vertex) = 1.0 - 3.0 * off;
+        rule.emplace_back(at, 1.0 / 24.0);
+      }
     } else {
       rule.emplace_back(Eigen::Vector3d::Zero(), mesh.type == ElementType::tri3 ? 0.5 : 1.0 / 6.0);
     }

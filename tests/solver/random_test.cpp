@@ -47,11 +47,28 @@ struct Sample {
 Law random_law(Dice& dice, double young, double strain) {
   Law law = elastic_law(young, dice.uniform(0.0, 0.45));
   constexpr std::array kinds{Law::Kind::linear, Law::Kind::logarithmic, Law::Kind::linear_hardening,
-                             Law::Kind::power};
-  law.kind = kinds[static_cast<std::size_t>(dice.whole(0, 3))];
+                             Law::Kind::power,  Law::Kind::saturating,  Law::Kind::table};
+  law.kind = kinds[static_cast<std::size_t>(dice.whole(0, 5))];
   law.x0 = strain * dice.decades(-0.7, 0.5);
   law.gamma = dice.decades(-1.5, -0.1);
   law.n = dice.uniform(0.2, 0.9);
+  law.q = dice.decades(0.0, 1.5);
+  if (law.kind == Law::Kind::table) {
+    law.table_x = {0.0, law.x0, law.x0 * dice.uniform(1.5, 3.0), law.x0 * dice.uniform(4.0, 8.0)};
+    law.table_s = {0.0};
+    double slope = 2.0 * law.shear;
+    for (std::size_t i = 1; i < law.table_x.size(); ++i) {
+      law.table_s.push_back(law.table_s.back() + slope * (law.table_x[i] - law.table_x[i - 1]));
+      slope *= dice.uniform(0.1, 0.9);
+    }
+  } else if (law.kind != Law::Kind::saturating && dice.chance(0.3)) {
+    // Where stress still grows with strain: always for these n and γ, up to √e times the yield strain for (34).
+    law.argument = Law::Argument::squared;
+    law.n = 0.55 + 0.5 * law.n;
+    law.gamma = 0.55 + 0.5 * law.gamma;
+    if (law.kind == Law::Kind::logarithmic) law.x0 *= 4.0;
+    law.x0 *= law.x0;
+  }
   return law;
 }
 
@@ -82,20 +99,22 @@ Obstacle random_obstacle(Dice& dice, int dim, std::size_t axis, double side, con
 Sample random_problem(unsigned seed) {
   Dice dice(seed);
   Sample sample;
-  constexpr std::array types{ElementType::tri3, ElementType::tri3, ElementType::tet4, ElementType::hex8};
-  const ElementType type = types[seed % 4];
+  constexpr std::array types{ElementType::tri3, ElementType::tri3, ElementType::tet4, ElementType::hex8,
+                             ElementType::tet10};
+  const ElementType type = types[seed % 5];
   const int dim = dimension(type);
   const auto up = static_cast<std::size_t>(dim - 1);
   BoxSpec spec;
   spec.type = type;
-  const int most = dim == 2 ? 5 : 2;
+  const int most = dim == 2 ? 5 : type == ElementType::tet10 ? 1 : 2;
   for (std::size_t c = 0; c < static_cast<std::size_t>(dim); ++c) {
     spec.cells[c] = dice.whole(c == 0 ? 2 : 1, c == 0 ? most + 1 : most);
     spec.size[c] = dice.uniform(0.5, 2.0);
   }
   sample.mesh = make_box(spec);
-  double cell = 1e9;
+  double cell = 1e9;  // between nodes
   for (std::size_t c = 0; c < static_cast<std::size_t>(dim); ++c) cell = std::min(cell, spec.size[c] / spec.cells[c]);
+  if (type == ElementType::tet10) cell *= 0.5;
   map_nodes(sample.mesh, [&](const Vector3& x) {
     const Vector3 shift = dice.direction(dim);
     return Vector3{x[0] + 0.1 * cell * shift[0], x[1] + 0.1 * cell * shift[1], x[2] + 0.1 * cell * shift[2]};
@@ -188,7 +207,7 @@ State state_of(const Run& run, const DenseSolver& dense) {
 }
 
 struct Tally {
-  int solved = 0, unconverged = 0, undecided = 0;
+  int solved = 0, unconverged = 0, undecided = 0, softened = 0;
   double worst_defect = 0.0, worst_error = 0.0;  ///< over the tolerance, over the bound
 };
 
@@ -211,12 +230,15 @@ void compare(int seed, const Sample& sample, Tally& tally) {
               << defects.worst() / tolerance << ", error " << error / answer.u.norm() << " = " << error / bound
               << " of its bound; " << run.result().message << "\n";
   ++tally.solved;
-  tally.undecided += !answer.converged;
-  tally.unconverged += !converged;
+  // Not monotone there: solutions need be neither one nor any.
+  const bool softened = run.result().softening_elements > 0;
+  tally.softened += softened;
+  tally.undecided += !answer.converged && !softened;
+  tally.unconverged += !converged && !softened;
   if (!converged) return;
   tally.worst_defect = std::max(tally.worst_defect, defects.worst() / tolerance);
   CHECK(defects.worst() <= 1.01 * tolerance + 1e-13);
-  if (!answer.converged) return;
+  if (!answer.converged || softened) return;
   tally.worst_error = std::max(tally.worst_error, error / bound);
   CHECK(error <= 4.0 * bound);
 }
@@ -230,8 +252,8 @@ void for_seeds(int count, const Use& use) {
 }
 
 void report(const Tally& tally) {
-  MESSAGE(tally.unconverged, " of ", tally.solved, " not converged, dense solver undecided on ", tally.undecided,
-          "; of the others the largest defect is ", tally.worst_defect, " of the tolerance, the largest error ",
+  MESSAGE(tally.unconverged, " of ", tally.solved, " not converged, dense solver undecided on ", tally.undecided, ", ",
+          tally.softened, " in a softening range; of the others the largest defect is ", tally.worst_defect, " of the tolerance, the largest error ",
           tally.worst_error, " of its bound");
 }
 
@@ -243,10 +265,11 @@ TEST_CASE("random problems: what is called converged is the solution of the dens
   report(tally);
   CHECK(tally.unconverged <= tally.solved / 100);
   CHECK(tally.undecided <= tally.solved / 100);
+  CHECK(tally.softened <= 1 + tally.solved / 20);
 }
 
 TEST_CASE("the dense solver sees what is not a solution") {
-  for (const int seed : {1, 2, 3, 4, 5, 6, 7, 8}) {
+  for (const int seed : {1, 2, 4, 5, 6, 7, 9, 13}) {  // every element; no softening, no body that just moves along
     CAPTURE(seed);
     Sample sample = random_problem(static_cast<unsigned>(seed));
     sample.model.solver.tolerance = 1e-8;
