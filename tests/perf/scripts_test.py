@@ -137,7 +137,7 @@ if isinstance(r, float):  # a sweep
     contact, count = (40 if r < 3 else 32 if r < 20 else 10), 300
 (output / "result.json").write_text(json.dumps(dict(status="converged" if r == "auto" or r == "paper" or r < 20 else "not_converged",
     unknowns=10, contact_nodes=2, outer_iterations=3, contact_iterations=contact, operator_applications=count,
-    applications=dict(spectrum=count // 20), seconds=dict(total=0.5), r=[1.0], r_active=2.0, contact_force=[0.0, 1.0])))
+    applications=dict(spectrum=count // 20), seconds=dict(total=0.5), r=[2.0], r_active=2.0, contact_force=[0.0, 1.0])))
 """
 
     def test_ratios_totals_and_a_failure(self):
