@@ -5,6 +5,7 @@
 #include <mpi.h>
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "halo.hpp"
@@ -72,6 +73,13 @@ struct Part {
   }
   Body body() const noexcept { return {{type, coordinates, elements}, laws, law_of_element}; }
 };
+
+/// Splits the problem with METIS and hands out the parts one after another, so that only one lies beside the problem; that of rank 0 comes last.
+/// They have to join their ranks before they are used. Needs no MPI.
+void split(const Problem& problem, int ranks, const std::function<void(int rank, Part&& part)>& take);
+
+/// Ties the part of this rank to the ranks that `comm` has.
+void join(Part& part, MPI_Comm comm);
 
 /// Splits the problem (given on rank 0 only, null elsewhere) over the ranks of `comm` with METIS and
 /// hands every rank its part. Collective.

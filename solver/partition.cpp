@@ -6,10 +6,10 @@
 #include <map>
 #include <numeric>
 #include <set>
-#include <type_traits>
+#include <utility>
 
 #include "locality.hpp"
-#include "part.hpp"
+#include "part_fields.hpp"
 
 namespace kacanov {
 namespace {
@@ -31,103 +31,17 @@ void receive_bytes(void* data, std::size_t bytes, int from, MPI_Comm comm) {
     MPI_Recv(p + at, static_cast<int>(std::min(chunk_bytes, bytes - at)), MPI_BYTE, from, 1, comm, MPI_STATUS_IGNORE);
 }
 
-class Sender {
- public:
-  Sender(int rank, MPI_Comm comm) : rank_(rank), comm_(comm) {}
-  template <class T>
-  void operator()(const T& value) const {
-    static_assert(std::is_trivially_copyable_v<T>);
-    send_bytes(&value, sizeof(T), rank_, comm_);
-  }
-  template <class T>
-  void operator()(const std::vector<T>& values) const {
-    (*this)(values.size());
-    if constexpr (std::is_trivially_copyable_v<T>)
-      send_bytes(values.data(), values.size() * sizeof(T), rank_, comm_);
-    else
-      for (const T& v : values) exchange_fields(v, *this);
-  }
-
- private:
-  int rank_;
-  MPI_Comm comm_;
+/// A rank as a sink, the first one as a source of fields.
+struct OtherRank {
+  int rank;
+  MPI_Comm comm;
+  void write(const void* data, std::size_t bytes) const { send_bytes(data, bytes, rank, comm); }
 };
-
-class Receiver {
- public:
-  explicit Receiver(MPI_Comm comm) : comm_(comm) {}
-  template <class T>
-  void operator()(T& value) const {
-    static_assert(std::is_trivially_copyable_v<T>);
-    receive_bytes(&value, sizeof(T), 0, comm_);
-  }
-  template <class T>
-  void operator()(std::vector<T>& values) const {
-    std::size_t n = 0;
-    (*this)(n);
-    values.resize(n);
-    if constexpr (std::is_trivially_copyable_v<T>)
-      receive_bytes(values.data(), n * sizeof(T), 0, comm_);
-    else
-      for (T& v : values) exchange_fields(v, *this);
-  }
-
- private:
-  MPI_Comm comm_;
+struct FirstRank {
+  MPI_Comm comm;
+  void expect(std::uint64_t, std::size_t) const {}
+  void read(void* data, std::size_t bytes) const { receive_bytes(data, bytes, 0, comm); }
 };
-
-/// One list of fields serves both directions.
-template <class L, class Stream>
-  requires std::is_same_v<std::remove_const_t<L>, Law>
-void exchange_fields(L& law, const Stream& stream) {
-  stream(law.kind);
-  stream(law.argument);
-  stream(law.mean_dilatation);
-  for (auto* x : {&law.bulk, &law.shear, &law.x0, &law.gamma, &law.n, &law.q}) stream(*x);
-  stream(law.table_x);
-  stream(law.table_s);
-}
-
-template <class N, class Stream>
-  requires std::is_same_v<std::remove_const_t<N>, Halo::Neighbour>
-void exchange_fields(N& n, const Stream& stream) {
-  stream(n.rank);
-  stream(n.shared);
-  stream(n.send);
-  stream(n.receive);
-}
-
-template <class P, class Stream>
-  requires std::is_same_v<std::remove_const_t<P>, Part>
-void exchange_fields(P& part, const Stream& stream) {
-  stream(part.type);
-  stream(part.coordinates);
-  stream(part.elements);
-  stream(part.node_index);
-  stream(part.element_index);
-  stream(part.node_tags);
-  stream(part.element_tags);
-  stream(part.owned_nodes);
-  stream(part.first_owned);
-  stream(part.total_nodes);
-  stream(part.total_elements);
-  stream(part.ghost_number);
-  stream(part.halo.neighbours);
-  stream(part.halo.shared);
-  stream(part.laws);
-  stream(part.law_of_element);
-  stream(part.load);
-  stream(part.prescribed);
-  stream(part.held);
-  stream(part.contact);
-  stream(part.owned_contact);
-  stream(part.contact_index);
-  stream(part.total_contact);
-  stream(part.probes);
-  stream(part.probe_index);
-  stream(part.total_probes);
-  stream(part.loose_modes);
-}
 
 /// Part of every element: the one most of its corners lie in, as METIS splits the nodes (in groups along `order`, so that its
 /// graph stays small beside the mesh). Equal shares go by turns.
@@ -369,24 +283,37 @@ double Part::prescribed_at(std::size_t component) const noexcept {
   return at->value;
 }
 
+void split(const Problem& problem, int ranks, const std::function<void(int rank, Part&& part)>& take) {
+  Splitter splitter(problem, ranks);
+  for (int rank = 1; rank < ranks; ++rank) take(rank, splitter.part(rank));
+  take(0, splitter.part(0));
+}
+
+void join(Part& part, MPI_Comm comm) {
+  part.halo.comm = comm;
+  MPI_Comm_rank(comm, &part.halo.rank);
+  MPI_Comm_size(comm, &part.halo.ranks);
+}
+
 Part distribute(const Problem* problem, MPI_Comm comm) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm, &rank);
   MPI_Comm_size(comm, &ranks);
   Part part;
   if (rank == 0) {
-    Splitter splitter(*problem, ranks);
-    for (int other = 1; other < ranks; ++other) {
-      const Part theirs = splitter.part(other);
-      exchange_fields(theirs, Sender(other, comm));
-    }
-    part = splitter.part(0);
+    split(*problem, ranks, [&](int owner, Part&& one) {
+      if (owner == 0) {
+        part = std::move(one);
+      } else {
+        OtherRank sink{owner, comm};
+        FieldWriter{sink}(one);
+      }
+    });
   } else {
-    exchange_fields(part, Receiver(comm));
+    FirstRank source{comm};
+    FieldReader{source}(part);
   }
-  part.halo.comm = comm;
-  part.halo.rank = rank;
-  part.halo.ranks = ranks;
+  join(part, comm);
   return part;
 }
 
