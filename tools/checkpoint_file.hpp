@@ -4,22 +4,22 @@
 
 #include <chrono>
 #include <filesystem>
-#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
 
 #include "case_file.hpp"
 #include "checkpoint.hpp"
-#include "problem.hpp"
 
 namespace kacanov {
 
 /// Name of the file in the output folder.
 constexpr const char* checkpoint_name = "checkpoint.kacanov";
 
-/// The checkpoint of one run. Everything happens on the first rank. The case has to outlive it.
+/// The checkpoint of one run, of a problem with this fingerprint. Everything happens on the first rank. The case has to outlive it.
 class CheckpointFile {
  public:
-  CheckpointFile(const std::filesystem::path& folder, const Case& input, const Problem& problem)
-      : path_(folder / checkpoint_name), input_(&input), print_(fingerprint(problem)) {}
+  CheckpointFile(const std::filesystem::path& folder, const Case& input, Fingerprint print)
+      : path_(folder / checkpoint_name), input_(&input), print_(std::move(print)) {}
 
   /// Throws InputError: no such file, not a checkpoint, cut short, damaged, or of another case, with what differs.
   Checkpoint read() const;

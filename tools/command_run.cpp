@@ -68,18 +68,18 @@ std::string checkpoint_line(const CheckpointFile& file) {
 int run_command(const Command& command, const Case& input, const MpiSession& mpi) {
   const double start = MPI_Wtime();
   LoadedCase loaded = load_case(input, mpi, command.memory_check);
+  keep_boundary(loaded);
   const std::filesystem::path folder = output_folder(command, input);
   std::optional<CheckpointFile> file;  // on the first rank
   std::optional<Checkpoint> left;
   together(mpi, [&] {
     if (!mpi.first()) return;
-    file.emplace(folder, input, *loaded.problem);
+    file.emplace(folder, input, loaded.print);
     if (command.restart) left = file->read();
     prepare_folder(folder);
     clear_folder(folder);
     if (!command.restart) file->remove();
   });
-  keep_boundary(loaded);
 
   listen_for_interrupts();
   RunOptions options;

@@ -27,9 +27,13 @@ Problem load_problem(const Case& input, RankCount ranks) {
   check_memory(size_of(mesh));
   check_dimension(input, mesh.dim());
   Problem problem = build_problem(std::move(mesh), input.model);
-  for (const std::string& warning : input.warnings) std::cerr << "kacanov: warning: " + warning + "\n";
-  for (const std::string& warning : problem.warnings) std::cerr << "kacanov: warning: " + warning + "\n";
+  print_warnings(input, problem);
   return problem;
+}
+
+void print_warnings(const Case& input, const Problem& problem) {
+  for (const auto* warnings : {&input.warnings, &problem.warnings})
+    for (const std::string& warning : *warnings) std::cerr << "kacanov: warning: " + warning + "\n";
 }
 
 LoadedCase load_case(const Case& input, const MpiSession& mpi, bool memory_check) {
@@ -54,7 +58,10 @@ LoadedCase load_case(const Case& input, const MpiSession& mpi, bool memory_check
 }
 
 void keep_boundary(LoadedCase& loaded) {
-  if (loaded.problem) loaded.boundary_nodes = keep_boundary(*loaded.problem);
+  if (loaded.problem) {
+    loaded.print = fingerprint(*loaded.problem);
+    loaded.boundary_nodes = keep_boundary(*loaded.problem);
+  }
   malloc_trim(0);  // back to the system, before the solver asks for more
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "case_file.hpp"
+#include "checkpoint.hpp"
 #include "command.hpp"
 #include "parallel.hpp"
 #include "part.hpp"
@@ -23,15 +24,19 @@ struct RankCount {
 /// Reads the mesh and puts the model on it, after checking that the one fits the other, and the run the memory. Prints warnings.
 Problem load_problem(const Case& input, RankCount ranks);
 
+/// Those of the case and of its problem, on standard error.
+void print_warnings(const Case& input, const Problem& problem);
+
 /// A problem split over the ranks.
 struct LoadedCase {
   std::optional<Problem> problem;  ///< on the first rank
   std::vector<std::int32_t> boundary_nodes;  ///< there, after keep_boundary: their numbers in the whole problem
+  Fingerprint print;  ///< likewise: of the whole problem
   Part part;
   double read_seconds = 0.0, distribute_seconds = 0.0;
 };
 
-/// Frees what of the problem the parts have taken over, see keep_boundary(Problem&).
+/// Takes the fingerprint and frees what of the problem the parts have taken over, see keep_boundary(Problem&).
 void keep_boundary(LoadedCase& loaded);
 
 /// Collective; failures are printed and end as ReportedFailure on all ranks.
