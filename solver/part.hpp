@@ -75,7 +75,7 @@ struct Part {
 };
 
 /// Splits the problem with METIS and hands out the parts one after another, so that only one lies beside the problem; that of rank 0 comes last.
-/// They have to join their ranks before they are used. Needs no MPI.
+/// They have to join their ranks before they are used. Needs no MPI. Throws InputError where the mesh is too small for so many.
 void split(const Problem& problem, int ranks, const std::function<void(int rank, Part&& part)>& take);
 
 /// Ties the part of this rank to the ranks that `comm` has.

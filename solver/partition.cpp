@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "error.hpp"
 #include "locality.hpp"
 #include "part_fields.hpp"
 
@@ -125,6 +126,7 @@ class Splitter {
         first_(static_cast<std::size_t>(ranks) + 1, 0),
         global_(problem.mesh.node_count()),
         local_(problem.mesh.node_count(), -1) {
+    refuse_empty_parts();
     const std::size_t nodes = problem.mesh.node_count();
     for (std::size_t n = 0; n < nodes; ++n) ++first_[static_cast<std::size_t>(sharers_.owner(n)) + 1];
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
@@ -149,6 +151,14 @@ class Splitter {
   }
 
  private:
+  void refuse_empty_parts() const {
+    std::vector<std::uint8_t> filled(static_cast<std::size_t>(ranks_), 0);
+    for (const std::uint16_t rank : part_of_) filled[rank] = 1;
+    if (std::count(filled.begin(), filled.end(), 1) == ranks_) return;
+    throw InputError("a mesh of " + std::to_string(part_of_.size()) + " elements cannot be split into " + std::to_string(ranks_) +
+                     " parts: some would be empty");
+  }
+
   void take_nodes(Part& part, int rank) {
     const Mesh& mesh = problem_.mesh;
     const auto dim = static_cast<std::size_t>(mesh.dim());

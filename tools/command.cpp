@@ -59,6 +59,7 @@ ParsedCommand parse_command(int argc, const char* const* argv) {
   add_output(*run, command);
   run->add_flag("!--no-memory-check", command.memory_check, "run even where the memory does not seem to be enough");
   run->add_flag("--restart", command.restart, "go on from the checkpoint that an unfinished run left in the folder");
+  run->add_option("--parts", command.parts, "folder that kacanov partition has written; the mesh is not read")->type_name("DIR");
   add_parallel(*run, command);
 
   CLI::App* spectrum =
@@ -88,14 +89,23 @@ ParsedCommand parse_command(int argc, const char* const* argv) {
       ->check(CLI::Range(1, 100000).description(""))
       ->type_name("N");
 
+  CLI::App* partition =
+      app.add_subcommand("partition", "split a case once into parts that the ranks of later runs read on their own");
+  add_common(*partition, command);
+  partition->add_option("--ranks", command.ranks, "number of parts, one for each MPI process of the runs")
+      ->check(CLI::Range(1, 65535).description(""))
+      ->type_name("N")
+      ->required();
+  partition->add_option("--output", command.output, "folder for the parts")->type_name("DIR")->required();
+
   ParsedCommand parsed;
-  const std::vector<std::string> names{"run", "spectrum", "sweep", "check"};
+  const std::vector<std::string> names{"run", "spectrum", "sweep", "check", "partition"};
   const std::string first = argc > 1 ? argv[1] : "";
   if (!first.empty() && first[0] != '-' && std::find(names.begin(), names.end(), first) == names.end()) {
     const std::string guess = closest_word(first, names);
     parsed.error = usage_error("there is no command \"" + first + "\"" +
                                (guess.empty() ? "" : " (did you mean \"" + guess + "\"?)") +
-                               "; there are: run, spectrum, sweep, check");
+                               "; there are: run, spectrum, sweep, check, partition");
     parsed.exit_code = exit_bad_input;
     return parsed;
   }
@@ -117,6 +127,7 @@ ParsedCommand parse_command(int argc, const char* const* argv) {
   if (spectrum->parsed()) command.kind = Command::Kind::spectrum;
   if (sweep->parsed()) command.kind = Command::Kind::sweep;
   if (check->parsed()) command.kind = Command::Kind::check;
+  if (partition->parsed()) command.kind = Command::Kind::partition;
   parsed.command = command;
   return parsed;
 }

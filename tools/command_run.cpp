@@ -10,6 +10,7 @@
 #include "interrupt.hpp"
 #include "loaded_case.hpp"
 #include "output_folder.hpp"
+#include "part_files.hpp"
 #include "picture.hpp"
 #include "report.hpp"
 #include "result_json.hpp"
@@ -59,6 +60,13 @@ std::vector<double> picked(std::span<const double> all, std::span<const std::int
   return some;
 }
 
+LoadedCase load(const Command& command, const Case& input, const MpiSession& mpi) {
+  if (!command.parts.empty()) return load_parts(command.parts, input, mpi);
+  LoadedCase loaded = load_case(input, mpi, command.memory_check);
+  keep_boundary(loaded);
+  return loaded;
+}
+
 std::string checkpoint_line(const CheckpointFile& file) {
   return file.written() ? "  checkpoint    " + file.path().string() + "; the option --restart goes on from there\n" : "";
 }
@@ -67,8 +75,7 @@ std::string checkpoint_line(const CheckpointFile& file) {
 
 int run_command(const Command& command, const Case& input, const MpiSession& mpi) {
   const double start = MPI_Wtime();
-  LoadedCase loaded = load_case(input, mpi, command.memory_check);
-  keep_boundary(loaded);
+  LoadedCase loaded = load(command, input, mpi);
   const std::filesystem::path folder = output_folder(command, input);
   std::optional<CheckpointFile> file;  // on the first rank
   std::optional<Checkpoint> left;

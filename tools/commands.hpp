@@ -13,7 +13,8 @@ int run_command(const Command& command, const Case& input, const MpiSession& mpi
 int spectrum_command(const Command& command, const Case& input, const MpiSession& mpi);
 /// Not converged means here that no penalty led to convergence.
 int sweep_command(const Command& command, const Case& input, const MpiSession& mpi);
-/// Needs no MPI: everything happens on one rank.
+/// The next two need no MPI: everything happens on one rank. `ranks`: those of the run to be foreseen.
 int check_command(const Case& input, int ranks);
+int partition_command(const Command& command, const Case& input);
 
 }  // namespace kacanov

@@ -8,22 +8,36 @@
 #include "error.hpp"
 #include "launch.hpp"
 #include "parallel.hpp"
+#include "part_files.hpp"
 
 namespace {
 
 using namespace kacanov;
+
+/// Whether everything happens on one rank, without MPI.
+bool needs_one(const Command& command) {
+  return command.kind == Command::Kind::check || command.kind == Command::Kind::partition;
+}
+
+/// `ranks`: those that a run would have here.
+int command_on_one(const Command& command, const Case& input, int ranks) {
+  return command.kind == Command::Kind::check ? check_command(input, command.ranks.value_or(ranks)) : partition_command(command, input);
+}
 
 int dispatch(const Command& command, const Case& input, const MpiSession& mpi) {
   switch (command.kind) {
     case Command::Kind::run: return run_command(command, input, mpi);
     case Command::Kind::spectrum: return spectrum_command(command, input, mpi);
     case Command::Kind::sweep: return sweep_command(command, input, mpi);
-    case Command::Kind::check: break;
+    case Command::Kind::check:
+    case Command::Kind::partition: break;
   }
+  int code = exit_converged;
   together(mpi, [&] {
-    if (mpi.first()) check_command(input, mpi.ranks());
+    if (mpi.first()) code = command_on_one(command, input, mpi.ranks());
   });
-  return exit_converged;
+  MPI_Bcast(&code, 1, MPI_INT, 0, mpi.comm());
+  return code;
 }
 
 /// Within MPI, with the ranks there are.
@@ -32,7 +46,7 @@ int run_here(const Command& command, const std::optional<Case>& known) {
   try {
     std::optional<Case> input = known;
     together(mpi, [&] {
-      if (command.ranks && *command.ranks != mpi.ranks()) {
+      if (!needs_one(command) && command.ranks && *command.ranks != mpi.ranks()) {
         throw InputError("--ranks: " + std::to_string(*command.ranks) + " asked for, but " +
                          std::to_string(mpi.ranks()) + " were started");
       }
@@ -45,12 +59,23 @@ int run_here(const Command& command, const std::optional<Case>& known) {
   }
 }
 
+/// Those of the command line, or as many as there are parts.
+std::optional<int> ranks_asked_for(const Command& command, const Case& input) {
+  if (command.parts.empty()) return command.ranks;
+  const int parts = count_parts(command.parts, input);
+  if (command.ranks.value_or(parts) != parts) {
+    throw InputError("--ranks: expected " + std::to_string(parts) + ", as many as there are parts in " + command.parts + ", got " +
+                     std::to_string(*command.ranks));
+  }
+  return parts;
+}
+
 /// Started by hand: validates what is quickly validated, then goes on alone or under mpiexec.
 int run_alone(const Command& command, int argc, const char* const* argv) {
   const Case input = read_case(command.case_file, command.overrides);
   check_supported(input.model.solver);
-  Shape shape = choose_shape(input, command.ranks, command.threads, usable_cores());
-  if (command.kind == Command::Kind::check) return check_command(input, shape.ranks);
+  Shape shape = choose_shape(input, needs_one(command) ? command.ranks : ranks_asked_for(command, input), command.threads, usable_cores());
+  if (needs_one(command)) return command_on_one(command, input, shape.ranks);
   if (shape.ranks > 1) {
     const std::string mpiexec = find_mpiexec();
     if (!mpiexec.empty()) return run_under_mpiexec(mpiexec, shape, argc, argv);
