@@ -73,7 +73,12 @@ std::string checkpoint_line(const CheckpointFile& file) {
 
 }  // namespace
 
-int run_command(const Command& command, const Case& input, const MpiSession& mpi) {
+void leave_failure(const Command& command, const Case& input, const std::string& text) {
+  const std::filesystem::path folder = output_folder(command, input), file = folder / "result.json";
+  if (std::filesystem::is_directory(folder) && !std::filesystem::exists(file)) write_json(file, failure_json(text));
+}
+
+int run_command(const Command& command, const Case& input, MpiSession& mpi) {
   const double start = MPI_Wtime();
   LoadedCase loaded = load(command, input, mpi);
   const std::filesystem::path folder = output_folder(command, input);
@@ -88,6 +93,9 @@ int run_command(const Command& command, const Case& input, const MpiSession& mpi
     if (!command.restart) file->remove();
   });
 
+  // The folder is that of all ranks, and whichever fails first can say so there.
+  mpi.when_failing([&](const std::string& text) { leave_failure(command, input, text); });
+
   listen_for_interrupts();
   RunOptions options;
   options.stop_requested = interrupt_came;
@@ -98,15 +106,7 @@ int run_command(const Command& command, const Case& input, const MpiSession& mpi
   if (left) options.start = &*left;
   options.threads = threads_of(command);
   options.progress = ProgressTable();
-  Solution solution;
-  collectively(mpi, [&] {
-    try {
-      solution = solve(loaded.part, input.model.solver, options);
-    } catch (...) {
-      if (mpi.first()) write_json(folder / "result.json", failure_json(current_failure().text));
-      throw;
-    }
-  });
+  Solution solution = solve(loaded.part, input.model.solver, options);
 
   const double solved = MPI_Wtime();
   left.reset();
@@ -135,10 +135,10 @@ int run_command(const Command& command, const Case& input, const MpiSession& mpi
         result.seconds.begin(),
         {{"total", end - start}, {"read", loaded.read_seconds}, {"distribute", loaded.distribute_seconds}});
     result.seconds.emplace_back("output", end - solved);
-    if (result.status == Status::converged) file->remove();
     write_json(folder / "result.json", result_json(result, dim));
     const std::string text = summary(result, input.model, dim) + (result.status == Status::converged ? "" : checkpoint_line(*file));
     if (input.output.report) write_file((folder / "summary.txt").string(), text);
+    if (result.status == Status::converged) file->remove();  // only now that all is written
     std::cout << "\n" + text + "  files         " + folder.string() + "\n";
   });
   return result.status == Status::converged ? exit_converged : exit_not_converged;

@@ -202,8 +202,7 @@ int run_under_mpiexec(const std::string& mpiexec, Shape shape, int argc, const c
   if (code > 128)
     reason = "a process was ended by signal " + std::to_string(code - 128) +
              (code == 137 ? " (out of memory?)" : "");
-  std::cerr << "kacanov: internal failure: " << reason << std::endl;
-  return exit_failure;
+  throw InternalError(reason);
 }
 
 }  // namespace kacanov

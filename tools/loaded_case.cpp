@@ -50,8 +50,7 @@ LoadedCase load_case(const Case& input, const MpiSession& mpi, bool memory_check
     if (mpi.first()) loaded.problem = load_problem(input, ranks);
   });
   const double read = MPI_Wtime();
-  collectively(mpi,
-               [&] { loaded.part = distribute(loaded.problem ? &*loaded.problem : nullptr, mpi.comm()); });
+  loaded.part = distribute(loaded.problem ? &*loaded.problem : nullptr, mpi.comm());
   loaded.read_seconds = read - start;
   loaded.distribute_seconds = MPI_Wtime() - read;
   return loaded;

@@ -39,7 +39,7 @@ struct LoadedCase {
 /// Takes the fingerprint and frees what of the problem the parts have taken over, see keep_boundary(Problem&).
 void keep_boundary(LoadedCase& loaded);
 
-/// Collective; failures are printed and end as ReportedFailure on all ranks.
+/// Collective; what is wrong with the input is printed and ends as ReportedFailure on all ranks.
 LoadedCase load_case(const Case& input, const MpiSession& mpi, bool memory_check = true);
 
 /// Threads a rank: as the command says, else OMP_NUM_THREADS, else 1.

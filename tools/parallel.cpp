@@ -28,6 +28,14 @@ MpiSession::~MpiSession() {
   MPI_Finalize();
 }
 
+void MpiSession::report(const Failure& failure) const {
+  print_failure(failure);
+  try {
+    if (when_failing_) when_failing_(failure.text);
+  } catch (...) {  // with a full disk, or no memory, there is no more to be done
+  }
+}
+
 Failure current_failure() {
   try {
     throw;
@@ -55,7 +63,7 @@ void together(const MpiSession& mpi, const std::function<void()>& work) {
   const int candidate = failure.exit_code == worst ? mpi.rank() : mpi.ranks();
   int speaker = 0;
   MPI_Allreduce(&candidate, &speaker, 1, MPI_INT, MPI_MIN, mpi.comm());
-  if (speaker == mpi.rank()) print_failure(failure);
+  if (speaker == mpi.rank()) mpi.report(failure);
   throw ReportedFailure{worst};
 }
 
@@ -68,7 +76,7 @@ void collectively(const MpiSession& mpi, const std::function<void()>& work) {
     const Failure failure = current_failure();
     // Where all ranks fail alike, the first one speaks and ends the job before the others wake up.
     if (!mpi.first()) std::this_thread::sleep_for(std::chrono::seconds(1));
-    print_failure(failure);
+    mpi.report(failure);
     if (mpi.ranks() > 1) MPI_Abort(mpi.comm(), coded_exit(failure.exit_code));
     throw ReportedFailure{failure.exit_code};
   }

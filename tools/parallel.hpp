@@ -6,8 +6,19 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 
 namespace kacanov {
+
+/// Exit code and text of the exception being handled: 2 for InputError, else 3.
+struct Failure {
+  int exit_code = 0;
+  std::string text;
+};
+Failure current_failure();
+
+/// "kacanov: error: ..." on standard error.
+void print_failure(const Failure& failure);
 
 /// MPI_Init to MPI_Finalize.
 class MpiSession {
@@ -22,8 +33,14 @@ class MpiSession {
   int ranks() const noexcept { return ranks_; }
   bool first() const noexcept { return rank_ == 0; }
 
+  /// What else is to be done about a failure, with its text, on the rank that prints it. It must not communicate; what it throws is lost.
+  void when_failing(std::function<void(const std::string&)> work) { when_failing_ = std::move(work); }
+  /// Prints a failure and does that.
+  void report(const Failure& failure) const;
+
  private:
   int rank_ = 0, ranks_ = 1;
+  std::function<void(const std::string&)> when_failing_;
 };
 
 /// Thrown on all ranks once the cause has been printed.
@@ -38,15 +55,5 @@ void together(const MpiSession& mpi, const std::function<void()>& work);
 /// Does `work`, which communicates. Where it throws, the message is printed; with several ranks the rest
 /// cannot be waited for, and the whole job ends there with its exit code.
 void collectively(const MpiSession& mpi, const std::function<void()>& work);
-
-/// Exit code and text of the exception being handled: 2 for InputError, else 3.
-struct Failure {
-  int exit_code = 0;
-  std::string text;
-};
-Failure current_failure();
-
-/// "kacanov: error: ..." on standard error.
-void print_failure(const Failure& failure);
 
 }  // namespace kacanov

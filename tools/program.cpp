@@ -24,7 +24,7 @@ int command_on_one(const Command& command, const Case& input, int ranks) {
   return command.kind == Command::Kind::check ? check_command(input, command.ranks.value_or(ranks)) : partition_command(command, input);
 }
 
-int dispatch(const Command& command, const Case& input, const MpiSession& mpi) {
+int dispatch(const Command& command, const Case& input, MpiSession& mpi) {
   switch (command.kind) {
     case Command::Kind::run: return run_command(command, input, mpi);
     case Command::Kind::spectrum: return spectrum_command(command, input, mpi);
@@ -42,7 +42,7 @@ int dispatch(const Command& command, const Case& input, const MpiSession& mpi) {
 
 /// Within MPI, with the ranks there are.
 int run_here(const Command& command, const std::optional<Case>& known) {
-  const MpiSession mpi;
+  MpiSession mpi;
   try {
     std::optional<Case> input = known;
     together(mpi, [&] {
@@ -53,7 +53,9 @@ int run_here(const Command& command, const std::optional<Case>& known) {
       // Every rank reads the few lines of the case file; the mesh is the first one's.
       if (!input) input = read_case(command.case_file, command.overrides);
     });
-    return dispatch(command, *input, mpi);
+    int code = exit_converged;
+    collectively(mpi, [&] { code = dispatch(command, *input, mpi); });
+    return code;
   } catch (const ReportedFailure& failure) {
     return failure.exit_code;
   }
@@ -70,6 +72,17 @@ std::optional<int> ranks_asked_for(const Command& command, const Case& input) {
   return parts;
 }
 
+/// Under mpiexec; where a process was killed, the others went with it, and only this one can still say so.
+int run_on_ranks(const std::string& mpiexec, Shape shape, const Command& command, const Case& input, int argc,
+                 const char* const* argv) {
+  try {
+    return run_under_mpiexec(mpiexec, shape, argc, argv);
+  } catch (const InternalError&) {
+    if (command.kind == Command::Kind::run) leave_failure(command, input, current_failure().text);
+    throw;
+  }
+}
+
 /// Started by hand: validates what is quickly validated, then goes on alone or under mpiexec.
 int run_alone(const Command& command, int argc, const char* const* argv) {
   const Case input = read_case(command.case_file, command.overrides);
@@ -78,7 +91,7 @@ int run_alone(const Command& command, int argc, const char* const* argv) {
   if (needs_one(command)) return command_on_one(command, input, shape.ranks);
   if (shape.ranks > 1) {
     const std::string mpiexec = find_mpiexec();
-    if (!mpiexec.empty()) return run_under_mpiexec(mpiexec, shape, argc, argv);
+    if (!mpiexec.empty()) return run_on_ranks(mpiexec, shape, command, input, argc, argv);
     if (command.ranks)
       throw InputError("--ranks: mpiexec is not on the PATH; without it there is only one rank");
     std::cerr << "kacanov: note: mpiexec is not on the PATH; running on one rank\n";
