@@ -3,7 +3,7 @@ find_package(nlohmann_json REQUIRED)
 kacanov_test(case
   SOURCES tools/case_main.cpp tools/case_errors.cpp tools/case_values.cpp
   LIBRARIES kacanov_case)
-foreach(area program_errors program_memory program_partition program_restart program_runs)
+foreach(area program_errors program_failures program_memory program_partition program_restart program_runs)
   kacanov_test(${area} SOURCES tools/${area}.cpp LIBRARIES nlohmann_json::nlohmann_json)
   target_compile_definitions(test_${area} PRIVATE
     KACANOV_PROGRAM="$<TARGET_FILE:kacanov>" KACANOV_MPIEXEC="${MPIEXEC_EXECUTABLE}")
