@@ -32,7 +32,7 @@ constexpr double first_penalty = 0.1;
 /// CG iterations of a rough estimate of λ_max.
 constexpr int rough_iterations = 2;
 /// ADMM iterations between two looks at the penalties' balance (and, in Kacanov's method, at g) after the first step.
-/// Ten take 4 % more of them; with three, penalties that follow Coulomb's bounds kept one beam from converging.
+/// Ten take 6 % more of them; with three, penalties that follow Coulomb's bounds kept one beam from converging.
 constexpr int balancing_iterations = 5;
 /// Penalties stay between this over λ_min, which contracts errors at held rows to a quarter (more costs CG
 /// iterations), and that share of it.
