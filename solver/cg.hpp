@@ -26,7 +26,7 @@ struct CgResult {
 struct CgWork {
   Vector residual, direction, image;  // image: A p, and before it M⁻¹ r
   void resize(std::size_t n) {
-    for (Vector* v : {&residual, &direction, &image}) v->resize(n);
+    for (Vector* v : {&residual, &direction, &image}) *v = Vector(n);
   }
 };
 
