@@ -42,7 +42,7 @@ void check_failed(const Workplace& place, const Outcome& outcome, const std::str
 }
 
 /// Needs some 250 MB more than the program does for nothing; no contact, so that a step is a solve.
-nlohmann::json large_block() {
+[[maybe_unused]] nlohmann::json large_block() {
   return nlohmann::json::parse(R"({
     "mesh": {"box": {"size": [2, 1, 1], "cells": [100, 50, 50], "element": "hex8"}},
     "material": [{"on": "all", "young": 1.0, "poisson": 0.3}],
@@ -52,7 +52,7 @@ nlohmann::json large_block() {
 }
 
 /// Two ranks under mpiexec, of which the last one has a limit.
-std::string last_rank_limited(const std::string& limit, const std::string& arguments) {
+[[maybe_unused]] std::string last_rank_limited(const std::string& limit, const std::string& arguments) {
   return arguments + " : -n 1 sh limited.sh '" + limit + "' '" KACANOV_PROGRAM "' " + arguments;
 }
 const std::string two_ranks = patience + " " KACANOV_MPIEXEC " --quiet --oversubscribe -n 1";

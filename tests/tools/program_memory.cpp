@@ -12,7 +12,7 @@ using namespace kacanov::testing;
 namespace {
 
 /// Bytes of the memory that `check` expects.
-double estimate(const std::string& output) {
+[[maybe_unused]] double estimate(const std::string& output) {
   const std::string key = "  estimate       ";
   const auto at = output.find(key);
   REQUIRE(at != std::string::npos);
