@@ -33,6 +33,8 @@ struct Halo {
   double sum_all(double value) const;
   void sum_all(std::span<double> values) const;
   double max_all(double value) const;
+  /// Whether it holds on some rank.
+  bool any(bool here) const { return max_all(here ? 1.0 : 0.0) > 0.0; }
   std::int64_t sum_all(std::int64_t value) const;
 };
 

@@ -42,7 +42,7 @@ void visit_load_step(LoadStep& step, Visitor&& entry) {
 }  // namespace
 
 bool OuterLoop::stop_agreed() const {
-  return part_.halo.max_all(run_.stop_requested && run_.stop_requested() ? 1.0 : 0.0) > 0.0;
+  return part_.halo.any(run_.stop_requested && run_.stop_requested());
 }
 
 void OuterLoop::keep(const Result& result) {
@@ -53,7 +53,7 @@ void OuterLoop::keep(const Result& result) {
   if (result.outer_iterations == 0) return;
   const double before = MPI_Wtime();
   const bool due = part_.halo.rank == 0 && run_.checkpoint && (!run_.checkpoint_due || run_.checkpoint_due());
-  if (part_.halo.max_all(due ? 1.0 : 0.0) == 0.0) return;
+  if (!part_.halo.any(due)) return;
   const Checkpoint all = checkpoint(result);
   if (due) run_.checkpoint(all);
   checkpoint_seconds_ += MPI_Wtime() - before;

@@ -117,7 +117,7 @@ OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOp
     state_.phi.normal[i] = std::min(state_.trace.normal[i], part.contact[i].gap);
   bool slides = false;
   for (const auto& point : part.contact) slides = slides || point.tangents > 0;
-  friction_ = part.halo.max_all(slides ? 1.0 : 0.0) > 0.0;
+  friction_ = part.halo.any(slides);
   linear_ = std::all_of(part.laws.begin(), part.laws.end(),
                         [](const Law& law) { return law.kind == Law::Kind::linear; });
   if (options.stop == SolverOptions::Stop::paper) volume_ = lumped_volume(part);
@@ -209,9 +209,8 @@ std::vector<NodeBlock> OuterLoop::penalty_blocks() const {
 /// Whether a new preconditioner pays: because it is `wanted`, has served its time, or g has moved too far
 /// from the one it was built with.
 bool OuterLoop::setup_pays(bool wanted) {
-  wanted = wanted || preconditioner_stale_;
-  if (linear_) return wanted;
-  if (wanted) return true;
+  if (wanted || preconditioner_stale_) return true;
+  if (linear_) return false;
   const Vector now = secant();
   Vector then(now.size());
   amg_->secant(then);
@@ -233,8 +232,7 @@ Vector OuterLoop::secant() const {
 /// Whether the preconditioner pins other nodes than `set`, or none at all. Every node it gets wrong costs CG a few
 /// iterations.
 bool OuterLoop::set_moved(std::span<const TraceChoice> set) const {
-  const bool moved = pinned_set_.size() != set.size() || !std::equal(set.begin(), set.end(), pinned_set_.begin());
-  return part_.halo.max_all(moved ? 1.0 : 0.0) > 0.0;
+  return part_.halo.any(!std::equal(set.begin(), set.end(), pinned_set_.begin(), pinned_set_.end()));
 }
 
 /// Whether the preconditioner was built with penalties that are far from those of now.

@@ -184,7 +184,7 @@ Solution solve(const Part& full, const SolverOptions& options, const RunOptions&
   const double start = MPI_Wtime();
   Solution solution;
   Result& result = solution.result;
-  const bool restart = full.halo.max_all(full.halo.rank == 0 && run.start != nullptr ? 1.0 : 0.0) > 0.0;
+  const bool restart = full.halo.any(full.halo.rank == 0 && run.start != nullptr);
   const std::vector<double> factors = options.load_steps.empty() ? std::vector{1.0} : options.load_steps;
   std::optional<LoadPath> path;
   if (factors.size() > 1) {
@@ -214,7 +214,7 @@ Solution solve(const Part& full, const SolverOptions& options, const RunOptions&
   result.status = result.certificate.worst() <= options.tolerance ? Status::converged : Status::not_converged;
   if (!finished) result.status = Status::interrupted;
   // What has not converged can be continued with more steps; what has broken down cannot.
-  const bool wanted = part.halo.max_all(part.halo.rank == 0 && run.checkpoint ? 1.0 : 0.0) > 0.0;
+  const bool wanted = part.halo.any(part.halo.rank == 0 && run.checkpoint);
   if (wanted && result.status != Status::converged && std::isfinite(result.certificate.worst())) {
     const Checkpoint all = loop.checkpoint(result);
     if (part.halo.rank == 0) run.checkpoint(all);
@@ -263,9 +263,9 @@ std::vector<SpectrumResult> analyse_spectrum(const Part& part, const SolverOptio
   std::vector<SpectrumResult> results;
   if (part.total_contact == 0) return results;
   results.push_back(estimate_spectrum(part, op, *amg, secant, false, options.spectrum_tolerance));
-  double slides = 0.0;
-  for (const auto& point : part.contact) slides = std::max(slides, point.tangents > 0 ? 1.0 : 0.0);
-  if (part.halo.max_all(slides) > 0.0)
+  bool slides = false;
+  for (const auto& point : part.contact) slides = slides || point.tangents > 0;
+  if (part.halo.any(slides))
     results.push_back(estimate_spectrum(part, op, *amg, secant, true, options.spectrum_tolerance));
   return results;
 }

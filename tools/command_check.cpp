@@ -100,8 +100,7 @@ constexpr double seconds_elastic = 1e-5, seconds_plastic = 4e-5;
 
 void print_estimate(const Problem& problem, const Case& input, int ranks) {
   const auto unknowns = static_cast<double>(problem.mesh.coordinates.size());
-  ProblemSize size = size_of(problem.mesh);
-  size.nonlinear = nonlinear(input.model);
+  ProblemSize size = size_of(problem.mesh, input.model);
   size.contact_points = static_cast<double>(problem.contact.size());
   const double seconds = unknowns * (size.nonlinear ? seconds_plastic : seconds_elastic) / ranks;
   std::printf("  estimate       %s of memory, %s on %d %s (time within a factor of three for a usual case); available: %s\n",

@@ -18,13 +18,12 @@ Mesh load_mesh(const MeshSource& source) {
 
 Problem load_problem(const Case& input, RankCount ranks) {
   check_supported(input.model.solver);
-  const auto check_memory = [&](ProblemSize size) {
-    size.nonlinear = nonlinear(input.model);
+  const auto check_memory = [&](const ProblemSize& size) {
     if (ranks.here > 0) refuse_what_cannot_fit(size, ranks.all, ranks.here);
   };
-  if (input.mesh.box) check_memory(size_of(*input.mesh.box));
+  if (input.mesh.box) check_memory(size_of(*input.mesh.box, input.model));
   Mesh mesh = load_mesh(input.mesh);
-  check_memory(size_of(mesh));
+  check_memory(size_of(mesh, input.model));
   check_dimension(input, mesh.dim());
   Problem problem = build_problem(std::move(mesh), input.model);
   print_warnings(input, problem);

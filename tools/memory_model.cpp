@@ -56,16 +56,18 @@ double number_in(const std::string& path) {
   return file >> value ? value : 0.0;
 }
 
-}  // namespace
-
+/// Whether some material has another law than the linear one.
 bool nonlinear(const Model& model) {
   return std::any_of(model.materials.begin(), model.materials.end(),
                      [](const MaterialEntry& entry) { return entry.law.kind != Law::Kind::linear; });
 }
 
-ProblemSize size_of(const BoxSpec& box) {
+}  // namespace
+
+ProblemSize size_of(const BoxSpec& box, const Model& model) {
   ProblemSize size;
   size.type = box.type;
+  size.nonlinear = nonlinear(model);
   const auto dim = static_cast<std::size_t>(dimension(box.type));
   const double order = box.type == ElementType::tet10 ? 2.0 : 1.0;
   size.nodes = 1.0;
@@ -77,9 +79,10 @@ ProblemSize size_of(const BoxSpec& box) {
   return size;
 }
 
-ProblemSize size_of(const Mesh& mesh) {
+ProblemSize size_of(const Mesh& mesh, const Model& model) {
   ProblemSize size;
   size.type = mesh.type;
+  size.nonlinear = nonlinear(model);
   size.nodes = static_cast<double>(mesh.node_count());
   size.elements = static_cast<double>(mesh.element_count());
   return size;

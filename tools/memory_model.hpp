@@ -9,9 +9,6 @@
 
 namespace kacanov {
 
-/// Whether some material has another law than the linear one.
-bool nonlinear(const Model& model);
-
 struct ProblemSize {
   ElementType type = ElementType::tet4;
   double nodes = 0.0, elements = 0.0;
@@ -19,9 +16,9 @@ struct ProblemSize {
   bool nonlinear = true;        ///< some law is not linear: the run takes tangents
 };
 
-/// Size of the mesh that `box` stands for, without its contact points.
-ProblemSize size_of(const BoxSpec& box);
-ProblemSize size_of(const Mesh& mesh);
+/// Size of a model on a mesh, or on the one that `box` stands for, without its contact points.
+ProblemSize size_of(const BoxSpec& box, const Model& model);
+ProblemSize size_of(const Mesh& mesh, const Model& model);
 
 /// Sum over the ranks of their largest resident memories in bytes, with the default preconditioner: within 15 % from some 10,000 nodes on.
 double estimated_memory(const ProblemSize& size, int ranks);

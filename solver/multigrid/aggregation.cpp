@@ -164,8 +164,8 @@ WeightedGraph contract(const WeightedGraph& graph, std::span<const std::int32_t>
   return coarse;
 }
 
-}  // namespace
-
+/// Couplings of nodes first … last − 1 of a body: Σ g / distance² over the elements two nodes share, g (elements × points) taken in
+/// the mean. In flat or stretched elements the short edges are the strong ones. `elements`: those with one of the nodes.
 WeightedGraph coupling_graph(const Body& body, std::span<const double> g, std::int32_t first, std::int32_t last,
                              std::span<const std::int32_t> elements) {
   const auto& mesh = body.mesh;
@@ -216,6 +216,8 @@ WeightedGraph coupling_graph(const Body& body, std::span<const double> g, std::i
   }
   return graph;
 }
+
+}  // namespace
 
 std::vector<std::int32_t> aggregate_nodes(const Body& body, std::span<const double> g, std::int32_t nodes, double size,
                                           std::int32_t section) {

@@ -19,11 +19,6 @@ struct WeightedGraph {
   std::int32_t rows() const noexcept { return static_cast<std::int32_t>(start.size()) - 1; }
 };
 
-/// Couplings of nodes first … last − 1 of a body: Σ g / distance² over the elements two nodes share, g (elements × points) taken in
-/// the mean. In flat or stretched elements the short edges are the strong ones. `elements`: those with one of the nodes.
-WeightedGraph coupling_graph(const Body& body, std::span<const double> g, std::int32_t first, std::int32_t last,
-                             std::span<const std::int32_t> elements);
-
 /// Group of each row. Rows, then pairs, then fours ... are joined along their heaviest edges until groups have `size` rows
 /// in the mean or nothing is left to join. Groups are numbered in the order of their first rows.
 std::vector<std::int32_t> aggregate(WeightedGraph graph, double size);

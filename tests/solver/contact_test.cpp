@@ -209,6 +209,7 @@ TEST_CASE("an active set that goes round in circles is left for ADMM, and the an
     const Run circles = run_alone(beam_mesh(2, 12), model, options);
     REQUIRE(phases.size() > 1);
     retreats += std::count(phases.begin() + 1, phases.end(), "admm");
+    CHECK(phases.back() == "active_set");
     CHECK(circles.result().status == Status::converged);
     CHECK(distance(straight.probe(), circles.probe()) < 1e-5 * length(straight.probe()));
     check_contact_laws(circles, 1e-5);
