@@ -116,7 +116,7 @@ simd::Block<Real> Engine<Real>::block(std::size_t b) const {
           layout_.index.data() + range.first_index,
           coordinates_.data() + 4 * range.first_record,
           secant_.data() + range.first_slot,
-          tangent_.empty() ? nullptr : tangent_.data() + 6 * range.first_slot,
+          tangent_.empty() ? nullptr : tangent_.data() + simd::tangent_floats * range.first_slot,
           layout_.nodes.data() + range.first_node,
           layout_.shared.data() + range.first_shared,
           range.first,
@@ -254,7 +254,7 @@ double Engine<Real>::pass_nonlinear(const Real* omega, Real* f, simd::Nonlinear 
 template <class Real>
 double Engine<Real>::nonlinear(const Real* omega, Real* f, bool keep_secant, bool keep_tangent) {
   if (keep_tangent) {
-    tangent_.resize(6 * secant_.size());
+    tangent_.resize(simd::tangent_floats * secant_.size());
     Aligned<Real>().swap(tangent_secant_);
   } else if (keep_secant) {
     detach_tangent();

@@ -49,7 +49,7 @@ class Operator {
   /// rank-one term is kept in single precision (relative error 1e-7 of that term). Throws std::logic_error
   /// before the first update_tangent.
   void apply_tangent(std::span<const double> x, std::span<double> y) const;
-  /// Gives the tangent's memory back, 24 bytes an element point. apply_tangent throws until the next update_tangent.
+  /// Gives the tangent's memory back, 20 bytes an element point. apply_tangent throws until the next update_tangent.
   void forget_tangent() noexcept;
   void diagonal(std::span<double> d) const;
   void block_diagonal(std::span<double> blocks) const;

@@ -2,6 +2,9 @@
 // Stress at a batch of quadrature points: the frozen law, its tangent, and the true law.
 #pragma once
 
+#include <cmath>
+#include <limits>
+
 #include "block.hpp"
 #include "inline.hpp"
 
@@ -12,6 +15,7 @@ using kacanov::simd::Group;
 using kacanov::simd::LawView;
 using kacanov::simd::longest_fan;
 using kacanov::simd::Nonlinear;
+using kacanov::simd::tangent_floats;
 
 /// Symmetric tensor of vectors.
 template <class V>
@@ -42,6 +46,14 @@ KACANOV_INLINE inline void subtract_product(const Sym<V>& s, const V* n, V* v) {
   v[2] = v[2] - s.zx * n[0] - s.yz * n[1] - s.zz * n[2];
 }
 
+/// v, turned round in the lanes where `sign` has its sign bit set.
+template <class V>
+KACANOV_INLINE inline V turned(V v, V sign) {
+  typedef decltype(v < v) Bits;
+  using Lane = std::remove_cvref_t<decltype(Bits{}[0])>;
+  return (V)((Bits)v ^ ((Bits)sign & (Bits{} + std::numeric_limits<Lane>::min())));
+}
+
 /// Fetches what a stream will bring some 2 KiB on: processors do so themselves, but stop at every page.
 template <class T>
 KACANOV_INLINE inline void fetch_ahead(const T* stream, int count) {
@@ -52,6 +64,9 @@ KACANOV_INLINE inline void fetch_ahead(const T* stream, int count) {
 // A material turns the strain at one point of each lane, times det and with doubled shears, into weight·τ:
 // forces are that times det ∇N. `weight` is the point's on the reference element, `w` = weight/det. `point`
 // counts vectors of points from the start of the group.
+//
+// The tangent's rank-one term 2 g' x d dᵀ, d = dev ε/x, is kept as the vector √|2 g' x| d, whose trace is zero: five floats. Which way it
+// points makes no difference to the product, so its first component says by its sign bit that g' is positive.
 
 /// That strain from h[3 i + j] = det ∂u_i/∂x_j.
 template <class V>
@@ -101,7 +116,7 @@ struct TangentMaterial {
   const float* tangent;
 
   TangentMaterial(const Block<Real>& block, const Group& group)
-      : base(block, group), tangent(block.tangent + 6 * std::size_t{group.first_slot}) {}
+      : base(block, group), tangent(block.tangent + tangent_floats * std::size_t{group.first_slot}) {}
 
   V bulk() const { return base.bulk(); }
   TangentMaterial without_bulk() const {
@@ -113,17 +128,17 @@ struct TangentMaterial {
 
   KACANOV_INLINE void fetch_ahead(std::size_t point, int count) const {
     base.fetch_ahead(point, count);
-    ::fetch_ahead(tangent + 6 * point * L::width, 6 * count);
+    ::fetch_ahead(tangent + tangent_floats * point * L::width, tangent_floats * count);
   }
   KACANOV_INLINE Sym<V> stress(const Sym<V>& e, V, V w, Real, std::size_t point) const {
     Sym<V> s = frozen_stress<L, Real>(e, L::load(base.secant + point * L::width), base.k0, w);
-    const float* t = tangent + 6 * point * L::width;
+    const float* t = tangent + tangent_floats * point * L::width;
     const V xx = L::widen(t), yy = L::widen(t + L::width), xy = L::widen(t + 2 * L::width),
-            yz = L::widen(t + 3 * L::width), zx = L::widen(t + 4 * L::width), c = L::widen(t + 5 * L::width);
-    const V zz = -(xx + yy);
-    const V along = c * w * (xx * e.xx + yy * e.yy + zz * e.zz + xy * e.xy + yz * e.yz + zx * e.zx);
-    s.xx += along * xx, s.yy += along * yy, s.zz += along * zz;
-    s.xy += along * xy, s.yz += along * yz, s.zx += along * zx;
+            yz = L::widen(t + 3 * L::width), zx = L::widen(t + 4 * L::width);
+    const V zz = xx + yy;  // the negative of it, the trace is zero
+    const V along = turned(w, xx) * (xx * e.xx + yy * e.yy - zz * e.zz + xy * e.xy + yz * e.yz + zx * e.zx);
+    s.xx -= along * xx, s.yy -= along * yy, s.zz += along * zz;
+    s.xy -= along * xy, s.yz -= along * yz, s.zx -= along * zx;
     return s;
   }
 };
@@ -142,7 +157,7 @@ struct NonlinearMaterial {
       : law(block.laws[group.law]),
         out(nonlinear),
         secant(block.secant + group.first_slot),
-        tangent(block.tangent + 6 * std::size_t{group.first_slot}),
+        tangent(block.tangent + tangent_floats * std::size_t{group.first_slot}),
         k0(law.bulk) {}
 
   V bulk() const { return Real(k0) - V{}; }
@@ -171,17 +186,18 @@ struct NonlinearMaterial {
       }
     add_energy(det * weight * (Real(0.5 * k0) * trace * trace + Real(2) * energy));
     if (out.keep_secant) L::store(secant + point * L::width, g);
-    if (out.keep_tangent) keep(Sym<V>{xx, yy, zz, xy, yz, zx}, x, slope, tangent + 6 * point * L::width);
+    if (out.keep_tangent) keep(Sym<V>{xx, yy, zz, xy, yz, zx}, x, slope, tangent + tangent_floats * point * L::width);
     return frozen_stress<L, Real>(e, g, bulk(), w);
   }
 
-  /// The direction dev ε/x and 2 g' x; zero where g' is.
+  /// √|2 g' x| dev ε/x, turned so that its first component has the sign bit of g' < 0; zero where g' is.
   static void keep(const Sym<V>& dev, V x, V slope, float* t) {
-    const V values[6] = {dev.xx, dev.yy, dev.xy, dev.yz, dev.zx, Real(2) * slope * x};
+    const V values[tangent_floats] = {dev.xx, dev.yy, dev.xy, dev.yz, dev.zx};
     for (int l = 0; l < L::width; ++l) {
-      const bool active = slope[l] != Real(0);
-      for (int k = 0; k < 6; ++k)
-        t[k * L::width + l] = !active ? 0.0f : static_cast<float>(k < 5 ? values[k][l] / x[l] : values[k][l]);
+      const bool hardens = slope[l] > Real(0), turn = std::signbit(values[0][l]) != hardens;
+      const Real length = slope[l] != Real(0) ? std::sqrt(std::abs(Real(2) * slope[l] / x[l])) : Real(0);
+      for (int k = 0; k < tangent_floats; ++k)
+        t[k * L::width + l] = static_cast<float>(length * (turn ? -values[k][l] : values[k][l]));
     }
   }
 };
