@@ -73,14 +73,15 @@ void take_laws(kacanov_operator& op, std::span<const kacanov_law> laws, const st
   for (std::size_t i = 0; i < checked.size(); ++i)
     if (checked[i].mean_dilatation && op.mesh.type != k::ElementType::hex8)
       throw Fault(KACANOV_ERROR_LAW, "law[" + std::to_string(i) + "].mean_dilatation: is for hex8 only");
-  const std::size_t elements = op.mesh.element_count();
   std::vector<std::uint16_t> own;
-  if (law_of_element == nullptr)
-    own.assign(elements, 0);
-  else if (!borrow)
-    own.assign(law_of_element, law_of_element + elements);
-  const std::span<const std::uint16_t> of_element =
-      own.empty() ? std::span(law_of_element, elements) : std::span<const std::uint16_t>(own);
+  std::span<const std::uint16_t> of_element;
+  if (law_of_element != nullptr) {
+    of_element = {law_of_element, op.mesh.element_count()};
+    if (!borrow) {
+      own.assign(of_element.begin(), of_element.end());
+      of_element = own;
+    }
+  }
   k::c_api::check_law_of_element(of_element, checked.size());
 
   k::Operator made({op.mesh, checked, of_element}, op.options);

@@ -10,7 +10,7 @@
 namespace kacanov {
 
 void element_stiffness(const Body& body, std::size_t element, std::span<const double> g, std::span<double> matrix) {
-  const Law& law = body.laws[body.law_of_element[element]];
+  const Law& law = body.law(element);
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     using Point = elements::Point<E>;
     constexpr auto width = static_cast<std::size_t>(E::nodes * E::dim);

@@ -93,8 +93,6 @@ std::vector<bool> longest_of_all(const MeshView& mesh, const EdgeTable& table) {
 }
 
 struct Cover {
-  const MeshView& mesh;
-  std::span<const std::uint16_t> law;
   Units result;
 
   /// One tetrahedron round the edge, as the arc from ring node `a` to ring node `b`.
@@ -152,10 +150,11 @@ struct Cover {
 
 }  // namespace
 
-Units cover_by_fans(const MeshView& mesh, std::span<const std::uint16_t> law_of_element) {
+Units cover_by_fans(const Body& body) {
+  const MeshView& mesh = body.mesh;
   const EdgeTable table = make_edges(mesh);
   const std::vector<bool> preferred = longest_of_all(mesh, table);
-  Cover cover{mesh, law_of_element, {}, {}};
+  Cover cover;
   std::vector<bool> taken(mesh.element_count(), false);
   const auto left_of = [&](std::uint32_t edge) {
     std::uint32_t left = 0;
@@ -194,7 +193,7 @@ Units cover_by_fans(const MeshView& mesh, std::span<const std::uint16_t> law_of_
         const bool forward = t[local[0]] == low;
         p = low, q = forward ? t[local[1]] : t[local[0]];
         const Index a = t[local[forward ? 2 : 3]], b = t[local[forward ? 3 : 2]];
-        cover.arcs.push_back({a, b, static_cast<Index>(e), law_of_element[e], false});
+        cover.arcs.push_back({a, b, static_cast<Index>(e), body.law_index(e), false});
       }
       cover.split(p, q);
     }

@@ -7,6 +7,6 @@
 namespace kacanov {
 
 /// Every element lies in exactly one fan; the elements of a fan share one law.
-Units cover_by_fans(const MeshView& mesh, std::span<const std::uint16_t> law_of_element);
+Units cover_by_fans(const Body& body);
 
 }  // namespace kacanov

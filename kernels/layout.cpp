@@ -327,7 +327,7 @@ std::size_t Layout::bytes() const noexcept {
 
 Layout make_layout(const Body& body, int lanes, int threads, std::size_t record_bytes) {
   const std::vector<std::int32_t> order = node_order(body.mesh);
-  Builder builder{body, make_units(body.mesh, body.law_of_element), {}, {}, {}};
+  Builder builder{body, make_units(body), {}, {}, {}};
   Layout& layout = builder.layout;
   layout.lanes = lanes;
   layout.padding = static_cast<std::uint32_t>(idle_positions(body.mesh.type).size());

@@ -103,7 +103,6 @@ void scatter_add(const Body& body, std::size_t element, const Nodal<E>& local, s
     for (int i = 0; i < E::dim; ++i) values[Point<E>::at(node[a], i)] += local[Point<E>::at(a, i)];
 }
 
-const Law& law_of(const Body& body, std::size_t element) { return body.laws[body.law_of_element[element]]; }
 
 /// Calls visit(element, law, point index, point, strain of `omega`) for every quadrature point.
 template <class E, class Visit>
@@ -111,9 +110,9 @@ void for_each_point(const Body& body, std::span<const double> omega, Visit&& vis
   for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
     const Nodal<E> x = gather<E>(body, e, body.mesh.coordinates);
     const Nodal<E> u = gather<E>(body, e, omega);
-    const auto points = points_of<E>(x, law_of(body, e).mean_dilatation);
+    const auto points = points_of<E>(x, body.law(e).mean_dilatation);
     for (std::size_t q = 0; q < E::points; ++q)
-      visit(e, law_of(body, e), q, points[q], strain_at<E>(points[q], u));
+      visit(e, body.law(e), q, points[q], strain_at<E>(points[q], u));
   }
 }
 
@@ -136,7 +135,7 @@ void fill_matrix(const Body& body, std::size_t element, std::span<double> matrix
   const Nodal<E> x = gather<E>(body, element, body.mesh.coordinates);
   constexpr std::size_t n = std::tuple_size_v<Nodal<E>>;
   std::fill(matrix.begin(), matrix.end(), 0.0);
-  const auto points = points_of<E>(x, law_of(body, element).mean_dilatation);
+  const auto points = points_of<E>(x, body.law(element).mean_dilatation);
   for (std::size_t q = 0; q < E::points; ++q) {
     const Point<E>& point = points[q];
     for (std::size_t column = 0; column < n; ++column) {
@@ -190,14 +189,14 @@ void block_diagonal(const Body& body, std::span<const double> g, std::span<doubl
     for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
       const Nodal<E> x = gather<E>(body, e, body.mesh.coordinates);
       const std::int32_t* node = nodes_of(body, e);
-      const auto points = points_of<E>(x, law_of(body, e).mean_dilatation);
+      const auto points = points_of<E>(x, body.law(e).mean_dilatation);
       for (std::size_t q = 0; q < E::points; ++q) {
         const Point<E>& point = points[q];
         for (int a = 0; a < E::nodes; ++a)
           for (int i = 0; i < E::dim; ++i)
             for (int j = 0; j < E::dim; ++j)
               blocks[Point<E>::at(node[a], i) * E::dim + static_cast<std::size_t>(j)] +=
-                  point.diagonal_block(a, i, j, law_of(body, e).bulk, g[e * E::points + q]);
+                  point.diagonal_block(a, i, j, body.law(e).bulk, g[e * E::points + q]);
       }
     }
   });
@@ -227,7 +226,7 @@ double energy(const Body& body, std::span<const double> omega) {
 
 void element_matrix(const Body& body, std::size_t element, std::span<const double> g,
                     std::span<double> matrix) {
-  const Law& law = law_of(body, element);
+  const Law& law = body.law(element);
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     fill_matrix<E>(body, element, matrix, [&](std::size_t q, const Point<E>&, const Strain& strain) {
       return stress(law, g[q], strain);
@@ -237,7 +236,7 @@ void element_matrix(const Body& body, std::size_t element, std::span<const doubl
 
 void element_tangent(const Body& body, std::size_t element, std::span<const double> omega,
                      std::span<double> matrix) {
-  const Law& law = law_of(body, element);
+  const Law& law = body.law(element);
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     const Nodal<E> u = gather<E>(body, element, omega);
     fill_matrix<E>(body, element, matrix, [&](std::size_t, const Point<E>& point, const Strain& strain) {
@@ -259,7 +258,7 @@ void volumes(const Body& body, std::span<double> volume) {
 void fields(const Body& body, std::span<const double> omega, const ElementFields& out) {
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
-      const Law& law = law_of(body, e);
+      const Law& law = body.law(e);
       const Nodal<E> x = gather<E>(body, e, body.mesh.coordinates);
       const Nodal<E> u = gather<E>(body, e, omega);
       Sym tau{};

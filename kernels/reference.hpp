@@ -14,9 +14,13 @@ namespace kacanov {
 struct Body {
   MeshView mesh;
   std::span<const Law> laws;
-  std::span<const std::uint16_t> law_of_element;  ///< one entry an element
+  std::span<const std::uint16_t> law_of_element;  ///< one entry an element; empty: laws[0] everywhere
 
   std::size_t unknowns() const noexcept { return mesh.coordinates.size(); }
+  std::uint16_t law_index(std::size_t element) const noexcept {
+    return law_of_element.empty() ? std::uint16_t{0} : law_of_element[element];
+  }
+  const Law& law(std::size_t element) const noexcept { return laws[law_index(element)]; }
   std::size_t secant_count() const noexcept {
     return mesh.element_count() * static_cast<std::size_t>(points_per_element(mesh.type));
   }

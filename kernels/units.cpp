@@ -79,8 +79,9 @@ std::uint32_t points_of(simd::Shape shape, std::uint32_t length) noexcept {
 
 std::uint32_t Unit::node_count() const noexcept { return nodes_of(shape, length); }
 
-Units make_units(const MeshView& mesh, std::span<const std::uint16_t> law_of_element) {
-  if (mesh.type == ElementType::tet4) return cover_by_fans(mesh, law_of_element);
+Units make_units(const Body& body) {
+  const MeshView& mesh = body.mesh;
+  if (mesh.type == ElementType::tet4) return cover_by_fans(body);
   Units result;
   result.nodes.assign(mesh.connectivity.begin(), mesh.connectivity.end());
   const auto nodes = static_cast<std::uint32_t>(nodes_per_element(mesh.type));
@@ -92,7 +93,7 @@ Units make_units(const MeshView& mesh, std::span<const std::uint16_t> law_of_ele
     if (mesh.type == ElementType::tet10)
       shape = straight(mesh, &mesh.connectivity[std::size_t{e} * nodes]) ? simd::Shape::tet10
                                                                          : simd::Shape::curved_tet10;
-    result.units.push_back({shape, 1, law_of_element[e], e * nodes, e});
+    result.units.push_back({shape, 1, body.law_index(e), e * nodes, e});
     result.elements.push_back(static_cast<std::int32_t>(e));
   }
   return result;

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "mesh_view.hpp"
+#include "reference.hpp"
 #include "simd/block.hpp"
 
 namespace kacanov {
@@ -32,10 +32,10 @@ struct Units {
 std::uint32_t nodes_of(simd::Shape shape, std::uint32_t length) noexcept;
 std::uint32_t points_of(simd::Shape shape, std::uint32_t length) noexcept;
 
-/// Covers a mesh by units of one law each. tet4: greedily, the edge with most tetrahedra left first; what
+/// Covers a body by units of one law each. tet4: greedily, the edge with most tetrahedra left first; what
 /// is left round it is split into chains. Other elements: one by one; a tet10 with straight sides (mid-side
 /// nodes within 1e-13 of the middle, relative to the side) and a hex8 that is a parallelepiped (corners within
 /// 1e-13 of its extent along each axis) are shapes of their own.
-Units make_units(const MeshView& mesh, std::span<const std::uint16_t> law_of_element);
+Units make_units(const Body& body);
 
 }  // namespace kacanov

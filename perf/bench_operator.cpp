@@ -142,8 +142,7 @@ json measure(const meshes::OwnedMesh& mesh, const std::string& kind, const Setti
   const ElementType type = mesh.type;
   const std::string element = name_of(type);
   const std::vector<Law> laws{elastic_law(1.0, 0.3)};
-  const std::vector<std::uint16_t> law_of_element(mesh.view().element_count(), 0);
-  const Body body{mesh.view(), laws, law_of_element};
+  const Body body{mesh.view(), laws, {}};
   const std::size_t n = body.unknowns();
   std::vector<double> x(n), y(n), expected(n);
   std::mt19937 random(1);
