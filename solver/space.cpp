@@ -34,8 +34,7 @@ namespace {
 
 template <class S>
 void project_out(const Part& part, std::span<const Space::HeldDirections> held, std::span<S> x) {
-  for (std::size_t i = 0; i < x.size(); ++i)
-    if (part.held[i]) x[i] = S{0};
+  for (const auto& entry : part.prescribed) x[static_cast<std::size_t>(entry.component)] = S{0};
   const auto dim = static_cast<std::size_t>(part.dim());
   for (const auto& entry : held) {
     S* u = x.data() + static_cast<std::size_t>(entry.node) * dim;

@@ -33,14 +33,7 @@ typename BlockSums<M>::Block transposed(const typename BlockSums<M>::Block& bloc
 /// Takes coefficients of a group's motion to those of an aggregate in it.
 template <int M>
 Dense<M> prolongation(const Vector3& offset, double inverse_length) {
-  Dense<M> p;
-  for (int k = 0; k < M; ++k) {
-    std::array<double, M> group{}, member{};
-    group[static_cast<std::size_t>(k)] = 1.0;
-    RigidMotion<M>::add_to_part(group.data(), offset.data(), inverse_length, member.data());
-    p.col(k) = Eigen::Map<const Eigen::Matrix<double, M, 1>>(member.data());
-  }
-  return p;
+  return dense<M>(RigidMotion<M>::change(offset.data(), inverse_length));
 }
 
 /// Sends each rank its bytes and returns all that came.
@@ -90,16 +83,64 @@ int RigidLevel<M>::owner(std::int64_t row) const {
 template <int M>
 void RigidLevel<M>::send_to_owners(BlockSums<M>& sums) const {
   if (ranks_ == 1) return;
+  for (const auto& entry : exchanged(sums)) {
+    auto& sum = sums.at(entry.row, entry.column);
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += entry.block[k];
+  }
+}
+
+/// What the other ranks have for rows of this one, in exchange for theirs.
+template <int M>
+std::vector<typename BlockSums<M>::Entry> RigidLevel<M>::exchanged(const BlockSums<M>& sums) const {
   std::vector<std::vector<typename BlockSums<M>::Entry>> to(static_cast<std::size_t>(ranks_));
   for (const auto& entry : sums.entries()) {
     const int row = owner(entry.row), column = owner(entry.column);
     if (row != rank_) to[static_cast<std::size_t>(row)].push_back(entry);
     if (column != rank_ && column != row) to[static_cast<std::size_t>(column)].push_back(entry);
   }
-  for (const auto& entry : exchange_entries(to, comm_)) {
-    auto& sum = sums.at(entry.row, entry.column);
-    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += entry.block[k];
+  return exchange_entries(to, comm_);
+}
+
+template <int M>
+std::int32_t RigidLevel<M>::local(std::int64_t row) const {
+  if (row >= first() && row < first() + rows()) return static_cast<std::int32_t>(row - first());
+  const auto at = std::lower_bound(ghosts_.begin(), ghosts_.end(), row);
+  return at != ghosts_.end() && *at == row ? rows() + static_cast<std::int32_t>(at - ghosts_.begin()) : -1;
+}
+
+template <int M>
+void RigidLevel<M>::clear() {
+  for (Block& block : block_) block.fill(0.0);
+}
+
+template <int M>
+typename RigidLevel<M>::Block& RigidLevel<M>::block(std::int32_t row, std::int32_t column) {
+  auto k = static_cast<std::size_t>(start_[static_cast<std::size_t>(row)]);
+  while (column_[k] != column) ++k;
+  return block_[k];
+}
+
+template <int M>
+void RigidLevel<M>::complete(const BlockSums<M>& outside) {
+  if (ranks_ > 1) {
+    BlockSums<M> shared = outside;
+    visit([&](std::int32_t i, std::int32_t j, const Block& sum) {
+      if (j < rows()) return;
+      const std::int64_t row = first() + i, column = ghosts_[static_cast<std::size_t>(j - rows())];
+      if (row < column)
+        shared.at(row, column) = sum;
+      else
+        shared.at(column, row) = transposed<M>(sum);
+    });
+    for (const auto& entry : exchanged(shared)) {
+      const std::int32_t row = local(entry.row), column = local(entry.column);
+      const bool here = row >= 0 && row < rows();
+      Block& sum = here ? block(row, column) : block(column, row);
+      const Block add = here ? entry.block : transposed<M>(entry.block);
+      for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += add[k];
+    }
   }
+  invert_diagonal();
 }
 
 template <int M>
@@ -118,10 +159,6 @@ void RigidLevel<M>::build_rows(const BlockSums<M>& sums) {
   ghosts_.shrink_to_fit();
   std::partial_sum(start_.begin(), start_.end(), start_.begin());
 
-  const auto local = [&](std::int64_t row) {
-    return mine(row) ? static_cast<std::int32_t>(row - begin)
-                     : rows() + static_cast<std::int32_t>(std::lower_bound(ghosts_.begin(), ghosts_.end(), row) - ghosts_.begin());
-  };
   column_.resize(static_cast<std::size_t>(start_.back()));
   block_.resize(column_.size());
   auto next = start_;
@@ -305,14 +342,14 @@ RigidLevel<M> RigidLevel<M>::coarsened(std::span<const std::int32_t> group, doub
 template <int M>
 WeightedGraph RigidLevel<M>::couplings() const {
   constexpr int dim = RigidMotion<M>::dim;
-  const auto visit = [this](auto&& edge) {
-    for (std::int32_t i = 0; i < rows(); ++i)
-      for (auto k = start_[static_cast<std::size_t>(i)]; k < start_[static_cast<std::size_t>(i) + 1]; ++k)
-        if (const std::int32_t j = column_[static_cast<std::size_t>(k)]; j != i && j < rows()) edge(i, j, block_[static_cast<std::size_t>(k)]);
+  const auto visit_edges = [this](auto&& edge) {
+    visit([&](std::int32_t i, std::int32_t j, const Block& block) {
+      if (j != i && j < rows()) edge(i, j, block);
+    });
   };
   WeightedGraph graph;
   graph.start.assign(static_cast<std::size_t>(rows()) + 1, 0);
-  visit([&](std::int32_t i, std::int32_t j, const Block&) {
+  visit_edges([&](std::int32_t i, std::int32_t j, const Block&) {
     ++graph.start[static_cast<std::size_t>(i) + 1];
     ++graph.start[static_cast<std::size_t>(j) + 1];
   });
@@ -320,7 +357,7 @@ WeightedGraph RigidLevel<M>::couplings() const {
   graph.column.resize(static_cast<std::size_t>(graph.start.back()));
   graph.weight.resize(graph.column.size());
   auto next = graph.start;
-  visit([&](std::int32_t i, std::int32_t j, const Block& block) {
+  visit_edges([&](std::int32_t i, std::int32_t j, const Block& block) {
     double square = 0.0;
     for (int a = 0; a < dim; ++a)
       for (int b = 0; b < dim; ++b) {
@@ -355,13 +392,10 @@ double RigidLevel<M>::largest_eigenvalue() const {
 template <int M>
 std::vector<typename BlockSums<M>::Entry> RigidLevel<M>::gathered() const {
   std::vector<typename BlockSums<M>::Entry> mine;
-  for (std::int32_t i = 0; i < rows(); ++i)
-    for (auto k = static_cast<std::size_t>(start_[static_cast<std::size_t>(i)]);
-         k < static_cast<std::size_t>(start_[static_cast<std::size_t>(i) + 1]); ++k) {
-      const std::int32_t j = column_[k];
-      mine.push_back({first() + i, j < rows() ? first() + j : ghosts_[static_cast<std::size_t>(j - rows())], block_[k]});
-      if (j < rows() && j != i) mine.push_back({first() + j, first() + i, transposed<M>(block_[k])});
-    }
+  visit([&](std::int32_t i, std::int32_t j, const Block& block) {
+    mine.push_back({first() + i, j < rows() ? first() + j : ghosts_[static_cast<std::size_t>(j - rows())], block});
+    if (j < rows() && j != i) mine.push_back({first() + j, first() + i, transposed<M>(block)});
+  });
   return exchange_entries(std::vector(static_cast<std::size_t>(ranks_), mine), comm_);
 }
 

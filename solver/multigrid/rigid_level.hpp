@@ -22,7 +22,7 @@ class BlockSums {
     std::int64_t row = 0, column = 0;
     Block block{};
   };
-  /// The sum at (row, column), zero at first; valid until the next call. row ≤ column < 2³².
+  /// The sum at (row, column), zero at first; it stays where it is. row ≤ column < 2³².
   Block& at(std::int64_t row, std::int64_t column) {
     const auto key = static_cast<std::uint64_t>(row) << 32 | static_cast<std::uint64_t>(column);
     const auto [place, fresh] = index_.try_emplace(key, static_cast<std::uint32_t>(entries_.size()));
@@ -61,6 +61,24 @@ class RigidLevel {
   /// Largest eigenvalue of D⁻¹A, by a few power steps, somewhat from above.
   double largest_eigenvalue() const;
 
+  /// Local number of a row: owned ones first, then the other ranks' rows they couple to; −1 for others.
+  std::int32_t local(std::int64_t row) const;
+  std::span<const std::int64_t> ghosts() const noexcept { return ghosts_; }
+  /// Calls f(row, column, block) for what is stored of every owned row.
+  template <class F>
+  void visit(F&& f) const {
+    for (std::int32_t i = 0; i < rows(); ++i)
+      for (auto k = static_cast<std::size_t>(start_[static_cast<std::size_t>(i)]);
+           k < static_cast<std::size_t>(start_[static_cast<std::size_t>(i) + 1]); ++k)
+        f(i, column_[k], block_[k]);
+  }
+  /// To sum the matrix anew with the couplings it has: clear, add to blocks, complete.
+  void clear();
+  /// Of an owned row and a local one, which if owned is not before it. They have to couple.
+  Block& block(std::int32_t row, std::int32_t column);
+  /// Adds what the ranks have summed for each other's rows, in their blocks with ghosts and `outside` of these. Collective.
+  void complete(const BlockSums<M>& outside);
+
   /// The next level: `group` of each row, groups numbered from 0.
   RigidLevel coarsened(std::span<const std::int32_t> group, double length) const;
   /// Couplings between owned rows, for grouping.
@@ -73,6 +91,7 @@ class RigidLevel {
 
  private:
   void send_to_owners(BlockSums<M>& sums) const;
+  std::vector<typename BlockSums<M>::Entry> exchanged(const BlockSums<M>& sums) const;
   void build_rows(const BlockSums<M>& sums);
   void plan_exchange();
   void invert_diagonal();

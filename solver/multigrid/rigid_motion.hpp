@@ -15,6 +15,18 @@ struct RigidMotion {
   static constexpr int modes = M;
   static constexpr int dim = M == 6 ? 3 : 2;
 
+  /// Displacement of the point x − centre = d for each motion: the matrix of add_motion.
+  using Rows = std::array<std::array<double, static_cast<std::size_t>(M)>, static_cast<std::size_t>(dim)>;
+  static Rows rows(const double* d, double inverse_length) {
+    const double x = d[0] * inverse_length, y = d[1] * inverse_length;
+    if constexpr (M == 6) {
+      const double z = d[2] * inverse_length;
+      return {{{1, 0, 0, 0, z, -y}, {0, 1, 0, -z, 0, x}, {0, 0, 1, y, -x, 0}}};
+    } else {
+      return {{{1, 0, -y}, {0, 1, x}}};
+    }
+  }
+
   /// u += the motion with coefficients q at x − centre = d.
   template <class S>
   static void add_motion(const S* q, const double* d, double inverse_length, S* u) {
@@ -56,7 +68,18 @@ struct RigidMotion {
     add_motion(from, d, inverse_length, q);
     for (int m = dim; m < M; ++m) q[m] += from[m];
   }
-  /// Its transpose: q += what the forces `f` on the motions of the part do on those of the larger aggregate.
+  /// The matrix of add_to_part by rows: takes a motion about one centre to the same about another, which lies at d from there.
+  static std::array<double, static_cast<std::size_t>(M* M)> change(const double* d, double inverse_length) {
+    std::array<double, static_cast<std::size_t>(M* M)> matrix{};
+    for (std::size_t k = 0; k < M; ++k) {
+      std::array<double, M> from{}, to{};
+      from[k] = 1.0;
+      add_to_part(from.data(), d, inverse_length, to.data());
+      for (std::size_t i = 0; i < M; ++i) matrix[i * M + k] = to[i];
+    }
+    return matrix;
+  }
+  /// The transpose of add_to_part: q += what the forces `f` on the motions of the part do on those of the larger aggregate.
   template <class S>
   static void add_from_part(const S* f, const double* d, double inverse_length, S* q) {
     add_force(f, d, inverse_length, q);

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Galerkin's matrix over rigid motions, element by element.
+#include "multigrid/aggregate_motions.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "elements/dispatch.hpp"
+#include "elements/point.hpp"
+#include "multigrid/aggregation.hpp"
+
+namespace kacanov {
+
+template <int M>
+AggregateMotions<M>::AggregateMotions(const Part& part, std::span<const double> g, double size) : part_(part) {
+  group_ = aggregate_nodes(part.body(), g, part.owned_nodes, size);
+  owned_ = group_.empty() ? 0 : 1 + *std::max_element(group_.begin(), group_.end());
+  centre_.assign(static_cast<std::size_t>(owned_), Vector3{});
+  std::vector<double> members(centre_.size(), 0.0);
+  for (std::size_t n = 0; n < group_.size(); ++n) {
+    const auto a = static_cast<std::size_t>(group_[n]);
+    members[a] += 1.0;
+    for (std::size_t c = 0; c < dim; ++c) centre_[a][c] += part_.coordinates[n * dim + c];
+  }
+  for (std::size_t a = 0; a < centre_.size(); ++a)
+    for (double& c : centre_[a]) c /= members[a];
+  double spread = 0.0;
+  for (std::size_t n = 0; n < group_.size(); ++n) {
+    const Vector3 d = offset(n);
+    spread += d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+  }
+  length_ = std::sqrt(part_.halo.sum_all(spread) / static_cast<double>(part_.total_nodes));
+  if (!(length_ > 0.0)) length_ = 1.0;
+}
+
+template <int M>
+Vector3 AggregateMotions<M>::offset(std::size_t node) const {
+  const Vector3& centre = centre_[static_cast<std::size_t>(group_[node])];
+  Vector3 d{};
+  for (std::size_t c = 0; c < dim; ++c) d[c] = part_.coordinates[node * dim + c] - centre[c];
+  return d;
+}
+
+template <int M>
+RigidLevel<M> AggregateMotions<M>::make_level() {
+  const Halo& halo = part_.halo;
+  std::int64_t first = 0;
+  const auto mine = static_cast<std::int64_t>(owned_);
+  MPI_Exscan(&mine, &first, 1, MPI_INT64_T, MPI_SUM, halo.comm);
+  if (halo.rank == 0) first = 0;
+
+  // Centre and number of the aggregate of every local node, ghosts from their owners.
+  const std::size_t owned_nodes = group_.size();
+  std::vector<Vector3> ghost_centre(part_.nodes() - owned_nodes);
+  Vector number(part_.nodes());
+  for (std::size_t c = 0; c <= dim; ++c) {  // the number last: its vector stays
+    for (std::size_t n = 0; n < owned_nodes; ++n) {
+      const auto a = static_cast<std::size_t>(group_[n]);
+      number[n] = c < dim ? centre_[a][c] : static_cast<double>(first + group_[n]);
+    }
+    halo.copy_from_owner(std::span<double>(number), 1);
+    for (std::size_t n = owned_nodes; n < number.size() && c < dim; ++n) ghost_centre[n - owned_nodes][c] = number[n];
+  }
+
+  BlockSums<M> couplings;
+  const auto npe = static_cast<std::size_t>(nodes_per_element(part_.type));
+  std::vector<std::int64_t> distinct;
+  for (std::size_t e = 0; e < part_.element_count(); ++e) {
+    distinct.clear();
+    for (std::size_t a = 0; a < npe; ++a) {
+      const auto id = static_cast<std::int64_t>(number[static_cast<std::size_t>(part_.elements[e * npe + a])]);
+      if (std::find(distinct.begin(), distinct.end(), id) == distinct.end()) distinct.push_back(id);
+    }
+    for (const std::int64_t row : distinct)
+      for (const std::int64_t column : distinct)
+        if (row <= column) couplings.at(row, column);
+  }
+  RigidLevel<M> level(centre_, std::move(couplings), halo.comm);
+
+  group_.resize(part_.nodes());
+  std::unordered_map<std::int64_t, std::int32_t> unknown;  // to the level: no element here ties them to an owned one
+  number_.assign(level.ghosts().begin(), level.ghosts().end());
+  centre_.resize(centre_.size() + number_.size());
+  const auto known = static_cast<std::int32_t>(centre_.size());
+  for (std::size_t n = owned_nodes; n < group_.size(); ++n) {
+    const auto id = static_cast<std::int64_t>(number[n]);
+    std::int32_t at = level.local(id);
+    if (at < 0) {
+      at = unknown.try_emplace(id, known + static_cast<std::int32_t>(unknown.size())).first->second;
+      centre_.resize(std::max(centre_.size(), static_cast<std::size_t>(at) + 1));
+      number_.resize(centre_.size() - static_cast<std::size_t>(owned_));
+    }
+    group_[n] = at;
+    centre_[static_cast<std::size_t>(at)] = ghost_centre[n - owned_nodes];
+    number_[static_cast<std::size_t>(at - owned_)] = id;
+  }
+  return level;
+}
+
+/// One summation: with S_a the strains of aggregate a's motions in the element, block (a, b) is volume · S_aᵀ D S_b.
+template <int M>
+class AggregateMotions<M>::Sums {
+  using Block = typename BlockSums<M>::Block;
+  using Rows = typename RigidMotion<M>::Rows;
+  /// Strains xx, yy, zz, √2 xy, √2 yz, √2 zx, so that the product of two is that of the tensors (zz is zero in 2D), and the
+  /// dilatation that k0 acts on.
+  using Strain = std::array<std::array<double, M>, 7>;
+
+ public:
+  Sums(const AggregateMotions& motions, std::span<const double> g, const Space& space, RigidLevel<M>& level)
+      : motions_(motions), part_(motions.part_), body_(part_.body()), g_(g), level_(level), bound_(part_.nodes(), 0) {
+    for (const auto& entry : space.held_directions()) {
+      Eigen::Matrix3d p = Eigen::Matrix3d::Identity();
+      for (int k = 0; k < entry.count; ++k) {
+        const Eigen::Map<const Eigen::Vector3d> b(entry.basis[static_cast<std::size_t>(k)].data());
+        p -= b * b.transpose();
+      }
+      projector_.emplace(entry.node, p);
+      bound_[static_cast<std::size_t>(entry.node)] = 1;
+    }
+    for (const auto& entry : part_.prescribed) bound_[static_cast<std::size_t>(entry.component) / dim] = 1;
+  }
+
+  void add_elements() {
+    elements::dispatch(part_.type, [&]<class E>(E) {
+      if constexpr (static_cast<std::size_t>(E::dim) == dim) {
+        std::vector<std::size_t> bound;
+        for (std::size_t e = 0; e < body_.mesh.element_count(); ++e)
+          if (!add_element<E>(e, false)) bound.push_back(e);
+        add_diagonal();
+        for (const std::size_t e : bound) add_element<E>(e, true);
+      }
+    });
+  }
+
+  void add_block(const NodeBlock& block) {
+    const Rows z = rows(block.node);
+    const std::int32_t a = motions_.group_[static_cast<std::size_t>(block.node)];
+    Block& sum = at(a, a);
+    for (std::size_t i = 0; i < M; ++i)
+      for (std::size_t j = 0; j < M; ++j) {
+        double v = 0.0;
+        for (std::size_t c = 0; c < dim; ++c)
+          for (std::size_t d = 0; d < dim; ++d) v += z[c][i] * block.value[c * dim + d] * z[d][j];
+        sum[i * M + j] += v;
+      }
+  }
+
+  void complete() { level_.complete(outside_); }
+
+ private:
+  /// Displacement of a node for each motion of its aggregate, in the space.
+  Rows rows(std::int32_t node) const {
+    const auto n = static_cast<std::size_t>(node);
+    Rows z = RigidMotion<M>::rows(motions_.offset(n).data(), 1.0 / motions_.length_);
+    if (bound_[n] == 0) return z;
+    for (std::size_t c = 0; c < dim; ++c)
+      if (part_.held[n * dim + c]) z[c].fill(0.0);
+    if (const auto held = projector_.find(node); held != projector_.end()) {
+      const Rows free = z;
+      for (std::size_t c = 0; c < dim; ++c)
+        for (std::size_t m = 0; m < M; ++m) {
+          z[c][m] = 0.0;
+          for (std::size_t k = 0; k < dim; ++k)
+            z[c][m] += held->second(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(k)) * free[k][m];
+        }
+    }
+    return z;
+  }
+
+  bool is_owned(std::int32_t a) const { return a < motions_.owned_; }
+  std::int64_t number(std::int32_t a) const {
+    return is_owned(a) ? level_.first() + a : motions_.number_[static_cast<std::size_t>(a - motions_.owned_)];
+  }
+  /// Whether block (a, b) is the one that is kept, not (b, a).
+  bool in_order(std::int32_t a, std::int32_t b) const { return is_owned(a) || is_owned(b) ? a <= b : number(a) <= number(b); }
+  Block& at(std::int32_t a, std::int32_t b) { return is_owned(a) ? level_.block(a, b) : outside_.at(number(a), number(b)); }
+
+  /// Adds an element's blocks, those on the diagonal `with_diagonal` only. Without it, one with nodes that are bound is left out: false.
+  template <class E>
+  bool add_element(std::size_t e, bool with_diagonal) {
+    constexpr auto npe = static_cast<std::size_t>(E::nodes);
+    const std::int32_t* node = body_.mesh.connectivity.data() + e * npe;
+    std::array<std::int32_t, npe> which{};  // the aggregates it touches
+    std::array<std::size_t, npe> local{};   // that of each node
+    std::size_t count = 0;
+    for (std::size_t a = 0; a < npe; ++a) {
+      if (!with_diagonal && bound_[static_cast<std::size_t>(node[a])] != 0) return false;
+      const std::int32_t group = motions_.group_[static_cast<std::size_t>(node[a])];
+      std::size_t k = 0;
+      while (k < count && which[k] != group) ++k;
+      if (k == count) which[count++] = group;
+      local[a] = k;
+    }
+    if (!with_diagonal && count == 1) return true;
+
+    elements::Nodal<E> x;
+    std::array<Rows, npe> z;
+    for (std::size_t a = 0; a < npe; ++a) {
+      z[a] = rows(node[a]);
+      for (std::size_t c = 0; c < dim; ++c) x[a * dim + c] = body_.mesh.coordinates[static_cast<std::size_t>(node[a]) * dim + c];
+    }
+    struct Pair {
+      std::size_t a, b;
+      Block* sum;
+    };
+    std::array<Pair, npe*(npe + 1) / 2> pairs;
+    std::size_t pair_count = 0;
+    for (std::size_t a = 0; a < count; ++a)
+      for (std::size_t b = with_diagonal ? a : a + 1; b < count; ++b) {
+        const bool ordered = in_order(which[a], which[b]);
+        const std::size_t row = ordered ? a : b, column = ordered ? b : a;
+        pairs[pair_count++] = {row, column, &at(which[row], which[column])};
+      }
+
+    const Law& law = body_.law(e);
+    const auto points = elements::points_of<E>(x, law.mean_dilatation);
+    for (std::size_t q = 0; q < E::points; ++q) {
+      const auto& point = points[q];
+      std::array<Strain, npe> strain, stress;
+      for (std::size_t k = 0; k < count; ++k) strain[k] = {};
+      for (std::size_t a = 0; a < npe; ++a) add_strain(point.gradient[a], point.dilatation[a], z[a], strain[local[a]]);
+      const double shear = 2.0 * g_[e * static_cast<std::size_t>(E::points) + q] * point.volume, bulk = law.bulk * point.volume;
+      for (std::size_t k = 0; k < count; ++k) take_stress(strain[k], shear, bulk, stress[k]);
+      for (std::size_t p = 0; p < pair_count; ++p) add_product(strain[pairs[p].a], stress[pairs[p].b], *pairs[p].sum);
+    }
+    return true;
+  }
+
+  static void add_strain(const double* d, const double* mean, const Rows& z, Strain& s) {
+    const double root = std::sqrt(0.5);
+    for (std::size_t m = 0; m < M; ++m) {
+      for (std::size_t c = 0; c < dim; ++c) {
+        s[c][m] += d[c] * z[c][m];
+        s[6][m] += mean[c] * z[c][m];
+      }
+      s[3][m] += root * (d[0] * z[1][m] + d[1] * z[0][m]);
+      if constexpr (dim == 3) {
+        s[4][m] += root * (d[1] * z[2][m] + d[2] * z[1][m]);
+        s[5][m] += root * (d[2] * z[0][m] + d[0] * z[2][m]);
+      }
+    }
+  }
+
+  static void take_stress(const Strain& strain, double shear, double bulk, Strain& stress) {
+    for (std::size_t m = 0; m < M; ++m) {
+      const double mean = (strain[0][m] + strain[1][m] + strain[2][m]) / 3.0;
+      for (std::size_t c = 0; c < 3; ++c) stress[c][m] = shear * (strain[c][m] - mean);
+      for (std::size_t c = 3; c < 6; ++c) stress[c][m] = shear * strain[c][m];
+      stress[6][m] = bulk * strain[6][m];
+    }
+  }
+
+  /// sum += strainᵀ stress.
+  static void add_product(const Strain& strain, const Strain& stress, Block& sum) {
+    for (std::size_t i = 0; i < M; ++i) {
+      std::array<double, M> row{};
+      for (std::size_t k = 0; k < 7; ++k)
+        for (std::size_t j = 0; j < M; ++j) row[j] += strain[k][i] * stress[k][j];
+      for (std::size_t j = 0; j < M; ++j) sum[i * M + j] += row[j];
+    }
+  }
+
+  /// The diagonal blocks of all that is there so far: a motion of the whole body strains nothing, so they are what the others
+  /// in their rows leave open.
+  void add_diagonal() {
+    using Dense = Eigen::Matrix<double, M, M, Eigen::RowMajor>;
+    // sum −= block · (motion of a as one of b's), symmetric once all of a row is in.
+    const auto take = [&](const Dense& block, std::int32_t a, std::int32_t b, Block& sum) {
+      const Vector3 &from = motions_.centre_[static_cast<std::size_t>(a)], &to = motions_.centre_[static_cast<std::size_t>(b)];
+      const Vector3 d{to[0] - from[0], to[1] - from[1], to[2] - from[2]};
+      const auto motion = RigidMotion<M>::change(d.data(), 1.0 / motions_.length_);
+      const Dense change = block * Eigen::Map<const Dense>(motion.data());
+      for (std::size_t i = 0; i < M; ++i)
+        for (std::size_t j = 0; j < M; ++j)
+          sum[i * M + j] -= 0.5 * (change(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) +
+                                   change(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(i)));
+    };
+    const auto both = [&](const Block& block, std::int32_t a, std::int32_t b) {
+      const Dense here = Eigen::Map<const Dense>(block.data());
+      take(here, a, b, at(a, a));
+      take(here.transpose(), b, a, at(b, b));
+    };
+    level_.visit([&](std::int32_t row, std::int32_t column, const Block& block) {
+      if (row != column) both(block, row, column);
+    });
+    std::unordered_map<std::int64_t, std::int32_t> place;
+    for (std::size_t k = 0; k < motions_.number_.size(); ++k)
+      place.emplace(motions_.number_[k], motions_.owned_ + static_cast<std::int32_t>(k));
+    const std::size_t there = outside_.entries().size();  // diagonal ones come behind
+    for (std::size_t k = 0; k < there; ++k)
+      if (const auto& entry = outside_.entries()[k]; entry.row != entry.column)
+        both(Block(entry.block), place.at(entry.row), place.at(entry.column));
+  }
+
+  const AggregateMotions& motions_;
+  const Part& part_;
+  Body body_;
+  std::span<const double> g_;
+  RigidLevel<M>& level_;
+  BlockSums<M> outside_;  // between rows of other ranks
+  std::vector<std::uint8_t> bound_;
+  std::unordered_map<std::int32_t, Eigen::Matrix3d> projector_;
+};
+
+template <int M>
+void AggregateMotions<M>::sum(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space,
+                              RigidLevel<M>& level) const {
+  level.clear();
+  Sums sums(*this, g, space, level);
+  sums.add_elements();
+  for (const NodeBlock& block : blocks) sums.add_block(block);
+  sums.complete();
+}
+
+template <int M>
+void AggregateMotions<M>::restrict_forces(std::span<const float> force, std::span<double> b) const {
+  std::fill(b.begin(), b.end(), 0.0);
+  for (std::size_t n = 0; n < static_cast<std::size_t>(part_.owned_nodes); ++n) {
+    std::array<double, dim> f{};
+    for (std::size_t c = 0; c < dim; ++c) f[c] = static_cast<double>(force[n * dim + c]);
+    RigidMotion<M>::add_force(f.data(), offset(n).data(), 1.0 / length_, b.data() + static_cast<std::size_t>(group_[n]) * M);
+  }
+}
+
+template <int M>
+void AggregateMotions<M>::prolong(std::span<const double> x, double gain, std::span<float> u) const {
+  for (std::size_t n = 0; n < static_cast<std::size_t>(part_.owned_nodes); ++n) {
+    std::array<double, dim> motion{};
+    RigidMotion<M>::add_motion(x.data() + static_cast<std::size_t>(group_[n]) * M, offset(n).data(), 1.0 / length_, motion.data());
+    for (std::size_t c = 0; c < dim; ++c) u[n * dim + c] = static_cast<float>(gain * motion[c]);
+  }
+  std::fill(u.begin() + static_cast<std::ptrdiff_t>(part_.owned_unknowns()), u.end(), 0.0F);
+}
+
+template class AggregateMotions<3>;
+template class AggregateMotions<6>;
+
+}  // namespace kacanov

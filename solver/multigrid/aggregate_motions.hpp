@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The first coarse space: rigid motions of aggregates of nodes, and B(g) on it.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "multigrid/rigid_level.hpp"
+#include "part.hpp"
+#include "preconditioner.hpp"
+#include "space.hpp"
+
+namespace kacanov {
+
+/// Aggregates are made once, along strong couplings; which of them couple depends on them alone. What changes from setup to setup is
+/// summed into the same blocks.
+template <int M>
+class AggregateMotions {
+ public:
+  /// Some `size` nodes each. `g`: elements × points.
+  AggregateMotions(const Part& part, std::span<const double> g, double size);
+
+  /// Makes rotations comparable to translations: the root mean square of the nodes' distances from their centres.
+  double length() const noexcept { return length_; }
+  /// The level over them with all couplings that elements make, zero so far. To be called once. Collective.
+  RigidLevel<M> make_level();
+  /// Galerkin's matrix of B(g) + blocks on the motions, those of the nodes projected onto the space, into the level that make_level gave.
+  /// Collective.
+  void sum(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space, RigidLevel<M>& level) const;
+
+  /// b = what forces on the owned nodes do on the motions of owned aggregates.
+  void restrict_forces(std::span<const float> force, std::span<double> b) const;
+  /// u = the displacements of the owned nodes by `gain` times the motions x; zero elsewhere.
+  void prolong(std::span<const double> x, double gain, std::span<float> u) const;
+
+ private:
+  static constexpr auto dim = static_cast<std::size_t>(RigidMotion<M>::dim);
+  class Sums;
+  Vector3 offset(std::size_t node) const;
+
+  const Part& part_;
+  std::vector<std::int32_t> group_;   ///< of every local node: owned aggregates first, then those of other ranks as the level has them, then the rest
+  std::vector<Vector3> centre_;       ///< of these aggregates
+  std::vector<std::int64_t> number_;  ///< of those that are not owned, over all ranks
+  std::int32_t owned_ = 0;            ///< aggregates
+  double length_ = 1.0;
+};
+
+extern template class AggregateMotions<3>;
+extern template class AggregateMotions<6>;
+
+}  // namespace kacanov
