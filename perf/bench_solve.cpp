@@ -114,7 +114,7 @@ Vector secant(const Part& part, double jump) {
     for (std::size_t c = 0; c < dim; ++c)
       wave *= std::sin(6.0 * part.coordinates[static_cast<std::size_t>(part.elements[e * npe]) * dim + c] + 1.0);
     for (std::size_t q = 0; q < points; ++q)
-      g[e * points + q] = body.laws[body.law_of_element[e]].shear * std::pow(jump, -0.5 - 0.5 * wave);
+      g[e * points + q] = body.law(e).shear * std::pow(jump, -0.5 - 0.5 * wave);
   }
   return g;
 }
@@ -153,7 +153,7 @@ Json measure(const Part& part, DistributedOperator& op, const std::string& kind,
   CgWork work;
   work.resize(part.unknowns());
   Vector x(part.unknowns(), 0.0);
-  work.residual = part.load;
+  part.add_load(work.residual);
   const Traces traces(part);
   const auto apply = [&](std::span<const double> p, std::span<double> q) {
     op.apply(p, q);

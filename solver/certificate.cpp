@@ -74,7 +74,7 @@ ContactSums contact_sums(const Traces& traces, const ContactState& state) {
 }  // namespace
 
 Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactState& state,
-                        std::span<const double> internal, double energy, std::span<const double> diagonal) {
+                        std::span<const double> internal, double energy, std::span<const float> diagonal) {
   const Part& part = space.part();
   const auto dim = static_cast<std::size_t>(part.dim());
   Vector contact(part.unknowns(), 0.0);
@@ -86,17 +86,20 @@ Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactS
   Scales& scales = out.scales;
   // Sums of forces: the load, the obstacles, the supports; what they work; squares of their norms.
   std::array<double, 12> totals{};  // three balances, Σ|force|, ω·residual, ω·R, |·|²: residual, reaction, contact, load, stiff; ω·stiff
+  auto loaded = part.load.begin();
   for (std::size_t i = 0; i < part.owned_unknowns(); ++i) {
-    const double unbalanced = part.load[i] - internal[i] - contact[i], stiff = rounding * diagonal[i] * state.omega[i];
+    const bool here = loaded != part.load.end() && static_cast<std::size_t>(loaded->component) == i;
+    const double load = here ? (loaded++)->value : 0.0;
+    const double unbalanced = load - internal[i] - contact[i], stiff = rounding * static_cast<double>(diagonal[i]) * state.omega[i];
     const double reaction = part.held[i] ? -unbalanced : 0.0, residual = part.held[i] ? 0.0 : unbalanced;
-    totals[i % dim] += part.load[i] - contact[i] + reaction;
-    totals[3] += std::abs(part.load[i]) + std::abs(contact[i]) + std::abs(reaction);
+    totals[i % dim] += load - contact[i] + reaction;
+    totals[3] += std::abs(load) + std::abs(contact[i]) + std::abs(reaction);
     totals[4] += residual * state.omega[i];
     totals[5] += internal[i] * state.omega[i];
     totals[6] += residual * residual;
     totals[7] += reaction * reaction;
     totals[8] += contact[i] * contact[i];
-    totals[9] += part.load[i] * part.load[i];
+    totals[9] += load * load;
     totals[10] += stiff * stiff;
     totals[11] += stiff * state.omega[i];
   }

@@ -26,6 +26,6 @@ struct Residuals {
 /// `diagonal` that of the elastic B, consistent: forces of 10⁻⁹ ‖diagonal ∘ ω‖ and energies likewise are
 /// rounding, so that a body moved without strain has small residuals, and not noise over noise.
 Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactState& state,
-                        std::span<const double> internal, double energy, std::span<const double> diagonal);
+                        std::span<const double> internal, double energy, std::span<const float> diagonal);
 
 }  // namespace kacanov

@@ -59,6 +59,14 @@ class DistributedOperator {
   }
   double energy(std::span<const double> omega) const { return part_->halo.sum_all(local_.energy(omega)); }
 
+  /// Diagonal of B(g), consistent: a measure of stiffness, so single precision does.
+  std::vector<float> diagonal() const {
+    std::vector<double> exact(local_.unknowns());
+    local_.diagonal(exact);
+    part_->halo.sum(exact, part_->dim());
+    return {exact.begin(), exact.end()};
+  }
+
   const Operator& local() const noexcept { return local_; }
   std::uint64_t applications() const noexcept { return applications_; }
 

@@ -61,8 +61,9 @@ void ElasticityAmg::build(std::span<const double> g, std::span<const NodeBlock> 
 }
 
 void ElasticityAmg::secant(std::span<double> g) const {
+  const Body body = part_.body();
   if (g_.empty())
-    for (std::size_t i = 0; i < g.size(); ++i) g[i] = part_.laws[part_.law_of_element[i / (g.size() / part_.element_count())]].shear;
+    for (std::size_t i = 0; i < g.size(); ++i) g[i] = body.law(i / (g.size() / part_.element_count())).shear;
   else
     std::copy(g_.begin(), g_.end(), g.begin());
 }

@@ -13,7 +13,7 @@ Body elements_of(const Part& part, std::size_t first, std::size_t count) {
   const auto npe = static_cast<std::size_t>(nodes_per_element(part.type));
   Body body = part.body();
   body.mesh.connectivity = body.mesh.connectivity.subspan(first * npe, count * npe);
-  body.law_of_element = body.law_of_element.subspan(first, count);
+  if (!body.law_of_element.empty()) body.law_of_element = body.law_of_element.subspan(first, count);
   return body;
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The way to the full load: the same part of a problem under a share of it.
+// The way to the full load: a part of a problem under a share of it.
 #include "load_steps.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace kacanov {
 namespace {
@@ -20,25 +21,34 @@ double closed_by_prescription(const Part& part, const ContactPoint& point) {
 
 }  // namespace
 
-LoadPath::LoadPath(const Part& full) : full_(&full), part_(full) {
+LoadPath::LoadPath(Part& part) : part_(part), load_(part.load), prescribed_(part.prescribed) {
   std::int32_t entries = 0;
-  for (const ContactPoint& point : full.contact) entries = std::max(entries, point.entry + 1);
-  depth_.assign(static_cast<std::size_t>(full.halo.max_all(entries)), 0.0);
-  for (const ContactPoint& point : full.contact) {
-    double& depth = depth_[static_cast<std::size_t>(point.entry)];
-    depth = std::max(depth, -(point.gap + closed_by_prescription(full, point)));
+  for (const ContactPoint& point : part.contact) {
+    gap_.push_back(point.gap);
+    closed_.push_back(closed_by_prescription(part, point));
+    entries = std::max(entries, point.entry + 1);
   }
-  for (double& depth : depth_) depth = full.halo.max_all(depth);
+  depth_.assign(static_cast<std::size_t>(part.halo.max_all(entries)), 0.0);
+  for (std::size_t i = 0; i < gap_.size(); ++i) {
+    double& depth = depth_[static_cast<std::size_t>(part.contact[i].entry)];
+    depth = std::max(depth, -(gap_[i] + closed_[i]));
+  }
+  for (double& depth : depth_) depth = part.halo.max_all(depth);
+}
+
+LoadPath::~LoadPath() {
+  part_.load = std::move(load_);
+  part_.prescribed = std::move(prescribed_);
+  for (std::size_t i = 0; i < gap_.size(); ++i) part_.contact[i].gap = gap_[i];
 }
 
 void LoadPath::set(double factor) {
   const double missing = 1.0 - factor;
-  for (std::size_t i = 0; i < part_.load.size(); ++i) part_.load[i] = factor * full_->load[i];
-  for (std::size_t i = 0; i < part_.prescribed.size(); ++i) part_.prescribed[i].value = factor * full_->prescribed[i].value;
-  for (std::size_t i = 0; i < part_.contact.size(); ++i) {
-    const ContactPoint& point = full_->contact[i];
-    part_.contact[i].gap =
-        point.gap + missing * (closed_by_prescription(*full_, point) + depth_[static_cast<std::size_t>(point.entry)]);
+  for (std::size_t i = 0; i < load_.size(); ++i) part_.load[i].value = factor * load_[i].value;
+  for (std::size_t i = 0; i < prescribed_.size(); ++i) part_.prescribed[i].value = factor * prescribed_[i].value;
+  for (std::size_t i = 0; i < gap_.size(); ++i) {
+    ContactPoint& point = part_.contact[i];
+    point.gap = gap_[i] + missing * (closed_[i] + depth_[static_cast<std::size_t>(point.entry)]);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "halo.hpp"
+#include "index_runs.hpp"
 #include "problem.hpp"
 #include "reference.hpp"
 
@@ -18,16 +19,16 @@ namespace kacanov {
 /// owned by one of them. Owned nodes come first, neighbours close to each other (node_order). Vectors over a part are consistent: every copy of a
 /// shared entry holds the same bits.
 struct Part {
-  struct Prescribed {
+  struct ComponentValue {
     std::int32_t component = 0;  ///< node · dim + c
     double value = 0.0;
-    bool operator==(const Prescribed&) const = default;
+    bool operator==(const ComponentValue&) const = default;
   };
   ElementType type = ElementType::tet4;
   std::vector<double> coordinates;       ///< nodes × dim
   std::vector<std::int32_t> elements;
-  std::vector<std::int32_t> node_index;     ///< index in Problem::mesh
-  std::vector<std::int32_t> element_index;  ///< likewise
+  std::vector<std::int32_t> node_index;  ///< index in Problem::mesh
+  IndexRuns element_index;               ///< likewise
   std::vector<std::int64_t> node_tags, element_tags;  ///< the user's numbers; empty: index + 1
   std::int32_t owned_nodes = 0;
   std::int64_t first_owned = 0;          ///< owned nodes are numbered first_owned … over all ranks
@@ -35,10 +36,10 @@ struct Part {
   std::vector<std::int64_t> ghost_number; ///< that number, of every local node that another rank owns
   Halo halo;
   std::vector<Law> laws;
-  std::vector<std::uint16_t> law_of_element;
-  std::vector<double> load;              ///< nodes × dim, consistent
-  std::vector<std::uint8_t> held;        ///< nodes × dim
-  std::vector<Prescribed> prescribed;    ///< of every held component, ascending
+  std::vector<std::uint16_t> law_of_element;  ///< empty: all follow laws[0]
+  std::vector<ComponentValue> load;           ///< entries of F that are not zero, ascending; consistent
+  std::vector<std::uint8_t> held;             ///< nodes × dim
+  std::vector<ComponentValue> prescribed;     ///< of every held component, ascending
   std::vector<ContactPoint> contact;     ///< of local nodes; those of owned nodes first
   std::int32_t owned_contact = 0;
   std::vector<std::int32_t> contact_index;  ///< index in Problem::contact
@@ -64,6 +65,10 @@ struct Part {
   std::int64_t node_number(std::size_t i) const noexcept {
     const auto owned = static_cast<std::size_t>(owned_nodes);
     return i < owned ? first_owned + static_cast<std::int64_t>(i) : ghost_number[i - owned];
+  }
+  /// f += F.
+  void add_load(std::span<double> f) const noexcept {
+    for (const auto& entry : load) f[static_cast<std::size_t>(entry.component)] += entry.value;
   }
   /// The given displacement of a held component.
   double prescribed_at(std::size_t component) const noexcept;

@@ -95,6 +95,13 @@ void exchange_fields(N& n, const Stream& stream) {
   stream(n.receive);
 }
 
+template <class R, class Stream>
+  requires std::is_same_v<std::remove_const_t<R>, IndexRuns>
+void exchange_fields(R& indices, const Stream& stream) {
+  stream(indices.runs);
+  stream(indices.count);
+}
+
 template <class P, class Stream>
   requires std::is_same_v<std::remove_const_t<P>, Part>
 void exchange_fields(P& part, const Stream& stream) {

@@ -178,7 +178,7 @@ class Splitter {
     }
     part.node_index.shrink_to_fit();
     const std::size_t count = part.node_index.size();
-    for (auto* v : {&part.coordinates, &part.load}) v->reserve(count * dim);
+    part.coordinates.reserve(count * dim);
     part.held.reserve(count * dim);
     if (!mesh.node_tags.empty()) part.node_tags.reserve(count);
     for (const Index index : part.node_index) {
@@ -187,8 +187,9 @@ class Splitter {
       if (static_cast<Index>(local_[n]) >= part.owned_nodes) part.ghost_number.push_back(global_[n]);
       for (std::size_t c = n * dim; c < (n + 1) * dim; ++c) {
         part.coordinates.push_back(mesh.coordinates[c]);
-        part.load.push_back(problem_.load[c]);
-        if (problem_.held[c] != 0) part.prescribed.push_back({static_cast<Index>(part.held.size()), problem_.prescribed[c]});
+        const auto component = static_cast<Index>(part.held.size());
+        if (problem_.load[c] != 0.0) part.load.push_back({component, problem_.load[c]});
+        if (problem_.held[c] != 0) part.prescribed.push_back({component, problem_.prescribed[c]});
         part.held.push_back(problem_.held[c]);
       }
     }
@@ -198,15 +199,15 @@ class Splitter {
     const Mesh& mesh = problem_.mesh;
     const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
     const auto count = static_cast<std::size_t>(std::count(part_of_.begin(), part_of_.end(), rank));
-    part.element_index.reserve(count);
+    const bool several_laws = problem_.laws.size() > 1;
     if (!mesh.element_tags.empty()) part.element_tags.reserve(count);
-    part.law_of_element.reserve(count);
+    if (several_laws) part.law_of_element.reserve(count);
     part.elements.reserve(count * npe);
     for (std::size_t e = 0; e < part_of_.size(); ++e) {
       if (part_of_[e] != rank) continue;
       part.element_index.push_back(static_cast<Index>(e));
       if (!mesh.element_tags.empty()) part.element_tags.push_back(mesh.element_tags[e]);
-      part.law_of_element.push_back(problem_.law_of_element[e]);
+      if (several_laws) part.law_of_element.push_back(problem_.law_of_element[e]);
       for (std::size_t a = 0; a < npe; ++a)
         part.elements.push_back(local_[static_cast<std::size_t>(mesh.elements[e * npe + a])]);
     }
@@ -267,9 +268,7 @@ class Splitter {
       const auto e = static_cast<std::size_t>(problem_.probes[i].element);
       if (part_of_[e] != rank) continue;
       Probe probe = problem_.probes[i];
-      probe.element = static_cast<Index>(
-          std::lower_bound(part.element_index.begin(), part.element_index.end(), probe.element) -
-          part.element_index.begin());
+      probe.element = part.element_index.position_of(probe.element);
       part.probes.push_back(probe);
       part.probe_index.push_back(static_cast<Index>(i));
     }
@@ -287,7 +286,7 @@ class Splitter {
 }  // namespace
 
 double Part::prescribed_at(std::size_t component) const noexcept {
-  const auto at = std::lower_bound(prescribed.begin(), prescribed.end(), component, [](const Prescribed& p, std::size_t c) {
+  const auto at = std::lower_bound(prescribed.begin(), prescribed.end(), component, [](const ComponentValue& p, std::size_t c) {
     return static_cast<std::size_t>(p.component) < c;
   });
   return at->value;

@@ -66,7 +66,7 @@ double gap_share(const Certificate& c) {
 }
 
 Vector lumped_volume(const Part& part) {
-  Vector volume(part.nodes(), 0.0), element(part.element_index.size());
+  Vector volume(part.nodes(), 0.0), element(part.element_count());
   reference::volumes(part.body(), element);
   const auto npe = static_cast<std::size_t>(nodes_per_element(part.type));
   for (std::size_t k = 0; k < part.elements.size(); ++k)
@@ -102,10 +102,8 @@ OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOp
       op_(part, run.threads, run.instruction_set),
       amg_(make_preconditioner(options.preconditioner, part, run.threads, run.instruction_set)),
       internal_(part.unknowns()),
-      diagonal_(part.unknowns()) {
+      diagonal_(op_.diagonal()) {
   extent_ = body_extent(part);
-  op_.local().diagonal(diagonal_);
-  part.halo.sum(diagonal_, part.dim());
   const std::size_t points = part.contact.size();
   state_.omega.assign(part.unknowns(), 0.0);
   part.prescribe(state_.omega);
@@ -255,6 +253,12 @@ void OuterLoop::watch_preconditioner(double digits, std::int64_t iterations) {
   preconditioner_stale_ = preconditioner_stale_ || excess > setup_worth;
 }
 
+/// work_.residual = F − R(ω).
+void OuterLoop::take_unbalanced() {
+  for (std::size_t i = 0; i < internal_.size(); ++i) work_.residual[i] = -internal_[i];
+  part_.add_load(work_.residual);
+}
+
 /// R(ω), the energy and g at the ω of now, in one pass.
 void OuterLoop::update_residual() {
   energy_ = op_.residual_energy_update(state_.omega, internal_);
@@ -301,7 +305,7 @@ void OuterLoop::take_admm_step(Result& result, ProgressStep& line, const Residua
     if (automatic && !first) options.max_iterations = std::min(balancing_iterations, options_.max_contact);
   }
   if (first) op_.apply(state_.omega, internal_);  // the elastic force, not R(ω)
-  for (std::size_t i = 0; i < work_.residual.size(); ++i) work_.residual[i] = part_.load[i] - internal_[i];
+  take_unbalanced();
   traces_.add_force(state_.lambda, -1.0, work_.residual);
   const auto applications = op_.applications();
   const AdmmResult step =
@@ -357,10 +361,7 @@ void OuterLoop::take_newton_step(Result& result, ProgressStep& line, const Resid
   // After the setup: the two do not have to fit into memory at once.
   op_.use_tangent(tangent);
   if (tangent) op_.update(state_.omega);
-  const auto take_residual = [this] {
-    for (std::size_t i = 0; i < internal_.size(); ++i) work_.residual[i] = part_.load[i] - internal_[i];
-  };
-  take_residual();
+  take_unbalanced();
   Vector delta(part_.unknowns());
   // Well below the tolerance, so that answers do not depend on ranks or threads to more than that.
   const double floor = last_share * options_.tolerance * gap_share(before.certificate) * before.scales.force;
@@ -379,7 +380,7 @@ void OuterLoop::take_newton_step(Result& result, ProgressStep& line, const Resid
   watch_preconditioner(step.cg_digits, step.cg_iterations);
   take_damped_step(delta, step.curvature);
   traces_.evaluate(state_.omega, state_.trace);
-  take_residual();
+  take_unbalanced();
   recover_multipliers(part_, traces_, set, work_.residual, state_);
 }
 

@@ -52,7 +52,7 @@ class OuterLoop {
   Checkpoint checkpoint(const Result& result) const;
 
   const ContactState& state() const noexcept { return state_; }
-  std::span<const double> diagonal() const noexcept { return diagonal_; }
+  std::span<const float> diagonal() const noexcept { return diagonal_; }
   const Space& space() const noexcept { return space_; }
   const Traces& traces() const noexcept { return traces_; }
   const DistributedOperator& op() const noexcept { return op_; }
@@ -74,6 +74,7 @@ class OuterLoop {
   Vector secant() const;
   std::vector<NodeBlock> penalty_blocks() const;
   void update_residual();
+  void take_unbalanced();
   bool setup_pays(bool wanted);
   bool penalty_moved() const;
   bool set_moved(std::span<const TraceChoice> set) const;
@@ -97,7 +98,7 @@ class OuterLoop {
   Vector internal_;              // R(ω)
   double energy_ = 0.0;          // stored, at ω
   bool secant_current_ = false;  // the operator's g is that of ω
-  Vector diagonal_;              // of the elastic B
+  std::vector<float> diagonal_;  // of the elastic B
   Vector volume_;                // lumped nodal volumes, for (15)
   Penalty penalty_;
   Penalty setup_penalty_;    // that the preconditioner was built with

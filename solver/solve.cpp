@@ -74,11 +74,12 @@ void collect_totals(const Part& part, const ContactState& state, const Solution&
   }
   double von_mises = 0.0;
   std::int64_t softening = 0;
+  const Body body = part.body();
   visit_element_fields(part, state.omega, [&](const ElementRun& run) {
     for (const std::uint8_t p : run.plastic) sums[8] += p;
     for (const double v : run.von_mises) von_mises = std::max(von_mises, v);
     for (std::size_t e = 0; e < run.dev_strain.size(); ++e)
-      softening += part.laws[part.law_of_element[run.first + e]].softens(run.dev_strain[e]) ? 1 : 0;
+      softening += body.law(run.first + e).softens(run.dev_strain[e]) ? 1 : 0;
   });
   part.halo.sum_all(sums);
   for (std::size_t c = 0; c < 3; ++c) {
@@ -180,18 +181,17 @@ std::string verdict(const Result& result, const SolverOptions& options) {
 
 }  // namespace
 
-Solution solve(const Part& full, const SolverOptions& options, const RunOptions& run) {
+Solution solve(Part& part, const SolverOptions& options, const RunOptions& run) {
   const double start = MPI_Wtime();
   Solution solution;
   Result& result = solution.result;
-  const bool restart = full.halo.any(full.halo.rank == 0 && run.start != nullptr);
+  const bool restart = part.halo.any(part.halo.rank == 0 && run.start != nullptr);
   const std::vector<double> factors = options.load_steps.empty() ? std::vector{1.0} : options.load_steps;
   std::optional<LoadPath> path;
   if (factors.size() > 1) {
-    path.emplace(full);
-    path->set(factors[steps_over(full, run)]);
+    path.emplace(part);
+    path->set(factors[steps_over(part, run)]);
   }
-  const Part& part = path ? path->part() : full;
   OuterLoop loop(part, options, run);
   const double prepared = MPI_Wtime();
   if (restart) loop.restore(run.start, result);

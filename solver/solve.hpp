@@ -43,8 +43,8 @@ struct RunOptions {
 };
 
 /// Solves the problem of which `part` is this rank's share. Collective over part.halo.comm. Not
-/// converging is a status, not an error.
-Solution solve(const Part& part, const SolverOptions& options, const RunOptions& run);
+/// converging is a status, not an error. Where there are load steps, the part is under a share of its load on the way.
+Solution solve(Part& part, const SolverOptions& options, const RunOptions& run);
 
 /// Extreme eigenvalues of K for the elastic body, no contact solve. Collective. One entry for N, a
 /// second for [N; T] where the problem has friction.

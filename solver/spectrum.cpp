@@ -130,14 +130,14 @@ std::vector<NodeBlock> TraceRows::penalty_blocks(double r) const {
   return blocks;
 }
 
-std::vector<NodeBlock> TraceRows::pinning_blocks(std::span<const double> diagonal) const {
+std::vector<NodeBlock> TraceRows::pinning_blocks(std::span<const float> diagonal) const {
   const auto dim = static_cast<std::size_t>(part_->dim());
   std::vector<NodeBlock> blocks = penalty_blocks(1.0);
   for (auto& block : blocks) {
     double trace = 0.0, largest = 0.0;
     for (std::size_t c = 0; c < dim; ++c) {
       trace += block.value[c * dim + c];
-      largest = std::max(largest, diagonal[static_cast<std::size_t>(block.node) * dim + c]);
+      largest = std::max(largest, static_cast<double>(diagonal[static_cast<std::size_t>(block.node) * dim + c]));
     }
     for (double& v : block.value) v *= 1e3 * largest / trace;
   }
@@ -171,10 +171,7 @@ CgResult Spectrum::solve(const Space& space, std::span<double> x, CgWork& work, 
 Eigenvalue Spectrum::largest(const TraceRows& rows, const TraceRows& held, double r0, bool loose) {
   Space space(*part_);
   held.hold_in(space);
-  Vector diagonal(part_->unknowns());
-  op_->local().diagonal(diagonal);
-  part_->halo.sum(diagonal, part_->dim());
-  auto blocks = held.pinning_blocks(diagonal);
+  auto blocks = held.pinning_blocks(op_->diagonal());
   if (loose) {
     const auto more = rows.penalty_blocks(r0);
     blocks.insert(blocks.end(), more.begin(), more.end());
@@ -215,10 +212,7 @@ Eigenvalue Spectrum::largest(const TraceRows& rows, const TraceRows& held, doubl
 Eigenvalue Spectrum::smallest(const TraceRows& rows) {
   Space space(*part_);
   rows.hold_in(space);
-  Vector diagonal(part_->unknowns());
-  op_->local().diagonal(diagonal);
-  part_->halo.sum(diagonal, part_->dim());
-  amg_->setup(g_, rows.pinning_blocks(diagonal), space);
+  amg_->setup(g_, rows.pinning_blocks(op_->diagonal()), space);
 
   CgWork work;
   work.resize(part_->unknowns());
@@ -243,13 +237,13 @@ Eigenvalue Spectrum::smallest(const TraceRows& rows) {
   return {1.0 / largest, found.bounds[0] / (largest * largest)};
 }
 
-double rough_lambda_min(const Part& part, std::span<const double> diagonal, bool friction) {
+double rough_lambda_min(const Part& part, std::span<const float> diagonal, bool friction) {
   const auto dim = static_cast<std::size_t>(part.dim());
   double stiffest = 0.0;
   const auto look = [&](const ContactPoint& point, const Vector3& row) {
     double stiffness = 0.0;
     for (std::size_t c = 0; c < dim; ++c)
-      stiffness += row[c] * row[c] * diagonal[static_cast<std::size_t>(point.node) * dim + c];
+      stiffness += row[c] * row[c] * static_cast<double>(diagonal[static_cast<std::size_t>(point.node) * dim + c]);
     stiffest = std::max(stiffest, stiffness / point.mass);
   };
   for (const auto& point : part.contact) {

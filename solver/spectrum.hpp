@@ -47,7 +47,7 @@ class TraceRows {
   /// r CᵀDC as diagonal blocks of owned nodes.
   std::vector<NodeBlock> penalty_blocks(double r) const;
   /// Blocks that pin the rows' directions for a preconditioner: 10³ times the node's `diagonal` entry.
-  std::vector<NodeBlock> pinning_blocks(std::span<const double> diagonal) const;
+  std::vector<NodeBlock> pinning_blocks(std::span<const float> diagonal) const;
 
  private:
   struct Group {  ///< rows of one node
@@ -104,7 +104,7 @@ class Spectrum {
 };
 
 /// 1/λ_min from above and below alike, without a solve: the stiffest contact row, nᵀ diag(B) n / mass.
-double rough_lambda_min(const Part& part, std::span<const double> diagonal, bool friction);
+double rough_lambda_min(const Part& part, std::span<const float> diagonal, bool friction);
 /// λ_max with the rows `held` at zero, from below: uᵀCᵀDCu / uᵀBu for what at most `steps` CG iterations make
 /// of an even pressure on `rows`. `amg` as it stands: it may hold penalties.
 double rough_lambda_max(const Part& part, DistributedOperator& op, Preconditioner& amg, const TraceRows& rows,

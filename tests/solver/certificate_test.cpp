@@ -44,7 +44,8 @@ struct Solved {
     Vector g(run.part.body().secant_count()), diagonal(internal.size());
     reference::secant(run.part.body(), Vector(internal.size(), 0.0), g);
     reference::diagonal(run.part.body(), g, diagonal);
-    return kkt_residuals(space, traces, state, internal, reference::energy(run.part.body(), state.omega), diagonal)
+    return kkt_residuals(space, traces, state, internal, reference::energy(run.part.body(), state.omega),
+                         std::vector<float>(diagonal.begin(), diagonal.end()))
         .certificate;
   }
   /// A contact point under pressure that sticks, one that slips, or an open one.

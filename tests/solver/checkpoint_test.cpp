@@ -23,7 +23,7 @@ struct Ending {
 };
 
 /// Runs, or goes on from `start` (rank 0).
-Ending run(const Part& part, const Model& model, RunOptions options = {}, const Checkpoint* start = nullptr) {
+Ending run(Part& part, const Model& model, RunOptions options = {}, const Checkpoint* start = nullptr) {
   options.start = start;
   const Solution solution = solve(part, model.solver, options);
   return {solution.result, gather_nodal(part, solution.displacement, part.dim())};
@@ -56,7 +56,7 @@ TEST_CASE("a run goes on from any of its checkpoints to the same answer, on othe
   Model coulomb = model;
   coulomb.contact[0].friction = Friction{0.0, 0.3};
   for (const Model& each : {model, coulomb, with(model, Options::Outer::kacanov, Options::Contact::admm)}) {
-    const Part together = part_of(mesh, each, MPI_COMM_WORLD), alone = part_of(mesh, each, MPI_COMM_SELF);
+    Part together = part_of(mesh, each, MPI_COMM_WORLD), alone = part_of(mesh, each, MPI_COMM_SELF);
     const bool first = together.halo.rank == 0;
     std::vector<Checkpoint> checkpoints;
     RunOptions options;
@@ -89,7 +89,7 @@ TEST_CASE("a run goes on from any of its checkpoints to the same answer, on othe
 TEST_CASE("a stop leaves the last whole step, on all ranks, wherever it comes") {
   const Mesh mesh = beam_mesh(2, 4);
   const Model model = beam(2, logarithmic_law(0.01), 0.05, 0.01);
-  const Part part = part_of(mesh, model, MPI_COMM_WORLD);
+  Part part = part_of(mesh, model, MPI_COMM_WORLD);
   const bool first = part.halo.rank == 0, last = part.halo.rank == part.halo.ranks - 1;
   int questions = 0;
   RunOptions counting;
@@ -124,7 +124,7 @@ TEST_CASE("a stop leaves the last whole step, on all ranks, wherever it comes") 
 TEST_CASE("what has not converged can be continued with more steps") {
   const Mesh mesh = beam_mesh(2, 4);
   Model model = beam(2, logarithmic_law(0.01), 0.05, 0.01);
-  const Part part = part_of(mesh, model, MPI_COMM_WORLD);
+  Part part = part_of(mesh, model, MPI_COMM_WORLD);
   const Ending whole = run(part, model);
   Checkpoint left;
   RunOptions options;
@@ -140,7 +140,7 @@ TEST_CASE("what has not converged can be continued with more steps") {
 
 TEST_CASE("a run goes on by another method, with a penalty of its own") {
   Model model = beam(2, logarithmic_law(0.01), 0.05, 0.01);
-  const Part part = part_of(beam_mesh(2, 4), model, MPI_COMM_WORLD);
+  Part part = part_of(beam_mesh(2, 4), model, MPI_COMM_WORLD);
   const Ending whole = run(part, model);
   Model slow = with(model, SolverOptions::Outer::kacanov, SolverOptions::Contact::admm);
   slow.solver.penalty = SolverOptions::Penalty::fixed;

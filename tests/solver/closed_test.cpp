@@ -319,7 +319,7 @@ Mesh round_shell(int dim, int n) {
 double displacement_error(const Run& run, const RadialSolution& exact) {
   const Part& part = run.part;
   const auto dim = static_cast<std::size_t>(part.dim()), npe = dim + 1;
-  std::vector<double> volume(part.element_index.size());
+  std::vector<double> volume(part.element_count());
   reference::volumes(part.body(), volume);
   const double far = dim == 2 ? 0.5 : 0.1381966011250105, near = dim == 2 ? 0.0 : 0.5854101966249685;
   double error = 0.0, size = 0.0;

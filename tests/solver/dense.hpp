@@ -14,7 +14,7 @@ namespace kacanov::testing {
 inline Eigen::MatrixXd dense_stiffness(const Part& part, std::span<const double> g) {
   const auto dim = static_cast<std::size_t>(part.dim());
   const auto npe = static_cast<std::size_t>(nodes_per_element(part.type));
-  const std::size_t rows = npe * dim, points = g.size() / part.element_index.size();
+  const std::size_t rows = npe * dim, points = g.size() / part.element_count();
   const auto n = static_cast<Eigen::Index>(part.unknowns());
   Eigen::MatrixXd b = Eigen::MatrixXd::Zero(n, n);
   std::vector<double> element(rows * rows);
@@ -22,7 +22,7 @@ inline Eigen::MatrixXd dense_stiffness(const Part& part, std::span<const double>
     return static_cast<Eigen::Index>(static_cast<std::size_t>(part.elements[e * npe + i / dim]) * dim +
                                      i % dim);
   };
-  for (std::size_t e = 0; e < part.element_index.size(); ++e) {
+  for (std::size_t e = 0; e < part.element_count(); ++e) {
     reference::element_matrix(part.body(), e, g.subspan(e * points, points), element);
     for (std::size_t i = 0; i < rows; ++i)
       for (std::size_t j = 0; j < rows; ++j) b(unknown(e, i), unknown(e, j)) += element[i * rows + j];

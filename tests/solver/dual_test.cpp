@@ -72,7 +72,8 @@ struct Setting {
   void residual(const ContactState& state, CgWork& work) {
     work.resize(part.unknowns());
     op.apply(state.omega, work.image);
-    for (std::size_t i = 0; i < work.residual.size(); ++i) work.residual[i] = part.load[i] - work.image[i];
+    for (std::size_t i = 0; i < work.residual.size(); ++i) work.residual[i] = -work.image[i];
+    part.add_load(work.residual);
     traces.add_force(state.lambda, -1.0, work.residual);
   }
 };

@@ -38,10 +38,10 @@ double signature(std::int64_t node, int component) {
 
 TEST_CASE("every element lies on one rank, every node has one owner") {
   const Problem problem = beam_problem(3, 3);
-  const Part part = over_all_ranks(problem);
+  Part part = over_all_ranks(problem);
   std::vector<int> elements(problem.mesh.element_count(), 0), owners(problem.mesh.node_count(), 0),
       points(problem.contact.size(), 0);
-  for (const auto e : part.element_index) ++elements[static_cast<std::size_t>(e)];
+  for (std::size_t e = 0; e < part.element_count(); ++e) ++elements[static_cast<std::size_t>(part.element_index[e])];
   for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_nodes); ++i)
     ++owners[static_cast<std::size_t>(part.node_index[i])];
   for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_contact); ++i)
@@ -64,9 +64,11 @@ TEST_CASE("every element lies on one rank, every node has one owner") {
         problem.mesh.elements[e * npe + k % npe])
       ++wrong;
   }
+  std::vector<double> load(part.unknowns());
+  part.add_load(load);
   for (std::size_t i = 0; i < part.unknowns(); ++i) {
     const std::size_t there = 3 * static_cast<std::size_t>(part.node_index[i / 3]) + i % 3;
-    if (part.coordinates[i] != problem.mesh.coordinates[there] || part.load[i] != problem.load[there] ||
+    if (part.coordinates[i] != problem.mesh.coordinates[there] || load[i] != problem.load[there] ||
         part.held[i] != problem.held[there] || (part.held[i] != 0 && part.prescribed_at(i) != problem.prescribed[there]))
       ++wrong;
   }
@@ -75,7 +77,7 @@ TEST_CASE("every element lies on one rank, every node has one owner") {
 
 TEST_CASE("owned nodes are numbered on through the ranks, and ghosts know their owners' numbers") {
   const Problem problem = beam_problem(2, 4);
-  const Part part = over_all_ranks(problem);
+  Part part = over_all_ranks(problem);
   for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_nodes); ++i)
     CHECK(part.node_number(i) == part.first_owned + static_cast<std::int64_t>(i));
   std::vector<double> number(part.nodes());
@@ -88,7 +90,7 @@ TEST_CASE("owned nodes are numbered on through the ranks, and ghosts know their 
 
 TEST_CASE("halo sums count the ranks that share a node, with the same bits on each") {
   const Problem problem = beam_problem(3, 2);
-  const Part part = over_all_ranks(problem);
+  Part part = over_all_ranks(problem);
   // Each rank adds a number that rounds: a sum in another order would differ in its last bits.
   std::vector<double> x(2 * part.nodes());
   for (std::size_t i = 0; i < part.nodes(); ++i) {
@@ -133,7 +135,7 @@ TEST_CASE("reductions over the ranks") {
 
 TEST_CASE("gathers return to the numbering of the problem") {
   const Problem problem = beam_problem(3, 2);
-  const Part part = over_all_ranks(problem);
+  Part part = over_all_ranks(problem);
   std::vector<double> nodal(2 * part.nodes()), contact(3 * part.contact.size());
   for (std::size_t i = 0; i < nodal.size(); ++i)
     nodal[i] = signature(part.node_index[i / 2], static_cast<int>(i % 2));
@@ -158,7 +160,7 @@ TEST_CASE("gathers return to the numbering of the problem") {
 
 TEST_CASE("multigrid over the ranks is symmetric, positive definite and consistent") {
   const Problem problem = beam_problem(3, 3);
-  const Part part = over_all_ranks(problem);
+  Part part = over_all_ranks(problem);
   const Space space(part);
   std::vector<double> g(part.body().secant_count());
   reference::secant(part.body(), std::vector<double>(part.unknowns(), 0.0), g);
@@ -225,7 +227,7 @@ TEST_CASE("the answer does not depend on the partition or on threads") {
     const Problem problem = beam_problem(dim, n, tresca);
     SolverOptions options;
     options.tolerance = 1e-8;
-    const Part all = over_all_ranks(problem), alone = distribute(&problem, MPI_COMM_SELF);
+    Part all = over_all_ranks(problem), alone = distribute(&problem, MPI_COMM_SELF);
     const Solution reference = solve(alone, options, {});
     REQUIRE(reference.result.status == Status::converged);
     for (const int threads : {1, 2}) {
@@ -257,7 +259,7 @@ TEST_CASE("the answer does not depend on the partition or on threads") {
 
 TEST_CASE("progress is told on rank 0 only") {
   const Problem problem = beam_problem(2, 4);
-  const Part part = over_all_ranks(problem);
+  Part part = over_all_ranks(problem);
   RunOptions run;
   int lines = 0;
   run.progress = [&](const ProgressStep&) { ++lines; };
