@@ -7,7 +7,7 @@ set(header_dir "${CMAKE_INSTALL_INCLUDEDIR}/kacanov")
 
 # What a consumer may include; everything else is the libraries' own affair.
 set(KACANOV_KERNEL_HEADERS float_operator.hpp law.hpp locality.hpp mesh_view.hpp operator.hpp reference.hpp)
-set(KACANOV_SOLVER_HEADERS checkpoint.hpp error.hpp halo.hpp mesh.hpp model.hpp part.hpp problem.hpp result.hpp solve.hpp)
+set(KACANOV_SOLVER_HEADERS checkpoint.hpp error.hpp halo.hpp index_runs.hpp mesh.hpp model.hpp part.hpp problem.hpp result.hpp solve.hpp)
 
 # One export set a target, so that a consumer meets the dependencies of what it asks for and no others; what belongs
 # together is installed together: `cmake --install BUILD --component kernels|solver|program`.

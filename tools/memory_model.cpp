@@ -37,15 +37,15 @@ struct Demand {
     const double index = size.type == ElementType::tet4 ? 2.7 : 2.0 * npe;
     mesh = {8 * dim, 4 * npe};
     problem = {17 * dim, 2};                                  // load, prescribed, held; law
-    part = {8 * dim + 4 + 8 * dim + dim, 4 * npe + 4 + 2};    // coordinates, index, load, held; corners, index, law
+    part = {8 * dim + 4 + dim, 4 * npe};                      // coordinates, index, held; corners
     const Bytes operators{nodes_of_blocks * (32 + 4 + 16 + 4), slots * (8 + 4 + 4 + 4) + 2 * index};
-    const Bytes loops{8 * dim * 7, 0};                        // ω, kept ω, R(ω), diagonal, three vectors of CG
+    const Bytes loops{8 * dim * 6 + 4 * dim, 0};              // ω, kept ω, R(ω), three vectors of CG; diagonal
     const double modes = dim == 3 ? 6 : 3, neighbours = dim == 3 ? 8 : 4;  // half the couplings of an aggregate of 48 nodes
     const double rows = neighbours * modes * modes * 8 / 48.0 * 1.4;        // levels below, inverse diagonals, vectors
     const Bytes multigrid{16 * dim + 4 * dim * (dim + 1) / 2 + 4 + rows, 0};
     steady = part + operators + loops + multigrid;
     setup = {8 + 1.15 * rows, 8 * points};                    // aggregates, sums of blocks; g
-    solve = {8 * dim, size.nonlinear ? 24 * slots : 0};       // step; tangent
+    solve = {8 * dim, size.nonlinear ? 20 * slots : 0};       // step; tangent
   }
 };
 

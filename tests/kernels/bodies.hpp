@@ -35,6 +35,15 @@ inline std::vector<Law> every_law() {
   return laws;
 }
 
+/// A material that stiffens: g' > 0.
+inline Law stiffening_law() {
+  Law law = elastic_law(1.0, 0.3);
+  law.kind = Law::Kind::table;
+  law.table_x = {0.0, 0.01, 0.02, 0.05};
+  law.table_s = {0.0, 0.02 * law.shear, 0.05 * law.shear, 0.2 * law.shear};
+  return law;
+}
+
 struct OwnedBody {
   meshes::OwnedMesh mesh;
   std::vector<Law> laws;
@@ -44,14 +53,13 @@ struct OwnedBody {
 };
 
 inline OwnedBody with_one_law(meshes::OwnedMesh mesh, const Law& law) {
-  OwnedBody body{std::move(mesh), {law}, {}};
-  body.law_of_element.assign(body.mesh.view().element_count(), 0);
-  return body;
+  return {std::move(mesh), {law}, {}};
 }
 
-/// Every law of `every_law`, scattered over the elements; for hex8 every second one with its mean dilatation.
+/// Every law of `every_law` and the stiffening one, scattered over the elements; for hex8 every second one with its mean dilatation.
 inline OwnedBody with_every_law(meshes::OwnedMesh mesh, unsigned seed) {
   OwnedBody body{std::move(mesh), every_law(), {}};
+  body.laws.push_back(stiffening_law());
   for (std::size_t i = 1; body.mesh.type == ElementType::hex8 && i < body.laws.size(); i += 2)
     body.laws[i].mean_dilatation = true;
   std::mt19937 random(seed);

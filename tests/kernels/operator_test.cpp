@@ -247,6 +247,10 @@ TEST_CASE("bad input is named") {
   wrong = owned;
   wrong.law_of_element.pop_back();
   CHECK_THROWS_AS(Operator{wrong.body()}, std::invalid_argument);
+  wrong = owned;
+  wrong.laws.clear();
+  wrong.law_of_element.clear();
+  CHECK_THROWS_WITH_AS(Operator{wrong.body()}, doctest::Contains("at least 1"), std::invalid_argument);
   Operator op(body);
   std::vector<double> x(op.unknowns()), y(op.unknowns() - 1);
   CHECK_THROWS_AS(op.apply(x, y), std::invalid_argument);

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "error.hpp"
+#include "index_runs.hpp"
 #include "mesh.hpp"
 
 using namespace kacanov;
@@ -137,6 +138,20 @@ TEST_CASE("the sides of a box are named, complete and turned outwards") {
       members += mesh.groups[g].members.size();
     }
     CHECK(members == mesh.facet_count());
+  }
+}
+
+TEST_CASE("runs of indices hand out what was put in, and know where it stands") {
+  std::vector<std::int32_t> all;
+  for (std::int32_t i = 0; i < 200; ++i)
+    if (i % 7 != 0 && i % 11 < 8) all.push_back(i);
+  IndexRuns runs;
+  for (const std::int32_t i : all) runs.push_back(i);
+  REQUIRE(runs.size() == all.size());
+  CHECK(runs.runs.size() < all.size() / 2);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    CHECK(runs[k] == all[k]);
+    CHECK(runs.position_of(all[k]) == static_cast<std::int32_t>(k));
   }
 }
 

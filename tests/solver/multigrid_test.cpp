@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "cg.hpp"
+#include "multigrid/aggregate_motions.hpp"
 #include "multigrid/aggregation.hpp"
 #include "multigrid/rigid_level.hpp"
 #include "operator.hpp"
@@ -91,6 +92,76 @@ Part beam(int cells, double length, ElementType type) {
 }
 
 }  // namespace
+
+namespace {
+
+/// Whether xᵀ A y on the aggregates is (Z x)ᵀ (B + blocks) (Z y) on the nodes for random motions x, y, Z into the space.
+template <int M>
+void check_galerkin(const Part& part, std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space,
+                    AggregateMotions<M>& motions, RigidLevel<M>& level) {
+  motions.sum(g, blocks, space, level);
+  const auto dim = static_cast<std::size_t>(part.dim());
+  const auto random = [&](double seed) {
+    Vector x(level.size());
+    for (std::size_t i = 0; i < level.owned_size(); ++i) x[i] = std::sin(seed * static_cast<double>(level.first() * M + static_cast<std::int64_t>(i) + 1));
+    return x;
+  };
+  const auto on_nodes = [&](const Vector& x) {
+    std::vector<float> single(part.unknowns());
+    motions.prolong(x, 1.0, single);
+    part.halo.copy_from_owner(std::span<float>(single), part.dim());
+    Vector u(single.begin(), single.end());
+    space.project(u);
+    return u;
+  };
+  Vector x = random(12.9898), y = random(78.233), image(level.size());
+  const Vector u = on_nodes(x), v = on_nodes(y);
+  level.multiply(y, image);
+  Vector force(part.unknowns());
+  reference::apply(part.body(), g, v, force);
+  double expected = 0.0, scale = 0.0;
+  for (std::size_t i = 0; i < force.size(); ++i) {
+    expected += u[i] * force[i];
+    scale += std::abs(u[i] * force[i]);
+  }
+  for (const NodeBlock& block : blocks)
+    for (std::size_t i = 0; i < dim; ++i)
+      for (std::size_t j = 0; j < dim; ++j)
+        expected += u[static_cast<std::size_t>(block.node) * dim + i] * block.value[i * dim + j] * v[static_cast<std::size_t>(block.node) * dim + j];
+  CHECK(std::abs(dot(x, image, level.owned_size()) - sum_all(expected)) < 1e-5 * sum_all(scale));
+}
+
+}  // namespace
+
+TEST_CASE("the first coarse matrix is Galerkin's, summed once or again") {
+  for (const ElementType type : {ElementType::tri3, ElementType::tet4, ElementType::tet10, ElementType::hex8}) {
+    CAPTURE(static_cast<int>(type));
+    const Part part = beam(type == ElementType::tri3 ? 12 : 4, 3.0, type);
+    const auto dim = static_cast<std::size_t>(part.dim());
+    Vector g(part.body().secant_count(), 1.0);
+    const auto check = [&]<int M>(std::integral_constant<int, M>) {
+      AggregateMotions<M> motions(part, g, 8.0);
+      RigidLevel<M> level = motions.make_level();
+      Space space(part);
+      check_galerkin<M>(part, g, {}, space, motions, level);
+      // Other moduli, a direction held at some nodes, and blocks.
+      for (std::size_t e = 0; e < g.size(); ++e) g[e] = 0.2 + static_cast<double>(e % 5);
+      std::vector<NodeBlock> blocks;
+      for (std::size_t n = 0; n < part.nodes(); ++n) {
+        if (part.node_index[n] % 7 == 0) space.hold(static_cast<std::int32_t>(n), Vector3{0.6, 0.8, 0.0});
+        if (part.node_index[n] % 5 != 0 || n >= static_cast<std::size_t>(part.owned_nodes)) continue;
+        NodeBlock block{static_cast<std::int32_t>(n), {}};
+        for (std::size_t c = 0; c < dim; ++c) block.value[c * dim + c] = 1.0 + static_cast<double>(c);
+        blocks.push_back(block);
+      }
+      check_galerkin<M>(part, g, blocks, space, motions, level);
+    };
+    if (dim == 3)
+      check(std::integral_constant<int, 6>{});
+    else
+      check(std::integral_constant<int, 3>{});
+  }
+}
 
 TEST_CASE("aggregates follow the strong couplings and leave nobody out") {
   // Cells ten times longer than wide: aggregates lie across.
