@@ -2,20 +2,31 @@
 // Signals that ask a run to stop.
 #include "interrupt.hpp"
 
+#include <atomic>
 #include <ctime>
-#include <initializer_list>
+#include <thread>
 
 namespace kacanov {
 namespace {
 
-volatile std::sig_atomic_t came = 0;
-timespec first_time{};
+std::atomic<bool> listening = false, came = false;
 
-extern "C" void note(int signal) {
-  came = 1;
-  if (signal == stop_signal || !asks_again(first_time)) return;
+/// As if nobody had ever taken the signal.
+void die_of(int signal) {
   std::signal(signal, SIG_DFL);
+  sigset_t one;
+  sigemptyset(&one);
+  sigaddset(&one, signal);
+  pthread_sigmask(SIG_UNBLOCK, &one, nullptr);
   std::raise(signal);
+}
+
+void wait_for_signals(const sigset_t& set) {
+  timespec first{};
+  for (int signal = 0; sigwait(&set, &signal) == 0;) {
+    if (!listening || (signal != stop_signal && asks_again(first))) die_of(signal);
+    came = true;
+  }
 }
 
 }  // namespace
@@ -30,17 +41,20 @@ bool asks_again(timespec& first) noexcept {
   return static_cast<double>(now.tv_sec - first.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec - first.tv_nsec) > 1.0;
 }
 
-void listen_for_interrupts() {
-  struct sigaction action {
-  }, before{};
-  action.sa_handler = note;
-  action.sa_flags = SA_RESTART;
+void take_signals() {
+  sigset_t set;
+  sigemptyset(&set);
+  struct sigaction before {};
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, stop_signal}) {
-    if (sigaction(signal, nullptr, &before) == 0 && (before.sa_handler != SIG_IGN || signal == stop_signal))
-      sigaction(signal, &action, nullptr);
+    // What was to be ignored, as under nohup, still is.
+    if (sigaction(signal, nullptr, &before) == 0 && (before.sa_handler != SIG_IGN || signal == stop_signal)) sigaddset(&set, signal);
   }
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  std::thread(wait_for_signals, set).detach();
 }
 
-bool interrupt_came() noexcept { return came != 0; }
+void listen_for_interrupts() { listening = true; }
+
+bool interrupt_came() noexcept { return came; }
 
 }  // namespace kacanov

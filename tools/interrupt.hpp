@@ -10,14 +10,17 @@ namespace kacanov {
 /// make mpiexec kill them.
 constexpr int stop_signal = SIGUSR1;
 
-/// From now on SIGINT, SIGTERM, SIGHUP (unless they are ignored) and stop_signal only ask for a stop. One more than a second
-/// later ends the process as it would without this.
+/// From now on SIGINT, SIGTERM, SIGHUP (unless they are ignored) and stop_signal go to a thread of their own and end the process as
+/// before. METIS, which makes a failure of its own of a SIGTERM, does not see them. To be called before there is any other thread.
+void take_signals();
+
+/// From now on they only ask for a stop. One more than a second later, stop_signal apart, ends the process all the same.
 void listen_for_interrupts();
 
 /// Whether one has come.
 bool interrupt_came() noexcept;
 
-/// For signal handlers: whether this signal comes as a second request. `timeout` and terminals may send one request twice
+/// Fit for signal handlers: whether this signal comes as a second request. `timeout` and terminals may send one request twice
 /// within moments.
 bool asks_again(timespec& first) noexcept;
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program kacanov: reads the command line, sees to its processes and hands over to a subcommand.
+#include <csignal>
 #include <iostream>
 #include <optional>
 
 #include "command.hpp"
 #include "commands.hpp"
 #include "error.hpp"
+#include "interrupt.hpp"
 #include "launch.hpp"
 #include "parallel.hpp"
 #include "part_files.hpp"
@@ -42,6 +44,7 @@ int dispatch(const Command& command, const Case& input, MpiSession& mpi) {
 
 /// Within MPI, with the ranks there are.
 int run_here(const Command& command, const std::optional<Case>& known) {
+  take_signals();
   MpiSession mpi;
   try {
     std::optional<Case> input = known;
@@ -88,7 +91,10 @@ int run_alone(const Command& command, int argc, const char* const* argv) {
   const Case input = read_case(command.case_file, command.overrides);
   check_supported(input.model.solver);
   Shape shape = choose_shape(input, needs_one(command) ? command.ranks : ranks_asked_for(command, input), command.threads, usable_cores());
-  if (needs_one(command)) return command_on_one(command, input, shape.ranks);
+  if (needs_one(command)) {
+    take_signals();
+    return command_on_one(command, input, shape.ranks);
+  }
   if (shape.ranks > 1) {
     const std::string mpiexec = find_mpiexec();
     if (!mpiexec.empty()) return run_on_ranks(mpiexec, shape, command, input, argc, argv);
@@ -109,6 +115,7 @@ int say(const ParsedCommand& parsed) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit of its size is an error like a full disk
   const ParsedCommand parsed = parse_command(argc, argv);
   try {
     if (started_by_mpi()) {
