@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <sched.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -55,6 +56,15 @@ int quota_cores() {
   double quota = 0.0, period = 0.0;
   if (!(file >> quota >> period) || period <= 0.0) return 1 << 20;
   return std::max(1, static_cast<int>(quota / period));
+}
+
+/// Open MPI that cannot map its libraries and shared memory crashes with a trace, or hangs.
+void refuse_narrow_limit() {
+  constexpr rlim_t megabyte = 1 << 20, least = 512;  // mpiexec and one rank have 200 to 300
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || limit.rlim_cur >= least * megabyte) return;
+  throw InputError("several ranks cannot be started: the address space of a process is limited to " +
+                   std::to_string(limit.rlim_cur / megabyte) + " MiB (ulimit -v), and MPI needs " + std::to_string(least));
 }
 
 [[noreturn]] void become_mpiexec(const std::vector<std::string>& words) {
@@ -160,6 +170,7 @@ int coded_exit(int exit_code) {
 }
 
 int run_under_mpiexec(const std::string& mpiexec, Shape shape, int argc, const char* const* argv) {
+  refuse_narrow_limit();
   std::vector<std::string> words{mpiexec,
                                  "--quiet",
                                  "--oversubscribe",
