@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // kacanov run: solves a case and writes everything about it.
 #include <iostream>
+#include <regex>
 
 #include "atomic_file.hpp"
 #include "checkpoint_file.hpp"
@@ -19,14 +20,16 @@
 namespace kacanov {
 namespace {
 
-/// Takes away what an earlier run left under names that this one may not write again.
+/// Takes away what an earlier run left under names that this one may not write again, and what it was writing when it was killed.
 void clear_folder(const std::filesystem::path& folder) {
-  for (const char* name :
-       {"result.json", "summary.txt", "result.pvd", "body.vtu", "body.pvtu", "contact.vtu", "deformed.svg"}) {
-    std::filesystem::remove(folder / name);
+  static const std::regex output(R"((result\.json|summary\.txt|result\.pvd|body(_\d+)?\.vtu|body\.pvtu|contact\.vtu|deformed\.svg)(\.part\d+)?)");
+  static const std::regex unfinished(R"(checkpoint\.kacanov\.part\d+)");
+  std::vector<std::filesystem::path> old;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (std::regex_match(name, output) || std::regex_match(name, unfinished)) old.push_back(entry.path());
   }
-  for (int rank = 0; std::filesystem::remove(folder / ("body_" + std::to_string(rank) + ".vtu")); ++rank) {
-  }
+  for (const std::filesystem::path& file : old) std::filesystem::remove(file);
 }
 
 void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& json) {
