@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "part_files.hpp"
 
+#include <fstream>
+#include <sstream>
+#include <utility>
+
 #include "case_identity.hpp"
 #include "error.hpp"
 #include "hashed_file.hpp"
@@ -38,7 +42,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::string_view part_magic = "kacanov part 1\n", boundary_magic = "kacanov boundary 1\n";
+constexpr std::string_view part_magic = "kacanov part 2\n", boundary_magic = "kacanov boundary 2\n";
 /// The sections of a case that parts are made of.
 constexpr const char* sections[] = {"mesh", "material", "boundary", "contact", "probe"};
 
@@ -48,11 +52,20 @@ std::filesystem::path part_file(const std::filesystem::path& folder, int rank) {
 
 std::filesystem::path boundary_file(const std::filesystem::path& folder) { return folder / "boundary.kacanov"; }
 
-/// Size of the mesh file: -1 where there is none, as on a machine that has the parts only.
-std::int64_t mesh_bytes(const Case& input) {
-  std::error_code error;
-  const auto bytes = input.mesh.file ? std::filesystem::file_size(*input.mesh.file, error) : 0;
-  return error ? -1 : static_cast<std::int64_t>(bytes);
+/// Length and hash of the mesh file; null where there is none, as on a machine that has the parts only.
+json mesh_identity(const Case& input) {
+  std::ifstream file;
+  if (input.mesh.file) file.open(*input.mesh.file, std::ios::binary);
+  if (!file.is_open()) return nullptr;
+  std::vector<char> piece(std::size_t{1} << 20);
+  std::uint64_t bytes = 0, hash = 0;
+  do {
+    file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    const auto length = static_cast<std::size_t>(file.gcount());
+    hash = hash_bytes(piece.data(), length, hash);
+    bytes += length;
+  } while (file);
+  return {{"bytes", bytes}, {"hash", hash}};
 }
 
 HashedReader open_file(const std::filesystem::path& file, std::string_view magic, const std::string& kind) {
@@ -67,16 +80,24 @@ HashedReader open_boundary(const std::filesystem::path& folder) {
   return open_file(boundary_file(folder), boundary_magic, "boundary");
 }
 
-/// Throws InputError where the parts were made of another case. The mesh file itself is not read: its size speaks for it.
+/// Throws InputError where the parts were made of a case with another text.
 void check_case(const json& header, const Case& input, const std::string& file) {
   const json& there = header.at("case");
-  std::string text = describe_differences(there, input.document, differing_sections(there, input.document, sections));
-  const std::int64_t bytes_there = header.at("mesh_bytes"), bytes = mesh_bytes(input);
-  if (text.empty() && bytes >= 0 && bytes != bytes_there) {
-    text = "mesh differs (" + *input.mesh.file + ": " + std::to_string(bytes_there) + " bytes there, " + std::to_string(bytes) +
-           " here)";
-  }
+  const std::string text = describe_differences(there, input.document, differing_sections(there, input.document, sections));
   if (!text.empty()) throw InputError("--parts: " + file + " belongs to another case: " + text);
+}
+
+/// Throws InputError where the mesh file is at hand and is not the one that the parts were made of. It is hashed, not parsed.
+void check_mesh(const json& header, const Case& input, const std::string& file) {
+  const json &there = header.at("mesh_file"), here = mesh_identity(input);
+  if (here.is_null() || here == there) return;
+  const auto text = [](const json& mesh) {
+    std::ostringstream words;
+    words << mesh.at("bytes") << " bytes with hash " << std::hex << mesh.at("hash").get<std::uint64_t>();
+    return words.str();
+  };
+  throw InputError("--parts: " + file + " was made of another mesh: " + *input.mesh.file + " had " + text(there) + ", and now has " +
+                   text(here));
 }
 
 /// Throws InputError unless this is the header of the part of a rank, for this case and as many ranks.
@@ -91,6 +112,26 @@ void check_part(const json& header, const Case& input, const MpiSession& mpi, co
     throw InputError("--parts: " + file + ": expected part " + std::to_string(mpi.rank()) + ", got part " + std::to_string(part));
 }
 
+/// A folder for files until all of them are whole; with it goes what is still there, and what an attempt that was killed has left.
+class Staging {
+ public:
+  explicit Staging(std::filesystem::path folder) : folder_(std::move(folder)) {
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directory(folder_);
+  }
+  ~Staging() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  Staging(const Staging&) = delete;
+  Staging& operator=(const Staging&) = delete;
+
+  const std::filesystem::path& folder() const noexcept { return folder_; }
+
+ private:
+  std::filesystem::path folder_;
+};
+
 /// What all files of one split have in common.
 std::uint64_t split_identity(json header) {
   header.erase("part");
@@ -102,26 +143,31 @@ std::uint64_t split_identity(json header) {
 
 void write_parts(const std::filesystem::path& folder, const Case& input, Problem problem, int parts) {
   prepare_folder(folder);
-  std::filesystem::remove(boundary_file(folder));
-  for (int rank = parts; std::filesystem::remove(part_file(folder, rank)); ++rank) {
-  }
+  const Staging staging(folder / "unfinished");
   const json header{{"parts", parts},
                     {"case", case_sections(input.document, sections)},
-                    {"mesh_bytes", mesh_bytes(input)},
+                    {"mesh_file", mesh_identity(input)},
                     {"problem", fingerprint_json(fingerprint(problem))}};
   split(problem, parts, [&](int rank, Part&& part) {
     json own = header;
     own["part"] = rank;
-    HashedWriter file(part_file(folder, rank).string(), part_magic, own);
+    HashedWriter file(part_file(staging.folder(), rank).string(), part_magic, own);
     FieldWriter{file}(part);
     file.commit();
   });
   const std::vector<std::int32_t> boundary_nodes = keep_boundary(problem);
-  HashedWriter file(boundary_file(folder).string(), boundary_magic, header);
-  const FieldWriter write{file};
-  write(problem);
-  write(boundary_nodes);
-  file.commit();
+  {
+    HashedWriter file(boundary_file(staging.folder()).string(), boundary_magic, header);
+    const FieldWriter write{file};
+    write(problem);
+    write(boundary_nodes);
+    file.commit();
+  }
+  std::filesystem::remove(boundary_file(folder));
+  for (int rank = 0; rank < parts; ++rank) std::filesystem::rename(part_file(staging.folder(), rank), part_file(folder, rank));
+  for (int rank = parts; std::filesystem::remove(part_file(folder, rank)); ++rank) {
+  }
+  std::filesystem::rename(boundary_file(staging.folder()), boundary_file(folder));
 }
 
 int count_parts(const std::filesystem::path& folder, const Case& input) {
@@ -139,6 +185,7 @@ LoadedCase load_parts(const std::filesystem::path& folder, const Case& input, co
     if (mpi.first()) {
       HashedReader reader = open_boundary(folder);
       check_case(reader.header(), input, boundary_file(folder).string());
+      check_mesh(reader.header(), input, boundary_file(folder).string());
       const FieldReader read{reader};
       read(loaded.problem.emplace());
       read(loaded.boundary_nodes);

@@ -9,8 +9,8 @@
 
 namespace kacanov {
 
-/// Splits the problem and writes its files, one part in memory at a time; boundary.kacanov comes last, so that a folder with it is whole.
-/// Takes away the parts of an earlier split. Throws InputError (a folder that cannot be written to, a mesh too small for so many parts) or InternalError.
+/// Splits the problem and writes its files, one part in memory at a time, into a folder "unfinished" within this one. Only when all are whole they
+/// take the place of an earlier split, boundary.kacanov last, so that a folder with it is whole. Throws InputError (a folder that cannot be written to, a mesh too small for so many parts) or InternalError.
 void write_parts(const std::filesystem::path& folder, const Case& input, Problem problem, int parts);
 
 /// How many parts the folder has. Throws InputError naming the file that is missing or damaged, or the keys in which its case differs from
