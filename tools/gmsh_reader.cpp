@@ -207,15 +207,12 @@ bool plain_numbers(const std::vector<std::int64_t>& tags) {
   return true;
 }
 
-}  // namespace
-
-Mesh read_gmsh(const std::string& path) {
+GmshContent parse_file(const std::string& path) {
   const MappedFile file(path);
-  return read_gmsh(path, file.bytes());
+  return parse_gmsh(path, file.bytes());
 }
 
-Mesh read_gmsh(const std::string& path, std::string_view bytes) {
-  GmshContent content = parse_gmsh(path, bytes);
+Mesh make_mesh(const std::string& path, GmshContent content) {
   const GmshShape body = body_shape(path, content);
   Mesh mesh;
   mesh.type = element_type(body);
@@ -229,5 +226,11 @@ Mesh read_gmsh(const std::string& path, std::string_view bytes) {
   if (!plain_numbers(elements.tags)) mesh.element_tags = std::move(elements.tags);
   return mesh;
 }
+
+}  // namespace
+
+Mesh read_gmsh(const std::string& path) { return make_mesh(path, parse_file(path)); }
+
+Mesh read_gmsh(const std::string& path, std::string_view bytes) { return make_mesh(path, parse_gmsh(path, bytes)); }
 
 }  // namespace kacanov
