@@ -53,21 +53,25 @@ Law random_law(Dice& dice, double young, double strain) {
   law.gamma = dice.decades(-1.5, -0.1);
   law.n = dice.uniform(0.2, 0.9);
   law.q = dice.decades(0.0, 1.5);
+  // Where stress still grows with strain: always for these n, γ and tables, up to √e times the yield strain for (34), about as
+  // far or further for a law that saturates.
+  const bool squared = dice.chance(0.3);
+  if (squared) {
+    law.argument = Law::Argument::squared;
+    law.n = 0.55 + 0.5 * law.n;
+    law.gamma = 0.55 + 0.5 * law.gamma;
+    if (law.kind == Law::Kind::logarithmic || law.kind == Law::Kind::saturating) law.x0 *= 4.0;
+    law.x0 *= law.x0;
+  }
   if (law.kind == Law::Kind::table) {
     law.table_x = {0.0, law.x0, law.x0 * dice.uniform(1.5, 3.0), law.x0 * dice.uniform(4.0, 8.0)};
     law.table_s = {0.0};
     double slope = 2.0 * law.shear;
     for (std::size_t i = 1; i < law.table_x.size(); ++i) {
       law.table_s.push_back(law.table_s.back() + slope * (law.table_x[i] - law.table_x[i - 1]));
-      slope *= dice.uniform(0.1, 0.9);
+      // With the squared argument stress is s/x, and grows while the slope is at least half of s/a.
+      slope *= squared ? dice.uniform(0.75, 0.95) : dice.uniform(0.1, 0.9);
     }
-  } else if (law.kind != Law::Kind::saturating && dice.chance(0.3)) {
-    // Where stress still grows with strain: always for these n and γ, up to √e times the yield strain for (34).
-    law.argument = Law::Argument::squared;
-    law.n = 0.55 + 0.5 * law.n;
-    law.gamma = 0.55 + 0.5 * law.gamma;
-    if (law.kind == Law::Kind::logarithmic) law.x0 *= 4.0;
-    law.x0 *= law.x0;
   }
   return law;
 }
