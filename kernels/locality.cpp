@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <new>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -156,6 +157,7 @@ std::vector<std::int32_t> partition_nodes(const MeshView& mesh, std::span<const 
   const int status =
       METIS_PartGraphKway(&n, &constraints, start.data(), adjacent.data(), nullptr, nullptr, weight.data(),
                           &part_count, nullptr, nullptr, options.data(), &cut, part.data());
+  if (status == METIS_ERROR_MEMORY) throw std::bad_alloc();
   if (status != METIS_OK) throw std::runtime_error("METIS failed with status " + std::to_string(status));
   for (std::size_t i = 0; i < count; ++i)
     result[i] = static_cast<std::int32_t>(part[static_cast<std::size_t>(group[i])]);

@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
   kacanov::BoxSpec box;
   box.cells = {3, 3, 3};
   const kacanov::Problem problem = kacanov::build_problem(kacanov::make_box(box), model);
-  const kacanov::Part part = kacanov::distribute(&problem, MPI_COMM_WORLD);
+  kacanov::Part part = kacanov::distribute(&problem, MPI_COMM_WORLD);
   const kacanov::Result result = kacanov::solve(part, model.solver, {}).result;
   MPI_Finalize();
   const bool carried = std::abs(result.contact_force[2] - 0.01) < 1e-6;
