@@ -4,7 +4,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 
@@ -238,24 +237,14 @@ Eigenvalue Spectrum::smallest(const TraceRows& rows) {
   return {1.0 / largest, found.bounds[0] / (largest * largest)};
 }
 
-namespace {
-
-/// nᵀ diag(B) n of a contact row at its node.
-double row_stiffness(const Part& part, std::span<const float> diagonal, const ContactPoint& point,
-                     const Vector3& row) {
-  const auto dim = static_cast<std::size_t>(part.dim());
-  double stiffness = 0.0;
-  for (std::size_t c = 0; c < dim; ++c)
-    stiffness += row[c] * row[c] * static_cast<double>(diagonal[static_cast<std::size_t>(point.node) * dim + c]);
-  return stiffness;
-}
-
-}  // namespace
-
 double rough_lambda_min(const Part& part, std::span<const float> diagonal, bool friction) {
+  const auto dim = static_cast<std::size_t>(part.dim());
   double stiffest = 0.0;
   const auto look = [&](const ContactPoint& point, const Vector3& row) {
-    stiffest = std::max(stiffest, row_stiffness(part, diagonal, point, row) / point.mass);
+    double stiffness = 0.0;
+    for (std::size_t c = 0; c < dim; ++c)
+      stiffness += row[c] * row[c] * static_cast<double>(diagonal[static_cast<std::size_t>(point.node) * dim + c]);
+    stiffest = std::max(stiffest, stiffness / point.mass);
   };
   for (const auto& point : part.contact) {
     look(point, point.trace);
@@ -265,17 +254,6 @@ double rough_lambda_min(const Part& part, std::span<const float> diagonal, bool 
   stiffest = part.halo.max_all(stiffest);
   // With tangents a mode that shears and presses at once is softer: 1.6 on structured and Gmsh meshes alike.
   return stiffest > 0.0 ? 1.0 / (friction ? 1.6 * stiffest : stiffest) : 0.0;
-}
-
-double mean_normal_stiffness(const Part& part, std::span<const float> diagonal) {
-  std::array<double, 2> sums{};  // stiffness, mass
-  for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_contact); ++i) {
-    const auto& point = part.contact[i];
-    sums[0] += row_stiffness(part, diagonal, point, point.trace);
-    sums[1] += point.mass;
-  }
-  part.halo.sum_all(sums);
-  return sums[1] > 0.0 ? sums[0] / sums[1] : 0.0;
 }
 
 double rough_lambda_max(const Part& part, DistributedOperator& op, Preconditioner& amg, const TraceRows& rows,

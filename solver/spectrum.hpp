@@ -105,9 +105,6 @@ class Spectrum {
 
 /// 1/λ_min from above and below alike, without a solve: the stiffest contact row, nᵀ diag(B) n / mass.
 double rough_lambda_min(const Part& part, std::span<const float> diagonal, bool friction);
-/// What that is for most of the contact surface where its mesh is graded: Σ nᵀ diag(B) n / Σ mass over the normal rows,
-/// a stiffness per area and length. 0 without contact.
-double mean_normal_stiffness(const Part& part, std::span<const float> diagonal);
 /// λ_max with the rows `held` at zero, from below: uᵀCᵀDCu / uᵀBu for what at most `steps` CG iterations make
 /// of an even pressure on `rows`. `amg` as it stands: it may hold penalties.
 double rough_lambda_max(const Part& part, DistributedOperator& op, Preconditioner& amg, const TraceRows& rows,

@@ -48,20 +48,18 @@ class Balance {
       held_[k] = 0.0;
       if (std::isinf(trace_tolerance) || !(held + moved > 0.0)) continue;
       const double behind = std::clamp(std::log(held / moved), -most, most);
-      mean_[k] = learnt_[k] ? 0.5 * (mean_[k] + behind) : behind;
-      learnt_[k] = true;
+      mean_[k] += (behind - mean_[k]) / ++count_[k];
     }
   }
 
-  /// log (A behind / I behind) for N and T, a mean in which every iteration counts twice as much as the one before:
-  /// the first ones still sort out who touches. 0 where nothing was learnt.
+  /// Mean of log (A behind / I behind) over the iterations, for N and T; 0 where nothing was learnt.
   std::array<double, 2> mean() const noexcept { return mean_; }
 
  private:
   static constexpr double most = 3.0;  // where one side is empty the other cannot be infinitely behind
   ContactValues free_, part_;
   std::array<double, 2> held_{}, mean_{};
-  std::array<bool, 2> learnt_{};
+  std::array<int, 2> count_{};
 };
 
 }  // namespace kacanov
