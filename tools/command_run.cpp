@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // kacanov run: solves a case and writes everything about it.
 #include <iostream>
-#include <regex>
+#include <string_view>
 
 #include "atomic_file.hpp"
 #include "checkpoint_file.hpp"
@@ -20,15 +20,28 @@
 namespace kacanov {
 namespace {
 
+/// `name` without a number at its end that follows `mark`; the same where it does not end so.
+std::string_view without_number(std::string_view name, std::string_view mark) {
+  const std::size_t last = name.find_last_not_of("0123456789");
+  if (last == std::string_view::npos || last + 1 == name.size() || !name.substr(0, last + 1).ends_with(mark)) return name;
+  return name.substr(0, last + 1 - mark.size());
+}
+
+/// Whether a run writes files of this name, or has left it unfinished. A whole checkpoint is none: it stays.
+bool is_output(std::string_view name) {
+  const std::string_view whole = without_number(name, ".part");
+  if (whole == "checkpoint.kacanov") return whole != name;
+  for (const std::string_view file : {"result.json", "summary.txt", "result.pvd", "body.pvtu", "contact.vtu", "deformed.svg"})
+    if (whole == file) return true;
+  constexpr std::string_view vtu = ".vtu";
+  return whole.ends_with(vtu) && without_number(whole.substr(0, whole.size() - vtu.size()), "_") == "body";
+}
+
 /// Takes away what an earlier run left under names that this one may not write again, and what it was writing when it was killed.
 void clear_folder(const std::filesystem::path& folder) {
-  static const std::regex output(R"((result\.json|summary\.txt|result\.pvd|body(_\d+)?\.vtu|body\.pvtu|contact\.vtu|deformed\.svg)(\.part\d+)?)");
-  static const std::regex unfinished(R"(checkpoint\.kacanov\.part\d+)");
   std::vector<std::filesystem::path> old;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (std::regex_match(name, output) || std::regex_match(name, unfinished)) old.push_back(entry.path());
-  }
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (is_output(entry.path().filename().string())) old.push_back(entry.path());
   for (const std::filesystem::path& file : old) std::filesystem::remove(file);
 }
 
