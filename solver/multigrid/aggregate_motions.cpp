@@ -126,11 +126,7 @@ class AggregateMotions<M>::Sums {
   void add_elements() {
     elements::dispatch(part_.type, [&]<class E>(E) {
       if constexpr (static_cast<std::size_t>(E::dim) == dim) {
-        std::vector<std::size_t> bound;
-        for (std::size_t e = 0; e < body_.mesh.element_count(); ++e)
-          if (!add_element<E>(e, false)) bound.push_back(e);
-        add_diagonal();
-        for (const std::size_t e : bound) add_element<E>(e, true);
+        for (std::size_t e = 0; e < body_.mesh.element_count(); ++e) add_element<E>(e);
       }
     });
   }
@@ -178,23 +174,25 @@ class AggregateMotions<M>::Sums {
   bool in_order(std::int32_t a, std::int32_t b) const { return is_owned(a) || is_owned(b) ? a <= b : number(a) <= number(b); }
   Block& at(std::int32_t a, std::int32_t b) { return is_owned(a) ? level_.block(a, b) : outside_.at(number(a), number(b)); }
 
-  /// Adds an element's blocks, those on the diagonal `with_diagonal` only. Without it, one with nodes that are bound is left out: false.
+  /// One within a single aggregate strains nothing, unless some node is bound. (To take the diagonal blocks from the others, as a motion of
+  /// the whole strains nothing, saves half of the products and loses too many digits on stretched meshes.)
   template <class E>
-  bool add_element(std::size_t e, bool with_diagonal) {
+  void add_element(std::size_t e) {
     constexpr auto npe = static_cast<std::size_t>(E::nodes);
     const std::int32_t* node = body_.mesh.connectivity.data() + e * npe;
     std::array<std::int32_t, npe> which{};  // the aggregates it touches
     std::array<std::size_t, npe> local{};   // that of each node
     std::size_t count = 0;
+    bool rigid = true;
     for (std::size_t a = 0; a < npe; ++a) {
-      if (!with_diagonal && bound_[static_cast<std::size_t>(node[a])] != 0) return false;
+      rigid = rigid && bound_[static_cast<std::size_t>(node[a])] == 0;
       const std::int32_t group = motions_.group_[static_cast<std::size_t>(node[a])];
       std::size_t k = 0;
       while (k < count && which[k] != group) ++k;
       if (k == count) which[count++] = group;
       local[a] = k;
     }
-    if (!with_diagonal && count == 1) return true;
+    if (rigid && count == 1) return;
 
     elements::Nodal<E> x;
     std::array<Rows, npe> z;
@@ -209,7 +207,7 @@ class AggregateMotions<M>::Sums {
     std::array<Pair, npe*(npe + 1) / 2> pairs;
     std::size_t pair_count = 0;
     for (std::size_t a = 0; a < count; ++a)
-      for (std::size_t b = with_diagonal ? a : a + 1; b < count; ++b) {
+      for (std::size_t b = a; b < count; ++b) {
         const bool ordered = in_order(which[a], which[b]);
         const std::size_t row = ordered ? a : b, column = ordered ? b : a;
         pairs[pair_count++] = {row, column, &at(which[row], which[column])};
@@ -226,7 +224,6 @@ class AggregateMotions<M>::Sums {
       for (std::size_t k = 0; k < count; ++k) take_stress(strain[k], shear, bulk, stress[k]);
       for (std::size_t p = 0; p < pair_count; ++p) add_product(strain[pairs[p].a], stress[pairs[p].b], *pairs[p].sum);
     }
-    return true;
   }
 
   static void add_strain(const double* d, const double* mean, const Rows& z, Strain& s) {
@@ -261,38 +258,6 @@ class AggregateMotions<M>::Sums {
         for (std::size_t j = 0; j < M; ++j) row[j] += strain[k][i] * stress[k][j];
       for (std::size_t j = 0; j < M; ++j) sum[i * M + j] += row[j];
     }
-  }
-
-  /// The diagonal blocks of all that is there so far: a motion of the whole body strains nothing, so they are what the others
-  /// in their rows leave open.
-  void add_diagonal() {
-    using Dense = Eigen::Matrix<double, M, M, Eigen::RowMajor>;
-    // sum −= block · (motion of a as one of b's), symmetric once all of a row is in.
-    const auto take = [&](const Dense& block, std::int32_t a, std::int32_t b, Block& sum) {
-      const Vector3 &from = motions_.centre_[static_cast<std::size_t>(a)], &to = motions_.centre_[static_cast<std::size_t>(b)];
-      const Vector3 d{to[0] - from[0], to[1] - from[1], to[2] - from[2]};
-      const auto motion = RigidMotion<M>::change(d.data(), 1.0 / motions_.length_);
-      const Dense change = block * Eigen::Map<const Dense>(motion.data());
-      for (std::size_t i = 0; i < M; ++i)
-        for (std::size_t j = 0; j < M; ++j)
-          sum[i * M + j] -= 0.5 * (change(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) +
-                                   change(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(i)));
-    };
-    const auto both = [&](const Block& block, std::int32_t a, std::int32_t b) {
-      const Dense here = Eigen::Map<const Dense>(block.data());
-      take(here, a, b, at(a, a));
-      take(here.transpose(), b, a, at(b, b));
-    };
-    level_.visit([&](std::int32_t row, std::int32_t column, const Block& block) {
-      if (row != column) both(block, row, column);
-    });
-    std::unordered_map<std::int64_t, std::int32_t> place;
-    for (std::size_t k = 0; k < motions_.number_.size(); ++k)
-      place.emplace(motions_.number_[k], motions_.owned_ + static_cast<std::int32_t>(k));
-    const std::size_t there = outside_.entries().size();  // diagonal ones come behind
-    for (std::size_t k = 0; k < there; ++k)
-      if (const auto& entry = outside_.entries()[k]; entry.row != entry.column)
-        both(Block(entry.block), place.at(entry.row), place.at(entry.column));
   }
 
   const AggregateMotions& motions_;
