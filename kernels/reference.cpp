@@ -103,7 +103,6 @@ void scatter_add(const Body& body, std::size_t element, const Nodal<E>& local, s
     for (int i = 0; i < E::dim; ++i) values[Point<E>::at(node[a], i)] += local[Point<E>::at(a, i)];
 }
 
-
 /// Calls visit(element, law, point index, point, strain of `omega`) for every quadrature point.
 template <class E, class Visit>
 void for_each_point(const Body& body, std::span<const double> omega, Visit&& visit) {

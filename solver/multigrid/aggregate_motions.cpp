@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
+#include <utility>
 
 #include "elements/dispatch.hpp"
 #include "elements/point.hpp"
@@ -144,7 +145,7 @@ class AggregateMotions<M>::Sums {
       }
   }
 
-  void complete() { level_.complete(outside_); }
+  void complete() { level_.complete(std::move(outside_)); }
 
  private:
   /// Displacement of a node for each motion of its aggregate, in the space.
@@ -167,9 +168,8 @@ class AggregateMotions<M>::Sums {
   }
 
   bool is_owned(std::int32_t a) const { return a < motions_.owned_; }
-  std::int64_t number(std::int32_t a) const {
-    return is_owned(a) ? level_.first() + a : motions_.number_[static_cast<std::size_t>(a - motions_.owned_)];
-  }
+  /// Of one that is not owned.
+  std::int64_t number(std::int32_t a) const { return motions_.number_[static_cast<std::size_t>(a - motions_.owned_)]; }
   /// Whether block (a, b) is the one that is kept, not (b, a).
   bool in_order(std::int32_t a, std::int32_t b) const { return is_owned(a) || is_owned(b) ? a <= b : number(a) <= number(b); }
   Block& at(std::int32_t a, std::int32_t b) { return is_owned(a) ? level_.block(a, b) : outside_.at(number(a), number(b)); }

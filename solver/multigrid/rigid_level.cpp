@@ -33,7 +33,14 @@ typename BlockSums<M>::Block transposed(const typename BlockSums<M>::Block& bloc
 /// Takes coefficients of a group's motion to those of an aggregate in it.
 template <int M>
 Dense<M> prolongation(const Vector3& offset, double inverse_length) {
-  return dense<M>(RigidMotion<M>::change(offset.data(), inverse_length));
+  Dense<M> p;
+  for (int k = 0; k < M; ++k) {
+    std::array<double, M> group{}, member{};
+    group[static_cast<std::size_t>(k)] = 1.0;
+    RigidMotion<M>::add_to_part(group.data(), offset.data(), inverse_length, member.data());
+    p.col(k) = Eigen::Map<const Eigen::Matrix<double, M, 1>>(member.data());
+  }
+  return p;
 }
 
 /// Sends each rank its bytes and returns all that came.
@@ -121,18 +128,17 @@ typename RigidLevel<M>::Block& RigidLevel<M>::block(std::int32_t row, std::int32
 }
 
 template <int M>
-void RigidLevel<M>::complete(const BlockSums<M>& outside) {
+void RigidLevel<M>::complete(BlockSums<M> outside) {
   if (ranks_ > 1) {
-    BlockSums<M> shared = outside;
     visit([&](std::int32_t i, std::int32_t j, const Block& sum) {
       if (j < rows()) return;
       const std::int64_t row = first() + i, column = ghosts_[static_cast<std::size_t>(j - rows())];
       if (row < column)
-        shared.at(row, column) = sum;
+        outside.at(row, column) = sum;
       else
-        shared.at(column, row) = transposed<M>(sum);
+        outside.at(column, row) = transposed<M>(sum);
     });
-    for (const auto& entry : exchanged(shared)) {
+    for (const auto& entry : exchanged(outside)) {
       const std::int32_t row = local(entry.row), column = local(entry.column);
       const bool here = row >= 0 && row < rows();
       Block& sum = here ? block(row, column) : block(column, row);

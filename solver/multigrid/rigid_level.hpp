@@ -77,7 +77,7 @@ class RigidLevel {
   /// Of an owned row and a local one, which if owned is not before it. They have to couple.
   Block& block(std::int32_t row, std::int32_t column);
   /// Adds what the ranks have summed for each other's rows, in their blocks with ghosts and `outside` of these. Collective.
-  void complete(const BlockSums<M>& outside);
+  void complete(BlockSums<M> outside);
 
   /// The next level: `group` of each row, groups numbered from 0.
   RigidLevel coarsened(std::span<const std::int32_t> group, double length) const;

@@ -68,18 +68,7 @@ struct RigidMotion {
     add_motion(from, d, inverse_length, q);
     for (int m = dim; m < M; ++m) q[m] += from[m];
   }
-  /// The matrix of add_to_part by rows: takes a motion about one centre to the same about another, which lies at d from there.
-  static std::array<double, static_cast<std::size_t>(M* M)> change(const double* d, double inverse_length) {
-    std::array<double, static_cast<std::size_t>(M* M)> matrix{};
-    for (std::size_t k = 0; k < M; ++k) {
-      std::array<double, M> from{}, to{};
-      from[k] = 1.0;
-      add_to_part(from.data(), d, inverse_length, to.data());
-      for (std::size_t i = 0; i < M; ++i) matrix[i * M + k] = to[i];
-    }
-    return matrix;
-  }
-  /// The transpose of add_to_part: q += what the forces `f` on the motions of the part do on those of the larger aggregate.
+  /// Its transpose: q += what the forces `f` on the motions of the part do on those of the larger aggregate.
   template <class S>
   static void add_from_part(const S* f, const double* d, double inverse_length, S* q) {
     add_force(f, d, inverse_length, q);
