@@ -33,11 +33,12 @@ struct Point {
         cofactor[i][k] = j[i1][k1] * j[i2][k2] - j[i1][k2] * j[i2][k1];
       }
     const double det = j[0][0] * cofactor[0][0] + j[0][1] * cofactor[0][1] + j[0][2] * cofactor[0][2];
+    const double scale = 1.0 / det;
     volume = det * E::weight;
     for (int a = 0; a < E::nodes; ++a)
       for (int i = 0; i < E::dim; ++i) {
         gradient[a][i] = 0.0;
-        for (int k = 0; k < E::dim; ++k) gradient[a][i] += cofactor[i][k] * d[at(a, k)] / det;
+        for (int k = 0; k < E::dim; ++k) gradient[a][i] += cofactor[i][k] * d[at(a, k)] * scale;
         dilatation[a][i] = gradient[a][i];
       }
   }

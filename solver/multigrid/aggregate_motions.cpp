@@ -11,11 +11,13 @@
 #include "elements/dispatch.hpp"
 #include "elements/point.hpp"
 #include "multigrid/aggregation.hpp"
+#include "multigrid/motion_products.hpp"
 
 namespace kacanov {
 
 template <int M>
-AggregateMotions<M>::AggregateMotions(const Part& part, std::span<const double> g, double size) : part_(part) {
+AggregateMotions<M>::AggregateMotions(const Part& part, std::span<const double> g, double size, std::string_view instruction_set)
+    : part_(part), add_products_(motion_products<M>(instruction_set)) {
   group_ = aggregate_nodes(part.body(), g, part.owned_nodes, size);
   owned_ = group_.empty() ? 0 : 1 + *std::max_element(group_.begin(), group_.end());
   centre_.assign(static_cast<std::size_t>(owned_), Vector3{});
@@ -100,14 +102,11 @@ RigidLevel<M> AggregateMotions<M>::make_level() {
   return level;
 }
 
-/// One summation: with S_a the strains of aggregate a's motions in the element, block (a, b) is volume · S_aᵀ D S_b.
+/// One summation, element by element.
 template <int M>
 class AggregateMotions<M>::Sums {
   using Block = typename BlockSums<M>::Block;
-  using Rows = typename RigidMotion<M>::Rows;
-  /// Strains xx, yy, zz, √2 xy, √2 yz, √2 zx, so that the product of two is that of the tensors (zz is zero in 2D), and the
-  /// dilatation that k0 acts on.
-  using Strain = std::array<std::array<double, M>, 7>;
+  using Rows = typename MotionPoint<M>::Rows;
 
  public:
   Sums(const AggregateMotions& motions, std::span<const double> g, const Space& space, RigidLevel<M>& level)
@@ -140,7 +139,7 @@ class AggregateMotions<M>::Sums {
       for (std::size_t j = 0; j < M; ++j) {
         double v = 0.0;
         for (std::size_t c = 0; c < dim; ++c)
-          for (std::size_t d = 0; d < dim; ++d) v += z[c][i] * block.value[c * dim + d] * z[d][j];
+          for (std::size_t d = 0; d < dim; ++d) v += z.row[c][i] * block.value[c * dim + d] * z.row[d][j];
         sum[i * M + j] += v;
       }
   }
@@ -151,17 +150,20 @@ class AggregateMotions<M>::Sums {
   /// Displacement of a node for each motion of its aggregate, in the space.
   Rows rows(std::int32_t node) const {
     const auto n = static_cast<std::size_t>(node);
-    Rows z = RigidMotion<M>::rows(motions_.offset(n).data(), 1.0 / motions_.length_);
+    const auto motion = RigidMotion<M>::rows(motions_.offset(n).data(), 1.0 / motions_.length_);
+    Rows z{};
+    for (std::size_t c = 0; c < dim; ++c)
+      for (std::size_t m = 0; m < M; ++m) z.row[c][m] = motion[c][m];
     if (bound_[n] == 0) return z;
     for (std::size_t c = 0; c < dim; ++c)
-      if (part_.held[n * dim + c]) z[c].fill(0.0);
+      if (part_.held[n * dim + c]) std::fill_n(z.row[c], M, 0.0);
     if (const auto held = projector_.find(node); held != projector_.end()) {
       const Rows free = z;
       for (std::size_t c = 0; c < dim; ++c)
         for (std::size_t m = 0; m < M; ++m) {
-          z[c][m] = 0.0;
+          z.row[c][m] = 0.0;
           for (std::size_t k = 0; k < dim; ++k)
-            z[c][m] += held->second(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(k)) * free[k][m];
+            z.row[c][m] += held->second(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(k)) * free.row[k][m];
         }
     }
     return z;
@@ -200,63 +202,21 @@ class AggregateMotions<M>::Sums {
       z[a] = rows(node[a]);
       for (std::size_t c = 0; c < dim; ++c) x[a * dim + c] = body_.mesh.coordinates[static_cast<std::size_t>(node[a]) * dim + c];
     }
-    struct Pair {
-      std::size_t a, b;
-      Block* sum;
-    };
-    std::array<Pair, npe*(npe + 1) / 2> pairs;
+    std::array<MotionPair, npe*(npe + 1) / 2> pairs;
     std::size_t pair_count = 0;
     for (std::size_t a = 0; a < count; ++a)
       for (std::size_t b = a; b < count; ++b) {
         const bool ordered = in_order(which[a], which[b]);
         const std::size_t row = ordered ? a : b, column = ordered ? b : a;
-        pairs[pair_count++] = {row, column, &at(which[row], which[column])};
+        pairs[pair_count++] = {row, column, at(which[row], which[column]).data()};
       }
 
     const Law& law = body_.law(e);
     const auto points = elements::points_of<E>(x, law.mean_dilatation);
     for (std::size_t q = 0; q < E::points; ++q) {
       const auto& point = points[q];
-      std::array<Strain, npe> strain, stress;
-      for (std::size_t k = 0; k < count; ++k) strain[k] = {};
-      for (std::size_t a = 0; a < npe; ++a) add_strain(point.gradient[a], point.dilatation[a], z[a], strain[local[a]]);
       const double shear = 2.0 * g_[e * static_cast<std::size_t>(E::points) + q] * point.volume, bulk = law.bulk * point.volume;
-      for (std::size_t k = 0; k < count; ++k) take_stress(strain[k], shear, bulk, stress[k]);
-      for (std::size_t p = 0; p < pair_count; ++p) add_product(strain[pairs[p].a], stress[pairs[p].b], *pairs[p].sum);
-    }
-  }
-
-  static void add_strain(const double* d, const double* mean, const Rows& z, Strain& s) {
-    const double root = std::sqrt(0.5);
-    for (std::size_t m = 0; m < M; ++m) {
-      for (std::size_t c = 0; c < dim; ++c) {
-        s[c][m] += d[c] * z[c][m];
-        s[6][m] += mean[c] * z[c][m];
-      }
-      s[3][m] += root * (d[0] * z[1][m] + d[1] * z[0][m]);
-      if constexpr (dim == 3) {
-        s[4][m] += root * (d[1] * z[2][m] + d[2] * z[1][m]);
-        s[5][m] += root * (d[2] * z[0][m] + d[0] * z[2][m]);
-      }
-    }
-  }
-
-  static void take_stress(const Strain& strain, double shear, double bulk, Strain& stress) {
-    for (std::size_t m = 0; m < M; ++m) {
-      const double mean = (strain[0][m] + strain[1][m] + strain[2][m]) / 3.0;
-      for (std::size_t c = 0; c < 3; ++c) stress[c][m] = shear * (strain[c][m] - mean);
-      for (std::size_t c = 3; c < 6; ++c) stress[c][m] = shear * strain[c][m];
-      stress[6][m] = bulk * strain[6][m];
-    }
-  }
-
-  /// sum += strainᵀ stress.
-  static void add_product(const Strain& strain, const Strain& stress, Block& sum) {
-    for (std::size_t i = 0; i < M; ++i) {
-      std::array<double, M> row{};
-      for (std::size_t k = 0; k < 7; ++k)
-        for (std::size_t j = 0; j < M; ++j) row[j] += strain[k][i] * stress[k][j];
-      for (std::size_t j = 0; j < M; ++j) sum[i * M + j] += row[j];
+      motions_.add_products_({npe, count, point.gradient[0], point.dilatation[0], z.data(), local.data(), shear, bulk}, pairs.data(), pair_count);
     }
   }
 

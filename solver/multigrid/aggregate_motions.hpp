@@ -3,8 +3,10 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 #include <vector>
 
+#include "multigrid/motion_products.hpp"
 #include "multigrid/rigid_level.hpp"
 #include "part.hpp"
 #include "preconditioner.hpp"
@@ -18,7 +20,7 @@ template <int M>
 class AggregateMotions {
  public:
   /// Some `size` nodes each. `g`: elements × points.
-  AggregateMotions(const Part& part, std::span<const double> g, double size);
+  AggregateMotions(const Part& part, std::span<const double> g, double size, std::string_view instruction_set);
 
   /// Makes rotations comparable to translations: the root mean square of the nodes' distances from their centres.
   double length() const noexcept { return length_; }
@@ -39,6 +41,7 @@ class AggregateMotions {
   Vector3 offset(std::size_t node) const;
 
   const Part& part_;
+  AddMotionProducts<M> add_products_;
   std::vector<std::int32_t> group_;   ///< of every local node: owned aggregates first, then those of other ranks as the level has them, then the rest
   std::vector<Vector3> centre_;       ///< of these aggregates
   std::vector<std::int64_t> number_;  ///< of those that are not owned, over all ranks

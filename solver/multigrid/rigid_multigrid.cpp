@@ -94,7 +94,7 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
     direct_.reset();
     fine_.build(g, blocks, space);
     if (!motions_) {
-      motions_.emplace(part_, g, options_.fine_size);
+      motions_.emplace(part_, g, options_.fine_size, options_.instruction_set);
       stages_.emplace_back(motions_->make_level());
     }
     stages_.erase(stages_.begin() + 1, stages_.end());
