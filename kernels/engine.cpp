@@ -27,9 +27,10 @@ double elastic_limit(const Law& law) {
 
 void evaluate(const void* opaque, double x, double* g, double* slope, double* energy) {
   const Law& law = *static_cast<const Law*>(opaque);
-  *g = law.secant(x);
-  *slope = law.secant_derivative(x);
-  *energy = law.energy(x);
+  const Law::Moduli moduli = law.moduli(x);
+  *g = moduli.secant;
+  *slope = moduli.derivative;
+  if (energy != nullptr) *energy = law.energy(x);
 }
 
 /// Calls run(t) for every t < threads, each by one thread where the runtime grants that many, and then, all
@@ -252,19 +253,19 @@ double Engine<Real>::pass_nonlinear(const Real* omega, Real* f, simd::Nonlinear 
 }
 
 template <class Real>
-double Engine<Real>::nonlinear(const Real* omega, Real* f, bool keep_secant, bool keep_tangent) {
-  if (keep_tangent) {
+double Engine<Real>::nonlinear(const Real* omega, Real* f, simd::Nonlinear keep) {
+  if (keep.keep_tangent) {
     tangent_.resize(simd::tangent_floats * secant_.size());
     Aligned<Real>().swap(tangent_secant_);
-  } else if (keep_secant) {
+  } else if (keep.keep_secant) {
     detach_tangent();
   }
-  return pass_nonlinear(omega, f, {keep_secant, keep_tangent, 0.0});
+  return pass_nonlinear(omega, f, keep);
 }
 
 template <class Real>
-double Engine<Real>::nonlinear(const Real* omega, Real* f) const {
-  return pass_nonlinear(omega, f, {});
+double Engine<Real>::nonlinear(const Real* omega, Real* f, bool sum_energy) const {
+  return pass_nonlinear(omega, f, {.sum_energy = sum_energy});
 }
 
 template <class Real>
@@ -310,10 +311,8 @@ void Engine<Real>::add_diagonals(const BlockRange& range, const simd::Group& gro
         const Point<E>& point = at[fan ? 0 : p];
         for (int a = 0; a < E::nodes; ++a) {
           const std::int32_t id = layout_.nodes[range.first_node + record[static_cast<std::size_t>(a)] / 4];
-          for (int r = 0; r < E::dim; ++r)
-            for (int c = 0; c < E::dim; ++c)
-              blocks[Point<E>::at(id, r) * E::dim + static_cast<std::size_t>(c)] += static_cast<Real>(
-                  point.diagonal_block(a, r, c, laws_[group.law].bulk, static_cast<double>(secant_[slot])));
+          point.add_diagonal_block(a, laws_[group.law].bulk, static_cast<double>(secant_[slot]),
+                                   blocks.data() + Point<E>::at(id, 0) * E::dim);
         }
       }
     }

@@ -40,9 +40,9 @@ class Engine {
   /// Any number of right sides, which are checked. Throws std::invalid_argument.
   void apply_many(std::span<const Real> x, std::span<Real> y, int vectors) const;
   void apply_tangent(const Real* x, Real* y) const;
-  /// Internal force at ω into f, unless that is null; what to keep. Returns the energy.
-  double nonlinear(const Real* omega, Real* f, bool keep_secant, bool keep_tangent);
-  double nonlinear(const Real* omega, Real* f) const;
+  /// Internal force at ω into f, unless that is null; what to keep. Returns the energy if that is to be summed.
+  double nonlinear(const Real* omega, Real* f, simd::Nonlinear keep);
+  double nonlinear(const Real* omega, Real* f, bool sum_energy) const;
   /// dim × dim diagonal blocks of B, row-major.
   void block_diagonal(std::span<Real> blocks) const;
   void diagonal(std::span<Real> d) const;

@@ -63,20 +63,16 @@ double yield_argument(const Law& law) {
   return law.x0;
 }
 
-/// g and dg/da at the argument a.
-struct Secant {
-  double value, derivative;
-};
-
-Secant table_secant(const Law& law, double a) {
+Law::Moduli table_moduli(const Law& law, double a) {
   const Piece piece = piece_at(law, a);
   if (piece.start_a == 0.0) return {0.5 * piece.slope, 0.0};
   const double s = piece.start_s + piece.slope * (a - piece.start_a);
   return {0.5 * s / a, 0.5 * (piece.slope - s / a) / a};
 }
 
-Secant secant_of_argument(const Law& law, double a) {
-  if (law.kind == Law::Kind::table) return table_secant(law, a);
+/// g and dg/da at the argument a.
+Law::Moduli moduli_of_argument(const Law& law, double a) {
+  if (law.kind == Law::Kind::table) return table_moduli(law, a);
   if (a <= yield_argument(law)) return {law.shear, 0.0};
   const double mu = law.shear;
   const double ratio = law.x0 / a;
@@ -166,12 +162,15 @@ double argument_of(const Law& law, double x) { return law.argument == Law::Argum
 
 }  // namespace
 
-double Law::secant(double x) const { return secant_of_argument(*this, argument_of(*this, x)).value; }
-
-double Law::secant_derivative(double x) const {
-  const double by_argument = secant_of_argument(*this, argument_of(*this, x)).derivative;
-  return argument == Argument::squared ? 2.0 * x * by_argument : by_argument;
+Law::Moduli Law::moduli(double x) const {
+  Moduli m = moduli_of_argument(*this, argument_of(*this, x));
+  if (argument == Argument::squared) m.derivative *= 2.0 * x;
+  return m;
 }
+
+double Law::secant(double x) const { return moduli(x).secant; }
+
+double Law::secant_derivative(double x) const { return moduli(x).derivative; }
 
 double Law::energy(double x) const {
   const double a = argument_of(*this, x);
@@ -184,8 +183,8 @@ double Law::energy(double x) const {
 }
 
 bool Law::softens(double x) const {
-  const double g = secant(x);
-  return g + x * secant_derivative(x) < -1e-12 * g;  // a saturated law must not soften by rounding
+  const auto [g, derivative] = moduli(x);
+  return g + x * derivative < -1e-12 * g;  // a saturated law must not soften by rounding
 }
 
 bool Law::plastic(double x) const { return argument_of(*this, x) > yield_argument(*this); }

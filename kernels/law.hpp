@@ -24,6 +24,11 @@ struct Law {
   bool mean_dilatation = false;          ///< hex8 only: k0 sees the element's mean of tr(eps) (B-bar)
   std::vector<double> table_x, table_s;  ///< table: strain norms and ‖dev tau‖, from (0, 0)
 
+  struct Moduli {
+    double secant, derivative;
+  };
+  /// g and dg/dx at once.
+  Moduli moduli(double x) const;
   /// Secant modulus g.
   double secant(double x) const;
   /// dg/dx with respect to the norm x.

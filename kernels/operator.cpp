@@ -32,7 +32,7 @@ std::size_t Operator::unknowns() const noexcept { return impl_->engine.unknowns(
 
 void Operator::update(std::span<const double> omega) {
   impl_->expect_vector(omega.size());
-  impl_->engine.nonlinear(omega.data(), nullptr, true, false);
+  impl_->engine.nonlinear(omega.data(), nullptr, {.keep_secant = true});
 }
 
 void Operator::secant(std::span<double> g) const {
@@ -66,7 +66,7 @@ void Operator::apply_many(std::span<const double> x, std::span<double> y, int ve
 
 void Operator::update_tangent(std::span<const double> omega) {
   impl_->expect_vector(omega.size());
-  impl_->engine.nonlinear(omega.data(), nullptr, true, true);
+  impl_->engine.nonlinear(omega.data(), nullptr, {.keep_secant = true, .keep_tangent = true});
 }
 
 void Operator::apply_tangent(std::span<const double> x, std::span<double> y) const {
@@ -92,18 +92,18 @@ void Operator::block_diagonal(std::span<double> blocks) const {
 void Operator::residual(std::span<const double> omega, std::span<double> f) const {
   impl_->expect_vector(omega.size());
   impl_->expect_vector(f.size());
-  std::as_const(impl_->engine).nonlinear(omega.data(), f.data());
+  std::as_const(impl_->engine).nonlinear(omega.data(), f.data(), false);
 }
 
 double Operator::energy(std::span<const double> omega) const {
   impl_->expect_vector(omega.size());
-  return std::as_const(impl_->engine).nonlinear(omega.data(), nullptr);
+  return std::as_const(impl_->engine).nonlinear(omega.data(), nullptr, true);
 }
 
 double Operator::residual_energy_update(std::span<const double> omega, std::span<double> f) {
   impl_->expect_vector(omega.size());
   impl_->expect_vector(f.size());
-  return impl_->engine.nonlinear(omega.data(), f.data(), true, false);
+  return impl_->engine.nonlinear(omega.data(), f.data(), {.keep_secant = true, .sum_energy = true});
 }
 
 std::string_view Operator::instruction_set() const noexcept {

@@ -192,10 +192,7 @@ void block_diagonal(const Body& body, std::span<const double> g, std::span<doubl
       for (std::size_t q = 0; q < E::points; ++q) {
         const Point<E>& point = points[q];
         for (int a = 0; a < E::nodes; ++a)
-          for (int i = 0; i < E::dim; ++i)
-            for (int j = 0; j < E::dim; ++j)
-              blocks[Point<E>::at(node[a], i) * E::dim + static_cast<std::size_t>(j)] +=
-                  point.diagonal_block(a, i, j, body.law(e).bulk, g[e * E::points + q]);
+          point.add_diagonal_block(a, body.law(e).bulk, g[e * E::points + q], blocks.data() + Point<E>::at(node[a], 0) * E::dim);
       }
     }
   });

@@ -19,12 +19,17 @@ struct Point {
 
   Point() = default;
   Point(const Nodal<E>& x, std::size_t q) {
-    const auto d = E::gradients(E::point[q].data());
+    constexpr bool simplex = E::nodes == E::dim + 1;  // node 0 at ξ = 0, node k + 1 at ξ_k = 1
+    [[maybe_unused]] const auto d = E::gradients(E::point[q].data());
     double j[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // j[i][k] = ∂x_i/∂ξ_k
     for (int i = 0; i < E::dim; ++i)
       for (int k = 0; k < E::dim; ++k) {
-        j[i][k] = 0.0;
-        for (int a = 0; a < E::nodes; ++a) j[i][k] += x[at(a, i)] * d[at(a, k)];
+        if constexpr (simplex) {
+          j[i][k] = x[at(k + 1, i)] - x[at(0, i)];
+        } else {
+          j[i][k] = 0.0;
+          for (int a = 0; a < E::nodes; ++a) j[i][k] += x[at(a, i)] * d[at(a, k)];
+        }
       }
     double cofactor[3][3];  // inverse = transposed cofactor / det
     for (int i = 0; i < 3; ++i)
@@ -35,20 +40,33 @@ struct Point {
     const double det = j[0][0] * cofactor[0][0] + j[0][1] * cofactor[0][1] + j[0][2] * cofactor[0][2];
     const double scale = 1.0 / det;
     volume = det * E::weight;
-    for (int a = 0; a < E::nodes; ++a)
-      for (int i = 0; i < E::dim; ++i) {
-        gradient[a][i] = 0.0;
-        for (int k = 0; k < E::dim; ++k) gradient[a][i] += cofactor[i][k] * d[at(a, k)] * scale;
-        dilatation[a][i] = gradient[a][i];
+    for (int i = 0; i < E::dim; ++i) {
+      for (int k = 0; k < 3; ++k) cofactor[i][k] *= scale;
+      if constexpr (simplex) {
+        gradient[0][i] = 0.0;
+        for (int k = 0; k < E::dim; ++k) {
+          gradient[k + 1][i] = cofactor[i][k];
+          gradient[0][i] -= cofactor[i][k];
+        }
+      } else {
+        for (int a = 0; a < E::nodes; ++a) {
+          gradient[a][i] = 0.0;
+          for (int k = 0; k < E::dim; ++k) gradient[a][i] += cofactor[i][k] * d[at(a, k)];
+        }
       }
+      for (int a = 0; a < E::nodes; ++a) dilatation[a][i] = gradient[a][i];
+    }
   }
 
-  /// Entry (i, j) of the block node a has on the diagonal of B: volume [k0 ∇ᵢ∇ⱼ + g (∇ᵢ∇ⱼ/3 + |∇|² δᵢⱼ)].
-  double diagonal_block(int a, int i, int j, double bulk, double g) const {
+  /// Adds the block (dim × dim) node a has on the diagonal of B: volume [k0 ∇ᵢ∇ⱼ + g (∇ᵢ∇ⱼ/3 + |∇|² δᵢⱼ)].
+  template <class Real>
+  void add_diagonal_block(int a, double bulk, double g, Real* block) const {
+    const double *d = gradient[a], *mean = dilatation[a], k = volume * bulk, s = volume * g, third = s * (1.0 / 3.0);
     double square = 0.0;
-    for (int k = 0; k < E::dim; ++k) square += gradient[a][k] * gradient[a][k];
-    return volume * (bulk * dilatation[a][i] * dilatation[a][j] +
-                     g * (gradient[a][i] * gradient[a][j] / 3.0 + (i == j ? square : 0.0)));
+    for (int i = 0; i < E::dim; ++i) square += d[i] * d[i];
+    for (int i = 0; i < E::dim; ++i)
+      for (int j = 0; j < E::dim; ++j)
+        block[i * E::dim + j] += static_cast<Real>(k * mean[i] * mean[j] + third * d[i] * d[j] + (i == j ? s * square : 0.0));
   }
 
   static constexpr std::size_t at(int a, int i) { return static_cast<std::size_t>(a * E::dim + i); }

@@ -19,7 +19,7 @@ struct LawView {
   double elastic;        ///< strain norm up to which g is constant
   bool mean_dilatation;  ///< k0 sees the element's mean of tr ε
   const void* law;       ///< handed back to `evaluate`
-  /// g, dg/dx and G at the strain norm x.
+  /// g and dg/dx at the strain norm x, and G unless `energy` is null.
   void (*evaluate)(const void* law, double x, double* g, double* slope, double* energy);
 };
 
@@ -66,6 +66,7 @@ inline constexpr int longest_fan = 16;
 struct Nonlinear {
   bool keep_secant = false;
   bool keep_tangent = false;
+  bool sum_energy = false;
   double energy = 0.0;  ///< added to
 };
 

@@ -180,8 +180,8 @@ struct NonlinearMaterial {
     V g = Real(law.shear) - V{}, slope = V{}, energy = Real(0.5 * law.shear) * x * x;
     for (int l = 0; l < L::width; ++l)
       if (double(x[l]) > law.elastic) {
-        double lane_g, lane_slope, lane_energy;
-        law.evaluate(law.law, double(x[l]), &lane_g, &lane_slope, &lane_energy);
+        double lane_g, lane_slope, lane_energy = 0.0;
+        law.evaluate(law.law, double(x[l]), &lane_g, &lane_slope, out.sum_energy ? &lane_energy : nullptr);
         g[l] = Real(lane_g), slope[l] = Real(lane_slope), energy[l] = Real(lane_energy);
       }
     add_energy(det * weight * (Real(0.5 * k0) * trace * trace + Real(2) * energy));
