@@ -14,6 +14,13 @@ void Preconditioner::setup(std::span<const double> g, std::span<const NodeBlock>
   seconds_ += MPI_Wtime() - start;
 }
 
+void Preconditioner::setup_again(std::span<const NodeBlock> blocks, const Space& space) {
+  const double start = MPI_Wtime();
+  rebuild(blocks, space);
+  ++setups_;
+  seconds_ += MPI_Wtime() - start;
+}
+
 std::unique_ptr<Preconditioner> make_preconditioner(SolverOptions::Preconditioner kind, const Part& part, int threads,
                                                     const std::string& instruction_set) {
   if (kind == SolverOptions::Preconditioner::elasticity) return std::make_unique<ElasticityAmg>(part);

@@ -26,6 +26,8 @@ class Preconditioner {
   /// For frozen g (elements × points of this part), the blocks of *owned* nodes (several may name one), and the space the
   /// solves live in.
   void setup(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space);
+  /// The same with the g of the last setup, at a fraction of the cost where few nodes see a change.
+  void setup_again(std::span<const NodeBlock> blocks, const Space& space);
   /// z ≈ A⁻¹ r.
   virtual void apply(std::span<const double> r, std::span<double> z) = 0;
 
@@ -37,6 +39,7 @@ class Preconditioner {
 
  private:
   virtual void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) = 0;
+  virtual void rebuild(std::span<const NodeBlock> blocks, const Space& space) = 0;
   int setups_ = 0;
   double seconds_ = 0.0;
 };

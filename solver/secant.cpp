@@ -2,8 +2,11 @@
 // The outer loop: Kacanov's method (7) round the contact loop.
 #include "secant.hpp"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <string>
 
 #include "contact/dual_admm.hpp"
@@ -90,6 +93,15 @@ double body_extent(const Part& part) {
   return extent;
 }
 
+/// To be called before a large allocation: what is free and too scattered for it goes back to the system. (Open MPI tells the allocator to
+/// keep everything.)
+void make_room(std::size_t bytes) {
+  const std::size_t before = mallinfo2().arena;
+  void* volatile place = std::malloc(bytes);  // not touched
+  std::free(place);
+  if (mallinfo2().arena > before) malloc_trim(0);
+}
+
 }  // namespace
 
 OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOptions& run)
@@ -170,7 +182,7 @@ void OuterLoop::choose_first_penalty(Result& result) {
     if (options_.penalty == SolverOptions::Penalty::automatic)
       r = normal_min > 0.0 ? first_penalty * std::sqrt(width) / normal_min : 1.0;
     penalty_ = {r, r};
-    set_up_preconditioner(penalty_blocks(), space_);
+    set_up_preconditioner(true, penalty_blocks(), space_);
     setup_penalty_ = penalty_;
     if (part_.loose_modes == 0)
       result.lambda_max = rough_lambda_max(
@@ -204,10 +216,9 @@ std::vector<NodeBlock> OuterLoop::penalty_blocks() const {
   return blocks;
 }
 
-/// Whether a new preconditioner pays: because it is `wanted`, has served its time, or g has moved too far
-/// from the one it was built with.
-bool OuterLoop::setup_pays(bool wanted) {
-  if (wanted || preconditioner_stale_) return true;
+/// Whether a new preconditioner pays: because it has served its time, or g has moved too far from the one it was built with.
+bool OuterLoop::setup_pays() {
+  if (preconditioner_stale_) return true;
   if (linear_) return false;
   const Vector now = secant();
   Vector then(now.size());
@@ -240,7 +251,9 @@ bool OuterLoop::penalty_moved() const {
          (friction_ && far(penalty_.tangential, setup_penalty_.tangential));
 }
 
-void OuterLoop::set_up_preconditioner(std::span<const NodeBlock> blocks, const Space& space) {
+/// With the g of now if the one of the last setup is worn out.
+void OuterLoop::set_up_preconditioner(bool worn, std::span<const NodeBlock> blocks, const Space& space) {
+  if (!worn) return amg_->setup_again(blocks, space);
   amg_->setup(secant(), blocks, space);
   preconditioner_stale_ = false;
   digits_per_cg_ = 0.0;
@@ -278,8 +291,9 @@ void OuterLoop::take_admm_step(Result& result, ProgressStep& line, const Residua
   // layer of elements. Later ones freeze g at the last iterate.
   op_.use_tangent(false);
   if (!first && !linear_ && !secant_current_) op_.update(state_.omega);
-  if (first ? preconditioner_stale_ : setup_pays(penalty_moved())) {
-    set_up_preconditioner(penalty_blocks(), space_);
+  const bool worn = first ? preconditioner_stale_ : setup_pays();
+  if (worn || (!first && penalty_moved())) {
+    set_up_preconditioner(worn, penalty_blocks(), space_);
     setup_penalty_ = penalty_;
     pinned_set_.clear();
   }
@@ -348,7 +362,8 @@ void OuterLoop::take_newton_step(Result& result, ProgressStep& line, const Resid
     op_.update(state_.omega);
   }
   const ActiveSet set = decide(traces_, state_, decision_share * penalty_.normal);
-  if (setup_pays(set_moved(set.held))) {
+  const bool worn = setup_pays();
+  if (worn || set_moved(set.held)) {
     pinned_set_ = set.held;
     const TraceRows rows(part_, set.held);
     Space space(part_);
@@ -356,11 +371,14 @@ void OuterLoop::take_newton_step(Result& result, ProgressStep& line, const Resid
     auto blocks = rows.pinning_blocks(diagonal_);
     const auto slip = slip_blocks(part_, set);
     blocks.insert(blocks.end(), slip.begin(), slip.end());
-    set_up_preconditioner(blocks, space);
+    set_up_preconditioner(worn, blocks, space);
   }
   // After the setup: the two do not have to fit into memory at once.
   op_.use_tangent(tangent);
-  if (tangent) op_.update(state_.omega);
+  if (tangent) {
+    make_room(5 * sizeof(float) * part_.body().secant_count());
+    op_.update(state_.omega);
+  }
   take_unbalanced();
   Vector delta(part_.unknowns());
   // Well below the tolerance, so that answers do not depend on ranks or threads to more than that.

@@ -70,12 +70,12 @@ class OuterLoop {
   void choose_first_penalty(Result& result);
   void balance_penalty(const AdmmResult& step, Result& result);
   /// With the g that the operator has frozen.
-  void set_up_preconditioner(std::span<const NodeBlock> blocks, const Space& space);
+  void set_up_preconditioner(bool worn, std::span<const NodeBlock> blocks, const Space& space);
   Vector secant() const;
   std::vector<NodeBlock> penalty_blocks() const;
   void update_residual();
   void take_unbalanced();
-  bool setup_pays(bool wanted);
+  bool setup_pays();
   bool penalty_moved() const;
   bool set_moved(std::span<const TraceChoice> set) const;
   void watch_preconditioner(double digits, std::int64_t iterations);

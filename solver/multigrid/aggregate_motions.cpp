@@ -49,10 +49,9 @@ Vector3 AggregateMotions<M>::offset(std::size_t node) const {
 template <int M>
 RigidLevel<M> AggregateMotions<M>::make_level() {
   const Halo& halo = part_.halo;
-  std::int64_t first = 0;
   const auto mine = static_cast<std::int64_t>(owned_);
-  MPI_Exscan(&mine, &first, 1, MPI_INT64_T, MPI_SUM, halo.comm);
-  if (halo.rank == 0) first = 0;
+  MPI_Exscan(&mine, &first_, 1, MPI_INT64_T, MPI_SUM, halo.comm);
+  if (halo.rank == 0) first_ = 0;
 
   // Centre and number of the aggregate of every local node, ghosts from their owners.
   const std::size_t owned_nodes = group_.size();
@@ -61,7 +60,7 @@ RigidLevel<M> AggregateMotions<M>::make_level() {
   for (std::size_t c = 0; c <= dim; ++c) {  // the number last: its vector stays
     for (std::size_t n = 0; n < owned_nodes; ++n) {
       const auto a = static_cast<std::size_t>(group_[n]);
-      number[n] = c < dim ? centre_[a][c] : static_cast<double>(first + group_[n]);
+      number[n] = c < dim ? centre_[a][c] : static_cast<double>(first_ + group_[n]);
     }
     halo.copy_from_owner(std::span<double>(number), 1);
     for (std::size_t n = owned_nodes; n < number.size() && c < dim; ++n) ghost_centre[n - owned_nodes][c] = number[n];
@@ -102,15 +101,21 @@ RigidLevel<M> AggregateMotions<M>::make_level() {
   return level;
 }
 
-/// One summation, element by element.
+/// Sums of elements and blocks, into a level or, without one, into blocks of their own.
 template <int M>
 class AggregateMotions<M>::Sums {
   using Block = typename BlockSums<M>::Block;
   using Rows = typename MotionPoint<M>::Rows;
 
  public:
-  Sums(const AggregateMotions& motions, std::span<const double> g, const Space& space, RigidLevel<M>& level)
-      : motions_(motions), part_(motions.part_), body_(part_.body()), g_(g), level_(level), bound_(part_.nodes(), 0) {
+  Sums(const AggregateMotions& motions, std::span<const double> g, RigidLevel<M>* level)
+      : motions_(motions), part_(motions.part_), body_(part_.body()), g_(g), level_(level) {}
+
+  /// Whose directions the next sums respect, and by what they are multiplied.
+  void choose(const Space& space, double sign) {
+    sign_ = sign;
+    projector_.clear();
+    bound_.assign(part_.nodes(), 0);
     for (const auto& entry : space.held_directions()) {
       Eigen::Matrix3d p = Eigen::Matrix3d::Identity();
       for (int k = 0; k < entry.count; ++k) {
@@ -130,6 +135,13 @@ class AggregateMotions<M>::Sums {
       }
     });
   }
+  void add_elements(std::span<const std::size_t> some) {
+    elements::dispatch(part_.type, [&]<class E>(E) {
+      if constexpr (static_cast<std::size_t>(E::dim) == dim) {
+        for (const std::size_t e : some) add_element<E>(e);
+      }
+    });
+  }
 
   void add_block(const NodeBlock& block) {
     const Rows z = rows(block.node);
@@ -140,11 +152,12 @@ class AggregateMotions<M>::Sums {
         double v = 0.0;
         for (std::size_t c = 0; c < dim; ++c)
           for (std::size_t d = 0; d < dim; ++d) v += z.row[c][i] * block.value[c * dim + d] * z.row[d][j];
-        sum[i * M + j] += v;
+        sum[i * M + j] += sign_ * v;
       }
   }
 
-  void complete() { level_.complete(std::move(outside_)); }
+  /// What is not in the level.
+  BlockSums<M>& others() { return others_; }
 
  private:
   /// Displacement of a node for each motion of its aggregate, in the space.
@@ -170,11 +183,13 @@ class AggregateMotions<M>::Sums {
   }
 
   bool is_owned(std::int32_t a) const { return a < motions_.owned_; }
-  /// Of one that is not owned.
-  std::int64_t number(std::int32_t a) const { return motions_.number_[static_cast<std::size_t>(a - motions_.owned_)]; }
+  bool is_in_level(std::int32_t a, std::int32_t b) const { return level_ != nullptr && (is_owned(a) || is_owned(b)); }
+  std::int64_t number(std::int32_t a) const {
+    return is_owned(a) ? motions_.first_ + a : motions_.number_[static_cast<std::size_t>(a - motions_.owned_)];
+  }
   /// Whether block (a, b) is the one that is kept, not (b, a).
-  bool in_order(std::int32_t a, std::int32_t b) const { return is_owned(a) || is_owned(b) ? a <= b : number(a) <= number(b); }
-  Block& at(std::int32_t a, std::int32_t b) { return is_owned(a) ? level_.block(a, b) : outside_.at(number(a), number(b)); }
+  bool in_order(std::int32_t a, std::int32_t b) const { return is_in_level(a, b) ? a <= b : number(a) <= number(b); }
+  Block& at(std::int32_t a, std::int32_t b) { return is_in_level(a, b) ? level_->block(a, b) : others_.at(number(a), number(b)); }
 
   /// One within a single aggregate strains nothing, unless some node is bound. (To take the diagonal blocks from the others, as a motion of
   /// the whole strains nothing, saves half of the products and loses too many digits on stretched meshes.)
@@ -215,7 +230,8 @@ class AggregateMotions<M>::Sums {
     const auto points = elements::points_of<E>(x, law.mean_dilatation);
     for (std::size_t q = 0; q < E::points; ++q) {
       const auto& point = points[q];
-      const double shear = 2.0 * g_[e * static_cast<std::size_t>(E::points) + q] * point.volume, bulk = law.bulk * point.volume;
+      const auto g = static_cast<double>(static_cast<float>(g_[e * static_cast<std::size_t>(E::points) + q]));
+      const double volume = sign_ * point.volume, shear = 2.0 * g * volume, bulk = law.bulk * volume;
       motions_.add_products_({npe, count, point.gradient[0], point.dilatation[0], z.data(), local.data(), shear, bulk}, pairs.data(), pair_count);
     }
   }
@@ -224,20 +240,49 @@ class AggregateMotions<M>::Sums {
   const Part& part_;
   Body body_;
   std::span<const double> g_;
-  RigidLevel<M>& level_;
-  BlockSums<M> outside_;  // between rows of other ranks
+  RigidLevel<M>* level_;
+  BlockSums<M> others_;
+  double sign_ = 1.0;
   std::vector<std::uint8_t> bound_;
   std::unordered_map<std::int32_t, Eigen::Matrix3d> projector_;
 };
 
 template <int M>
-void AggregateMotions<M>::sum(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space,
-                              RigidLevel<M>& level) const {
+void AggregateMotions<M>::sum(std::span<const double> g, const Held& held, RigidLevel<M>& level) const {
   level.clear();
-  Sums sums(*this, g, space, level);
+  Sums sums(*this, g, &level);
+  sums.choose(held.space, 1.0);
   sums.add_elements();
-  for (const NodeBlock& block : blocks) sums.add_block(block);
-  sums.complete();
+  for (const NodeBlock& block : held.blocks) sums.add_block(block);
+  level.complete(std::move(sums.others()));
+}
+
+template <int M>
+void AggregateMotions<M>::change(std::span<const double> g, const Held& before, const Held& after, RigidLevel<M>& level) const {
+  std::vector<std::uint8_t> moved(part_.nodes(), 0);  // nodes whose held directions are others
+  std::unordered_map<std::int32_t, const Space::HeldDirections*> gone;
+  for (const auto& entry : before.space.held_directions()) gone.emplace(entry.node, &entry);
+  for (const auto& entry : after.space.held_directions()) {
+    const auto old = gone.find(entry.node);
+    if (old != gone.end() && old->second->count == entry.count && old->second->basis == entry.basis)
+      gone.erase(old);
+    else
+      moved[static_cast<std::size_t>(entry.node)] = 1;
+  }
+  for (const auto& [node, entry] : gone) moved[static_cast<std::size_t>(node)] = 1;
+
+  const auto npe = static_cast<std::size_t>(nodes_per_element(part_.type));
+  std::vector<std::size_t> elements;
+  for (std::size_t e = 0; e < part_.element_count(); ++e)
+    if (std::any_of(&part_.elements[e * npe], &part_.elements[e * npe] + npe, [&](std::int32_t n) { return moved[static_cast<std::size_t>(n)] != 0; }))
+      elements.push_back(e);
+  Sums sums(*this, g, nullptr);
+  for (const auto& [held, sign] : {std::pair{&before, -1.0}, std::pair{&after, 1.0}}) {
+    sums.choose(held->space, sign);
+    sums.add_elements(elements);
+    for (const NodeBlock& block : held->blocks) sums.add_block(block);
+  }
+  level.add(sums.others());
 }
 
 template <int M>

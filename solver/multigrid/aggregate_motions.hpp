@@ -26,9 +26,16 @@ class AggregateMotions {
   double length() const noexcept { return length_; }
   /// The level over them with all couplings that elements make, zero so far. To be called once. Collective.
   RigidLevel<M> make_level();
-  /// Galerkin's matrix of B(g) + blocks on the motions, those of the nodes projected onto the space, into the level that make_level gave.
-  /// Collective.
-  void sum(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space, RigidLevel<M>& level) const;
+  /// What a setup holds and adds: the motions of the nodes are projected onto the space.
+  struct Held {
+    std::span<const NodeBlock> blocks;
+    const Space& space;
+  };
+  /// Galerkin's matrix of B(g) + blocks on the motions, into the level that make_level gave; g is rounded to single precision. Collective.
+  void sum(std::span<const double> g, const Held& held, RigidLevel<M>& level) const;
+  /// What `sum` gave with `before` becomes what it gives with `after` and the same g, from the elements of nodes whose held directions are
+  /// others. Collective.
+  void change(std::span<const double> g, const Held& before, const Held& after, RigidLevel<M>& level) const;
 
   /// b = what forces on the owned nodes do on the motions of owned aggregates.
   void restrict_forces(std::span<const float> force, std::span<double> b) const;
@@ -46,6 +53,7 @@ class AggregateMotions {
   std::vector<Vector3> centre_;       ///< of these aggregates
   std::vector<std::int64_t> number_;  ///< of those that are not owned, over all ranks
   std::int32_t owned_ = 0;            ///< aggregates
+  std::int64_t first_ = 0;            ///< of the owned ones, over all ranks
   double length_ = 1.0;
 };
 

@@ -14,6 +14,10 @@ FineLevel::FineLevel(const Part& part, const MultigridOptions& options)
 
 void FineLevel::build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) {
   op_.set_secant(g);
+  rebuild(blocks, space);
+}
+
+void FineLevel::rebuild(std::span<const NodeBlock> blocks, const Space& space) {
   space_ = space;
   blocks_.assign(blocks.begin(), blocks.end());
   const auto dim = static_cast<std::size_t>(part_.dim());

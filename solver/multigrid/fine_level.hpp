@@ -21,6 +21,11 @@ class FineLevel {
  public:
   FineLevel(const Part& part, const MultigridOptions& options);
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space);
+  /// With the g of the last build.
+  void rebuild(std::span<const NodeBlock> blocks, const Space& space);
+  /// What it was built with.
+  std::span<const NodeBlock> blocks() const noexcept { return blocks_; }
+  const Space& space() const noexcept { return space_; }
   void secant(std::span<double> g) const { op_.secant(g); }
   /// y = A x for x that is zero in held components.
   void multiply(std::span<const float> x, std::span<float> y) const;

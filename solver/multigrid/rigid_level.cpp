@@ -138,15 +138,29 @@ void RigidLevel<M>::complete(BlockSums<M> outside) {
       else
         outside.at(column, row) = transposed<M>(sum);
     });
-    for (const auto& entry : exchanged(outside)) {
-      const std::int32_t row = local(entry.row), column = local(entry.column);
-      const bool here = row >= 0 && row < rows();
-      Block& sum = here ? block(row, column) : block(column, row);
-      const Block add = here ? entry.block : transposed<M>(entry.block);
-      for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += add[k];
-    }
+    for (const auto& entry : exchanged(outside)) add_to_rows(entry);
   }
   invert_diagonal();
+}
+
+template <int M>
+void RigidLevel<M>::add(const BlockSums<M>& sums) {
+  const auto mine = [this](std::int64_t row) { return row >= first() && row < first() + rows(); };
+  for (const auto& entry : sums.entries())
+    if (mine(entry.row) || mine(entry.column)) add_to_rows(entry);
+  if (ranks_ > 1)
+    for (const auto& entry : exchanged(sums)) add_to_rows(entry);
+  invert_diagonal();
+}
+
+/// Of an entry with a row or a column of this rank.
+template <int M>
+void RigidLevel<M>::add_to_rows(const typename BlockSums<M>::Entry& entry) {
+  const std::int32_t row = local(entry.row), column = local(entry.column);
+  const bool here = row >= 0 && row < rows();
+  Block& sum = here ? block(row, column) : block(column, row);
+  const Block add = here ? entry.block : transposed<M>(entry.block);
+  for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += add[k];
 }
 
 template <int M>

@@ -78,6 +78,8 @@ class RigidLevel {
   Block& block(std::int32_t row, std::int32_t column);
   /// Adds what the ranks have summed for each other's rows, in their blocks with ghosts and `outside` of these. Collective.
   void complete(BlockSums<M> outside);
+  /// Adds this rank's contributions to any rows that couple. Collective.
+  void add(const BlockSums<M>& sums);
 
   /// The next level: `group` of each row, groups numbered from 0.
   RigidLevel coarsened(std::span<const std::int32_t> group, double length) const;
@@ -91,6 +93,7 @@ class RigidLevel {
 
  private:
   void send_to_owners(BlockSums<M>& sums) const;
+  void add_to_rows(const typename BlockSums<M>::Entry& entry);
   std::vector<typename BlockSums<M>::Entry> exchanged(const BlockSums<M>& sums) const;
   void build_rows(const BlockSums<M>& sums);
   void plan_exchange();

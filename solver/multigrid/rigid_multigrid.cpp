@@ -19,6 +19,7 @@ namespace kacanov {
 struct RigidMultigrid::Hierarchy {
   virtual ~Hierarchy() = default;
   virtual void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) = 0;
+  virtual void rebuild(std::span<const NodeBlock> blocks, const Space& space) = 0;
   virtual void apply(std::span<const double> r, std::span<double> z) = 0;
   virtual void secant(std::span<double> g) const = 0;
 };
@@ -98,7 +99,45 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
       stages_.emplace_back(motions_->make_level());
     }
     stages_.erase(stages_.begin() + 1, stages_.end());
-    motions_->sum(g, blocks, space, stages_.front().level);
+    motions_->sum(g, {blocks, space}, stages_.front().level);
+    complete();
+  }
+
+  void rebuild(std::span<const NodeBlock> blocks, const Space& space) override {
+    direct_.reset();
+    stages_.erase(stages_.begin() + 1, stages_.end());
+    Vector g(part_.body().secant_count());
+    fine_.secant(g);
+    motions_->change(g, {fine_.blocks(), fine_.space()}, {blocks, space}, stages_.front().level);
+    fine_.rebuild(blocks, space);
+    complete();
+  }
+
+  void secant(std::span<double> g) const override { fine_.secant(g); }
+
+  void apply(std::span<const double> r, std::span<double> z) override {
+    for (std::size_t i = 0; i < r.size(); ++i) b_[i] = static_cast<float>(r[i]);
+    fine_.hold(b_);
+    const auto multiply = [this](std::span<const float> x, std::span<float> y) { fine_.multiply(x, y); };
+    const auto scale = [this](std::span<const float> x, std::span<float> y) { fine_.scale(x, y); };
+    fine_.smoother().template smooth<float>(true, b_, x_, step_, image_, multiply, scale);
+    fine_.multiply(x_, image_);
+    for (std::size_t i = 0; i < b_.size(); ++i) image_[i] = b_[i] - image_[i];
+    fine_.project(image_);
+    auto& first = stages_.front();
+    motions_->restrict_forces(image_, first.b);
+    cycle(0);
+    motions_->prolong(first.x, options_.fine_gain, image_);
+    part_.halo.copy_from_owner(std::span<float>(image_), part_.dim());
+    fine_.project(image_);
+    for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += image_[i];
+    fine_.smoother().template smooth<float>(false, b_, x_, step_, image_, multiply, scale);
+    for (std::size_t i = 0; i < z.size(); ++i) z[i] = static_cast<double>(x_[i]);
+  }
+
+ private:
+  /// Everything below the first coarse level, and the smoothers.
+  void complete() {
     while (stages_.back().level.total() > direct_rows) {
       auto& stage = stages_.back();
       const std::int64_t before = stage.level.total();
@@ -125,29 +164,6 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
     for (auto* v : {&b_, &x_, &step_, &image_}) v->resize(part_.unknowns());
   }
 
-  void secant(std::span<double> g) const override { fine_.secant(g); }
-
-  void apply(std::span<const double> r, std::span<double> z) override {
-    for (std::size_t i = 0; i < r.size(); ++i) b_[i] = static_cast<float>(r[i]);
-    fine_.hold(b_);
-    const auto multiply = [this](std::span<const float> x, std::span<float> y) { fine_.multiply(x, y); };
-    const auto scale = [this](std::span<const float> x, std::span<float> y) { fine_.scale(x, y); };
-    fine_.smoother().template smooth<float>(true, b_, x_, step_, image_, multiply, scale);
-    fine_.multiply(x_, image_);
-    for (std::size_t i = 0; i < b_.size(); ++i) image_[i] = b_[i] - image_[i];
-    fine_.project(image_);
-    auto& first = stages_.front();
-    motions_->restrict_forces(image_, first.b);
-    cycle(0);
-    motions_->prolong(first.x, options_.fine_gain, image_);
-    part_.halo.copy_from_owner(std::span<float>(image_), part_.dim());
-    fine_.project(image_);
-    for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += image_[i];
-    fine_.smoother().template smooth<float>(false, b_, x_, step_, image_, multiply, scale);
-    for (std::size_t i = 0; i < z.size(); ++i) z[i] = static_cast<double>(x_[i]);
-  }
-
- private:
   /// stages_[k].x = a cycle from zero on stages_[k].b.
   void cycle(std::size_t k) {
     Stage<M>& stage = stages_[k];
@@ -209,6 +225,8 @@ RigidMultigrid::~RigidMultigrid() = default;
 void RigidMultigrid::build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) {
   hierarchy_->build(g, blocks, space);
 }
+
+void RigidMultigrid::rebuild(std::span<const NodeBlock> blocks, const Space& space) { hierarchy_->rebuild(blocks, space); }
 
 void RigidMultigrid::secant(std::span<double> g) const { hierarchy_->secant(g); }
 

@@ -38,6 +38,7 @@ class RigidMultigrid final : public Preconditioner {
 
  private:
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) override;
+  void rebuild(std::span<const NodeBlock> blocks, const Space& space) override;
   std::unique_ptr<Hierarchy> hierarchy_;
 };
 

@@ -49,10 +49,11 @@ double dot(const std::vector<double>& x, const std::vector<double>& y, std::size
   return sum_all(std::inner_product(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n), y.begin(), 0.0));
 }
 
-std::vector<double> wave(const RigidLevel<6>& level, double frequency) {
+template <int M>
+std::vector<double> wave(const RigidLevel<M>& level, double frequency) {
   std::vector<double> x(level.size(), 0.0);
   for (std::size_t i = 0; i < level.owned_size(); ++i)
-    x[i] = std::sin(frequency * static_cast<double>(level.first() * 6 + static_cast<std::int64_t>(i)) + 0.3);
+    x[i] = std::sin(frequency * static_cast<double>(level.first() * M + static_cast<std::int64_t>(i)) + 0.3);
   return x;
 }
 
@@ -98,8 +99,7 @@ namespace {
 /// Whether xᵀ A y on the aggregates is (Z x)ᵀ (B + blocks) (Z y) on the nodes for random motions x, y, Z into the space.
 template <int M>
 void check_galerkin(const Part& part, std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space,
-                    AggregateMotions<M>& motions, RigidLevel<M>& level) {
-  motions.sum(g, blocks, space, level);
+                    const AggregateMotions<M>& motions, const RigidLevel<M>& level) {
   const auto dim = static_cast<std::size_t>(part.dim());
   const auto random = [&](double seed) {
     Vector x(level.size());
@@ -145,11 +145,13 @@ TEST_CASE("the first coarse matrix is Galerkin's, summed once or again") {
     const auto check = [&]<int M>(std::integral_constant<int, M>) {
       AggregateMotions<M> motions(part, g, 8.0, set);
       RigidLevel<M> level = motions.make_level();
-      Space space(part);
-      check_galerkin<M>(part, g, {}, space, motions, level);
+      const Space free(part);
+      motions.sum(g, {{}, free}, level);
+      check_galerkin<M>(part, g, {}, free, motions, level);
       // Other moduli, a direction held at some nodes, and blocks.
       for (std::size_t e = 0; e < g.size(); ++e) g[e] = 0.2 + static_cast<double>(e % 5);
       std::vector<NodeBlock> blocks;
+      Space space(part);
       for (std::size_t n = 0; n < part.nodes(); ++n) {
         if (part.node_index[n] % 7 == 0) space.hold(static_cast<std::int32_t>(n), Vector3{0.6, 0.8, 0.0});
         if (part.node_index[n] % 5 != 0 || n >= static_cast<std::size_t>(part.owned_nodes)) continue;
@@ -157,7 +159,23 @@ TEST_CASE("the first coarse matrix is Galerkin's, summed once or again") {
         for (std::size_t c = 0; c < dim; ++c) block.value[c * dim + c] = 1.0 + static_cast<double>(c);
         blocks.push_back(block);
       }
+      motions.sum(g, {blocks, space}, level);
       check_galerkin<M>(part, g, blocks, space, motions, level);
+      // Some of these let go, others held: the same matrix as summed anew.
+      Space later(part);
+      for (std::size_t n = 0; n < part.nodes(); ++n) {
+        if (part.node_index[n] % 14 == 0) later.hold(static_cast<std::int32_t>(n), Vector3{0.6, 0.8, 0.0});
+        if (part.node_index[n] % 11 == 3) later.hold(static_cast<std::int32_t>(n), Vector3{0.0, 1.0, 0.0});
+        if (part.node_index[n] % 21 == 0 && part.node_index[n] % 14 != 0) later.hold(static_cast<std::int32_t>(n), Vector3{0.8, -0.6, 0.0});
+      }
+      const std::vector<NodeBlock> fewer(blocks.begin(), blocks.begin() + static_cast<std::ptrdiff_t>(blocks.size() / 2));
+      motions.change(g, {blocks, space}, {fewer, later}, level);
+      auto x = wave(level, 0.7);
+      Vector changed(level.owned_size()), summed(changed);
+      level.multiply(x, changed);
+      motions.sum(g, {fewer, later}, level);
+      level.multiply(x, summed);
+      for (std::size_t i = 0; i < summed.size(); ++i) CHECK(changed[i] == doctest::Approx(summed[i]).epsilon(1e-10).scale(10.0));
     };
     if (dim == 3)
       check(std::integral_constant<int, 6>{});
