@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <string>
 
 #include "contact/dual_admm.hpp"
@@ -37,6 +36,8 @@ constexpr int rough_iterations = 2;
 /// ADMM iterations between two looks at the penalties' balance (and, in Kacanov's method, at g) after the first step.
 /// Ten take 6 % more of them; with three, penalties that follow Coulomb's bounds kept one beam from converging.
 constexpr int balancing_iterations = 5;
+/// A step of fewer moves the penalties by less.
+constexpr double trusted_iterations = 4.0;
 /// Penalties stay between this over λ_min, which contracts errors at held rows to a quarter (more costs CG
 /// iterations), and that share of it.
 constexpr double largest_penalty = 3.0;
@@ -93,13 +94,11 @@ double body_extent(const Part& part) {
   return extent;
 }
 
-/// To be called before a large allocation: what is free and too scattered for it goes back to the system. (Open MPI tells the allocator to
-/// keep everything.)
+/// To be called before `bytes` are allocated in a few pieces. The allocator keeps what is free (Open MPI tells it to keep everything), but new
+/// pieces need not fit into old holes: before large ones the holes go back to the system. Before small ones that costs more time than it is worth.
 void make_room(std::size_t bytes) {
-  const std::size_t before = mallinfo2().arena;
-  void* volatile place = std::malloc(bytes);  // not touched
-  std::free(place);
-  if (mallinfo2().arena > before) malloc_trim(0);
+  constexpr std::size_t large = std::size_t{64} << 20;
+  if (bytes >= large) malloc_trim(0);
 }
 
 }  // namespace
@@ -195,14 +194,17 @@ void OuterLoop::choose_first_penalty(Result& result) {
   spectrum_seconds_ += MPI_Wtime() - before;
 }
 
-void OuterLoop::balance_penalty(const AdmmResult& step, Result& result) {
+void OuterLoop::balance_penalty(const AdmmResult& step, const Scales& scales, Result& result) {
   if (!(result.lambda_min > 0.0)) return;
   const double largest = largest_penalty / result.lambda_min;
+  // A step of few iterations says little.
+  const double trust = std::min(1.0, step.iterations / trusted_iterations);
   const auto balanced = [&](double r, double behind) {
-    const double factor = std::exp(std::clamp(0.5 * behind, -1.0, 1.0));
+    const double factor = std::exp(std::clamp(0.5 * trust * behind, -1.0, 1.0));
     return std::clamp(r * factor, smallest_share * largest, largest);
   };
-  penalty_ = {balanced(penalty_.normal, step.balance[0]), balanced(penalty_.tangential, step.balance[1])};
+  const auto behind = mean_behind(step.balance, scales.displacement, scales.force);
+  penalty_ = {balanced(penalty_.normal, behind[0]), balanced(penalty_.tangential, behind[1])};
   if (result.outer_iterations > 0) result.r_active = penalty_.normal;
 }
 
@@ -329,7 +331,8 @@ void OuterLoop::take_admm_step(Result& result, ProgressStep& line, const Residua
   update_residual();
   line.phase = dual ? "dual_admm" : "admm";
   line.r = penalty_.normal;
-  if (automatic && !by_step) balance_penalty(step, result);
+  // Before the first step no displacement sets a scale.
+  if (automatic && !by_step) balance_penalty(step, first ? certify().scales : scales, result);
   line.contact_iterations = step.iterations;
   line.cg_iterations = step.cg_iterations;
 }
@@ -362,6 +365,7 @@ void OuterLoop::take_newton_step(Result& result, ProgressStep& line, const Resid
     op_.update(state_.omega);
   }
   const ActiveSet set = decide(traces_, state_, decision_share * penalty_.normal);
+  make_room(2 * sizeof(double) * part_.body().secant_count());  // g of now and then
   const bool worn = setup_pays();
   if (worn || set_moved(set.held)) {
     pinned_set_ = set.held;

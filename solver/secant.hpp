@@ -68,7 +68,7 @@ class OuterLoop {
   void keep(const Result& result);
   bool stop_agreed() const;
   void choose_first_penalty(Result& result);
-  void balance_penalty(const AdmmResult& step, Result& result);
+  void balance_penalty(const AdmmResult& step, const Scales& scales, Result& result);
   /// With the g that the operator has frozen.
   void set_up_preconditioner(bool worn, std::span<const NodeBlock> blocks, const Space& space);
   Vector secant() const;

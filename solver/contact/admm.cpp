@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "contact/balance.hpp"
 #include "contact/projections.hpp"
 
 namespace kacanov {
@@ -110,7 +109,7 @@ AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work,
     StepNorm norm;
     update_multipliers(traces, state, options.r, options.relaxation, shift, dual, result.trace_residual, norm,
                        balance);
-    balance.finish(traces, options.trace_tolerance, options.force_tolerance);
+    balance.finish(traces);
     result.force_residual = solve.residual + traces.force_norm(dual);
     traces.add_force(shift, 1.0, work.residual);
     ++result.iterations;
@@ -127,7 +126,7 @@ AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work,
     if (!std::isfinite(result.force_residual)) break;
   }
   add_penalty_residual(-1.0);
-  result.balance = balance.mean();
+  result.balance = balance.samples();
   return result;
 }
 

@@ -4,10 +4,11 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <functional>
+#include <vector>
 
 #include "cg.hpp"
+#include "contact/balance.hpp"
 #include "contact/traces.hpp"
 
 namespace kacanov {
@@ -46,7 +47,7 @@ struct AdmmResult {
   double cg_digits = 0.0;           ///< decimal digits gained by all solves together
   double force_residual = 0.0;      ///< ‖linear equilibrium with the new multipliers‖
   double trace_residual = 0.0;      ///< max |Cω − φ|
-  std::array<double, 2> balance{};  ///< Balance::mean()
+  std::vector<BalanceSample> balance;  ///< of every iteration
   double step = 0.0;                ///< left side of (15), square root
   bool converged = false;
   bool solves_converged = true;

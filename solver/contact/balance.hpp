@@ -6,10 +6,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
+#include <vector>
 
 #include "contact/traces.hpp"
 
 namespace kacanov {
+
+/// Of one iteration, for N and T: the largest displacement open at A, and the norm of the force that moved at I.
+struct BalanceSample {
+  std::array<double, 2> held{}, moved{};
+};
 
 /// With A the held rows (touching, sticking, and across its slip a slipping point in 3D) and I the free ones,
 /// an error at A decays by 1/(1 + r λ(K_AA)) an iteration and one at I by r λ(K_I|A)/(1 + r λ(K_I|A)): a
@@ -34,32 +41,46 @@ class Balance {
     free_.tangential[2 * i + 1] = free[1];
   }
 
-  /// Ends an iteration. Collective. Tolerances as in AdmmOptions; an infinite one leaves the balance alone.
-  void finish(const Traces& traces, double trace_tolerance, double force_tolerance) {
+  /// Ends an iteration. Collective.
+  void finish(const Traces& traces) {
+    BalanceSample sample;
     for (std::size_t k = 0; k < 2; ++k) {
       if (k == 0)
         part_.normal = free_.normal;
       else
         part_.tangential = free_.tangential;
-      const double held = traces.halo().max_all(held_[k]) / trace_tolerance;
-      const double moved = traces.force_norm(part_) / force_tolerance;
+      sample.held[k] = traces.halo().max_all(held_[k]);
+      sample.moved[k] = traces.force_norm(part_);
       std::fill(part_.normal.begin(), part_.normal.end(), 0.0);
       std::fill(part_.tangential.begin(), part_.tangential.end(), 0.0);
       held_[k] = 0.0;
-      if (std::isinf(trace_tolerance) || !(held + moved > 0.0)) continue;
-      const double behind = std::clamp(std::log(held / moved), -most, most);
-      mean_[k] += (behind - mean_[k]) / ++count_[k];
     }
+    samples_.push_back(sample);
   }
 
-  /// Mean of log (A behind / I behind) over the iterations, for N and T; 0 where nothing was learnt.
-  std::array<double, 2> mean() const noexcept { return mean_; }
+  const std::vector<BalanceSample>& samples() const noexcept { return samples_; }
 
  private:
-  static constexpr double most = 3.0;  // where one side is empty the other cannot be infinitely behind
   ContactValues free_, part_;
-  std::array<double, 2> held_{}, mean_{};
-  std::array<int, 2> count_{};
+  std::array<double, 2> held_{};
+  std::vector<BalanceSample> samples_;
 };
+
+/// Mean of log (A behind / I behind) over the iterations, for N and T, with what the traces at A and the forces at I are to be
+/// compared with; 0 where nothing was learnt.
+inline std::array<double, 2> mean_behind(std::span<const BalanceSample> samples, double trace_scale, double force_scale) {
+  constexpr double most = 3.0;  // where one side is empty the other cannot be infinitely behind
+  std::array<double, 2> mean{};
+  if (!(trace_scale > 0.0 && force_scale > 0.0)) return mean;
+  for (std::size_t k = 0; k < 2; ++k) {
+    int count = 0;
+    for (const BalanceSample& sample : samples) {
+      const double held = sample.held[k] / trace_scale, moved = sample.moved[k] / force_scale;
+      if (!(held + moved > 0.0)) continue;
+      mean[k] += (std::clamp(std::log(held / moved), -most, most) - mean[k]) / ++count;
+    }
+  }
+  return mean;
+}
 
 }  // namespace kacanov

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 
-#include "contact/balance.hpp"
 #include "contact/projections.hpp"
 
 namespace kacanov {
@@ -168,7 +167,7 @@ AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& 
             parts.plus.tangential[k] + r.tangential * (free_trace.tangential[k] - trace.tangential[k]);
     }
     result.trace_residual = split(traces, lambda, state.bound, r, parts, step, balance);
-    balance.finish(traces, options.trace_tolerance, options.force_tolerance);
+    balance.finish(traces);
     result.force_residual = error + traces.force_norm(step);
     ++result.iterations;
     if (stop_by_step) {
@@ -192,7 +191,7 @@ AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& 
     for (std::size_t k = 2 * i; k < 2 * i + 2; ++k)
       state.phi.tangential[k] = parts.minus.tangential[k] / r.tangential;
   }
-  result.balance = balance.mean();
+  result.balance = balance.samples();
   return result;
 }
 
