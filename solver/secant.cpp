@@ -253,7 +253,6 @@ bool OuterLoop::penalty_moved() const {
          (friction_ && far(penalty_.tangential, setup_penalty_.tangential));
 }
 
-/// With the g of now if the one of the last setup is worn out.
 void OuterLoop::set_up_preconditioner(bool worn, std::span<const NodeBlock> blocks, const Space& space) {
   if (!worn) return amg_->setup_again(blocks, space);
   amg_->setup(secant(), blocks, space);

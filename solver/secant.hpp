@@ -69,7 +69,7 @@ class OuterLoop {
   bool stop_agreed() const;
   void choose_first_penalty(Result& result);
   void balance_penalty(const AdmmResult& step, const Scales& scales, Result& result);
-  /// With the g that the operator has frozen.
+  /// With the g that the operator has frozen if that of the last setup is `worn`, else with that.
   void set_up_preconditioner(bool worn, std::span<const NodeBlock> blocks, const Space& space);
   Vector secant() const;
   std::vector<NodeBlock> penalty_blocks() const;

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 #include <unordered_map>
 #include <utility>
 
@@ -128,17 +129,11 @@ class AggregateMotions<M>::Sums {
     for (const auto& entry : part_.prescribed) bound_[static_cast<std::size_t>(entry.component) / dim] = 1;
   }
 
-  void add_elements() {
+  template <class Numbers>
+  void add_elements(const Numbers& numbers) {
     elements::dispatch(part_.type, [&]<class E>(E) {
       if constexpr (static_cast<std::size_t>(E::dim) == dim) {
-        for (std::size_t e = 0; e < body_.mesh.element_count(); ++e) add_element<E>(e);
-      }
-    });
-  }
-  void add_elements(std::span<const std::size_t> some) {
-    elements::dispatch(part_.type, [&]<class E>(E) {
-      if constexpr (static_cast<std::size_t>(E::dim) == dim) {
-        for (const std::size_t e : some) add_element<E>(e);
+        for (const std::size_t e : numbers) add_element<E>(e);
       }
     });
   }
@@ -252,7 +247,7 @@ void AggregateMotions<M>::sum(std::span<const double> g, const Held& held, Rigid
   level.clear();
   Sums sums(*this, g, &level);
   sums.choose(held.space, 1.0);
-  sums.add_elements();
+  sums.add_elements(std::views::iota(std::size_t{0}, part_.element_count()));
   for (const NodeBlock& block : held.blocks) sums.add_block(block);
   level.complete(std::move(sums.others()));
 }
