@@ -18,6 +18,9 @@ void expect_size(std::size_t actual, std::size_t wanted, const char* what) {
 const Body& checked(const Body& body, const OperatorOptions& options) {
   if (options.threads < 1) throw std::invalid_argument("threads: expected at least 1");
   if (const std::string fault = mesh_fault(body.mesh); !fault.empty()) throw std::invalid_argument(fault);
+  for (const std::int32_t node : options.early)
+    if (node < 0 || static_cast<std::size_t>(node) >= body.mesh.node_count())
+      throw std::invalid_argument("early: there is no node " + std::to_string(node));
   if (body.laws.empty()) throw std::invalid_argument("laws: expected at least 1");
   if (!body.law_of_element.empty()) expect_size(body.law_of_element.size(), body.mesh.element_count(), "law_of_element");
   for (const std::uint16_t law : body.law_of_element)

@@ -38,22 +38,22 @@ void evaluate(const void* opaque, double x, double* g, double* slope, double* en
 template <class Run, class Finish>
 void in_parallel(int threads, Run&& run, Finish&& finish) {
   if (threads == 1) {
-    run(0);
-    finish(0);
+    run(std::size_t{0});
+    finish(std::size_t{0});
     return;
   }
 #pragma omp parallel num_threads(threads)
   {
-    for (int t = omp_get_thread_num(); t < threads; t += omp_get_num_threads()) run(t);
+    for (int t = omp_get_thread_num(); t < threads; t += omp_get_num_threads()) run(static_cast<std::size_t>(t));
 #pragma omp barrier
-    for (int t = omp_get_thread_num(); t < threads; t += omp_get_num_threads()) finish(t);
+    for (int t = omp_get_thread_num(); t < threads; t += omp_get_num_threads()) finish(static_cast<std::size_t>(t));
   }
 }
 
 }  // namespace
 
 template <class Real>
-Engine<Real>::Engine(const Body& body, int threads, simd::InstructionSet set)
+Engine<Real>::Engine(const Body& body, int threads, simd::InstructionSet set, std::span<const std::int32_t> early)
     : set_(set),
       kernels_(simd::kernels<Real>(set)),
       type_(body.mesh.type),
@@ -62,7 +62,7 @@ Engine<Real>::Engine(const Body& body, int threads, simd::InstructionSet set)
       unknowns_(body.unknowns()),
       points_(body.secant_count()),
       laws_(body.laws.begin(), body.laws.end()),
-      layout_(make_layout(body, kernels_.lanes, threads, 4 * sizeof(Real))) {
+      layout_(make_layout(body, kernels_.lanes, threads, 4 * sizeof(Real), early)) {
   for (const Law& law : laws_)
     views_.push_back({law.bulk, law.secant(0.0), elastic_limit(law), law.mean_dilatation, &law, evaluate});
   coordinates_.resize(4 * layout_.records());
@@ -171,18 +171,23 @@ void Engine<Real>::add_interface(Real* y, int vectors, std::size_t begin, std::s
 
 template <class Real>
 template <class LoopsOnBlock>
-double Engine<Real>::pass(const Real* x, Real* y, int vectors, LoopsOnBlock&& loops) const {
+double Engine<Real>::pass(const Real* x, Real* y, int vectors, const WhenEarly& when_early, LoopsOnBlock&& loops) const {
   reserve_scratch(vectors);
   const std::size_t stride = 4 * std::size_t{layout_.largest};
   const auto count = static_cast<std::size_t>(vectors);
   std::vector<double> sums(scratch_.size(), 0.0);
-  const auto run = [&](int thread) {
-    const auto t = static_cast<std::size_t>(thread);
+  const auto prepare = [&](std::size_t t) {
+    std::fill_n(scratch_[t].sums.begin(), 3 * static_cast<std::size_t>(layout_.slots_of_thread[t]) * count, Real(0));
+    const auto dim = static_cast<std::size_t>(dim_);
+    for (std::size_t v = 0; t == 0 && y != nullptr && v < count; ++v)
+      for (const std::int32_t node : layout_.lonely)
+        std::fill_n(y + v * unknowns_ + static_cast<std::size_t>(node) * dim, dim, Real(0));
+  };
+  const auto run = [&](std::size_t t, std::size_t begin, std::size_t end) {
     Scratch& scratch = scratch_[t];
     const auto slots = 3 * static_cast<std::size_t>(layout_.slots_of_thread[t]);
-    std::fill_n(scratch.sums.begin(), slots * count, Real(0));
-    double sum = 0.0;
-    for (std::size_t b = layout_.share[t]; b < layout_.share[t + 1]; ++b) {
+    double sum = sums[t];
+    for (std::size_t b = begin; b < end; ++b) {
       const simd::Block<Real> at = block(b);
       for (std::size_t v = 0; v < count; ++v)
         kernels_.gather(at, dim_, x + v * unknowns_, scratch.u.data() + v * stride,
@@ -194,24 +199,33 @@ double Engine<Real>::pass(const Real* x, Real* y, int vectors, LoopsOnBlock&& lo
     }
     sums[t] = sum;
   };
-  const auto finish = [&](int thread) {
-    if (y == nullptr) return;
-    const auto t = static_cast<std::size_t>(thread), team = scratch_.size();
-    const std::size_t interface_size = layout_.interface_node.size(), dim = static_cast<std::size_t>(dim_);
-    add_interface(y, vectors, interface_size * t / team, interface_size * (t + 1) / team);
-    for (std::size_t v = 0; t == 0 && v < count; ++v)
-      for (const std::int32_t node : layout_.lonely)
-        std::fill_n(y + v * unknowns_ + static_cast<std::size_t>(node) * dim, dim, Real(0));
+  const auto finish = [&](std::size_t t, std::size_t begin, std::size_t end) {
+    const std::size_t team = scratch_.size(), size = end - begin;
+    if (y != nullptr) add_interface(y, vectors, begin + size * t / team, begin + size * (t + 1) / team);
   };
-  in_parallel(threads_, run, finish);
+  // The same blocks in the same order with and without the pause, so the same bits.
+  const std::size_t interface_size = layout_.interface_node.size();
+  if (when_early) {
+    in_parallel(
+        threads_, [&](std::size_t t) { prepare(t), run(t, layout_.share[t], layout_.early[t]); },
+        [&](std::size_t t) { finish(t, 0, layout_.early_interface); });
+    when_early();
+    in_parallel(
+        threads_, [&](std::size_t t) { run(t, layout_.early[t], layout_.share[t + 1]); },
+        [&](std::size_t t) { finish(t, layout_.early_interface, interface_size); });
+  } else {
+    in_parallel(
+        threads_, [&](std::size_t t) { prepare(t), run(t, layout_.share[t], layout_.share[t + 1]); },
+        [&](std::size_t t) { finish(t, 0, interface_size); });
+  }
   double total = 0.0;
   for (const double sum : sums) total += sum;
   return total;
 }
 
 template <class Real>
-double Engine<Real>::apply(const Real* x, Real* y, int vectors, bool with_dot) const {
-  return pass(x, y, vectors, [&](const simd::Block<Real>& at, const Real* u, Real* f, std::size_t stride) {
+double Engine<Real>::apply(const Real* x, Real* y, int vectors, bool with_dot, const WhenEarly& when_early) const {
+  return pass(x, y, vectors, when_early, [&](const simd::Block<Real>& at, const Real* u, Real* f, std::size_t stride) {
     kernels_.apply(at, u, f, vectors, stride);
     double sum = 0.0;
     for (std::size_t v = 0; with_dot && v < static_cast<std::size_t>(vectors); ++v)
@@ -234,18 +248,18 @@ void Engine<Real>::apply_many(std::span<const Real> x, std::span<Real> y, int ve
 }
 
 template <class Real>
-void Engine<Real>::apply_tangent(const Real* x, Real* y) const {
-  pass(x, y, 1, [&](simd::Block<Real> at, const Real* u, Real* f, std::size_t) {
+double Engine<Real>::apply_tangent(const Real* x, Real* y, bool with_dot, const WhenEarly& when_early) const {
+  return pass(x, y, 1, when_early, [&](simd::Block<Real> at, const Real* u, Real* f, std::size_t) {
     if (!tangent_secant_.empty())
       at.secant = const_cast<Real*>(tangent_secant_.data()) + (at.secant - secant_.data());
     kernels_.apply_tangent(at, u, f);
-    return 0.0;
+    return with_dot ? kernels_.dot(at, u, f) : 0.0;
   });
 }
 
 template <class Real>
 double Engine<Real>::pass_nonlinear(const Real* omega, Real* f, simd::Nonlinear keep) const {
-  return pass(omega, f, 1, [&](const simd::Block<Real>& at, const Real* u, Real* forces, std::size_t) {
+  return pass(omega, f, 1, {}, [&](const simd::Block<Real>& at, const Real* u, Real* forces, std::size_t) {
     simd::Nonlinear out = keep;
     kernels_.nonlinear(at, u, forces, &out);
     return out.energy;

@@ -19,7 +19,7 @@ namespace kacanov {
 template <class Real>
 class Engine {
  public:
-  Engine(const Body& body, int threads, simd::InstructionSet set);
+  Engine(const Body& body, int threads, simd::InstructionSet set, std::span<const std::int32_t> early);
   // The views of the laws point into the engine.
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
@@ -35,11 +35,11 @@ class Engine {
   void get_secant(std::span<double> g) const;
   void set_secant(std::span<const double> g);
   /// y_v = B x_v for `vectors` right sides (1, 2 or 4), one after another in x and y. Returns Σ x_vᵀ y_v if
-  /// `with_dot`, else 0.
-  double apply(const Real* x, Real* y, int vectors, bool with_dot) const;
+  /// `with_dot`, else 0. `when_early` as in Operator.
+  double apply(const Real* x, Real* y, int vectors, bool with_dot, const WhenEarly& when_early = {}) const;
   /// Any number of right sides, which are checked. Throws std::invalid_argument.
   void apply_many(std::span<const Real> x, std::span<Real> y, int vectors) const;
-  void apply_tangent(const Real* x, Real* y) const;
+  double apply_tangent(const Real* x, Real* y, bool with_dot, const WhenEarly& when_early = {}) const;
   /// Internal force at ω into f, unless that is null; what to keep. Returns the energy if that is to be summed.
   double nonlinear(const Real* omega, Real* f, simd::Nonlinear keep);
   double nonlinear(const Real* omega, Real* f, bool sum_energy) const;
@@ -60,7 +60,7 @@ class Engine {
   double pass_nonlinear(const Real* omega, Real* f, simd::Nonlinear keep) const;
   /// Calls loops(block, scratch) between gathering x and scattering y, and adds up what it returns.
   template <class LoopsOnBlock>
-  double pass(const Real* x, Real* y, int vectors, LoopsOnBlock&& loops) const;
+  double pass(const Real* x, Real* y, int vectors, const WhenEarly& when_early, LoopsOnBlock&& loops) const;
   template <class E>
   void add_diagonals(const BlockRange& range, const simd::Group& group, std::span<Real> blocks) const;
   void add_interface(Real* y, int vectors, std::size_t begin, std::size_t end) const;

@@ -14,12 +14,12 @@ struct FloatOperator::Implementation {
 
   Implementation(const Body& body, const OperatorOptions& options)
       : engine(checked(body, options), options.threads,
-               simd::choose_instruction_set(options.instruction_set)) {}
+               simd::choose_instruction_set(options.instruction_set), options.early) {}
 
-  double apply(std::span<const float> x, std::span<float> y, bool with_dot) const {
+  double apply(std::span<const float> x, std::span<float> y, bool with_dot, const WhenEarly& when_early) const {
     expect_size(x.size(), engine.unknowns(), "x");
     expect_size(y.size(), engine.unknowns(), "y");
-    return engine.apply(x.data(), y.data(), 1, with_dot);
+    return engine.apply(x.data(), y.data(), 1, with_dot, when_early);
   }
 };
 
@@ -37,10 +37,12 @@ void FloatOperator::set_secant(std::span<const double> g) {
   impl_->engine.set_secant(g);
 }
 
-void FloatOperator::apply(std::span<const float> x, std::span<float> y) const { impl_->apply(x, y, false); }
+void FloatOperator::apply(std::span<const float> x, std::span<float> y, const WhenEarly& when_early) const {
+  impl_->apply(x, y, false, when_early);
+}
 
 double FloatOperator::apply_dot(std::span<const float> x, std::span<float> y) const {
-  return impl_->apply(x, y, true);
+  return impl_->apply(x, y, true, {});
 }
 
 void FloatOperator::apply_many(std::span<const float> x, std::span<float> y, int vectors) const {

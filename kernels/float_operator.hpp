@@ -24,7 +24,7 @@ class FloatOperator {
   /// Frozen g, elements × points in the caller's order, as Operator::secant hands it out. Starts as g = mu.
   void set_secant(std::span<const double> g);
   /// y = B(g) x (overwrites y).
-  void apply(std::span<const float> x, std::span<float> y) const;
+  void apply(std::span<const float> x, std::span<float> y, const WhenEarly& when_early = {}) const;
   /// y = B(g) x and returns xᵀ y, summed in double precision.
   double apply_dot(std::span<const float> x, std::span<float> y) const;
   /// As Operator::apply_many.

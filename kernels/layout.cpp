@@ -278,8 +278,26 @@ std::vector<std::size_t> share_blocks(const Units& units, std::span<const std::v
   return share;
 }
 
+/// Moves the blocks of a share that have early nodes to its front.
+void put_early_first(const Builder& builder, Layout& layout, std::span<const char> is_early,
+                     std::span<std::vector<std::uint32_t>> blocks) {
+  const auto has_early = [&](const std::vector<std::uint32_t>& members) {
+    return std::any_of(members.begin(), members.end(), [&](std::uint32_t u) {
+      const std::int32_t* nodes = builder.unit_nodes(u);
+      return std::any_of(nodes, nodes + builder.units.units[u].node_count(),
+                         [&](std::int32_t node) { return is_early[at(node)] != 0; });
+    });
+  };
+  for (std::size_t t = 0; t + 1 < layout.share.size(); ++t) {
+    const auto mine = blocks.subspan(layout.share[t], layout.share[t + 1] - layout.share[t]);
+    const auto rest = std::stable_partition(mine.begin(), mine.end(), has_early);
+    layout.early.push_back(layout.share[t] + static_cast<std::size_t>(rest - mine.begin()));
+  }
+}
+
 /// Finds the nodes of several threads. Returns each thread's slot of every node, −1 where it is alone.
 std::vector<std::vector<std::int32_t>> find_interface(const Builder& builder, Layout& layout,
+                                                      std::span<const char> is_early,
                                                       std::span<const std::vector<std::uint32_t>> blocks) {
   const std::size_t nodes = builder.body.mesh.node_count(), threads = layout.share.size() - 1;
   std::vector<std::int32_t> owner(nodes, -1);  // a thread, or −2 for several
@@ -301,13 +319,17 @@ std::vector<std::vector<std::int32_t>> find_interface(const Builder& builder, La
       if (owner[node] == -2 && slot[t][node] < 0) slot[t][node] = layout.slots_of_thread[t]++;
     });
   layout.interface_first.push_back(0);
-  for (std::size_t node = 0; node < nodes; ++node) {
-    if (owner[node] == -1) layout.lonely.push_back(static_cast<std::int32_t>(node));
-    if (owner[node] != -2) continue;
-    layout.interface_node.push_back(static_cast<std::int32_t>(node));
-    for (std::size_t t = 0; t < threads; ++t)
-      if (slot[t][node] >= 0) layout.contributions.push_back({static_cast<std::int32_t>(t), slot[t][node]});
-    layout.interface_first.push_back(static_cast<std::uint32_t>(layout.contributions.size()));
+  for (const bool early : {true, false}) {
+    for (std::size_t node = 0; node < nodes; ++node) {
+      if ((is_early[node] != 0) != early) continue;
+      if (owner[node] == -1) layout.lonely.push_back(static_cast<std::int32_t>(node));
+      if (owner[node] != -2) continue;
+      layout.interface_node.push_back(static_cast<std::int32_t>(node));
+      for (std::size_t t = 0; t < threads; ++t)
+        if (slot[t][node] >= 0) layout.contributions.push_back({static_cast<std::int32_t>(t), slot[t][node]});
+      layout.interface_first.push_back(static_cast<std::uint32_t>(layout.contributions.size()));
+    }
+    if (early) layout.early_interface = layout.interface_node.size();
   }
   return slot;
 }
@@ -320,12 +342,13 @@ std::size_t Layout::records() const noexcept {
 
 std::size_t Layout::bytes() const noexcept {
   const auto size = [](const auto& v) { return v.size() * sizeof(v[0]); };
-  return size(blocks) + size(share) + size(groups) + size(index) + size(nodes) + size(element_point) +
+  return size(blocks) + size(share) + size(early) + size(groups) + size(index) + size(nodes) + size(element_point) +
          size(shared) + size(interface_node) + size(interface_first) + size(contributions) +
          size(slots_of_thread) + size(lonely);
 }
 
-Layout make_layout(const Body& body, int lanes, int threads, std::size_t record_bytes) {
+Layout make_layout(const Body& body, int lanes, int threads, std::size_t record_bytes,
+                   std::span<const std::int32_t> early) {
   const std::vector<std::int32_t> order = node_order(body.mesh);
   Builder builder{body, make_units(body), {}, {}, {}};
   Layout& layout = builder.layout;
@@ -339,9 +362,12 @@ Layout make_layout(const Body& body, int lanes, int threads, std::size_t record_
   // A multiple of the threads, and each block worth its surface, but a block for every thread where possible.
   const auto team = static_cast<std::size_t>(threads);
   const int parts = static_cast<int>((std::max<std::size_t>(wanted, 1) + team - 1) / team * team);
-  const auto blocks = assign_units(builder, parts, partition_nodes(body.mesh, order, parts));
+  auto blocks = assign_units(builder, parts, partition_nodes(body.mesh, order, parts));
   layout.share = share_blocks(builder.units, blocks, threads);
-  const auto slot = find_interface(builder, layout, blocks);
+  std::vector<char> is_early(body.mesh.node_count(), 0);
+  for (const std::int32_t node : early) is_early[at(node)] = 1;
+  put_early_first(builder, layout, is_early, blocks);
+  const auto slot = find_interface(builder, layout, is_early, blocks);
   for (std::size_t t = 0; t + 1 < layout.share.size(); ++t) {
     std::vector<std::int32_t> state(body.mesh.node_count(), 0);
     for (std::size_t b = layout.share[t]; b < layout.share[t + 1]; ++b)

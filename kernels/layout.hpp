@@ -27,6 +27,7 @@ struct Layout {
   int lanes = 1;
   std::vector<BlockRange> blocks;
   std::vector<std::size_t> share;  ///< blocks of thread t: share[t] … share[t+1]
+  std::vector<std::size_t> early;  ///< of these, share[t] … early[t] are all that have early nodes
   std::vector<simd::Group> groups;
   std::vector<std::uint16_t> index;
   std::vector<std::int32_t> nodes;          ///< of the blocks, in the caller's numbering
@@ -40,7 +41,8 @@ struct Layout {
   struct Contribution {
     std::int32_t thread, slot;
   };
-  std::vector<std::int32_t> interface_node;
+  std::vector<std::int32_t> interface_node;  ///< early ones first
+  std::size_t early_interface = 0;
   std::vector<std::uint32_t> interface_first;
   std::vector<Contribution> contributions;
   std::vector<std::int32_t> slots_of_thread;
@@ -50,8 +52,10 @@ struct Layout {
   std::size_t bytes() const noexcept;
 };
 
-/// `record_bytes` is the size of a node record (coordinates; the block's working set is three times that).
-Layout make_layout(const Body& body, int lanes, int threads, std::size_t record_bytes);
+/// `record_bytes` is the size of a node record (coordinates; the block's working set is three times that); `early` as in
+/// OperatorOptions.
+Layout make_layout(const Body& body, int lanes, int threads, std::size_t record_bytes,
+                   std::span<const std::int32_t> early);
 
 /// Records of local nodes, coordinates relative to the middle of their block, for `layout`.
 template <class Real>

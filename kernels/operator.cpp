@@ -16,9 +16,17 @@ struct Operator::Implementation {
 
   Implementation(const Body& body, const OperatorOptions& options)
       : engine(checked(body, options), options.threads,
-               simd::choose_instruction_set(options.instruction_set)) {}
+               simd::choose_instruction_set(options.instruction_set), options.early) {}
 
   void expect_vector(std::size_t size) const { expect_size(size, engine.unknowns(), "vector"); }
+
+  double apply_tangent(std::span<const double> x, std::span<double> y, bool with_dot, const WhenEarly& when_early) {
+    if (!engine.has_tangent()) throw std::logic_error("apply_tangent before update_tangent");
+    expect_vector(x.size());
+    expect_vector(y.size());
+    ++applications;
+    return engine.apply_tangent(x.data(), y.data(), with_dot, when_early);
+  }
 };
 
 Operator::Operator(const Body& body, const OperatorOptions& options)
@@ -52,11 +60,11 @@ void Operator::apply(std::span<const double> x, std::span<double> y) const {
   impl_->engine.apply(x.data(), y.data(), 1, false);
 }
 
-double Operator::apply_dot(std::span<const double> x, std::span<double> y) const {
+double Operator::apply_dot(std::span<const double> x, std::span<double> y, const WhenEarly& when_early) const {
   impl_->expect_vector(x.size());
   impl_->expect_vector(y.size());
   ++impl_->applications;
-  return impl_->engine.apply(x.data(), y.data(), 1, true);
+  return impl_->engine.apply(x.data(), y.data(), 1, true, when_early);
 }
 
 void Operator::apply_many(std::span<const double> x, std::span<double> y, int vectors) const {
@@ -70,11 +78,11 @@ void Operator::update_tangent(std::span<const double> omega) {
 }
 
 void Operator::apply_tangent(std::span<const double> x, std::span<double> y) const {
-  if (!impl_->engine.has_tangent()) throw std::logic_error("apply_tangent before update_tangent");
-  impl_->expect_vector(x.size());
-  impl_->expect_vector(y.size());
-  ++impl_->applications;
-  impl_->engine.apply_tangent(x.data(), y.data());
+  impl_->apply_tangent(x, y, false, {});
+}
+
+double Operator::apply_tangent_dot(std::span<const double> x, std::span<double> y, const WhenEarly& when_early) const {
+  return impl_->apply_tangent(x, y, true, when_early);
 }
 
 void Operator::forget_tangent() noexcept { impl_->engine.forget_tangent(); }

@@ -169,6 +169,8 @@ TEST_CASE("residual, energy, new g and tangent at a state") {
     op.update(zero);
     op.update_tangent(omega);
     reference::apply_tangent(body, omega, x, expected);
+    const double xy = op.apply_tangent_dot(x, y);
+    CHECK(xy == doctest::Approx(test::dot(x, y)).epsilon(1e-12));
     op.apply_tangent(x, y);
     CHECK(difference(y, expected) < 3e-7);  // the rank-one term is kept in single precision
     const auto first = y;
@@ -217,6 +219,72 @@ TEST_CASE("the same bits in every run, on a mesh of many blocks") {
     }
     CHECK(op.bytes() > 0);
   }
+}
+
+TEST_CASE("early nodes are done when they are said to be, and nothing else changes") {
+  auto mesh = meshes::box(ElementType::tet4, {48, 24, 24}, {2, 1, 1});
+  meshes::jitter(mesh, 0.1, 71);
+  meshes::shuffle(mesh, 72);
+  // What another process might share: one end, and a node anywhere.
+  std::vector<std::int32_t> early{17};
+  for (std::size_t node = 0; node < mesh.view().node_count(); ++node)
+    if (mesh.coordinates[3 * node] < 0.1) early.push_back(static_cast<std::int32_t>(node));
+  const auto owned = test::with_every_law(std::move(mesh), 73);
+  const Body body = owned.body();
+  const auto x = test::random_vector(body.unknowns(), 74), g = some_secant(body.secant_count()), omega = some_state(body, 75);
+  const std::vector<float> xf(x.begin(), x.end());
+  std::vector<double> expected(x.size());
+  reference::apply(body, g, x, expected);
+  for (const bool with : {true, false})
+    for (const int threads : {1, 2, 3, 5}) {
+      CAPTURE(with);
+      CAPTURE(threads);
+      // Without early nodes the call comes before anything else: it still has to come.
+      const OperatorOptions options{threads, {}, with ? std::span<const std::int32_t>(early) : std::span<const std::int32_t>{}};
+      Operator op(body, options);
+      FloatOperator single(body, options);
+      op.set_secant(g);
+      single.set_secant(g);
+      const auto check = [&](auto& y, const auto& apply) {
+        using Values = std::remove_reference_t<decltype(y)>;
+        apply(WhenEarly{});
+        const Values whole = y;
+        Values seen;
+        std::fill(y.begin(), y.end(), 99);
+        apply([&] {
+          CHECK(seen.empty());
+          seen = y;
+        });
+        CHECK(y == whole);
+        REQUIRE(seen.size() == y.size());
+        std::size_t ready = 0;
+        for (const std::int32_t node : early)
+          for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t i = 3 * static_cast<std::size_t>(node) + k;
+            ready += seen[i] == whole[i] ? 1 : 0;
+          }
+        CHECK(ready == (with ? 3 * early.size() : 0));
+        std::size_t rest = 0;
+        for (std::size_t i = 0; i < y.size(); ++i) rest += seen[i] != whole[i] ? 1 : 0;
+        CHECK(rest > y.size() / 8);  // most of the body is worked out later
+        apply([&] { y[51] += 1; });
+        CHECK(y[51] == (with ? whole[51] + 1 : whole[51]));
+      };
+      std::vector<double> y(x.size());
+      std::vector<float> yf(x.size());
+      double dot = 0.0;
+      check(y, [&](const WhenEarly& ready) { dot = op.apply_dot(x, y, ready); });
+      CHECK(dot == doctest::Approx(test::dot(x, expected)).epsilon(1e-12));
+      op.apply(x, y);
+      CHECK(difference(y, expected) < 1e-13);
+      check(yf, [&](const WhenEarly& ready) { single.apply(xf, yf, ready); });
+      op.update_tangent(omega);
+      check(y, [&](const WhenEarly& ready) { dot = op.apply_tangent_dot(x, y, ready); });
+      op.apply_tangent(x, y);
+      CHECK(dot == doctest::Approx(test::dot(x, y)).epsilon(1e-12));
+    }
+  const std::vector<std::int32_t> nowhere{static_cast<std::int32_t>(body.mesh.node_count())};
+  CHECK_THROWS_WITH_AS(Operator(body, {1, {}, nowhere}), doctest::Contains("early"), std::invalid_argument);
 }
 
 TEST_CASE("bad input is named") {
