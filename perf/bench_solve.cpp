@@ -156,8 +156,8 @@ Json measure(const Part& part, DistributedOperator& op, const std::string& kind,
   part.add_load(work.residual);
   const Traces traces(part);
   const auto apply = [&](std::span<const double> p, std::span<double> q) {
-    op.apply(p, q);
-    traces.add_penalty({penalty, 0.0}, p, q);
+    const double share = op.apply(p, q);
+    return share + traces.add_penalty({penalty, 0.0}, p, q);
   };
   const auto precondition = [&](std::span<const double> r, std::span<double> z) { amg->apply(r, z); };
   const double before = MPI_Wtime();

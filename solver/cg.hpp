@@ -31,8 +31,8 @@ struct CgWork {
 };
 
 /// Solves P A P δ = P r for the correction of x. On entry `work.residual` holds b − A x (projected here); on exit the
-/// residual of the new x. `apply(p, q)`: q = A p, consistent, not projected. `precondition(r, z)`: z ≈ A⁻¹ r,
-/// symmetric positive definite, consistent. A breakdown (pᵀAp not positive: the operator has lost its
+/// residual of the new x. `apply(p, q)`: q = A p, consistent, not projected; it returns this rank's share of pᵀq, which it has at hand.
+/// `precondition(r, z)`: z ≈ A⁻¹ r, symmetric positive definite, consistent. A breakdown (pᵀAp not positive: the operator has lost its
 /// definiteness) ends the loop unconverged.
 template <class Apply, class Precondition>
 CgResult conjugate_gradients(const Space& space, const Apply& apply, const Precondition& precondition,
@@ -49,7 +49,7 @@ CgResult conjugate_gradients(const Space& space, const Apply& apply, const Preco
   while (!result.converged && result.iterations < options.max_iterations) {
     precondition(r, z);
     space.project(z);
-    const double rz_new = space.dot(r, z);
+    const double rz_new = space.dot(r, z);  // not before: of a residual of rounding errors, nothing is left in the space
     if (!(rz_new > 0.0) || !std::isfinite(rz_new)) return result;
     if (result.iterations == 0) {
       for (std::size_t i = 0; i < n; ++i) p[i] = z[i];
@@ -58,17 +58,11 @@ CgResult conjugate_gradients(const Space& space, const Apply& apply, const Preco
       for (std::size_t i = 0; i < n; ++i) p[i] = z[i] + beta * p[i];
     }
     rz = rz_new;
-    apply(p, q);
+    const double pq = space.sum_all(apply(p, q));
     space.project(q);
-    const double pq = space.dot(p, q);
     if (!(pq > 0.0) || !std::isfinite(pq)) return result;
-    const double alpha = rz / pq;
-    for (std::size_t i = 0; i < n; ++i) {
-      x[i] += alpha * p[i];
-      r[i] -= alpha * q[i];
-    }
+    result.residual = space.advance(rz / pq, p, q, x, r);
     ++result.iterations;
-    result.residual = space.norm(r);
     result.converged = result.residual <= target;
   }
   return result;

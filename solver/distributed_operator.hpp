@@ -17,17 +17,20 @@ namespace kacanov {
 class DistributedOperator {
  public:
   DistributedOperator(const Part& part, int threads, const std::string& instruction_set)
-      : part_(&part), local_(part.body(), OperatorOptions{threads, instruction_set}) {}
+      : part_(&part),
+        local_(part.body(), OperatorOptions{threads, instruction_set, part.halo.shared}),
+        sum_(part.halo, part.dim()) {}
 
-  /// y = B(g) x, or B_T x between use_tangent(true) and use_tangent(false).
-  void apply(std::span<const double> x, std::span<double> y) {
-    if (tangent_)
-      local_.apply_tangent(x, y);
-    else
-      local_.apply(x, y);
-    part_->halo.sum(y, part_->dim());
+  /// y = B(g) x, or B_T x between use_tangent(true) and use_tangent(false). Sums for shared nodes travel while the rest is
+  /// worked out. Returns this rank's share of xᵀ y.
+  double apply(std::span<const double> x, std::span<double> y) {
+    WhenEarly send;
+    if (part_->halo.ranks > 1) send = [&, this] { sum_.start(y); };
+    const double share = tangent_ ? local_.apply_tangent_dot(x, y, send) : local_.apply_dot(x, y, send);
+    sum_.finish(y);
     ++applications_;
     if (watcher_) watcher_();
+    return share;
   }
   /// Called after every application, on all ranks alike. It may throw to leave whatever loops go on.
   void watch(std::function<void()> watcher) { watcher_ = std::move(watcher); }
@@ -73,6 +76,7 @@ class DistributedOperator {
  private:
   const Part* part_;
   Operator local_;
+  SharedSum<double> sum_;
   bool tangent_ = false;
   std::uint64_t applications_ = 0;
   std::function<void()> watcher_;

@@ -2,6 +2,7 @@
 // Sums over nodes shared by several ranks, and copies from their owners.
 #include "halo.hpp"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace kacanov {
@@ -10,104 +11,118 @@ namespace {
 MPI_Datatype type_of(double) { return MPI_DOUBLE; }
 MPI_Datatype type_of(float) { return MPI_FLOAT; }
 
-/// Starts one receive and one send a neighbour and waits for all. Buffers are sized by the lists.
+/// Copies x at `nodes` to `to` and returns where that ends.
 template <class S>
-class Exchange {
- public:
-  Exchange(const Halo& halo, int components, bool owner_to_ghost)
-      : halo_(halo), width_(static_cast<std::size_t>(components)) {
-    std::size_t out = 0, in = 0;
-    for (const auto& n : halo.neighbours) {
-      out += (owner_to_ghost ? n.send : n.shared).size();
-      in += (owner_to_ghost ? n.receive : n.shared).size();
-    }
-    send_.resize(out * width_);
-    receive_.resize(in * width_);
-    requests_.reserve(2 * halo.neighbours.size());
-  }
-
-  void post(std::span<const S> x, bool owner_to_ghost) {
-    std::size_t in = 0, out = 0;
-    for (const auto& n : halo_.neighbours) {
-      const auto& receive_list = owner_to_ghost ? n.receive : n.shared;
-      const auto& send_list = owner_to_ghost ? n.send : n.shared;
-      const std::size_t in_count = receive_list.size() * width_, out_count = send_list.size() * width_;
-      MPI_Request request;
-      if (in_count > 0) {
-        MPI_Irecv(receive_.data() + in, static_cast<int>(in_count), type_of(S{}), n.rank, 0, halo_.comm, &request);
-        requests_.push_back(request);
-      }
-      S* to = send_.data() + out;
-      for (const std::int32_t node : send_list)
-        for (std::size_t c = 0; c < width_; ++c) *to++ = x[static_cast<std::size_t>(node) * width_ + c];
-      if (out_count > 0) {
-        MPI_Isend(send_.data() + out, static_cast<int>(out_count), type_of(S{}), n.rank, 0, halo_.comm, &request);
-        requests_.push_back(request);
-      }
-      in += in_count;
-      out += out_count;
-    }
-    MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
-  }
-
-  const S* received() const noexcept { return receive_.data(); }
-
- private:
-  const Halo& halo_;
-  std::size_t width_;
-  std::vector<S> send_, receive_;
-  std::vector<MPI_Request> requests_;
-};
+S* pack(std::span<const std::int32_t> nodes, std::size_t width, std::span<const S> x, S* to) {
+  for (const std::int32_t node : nodes)
+    for (std::size_t c = 0; c < width; ++c) *to++ = x[static_cast<std::size_t>(node) * width + c];
+  return to;
+}
 
 template <class S>
-void sum_shared(const Halo& halo, std::span<S> x, int components) {
-  const auto& neighbours = halo.neighbours;
-  const auto& shared = halo.shared;
-  const int rank = halo.rank;
-  if (neighbours.empty()) return;
-  const auto width = static_cast<std::size_t>(components);
-  Exchange<S> exchange(halo, components, false);
-  exchange.post(x, false);
+MPI_Request start_receive(const Halo& halo, int from, std::span<S> to) {
+  MPI_Request request;
+  MPI_Irecv(to.data(), static_cast<int>(to.size()), type_of(S{}), from, 0, halo.comm, &request);
+  return request;
+}
 
-  std::vector<S> own(shared.size() * width);
-  for (std::size_t i = 0; i < shared.size(); ++i)
-    for (std::size_t c = 0; c < width; ++c) {
-      S& entry = x[static_cast<std::size_t>(shared[i]) * width + c];
-      own[i * width + c] = entry;
-      entry = 0.0;
-    }
-  const auto add_own = [&] {
-    for (std::size_t i = 0; i < shared.size(); ++i)
-      for (std::size_t c = 0; c < width; ++c)
-        x[static_cast<std::size_t>(shared[i]) * width + c] += own[i * width + c];
-  };
-  const S* from = exchange.received();
-  bool own_added = false;
-  for (const auto& n : neighbours) {
-    if (!own_added && n.rank > rank) {
-      add_own();
-      own_added = true;
-    }
-    for (const std::int32_t node : n.shared)
-      for (std::size_t c = 0; c < width; ++c) x[static_cast<std::size_t>(node) * width + c] += *from++;
-  }
-  if (!own_added) add_own();
+template <class S>
+MPI_Request start_send(const Halo& halo, int to, std::span<const S> from) {
+  MPI_Request request;
+  MPI_Isend(from.data(), static_cast<int>(from.size()), type_of(S{}), to, 0, halo.comm, &request);
+  return request;
+}
+
+void wait_for(std::vector<MPI_Request>& requests) {
+  MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
+  requests.clear();
 }
 
 template <class S>
 void copy_shared(const Halo& halo, std::span<S> x, int components) {
-  const auto& neighbours = halo.neighbours;
-  if (neighbours.empty()) return;
+  if (halo.neighbours.empty()) return;
   const auto width = static_cast<std::size_t>(components);
-  Exchange<S> exchange(halo, components, true);
-  exchange.post(x, true);
-  const S* from = exchange.received();
-  for (const auto& n : neighbours)
+  std::size_t out = 0, in = 0;
+  for (const auto& n : halo.neighbours) {
+    out += n.send.size() * width;
+    in += n.receive.size() * width;
+  }
+  std::vector<S> send(out), receive(in);
+  std::vector<MPI_Request> requests;
+  S *to = send.data(), *from = receive.data();
+  for (const auto& n : halo.neighbours) {
+    const std::span<S> incoming(from, n.receive.size() * width);
+    if (!incoming.empty()) requests.push_back(start_receive(halo, n.rank, incoming));
+    from += incoming.size();
+    S* const end = pack<S>(n.send, width, x, to);
+    if (end != to) requests.push_back(start_send(halo, n.rank, std::span<const S>(to, end)));
+    to = end;
+  }
+  wait_for(requests);
+  from = receive.data();
+  for (const auto& n : halo.neighbours)
     for (const std::int32_t node : n.receive)
       for (std::size_t c = 0; c < width; ++c) x[static_cast<std::size_t>(node) * width + c] = *from++;
 }
 
+template <class S>
+void sum_shared(const Halo& halo, std::span<S> x, int components) {
+  if (halo.neighbours.empty()) return;
+  SharedSum<S> sum(halo, components);
+  sum.start(x);
+  sum.finish(x);
+}
+
 }  // namespace
+
+template <class S>
+SharedSum<S>::SharedSum(const Halo& halo, int components) : halo_(&halo), width_(static_cast<std::size_t>(components)) {
+  std::size_t count = 0;
+  for (const auto& n : halo.neighbours) count += n.shared.size() * width_;
+  send_.resize(count);
+  receive_.resize(count);
+  own_.resize(halo.shared.size() * width_);
+}
+
+template <class S>
+void SharedSum<S>::start(std::span<const S> x) {
+  S *to = send_.data(), *from = receive_.data();
+  for (const auto& n : halo_->neighbours) {
+    const std::span<S> incoming(from, n.shared.size() * width_);
+    requests_.push_back(start_receive(*halo_, n.rank, incoming));
+    from += incoming.size();
+    S* const end = pack<S>(n.shared, width_, x, to);
+    requests_.push_back(start_send(*halo_, n.rank, std::span<const S>(to, end)));
+    to = end;
+  }
+}
+
+template <class S>
+void SharedSum<S>::finish(std::span<S> x) {
+  if (halo_->neighbours.empty()) return;
+  const auto& shared = halo_->shared;
+  pack<S>(shared, width_, x, own_.data());
+  for (const std::int32_t node : shared) std::fill_n(&x[static_cast<std::size_t>(node) * width_], width_, S{0});
+  wait_for(requests_);
+  const auto add = [&](std::span<const std::int32_t> nodes, const S* from) {
+    for (const std::int32_t node : nodes)
+      for (std::size_t c = 0; c < width_; ++c) x[static_cast<std::size_t>(node) * width_ + c] += *from++;
+    return from;
+  };
+  const S* from = receive_.data();
+  bool own_added = false;
+  for (const auto& n : halo_->neighbours) {
+    if (!own_added && n.rank > halo_->rank) {
+      add(shared, own_.data());
+      own_added = true;
+    }
+    from = add(n.shared, from);
+  }
+  if (!own_added) add(shared, own_.data());
+}
+
+template class SharedSum<double>;
+template class SharedSum<float>;
 
 void Halo::sum(std::span<double> x, int components) const { sum_shared(*this, x, components); }
 void Halo::sum(std::span<float> x, int components) const { sum_shared(*this, x, components); }

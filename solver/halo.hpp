@@ -25,7 +25,7 @@ struct Halo {
 
   /// Adds up the contributions of all ranks, in rank order so that every copy ends with the same bits.
   void sum(std::span<double> x, int components) const;
-  void sum(std::span<float> x, int components) const;
+  void sum(std::span<float> x, int components) const;  ///< see also SharedSum
   /// Overwrites ghosts with their owners' values.
   void copy_from_owner(std::span<double> x, int components) const;
   void copy_from_owner(std::span<float> x, int components) const;
@@ -37,5 +37,26 @@ struct Halo {
   bool any(bool here) const { return max_all(here ? 1.0 : 0.0) > 0.0; }
   std::int64_t sum_all(std::int64_t value) const;
 };
+
+/// Halo::sum in two halves, for what can be computed while messages travel. Keeps its buffers from one sum to the next.
+template <class S>
+class SharedSum {
+ public:
+  /// The halo has to outlive it.
+  SharedSum(const Halo& halo, int components);
+  /// Sends x at the shared nodes.
+  void start(std::span<const S> x);
+  /// Adds what the others sent, in rank order. x at the shared nodes must be what it was at the start.
+  void finish(std::span<S> x);
+
+ private:
+  const Halo* halo_;
+  std::size_t width_;
+  std::vector<S> send_, receive_, own_;
+  std::vector<MPI_Request> requests_;
+};
+
+extern template class SharedSum<double>;
+extern template class SharedSum<float>;
 
 }  // namespace kacanov

@@ -131,7 +131,7 @@ OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOp
                         [](const Law& law) { return law.kind == Law::Kind::linear; });
   if (options.stop == SolverOptions::Stop::paper) volume_ = lumped_volume(part);
   update_bounds();
-  problem_ = {&space_, &traces_, [this](std::span<const double> x, std::span<double> y) { op_.apply(x, y); },
+  problem_ = {&space_, &traces_, [this](std::span<const double> x, std::span<double> y) { return op_.apply(x, y); },
               [this](std::span<const double> r, std::span<double> z) { amg_->apply(r, z); }};
   if (run.stop_requested) {
     op_.watch([this] {

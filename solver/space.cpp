@@ -53,13 +53,7 @@ void Space::project(std::span<double> x) const { project_out(*part_, held_, x); 
 void Space::project(std::span<float> x) const { project_out(*part_, held_, x); }
 
 double Space::local_dot(std::span<const double> x, std::span<const double> y) const {
-  // Eight sums: the compiler may not reorder one.
-  std::array<double, 8> s{};
-  const std::size_t n = part_->owned_unknowns(), whole = n - n % 8;
-  for (std::size_t i = 0; i < whole; i += 8)
-    for (std::size_t k = 0; k < 8; ++k) s[k] += x[i + k] * y[i + k];
-  for (std::size_t i = whole; i < n; ++i) s[0] += x[i] * y[i];
-  return ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]));
+  return eight_sums(part_->owned_unknowns(), [&](std::size_t i) { return x[i] * y[i]; });
 }
 
 double Space::dot(std::span<const double> x, std::span<const double> y) const {
@@ -73,6 +67,18 @@ std::array<double, 2> Space::dot2(std::span<const double> a, std::span<const dou
   std::array<double, 2> s{local_dot(a, b), local_dot(c, d)};
   part_->halo.sum_all(s);
   return s;
+}
+
+double Space::advance(double alpha, std::span<const double> p, std::span<const double> q, std::span<double> x,
+                      std::span<double> r) const {
+  const auto step = [&](std::size_t i) {
+    x[i] += alpha * p[i];
+    r[i] -= alpha * q[i];
+    return r[i] * r[i];
+  };
+  const double square = eight_sums(part_->owned_unknowns(), step);
+  for (std::size_t i = part_->owned_unknowns(); i < x.size(); ++i) step(i);
+  return std::sqrt(sum_all(square));
 }
 
 double Space::max_abs(std::span<const double> x) const {

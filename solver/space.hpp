@@ -13,6 +13,17 @@ namespace kacanov {
 
 using Vector = std::vector<double>;
 
+/// Σ term(i) over i < n, as eight sums: the compiler may not reorder one.
+template <class Term>
+double eight_sums(std::size_t n, const Term& term) {
+  std::array<double, 8> s{};
+  const std::size_t whole = n - n % 8;
+  for (std::size_t i = 0; i < whole; i += 8)
+    for (std::size_t k = 0; k < 8; ++k) s[k] += term(i + k);
+  for (std::size_t i = whole; i < n; ++i) s[0] += term(i);
+  return ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]));
+}
+
 /// Displacements of a part that vanish in held components and, optionally, in some directions of some nodes
 /// (contact rows held during a spectrum or active-set solve).
 class Space {
@@ -43,6 +54,10 @@ class Space {
   std::array<double, 2> dot2(std::span<const double> a, std::span<const double> b, std::span<const double> c,
                              std::span<const double> d) const;
   double max_abs(std::span<const double> x) const;
+  /// Over all ranks, of what each has.
+  double sum_all(double share) const { return part_->halo.sum_all(share); }
+  /// A step of conjugate gradients in one pass: x += α p, r −= α q. Returns ‖r‖.
+  double advance(double alpha, std::span<const double> p, std::span<const double> q, std::span<double> x, std::span<double> r) const;
 
  private:
   double local_dot(std::span<const double> x, std::span<const double> y) const;

@@ -152,12 +152,16 @@ CgResult Spectrum::solve(const Space& space, std::span<double> x, CgWork& work, 
                          double r0) {
   Vector rows(penalised != nullptr ? penalised->owned() : 0), image(penalised != nullptr ? x.size() : 0);
   const auto apply = [&](std::span<const double> p, std::span<double> q) {
-    op_->apply(p, q);
-    if (penalised == nullptr) return;
+    double share = op_->apply(p, q);
+    if (penalised == nullptr) return share;
     penalised->apply(p, rows);
-    for (double& v : rows) v *= r0;
+    for (double& v : rows) {
+      share += r0 * v * v;
+      v *= r0;
+    }
     penalised->transpose(rows, image);
     for (std::size_t i = 0; i < image.size(); ++i) q[i] += image[i];
+    return share;
   };
   const auto precondition = [&](std::span<const double> r, std::span<double> z) { amg_->apply(r, z); };
   // Products good to a fiftieth of what is asked of the eigenvalue.
@@ -267,7 +271,7 @@ double rough_lambda_max(const Part& part, DistributedOperator& op, Preconditione
   rows.transpose(trace, work.residual);
   space.project(work.residual);
   const Vector force = work.residual;
-  const auto apply = [&](std::span<const double> p, std::span<double> q) { op.apply(p, q); };
+  const auto apply = [&](std::span<const double> p, std::span<double> q) { return op.apply(p, q); };
   const auto precondition = [&](std::span<const double> r, std::span<double> z) { amg.apply(r, z); };
   conjugate_gradients(space, apply, precondition, u, work, CgOptions{0.0, 0.3, steps});
   // B u = force − residual.

@@ -3,24 +3,43 @@
 #include "contact/active_set.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace kacanov {
 namespace {
 
-/// Force of the slipping points: y −= Tᵀ M (ψŝ + k (I − ŝŝᵀ) w); without `constant`, only the part linear in w.
-void subtract_slip_force(const Traces& traces, const ActiveSet& set, const Vector& tangential, bool constant,
-                         std::span<double> y) {
+/// k (I − ŝŝᵀ) w of a slipping point: what its friction resists turning with.
+std::array<double, 2> turning_force(const ActiveSet& set, std::size_t i, const double* w) {
+  const double* s = &set.slip_direction[2 * i];
+  const double along = w[0] * s[0] + w[1] * s[1];
+  return {set.slip_stiffness[i] * (w[0] - along * s[0]), set.slip_stiffness[i] * (w[1] - along * s[1])};
+}
+
+/// Force of the slipping points at the traces w: y −= Tᵀ M (ψŝ + k (I − ŝŝᵀ) w).
+void subtract_slip_force(const Traces& traces, const ActiveSet& set, const Vector& tangential, std::span<double> y) {
   ContactValues force(traces.size());
   for (std::size_t i = 0; i < traces.size(); ++i) {
-    const double* w = &tangential[2 * i];
-    const double* s = &set.slip_direction[2 * i];
-    const double along = w[0] * s[0] + w[1] * s[1];
-    for (std::size_t k = 0; k < 2; ++k)
-      force.tangential[2 * i + k] =
-          (constant ? set.slip_force[2 * i + k] : 0.0) + set.slip_stiffness[i] * (w[k] - along * s[k]);
+    const auto turning = turning_force(set, i, &tangential[2 * i]);
+    for (std::size_t k = 0; k < 2; ++k) force.tangential[2 * i + k] = set.slip_force[2 * i + k] + turning[k];
   }
   traces.add_force(force, -1.0, y);
+}
+
+/// y += Tᵀ M k (I − ŝŝᵀ) T x. Returns this rank's share of what xᵀ y grows by.
+double add_slip_stiffness(const Traces& traces, const ActiveSet& set, std::span<const double> x, std::span<double> y) {
+  ContactValues trace(traces.size());
+  traces.evaluate(x, trace);
+  double share = 0.0;
+  for (std::size_t i = 0; i < traces.size(); ++i) {
+    double* w = &trace.tangential[2 * i];
+    const auto turning = turning_force(set, i, w);
+    if (i < traces.owned()) share += traces.points()[i].mass * (w[0] * turning[0] + w[1] * turning[1]);
+    trace.normal[i] = 0.0;
+    std::copy(turning.begin(), turning.end(), w);
+  }
+  traces.add_force(trace, 1.0, y);
+  return share;
 }
 
 }  // namespace
@@ -90,14 +109,11 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
   for (const double v : closing) furthest = std::max(furthest, std::abs(v));
   furthest = part.halo.max_all(furthest);
 
-  ContactValues trace(traces.size());
   const auto apply = [&](std::span<const double> p, std::span<double> q) {
-    problem.apply(p, q);
-    traces.evaluate(p, trace);
-    for (double& v : trace.tangential) v = -v;
-    subtract_slip_force(traces, set, trace.tangential, false, q);
+    const double share = problem.apply(p, q);
+    return share + add_slip_stiffness(traces, set, p, q);
   };
-  subtract_slip_force(traces, set, state.trace.tangential, true, work.residual);
+  subtract_slip_force(traces, set, state.trace.tangential, work.residual);
   rows.lift(closing, delta);
   if (furthest > 0.0) {
     apply(delta, work.image);
@@ -109,8 +125,7 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
   step.cg_iterations = solve.iterations;
   step.solved = solve.converged;
   if (solve.iterations > 0 && solve.residual > 0.0) step.cg_digits = std::log10(solve.first_residual / solve.residual);
-  apply(delta, work.image);
-  step.curvature = space.dot(delta, work.image);
+  step.curvature = space.sum_all(apply(delta, work.image));
   return step;
 }
 
@@ -118,7 +133,7 @@ void recover_multipliers(const Part& part, const Traces& traces, const ActiveSet
                          ContactState& state) {
   const TraceRows rows(part, set.held);
   // Forces at held rows are what is left once the slipping points have taken theirs.
-  subtract_slip_force(traces, set, state.trace.tangential, true, residual);
+  subtract_slip_force(traces, set, state.trace.tangential, residual);
   Vector force(rows.local());
   rows.lift_transpose(residual, force);
   std::size_t at = 0;

@@ -77,8 +77,8 @@ AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work,
   const auto dim = static_cast<std::size_t>(space.part().dim());
   const bool stop_by_step = options.step_tolerance > 0.0;
   const auto apply = [&](std::span<const double> p, std::span<double> q) {
-    problem.apply(p, q);
-    traces.add_penalty(options.r, p, q);
+    const double share = problem.apply(p, q);
+    return share + traces.add_penalty(options.r, p, q);
   };
 
   ContactValues shift(traces.size()), dual(traces.size());

@@ -25,7 +25,8 @@ struct ContactState {
 struct LinearProblem {
   const Space* space = nullptr;
   const Traces* traces = nullptr;
-  std::function<void(std::span<const double>, std::span<double>)> apply;         ///< y = B x, consistent
+  /// y = B x, consistent; returns this rank's share of xᵀ y.
+  std::function<double(std::span<const double>, std::span<double>)> apply;
   std::function<void(std::span<const double>, std::span<double>)> precondition;  ///< z ≈ (B + r CᵀMC)⁻¹ r
 };
 

@@ -99,8 +99,8 @@ AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& 
   const Penalty& r = options.r;
   const bool stop_by_step = options.step_tolerance > 0.0;
   const auto apply = [&](std::span<const double> p, std::span<double> q) {
-    problem.apply(p, q);
-    traces.add_penalty(r, p, q);
+    const double share = problem.apply(p, q);
+    return share + traces.add_penalty(r, p, q);
   };
   AdmmResult result;
   Balance balance(m);

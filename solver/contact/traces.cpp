@@ -39,18 +39,22 @@ void Traces::add_force(const ContactValues& lambda, double factor, std::span<dou
   }
 }
 
-void Traces::add_penalty(const Penalty& r, std::span<const double> x, std::span<double> y) const {
+double Traces::add_penalty(const Penalty& r, std::span<const double> x, std::span<double> y) const {
   const auto dim = static_cast<std::size_t>(part_->dim());
-  for (const auto& point : points()) {
+  double share = 0.0;
+  for (std::size_t i = 0; i < size(); ++i) {
+    const auto& point = points()[i];
     const double* u = x.data() + static_cast<std::size_t>(point.node) * dim;
     double* f = y.data() + static_cast<std::size_t>(point.node) * dim;
-    const double n = r.normal * point.mass * inner(point.trace, u, dim);
-    for (std::size_t c = 0; c < dim; ++c) f[c] += n * point.trace[c];
-    for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k) {
-      const double t = r.tangential * point.mass * inner(point.tangent[k], u, dim);
-      for (std::size_t c = 0; c < dim; ++c) f[c] += t * point.tangent[k][c];
-    }
+    const auto add = [&](double penalty, const Vector3& row) {
+      const double value = inner(row, u, dim), force = penalty * point.mass * value;
+      for (std::size_t c = 0; c < dim; ++c) f[c] += force * row[c];
+      if (i < owned()) share += force * value;
+    };
+    add(r.normal, point.trace);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k) add(r.tangential, point.tangent[k]);
   }
+  return share;
 }
 
 double Traces::force_norm(const ContactValues& lambda) const {

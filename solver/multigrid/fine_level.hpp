@@ -29,8 +29,9 @@ class FineLevel {
   void secant(std::span<double> g) const { op_.secant(g); }
   /// y = A x for x that is zero in held components.
   void multiply(std::span<const float> x, std::span<float> y) const;
-  /// y = D⁻¹ x, D the dim × dim diagonal blocks of A.
-  void scale(std::span<const float> x, std::span<float> y) const;
+  /// Chebyshev::smooth's step, with D the dim × dim diagonal blocks of A.
+  void relax(const ChebyshevStep<float>& weights, std::span<const float> b, std::span<const float> image, std::span<float> step,
+             std::span<float> x) const;
   /// Zero in held components.
   void hold(std::span<float> x) const;
   /// Onto the space of the setup.
@@ -40,10 +41,14 @@ class FineLevel {
   const Chebyshev& smoother() const noexcept { return smoother_; }
 
  private:
+  void add_blocks(std::span<const NodeBlock> blocks, std::span<const float> x, std::span<float> y) const;
+
   const Part& part_;
   FloatOperator op_;
+  mutable SharedSum<float> sum_;
   Space space_;
   std::vector<NodeBlock> blocks_;
+  std::size_t shared_blocks_ = 0;  ///< the first of them belong to nodes that other ranks have too
   std::vector<float> inverse_;  ///< nodes × 6 (3 in 2D): the upper triangles of the inverse blocks, by rows
   Chebyshev smoother_;
 };

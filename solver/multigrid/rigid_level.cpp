@@ -182,12 +182,16 @@ void RigidLevel<M>::build_rows(const BlockSums<M>& sums) {
   column_.resize(static_cast<std::size_t>(start_.back()));
   block_.resize(column_.size());
   auto next = start_;
-  for (const auto& entry : sums.entries()) {
-    const bool row = mine(entry.row);
-    if (!row && !mine(entry.column)) continue;
-    const auto k = static_cast<std::size_t>(next[static_cast<std::size_t>((row ? entry.row : entry.column) - begin)]++);
-    column_[k] = local(row ? entry.column : entry.row);
-    block_[k] = row ? entry.block : transposed<M>(entry.block);
+  for (const bool ghosts : {false, true}) {
+    for (const auto& entry : sums.entries()) {
+      const bool row = mine(entry.row), column = mine(entry.column);
+      if (row == column ? !row || ghosts : !ghosts) continue;
+      const auto k = static_cast<std::size_t>(next[static_cast<std::size_t>((row ? entry.row : entry.column) - begin)]++);
+      column_[k] = local(row ? entry.column : entry.row);
+      block_[k] = row ? entry.block : transposed<M>(entry.block);
+    }
+    for (std::int32_t i = 0; i < rows() && !ghosts; ++i)
+      if (const auto at = static_cast<std::size_t>(i); next[at] < start_[at + 1]) edge_.push_back({i, next[at]});
   }
 }
 
@@ -233,23 +237,20 @@ void RigidLevel<M>::invert_diagonal() {
   }
 }
 
+/// To be waited for before ghosts are read or the next product is started.
 template <int M>
-void RigidLevel<M>::fill_ghosts(std::span<double> x) const {
-  if (neighbours_.empty()) return;
-  std::vector<MPI_Request> requests;
-  std::vector<std::vector<double>> sent;
-  sent.reserve(neighbours_.size());
+void RigidLevel<M>::start_filling_ghosts(std::span<double> x) const {
+  std::size_t count = 0;
+  for (const auto& n : neighbours_) count += n.send.size() * M;
+  sent_.resize(count);
+  double* to = sent_.data();
   for (const auto& n : neighbours_) {
     MPI_Irecv(x.data() + static_cast<std::size_t>(n.first_ghost) * M, n.ghosts * M, MPI_DOUBLE, n.rank, 4, comm_,
-              &requests.emplace_back());
-    auto& buffer = sent.emplace_back();
-    buffer.reserve(n.send.size() * M);
-    for (const std::int32_t row : n.send)
-      buffer.insert(buffer.end(), x.begin() + static_cast<std::ptrdiff_t>(row) * M,
-                    x.begin() + static_cast<std::ptrdiff_t>(row + 1) * M);
-    MPI_Isend(buffer.data(), static_cast<int>(buffer.size()), MPI_DOUBLE, n.rank, 4, comm_, &requests.emplace_back());
+              &requests_.emplace_back());
+    double* const from = to;
+    for (const std::int32_t row : n.send) to = std::copy_n(x.data() + static_cast<std::size_t>(row) * M, M, to);
+    MPI_Isend(from, static_cast<int>(to - from), MPI_DOUBLE, n.rank, 4, comm_, &requests_.emplace_back());
   }
-  MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
 }
 
 namespace {
@@ -275,7 +276,7 @@ inline void add_transposed(const double* block, const double* x, double* y) {
 
 template <int M>
 void RigidLevel<M>::multiply(std::span<double> x, std::span<double> y) const {
-  fill_ghosts(x);
+  start_filling_ghosts(x);
   const auto mine = y.first(owned_size());
   std::fill(mine.begin(), mine.end(), 0.0);
   const std::size_t owned = centres_.size();
@@ -284,20 +285,32 @@ void RigidLevel<M>::multiply(std::span<double> x, std::span<double> y) const {
     const double* here = x.data() + i * M;
     for (auto k = static_cast<std::size_t>(start_[i]); k < static_cast<std::size_t>(start_[i + 1]); ++k) {
       const auto j = static_cast<std::size_t>(column_[k]);
+      if (j >= owned) break;
       add_product<M>(block_[k].data(), x.data() + j * M, sum.data());
-      if (j < owned && j != i) add_transposed<M>(block_[k].data(), here, y.data() + j * M);
+      if (j != i) add_transposed<M>(block_[k].data(), here, y.data() + j * M);
     }
     for (std::size_t m = 0; m < M; ++m) y[i * M + m] += sum[m];
+  }
+  MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
+  requests_.clear();
+  for (const Edge& edge : edge_) {
+    const auto i = static_cast<std::size_t>(edge.row);
+    for (auto k = static_cast<std::size_t>(edge.first); k < static_cast<std::size_t>(start_[i + 1]); ++k)
+      add_product<M>(block_[k].data(), x.data() + static_cast<std::size_t>(column_[k]) * M, y.data() + i * M);
   }
 }
 
 template <int M>
-void RigidLevel<M>::scale(std::span<const double> x, std::span<double> y) const {
-  for (std::size_t i = 0; i < centres_.size(); ++i) {
-    std::array<double, M> sum{};
-    add_product<M>(inverse_diagonal_[i].data(), x.data() + i * M, sum.data());
-    std::copy(sum.begin(), sum.end(), y.begin() + static_cast<std::ptrdiff_t>(i * M));
-  }
+void RigidLevel<M>::relax(const ChebyshevStep<double>& weights, std::span<const double> b, std::span<const double> image,
+                          std::span<double> step, std::span<double> x) const {
+  weights.visit([&]<bool zero, bool first>() {
+    for (std::size_t i = 0; i < centres_.size(); ++i) {
+      std::array<double, M> residual, scaled{};
+      for (std::size_t m = 0; m < M; ++m) residual[m] = zero ? b[i * M + m] : b[i * M + m] - image[i * M + m];
+      add_product<M>(inverse_diagonal_[i].data(), residual.data(), scaled.data());
+      for (std::size_t m = 0; m < M; ++m) weights.take<zero, first>(scaled[m], step[i * M + m], x[i * M + m]);
+    }
+  });
 }
 
 template <int M>
@@ -395,12 +408,12 @@ WeightedGraph RigidLevel<M>::couplings() const {
 
 template <int M>
 double RigidLevel<M>::largest_eigenvalue() const {
-  std::vector<double> start(size());
+  std::vector<double> start(size()), unused(size());
   for (std::size_t i = 0; i < owned_size(); ++i)
     start[i] = scatter(static_cast<std::uint64_t>(first()) * M + i);
   return kacanov::largest_eigenvalue(
       start, [this](std::span<double> x, std::span<double> y) { multiply(x, y); },
-      [this](std::span<const double> x, std::span<double> y) { scale(x, y); },
+      [&](std::span<const double> x, std::span<double> y) { relax({0.0, 1.0, true, true}, x, x, unused, y); },
       [this](const std::vector<double>& x, const std::vector<double>& y) {
         double sum = 0.0;
         for (std::size_t i = 0; i < owned_size(); ++i) sum += x[i] * y[i];

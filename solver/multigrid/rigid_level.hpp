@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "halo.hpp"
+#include "multigrid/chebyshev.hpp"
 #include "multigrid/rigid_motion.hpp"
 
 namespace kacanov {
@@ -56,8 +57,9 @@ class RigidLevel {
 
   /// y = A x on owned rows; fills x's ghosts.
   void multiply(std::span<double> x, std::span<double> y) const;
-  /// y = D⁻¹ x on owned rows, D the block diagonal.
-  void scale(std::span<const double> x, std::span<double> y) const;
+  /// Chebyshev::smooth's step on owned rows, with D the block diagonal.
+  void relax(const ChebyshevStep<double>& weights, std::span<const double> b, std::span<const double> image, std::span<double> step,
+             std::span<double> x) const;
   /// Largest eigenvalue of D⁻¹A, by a few power steps, somewhat from above.
   double largest_eigenvalue() const;
 
@@ -105,16 +107,22 @@ class RigidLevel {
   std::vector<std::int64_t> first_;  ///< of each rank, and the total
   std::vector<Vector3> centres_;
   std::vector<std::int64_t> ghosts_;  ///< rows of other ranks in `column_`, ascending
-  /// Of owned row i: entries whose column is i, a later owned row (which the symmetric one follows from), or a ghost.
+  /// Of owned row i: entries whose column is i, a later owned row (which the symmetric one follows from), or, behind these, a ghost.
   std::vector<std::int32_t> start_, column_;
   std::vector<Block> block_, inverse_diagonal_;
+  struct Edge {
+    std::int32_t row = 0, first = 0;  ///< where its ghosts' entries begin
+  };
+  std::vector<Edge> edge_;  ///< rows with ghosts
   struct Neighbour {
     int rank = 0;
     std::vector<std::int32_t> send;
     std::int32_t first_ghost = 0, ghosts = 0;
   };
   std::vector<Neighbour> neighbours_;
-  void fill_ghosts(std::span<double> x) const;
+  mutable std::vector<double> sent_;
+  mutable std::vector<MPI_Request> requests_;
+  void start_filling_ghosts(std::span<double> x) const;
 };
 
 extern template class RigidLevel<3>;

@@ -119,8 +119,9 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
     for (std::size_t i = 0; i < r.size(); ++i) b_[i] = static_cast<float>(r[i]);
     fine_.hold(b_);
     const auto multiply = [this](std::span<const float> x, std::span<float> y) { fine_.multiply(x, y); };
-    const auto scale = [this](std::span<const float> x, std::span<float> y) { fine_.scale(x, y); };
-    fine_.smoother().template smooth<float>(true, b_, x_, step_, image_, multiply, scale);
+    const auto relax = [this](const auto& weights, std::span<const float> b, std::span<const float> image, std::span<float> step,
+                              std::span<float> x) { fine_.relax(weights, b, image, step, x); };
+    fine_.smoother().template smooth<float>(true, b_, x_, step_, image_, multiply, relax);
     fine_.multiply(x_, image_);
     for (std::size_t i = 0; i < b_.size(); ++i) image_[i] = b_[i] - image_[i];
     fine_.project(image_);
@@ -131,7 +132,7 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
     part_.halo.copy_from_owner(std::span<float>(image_), part_.dim());
     fine_.project(image_);
     for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += image_[i];
-    fine_.smoother().template smooth<float>(false, b_, x_, step_, image_, multiply, scale);
+    fine_.smoother().template smooth<float>(false, b_, x_, step_, image_, multiply, relax);
     for (std::size_t i = 0; i < z.size(); ++i) z[i] = static_cast<double>(x_[i]);
   }
 
@@ -174,9 +175,10 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
       return;
     }
     const auto multiply = [&](std::span<const double>, std::span<double> y) { stage.level.multiply(stage.x, y); };
-    const auto scale = [&](std::span<const double> x, std::span<double> y) { stage.level.scale(x, y); };
+    const auto relax = [&](const auto& weights, std::span<const double> b, std::span<const double> image, std::span<double> step,
+                           std::span<double> x) { stage.level.relax(weights, b, image, step, x); };
     const auto smooth = [&](bool from_zero) {
-      stage.smoother.template smooth<double>(from_zero, first(stage.b), first(stage.x), first(stage.step), first(stage.image), multiply, scale);
+      stage.smoother.template smooth<double>(from_zero, first(stage.b), first(stage.x), first(stage.step), first(stage.image), multiply, relax);
     };
     smooth(true);
     Stage<M>& next = stages_[k + 1];

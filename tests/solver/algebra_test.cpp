@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Dense>
+#include <numeric>
 
 #include "preconditioner.hpp"
 #include "cg.hpp"
@@ -191,8 +192,8 @@ TEST_CASE("multigrid is a symmetric positive definite map, and CG solves with it
     const CgResult solve = conjugate_gradients(
         space,
         [&](std::span<const double> p, std::span<double> q) {
-          op.apply(p, q);
-          traces.add_penalty({r, 0.0}, p, q);
+          const double share = op.apply_dot(p, q);
+          return share + traces.add_penalty({r, 0.0}, p, q);
         },
         [&](std::span<const double> p, std::span<double> q) { amg->apply(p, q); }, u, work, {0.0, 1e-12, 200});
     CHECK(solve.converged);
@@ -213,6 +214,7 @@ TEST_CASE("CG stops where the operator is not positive") {
   Vector u(part.unknowns(), 0.0);
   const auto minus = [](std::span<const double> p, std::span<double> q) {
     for (std::size_t i = 0; i < p.size(); ++i) q[i] = -p[i];
+    return -std::inner_product(p.begin(), p.end(), p.begin(), 0.0);
   };
   const auto same = [](std::span<const double> p, std::span<double> q) {
     std::copy(p.begin(), p.end(), q.begin());

@@ -39,7 +39,7 @@ struct Setting {
         TraceRows(part, std::vector<TraceChoice>(points, {false, true})).penalty_blocks(r.tangential);
     blocks.insert(blocks.end(), more.begin(), more.end());
     amg->setup(secant, blocks, space);
-    linear = {&space, &traces, [this](std::span<const double> x, std::span<double> y) { op.apply(x, y); },
+    linear = {&space, &traces, [this](std::span<const double> x, std::span<double> y) { return op.apply(x, y); },
               [this](std::span<const double> x, std::span<double> y) { amg->apply(x, y); }};
   }
 

@@ -74,8 +74,9 @@ int iterations(const Part& part, double stretch) {
   const CgResult solve = conjugate_gradients(
       space,
       [&](std::span<const double> p, std::span<double> q) {
-        op.apply(p, q);
+        const double share = op.apply_dot(p, q);
         part.halo.sum(q, part.dim());
+        return share;
       },
       [&](std::span<const double> p, std::span<double> q) { amg->apply(p, q); }, u, work, {0.0, 1e-8, 400});
   CHECK(solve.converged);
@@ -248,5 +249,38 @@ TEST_CASE("iterations hardly depend on the mesh: size, element, stretch, contras
     CHECK(large <= 1.5 * small);
     CHECK(iterations(beam(fine / 2, 30.0, type), 1.0) <= 5 * small);
     CHECK(iterations(beam(fine / 2, 3.0, type), 0.1) <= 3 * small);
+  }
+}
+
+TEST_CASE("the smoother damps eigenvectors by Chebyshev's polynomial") {
+  // A diagonal A and D = 2: from x with b = 0, T_k((θ − a/2)/δ)/T_k(θ/δ) of every entry is left.
+  const std::vector<double> a{0.02, 0.3, 0.9, 1.4, 2.2};
+  const std::vector<double> zero(a.size(), 0.0);
+  for (const int degree : {1, 2, 3, 5}) {
+    const Chebyshev smoother{degree, 0.1, 1.1};
+    std::vector<double> x(a.size(), 1.0), step(a.size(), 7.0), image(a.size());
+    const auto multiply = [&](std::span<const double> p, std::span<double> q) {
+      for (std::size_t i = 0; i < a.size(); ++i) q[i] = a[i] * p[i];
+    };
+    const auto relax = [&](const ChebyshevStep<double>& weights, std::span<const double> b, std::span<const double> ax,
+                           std::span<double> steps, std::span<double> to) {
+      weights.visit([&]<bool from_zero, bool first>() {
+        for (std::size_t i = 0; i < a.size(); ++i)
+          weights.take<from_zero, first>((from_zero ? b[i] : b[i] - ax[i]) / 2.0, steps[i], to[i]);
+      });
+    };
+    smoother.smooth<double>(false, zero, x, step, image, multiply, relax);
+    const auto left = [&](double entry) {
+      const auto chebyshev = [degree](double s) {
+        return std::abs(s) <= 1.0 ? std::cos(degree * std::acos(s))
+                                  : std::pow(s < 0 ? -1.0 : 1.0, degree) * std::cosh(degree * std::acosh(std::abs(s)));
+      };
+      return chebyshev((0.6 - entry / 2.0) / 0.5) / chebyshev(0.6 / 0.5);
+    };
+    for (std::size_t i = 0; i < a.size(); ++i) CHECK(x[i] == doctest::Approx(left(a[i])).epsilon(1e-12));
+    // From zero, whatever x and step hold: A⁻¹ b, less what is left of it.
+    std::vector<double> b(a.size(), 3.0);
+    smoother.smooth<double>(true, b, x, step, image, multiply, relax);
+    for (std::size_t i = 0; i < a.size(); ++i) CHECK(x[i] == doctest::Approx(3.0 / a[i] * (1.0 - left(a[i]))).epsilon(1e-12));
   }
 }

@@ -88,6 +88,26 @@ TEST_CASE("owned nodes are numbered on through the ranks, and ghosts know their 
   CHECK(number == expected);
 }
 
+TEST_CASE("a sum in two halves is the whole one, whatever happens elsewhere in between") {
+  const Problem problem = beam_problem(3, 2);
+  Part part = over_all_ranks(problem);
+  SharedSum<float> sum(part.halo, 3);
+  for (int turn = 0; turn < 3; ++turn) {
+    std::vector<float> x(3 * part.nodes()), whole;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      x[i] = static_cast<float>(signature(part.node_index[i / 3], static_cast<int>(i % 3)) * (1.0 + 0.3 * part.halo.rank + turn));
+    whole = x;
+    part.halo.sum(whole, 3);
+    sum.start(x);
+    std::vector<char> is_shared(part.nodes(), 0);
+    for (const std::int32_t node : part.halo.shared) is_shared[static_cast<std::size_t>(node)] = 1;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      if (is_shared[i / 3] == 0) x[i] = whole[i] = static_cast<float>(turn);
+    sum.finish(x);
+    CHECK(x == whole);
+  }
+}
+
 TEST_CASE("halo sums count the ranks that share a node, with the same bits on each") {
   const Problem problem = beam_problem(3, 2);
   Part part = over_all_ranks(problem);
