@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
 kacanov_test(kernels
-  SOURCES kernels/main.cpp kernels/law_test.cpp kernels/reference_test.cpp kernels/operator_test.cpp kernels/locking_test.cpp
+  SOURCES kernels/law_test.cpp kernels/reference_test.cpp kernels/operator_test.cpp kernels/locking_test.cpp
     ../perf/meshes.cpp
   LIBRARIES kacanov_kernels)

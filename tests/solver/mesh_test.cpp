@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Boundary, checks and generated boxes: closed surfaces, volumes by the divergence theorem, errors that name
 // elements.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A mesh written in every form of Gmsh's format comes back as it was; a corrupt one is refused or harmless.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <algorithm>

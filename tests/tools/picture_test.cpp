@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The pictures: well-formed XML, areas that are kept, marks in their place, images that can be decoded.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <array>

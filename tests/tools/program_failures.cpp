@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What breaks a run of the real program from outside: a rank that is killed, no memory, a full disk. One message, no hang, exit code 3.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <string>
@@ -49,7 +48,7 @@ void check_nothing_half(const Workplace& place) {
 
 /// Needs some 250 MB more than the program does for nothing; no contact, so that a step is a solve.
 [[maybe_unused]] nlohmann::json large_block() {
-  return nlohmann::json::parse(R"({
+  return parsed(R"({
     "mesh": {"box": {"size": [2, 1, 1], "cells": [100, 50, 50], "element": "hex8"}},
     "material": [{"on": "all", "young": 1.0, "poisson": 0.3}],
     "boundary": [{"on": "left", "displacement": [0, 0, 0]}, {"on": "top", "traction": [0, 0, -0.001]}],

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What `kacanov check` says of the memory, against what runs take; and what it refuses.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <sstream>

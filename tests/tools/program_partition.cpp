@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cases split once into files, by the real program: the same bits as without, on 1 to 8 ranks; bad files refused on all ranks.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <string>
@@ -14,7 +13,7 @@ namespace {
 
 /// A 3D beam with friction, where mesh nodes, facets and groups are renumbered for the boundary.
 nlohmann::json solid_beam() {
-  return nlohmann::json::parse(R"({
+  return parsed(R"({
     "mesh": {"box": {"size": [4, 1, 1], "cells": [8, 3, 3], "element": "tet4"}},
     "material": [{"on": "all", "young": 1.0, "poisson": 0.3,
                   "law": {"type": "table", "points": [[0, 0], [0.002, 0.00154], [1, 0.08]]}}],

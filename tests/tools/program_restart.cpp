@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Interrupted runs of the real program: what they leave, and going on from there.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <cmath>

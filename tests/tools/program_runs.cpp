@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Whole runs of the real program: exit codes, files, keys, the same answer on one rank and two.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -187,7 +186,7 @@ TEST_CASE("spectrum prints r* with its bounds, as text and as JSON") {
   CHECK(text.output.find("lambda_min") != std::string::npos);
   const Outcome outcome = place.run("spectrum beam.json --json --tolerance 1e-8");
   REQUIRE(outcome.exit_code == 0);
-  const nlohmann::json json = nlohmann::json::parse(outcome.output);
+  const nlohmann::json json = parsed(outcome.output);
   REQUIRE(json["spectrum"].size() == 2);
   for (const nlohmann::json& entry : json["spectrum"]) {
     const double low = entry["lambda_min"], high = entry["lambda_max"], r = entry["r_star"];

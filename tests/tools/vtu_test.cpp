@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The VTK files, read back by a small reader: what goes in comes out, in VTK's order and layout.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 #include <signal.h>
 #include <sys/resource.h>
