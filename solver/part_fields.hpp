@@ -2,6 +2,7 @@
 // The fields of a part as one stream of bytes, the same for messages between ranks and for files.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <type_traits>
 
@@ -17,8 +18,14 @@ concept Sequence = requires(T values) {
   values.resize(1);
 };
 
+/// Numbers, arrays of them and structs of integers, none with holes, whose bytes nobody sets.
+template <class T>
+inline constexpr bool without_holes = std::is_arithmetic_v<T> || std::is_enum_v<T> || std::has_unique_object_representations_v<T>;
+template <class T, std::size_t n>
+inline constexpr bool without_holes<std::array<T, n>> = without_holes<T>;
+
 /// Writes values to a sink with `write(const void* data, std::size_t bytes)`. A sequence goes as its length, 8 bytes, and its
-/// entries; numbers and structs of numbers as they lie in memory; everything else by its exchange_fields.
+/// entries; what is without holes as it lies in memory, so that equal values are equal bytes; everything else by its exchange_fields.
 template <class Sink>
 class FieldWriter {
  public:
@@ -28,11 +35,11 @@ class FieldWriter {
     if constexpr (Sequence<T>) {
       using Entry = typename T::value_type;
       (*this)(static_cast<std::uint64_t>(value.size()));
-      if constexpr (std::is_trivially_copyable_v<Entry>)
+      if constexpr (without_holes<Entry>)
         sink_.write(value.data(), value.size() * sizeof(Entry));
       else
         for (const Entry& entry : value) (*this)(entry);
-    } else if constexpr (std::is_trivially_copyable_v<T>) {
+    } else if constexpr (without_holes<T>) {
       sink_.write(&value, sizeof(T));
     } else {
       exchange_fields(value, *this);
@@ -53,7 +60,7 @@ class FieldReader {
   void operator()(T& value) const {
     if constexpr (Sequence<T>) {
       using Entry = typename T::value_type;
-      constexpr bool plain = std::is_trivially_copyable_v<Entry>;
+      constexpr bool plain = without_holes<Entry>;
       std::uint64_t entries = 0;
       (*this)(entries);
       source_.expect(entries, plain ? sizeof(Entry) : 1);
@@ -62,7 +69,7 @@ class FieldReader {
         source_.read(value.data(), value.size() * sizeof(Entry));
       else
         for (Entry& entry : value) (*this)(entry);
-    } else if constexpr (std::is_trivially_copyable_v<T>) {
+    } else if constexpr (without_holes<T>) {
       source_.read(&value, sizeof(T));
     } else {
       exchange_fields(value, *this);
@@ -93,6 +100,33 @@ void exchange_fields(N& n, const Stream& stream) {
   stream(n.shared);
   stream(n.send);
   stream(n.receive);
+}
+
+template <class C, class Stream>
+  requires std::is_same_v<std::remove_const_t<C>, ContactPoint>
+void exchange_fields(C& point, const Stream& stream) {
+  stream(point.node);
+  stream(point.entry);
+  stream(point.normal);
+  stream(point.trace);
+  stream(point.tangent);
+  stream(point.tangents);
+  for (auto* x : {&point.gap, &point.mass, &point.tresca, &point.coulomb}) stream(*x);
+}
+
+template <class Q, class Stream>
+  requires std::is_same_v<std::remove_const_t<Q>, Probe>
+void exchange_fields(Q& probe, const Stream& stream) {
+  stream(probe.point);
+  stream(probe.element);
+  stream(probe.weights);
+}
+
+template <class V, class Stream>
+  requires std::is_same_v<std::remove_const_t<V>, Part::ComponentValue>
+void exchange_fields(V& entry, const Stream& stream) {
+  stream(entry.component);
+  stream(entry.value);
 }
 
 template <class R, class Stream>

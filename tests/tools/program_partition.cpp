@@ -101,6 +101,18 @@ TEST_CASE("a run from parts gives the bits of a run that splits the case itself,
   }
 }
 
+TEST_CASE("parts are the same bytes every time") {
+  const Workplace place;
+  place.put_json("solid.json", solid_beam());
+  // Memory that other contents have passed through: what nobody sets would differ.
+  REQUIRE(place.run("partition solid.json --ranks 2 --output once", "MALLOC_PERTURB_=17").exit_code == 0);
+  REQUIRE(place.run("partition solid.json --ranks 2 --output again", "MALLOC_PERTURB_=85").exit_code == 0);
+  for (const std::string file : {"part_0.kacanov", "part_1.kacanov", "boundary.kacanov"}) {
+    INFO(file);
+    CHECK(contents(place.path("once/" + file)) == contents(place.path("again/" + file)));
+  }
+}
+
 TEST_CASE("1, 2, 4 and 8 ranks agree, more of them than cores") {
   const Workplace place;
   place.put_json("solid.json", solid_beam());
