@@ -24,9 +24,11 @@ constexpr double setup_worth = 5.0;
 constexpr double drift_worth = 0.05;
 /// ... or where a penalty has moved by this factor (elastic beam, ADMM: 144 applications instead of 212).
 constexpr double penalty_worth = 3.0;
-/// Semismooth Newton steps take the secant while the residual of equilibrium is above this: the tangent of a
-/// state that is far off sends them too far, and contact and slip with them.
-constexpr double tangent_reach = 0.3;
+/// Semismooth Newton steps take the secant while the residual of equilibrium is above LoopState::reach: the tangent of a
+/// state that is far off sends them too far, and contact and slip with them. Where it has, the reach becomes this share of that residual.
+constexpr double reach_cut = 0.5;
+/// ... but not less than this: below it is contact that goes to and fro, not the tangent that goes too far.
+constexpr double least_reach = 0.003;
 /// First penalty, times λ_min over the root of the mesh width relative to the contact surface. Three times as
 /// much is as good for beams, and worse for the half ball; a third costs a few per cent more (operator
 /// applications of whole runs).
@@ -52,6 +54,8 @@ constexpr double last_share = 0.2;
 constexpr double decision_share = 0.3;
 /// Newton steps without a new best residual before ADMM takes over.
 constexpr int patience = 6;
+/// ADMM hands back early at this share of the best residual of the Newton steps before.
+constexpr double retreat_gain = 0.1;
 constexpr int max_damping_trials = 6;
 /// A displacement of this many body sizes is a run that goes nowhere.
 constexpr double most_displacement = 1e3;
@@ -357,7 +361,7 @@ void OuterLoop::take_damped_step(std::span<const double> delta, double curvature
 
 void OuterLoop::take_newton_step(Result& result, ProgressStep& line, const Residuals& before) {
   const bool far =
-      options_.outer == SolverOptions::Outer::automatic && before.certificate.equilibrium > tangent_reach;
+      options_.outer == SolverOptions::Outer::automatic && before.certificate.equilibrium > loop_.reach;
   const bool tangent = options_.outer != SolverOptions::Outer::kacanov && !linear_ && !far;
   if (!linear_ && !secant_current_) {
     op_.use_tangent(false);
@@ -389,7 +393,8 @@ void OuterLoop::take_newton_step(Result& result, ProgressStep& line, const Resid
   const bool last = before.certificate.worst() <= last_reach * options_.tolerance;
   const auto applications = op_.applications();
   const ActiveSetStep step =
-      active_set_step(problem_, part_, set, state_, last ? 1e-3 : solve_reduction, floor, work_, delta);
+      active_set_step(problem_, part_, set, state_, last ? 1e-3 : solve_reduction,
+                      std::min(before.certificate.worst(), 1.0) * before.scales.force * 3.0, floor, work_, delta);
   result.contact_applications += op_.applications() - applications;
   line.phase = tangent ? "newton" : "active_set";
   line.r = penalty_.normal;
@@ -416,7 +421,7 @@ void OuterLoop::iterate(Result& result) {
   energy_ = op_.energy(state_.omega);
   secant_current_ = false;  // the first step is elastic
   Residuals residuals = certify();
-  auto& [best, stalled, retreat, retreats, first_outer] = loop_;
+  auto& [best, stalled, retreat, aim, retreats, first_outer, reach] = loop_;
   bool done = false;
   Vector previous;
   while (!done && result.outer_iterations - first_outer < options_.max_outer) {
@@ -424,11 +429,11 @@ void OuterLoop::iterate(Result& result) {
     if (by_step) previous = state_.omega;
     ProgressStep line;
     const bool newton = may_newton && result.outer_iterations > 0 && retreat == 0;
+    const double equilibrium = residuals.certificate.equilibrium;
     if (newton)
       take_newton_step(result, line, residuals);
     else
       take_admm_step(result, line, residuals);
-    if (retreat > 0) --retreat;
     ++result.outer_iterations;
     result.contact_iterations += line.contact_iterations;
     result.cg_iterations += line.cg_iterations;
@@ -457,12 +462,17 @@ void OuterLoop::iterate(Result& result) {
           " times the body's size: the load is beyond what the material or the supports can carry";
       return;
     }
-    if (!newton) continue;
+    if (!newton) {
+      retreat = worst <= aim ? 0 : std::max(0, retreat - 1);
+      continue;
+    }
+    if (op_.tangent() && !(residuals.certificate.equilibrium <= equilibrium)) reach = std::max(least_reach, reach_cut * equilibrium);
     stalled = worst < 0.7 * best ? 0 : stalled + 1;
     best = std::min(best, worst);
     if (newton_failed_ || stalled >= patience || !std::isfinite(worst)) {
       // ADMM converges from anywhere; every retreat is longer than the last.
       stalled = 0;
+      aim = std::isfinite(best) ? retreat_gain * best : 0.0;
       best = HUGE_VAL;
       retreat = 2 << std::min(retreats++, 6);
       preconditioner_stale_ = true;

@@ -19,16 +19,20 @@ struct LoopState {
   double best = HUGE_VAL;  ///< smallest residual since the last retreat
   int stalled = 0;   ///< Newton steps without a new best residual
   int retreat = 0;   ///< ADMM steps still to take
+  double aim = 0.0;  ///< residual at which they end early
   int retreats = 0;
   int first_outer = 0;  ///< outer steps before this load step, or before a restart
+  double reach = 0.3;   ///< residual of equilibrium up to which steps take the tangent
 
   template <class Visitor>
   void visit(Visitor&& entry) {
     entry("best", best);
     entry("stalled", stalled);
     entry("retreat", retreat);
+    entry("aim", aim);
     entry("retreats", retreats);
     entry("first_outer", first_outer);
+    entry("reach", reach);
   }
 };
 

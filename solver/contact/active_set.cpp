@@ -54,10 +54,13 @@ ActiveSet decide(const Traces& traces, const ContactState& state, double c) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     set.held[i].normal = state.lambda.normal[i] + c * (state.trace.normal[i] - points[i].gap) > 0.0;
     if (points[i].tangents == 0) continue;
-    const double s[2] = {state.lambda.tangential[2 * i] + c * state.trace.tangential[2 * i],
-                         state.lambda.tangential[2 * i + 1] + c * state.trace.tangential[2 * i + 1]};
+    const double* lambda = &state.lambda.tangential[2 * i];
+    const double s[2] = {lambda[0] + c * state.trace.tangential[2 * i], lambda[1] + c * state.trace.tangential[2 * i + 1]};
     const double length = std::hypot(s[0], s[1]), bound = state.bound[i];
-    set.held[i].tangential = length <= bound && bound > 0.0;
+    // What its friction has pushed back sticks before it may slip the other way: friction beyond what a yielding body
+    // carries would throw it to and fro.
+    const bool turned = lambda[0] * s[0] + lambda[1] * s[1] < 0.0;
+    set.held[i].tangential = bound > 0.0 && (length <= bound || turned);
     if (set.held[i].tangential || length == 0.0) continue;
     for (std::size_t k = 0; k < 2; ++k) {
       set.slip_direction[2 * i + k] = s[k] / length;
@@ -87,7 +90,7 @@ std::vector<NodeBlock> slip_blocks(const Part& part, const ActiveSet& set) {
 }
 
 ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, const ActiveSet& set,
-                              const ContactState& state, double reduction, double absolute, CgWork& work,
+                              const ContactState& state, double reduction, double unbalanced, double absolute, CgWork& work,
                               std::span<double> delta) {
   const Traces& traces = *problem.traces;
   const TraceRows rows(part, set.held);
@@ -119,8 +122,9 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
     apply(delta, work.image);
     for (std::size_t i = 0; i < delta.size(); ++i) work.residual[i] -= work.image[i];
   }
-  const CgResult solve =
-      conjugate_gradients(space, apply, problem.precondition, delta, work, CgOptions{absolute, reduction, 2000});
+  space.project(work.residual);
+  const double enough = std::max(absolute, reduction * std::min(space.norm(work.residual), unbalanced));
+  const CgResult solve = conjugate_gradients(space, apply, problem.precondition, delta, work, CgOptions{enough, 0.0, 2000});
   ActiveSetStep step;
   step.cg_iterations = solve.iterations;
   step.solved = solve.converged;
