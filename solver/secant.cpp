@@ -161,6 +161,13 @@ void OuterLoop::report(const ProgressStep& step) const {
   if (run_.progress && part_.halo.rank == 0) run_.progress(step);
 }
 
+/// λ_max(K_I|A), the compliance of the part that lifts off, is to λ_min as its size to the mesh width: r_A goes with 1/λ_min and the root of that.
+double OuterLoop::rough_penalty() const {
+  const double width = std::pow(static_cast<double>(part_.total_contact), -1.0 / (part_.dim() - 1));
+  const double normal_min = rough_lambda_min(part_, diagonal_, false);
+  return normal_min > 0.0 ? first_penalty * std::sqrt(width) / normal_min : 1.0;
+}
+
 void OuterLoop::choose_first_penalty(Result& result) {
   if (part_.total_contact == 0) return;
   const double before = MPI_Wtime();
@@ -175,15 +182,9 @@ void OuterLoop::choose_first_penalty(Result& result) {
     result.cg_iterations += spectrum.cg_iterations;
     penalty_ = {result.r_star, result.r_star};
   } else {
-    // λ_max(K_I|A), the compliance of the part that lifts off, is to λ_min as its size to the mesh width: r_A
-    // goes with 1/λ_min and the root of that.
     const auto points = part_.contact.size();
-    const double width = std::pow(static_cast<double>(part_.total_contact), -1.0 / (part_.dim() - 1));
     result.lambda_min = rough_lambda_min(part_, diagonal_, friction_);
-    const double normal_min = rough_lambda_min(part_, diagonal_, false);
-    double r = options_.r;
-    if (options_.penalty == SolverOptions::Penalty::automatic)
-      r = normal_min > 0.0 ? first_penalty * std::sqrt(width) / normal_min : 1.0;
+    const double r = options_.penalty == SolverOptions::Penalty::automatic ? rough_penalty() : options_.r;
     penalty_ = {r, r};
     set_up_preconditioner(true, penalty_blocks(), space_);
     setup_penalty_ = penalty_;
@@ -198,8 +199,20 @@ void OuterLoop::choose_first_penalty(Result& result) {
   spectrum_seconds_ += MPI_Wtime() - before;
 }
 
-void OuterLoop::balance_penalty(const AdmmResult& step, const Scales& scales, Result& result) {
+bool OuterLoop::touches() const {
+  const auto& pressure = state_.lambda.normal;
+  return part_.halo.any(std::any_of(pressure.begin(), pressure.end(), [](double p) { return p > 0.0; }));
+}
+
+void OuterLoop::balance_penalty(const AdmmResult& step, bool arrived, const Scales& scales, Result& result) {
   if (!(result.lambda_min > 0.0)) return;
+  if (arrived) {
+    // While nothing touches, the balance sees motion alone and lowers the penalties step after step, further than contact
+    // wants them. Back to the first one: 42 iterations instead of 55, 52 instead of 57 on half balls 0.3 away.
+    penalty_.normal = penalty_.tangential = rough_penalty();
+    result.r_active = penalty_.normal;
+    return;
+  }
   const double largest = largest_penalty / result.lambda_min;
   // A step of few iterations says little.
   const double trust = std::min(1.0, step.iterations / trusted_iterations);
@@ -326,6 +339,7 @@ void OuterLoop::take_admm_step(Result& result, ProgressStep& line, const Residua
   if (first) op_.apply(state_.omega, internal_);  // the elastic force, not R(ω)
   take_unbalanced();
   traces_.add_force(state_.lambda, -1.0, work_.residual);
+  const bool touched = touches();
   const auto applications = op_.applications();
   const AdmmResult step =
       dual ? dual_admm(problem_, state_, work_, options) : admm(problem_, state_, work_, options);
@@ -335,7 +349,8 @@ void OuterLoop::take_admm_step(Result& result, ProgressStep& line, const Residua
   line.phase = dual ? "dual_admm" : "admm";
   line.r = penalty_.normal;
   // Before the first step no displacement sets a scale.
-  if (automatic && !by_step) balance_penalty(step, first ? certify().scales : scales, result);
+  if (automatic && !by_step)
+    balance_penalty(step, !first && !touched && touches(), first ? certify().scales : scales, result);
   line.contact_iterations = step.iterations;
   line.cg_iterations = step.cg_iterations;
 }

@@ -72,7 +72,12 @@ class OuterLoop {
   void keep(const Result& result);
   bool stop_agreed() const;
   void choose_first_penalty(Result& result);
-  void balance_penalty(const AdmmResult& step, const Scales& scales, Result& result);
+  /// From the stiffness and the number of the contact nodes, without a solve.
+  double rough_penalty() const;
+  /// Whether any point is under pressure. Collective.
+  bool touches() const;
+  /// After a step; `arrived` if it was the one that brought the first contact, after others without any.
+  void balance_penalty(const AdmmResult& step, bool arrived, const Scales& scales, Result& result);
   /// With the g that the operator has frozen if that of the last setup is `worn`, else with that.
   void set_up_preconditioner(bool worn, std::span<const NodeBlock> blocks, const Space& space);
   Vector secant() const;

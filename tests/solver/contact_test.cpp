@@ -315,6 +315,31 @@ TEST_CASE("every choice of the contact method and of r leads to the same answer"
   }
 }
 
+TEST_CASE("a penalty that an approach has lowered is the first one again once there is contact") {
+  // A column pushed against a wall a third of its length away.
+  const Mesh column = make_box({{9, 1, 1}, {18, 2, 1}, ElementType::tri3});
+  Model model;
+  model.materials.push_back({everything(), logarithmic_law(0.01)});
+  model.boundary.push_back(moved(named("right"), 2, {-3.05, 0, 0}));
+  model.contact.push_back(on_plane(named("left"), {-3, 0, 0}, {1, 0, 0}));
+  model.solver.outer = SolverOptions::Outer::kacanov;
+  for (const auto contact : {SolverOptions::Contact::admm, SolverOptions::Contact::dual_admm}) {
+    CAPTURE(static_cast<int>(contact));
+    model.solver.contact = contact;
+    const auto after = [&](int steps) {
+      model.solver.max_outer = steps;
+      return run_alone(column, model);
+    };
+    int steps = 1;
+    while (steps < 10 && after(steps).result().active_nodes == 0) ++steps;
+    const auto r = after(steps + 1).result().r;
+    const auto arrival = static_cast<std::size_t>(steps) - 1;
+    REQUIRE(arrival > 0);
+    CHECK(r.at(arrival) < 0.6 * r[0]);
+    CHECK(r.at(arrival + 1) == r[0]);
+  }
+}
+
 TEST_CASE("the two tangents of a turned plane are as good as any") {
   // A solution in 3D, turned with everything that belongs to it.
   const Rotation turn(3, 0.9);
