@@ -409,7 +409,7 @@ void OuterLoop::take_newton_step(Result& result, ProgressStep& line, const Resid
   const auto applications = op_.applications();
   const ActiveSetStep step =
       active_set_step(problem_, part_, set, state_, last ? 1e-3 : solve_reduction,
-                      std::min(before.certificate.worst(), 1.0) * before.scales.force * 3.0, floor, work_, delta);
+                      std::min(before.certificate.worst(), 1.0) * before.scales.force, floor, work_, delta);
   result.contact_applications += op_.applications() - applications;
   line.phase = tangent ? "newton" : "active_set";
   line.r = penalty_.normal;

@@ -123,7 +123,7 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
     for (std::size_t i = 0; i < delta.size(); ++i) work.residual[i] -= work.image[i];
   }
   space.project(work.residual);
-  const double enough = std::max(absolute, reduction * std::min(space.norm(work.residual), unbalanced));
+  const double enough = std::max(absolute, std::min(reduction * space.norm(work.residual), unbalanced));
   const CgResult solve = conjugate_gradients(space, apply, problem.precondition, delta, work, CgOptions{enough, 0.0, 2000});
   ActiveSetStep step;
   step.cg_iterations = solve.iterations;

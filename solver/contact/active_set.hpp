@@ -33,8 +33,8 @@ struct ActiveSetStep {
 
 /// Solves the linearised problem with the rows of `set` held: B δ + slip terms = F − R(ω) − CᵀMλ, Cω + Cδ on the obstacle
 /// or at rest. On entry `work.residual` is F − R(ω), without contact forces; `delta` receives the step. CG goes on until `reduction` of its first
-/// residual and of `unbalanced` is left, or `absolute`. The first residual alone says little: points moved onto the obstacle one by one strain
-/// the elements beside them beyond anything else.
+/// residual is left and no more than `unbalanced`, or `absolute`. The first residual alone says little: points moved onto the obstacle one by
+/// one strain the elements beside them beyond anything else.
 ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, const ActiveSet& set,
                               const ContactState& state, double reduction, double unbalanced, double absolute, CgWork& work,
                               std::span<double> delta);

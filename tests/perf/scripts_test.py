@@ -209,5 +209,33 @@ else:
         self.assertEqual(run("bench_run", "nowhere", "--problem", "cake").returncode, 2)
 
 
+class HardCases(unittest.TestCase):
+    def test_list_and_bad_usage(self):
+        names = run("hard_cases", "--list").stdout.splitlines()
+        self.assertEqual((len(names), len(set(names))), (216, 216))
+        self.assertEqual(run("hard_cases", "nowhere").returncode, 2)
+        with tempfile.NamedTemporaryFile() as program:
+            done = run("hard_cases", program.name, "--case", "no such case")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("no case", done.stderr)
+
+    def test_what_does_not_converge_is_named(self):
+        with tempfile.TemporaryDirectory() as folder:
+            program = pathlib.Path(folder) / "kacanov"
+            program.write_text("""#!{python}
+import json, pathlib, sys
+case, output = json.loads(pathlib.Path(sys.argv[2]).read_text()), pathlib.Path(sys.argv[4])
+output.mkdir()
+linear = case["material"][0]["law"]["type"] == "linear"
+(output / "result.json").write_text(json.dumps(dict(status="converged" if linear else "not_converged", message="so it goes",
+    outer_iterations=3, operator_applications=20)))
+""".format(python=sys.executable))
+            program.chmod(0o755)
+            done = run("hard_cases", program, "--case", "drag smooth *")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertEqual(done.stdout.count("so it goes"), 5)
+        self.assertIn("1 of 6 converged, 18 outer steps, 120 operator applications", done.stdout)
+
+
 if __name__ == "__main__":
     unittest.main()
