@@ -236,7 +236,7 @@ TEST_CASE("early nodes are done when they are said to be, and nothing else chang
   std::vector<double> expected(x.size());
   reference::apply(body, g, x, expected);
   for (const bool with : {true, false})
-    for (const int threads : {1, 2, 3, 5}) {
+    for (const int threads : with ? std::vector{1, 2, 3} : std::vector{2}) {
       CAPTURE(with);
       CAPTURE(threads);
       // Without early nodes the call comes before anything else: it still has to come.
