@@ -19,18 +19,29 @@ S* pack(std::span<const std::int32_t> nodes, std::size_t width, std::span<const 
   return to;
 }
 
-template <class S>
-MPI_Request start_receive(const Halo& halo, int from, std::span<S> to) {
-  MPI_Request request;
-  MPI_Irecv(to.data(), static_cast<int>(to.size()), type_of(S{}), from, 0, halo.comm, &request);
-  return request;
-}
+/// One of the lists of a neighbour.
+using Nodes = std::vector<std::int32_t> Halo::Neighbour::*;
 
+/// Starts a receive for each neighbour's `incoming` nodes, into `receive`, and a send of x at its `outgoing` ones.
 template <class S>
-MPI_Request start_send(const Halo& halo, int to, std::span<const S> from) {
-  MPI_Request request;
-  MPI_Isend(from.data(), static_cast<int>(from.size()), type_of(S{}), to, 0, halo.comm, &request);
-  return request;
+void start_exchange(const Halo& halo, std::size_t width, std::span<const S> x, Nodes outgoing, Nodes incoming,
+                    std::vector<S>& send, std::vector<S>& receive, std::vector<MPI_Request>& requests) {
+  std::size_t out = 0, in = 0;
+  for (const auto& n : halo.neighbours) {
+    out += (n.*outgoing).size() * width;
+    in += (n.*incoming).size() * width;
+  }
+  send.resize(out);
+  receive.resize(in);
+  S *to = send.data(), *from = receive.data();
+  for (const auto& n : halo.neighbours) {
+    const auto count = static_cast<int>((n.*incoming).size() * width);
+    if (count > 0) MPI_Irecv(from, count, type_of(S{}), n.rank, 0, halo.comm, &requests.emplace_back());
+    from += count;
+    S* const end = pack<S>(n.*outgoing, width, x, to);
+    if (end != to) MPI_Isend(to, static_cast<int>(end - to), type_of(S{}), n.rank, 0, halo.comm, &requests.emplace_back());
+    to = end;
+  }
 }
 
 void wait_for(std::vector<MPI_Request>& requests) {
@@ -42,24 +53,11 @@ template <class S>
 void copy_shared(const Halo& halo, std::span<S> x, int components) {
   if (halo.neighbours.empty()) return;
   const auto width = static_cast<std::size_t>(components);
-  std::size_t out = 0, in = 0;
-  for (const auto& n : halo.neighbours) {
-    out += n.send.size() * width;
-    in += n.receive.size() * width;
-  }
-  std::vector<S> send(out), receive(in);
+  std::vector<S> send, receive;
   std::vector<MPI_Request> requests;
-  S *to = send.data(), *from = receive.data();
-  for (const auto& n : halo.neighbours) {
-    const std::span<S> incoming(from, n.receive.size() * width);
-    if (!incoming.empty()) requests.push_back(start_receive(halo, n.rank, incoming));
-    from += incoming.size();
-    S* const end = pack<S>(n.send, width, x, to);
-    if (end != to) requests.push_back(start_send(halo, n.rank, std::span<const S>(to, end)));
-    to = end;
-  }
+  start_exchange<S>(halo, width, x, &Halo::Neighbour::send, &Halo::Neighbour::receive, send, receive, requests);
   wait_for(requests);
-  from = receive.data();
+  const S* from = receive.data();
   for (const auto& n : halo.neighbours)
     for (const std::int32_t node : n.receive)
       for (std::size_t c = 0; c < width; ++c) x[static_cast<std::size_t>(node) * width + c] = *from++;
@@ -76,31 +74,19 @@ void sum_shared(const Halo& halo, std::span<S> x, int components) {
 }  // namespace
 
 template <class S>
-SharedSum<S>::SharedSum(const Halo& halo, int components) : halo_(&halo), width_(static_cast<std::size_t>(components)) {
-  std::size_t count = 0;
-  for (const auto& n : halo.neighbours) count += n.shared.size() * width_;
-  send_.resize(count);
-  receive_.resize(count);
-  own_.resize(halo.shared.size() * width_);
-}
+SharedSum<S>::SharedSum(const Halo& halo, int components) : halo_(&halo), width_(static_cast<std::size_t>(components)) {}
 
 template <class S>
 void SharedSum<S>::start(std::span<const S> x) {
-  S *to = send_.data(), *from = receive_.data();
-  for (const auto& n : halo_->neighbours) {
-    const std::span<S> incoming(from, n.shared.size() * width_);
-    requests_.push_back(start_receive(*halo_, n.rank, incoming));
-    from += incoming.size();
-    S* const end = pack<S>(n.shared, width_, x, to);
-    requests_.push_back(start_send(*halo_, n.rank, std::span<const S>(to, end)));
-    to = end;
-  }
+  constexpr Nodes shared = &Halo::Neighbour::shared;
+  start_exchange(*halo_, width_, x, shared, shared, send_, receive_, requests_);
 }
 
 template <class S>
 void SharedSum<S>::finish(std::span<S> x) {
   if (halo_->neighbours.empty()) return;
   const auto& shared = halo_->shared;
+  own_.resize(shared.size() * width_);
   pack<S>(shared, width_, x, own_.data());
   for (const std::int32_t node : shared) std::fill_n(&x[static_cast<std::size_t>(node) * width_], width_, S{0});
   wait_for(requests_);
