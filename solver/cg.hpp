@@ -2,6 +2,7 @@
 // Preconditioned conjugate gradients over anything that can be applied.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -14,6 +15,7 @@ struct CgOptions {
   double absolute = 0.0;     ///< stop at ‖r‖ ≤ absolute ...
   double relative = 1e-8;    ///< ... or at ‖r‖ ≤ relative · ‖r₀‖
   int max_iterations = 2000;
+  double most = std::numeric_limits<double>::infinity();  ///< ‖r‖ that `relative` alone may not leave
 };
 
 struct CgResult {
@@ -43,7 +45,7 @@ CgResult conjugate_gradients(const Space& space, const Apply& apply, const Preco
   const std::size_t n = x.size();
   space.project(r);
   result.first_residual = result.residual = space.norm(r);
-  const double target = std::max(options.absolute, options.relative * result.first_residual);
+  const double target = std::max(options.absolute, std::min(options.relative * result.first_residual, options.most));
   result.converged = result.residual <= target;
   double rz = 0.0;
   while (!result.converged && result.iterations < options.max_iterations) {

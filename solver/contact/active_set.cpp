@@ -122,9 +122,8 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
     apply(delta, work.image);
     for (std::size_t i = 0; i < delta.size(); ++i) work.residual[i] -= work.image[i];
   }
-  space.project(work.residual);
-  const double enough = std::max(absolute, std::min(reduction * space.norm(work.residual), unbalanced));
-  const CgResult solve = conjugate_gradients(space, apply, problem.precondition, delta, work, CgOptions{enough, 0.0, 2000});
+  const CgResult solve =
+      conjugate_gradients(space, apply, problem.precondition, delta, work, CgOptions{absolute, reduction, 2000, unbalanced});
   ActiveSetStep step;
   step.cg_iterations = solve.iterations;
   step.solved = solve.converged;
