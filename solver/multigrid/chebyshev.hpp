@@ -11,7 +11,7 @@ namespace kacanov {
 template <class S>
 struct ChebyshevStep {
   S keep, add;
-  bool from_zero;  ///< x is taken as zero, and A x with it
+  bool from_zero;  ///< x is taken as zero, and A x with it; `step` and x may then be one vector
   bool first;      ///< `step` is taken as zero
 
   /// Calls loop<from_zero, first>().

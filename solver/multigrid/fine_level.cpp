@@ -130,7 +130,7 @@ void FineLevel::hold(std::span<float> x) const { Space(part_).project(x); }
 void FineLevel::project(std::span<float> x) const { space_.project(x); }
 
 void FineLevel::choose_smoother(int degree, double range) {
-  std::vector<float> x(part_.unknowns()), unused(part_.unknowns());
+  std::vector<float> x(part_.unknowns());
   const auto dim = static_cast<std::size_t>(part_.dim());
   for (std::size_t i = 0; i < x.size(); ++i) {
     const auto id = part_.node_number(i / dim) * static_cast<std::int64_t>(dim) + static_cast<std::int64_t>(i % dim);
@@ -140,7 +140,7 @@ void FineLevel::choose_smoother(int degree, double range) {
   const auto owned = part_.owned_unknowns();
   const double largest = largest_eigenvalue(
       x, [this](std::span<const float> p, std::span<float> q) { multiply(p, q); },
-      [&](std::span<const float> p, std::span<float> q) { relax({0.0F, 1.0F, true, true}, p, p, unused, q); },
+      [&](std::span<const float> p, std::span<float> q) { relax({0.0F, 1.0F, true, true}, p, p, q, q); },
       [&](const std::vector<float>& p, const std::vector<float>& q) {
         double sum = 0.0;
         for (std::size_t i = 0; i < owned; ++i) sum += static_cast<double>(p[i]) * static_cast<double>(q[i]);

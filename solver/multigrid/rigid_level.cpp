@@ -408,12 +408,12 @@ WeightedGraph RigidLevel<M>::couplings() const {
 
 template <int M>
 double RigidLevel<M>::largest_eigenvalue() const {
-  std::vector<double> start(size()), unused(size());
+  std::vector<double> start(size());
   for (std::size_t i = 0; i < owned_size(); ++i)
     start[i] = scatter(static_cast<std::uint64_t>(first()) * M + i);
   return kacanov::largest_eigenvalue(
       start, [this](std::span<double> x, std::span<double> y) { multiply(x, y); },
-      [&](std::span<const double> x, std::span<double> y) { relax({0.0, 1.0, true, true}, x, x, unused, y); },
+      [&](std::span<const double> x, std::span<double> y) { relax({0.0, 1.0, true, true}, x, x, y, y); },
       [this](const std::vector<double>& x, const std::vector<double>& y) {
         double sum = 0.0;
         for (std::size_t i = 0; i < owned_size(); ++i) sum += x[i] * y[i];
