@@ -30,6 +30,11 @@ template <class Sink>
 class FieldWriter {
  public:
   explicit FieldWriter(Sink& sink) : sink_(sink) {}
+  template <class... T>
+    requires(sizeof...(T) > 1)
+  void operator()(const T&... values) const {
+    ((*this)(values), ...);
+  }
   template <class T>
   void operator()(const T& value) const {
     if constexpr (Sequence<T>) {
@@ -56,6 +61,11 @@ template <class Source>
 class FieldReader {
  public:
   explicit FieldReader(Source& source) : source_(source) {}
+  template <class... T>
+    requires(sizeof...(T) > 1)
+  void operator()(T&... values) const {
+    ((*this)(values), ...);
+  }
   template <class T>
   void operator()(T& value) const {
     if constexpr (Sequence<T>) {
@@ -82,90 +92,31 @@ class FieldReader {
 
 // One list of fields serves both directions. A change to one of them, or to the order, is a new version of the files in tools/part_files.cpp.
 
-template <class L, class Stream>
-  requires std::is_same_v<std::remove_const_t<L>, Law>
-void exchange_fields(L& law, const Stream& stream) {
-  stream(law.kind);
-  stream(law.argument);
-  stream(law.mean_dilatation);
-  for (auto* x : {&law.bulk, &law.shear, &law.x0, &law.gamma, &law.n, &law.q}) stream(*x);
-  stream(law.table_x);
-  stream(law.table_s);
+template <class T, class Struct>
+concept Either = std::is_same_v<std::remove_const_t<T>, Struct>;  ///< Struct or const Struct
+
+void exchange_fields(Either<Law> auto& law, const auto& stream) {
+  stream(law.kind, law.argument, law.mean_dilatation, law.bulk, law.shear, law.x0, law.gamma, law.n, law.q, law.table_x, law.table_s);
 }
 
-template <class N, class Stream>
-  requires std::is_same_v<std::remove_const_t<N>, Halo::Neighbour>
-void exchange_fields(N& n, const Stream& stream) {
-  stream(n.rank);
-  stream(n.shared);
-  stream(n.send);
-  stream(n.receive);
+void exchange_fields(Either<Halo::Neighbour> auto& n, const auto& stream) { stream(n.rank, n.shared, n.send, n.receive); }
+
+void exchange_fields(Either<ContactPoint> auto& point, const auto& stream) {
+  stream(point.node, point.entry, point.normal, point.trace, point.tangent, point.tangents, point.gap, point.mass, point.tresca,
+         point.coulomb);
 }
 
-template <class C, class Stream>
-  requires std::is_same_v<std::remove_const_t<C>, ContactPoint>
-void exchange_fields(C& point, const Stream& stream) {
-  stream(point.node);
-  stream(point.entry);
-  stream(point.normal);
-  stream(point.trace);
-  stream(point.tangent);
-  stream(point.tangents);
-  for (auto* x : {&point.gap, &point.mass, &point.tresca, &point.coulomb}) stream(*x);
-}
+void exchange_fields(Either<Probe> auto& probe, const auto& stream) { stream(probe.point, probe.element, probe.weights); }
 
-template <class Q, class Stream>
-  requires std::is_same_v<std::remove_const_t<Q>, Probe>
-void exchange_fields(Q& probe, const Stream& stream) {
-  stream(probe.point);
-  stream(probe.element);
-  stream(probe.weights);
-}
+void exchange_fields(Either<Part::ComponentValue> auto& entry, const auto& stream) { stream(entry.component, entry.value); }
 
-template <class V, class Stream>
-  requires std::is_same_v<std::remove_const_t<V>, Part::ComponentValue>
-void exchange_fields(V& entry, const Stream& stream) {
-  stream(entry.component);
-  stream(entry.value);
-}
+void exchange_fields(Either<IndexRuns> auto& indices, const auto& stream) { stream(indices.runs, indices.count); }
 
-template <class R, class Stream>
-  requires std::is_same_v<std::remove_const_t<R>, IndexRuns>
-void exchange_fields(R& indices, const Stream& stream) {
-  stream(indices.runs);
-  stream(indices.count);
-}
-
-template <class P, class Stream>
-  requires std::is_same_v<std::remove_const_t<P>, Part>
-void exchange_fields(P& part, const Stream& stream) {
-  stream(part.type);
-  stream(part.coordinates);
-  stream(part.elements);
-  stream(part.node_index);
-  stream(part.element_index);
-  stream(part.node_tags);
-  stream(part.element_tags);
-  stream(part.owned_nodes);
-  stream(part.first_owned);
-  stream(part.total_nodes);
-  stream(part.total_elements);
-  stream(part.ghost_number);
-  stream(part.halo.neighbours);
-  stream(part.halo.shared);
-  stream(part.laws);
-  stream(part.law_of_element);
-  stream(part.load);
-  stream(part.prescribed);
-  stream(part.held);
-  stream(part.contact);
-  stream(part.owned_contact);
-  stream(part.contact_index);
-  stream(part.total_contact);
-  stream(part.probes);
-  stream(part.probe_index);
-  stream(part.total_probes);
-  stream(part.loose_modes);
+void exchange_fields(Either<Part> auto& part, const auto& stream) {
+  stream(part.type, part.coordinates, part.elements, part.node_index, part.element_index, part.node_tags, part.element_tags,
+         part.owned_nodes, part.first_owned, part.total_nodes, part.total_elements, part.ghost_number, part.halo.neighbours,
+         part.halo.shared, part.laws, part.law_of_element, part.load, part.prescribed, part.held, part.contact, part.owned_contact,
+         part.contact_index, part.total_contact, part.probes, part.probe_index, part.total_probes, part.loose_modes);
 }
 
 }  // namespace kacanov

@@ -13,29 +13,13 @@
 
 namespace kacanov {
 
-template <class G, class Stream>
-  requires std::is_same_v<std::remove_const_t<G>, Group>
-void exchange_fields(G& group, const Stream& stream) {
-  stream(group.name);
-  stream(group.dimension);
-  stream(group.members);
-}
+void exchange_fields(Either<Group> auto& group, const auto& stream) { stream(group.name, group.dimension, group.members); }
 
 /// What keep_boundary leaves.
-template <class P, class Stream>
-  requires std::is_same_v<std::remove_const_t<P>, Problem>
-void exchange_fields(P& problem, const Stream& stream) {
+void exchange_fields(Either<Problem> auto& problem, const auto& stream) {
   auto& mesh = problem.mesh;
-  stream(mesh.type);
-  stream(mesh.coordinates);
-  stream(mesh.elements);
-  stream(mesh.node_tags);
-  stream(mesh.element_tags);
-  stream(mesh.facets);
-  stream(mesh.facet_element);
-  stream(mesh.groups);
-  stream(problem.contact);
-  stream(problem.warnings);
+  stream(mesh.type, mesh.coordinates, mesh.elements, mesh.node_tags, mesh.element_tags, mesh.facets, mesh.facet_element, mesh.groups,
+         problem.contact, problem.warnings);
 }
 
 namespace {
