@@ -225,17 +225,14 @@ TEST_CASE("friction far beyond what a yielding body carries does not throw it ab
   model.materials.push_back({everything(), logarithmic_law(1e-4, 200.0)});
   model.boundary.push_back(moved(named("top"), 3, {0.1, 0.0, -0.02}));
   model.contact.push_back(on_plane(named("bottom"), {}, {0.05, 0, 1}, 1.0));
-  BoxSpec spec;
-  spec.size = {2, 1, 1};
-  spec.cells = {10, 5, 5};
-  spec.type = ElementType::tet4;
-  const Run run = run_alone(make_box(spec), model);
+  const Mesh mesh = make_box({{2, 1, 1}, {10, 5, 5}, ElementType::tet4});
+  const Run run = run_alone(mesh, model);
   CHECK(run.result().status == Status::converged);
   CHECK(run.result().slip_nodes == 0);
   CHECK(run.result().outer_iterations < 20);
   model.solver.contact = SolverOptions::Contact::admm;
   model.solver.max_outer = 300;
-  const Run other = run_alone(make_box(spec), model);
+  const Run other = run_alone(mesh, model);
   CHECK(other.result().status == Status::converged);
   CHECK(distance(run.result().friction_force, other.result().friction_force) < 1e-4 * length(other.result().friction_force));
 }
@@ -249,10 +246,7 @@ TEST_CASE("where the tangent has gone too far the secant leads on until half the
   std::vector<ProgressStep> steps;
   RunOptions options;
   options.progress = [&](const ProgressStep& step) { steps.push_back(step); };
-  BoxSpec spec;
-  spec.size = {2, 1, 1};
-  spec.cells = {8, 4, 4};
-  const Run run = run_alone(make_box(spec), model, options);
+  const Run run = run_alone(make_box({{2, 1, 1}, {8, 4, 4}, ElementType::tet4}), model, options);
   CHECK(run.result().status == Status::converged);
   double reach = 0.3;
   int too_far = 0;
