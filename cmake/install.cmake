@@ -3,31 +3,23 @@
 include(CMakePackageConfigHelpers)
 
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/kacanov")
-set(header_dir "${CMAKE_INSTALL_INCLUDEDIR}/kacanov")
-
-# What a consumer may include; everything else is the libraries' own affair.
-set(KACANOV_KERNEL_HEADERS float_operator.hpp law.hpp locality.hpp mesh_view.hpp operator.hpp reference.hpp)
-set(KACANOV_SOLVER_HEADERS checkpoint.hpp error.hpp halo.hpp index_runs.hpp mesh.hpp model.hpp part.hpp problem.hpp result.hpp solve.hpp)
 
 # One export set a target, so that a consumer meets the dependencies of what it asks for and no others; what belongs
 # together is installed together: `cmake --install BUILD --component kernels|solver|program`.
 function(kacanov_install_target name target component)
   install(TARGETS ${target} EXPORT kacanov-${name}
     ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT ${component}
-    LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT ${component}
-    PUBLIC_HEADER DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT ${component})
+    LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT ${component})
   install(EXPORT kacanov-${name} NAMESPACE kacanov:: DESTINATION "${package_dir}"
     FILE kacanov-${name}.cmake COMPONENT ${component})
 endfunction()
 
 kacanov_install_target(kernels kacanov_kernels kernels)
-list(TRANSFORM KACANOV_KERNEL_HEADERS PREPEND "${PROJECT_SOURCE_DIR}/kernels/")
-install(FILES ${KACANOV_KERNEL_HEADERS} DESTINATION "${header_dir}" COMPONENT kernels)
+install(DIRECTORY kernels/include/ DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT kernels)
 kacanov_install_target(c kacanov_c kernels)
 if(KACANOV_SOLVER)
   kacanov_install_target(solver kacanov_solver solver)
-  list(TRANSFORM KACANOV_SOLVER_HEADERS PREPEND "${PROJECT_SOURCE_DIR}/solver/")
-  install(FILES ${KACANOV_SOLVER_HEADERS} DESTINATION "${header_dir}" COMPONENT solver)
+  install(DIRECTORY solver/include/ DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT solver)
   install(FILES cmake/FindHYPRE.cmake cmake/FindPARPACK.cmake DESTINATION "${package_dir}" COMPONENT solver)
 endif()
 if(TARGET kacanov)

@@ -16,15 +16,15 @@
 #include <utility>
 #include <vector>
 
-#include "float_operator.hpp"
+#include <kacanov/float_operator.hpp>
 #ifdef KACANOV_BENCH_GMSH
-#include "gmsh_reader.hpp"
+#include "formats/gmsh_reader.hpp"
 #endif
-#include "locality.hpp"
+#include <kacanov/locality.hpp>
 #include "machine.hpp"
 #include "matrices.hpp"
 #include "meshes.hpp"
-#include "operator.hpp"
+#include <kacanov/operator.hpp>
 
 using namespace kacanov;
 using nlohmann::json;

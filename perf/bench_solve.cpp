@@ -10,16 +10,16 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "cg.hpp"
+#include "linear/cg.hpp"
 #include "contact/traces.hpp"
-#include "distributed_operator.hpp"
-#include "gmsh_reader.hpp"
-#include "launch.hpp"
-#include "parallel.hpp"
-#include "preconditioner.hpp"
-#include "problem.hpp"
+#include "linear/distributed_operator.hpp"
+#include "formats/gmsh_reader.hpp"
+#include "program/launch.hpp"
+#include "program/parallel.hpp"
+#include "linear/preconditioner.hpp"
+#include <kacanov/problem.hpp>
 #include "problem/selection.hpp"
-#include "spectrum.hpp"
+#include "spectrum/spectrum.hpp"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "reference.hpp"
+#include <kacanov/reference.hpp>
 
 namespace kacanov::perf {
 

@@ -11,7 +11,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "elements/tet10.hpp"
+#include "cells/tet10.hpp"
 
 namespace kacanov::meshes {
 namespace {

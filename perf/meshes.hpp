@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesh_view.hpp"
+#include <kacanov/mesh_view.hpp>
 
 namespace kacanov::meshes {
 

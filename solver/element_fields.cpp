@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Stress and strain of a solution, a run of elements at a time.
-#include "element_fields.hpp"
+#include <kacanov/element_fields.hpp>
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The solver's front door: runs the loops, then certifies and collects the result.
-#include "solve.hpp"
+#include <kacanov/solve.hpp>
 
 #include <algorithm>
 #include <array>
@@ -12,10 +12,10 @@
 #include <sstream>
 #include <string>
 
-#include "certificate.hpp"
-#include "element_fields.hpp"
-#include "load_steps.hpp"
-#include "secant.hpp"
+#include "contact/certificate.hpp"
+#include <kacanov/element_fields.hpp>
+#include "nonlinear/load_path.hpp"
+#include "nonlinear/outer_loop.hpp"
 
 namespace kacanov {
 namespace {

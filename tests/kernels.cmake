@@ -2,4 +2,4 @@
 kacanov_test(kernels
   SOURCES kernels/law_test.cpp kernels/reference_test.cpp kernels/operator_test.cpp kernels/locking_test.cpp
     ../perf/meshes.cpp
-  LIBRARIES kacanov_kernels)
+  LIBRARIES kacanov_kernels_internal)

@@ -1,54 +1,54 @@
 # SPDX-License-Identifier: BSD-3-Clause
 kacanov_test(problem
-  SOURCES solver/problem_contact.cpp solver/problem_loads.cpp
-          solver/problem_rigid_modes.cpp
-  LIBRARIES kacanov_solver)
+  SOURCES solver/problem_contact_test.cpp solver/problem_loads_test.cpp
+          solver/problem_rigid_modes_test.cpp
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 find_package(Eigen3 3.4 REQUIRED)
 kacanov_test(algebra
   MPI SOURCES solver/algebra_test.cpp
-  LIBRARIES kacanov_solver Eigen3::Eigen)
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal Eigen3::Eigen)
 kacanov_test(multigrid
   MPI SOURCES solver/multigrid_test.cpp
-  LIBRARIES kacanov_solver Eigen3::Eigen
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal Eigen3::Eigen
   RANKS 1 2 3)
 kacanov_test(spectrum
   MPI SOURCES solver/spectrum_test.cpp
-  LIBRARIES kacanov_solver Eigen3::Eigen)
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal Eigen3::Eigen)
 kacanov_test(lanczos
   MPI SOURCES solver/lanczos_test.cpp
-  LIBRARIES kacanov_solver Eigen3::Eigen
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal Eigen3::Eigen
   RANKS 1 2 3)
 kacanov_test(parallel
   MPI SOURCES solver/parallel_test.cpp
-  LIBRARIES kacanov_solver
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal
   RANKS 1 2 3 4)
 
 kacanov_test(checkpoint
   MPI SOURCES solver/checkpoint_test.cpp
-  LIBRARIES kacanov_solver
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal
   RANKS 1 2)
 
 kacanov_test(load_steps
   MPI SOURCES solver/load_steps_test.cpp
-  LIBRARIES kacanov_solver)
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 kacanov_test(random_problems
   MPI SOURCES solver/random_test.cpp
-  LIBRARIES kacanov_solver Eigen3::Eigen)
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal Eigen3::Eigen)
 
 kacanov_test(half_space
   MPI SOURCES solver/half_space_test.cpp
-  LIBRARIES kacanov_solver)
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 kacanov_test(mesh
   SOURCES solver/mesh_test.cpp
-  LIBRARIES kacanov_solver)
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 find_package(nlohmann_json REQUIRED)
 kacanov_test(reference_cases
   MPI SOURCES cases/reference_test.cpp
-  LIBRARIES kacanov_io kacanov_solver nlohmann_json::nlohmann_json)
+  LIBRARIES kacanov_io nlohmann_json::nlohmann_json)
 target_include_directories(test_reference_cases PRIVATE solver)
 set_tests_properties(reference_cases PROPERTIES LABELS slow)  # whole runs
 target_compile_definitions(test_reference_cases PRIVATE
@@ -56,16 +56,16 @@ target_compile_definitions(test_reference_cases PRIVATE
   KACANOV_ROCKER="${PROJECT_SOURCE_DIR}/tools/examples/rocker.msh")
 kacanov_test(closed_solutions
   MPI SOURCES solver/closed_test.cpp
-  LIBRARIES kacanov_solver)
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 kacanov_test(contact
   MPI SOURCES solver/contact_test.cpp
-  LIBRARIES kacanov_solver)
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 kacanov_test(dual
   MPI SOURCES solver/dual_test.cpp
-  LIBRARIES kacanov_solver)
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 kacanov_test(certificate
   MPI SOURCES solver/certificate_test.cpp
-  LIBRARIES kacanov_solver)
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 kacanov_test(outer
   MPI SOURCES solver/outer_test.cpp
-  LIBRARIES kacanov_solver)
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal)

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 find_package(nlohmann_json REQUIRED)
 kacanov_test(case
-  SOURCES tools/case_errors.cpp tools/case_values.cpp
+  SOURCES tools/case_errors_test.cpp tools/case_values_test.cpp
   LIBRARIES kacanov_case)
 add_library(kacanov_program_runner OBJECT tools/program_runner.cpp)
 target_link_libraries(kacanov_program_runner PUBLIC nlohmann_json::nlohmann_json kacanov_warnings)
 target_compile_definitions(kacanov_program_runner PRIVATE KACANOV_PROGRAM="$<TARGET_FILE:kacanov>")
 foreach(area program_errors program_failures program_memory program_partition program_restart program_runs)
-  kacanov_test(${area} SOURCES tools/${area}.cpp LIBRARIES kacanov_program_runner)
+  kacanov_test(${area} SOURCES tools/${area}_test.cpp LIBRARIES kacanov_program_runner)
   target_compile_definitions(test_${area} PRIVATE
     KACANOV_PROGRAM="$<TARGET_FILE:kacanov>" KACANOV_MPIEXEC="${MPIEXEC_EXECUTABLE}")
   add_dependencies(test_${area} kacanov)
@@ -15,7 +15,7 @@ foreach(area program_errors program_failures program_memory program_partition pr
 endforeach()
 
 kacanov_test(gmsh
-  SOURCES tools/mesh_roundtrip.cpp tools/mesh_messages.cpp tools/mesh_writer.cpp
+  SOURCES tools/mesh_roundtrip_test.cpp tools/mesh_messages_test.cpp tools/mesh_writer.cpp
   LIBRARIES kacanov_io)
 target_compile_definitions(test_gmsh PRIVATE KACANOV_EXAMPLES="${PROJECT_SOURCE_DIR}/tools/examples")
 

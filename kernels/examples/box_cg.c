@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "kacanov.h"
+#include <kacanov/kacanov.h>
 
 /* A bar nx by n by n cells of side 1/n, each cut into six tetrahedra. */
 typedef struct Bar {

@@ -17,7 +17,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "kacanov.h"
+#include <kacanov/kacanov.h>
 
 namespace {
 

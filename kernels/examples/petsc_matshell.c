@@ -3,7 +3,7 @@
  * hexahedra on rollers is pulled along x, for which the exact displacement is known and linear. */
 #include <petscksp.h>
 
-#include "kacanov.h"
+#include <kacanov/kacanov.h>
 
 /* What the shell needs: the operator, and which unknowns are held (their rows and columns are those of 1). */
 typedef struct Shell {

@@ -2,9 +2,9 @@
 // Any element, one a lane, by the isoparametric map at its quadrature points: tri3 and curved tet10.
 #pragma once
 
-#include "elements/tet10.hpp"
-#include "elements/tri3.hpp"
-#include "fan.hpp"
+#include "cells/tet10.hpp"
+#include "cells/tri3.hpp"
+#include "simd/fan.hpp"
 
 namespace {
 

@@ -2,7 +2,7 @@
 // Fans of linear tetrahedra: p, q and a ring r_0 … r_n, tetrahedra (p, q, r_i, r_{i+1}), a fan a lane.
 #pragma once
 
-#include "material.hpp"
+#include "simd/material.hpp"
 
 namespace {
 

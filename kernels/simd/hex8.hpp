@@ -4,8 +4,8 @@
 
 #include <array>
 
-#include "elements/hex8.hpp"
-#include "fan.hpp"
+#include "cells/hex8.hpp"
+#include "simd/fan.hpp"
 
 namespace {
 

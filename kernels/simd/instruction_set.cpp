@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Asks the processor what it has and finds the loops built for it.
-#include "instruction_set.hpp"
+#include "simd/instruction_set.hpp"
 
 #include <cstdlib>
 #include <stdexcept>

@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-#include "kernels.hpp"
+#include "simd/kernels.hpp"
 
 namespace kacanov::simd {
 

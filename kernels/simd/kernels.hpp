@@ -2,7 +2,7 @@
 // The tables of loops there are; instruction_set.hpp chooses between them.
 #pragma once
 
-#include "block.hpp"
+#include "simd/block.hpp"
 
 namespace kacanov::simd {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The element loops built for AVX2 with FMA.
-#include "kernels.hpp"
-#include "vector_avx2.hpp"
+#include "simd/kernels.hpp"
+#include "simd/vector_avx2.hpp"
 
-#include "loops.hpp"
+#include "simd/loops.hpp"
 
 namespace kacanov::simd {
 

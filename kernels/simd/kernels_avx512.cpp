@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The element loops built for AVX-512 (F, DQ).
-#include "kernels.hpp"
-#include "vector_avx512.hpp"
+#include "simd/kernels.hpp"
+#include "simd/vector_avx512.hpp"
 
-#include "loops.hpp"
+#include "simd/loops.hpp"
 
 namespace kacanov::simd {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The element loops built for the compiler's baseline.
-#include "kernels.hpp"
-#include "vector_plain.hpp"
+#include "simd/kernels.hpp"
+#include "simd/vector_plain.hpp"
 
-#include "loops.hpp"
+#include "simd/loops.hpp"
 
 namespace kacanov::simd {
 

@@ -2,9 +2,9 @@
 // The table of loops of one instruction set, built from its `Lanes`. Included once by each of its sources.
 #pragma once
 
-#include "element.hpp"
-#include "hex8.hpp"
-#include "tet10.hpp"
+#include "simd/element.hpp"
+#include "simd/hex8.hpp"
+#include "simd/tet10.hpp"
 
 namespace {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "block.hpp"
-#include "inline.hpp"
+#include "simd/block.hpp"
+#include "simd/inline.hpp"
 
 namespace {
 

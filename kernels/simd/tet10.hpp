@@ -2,8 +2,8 @@
 // Quadratic tetrahedra with straight sides, one a lane: their strain is linear, given by its vertex values.
 #pragma once
 
-#include "elements/tet10.hpp"
-#include "fan.hpp"
+#include "cells/tet10.hpp"
+#include "simd/fan.hpp"
 
 namespace {
 

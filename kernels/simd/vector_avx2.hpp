@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-#include "inline.hpp"
+#include "simd/inline.hpp"
 
 namespace {
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "inline.hpp"
+#include "simd/inline.hpp"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "contact/admm.hpp"
-#include "spectrum.hpp"
+#include "spectrum/spectrum.hpp"
 
 namespace kacanov {
 

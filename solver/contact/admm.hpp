@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "cg.hpp"
+#include "linear/cg.hpp"
 #include "contact/balance.hpp"
 #include "contact/traces.hpp"
 

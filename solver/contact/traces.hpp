@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "space.hpp"
+#include "linear/space.hpp"
 
 namespace kacanov {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <sstream>
 
-#include "error.hpp"
+#include <kacanov/error.hpp>
 #include "problem/integration.hpp"
 #include "problem/vector3.hpp"
 

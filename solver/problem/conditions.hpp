@@ -2,7 +2,7 @@
 // Materials, loads and given displacements: the entries of a model carried over to a mesh.
 #pragma once
 
-#include "problem.hpp"
+#include <kacanov/problem.hpp>
 #include "problem/selection.hpp"
 
 namespace kacanov {

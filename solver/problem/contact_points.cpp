@@ -7,7 +7,7 @@
 #include <optional>
 #include <tuple>
 
-#include "error.hpp"
+#include <kacanov/error.hpp>
 #include "problem/integration.hpp"
 #include "problem/vector3.hpp"
 

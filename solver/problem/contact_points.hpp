@@ -2,7 +2,7 @@
 // From contact entries to contact points: normals, gaps, masses and the rows of N and T.
 #pragma once
 
-#include "problem.hpp"
+#include <kacanov/problem.hpp>
 #include "problem/selection.hpp"
 
 namespace kacanov {

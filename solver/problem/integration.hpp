@@ -4,8 +4,8 @@
 
 #include <array>
 
-#include "mesh.hpp"
-#include "model.hpp"
+#include <kacanov/mesh.hpp>
+#include <kacanov/model.hpp>
 
 namespace kacanov {
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <sstream>
 
-#include "error.hpp"
+#include <kacanov/error.hpp>
 #include "problem/shapes.hpp"
 #include "problem/vector3.hpp"
 

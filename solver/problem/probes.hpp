@@ -2,7 +2,7 @@
 // Finds the elements that hold the probe points.
 #pragma once
 
-#include "problem.hpp"
+#include <kacanov/problem.hpp>
 
 namespace kacanov {
 

@@ -2,7 +2,7 @@
 // Which rigid motions nothing holds, found before the solver meets them.
 #pragma once
 
-#include "problem.hpp"
+#include <kacanov/problem.hpp>
 
 namespace kacanov {
 

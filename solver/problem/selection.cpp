@@ -7,7 +7,7 @@
 #include <numeric>
 #include <sstream>
 
-#include "error.hpp"
+#include <kacanov/error.hpp>
 #include "problem/closest_word.hpp"
 #include "problem/vector3.hpp"
 

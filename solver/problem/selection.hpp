@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "mesh.hpp"
-#include "model.hpp"
+#include <kacanov/mesh.hpp>
+#include <kacanov/model.hpp>
 
 namespace kacanov {
 

@@ -4,8 +4,8 @@
 
 #include <array>
 
-#include "mesh_view.hpp"
-#include "model.hpp"
+#include <kacanov/mesh_view.hpp>
+#include <kacanov/model.hpp>
 
 namespace kacanov {
 

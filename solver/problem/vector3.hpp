@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <string>
 
-#include "mesh.hpp"
-#include "model.hpp"
+#include <kacanov/mesh.hpp>
+#include <kacanov/model.hpp>
 
 namespace kacanov {
 

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "gmsh_reader.hpp"
+#include "formats/gmsh_reader.hpp"
 #include "support.hpp"
 
 using namespace kacanov;

@@ -10,7 +10,7 @@
 #include <memory>
 #include <string>
 
-#include "kacanov.h"
+#include <kacanov/kacanov.h>
 #include "small_meshes.hpp"
 
 using Vector = std::vector<double>;

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "kacanov.h"
+#include <kacanov/kacanov.h>
 
 struct SmallMesh {
   std::int32_t element = KACANOV_TET4;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "../../perf/meshes.hpp"
-#include "reference.hpp"
+#include <kacanov/reference.hpp>
 
 namespace kacanov::test {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The laws against their own definitions: derivative, energy, monotony, limits.
-#include "law.hpp"
+#include <kacanov/law.hpp>
 
 #include <doctest/doctest.h>
 

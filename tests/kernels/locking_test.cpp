@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bodies.hpp"
-#include "operator.hpp"
+#include <kacanov/operator.hpp>
 
 using namespace kacanov;
 

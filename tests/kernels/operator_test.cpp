@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The fast operator against the reference: every element, instruction set, thread count and kind of mesh.
-#include "operator.hpp"
+#include <kacanov/operator.hpp>
 
 #include <doctest/doctest.h>
 
@@ -10,8 +10,8 @@
 #include <string>
 
 #include "bodies.hpp"
-#include "float_operator.hpp"
-#include "locality.hpp"
+#include <kacanov/float_operator.hpp>
+#include <kacanov/locality.hpp>
 
 using namespace kacanov;
 using test::difference;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The reference operator against what mechanics says of it.
-#include "reference.hpp"
+#include <kacanov/reference.hpp>
 
 #include <doctest/doctest.h>
 
@@ -9,8 +9,8 @@
 #include <numeric>
 
 #include "bodies.hpp"
-#include "element_stiffness.hpp"
-#include "elements/dispatch.hpp"
+#include "reference/element_stiffness.hpp"
+#include "cells/dispatch.hpp"
 
 using namespace kacanov;
 using test::difference;

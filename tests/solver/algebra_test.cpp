@@ -5,12 +5,12 @@
 #include <Eigen/Dense>
 #include <numeric>
 
-#include "preconditioner.hpp"
-#include "cg.hpp"
+#include "linear/preconditioner.hpp"
+#include "linear/cg.hpp"
 #include "contact/projections.hpp"
 #include "contact/traces.hpp"
 #include "dense.hpp"
-#include "operator.hpp"
+#include <kacanov/operator.hpp>
 #include "support.hpp"
 
 using namespace kacanov;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The certificate sees every way a state can be wrong, and no run is called converged that is not.
-#include "certificate.hpp"
+#include "contact/certificate.hpp"
 
 #include <doctest/doctest.h>
 

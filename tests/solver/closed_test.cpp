@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <map>
 
-#include "element_fields.hpp"
+#include <kacanov/element_fields.hpp>
 #include "radial.hpp"
 #include "support.hpp"
 

@@ -5,8 +5,8 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "part.hpp"
-#include "reference.hpp"
+#include <kacanov/part.hpp>
+#include <kacanov/reference.hpp>
 
 namespace kacanov::testing {
 

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <vector>
 
-#include "problem.hpp"
+#include <kacanov/problem.hpp>
 
 namespace kacanov::testing {
 

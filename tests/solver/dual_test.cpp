@@ -4,9 +4,9 @@
 
 #include <doctest/doctest.h>
 
-#include "distributed_operator.hpp"
-#include "preconditioner.hpp"
-#include "spectrum.hpp"
+#include "linear/distributed_operator.hpp"
+#include "linear/preconditioner.hpp"
+#include "spectrum/spectrum.hpp"
 #include "support.hpp"
 
 using namespace kacanov;

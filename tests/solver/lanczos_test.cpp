@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Lanczos on matrices with known eigenvalues, their rows spread over the ranks in any way.
-#include "lanczos.hpp"
+#include "spectrum/lanczos.hpp"
 
 #include <doctest/doctest.h>
 

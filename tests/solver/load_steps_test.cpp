@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "load_steps.hpp"
+#include "nonlinear/load_path.hpp"
 #include "support.hpp"
 
 using namespace kacanov;

@@ -11,9 +11,9 @@
 #include <set>
 #include <string>
 
-#include "error.hpp"
-#include "index_runs.hpp"
-#include "mesh.hpp"
+#include <kacanov/error.hpp>
+#include <kacanov/index_runs.hpp>
+#include <kacanov/mesh.hpp>
 
 using namespace kacanov;
 

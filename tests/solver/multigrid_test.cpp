@@ -6,12 +6,12 @@
 #include <cmath>
 #include <numeric>
 
-#include "cg.hpp"
-#include "multigrid/aggregate_motions.hpp"
-#include "multigrid/aggregation.hpp"
-#include "multigrid/rigid_level.hpp"
-#include "operator.hpp"
-#include "preconditioner.hpp"
+#include "linear/cg.hpp"
+#include "amg/aggregate_motions.hpp"
+#include "amg/aggregation.hpp"
+#include "amg/rigid_level.hpp"
+#include <kacanov/operator.hpp>
+#include "linear/preconditioner.hpp"
 #include "support.hpp"
 
 using namespace kacanov;

@@ -6,8 +6,8 @@
 #include <cstring>
 #include <numeric>
 
-#include "preconditioner.hpp"
-#include "space.hpp"
+#include "linear/preconditioner.hpp"
+#include "linear/space.hpp"
 #include "support.hpp"
 
 using namespace kacanov;

@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "error.hpp"
-#include "problem.hpp"
+#include <kacanov/error.hpp>
+#include <kacanov/problem.hpp>
 
 namespace kacanov::testing {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "law.hpp"
+#include <kacanov/law.hpp>
 
 namespace kacanov::testing {
 

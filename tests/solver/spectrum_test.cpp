@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // λ_min, λ_max and r* against dense eigenvalues, where everything is easy and where Lanczos breaks down.
-#include "spectrum.hpp"
+#include "spectrum/spectrum.hpp"
 
 #include <doctest/doctest.h>
 

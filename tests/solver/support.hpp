@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "problem_models.hpp"
-#include "solve.hpp"
+#include <kacanov/solve.hpp>
 
 namespace kacanov::testing {
 

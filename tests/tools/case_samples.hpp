@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "case_file.hpp"
-#include "error.hpp"
-#include "json_node.hpp"
+#include "case/case_file.hpp"
+#include <kacanov/error.hpp>
+#include "case/json_node.hpp"
 
 namespace kacanov::testing {
 

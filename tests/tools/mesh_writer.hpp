@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "mesh.hpp"
+#include <kacanov/mesh.hpp>
 
 namespace kacanov::testing {
 

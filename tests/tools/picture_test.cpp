@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "body_drawing.hpp"
-#include "error.hpp"
-#include "picture.hpp"
-#include "png.hpp"
-#include "svg.hpp"
+#include "pictures/body_drawing.hpp"
+#include <kacanov/error.hpp>
+#include "pictures/picture.hpp"
+#include "pictures/png.hpp"
+#include "pictures/svg.hpp"
 
 using namespace kacanov;
 

@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "error.hpp"
-#include "mesh.hpp"
+#include <kacanov/error.hpp>
+#include <kacanov/mesh.hpp>
 #include "temporary_folder.hpp"
-#include "vtu_writer.hpp"
+#include "formats/vtu_writer.hpp"
 
 using namespace kacanov;
 using namespace kacanov::testing;

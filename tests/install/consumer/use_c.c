@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
 /* One tetrahedron through the installed C interface. */
-#include <kacanov.h>
+#include <kacanov/kacanov.h>
 #include <math.h>
 #include <stdio.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One tetrahedron through the installed C++ kernels.
-#include <operator.hpp>
+#include <kacanov/operator.hpp>
 
 #include <cmath>
 #include <vector>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A block pressed on a plane through the installed solver: the obstacle carries the load.
 #include <mpi.h>
-#include <solve.hpp>
+#include <kacanov/solve.hpp>
 
 #include <cmath>
 #include <utility>

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The C interface's calls on a handle: arguments checked, then the work is Operator's or the reference's.
+#include <kacanov/kacanov.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string>
+
+#include "c/handle.hpp"
+#include <kacanov/locality.hpp>
+
+#ifndef KACANOV_VERSION
+#error "the build has to define KACANOV_VERSION"
+#endif
+
+namespace k = kacanov;
+using namespace kacanov::c_api;
+
+namespace {
+
+void require_finite(std::span<const double> values, const char* name) {
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!std::isfinite(values[i]))
+      throw Fault(KACANOV_ERROR_VALUE, std::string(name) + "[" + std::to_string(i) + "] is not finite");
+}
+
+/// A displacement: of the right length and finite.
+std::span<const double> state(const kacanov_operator& op, std::size_t n, const double* omega) {
+  require_size(n, op.unknowns(), "n");
+  const auto span = input(omega, n, "omega");
+  require_finite(span, "omega");
+  return span;
+}
+
+}  // namespace
+
+const char* kacanov_message(const kacanov_operator* op) {
+  return op == nullptr ? "op: null pointer" : op->message;
+}
+
+int kacanov_update(kacanov_operator* op, size_t n, const double* omega) {
+  return on(op, [&](k::Operator& fast) {
+    fast.update(state(*op, n, omega));
+    op->single_is_current = false;
+  });
+}
+
+int kacanov_secant(kacanov_operator* op, size_t count, double* g) {
+  return on(op, [&](k::Operator& fast) {
+    require_size(count, op->body().secant_count(), "count");
+    fast.secant(output(g, count, "g"));
+  });
+}
+
+int kacanov_set_secant(kacanov_operator* op, size_t count, const double* g) {
+  return on(op, [&](k::Operator& fast) {
+    require_size(count, op->body().secant_count(), "count");
+    const auto values = input(g, count, "g");
+    require_finite(values, "g");
+    for (std::size_t i = 0; i < count; ++i)
+      if (values[i] < 0.0) throw Fault(KACANOV_ERROR_VALUE, "g[" + std::to_string(i) + "] is negative");
+    fast.set_secant(values);
+    op->single_is_current = false;
+  });
+}
+
+int kacanov_apply(kacanov_operator* op, size_t n, const double* x, double* y) {
+  return on(op, [&](k::Operator& fast) {
+    require_size(n, op->unknowns(), "n");
+    const auto in = input(x, n, "x");
+    const auto out = output(y, n, "y");
+    require_disjoint(in, out, "x and y");
+    fast.apply(in, out);
+  });
+}
+
+int kacanov_apply_dot(kacanov_operator* op, size_t n, const double* x, double* y, double* dot) {
+  return on(op, [&](k::Operator& fast) {
+    require_size(n, op->unknowns(), "n");
+    const auto in = input(x, n, "x");
+    const auto out = output(y, n, "y");
+    require(dot, "dot");
+    require_disjoint(in, out, "x and y");
+    *dot = fast.apply_dot(in, out);
+  });
+}
+
+int kacanov_apply_many(kacanov_operator* op, size_t n, int32_t vectors, const double* x, double* y) {
+  return on(op, [&](k::Operator& fast) {
+    require_size(n, op->unknowns(), "n");
+    if (vectors < 1) throw Fault(KACANOV_ERROR_VALUE, "vectors: expected at least 1");
+    const auto in = input(x, n * static_cast<std::size_t>(vectors), "x");
+    const auto out = output(y, in.size(), "y");
+    require_disjoint(in, out, "x and y");
+    fast.apply_many(in, out, vectors);
+  });
+}
+
+int kacanov_update_tangent(kacanov_operator* op, size_t n, const double* omega) {
+  return on(op, [&](k::Operator& fast) {
+    fast.update_tangent(state(*op, n, omega));
+    op->single_is_current = false;
+    op->has_tangent = true;
+  });
+}
+
+int kacanov_apply_tangent(kacanov_operator* op, size_t n, const double* x, double* y) {
+  return on(op, [&](k::Operator& fast) {
+    if (!op->has_tangent)
+      throw Fault(KACANOV_ERROR_STATE, "no tangent is frozen yet: kacanov_update_tangent first");
+    require_size(n, op->unknowns(), "n");
+    const auto in = input(x, n, "x");
+    const auto out = output(y, n, "y");
+    require_disjoint(in, out, "x and y");
+    fast.apply_tangent(in, out);
+  });
+}
+
+int kacanov_diagonal(kacanov_operator* op, size_t n, double* diagonal) {
+  return on(op, [&](k::Operator& fast) {
+    require_size(n, op->unknowns(), "n");
+    fast.diagonal(output(diagonal, n, "diagonal"));
+  });
+}
+
+int kacanov_block_diagonal(kacanov_operator* op, size_t count, double* blocks) {
+  return on(op, [&](k::Operator& fast) {
+    require_size(count, op->unknowns() * static_cast<std::size_t>(k::dimension(op->mesh.type)), "count");
+    fast.block_diagonal(output(blocks, count, "blocks"));
+  });
+}
+
+int kacanov_residual(kacanov_operator* op, size_t n, const double* omega, double* f) {
+  return on(op, [&](k::Operator& fast) {
+    const auto at = state(*op, n, omega);
+    const auto out = output(f, n, "f");
+    require_disjoint(at, out, "omega and f");
+    fast.residual(at, out);
+  });
+}
+
+int kacanov_energy(kacanov_operator* op, size_t n, const double* omega, double* energy) {
+  return on(op, [&](k::Operator& fast) {
+    const auto at = state(*op, n, omega);
+    require(energy, "energy");
+    *energy = fast.energy(at);
+  });
+}
+
+int kacanov_residual_energy_update(kacanov_operator* op, size_t n, const double* omega, double* f,
+                                   double* energy) {
+  return on(op, [&](k::Operator& fast) {
+    const auto at = state(*op, n, omega);
+    const auto out = output(f, n, "f");
+    require(energy, "energy");
+    require_disjoint(at, out, "omega and f");
+    *energy = fast.residual_energy_update(at, out);
+    op->single_is_current = false;
+  });
+}
+
+int kacanov_stress(kacanov_operator* op, size_t n, const double* omega, const kacanov_fields* fields) {
+  return on(op, [&](k::Operator&) {
+    const auto at = state(*op, n, omega);
+    require(fields, "fields");
+    const std::size_t elements = op->mesh.element_count();
+    require_size(fields->elements, elements, "fields.elements");
+    const auto span = [&](auto* data, std::size_t per_element) {
+      return std::span(data, data == nullptr ? 0 : per_element * elements);
+    };
+    k::reference::fields(op->body(), at,
+                         {.stress = span(fields->stress, 6),
+                          .von_mises = span(fields->von_mises, 1),
+                          .dev_strain = span(fields->dev_strain, 1),
+                          .secant = span(fields->secant, 1),
+                          .plastic = span(fields->plastic, 1)});
+  });
+}
+
+int kacanov_inspect(kacanov_operator* op, kacanov_information* information) {
+  return on(op, [&](k::Operator& fast) {
+    require(information, "information");
+    const k::MeshView& mesh = op->mesh;
+    *information = {.unknowns = op->unknowns(),
+                    .nodes = mesh.node_count(),
+                    .elements = mesh.element_count(),
+                    .dimension = k::dimension(mesh.type),
+                    .nodes_per_element = k::nodes_per_element(mesh.type),
+                    .points_per_element = k::points_per_element(mesh.type),
+                    .threads = op->options.threads,
+                    .applications = fast.applications(),
+                    .bytes = fast.bytes() + (op->single ? op->single->bytes() : 0) +
+                             op->coordinates.size() * sizeof(double) +
+                             op->connectivity.size() * sizeof(std::int32_t) +
+                             op->own_law_of_element.size() * sizeof(std::uint16_t),
+                    .instruction_set = op->instruction_set.c_str()};
+  });
+}
+
+int kacanov_locality_order(kacanov_operator* op, size_t nodes, int32_t* node_order, size_t elements,
+                           int32_t* element_order) {
+  return on(op, [&](k::Operator&) {
+    require_size(nodes, op->mesh.node_count(), "nodes");
+    require_size(elements, op->mesh.element_count(), "elements");
+    const k::LocalityOrder order = k::locality_order(op->mesh);
+    if (node_order != nullptr) std::copy(order.nodes.begin(), order.nodes.end(), node_order);
+    if (element_order != nullptr) std::copy(order.elements.begin(), order.elements.end(), element_order);
+  });
+}
+
+int kacanov_elastic_law(double young, double poisson, kacanov_law* law) {
+  if (law == nullptr) return KACANOV_ERROR_NULL;
+  if (!(young > 0.0 && young < 1e300 && poisson > -1.0 && poisson < 0.5)) return KACANOV_ERROR_LAW;
+  const k::Law made = k::elastic_law(young, poisson);
+  *law = {};
+  law->kind = KACANOV_LINEAR;
+  law->bulk = made.bulk;
+  law->shear = made.shear;
+  return KACANOV_OK;
+}
+
+const char* kacanov_version(void) { return KACANOV_VERSION; }

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The C interface's making and unmaking of handles.
+#include <kacanov/kacanov.h>
+
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "c/handle.hpp"
+#include "operator/mesh_check.hpp"
+
+namespace k = kacanov;
+using namespace kacanov::c_api;
+
+namespace {
+
+k::ElementType element_type(std::int32_t element) {
+  if (element < KACANOV_TRI3 || element > KACANOV_HEX8)
+    throw Fault(KACANOV_ERROR_VALUE, "element: there is no element type " + std::to_string(element));
+  return static_cast<k::ElementType>(element);
+}
+
+void check_description(const kacanov_description& d) {
+  constexpr auto most = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
+  if (d.threads < 0 || d.threads > 4096)
+    throw Fault(KACANOV_ERROR_VALUE, "threads: expected 0 to 4096, got " + std::to_string(d.threads));
+  if (d.index_base != 0 && d.index_base != 1) throw Fault(KACANOV_ERROR_VALUE, "index_base: expected 0 or 1");
+  if (d.borrow != 0 && d.borrow != 1) throw Fault(KACANOV_ERROR_VALUE, "borrow: expected 0 or 1");
+  if (d.single != 0 && d.single != 1) throw Fault(KACANOV_ERROR_VALUE, "single: expected 0 or 1");
+  require(d.coordinates, "coordinates");
+  require(d.connectivity, "connectivity");
+  if (d.laws > 0) require(d.law, "law");
+  if (d.nodes == 0 || d.nodes > most / 3)
+    throw Fault(KACANOV_ERROR_SIZE, "nodes: expected 1 to " + std::to_string(most / 3) + " (32-bit indices)");
+  if (d.elements == 0 || d.elements > most / 10)
+    throw Fault(KACANOV_ERROR_SIZE,
+                "elements: expected 1 to " + std::to_string(most / 10) + " (32-bit indices)");
+}
+
+/// Fills the mesh of the handle with copies, or with the caller's arrays where they are borrowed.
+void take_mesh(const kacanov_description& d, kacanov_operator& op) {
+  const k::ElementType type = element_type(d.element);
+  const auto dim = static_cast<std::size_t>(k::dimension(type));
+  const auto per_element = static_cast<std::size_t>(k::nodes_per_element(type));
+  const std::size_t node_stride = d.node_stride == 0 ? dim : d.node_stride;
+  const std::size_t component_stride = d.component_stride == 0 ? 1 : d.component_stride;
+  const std::size_t element_stride = d.element_stride == 0 ? per_element : d.element_stride;
+  if (element_stride < per_element)
+    throw Fault(KACANOV_ERROR_SIZE, "element_stride: expected at least " + std::to_string(per_element));
+  if (d.borrow != 0) {
+    if (node_stride != dim || component_stride != 1 || element_stride != per_element || d.index_base != 0)
+      throw Fault(KACANOV_ERROR_VALUE, "borrow: needs default strides and index_base 0");
+    op.mesh = {type, {d.coordinates, d.nodes * dim}, {d.connectivity, d.elements * per_element}};
+    return;
+  }
+  op.coordinates.resize(d.nodes * dim);
+  for (std::size_t i = 0; i < d.nodes; ++i)
+    for (std::size_t c = 0; c < dim; ++c)
+      op.coordinates[i * dim + c] = d.coordinates[i * node_stride + c * component_stride];
+  op.connectivity.resize(d.elements * per_element);
+  for (std::size_t e = 0; e < d.elements; ++e)
+    for (std::size_t a = 0; a < per_element; ++a) {
+      const std::int32_t node = d.connectivity[e * element_stride + a];
+      op.connectivity[e * per_element + a] = node < 0 ? node : node - d.index_base;
+    }
+  op.mesh = {type, op.coordinates, op.connectivity};
+}
+
+/// Gives the handle its laws and makes the operator; the handle changes only if all goes well.
+void take_laws(kacanov_operator& op, std::span<const kacanov_law> laws, const std::uint16_t* law_of_element,
+               bool borrow) {
+  std::vector<k::Law> checked = k::c_api::checked_laws(laws);
+  for (std::size_t i = 0; i < checked.size(); ++i)
+    if (checked[i].mean_dilatation && op.mesh.type != k::ElementType::hex8)
+      throw Fault(KACANOV_ERROR_LAW, "law[" + std::to_string(i) + "].mean_dilatation: is for hex8 only");
+  std::vector<std::uint16_t> own;
+  std::span<const std::uint16_t> of_element;
+  if (law_of_element != nullptr) {
+    of_element = {law_of_element, op.mesh.element_count()};
+    if (!borrow) {
+      own.assign(of_element.begin(), of_element.end());
+      of_element = own;
+    }
+  }
+  k::c_api::check_law_of_element(of_element, checked.size());
+
+  k::Operator made({op.mesh, checked, of_element}, op.options);
+  std::optional<k::FloatOperator> single;
+  if (op.wants_single) single.emplace(k::Body{op.mesh, checked, of_element}, op.options);
+  std::string got(made.instruction_set());
+  op.fast.emplace(std::move(made));
+  op.instruction_set.swap(got);
+  op.options.instruction_set = op.instruction_set;
+  op.laws.swap(checked);
+  op.own_law_of_element.swap(own);  // keeps the address `of_element` may point to
+  op.law_of_element = of_element;
+  op.single = std::move(single);
+  op.single_is_current = true;  // both start with g = mu
+  op.has_tangent = false;
+}
+
+}  // namespace
+
+int kacanov_create(const kacanov_description* description, kacanov_operator** op, char* message,
+                   size_t message_size) {
+  copy_message("", message, message_size);
+  if (op != nullptr) *op = nullptr;
+  return guarded(message, message_size, [&] {
+    require(description, "description");
+    require(op, "op");
+    const kacanov_description& d = *description;
+    check_description(d);
+    auto made = std::make_unique<kacanov_operator>();
+    take_mesh(d, *made);
+    if (const std::string fault = k::mesh_fault(made->mesh); !fault.empty())
+      throw Fault(KACANOV_ERROR_MESH, fault);
+    made->options.threads = d.threads == 0 ? 1 : d.threads;
+    if (d.instruction_set != nullptr) made->instruction_set = d.instruction_set;
+    made->options.instruction_set = made->instruction_set;
+    made->wants_single = d.single != 0;
+    if (d.laws > 0) take_laws(*made, {d.law, d.laws}, d.law_of_element, d.borrow != 0);
+    *op = made.release();
+  });
+}
+
+void kacanov_destroy(kacanov_operator* op) { delete op; }
+
+int kacanov_set_laws(kacanov_operator* op, size_t laws, const kacanov_law* law, size_t elements,
+                     const uint16_t* law_of_element) {
+  if (op == nullptr) return KACANOV_ERROR_NULL;
+  return guarded(op->message, sizeof op->message, [&] {
+    require(law, "law");
+    if (laws == 0) throw Fault(KACANOV_ERROR_SIZE, "laws: expected at least 1");
+    require_size(elements, op->mesh.element_count(), "elements");
+    take_laws(*op, {law, laws}, law_of_element, false);
+  });
+}

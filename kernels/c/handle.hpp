@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The handle of the C interface, and how its functions check arguments and report faults.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <new>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "c/laws.hpp"
+#include <kacanov/float_operator.hpp>
+#include <kacanov/kacanov.h>
+#include <kacanov/operator.hpp>
+#include <kacanov/reference.hpp>
+
+/// Everything a handle holds. The mesh stays for the recovery of stress and for new laws.
+struct kacanov_operator {
+  kacanov::MeshView mesh;  ///< of the vectors below, or of the caller's arrays
+  std::vector<double> coordinates;
+  std::vector<std::int32_t> connectivity;
+  std::vector<kacanov::Law> laws;
+  std::vector<std::uint16_t> own_law_of_element;
+  std::span<const std::uint16_t> law_of_element;
+  kacanov::OperatorOptions options;
+  std::string instruction_set;            ///< what options.instruction_set points to: as asked, then as got
+  std::optional<kacanov::Operator> fast;  ///< empty until there are laws
+  std::optional<kacanov::FloatOperator> single;  ///< where asked for, as soon as there are laws
+  bool wants_single = false;
+  bool single_is_current = false;  ///< its g is that of `fast`
+  bool has_tangent = false;
+  char message[512] = "";
+
+  std::size_t unknowns() const noexcept { return mesh.coordinates.size(); }
+  kacanov::Body body() const noexcept { return {mesh, laws, law_of_element}; }
+};
+
+namespace kacanov::c_api {
+
+inline void copy_message(const char* text, char* to, std::size_t size) noexcept {
+  if (to != nullptr && size > 0) std::snprintf(to, size, "%s", text);
+}
+
+/// Runs `work`; what it throws becomes a code and a message.
+template <class Work>
+int guarded(char* message, std::size_t size, Work&& work) noexcept {
+  try {
+    work();
+    return KACANOV_OK;
+  } catch (const Fault& fault) {
+    copy_message(fault.what(), message, size);
+    return fault.code();
+  } catch (const std::invalid_argument& error) {
+    copy_message(error.what(), message, size);
+    return KACANOV_ERROR_VALUE;
+  } catch (const std::bad_alloc&) {
+    copy_message("out of memory", message, size);
+    return KACANOV_ERROR_MEMORY;
+  } catch (const std::length_error&) {
+    copy_message("out of memory: a size is beyond any memory", message, size);
+    return KACANOV_ERROR_MEMORY;
+  } catch (const std::exception& error) {
+    copy_message(error.what(), message, size);
+    return KACANOV_ERROR_INTERNAL;
+  } catch (...) {
+    copy_message("unknown failure", message, size);
+    return KACANOV_ERROR_INTERNAL;
+  }
+}
+
+inline void require(const void* pointer, const char* name) {
+  if (pointer == nullptr) throw Fault(KACANOV_ERROR_NULL, std::string(name) + ": null pointer");
+}
+
+inline void require_size(std::size_t got, std::size_t expected, const char* name) {
+  if (got != expected)
+    throw Fault(KACANOV_ERROR_SIZE, std::string(name) + ": expected " + std::to_string(expected) + ", got " +
+                                        std::to_string(got));
+}
+
+/// Runs `work` on a handle that has laws; see guarded().
+template <class Work>
+int on(kacanov_operator* op, Work&& work) noexcept {
+  if (op == nullptr) return KACANOV_ERROR_NULL;
+  return guarded(op->message, sizeof op->message, [&] {
+    if (!op->fast) throw Fault(KACANOV_ERROR_STATE, "the operator has no laws yet: kacanov_set_laws first");
+    work(*op->fast);
+  });
+}
+
+template <class Real>
+std::span<const Real> input(const Real* data, std::size_t n, const char* name) {
+  require(data, name);
+  return {data, n};
+}
+
+template <class Real>
+std::span<Real> output(Real* data, std::size_t n, const char* name) {
+  require(data, name);
+  return {data, n};
+}
+
+template <class Real>
+void require_disjoint(std::span<const Real> x, std::span<Real> y, const char* names) {
+  const std::less<const Real*> before;
+  if (before(x.data(), y.data() + y.size()) && before(y.data(), x.data() + x.size()))
+    throw Fault(KACANOV_ERROR_SIZE, std::string(names) + " overlap");
+}
+
+}  // namespace kacanov::c_api

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From the laws of the C interface to ours, checked.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <kacanov/kacanov.h>
+#include <kacanov/law.hpp>
+
+namespace kacanov::c_api {
+
+/// A bad argument: the code to return, and the message.
+class Fault : public std::runtime_error {
+ public:
+  Fault(kacanov_code code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  kacanov_code code() const noexcept { return code_; }
+
+ private:
+  kacanov_code code_;
+};
+
+/// Throws Fault that names the law by its index and the parameter at fault.
+std::vector<Law> checked_laws(std::span<const kacanov_law> laws);
+
+/// Throws Fault for the first element whose law does not exist.
+void check_law_of_element(std::span<const std::uint16_t> law_of_element, std::size_t laws);
+
+}  // namespace kacanov::c_api

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The operator as one plain loop an element: the truth the fast ones are tested against.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <kacanov/law.hpp>
+#include <kacanov/mesh_view.hpp>
+
+namespace kacanov {
+
+/// A meshed body and its material. Nothing is owned.
+struct Body {
+  MeshView mesh;
+  std::span<const Law> laws;
+  std::span<const std::uint16_t> law_of_element;  ///< one entry an element; empty: laws[0] everywhere
+
+  std::size_t unknowns() const noexcept { return mesh.coordinates.size(); }
+  std::uint16_t law_index(std::size_t element) const noexcept {
+    return law_of_element.empty() ? std::uint16_t{0} : law_of_element[element];
+  }
+  const Law& law(std::size_t element) const noexcept { return laws[law_index(element)]; }
+  std::size_t secant_count() const noexcept {
+    return mesh.element_count() * static_cast<std::size_t>(points_per_element(mesh.type));
+  }
+};
+
+namespace reference {
+
+/// g from ω: `g` has elements × points entries, point index fastest.
+void secant(const Body& body, std::span<const double> omega, std::span<double> g);
+/// y = B(g) x (overwrites y). Vectors are nodes × dim, interleaved.
+void apply(const Body& body, std::span<const double> g, std::span<const double> x, std::span<double> y);
+/// y = B_T(ω) x, the consistent tangent 2g I_dev + (2g'/x) dev ε ⊗ dev ε of the law at ω.
+void apply_tangent(const Body& body, std::span<const double> omega, std::span<const double> x,
+                   std::span<double> y);
+/// Diagonal of B(g).
+void diagonal(const Body& body, std::span<const double> g, std::span<double> d);
+/// dim × dim diagonal blocks of B(g), nodes × dim × dim, row-major.
+void block_diagonal(const Body& body, std::span<const double> g, std::span<double> blocks);
+/// Internal force of the true nonlinear law at ω (overwrites f).
+void residual(const Body& body, std::span<const double> omega, std::span<double> f);
+/// Stored energy ∫ k0/2 tr² + 2 G(x) at ω.
+double energy(const Body& body, std::span<const double> omega);
+/// Stiffness of one element for frozen g (its points), (nodes·dim)² row-major, node-major rows.
+void element_matrix(const Body& body, std::size_t element, std::span<const double> g,
+                    std::span<double> matrix);
+/// Tangent stiffness of one element at ω.
+void element_tangent(const Body& body, std::size_t element, std::span<const double> omega,
+                     std::span<double> matrix);
+/// Volumes (areas in 2D) of the elements; not positive for inverted or degenerate ones.
+void volumes(const Body& body, std::span<double> volume);
+
+/// What a picture or an output file wants to know of an element: means over its points.
+struct ElementFields {
+  std::span<double> stress;         ///< elements × 6: xx yy zz xy yz zx (zz also in plane strain)
+  std::span<double> von_mises;      ///< elements
+  std::span<double> dev_strain;     ///< elements: ‖dev ε‖
+  std::span<double> secant;         ///< elements: g
+  std::span<std::uint8_t> plastic;  ///< elements: 1 if any point is beyond yield
+};
+/// Fills the spans that are not empty.
+void fields(const Body& body, std::span<const double> omega, const ElementFields& out);
+
+}  // namespace reference
+}  // namespace kacanov

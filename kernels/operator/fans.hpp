@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The greedy cover of a tetrahedral mesh by fans.
+#pragma once
+
+#include "operator/units.hpp"
+
+namespace kacanov {
+
+/// Every element lies in exactly one fan; the elements of a fan share one law.
+Units cover_by_fans(const Body& body);
+
+}  // namespace kacanov

@@ -1,0 +1,408 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From units to blocks, groups, batches and the sums that threads share.
+#include "operator/layout.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <tuple>
+
+#include "cells/dispatch.hpp"
+#include <kacanov/locality.hpp>
+
+namespace kacanov {
+namespace {
+
+using simd::Shape;
+
+std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
+
+/// 16-bit offsets of records of four values.
+constexpr std::size_t most_records = (std::size_t{1} << 16) / 4;
+
+/// Bytes of records a block works on: coordinates, displacement and force.
+constexpr std::size_t cache_bytes = 400 * 1024;
+
+/// Idle lanes work on these records, whose elements have a volume and no displacement.
+std::vector<std::array<double, 3>> idle_positions(ElementType type) {
+  if (type == ElementType::tet4) return {{0, 0, 0}, {1, 1, 1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  std::vector<std::array<double, 3>> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  if (type == ElementType::tri3) corners.pop_back();
+  if (type == ElementType::tet10)
+    for (const auto& edge : elements::Tet10::edge) {
+      std::array<double, 3> middle{};
+      for (std::size_t k = 0; k < 3; ++k)
+        middle[k] = 0.5 * (corners[at(edge[0])][k] + corners[at(edge[1])][k]);
+      corners.push_back(middle);
+    }
+  if (type == ElementType::hex8) {
+    corners.clear();
+    for (const auto& c : elements::Hex8::corner)
+      corners.push_back({static_cast<double>(c[0]), static_cast<double>(c[1]), static_cast<double>(c[2])});
+  }
+  return corners;
+}
+
+/// The idle record node k of a lane stands on. A fan's ring goes to and fro between two positions; the third
+/// ends a closed ring of odd length.
+std::uint32_t idle_record(Shape shape, std::uint32_t length, std::uint32_t k) {
+  if (shape != Shape::open_fan && shape != Shape::closed_fan) return k;
+  if (k < 2) return k;
+  const bool odd_end = shape == Shape::closed_fan && length % 2 == 1 && k == length + 1;
+  return odd_end ? 4 : 2 + k % 2;
+}
+
+/// A piece of a unit as a lane takes it: a fan may be cut so that batches fill.
+struct Piece {
+  std::uint32_t unit;
+  std::uint8_t from;  ///< first element of the fan
+};
+
+struct Builder {
+  const Body& body;
+  const Units units;
+  std::vector<std::int32_t> rank;  ///< of a node in the locality order
+  Layout layout;
+  std::vector<std::int32_t> local;  ///< of a node in the current block, −1
+
+  using Key = std::tuple<std::uint16_t, Shape, std::uint8_t>;  ///< law, shape, length
+  using Classes = std::map<Key, std::vector<Piece>>;
+
+  const std::int32_t* unit_nodes(std::uint32_t u) const {
+    return units.nodes.data() + units.units[u].first_node;
+  }
+
+  /// Node k of a piece of shape and length. A ring cut open ends where it began.
+  std::int32_t piece_node(const Piece& piece, Shape shape, std::uint32_t k) const {
+    const std::int32_t* nodes = unit_nodes(piece.unit);
+    if (shape != Shape::open_fan || k < 2) return nodes[k];
+    const Unit& unit = units.units[piece.unit];
+    const std::uint32_t ring = unit.node_count() - 2;
+    return nodes[2 + (piece.from + k - 2) % ring];
+  }
+
+  /// Sorts a block's units into classes. What would leave a batch less than half full is opened (closed fans)
+  /// or halved (open ones) and joins a shorter class.
+  Classes classify(std::span<const std::uint32_t> members) const {
+    Classes classes;
+    for (const std::uint32_t u : members) {
+      const Unit& unit = units.units[u];
+      classes[{unit.law, unit.shape, unit.length}].push_back({u, 0});
+    }
+    const auto lanes = static_cast<std::size_t>(layout.lanes);
+    const auto cut_rest = [&](std::uint16_t law, Shape shape, std::uint8_t length) {
+      const auto found = classes.find({law, shape, length});
+      if (found == classes.end()) return;
+      const std::size_t rest = found->second.size() % lanes;
+      if (rest == 0 || 2 * rest >= lanes) return;
+      const std::vector<Piece> pieces(found->second.end() - static_cast<std::ptrdiff_t>(rest),
+                                      found->second.end());
+      found->second.resize(found->second.size() - rest);
+      for (const Piece& piece : pieces) {
+        if (shape == Shape::closed_fan) {
+          classes[{law, Shape::open_fan, length}].push_back(piece);
+        } else {
+          const auto half = static_cast<std::uint8_t>(length / 2);
+          classes[{law, Shape::open_fan, half}].push_back(piece);
+          classes[{law, Shape::open_fan, static_cast<std::uint8_t>(length - half)}].push_back(
+              {piece.unit, static_cast<std::uint8_t>(piece.from + half)});
+        }
+      }
+    };
+    if (body.mesh.type != ElementType::tet4) return classes;
+    std::vector<std::uint16_t> laws;
+    for (const auto& [key, pieces] : classes)
+      if (laws.empty() || laws.back() != std::get<0>(key)) laws.push_back(std::get<0>(key));
+    for (const std::uint16_t law : laws) {
+      for (int length = simd::longest_fan; length >= 3; --length)
+        cut_rest(law, Shape::closed_fan, static_cast<std::uint8_t>(length));
+      for (int length = simd::longest_fan; length >= 2; --length)
+        cut_rest(law, Shape::open_fan, static_cast<std::uint8_t>(length));
+    }
+    return classes;
+  }
+
+  /// Numbers the block's nodes: new to the thread, met before, shared with other threads, each in the
+  /// locality order. `state` of a node: −1 not met by this thread, −2 shared, otherwise met.
+  void number_nodes(std::span<const std::uint32_t> members, std::vector<std::int32_t>& state,
+                    std::span<const std::int32_t> slot, BlockRange& range) {
+    std::vector<std::int32_t> found;
+    for (const std::uint32_t u : members)
+      for (std::uint32_t k = 0; k < units.units[u].node_count(); ++k) {
+        const std::int32_t node = unit_nodes(u)[k];
+        if (local[at(node)] >= 0) continue;
+        local[at(node)] = 0;
+        found.push_back(node);
+      }
+    const auto kind = [&](std::int32_t node) { return slot[at(node)] >= 0 ? 2 : state[at(node)]; };
+    std::sort(found.begin(), found.end(), [&](std::int32_t a, std::int32_t b) {
+      return std::make_tuple(kind(a), rank[at(a)]) < std::make_tuple(kind(b), rank[at(b)]);
+    });
+    range.first_node = layout.nodes.size();
+    range.first_shared = layout.shared.size();
+    range.first = range.again = 0;
+    range.count = static_cast<std::uint32_t>(found.size());
+    for (std::uint32_t i = 0; i < range.count; ++i) {
+      const std::int32_t node = found[i];
+      range.first += kind(node) == 0 ? 1 : 0;
+      range.again += kind(node) <= 1 ? 1 : 0;
+      if (kind(node) == 2) layout.shared.push_back(slot[at(node)]);
+      local[at(node)] = static_cast<std::int32_t>(i);
+    }
+    for (const std::int32_t node : found) state[at(node)] = 1;
+    layout.nodes.insert(layout.nodes.end(), found.begin(), found.end());
+  }
+
+  /// Batches of one class, appended to the index and to the slots.
+  void add_group(const Key& key, std::span<const Piece> pieces, BlockRange& range) {
+    const auto [law, shape, length] = key;
+    const auto lanes = static_cast<std::size_t>(layout.lanes);
+    const std::uint32_t nodes = nodes_of(shape, length), points = points_of(shape, length);
+    const std::size_t batches = (pieces.size() + lanes - 1) / lanes;
+    layout.groups.push_back({shape, length, law, static_cast<std::uint32_t>(batches),
+                             static_cast<std::uint32_t>(layout.index.size() - range.first_index),
+                             static_cast<std::uint32_t>(layout.element_point.size() - range.first_slot)});
+    const auto points_an_element = static_cast<std::size_t>(points_per_element(body.mesh.type));
+    // Neighbouring tet10 share up to six nodes, whose sums wait for each other: their lanes work far apart.
+    const bool apart = shape == Shape::tet10 || shape == Shape::curved_tet10;
+    const auto piece_of = [&](std::size_t batch, std::size_t lane) {
+      return apart ? lane * batches + batch : batch * lanes + lane;
+    };
+    for (std::size_t batch = 0; batch < batches; ++batch) {
+      for (std::uint32_t k = 0; k < nodes; ++k)
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+          const std::size_t i = piece_of(batch, lane);
+          const std::uint32_t record =
+              i < pieces.size() ? static_cast<std::uint32_t>(local[at(piece_node(pieces[i], shape, k))])
+                                : range.count + idle_record(shape, length, k);
+          layout.index.push_back(static_cast<std::uint16_t>(4 * record));
+        }
+      for (std::uint32_t point = 0; point < points; ++point)
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+          const std::size_t i = piece_of(batch, lane);
+          std::int32_t target = -1;
+          if (i < pieces.size()) {
+            const std::size_t offset = (pieces[i].from + point) / points_an_element;
+            const std::int32_t element = units.elements[units.units[pieces[i].unit].first_element + offset];
+            target = static_cast<std::int32_t>(at(element) * points_an_element + point % points_an_element);
+          }
+          layout.element_point.push_back(target);
+        }
+    }
+  }
+
+  void add_block(std::span<const std::uint32_t> members, std::vector<std::int32_t>& state,
+                 std::span<const std::int32_t> slot) {
+    BlockRange range{};
+    range.first_group = layout.groups.size();
+    range.first_index = layout.index.size();
+    range.first_slot = layout.element_point.size();
+    range.first_record = layout.blocks.empty() ? 0
+                                               : layout.blocks.back().first_record +
+                                                     layout.blocks.back().count + layout.padding;
+    number_nodes(members, state, slot, range);
+    for (const auto& [key, pieces] : classify(members))
+      if (!pieces.empty()) add_group(key, pieces, range);
+    range.group_count = layout.groups.size() - range.first_group;
+    for (std::size_t i = range.first_node; i < layout.nodes.size(); ++i) local[at(layout.nodes[i])] = -1;
+    layout.largest = std::max(layout.largest, range.count + layout.padding);
+    layout.blocks.push_back(range);
+  }
+
+  /// Cuts a list of units until each piece's nodes can be addressed by 16 bits.
+  void cut_to_size(std::vector<std::uint32_t> members, std::vector<std::vector<std::uint32_t>>& out) {
+    std::size_t count = 0;
+    std::vector<std::int32_t> seen;
+    for (const std::uint32_t u : members)
+      for (std::uint32_t k = 0; k < units.units[u].node_count(); ++k)
+        if (auto& mark = local[at(unit_nodes(u)[k])]; mark < 0) {
+          mark = 0;
+          seen.push_back(unit_nodes(u)[k]);
+          ++count;
+        }
+    for (const std::int32_t node : seen) local[at(node)] = -1;
+    if (count + layout.padding <= most_records) {
+      if (!members.empty()) out.push_back(std::move(members));
+      return;
+    }
+    const auto half = members.begin() + static_cast<std::ptrdiff_t>(members.size() / 2);
+    cut_to_size({members.begin(), half}, out);
+    cut_to_size({half, members.end()}, out);
+  }
+};
+
+/// Units of each block, in the locality order of their first node. A unit belongs where most of its nodes do.
+std::vector<std::vector<std::uint32_t>> assign_units(Builder& builder, int parts,
+                                                     std::span<const std::int32_t> part) {
+  const Units& units = builder.units;
+  std::vector<std::uint32_t> order(units.units.size());
+  std::vector<std::pair<std::int32_t, std::uint32_t>> keys(order.size());
+  for (std::uint32_t u = 0; u < order.size(); ++u) keys[u] = {builder.rank[at(builder.unit_nodes(u)[0])], u};
+  std::sort(keys.begin(), keys.end());
+  std::vector<std::vector<std::uint32_t>> members(static_cast<std::size_t>(parts));
+  for (const auto& [key, u] : keys) {
+    const std::int32_t* nodes = builder.unit_nodes(u);
+    const std::uint32_t count = units.units[u].node_count();
+    std::int32_t best = 0;
+    std::ptrdiff_t most = 0;
+    for (std::uint32_t k = 0; k < count; ++k) {
+      const std::int32_t candidate = part[at(nodes[k])];
+      const auto votes =
+          std::count_if(nodes, nodes + count, [&](std::int32_t n) { return part[at(n)] == candidate; });
+      if (votes > most) most = votes, best = candidate;
+    }
+    members[at(best)].push_back(u);
+  }
+  std::vector<std::vector<std::uint32_t>> blocks;
+  for (auto& list : members) builder.cut_to_size(std::move(list), blocks);
+  return blocks;
+}
+
+/// Contiguous shares of blocks with nearly equal numbers of points.
+std::vector<std::size_t> share_blocks(const Units& units, std::span<const std::vector<std::uint32_t>> blocks,
+                                      int threads) {
+  std::vector<double> cost(blocks.size() + 1, 0.0);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    cost[b + 1] = cost[b];
+    for (const std::uint32_t u : blocks[b])  // nodes cost about as much as tetrahedra
+      cost[b + 1] += units.units[u].node_count() + points_of(units.units[u].shape, units.units[u].length);
+  }
+  std::vector<std::size_t> share{0};
+  for (int t = 1; t < threads; ++t) {
+    const double wanted = cost.back() * t / threads;
+    auto cut = static_cast<std::size_t>(std::lower_bound(cost.begin(), cost.end(), wanted) - cost.begin());
+    if (cut > 0 && wanted - cost[cut - 1] < cost[cut] - wanted) --cut;
+    share.push_back(std::max(cut, share.back()));
+  }
+  share.push_back(blocks.size());
+  return share;
+}
+
+/// Moves the blocks of a share that have early nodes to its front.
+void put_early_first(const Builder& builder, Layout& layout, std::span<const char> is_early,
+                     std::span<std::vector<std::uint32_t>> blocks) {
+  const auto has_early = [&](const std::vector<std::uint32_t>& members) {
+    return std::any_of(members.begin(), members.end(), [&](std::uint32_t u) {
+      const std::int32_t* nodes = builder.unit_nodes(u);
+      return std::any_of(nodes, nodes + builder.units.units[u].node_count(),
+                         [&](std::int32_t node) { return is_early[at(node)] != 0; });
+    });
+  };
+  for (std::size_t t = 0; t + 1 < layout.share.size(); ++t) {
+    const auto mine = blocks.subspan(layout.share[t], layout.share[t + 1] - layout.share[t]);
+    const auto rest = std::stable_partition(mine.begin(), mine.end(), has_early);
+    layout.early.push_back(layout.share[t] + static_cast<std::size_t>(rest - mine.begin()));
+  }
+}
+
+/// Finds the nodes of several threads. Returns each thread's slot of every node, −1 where it is alone.
+std::vector<std::vector<std::int32_t>> find_interface(const Builder& builder, Layout& layout,
+                                                      std::span<const char> is_early,
+                                                      std::span<const std::vector<std::uint32_t>> blocks) {
+  const std::size_t nodes = builder.body.mesh.node_count(), threads = layout.share.size() - 1;
+  std::vector<std::int32_t> owner(nodes, -1);  // a thread, or −2 for several
+  const auto for_each_node = [&](std::size_t t, auto&& visit) {
+    for (std::size_t b = layout.share[t]; b < layout.share[t + 1]; ++b)
+      for (const std::uint32_t u : blocks[b])
+        for (std::uint32_t k = 0; k < builder.units.units[u].node_count(); ++k)
+          visit(at(builder.unit_nodes(u)[k]));
+  };
+  for (std::size_t t = 0; t < threads; ++t)
+    for_each_node(t, [&](std::size_t node) {
+      const auto thread = static_cast<std::int32_t>(t);
+      owner[node] = owner[node] == -1 || owner[node] == thread ? thread : -2;
+    });
+  std::vector<std::vector<std::int32_t>> slot(threads, std::vector<std::int32_t>(nodes, -1));
+  layout.slots_of_thread.assign(threads, 0);
+  for (std::size_t t = 0; t < threads; ++t)
+    for_each_node(t, [&](std::size_t node) {
+      if (owner[node] == -2 && slot[t][node] < 0) slot[t][node] = layout.slots_of_thread[t]++;
+    });
+  layout.interface_first.push_back(0);
+  for (const bool early : {true, false}) {
+    for (std::size_t node = 0; node < nodes; ++node) {
+      if ((is_early[node] != 0) != early) continue;
+      if (owner[node] == -1) layout.lonely.push_back(static_cast<std::int32_t>(node));
+      if (owner[node] != -2) continue;
+      layout.interface_node.push_back(static_cast<std::int32_t>(node));
+      for (std::size_t t = 0; t < threads; ++t)
+        if (slot[t][node] >= 0) layout.contributions.push_back({static_cast<std::int32_t>(t), slot[t][node]});
+      layout.interface_first.push_back(static_cast<std::uint32_t>(layout.contributions.size()));
+    }
+    if (early) layout.early_interface = layout.interface_node.size();
+  }
+  return slot;
+}
+
+}  // namespace
+
+std::size_t Layout::records() const noexcept {
+  return blocks.empty() ? 0 : blocks.back().first_record + blocks.back().count + padding;
+}
+
+std::size_t Layout::bytes() const noexcept {
+  const auto size = [](const auto& v) { return v.size() * sizeof(v[0]); };
+  return size(blocks) + size(share) + size(early) + size(groups) + size(index) + size(nodes) + size(element_point) +
+         size(shared) + size(interface_node) + size(interface_first) + size(contributions) +
+         size(slots_of_thread) + size(lonely);
+}
+
+Layout make_layout(const Body& body, int lanes, int threads, std::size_t record_bytes,
+                   std::span<const std::int32_t> early) {
+  const std::vector<std::int32_t> order = node_order(body.mesh);
+  Builder builder{body, make_units(body), {}, {}, {}};
+  Layout& layout = builder.layout;
+  layout.lanes = lanes;
+  layout.padding = static_cast<std::uint32_t>(idle_positions(body.mesh.type).size());
+  builder.local.assign(body.mesh.node_count(), -1);
+  builder.rank.resize(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) builder.rank[at(order[i])] = static_cast<std::int32_t>(i);
+  const std::size_t per_block = cache_bytes / (3 * record_bytes);
+  const std::size_t wanted = (body.mesh.node_count() + per_block - 1) / per_block;
+  // A multiple of the threads, and each block worth its surface, but a block for every thread where possible.
+  const auto team = static_cast<std::size_t>(threads);
+  const int parts = static_cast<int>((std::max<std::size_t>(wanted, 1) + team - 1) / team * team);
+  auto blocks = assign_units(builder, parts, partition_nodes(body.mesh, order, parts));
+  layout.share = share_blocks(builder.units, blocks, threads);
+  std::vector<char> is_early(body.mesh.node_count(), 0);
+  for (const std::int32_t node : early) is_early[at(node)] = 1;
+  put_early_first(builder, layout, is_early, blocks);
+  const auto slot = find_interface(builder, layout, is_early, blocks);
+  for (std::size_t t = 0; t + 1 < layout.share.size(); ++t) {
+    std::vector<std::int32_t> state(body.mesh.node_count(), 0);
+    for (std::size_t b = layout.share[t]; b < layout.share[t + 1]; ++b)
+      builder.add_block(blocks[b], state, slot[t]);
+  }
+  layout.nodes.resize(layout.nodes.size() + simd::nodes_ahead, 0);
+  layout.index.shrink_to_fit();
+  layout.nodes.shrink_to_fit();
+  layout.element_point.shrink_to_fit();
+  return std::move(builder.layout);
+}
+
+template <class Real>
+void fill_coordinates(const Layout& layout, const MeshView& mesh, std::span<Real> coordinates) {
+  const auto dim = static_cast<std::size_t>(dimension(mesh.type));
+  const auto idle = idle_positions(mesh.type);
+  for (const BlockRange& block : layout.blocks) {
+    std::array<double, 3> middle{};
+    const std::int32_t* nodes = layout.nodes.data() + block.first_node;
+    for (std::size_t i = 0; i < block.count; ++i)
+      for (std::size_t k = 0; k < dim; ++k)
+        middle[k] += mesh.coordinates[at(nodes[i]) * dim + k] / block.count;
+    // Single precision needs the small numbers; in double the caller's own keep every bit.
+    if constexpr (std::is_same_v<Real, double>) middle = {};
+    for (std::size_t i = 0; i < block.count; ++i)
+      for (std::size_t k = 0; k < 3; ++k)
+        coordinates[4 * (block.first_record + i) + k] =
+            k < dim ? static_cast<Real>(mesh.coordinates[at(nodes[i]) * dim + k] - middle[k]) : Real(0);
+    for (std::size_t i = 0; i < idle.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k)
+        coordinates[4 * (block.first_record + block.count + i) + k] = static_cast<Real>(idle[i][k]);
+  }
+}
+
+template void fill_coordinates<double>(const Layout&, const MeshView&, std::span<double>);
+template void fill_coordinates<float>(const Layout&, const MeshView&, std::span<float>);
+
+}  // namespace kacanov

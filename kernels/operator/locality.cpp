@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Hilbert curve and METIS on groups of its nodes.
+#include <kacanov/locality.hpp>
+
+#include <metis.h>
+
+#include <algorithm>
+#include <array>
+#include <new>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+namespace kacanov {
+namespace {
+
+constexpr unsigned bits = 20;  ///< of each coordinate on the curve
+
+/// Index on the Hilbert curve of a point of a 2^bits grid (Skilling's transposition, 2004).
+std::uint64_t hilbert(std::array<std::uint32_t, 3> x, unsigned dim) {
+  for (std::uint32_t q = 1u << (bits - 1); q > 1; q >>= 1) {
+    const std::uint32_t below = q - 1;
+    for (unsigned i = 0; i < dim; ++i) {
+      if (x[i] & q) {
+        x[0] ^= below;
+      } else {
+        const std::uint32_t t = (x[0] ^ x[i]) & below;
+        x[0] ^= t;
+        x[i] ^= t;
+      }
+    }
+  }
+  for (unsigned i = 1; i < dim; ++i) x[i] ^= x[i - 1];
+  std::uint32_t t = 0;
+  for (std::uint32_t q = 1u << (bits - 1); q > 1; q >>= 1)
+    if (x[dim - 1] & q) t ^= q - 1;
+  for (unsigned i = 0; i < dim; ++i) x[i] ^= t;
+  std::uint64_t key = 0;
+  for (unsigned b = bits; b-- > 0;)
+    for (unsigned i = 0; i < dim; ++i) key = key << 1 | (x[i] >> b & 1u);
+  return key;
+}
+
+/// Mean extent of an element along each axis, 1 where there is none.
+std::array<double, 3> mean_extents(const MeshView& mesh) {
+  const auto dim = static_cast<std::size_t>(dimension(mesh.type));
+  const auto nodes = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  std::array<double, 3> sum{};
+  for (std::size_t e = 0; e < mesh.element_count(); ++e)
+    for (std::size_t k = 0; k < dim; ++k) {
+      double low = 0.0, high = 0.0;
+      for (std::size_t a = 0; a < nodes; ++a) {
+        const double x =
+            mesh.coordinates[static_cast<std::size_t>(mesh.connectivity[e * nodes + a]) * dim + k];
+        low = a == 0 ? x : std::min(low, x);
+        high = a == 0 ? x : std::max(high, x);
+      }
+      sum[k] += high - low;
+    }
+  for (double& s : sum) s = s > 0.0 ? s / static_cast<double>(mesh.element_count()) : 1.0;
+  return sum;
+}
+
+}  // namespace
+
+std::vector<std::int32_t> node_order(const MeshView& mesh) {
+  const auto dim = static_cast<std::size_t>(dimension(mesh.type));
+  const std::size_t count = mesh.node_count();
+  const std::array<double, 3> scale = mean_extents(mesh);
+  std::array<double, 3> low{}, high{};
+  for (std::size_t k = 0; k < dim; ++k) low[k] = high[k] = count > 0 ? mesh.coordinates[k] : 0.0;
+  for (std::size_t i = 0; i < mesh.coordinates.size(); ++i) {
+    low[i % dim] = std::min(low[i % dim], mesh.coordinates[i]);
+    high[i % dim] = std::max(high[i % dim], mesh.coordinates[i]);
+  }
+  double side = 0.0;
+  for (std::size_t k = 0; k < dim; ++k) side = std::max(side, (high[k] - low[k]) / scale[k]);
+  const double to_grid = side > 0.0 ? ((1u << bits) - 1) / side : 0.0;
+  std::vector<std::pair<std::uint64_t, std::int32_t>> keys(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::array<std::uint32_t, 3> x{};
+    for (std::size_t k = 0; k < dim; ++k)
+      x[k] = static_cast<std::uint32_t>((mesh.coordinates[i * dim + k] - low[k]) / scale[k] * to_grid);
+    keys[i] = {hilbert(x, static_cast<unsigned>(dim)), static_cast<std::int32_t>(i)};
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<std::int32_t> order(count);
+  for (std::size_t i = 0; i < count; ++i) order[i] = keys[i].second;
+  return order;
+}
+
+LocalityOrder locality_order(const MeshView& mesh) {
+  LocalityOrder result;
+  result.nodes = node_order(mesh);
+  std::vector<std::int32_t> rank(result.nodes.size());
+  for (std::size_t i = 0; i < rank.size(); ++i)
+    rank[static_cast<std::size_t>(result.nodes[i])] = static_cast<std::int32_t>(i);
+  const auto nodes = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  std::vector<std::int32_t> key(mesh.element_count());
+  for (std::size_t e = 0; e < key.size(); ++e) {
+    key[e] = rank[static_cast<std::size_t>(mesh.connectivity[e * nodes])];
+    for (std::size_t a = 1; a < nodes; ++a)
+      key[e] = std::min(key[e], rank[static_cast<std::size_t>(mesh.connectivity[e * nodes + a])]);
+  }
+  result.elements.resize(key.size());
+  std::iota(result.elements.begin(), result.elements.end(), 0);
+  std::sort(result.elements.begin(), result.elements.end(), [&](std::int32_t a, std::int32_t b) {
+    const std::int32_t ka = key[static_cast<std::size_t>(a)], kb = key[static_cast<std::size_t>(b)];
+    return ka != kb ? ka < kb : a < b;
+  });
+  return result;
+}
+
+std::vector<std::int32_t> partition_nodes(const MeshView& mesh, std::span<const std::int32_t> order,
+                                          int parts) {
+  const std::size_t count = mesh.node_count();
+  std::vector<std::int32_t> result(count, 0);
+  if (parts <= 1 || count == 0) return result;
+  // Groups small enough to leave METIS a choice, large enough to keep its graph small.
+  const std::size_t size = std::clamp<std::size_t>(count / (128 * static_cast<std::size_t>(parts)), 1, 24);
+  std::vector<std::int32_t> group(count);
+  for (std::size_t i = 0; i < count; ++i)
+    group[static_cast<std::size_t>(order[i])] = static_cast<std::int32_t>(i / size);
+  const std::size_t groups = (count + size - 1) / size;
+  const auto nodes = static_cast<std::size_t>(nodes_per_element(mesh.type));
+
+  // Neighbouring groups, weighted by the element sides (pairs of nodes) that join them.
+  std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> neighbours(groups);
+  for (std::size_t e = 0; e < mesh.element_count(); ++e)
+    for (std::size_t a = 0; a < nodes; ++a)
+      for (std::size_t b = 0; b < nodes; ++b) {
+        const std::int32_t from = group[static_cast<std::size_t>(mesh.connectivity[e * nodes + a])];
+        const std::int32_t to = group[static_cast<std::size_t>(mesh.connectivity[e * nodes + b])];
+        if (from == to) continue;
+        auto& list = neighbours[static_cast<std::size_t>(from)];
+        const auto found =
+            std::find_if(list.begin(), list.end(), [&](const auto& n) { return n.first == to; });
+        if (found == list.end())
+          list.emplace_back(to, 1);
+        else
+          ++found->second;
+      }
+  std::vector<idx_t> start{0}, adjacent, weight;
+  for (const auto& list : neighbours) {
+    for (const auto& [to, joined] : list) {
+      adjacent.push_back(to);
+      weight.push_back(joined);
+    }
+    start.push_back(static_cast<idx_t>(adjacent.size()));
+  }
+  auto n = static_cast<idx_t>(groups);
+  idx_t constraints = 1, part_count = std::min(static_cast<idx_t>(parts), n), cut = 0;
+  std::vector<idx_t> part(groups, 0), options(METIS_NOPTIONS);
+  METIS_SetDefaultOptions(options.data());
+  options[METIS_OPTION_SEED] = 1;
+  options[METIS_OPTION_UFACTOR] = 10;  // thousandths of imbalance: shares of threads are made of parts
+  const int status =
+      METIS_PartGraphKway(&n, &constraints, start.data(), adjacent.data(), nullptr, nullptr, weight.data(),
+                          &part_count, nullptr, nullptr, options.data(), &cut, part.data());
+  if (status == METIS_ERROR_MEMORY) throw std::bad_alloc();
+  if (status != METIS_OK) throw std::runtime_error("METIS failed with status " + std::to_string(status));
+  for (std::size_t i = 0; i < count; ++i)
+    result[i] = static_cast<std::int32_t>(part[static_cast<std::size_t>(group[i])]);
+  return result;
+}
+
+}  // namespace kacanov

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Tests arrays that come from outside before a kernel trusts them.
+#pragma once
+
+#include <string>
+
+#include <kacanov/mesh_view.hpp>
+
+namespace kacanov {
+
+/// What is wrong with the mesh, in words that name the first node or element at fault (from 0); empty if
+/// nothing: no node, no element, a length that is no multiple, a coordinate that is not finite, an index out
+/// of range, or an element whose map is not orientation-preserving at every quadrature point.
+std::string mesh_fault(const MeshView& mesh);
+
+}  // namespace kacanov

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a SIMD lane works on: a fan of tetrahedra round an edge, or one element.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <kacanov/reference.hpp>
+#include "simd/block.hpp"
+
+namespace kacanov {
+
+struct Unit {
+  simd::Shape shape;
+  std::uint8_t length;  ///< tetrahedra of a fan, 1 for an element
+  std::uint16_t law;
+  std::uint32_t first_node;     ///< in Units::nodes
+  std::uint32_t first_element;  ///< in Units::elements
+
+  std::uint32_t node_count() const noexcept;
+};
+
+/// Nodes of a fan: p, q, then the ring; its elements in ring order. Element i of a fan is the
+/// tetrahedron (p, q, ring i, ring i+1).
+struct Units {
+  std::vector<Unit> units;
+  std::vector<std::int32_t> nodes, elements;
+};
+
+/// Nodes and points a unit of this shape and length has.
+std::uint32_t nodes_of(simd::Shape shape, std::uint32_t length) noexcept;
+std::uint32_t points_of(simd::Shape shape, std::uint32_t length) noexcept;
+
+/// Covers a body by units of one law each. tet4: greedily, the edge with most tetrahedra left first; what
+/// is left round it is split into chains. Other elements: one by one; a tet10 with straight sides (mid-side
+/// nodes within 1e-13 of the middle, relative to the side) and a hex8 that is a parallelepiped (corners within
+/// 1e-13 of its extent along each axis) are shapes of their own.
+Units make_units(const Body& body);
+
+}  // namespace kacanov

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The operator as one plain loop an element, the same for every element type.
+#include <kacanov/reference.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "cells/dispatch.hpp"
+#include "cells/point.hpp"
+
+namespace kacanov::reference {
+namespace {
+
+using elements::Nodal;
+using elements::Point;
+using elements::points_of;
+
+/// Symmetric 3×3 tensor, components (not engineering shears) xx yy zz xy yz zx.
+using Sym = std::array<double, 6>;
+
+/// A 3×3 view of it; plane strain uses the upper left 2×2.
+double component(const Sym& s, int i, int j) {
+  constexpr int index[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+  return s[static_cast<std::size_t>(index[i][j])];
+}
+
+double inner(const Sym& a, const Sym& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2.0 * (a[3] * b[3] + a[4] * b[4] + a[5] * b[5]);
+}
+
+struct Strain {
+  double trace = 0.0;
+  Sym dev{};
+  double norm() const { return std::sqrt(inner(dev, dev)); }
+};
+
+/// τ = k0 tr ε I + 2 g dev ε.
+Sym stress(const Law& law, double g, const Strain& strain) {
+  Sym tau;
+  for (std::size_t i = 0; i < 6; ++i)
+    tau[i] = 2.0 * g * strain.dev[i] + (i < 3 ? law.bulk * strain.trace : 0.0);
+  return tau;
+}
+
+/// Tangent stress of the increment `strain` at the state `at`.
+Sym tangent_stress(const Law& law, const Strain& at, const Strain& strain) {
+  const double x = at.norm();
+  Sym tau = stress(law, law.secant(x), strain);
+  const double slope = law.secant_derivative(x);
+  if (slope == 0.0) return tau;  // also the limit x → 0 of every law
+  const double factor = 2.0 * slope / x * inner(at.dev, strain.dev);
+  for (std::size_t i = 0; i < 6; ++i) tau[i] += factor * at.dev[i];
+  return tau;
+}
+
+template <class E>
+Strain strain_at(const Point<E>& point, const Nodal<E>& u) {
+  double h[3][3] = {};
+  for (int a = 0; a < E::nodes; ++a)
+    for (int i = 0; i < E::dim; ++i)
+      for (int k = 0; k < E::dim; ++k) h[i][k] += u[point.at(a, i)] * point.gradient[a][k];
+  Strain s;
+  const double trace = h[0][0] + h[1][1] + h[2][2];
+  s.dev = {h[0][0] - trace / 3.0,     h[1][1] - trace / 3.0,     h[2][2] - trace / 3.0,
+           0.5 * (h[0][1] + h[1][0]), 0.5 * (h[1][2] + h[2][1]), 0.5 * (h[2][0] + h[0][2])};
+  for (int a = 0; a < E::nodes; ++a)
+    for (int i = 0; i < E::dim; ++i) s.trace += u[point.at(a, i)] * point.dilatation[a][i];
+  return s;
+}
+
+/// f += the forces of the stress τ at this point.
+template <class E>
+void add_force(const Point<E>& point, const Sym& tau, Nodal<E>& f) {
+  const double mean = (tau[0] + tau[1] + tau[2]) / 3.0;
+  for (int a = 0; a < E::nodes; ++a)
+    for (int i = 0; i < E::dim; ++i) {
+      f[point.at(a, i)] += point.volume * mean * (point.dilatation[a][i] - point.gradient[a][i]);
+      for (int k = 0; k < E::dim; ++k)
+        f[point.at(a, i)] += point.volume * component(tau, i, k) * point.gradient[a][k];
+    }
+}
+
+const std::int32_t* nodes_of(const Body& body, std::size_t element) {
+  return body.mesh.connectivity.data() +
+         element * static_cast<std::size_t>(nodes_per_element(body.mesh.type));
+}
+
+template <class E>
+Nodal<E> gather(const Body& body, std::size_t element, std::span<const double> values) {
+  Nodal<E> local;
+  const std::int32_t* node = nodes_of(body, element);
+  for (int a = 0; a < E::nodes; ++a)
+    for (int i = 0; i < E::dim; ++i) local[Point<E>::at(a, i)] = values[Point<E>::at(node[a], i)];
+  return local;
+}
+
+template <class E>
+void scatter_add(const Body& body, std::size_t element, const Nodal<E>& local, std::span<double> values) {
+  const std::int32_t* node = nodes_of(body, element);
+  for (int a = 0; a < E::nodes; ++a)
+    for (int i = 0; i < E::dim; ++i) values[Point<E>::at(node[a], i)] += local[Point<E>::at(a, i)];
+}
+
+/// Calls visit(element, law, point index, point, strain of `omega`) for every quadrature point.
+template <class E, class Visit>
+void for_each_point(const Body& body, std::span<const double> omega, Visit&& visit) {
+  for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
+    const Nodal<E> x = gather<E>(body, e, body.mesh.coordinates);
+    const Nodal<E> u = gather<E>(body, e, omega);
+    const auto points = points_of<E>(x, body.law(e).mean_dilatation);
+    for (std::size_t q = 0; q < E::points; ++q)
+      visit(e, body.law(e), q, points[q], strain_at<E>(points[q], u));
+  }
+}
+
+/// y = Σ forces of stress_of(element, law, point index, point, strain of x).
+template <class E, class StressOf>
+void assemble(const Body& body, std::span<const double> x, std::span<double> y, StressOf&& stress_of) {
+  std::fill(y.begin(), y.end(), 0.0);
+  for_each_point<E>(
+      body, x,
+      [&](std::size_t e, const Law& law, std::size_t q, const Point<E>& point, const Strain& strain) {
+        Nodal<E> f{};
+        add_force<E>(point, stress_of(e, law, q, point, strain), f);
+        scatter_add<E>(body, e, f, y);
+      });
+}
+
+/// Columns of an element matrix: the forces of unit displacements. stress_of(point index, point, strain).
+template <class E, class StressOf>
+void fill_matrix(const Body& body, std::size_t element, std::span<double> matrix, StressOf&& stress_of) {
+  const Nodal<E> x = gather<E>(body, element, body.mesh.coordinates);
+  constexpr std::size_t n = std::tuple_size_v<Nodal<E>>;
+  std::fill(matrix.begin(), matrix.end(), 0.0);
+  const auto points = points_of<E>(x, body.law(element).mean_dilatation);
+  for (std::size_t q = 0; q < E::points; ++q) {
+    const Point<E>& point = points[q];
+    for (std::size_t column = 0; column < n; ++column) {
+      Nodal<E> unit{}, f{};
+      unit[column] = 1.0;
+      add_force<E>(point, stress_of(q, point, strain_at<E>(point, unit)), f);
+      for (std::size_t row = 0; row < n; ++row) matrix[row * n + column] += f[row];
+    }
+  }
+}
+
+}  // namespace
+
+void secant(const Body& body, std::span<const double> omega, std::span<double> g) {
+  elements::dispatch(body.mesh.type, [&]<class E>(E) {
+    for_each_point<E>(body, omega,
+                      [&](std::size_t e, const Law& law, std::size_t q, const Point<E>&,
+                          const Strain& strain) { g[e * E::points + q] = law.secant(strain.norm()); });
+  });
+}
+
+void apply(const Body& body, std::span<const double> g, std::span<const double> x, std::span<double> y) {
+  elements::dispatch(body.mesh.type, [&]<class E>(E) {
+    assemble<E>(body, x, y,
+                [&](std::size_t e, const Law& law, std::size_t q, const Point<E>&, const Strain& strain) {
+                  return stress(law, g[e * E::points + q], strain);
+                });
+  });
+}
+
+void apply_tangent(const Body& body, std::span<const double> omega, std::span<const double> x,
+                   std::span<double> y) {
+  elements::dispatch(body.mesh.type, [&]<class E>(E) {
+    assemble<E>(body, x, y,
+                [&](std::size_t e, const Law& law, std::size_t, const Point<E>& point, const Strain& strain) {
+                  return tangent_stress(law, strain_at<E>(point, gather<E>(body, e, omega)), strain);
+                });
+  });
+}
+
+void diagonal(const Body& body, std::span<const double> g, std::span<double> d) {
+  const auto dim = static_cast<std::size_t>(dimension(body.mesh.type));
+  std::vector<double> blocks(d.size() * dim);
+  block_diagonal(body, g, blocks);
+  for (std::size_t i = 0; i < d.size(); ++i) d[i] = blocks[i * dim + i % dim];
+}
+
+void block_diagonal(const Body& body, std::span<const double> g, std::span<double> blocks) {
+  std::fill(blocks.begin(), blocks.end(), 0.0);
+  elements::dispatch(body.mesh.type, [&]<class E>(E) {
+    for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
+      const Nodal<E> x = gather<E>(body, e, body.mesh.coordinates);
+      const std::int32_t* node = nodes_of(body, e);
+      const auto points = points_of<E>(x, body.law(e).mean_dilatation);
+      for (std::size_t q = 0; q < E::points; ++q) {
+        const Point<E>& point = points[q];
+        for (int a = 0; a < E::nodes; ++a)
+          point.add_diagonal_block(a, body.law(e).bulk, g[e * E::points + q], blocks.data() + Point<E>::at(node[a], 0) * E::dim);
+      }
+    }
+  });
+}
+
+void residual(const Body& body, std::span<const double> omega, std::span<double> f) {
+  elements::dispatch(body.mesh.type, [&]<class E>(E) {
+    assemble<E>(body, omega, f,
+                [](std::size_t, const Law& law, std::size_t, const Point<E>&, const Strain& strain) {
+                  return stress(law, law.secant(strain.norm()), strain);
+                });
+  });
+}
+
+double energy(const Body& body, std::span<const double> omega) {
+  double sum = 0.0;
+  elements::dispatch(body.mesh.type, [&]<class E>(E) {
+    for_each_point<E>(
+        body, omega,
+        [&](std::size_t, const Law& law, std::size_t, const Point<E>& point, const Strain& strain) {
+          sum +=
+              point.volume * (0.5 * law.bulk * strain.trace * strain.trace + 2.0 * law.energy(strain.norm()));
+        });
+  });
+  return sum;
+}
+
+void element_matrix(const Body& body, std::size_t element, std::span<const double> g,
+                    std::span<double> matrix) {
+  const Law& law = body.law(element);
+  elements::dispatch(body.mesh.type, [&]<class E>(E) {
+    fill_matrix<E>(body, element, matrix, [&](std::size_t q, const Point<E>&, const Strain& strain) {
+      return stress(law, g[q], strain);
+    });
+  });
+}
+
+void element_tangent(const Body& body, std::size_t element, std::span<const double> omega,
+                     std::span<double> matrix) {
+  const Law& law = body.law(element);
+  elements::dispatch(body.mesh.type, [&]<class E>(E) {
+    const Nodal<E> u = gather<E>(body, element, omega);
+    fill_matrix<E>(body, element, matrix, [&](std::size_t, const Point<E>& point, const Strain& strain) {
+      return tangent_stress(law, strain_at<E>(point, u), strain);
+    });
+  });
+}
+
+void volumes(const Body& body, std::span<double> volume) {
+  elements::dispatch(body.mesh.type, [&]<class E>(E) {
+    for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
+      const Nodal<E> x = gather<E>(body, e, body.mesh.coordinates);
+      volume[e] = 0.0;
+      for (std::size_t q = 0; q < E::points; ++q) volume[e] += Point<E>(x, q).volume;
+    }
+  });
+}
+
+void fields(const Body& body, std::span<const double> omega, const ElementFields& out) {
+  elements::dispatch(body.mesh.type, [&]<class E>(E) {
+    for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
+      const Law& law = body.law(e);
+      const Nodal<E> x = gather<E>(body, e, body.mesh.coordinates);
+      const Nodal<E> u = gather<E>(body, e, omega);
+      Sym tau{};
+      double volume = 0.0, dev_strain = 0.0, g_mean = 0.0, von_mises = 0.0;
+      bool plastic = false;
+      const auto points = points_of<E>(x, law.mean_dilatation);
+      for (std::size_t q = 0; q < E::points; ++q) {
+        const Point<E>& point = points[q];
+        const Strain strain = strain_at<E>(point, u);
+        const double norm = strain.norm(), g = law.secant(norm);
+        const Sym point_tau = stress(law, g, strain);
+        for (std::size_t i = 0; i < 6; ++i) tau[i] += point.volume * point_tau[i];
+        volume += point.volume;
+        dev_strain += point.volume * norm;
+        g_mean += point.volume * g;
+        von_mises += point.volume * std::sqrt(1.5) * 2.0 * g * norm;
+        plastic = plastic || law.plastic(norm);
+      }
+      if (!out.stress.empty())
+        for (std::size_t i = 0; i < 6; ++i) out.stress[6 * e + i] = tau[i] / volume;
+      if (!out.von_mises.empty()) out.von_mises[e] = von_mises / volume;
+      if (!out.dev_strain.empty()) out.dev_strain[e] = dev_strain / volume;
+      if (!out.secant.empty()) out.secant[e] = g_mean / volume;
+      if (!out.plastic.empty()) out.plastic[e] = plastic ? 1 : 0;
+    }
+  });
+}
+
+}  // namespace kacanov::reference

@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Groups of strongly coupled nodes, by pairwise matching.
+#include "amg/aggregation.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+
+namespace kacanov {
+namespace {
+
+/// Elements with a node in each of the sections first[c] … first[c + 1], compressed rows.
+struct ElementsOfSections {
+  std::vector<std::size_t> start;
+  std::vector<std::int32_t> element;
+
+  ElementsOfSections(const MeshView& mesh, std::span<const std::int32_t> first) : start(first.size(), 0) {
+    const auto visit = [&](auto&& in_section) {
+      const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
+      std::vector<std::int32_t> last(first.size() - 1, -1);  // element seen last
+      for (std::size_t k = 0; k < mesh.connectivity.size(); ++k) {
+        if (mesh.connectivity[k] >= first.back()) continue;
+        const auto c = static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), mesh.connectivity[k]) - first.begin()) - 1;
+        const auto e = static_cast<std::int32_t>(k / npe);
+        if (std::exchange(last[c], e) != e) in_section(c, e);
+      }
+    };
+    visit([&](std::size_t c, std::int32_t) { ++start[c + 1]; });
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    element.resize(start.back());
+    std::vector<std::size_t> next(start.begin(), start.end() - 1);
+    visit([&](std::size_t c, std::int32_t e) { element[next[c]++] = e; });
+  }
+};
+
+constexpr std::int32_t none = -1;
+constexpr float weak = 0.2F;  ///< of a row's heaviest edge
+
+/// Rows in first-in-first-out queues by a small number; a row can be taken out of the middle.
+class Queues {
+ public:
+  Queues(std::int32_t rows, std::int32_t queues)
+      : first_(static_cast<std::size_t>(queues), none), last_(first_), next_(static_cast<std::size_t>(rows), none), previous_(next_) {}
+
+  void push(std::int32_t row, std::int32_t queue) {
+    const auto q = static_cast<std::size_t>(queue), r = static_cast<std::size_t>(row);
+    previous_[r] = last_[q];
+    next_[r] = none;
+    (last_[q] == none ? first_[q] : next_[static_cast<std::size_t>(last_[q])]) = row;
+    last_[q] = row;
+    lowest_ = std::min(lowest_, q);
+  }
+  void remove(std::int32_t row, std::int32_t queue) {
+    const auto q = static_cast<std::size_t>(queue), r = static_cast<std::size_t>(row);
+    (previous_[r] == none ? first_[q] : next_[static_cast<std::size_t>(previous_[r])]) = next_[r];
+    (next_[r] == none ? last_[q] : previous_[static_cast<std::size_t>(next_[r])]) = previous_[r];
+  }
+  /// The first row of the lowest queue, `none` if all are empty.
+  std::int32_t front() {
+    while (lowest_ < first_.size() && first_[lowest_] == none) ++lowest_;
+    return lowest_ < first_.size() ? first_[lowest_] : none;
+  }
+
+ private:
+  std::vector<std::int32_t> first_, last_, next_, previous_;
+  std::size_t lowest_ = 0;
+};
+
+/// Group of each row: it and its partner along its heaviest edge, or itself. Small rows choose first, and among them those with
+/// the fewest strong neighbours left to choose from (Notay 2010): few are left over, whatever the numbering.
+std::vector<std::int32_t> match(const WeightedGraph& graph, std::span<const std::int32_t> size) {
+  const std::int32_t rows = graph.rows();
+  constexpr std::int32_t most_choices = 63;
+  std::vector<std::int32_t> group(static_cast<std::size_t>(rows), none), choices(group.size(), 0);
+  std::vector<float> strong(group.size(), 0.0F);  // edges heavier than this
+  const auto begin = [&](std::int32_t i) { return static_cast<std::size_t>(graph.start[static_cast<std::size_t>(i)]); };
+  const auto end = [&](std::int32_t i) { return static_cast<std::size_t>(graph.start[static_cast<std::size_t>(i) + 1]); };
+  for (std::int32_t i = 0; i < rows; ++i) {
+    float& least = strong[static_cast<std::size_t>(i)];
+    for (auto k = begin(i); k < end(i); ++k) least = std::max(least, weak * graph.weight[k]);
+    for (auto k = begin(i); k < end(i); ++k) choices[static_cast<std::size_t>(i)] += graph.weight[k] > least ? 1 : 0;
+  }
+  std::vector<std::int32_t> classes(size.begin(), size.end());
+  std::sort(classes.begin(), classes.end());
+  classes.erase(std::unique(classes.begin(), classes.end()), classes.end());
+
+  std::int32_t groups = 0;
+  Queues queues(rows, most_choices + 1);
+  const auto queue_of = [&](std::int32_t i) { return std::min(choices[static_cast<std::size_t>(i)], most_choices); };
+  for (const std::int32_t now : classes) {
+    const auto waits = [&](std::int32_t i) {
+      return group[static_cast<std::size_t>(i)] == none && size[static_cast<std::size_t>(i)] == now;
+    };
+    const auto take = [&](std::int32_t i) {
+      if (waits(i)) queues.remove(i, queue_of(i));
+      group[static_cast<std::size_t>(i)] = groups;
+      for (auto k = begin(i); k < end(i); ++k) {
+        const std::int32_t j = graph.column[k];
+        if (graph.weight[k] <= strong[static_cast<std::size_t>(j)] || group[static_cast<std::size_t>(j)] != none) continue;
+        if (waits(j)) queues.remove(j, queue_of(j));
+        --choices[static_cast<std::size_t>(j)];
+        if (waits(j)) queues.push(j, queue_of(j));
+      }
+    };
+    for (std::int32_t i = 0; i < rows; ++i)
+      if (waits(i)) queues.push(i, queue_of(i));
+    for (std::int32_t i = queues.front(); i != none; i = queues.front()) {
+      std::int32_t best = none;
+      // A row whose strong neighbours are all taken waits for the next round.
+      float heaviest = strong[static_cast<std::size_t>(i)];
+      for (auto k = begin(i); k < end(i); ++k)
+        if (group[static_cast<std::size_t>(graph.column[k])] == none && graph.weight[k] > heaviest) {
+          heaviest = graph.weight[k];
+          best = graph.column[k];
+        }
+      take(i);
+      if (best != none) take(best);
+      ++groups;
+    }
+  }
+  // Numbered by first rows.
+  std::vector<std::int32_t> number(static_cast<std::size_t>(groups), none);
+  std::int32_t next = 0;
+  for (std::int32_t& g : group) {
+    auto& n = number[static_cast<std::size_t>(g)];
+    if (n == none) n = next++;
+    g = n;
+  }
+  return group;
+}
+
+/// Rows of one group become one row, weights between groups are summed.
+WeightedGraph contract(const WeightedGraph& graph, std::span<const std::int32_t> group, std::int32_t groups) {
+  std::vector<std::int32_t> first(static_cast<std::size_t>(groups) + 1, 0), member(group.size());
+  for (const std::int32_t g : group) ++first[static_cast<std::size_t>(g) + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  auto next = first;
+  for (std::size_t i = 0; i < group.size(); ++i)
+    member[static_cast<std::size_t>(next[static_cast<std::size_t>(group[i])]++)] = static_cast<std::int32_t>(i);
+
+  WeightedGraph coarse;
+  coarse.start.reserve(static_cast<std::size_t>(groups) + 1);
+  coarse.start.push_back(0);
+  std::vector<std::int64_t> place(static_cast<std::size_t>(groups), none);
+  for (std::int32_t i = 0; i < groups; ++i) {
+    const std::int64_t begin = coarse.start.back();
+    for (auto m = first[static_cast<std::size_t>(i)]; m < first[static_cast<std::size_t>(i) + 1]; ++m) {
+      const auto row = static_cast<std::size_t>(member[static_cast<std::size_t>(m)]);
+      for (auto k = graph.start[row]; k < graph.start[row + 1]; ++k) {
+        const std::int32_t j = group[static_cast<std::size_t>(graph.column[static_cast<std::size_t>(k)])];
+        if (j == i) continue;
+        auto& at = place[static_cast<std::size_t>(j)];
+        if (at < begin) {
+          at = static_cast<std::int64_t>(coarse.column.size());
+          coarse.column.push_back(j);
+          coarse.weight.push_back(0.0F);
+        }
+        coarse.weight[static_cast<std::size_t>(at)] += graph.weight[static_cast<std::size_t>(k)];
+      }
+    }
+    coarse.start.push_back(static_cast<std::int64_t>(coarse.column.size()));
+  }
+  return coarse;
+}
+
+/// Couplings of nodes first … last − 1 of a body: Σ g / distance² over the elements two nodes share, g (elements × points) taken in
+/// the mean. In flat or stretched elements the short edges are the strong ones. `elements`: those with one of the nodes.
+WeightedGraph coupling_graph(const Body& body, std::span<const double> g, std::int32_t first, std::int32_t last,
+                             std::span<const std::int32_t> elements) {
+  const auto& mesh = body.mesh;
+  const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  const auto points = static_cast<std::size_t>(points_per_element(mesh.type));
+  const auto dim = static_cast<std::size_t>(dimension(mesh.type));
+  const auto rows = static_cast<std::size_t>(last - first);
+  const auto row_of = [&](std::int32_t node) { return static_cast<std::size_t>(node - first); };
+  const auto inside = [&](std::int32_t node) { return node >= first && node < last; };
+
+  std::vector<std::int32_t> start(rows + 1, 0), element;  // of each node
+  for (const std::int32_t e : elements)
+    for (const std::int32_t n : mesh.connectivity.subspan(static_cast<std::size_t>(e) * npe, npe))
+      if (inside(n)) ++start[row_of(n) + 1];
+  std::partial_sum(start.begin(), start.end(), start.begin());
+  element.resize(static_cast<std::size_t>(start.back()));
+  std::vector<std::int32_t> next(start.begin(), start.end() - 1);
+  for (const std::int32_t e : elements)
+    for (const std::int32_t n : mesh.connectivity.subspan(static_cast<std::size_t>(e) * npe, npe))
+      if (inside(n)) element[static_cast<std::size_t>(next[row_of(n)]++)] = e;
+
+  WeightedGraph graph;
+  graph.start.reserve(rows + 1);
+  graph.start.push_back(0);
+  std::vector<std::int64_t> place(rows, none);
+  for (std::int32_t n = first; n < last; ++n) {
+    const auto begin = static_cast<std::int64_t>(graph.column.size());
+    const double* x = mesh.coordinates.data() + static_cast<std::size_t>(n) * dim;
+    for (auto k = start[row_of(n)]; k < start[row_of(n) + 1]; ++k) {
+      const auto e = static_cast<std::size_t>(element[static_cast<std::size_t>(k)]);
+      double stiffness = 0.0;
+      for (std::size_t q = 0; q < points; ++q) stiffness += g[e * points + q];
+      for (const std::int32_t m : mesh.connectivity.subspan(e * npe, npe)) {
+        if (m == n || !inside(m)) continue;
+        const double* y = mesh.coordinates.data() + static_cast<std::size_t>(m) * dim;
+        double square = 0.0;
+        for (std::size_t c = 0; c < dim; ++c) square += (x[c] - y[c]) * (x[c] - y[c]);
+        auto& at = place[row_of(m)];
+        if (at < begin) {
+          at = static_cast<std::int64_t>(graph.column.size());
+          graph.column.push_back(m - first);
+          graph.weight.push_back(0.0F);
+        }
+        graph.weight[static_cast<std::size_t>(at)] += static_cast<float>(stiffness / square);
+      }
+    }
+    graph.start.push_back(static_cast<std::int64_t>(graph.column.size()));
+  }
+  return graph;
+}
+
+}  // namespace
+
+std::vector<std::int32_t> aggregate_nodes(const Body& body, std::span<const double> g, std::int32_t nodes, double size,
+                                          std::int32_t section) {
+  const std::int32_t sections = std::max(1, (nodes + section - 1) / section);
+  std::vector<std::int32_t> first;
+  for (std::int32_t c = 0; c <= sections; ++c)
+    first.push_back(static_cast<std::int32_t>(std::int64_t{nodes} * c / sections));
+  const ElementsOfSections elements(body.mesh, first);
+  std::vector<std::int32_t> group;
+  group.reserve(static_cast<std::size_t>(nodes));
+  std::int32_t groups = 0;
+  for (std::size_t c = 0; c + 1 < first.size(); ++c) {
+    const auto mine = std::span(elements.element).subspan(elements.start[c], elements.start[c + 1] - elements.start[c]);
+    const auto local = aggregate(coupling_graph(body, g, first[c], first[c + 1], mine), size);
+    const std::int32_t before = groups;
+    for (const std::int32_t a : local) {
+      group.push_back(before + a);
+      groups = std::max(groups, before + a + 1);
+    }
+  }
+  return group;
+}
+
+std::vector<std::int32_t> aggregate(WeightedGraph graph, double size) {
+  const std::int32_t rows = graph.rows();
+  std::vector<std::int32_t> result(static_cast<std::size_t>(rows));
+  std::iota(result.begin(), result.end(), 0);
+  std::vector<std::int32_t> members(result.size(), 1);
+  std::int32_t before = rows;
+  while (static_cast<double>(before) * size > static_cast<double>(rows) * 1.4) {
+    const std::vector<std::int32_t> group = match(graph, members);
+    const std::int32_t groups = group.empty() ? 0 : 1 + *std::max_element(group.begin(), group.end());
+    if (groups == before) break;
+    graph = contract(graph, group, groups);
+    for (std::int32_t& r : result) r = group[static_cast<std::size_t>(r)];
+    members.assign(static_cast<std::size_t>(groups), 0);
+    for (const std::int32_t r : result) ++members[static_cast<std::size_t>(r)];
+    before = groups;
+  }
+  return result;
+}
+
+}  // namespace kacanov

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The fine level of the multigrid: B(g) and node blocks in single precision, with its block diagonal.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include <kacanov/float_operator.hpp>
+#include "amg/chebyshev.hpp"
+#include "linear/preconditioner.hpp"
+
+namespace kacanov {
+
+struct MultigridOptions;
+
+/// A = B(g) + blocks on free components, in single precision, never stored. Directions that the space of the setup holds are
+/// held by stiff blocks here, so that the smoother stays definite in the spaces of later solves; corrections from below
+/// are projected. Vectors are consistent (Part).
+class FineLevel {
+ public:
+  FineLevel(const Part& part, const MultigridOptions& options);
+  void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space);
+  /// With the g of the last build.
+  void rebuild(std::span<const NodeBlock> blocks, const Space& space);
+  /// What it was built with.
+  std::span<const NodeBlock> blocks() const noexcept { return blocks_; }
+  const Space& space() const noexcept { return space_; }
+  void secant(std::span<double> g) const { op_.secant(g); }
+  /// y = A x for x that is zero in held components.
+  void multiply(std::span<const float> x, std::span<float> y) const;
+  /// Chebyshev::smooth's step, with D the dim × dim diagonal blocks of A.
+  void relax(const ChebyshevStep<float>& weights, std::span<const float> b, std::span<const float> image, std::span<float> step,
+             std::span<float> x) const;
+  /// Zero in held components.
+  void hold(std::span<float> x) const;
+  /// Onto the space of the setup.
+  void project(std::span<float> x) const;
+  /// Estimates the largest eigenvalue of D⁻¹A.
+  void choose_smoother(int degree, double range);
+  const Chebyshev& smoother() const noexcept { return smoother_; }
+
+ private:
+  void add_blocks(std::span<const NodeBlock> blocks, std::span<const float> x, std::span<float> y) const;
+
+  const Part& part_;
+  FloatOperator op_;
+  mutable SharedSum<float> sum_;
+  Space space_;
+  std::vector<NodeBlock> blocks_;
+  std::size_t shared_blocks_ = 0;  ///< the first of them belong to nodes that other ranks have too
+  std::vector<float> inverse_;  ///< nodes × 6 (3 in 2D): the upper triangles of the inverse blocks, by rows
+  Chebyshev smoother_;
+};
+
+}  // namespace kacanov

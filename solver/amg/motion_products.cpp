@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The products of strains and stresses of rigid motions, one vector for all motions of an aggregate.
+#include "amg/motion_products.hpp"
+
+#include <cmath>
+
+#include "simd/inline.hpp"
+#include "simd/instruction_set.hpp"
+
+namespace kacanov {
+namespace {
+
+constexpr std::size_t most_nodes = 10;
+
+/// GCC's vectors: whatever the target has, it takes as many registers as they need.
+template <int M>
+struct Motions {
+  using Vector [[gnu::vector_size(motion_lanes<M> * sizeof(double))]] = double;
+};
+
+/// Inlined into one function for each target.
+template <int M>
+KACANOV_INLINE inline void add_products(const MotionPoint<M>& point, const MotionPair* pairs, std::size_t count) {
+  using Vector = typename Motions<M>::Vector;
+  constexpr std::size_t dim = MotionPoint<M>::dim;
+  // Strains xx, yy, zz, √2 xy, √2 yz, √2 zx, so that the product of two is that of the tensors (zz is zero in 2D), and the
+  // dilatation that k0 acts on.
+  Vector strain[most_nodes][7], stress[most_nodes][7];
+  for (std::size_t k = 0; k < point.groups; ++k)
+    for (std::size_t c = 0; c < 7; ++c) strain[k][c] = Vector{};
+  for (std::size_t a = 0; a < point.nodes; ++a) {
+    const double *d = point.gradient + a * dim, *mean = point.dilatation + a * dim;
+    Vector* s = strain[point.group[a]];
+    Vector z[dim];
+    for (std::size_t c = 0; c < dim; ++c) {
+      z[c] = *reinterpret_cast<const Vector*>(point.rows[a].row[c]);
+      s[c] += d[c] * z[c];
+      s[6] += mean[c] * z[c];
+    }
+    s[3] += d[0] * z[1] + d[1] * z[0];
+    if constexpr (dim == 3) {
+      s[4] += d[1] * z[2] + d[2] * z[1];
+      s[5] += d[2] * z[0] + d[0] * z[2];
+    }
+  }
+  const double root = std::sqrt(0.5);
+  for (std::size_t k = 0; k < point.groups; ++k) {
+    Vector *e = strain[k], *s = stress[k];
+    const Vector mean = (e[0] + e[1] + e[2]) * (1.0 / 3.0);
+    for (std::size_t c = 0; c < 3; ++c) s[c] = point.shear * (e[c] - mean);
+    for (std::size_t c = 3; c < 6; ++c) {
+      e[c] *= root;
+      s[c] = point.shear * e[c];
+    }
+    s[6] = point.bulk * e[6];
+  }
+  for (const MotionPair* p = pairs; p != pairs + count; ++p) {
+    Vector sum[M] = {};
+    for (std::size_t c = 0; c < 7; ++c) {
+      const Vector t = stress[p->b][c];
+#pragma GCC unroll 8
+      for (std::size_t i = 0; i < M; ++i) sum[i] += strain[p->a][c][i] * t;
+    }
+    for (std::size_t i = 0; i < M; ++i)
+      for (std::size_t j = 0; j < M; ++j) p->sum[i * M + j] += sum[i][j];
+  }
+}
+
+template <int M>
+void add_plain(const MotionPoint<M>& point, const MotionPair* pairs, std::size_t count) {
+  add_products<M>(point, pairs, count);
+}
+#ifdef __x86_64__
+template <int M>
+[[gnu::target("avx2,fma")]] void add_avx2(const MotionPoint<M>& point, const MotionPair* pairs, std::size_t count) {
+  add_products<M>(point, pairs, count);
+}
+template <int M>
+[[gnu::target("avx512f,avx512dq,avx512vl,fma,prefer-vector-width=512")]] void add_avx512(const MotionPoint<M>& point, const MotionPair* pairs,
+                                                                                        std::size_t count) {
+  add_products<M>(point, pairs, count);
+}
+#endif
+
+}  // namespace
+
+template <int M>
+AddMotionProducts<M> motion_products(std::string_view instruction_set) {
+#ifdef __x86_64__
+  switch (simd::choose_instruction_set(instruction_set)) {
+    case simd::InstructionSet::avx512: return add_avx512<M>;
+    case simd::InstructionSet::avx2: return add_avx2<M>;
+    case simd::InstructionSet::plain: break;
+  }
+#endif
+  (void)instruction_set;
+  return add_plain<M>;
+}
+
+template AddMotionProducts<3> motion_products<3>(std::string_view);
+template AddMotionProducts<6> motion_products<6>(std::string_view);
+
+}  // namespace kacanov

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One level of the hierarchy: a symmetric block matrix over the rigid motions of aggregates, its rows spread over the ranks.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include <kacanov/halo.hpp>
+#include "amg/chebyshev.hpp"
+#include "amg/rigid_motion.hpp"
+
+namespace kacanov {
+
+/// Sums of blocks (row, column), rows numbered over all ranks; only row ≤ column is kept, the rest follows by symmetry.
+template <int M>
+class BlockSums {
+ public:
+  using Block = std::array<double, static_cast<std::size_t>(M* M)>;
+  struct Entry {
+    std::int64_t row = 0, column = 0;
+    Block block{};
+  };
+  /// The sum at (row, column), zero at first; it stays where it is. row ≤ column < 2³².
+  Block& at(std::int64_t row, std::int64_t column) {
+    const auto key = static_cast<std::uint64_t>(row) << 32 | static_cast<std::uint64_t>(column);
+    const auto [place, fresh] = index_.try_emplace(key, static_cast<std::uint32_t>(entries_.size()));
+    if (fresh) entries_.push_back({row, column, {}});
+    return entries_[place->second].block;
+  }
+  const std::deque<Entry>& entries() const noexcept { return entries_; }
+
+ private:
+  std::unordered_map<std::uint64_t, std::uint32_t> index_;
+  std::deque<Entry> entries_;  // never moved: they are most of the memory of a setup
+};
+
+/// Vectors have M entries a row; those handed to multiply have room for the ghosts behind the owned rows. All is double: a long
+/// body bends with 1e-8 of the energy that the entries suggest, which single precision rounds away.
+template <int M>
+class RigidLevel {
+ public:
+  using Block = typename BlockSums<M>::Block;
+
+  /// This rank owns rows first … first + rows − 1, the motions of aggregates with these centres. `sums` are its
+  /// contributions to any rows; they are sent to their owners. Collective.
+  RigidLevel(std::vector<Vector3> centres, BlockSums<M> sums, MPI_Comm comm);
+
+  std::int32_t rows() const noexcept { return static_cast<std::int32_t>(centres_.size()); }
+  std::int64_t first() const noexcept { return first_.at(static_cast<std::size_t>(rank_)); }
+  std::int64_t total() const noexcept { return first_.back(); }
+  std::span<const Vector3> centres() const noexcept { return centres_; }
+  std::size_t size() const noexcept { return (centres_.size() + ghosts_.size()) * M; }  ///< of a vector
+  std::size_t owned_size() const noexcept { return centres_.size() * M; }
+
+  /// y = A x on owned rows; fills x's ghosts.
+  void multiply(std::span<double> x, std::span<double> y) const;
+  /// Chebyshev::smooth's step on owned rows, with D the block diagonal.
+  void relax(const ChebyshevStep<double>& weights, std::span<const double> b, std::span<const double> image, std::span<double> step,
+             std::span<double> x) const;
+  /// Largest eigenvalue of D⁻¹A, by a few power steps, somewhat from above.
+  double largest_eigenvalue() const;
+
+  /// Local number of a row: owned ones first, then the other ranks' rows they couple to; −1 for others.
+  std::int32_t local(std::int64_t row) const;
+  std::span<const std::int64_t> ghosts() const noexcept { return ghosts_; }
+  /// Calls f(row, column, block) for what is stored of every owned row.
+  template <class F>
+  void visit(F&& f) const {
+    for (std::int32_t i = 0; i < rows(); ++i)
+      for (auto k = static_cast<std::size_t>(start_[static_cast<std::size_t>(i)]);
+           k < static_cast<std::size_t>(start_[static_cast<std::size_t>(i) + 1]); ++k)
+        f(i, column_[k], block_[k]);
+  }
+  /// To sum the matrix anew with the couplings it has: clear, add to blocks, complete.
+  void clear();
+  /// Of an owned row and a local one, which if owned is not before it. They have to couple.
+  Block& block(std::int32_t row, std::int32_t column);
+  /// Adds what the ranks have summed for each other's rows, in their blocks with ghosts and `outside` of these. Collective.
+  void complete(BlockSums<M> outside);
+  /// Adds this rank's contributions to any rows that couple. Collective.
+  void add(const BlockSums<M>& sums);
+
+  /// The next level: `group` of each row, groups numbered from 0.
+  RigidLevel coarsened(std::span<const std::int32_t> group, double length) const;
+  /// Couplings between owned rows, for grouping.
+  struct WeightedGraph couplings() const;
+
+  /// The whole matrix on every rank, for a direct solve.
+  std::vector<typename BlockSums<M>::Entry> gathered() const;
+
+  MPI_Comm comm() const noexcept { return comm_; }
+
+ private:
+  void send_to_owners(BlockSums<M>& sums) const;
+  void add_to_rows(const typename BlockSums<M>::Entry& entry);
+  std::vector<typename BlockSums<M>::Entry> exchanged(const BlockSums<M>& sums) const;
+  void build_rows(const BlockSums<M>& sums);
+  void plan_exchange();
+  void invert_diagonal();
+  int owner(std::int64_t row) const;
+
+  MPI_Comm comm_;
+  int rank_ = 0, ranks_ = 1;
+  std::vector<std::int64_t> first_;  ///< of each rank, and the total
+  std::vector<Vector3> centres_;
+  std::vector<std::int64_t> ghosts_;  ///< rows of other ranks in `column_`, ascending
+  /// Of owned row i: entries whose column is i, a later owned row (which the symmetric one follows from), or, behind these, a ghost.
+  std::vector<std::int32_t> start_, column_;
+  std::vector<Block> block_, inverse_diagonal_;
+  struct Edge {
+    std::int32_t row = 0, first = 0;  ///< where its ghosts' entries begin
+  };
+  std::vector<Edge> edge_;  ///< rows with ghosts
+  struct Neighbour {
+    int rank = 0;
+    std::vector<std::int32_t> send;
+    std::int32_t first_ghost = 0, ghosts = 0;
+  };
+  std::vector<Neighbour> neighbours_;
+  mutable std::vector<double> sent_;
+  mutable std::vector<MPI_Request> requests_;
+  void start_filling_ghosts(std::span<double> x) const;
+};
+
+extern template class RigidLevel<3>;
+extern template class RigidLevel<6>;
+
+}  // namespace kacanov

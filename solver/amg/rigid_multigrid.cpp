@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Multigrid without a matrix on the fine level: Chebyshev on the operator, rigid motions of aggregates below.
+#include "amg/rigid_multigrid.hpp"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <kacanov/error.hpp>
+#include "amg/aggregate_motions.hpp"
+#include "amg/aggregation.hpp"
+#include "amg/chebyshev.hpp"
+#include "amg/fine_level.hpp"
+
+namespace kacanov {
+
+/// What the number of modes does not change.
+struct RigidMultigrid::Hierarchy {
+  virtual ~Hierarchy() = default;
+  virtual void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) = 0;
+  virtual void rebuild(std::span<const NodeBlock> blocks, const Space& space) = 0;
+  virtual void apply(std::span<const double> r, std::span<double> z) = 0;
+  virtual void secant(std::span<double> g) const = 0;
+};
+
+namespace {
+
+/// A sparse factor of the last level, the same on every rank.
+template <int M>
+class DirectSolve {
+ public:
+  explicit DirectSolve(const RigidLevel<M>& level) : level_(&level) {
+    const auto size = static_cast<Eigen::Index>(level.total()) * M;
+    std::vector<Eigen::Triplet<double>> triplets;
+    std::vector<double> diagonal(static_cast<std::size_t>(size), 0.0);
+    for (const auto& entry : level.gathered())
+      for (int i = 0; i < M; ++i)
+        for (int j = 0; j < M; ++j) {
+          const auto row = static_cast<Eigen::Index>(entry.row) * M + i, column = static_cast<Eigen::Index>(entry.column) * M + j;
+          const double v = entry.block[static_cast<std::size_t>(i * M + j)];
+          triplets.emplace_back(row, column, v);
+          if (row == column) diagonal[static_cast<std::size_t>(row)] += v;
+        }
+    // Modes that boundary conditions have emptied, and rounding: a shift far below anything that moves, unless penalties
+    // so large that they swamp the body ask for more.
+    const double largest = diagonal.empty() ? 1.0 : *std::max_element(diagonal.begin(), diagonal.end());
+    Eigen::SparseMatrix<double> matrix(size, size), unit(size, size);
+    matrix.setFromTriplets(triplets.begin(), triplets.end());
+    unit.setIdentity();
+    for (double shift = 1e-10; shift < 1e-3; shift *= 100.0) {
+      factor_.compute(matrix + (largest > 0.0 ? shift * largest : 1.0) * unit);
+      if (factor_.info() == Eigen::Success) return;
+    }
+    throw InternalError("the coarsest matrix of the preconditioner is not definite");
+  }
+  /// x = A⁻¹ b on owned rows.
+  void solve(std::span<const double> b, std::span<double> x) const {
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(level_->total()) * M);
+    const auto at = static_cast<Eigen::Index>(level_->first()) * M;
+    const auto owned = static_cast<Eigen::Index>(level_->owned_size());
+    for (Eigen::Index i = 0; i < owned; ++i) all[at + i] = b[static_cast<std::size_t>(i)];
+    MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM, level_->comm());
+    const Eigen::VectorXd y = factor_.solve(all);
+    for (Eigen::Index i = 0; i < owned; ++i) x[static_cast<std::size_t>(i)] = y[at + i];
+  }
+
+ private:
+  const RigidLevel<M>* level_;
+  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor_;
+};
+
+/// A coarse level with its smoother, its vectors and the way down.
+template <int M>
+struct Stage {
+  RigidLevel<M> level;
+  std::vector<std::int32_t> group;  ///< of each owned row in the next level; empty on the last
+  std::vector<Vector3> offset;      ///< of each owned row from the centre of its group
+  Chebyshev smoother;
+  Vector b, x, step, image;
+
+  explicit Stage(RigidLevel<M> l) : level(std::move(l)) {
+    for (auto* v : {&b, &x, &step, &image}) v->resize(level.size());
+  }
+};
+
+constexpr std::int64_t direct_rows = 400;
+
+template <int M>
+class ModesHierarchy final : public RigidMultigrid::Hierarchy {
+ public:
+  ModesHierarchy(const Part& part, const MultigridOptions& options) : part_(part), options_(options), fine_(part, options) {}
+
+  void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) override {
+    direct_.reset();
+    fine_.build(g, blocks, space);
+    if (!motions_) {
+      motions_.emplace(part_, g, options_.fine_size, options_.instruction_set);
+      stages_.emplace_back(motions_->make_level());
+    }
+    stages_.erase(stages_.begin() + 1, stages_.end());
+    motions_->sum(g, {blocks, space}, stages_.front().level);
+    complete();
+  }
+
+  void rebuild(std::span<const NodeBlock> blocks, const Space& space) override {
+    direct_.reset();
+    stages_.erase(stages_.begin() + 1, stages_.end());
+    Vector g(part_.body().secant_count());
+    fine_.secant(g);
+    motions_->change(g, {fine_.blocks(), fine_.space()}, {blocks, space}, stages_.front().level);
+    fine_.rebuild(blocks, space);
+    complete();
+  }
+
+  void secant(std::span<double> g) const override { fine_.secant(g); }
+
+  void apply(std::span<const double> r, std::span<double> z) override {
+    for (std::size_t i = 0; i < r.size(); ++i) b_[i] = static_cast<float>(r[i]);
+    fine_.hold(b_);
+    const auto multiply = [this](std::span<const float> x, std::span<float> y) { fine_.multiply(x, y); };
+    const auto relax = [this](const auto& weights, std::span<const float> b, std::span<const float> image, std::span<float> step,
+                              std::span<float> x) { fine_.relax(weights, b, image, step, x); };
+    fine_.smoother().template smooth<float>(true, b_, x_, step_, image_, multiply, relax);
+    fine_.multiply(x_, image_);
+    for (std::size_t i = 0; i < b_.size(); ++i) image_[i] = b_[i] - image_[i];
+    fine_.project(image_);
+    auto& first = stages_.front();
+    motions_->restrict_forces(image_, first.b);
+    cycle(0);
+    motions_->prolong(first.x, options_.fine_gain, image_);
+    part_.halo.copy_from_owner(std::span<float>(image_), part_.dim());
+    fine_.project(image_);
+    for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += image_[i];
+    fine_.smoother().template smooth<float>(false, b_, x_, step_, image_, multiply, relax);
+    for (std::size_t i = 0; i < z.size(); ++i) z[i] = static_cast<double>(x_[i]);
+  }
+
+ private:
+  /// Everything below the first coarse level, and the smoothers.
+  void complete() {
+    while (stages_.back().level.total() > direct_rows) {
+      auto& stage = stages_.back();
+      const std::int64_t before = stage.level.total();
+      stage.group = aggregate(stage.level.couplings(), options_.coarse_size);
+      RigidLevel<M> next = stage.level.coarsened(stage.group, motions_->length());
+      if (next.total() > before / 2) {
+        stage.group.clear();
+        break;
+      }
+      const auto centres = stage.level.centres();
+      stage.offset.clear();
+      for (std::size_t i = 0; i < stage.group.size(); ++i) {
+        const auto& c = next.centres()[static_cast<std::size_t>(stage.group[i])];
+        stage.offset.push_back({centres[i][0] - c[0], centres[i][1] - c[1], centres[i][2] - c[2]});
+      }
+      stages_.emplace_back(std::move(next));
+    }
+    direct_.emplace(stages_.back().level);
+    for (auto& stage : stages_) {
+      const double largest = stage.level.largest_eigenvalue();
+      stage.smoother = {options_.coarse_degree, largest / options_.coarse_range, largest};
+    }
+    fine_.choose_smoother(options_.fine_degree, options_.fine_range);
+    for (auto* v : {&b_, &x_, &step_, &image_}) v->resize(part_.unknowns());
+  }
+
+  /// stages_[k].x = a cycle from zero on stages_[k].b.
+  void cycle(std::size_t k) {
+    Stage<M>& stage = stages_[k];
+    const std::size_t owned = stage.level.owned_size();
+    const auto first = [owned](Vector& v) { return std::span(v).first(owned); };
+    if (k + 1 == stages_.size()) {
+      direct_->solve(first(stage.b), first(stage.x));
+      return;
+    }
+    const auto multiply = [&](std::span<const double>, std::span<double> y) { stage.level.multiply(stage.x, y); };
+    const auto relax = [&](const auto& weights, std::span<const double> b, std::span<const double> image, std::span<double> step,
+                           std::span<double> x) { stage.level.relax(weights, b, image, step, x); };
+    const auto smooth = [&](bool from_zero) {
+      stage.smoother.template smooth<double>(from_zero, first(stage.b), first(stage.x), first(stage.step), first(stage.image), multiply, relax);
+    };
+    smooth(true);
+    Stage<M>& next = stages_[k + 1];
+    for (int c = 0; c < options_.cycles; ++c) {
+      if (c > 0 && k + 2 == stages_.size()) break;  // the last level is solved exactly
+      stage.level.multiply(stage.x, stage.image);
+      std::fill(next.b.begin(), next.b.end(), 0.0);
+      for (std::size_t i = 0; i < stage.group.size(); ++i) {
+        std::array<double, M> force{};
+        for (std::size_t m = 0; m < M; ++m) force[m] = stage.b[i * M + m] - stage.image[i * M + m];
+        double* to = next.b.data() + static_cast<std::size_t>(stage.group[i]) * M;
+        RigidMotion<M>::add_from_part(force.data(), stage.offset[i].data(), 1.0 / motions_->length(), to);
+      }
+      cycle(k + 1);
+      for (std::size_t i = 0; i < stage.group.size(); ++i) {
+        const double* from = next.x.data() + static_cast<std::size_t>(stage.group[i]) * M;
+        double* to = stage.x.data() + i * M;
+        std::array<double, M> scaled{};
+        for (std::size_t m = 0; m < M; ++m) scaled[m] = options_.coarse_gain * from[m];
+        RigidMotion<M>::add_to_part(scaled.data(), stage.offset[i].data(), 1.0 / motions_->length(), to);
+      }
+    }
+    smooth(false);
+  }
+
+  const Part& part_;
+  MultigridOptions options_;
+  FineLevel fine_;
+  std::optional<AggregateMotions<M>> motions_;
+  std::vector<Stage<M>> stages_;  ///< the first one lives as long as the aggregates do
+  std::optional<DirectSolve<M>> direct_;
+  std::vector<float> b_, x_, step_, image_;
+};
+
+}  // namespace
+
+RigidMultigrid::RigidMultigrid(const Part& part, const MultigridOptions& options) {
+  if (part.dim() == 3)
+    hierarchy_ = std::make_unique<ModesHierarchy<6>>(part, options);
+  else
+    hierarchy_ = std::make_unique<ModesHierarchy<3>>(part, options);
+}
+
+RigidMultigrid::~RigidMultigrid() = default;
+
+void RigidMultigrid::build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) {
+  hierarchy_->build(g, blocks, space);
+}
+
+void RigidMultigrid::rebuild(std::span<const NodeBlock> blocks, const Space& space) { hierarchy_->rebuild(blocks, space); }
+
+void RigidMultigrid::secant(std::span<double> g) const { hierarchy_->secant(g); }
+
+void RigidMultigrid::apply(std::span<const double> r, std::span<double> z) { hierarchy_->apply(r, z); }
+
+}  // namespace kacanov

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is to be solved, in the terms of the case file, before it meets a mesh.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <kacanov/law.hpp>
+
+namespace kacanov {
+
+using Vector3 = std::array<double, 3>;  ///< in 2D the third entry is 0
+
+/// The `on` of an entry: facets (elements for a material or a body force).
+struct Selector {
+  enum class Kind { all, name, box };
+  Kind kind = Kind::all;
+  std::string name;        ///< Kind::name
+  Vector3 lower{}, upper{};  ///< Kind::box, closed
+};
+
+struct MaterialEntry {
+  Selector on;
+  Law law;
+};
+
+/// Exactly one of the optionals is set.
+struct BoundaryEntry {
+  Selector on;
+  std::optional<std::array<std::optional<double>, 3>> displacement;  ///< nullopt: component is free
+  std::optional<Vector3> traction;    ///< force an area (a length in 2D)
+  std::optional<double> pressure;     ///< against the outer normal
+  std::optional<Vector3> body_force;  ///< force a volume
+};
+
+struct Plane {
+  Vector3 point{}, normal{};  ///< normal to the body's side, any length
+};
+struct Sphere {
+  Vector3 centre{};
+  double radius = 1.0;
+  std::optional<Vector3> direction;  ///< from the body towards the obstacle
+};
+struct ConstantGap {
+  double gap = 0.0;  ///< along the body's outer normal
+};
+using Obstacle = std::variant<Plane, Sphere, ConstantGap>;
+
+struct Friction {
+  double tresca = 0.0;   ///< bound psi on |tau_t|, a stress
+  double coulomb = 0.0;  ///< coefficient mu_f
+};
+
+struct ContactEntry {
+  Selector on;
+  Obstacle obstacle;
+  std::optional<Friction> friction;
+};
+
+/// Every field is a key of the case file's `solver`, with the same name.
+struct SolverOptions {
+  enum class Outer { automatic, kacanov, newton };
+  enum class Contact { automatic, admm, dual_admm, active_set };
+  enum class Penalty { automatic, paper, fixed };
+  enum class Stop { kkt, paper };
+  enum class Preconditioner { multigrid, elasticity };
+
+  double tolerance = 1e-6;  ///< on every entry of the certificate (stop: kkt), on (15) (stop: paper)
+  Outer outer = Outer::automatic;
+  Contact contact = Contact::automatic;
+  Penalty penalty = Penalty::automatic;  ///< `r`: automatic is r_A, paper is (32)
+  double r = 0.0;                        ///< the number, with Penalty::fixed
+  Stop stop = Stop::kkt;
+  Preconditioner preconditioner = Preconditioner::multigrid;
+  int max_outer = 100;
+  int max_contact = 10000;           ///< contact iterations within an outer step
+  double spectrum_tolerance = 1e-2;  ///< relative, on λ_min and λ_max
+  /// Factors on loads, prescribed displacements and indentation, one after the other; the last is 1. Empty: at once.
+  std::vector<double> load_steps;
+  /// Over-relaxation of ADMM, 1 ≤ α < 2. Unset: 1 with r: paper or stop: paper (Algorithm 1 as printed), else 1.7.
+  std::optional<double> relaxation;
+};
+
+struct Model {
+  std::vector<MaterialEntry> materials;
+  std::vector<BoundaryEntry> boundary;
+  std::vector<ContactEntry> contact;
+  std::vector<Vector3> probes;
+  SolverOptions solver;
+};
+
+}  // namespace kacanov

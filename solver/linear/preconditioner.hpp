@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the loops ask of a preconditioner for B + r CᵀMC.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include <kacanov/model.hpp>
+#include "linear/space.hpp"
+
+namespace kacanov {
+
+/// A dim × dim block added to the diagonal of a node: a contact penalty, a slip stiffness, or a direction held.
+struct NodeBlock {
+  std::int32_t node = 0;
+  std::array<double, 9> value{};  ///< dim × dim, row-major
+};
+
+/// Symmetric positive definite and fixed between two setups. Vectors are consistent (Part). Calls are collective.
+class Preconditioner {
+ public:
+  virtual ~Preconditioner() = default;
+  /// For frozen g (elements × points of this part), the blocks of *owned* nodes (several may name one), and the space the
+  /// solves live in.
+  void setup(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space);
+  /// The same with the g of the last setup, at a fraction of the cost where few nodes see a change.
+  void setup_again(std::span<const NodeBlock> blocks, const Space& space);
+  /// z ≈ A⁻¹ r.
+  virtual void apply(std::span<const double> r, std::span<double> z) = 0;
+
+  /// The g of the last setup, in single precision at the least; mu before the first.
+  virtual void secant(std::span<double> g) const = 0;
+
+  int setups() const noexcept { return setups_; }
+  double setup_seconds() const noexcept { return seconds_; }
+
+ private:
+  virtual void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) = 0;
+  virtual void rebuild(std::span<const NodeBlock> blocks, const Space& space) = 0;
+  int setups_ = 0;
+  double seconds_ = 0.0;
+};
+
+/// `multigrid`: Chebyshev on the matrix-free operator over rigid motions of aggregates (RigidMultigrid). `elasticity`:
+/// unknown-based BoomerAMG on the assembled matrix, the yardstick. Threads and instruction set are the operator's.
+std::unique_ptr<Preconditioner> make_preconditioner(SolverOptions::Preconditioner kind, const Part& part, int threads,
+                                                    const std::string& instruction_set);
+
+}  // namespace kacanov

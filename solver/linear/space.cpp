@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The space a solve lives in: projection and inner products.
+#include "linear/space.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kacanov {
+
+void Space::hold(std::int32_t node, const Vector3& direction) {
+  // Points of one node follow each other in Part::contact, so looking at the last entry is enough.
+  if (held_.empty() || held_.back().node != node) held_.push_back({node, 0, {}});
+  auto& entry = held_.back();
+  const auto dim = static_cast<std::size_t>(part_->dim());
+  Vector3 d = direction;
+  for (std::size_t c = 0; c < dim; ++c)
+    if (part_->held[static_cast<std::size_t>(node) * dim + c]) d[c] = 0.0;
+  const auto inner = [](const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+  const double length = std::sqrt(inner(d, d));
+  if (length == 0.0) return;
+  for (int pass = 0; pass < 2; ++pass)
+    for (int k = 0; k < entry.count; ++k) {
+      const auto& b = entry.basis[static_cast<std::size_t>(k)];
+      const double s = inner(d, b);
+      for (std::size_t c = 0; c < 3; ++c) d[c] -= s * b[c];
+    }
+  const double rest = std::sqrt(inner(d, d));
+  if (rest <= 1e-8 * length || entry.count == 3) return;  // dependent on what is held already
+  for (double& c : d) c /= rest;
+  entry.basis[static_cast<std::size_t>(entry.count++)] = d;
+}
+
+namespace {
+
+template <class S>
+void project_out(const Part& part, std::span<const Space::HeldDirections> held, std::span<S> x) {
+  for (const auto& entry : part.prescribed) x[static_cast<std::size_t>(entry.component)] = S{0};
+  const auto dim = static_cast<std::size_t>(part.dim());
+  for (const auto& entry : held) {
+    S* u = x.data() + static_cast<std::size_t>(entry.node) * dim;
+    for (int k = 0; k < entry.count; ++k) {
+      const auto& b = entry.basis[static_cast<std::size_t>(k)];
+      double s = 0.0;
+      for (std::size_t c = 0; c < dim; ++c) s += b[c] * static_cast<double>(u[c]);
+      for (std::size_t c = 0; c < dim; ++c) u[c] = static_cast<S>(static_cast<double>(u[c]) - s * b[c]);
+    }
+  }
+}
+
+}  // namespace
+
+void Space::project(std::span<double> x) const { project_out(*part_, held_, x); }
+void Space::project(std::span<float> x) const { project_out(*part_, held_, x); }
+
+double Space::local_dot(std::span<const double> x, std::span<const double> y) const {
+  return eight_sums(part_->owned_unknowns(), [&](std::size_t i) { return x[i] * y[i]; });
+}
+
+double Space::dot(std::span<const double> x, std::span<const double> y) const {
+  return part_->halo.sum_all(local_dot(x, y));
+}
+
+double Space::norm(std::span<const double> x) const { return std::sqrt(dot(x, x)); }
+
+std::array<double, 2> Space::dot2(std::span<const double> a, std::span<const double> b, std::span<const double> c,
+                                  std::span<const double> d) const {
+  std::array<double, 2> s{local_dot(a, b), local_dot(c, d)};
+  part_->halo.sum_all(s);
+  return s;
+}
+
+double Space::advance(double alpha, std::span<const double> p, std::span<const double> q, std::span<double> x,
+                      std::span<double> r) const {
+  const auto step = [&](std::size_t i) {
+    x[i] += alpha * p[i];
+    r[i] -= alpha * q[i];
+    return r[i] * r[i];
+  };
+  const double square = eight_sums(part_->owned_unknowns(), step);
+  for (std::size_t i = part_->owned_unknowns(); i < x.size(); ++i) step(i);
+  return std::sqrt(sum_all(square));
+}
+
+double Space::max_abs(std::span<const double> x) const {
+  double m = 0.0;
+  for (const double v : x) m = std::max(m, std::abs(v));
+  return part_->halo.max_all(m);
+}
+
+}  // namespace kacanov

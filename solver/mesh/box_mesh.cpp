@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Generated boxes: structured meshes of every element type, with named sides.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <kacanov/error.hpp>
+#include <kacanov/mesh.hpp>
+
+namespace kacanov {
+namespace {
+
+using Index3 = std::array<int, 3>;
+
+/// A lattice of (cells · refinement + 1) points in each direction, x fastest.
+struct Lattice {
+  std::array<double, 3> size;
+  Index3 cells;  ///< refined; 0 in directions that do not exist
+
+  std::int32_t node(const Index3& at) const {
+    return at[0] + (cells[0] + 1) * (at[1] + (cells[1] + 1) * at[2]);
+  }
+};
+
+void validate(const BoxSpec& spec) {
+  const int dim = dimension(spec.type);
+  const int refinement = spec.type == ElementType::tet10 ? 2 : 1;
+  double nodes = 1, cells = 1;
+  for (std::size_t k = 0; k < static_cast<std::size_t>(dim); ++k) {
+    if (!(spec.size[k] > 0) || !std::isfinite(spec.size[k]))
+      throw InputError("box: size[" + std::to_string(k) + "]: expected a number > 0");
+    if (spec.cells[k] < 1) throw InputError("box: cells[" + std::to_string(k) + "]: expected an integer ≥ 1");
+    nodes *= static_cast<double>(spec.cells[k]) * refinement + 1;
+    cells *= spec.cells[k];
+  }
+  // Unknowns, elements and the sides of all elements have to fit the indices used later.
+  const double per_cell = spec.type == ElementType::tri3 ? 2 : spec.type == ElementType::hex8 ? 1 : 6;
+  const double sides = cells * per_cell * facets_per_element(spec.type);
+  if (nodes * dim > std::numeric_limits<std::int32_t>::max() ||
+      cells * per_cell > std::numeric_limits<std::int32_t>::max() ||
+      sides > std::numeric_limits<std::uint32_t>::max())
+    throw InputError("box: so many cells give more unknowns or elements than 32-bit indices can number");
+}
+
+void add_nodes(const Lattice& lattice, int dim, std::vector<double>& coordinates) {
+  const auto position = [&](int i, std::size_t k) {
+    return i == lattice.cells[k] ? lattice.size[k] : lattice.size[k] * i / lattice.cells[k];
+  };
+  coordinates.reserve((static_cast<std::size_t>(lattice.cells[0]) + 1) *
+                      (static_cast<std::size_t>(lattice.cells[1]) + 1) *
+                      (static_cast<std::size_t>(lattice.cells[2]) + 1) * static_cast<std::size_t>(dim));
+  for (int z = 0; z <= lattice.cells[2]; ++z)
+    for (int y = 0; y <= lattice.cells[1]; ++y)
+      for (int x = 0; x <= lattice.cells[0]; ++x) {
+        coordinates.push_back(position(x, 0));
+        coordinates.push_back(position(y, 1));
+        if (dim == 3) coordinates.push_back(position(z, 2));
+      }
+}
+
+/// Paths from the lowest to the highest corner, one axis a step, each a positive tetrahedron.
+constexpr std::array<Index3, 6> paths{{{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
+
+/// Appends the tetrahedron of one path in the cell with lowest lattice point `at`, `step` points wide.
+void add_tetrahedron(const Lattice& lattice, const Index3& at, int step, std::size_t path, bool quadratic,
+                     std::vector<std::int32_t>& elements) {
+  std::array<Index3, 4> corner;
+  corner[0] = at;
+  for (std::size_t s = 0; s < 3; ++s) {
+    corner[s + 1] = corner[s];
+    corner[s + 1][static_cast<std::size_t>(paths[path][s])] += step;
+  }
+  if (path >= 3) std::swap(corner[2], corner[3]);  // odd permutations turn the other way
+  for (const Index3& c : corner) elements.push_back(lattice.node(c));
+  if (!quadratic) return;
+  constexpr std::array<std::array<std::size_t, 2>, 6> edges{{{0, 1}, {1, 2}, {2, 0}, {3, 0}, {3, 2}, {3, 1}}};
+  for (const auto& [a, b] : edges)
+    elements.push_back(lattice.node({(corner[a][0] + corner[b][0]) / 2, (corner[a][1] + corner[b][1]) / 2,
+                                     (corner[a][2] + corner[b][2]) / 2}));
+}
+
+void add_cell(const Lattice& lattice, const Index3& at, ElementType type,
+              std::vector<std::int32_t>& elements) {
+  const int step = type == ElementType::tet10 ? 2 : 1;
+  const auto corner = [&](int x, int y, int z) { return lattice.node({at[0] + x, at[1] + y, at[2] + z}); };
+  switch (type) {
+    case ElementType::tri3:
+      elements.insert(elements.end(), {corner(0, 0, 0), corner(1, 0, 0), corner(1, 1, 0)});
+      elements.insert(elements.end(), {corner(0, 0, 0), corner(1, 1, 0), corner(0, 1, 0)});
+      break;
+    case ElementType::hex8:
+      elements.insert(elements.end(), {corner(0, 0, 0), corner(1, 0, 0), corner(1, 1, 0), corner(0, 1, 0),
+                                       corner(0, 0, 1), corner(1, 0, 1), corner(1, 1, 1), corner(0, 1, 1)});
+      break;
+    case ElementType::tet4:
+    case ElementType::tet10:
+      for (std::size_t path = 0; path < paths.size(); ++path)
+        add_tetrahedron(lattice, at, step, path, type == ElementType::tet10, elements);
+      break;
+  }
+}
+
+void add_elements(const Lattice& lattice, const Index3& cells, ElementType type,
+                  std::vector<std::int32_t>& elements) {
+  const int step = type == ElementType::tet10 ? 2 : 1;
+  const int layers = std::max(cells[2], 1);
+  const std::size_t per_cell = type == ElementType::tri3 ? 2 : type == ElementType::hex8 ? 1 : 6;
+  elements.reserve(static_cast<std::size_t>(cells[0]) * static_cast<std::size_t>(cells[1]) *
+                   static_cast<std::size_t>(layers) * per_cell *
+                   static_cast<std::size_t>(nodes_per_element(type)));
+  for (int z = 0; z < layers; ++z)
+    for (int y = 0; y < cells[1]; ++y)
+      for (int x = 0; x < cells[0]; ++x) add_cell(lattice, {x * step, y * step, z * step}, type, elements);
+}
+
+void name_sides(const Lattice& lattice, Mesh& mesh) {
+  constexpr std::array<std::array<const char*, 2>, 3> names3{
+      {{"left", "right"}, {"front", "back"}, {"bottom", "top"}}};
+  constexpr std::array<std::array<const char*, 2>, 2> names2{{{"left", "right"}, {"bottom", "top"}}};
+  const auto dim = static_cast<std::size_t>(mesh.dim());
+  for (std::size_t k = 0; k < dim; ++k)
+    for (std::size_t end = 0; end < 2; ++end) {
+      Group side{dim == 3 ? names3[k][end] : names2[k][end], mesh.dim() - 1, {}};
+      const double plane = end == 0 ? 0.0 : lattice.size[k];
+      for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+        const auto nodes = mesh.facet(f);
+        if (std::all_of(nodes.begin(), nodes.end(), [&](std::int32_t n) {
+              return mesh.coordinates[static_cast<std::size_t>(n) * dim + k] == plane;
+            }))
+          side.members.push_back(static_cast<std::int32_t>(f));
+      }
+      mesh.groups.push_back(std::move(side));
+    }
+}
+
+}  // namespace
+
+Mesh make_box(const BoxSpec& spec) {
+  validate(spec);
+  Mesh mesh;
+  mesh.type = spec.type;
+  const int dim = mesh.dim();
+  const int refinement = spec.type == ElementType::tet10 ? 2 : 1;
+  Index3 cells = spec.cells;
+  if (dim == 2) cells[2] = 0;
+  const Lattice lattice{spec.size, {cells[0] * refinement, cells[1] * refinement, cells[2] * refinement}};
+  add_nodes(lattice, dim, mesh.coordinates);
+  add_elements(lattice, cells, spec.type, mesh.elements);
+  find_boundary(mesh);
+  name_sides(lattice, mesh);
+  return mesh;
+}
+
+}  // namespace kacanov

@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Facet tables, the boundary of a mesh, and what must hold before anything is computed on it.
+#include <kacanov/mesh.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include <kacanov/error.hpp>
+
+namespace kacanov {
+namespace {
+
+constexpr std::array<std::int8_t, 6> tri3_facets{0, 1, 1, 2, 2, 0};
+constexpr std::array<std::int8_t, 12> tet4_facets{0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+constexpr std::array<std::int8_t, 24> tet10_facets{0, 2, 1, 6, 5, 4, 0, 1, 3, 4, 9, 7,
+                                                   0, 3, 2, 7, 8, 6, 1, 2, 3, 5, 8, 9};
+constexpr std::array<std::int8_t, 24> hex8_facets{0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4,
+                                                  1, 2, 6, 5, 2, 3, 7, 6, 0, 4, 7, 3};
+
+constexpr int corners_per_facet(ElementType type) {
+  switch (type) {
+    case ElementType::tri3: return 2;
+    case ElementType::tet4: return 3;
+    case ElementType::tet10: return 3;
+    case ElementType::hex8: return 4;
+  }
+  return 0;
+}
+
+/// One facet of one element: its corner nodes, ascending, unused ones −1 and last.
+struct FacetKey {
+  std::array<std::int32_t, 4> nodes{-1, -1, -1, -1};
+  std::uint32_t id = 0;  ///< element · facets_per_element + local facet
+
+  bool same_corners(const FacetKey& other) const { return nodes == other.nodes; }
+};
+
+/// The facets of all elements, ordered into sets of equal corners. Buckets by the lowest node keep the
+/// sort within a few dozen entries, and only the 4-byte ids are stored for the whole mesh.
+class FacetSets {
+ public:
+  explicit FacetSets(const Mesh& mesh)
+      : mesh_(mesh),
+        facets_(static_cast<std::uint32_t>(facets_per_element(mesh.type))),
+        corners_(static_cast<std::size_t>(corners_per_facet(mesh.type))) {
+    const std::size_t total = mesh.element_count() * facets_;
+    if (total > std::numeric_limits<std::uint32_t>::max())
+      throw InputError("the mesh has " + std::to_string(mesh.element_count()) +
+                       " elements: more than 2^32 element sides cannot be indexed");
+    bucket_.assign(mesh.node_count() + 1, 0);
+    const auto count = static_cast<std::uint32_t>(total);
+    for (std::uint32_t id = 0; id < count; ++id) ++bucket_[lowest_node(id) + 1];
+    for (std::size_t i = 1; i < bucket_.size(); ++i) bucket_[i] += bucket_[i - 1];
+    ids_.resize(total);
+    std::vector<std::uint32_t> next(bucket_.begin(), bucket_.end() - 1);
+    for (std::uint32_t id = 0; id < count; ++id) ids_[next[lowest_node(id)]++] = id;
+  }
+
+  /// Calls visit(span of FacetKey) for every set of facets with the same corners.
+  template <typename Visit>
+  void visit(Visit&& visit) const {
+    std::vector<FacetKey> keys;
+    for (std::size_t node = 0; node + 1 < bucket_.size(); ++node) {
+      keys.clear();
+      for (std::uint32_t i = bucket_[node]; i < bucket_[node + 1]; ++i) keys.push_back(key(ids_[i]));
+      std::sort(keys.begin(), keys.end(), [](const FacetKey& a, const FacetKey& b) {
+        return a.nodes != b.nodes ? a.nodes < b.nodes : a.id < b.id;
+      });
+      for (std::size_t first = 0; first < keys.size();) {
+        std::size_t last = first + 1;
+        while (last < keys.size() && keys[last].same_corners(keys[first])) ++last;
+        visit(std::span(keys).subspan(first, last - first));
+        first = last;
+      }
+    }
+  }
+
+  std::int32_t node(std::uint32_t id, std::size_t local) const {
+    const std::size_t element = id / facets_;
+    const auto table = facet_nodes(mesh_.type, static_cast<int>(id % facets_));
+    return mesh_.elements[element * static_cast<std::size_t>(nodes_per_element(mesh_.type)) +
+                          static_cast<std::size_t>(table[local])];
+  }
+  std::size_t element(std::uint32_t id) const { return id / facets_; }
+  std::size_t corners() const { return corners_; }
+
+ private:
+  std::size_t lowest_node(std::uint32_t id) const {
+    std::int32_t lowest = node(id, 0);
+    for (std::size_t k = 1; k < corners_; ++k) lowest = std::min(lowest, node(id, k));
+    return static_cast<std::size_t>(lowest);
+  }
+  FacetKey key(std::uint32_t id) const {
+    FacetKey result;
+    result.id = id;
+    for (std::size_t k = 0; k < corners_; ++k) {
+      const std::int32_t next = node(id, k);
+      std::size_t place = k;
+      for (; place > 0 && result.nodes[place - 1] > next; --place)
+        result.nodes[place] = result.nodes[place - 1];
+      result.nodes[place] = next;
+    }
+    return result;
+  }
+
+  const Mesh& mesh_;
+  std::uint32_t facets_;
+  std::size_t corners_;
+  std::vector<std::uint32_t> bucket_;  // by lowest node, offsets into ids_
+  std::vector<std::uint32_t> ids_;
+};
+
+/// Whether facet b lists the corners of facet a the other way round, as neighbours do.
+bool opposite(const FacetSets& sets, std::uint32_t a, std::uint32_t b) {
+  const std::size_t n = sets.corners();
+  std::size_t start = 0;
+  while (sets.node(b, start) != sets.node(a, 0)) ++start;
+  for (std::size_t k = 1; k < n; ++k)
+    if (sets.node(a, k) != sets.node(b, (start + n - k) % n)) return false;
+  return true;
+}
+
+/// Whether two quadratic facets with the same corners have the same midside nodes.
+bool same_midsides(const FacetSets& sets, std::uint32_t a, std::uint32_t b) {
+  std::array<std::int32_t, 3> ma{}, mb{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    ma[k] = sets.node(a, 3 + k);
+    mb[k] = sets.node(b, 3 + k);
+  }
+  std::sort(ma.begin(), ma.end());
+  std::sort(mb.begin(), mb.end());
+  return ma == mb;
+}
+
+using Gradients = std::array<std::array<double, 3>, 10>;  ///< ∂N/∂ξ of each node
+
+Gradients gradients(ElementType type, double x, double y, double z) {
+  Gradients d{};
+  if (type == ElementType::hex8) {
+    constexpr std::array<std::array<int, 3>, 8> corner{
+        {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}}};
+    for (std::size_t i = 0; i < 8; ++i) {
+      const double a = corner[i][0], b = corner[i][1], c = corner[i][2];
+      d[i] = {a * (1 + b * y) * (1 + c * z) / 8, b * (1 + a * x) * (1 + c * z) / 8,
+              c * (1 + a * x) * (1 + b * y) / 8};
+    }
+    return d;
+  }
+  const std::array<double, 4> l{1 - x - y - z, x, y, z};
+  constexpr std::array<std::array<double, 3>, 4> dl{{{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  constexpr std::array<std::array<std::size_t, 2>, 6> edge{{{0, 1}, {1, 2}, {2, 0}, {3, 0}, {3, 2}, {3, 1}}};
+  if (type != ElementType::tet10) {
+    for (std::size_t i = 0; i < 4; ++i) d[i] = dl[i];
+    if (type == ElementType::tri3) d[0] = {-1, -1, 0};
+    return d;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < 4; ++i) d[i][k] = (4 * l[i] - 1) * dl[i][k];
+    for (std::size_t e = 0; e < 6; ++e)
+      d[4 + e][k] = 4 * (l[edge[e][0]] * dl[edge[e][1]][k] + l[edge[e][1]] * dl[edge[e][0]][k]);
+  }
+  return d;
+}
+
+/// Gradients at the quadrature points, and the weight of each point (the same for all).
+struct Points {
+  std::vector<Gradients> gradients;
+  double weight = 0.0;
+};
+
+Points quadrature(ElementType type) {
+  Points points;
+  if (type == ElementType::hex8) {
+    const double s = 1 / std::sqrt(3.0);
+    for (const double z : {-s, s})
+      for (const double y : {-s, s})
+        for (const double x : {-s, s}) points.gradients.push_back(gradients(type, x, y, z));
+    points.weight = 1.0;
+  } else if (type == ElementType::tet10) {
+    const double b = (5 - std::sqrt(5.0)) / 20, a = 1 - 3 * b;
+    for (const auto& p : {std::array{b, b, b}, std::array{a, b, b}, std::array{b, a, b}, std::array{b, b, a}})
+      points.gradients.push_back(gradients(type, p[0], p[1], p[2]));
+    points.weight = 1.0 / 24;
+  } else {
+    points.gradients.push_back(gradients(type, 0, 0, 0));
+    points.weight = type == ElementType::tri3 ? 0.5 : 1.0 / 6;
+  }
+  return points;
+}
+
+class Geometry {
+ public:
+  explicit Geometry(const Mesh& mesh)
+      : mesh_(mesh),
+        points_(quadrature(mesh.type)),
+        dim_(static_cast<std::size_t>(mesh.dim())),
+        nodes_(static_cast<std::size_t>(nodes_per_element(mesh.type))) {}
+
+  struct Shape {
+    double volume = 0.0;    ///< signed
+    double smallest = 0.0;  ///< smallest Jacobian determinant times the sum of weights: a volume too
+    double longest_edge = 0.0;
+    double scale = 0.0;  ///< longest edge to the power of the dimension
+  };
+
+  Shape shape(std::size_t element) const {
+    const std::int32_t* node = mesh_.elements.data() + element * nodes_;
+    Shape result;
+    result.smallest = std::numeric_limits<double>::infinity();
+    const double total_weight = points_.weight * static_cast<double>(points_.gradients.size());
+    for (const Gradients& d : points_.gradients) {
+      std::array<std::array<double, 3>, 3> j{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+      for (std::size_t r = 0; r < dim_; ++r)
+        for (std::size_t c = 0; c < dim_; ++c) {
+          j[r][c] = 0;
+          for (std::size_t i = 0; i < nodes_; ++i) j[r][c] += coordinate(node[i], r) * d[i][c];
+        }
+      const double det = j[0][0] * (j[1][1] * j[2][2] - j[1][2] * j[2][1]) -
+                         j[0][1] * (j[1][0] * j[2][2] - j[1][2] * j[2][0]) +
+                         j[0][2] * (j[1][0] * j[2][1] - j[1][1] * j[2][0]);
+      result.volume += points_.weight * det;
+      result.smallest = std::min(result.smallest, total_weight * det);
+    }
+    const std::size_t corners = mesh_.type == ElementType::tet10 ? 4 : nodes_;
+    double longest = 0;
+    for (std::size_t a = 0; a < corners; ++a)
+      for (std::size_t b = a + 1; b < corners; ++b) {
+        double square = 0;
+        for (std::size_t k = 0; k < dim_; ++k) {
+          const double difference = coordinate(node[a], k) - coordinate(node[b], k);
+          square += difference * difference;
+        }
+        longest = std::max(longest, square);
+      }
+    result.longest_edge = std::sqrt(longest);
+    result.scale = std::pow(result.longest_edge, static_cast<double>(dim_));
+    return result;
+  }
+
+ private:
+  double coordinate(std::int32_t node, std::size_t k) const {
+    return mesh_.coordinates[static_cast<std::size_t>(node) * dim_ + k];
+  }
+  const Mesh& mesh_;
+  Points points_;
+  std::size_t dim_, nodes_;
+};
+
+std::string number(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g", value);
+  return text.data();
+}
+
+std::string element_name(const Mesh& mesh, std::size_t e) {
+  return "element " + std::to_string(mesh.element_tag(e));
+}
+
+constexpr double smallest_volume = 1e-14;  // of the longest edge to the power of the dimension
+
+[[noreturn]] void refuse_element(const Mesh& mesh, const Geometry& geometry, std::size_t e) {
+  const auto shape = geometry.shape(e);
+  const std::string measure = mesh.dim() == 2 ? "area " : "volume ";
+  const std::string size =
+      " (" + measure + number(shape.volume) + ", longest edge " + number(shape.longest_edge) + ")";
+  if (!std::isfinite(shape.scale) || !std::isfinite(shape.volume))
+    throw InputError(element_name(mesh, e) + " is too large to be computed with" + size);
+  if (std::abs(shape.volume) <= smallest_volume * shape.scale)
+    throw InputError(element_name(mesh, e) + " is degenerate" + size);
+  if (shape.volume > 0)
+    throw InputError(element_name(mesh, e) + " is folded: its Jacobian is not positive everywhere" + size);
+  std::size_t inverted = 1;
+  for (std::size_t other = e + 1; other < mesh.element_count(); ++other)
+    inverted += geometry.shape(other).volume < 0;
+  std::string message = element_name(mesh, e) + " is inverted" + size;
+  if (inverted == mesh.element_count())
+    message +=
+        "; so are all others: the mesh was written with the opposite orientation, reverse its elements";
+  else if (inverted > 1)
+    message += "; " + std::to_string(inverted) + " elements are";
+  throw InputError(message);
+}
+
+[[noreturn]] void refuse_side(const Mesh& mesh, const FacetSets& sets, std::span<const FacetKey> keys) {
+  const auto tag = [&](std::size_t k) { return std::to_string(mesh.element_tag(sets.element(keys[k].id))); };
+  if (keys.size() > 2)
+    throw InputError("elements " + tag(0) + ", " + tag(1) + " and " + tag(2) +
+                     " share one side: the mesh overlaps itself");
+  const std::string pair = "elements " + tag(0) + " and " + tag(1);
+  if (!opposite(sets, keys[0].id, keys[1].id))
+    throw InputError(pair + " lie on the same side of their common nodes: the mesh overlaps itself");
+  throw InputError(pair + " share a side but not its midside nodes");
+}
+
+void check_nodes(const Mesh& mesh) {
+  const auto dim = static_cast<std::size_t>(mesh.dim());
+  for (std::size_t i = 0; i < mesh.coordinates.size(); ++i)
+    if (!std::isfinite(mesh.coordinates[i]))
+      throw InputError("node " + std::to_string(mesh.node_tag(i / dim)) +
+                       " has a coordinate that is not a finite number");
+  const auto nodes = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  std::vector<bool> used(mesh.node_count(), false);
+  for (std::size_t i = 0; i < mesh.elements.size(); ++i) {
+    const auto node = static_cast<std::size_t>(mesh.elements[i]);
+    if (mesh.elements[i] < 0 || node >= used.size())
+      throw InputError(element_name(mesh, i / nodes) + " refers to a node that does not exist");
+    used[node] = true;
+  }
+  const auto unused = std::count(used.begin(), used.end(), false);
+  if (unused == 0) return;
+  const auto first = static_cast<std::size_t>(std::find(used.begin(), used.end(), false) - used.begin());
+  std::string message = "node " + std::to_string(mesh.node_tag(first)) + " belongs to no element";
+  if (unused > 1) message += " (" + std::to_string(unused) + " nodes do not)";
+  throw InputError(message);
+}
+
+}  // namespace
+
+int facets_per_element(ElementType type) {
+  switch (type) {
+    case ElementType::tri3: return 3;
+    case ElementType::tet4: return 4;
+    case ElementType::tet10: return 4;
+    case ElementType::hex8: return 6;
+  }
+  return 0;
+}
+
+std::span<const std::int8_t> facet_nodes(ElementType type, int facet) {
+  const auto n = static_cast<std::size_t>(nodes_per_facet(type));
+  const std::size_t first = static_cast<std::size_t>(facet) * n;
+  switch (type) {
+    case ElementType::tri3: return std::span(tri3_facets).subspan(first, n);
+    case ElementType::tet4: return std::span(tet4_facets).subspan(first, n);
+    case ElementType::tet10: return std::span(tet10_facets).subspan(first, n);
+    case ElementType::hex8: return std::span(hex8_facets).subspan(first, n);
+  }
+  return {};
+}
+
+void find_boundary(Mesh& mesh) {
+  const FacetSets sets(mesh);
+  std::vector<std::uint32_t> boundary;
+  sets.visit([&](std::span<const FacetKey> keys) {
+    if (keys.size() == 1) boundary.push_back(keys[0].id);
+  });
+  std::sort(boundary.begin(), boundary.end());
+  const auto n = static_cast<std::size_t>(nodes_per_facet(mesh.type));
+  mesh.facets.clear();
+  mesh.facet_element.clear();
+  mesh.facets.reserve(boundary.size() * n);
+  mesh.facet_element.reserve(boundary.size());
+  for (const std::uint32_t id : boundary) {
+    for (std::size_t k = 0; k < n; ++k) mesh.facets.push_back(sets.node(id, k));
+    mesh.facet_element.push_back(static_cast<std::int32_t>(sets.element(id)));
+  }
+}
+
+void check_mesh(const Mesh& mesh) {
+  if (mesh.element_count() == 0) throw InputError("the mesh has no elements");
+  check_nodes(mesh);
+  const Geometry geometry(mesh);
+  for (std::size_t e = 0; e < mesh.element_count(); ++e) {
+    const auto shape = geometry.shape(e);
+    const double least = smallest_volume * shape.scale;
+    // Written so that an overflow is refused as well.
+    if (!(shape.volume > least && shape.smallest > least)) refuse_element(mesh, geometry, e);
+  }
+  const FacetSets sets(mesh);
+  sets.visit([&](std::span<const FacetKey> keys) {
+    if (keys.size() == 1) return;
+    if (keys.size() > 2 || !opposite(sets, keys[0].id, keys[1].id) ||
+        (mesh.type == ElementType::tet10 && !same_midsides(sets, keys[0].id, keys[1].id)))
+      refuse_side(mesh, sets, keys);
+  });
+}
+
+}  // namespace kacanov

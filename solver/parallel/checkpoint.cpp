@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a run needs to go on from the end of an outer step, in the user's numbering.
+#include <kacanov/checkpoint.hpp>
+
+#include <algorithm>
+#include <cstring>
+
+#include <kacanov/error.hpp>
+
+namespace kacanov {
+namespace {
+
+using Index = std::int32_t;
+
+std::uint64_t mix(std::uint64_t h, std::uint64_t word) {
+  h ^= word;
+  h *= 0x9e3779b97f4a7c15ULL;
+  return h ^ (h >> 29);
+}
+
+/// Chains the pieces of one section.
+class Hash {
+ public:
+  template <class T>
+  Hash& operator<<(const std::vector<T>& values) {
+    static_assert(std::is_arithmetic_v<T>);
+    const std::uint64_t count = values.size();
+    value_ = hash_bytes(&count, sizeof count, value_);
+    value_ = hash_bytes(values.data(), values.size() * sizeof(T), value_);
+    return *this;
+  }
+  std::uint64_t value() const noexcept { return value_; }
+
+ private:
+  std::uint64_t value_ = 0;
+};
+
+std::vector<double> scatter(std::span<const Index> index, std::span<const double> all, std::size_t width,
+                            const Halo& halo) {
+  constexpr int tag = 71;
+  const auto pick = [&](std::span<const Index> where) {
+    std::vector<double> values;
+    values.reserve(where.size() * width);
+    for (const Index i : where) {
+      const auto entry = all.subspan(static_cast<std::size_t>(i) * width, width);
+      values.insert(values.end(), entry.begin(), entry.end());
+    }
+    return values;
+  };
+  if (halo.rank == 0) {
+    for (int other = 1; other < halo.ranks; ++other) {
+      MPI_Status status;
+      int count = 0;
+      MPI_Probe(other, tag, halo.comm, &status);
+      MPI_Get_count(&status, MPI_INT32_T, &count);
+      std::vector<Index> where(static_cast<std::size_t>(count));
+      MPI_Recv(where.data(), count, MPI_INT32_T, other, tag, halo.comm, MPI_STATUS_IGNORE);
+      const std::vector<double> values = pick(where);
+      MPI_Send(values.data(), static_cast<int>(values.size()), MPI_DOUBLE, other, tag, halo.comm);
+    }
+    return pick(index);
+  }
+  std::vector<double> values(index.size() * width);
+  MPI_Send(index.data(), static_cast<int>(index.size()), MPI_INT32_T, 0, tag, halo.comm);
+  MPI_Recv(values.data(), static_cast<int>(values.size()), MPI_DOUBLE, 0, tag, halo.comm, MPI_STATUS_IGNORE);
+  return values;
+}
+
+}  // namespace
+
+double Checkpoint::number(const std::string& name) const {
+  const auto found = numbers.find(name);
+  if (found == numbers.end()) throw InputError("the checkpoint has no number \"" + name + "\"");
+  return found->second;
+}
+
+const std::vector<double>& Checkpoint::field(const std::string& name, std::size_t entries) const {
+  const auto found = fields.find(name);
+  if (found == fields.end()) throw InputError("the checkpoint has no field \"" + name + "\"");
+  if (found->second.size() != entries) {
+    throw InputError("the checkpoint's field \"" + name + "\" has " + std::to_string(found->second.size()) +
+                     " entries, expected " + std::to_string(entries));
+  }
+  return found->second;
+}
+
+std::uint64_t hash_bytes(const void* data, std::size_t bytes, std::uint64_t seed) {
+  const auto* at = static_cast<const unsigned char*>(data);
+  std::uint64_t h = mix(seed, bytes);
+  for (; bytes >= 8; bytes -= 8, at += 8) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, at, 8);
+    h = mix(h, word);
+  }
+  if (bytes > 0) {
+    std::uint64_t rest = 0;
+    std::memcpy(&rest, at, bytes);
+    h = mix(h, rest);
+  }
+  return h;
+}
+
+Fingerprint fingerprint(const Problem& problem) {
+  Fingerprint print;
+  const Mesh& mesh = problem.mesh;
+  print.sections["mesh"] =
+      (Hash() << std::vector<int>{static_cast<int>(mesh.type)} << mesh.coordinates << mesh.elements).value();
+
+  std::vector<double> laws;
+  for (const Law& law : problem.laws) {
+    laws.insert(laws.end(), {static_cast<double>(law.kind), static_cast<double>(law.argument), law.shear, law.bulk,
+                             law.x0, law.gamma, law.n, law.q, law.mean_dilatation ? 1.0 : 0.0, static_cast<double>(law.table_x.size())});
+    laws.insert(laws.end(), law.table_x.begin(), law.table_x.end());
+    laws.insert(laws.end(), law.table_s.begin(), law.table_s.end());
+  }
+  print.sections["material"] = (Hash() << laws << problem.law_of_element).value();
+  print.sections["boundary"] = (Hash() << problem.load << problem.held << problem.prescribed).value();
+
+  std::vector<double> contact;
+  for (const ContactPoint& point : problem.contact) {
+    contact.insert(contact.end(), {static_cast<double>(point.node), point.gap, point.mass, point.tresca, point.coulomb,
+                                   static_cast<double>(point.tangents)});
+    for (const Vector3& v : {point.normal, point.trace, point.tangent[0], point.tangent[1]})
+      contact.insert(contact.end(), v.begin(), v.end());
+  }
+  print.sections["contact"] = (Hash() << contact).value();
+  return print;
+}
+
+std::vector<std::string> Fingerprint::differences(const Fingerprint& other) const {
+  std::vector<std::string> names;
+  for (const auto& [name, hash] : sections) {
+    const auto there = other.sections.find(name);
+    if (there == other.sections.end() || there->second != hash) names.push_back(name);
+  }
+  return names;
+}
+
+std::vector<double> scatter_nodal(const Part& part, std::span<const double> all, int components) {
+  return scatter(part.node_index, all, static_cast<std::size_t>(components), part.halo);
+}
+
+std::vector<double> scatter_contact(const Part& part, std::span<const double> all, int components) {
+  return scatter(part.contact_index, all, static_cast<std::size_t>(components), part.halo);
+}
+
+}  // namespace kacanov

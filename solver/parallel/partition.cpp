@@ -1,0 +1,372 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Splits a problem and hands every rank its part.
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <map>
+#include <numeric>
+#include <set>
+#include <utility>
+
+#include <kacanov/error.hpp>
+#include <kacanov/locality.hpp>
+#include "parallel/part_fields.hpp"
+
+namespace kacanov {
+namespace {
+
+using Index = std::int32_t;
+
+/// Messages of any length: MPI counts are 32-bit.
+constexpr std::size_t chunk_bytes = std::size_t{1} << 30;
+
+void send_bytes(const void* data, std::size_t bytes, int to, MPI_Comm comm) {
+  const char* p = static_cast<const char*>(data);
+  for (std::size_t at = 0; at < bytes; at += chunk_bytes)
+    MPI_Send(p + at, static_cast<int>(std::min(chunk_bytes, bytes - at)), MPI_BYTE, to, 1, comm);
+}
+
+void receive_bytes(void* data, std::size_t bytes, int from, MPI_Comm comm) {
+  char* p = static_cast<char*>(data);
+  for (std::size_t at = 0; at < bytes; at += chunk_bytes)
+    MPI_Recv(p + at, static_cast<int>(std::min(chunk_bytes, bytes - at)), MPI_BYTE, from, 1, comm, MPI_STATUS_IGNORE);
+}
+
+/// A rank as a sink, the first one as a source of fields.
+struct OtherRank {
+  int rank;
+  MPI_Comm comm;
+  void write(const void* data, std::size_t bytes) const { send_bytes(data, bytes, rank, comm); }
+};
+struct FirstRank {
+  MPI_Comm comm;
+  void expect(std::uint64_t, std::size_t) const {}
+  void read(void* data, std::size_t bytes) const { receive_bytes(data, bytes, 0, comm); }
+};
+
+/// Part of every element: the one most of its corners lie in, as METIS splits the nodes (in groups along `order`, so that its
+/// graph stays small beside the mesh). Equal shares go by turns.
+std::vector<std::uint16_t> partition_elements(const Mesh& mesh, std::span<const Index> order, int ranks) {
+  std::vector<std::uint16_t> part(mesh.element_count(), 0);
+  if (ranks == 1) return part;
+  const std::vector<Index> node_part = partition_nodes(mesh.view(), order, ranks);
+  const auto stride = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  const std::size_t corners = mesh.type == ElementType::tet10 ? 4 : stride;
+  for (std::size_t e = 0; e < part.size(); ++e) {
+    std::array<Index, 8> of{};
+    for (std::size_t a = 0; a < corners; ++a) of[a] = node_part[static_cast<std::size_t>(mesh.elements[e * stride + a])];
+    std::ptrdiff_t most = 0;
+    for (std::size_t k = 0; k < corners; ++k) {
+      const Index candidate = of[(e + k) % corners];
+      const auto votes = std::count(of.begin(), of.begin() + static_cast<std::ptrdiff_t>(corners), candidate);
+      if (votes <= most) continue;
+      most = votes;
+      part[e] = static_cast<std::uint16_t>(candidate);
+    }
+  }
+  return part;
+}
+
+/// Which ranks have each node, ascending: compressed rows.
+struct Sharers {
+  std::vector<std::size_t> start;
+  std::vector<int> rank;
+  std::span<const int> of(std::size_t node) const {
+    return std::span(rank).subspan(start[node], start[node + 1] - start[node]);
+  }
+  /// Shared nodes are dealt out in turn, so that no rank owns a whole interface.
+  int owner(std::size_t node) const {
+    const auto s = of(node);
+    return s[node % s.size()];
+  }
+};
+
+Sharers find_sharers(const Mesh& mesh, std::span<const std::uint16_t> part, int ranks) {
+  Sharers sharers;
+  const std::size_t nodes = mesh.node_count();
+  const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  sharers.start.assign(nodes + 1, 0);
+  if (ranks == 1) {
+    std::iota(sharers.start.begin(), sharers.start.end(), std::size_t{0});
+    sharers.rank.assign(nodes, 0);
+    return sharers;
+  }
+  // A first pass tells the inner nodes, which are most, by their only rank; the few others have lists.
+  constexpr int none = -1, several = -2;
+  std::vector<int> only(nodes, none);
+  for (std::size_t k = 0; k < mesh.elements.size(); ++k) {
+    int& rank = only[static_cast<std::size_t>(mesh.elements[k])];
+    const int here = part[k / npe];
+    if (rank == none) rank = here;
+    if (rank != here) rank = several;
+  }
+  std::map<std::size_t, std::set<int>> lists;
+  for (std::size_t k = 0; k < mesh.elements.size(); ++k) {
+    const auto n = static_cast<std::size_t>(mesh.elements[k]);
+    if (only[n] == several) lists[n].insert(part[k / npe]);
+  }
+  for (std::size_t n = 0; n < nodes; ++n) {
+    if (only[n] == several)
+      sharers.rank.insert(sharers.rank.end(), lists[n].begin(), lists[n].end());
+    else
+      sharers.rank.push_back(only[n]);
+    sharers.start[n + 1] = sharers.rank.size();
+  }
+  return sharers;
+}
+
+class Splitter {
+ public:
+  Splitter(const Problem& problem, int ranks)
+      : problem_(problem),
+        ranks_(ranks),
+        order_(node_order(problem.mesh.view())),
+        part_of_(partition_elements(problem.mesh, order_, ranks)),
+        sharers_(find_sharers(problem.mesh, part_of_, ranks)),
+        first_(static_cast<std::size_t>(ranks) + 1, 0),
+        global_(problem.mesh.node_count()),
+        local_(problem.mesh.node_count(), -1) {
+    refuse_empty_parts();
+    const std::size_t nodes = problem.mesh.node_count();
+    for (std::size_t n = 0; n < nodes; ++n) ++first_[static_cast<std::size_t>(sharers_.owner(n)) + 1];
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    auto next = first_;
+    for (const Index index : order_) {
+      const auto n = static_cast<std::size_t>(index);
+      global_[n] = next[static_cast<std::size_t>(sharers_.owner(n))]++;
+    }
+  }
+
+  Part part(int rank) {
+    Part part;
+    take_nodes(part, rank);
+    take_elements(part, rank);
+    plan_halo(part, rank);
+    take_contact(part, rank);
+    take_probes(part, rank);
+    part.laws = problem_.laws;
+    part.loose_modes = problem_.loose_modes;
+    for (const Index n : part.node_index) local_[static_cast<std::size_t>(n)] = -1;
+    return part;
+  }
+
+ private:
+  void refuse_empty_parts() const {
+    std::vector<std::uint8_t> filled(static_cast<std::size_t>(ranks_), 0);
+    for (const std::uint16_t rank : part_of_) filled[rank] = 1;
+    if (std::count(filled.begin(), filled.end(), 1) == ranks_) return;
+    throw InputError("a mesh of " + std::to_string(part_of_.size()) + " elements cannot be split into " + std::to_string(ranks_) +
+                     " parts: some would be empty");
+  }
+
+  void take_nodes(Part& part, int rank) {
+    const Mesh& mesh = problem_.mesh;
+    const auto dim = static_cast<std::size_t>(mesh.dim());
+    part.type = mesh.type;
+    part.total_nodes = static_cast<std::int64_t>(mesh.node_count());
+    part.total_elements = static_cast<std::int64_t>(mesh.element_count());
+    part.first_owned = first_[static_cast<std::size_t>(rank)];
+    for (const bool owned : {true, false}) {
+      for (const Index index : order_) {
+        const auto n = static_cast<std::size_t>(index);
+        const auto s = sharers_.of(n);
+        if ((sharers_.owner(n) == rank) != owned || !std::binary_search(s.begin(), s.end(), rank)) continue;
+        local_[n] = static_cast<Index>(part.node_index.size());
+        part.node_index.push_back(index);
+      }
+      if (owned) part.owned_nodes = static_cast<Index>(part.node_index.size());
+    }
+    part.node_index.shrink_to_fit();
+    const std::size_t count = part.node_index.size();
+    part.coordinates.reserve(count * dim);
+    part.held.reserve(count * dim);
+    if (!mesh.node_tags.empty()) part.node_tags.reserve(count);
+    for (const Index index : part.node_index) {
+      const auto n = static_cast<std::size_t>(index);
+      if (!mesh.node_tags.empty()) part.node_tags.push_back(mesh.node_tags[n]);
+      if (static_cast<Index>(local_[n]) >= part.owned_nodes) part.ghost_number.push_back(global_[n]);
+      for (std::size_t c = n * dim; c < (n + 1) * dim; ++c) {
+        part.coordinates.push_back(mesh.coordinates[c]);
+        const auto component = static_cast<Index>(part.held.size());
+        if (problem_.load[c] != 0.0) part.load.push_back({component, problem_.load[c]});
+        if (problem_.held[c] != 0) part.prescribed.push_back({component, problem_.prescribed[c]});
+        part.held.push_back(problem_.held[c]);
+      }
+    }
+  }
+
+  void take_elements(Part& part, int rank) const {
+    const Mesh& mesh = problem_.mesh;
+    const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
+    const auto count = static_cast<std::size_t>(std::count(part_of_.begin(), part_of_.end(), rank));
+    const bool several_laws = problem_.laws.size() > 1;
+    if (!mesh.element_tags.empty()) part.element_tags.reserve(count);
+    if (several_laws) part.law_of_element.reserve(count);
+    part.elements.reserve(count * npe);
+    for (std::size_t e = 0; e < part_of_.size(); ++e) {
+      if (part_of_[e] != rank) continue;
+      part.element_index.push_back(static_cast<Index>(e));
+      if (!mesh.element_tags.empty()) part.element_tags.push_back(mesh.element_tags[e]);
+      if (several_laws) part.law_of_element.push_back(problem_.law_of_element[e]);
+      for (std::size_t a = 0; a < npe; ++a)
+        part.elements.push_back(local_[static_cast<std::size_t>(mesh.elements[e * npe + a])]);
+    }
+  }
+
+  void plan_halo(Part& part, int rank) const {
+    std::vector<Halo::Neighbour> all(static_cast<std::size_t>(ranks_));
+    // Both sides walk their nodes in the mesh's order, so the lists match.
+    std::vector<Index> ascending = part.node_index;
+    std::sort(ascending.begin(), ascending.end());
+    for (const Index index : ascending) {
+      const auto n = static_cast<std::size_t>(index);
+      const auto s = sharers_.of(n);
+      if (s.size() == 1) continue;
+      const Index here = local_[n];
+      part.halo.shared.push_back(here);
+      const int owner = sharers_.owner(n);
+      for (const int other : s) {
+        if (other == rank) continue;
+        auto& neighbour = all[static_cast<std::size_t>(other)];
+        neighbour.shared.push_back(here);
+        if (owner == rank) neighbour.send.push_back(here);
+        if (owner == other) neighbour.receive.push_back(here);
+      }
+    }
+    for (int other = 0; other < ranks_; ++other) {
+      auto& neighbour = all[static_cast<std::size_t>(other)];
+      neighbour.rank = other;
+      if (!neighbour.shared.empty()) part.halo.neighbours.push_back(std::move(neighbour));
+    }
+  }
+
+  void take_contact(Part& part, int rank) const {
+    part.total_contact = static_cast<std::int64_t>(problem_.contact.size());
+    // Points of one node are kept together: Traces and Space rely on it.
+    std::vector<Index> order(problem_.contact.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
+      return problem_.contact[static_cast<std::size_t>(a)].node < problem_.contact[static_cast<std::size_t>(b)].node;
+    });
+    for (const bool owned : {true, false}) {
+      for (const Index index : order) {
+        const auto i = static_cast<std::size_t>(index);
+        ContactPoint point = problem_.contact[i];
+        const auto n = static_cast<std::size_t>(point.node);
+        if (local_[n] < 0 || (sharers_.owner(n) == rank) != owned) continue;
+        point.node = local_[n];
+        part.contact.push_back(point);
+        part.contact_index.push_back(static_cast<Index>(i));
+      }
+      if (owned) part.owned_contact = static_cast<Index>(part.contact.size());
+    }
+  }
+
+  void take_probes(Part& part, int rank) const {
+    part.total_probes = static_cast<Index>(problem_.probes.size());
+    for (std::size_t i = 0; i < problem_.probes.size(); ++i) {
+      const auto e = static_cast<std::size_t>(problem_.probes[i].element);
+      if (part_of_[e] != rank) continue;
+      Probe probe = problem_.probes[i];
+      probe.element = part.element_index.position_of(probe.element);
+      part.probes.push_back(probe);
+      part.probe_index.push_back(static_cast<Index>(i));
+    }
+  }
+
+  const Problem& problem_;
+  int ranks_;
+  std::vector<Index> order_;  // neighbours close to each other
+  std::vector<std::uint16_t> part_of_;
+  Sharers sharers_;
+  std::vector<std::int64_t> first_, global_;
+  std::vector<Index> local_;
+};
+
+}  // namespace
+
+double Part::prescribed_at(std::size_t component) const noexcept {
+  const auto at = std::lower_bound(prescribed.begin(), prescribed.end(), component, [](const ComponentValue& p, std::size_t c) {
+    return static_cast<std::size_t>(p.component) < c;
+  });
+  return at->value;
+}
+
+void split(const Problem& problem, int ranks, const std::function<void(int rank, Part&& part)>& take) {
+  Splitter splitter(problem, ranks);
+  for (int rank = 1; rank < ranks; ++rank) take(rank, splitter.part(rank));
+  take(0, splitter.part(0));
+}
+
+void join(Part& part, MPI_Comm comm) {
+  part.halo.comm = comm;
+  MPI_Comm_rank(comm, &part.halo.rank);
+  MPI_Comm_size(comm, &part.halo.ranks);
+}
+
+Part distribute(const Problem* problem, MPI_Comm comm) {
+  int rank = 0, ranks = 1;
+  MPI_Comm_rank(comm, &rank);
+  MPI_Comm_size(comm, &ranks);
+  Part part;
+  if (rank == 0) {
+    split(*problem, ranks, [&](int owner, Part&& one) {
+      if (owner == 0) {
+        part = std::move(one);
+      } else {
+        OtherRank sink{owner, comm};
+        FieldWriter{sink}(one);
+      }
+    });
+  } else {
+    FirstRank source{comm};
+    FieldReader{source}(part);
+  }
+  join(part, comm);
+  return part;
+}
+
+namespace {
+
+std::vector<double> gather(std::span<const Index> index, std::span<const double> local, std::size_t width,
+                           std::size_t total, const Halo& halo) {
+  std::vector<double> all;
+  if (halo.rank == 0) {
+    all.resize(total * width);
+    const auto place = [&](std::span<const Index> where, std::span<const double> what) {
+      for (std::size_t i = 0; i < where.size(); ++i)
+        std::copy_n(what.begin() + static_cast<std::ptrdiff_t>(i * width), width,
+                    all.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(where[i]) * width));
+    };
+    place(index, local);
+    for (int other = 1; other < halo.ranks; ++other) {
+      std::size_t n = 0;
+      receive_bytes(&n, sizeof n, other, halo.comm);
+      std::vector<Index> where(n);
+      std::vector<double> what(n * width);
+      receive_bytes(where.data(), n * sizeof(Index), other, halo.comm);
+      receive_bytes(what.data(), n * width * sizeof(double), other, halo.comm);
+      place(where, what);
+    }
+  } else {
+    const std::size_t n = index.size();
+    send_bytes(&n, sizeof n, 0, halo.comm);
+    send_bytes(index.data(), n * sizeof(Index), 0, halo.comm);
+    send_bytes(local.data(), n * width * sizeof(double), 0, halo.comm);
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<double> gather_nodal(const Part& part, std::span<const double> local, int components) {
+  return gather(std::span(part.node_index).first(static_cast<std::size_t>(part.owned_nodes)), local,
+                static_cast<std::size_t>(components), static_cast<std::size_t>(part.total_nodes), part.halo);
+}
+
+std::vector<double> gather_contact(const Part& part, std::span<const double> local, int components) {
+  return gather(std::span(part.contact_index).first(static_cast<std::size_t>(part.owned_contact)), local,
+                static_cast<std::size_t>(components), static_cast<std::size_t>(part.total_contact), part.halo);
+}
+
+}  // namespace kacanov

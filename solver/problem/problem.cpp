@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Puts a model on a mesh, step by step, and checks that what results can be solved.
+#include <kacanov/problem.hpp>
+
+#include <algorithm>
+#include <numeric>
+#include <type_traits>
+
+#include <kacanov/error.hpp>
+#include "problem/conditions.hpp"
+#include "problem/contact_points.hpp"
+#include "problem/probes.hpp"
+#include "problem/rigid_modes.hpp"
+#include "problem/selection.hpp"
+
+namespace kacanov {
+
+Problem build_problem(Mesh mesh, const Model& model) {
+  check_mesh(mesh);
+  Problem problem;
+  problem.mesh = std::move(mesh);
+  const std::size_t unknowns = problem.mesh.coordinates.size();
+  problem.load.assign(unknowns, 0.0);
+  problem.held.assign(unknowns, 0);
+  problem.prescribed.assign(unknowns, 0.0);
+
+  const Selection selection(problem.mesh);
+  assign_materials(problem, model, selection);
+  assemble_load(problem, model, selection);
+  hold_displacements(problem, model, selection);
+  find_contact_points(problem, model, selection);
+  check_rigid_modes(problem);
+  problem.probes = locate_probes(problem.mesh, model);
+  return problem;
+}
+
+std::vector<std::int32_t> keep_boundary(Problem& problem) {
+  const auto free = [](auto& array) { std::remove_reference_t<decltype(array)>().swap(array); };
+  free(problem.law_of_element);
+  free(problem.load);
+  free(problem.held);
+  free(problem.prescribed);
+  Mesh& mesh = problem.mesh;
+  std::vector<std::int32_t> left;
+  if (mesh.dim() == 2) {
+    left.resize(mesh.node_count());
+    std::iota(left.begin(), left.end(), 0);
+    return left;
+  }
+  left = mesh.facets;
+  std::sort(left.begin(), left.end());
+  left.erase(std::unique(left.begin(), left.end()), left.end());
+  left.shrink_to_fit();
+  const auto renumber = [&left](std::int32_t& node) {
+    node = static_cast<std::int32_t>(std::lower_bound(left.begin(), left.end(), node) - left.begin());
+  };
+  std::vector<double> coordinates;
+  std::vector<std::int64_t> tags;
+  coordinates.reserve(3 * left.size());
+  tags.reserve(left.size());
+  for (const std::int32_t old : left) {
+    const auto n = static_cast<std::size_t>(old);
+    coordinates.insert(coordinates.end(), mesh.coordinates.begin() + static_cast<std::ptrdiff_t>(3 * n),
+                       mesh.coordinates.begin() + static_cast<std::ptrdiff_t>(3 * n + 3));
+    tags.push_back(mesh.node_tag(n));
+  }
+  mesh.coordinates.swap(coordinates);
+  mesh.node_tags.swap(tags);
+  std::for_each(mesh.facets.begin(), mesh.facets.end(), renumber);
+  for (ContactPoint& point : problem.contact) renumber(point.node);
+  free(mesh.elements);
+  free(mesh.element_tags);
+  free(mesh.facet_element);
+  std::erase_if(mesh.groups, [](const Group& group) { return group.dimension != 2; });
+  return left;
+}
+
+}  // namespace kacanov

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Lanczos estimates behind the penalty: r* of (32) and r_A of the active set, with bounds.
+#include "spectrum/spectrum.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <kacanov/error.hpp>
+
+namespace kacanov {
+
+TraceRows::TraceRows(const Part& part, std::span<const TraceChoice> choice) : part_(&part) {
+  const auto dim = static_cast<std::size_t>(part.dim());
+  for (std::size_t i = 0; i < part.contact.size(); ++i) {
+    const auto& point = part.contact[i];
+    std::array<Vector3, 3> rows{};
+    std::size_t count = 0;
+    if (choice[i].normal) rows[count++] = point.trace;
+    if (choice[i].tangential)
+      for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k)
+        rows[count++] = point.tangent[k];
+    if (count == 0) continue;
+    const bool owned = i < static_cast<std::size_t>(part.owned_contact);
+    if (groups_.empty() || groups_.back().node != point.node) {
+      groups_.push_back({point.node, local_, 0, {}, {}});
+      if (owned) owned_groups_ = groups_.size();
+    }
+    auto& group = groups_.back();
+    if (static_cast<std::size_t>(group.rows) + count > group.row.size())
+      throw InputError("contact: node " +
+                       std::to_string(part.node_tag(static_cast<std::size_t>(point.node))) +
+                       " belongs to more than three contact surfaces");
+    for (std::size_t k = 0; k < count; ++k) {
+      for (std::size_t c = 0; c < dim; ++c)
+        group.row[static_cast<std::size_t>(group.rows)][c] = std::sqrt(point.mass) * rows[k][c];
+      ++group.rows;
+      ++local_;
+      if (!owned) continue;
+      index_.push_back(3 * static_cast<std::int64_t>(part.contact_index[i]) + static_cast<std::int64_t>(k));
+      root_mass_.push_back(std::sqrt(point.mass));
+    }
+  }
+  for (auto& group : groups_) {
+    Eigen::MatrixXd a(group.rows, 3);
+    for (int k = 0; k < group.rows; ++k)
+      for (int c = 0; c < 3; ++c)
+        a(k, c) = group.row[static_cast<std::size_t>(k)][static_cast<std::size_t>(c)];
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
+    decomposition.setThreshold(1e-8);
+    const Eigen::MatrixXd inverse = decomposition.compute(a).pseudoInverse();
+    for (int k = 0; k < group.rows; ++k)
+      for (int c = 0; c < 3; ++c)
+        group.inverse[static_cast<std::size_t>(k)][static_cast<std::size_t>(c)] = inverse(c, k);
+  }
+  total_ = part.halo.sum_all(static_cast<std::int64_t>(index_.size()));
+}
+
+void TraceRows::hold_in(Space& space) const {
+  for (const auto& group : groups_)
+    for (std::size_t k = 0; k < static_cast<std::size_t>(group.rows); ++k)
+      space.hold(group.node, group.row[k]);
+}
+
+namespace {
+
+/// y_node += Σ_k x_k row_k, and the transpose.
+template <class Rows>
+void add_rows(const Rows& rows, std::size_t count, const double* x, double* y, std::size_t dim) {
+  for (std::size_t k = 0; k < count; ++k)
+    for (std::size_t c = 0; c < dim; ++c) y[c] += x[k] * rows[k][c];
+}
+
+template <class Rows>
+void take_rows(const Rows& rows, std::size_t count, const double* y, double* x, std::size_t dim) {
+  for (std::size_t k = 0; k < count; ++k) {
+    x[k] = 0.0;
+    for (std::size_t c = 0; c < dim; ++c) x[k] += rows[k][c] * y[c];
+  }
+}
+
+}  // namespace
+
+void TraceRows::transpose(std::span<const double> x, std::span<double> y) const {
+  const auto dim = static_cast<std::size_t>(part_->dim());
+  std::fill(y.begin(), y.end(), 0.0);
+  for (std::size_t g = 0; g < owned_groups_; ++g)
+    add_rows(groups_[g].row, static_cast<std::size_t>(groups_[g].rows), x.data() + groups_[g].first,
+             y.data() + static_cast<std::size_t>(groups_[g].node) * dim, dim);
+  part_->halo.copy_from_owner(y, part_->dim());
+}
+
+void TraceRows::apply(std::span<const double> y, std::span<double> x) const {
+  const auto dim = static_cast<std::size_t>(part_->dim());
+  for (std::size_t g = 0; g < owned_groups_; ++g)
+    take_rows(groups_[g].row, static_cast<std::size_t>(groups_[g].rows),
+              y.data() + static_cast<std::size_t>(groups_[g].node) * dim, x.data() + groups_[g].first, dim);
+}
+
+void TraceRows::lift(std::span<const double> x, std::span<double> y) const {
+  const auto dim = static_cast<std::size_t>(part_->dim());
+  std::fill(y.begin(), y.end(), 0.0);
+  for (const auto& group : groups_)
+    if (group.first < x.size())
+      add_rows(group.inverse, static_cast<std::size_t>(group.rows), x.data() + group.first,
+               y.data() + static_cast<std::size_t>(group.node) * dim, dim);
+  part_->halo.copy_from_owner(y, part_->dim());
+}
+
+void TraceRows::lift_transpose(std::span<const double> y, std::span<double> x) const {
+  const auto dim = static_cast<std::size_t>(part_->dim());
+  for (const auto& group : groups_)
+    if (group.first < x.size())
+      take_rows(group.inverse, static_cast<std::size_t>(group.rows),
+                y.data() + static_cast<std::size_t>(group.node) * dim, x.data() + group.first, dim);
+}
+
+std::vector<NodeBlock> TraceRows::penalty_blocks(double r) const {
+  const auto dim = static_cast<std::size_t>(part_->dim());
+  std::vector<NodeBlock> blocks;
+  for (std::size_t g = 0; g < owned_groups_; ++g) {
+    NodeBlock block{groups_[g].node, {}};
+    for (std::size_t k = 0; k < static_cast<std::size_t>(groups_[g].rows); ++k)
+      for (std::size_t i = 0; i < dim; ++i)
+        for (std::size_t j = 0; j < dim; ++j)
+          block.value[i * dim + j] += r * groups_[g].row[k][i] * groups_[g].row[k][j];
+    blocks.push_back(block);
+  }
+  return blocks;
+}
+
+std::vector<NodeBlock> TraceRows::pinning_blocks(std::span<const float> diagonal) const {
+  const auto dim = static_cast<std::size_t>(part_->dim());
+  std::vector<NodeBlock> blocks = penalty_blocks(1.0);
+  for (auto& block : blocks) {
+    double trace = 0.0, largest = 0.0;
+    for (std::size_t c = 0; c < dim; ++c) {
+      trace += block.value[c * dim + c];
+      largest = std::max(largest, static_cast<double>(diagonal[static_cast<std::size_t>(block.node) * dim + c]));
+    }
+    for (double& v : block.value) v *= 1e3 * largest / trace;
+  }
+  return blocks;
+}
+
+Spectrum::Spectrum(const Part& part, DistributedOperator& op, Preconditioner& amg, std::span<const double> g,
+                   double tolerance)
+    : part_(&part), op_(&op), amg_(&amg), g_(g), tolerance_(tolerance) {}
+
+CgResult Spectrum::solve(const Space& space, std::span<double> x, CgWork& work, const TraceRows* penalised,
+                         double r0) {
+  Vector rows(penalised != nullptr ? penalised->owned() : 0), image(penalised != nullptr ? x.size() : 0);
+  const auto apply = [&](std::span<const double> p, std::span<double> q) {
+    double share = op_->apply(p, q);
+    if (penalised == nullptr) return share;
+    penalised->apply(p, rows);
+    for (double& v : rows) {
+      share += r0 * v * v;
+      v *= r0;
+    }
+    penalised->transpose(rows, image);
+    for (std::size_t i = 0; i < image.size(); ++i) q[i] += image[i];
+    return share;
+  };
+  const auto precondition = [&](std::span<const double> r, std::span<double> z) { amg_->apply(r, z); };
+  // Products good to a fiftieth of what is asked of the eigenvalue.
+  const CgOptions options{0.0, std::max(1e-13, 0.02 * tolerance_), 2000};
+  const CgResult result = conjugate_gradients(space, apply, precondition, x, work, options);
+  cost_.cg_iterations += result.iterations;
+  cost_.converged = cost_.converged && result.converged;
+  return result;
+}
+
+Eigenvalue Spectrum::largest(const TraceRows& rows, const TraceRows& held, double r0, bool loose) {
+  Space space(*part_);
+  held.hold_in(space);
+  auto blocks = held.pinning_blocks(op_->diagonal());
+  if (loose) {
+    const auto more = rows.penalty_blocks(r0);
+    blocks.insert(blocks.end(), more.begin(), more.end());
+  }
+  amg_->setup(g_, blocks, space);
+
+  CgWork work;
+  work.resize(part_->unknowns());
+  Vector u(part_->unknowns());
+  const Product product = [&](std::span<const double> x, std::span<double> y) {
+    rows.transpose(x, work.residual);
+    std::fill(u.begin(), u.end(), 0.0);
+    solve(space, u, work, loose ? &rows : nullptr, r0);
+    rows.apply(u, y);
+  };
+  LanczosOptions options;
+  options.tolerance = tolerance_;
+  // The largest compliance is well separated: four products give it to 1e-6.
+  if (tolerance_ >= 1e-3) options.basis = 3;
+  if (!loose) {
+    const auto found = largest_eigenvalues(product, rows.index(), part_->halo.comm, options);
+    cost_.products += found.products;
+    if (found.values.empty()) return {};
+    return {found.values[0], found.bounds[0]};
+  }
+  options.wanted = static_cast<int>(std::min<std::int64_t>(1 + part_->loose_modes, rows.total() - 1));
+  if (options.wanted < 1) return {};
+  const auto found = largest_eigenvalues(product, rows.index(), part_->halo.comm, options);
+  cost_.products += found.products;
+  for (std::size_t i = 0; i < found.values.size(); ++i) {
+    const double theta = r0 * found.values[i];
+    if (theta > 0.9999) continue;  // a rigid mode: λ is infinite
+    return {found.values[i] / (1.0 - theta), found.bounds[i] / ((1.0 - theta) * (1.0 - theta))};
+  }
+  return {};
+}
+
+Eigenvalue Spectrum::smallest(const TraceRows& rows) {
+  Space space(*part_);
+  rows.hold_in(space);
+  amg_->setup(g_, rows.pinning_blocks(op_->diagonal()), space);
+
+  CgWork work;
+  work.resize(part_->unknowns());
+  Vector u(part_->unknowns()), delta(part_->unknowns()), image(part_->unknowns());
+  // K⁻¹ x: the displacement with D^½ C u = x of least energy, and the force that holds it there.
+  const Product product = [&](std::span<const double> x, std::span<double> y) {
+    rows.lift(x, u);
+    op_->apply(u, image);
+    for (std::size_t i = 0; i < image.size(); ++i) work.residual[i] = -image[i];
+    std::fill(delta.begin(), delta.end(), 0.0);
+    solve(space, delta, work, nullptr, 0.0);
+    op_->apply(delta, work.image);
+    for (std::size_t i = 0; i < image.size(); ++i) image[i] += work.image[i];
+    rows.lift_transpose(image, y);
+  };
+  LanczosOptions options;
+  options.tolerance = tolerance_;
+  const auto found = largest_eigenvalues(product, rows.index(), part_->halo.comm, options);
+  cost_.products += found.products;
+  if (found.values.empty() || !(found.values[0] > 0.0)) return {};
+  const double largest = found.values[0];
+  return {1.0 / largest, found.bounds[0] / (largest * largest)};
+}
+
+double rough_lambda_min(const Part& part, std::span<const float> diagonal, bool friction) {
+  const auto dim = static_cast<std::size_t>(part.dim());
+  double stiffest = 0.0;
+  const auto look = [&](const ContactPoint& point, const Vector3& row) {
+    double stiffness = 0.0;
+    for (std::size_t c = 0; c < dim; ++c)
+      stiffness += row[c] * row[c] * static_cast<double>(diagonal[static_cast<std::size_t>(point.node) * dim + c]);
+    stiffest = std::max(stiffest, stiffness / point.mass);
+  };
+  for (const auto& point : part.contact) {
+    look(point, point.trace);
+    for (std::size_t k = 0; friction && k < static_cast<std::size_t>(point.tangents); ++k)
+      look(point, point.tangent[k]);
+  }
+  stiffest = part.halo.max_all(stiffest);
+  // With tangents a mode that shears and presses at once is softer: 1.6 on structured and Gmsh meshes alike.
+  return stiffest > 0.0 ? 1.0 / (friction ? 1.6 * stiffest : stiffest) : 0.0;
+}
+
+double rough_lambda_max(const Part& part, DistributedOperator& op, Preconditioner& amg, const TraceRows& rows,
+                        const TraceRows& held, int steps) {
+  Space space(part);
+  held.hold_in(space);
+  CgWork work;
+  work.resize(part.unknowns());
+  Vector trace(rows.owned()), u(part.unknowns(), 0.0);
+  for (std::size_t i = 0; i < trace.size(); ++i) trace[i] = rows.root_mass()[i];
+  rows.transpose(trace, work.residual);
+  space.project(work.residual);
+  const Vector force = work.residual;
+  const auto apply = [&](std::span<const double> p, std::span<double> q) { return op.apply(p, q); };
+  const auto precondition = [&](std::span<const double> r, std::span<double> z) { amg.apply(r, z); };
+  conjugate_gradients(space, apply, precondition, u, work, CgOptions{0.0, 0.3, steps});
+  // B u = force − residual.
+  rows.apply(u, trace);
+  double square = 0.0;
+  for (const double v : trace) square += v * v;
+  const double energy = space.dot(u, force) - space.dot(u, work.residual);
+  square = part.halo.sum_all(square);
+  return energy > 0.0 ? square / energy : 0.0;
+}
+
+SpectrumResult estimate_spectrum(const Part& part, DistributedOperator& op, Preconditioner& amg,
+                                 std::span<const double> g, bool friction, double tolerance) {
+  const double start = MPI_Wtime();
+  const auto applications = op.applications();
+  const std::vector<TraceChoice> all(part.contact.size(), {true, friction}), none(part.contact.size());
+  const TraceRows rows(part, all), held(part, none);
+  Spectrum spectrum(part, op, amg, g, tolerance);
+  SpectrumResult result;
+  result.friction = friction;
+  result.traces = rows.total();
+  const Eigenvalue low = spectrum.smallest(rows);
+  // r₀ λ_min = 0.01: compliances up to 10⁴ λ_min are told from the rigid modes.
+  const Eigenvalue high =
+      spectrum.largest(rows, held, low.value > 0.0 ? 0.01 / low.value : 1.0, part.loose_modes > 0);
+  result.lambda_min = low.value;
+  result.bound_min = low.bound;
+  result.lambda_max = high.value;
+  result.bound_max = high.bound;
+  if (low.value > 0.0)
+    result.r_star = 1.0 / std::sqrt(low.value * (high.value > 0.0 ? high.value : low.value));
+  result.products = spectrum.cost().products;
+  result.cg_iterations = spectrum.cost().cg_iterations;
+  result.operator_applications = op.applications() - applications;
+  result.seconds = MPI_Wtime() - start;
+  return result;
+}
+
+}  // namespace kacanov

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Lanczos estimates behind the penalty: r* of (32) and r_A of the active set, with bounds.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "linear/cg.hpp"
+#include "contact/traces.hpp"
+#include "linear/distributed_operator.hpp"
+#include "spectrum/lanczos.hpp"
+#include "linear/preconditioner.hpp"
+#include <kacanov/result.hpp>
+
+namespace kacanov {
+
+/// Which traces of a contact point take part.
+struct TraceChoice {
+  bool normal = false, tangential = false;
+  bool operator==(const TraceChoice&) const = default;
+};
+
+/// Rows of D^½ C for a choice of traces, over the local points, owned ones first. D is the lumped mass.
+class TraceRows {
+ public:
+  /// `choice` has one entry a point of part.contact.
+  TraceRows(const Part& part, std::span<const TraceChoice> choice);
+
+  std::size_t owned() const noexcept { return index_.size(); }
+  std::span<const std::int64_t> index() const noexcept { return index_; }
+  std::int64_t total() const noexcept { return total_; }
+  /// √mass of the owned rows.
+  std::span<const double> root_mass() const noexcept { return root_mass_; }
+
+  /// Holds every row's direction in `space`.
+  void hold_in(Space& space) const;
+  /// y = Cᵀ D^½ x (overwrites), consistent.
+  void transpose(std::span<const double> x, std::span<double> y) const;
+  /// x = D^½ C y.
+  void apply(std::span<const double> y, std::span<double> x) const;
+  /// y = (D^½ C)⁺ x, node by node; consistent. `x` holds the owned rows or all local ones.
+  void lift(std::span<const double> x, std::span<double> y) const;
+  /// x = ((D^½ C)⁺)ᵀ y, as many rows as `x` has.
+  void lift_transpose(std::span<const double> y, std::span<double> x) const;
+  /// Rows of all local points: owned ones, then those of ghosts.
+  std::size_t local() const noexcept { return local_; }
+  /// r CᵀDC as diagonal blocks of owned nodes.
+  std::vector<NodeBlock> penalty_blocks(double r) const;
+  /// Blocks that pin the rows' directions for a preconditioner: 10³ times the node's `diagonal` entry.
+  std::vector<NodeBlock> pinning_blocks(std::span<const float> diagonal) const;
+
+ private:
+  struct Group {  ///< rows of one node
+    std::int32_t node = 0;
+    std::size_t first = 0;  ///< its first row
+    int rows = 0;
+    std::array<Vector3, 9> row{};      ///< scaled by √mass
+    std::array<Vector3, 9> inverse{};  ///< columns of the pseudo-inverse
+  };
+  const Part* part_;
+  std::vector<Group> groups_;  ///< owned first
+  std::size_t owned_groups_ = 0, local_ = 0;
+  std::vector<std::int64_t> index_;
+  std::vector<double> root_mass_;
+  std::int64_t total_ = 0;
+};
+
+/// Bookkeeping of a run of estimates.
+struct SpectrumCost {
+  int products = 0;
+  std::int64_t cg_iterations = 0;
+  bool converged = true;
+};
+
+struct Eigenvalue {
+  double value = 0.0, bound = 0.0;
+};
+
+class Spectrum {
+ public:
+  /// Uses (and re-sets) `amg`; works with the secant frozen in `op` and `g`.
+  Spectrum(const Part& part, DistributedOperator& op, Preconditioner& amg, std::span<const double> g,
+           double tolerance);
+
+  /// λ_max of D^½ C B⁻¹ Cᵀ D^½ with the rows `held` held at zero. Where rigid modes are loose (`loose`), B⁻¹
+  /// does not exist; the largest finite eigenvalue is taken from B + r₀ CᵀDC, whose eigenvalues are λ/(1 + r₀
+  /// λ).
+  Eigenvalue largest(const TraceRows& rows, const TraceRows& held, double r0, bool loose);
+  /// λ_min (smallest nonzero) of the same without held rows: 1/λ_max of the inverse, by the Schur complement.
+  Eigenvalue smallest(const TraceRows& rows);
+
+  const SpectrumCost& cost() const noexcept { return cost_; }
+
+ private:
+  CgResult solve(const Space& space, std::span<double> x, CgWork& work, const TraceRows* penalised,
+                 double r0);
+
+  const Part* part_;
+  DistributedOperator* op_;
+  Preconditioner* amg_;
+  std::span<const double> g_;
+  double tolerance_;
+  SpectrumCost cost_;
+};
+
+/// 1/λ_min from above and below alike, without a solve: the stiffest contact row, nᵀ diag(B) n / mass.
+double rough_lambda_min(const Part& part, std::span<const float> diagonal, bool friction);
+/// λ_max with the rows `held` at zero, from below: uᵀCᵀDCu / uᵀBu for what at most `steps` CG iterations make
+/// of an even pressure on `rows`. `amg` as it stands: it may hold penalties.
+double rough_lambda_max(const Part& part, DistributedOperator& op, Preconditioner& amg, const TraceRows& rows,
+                        const TraceRows& held, int steps);
+
+/// λ_min, λ_max, r* of (32) for N, or for [N; T] with `friction`.
+SpectrumResult estimate_spectrum(const Part& part, DistributedOperator& op, Preconditioner& amg,
+                                 std::span<const double> g, bool friction, double tolerance);
+
+}  // namespace kacanov

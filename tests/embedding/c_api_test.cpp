@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The C interface: the same numbers as the reference, every way to hand over arrays.
+#include <doctest/doctest.h>
+
+#include <thread>
+
+#include "c_example.hpp"
+#include <kacanov/reference.hpp>
+
+TEST_CASE("every element type gives the numbers of the reference") {
+  for (const std::int32_t element : {KACANOV_TRI3, KACANOV_TET4, KACANOV_TET10, KACANOV_HEX8}) {
+    CAPTURE(element);
+    Example example(element);
+    example.description.threads = 2;
+    example.laws[0].mean_dilatation = element == KACANOV_HEX8;
+    const Handle op = example.create();
+    const SmallMesh& mesh = example.mesh;
+    const std::size_t n = example.n();
+
+    std::vector<kacanov::Law> laws(2, kacanov::elastic_law(2.0, 0.3));
+    laws[0].kind = kacanov::Law::Kind::logarithmic;
+    laws[0].x0 = 0.02;
+    laws[0].mean_dilatation = element == KACANOV_HEX8;
+    const kacanov::Body body{
+        {static_cast<kacanov::ElementType>(element), mesh.coordinates, mesh.connectivity},
+        laws,
+        example.law_of_element};
+    kacanov_information information;
+    REQUIRE(kacanov_inspect(op.get(), &information) == KACANOV_OK);
+    CHECK(information.unknowns == n);
+    CHECK(information.elements == mesh.elements());
+    CHECK(information.threads == 2);
+    CHECK(information.bytes > 0);
+    CHECK(std::string(information.instruction_set) != "");
+    const std::size_t points = mesh.elements() * static_cast<std::size_t>(information.points_per_element);
+    REQUIRE(points == body.secant_count());
+
+    const Vector omega = random_vector(n, 1, 0.1), x = random_vector(n, 2);
+    Vector g(points), want_g(points), y(n), want(n);
+    REQUIRE(kacanov_update(op.get(), n, omega.data()) == KACANOV_OK);
+    REQUIRE(kacanov_secant(op.get(), points, g.data()) == KACANOV_OK);
+    kacanov::reference::secant(body, omega, want_g);
+    CHECK(distance(g, want_g) < 1e-12);
+    CHECK(distance(g, Vector(points, laws[0].shear)) > 0.1);  // the state is well beyond yield
+
+    kacanov::reference::apply(body, want_g, x, want);
+    CHECK(distance(applied(op, x), want) < 1e-12);
+    double dot = 0.0, want_dot = 0.0;
+    REQUIRE(kacanov_apply_dot(op.get(), n, x.data(), y.data(), &dot) == KACANOV_OK);
+    for (std::size_t i = 0; i < n; ++i) want_dot += x[i] * want[i];
+    CHECK(distance(y, want) < 1e-12);
+    CHECK(dot == doctest::Approx(want_dot));
+
+    REQUIRE(kacanov_diagonal(op.get(), n, y.data()) == KACANOV_OK);
+    kacanov::reference::diagonal(body, want_g, want);
+    CHECK(distance(y, want) < 1e-12);
+    Vector blocks(n * mesh.dim), want_blocks(n * mesh.dim);
+    REQUIRE(kacanov_block_diagonal(op.get(), blocks.size(), blocks.data()) == KACANOV_OK);
+    kacanov::reference::block_diagonal(body, want_g, want_blocks);
+    CHECK(distance(blocks, want_blocks) < 1e-12);
+
+    REQUIRE(kacanov_update_tangent(op.get(), n, omega.data()) == KACANOV_OK);
+    REQUIRE(kacanov_apply_tangent(op.get(), n, x.data(), y.data()) == KACANOV_OK);
+    kacanov::reference::apply_tangent(body, omega, x, want);
+    CHECK(distance(y, want) < 1e-6);  // its rank-one term is kept in single precision
+
+    double energy = 0.0;
+    REQUIRE(kacanov_residual(op.get(), n, omega.data(), y.data()) == KACANOV_OK);
+    REQUIRE(kacanov_energy(op.get(), n, omega.data(), &energy) == KACANOV_OK);
+    kacanov::reference::residual(body, omega, want);
+    CHECK(distance(y, want) < 1e-12);
+    CHECK(energy == doctest::Approx(kacanov::reference::energy(body, omega)));
+    // Away from omega and back, in one pass.
+    REQUIRE(kacanov_update(op.get(), n, Vector(n, 0.0).data()) == KACANOV_OK);
+    double again = 0.0;
+    REQUIRE(kacanov_residual_energy_update(op.get(), n, omega.data(), y.data(), &again) == KACANOV_OK);
+    CHECK(distance(y, want) < 1e-12);
+    CHECK(again == doctest::Approx(energy));
+    REQUIRE(kacanov_secant(op.get(), points, g.data()) == KACANOV_OK);
+    CHECK(distance(g, want_g) < 1e-12);
+
+    const std::size_t elements = mesh.elements();
+    Vector stress(6 * elements), mises(elements), strain(elements), mean_g(elements);
+    Vector want_stress(stress.size()), want_mises(elements), want_strain(elements), want_mean_g(elements);
+    std::vector<std::uint8_t> plastic(elements), want_plastic(elements);
+    kacanov_fields fields{};
+    fields.elements = elements;
+    fields.stress = stress.data();
+    fields.von_mises = mises.data();
+    fields.dev_strain = strain.data();
+    fields.secant = mean_g.data();
+    fields.plastic = plastic.data();
+    REQUIRE(kacanov_stress(op.get(), n, omega.data(), &fields) == KACANOV_OK);
+    kacanov::reference::fields(body, omega,
+                               {.stress = want_stress,
+                                .von_mises = want_mises,
+                                .dev_strain = want_strain,
+                                .secant = want_mean_g,
+                                .plastic = want_plastic});
+    CHECK(distance(stress, want_stress) < 1e-12);
+    CHECK(distance(mises, want_mises) < 1e-12);
+    CHECK(distance(strain, want_strain) < 1e-12);
+    CHECK(distance(mean_g, want_mean_g) < 1e-12);
+    CHECK(plastic == want_plastic);
+  }
+}
+
+TEST_CASE("every law arrives with its parameters") {
+  using Kind = kacanov::Law::Kind;
+  const Vector table_x{0.0, 0.02, 0.05, 0.2}, table_s{0.0, 0.03, 0.06, 0.1};
+  for (const Kind kind :
+       {Kind::linear, Kind::logarithmic, Kind::linear_hardening, Kind::power, Kind::saturating, Kind::table})
+    for (const bool squared : {false, true}) {
+      CAPTURE(static_cast<int>(kind));
+      CAPTURE(squared);
+      Example example;
+      kacanov_law& law = example.laws[0];
+      law.kind = static_cast<std::int32_t>(kind);
+      law.squared = squared;
+      law.x0 = squared ? 0.0004 : 0.02;
+      law.gamma = 0.1;
+      law.n = 0.4;
+      law.q = 0.7;
+      law.table_size = table_x.size();
+      law.table_x = table_x.data();
+      law.table_s = table_s.data();
+      kacanov::Law want = kacanov::elastic_law(2.0, 0.3);
+      want.kind = kind;
+      want.argument = squared ? kacanov::Law::Argument::squared : kacanov::Law::Argument::norm;
+      want.x0 = law.x0;
+      want.gamma = law.gamma;
+      want.n = law.n;
+      want.q = law.q;
+      want.table_x = table_x;
+      want.table_s = table_s;
+
+      const Handle op = example.create();
+      const Vector omega = random_vector(example.n(), 12, 0.1);
+      const std::size_t elements = example.mesh.elements();
+      Vector strain(elements), g(elements);
+      kacanov_fields fields{};
+      fields.elements = elements;
+      fields.dev_strain = strain.data();
+      REQUIRE(kacanov_stress(op.get(), example.n(), omega.data(), &fields) == KACANOV_OK);
+      REQUIRE(kacanov_update(op.get(), example.n(), omega.data()) == KACANOV_OK);
+      REQUIRE(kacanov_secant(op.get(), elements, g.data()) == KACANOV_OK);
+      for (std::size_t e = 0; e < elements; e += 2)  // odd ones follow the linear law
+        CHECK(g[e] == doctest::Approx(want.secant(strain[e])).epsilon(1e-12));
+    }
+}
+
+#if defined(__x86_64__)
+// What a binding in another language mirrors: examples/ctypes_numpy.py does.
+static_assert(sizeof(kacanov_law) == 88);
+static_assert(sizeof(kacanov_description) == 112);
+#endif
+
+TEST_CASE("coordinates and connectivity may lie in any regular order") {
+  Example plain;
+  const Vector x = random_vector(plain.n(), 3);
+  const Vector want = applied(plain.create(), x);
+
+  SUBCASE("one array a component") {
+    Vector columns(plain.n());
+    for (std::size_t i = 0; i < plain.mesh.nodes(); ++i)
+      for (std::size_t c = 0; c < 3; ++c)
+        columns[c * plain.mesh.nodes() + i] = plain.mesh.coordinates[3 * i + c];
+    plain.description.coordinates = columns.data();
+    plain.description.node_stride = 1;
+    plain.description.component_stride = plain.mesh.nodes();
+    CHECK(applied(plain.create(), x) == want);
+  }
+  SUBCASE("records with other things in between, counted from 1") {
+    Vector padded(5 * plain.mesh.nodes(), nan_value);
+    std::vector<std::int32_t> rows(7 * plain.mesh.elements(), -5);
+    for (std::size_t i = 0; i < plain.mesh.nodes(); ++i)
+      for (std::size_t c = 0; c < 3; ++c) padded[5 * i + c] = plain.mesh.coordinates[3 * i + c];
+    for (std::size_t e = 0; e < plain.mesh.elements(); ++e)
+      for (std::size_t a = 0; a < 4; ++a) rows[7 * e + a] = plain.mesh.connectivity[4 * e + a] + 1;
+    plain.description.coordinates = padded.data();
+    plain.description.node_stride = 5;
+    plain.description.connectivity = rows.data();
+    plain.description.element_stride = 7;
+    plain.description.index_base = 1;
+    const Handle op = plain.create();
+    std::fill(rows.begin(), rows.end(), -5);  // nothing refers to them any more
+    CHECK(applied(op, x) == want);
+  }
+  SUBCASE("copied arrays may go, and cost memory") {
+    kacanov_information copied, borrowed;
+    Vector coordinates = plain.mesh.coordinates;
+    plain.description.coordinates = coordinates.data();
+    const Handle op = plain.create();
+    std::fill(coordinates.begin(), coordinates.end(), nan_value);
+    CHECK(applied(op, x) == want);
+    REQUIRE(kacanov_inspect(op.get(), &copied) == KACANOV_OK);
+
+    plain.description.coordinates = plain.mesh.coordinates.data();
+    plain.description.borrow = 1;
+    const Handle lean = plain.create();
+    CHECK(applied(lean, x) == want);
+    REQUIRE(kacanov_inspect(lean.get(), &borrowed) == KACANOV_OK);
+    CHECK(borrowed.bytes < copied.bytes);
+  }
+}
+
+TEST_CASE("laws may come later and be replaced") {
+  Example example;
+  const Vector x = random_vector(example.n(), 4);
+  const Vector want = applied(example.create(), x);
+
+  example.description.laws = 0;
+  const Handle op = example.create();
+  Vector y(example.n());
+  CHECK(kacanov_apply(op.get(), example.n(), x.data(), y.data()) == KACANOV_ERROR_STATE);
+  CHECK(std::string(kacanov_message(op.get())).find("kacanov_set_laws") != std::string::npos);
+  const std::size_t elements = example.mesh.elements();
+  REQUIRE(kacanov_set_laws(op.get(), 2, example.laws.data(), elements, example.law_of_element.data()) ==
+          KACANOV_OK);
+  CHECK(applied(op, x) == want);
+
+  SUBCASE("bad laws leave the handle as it was") {
+    example.laws[1].shear = -1.0;
+    CHECK(kacanov_set_laws(op.get(), 2, example.laws.data(), elements, nullptr) == KACANOV_ERROR_LAW);
+    CHECK(std::string(kacanov_message(op.get())).find("law[1].shear") != std::string::npos);
+    CHECK(kacanov_set_laws(op.get(), 1, example.laws.data(), elements + 1, nullptr) == KACANOV_ERROR_SIZE);
+    CHECK(kacanov_set_laws(op.get(), 0, example.laws.data(), elements, nullptr) == KACANOV_ERROR_SIZE);
+    CHECK(kacanov_set_laws(op.get(), 1, nullptr, elements, nullptr) == KACANOV_ERROR_NULL);
+    CHECK(applied(op, x) == want);
+  }
+  SUBCASE("twice as stiff, twice the force") {
+    for (kacanov_law& law : example.laws) {
+      law.bulk *= 2.0;
+      law.shear *= 2.0;
+    }
+    REQUIRE(kacanov_set_laws(op.get(), 2, example.laws.data(), elements, nullptr) == KACANOV_OK);
+    Vector twice = want;
+    for (double& v : twice) v *= 2.0;
+    CHECK(distance(applied(op, x), twice) < 1e-12);
+  }
+}
+
+TEST_CASE("several right sides are applied as if one at a time") {
+  const Example example;
+  const Handle op = example.create();
+  const std::size_t n = example.n();
+  for (const int vectors : {1, 2, 3, 5}) {
+    const Vector x = random_vector(n * static_cast<std::size_t>(vectors), 8);
+    Vector y(x.size()), want;
+    REQUIRE(kacanov_apply_many(op.get(), n, vectors, x.data(), y.data()) == KACANOV_OK);
+    for (auto from = x.begin(); from != x.end(); from += static_cast<std::ptrdiff_t>(n)) {
+      const Vector one = applied(op, Vector(from, from + static_cast<std::ptrdiff_t>(n)));
+      want.insert(want.end(), one.begin(), one.end());
+    }
+    CHECK(distance(y, want) < 1e-14);
+  }
+  const Vector x(n);
+  Vector y(n);
+  CHECK(kacanov_apply_many(op.get(), n, 0, x.data(), y.data()) == KACANOV_ERROR_VALUE);
+}
+
+TEST_CASE("single precision follows the double one") {
+  for (const std::int32_t element : {KACANOV_TRI3, KACANOV_TET4, KACANOV_TET10, KACANOV_HEX8}) {
+    CAPTURE(element);
+    Example example(element);
+    example.description.single = 1;
+    const Handle op = example.create();
+    const std::size_t n = example.n();
+    const Vector x = random_vector(n, 9);
+    const std::vector<float> x_float(x.begin(), x.end());
+    std::vector<float> y_float(n);
+    const auto check = [&] {
+      REQUIRE(kacanov_apply_float(op.get(), n, x_float.data(), y_float.data()) == KACANOV_OK);
+      const Vector want = applied(op, x);
+      CHECK(distance(Vector(y_float.begin(), y_float.end()), want) < 1e-5);
+    };
+    check();
+    const Vector omega = random_vector(n, 10, 0.1), doubled = random_vector(n, 11, 0.2);
+    REQUIRE(kacanov_update(op.get(), n, omega.data()) == KACANOV_OK);
+    check();
+    REQUIRE(kacanov_update_tangent(op.get(), n, doubled.data()) == KACANOV_OK);
+    check();
+    double energy = 0.0, dot = 0.0, want_dot = 0.0;
+    Vector y(n), diagonal(n);
+    REQUIRE(kacanov_residual_energy_update(op.get(), n, omega.data(), y.data(), &energy) == KACANOV_OK);
+    check();
+    REQUIRE(kacanov_apply_dot(op.get(), n, x.data(), y.data(), &want_dot) == KACANOV_OK);
+    REQUIRE(kacanov_apply_dot_float(op.get(), n, x_float.data(), y_float.data(), &dot) == KACANOV_OK);
+    CHECK(dot == doctest::Approx(want_dot).epsilon(1e-5));
+    REQUIRE(kacanov_diagonal(op.get(), n, diagonal.data()) == KACANOV_OK);
+    REQUIRE(kacanov_diagonal_float(op.get(), n, y_float.data()) == KACANOV_OK);
+    CHECK(distance(Vector(y_float.begin(), y_float.end()), diagonal) < 1e-5);
+    std::vector<float> twice(x_float), both(2 * n);
+    twice.insert(twice.end(), x_float.begin(), x_float.end());
+    REQUIRE(kacanov_apply_many_float(op.get(), n, 2, twice.data(), both.data()) == KACANOV_OK);
+    CHECK(std::equal(both.begin(), both.begin() + static_cast<std::ptrdiff_t>(n),
+                     both.begin() + static_cast<std::ptrdiff_t>(n)));
+
+    CHECK(kacanov_apply_float(op.get(), n, x_float.data(), nullptr) == KACANOV_ERROR_NULL);
+    CHECK(kacanov_apply_float(op.get(), n + 1, x_float.data(), y_float.data()) == KACANOV_ERROR_SIZE);
+    CHECK(kacanov_apply_float(op.get(), n, y_float.data(), y_float.data()) == KACANOV_ERROR_SIZE);
+    const Handle plain = Example(element).create();
+    CHECK(kacanov_apply_float(plain.get(), n, x_float.data(), y_float.data()) == KACANOV_ERROR_STATE);
+  }
+}
+
+TEST_CASE("the preferred numbering names every node and element once") {
+  const Example example(KACANOV_TET10, 3);
+  const Handle op = example.create();
+  const std::size_t nodes = example.mesh.nodes(), elements = example.mesh.elements();
+  std::vector<std::int32_t> node_order(nodes, -1), element_order(elements, -1);
+  REQUIRE(kacanov_locality_order(op.get(), nodes, node_order.data(), elements, nullptr) == KACANOV_OK);
+  REQUIRE(kacanov_locality_order(op.get(), nodes, nullptr, elements, element_order.data()) == KACANOV_OK);
+  for (std::vector<std::int32_t>* order : {&node_order, &element_order}) {
+    std::sort(order->begin(), order->end());
+    for (std::size_t i = 0; i < order->size(); ++i) CHECK((*order)[i] == static_cast<std::int32_t>(i));
+  }
+  CHECK(kacanov_locality_order(op.get(), nodes - 1, nullptr, elements, nullptr) == KACANOV_ERROR_SIZE);
+}
+
+TEST_CASE("handles are independent: one in each thread of the caller") {
+  const Example example;
+  const Vector x = random_vector(example.n(), 6);
+  const Vector want = applied(example.create(), x);
+  std::vector<Vector> got(4, Vector(example.n()));
+  std::vector<std::thread> threads;
+  for (Vector& y : got)
+    threads.emplace_back([&] {
+      kacanov_operator* op = nullptr;
+      if (kacanov_create(&example.description, &op, nullptr, 0) != KACANOV_OK) return;
+      for (int repeat = 0; repeat < 50; ++repeat) kacanov_apply(op, example.n(), x.data(), y.data());
+      kacanov_destroy(op);
+    });
+  for (std::thread& thread : threads) thread.join();
+  for (const Vector& y : got) CHECK(y == want);
+}

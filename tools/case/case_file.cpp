@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The case file: one JSON object that says what to solve.
+#include "case/case_file.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "case/case_material.hpp"
+#include <kacanov/error.hpp>
+#include "case/json_node.hpp"
+
+namespace kacanov {
+namespace {
+
+/// Reads the parts of a case, noting every vector on the way.
+class CaseParser {
+ public:
+  explicit CaseParser(std::string folder) : folder_(std::move(folder)) {}
+
+  Case parse(const nlohmann::json& document) {
+    const Object top(Node(document, ""),
+                     {"mesh", "material", "boundary", "contact", "solver", "probe", "output"});
+    parse_mesh(top.required("mesh"));
+    const Node materials = top.required("material");
+    for (const Node& node : materials.list("a list of materials")) parse_material(node);
+    if (result_.model.materials.empty()) materials.expected("at least one material");
+    if (const auto list = top.optional("boundary")) {
+      for (const Node& node : list->list("a list of boundary conditions")) parse_boundary(node);
+    }
+    if (const auto list = top.optional("contact")) {
+      for (const Node& node : list->list("a list of contact entries")) parse_contact(node);
+    }
+    if (const auto node = top.optional("solver")) parse_solver(*node);
+    if (const auto list = top.optional("probe")) {
+      for (const Node& node : list->list("a list of points")) result_.model.probes.push_back(vector(node));
+    }
+    if (const auto node = top.optional("output")) parse_output(*node);
+    return std::move(result_);
+  }
+
+ private:
+  /// Entries of a vector of 2 or 3, the third set to null or 0 where it is not there.
+  std::vector<Node> vector_entries(const Node& node) {
+    const char* wanted = "a list of 2 or 3 numbers";
+    std::vector<Node> entries = node.list(wanted);
+    if (entries.size() != 2 && entries.size() != 3) node.expected(wanted);
+    const auto is_zero = [](const nlohmann::json& v) {
+      return v.is_null() || (v.is_number() && v.get<double>() == 0.0);
+    };
+    result_.vectors.push_back(
+        {node.path(), entries.size(), entries.size() == 3 && is_zero(entries[2].value())});
+    return entries;
+  }
+
+  Vector3 vector(const Node& node) {
+    Vector3 v{};
+    const std::vector<Node> entries = vector_entries(node);
+    for (std::size_t c = 0; c < entries.size(); ++c) v[c] = entries[c].number();
+    return v;
+  }
+
+  Vector3 direction(const Node& node) {
+    const Vector3 v = vector(node);
+    if (v == Vector3{}) node.expected("a vector that is not zero");
+    return v;
+  }
+
+  Selector selector(const Node& node) {
+    Selector on;
+    if (node.value().is_string()) {
+      on.name = node.text();
+      on.kind = on.name == "all" ? Selector::Kind::all : Selector::Kind::name;
+      return on;
+    }
+    if (!node.value().is_object())
+      node.expected("a name, \"all\" or {\"box\": [lower corner, upper corner]}");
+    const Node box = Object(node, {"box"}).required("box");
+    const std::vector<Node> corners = box.list("two corners");
+    if (corners.size() != 2) box.expected("two corners, the lower and the upper one");
+    on.kind = Selector::Kind::box;
+    on.lower = vector(corners[0]);
+    on.upper = vector(corners[1]);
+    if (corners[0].value().size() != corners[1].value().size()) box.expected("two corners of equal length");
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (on.lower[c] > on.upper[c])
+        box.expected("a lower corner that is below the upper one in every direction");
+    }
+    return on;
+  }
+
+  void parse_mesh(const Node& node) {
+    const Object object(node, {"file", "box"});
+    if (object.only_one_of({"file", "box"}) == "file") {
+      const std::filesystem::path file = object.required("file").text();
+      result_.mesh.file =
+          file.is_absolute() ? file.string() : (std::filesystem::path(folder_) / file).string();
+      return;
+    }
+    const Object box(object.required("box"), {"size", "cells", "element"});
+    const std::vector<Node> size = box.required("size").list("a list of 2 or 3 lengths");
+    const std::vector<Node> cells = box.required("cells").list("a list of 2 or 3 whole numbers");
+    BoxSpec spec;
+    spec.type = size.size() == 2 ? ElementType::tri3 : ElementType::tet4;
+    if (const auto element = box.optional("element")) {
+      constexpr std::array<ElementType, 4> types{ElementType::tri3, ElementType::tet4, ElementType::tet10,
+                                                 ElementType::hex8};
+      spec.type = types[element->choice({"tri3", "tet4", "tet10", "hex8"})];
+    }
+    const auto dim = static_cast<std::size_t>(dimension(spec.type));
+    const std::string count = std::to_string(dim) + " entries (one a dimension)";
+    if (size.size() != dim) box.required("size").expected(count);
+    if (cells.size() != dim) box.required("cells").expected(count);
+    for (std::size_t c = 0; c < dim; ++c) {
+      spec.size[c] = size[c].number("a number > 0", [](double v) { return v > 0.0; });
+      spec.cells[c] = cells[c].integer(1);
+    }
+    result_.mesh.box = spec;
+  }
+
+  void parse_material(const Node& node) {
+    const Object object(node, {"on", "young", "poisson", "law", "bbar"});
+    MaterialEntry entry;
+    entry.on = selector(object.required("on"));
+    const double young = object.required("young").number("a number > 0", [](double v) { return v > 0.0; });
+    const double poisson = object.required("poisson").number("a number above -1 and below 0.5",
+                                                             [](double v) { return v > -1.0 && v < 0.5; });
+    entry.law = elastic_law(young, poisson);
+    if (const auto law = object.optional("law"))
+      entry.law = parse_law(young, poisson, *law, result_.warnings);
+    if (const auto bbar = object.optional("bbar")) entry.law.mean_dilatation = bbar->boolean();
+    result_.model.materials.push_back(entry);
+  }
+
+  void parse_boundary(const Node& node) {
+    const Object object(node, {"on", "displacement", "traction", "pressure", "body_force"});
+    BoundaryEntry entry;
+    entry.on = selector(object.required("on"));
+    const std::string kind = object.only_one_of({"displacement", "traction", "pressure", "body_force"});
+    const Node value = object.required(kind);
+    if (kind == "displacement") {
+      entry.displacement.emplace();
+      const std::vector<Node> entries = vector_entries(value);
+      bool any = false;
+      for (std::size_t c = 0; c < entries.size(); ++c) {
+        if (entries[c].value().is_null()) continue;
+        if (!entries[c].value().is_number()) entries[c].expected("a number, or null for a free component");
+        (*entry.displacement)[c] = entries[c].number();
+        any = true;
+      }
+      if (!any) value.expected("at least one component that is not null");
+    } else if (kind == "traction") {
+      entry.traction = vector(value);
+    } else if (kind == "pressure") {
+      entry.pressure = value.number();
+    } else {
+      entry.body_force = vector(value);
+    }
+    result_.model.boundary.push_back(entry);
+  }
+
+  Obstacle obstacle(const Node& node) {
+    const Object object(node, {"plane", "sphere", "gap"});
+    const std::string kind = object.only_one_of({"plane", "sphere", "gap"});
+    const Node value = object.required(kind);
+    if (kind == "gap") return ConstantGap{value.number()};
+    if (kind == "plane") {
+      const Object plane(value, {"point", "normal"});
+      return Plane{vector(plane.required("point")), direction(plane.required("normal"))};
+    }
+    const Object parts(value, {"centre", "radius", "direction"});
+    Sphere sphere;
+    sphere.centre = vector(parts.required("centre"));
+    sphere.radius = parts.required("radius").number("a number > 0", [](double v) { return v > 0.0; });
+    if (const auto way = parts.optional("direction")) sphere.direction = direction(*way);
+    return sphere;
+  }
+
+  void parse_contact(const Node& node) {
+    const Object object(node, {"on", "obstacle", "friction"});
+    ContactEntry entry;
+    entry.on = selector(object.required("on"));
+    entry.obstacle = obstacle(object.required("obstacle"));
+    if (const auto friction = object.optional("friction")) {
+      const Object parts(*friction, {"tresca", "coulomb"});
+      const std::string kind = parts.only_one_of({"tresca", "coulomb"});
+      const double bound = parts.required(kind).number("a number ≥ 0", [](double v) { return v >= 0.0; });
+      entry.friction = kind == "tresca" ? Friction{bound, 0.0} : Friction{0.0, bound};
+    }
+    result_.model.contact.push_back(entry);
+  }
+
+  void parse_solver(const Node& node) {
+    using Options = SolverOptions;
+    const Object object(node, {"tolerance", "outer", "contact", "r", "stop", "max_outer", "max_contact",
+                               "spectrum_tolerance", "relaxation", "preconditioner", "load_steps"});
+    Options& options = result_.model.solver;
+    const auto inside = [](double v) { return v > 0.0 && v < 1.0; };
+    if (const auto v = object.optional("tolerance"))
+      options.tolerance = v->number("a number above 0 and below 1", inside);
+    if (const auto v = object.optional("spectrum_tolerance")) {
+      options.spectrum_tolerance = v->number("a number above 0 and below 1", inside);
+    }
+    if (const auto v = object.optional("outer")) {
+      constexpr std::array values{Options::Outer::automatic, Options::Outer::kacanov, Options::Outer::newton};
+      options.outer = values[v->choice({"auto", "kacanov", "newton"})];
+    }
+    if (const auto v = object.optional("contact")) {
+      constexpr std::array values{Options::Contact::automatic, Options::Contact::admm,
+                                  Options::Contact::dual_admm, Options::Contact::active_set};
+      options.contact = values[v->choice({"auto", "admm", "dual_admm", "active_set"})];
+    }
+    if (const auto v = object.optional("stop")) {
+      options.stop = v->choice({"kkt", "paper"}) == 0 ? Options::Stop::kkt : Options::Stop::paper;
+    }
+    if (const auto v = object.optional("r")) parse_penalty(*v);
+    if (const auto v = object.optional("preconditioner")) {
+      constexpr std::array values{Options::Preconditioner::multigrid, Options::Preconditioner::elasticity};
+      options.preconditioner = values[v->choice({"multigrid", "elasticity"})];
+    }
+    if (const auto v = object.optional("max_outer")) options.max_outer = v->integer(1);
+    if (const auto v = object.optional("max_contact")) options.max_contact = v->integer(1);
+    if (const auto v = object.optional("load_steps")) parse_load_steps(*v);
+    if (const auto v = object.optional("relaxation")) {
+      options.relaxation =
+          v->number("a number ≥ 1 and below 2", [](double a) { return a >= 1.0 && a < 2.0; });
+    }
+  }
+
+  void parse_load_steps(const Node& node) {
+    std::vector<double>& factors = result_.model.solver.load_steps;
+    if (node.value().is_number()) {
+      const int steps = node.integer(1);
+      for (int i = 1; i <= steps; ++i) factors.push_back(static_cast<double>(i) / steps);
+      return;
+    }
+    for (const Node& factor : node.list("a whole number ≥ 1 or a list of factors"))
+      factors.push_back(factor.number("a factor > 0", [](double v) { return v > 0.0; }));
+    if (factors.empty() || factors.back() != 1.0) node.expected("factors on the load of which the last is 1");
+  }
+
+  void parse_penalty(const Node& node) {
+    SolverOptions& options = result_.model.solver;
+    if (node.value().is_number()) {
+      options.penalty = SolverOptions::Penalty::fixed;
+      options.r = node.number("\"auto\", \"paper\" or a number > 0", [](double v) { return v > 0.0; });
+      return;
+    }
+    if (node.value() == "auto") return;
+    if (node.value() != "paper") node.expected("\"auto\", \"paper\" or a number > 0");
+    options.penalty = SolverOptions::Penalty::paper;
+  }
+
+  void parse_output(const Node& node) {
+    const Object object(node, {"fields", "report", "checkpoint"});
+    if (const auto v = object.optional("fields")) result_.output.fields = v->choice({"vtu", "none"}) == 0;
+    if (const auto v = object.optional("report")) result_.output.report = v->boolean();
+    if (const auto v = object.optional("checkpoint")) result_.output.checkpoint = v->boolean();
+  }
+
+  std::string folder_;
+  Case result_;
+};
+
+}  // namespace
+
+Case parse_case(const nlohmann::json& document, const std::string& folder) {
+  return CaseParser(folder).parse(document);
+}
+
+Case read_case(const std::string& path, std::span<const std::string> overrides) {
+  const std::filesystem::path file(path);
+  if (std::filesystem::is_directory(file))
+    throw InputError(path + ": this is a folder, expected a case file");
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) {
+    throw InputError(path + ": " +
+                     (std::filesystem::exists(file) ? "cannot be read" : "there is no such file"));
+  }
+  std::ostringstream text;
+  text << stream.rdbuf();
+  nlohmann::json document = parse_json(text.str(), path);
+  for (const std::string& assignment : overrides) apply_override(document, assignment);
+  Case input = parse_case(document, file.parent_path().string());
+  input.name = file.stem().string();
+  input.document = std::move(document);
+  return input;
+}
+
+void check_dimension(const Case& input, int dim) {
+  for (const VectorEntry& vector : input.vectors) {
+    if (vector.length == static_cast<std::size_t>(dim) || (dim == 2 && vector.third_zero)) continue;
+    throw InputError(vector.path + ": expected " + std::to_string(dim) + " entries, as the mesh has " +
+                     std::to_string(dim) + " dimensions, got " + std::to_string(vector.length));
+  }
+}
+
+void check_supported(const SolverOptions& solver) {
+  const auto refuse = [](const std::string& path, const std::string& value, const std::string& instead) {
+    throw InputError(path + ": " + value + " is not available; use " + instead);
+  };
+  using Options = SolverOptions;
+  // Both are the semismooth Newton method, which has no use for Algorithm 1's loop and its stop.
+  const bool by_step = solver.stop == Options::Stop::paper;
+  if (solver.contact == Options::Contact::active_set && by_step) {
+    refuse("solver.contact", "\"active_set\" together with the stop \"paper\"", "the stop \"kkt\"");
+  }
+  const bool admm = solver.contact == Options::Contact::admm || solver.contact == Options::Contact::dual_admm;
+  if (solver.outer == Options::Outer::newton && (by_step || admm)) {
+    const char* other = by_step ? "the stop \"paper\"" : "this value of solver.contact";
+    refuse("solver.outer", std::string("\"newton\" together with ") + other, "\"auto\" or \"kacanov\"");
+  }
+}
+
+}  // namespace kacanov

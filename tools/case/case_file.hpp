@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The case file: one JSON object that says what to solve.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <kacanov/mesh.hpp>
+#include <kacanov/model.hpp>
+
+namespace kacanov {
+
+/// Where the mesh comes from: exactly one is set.
+struct MeshSource {
+  std::optional<std::string> file;  ///< path, relative ones taken from the case file's folder
+  std::optional<BoxSpec> box;
+};
+
+struct OutputOptions {
+  bool fields = true;  ///< `fields`: "vtu" or "none"
+  bool report = true;  ///< pictures
+  bool checkpoint = true;
+};
+
+/// A vector of the case file, whose number of entries can be checked only once the mesh is known.
+struct VectorEntry {
+  std::string path;
+  std::size_t length = 0;   ///< 2 or 3
+  bool third_zero = false;  ///< 3 entries, the last 0 or null: fits a plane mesh too
+};
+
+struct Case {
+  std::string name;  ///< of the file, without folder and extension
+  MeshSource mesh;
+  Model model;
+  OutputOptions output;
+  std::vector<VectorEntry> vectors;
+  std::vector<std::string> warnings;
+  nlohmann::json document;  ///< what it was read from, --set included
+};
+
+/// Makes a Case of a JSON object. `folder` is where relative mesh files are looked for. Throws InputError
+/// naming the path of the key that is unknown, missing or wrong, and what was expected there.
+Case parse_case(const nlohmann::json& document, const std::string& folder);
+
+/// Reads a case file, applies `overrides` ("solver.tolerance=1e-8") to it and parses it.
+Case read_case(const std::string& path, std::span<const std::string> overrides);
+
+/// Sets the value at a path in the document: `key.key[index].key=value`, the value being JSON or else a
+/// string. Missing objects on the way are made; whether the keys mean anything is for parse_case to say.
+void apply_override(nlohmann::json& document, const std::string& assignment);
+
+/// Throws InputError naming the first vector that does not fit a mesh of this dimension.
+void check_dimension(const Case& input, int dim);
+
+/// Throws InputError naming the first combination of options that the solver does not offer.
+void check_supported(const SolverOptions& solver);
+
+}  // namespace kacanov

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The `material` entries of a case: elastic constants and laws.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "case/json_node.hpp"
+#include <kacanov/law.hpp>
+
+namespace kacanov {
+
+/// The law of a material from its elastic constants and its `law` object. Adds to `warnings` what is
+/// allowed but looks mistaken.
+Law parse_law(double young, double poisson, const Node& node, std::vector<std::string>& warnings);
+
+}  // namespace kacanov

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A JSON value that knows its path, so that whatever is wrong with it can be said in the user's terms.
+#include "case/json_node.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include <kacanov/error.hpp>
+#include "problem/closest_word.hpp"
+
+namespace kacanov {
+namespace {
+
+using nlohmann::json;
+
+/// Numbers beyond this would overflow when squared on the way.
+constexpr double largest_number = 1e100;
+
+std::string shown(const json& value) {
+  std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+  constexpr std::size_t longest = 60;
+  if (text.size() > longest) text = text.substr(0, longest) + "...";
+  return text;
+}
+
+/// "line:column" of a byte offset.
+std::string place(const std::string& text, std::size_t byte) {
+  const std::size_t end = std::min(byte, text.size());
+  std::size_t line = 1, start = 0;
+  for (std::size_t i = 0; i < end; ++i) {
+    if (text[i] != '\n') continue;
+    // The parser counts the byte it stumbled over: a newline still belongs to the line it ends.
+    if (i + 1 == end) break;
+    ++line;
+    start = i + 1;
+  }
+  return std::to_string(line) + ":" + std::to_string(std::max<std::size_t>(1, end - start));
+}
+
+/// What nlohmann's message says after its own idea of the place.
+std::string reason(const std::string& what) {
+  for (const char* mark : {"parsing value - ", "parsing object key - ", "parsing object - ",
+                           "parsing array - ", "syntax error while parsing ", "parse error"}) {
+    const std::size_t at = what.find(mark);
+    if (at != std::string::npos) return what.substr(at + std::string(mark).size());
+  }
+  return what;
+}
+
+/// Walks the text once without building anything: finds repeated keys, numbers out of range and syntax
+/// errors.
+class Scanner : public nlohmann::json_sax<json> {
+ public:
+  Scanner(const std::string& text, const std::string& label) : text_(text), label_(label) {}
+
+  bool null() override { return next(); }
+  bool boolean(bool) override { return next(); }
+  bool number_integer(number_integer_t) override { return next(); }
+  bool number_unsigned(number_unsigned_t) override { return next(); }
+  bool number_float(number_float_t, const string_t&) override { return next(); }
+  bool string(string_t&) override { return next(); }
+  bool binary(binary_t&) override { return next(); }
+  bool start_object(std::size_t) override { return push(false); }
+  bool start_array(std::size_t) override { return push(true); }
+  bool end_object() override { return pop(); }
+  bool end_array() override { return pop(); }
+  bool key(string_t& name) override {
+    Level& level = levels_.back();
+    level.key = name;
+    if (!level.keys.insert(name).second) throw InputError(path() + ": this key is there twice");
+    return true;
+  }
+  bool parse_error(std::size_t position, const std::string& token,
+                   const nlohmann::detail::exception& error) override {
+    if (dynamic_cast<const nlohmann::detail::out_of_range*>(&error) != nullptr) {
+      throw InputError(path() + ": the number " + token + " is too large");
+    }
+    throw InputError(label_ + ":" + place(text_, position) + ": not valid JSON: " + reason(error.what()));
+  }
+
+ private:
+  struct Level {
+    bool array = false;
+    std::size_t index = 0;
+    std::string key;
+    std::set<std::string> keys;
+  };
+
+  bool next() {
+    if (!levels_.empty()) ++levels_.back().index;
+    return true;
+  }
+  bool push(bool array) {
+    levels_.push_back({array, 0, {}, {}});
+    return true;
+  }
+  bool pop() {
+    levels_.pop_back();
+    return next();
+  }
+  std::string path() const {
+    std::string text;
+    for (const Level& level : levels_) {
+      if (level.array) {
+        text += "[" + std::to_string(level.index) + "]";
+      } else {
+        text += (text.empty() ? "" : ".") + level.key;
+      }
+    }
+    return text;
+  }
+
+  const std::string& text_;
+  const std::string& label_;
+  std::vector<Level> levels_;
+};
+
+}  // namespace
+
+json parse_json(const std::string& text, const std::string& label) {
+  if (std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isspace(c) != 0; })) {
+    throw InputError(label + ": the file is empty, expected a JSON object");
+  }
+  Scanner scanner(text, label);
+  json::sax_parse(text, &scanner);
+  json value = json::parse(text);
+  if (!value.is_object()) throw InputError(label + ": expected a JSON object, got " + shown(value));
+  return value;
+}
+
+void Node::expected(const std::string& what) const {
+  throw InputError(path_ + ": expected " + what + ", got " + shown(*value_));
+}
+
+double Node::number(const std::string& what, const std::function<bool(double)>& holds) const {
+  if (!value_->is_number()) expected(what);
+  const double number = value_->get<double>();
+  if (!(std::abs(number) <= largest_number)) expected(what + " of a magnitude below 1e100");
+  if (!holds(number)) expected(what);
+  return number;
+}
+
+double Node::number() const {
+  return number("a number", [](double) { return true; });
+}
+
+int Node::integer(int least) const {
+  const double value = number("a whole number ≥ " + std::to_string(least),
+                              [least](double v) { return v == std::floor(v) && v >= least; });
+  constexpr int most = std::numeric_limits<int>::max();
+  if (value > most) expected("a whole number ≤ " + std::to_string(most));
+  return static_cast<int>(value);
+}
+
+bool Node::boolean() const {
+  if (!value_->is_boolean()) expected("true or false");
+  return value_->get<bool>();
+}
+
+std::string Node::text() const {
+  if (!value_->is_string() || value_->get_ref<const std::string&>().empty()) expected("a string");
+  return value_->get<std::string>();
+}
+
+std::vector<Node> Node::list(const std::string& what) const {
+  if (!value_->is_array()) expected(what);
+  std::vector<Node> entries;
+  for (std::size_t i = 0; i < value_->size(); ++i) {
+    entries.emplace_back((*value_)[i], path_ + "[" + std::to_string(i) + "]");
+  }
+  return entries;
+}
+
+std::size_t Node::choice(std::initializer_list<const char*> words) const {
+  std::string list;
+  std::vector<std::string> candidates;
+  for (const char* word : words) {
+    if (value_->is_string() && value_->get_ref<const std::string&>() == word) return candidates.size();
+    list += (list.empty()                            ? ""
+             : candidates.size() + 1 == words.size() ? " or "
+                                                     : ", ") +
+            std::string("\"") + word + "\"";
+    candidates.emplace_back(word);
+  }
+  std::string message = list;
+  if (value_->is_string()) {
+    const std::string guess = closest_word(value_->get_ref<const std::string&>(), candidates);
+    if (!guess.empty()) {
+      throw InputError(path_ + ": expected " + list + ", got " + shown(*value_) + " (did you mean \"" +
+                       guess + "\"?)");
+    }
+  }
+  expected(list);
+}
+
+Object::Object(const Node& node, std::initializer_list<const char*> keys) : node_(node) {
+  std::string list;
+  for (const char* key : keys) list += (list.empty() ? "" : ", ") + std::string(key);
+  if (!node.value().is_object()) node.expected("an object with the keys " + list);
+  const std::vector<std::string> known(keys.begin(), keys.end());
+  for (const auto& [key, value] : node.value().items()) {
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    const std::string guess = closest_word(key, known);
+    throw InputError(path_of(key) + ": unknown key" +
+                     (guess.empty() ? "" : " (did you mean \"" + guess + "\"?)") + "; known here: " + list);
+  }
+}
+
+std::string Object::path_of(const std::string& key) const {
+  return node_.path().empty() ? key : node_.path() + "." + key;
+}
+
+Node Object::required(const std::string& key) const {
+  const std::optional<Node> node = optional(key);
+  if (!node) throw InputError(path_of(key) + ": this key is missing");
+  return *node;
+}
+
+std::optional<Node> Object::optional(const std::string& key) const {
+  const auto found = node_.value().find(key);
+  if (found == node_.value().end()) return std::nullopt;
+  return Node(*found, path_of(key));
+}
+
+std::string Object::only_one_of(std::initializer_list<const char*> keys) const {
+  std::string list;
+  std::vector<std::string> present;
+  for (const char* key : keys) {
+    list += (list.empty() ? "" : ", ") + std::string(key);
+    if (node_.value().contains(key)) present.emplace_back(key);
+  }
+  if (present.size() == 1) return present.front();
+  const std::string where = node_.path().empty() ? "the case" : node_.path();
+  if (present.empty()) throw InputError(where + ": expected one of the keys " + list);
+  throw InputError(where + ": expected only one of the keys " + list + ", got " + present[0] + " and " +
+                   present[1]);
+}
+
+}  // namespace kacanov

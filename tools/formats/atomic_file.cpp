@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "formats/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include <kacanov/error.hpp>
+
+namespace kacanov {
+
+AtomicFile::AtomicFile(std::string path)
+    : path_(std::move(path)), temporary_(path_ + ".part" + std::to_string(::getpid())) {
+  file_ = std::fopen(temporary_.c_str(), "wb");
+  if (!file_) fail(errno);
+}
+
+AtomicFile::~AtomicFile() {
+  if (!file_) return;
+  std::fclose(file_);
+  std::remove(temporary_.c_str());
+}
+
+void AtomicFile::fail(int error) {
+  throw InternalError(path_ + ": cannot be written: " + std::strerror(error));
+}
+
+void AtomicFile::write(const void* data, std::size_t bytes) {
+  if (bytes > 0 && std::fwrite(data, 1, bytes, file_) != bytes) fail(errno);
+}
+
+void AtomicFile::commit(Durable durable) {
+  // What is still buffered meets a full disk here.
+  if (std::fflush(file_) != 0) fail(errno);
+  if (durable == Durable::yes && ::fsync(::fileno(file_)) != 0) fail(errno);
+  const bool closed = std::fclose(std::exchange(file_, nullptr)) == 0;
+  if (!closed || std::rename(temporary_.c_str(), path_.c_str()) != 0) {
+    const int error = errno;
+    std::remove(temporary_.c_str());
+    fail(error);
+  }
+  if (durable == Durable::no) return;
+  // The new name is on the disk with its folder. Not all file systems can do that; the file is whole in any case.
+  const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
+  const int handle = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY);
+  if (handle < 0) return;
+  ::fsync(handle);
+  ::close(handle);
+}
+
+void write_file(const std::string& path, std::string_view text) {
+  AtomicFile file(path);
+  file.write(text);
+  file.commit();
+}
+
+}  // namespace kacanov

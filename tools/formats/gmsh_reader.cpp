@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "formats/gmsh_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <kacanov/error.hpp>
+#include "formats/gmsh_parser.hpp"
+#include "formats/mapped_file.hpp"
+
+namespace kacanov {
+namespace {
+
+constexpr int dimension_of(std::size_t shape) { return gmsh_shapes[shape].dimension; }
+
+/// The one shape that the body is made of.
+GmshShape body_shape(const std::string& path, const GmshContent& content) {
+  std::vector<std::size_t> top;
+  for (std::size_t s = 0; s < gmsh_shape_count; ++s) {
+    if (content.elements[s].count() == 0) continue;
+    if (!top.empty() && dimension_of(s) > dimension_of(top[0])) top.clear();
+    top.push_back(s);
+  }
+  if (top.empty() || dimension_of(top[0]) < 2)
+    throw InputError(path + ": the mesh has no triangles, tetrahedra or hexahedra");
+  for (const std::size_t s : top) {
+    const auto shape = static_cast<GmshShape>(s);
+    const std::string element =
+        path + ": element " + std::to_string(content.elements[s].tags[0]) + " is a " + gmsh_shapes[s].name;
+    if (shape == GmshShape::tri6 || shape == GmshShape::quad4)
+      throw InputError(element + ": a body in 2D has to be made of tri3 only");
+    if (s != top[0])
+      throw InputError(element + ", but the mesh has elements of type " + gmsh_shapes[top[0]].name +
+                       " too: a body has to be made of one type");
+  }
+  return static_cast<GmshShape>(top[0]);
+}
+
+ElementType element_type(GmshShape body) {
+  switch (body) {
+    case GmshShape::tet4: return ElementType::tet4;
+    case GmshShape::tet10: return ElementType::tet10;
+    case GmshShape::hex8: return ElementType::hex8;
+    default: return ElementType::tri3;
+  }
+}
+
+void refuse_unused_nodes(const std::string& path, const GmshContent& content, const Mesh& mesh) {
+  std::vector<bool> used(content.node_tags.size(), false);
+  for (const std::int32_t node : mesh.elements) used[static_cast<std::size_t>(node)] = true;
+  const auto count = std::count(used.begin(), used.end(), false);
+  if (count == 0) return;
+  const auto first = static_cast<std::size_t>(std::find(used.begin(), used.end(), false) - used.begin());
+  const bool lower =
+      std::any_of(content.elements.begin(), content.elements.end(), [&](const GmshElements& list) {
+        return std::find(list.nodes.begin(), list.nodes.end(), static_cast<std::int32_t>(first)) !=
+               list.nodes.end();
+      });
+  std::string message =
+      path + ": node " + std::to_string(content.node_tags[first]) + " belongs to no element of the body";
+  if (count > 1) message += " (" + std::to_string(count) + " nodes do not)";
+  if (lower)
+    message +=
+        ", only to points, lines or surfaces apart from it: a physical group for the body alone keeps Gmsh "
+        "from saving them";
+  throw InputError(message);
+}
+
+/// Takes over the coordinates; in 2D drops z, which has to be the same everywhere.
+void take_coordinates(const std::string& path, GmshContent& content, Mesh& mesh) {
+  mesh.coordinates = std::move(content.coordinates);
+  if (mesh.dim() == 3) return;
+  auto& x = mesh.coordinates;
+  const std::size_t nodes = x.size() / 3;
+  double low = x[0], high = x[0];
+  for (std::size_t i = 0; i < nodes; ++i) {
+    low = std::min({low, x[3 * i], x[3 * i + 1]});
+    high = std::max({high, x[3 * i], x[3 * i + 1]});
+  }
+  for (std::size_t i = 0; i < nodes; ++i)
+    if (!(std::abs(x[3 * i + 2] - x[2]) <= 1e-9 * (high - low)))
+      throw InputError(path + ": the mesh is made of triangles, but node " +
+                       std::to_string(content.node_tags[i]) + " has another z than node " +
+                       std::to_string(content.node_tags[0]) +
+                       ": a 2D body has to lie in a plane z = constant (shells are not supported)");
+  for (std::size_t i = 0; i < nodes; ++i) {
+    x[2 * i] = x[3 * i];
+    x[2 * i + 1] = x[3 * i + 1];
+  }
+  x.resize(2 * nodes);
+  x.shrink_to_fit();
+}
+
+/// Finds boundary facets by their corner nodes.
+class FacetIndex {
+ public:
+  explicit FacetIndex(const Mesh& mesh) {
+    const std::size_t corners = mesh.type == ElementType::tri3 ? 2 : mesh.type == ElementType::hex8 ? 4 : 3;
+    entries_.reserve(mesh.facet_count());
+    for (std::size_t f = 0; f < mesh.facet_count(); ++f)
+      entries_.push_back({key(mesh.facet(f).first(corners)), static_cast<std::int32_t>(f)});
+    std::sort(entries_.begin(), entries_.end());
+  }
+
+  /// The facet with these corners, −1 if it is not on the boundary.
+  std::int32_t find(std::span<const std::int32_t> corners) const {
+    const Key wanted = key(corners);
+    const auto place = std::lower_bound(entries_.begin(), entries_.end(), Entry{wanted, -1});
+    return place != entries_.end() && place->first == wanted ? place->second : -1;
+  }
+
+ private:
+  using Key = std::array<std::int32_t, 4>;
+  using Entry = std::pair<Key, std::int32_t>;
+  static Key key(std::span<const std::int32_t> corners) {
+    Key result{-1, -1, -1, -1};
+    std::copy(corners.begin(), corners.end(), result.begin());
+    std::sort(result.begin(), result.end());
+    return result;
+  }
+  std::vector<Entry> entries_;
+};
+
+class Groups {
+ public:
+  Groups(const GmshContent& content, int dim) : content_(content), dim_(dim) {
+    for (const auto& [key, name] : content.names)
+      if (key.first <= dim) members_.try_emplace(key);
+  }
+
+  /// Appends what `member(element)` gives for the elements of one shape, in all groups they belong to.
+  template <typename Member>
+  void add(std::size_t shape, Member&& member) {
+    const GmshElements& list = content_.elements[shape];
+    for (std::size_t r = 0; r < list.runs.size(); ++r) {
+      const std::size_t end = r + 1 < list.runs.size() ? list.runs[r + 1].first : list.count();
+      for (const int physical : content_.physicals[list.runs[r].set]) {
+        auto& members = members_[{dimension_of(shape), physical}];
+        for (std::size_t e = list.runs[r].first; e < end; ++e) member(e, members);
+      }
+    }
+  }
+
+  /// One group for every name and dimension.
+  std::vector<Group> finish() {
+    std::vector<Group> groups;
+    for (auto& [key, members] : members_) {
+      const auto named = content_.names.find(key);
+      std::string name = named != content_.names.end() ? named->second : std::string();
+      if (name.empty()) name = std::to_string(key.second);
+      const auto same = std::find_if(groups.begin(), groups.end(), [&](const Group& g) {
+        return g.dimension == key.first && g.name == name;
+      });
+      if (same == groups.end())
+        groups.push_back({std::move(name), key.first, std::move(members)});
+      else
+        same->members.insert(same->members.end(), members.begin(), members.end());
+    }
+    for (Group& group : groups) {
+      std::sort(group.members.begin(), group.members.end());
+      group.members.erase(std::unique(group.members.begin(), group.members.end()), group.members.end());
+    }
+    std::stable_sort(groups.begin(), groups.end(),
+                     [](const Group& a, const Group& b) { return a.dimension > b.dimension; });
+    return groups;
+  }
+
+  int dim() const { return dim_; }
+
+ private:
+  const GmshContent& content_;
+  int dim_;
+  std::map<std::pair<int, int>, std::vector<std::int32_t>> members_;
+};
+
+std::vector<Group> find_groups(const GmshContent& content, std::size_t body, const Mesh& mesh) {
+  Groups groups(content, mesh.dim());
+  const FacetIndex facets(mesh);
+  for (std::size_t s = 0; s < gmsh_shape_count; ++s) {
+    const GmshElements& list = content.elements[s];
+    const auto nodes = [&](std::size_t e, int count) {
+      return std::span(list.nodes)
+          .subspan(e * static_cast<std::size_t>(gmsh_shapes[s].nodes), static_cast<std::size_t>(count));
+    };
+    if (s == body) {
+      groups.add(s, [](std::size_t e, auto& members) { members.push_back(static_cast<std::int32_t>(e)); });
+    } else if (dimension_of(s) == mesh.dim() - 1) {
+      groups.add(s, [&](std::size_t e, auto& members) {
+        const std::int32_t facet = facets.find(nodes(e, gmsh_shapes[s].corners));
+        if (facet >= 0) members.push_back(facet);
+      });
+    } else {
+      groups.add(s, [&](std::size_t e, auto& members) {
+        const auto all = nodes(e, gmsh_shapes[s].nodes);
+        members.insert(members.end(), all.begin(), all.end());
+      });
+    }
+  }
+  return groups.finish();
+}
+
+/// Whether the numbers are 1, 2, 3 …, which a mesh need not store.
+bool plain_numbers(const std::vector<std::int64_t>& tags) {
+  for (std::size_t i = 0; i < tags.size(); ++i)
+    if (tags[i] != static_cast<std::int64_t>(i) + 1) return false;
+  return true;
+}
+
+GmshContent parse_file(const std::string& path) {
+  const MappedFile file(path);
+  return parse_gmsh(path, file.bytes());
+}
+
+Mesh make_mesh(const std::string& path, GmshContent content) {
+  const GmshShape body = body_shape(path, content);
+  Mesh mesh;
+  mesh.type = element_type(body);
+  GmshElements& elements = content.of(body);
+  mesh.elements = std::move(elements.nodes);
+  refuse_unused_nodes(path, content, mesh);
+  take_coordinates(path, content, mesh);
+  find_boundary(mesh);
+  mesh.groups = find_groups(content, static_cast<std::size_t>(body), mesh);
+  if (!plain_numbers(content.node_tags)) mesh.node_tags = std::move(content.node_tags);
+  if (!plain_numbers(elements.tags)) mesh.element_tags = std::move(elements.tags);
+  return mesh;
+}
+
+}  // namespace
+
+Mesh read_gmsh(const std::string& path) { return make_mesh(path, parse_file(path)); }
+
+Mesh read_gmsh(const std::string& path, std::string_view bytes) { return make_mesh(path, parse_gmsh(path, bytes)); }
+
+}  // namespace kacanov

@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The picture of a deformed body: layout, obstacles, colour bar, captions.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "pictures/body_drawing.hpp"
+#include <kacanov/error.hpp>
+#include "pictures/picture.hpp"
+#include "pictures/svg.hpp"
+
+namespace kacanov {
+namespace {
+
+using Vector = std::array<double, 3>;
+
+constexpr double width = 960, margin = 36, bar_space = 120, top = 64, bottom = 64;
+constexpr double least_height = 240, most_height = 640;
+
+/// What is finite stays, the rest becomes 0: a run that broke down has a picture too.
+std::vector<double> finite_or_zero(std::span<const double> values) {
+  std::vector<double> result(values.begin(), values.end());
+  for (double& v : result)
+    if (!std::isfinite(v)) v = 0;
+  return result;
+}
+
+double largest_norm(std::span<const double> vectors, std::size_t dim) {
+  double largest = 0;
+  for (std::size_t i = 0; i < vectors.size(); i += dim) {
+    double square = 0;
+    for (std::size_t k = 0; k < dim; ++k) square += vectors[i + k] * vectors[i + k];
+    largest = std::max(largest, square);
+  }
+  return std::sqrt(largest);
+}
+
+struct Box {
+  Vector low{}, high{};
+
+  void add(const Vector& at) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], at[k]);
+      high[k] = std::max(high[k], at[k]);
+    }
+  }
+  double diagonal() const {
+    return std::sqrt(std::pow(high[0] - low[0], 2) + std::pow(high[1] - low[1], 2) +
+                     std::pow(high[2] - low[2], 2));
+  }
+  static Box empty() {
+    constexpr double far = std::numeric_limits<double>::infinity();
+    return {{far, far, far}, {-far, -far, -far}};
+  }
+};
+
+Box body_box(const Mesh& mesh) {
+  const auto dim = static_cast<std::size_t>(mesh.dim());
+  Box box = Box::empty();
+  for (std::size_t i = 0; i < mesh.node_count(); ++i) {
+    Vector at{};
+    for (std::size_t k = 0; k < dim; ++k) at[k] = mesh.coordinates[i * dim + k];
+    box.add(at);
+  }
+  return box;
+}
+
+/// 1 where that can be seen, else a round factor that makes the largest displacement some 5 % of the body.
+double fitting_scale(double largest, double size) {
+  if (largest <= 0 || largest >= 0.015 * size) return 1;
+  return nice_below(0.06 * size / largest);
+}
+
+/// The part of an obstacle's plane that faces the body: two points in 2D, four in 3D; none if it is far away.
+std::vector<Vector> obstacle_patch(const DeformedPicture::Plane& plane, const Box& box, int dim) {
+  const auto dot = [](const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+  const double length = std::sqrt(dot(plane.normal, plane.normal));
+  if (!(length > 0)) return {};
+  const Vector n{plane.normal[0] / length, plane.normal[1] / length, plane.normal[2] / length};
+  // Tangents: in 2D one, in 3D those nearest to two of the axes.
+  Vector s{-n[1], n[0], 0}, t{};
+  if (dim == 3) {
+    const std::size_t axis = std::abs(n[0]) < 0.7 ? 0 : 1;
+    Vector a{};
+    a[axis] = 1;
+    const double along = dot(a, n);
+    for (std::size_t k = 0; k < 3; ++k) s[k] = a[k] - along * n[k];
+    const double size = std::sqrt(dot(s, s));
+    for (double& c : s) c /= size;
+    t = {n[1] * s[2] - n[2] * s[1], n[2] * s[0] - n[0] * s[2], n[0] * s[1] - n[1] * s[0]};
+  }
+  double s_low = 1e300, s_high = -1e300, t_low = 1e300, t_high = -1e300, nearest = 1e300;
+  for (int corner = 0; corner < 8; ++corner) {
+    Vector d{};
+    for (std::size_t k = 0; k < 3; ++k)
+      d[k] = ((corner >> k & 1) != 0 ? box.high[k] : box.low[k]) - plane.point[k];
+    s_low = std::min(s_low, dot(d, s));
+    s_high = std::max(s_high, dot(d, s));
+    t_low = std::min(t_low, dot(d, t));
+    t_high = std::max(t_high, dot(d, t));
+    nearest = std::min(nearest, std::abs(dot(d, n)));
+  }
+  if (nearest > 0.3 * box.diagonal()) return {};
+  const double room = 0.06 * box.diagonal();
+  const auto at = [&](double a, double b) {
+    Vector p = plane.point;
+    for (std::size_t k = 0; k < 3; ++k) p[k] += a * s[k] + b * t[k];
+    return p;
+  };
+  if (dim == 2) return {at(s_low - room, 0), at(s_high + room, 0)};
+  return {at(s_low - room, t_low - room), at(s_high + room, t_low - room), at(s_high + room, t_high + room),
+          at(s_low - room, t_high + room)};
+}
+
+class Drawing {
+ public:
+  explicit Drawing(const DeformedPicture& picture)
+      : picture_(picture),
+        mesh_(*picture.mesh),
+        dim_(mesh_.dim()),
+        displacement_(finite_or_zero(picture.displacement)),
+        nodal_values_(finite_or_zero(picture.von_mises)),
+        box_(body_box(mesh_)),
+        view_(View::of(mesh_)),
+        largest_(largest_norm(displacement_, static_cast<std::size_t>(dim_))),
+        scale_(picture.scale > 0 ? picture.scale : fitting_scale(largest_, box_.diagonal())),
+        surface_(visible_surface(mesh_, view_, displacement_, scale_, nodal_values_)),
+        colours_(nodal_values_) {
+    for (const auto& plane : picture.planes) patches_.push_back(obstacle_patch(plane, box_, dim_));
+    fit();
+  }
+
+  std::string draw() const {
+    SvgCanvas canvas(width, top + frame_.height + bottom);
+    canvas.text(margin, 34, picture_.title, "font-size=\"17\" font-weight=\"bold\"");
+    for (const auto& patch : patches_) obstacle(canvas, patch);
+    original(canvas);
+    canvas.raw(surface_.faces.size() <= most_faces ? draw_as_paths(surface_, colours_, frame_, dim_ == 2)
+                                                   : draw_as_image(surface_, colours_, frame_));
+    colour_bar(canvas);
+    axes(canvas);
+    canvas.text(margin, top + frame_.height + 40, caption(), "fill=\"#444\"");
+    return canvas.finish();
+  }
+
+ private:
+  /// Fits everything that is drawn into the frame.
+  void fit() {
+    Box seen = Box::empty();
+    for (const Face& f : surface_.faces)
+      for (const Vector& c : f.corners) seen.add(c);
+    for (const Segment& s : surface_.original) {
+      seen.add(s.from);
+      seen.add(s.to);
+    }
+    for (const auto& patch : patches_)
+      for (const Vector& at : patch) seen.add(project(at));
+    const double w = seen.high[0] - seen.low[0], h = seen.high[1] - seen.low[1];
+    frame_.left = margin;
+    frame_.top = top;
+    frame_.width = width - 2 * margin - bar_space;
+    frame_.height = std::clamp(frame_.width * h / w, least_height, most_height);
+    frame_.scale = std::min(frame_.width / w, frame_.height / h);
+    frame_.low_x = seen.low[0] - (frame_.width / frame_.scale - w) / 2;
+    frame_.high_y = seen.high[1] + (frame_.height / frame_.scale - h) / 2;
+  }
+
+  Vector project(const Vector& at) const {
+    return view_.project(std::span(at).first(static_cast<std::size_t>(dim_)));
+  }
+
+  void obstacle(SvgCanvas& canvas, const std::vector<Vector>& patch) const {
+    std::vector<std::array<double, 2>> p;
+    for (const Vector& at : patch) p.push_back(frame_.pixel(project(at)));
+    if (p.size() == 4) {
+      std::string data;
+      for (const auto& at : p)
+        data += (data.empty() ? "M" : "L") + svg_number(at[0]) + " " + svg_number(at[1]);
+      canvas.path(data + "Z", "fill=\"#eceff1\" stroke=\"#b0b8bd\"");
+    } else if (p.size() == 2) {
+      hatched(canvas, p[0], p[1]);
+    }
+  }
+
+  /// A line with short strokes on the side away from the body.
+  static void hatched(SvgCanvas& canvas, const std::array<double, 2>& a, const std::array<double, 2>& b) {
+    canvas.line(a[0], a[1], b[0], b[1], "stroke=\"#555\" stroke-width=\"1.2\"");
+    const double x = b[0] - a[0], y = b[1] - a[1], length = std::hypot(x, y);
+    // The body lies where the normal points: turned left from the direction a → b, which in pixels is −y.
+    const double nx = -y / length, ny = x / length, tx = x / length, ty = y / length;
+    std::string data;
+    for (double s = 9; s < length; s += 9) {
+      const double px = a[0] + s * tx, py = a[1] + s * ty;
+      data += "M" + svg_number(px) + " " + svg_number(py) + "L" + svg_number(px - 6 * tx - 7 * nx) + " " +
+              svg_number(py - 6 * ty - 7 * ny);
+    }
+    canvas.path(data, "fill=\"none\" stroke=\"#888\" stroke-width=\"0.8\"");
+  }
+
+  void original(SvgCanvas& canvas) const {
+    std::string data;
+    for (const Segment& s : surface_.original) {
+      const auto a = frame_.pixel(s.from), b = frame_.pixel(s.to);
+      data +=
+          "M" + svg_number(a[0]) + " " + svg_number(a[1]) + "L" + svg_number(b[0]) + " " + svg_number(b[1]);
+      if (data.size() > most_outline) return;  // a body as rough as that has no outline worth drawing
+    }
+    canvas.path(data, "fill=\"none\" stroke=\"#9a9a9a\" stroke-width=\"0.9\"");
+  }
+
+  void colour_bar(SvgCanvas& canvas) const {
+    const double x = width - margin - bar_space + 34, height = std::min(frame_.height - 40, 360.0), wide = 18;
+    const double y = top + (frame_.height - height) / 2 + 14, step = height / colours_.bands();
+    canvas.text(x, y - 30, "von Mises", "");
+    canvas.text(x, y - 15, "stress", "");
+    for (int b = 0; b < colours_.bands(); ++b) {
+      const std::string colour = hex(colours_.colour(b, 1));
+      canvas.rectangle(x, y + height - (b + 1) * step, wide, step,
+                       "fill=\"" + colour + "\" stroke=\"" + colour + "\"");
+    }
+    canvas.rectangle(x, y, wide, height, "fill=\"none\" stroke=\"#333\"");
+    if (colours_.open()) {
+      const std::string tip = "M" + svg_number(x) + " " + svg_number(y) + "l9 -9l9 9Z";
+      canvas.path(tip, "stroke=\"#333\" fill=\"" + hex(colours_.colour(colours_.bands() - 1, 1)) + "\"");
+    }
+    const double band = colours_.edge(1) - colours_.edge(0);
+    const long every = colours_.bands() > 12 ? 2 : 1;
+    for (int b = 0; b <= colours_.bands(); ++b) {
+      if (std::lround(colours_.edge(b) / band) % every != 0) continue;
+      const double at = y + height - b * step;
+      canvas.line(x + wide, at, x + wide + 5, at, "stroke=\"#333\"");
+      canvas.text(x + wide + 9, at + 4.5, short_number(rounded(colours_.edge(b))), "");
+    }
+  }
+
+  /// Edges are sums of steps: a zero among them has to read 0.
+  double rounded(double edge) const {
+    const double step = colours_.edge(1) - colours_.edge(0);
+    return std::abs(edge) < 1e-9 * step ? 0 : edge;
+  }
+
+  void axes(SvgCanvas& canvas) const {
+    const double x = width - margin - 34, y = top + frame_.height + 46, size = 26;
+    constexpr std::array<const char*, 3> names{"x", "y", "z"};
+    for (std::size_t k = 0; k < static_cast<std::size_t>(dim_); ++k) {
+      const double dx = size * view_.right[k], dy = -size * view_.up[k];
+      canvas.line(x, y, x + dx, y + dy, "stroke=\"#555\" stroke-width=\"1.3\"");
+      canvas.text(x + 1.35 * dx, y + 1.35 * dy + 4, names[k],
+                  "text-anchor=\"middle\" font-size=\"12\" font-style=\"italic\" fill=\"#555\"");
+    }
+  }
+
+  std::string caption() const {
+    std::string text = scale_ == 1 ? "Displacement to scale" : "Displacement × " + short_number(scale_);
+    text += ", largest " + short_number(largest_) + "; largest von Mises stress of an element " +
+            short_number(picture_.largest_von_mises) + "; grey: undeformed";
+    return text;
+  }
+
+  static constexpr std::size_t most_outline = 1 << 19;
+
+  const DeformedPicture& picture_;
+  const Mesh& mesh_;
+  int dim_;
+  std::vector<double> displacement_, nodal_values_;
+  Box box_;
+  View view_;
+  double largest_, scale_;
+  Surface surface_;
+  ColourScale colours_;
+  std::vector<std::vector<Vector>> patches_;
+  Frame frame_;
+};
+
+}  // namespace
+
+std::string deformed_svg(const DeformedPicture& picture) {
+  if (!picture.mesh || picture.displacement.size() != picture.mesh->coordinates.size() ||
+      picture.von_mises.size() != picture.mesh->node_count() || picture.mesh->facet_count() == 0)
+    throw InternalError("picture: the displacement or the stress does not fit the mesh");
+  return Drawing(picture).draw();
+}
+
+}  // namespace kacanov

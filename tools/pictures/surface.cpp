@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "pictures/surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kacanov {
+namespace {
+
+using Vector = std::array<double, 3>;
+
+double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+Vector minus(const Vector& a, const Vector& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+Vector unit(const Vector& a) {
+  const double length = std::sqrt(dot(a, a));
+  return length > 0 ? Vector{a[0] / length, a[1] / length, a[2] / length} : a;
+}
+
+/// A triangle of the surface by nodes; bit k of `edges` as in Face.
+struct Triangle {
+  std::array<std::int32_t, 3> nodes{};
+  std::uint8_t edges = 0;
+};
+
+/// The triangles to draw: all of them in 2D, those of the boundary in 3D.
+std::vector<Triangle> triangles(const Mesh& mesh) {
+  std::vector<Triangle> result;
+  const auto add = [&](std::int32_t a, std::int32_t b, std::int32_t c, int edges) {
+    result.push_back({{a, b, c}, static_cast<std::uint8_t>(edges)});
+  };
+  if (mesh.dim() == 2) {
+    const auto& e = mesh.elements;
+    for (std::size_t i = 0; i < e.size(); i += 3) add(e[i], e[i + 1], e[i + 2], 7);
+    return result;
+  }
+  for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+    const auto n = mesh.facet(f);
+    if (mesh.type == ElementType::tet4) {
+      add(n[0], n[1], n[2], 7);
+    } else if (mesh.type == ElementType::hex8) {
+      add(n[0], n[1], n[2], 0b011);
+      add(n[0], n[2], n[3], 0b110);
+    } else {
+      add(n[0], n[3], n[5], 0b101);
+      add(n[3], n[1], n[4], 0b011);
+      add(n[5], n[4], n[2], 0b110);
+      add(n[3], n[4], n[5], 0);
+    }
+  }
+  return result;
+}
+
+/// Positions of the nodes in the picture, and the normals of triangles there.
+class Shape {
+ public:
+  Shape(const Mesh& mesh, const View& view, std::span<const double> displacement, double scale) {
+    const auto dim = static_cast<std::size_t>(mesh.dim());
+    points_.resize(mesh.node_count());
+    Vector at{};
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      for (std::size_t k = 0; k < dim; ++k)
+        at[k] = mesh.coordinates[i * dim + k] + scale * displacement[i * dim + k];
+      points_[i] = view.project(std::span(at).first(dim));
+    }
+  }
+  const Vector& at(std::int32_t node) const { return points_[static_cast<std::size_t>(node)]; }
+  Vector normal(const Triangle& t) const {
+    return unit(cross(minus(at(t.nodes[1]), at(t.nodes[0])), minus(at(t.nodes[2]), at(t.nodes[0]))));
+  }
+
+ private:
+  std::vector<Vector> points_;
+};
+
+/// A side of a drawn triangle, to be matched with the same side of its neighbour.
+struct Side {
+  std::int32_t low, high;
+  std::uint32_t triangle;
+};
+
+std::vector<Side> sorted_sides(const std::vector<Triangle>& triangles) {
+  std::vector<Side> sides;
+  sides.reserve(3 * triangles.size());
+  for (std::uint32_t t = 0; t < triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(triangles[t].nodes[k], triangles[t].nodes[(k + 1) % 3]);
+      sides.push_back({low, high, t});
+    }
+  std::sort(sides.begin(), sides.end(),
+            [](const Side& a, const Side& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; });
+  return sides;
+}
+
+/// Sides of one triangle only, between a visible and a hidden one, or at a sharp edge that is seen.
+std::vector<Segment> outline(const std::vector<Triangle>& triangles, const std::vector<Side>& sides,
+                             const Shape& shape) {
+  constexpr double sharp = 0.77;  // cosine of 40°
+  std::vector<Segment> result;
+  for (std::size_t i = 0; i < sides.size();) {
+    std::size_t end = i + 1;
+    while (end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high) ++end;
+    bool drawn = end - i != 2;
+    if (!drawn) {
+      const Vector a = shape.normal(triangles[sides[i].triangle]);
+      const Vector b = shape.normal(triangles[sides[i + 1].triangle]);
+      const bool a_seen = a[2] > 0, b_seen = b[2] > 0;
+      drawn = a_seen != b_seen || (a_seen && dot(a, b) < sharp);
+    }
+    if (drawn) result.push_back({shape.at(sides[i].low), shape.at(sides[i].high)});
+    i = end;
+  }
+  return result;
+}
+
+std::uint8_t shade_of(const Vector& normal) {
+  static const Vector light = unit({-0.35, 0.55, 0.76});
+  const double brightness = std::max(0.0, dot(normal, light));
+  return static_cast<std::uint8_t>(std::min(shades - 1, static_cast<int>(brightness * shades)));
+}
+
+}  // namespace
+
+View View::of(const Mesh& mesh) {
+  View view;
+  if (mesh.dim() == 2) return view;
+  Vector low{}, high{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    low[k] = std::numeric_limits<double>::infinity();
+    high[k] = -low[k];
+    for (std::size_t i = k; i < mesh.coordinates.size(); i += 3) {
+      low[k] = std::min(low[k], mesh.coordinates[i]);
+      high[k] = std::max(high[k], mesh.coordinates[i]);
+    }
+  }
+  // The eye turned 30° from the normal of the longer side, and 25° above it.
+  constexpr double s = 0.5, c = 0.8660254037844386, below = 0.42261826174069944, level = 0.9063077870366499;
+  if (high[0] - low[0] >= high[1] - low[1])
+    view.eye = {level * s, -level * c, below};
+  else
+    view.eye = {level * c, level * s, below};
+  view.right = unit(cross({0, 0, 1}, view.eye));
+  view.up = cross(view.eye, view.right);
+  return view;
+}
+
+std::array<double, 3> View::project(std::span<const double> position) const {
+  Vector result{};
+  for (std::size_t k = 0; k < position.size(); ++k) {
+    result[0] += right[k] * position[k];
+    result[1] += up[k] * position[k];
+    result[2] += eye[k] * position[k];
+  }
+  return result;
+}
+
+Surface visible_surface(const Mesh& mesh, const View& view, std::span<const double> displacement,
+                        double scale, std::span<const double> values) {
+  const std::vector<Triangle> all = triangles(mesh);
+  const std::vector<Side> sides = sorted_sides(all);
+  Surface surface;
+  {
+    const Shape undeformed(mesh, view, displacement, 0);
+    surface.original = outline(all, sides, undeformed);
+  }
+  const Shape shape(mesh, view, displacement, scale);
+  surface.outline = outline(all, sides, shape);
+  for (const Triangle& t : all) {
+    const Vector normal = shape.normal(t);
+    if (mesh.dim() == 3 && normal[2] <= 0) continue;
+    Face face;
+    for (std::size_t k = 0; k < 3; ++k) {
+      face.corners[k] = shape.at(t.nodes[k]);
+      face.values[k] = values[static_cast<std::size_t>(t.nodes[k])];
+    }
+    face.shade = mesh.dim() == 3 ? shade_of(normal) : shades - 1;
+    face.edges = t.edges;
+    surface.faces.push_back(face);
+  }
+  return surface;
+}
+
+}  // namespace kacanov

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What of a deformed body can be seen: its faces and outlines, projected onto the picture.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <kacanov/mesh.hpp>
+
+namespace kacanov {
+
+/// Orthogonal projection: to the right, upwards, and towards the eye.
+struct View {
+  std::array<double, 3> right{1, 0, 0}, up{0, 1, 0}, eye{0, 0, 1};
+
+  /// Flat in 2D; in 3D from above, so turned that the body's longer horizontal side lies across the picture.
+  static View of(const Mesh& mesh);
+  std::array<double, 3> project(std::span<const double> position) const;
+};
+
+/// A triangle turned towards the eye.
+struct Face {
+  std::array<std::array<double, 3>, 3> corners{};  ///< right, up, depth (larger is nearer)
+  std::array<double, 3> values{};
+  std::uint8_t shade = 0;  ///< 0 (darkest) … shades − 1
+  std::uint8_t edges = 0;  ///< bit k: the side from corner k to k + 1 is one of the element
+};
+constexpr int shades = 8;
+
+struct Segment {
+  std::array<double, 3> from{}, to{};
+};
+
+struct Surface {
+  std::vector<Face> faces;        ///< visible ones of the deformed body
+  std::vector<Segment> outline;   ///< sharp edges and silhouette of the deformed body
+  std::vector<Segment> original;  ///< the same of the undeformed one
+};
+
+/// Positions are x + scale·u; `values` are at the nodes.
+Surface visible_surface(const Mesh& mesh, const View& view, std::span<const double> displacement,
+                        double scale, std::span<const double> values);
+
+}  // namespace kacanov

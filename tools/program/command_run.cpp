@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// kacanov run: solves a case and writes everything about it.
+#include <iostream>
+#include <string_view>
+
+#include "formats/atomic_file.hpp"
+#include "program/checkpoint_file.hpp"
+#include "program/commands.hpp"
+#include <kacanov/element_fields.hpp>
+#include "program/field_files.hpp"
+#include "program/interrupt.hpp"
+#include "program/loaded_case.hpp"
+#include "program/output_folder.hpp"
+#include "program/part_files.hpp"
+#include "pictures/picture.hpp"
+#include "program/report.hpp"
+#include "program/result_json.hpp"
+#include <kacanov/solve.hpp>
+
+namespace kacanov {
+namespace {
+
+/// `name` without a number at its end that follows `mark`; the same where it does not end so.
+std::string_view without_number(std::string_view name, std::string_view mark) {
+  const std::size_t last = name.find_last_not_of("0123456789");
+  if (last == std::string_view::npos || last + 1 == name.size() || !name.substr(0, last + 1).ends_with(mark)) return name;
+  return name.substr(0, last + 1 - mark.size());
+}
+
+/// Whether a run writes files of this name, or has left it unfinished. A whole checkpoint is none: it stays.
+bool is_output(std::string_view name) {
+  const std::string_view whole = without_number(name, ".part");
+  if (whole == "checkpoint.kacanov") return whole != name;
+  for (const std::string_view file : {"result.json", "summary.txt", "result.pvd", "body.pvtu", "contact.vtu", "deformed.svg"})
+    if (whole == file) return true;
+  constexpr std::string_view vtu = ".vtu";
+  return whole.ends_with(vtu) && without_number(whole.substr(0, whole.size() - vtu.size()), "_") == "body";
+}
+
+/// Takes away what an earlier run left under names that this one may not write again, and what it was writing when it was killed.
+void clear_folder(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> old;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (is_output(entry.path().filename().string())) old.push_back(entry.path());
+  for (const std::filesystem::path& file : old) std::filesystem::remove(file);
+}
+
+void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& json) {
+  write_file(file.string(), json.dump(2) + "\n");
+}
+
+std::string picture(const Case& input, const Mesh& mesh, std::span<const double> displacement,
+                    std::span<const double> von_mises, double largest_von_mises) {
+  DeformedPicture picture;
+  picture.title = input.name;
+  picture.mesh = &mesh;
+  picture.displacement = displacement;
+  picture.von_mises = von_mises;
+  picture.largest_von_mises = largest_von_mises;
+  for (const ContactEntry& entry : input.model.contact) {
+    if (const auto* plane = std::get_if<Plane>(&entry.obstacle))
+      picture.planes.push_back({plane->point, plane->normal});
+  }
+  return deformed_svg(picture);
+}
+
+/// Values of some nodes; of none where there are no values.
+std::vector<double> picked(std::span<const double> all, std::span<const std::int32_t> nodes, int components) {
+  const auto width = static_cast<std::size_t>(components);
+  std::vector<double> some;
+  some.reserve(nodes.size() * width);
+  for (const std::int32_t n : nodes) {
+    const auto values = all.subspan(static_cast<std::size_t>(n) * width, width);
+    some.insert(some.end(), values.begin(), values.end());
+  }
+  return some;
+}
+
+LoadedCase load(const Command& command, const Case& input, const MpiSession& mpi) {
+  if (!command.parts.empty()) return load_parts(command.parts, input, mpi);
+  LoadedCase loaded = load_case(input, mpi, command.memory_check);
+  keep_boundary(loaded);
+  return loaded;
+}
+
+std::string checkpoint_line(const CheckpointFile& file) {
+  return file.written() ? "  checkpoint    " + file.path().string() + "; the option --restart goes on from there\n" : "";
+}
+
+}  // namespace
+
+void leave_failure(const Command& command, const Case& input, const std::string& text) {
+  const std::filesystem::path folder = output_folder(command, input), file = folder / "result.json";
+  if (std::filesystem::is_directory(folder) && !std::filesystem::exists(file)) write_json(file, failure_json(text));
+}
+
+int run_command(const Command& command, const Case& input, MpiSession& mpi) {
+  const double start = MPI_Wtime();
+  LoadedCase loaded = load(command, input, mpi);
+  const std::filesystem::path folder = output_folder(command, input);
+  std::optional<CheckpointFile> file;  // on the first rank
+  std::optional<Checkpoint> left;
+  together(mpi, [&] {
+    if (!mpi.first()) return;
+    file.emplace(folder, input, loaded.print);
+    if (command.restart) left = file->read();
+    prepare_folder(folder);
+    clear_folder(folder);
+    if (!command.restart) file->remove();
+  });
+
+  // The folder is that of all ranks, and whichever fails first can say so there.
+  mpi.when_failing([&](const std::string& text) { leave_failure(command, input, text); });
+
+  listen_for_interrupts();
+  RunOptions options;
+  options.stop_requested = interrupt_came;
+  if (mpi.first() && input.output.checkpoint) {
+    options.checkpoint_due = [&] { return file->due(); };
+    options.checkpoint = [&](const Checkpoint& checkpoint) { file->write(checkpoint); };
+  }
+  if (left) options.start = &*left;
+  options.threads = threads_of(command);
+  options.progress = ProgressTable();
+  Solution solution = solve(loaded.part, input.model.solver, options);
+
+  const double solved = MPI_Wtime();
+  left.reset();
+  Result& result = solution.result;
+  const int dim = loaded.part.dim();
+  const ContactFields contact = gather_contact_fields(loaded.part, solution);
+  std::vector<double> displacement, von_mises;
+  if (input.output.report) {
+    const auto at_boundary = [&](std::span<const double> local, int components) {
+      return picked(gather_nodal(loaded.part, local, components), loaded.boundary_nodes, components);
+    };
+    displacement = at_boundary(solution.displacement, dim);
+    von_mises = at_boundary(nodal_von_mises(loaded.part, solution.displacement), 1);
+  }
+  if (input.output.fields) together(mpi, [&] { write_body(folder, loaded.part, solution); });
+  together(mpi, [&] {
+    if (!mpi.first()) return;
+    if (input.output.fields) write_collection(folder, *loaded.problem, input.model, contact, mpi.ranks());
+    if (input.output.report) {
+      write_file((folder / "deformed.svg").string(),
+                 picture(input, loaded.problem->mesh, displacement, von_mises, result.max_von_mises));
+    }
+    const double end = MPI_Wtime();
+    result.seconds.front().first = "solver";
+    result.seconds.insert(
+        result.seconds.begin(),
+        {{"total", end - start}, {"read", loaded.read_seconds}, {"distribute", loaded.distribute_seconds}});
+    result.seconds.emplace_back("output", end - solved);
+    write_json(folder / "result.json", result_json(result, dim));
+    const std::string text = summary(result, input.model, dim) + (result.status == Status::converged ? "" : checkpoint_line(*file));
+    if (input.output.report) write_file((folder / "summary.txt").string(), text);
+    if (result.status == Status::converged) file->remove();  // only now that all is written
+    std::cout << "\n" + text + "  files         " + folder.string() + "\n";
+  });
+  return result.status == Status::converged ? exit_converged : exit_not_converged;
+}
+
+}  // namespace kacanov

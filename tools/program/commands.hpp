@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The subcommands of the program. Each returns an exit code and throws InputError, InternalError or
+// ReportedFailure.
+#pragma once
+
+#include "case/case_file.hpp"
+#include "program/command.hpp"
+#include "program/parallel.hpp"
+
+namespace kacanov {
+
+int run_command(const Command& command, const Case& input, MpiSession& mpi);
+/// Leaves a result.json that says why a run broke down, for a run of which no process was left to do so. Where there is one, it stays.
+void leave_failure(const Command& command, const Case& input, const std::string& text);
+int spectrum_command(const Command& command, const Case& input, const MpiSession& mpi);
+/// Not converged means here that no penalty led to convergence.
+int sweep_command(const Command& command, const Case& input, const MpiSession& mpi);
+/// The next two need no MPI: everything happens on one rank. `ranks`: those of the run to be foreseen.
+int check_command(const Case& input, int ranks);
+int partition_command(const Command& command, const Case& input);
+
+}  // namespace kacanov

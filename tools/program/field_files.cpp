@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The fields of a solution as files for ParaView: the body in one piece a rank, the contact surface in one.
+#include "program/field_files.hpp"
+
+#include <algorithm>
+
+#include <kacanov/element_fields.hpp>
+#include "problem/selection.hpp"
+#include "formats/vtu_writer.hpp"
+
+namespace kacanov {
+namespace {
+
+std::string piece_name(int rank, int ranks) {
+  return ranks == 1 ? "body.vtu" : "body_" + std::to_string(rank) + ".vtu";
+}
+
+/// Names and types of the body's fields; the values are filled in by the caller.
+Grid body_grid(ElementType type) {
+  using Real = Values<double>;
+  using Number = Values<std::int64_t>;
+  using Flag = Values<std::uint8_t>;
+  const int dim = dimension(type);
+  Grid grid;
+  grid.dim = dim;
+  grid.shape = body_cells(type);
+  grid.point_fields = {{"displacement", dim, Real()}, {"node_id", 1, Number()}};
+  grid.cell_fields = {{"stress", 6, Real()}, {"von_mises", 1, Real()}, {"dev_strain", 1, Real()},
+                      {"g", 1, Real()},      {"plastic", 1, Flag()},   {"element_id", 1, Number()}};
+  return grid;
+}
+
+/// The user's numbers, worked out while they are written.
+template <typename Tag>
+Values<std::int64_t> tags(std::size_t count, const Tag& tag) {
+  return {count, [tag](std::size_t first, std::span<std::int64_t> out) {
+            for (std::size_t i = 0; i < out.size(); ++i) out[i] = tag(first + i);
+          }};
+}
+
+/// The facets of one contact entry with values at their nodes.
+struct Surface {
+  std::vector<double> points, gap, pressure, traction;
+  std::vector<std::int32_t> cells;
+  std::vector<std::int64_t> status, node_id;
+};
+
+/// Nodes that are no contact points (held, or missing the obstacle) have this status and zero fields.
+constexpr std::int64_t no_contact_point = -1;
+
+Surface contact_surface(const Problem& problem, const Model& model, const ContactFields& fields) {
+  const Mesh& mesh = problem.mesh;
+  const auto dim = static_cast<std::size_t>(mesh.dim());
+  Surface surface;
+  const Selection selection(mesh);
+  for (std::size_t entry = 0; entry < model.contact.size(); ++entry) {
+    const auto facets = selection.facets(model.contact[entry].on, "contact[" + std::to_string(entry) + "]");
+    const auto nodes = nodes_of_facets(mesh, facets);
+    const auto first = static_cast<std::int32_t>(surface.node_id.size());
+    auto point = problem.contact.begin();
+    for (const std::int32_t node : nodes) {
+      for (std::size_t c = 0; c < dim; ++c) {
+        surface.points.push_back(mesh.coordinates[static_cast<std::size_t>(node) * dim + c]);
+      }
+      surface.node_id.push_back(mesh.node_tag(static_cast<std::size_t>(node)));
+      while (point != problem.contact.end() && point->node < node) ++point;
+      // The entry's own point, or the one it was merged with.
+      auto chosen = problem.contact.end();
+      for (auto p = point; p != problem.contact.end() && p->node == node; ++p) {
+        if (chosen == problem.contact.end() || p->entry == static_cast<std::int32_t>(entry)) chosen = p;
+      }
+      const bool there = chosen != problem.contact.end();
+      const auto i = static_cast<std::size_t>(chosen - problem.contact.begin());
+      surface.gap.push_back(there ? fields.gap[i] : 0.0);
+      surface.pressure.push_back(there ? fields.pressure[i] : 0.0);
+      surface.status.push_back(there ? static_cast<std::int64_t>(fields.status[i]) : no_contact_point);
+      for (std::size_t c = 0; c < 3; ++c)
+        surface.traction.push_back(there ? fields.traction[3 * i + c] : 0.0);
+    }
+    for (const std::int32_t f : facets) {
+      for (const std::int32_t node : mesh.facet(static_cast<std::size_t>(f))) {
+        surface.cells.push_back(
+            first +
+            static_cast<std::int32_t>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin()));
+      }
+    }
+  }
+  return surface;
+}
+
+void write_surface(const std::filesystem::path& file, const Surface& surface, const Mesh& mesh) {
+  Grid grid;
+  grid.dim = mesh.dim();
+  grid.shape = facet_cells(mesh.type);
+  grid.points = surface.points;
+  grid.cells = surface.cells;
+  grid.point_fields = {{"gap", 1, surface.gap},
+                       {"pressure", 1, surface.pressure},
+                       {"tangential_traction", 3, surface.traction},
+                       {"status", 1, surface.status},
+                       {"node_id", 1, surface.node_id}};
+  write_vtu(file.string(), grid);
+}
+
+}  // namespace
+
+ContactFields gather_contact_fields(const Part& part, const Solution& solution) {
+  std::vector<double> traction, status;
+  for (const Vector3& t : solution.traction) traction.insert(traction.end(), t.begin(), t.end());
+  for (const ContactStatus s : solution.contact_status) status.push_back(static_cast<double>(s));
+  return {gather_contact(part, solution.gap, 1), gather_contact(part, solution.pressure, 1),
+          gather_contact(part, status, 1), gather_contact(part, traction, 3)};
+}
+
+void write_body(const std::filesystem::path& folder, const Part& part, const Solution& solution) {
+  Grid grid = body_grid(part.type);
+  grid.points = part.coordinates;
+  grid.cells = part.elements;
+  grid.point_fields[0].values = Values<double>(solution.displacement);
+  grid.point_fields[1].values = tags(part.nodes(), [&part](std::size_t i) { return part.node_tag(i); });
+  const auto element_field = [&](int components, std::span<double> reference::ElementFields::*which) {
+    const auto width = static_cast<std::size_t>(components);
+    return Values<double>(part.element_count() * width, [&part, &solution, which, width](std::size_t first, std::span<double> out) {
+      reference::ElementFields wanted;
+      wanted.*which = out;
+      element_fields(part, solution.displacement, first / width, out.size() / width, wanted);
+    });
+  };
+  using Fields = reference::ElementFields;
+  grid.cell_fields[0].values = element_field(6, &Fields::stress);
+  grid.cell_fields[1].values = element_field(1, &Fields::von_mises);
+  grid.cell_fields[2].values = element_field(1, &Fields::dev_strain);
+  grid.cell_fields[3].values = element_field(1, &Fields::secant);
+  grid.cell_fields[4].values = Values<std::uint8_t>(part.element_count(), [&](std::size_t first, std::span<std::uint8_t> out) {
+    reference::ElementFields wanted;
+    wanted.plastic = out;
+    element_fields(part, solution.displacement, first, out.size(), wanted);
+  });
+  grid.cell_fields[5].values = tags(part.element_count(), [&part](std::size_t e) { return part.element_tag(e); });
+  write_vtu((folder / piece_name(part.halo.rank, part.halo.ranks)).string(), grid);
+}
+
+void write_collection(const std::filesystem::path& folder, const Problem& problem, const Model& model,
+                      const ContactFields& contact, int ranks) {
+  std::vector<PvdPart> parts{{"body", piece_name(0, ranks)}};
+  if (ranks > 1) {
+    std::vector<std::string> pieces;
+    for (int rank = 0; rank < ranks; ++rank) pieces.push_back(piece_name(rank, ranks));
+    write_pvtu((folder / "body.pvtu").string(), body_grid(problem.mesh.type), pieces);
+    parts[0].file = "body.pvtu";
+  }
+  if (!problem.contact.empty()) {
+    write_surface(folder / "contact.vtu", contact_surface(problem, model, contact), problem.mesh);
+    parts.push_back({"contact", "contact.vtu"});
+  }
+  write_pvd((folder / "result.pvd").string(), parts);
+}
+
+}  // namespace kacanov

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "program/hashed_file.hpp"
+
+#include <filesystem>
+
+#include <kacanov/checkpoint.hpp>
+#include <kacanov/error.hpp>
+
+namespace kacanov {
+
+HashedWriter::HashedWriter(const std::string& path, std::string_view magic, const nlohmann::json& header) : file_(path) {
+  const std::string text = header.dump();
+  std::string front(magic);
+  const std::uint64_t length = text.size();
+  front.append(reinterpret_cast<const char*>(&length), sizeof length);
+  front += text;
+  write(front.data(), front.size());
+  file_.write(&hash_, sizeof hash_);
+}
+
+void HashedWriter::write(const void* data, std::size_t bytes) {
+  file_.write(data, bytes);
+  hash_ = hash_bytes(data, bytes, hash_);
+}
+
+void HashedWriter::commit() {
+  file_.write(&hash_, sizeof hash_);
+  file_.commit(AtomicFile::Durable::yes);
+}
+
+HashedReader::HashedReader(const std::string& path, std::string_view magic, const std::string& kind)
+    : path_(path), kind_(kind), stream_(path, std::ios::binary) {
+  std::error_code error;
+  size_ = left_ = std::filesystem::file_size(path, error);
+  if (error) throw InputError(path + ": cannot be read: " + error.message());
+  if (!stream_) throw InputError(path + ": cannot be read");
+  std::string front(magic.size(), '\0');
+  if (size_ >= magic.size()) take(front.data(), front.size());
+  if (front != magic) throw InputError(path + ": this is no " + kind + " that this version of kacanov can read");
+  std::uint64_t length = 0;
+  take(&length, sizeof length);
+  expect(length, 1);
+  front.append(reinterpret_cast<const char*>(&length), sizeof length);
+  front.resize(front.size() + length);
+  take(front.data() + front.size() - length, length);
+  hash_ = hash_bytes(front.data(), front.size(), hash_);
+  check_hash();
+  header_ = nlohmann::json::parse(std::string_view(front).substr(front.size() - length));
+}
+
+void HashedReader::expect(std::uint64_t entries, std::size_t bytes_each) const {
+  if (entries > left_ / bytes_each) fail("is cut short: " + std::to_string(size_) + " bytes");
+}
+
+void HashedReader::read(void* data, std::size_t bytes) {
+  take(data, bytes);
+  hash_ = hash_bytes(data, bytes, hash_);
+}
+
+void HashedReader::finish() {
+  check_hash();
+  if (left_ != 0) fail("is damaged: its content does not match its hash");
+}
+
+void HashedReader::fail(const std::string& what) const { throw InputError(path_ + ": this " + kind_ + " " + what); }
+
+void HashedReader::take(void* data, std::size_t bytes) {
+  expect(bytes, 1);
+  if (!stream_.read(static_cast<char*>(data), static_cast<std::streamsize>(bytes))) throw InputError(path_ + ": cannot be read to its end");
+  left_ -= bytes;
+}
+
+void HashedReader::check_hash() {
+  std::uint64_t hash = 0;
+  take(&hash, sizeof hash);
+  if (hash != hash_) fail("is damaged: its content does not match its hash");
+}
+
+}  // namespace kacanov

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How many processes and threads a run gets, and starting it under mpiexec.
+#include "program/launch.hpp"
+
+#include <fcntl.h>
+#include <sched.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <set>
+#include <sstream>
+#include <vector>
+
+#include "program/command.hpp"
+#include <kacanov/error.hpp>
+#include "program/interrupt.hpp"
+
+namespace kacanov {
+namespace {
+
+/// Marks a process that run_under_mpiexec started.
+constexpr const char* started_mark = "KACANOV_STARTED_BY_ITSELF";
+/// Added to exit codes other than 0 on the way through mpiexec.
+constexpr int code_offset = 80;
+
+/// mpiexec's process while it runs, for the signal handler, and the signal that came.
+volatile std::sig_atomic_t running_child = 0;
+volatile std::sig_atomic_t caught_signal = 0;
+
+timespec first_caught{};
+volatile std::sig_atomic_t insisting = 0;
+
+/// Asks the ranks to stop, through mpiexec and once a second: it or they may not listen yet. Asked again, mpiexec ends them.
+extern "C" void pass_on(int signal) {
+  if (signal != SIGALRM) {
+    caught_signal = signal;
+    if (asks_again(first_caught)) insisting = 1;
+  }
+  if (running_child > 0) kill(static_cast<pid_t>(running_child), insisting != 0 ? SIGTERM : stop_signal);
+  alarm(1);
+}
+
+/// CPUs a control group's quota amounts to; a large number without one.
+int quota_cores() {
+  std::ifstream file("/sys/fs/cgroup/cpu.max");
+  double quota = 0.0, period = 0.0;
+  if (!(file >> quota >> period) || period <= 0.0) return 1 << 20;
+  return std::max(1, static_cast<int>(quota / period));
+}
+
+/// Open MPI that cannot map its libraries and shared memory crashes with a trace, or hangs.
+void refuse_narrow_limit() {
+  constexpr rlim_t megabyte = 1 << 20, least = 512;  // mpiexec and one rank have 200 to 300
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || limit.rlim_cur >= least * megabyte) return;
+  throw InputError("several ranks cannot be started: the address space of a process is limited to " +
+                   std::to_string(limit.rlim_cur / megabyte) + " MiB (ulimit -v), and MPI needs " + std::to_string(least));
+}
+
+[[noreturn]] void become_mpiexec(const std::vector<std::string>& words) {
+  // Its own group, so that an interrupt from the keyboard comes once, through pass_on; and no orphan if this
+  // program is killed outright.
+  setpgid(0, 0);
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  std::signal(stop_signal, SIG_IGN);  // until mpiexec listens to it
+  const int nothing = open("/dev/null", O_RDONLY);
+  if (nothing >= 0) dup2(nothing, STDIN_FILENO);
+  std::vector<char*> pointers;
+  for (const std::string& word : words) pointers.push_back(const_cast<char*>(word.c_str()));
+  pointers.push_back(nullptr);
+  execv(pointers[0], pointers.data());
+  _exit(127);
+}
+
+}  // namespace
+
+bool started_by_mpi() {
+  constexpr const char* marks[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMI_RANK", "PMIX_RANK",
+                                   "MPI_LOCALNRANKS"};
+  for (const char* mark : marks) {
+    if (std::getenv(mark) != nullptr) return true;
+  }
+  // Within a batch script alone, SLURM_STEP_ID is not set: only srun makes steps of several tasks.
+  return std::getenv("SLURM_STEP_ID") != nullptr && std::getenv("SLURM_STEP_NUM_TASKS") != nullptr;
+}
+
+int usable_cores() {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  if (sched_getaffinity(0, sizeof set, &set) != 0) return 1;
+  std::set<std::string> cores;  // hardware threads of one core share their list of siblings
+  for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
+    if (!CPU_ISSET(cpu, &set)) continue;
+    std::ifstream file("/sys/devices/system/cpu/cpu" + std::to_string(cpu) +
+                       "/topology/thread_siblings_list");
+    std::string siblings;
+    if (!(file >> siblings)) siblings = "cpu" + std::to_string(cpu);
+    cores.insert(siblings);
+  }
+  return std::clamp(static_cast<int>(cores.size()), 1, quota_cores());
+}
+
+std::int64_t estimate_unknowns(const MeshSource& mesh) {
+  if (mesh.box) {
+    const int dim = dimension(mesh.box->type);
+    const int order = mesh.box->type == ElementType::tet10 ? 2 : 1;
+    double nodes = 1.0;
+    for (std::size_t c = 0; c < static_cast<std::size_t>(dim); ++c)
+      nodes *= 1.0 + order * static_cast<double>(mesh.box->cells[c]);
+    return static_cast<std::int64_t>(std::min(nodes * dim, 9e18));
+  }
+  // A node of a tetrahedral mesh brings five and a half elements: some 240 bytes as text for its three
+  // unknowns.
+  constexpr std::int64_t bytes_per_unknown = 80;
+  std::error_code error;
+  const auto bytes = std::filesystem::file_size(*mesh.file, error);
+  return error ? 0 : static_cast<std::int64_t>(bytes) / bytes_per_unknown;
+}
+
+Shape choose_shape(const Case& input, std::optional<int> ranks, std::optional<int> threads, int cores) {
+  Shape shape;
+  shape.threads = threads.value_or(1);
+  const bool small = estimate_unknowns(input.mesh) < small_problem;
+  shape.ranks = ranks.value_or(small ? 1 : std::max(1, cores / shape.threads));
+  return shape;
+}
+
+std::string find_mpiexec() {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path != nullptr ? path : "/usr/local/bin:/usr/bin:/bin");
+  std::string folder;
+  while (std::getline(folders, folder, ':')) {
+    const std::string file = (folder.empty() ? "." : folder) + "/mpiexec";
+    if (access(file.c_str(), X_OK) == 0) return file;
+  }
+  return {};
+}
+
+void set_mpi_environment() {
+  constexpr const char* settings[][2] = {
+      {"OMPI_ALLOW_RUN_AS_ROOT", "1"},
+      {"OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"},
+      // Containers forbid the system call behind single copies; shared memory alone does.
+      {"OMPI_MCA_btl_vader_single_copy_mechanism", "none"},
+      {"OMPI_MCA_btl", "self,vader"},
+      // Without these, even one process looks for ssh and starts a daemon.
+      {"OMPI_MCA_plm", "isolated"},
+      {"OMPI_MCA_ess_singleton_isolated", "1"},
+      {"OMPI_MCA_pml", "ob1"},
+      {"OMPI_MCA_btl_base_warn_component_unused", "0"},
+      // Waiting ranks let others work: on a busy machine spinning ones hold up the run.
+      {"OMPI_MCA_mpi_yield_when_idle", "1"},
+      {"HWLOC_HIDE_ERRORS", "2"},
+  };
+  for (const auto& [name, value] : settings) setenv(name, value, 0);
+}
+
+int coded_exit(int exit_code) {
+  return exit_code != 0 && std::getenv(started_mark) != nullptr ? exit_code + code_offset : exit_code;
+}
+
+int run_under_mpiexec(const std::string& mpiexec, Shape shape, int argc, const char* const* argv) {
+  refuse_narrow_limit();
+  std::vector<std::string> words{mpiexec,
+                                 "--quiet",
+                                 "--oversubscribe",
+                                 "--bind-to",
+                                 "none",
+                                 "-n",
+                                 std::to_string(shape.ranks),
+                                 std::filesystem::read_symlink("/proc/self/exe").string()};
+  for (int i = 1; i < argc; ++i) words.emplace_back(argv[i]);
+  set_mpi_environment();
+  setenv(started_mark, "1", 1);
+
+  struct sigaction action {
+  }, before{};
+  action.sa_handler = pass_on;
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    // What was to be ignored, as under nohup, still is.
+    if (sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
+      sigaction(signal, &action, nullptr);
+  }
+  sigaction(SIGALRM, &action, nullptr);
+  const pid_t child = fork();
+  if (child < 0) throw InternalError(std::string("cannot start mpiexec: ") + std::strerror(errno));
+  if (child == 0) become_mpiexec(words);
+  running_child = child;
+  if (caught_signal != 0) kill(child, stop_signal);
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  running_child = 0;
+  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  if (code == 0) return 0;
+  if (code > code_offset && code <= code_offset + exit_failure) return code - code_offset;
+  if (caught_signal != 0) {  // it came when there was nothing yet to stop in order
+    const int signal = caught_signal;
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+  }
+  std::string reason = "mpiexec failed with exit code " + std::to_string(code);
+  if (code > 128)
+    reason = "a process was ended by signal " + std::to_string(code - 128) +
+             (code == 137 ? " (out of memory?)" : "");
+  throw InternalError(reason);
+}
+
+}  // namespace kacanov

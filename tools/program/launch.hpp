@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How many processes and threads a run gets, and starting it under mpiexec.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "case/case_file.hpp"
+
+namespace kacanov {
+
+/// True where mpiexec, srun or the like started this process as one of a group.
+bool started_by_mpi();
+
+/// Cores this process may use: physical ones, within its affinity mask and its control group's quota.
+int usable_cores();
+
+struct Shape {
+  int ranks = 1, threads = 1;
+};
+
+/// Below this many unknowns one process is as fast as several.
+constexpr std::int64_t small_problem = 30000;
+
+/// Ranks and threads for a case, from what the user gave: small cases get one rank, others one on each core.
+Shape choose_shape(const Case& input, std::optional<int> ranks, std::optional<int> threads, int cores);
+
+/// Unknowns of the case: exact for a generated box, from the size of the file otherwise. Reads nothing.
+std::int64_t estimate_unknowns(const MeshSource& mesh);
+
+/// Path of mpiexec on PATH; empty where there is none.
+std::string find_mpiexec();
+
+/// Runs this program with the same arguments on several ranks under mpiexec and waits for it. Returns the
+/// program's exit code. A signal that ends this process ends the others as well. Throws InternalError where a process died,
+/// InputError where a limit on the address space is too narrow for MPI to start.
+int run_under_mpiexec(const std::string& mpiexec, Shape shape, int argc, const char* const* argv);
+
+/// What a process that was started by run_under_mpiexec has to leave with, so that its exit code cannot be
+/// taken for one of mpiexec's own.
+int coded_exit(int exit_code);
+
+/// Settings that keep one MPI process, or several on one machine, quiet and working (also as root in a
+/// container); what the user has set stays. To be called before MPI_Init or mpiexec.
+void set_mpi_environment();
+
+}  // namespace kacanov

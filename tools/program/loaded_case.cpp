@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From a case and its mesh to a problem on the first rank and parts on all.
+#include "program/loaded_case.hpp"
+
+#include <malloc.h>
+
+#include <cstdlib>
+#include <iostream>
+
+#include "formats/gmsh_reader.hpp"
+#include "program/memory_model.hpp"
+
+namespace kacanov {
+
+Mesh load_mesh(const MeshSource& source) {
+  return source.file ? read_gmsh(*source.file) : make_box(*source.box);
+}
+
+Problem load_problem(const Case& input, RankCount ranks) {
+  check_supported(input.model.solver);
+  const auto check_memory = [&](const ProblemSize& size) {
+    if (ranks.here > 0) refuse_what_cannot_fit(size, ranks.all, ranks.here);
+  };
+  if (input.mesh.box) check_memory(size_of(*input.mesh.box, input.model));
+  Mesh mesh = load_mesh(input.mesh);
+  check_memory(size_of(mesh, input.model));
+  check_dimension(input, mesh.dim());
+  Problem problem = build_problem(std::move(mesh), input.model);
+  print_warnings(input, problem);
+  return problem;
+}
+
+void print_warnings(const Case& input, const Problem& problem) {
+  for (const auto* warnings : {&input.warnings, &problem.warnings})
+    for (const std::string& warning : *warnings) std::cerr << "kacanov: warning: " + warning + "\n";
+}
+
+LoadedCase load_case(const Case& input, const MpiSession& mpi, bool memory_check) {
+  LoadedCase loaded;
+  RankCount ranks{mpi.ranks(), 0};
+  if (memory_check) {
+    MPI_Comm machine;
+    MPI_Comm_split_type(mpi.comm(), MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+    MPI_Comm_size(machine, &ranks.here);
+    MPI_Comm_free(&machine);
+  }
+  const double start = MPI_Wtime();
+  together(mpi, [&] {
+    if (mpi.first()) loaded.problem = load_problem(input, ranks);
+  });
+  const double read = MPI_Wtime();
+  loaded.part = distribute(loaded.problem ? &*loaded.problem : nullptr, mpi.comm());
+  loaded.read_seconds = read - start;
+  loaded.distribute_seconds = MPI_Wtime() - read;
+  return loaded;
+}
+
+void keep_boundary(LoadedCase& loaded) {
+  if (loaded.problem) {
+    loaded.print = fingerprint(*loaded.problem);
+    loaded.boundary_nodes = keep_boundary(*loaded.problem);
+  }
+  malloc_trim(0);  // back to the system, before the solver asks for more
+}
+
+int threads_of(const Command& command) {
+  if (command.threads) return *command.threads;
+  const char* variable = std::getenv("OMP_NUM_THREADS");
+  const int threads = variable != nullptr ? std::atoi(variable) : 1;
+  return threads >= 1 ? threads : 1;
+}
+
+}  // namespace kacanov

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How much memory a run takes, from what its arrays hold; and how much there is.
+#pragma once
+
+#include <cstdint>
+
+#include "case/case_file.hpp"
+#include <kacanov/mesh.hpp>
+
+namespace kacanov {
+
+struct ProblemSize {
+  ElementType type = ElementType::tet4;
+  double nodes = 0.0, elements = 0.0;
+  double contact_points = 0.0;  ///< 0 where not known yet: they are few in 3D
+  bool nonlinear = true;        ///< some law is not linear: the run takes tangents
+};
+
+/// Size of a model on a mesh, or on the one that `box` stands for, without its contact points.
+ProblemSize size_of(const BoxSpec& box, const Model& model);
+ProblemSize size_of(const Mesh& mesh, const Model& model);
+
+/// Sum over the ranks of their largest resident memories in bytes, with the default preconditioner: within 15 % from some 10,000 nodes on.
+double estimated_memory(const ProblemSize& size, int ranks);
+
+/// Bytes that a new process could have: what the system calls available, less where a control group allows less. 0: unknown.
+double available_memory();
+
+/// Throws InputError where `ranks_here` of the `ranks` ranks of a run of this size would not fit on this machine, with both numbers.
+void refuse_what_cannot_fit(const ProblemSize& size, int ranks, int ranks_here);
+
+}  // namespace kacanov

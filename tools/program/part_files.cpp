@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "program/part_files.hpp"
+
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+#include "program/case_identity.hpp"
+#include <kacanov/error.hpp>
+#include "program/hashed_file.hpp"
+#include "program/output_folder.hpp"
+#include "parallel/part_fields.hpp"
+
+namespace kacanov {
+
+void exchange_fields(Either<Group> auto& group, const auto& stream) { stream(group.name, group.dimension, group.members); }
+
+/// What keep_boundary leaves.
+void exchange_fields(Either<Problem> auto& problem, const auto& stream) {
+  auto& mesh = problem.mesh;
+  stream(mesh.type, mesh.coordinates, mesh.elements, mesh.node_tags, mesh.element_tags, mesh.facets, mesh.facet_element, mesh.groups,
+         problem.contact, problem.warnings);
+}
+
+namespace {
+
+using nlohmann::json;
+
+constexpr std::string_view part_magic = "kacanov part 3\n", boundary_magic = "kacanov boundary 3\n";
+/// The sections of a case that parts are made of.
+constexpr const char* sections[] = {"mesh", "material", "boundary", "contact", "probe"};
+
+std::filesystem::path part_file(const std::filesystem::path& folder, int rank) {
+  return folder / ("part_" + std::to_string(rank) + ".kacanov");
+}
+
+std::filesystem::path boundary_file(const std::filesystem::path& folder) { return folder / "boundary.kacanov"; }
+
+/// Length and hash of the mesh file; null where there is none, as on a machine that has the parts only.
+json mesh_identity(const Case& input) {
+  std::ifstream file;
+  if (input.mesh.file) file.open(*input.mesh.file, std::ios::binary);
+  if (!file.is_open()) return nullptr;
+  std::vector<char> piece(std::size_t{1} << 20);
+  std::uint64_t bytes = 0, hash = 0;
+  do {
+    file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    const auto length = static_cast<std::size_t>(file.gcount());
+    hash = hash_bytes(piece.data(), length, hash);
+    bytes += length;
+  } while (file);
+  return {{"bytes", bytes}, {"hash", hash}};
+}
+
+HashedReader open_file(const std::filesystem::path& file, std::string_view magic, const std::string& kind) {
+  if (!std::filesystem::exists(file))
+    throw InputError("--parts: there is no file " + file.string() + ", which kacanov partition writes");
+  return HashedReader(file.string(), magic, kind);
+}
+
+HashedReader open_part(const std::filesystem::path& folder, int rank) { return open_file(part_file(folder, rank), part_magic, "part"); }
+
+HashedReader open_boundary(const std::filesystem::path& folder) {
+  return open_file(boundary_file(folder), boundary_magic, "boundary");
+}
+
+/// Throws InputError where the parts were made of a case with another text.
+void check_case(const json& header, const Case& input, const std::string& file) {
+  const json& there = header.at("case");
+  const std::string text = describe_differences(there, input.document, differing_sections(there, input.document, sections));
+  if (!text.empty()) throw InputError("--parts: " + file + " belongs to another case: " + text);
+}
+
+/// Throws InputError where the mesh file is at hand and is not the one that the parts were made of. It is hashed, not parsed.
+void check_mesh(const json& header, const Case& input, const std::string& file) {
+  const json &there = header.at("mesh_file"), here = mesh_identity(input);
+  if (here.is_null() || here == there) return;
+  const auto text = [](const json& mesh) {
+    std::ostringstream words;
+    words << mesh.at("bytes") << " bytes with hash " << std::hex << mesh.at("hash").get<std::uint64_t>();
+    return words.str();
+  };
+  throw InputError("--parts: " + file + " was made of another mesh: " + *input.mesh.file + " had " + text(there) + ", and now has " +
+                   text(here));
+}
+
+/// Throws InputError unless this is the header of the part of a rank, for this case and as many ranks.
+void check_part(const json& header, const Case& input, const MpiSession& mpi, const std::string& file) {
+  check_case(header, input, file);
+  const int parts = header.at("parts"), part = header.at("part");
+  if (parts != mpi.ranks()) {
+    throw InputError("--parts: " + file + " is one of " + std::to_string(parts) + " parts, expected as many ranks, but " +
+                     std::to_string(mpi.ranks()) + " were started");
+  }
+  if (part != mpi.rank())
+    throw InputError("--parts: " + file + ": expected part " + std::to_string(mpi.rank()) + ", got part " + std::to_string(part));
+}
+
+/// A folder for files until all of them are whole; with it goes what is still there, and what an attempt that was killed has left.
+class Staging {
+ public:
+  explicit Staging(std::filesystem::path folder) : folder_(std::move(folder)) {
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directory(folder_);
+  }
+  ~Staging() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  Staging(const Staging&) = delete;
+  Staging& operator=(const Staging&) = delete;
+
+  const std::filesystem::path& folder() const noexcept { return folder_; }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// What all files of one split have in common.
+std::uint64_t split_identity(json header) {
+  header.erase("part");
+  const std::string text = header.dump();
+  return hash_bytes(text.data(), text.size());
+}
+
+}  // namespace
+
+void write_parts(const std::filesystem::path& folder, const Case& input, Problem problem, int parts) {
+  prepare_folder(folder);
+  const Staging staging(folder / "unfinished");
+  const json header{{"parts", parts},
+                    {"case", case_sections(input.document, sections)},
+                    {"mesh_file", mesh_identity(input)},
+                    {"problem", fingerprint_json(fingerprint(problem))}};
+  split(problem, parts, [&](int rank, Part&& part) {
+    json own = header;
+    own["part"] = rank;
+    HashedWriter file(part_file(staging.folder(), rank).string(), part_magic, own);
+    FieldWriter{file}(part);
+    file.commit();
+  });
+  const std::vector<std::int32_t> boundary_nodes = keep_boundary(problem);
+  {
+    HashedWriter file(boundary_file(staging.folder()).string(), boundary_magic, header);
+    const FieldWriter write{file};
+    write(problem);
+    write(boundary_nodes);
+    file.commit();
+  }
+  std::filesystem::remove(boundary_file(folder));
+  for (int rank = 0; rank < parts; ++rank) std::filesystem::rename(part_file(staging.folder(), rank), part_file(folder, rank));
+  for (int rank = parts; std::filesystem::remove(part_file(folder, rank)); ++rank) {
+  }
+  std::filesystem::rename(boundary_file(staging.folder()), boundary_file(folder));
+}
+
+int count_parts(const std::filesystem::path& folder, const Case& input) {
+  const HashedReader reader = open_boundary(folder);
+  check_case(reader.header(), input, boundary_file(folder).string());
+  return reader.header().at("parts");
+}
+
+LoadedCase load_parts(const std::filesystem::path& folder, const Case& input, const MpiSession& mpi) {
+  const double start = MPI_Wtime();
+  LoadedCase loaded;
+  std::uint64_t identity = 0, first_identity = 0;
+  together(mpi, [&] {
+    check_supported(input.model.solver);
+    if (mpi.first()) {
+      HashedReader reader = open_boundary(folder);
+      check_case(reader.header(), input, boundary_file(folder).string());
+      check_mesh(reader.header(), input, boundary_file(folder).string());
+      const FieldReader read{reader};
+      read(loaded.problem.emplace());
+      read(loaded.boundary_nodes);
+      reader.finish();
+      loaded.print = parse_fingerprint(reader.header().at("problem"));
+      first_identity = split_identity(reader.header());
+    }
+    HashedReader reader = open_part(folder, mpi.rank());
+    check_part(reader.header(), input, mpi, part_file(folder, mpi.rank()).string());
+    FieldReader{reader}(loaded.part);
+    reader.finish();
+    identity = split_identity(reader.header());
+    if (mpi.first()) print_warnings(input, *loaded.problem);
+  });
+  MPI_Bcast(&first_identity, 1, MPI_UINT64_T, 0, mpi.comm());
+  together(mpi, [&] {
+    if (identity != first_identity) {
+      throw InputError("--parts: " + part_file(folder, mpi.rank()).string() + " belongs to another split than " +
+                       boundary_file(folder).string() + "; write all of them again");
+    }
+  });
+  join(loaded.part, mpi.comm());
+  loaded.read_seconds = MPI_Wtime() - start;
+  return loaded;
+}
+
+}  // namespace kacanov

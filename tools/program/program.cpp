@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The program kacanov: reads the command line, sees to its processes and hands over to a subcommand.
+#include <csignal>
+#include <iostream>
+#include <optional>
+
+#include "program/command.hpp"
+#include "program/commands.hpp"
+#include <kacanov/error.hpp>
+#include "program/interrupt.hpp"
+#include "program/launch.hpp"
+#include "program/parallel.hpp"
+#include "program/part_files.hpp"
+
+namespace {
+
+using namespace kacanov;
+
+/// Whether everything happens on one rank, without MPI.
+bool needs_one(const Command& command) {
+  return command.kind == Command::Kind::check || command.kind == Command::Kind::partition;
+}
+
+/// `ranks`: those that a run would have here.
+int command_on_one(const Command& command, const Case& input, int ranks) {
+  return command.kind == Command::Kind::check ? check_command(input, command.ranks.value_or(ranks)) : partition_command(command, input);
+}
+
+int dispatch(const Command& command, const Case& input, MpiSession& mpi) {
+  switch (command.kind) {
+    case Command::Kind::run: return run_command(command, input, mpi);
+    case Command::Kind::spectrum: return spectrum_command(command, input, mpi);
+    case Command::Kind::sweep: return sweep_command(command, input, mpi);
+    case Command::Kind::check:
+    case Command::Kind::partition: break;
+  }
+  int code = exit_converged;
+  together(mpi, [&] {
+    if (mpi.first()) code = command_on_one(command, input, mpi.ranks());
+  });
+  MPI_Bcast(&code, 1, MPI_INT, 0, mpi.comm());
+  return code;
+}
+
+/// Within MPI, with the ranks there are.
+int run_here(const Command& command, const std::optional<Case>& known) {
+  take_signals();
+  MpiSession mpi;
+  try {
+    std::optional<Case> input = known;
+    together(mpi, [&] {
+      if (!needs_one(command) && command.ranks && *command.ranks != mpi.ranks()) {
+        throw InputError("--ranks: " + std::to_string(*command.ranks) + " asked for, but " +
+                         std::to_string(mpi.ranks()) + " were started");
+      }
+      // Every rank reads the few lines of the case file; the mesh is the first one's.
+      if (!input) input = read_case(command.case_file, command.overrides);
+    });
+    int code = exit_converged;
+    collectively(mpi, [&] { code = dispatch(command, *input, mpi); });
+    return code;
+  } catch (const ReportedFailure& failure) {
+    return failure.exit_code;
+  }
+}
+
+/// Those of the command line, or as many as there are parts.
+std::optional<int> ranks_asked_for(const Command& command, const Case& input) {
+  if (command.parts.empty()) return command.ranks;
+  const int parts = count_parts(command.parts, input);
+  if (command.ranks.value_or(parts) != parts) {
+    throw InputError("--ranks: expected " + std::to_string(parts) + ", as many as there are parts in " + command.parts + ", got " +
+                     std::to_string(*command.ranks));
+  }
+  return parts;
+}
+
+/// Under mpiexec; where a process was killed, the others went with it, and only this one can still say so.
+int run_on_ranks(const std::string& mpiexec, Shape shape, const Command& command, const Case& input, int argc,
+                 const char* const* argv) {
+  try {
+    return run_under_mpiexec(mpiexec, shape, argc, argv);
+  } catch (const InternalError&) {
+    if (command.kind == Command::Kind::run) leave_failure(command, input, current_failure().text);
+    throw;
+  }
+}
+
+/// Started by hand: validates what is quickly validated, then goes on alone or under mpiexec.
+int run_alone(const Command& command, int argc, const char* const* argv) {
+  const Case input = read_case(command.case_file, command.overrides);
+  check_supported(input.model.solver);
+  Shape shape = choose_shape(input, needs_one(command) ? command.ranks : ranks_asked_for(command, input), command.threads, usable_cores());
+  if (needs_one(command)) {
+    take_signals();
+    return command_on_one(command, input, shape.ranks);
+  }
+  if (shape.ranks > 1) {
+    const std::string mpiexec = find_mpiexec();
+    if (!mpiexec.empty()) return run_on_ranks(mpiexec, shape, command, input, argc, argv);
+    if (command.ranks)
+      throw InputError("--ranks: mpiexec is not on the PATH; without it there is only one rank");
+    std::cerr << "kacanov: note: mpiexec is not on the PATH; running on one rank\n";
+  }
+  set_mpi_environment();
+  return run_here(command, input);
+}
+
+int say(const ParsedCommand& parsed) {
+  std::cout << parsed.output << std::flush;
+  std::cerr << parsed.error << std::flush;
+  return parsed.exit_code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit of its size is an error like a full disk
+  const ParsedCommand parsed = parse_command(argc, argv);
+  try {
+    if (started_by_mpi()) {
+      if (parsed.command) return coded_exit(run_here(*parsed.command, std::nullopt));
+      const MpiSession mpi;
+      return mpi.first() ? say(parsed) : parsed.exit_code;
+    }
+    return parsed.command ? run_alone(*parsed.command, argc, argv) : say(parsed);
+  } catch (...) {
+    const Failure failure = current_failure();
+    print_failure(failure);
+    return failure.exit_code;
+  }
+}

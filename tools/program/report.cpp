@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a run tells people: a line a step while it goes, a summary when it is done.
+#include "program/report.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <iostream>
+
+#include "problem/vector3.hpp"
+
+namespace kacanov {
+namespace {
+
+template <class... Arguments>
+std::string format(const char* pattern, Arguments... arguments) {
+  std::array<char, 256> buffer{};
+  std::snprintf(buffer.data(), buffer.size(), pattern, arguments...);
+  return buffer.data();
+}
+
+std::string vector_text(const Vector3& v, int dim) {
+  std::string text = "(";
+  for (int c = 0; c < dim; ++c) text += (c > 0 ? ", " : "") + format("%.6g", v[static_cast<std::size_t>(c)]);
+  return text + ")";
+}
+
+}  // namespace
+
+void ProgressTable::operator()(const ProgressStep& step) {
+  if (step.phase == "note") {
+    std::cout << "note: " + step.note + "\n" << std::flush;
+    return;
+  }
+  if (!headed_) {
+    std::cout << format("%4s  %-10s %8s %8s %10s %12s %12s %12s %12s %9s\n", "step", "method", "contact",
+                        "CG", "r", "equilibrium", "penetration", "friction", "worst", "seconds");
+    headed_ = true;
+  }
+  std::cout << format("%4d  %-10s %8lld %8lld %10.3e %12.2e %12.2e %12.2e %12.2e %9.2f\n", step.outer,
+                      step.phase.c_str(), static_cast<long long>(step.contact_iterations),
+                      static_cast<long long>(step.cg_iterations), step.r, step.certificate.equilibrium,
+                      step.certificate.penetration, step.certificate.friction_cone, step.certificate.worst(),
+                      step.seconds)
+            << std::flush;
+}
+
+std::string readable_bytes(double bytes) {
+  constexpr std::array units{"B", "kB", "MB", "GB", "TB"};
+  std::size_t unit = 0;
+  while (bytes >= 1000.0 && unit + 1 < units.size()) {
+    bytes /= 1000.0;
+    ++unit;
+  }
+  return format(bytes < 10.0 && unit > 0 ? "%.1f %s" : "%.0f %s", bytes, units[unit]);
+}
+
+std::string readable_seconds(double seconds) {
+  if (seconds < 10.0) return format("%.2g s", seconds);
+  if (seconds < 120.0) return format("%.0f s", seconds);
+  if (seconds < 7200.0) return format("%.0f min", seconds / 60.0);
+  return format("%.1f h", seconds / 3600.0);
+}
+
+std::string summary(const Result& result, const Model& model, int dim) {
+  const auto count = [](std::int64_t n) { return std::to_string(n); };
+  std::string text =
+      (result.status == Status::converged     ? "converged: "
+       : result.status == Status::interrupted ? "INTERRUPTED: "
+                                              : "NOT CONVERGED: ") +
+      result.message + "\n";
+  text +=
+      "  size          " + count(result.unknowns) + " unknowns, " + count(result.elements) + " elements\n";
+  text += "  iterations    " + count(result.outer_iterations) + " outer, " +
+          count(result.contact_iterations) + " contact, " + count(result.cg_iterations) + " CG\n";
+  if (result.contact_nodes > 0) {
+    text += "  contact       " + count(result.active_nodes) + " of " + count(result.contact_nodes) +
+            " nodes touch";
+    if (std::any_of(model.contact.begin(), model.contact.end(),
+                    [](const auto& c) { return c.friction.has_value(); })) {
+      text += ", " + count(result.slip_nodes) + " slip";
+    }
+    text += format(", pressure up to %.6g\n", result.max_contact_pressure);
+    text += "  forces        normal " + vector_text(result.contact_force, dim) + ", friction " +
+            vector_text(result.friction_force, dim) + "\n";
+    text += format("  penalty       r* = %.3g, adapted %.3g (rough lambda %.4g to %.4g)\n", result.r_star,
+                   result.r_active, result.lambda_min, result.lambda_max);
+  }
+  text += format("  stress        von Mises up to %.6g, ", result.max_von_mises) +
+          count(result.plastic_elements) + " elements beyond yield\n";
+  for (std::size_t i = 0; i < result.probe.size(); ++i) {
+    text += "  probe         " + vector_text(model.probes[i], dim) + " moves by " +
+            vector_text(result.probe[i], dim) + "\n";
+  }
+  const Certificate& c = result.certificate;
+  text += format("  certificate   equilibrium %.1e, penetration %.1e, tension %.1e, complementarity %.1e,\n",
+                 c.equilibrium, c.penetration, c.tension, c.complementarity);
+  text += format("                friction cone %.1e, force balance %.1e, duality gap %.1e\n",
+                 c.friction_cone, c.force_balance, c.duality_gap);
+  text += "  cost          " +
+          readable_seconds(result.seconds.empty() ? 0.0 : result.seconds.front().second) + ", " +
+          readable_bytes(static_cast<double>(result.peak_memory_bytes)) + ", " + count(result.ranks) +
+          (result.ranks == 1 ? " rank x " : " ranks x ") + count(result.threads) +
+          (result.threads == 1 ? " thread" : " threads") + " (" + result.instruction_set + ")\n";
+  return text;
+}
+
+}  // namespace kacanov

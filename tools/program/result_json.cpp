@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// result.json: the numbers of a run.
+#include "program/result_json.hpp"
+
+namespace kacanov {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json entries(const Vector3& v, int dim) {
+  ordered_json list = ordered_json::array();
+  for (int c = 0; c < dim; ++c) list.push_back(v[static_cast<std::size_t>(c)]);
+  return list;
+}
+
+ordered_json estimate_json(const SpectrumResult& result) {
+  return {{"traces", result.friction ? "normal and tangential" : "normal"},
+          {"rows", result.traces},
+          {"lambda_min", result.lambda_min},
+          {"lambda_min_bound", result.bound_min},
+          {"lambda_max", result.lambda_max},
+          {"lambda_max_bound", result.bound_max},
+          {"r_star", result.r_star},
+          {"products", result.products},
+          {"cg_iterations", result.cg_iterations},
+          {"operator_applications", result.operator_applications},
+          {"seconds", result.seconds}};
+}
+
+}  // namespace
+
+const char* status_name(Status status) {
+  switch (status) {
+    case Status::converged: return "converged";
+    case Status::not_converged: return "not_converged";
+    case Status::interrupted: break;
+  }
+  return "interrupted";
+}
+
+ordered_json result_json(const Result& result, int dim) {
+  ordered_json json;
+  json["status"] = status_name(result.status);
+  json["message"] = result.message;
+  json["unknowns"] = result.unknowns;
+  json["elements"] = result.elements;
+  json["contact_nodes"] = result.contact_nodes;
+  json["active_nodes"] = result.active_nodes;
+  json["slip_nodes"] = result.slip_nodes;
+  json["outer_iterations"] = result.outer_iterations;
+  if (result.restarted_after >= 0) json["restarted_after"] = result.restarted_after;
+  json["contact_iterations"] = result.contact_iterations;
+  json["cg_iterations"] = result.cg_iterations;
+  json["operator_applications"] = result.operator_applications;
+  json["applications"] = {
+      {"spectrum", result.spectrum_applications},
+      {"contact", result.contact_applications},
+      {"outer", result.operator_applications - result.spectrum_applications - result.contact_applications}};
+  json["r"] = result.r;
+  json["lambda_min"] = result.lambda_min;
+  json["lambda_max"] = result.lambda_max;
+  json["r_star"] = result.r_star;
+  json["r_active"] = result.r_active;
+  json["contact_force"] = entries(result.contact_force, dim);
+  json["friction_force"] = entries(result.friction_force, dim);
+  json["bound_change"] = result.bound_change;
+  json["max_contact_pressure"] = result.max_contact_pressure;
+  json["max_von_mises"] = result.max_von_mises;
+  json["plastic_elements"] = result.plastic_elements;
+  json["softening_elements"] = result.softening_elements;
+  json["probe"] = ordered_json::array();
+  for (const Vector3& u : result.probe) json["probe"].push_back(entries(u, dim));
+  for (const LoadStep& step : result.load_steps) {
+    ordered_json line{{"factor", step.factor},
+                      {"outer_iterations", step.outer_iterations},
+                      {"cg_iterations", step.cg_iterations},
+                      {"active_nodes", step.active_nodes},
+                      {"slip_nodes", step.slip_nodes},
+                      {"contact_force", entries(step.contact_force, dim)},
+                      {"friction_force", entries(step.friction_force, dim)},
+                      {"max_contact_pressure", step.max_contact_pressure},
+                      {"plastic_elements", step.plastic_elements},
+                      {"worst_residual", step.worst_residual},
+                      {"probe", ordered_json::array()}};
+    for (const Vector3& u : step.probe) line["probe"].push_back(entries(u, dim));
+    json["load_steps"].push_back(line);
+  }
+  const Certificate& c = result.certificate;
+  json["certificate"] = {{"equilibrium", c.equilibrium},
+                         {"penetration", c.penetration},
+                         {"tension", c.tension},
+                         {"complementarity", c.complementarity},
+                         {"friction_cone", c.friction_cone},
+                         {"force_balance", c.force_balance},
+                         {"duality_gap", c.duality_gap}};
+  json["seconds"] = ordered_json::object();
+  for (const auto& [phase, seconds] : result.seconds) json["seconds"][phase] = seconds;
+  json["peak_memory_bytes"] = result.peak_memory_bytes;
+  json["ranks"] = result.ranks;
+  json["threads"] = result.threads;
+  json["instruction_set"] = result.instruction_set;
+  json["version"] = KACANOV_VERSION;
+  return json;
+}
+
+ordered_json failure_json(const std::string& message) {
+  return {{"status", "failed"}, {"message", message}, {"version", KACANOV_VERSION}};
+}
+
+ordered_json spectrum_json(std::span<const SpectrumResult> results, std::int64_t unknowns,
+                           std::int64_t contact_nodes) {
+  ordered_json json;
+  json["unknowns"] = unknowns;
+  json["contact_nodes"] = contact_nodes;
+  const SpectrumResult& decisive = results.back();
+  json["lambda_min"] = decisive.lambda_min;
+  json["lambda_max"] = decisive.lambda_max;
+  json["r_star"] = decisive.r_star;
+  json["spectrum"] = ordered_json::array();
+  for (const SpectrumResult& result : results) json["spectrum"].push_back(estimate_json(result));
+  json["version"] = KACANOV_VERSION;
+  return json;
+}
+
+}  // namespace kacanov

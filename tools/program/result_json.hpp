@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// result.json: the numbers of a run.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+
+#include <kacanov/result.hpp>
+
+namespace kacanov {
+
+/// As the file's `status` says it.
+const char* status_name(Status status);
+
+/// Every key of the file. Vectors have `dim` entries; numbers that are not finite become null.
+nlohmann::ordered_json result_json(const Result& result, int dim);
+
+/// The file of a run that broke down: status "failed" and why.
+nlohmann::ordered_json failure_json(const std::string& message);
+
+/// What `kacanov spectrum --json` prints: the eigenvalues that decide r*, which are those of [N; T] with
+/// friction, and all estimates one by one. `results` has N first and is not empty.
+nlohmann::ordered_json spectrum_json(std::span<const SpectrumResult> results, std::int64_t unknowns,
+                                     std::int64_t contact_nodes);
+
+}  // namespace kacanov
