@@ -21,10 +21,10 @@
 #include "formats/gmsh_reader.hpp"
 #endif
 #include <kacanov/locality.hpp>
+#include <kacanov/operator.hpp>
 #include "machine.hpp"
 #include "matrices.hpp"
 #include "meshes.hpp"
-#include <kacanov/operator.hpp>
 
 using namespace kacanov;
 using nlohmann::json;

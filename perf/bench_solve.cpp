@@ -10,15 +10,15 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "linear/cg.hpp"
+#include <kacanov/problem.hpp>
 #include "contact/traces.hpp"
-#include "linear/distributed_operator.hpp"
 #include "formats/gmsh_reader.hpp"
+#include "linear/cg.hpp"
+#include "linear/distributed_operator.hpp"
+#include "linear/preconditioner.hpp"
+#include "problem/selection.hpp"
 #include "program/launch.hpp"
 #include "program/parallel.hpp"
-#include "linear/preconditioner.hpp"
-#include <kacanov/problem.hpp>
-#include "problem/selection.hpp"
 #include "spectrum/spectrum.hpp"
 
 namespace {
@@ -112,7 +112,8 @@ Vector secant(const Part& part, double jump) {
   for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
     double wave = 1.0;
     for (std::size_t c = 0; c < dim; ++c)
-      wave *= std::sin(6.0 * part.coordinates[static_cast<std::size_t>(part.elements[e * npe]) * dim + c] + 1.0);
+      wave *=
+          std::sin(6.0 * part.coordinates[static_cast<std::size_t>(part.elements[e * npe]) * dim + c] + 1.0);
     for (std::size_t q = 0; q < points; ++q)
       g[e * points + q] = body.law(e).shear * std::pow(jump, -0.5 - 0.5 * wave);
   }
@@ -135,8 +136,8 @@ std::int64_t status_bytes(const std::string& key) {
 
 void reset_peak() { std::ofstream("/proc/self/clear_refs") << "5"; }
 
-Json measure(const Part& part, DistributedOperator& op, const std::string& kind, const Vector& g, double penalty,
-             const Options& options) {
+Json measure(const Part& part, DistributedOperator& op, const std::string& kind, const Vector& g,
+             double penalty, const Options& options) {
   const Space space(part);
   const TraceRows rows(part, std::vector<TraceChoice>(part.contact.size(), {true, false}));
   const auto blocks = penalty > 0.0 ? rows.penalty_blocks(penalty) : std::vector<NodeBlock>{};
@@ -161,27 +162,30 @@ Json measure(const Part& part, DistributedOperator& op, const std::string& kind,
   };
   const auto precondition = [&](std::span<const double> r, std::span<double> z) { amg->apply(r, z); };
   const double before = MPI_Wtime();
-  const CgResult cg = conjugate_gradients(space, apply, precondition, x, work, {0.0, options.tolerance, 2000});
+  const CgResult cg =
+      conjugate_gradients(space, apply, precondition, x, work, {0.0, options.tolerance, 2000});
   const double seconds = MPI_Wtime() - before;
-  return {{"preconditioner", kind},
-          {"unknowns", part.total_nodes * part.dim()},
-          {"ranks", part.halo.ranks},
-          {"threads", options.threads},
-          {"iterations", cg.iterations},
-          {"converged", cg.converged},
-          {"setup_seconds", ready - start},
-          {"solve_seconds", seconds},
-          {"total_seconds", ready - start + seconds},
-          {"seconds_per_iteration", seconds / std::max(1, cg.iterations)},
-          {"bytes_per_unknown", static_cast<double>(held) / static_cast<double>(part.total_nodes * part.dim())},
-          {"peak_bytes_per_unknown", static_cast<double>(peak) / static_cast<double>(part.total_nodes * part.dim())}};
+  return {
+      {"preconditioner", kind},
+      {"unknowns", part.total_nodes * part.dim()},
+      {"ranks", part.halo.ranks},
+      {"threads", options.threads},
+      {"iterations", cg.iterations},
+      {"converged", cg.converged},
+      {"setup_seconds", ready - start},
+      {"solve_seconds", seconds},
+      {"total_seconds", ready - start + seconds},
+      {"seconds_per_iteration", seconds / std::max(1, cg.iterations)},
+      {"bytes_per_unknown", static_cast<double>(held) / static_cast<double>(part.total_nodes * part.dim())},
+      {"peak_bytes_per_unknown",
+       static_cast<double>(peak) / static_cast<double>(part.total_nodes * part.dim())}};
 }
 
 void run(const Options& options, const MpiSession& mpi) {
   Json entries = Json::array();
   if (mpi.first() && !options.json)
-    std::printf("%-12s %9s %6s %8s %7s %7s | %5s %8s %8s %8s %9s %9s\n", "", "unknowns", "nu", "r", "g jump", "aspect", "its",
-                "setup s", "solve s", "total s", "B/unknown", "peak B/u");
+    std::printf("%-12s %9s %6s %8s %7s %7s | %5s %8s %8s %8s %9s %9s\n", "", "unknowns", "nu", "r", "g jump",
+                "aspect", "its", "setup s", "solve s", "total s", "B/unknown", "peak B/u");
   for (const int cells : options.cells)
     for (const double poisson : options.poisson)
       for (const double aspect : options.aspect) {
@@ -205,9 +209,10 @@ void run(const Options& options, const MpiSession& mpi) {
                 entry["jump"] = jump;
                 entry["aspect"] = aspect;
                 if (mpi.first() && !options.json) {
-                  std::printf("%-12s %9lld %6.3g %8.3g %7.3g %7.3g | %5d%s %7.2f %8.2f %8.2f %9.0f %9.0f\n", kind.c_str(),
-                              entry["unknowns"].get<long long>(), poisson, penalty, jump, aspect,
-                              entry["iterations"].get<int>(), entry["converged"].get<bool>() ? " " : "!",
+                  std::printf("%-12s %9lld %6.3g %8.3g %7.3g %7.3g | %5d%s %7.2f %8.2f %8.2f %9.0f %9.0f\n",
+                              kind.c_str(), entry["unknowns"].get<long long>(), poisson, penalty, jump,
+                              aspect, entry["iterations"].get<int>(),
+                              entry["converged"].get<bool>() ? " " : "!",
                               entry["setup_seconds"].get<double>(), entry["solve_seconds"].get<double>(),
                               entry["total_seconds"].get<double>(), entry["bytes_per_unknown"].get<double>(),
                               entry["peak_bytes_per_unknown"].get<double>());
@@ -225,9 +230,11 @@ void run(const Options& options, const MpiSession& mpi) {
 int main(int argc, char** argv) {
   Options options;
   CLI::App app("The penalised solve by preconditioner: seconds, iterations, bytes");
-  app.add_option("--cells", options.cells, "cells across a beam of 4 x 1 x 1 (40: 811,923 unknowns with tet4)");
+  app.add_option("--cells", options.cells,
+                 "cells across a beam of 4 x 1 x 1 (40: 811,923 unknowns with tet4)");
   app.add_option("--element", options.element)->check(CLI::IsMember({"tri3", "tet4", "tet10", "hex8"}));
-  app.add_option("--mesh", options.mesh, "a Gmsh file instead of the beam; held at its lowest x, pressed from above");
+  app.add_option("--mesh", options.mesh,
+                 "a Gmsh file instead of the beam; held at its lowest x, pressed from above");
   app.add_option("--preconditioner", options.kinds)->check(CLI::IsMember({"multigrid", "elasticity"}));
   app.add_option("--poisson", options.poisson);
   app.add_option("--penalty", options.penalty, "r on the whole bottom");

@@ -12,8 +12,8 @@
 #include <sstream>
 #include <string>
 
-#include "contact/certificate.hpp"
 #include <kacanov/element_fields.hpp>
+#include "contact/certificate.hpp"
 #include "nonlinear/load_path.hpp"
 #include "nonlinear/outer_loop.hpp"
 
@@ -33,7 +33,8 @@ std::uint64_t peak_memory() {
   return 0;
 }
 
-/// Fields of the contact points. `least_slip`: a tangential displacement beyond it is slip, whatever rounding says of the bound.
+/// Fields of the contact points. `least_slip`: a tangential displacement beyond it is slip, whatever rounding
+/// says of the bound.
 void collect_contact(const Part& part, const ContactState& state, double least_slip, Solution& solution) {
   const auto points = std::span(part.contact);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -44,8 +45,8 @@ void collect_contact(const Part& part, const ContactState& state, double least_s
     for (std::size_t k = 0; k < static_cast<std::size_t>(points[i].tangents); ++k)
       for (std::size_t c = 0; c < 3; ++c) traction[c] -= friction[k] * points[i].tangent[k][c];
     solution.traction.push_back(traction);
-    // The projection leaves |λ_f| = ψ to rounding where it slips; Coulomb's ψ has moved on since by what the solver
-    // tolerates.
+    // The projection leaves |λ_f| = ψ to rounding where it slips; Coulomb's ψ has moved on since by what the
+    // solver tolerates.
     const double* slip = &state.trace.tangential[2 * i];
     const bool slips = points[i].tangents == 0 ||
                        std::hypot(friction[0], friction[1]) >= state.bound[i] * (1.0 - 1e-10) ||
@@ -54,7 +55,8 @@ void collect_contact(const Part& part, const ContactState& state, double least_s
     solution.contact_status.push_back(!touches && points[i].tangents == 0 ? ContactStatus::open
                                       : slips                             ? ContactStatus::slip
                                                                           : ContactStatus::stick);
-    if (!touches && points[i].tangents > 0 && state.bound[i] == 0.0) solution.contact_status.back() = ContactStatus::open;
+    if (!touches && points[i].tangents > 0 && state.bound[i] == 0.0)
+      solution.contact_status.back() = ContactStatus::open;
   }
 }
 
@@ -97,8 +99,8 @@ void collect_totals(const Part& part, const ContactState& state, const Solution&
   const auto npe = static_cast<std::size_t>(nodes_per_element(part.type));
   for (std::size_t i = 0; i < part.probes.size(); ++i)
     for (std::size_t a = 0; a < npe; ++a) {
-      const auto node = static_cast<std::size_t>(
-          part.elements[static_cast<std::size_t>(part.probes[i].element) * npe + a]);
+      const auto node =
+          static_cast<std::size_t>(part.elements[static_cast<std::size_t>(part.probes[i].element) * npe + a]);
       for (std::size_t c = 0; c < dim; ++c)
         probes[3 * static_cast<std::size_t>(part.probe_index[i]) + c] +=
             part.probes[i].weights[a] * state.omega[node * dim + c];
@@ -122,7 +124,8 @@ std::size_t steps_over(const Part& part, const RunOptions& run) {
 /// Whether the next load step has something to start from.
 bool worth_going_on(const OuterLoop& loop, const SolverOptions& options, const Result& result) {
   if (!result.message.empty()) return false;
-  return options.stop == SolverOptions::Stop::paper || loop.certify().certificate.worst() <= options.tolerance;
+  return options.stop == SolverOptions::Stop::paper ||
+         loop.certify().certificate.worst() <= options.tolerance;
 }
 
 /// The line of the history for a finished load step; `result` has its totals and those of the steps before.
@@ -162,8 +165,8 @@ std::string verdict(const Result& result, const SolverOptions& options) {
   text.precision(2);
   text << std::scientific;
   if (result.status == Status::converged) {
-    text << "all KKT residuals are at most " << result.certificate.worst() << " (tolerance " << options.tolerance
-         << ")";
+    text << "all KKT residuals are at most " << result.certificate.worst() << " (tolerance "
+         << options.tolerance << ")";
   } else if (result.status == Status::interrupted) {
     text << "interrupted after " << result.outer_iterations << " outer steps, with the worst KKT residual at "
          << result.certificate.worst();
@@ -210,7 +213,8 @@ Solution solve(Part& part, const SolverOptions& options, const RunOptions& run) 
   reference::residual(part.body(), loop.state().omega, internal);
   part.halo.sum(internal, part.dim());
   const double energy = part.halo.sum_all(reference::energy(part.body(), loop.state().omega));
-  result.certificate = kkt_residuals(loop.space(), loop.traces(), loop.state(), internal, energy, loop.diagonal()).certificate;
+  result.certificate =
+      kkt_residuals(loop.space(), loop.traces(), loop.state(), internal, energy, loop.diagonal()).certificate;
   result.status = result.certificate.worst() <= options.tolerance ? Status::converged : Status::not_converged;
   if (!finished) result.status = Status::interrupted;
   // What has not converged can be continued with more steps; what has broken down cannot.
@@ -232,9 +236,10 @@ Solution solve(Part& part, const SolverOptions& options, const RunOptions& run) 
     if (over + 1 < factors.size() || !finished) result.message = place.str() + result.message;
   }
   if (result.softening_elements > 0)
-    result.message += "; " + std::to_string(result.softening_elements) +
-                      " elements are in the softening range of their law (squared argument), where the problem is not "
-                      "monotone";
+    result.message +=
+        "; " + std::to_string(result.softening_elements) +
+        " elements are in the softening range of their law (squared argument), where the problem is not "
+        "monotone";
   result.unknowns = part.total_nodes * part.dim();
   result.elements = part.total_elements;
   result.contact_nodes = part.total_contact;
@@ -255,7 +260,8 @@ Solution solve(Part& part, const SolverOptions& options, const RunOptions& run) 
   return solution;
 }
 
-std::vector<SpectrumResult> analyse_spectrum(const Part& part, const SolverOptions& options, const RunOptions& run) {
+std::vector<SpectrumResult> analyse_spectrum(const Part& part, const SolverOptions& options,
+                                             const RunOptions& run) {
   DistributedOperator op(part, run.threads, run.instruction_set);
   const auto amg = make_preconditioner(options.preconditioner, part, run.threads, run.instruction_set);
   std::vector<double> secant(part.body().secant_count());

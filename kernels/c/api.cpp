@@ -7,8 +7,8 @@
 #include <span>
 #include <string>
 
-#include "c/handle.hpp"
 #include <kacanov/locality.hpp>
+#include "c/handle.hpp"
 
 #ifndef KACANOV_VERSION
 #error "the build has to define KACANOV_VERSION"

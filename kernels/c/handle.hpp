@@ -14,11 +14,11 @@
 #include <string>
 #include <vector>
 
-#include "c/laws.hpp"
-#include <kacanov/float_operator.hpp>
 #include <kacanov/kacanov.h>
+#include <kacanov/float_operator.hpp>
 #include <kacanov/operator.hpp>
 #include <kacanov/reference.hpp>
+#include "c/laws.hpp"
 
 /// Everything a handle holds. The mesh stays for the recovery of stress and for new laws.
 struct kacanov_operator {

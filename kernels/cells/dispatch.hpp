@@ -4,8 +4,8 @@
 
 #include <stdexcept>
 
-#include "cells/hex8.hpp"
 #include <kacanov/mesh_view.hpp>
+#include "cells/hex8.hpp"
 #include "cells/tet10.hpp"
 #include "cells/tet4.hpp"
 #include "cells/tri3.hpp"

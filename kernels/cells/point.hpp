@@ -61,12 +61,14 @@ struct Point {
   /// Adds the block (dim × dim) node a has on the diagonal of B: volume [k0 ∇ᵢ∇ⱼ + g (∇ᵢ∇ⱼ/3 + |∇|² δᵢⱼ)].
   template <class Real>
   void add_diagonal_block(int a, double bulk, double g, Real* block) const {
-    const double *d = gradient[a], *mean = dilatation[a], k = volume * bulk, s = volume * g, third = s * (1.0 / 3.0);
+    const double *d = gradient[a], *mean = dilatation[a], k = volume * bulk, s = volume * g,
+                 third = s * (1.0 / 3.0);
     double square = 0.0;
     for (int i = 0; i < E::dim; ++i) square += d[i] * d[i];
     for (int i = 0; i < E::dim; ++i)
       for (int j = 0; j < E::dim; ++j)
-        block[i * E::dim + j] += static_cast<Real>(k * mean[i] * mean[j] + third * d[i] * d[j] + (i == j ? s * square : 0.0));
+        block[i * E::dim + j] +=
+            static_cast<Real>(k * mean[i] * mean[j] + third * d[i] * d[j] + (i == j ? s * square : 0.0));
   }
 
   static constexpr std::size_t at(int a, int i) { return static_cast<std::size_t>(a * E::dim + i); }

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A plain C program: Kacanov's method for a clamped bar of tetrahedra, each step solved by conjugate gradients. */
+/* A plain C program: Kacanov's method for a clamped bar of tetrahedra, each step solved by conjugate
+ * gradients. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,12 +11,12 @@
 /* A bar nx by n by n cells of side 1/n, each cut into six tetrahedra. */
 typedef struct Bar {
   size_t nodes, elements;
-  double *coordinates;
-  int32_t *connectivity;
+  double* coordinates;
+  int32_t* connectivity;
 } Bar;
 
-static void *allocate(size_t count, size_t size) {
-  void *memory = calloc(count, size);
+static void* allocate(size_t count, size_t size) {
+  void* memory = calloc(count, size);
   if (memory == NULL) {
     fputs("out of memory\n", stderr);
     exit(EXIT_FAILURE);
@@ -29,7 +30,7 @@ static Bar make_bar(int nx, int n) {
   Bar bar = {(size_t)(nx + 1) * (size_t)(n + 1) * (size_t)(n + 1), 6 * cells, NULL, NULL};
   bar.coordinates = allocate(3 * bar.nodes, sizeof(double));
   bar.connectivity = allocate(4 * bar.elements, sizeof(int32_t));
-  double *x = bar.coordinates;
+  double* x = bar.coordinates;
   for (int k = 0; k <= n; ++k)
     for (int j = 0; j <= n; ++j)
       for (int i = 0; i <= nx; ++i, x += 3) {
@@ -37,7 +38,7 @@ static Bar make_bar(int nx, int n) {
         x[1] = (double)j / n;
         x[2] = (double)k / n;
       }
-  int32_t *element = bar.connectivity;
+  int32_t* element = bar.connectivity;
   for (int k = 0; k < n; ++k)
     for (int j = 0; j < n; ++j)
       for (int i = 0; i < nx; ++i) {
@@ -54,22 +55,22 @@ static Bar make_bar(int nx, int n) {
   return bar;
 }
 
-static void check(int code, const kacanov_operator *op) {
+static void check(int code, const kacanov_operator* op) {
   if (code == KACANOV_OK) return;
   fprintf(stderr, "kacanov error %d: %s\n", code, kacanov_message(op));
   exit(EXIT_FAILURE);
 }
 
-static double dot(size_t n, const double *x, const double *y) {
+static double dot(size_t n, const double* x, const double* y) {
   double sum = 0.0;
   for (size_t i = 0; i < n; ++i) sum += x[i] * y[i];
   return sum;
 }
 
-/* Solves B(g) u = f on the free unknowns, from the u given; held ones (`held` not 0) keep their value 0. Returns
- * the iterations. */
-static int conjugate_gradients(kacanov_operator *op, size_t n, const double *f, const char *held, double tolerance,
-                               double *u) {
+/* Solves B(g) u = f on the free unknowns, from the u given; held ones (`held` not 0) keep their value 0.
+ * Returns the iterations. */
+static int conjugate_gradients(kacanov_operator* op, size_t n, const double* f, const char* held,
+                               double tolerance, double* u) {
   double *r = allocate(n, sizeof(double)), *z = allocate(n, sizeof(double)), *p = allocate(n, sizeof(double)),
          *q = allocate(n, sizeof(double)), *diagonal = allocate(n, sizeof(double));
   check(kacanov_diagonal(op, n, diagonal), op);
@@ -84,7 +85,8 @@ static int conjugate_gradients(kacanov_operator *op, size_t n, const double *f, 
     rho = rho_new;
     for (size_t i = 0; i < n; ++i) p[i] = z[i] + beta * p[i];
     double curvature;
-    check(kacanov_apply_dot(op, n, p, q, &curvature), op); /* p is 0 where held, so p.q is that of the free part */
+    check(kacanov_apply_dot(op, n, p, q, &curvature),
+          op); /* p is 0 where held, so p.q is that of the free part */
     for (size_t i = 0; i < n; ++i) {
       u[i] += rho / curvature * p[i];
       r[i] -= held[i] ? 0.0 : rho / curvature * q[i];
@@ -115,7 +117,7 @@ int main(void) {
   body.laws = 1;
   body.law = &law;
 
-  kacanov_operator *op;
+  kacanov_operator* op;
   char message[256];
   if (kacanov_create(&body, &op, message, sizeof message) != KACANOV_OK) {
     fprintf(stderr, "kacanov: %s\n", message);
@@ -123,7 +125,7 @@ int main(void) {
   }
 
   /* Held at x = 0, pulled at x = 4 with a total force of 0.0018 along x. */
-  char *held = allocate(unknowns, 1);
+  char* held = allocate(unknowns, 1);
   double *f = allocate(unknowns, sizeof(double)), *u = allocate(unknowns, sizeof(double)),
          *inner = allocate(unknowns, sizeof(double));
   for (size_t i = 0; i < bar.nodes; ++i) {
@@ -141,7 +143,8 @@ int main(void) {
       if (!held[i]) square += (f[i] - inner[i]) * (f[i] - inner[i]);
     residual = sqrt(square / dot(unknowns, f, f));
     const double functional = energy - dot(unknowns, f, u);
-    printf("step %2d: %4d CG iterations, residual %.2e, functional %.10e\n", step, iterations, residual, functional);
+    printf("step %2d: %4d CG iterations, residual %.2e, functional %.10e\n", step, iterations, residual,
+           functional);
     if (functional > functional_before + 1e-12 * fabs(functional)) {
       fputs("the functional has to fall from step to step\n", stderr);
       return EXIT_FAILURE;
@@ -149,8 +152,8 @@ int main(void) {
     functional_before = functional;
   }
 
-  double *mises = allocate(bar.elements, sizeof(double));
-  uint8_t *plastic = allocate(bar.elements, 1);
+  double* mises = allocate(bar.elements, sizeof(double));
+  uint8_t* plastic = allocate(bar.elements, 1);
   kacanov_fields fields;
   memset(&fields, 0, sizeof fields);
   fields.elements = bar.elements;
@@ -166,7 +169,8 @@ int main(void) {
   kacanov_information information;
   check(kacanov_inspect(op, &information), op);
   printf("%zu unknowns, %s, %zu bytes; largest von Mises stress %.4e, %zu of %zu elements beyond yield\n",
-         information.unknowns, information.instruction_set, information.bytes, largest, yielding, bar.elements);
+         information.unknowns, information.instruction_set, information.bytes, largest, yielding,
+         bar.elements);
 
   kacanov_destroy(op);
   free(held), free(f), free(u), free(inner), free(mises), free(plastic), free(bar.coordinates),

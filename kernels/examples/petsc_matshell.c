@@ -1,28 +1,27 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A PETSc program: the operator as a MatShell, solved by KSP's conjugate gradients with Jacobi. A bar of trilinear
- * hexahedra on rollers is pulled along x, for which the exact displacement is known and linear. */
+/* A PETSc program: the operator as a MatShell, solved by KSP's conjugate gradients with Jacobi. A bar of
+ * trilinear hexahedra on rollers is pulled along x, for which the exact displacement is known and linear. */
 #include <petscksp.h>
 
 #include <kacanov/kacanov.h>
 
 /* What the shell needs: the operator, and which unknowns are held (their rows and columns are those of 1). */
 typedef struct Shell {
-  kacanov_operator *op;
+  kacanov_operator* op;
   size_t n;
-  const char *held;
-  double *masked; /* work vector */
+  const char* held;
+  double* masked; /* work vector */
 } Shell;
 
-#define KACANOV(op, call)                                                            \
-  do {                                                                               \
-    if ((call) != KACANOV_OK)                                                        \
-      SETERRQ(PETSC_COMM_SELF, PETSC_ERR_LIB, "kacanov: %s", kacanov_message(op));   \
+#define KACANOV(op, call)                                                                                  \
+  do {                                                                                                     \
+    if ((call) != KACANOV_OK) SETERRQ(PETSC_COMM_SELF, PETSC_ERR_LIB, "kacanov: %s", kacanov_message(op)); \
   } while (0)
 
 static PetscErrorCode multiply(Mat matrix, Vec in, Vec out) {
-  Shell *shell;
-  const PetscScalar *x;
-  PetscScalar *y;
+  Shell* shell;
+  const PetscScalar* x;
+  PetscScalar* y;
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(matrix, &shell));
   PetscCall(VecGetArrayRead(in, &x));
@@ -37,8 +36,8 @@ static PetscErrorCode multiply(Mat matrix, Vec in, Vec out) {
 }
 
 static PetscErrorCode get_diagonal(Mat matrix, Vec diagonal) {
-  Shell *shell;
-  PetscScalar *d;
+  Shell* shell;
+  PetscScalar* d;
   PetscFunctionBeginUser;
   PetscCall(MatShellGetContext(matrix, &shell));
   PetscCall(VecGetArrayWrite(diagonal, &d));
@@ -49,15 +48,15 @@ static PetscErrorCode get_diagonal(Mat matrix, Vec diagonal) {
   PetscFunctionReturn(0);
 }
 
-int main(int argc, char **argv) {
+int main(int argc, char** argv) {
   enum { nx = 24, n = 6 };
   const double length = 4.0, young = 2.0, poisson = 0.3, stress = 0.01;
   const size_t nodes = (nx + 1) * (n + 1) * (n + 1), elements = nx * n * n, unknowns = 3 * nodes;
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
 
   double *coordinates, *load, *masked;
-  int32_t *connectivity;
-  char *held;
+  int32_t* connectivity;
+  char* held;
   PetscCall(PetscCalloc3(unknowns, &coordinates, unknowns, &load, unknowns, &masked));
   PetscCall(PetscCalloc2(8 * elements, &connectivity, unknowns, &held));
   for (int k = 0, node = 0; k <= n; ++k)
@@ -124,7 +123,7 @@ int main(int argc, char **argv) {
   KSPConvergedReason reason;
   PetscCall(KSPGetIterationNumber(ksp, &iterations));
   PetscCall(KSPGetConvergedReason(ksp, &reason));
-  const PetscScalar *omega;
+  const PetscScalar* omega;
   double error = 0.0;
   PetscCall(VecGetArrayRead(u, &omega));
   for (size_t i = 0; i < unknowns; ++i) {

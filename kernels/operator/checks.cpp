@@ -22,7 +22,8 @@ const Body& checked(const Body& body, const OperatorOptions& options) {
     if (node < 0 || static_cast<std::size_t>(node) >= body.mesh.node_count())
       throw std::invalid_argument("early: there is no node " + std::to_string(node));
   if (body.laws.empty()) throw std::invalid_argument("laws: expected at least 1");
-  if (!body.law_of_element.empty()) expect_size(body.law_of_element.size(), body.mesh.element_count(), "law_of_element");
+  if (!body.law_of_element.empty())
+    expect_size(body.law_of_element.size(), body.mesh.element_count(), "law_of_element");
   for (const std::uint16_t law : body.law_of_element)
     if (law >= body.laws.size())
       throw std::invalid_argument("law_of_element: there is no law " + std::to_string(law));

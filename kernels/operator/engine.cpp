@@ -10,9 +10,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "operator/checks.hpp"
 #include "cells/dispatch.hpp"
 #include "cells/point.hpp"
+#include "operator/checks.hpp"
 
 namespace kacanov {
 namespace {
@@ -44,16 +44,19 @@ void in_parallel(int threads, Run&& run, Finish&& finish) {
   }
 #pragma omp parallel num_threads(threads)
   {
-    for (int t = omp_get_thread_num(); t < threads; t += omp_get_num_threads()) run(static_cast<std::size_t>(t));
+    for (int t = omp_get_thread_num(); t < threads; t += omp_get_num_threads())
+      run(static_cast<std::size_t>(t));
 #pragma omp barrier
-    for (int t = omp_get_thread_num(); t < threads; t += omp_get_num_threads()) finish(static_cast<std::size_t>(t));
+    for (int t = omp_get_thread_num(); t < threads; t += omp_get_num_threads())
+      finish(static_cast<std::size_t>(t));
   }
 }
 
 }  // namespace
 
 template <class Real>
-Engine<Real>::Engine(const Body& body, int threads, simd::InstructionSet set, std::span<const std::int32_t> early)
+Engine<Real>::Engine(const Body& body, int threads, simd::InstructionSet set,
+                     std::span<const std::int32_t> early)
     : set_(set),
       kernels_(simd::kernels<Real>(set)),
       type_(body.mesh.type),
@@ -171,13 +174,15 @@ void Engine<Real>::add_interface(Real* y, int vectors, std::size_t begin, std::s
 
 template <class Real>
 template <class LoopsOnBlock>
-double Engine<Real>::pass(const Real* x, Real* y, int vectors, const WhenEarly& when_early, LoopsOnBlock&& loops) const {
+double Engine<Real>::pass(const Real* x, Real* y, int vectors, const WhenEarly& when_early,
+                          LoopsOnBlock&& loops) const {
   reserve_scratch(vectors);
   const std::size_t stride = 4 * std::size_t{layout_.largest};
   const auto count = static_cast<std::size_t>(vectors);
   std::vector<double> sums(scratch_.size(), 0.0);
   const auto prepare = [&](std::size_t t) {
-    std::fill_n(scratch_[t].sums.begin(), 3 * static_cast<std::size_t>(layout_.slots_of_thread[t]) * count, Real(0));
+    std::fill_n(scratch_[t].sums.begin(), 3 * static_cast<std::size_t>(layout_.slots_of_thread[t]) * count,
+                Real(0));
     const auto dim = static_cast<std::size_t>(dim_);
     for (std::size_t v = 0; t == 0 && y != nullptr && v < count; ++v)
       for (const std::int32_t node : layout_.lonely)
@@ -224,14 +229,16 @@ double Engine<Real>::pass(const Real* x, Real* y, int vectors, const WhenEarly& 
 }
 
 template <class Real>
-double Engine<Real>::apply(const Real* x, Real* y, int vectors, bool with_dot, const WhenEarly& when_early) const {
-  return pass(x, y, vectors, when_early, [&](const simd::Block<Real>& at, const Real* u, Real* f, std::size_t stride) {
-    kernels_.apply(at, u, f, vectors, stride);
-    double sum = 0.0;
-    for (std::size_t v = 0; with_dot && v < static_cast<std::size_t>(vectors); ++v)
-      sum += kernels_.dot(at, u + v * stride, f + v * stride);
-    return sum;
-  });
+double Engine<Real>::apply(const Real* x, Real* y, int vectors, bool with_dot,
+                           const WhenEarly& when_early) const {
+  return pass(x, y, vectors, when_early,
+              [&](const simd::Block<Real>& at, const Real* u, Real* f, std::size_t stride) {
+                kernels_.apply(at, u, f, vectors, stride);
+                double sum = 0.0;
+                for (std::size_t v = 0; with_dot && v < static_cast<std::size_t>(vectors); ++v)
+                  sum += kernels_.dot(at, u + v * stride, f + v * stride);
+                return sum;
+              });
 }
 
 template <class Real>

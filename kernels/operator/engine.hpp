@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
+#include <kacanov/operator.hpp>
 #include "operator/aligned.hpp"
 #include "operator/layout.hpp"
-#include <kacanov/operator.hpp>
 #include "simd/instruction_set.hpp"
 
 namespace kacanov {
@@ -40,7 +40,8 @@ class Engine {
   /// Any number of right sides, which are checked. Throws std::invalid_argument.
   void apply_many(std::span<const Real> x, std::span<Real> y, int vectors) const;
   double apply_tangent(const Real* x, Real* y, bool with_dot, const WhenEarly& when_early = {}) const;
-  /// Internal force at ω into f, unless that is null; what to keep. Returns the energy if that is to be summed.
+  /// Internal force at ω into f, unless that is null; what to keep. Returns the energy if that is to be
+  /// summed.
   double nonlinear(const Real* omega, Real* f, simd::Nonlinear keep);
   double nonlinear(const Real* omega, Real* f, bool sum_energy) const;
   /// dim × dim diagonal blocks of B, row-major.

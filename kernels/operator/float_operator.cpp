@@ -13,10 +13,11 @@ struct FloatOperator::Implementation {
   Engine<float> engine;
 
   Implementation(const Body& body, const OperatorOptions& options)
-      : engine(checked(body, options), options.threads,
-               simd::choose_instruction_set(options.instruction_set), options.early) {}
+      : engine(checked(body, options), options.threads, simd::choose_instruction_set(options.instruction_set),
+               options.early) {}
 
-  double apply(std::span<const float> x, std::span<float> y, bool with_dot, const WhenEarly& when_early) const {
+  double apply(std::span<const float> x, std::span<float> y, bool with_dot,
+               const WhenEarly& when_early) const {
     expect_size(x.size(), engine.unknowns(), "x");
     expect_size(y.size(), engine.unknowns(), "y");
     return engine.apply(x.data(), y.data(), 1, with_dot, when_early);

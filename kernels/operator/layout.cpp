@@ -7,8 +7,8 @@
 #include <map>
 #include <tuple>
 
-#include "cells/dispatch.hpp"
 #include <kacanov/locality.hpp>
+#include "cells/dispatch.hpp"
 
 namespace kacanov {
 namespace {
@@ -342,9 +342,9 @@ std::size_t Layout::records() const noexcept {
 
 std::size_t Layout::bytes() const noexcept {
   const auto size = [](const auto& v) { return v.size() * sizeof(v[0]); };
-  return size(blocks) + size(share) + size(early) + size(groups) + size(index) + size(nodes) + size(element_point) +
-         size(shared) + size(interface_node) + size(interface_first) + size(contributions) +
-         size(slots_of_thread) + size(lonely);
+  return size(blocks) + size(share) + size(early) + size(groups) + size(index) + size(nodes) +
+         size(element_point) + size(shared) + size(interface_node) + size(interface_first) +
+         size(contributions) + size(slots_of_thread) + size(lonely);
 }
 
 Layout make_layout(const Body& body, int lanes, int threads, std::size_t record_bytes,

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include <kacanov/reference.hpp>
-#include "simd/block.hpp"
 #include "operator/units.hpp"
+#include "simd/block.hpp"
 
 namespace kacanov {
 
@@ -52,8 +52,8 @@ struct Layout {
   std::size_t bytes() const noexcept;
 };
 
-/// `record_bytes` is the size of a node record (coordinates; the block's working set is three times that); `early` as in
-/// OperatorOptions.
+/// `record_bytes` is the size of a node record (coordinates; the block's working set is three times that);
+/// `early` as in OperatorOptions.
 Layout make_layout(const Body& body, int lanes, int threads, std::size_t record_bytes,
                    std::span<const std::int32_t> early);
 

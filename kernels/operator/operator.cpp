@@ -15,12 +15,13 @@ struct Operator::Implementation {
   std::uint64_t applications = 0;
 
   Implementation(const Body& body, const OperatorOptions& options)
-      : engine(checked(body, options), options.threads,
-               simd::choose_instruction_set(options.instruction_set), options.early) {}
+      : engine(checked(body, options), options.threads, simd::choose_instruction_set(options.instruction_set),
+               options.early) {}
 
   void expect_vector(std::size_t size) const { expect_size(size, engine.unknowns(), "vector"); }
 
-  double apply_tangent(std::span<const double> x, std::span<double> y, bool with_dot, const WhenEarly& when_early) {
+  double apply_tangent(std::span<const double> x, std::span<double> y, bool with_dot,
+                       const WhenEarly& when_early) {
     if (!engine.has_tangent()) throw std::logic_error("apply_tangent before update_tangent");
     expect_vector(x.size());
     expect_vector(y.size());
@@ -60,7 +61,8 @@ void Operator::apply(std::span<const double> x, std::span<double> y) const {
   impl_->engine.apply(x.data(), y.data(), 1, false);
 }
 
-double Operator::apply_dot(std::span<const double> x, std::span<double> y, const WhenEarly& when_early) const {
+double Operator::apply_dot(std::span<const double> x, std::span<double> y,
+                           const WhenEarly& when_early) const {
   impl_->expect_vector(x.size());
   impl_->expect_vector(y.size());
   ++impl_->applications;
@@ -81,7 +83,8 @@ void Operator::apply_tangent(std::span<const double> x, std::span<double> y) con
   impl_->apply_tangent(x, y, false, {});
 }
 
-double Operator::apply_tangent_dot(std::span<const double> x, std::span<double> y, const WhenEarly& when_early) const {
+double Operator::apply_tangent_dot(std::span<const double> x, std::span<double> y,
+                                   const WhenEarly& when_early) const {
   return impl_->apply_tangent(x, y, true, when_early);
 }
 

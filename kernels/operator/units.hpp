@@ -34,8 +34,8 @@ std::uint32_t points_of(simd::Shape shape, std::uint32_t length) noexcept;
 
 /// Covers a body by units of one law each. tet4: greedily, the edge with most tetrahedra left first; what
 /// is left round it is split into chains. Other elements: one by one; a tet10 with straight sides (mid-side
-/// nodes within 1e-13 of the middle, relative to the side) and a hex8 that is a parallelepiped (corners within
-/// 1e-13 of its extent along each axis) are shapes of their own.
+/// nodes within 1e-13 of the middle, relative to the side) and a hex8 that is a parallelepiped (corners
+/// within 1e-13 of its extent along each axis) are shapes of their own.
 Units make_units(const Body& body);
 
 }  // namespace kacanov

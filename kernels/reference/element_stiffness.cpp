@@ -9,7 +9,8 @@
 
 namespace kacanov {
 
-void element_stiffness(const Body& body, std::size_t element, std::span<const double> g, std::span<double> matrix) {
+void element_stiffness(const Body& body, std::size_t element, std::span<const double> g,
+                       std::span<double> matrix) {
   const Law& law = body.law(element);
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     using Point = elements::Point<E>;
@@ -39,7 +40,8 @@ void element_stiffness(const Body& body, std::size_t element, std::span<const do
         }
     }
     for (std::size_t row = 0; row < width; ++row)
-      for (std::size_t column = 0; column < row; ++column) matrix[row * width + column] = matrix[column * width + row];
+      for (std::size_t column = 0; column < row; ++column)
+        matrix[row * width + column] = matrix[column * width + row];
   });
 }
 

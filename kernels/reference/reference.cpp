@@ -192,7 +192,8 @@ void block_diagonal(const Body& body, std::span<const double> g, std::span<doubl
       for (std::size_t q = 0; q < E::points; ++q) {
         const Point<E>& point = points[q];
         for (int a = 0; a < E::nodes; ++a)
-          point.add_diagonal_block(a, body.law(e).bulk, g[e * E::points + q], blocks.data() + Point<E>::at(node[a], 0) * E::dim);
+          point.add_diagonal_block(a, body.law(e).bulk, g[e * E::points + q],
+                                   blocks.data() + Point<E>::at(node[a], 0) * E::dim);
       }
     }
   });

@@ -38,7 +38,8 @@ inline constexpr int tangent_floats = 5;
 
 /// Local nodes are records of four values, the last one unused. `index` holds, batch by batch, node by
 /// node, lane by lane, the offset of a record (four times the local node). `secant` holds, batch by batch,
-/// point by point, lane by lane, g; `tangent` as many vectors (xx yy xy yz zx, see material.hpp) as tangent_floats for each.
+/// point by point, lane by lane, g; `tangent` as many vectors (xx yy xy yz zx, see material.hpp) as
+/// tangent_floats for each.
 template <class Real>
 struct Block {
   const Group* groups;

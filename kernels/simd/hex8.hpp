@@ -272,8 +272,8 @@ KACANOV_INLINE inline void affine_stress(const TangentMaterial<L, Real>& materia
     const float* t = material.tangent + tangent_floats * slot * L::width;
     V d[5];
     for (int n = 0; n < 5; ++n) d[n] = L::widen(t + n * L::width);
-    const V along = turned(d[0] * e[0][q] + d[1] * e[1][q] + (d[0] + d[1]) * (e[0][q] + e[1][q]) + d[2] * e[2][q] +
-                               d[3] * e[3][q] + d[4] * e[4][q],
+    const V along = turned(d[0] * e[0][q] + d[1] * e[1][q] + (d[0] + d[1]) * (e[0][q] + e[1][q]) +
+                               d[2] * e[2][q] + d[3] * e[3][q] + d[4] * e[4][q],
                            d[0]);
     const V half = Real(0.5) * along;
     for (int n = 0; n < 5; ++n) e[n][q] = g * e[n][q] - (n < 2 ? half : along) * d[n];

@@ -65,8 +65,9 @@ KACANOV_INLINE inline void fetch_ahead(const T* stream, int count) {
 // forces are that times det ∇N. `weight` is the point's on the reference element, `w` = weight/det. `point`
 // counts vectors of points from the start of the group.
 //
-// The tangent's rank-one term 2 g' x d dᵀ, d = dev ε/x, is kept as the vector √|2 g' x| d, whose trace is zero: five floats. Which way it
-// points makes no difference to the product, so its first component says by its sign bit that g' is positive.
+// The tangent's rank-one term 2 g' x d dᵀ, d = dev ε/x, is kept as the vector √|2 g' x| d, whose trace is
+// zero: five floats. Which way it points makes no difference to the product, so its first component says by
+// its sign bit that g' is positive.
 
 /// That strain from h[3 i + j] = det ∂u_i/∂x_j.
 template <class V>
@@ -186,7 +187,8 @@ struct NonlinearMaterial {
       }
     add_energy(det * weight * (Real(0.5 * k0) * trace * trace + Real(2) * energy));
     if (out.keep_secant) L::store(secant + point * L::width, g);
-    if (out.keep_tangent) keep(Sym<V>{xx, yy, zz, xy, yz, zx}, x, slope, tangent + tangent_floats * point * L::width);
+    if (out.keep_tangent)
+      keep(Sym<V>{xx, yy, zz, xy, yz, zx}, x, slope, tangent + tangent_floats * point * L::width);
     return frozen_stress<L, Real>(e, g, bulk(), w);
   }
 

@@ -73,7 +73,8 @@ struct Lanes<float> {
 
   typedef float Record __attribute__((vector_size(16)));
   KACANOV_INLINE static Record load_row(const float* p) {
-    const __m128 xy = _mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i_u*>(p)));  // aligned to a float only
+    const __m128 xy =
+        _mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i_u*>(p)));  // aligned to a float only
     return (Record)_mm_movelh_ps(xy, _mm_load_ss(p + 2));
   }
   KACANOV_INLINE static void store_row(float* p, Record r) {

@@ -9,15 +9,16 @@
 #include <unordered_map>
 #include <utility>
 
-#include "cells/dispatch.hpp"
-#include "cells/point.hpp"
 #include "amg/aggregation.hpp"
 #include "amg/motion_products.hpp"
+#include "cells/dispatch.hpp"
+#include "cells/point.hpp"
 
 namespace kacanov {
 
 template <int M>
-AggregateMotions<M>::AggregateMotions(const Part& part, std::span<const double> g, double size, std::string_view instruction_set)
+AggregateMotions<M>::AggregateMotions(const Part& part, std::span<const double> g, double size,
+                                      std::string_view instruction_set)
     : part_(part), add_products_(motion_products<M>(instruction_set)) {
   group_ = aggregate_nodes(part.body(), g, part.owned_nodes, size);
   owned_ = group_.empty() ? 0 : 1 + *std::max_element(group_.begin(), group_.end());
@@ -64,7 +65,8 @@ RigidLevel<M> AggregateMotions<M>::make_level() {
       number[n] = c < dim ? centre_[a][c] : static_cast<double>(first_ + group_[n]);
     }
     halo.copy_from_owner(std::span<double>(number), 1);
-    for (std::size_t n = owned_nodes; n < number.size() && c < dim; ++n) ghost_centre[n - owned_nodes][c] = number[n];
+    for (std::size_t n = owned_nodes; n < number.size() && c < dim; ++n)
+      ghost_centre[n - owned_nodes][c] = number[n];
   }
 
   BlockSums<M> couplings;
@@ -73,7 +75,8 @@ RigidLevel<M> AggregateMotions<M>::make_level() {
   for (std::size_t e = 0; e < part_.element_count(); ++e) {
     distinct.clear();
     for (std::size_t a = 0; a < npe; ++a) {
-      const auto id = static_cast<std::int64_t>(number[static_cast<std::size_t>(part_.elements[e * npe + a])]);
+      const auto id =
+          static_cast<std::int64_t>(number[static_cast<std::size_t>(part_.elements[e * npe + a])]);
       if (std::find(distinct.begin(), distinct.end(), id) == distinct.end()) distinct.push_back(id);
     }
     for (const std::int64_t row : distinct)
@@ -83,7 +86,8 @@ RigidLevel<M> AggregateMotions<M>::make_level() {
   RigidLevel<M> level(centre_, std::move(couplings), halo.comm);
 
   group_.resize(part_.nodes());
-  std::unordered_map<std::int64_t, std::int32_t> unknown;  // to the level: no element here ties them to an owned one
+  std::unordered_map<std::int64_t, std::int32_t>
+      unknown;  // to the level: no element here ties them to an owned one
   number_.assign(level.ghosts().begin(), level.ghosts().end());
   centre_.resize(centre_.size() + number_.size());
   const auto known = static_cast<std::int32_t>(centre_.size());
@@ -171,23 +175,32 @@ class AggregateMotions<M>::Sums {
         for (std::size_t m = 0; m < M; ++m) {
           z.row[c][m] = 0.0;
           for (std::size_t k = 0; k < dim; ++k)
-            z.row[c][m] += held->second(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(k)) * free.row[k][m];
+            z.row[c][m] +=
+                held->second(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(k)) * free.row[k][m];
         }
     }
     return z;
   }
 
   bool is_owned(std::int32_t a) const { return a < motions_.owned_; }
-  bool is_in_level(std::int32_t a, std::int32_t b) const { return level_ != nullptr && (is_owned(a) || is_owned(b)); }
+  bool is_in_level(std::int32_t a, std::int32_t b) const {
+    return level_ != nullptr && (is_owned(a) || is_owned(b));
+  }
   std::int64_t number(std::int32_t a) const {
-    return is_owned(a) ? motions_.first_ + a : motions_.number_[static_cast<std::size_t>(a - motions_.owned_)];
+    return is_owned(a) ? motions_.first_ + a
+                       : motions_.number_[static_cast<std::size_t>(a - motions_.owned_)];
   }
   /// Whether block (a, b) is the one that is kept, not (b, a).
-  bool in_order(std::int32_t a, std::int32_t b) const { return is_in_level(a, b) ? a <= b : number(a) <= number(b); }
-  Block& at(std::int32_t a, std::int32_t b) { return is_in_level(a, b) ? level_->block(a, b) : others_.at(number(a), number(b)); }
+  bool in_order(std::int32_t a, std::int32_t b) const {
+    return is_in_level(a, b) ? a <= b : number(a) <= number(b);
+  }
+  Block& at(std::int32_t a, std::int32_t b) {
+    return is_in_level(a, b) ? level_->block(a, b) : others_.at(number(a), number(b));
+  }
 
-  /// One within a single aggregate strains nothing, unless some node is bound. (To take the diagonal blocks from the others, as a motion of
-  /// the whole strains nothing, saves half of the products and loses too many digits on stretched meshes.)
+  /// One within a single aggregate strains nothing, unless some node is bound. (To take the diagonal blocks
+  /// from the others, as a motion of the whole strains nothing, saves half of the products and loses too many
+  /// digits on stretched meshes.)
   template <class E>
   void add_element(std::size_t e) {
     constexpr auto npe = static_cast<std::size_t>(E::nodes);
@@ -210,7 +223,8 @@ class AggregateMotions<M>::Sums {
     std::array<Rows, npe> z;
     for (std::size_t a = 0; a < npe; ++a) {
       z[a] = rows(node[a]);
-      for (std::size_t c = 0; c < dim; ++c) x[a * dim + c] = body_.mesh.coordinates[static_cast<std::size_t>(node[a]) * dim + c];
+      for (std::size_t c = 0; c < dim; ++c)
+        x[a * dim + c] = body_.mesh.coordinates[static_cast<std::size_t>(node[a]) * dim + c];
     }
     std::array<MotionPair, npe*(npe + 1) / 2> pairs;
     std::size_t pair_count = 0;
@@ -227,7 +241,9 @@ class AggregateMotions<M>::Sums {
       const auto& point = points[q];
       const auto g = static_cast<double>(static_cast<float>(g_[e * static_cast<std::size_t>(E::points) + q]));
       const double volume = sign_ * point.volume, shear = 2.0 * g * volume, bulk = law.bulk * volume;
-      motions_.add_products_({npe, count, point.gradient[0], point.dilatation[0], z.data(), local.data(), shear, bulk}, pairs.data(), pair_count);
+      motions_.add_products_(
+          {npe, count, point.gradient[0], point.dilatation[0], z.data(), local.data(), shear, bulk},
+          pairs.data(), pair_count);
     }
   }
 
@@ -253,7 +269,8 @@ void AggregateMotions<M>::sum(std::span<const double> g, const Held& held, Rigid
 }
 
 template <int M>
-void AggregateMotions<M>::change(std::span<const double> g, const Held& before, const Held& after, RigidLevel<M>& level) const {
+void AggregateMotions<M>::change(std::span<const double> g, const Held& before, const Held& after,
+                                 RigidLevel<M>& level) const {
   std::vector<std::uint8_t> moved(part_.nodes(), 0);  // nodes whose held directions are others
   std::unordered_map<std::int32_t, const Space::HeldDirections*> gone;
   for (const auto& entry : before.space.held_directions()) gone.emplace(entry.node, &entry);
@@ -269,7 +286,8 @@ void AggregateMotions<M>::change(std::span<const double> g, const Held& before, 
   const auto npe = static_cast<std::size_t>(nodes_per_element(part_.type));
   std::vector<std::size_t> elements;
   for (std::size_t e = 0; e < part_.element_count(); ++e)
-    if (std::any_of(&part_.elements[e * npe], &part_.elements[e * npe] + npe, [&](std::int32_t n) { return moved[static_cast<std::size_t>(n)] != 0; }))
+    if (std::any_of(&part_.elements[e * npe], &part_.elements[e * npe] + npe,
+                    [&](std::int32_t n) { return moved[static_cast<std::size_t>(n)] != 0; }))
       elements.push_back(e);
   Sums sums(*this, g, nullptr);
   for (const auto& [held, sign] : {std::pair{&before, -1.0}, std::pair{&after, 1.0}}) {
@@ -286,7 +304,8 @@ void AggregateMotions<M>::restrict_forces(std::span<const float> force, std::spa
   for (std::size_t n = 0; n < static_cast<std::size_t>(part_.owned_nodes); ++n) {
     std::array<double, dim> f{};
     for (std::size_t c = 0; c < dim; ++c) f[c] = static_cast<double>(force[n * dim + c]);
-    RigidMotion<M>::add_force(f.data(), offset(n).data(), 1.0 / length_, b.data() + static_cast<std::size_t>(group_[n]) * M);
+    RigidMotion<M>::add_force(f.data(), offset(n).data(), 1.0 / length_,
+                              b.data() + static_cast<std::size_t>(group_[n]) * M);
   }
 }
 
@@ -294,7 +313,8 @@ template <int M>
 void AggregateMotions<M>::prolong(std::span<const double> x, double gain, std::span<float> u) const {
   for (std::size_t n = 0; n < static_cast<std::size_t>(part_.owned_nodes); ++n) {
     std::array<double, dim> motion{};
-    RigidMotion<M>::add_motion(x.data() + static_cast<std::size_t>(group_[n]) * M, offset(n).data(), 1.0 / length_, motion.data());
+    RigidMotion<M>::add_motion(x.data() + static_cast<std::size_t>(group_[n]) * M, offset(n).data(),
+                               1.0 / length_, motion.data());
     for (std::size_t c = 0; c < dim; ++c) u[n * dim + c] = static_cast<float>(gain * motion[c]);
   }
   std::fill(u.begin() + static_cast<std::ptrdiff_t>(part_.owned_unknowns()), u.end(), 0.0F);

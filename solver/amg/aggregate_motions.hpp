@@ -6,23 +6,25 @@
 #include <string_view>
 #include <vector>
 
+#include <kacanov/part.hpp>
 #include "amg/motion_products.hpp"
 #include "amg/rigid_level.hpp"
-#include <kacanov/part.hpp>
 #include "linear/preconditioner.hpp"
 #include "linear/space.hpp"
 
 namespace kacanov {
 
-/// Aggregates are made once, along strong couplings; which of them couple depends on them alone. What changes from setup to setup is
-/// summed into the same blocks.
+/// Aggregates are made once, along strong couplings; which of them couple depends on them alone. What changes
+/// from setup to setup is summed into the same blocks.
 template <int M>
 class AggregateMotions {
  public:
   /// Some `size` nodes each. `g`: elements × points.
-  AggregateMotions(const Part& part, std::span<const double> g, double size, std::string_view instruction_set);
+  AggregateMotions(const Part& part, std::span<const double> g, double size,
+                   std::string_view instruction_set);
 
-  /// Makes rotations comparable to translations: the root mean square of the nodes' distances from their centres.
+  /// Makes rotations comparable to translations: the root mean square of the nodes' distances from their
+  /// centres.
   double length() const noexcept { return length_; }
   /// The level over them with all couplings that elements make, zero so far. To be called once. Collective.
   RigidLevel<M> make_level();
@@ -31,10 +33,11 @@ class AggregateMotions {
     std::span<const NodeBlock> blocks;
     const Space& space;
   };
-  /// Galerkin's matrix of B(g) + blocks on the motions, into the level that make_level gave; g is rounded to single precision. Collective.
+  /// Galerkin's matrix of B(g) + blocks on the motions, into the level that make_level gave; g is rounded to
+  /// single precision. Collective.
   void sum(std::span<const double> g, const Held& held, RigidLevel<M>& level) const;
-  /// What `sum` gave with `before` becomes what it gives with `after` and the same g, from the elements of nodes whose held directions are
-  /// others. Collective.
+  /// What `sum` gave with `before` becomes what it gives with `after` and the same g, from the elements of
+  /// nodes whose held directions are others. Collective.
   void change(std::span<const double> g, const Held& before, const Held& after, RigidLevel<M>& level) const;
 
   /// b = what forces on the owned nodes do on the motions of owned aggregates.
@@ -49,7 +52,8 @@ class AggregateMotions {
 
   const Part& part_;
   AddMotionProducts<M> add_products_;
-  std::vector<std::int32_t> group_;   ///< of every local node: owned aggregates first, then those of other ranks as the level has them, then the rest
+  std::vector<std::int32_t> group_;   ///< of every local node: owned aggregates first, then those of other
+                                      ///< ranks as the level has them, then the rest
   std::vector<Vector3> centre_;       ///< of these aggregates
   std::vector<std::int64_t> number_;  ///< of those that are not owned, over all ranks
   std::int32_t owned_ = 0;            ///< aggregates

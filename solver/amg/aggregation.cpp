@@ -21,7 +21,10 @@ struct ElementsOfSections {
       std::vector<std::int32_t> last(first.size() - 1, -1);  // element seen last
       for (std::size_t k = 0; k < mesh.connectivity.size(); ++k) {
         if (mesh.connectivity[k] >= first.back()) continue;
-        const auto c = static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), mesh.connectivity[k]) - first.begin()) - 1;
+        const auto c =
+            static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), mesh.connectivity[k]) -
+                                     first.begin()) -
+            1;
         const auto e = static_cast<std::int32_t>(k / npe);
         if (std::exchange(last[c], e) != e) in_section(c, e);
       }
@@ -41,7 +44,10 @@ constexpr float weak = 0.2F;  ///< of a row's heaviest edge
 class Queues {
  public:
   Queues(std::int32_t rows, std::int32_t queues)
-      : first_(static_cast<std::size_t>(queues), none), last_(first_), next_(static_cast<std::size_t>(rows), none), previous_(next_) {}
+      : first_(static_cast<std::size_t>(queues), none),
+        last_(first_),
+        next_(static_cast<std::size_t>(rows), none),
+        previous_(next_) {}
 
   void push(std::int32_t row, std::int32_t queue) {
     const auto q = static_cast<std::size_t>(queue), r = static_cast<std::size_t>(row);
@@ -67,19 +73,25 @@ class Queues {
   std::size_t lowest_ = 0;
 };
 
-/// Group of each row: it and its partner along its heaviest edge, or itself. Small rows choose first, and among them those with
-/// the fewest strong neighbours left to choose from (Notay 2010): few are left over, whatever the numbering.
+/// Group of each row: it and its partner along its heaviest edge, or itself. Small rows choose first, and
+/// among them those with the fewest strong neighbours left to choose from (Notay 2010): few are left over,
+/// whatever the numbering.
 std::vector<std::int32_t> match(const WeightedGraph& graph, std::span<const std::int32_t> size) {
   const std::int32_t rows = graph.rows();
   constexpr std::int32_t most_choices = 63;
   std::vector<std::int32_t> group(static_cast<std::size_t>(rows), none), choices(group.size(), 0);
   std::vector<float> strong(group.size(), 0.0F);  // edges heavier than this
-  const auto begin = [&](std::int32_t i) { return static_cast<std::size_t>(graph.start[static_cast<std::size_t>(i)]); };
-  const auto end = [&](std::int32_t i) { return static_cast<std::size_t>(graph.start[static_cast<std::size_t>(i) + 1]); };
+  const auto begin = [&](std::int32_t i) {
+    return static_cast<std::size_t>(graph.start[static_cast<std::size_t>(i)]);
+  };
+  const auto end = [&](std::int32_t i) {
+    return static_cast<std::size_t>(graph.start[static_cast<std::size_t>(i) + 1]);
+  };
   for (std::int32_t i = 0; i < rows; ++i) {
     float& least = strong[static_cast<std::size_t>(i)];
     for (auto k = begin(i); k < end(i); ++k) least = std::max(least, weak * graph.weight[k]);
-    for (auto k = begin(i); k < end(i); ++k) choices[static_cast<std::size_t>(i)] += graph.weight[k] > least ? 1 : 0;
+    for (auto k = begin(i); k < end(i); ++k)
+      choices[static_cast<std::size_t>(i)] += graph.weight[k] > least ? 1 : 0;
   }
   std::vector<std::int32_t> classes(size.begin(), size.end());
   std::sort(classes.begin(), classes.end());
@@ -87,7 +99,9 @@ std::vector<std::int32_t> match(const WeightedGraph& graph, std::span<const std:
 
   std::int32_t groups = 0;
   Queues queues(rows, most_choices + 1);
-  const auto queue_of = [&](std::int32_t i) { return std::min(choices[static_cast<std::size_t>(i)], most_choices); };
+  const auto queue_of = [&](std::int32_t i) {
+    return std::min(choices[static_cast<std::size_t>(i)], most_choices);
+  };
   for (const std::int32_t now : classes) {
     const auto waits = [&](std::int32_t i) {
       return group[static_cast<std::size_t>(i)] == none && size[static_cast<std::size_t>(i)] == now;
@@ -97,7 +111,9 @@ std::vector<std::int32_t> match(const WeightedGraph& graph, std::span<const std:
       group[static_cast<std::size_t>(i)] = groups;
       for (auto k = begin(i); k < end(i); ++k) {
         const std::int32_t j = graph.column[k];
-        if (graph.weight[k] <= strong[static_cast<std::size_t>(j)] || group[static_cast<std::size_t>(j)] != none) continue;
+        if (graph.weight[k] <= strong[static_cast<std::size_t>(j)] ||
+            group[static_cast<std::size_t>(j)] != none)
+          continue;
         if (waits(j)) queues.remove(j, queue_of(j));
         --choices[static_cast<std::size_t>(j)];
         if (waits(j)) queues.push(j, queue_of(j));
@@ -137,7 +153,8 @@ WeightedGraph contract(const WeightedGraph& graph, std::span<const std::int32_t>
   std::partial_sum(first.begin(), first.end(), first.begin());
   auto next = first;
   for (std::size_t i = 0; i < group.size(); ++i)
-    member[static_cast<std::size_t>(next[static_cast<std::size_t>(group[i])]++)] = static_cast<std::int32_t>(i);
+    member[static_cast<std::size_t>(next[static_cast<std::size_t>(group[i])]++)] =
+        static_cast<std::int32_t>(i);
 
   WeightedGraph coarse;
   coarse.start.reserve(static_cast<std::size_t>(groups) + 1);
@@ -164,10 +181,11 @@ WeightedGraph contract(const WeightedGraph& graph, std::span<const std::int32_t>
   return coarse;
 }
 
-/// Couplings of nodes first … last − 1 of a body: Σ g / distance² over the elements two nodes share, g (elements × points) taken in
-/// the mean. In flat or stretched elements the short edges are the strong ones. `elements`: those with one of the nodes.
-WeightedGraph coupling_graph(const Body& body, std::span<const double> g, std::int32_t first, std::int32_t last,
-                             std::span<const std::int32_t> elements) {
+/// Couplings of nodes first … last − 1 of a body: Σ g / distance² over the elements two nodes share, g
+/// (elements × points) taken in the mean. In flat or stretched elements the short edges are the strong ones.
+/// `elements`: those with one of the nodes.
+WeightedGraph coupling_graph(const Body& body, std::span<const double> g, std::int32_t first,
+                             std::int32_t last, std::span<const std::int32_t> elements) {
   const auto& mesh = body.mesh;
   const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
   const auto points = static_cast<std::size_t>(points_per_element(mesh.type));
@@ -219,8 +237,8 @@ WeightedGraph coupling_graph(const Body& body, std::span<const double> g, std::i
 
 }  // namespace
 
-std::vector<std::int32_t> aggregate_nodes(const Body& body, std::span<const double> g, std::int32_t nodes, double size,
-                                          std::int32_t section) {
+std::vector<std::int32_t> aggregate_nodes(const Body& body, std::span<const double> g, std::int32_t nodes,
+                                          double size, std::int32_t section) {
   const std::int32_t sections = std::max(1, (nodes + section - 1) / section);
   std::vector<std::int32_t> first;
   for (std::int32_t c = 0; c <= sections; ++c)
@@ -230,7 +248,8 @@ std::vector<std::int32_t> aggregate_nodes(const Body& body, std::span<const doub
   group.reserve(static_cast<std::size_t>(nodes));
   std::int32_t groups = 0;
   for (std::size_t c = 0; c + 1 < first.size(); ++c) {
-    const auto mine = std::span(elements.element).subspan(elements.start[c], elements.start[c + 1] - elements.start[c]);
+    const auto mine =
+        std::span(elements.element).subspan(elements.start[c], elements.start[c + 1] - elements.start[c]);
     const auto local = aggregate(coupling_graph(body, g, first[c], first[c + 1], mine), size);
     const std::int32_t before = groups;
     for (const std::int32_t a : local) {

@@ -12,7 +12,7 @@ namespace kacanov {
 
 /// Which local nodes share an element: compressed rows, columns ascending, the diagonal included.
 struct NodeGraph {
-  std::vector<std::int64_t> start;   ///< nodes + 1
+  std::vector<std::int64_t> start;  ///< nodes + 1
   std::vector<std::int32_t> column;
 
   std::size_t rows() const noexcept { return start.size() - 1; }
@@ -25,8 +25,8 @@ struct NodeGraph {
 
 NodeGraph node_graph(const MeshView& mesh);
 
-/// Sum of the element matrices for frozen g (elements × points): one dim × dim block (row-major) an entry of the
-/// graph. Rows of shared nodes hold this rank's contributions only.
+/// Sum of the element matrices for frozen g (elements × points): one dim × dim block (row-major) an entry of
+/// the graph. Rows of shared nodes hold this rank's contributions only.
 std::vector<double> assemble_blocks(const Body& body, std::span<const double> g, const NodeGraph& graph);
 
 }  // namespace kacanov

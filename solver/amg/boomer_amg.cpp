@@ -40,7 +40,8 @@ HYPRE_ParVector create_vector(MPI_Comm comm, HYPRE_BigInt first, HYPRE_BigInt co
 
 }  // namespace
 
-BoomerAmg::BoomerAmg(MPI_Comm comm, std::int64_t first, std::int64_t count, std::int64_t total) : comm_(comm) {
+BoomerAmg::BoomerAmg(MPI_Comm comm, std::int64_t first, std::int64_t count, std::int64_t total)
+    : comm_(comm) {
   if (total > std::numeric_limits<HYPRE_BigInt>::max())
     throw InputError("the problem needs a matrix of " + std::to_string(total) +
                      " rows; this hypre is a 32-bit build and takes at most " +
@@ -94,8 +95,9 @@ void BoomerAmg::finish(const BoomerAmgOptions& options) {
   check(HYPRE_BoomerAMGSetInterpType(solver_, 6), "SetInterpType");     // extended+i
   check(HYPRE_BoomerAMGSetPMaxElmts(solver_, 4), "SetPMaxElmts");
   check(HYPRE_BoomerAMGSetStrongThreshold(solver_, options.strong_threshold), "SetStrongThreshold");
-  // l1 Gauss–Seidel forward on the way down, backward on the way up: symmetric at half the cost of a symmetric sweep on
-  // both (404 CG steps against 385, 4.3 s against 5.1 s of CPU time, 3D beam, h = 1/16); Gaussian elimination at the end.
+  // l1 Gauss–Seidel forward on the way down, backward on the way up: symmetric at half the cost of a
+  // symmetric sweep on both (404 CG steps against 385, 4.3 s against 5.1 s of CPU time, 3D beam, h = 1/16);
+  // Gaussian elimination at the end.
   check(HYPRE_BoomerAMGSetCycleRelaxType(solver_, 13, 1), "SetCycleRelaxType");
   check(HYPRE_BoomerAMGSetCycleRelaxType(solver_, 14, 2), "SetCycleRelaxType");
   check(HYPRE_BoomerAMGSetCycleRelaxType(solver_, 9, 3), "SetCycleRelaxType");

@@ -12,7 +12,7 @@
 namespace kacanov {
 
 struct BoomerAmgOptions {
-  int functions = 1;              ///< unknowns a node, interleaved
+  int functions = 1;  ///< unknowns a node, interleaved
   double strong_threshold = 0.5;
   int aggressive_levels = 0;
 };

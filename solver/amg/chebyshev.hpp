@@ -32,14 +32,15 @@ struct ChebyshevStep {
   }
 };
 
-/// Damps the eigenvectors of D⁻¹A with eigenvalues in [lower, upper]; a symmetric smoother, the same polynomial in D⁻¹A
-/// every time.
+/// Damps the eigenvectors of D⁻¹A with eigenvalues in [lower, upper]; a symmetric smoother, the same
+/// polynomial in D⁻¹A every time.
 struct Chebyshev {
   int degree = 2;
   double lower = 0.1, upper = 1.1;
 
-  /// Vectors of one length, `step` and `image` scratch. With `from_zero` x is taken as zero, whatever it holds. `multiply(x, y)`: y = A x;
-  /// `relax(weights, b, image, step, x)`: the step above in one pass, `image` A x.
+  /// Vectors of one length, `step` and `image` scratch. With `from_zero` x is taken as zero, whatever it
+  /// holds. `multiply(x, y)`: y = A x; `relax(weights, b, image, step, x)`: the step above in one pass,
+  /// `image` A x.
   template <class S, class Multiply, class Relax>
   void smooth(bool from_zero, std::span<const S> b, std::span<S> x, std::span<S> step, std::span<S> image,
               const Multiply& multiply, const Relax& relax) const {

@@ -20,7 +20,8 @@ void ElasticityAmg::build(std::span<const double> g, std::span<const NodeBlock> 
   }
   Vector diagonal(part_.unknowns());  // summed over the ranks: what held components keep
   for (std::size_t n = 0; n < graph.rows(); ++n) {
-    const double* block = &matrix[graph.position(static_cast<std::int32_t>(n), static_cast<std::int32_t>(n)) * dim * dim];
+    const double* block =
+        &matrix[graph.position(static_cast<std::int32_t>(n), static_cast<std::int32_t>(n)) * dim * dim];
     for (std::size_t i = 0; i < dim; ++i) diagonal[n * dim + i] = block[i * dim + i];
   }
   part_.halo.sum(diagonal, part_.dim());
@@ -44,7 +45,8 @@ void ElasticityAmg::build(std::span<const double> g, std::span<const NodeBlock> 
         columns.push_back(global(n, i));
         values.push_back(diagonal[n * dim + i]);
       } else {
-        for (auto k = static_cast<std::size_t>(graph.start[n]); k < static_cast<std::size_t>(graph.start[n + 1]); ++k)
+        for (auto k = static_cast<std::size_t>(graph.start[n]);
+             k < static_cast<std::size_t>(graph.start[n + 1]); ++k)
           for (std::size_t j = 0; j < dim; ++j) {
             const auto m = static_cast<std::size_t>(graph.column[k]);
             if (part_.held[m * dim + j]) continue;

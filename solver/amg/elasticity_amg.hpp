@@ -16,7 +16,9 @@ class ElasticityAmg final : public Preconditioner {
 
  private:
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) override;
-  void rebuild(std::span<const NodeBlock> blocks, const Space& space) override { build(std::vector<double>(g_), blocks, space); }
+  void rebuild(std::span<const NodeBlock> blocks, const Space& space) override {
+    build(std::vector<double>(g_), blocks, space);
+  }
 
   const Part& part_;
   std::vector<double> g_;

@@ -37,7 +37,8 @@ void FineLevel::rebuild(std::span<const NodeBlock> blocks, const Space& space) {
   std::vector<float> diagonal(part_.nodes() * dim * dim);
   op_.block_diagonal(diagonal);
   for (const auto& b : blocks_)
-    for (std::size_t k = 0; k < dim * dim; ++k) diagonal[static_cast<std::size_t>(b.node) * dim * dim + k] += static_cast<float>(b.value[k]);
+    for (std::size_t k = 0; k < dim * dim; ++k)
+      diagonal[static_cast<std::size_t>(b.node) * dim * dim + k] += static_cast<float>(b.value[k]);
   part_.halo.sum(std::span<float>(diagonal), static_cast<int>(dim * dim));
   inverse_.resize(part_.nodes() * packed);
   for (std::size_t n = 0; n < part_.nodes(); ++n) {
@@ -45,7 +46,8 @@ void FineLevel::rebuild(std::span<const NodeBlock> blocks, const Space& space) {
     for (std::size_t i = 0; i < dim; ++i)
       for (std::size_t j = 0; j < dim; ++j)
         if (part_.held[n * dim + i] == 0 && part_.held[n * dim + j] == 0)
-          d(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = static_cast<double>(diagonal[(n * dim + i) * dim + j]);
+          d(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+              static_cast<double>(diagonal[(n * dim + i) * dim + j]);
     const Eigen::Matrix3d inverse = d.inverse();
     float* to = &inverse_[n * packed];
     for (std::size_t i = 0; i < dim; ++i)
@@ -54,7 +56,8 @@ void FineLevel::rebuild(std::span<const NodeBlock> blocks, const Space& space) {
   }
 }
 
-void FineLevel::add_blocks(std::span<const NodeBlock> blocks, std::span<const float> x, std::span<float> y) const {
+void FineLevel::add_blocks(std::span<const NodeBlock> blocks, std::span<const float> x,
+                           std::span<float> y) const {
   const auto dim = static_cast<std::size_t>(part_.dim());
   for (const auto& b : blocks) {
     const auto at = static_cast<std::size_t>(b.node) * dim;
@@ -81,7 +84,8 @@ void FineLevel::multiply(std::span<const float> x, std::span<float> y) const {
 
 namespace {
 
-/// z = D⁻¹ r at `nodes` nodes, D⁻¹ as packed upper triangles; one more entry of z than they have is written to.
+/// z = D⁻¹ r at `nodes` nodes, D⁻¹ as packed upper triangles; one more entry of z than they have is written
+/// to.
 void scale(int dim, const float* inverse, const float* r, std::size_t nodes, float* z) {
   if (dim == 2) {
     for (std::size_t n = 0; n < nodes; ++n, inverse += 3, r += 2, z += 2) {
@@ -90,7 +94,8 @@ void scale(int dim, const float* inverse, const float* r, std::size_t nodes, flo
     }
     return;
   }
-  // The columns of a block, each in four lanes the last of which is idle, times the entries of r: three quarters of the scalar loop's time.
+  // The columns of a block, each in four lanes the last of which is idle, times the entries of r: three
+  // quarters of the scalar loop's time.
   using Four = float __attribute__((vector_size(16)));
   using Places = int __attribute__((vector_size(16)));
   const auto load = [](const float* from) {
@@ -108,8 +113,8 @@ void scale(int dim, const float* inverse, const float* r, std::size_t nodes, flo
 
 }  // namespace
 
-void FineLevel::relax(const ChebyshevStep<float>& weights, std::span<const float> b, std::span<const float> image,
-                      std::span<float> step, std::span<float> x) const {
+void FineLevel::relax(const ChebyshevStep<float>& weights, std::span<const float> b,
+                      std::span<const float> image, std::span<float> step, std::span<float> x) const {
   // In pieces that stay in the first-level cache between the three loops.
   constexpr std::size_t piece = 128;
   const auto dim = static_cast<std::size_t>(part_.dim());
@@ -133,14 +138,17 @@ void FineLevel::choose_smoother(int degree, double range) {
   std::vector<float> x(part_.unknowns());
   const auto dim = static_cast<std::size_t>(part_.dim());
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const auto id = part_.node_number(i / dim) * static_cast<std::int64_t>(dim) + static_cast<std::int64_t>(i % dim);
+    const auto id =
+        part_.node_number(i / dim) * static_cast<std::int64_t>(dim) + static_cast<std::int64_t>(i % dim);
     x[i] = scatter(static_cast<std::uint64_t>(id));
   }
   hold(x);
   const auto owned = part_.owned_unknowns();
   const double largest = largest_eigenvalue(
       x, [this](std::span<const float> p, std::span<float> q) { multiply(p, q); },
-      [&](std::span<const float> p, std::span<float> q) { relax({0.0F, 1.0F, true, true}, p, p, q, q); },
+      [&](std::span<const float> p, std::span<float> q) {
+        relax({0.0F, 1.0F, true, true}, p, p, q, q);
+      },
       [&](const std::vector<float>& p, const std::vector<float>& q) {
         double sum = 0.0;
         for (std::size_t i = 0; i < owned; ++i) sum += static_cast<double>(p[i]) * static_cast<double>(q[i]);

@@ -14,9 +14,9 @@ namespace kacanov {
 
 struct MultigridOptions;
 
-/// A = B(g) + blocks on free components, in single precision, never stored. Directions that the space of the setup holds are
-/// held by stiff blocks here, so that the smoother stays definite in the spaces of later solves; corrections from below
-/// are projected. Vectors are consistent (Part).
+/// A = B(g) + blocks on free components, in single precision, never stored. Directions that the space of the
+/// setup holds are held by stiff blocks here, so that the smoother stays definite in the spaces of later
+/// solves; corrections from below are projected. Vectors are consistent (Part).
 class FineLevel {
  public:
   FineLevel(const Part& part, const MultigridOptions& options);
@@ -30,8 +30,8 @@ class FineLevel {
   /// y = A x for x that is zero in held components.
   void multiply(std::span<const float> x, std::span<float> y) const;
   /// Chebyshev::smooth's step, with D the dim × dim diagonal blocks of A.
-  void relax(const ChebyshevStep<float>& weights, std::span<const float> b, std::span<const float> image, std::span<float> step,
-             std::span<float> x) const;
+  void relax(const ChebyshevStep<float>& weights, std::span<const float> b, std::span<const float> image,
+             std::span<float> step, std::span<float> x) const;
   /// Zero in held components.
   void hold(std::span<float> x) const;
   /// Onto the space of the setup.

@@ -19,9 +19,9 @@ inline float scatter(std::uint64_t index) {
   return static_cast<float>(static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1.0);
 }
 
-/// Lanczos' estimate after ten steps of conjugate gradients preconditioned by D, a tenth added since it comes from below.
-/// `r` holds the start (of scatter()ed entries), vectors are as long as `multiply(x, y)` and `scale(x, y)` want them;
-/// `dot` sums over what this process owns and all ranks.
+/// Lanczos' estimate after ten steps of conjugate gradients preconditioned by D, a tenth added since it comes
+/// from below. `r` holds the start (of scatter()ed entries), vectors are as long as `multiply(x, y)` and
+/// `scale(x, y)` want them; `dot` sums over what this process owns and all ranks.
 template <class S, class Multiply, class Scale, class Dot>
 double largest_eigenvalue(std::vector<S>& r, const Multiply& multiply, const Scale& scale, const Dot& dot) {
   constexpr int steps = 10;
@@ -46,9 +46,10 @@ double largest_eigenvalue(std::vector<S>& r, const Multiply& multiply, const Sca
   }
   if (diagonal.empty()) return 1.0;
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-  solver.computeFromTridiagonal(Eigen::Map<const Eigen::VectorXd>(diagonal.data(), static_cast<Eigen::Index>(diagonal.size())),
-                                Eigen::Map<const Eigen::VectorXd>(off.data(), static_cast<Eigen::Index>(off.size())),
-                                Eigen::EigenvaluesOnly);
+  solver.computeFromTridiagonal(
+      Eigen::Map<const Eigen::VectorXd>(diagonal.data(), static_cast<Eigen::Index>(diagonal.size())),
+      Eigen::Map<const Eigen::VectorXd>(off.data(), static_cast<Eigen::Index>(off.size())),
+      Eigen::EigenvaluesOnly);
   return 1.1 * solver.eigenvalues().maxCoeff();
 }
 

@@ -20,11 +20,12 @@ struct Motions {
 
 /// Inlined into one function for each target.
 template <int M>
-KACANOV_INLINE inline void add_products(const MotionPoint<M>& point, const MotionPair* pairs, std::size_t count) {
+KACANOV_INLINE inline void add_products(const MotionPoint<M>& point, const MotionPair* pairs,
+                                        std::size_t count) {
   using Vector = typename Motions<M>::Vector;
   constexpr std::size_t dim = MotionPoint<M>::dim;
-  // Strains xx, yy, zz, √2 xy, √2 yz, √2 zx, so that the product of two is that of the tensors (zz is zero in 2D), and the
-  // dilatation that k0 acts on.
+  // Strains xx, yy, zz, √2 xy, √2 yz, √2 zx, so that the product of two is that of the tensors (zz is zero in
+  // 2D), and the dilatation that k0 acts on.
   Vector strain[most_nodes][7], stress[most_nodes][7];
   for (std::size_t k = 0; k < point.groups; ++k)
     for (std::size_t c = 0; c < 7; ++c) strain[k][c] = Vector{};
@@ -72,12 +73,13 @@ void add_plain(const MotionPoint<M>& point, const MotionPair* pairs, std::size_t
 }
 #ifdef __x86_64__
 template <int M>
-[[gnu::target("avx2,fma")]] void add_avx2(const MotionPoint<M>& point, const MotionPair* pairs, std::size_t count) {
+[[gnu::target("avx2,fma")]] void add_avx2(const MotionPoint<M>& point, const MotionPair* pairs,
+                                          std::size_t count) {
   add_products<M>(point, pairs, count);
 }
 template <int M>
-[[gnu::target("avx512f,avx512dq,avx512vl,fma,prefer-vector-width=512")]] void add_avx512(const MotionPoint<M>& point, const MotionPair* pairs,
-                                                                                        std::size_t count) {
+[[gnu::target("avx512f,avx512dq,avx512vl,fma,prefer-vector-width=512")]] void add_avx512(
+    const MotionPoint<M>& point, const MotionPair* pairs, std::size_t count) {
   add_products<M>(point, pairs, count);
 }
 #endif

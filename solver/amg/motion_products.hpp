@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What one quadrature point adds to Galerkin's matrix over rigid motions, built for several instruction sets: most of a setup.
+// What one quadrature point adds to Galerkin's matrix over rigid motions, built for several instruction sets:
+// most of a setup.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +16,8 @@ inline constexpr std::size_t motion_lanes = M == 6 ? 8 : 4;
 template <int M>
 struct MotionPoint {
   static constexpr std::size_t dim = M == 6 ? 3 : 2;
-  /// Displacements of a node in direction c by each motion of its aggregate: [c][motion], zero behind the last.
+  /// Displacements of a node in direction c by each motion of its aggregate: [c][motion], zero behind the
+  /// last.
   struct Rows {
     alignas(64) double row[dim][motion_lanes<M>];
   };
@@ -36,8 +38,8 @@ struct MotionPair {
 template <int M>
 using AddMotionProducts = void (*)(const MotionPoint<M>&, const MotionPair* pairs, std::size_t count);
 
-/// With S_a the strains of the motions of group a, volume · S_aᵀ D S_b is added for every pair, by the loop for the instruction
-/// set of that name (as choose_instruction_set takes it).
+/// With S_a the strains of the motions of group a, volume · S_aᵀ D S_b is added for every pair, by the loop
+/// for the instruction set of that name (as choose_instruction_set takes it).
 template <int M>
 AddMotionProducts<M> motion_products(std::string_view instruction_set);
 

@@ -21,8 +21,8 @@ void Preconditioner::setup_again(std::span<const NodeBlock> blocks, const Space&
   seconds_ += MPI_Wtime() - start;
 }
 
-std::unique_ptr<Preconditioner> make_preconditioner(SolverOptions::Preconditioner kind, const Part& part, int threads,
-                                                    const std::string& instruction_set) {
+std::unique_ptr<Preconditioner> make_preconditioner(SolverOptions::Preconditioner kind, const Part& part,
+                                                    int threads, const std::string& instruction_set) {
   if (kind == SolverOptions::Preconditioner::elasticity) return std::make_unique<ElasticityAmg>(part);
   MultigridOptions options;
   options.threads = threads;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One level of the hierarchy: a symmetric block matrix over the rigid motions of aggregates, its rows spread over the ranks.
+// One level of the hierarchy: a symmetric block matrix over the rigid motions of aggregates, its rows spread
+// over the ranks.
 #include "amg/rigid_level.hpp"
 
 #include <Eigen/Dense>
@@ -60,7 +61,8 @@ std::vector<T> exchange_entries(const std::vector<std::vector<T>>& to, MPI_Comm 
   MPI_Datatype type;
   MPI_Type_contiguous(static_cast<int>(sizeof(T)), MPI_BYTE, &type);
   MPI_Type_commit(&type);
-  MPI_Alltoallv(sent.data(), out.data(), out_at.data(), type, received.data(), in.data(), in_at.data(), type, comm);
+  MPI_Alltoallv(sent.data(), out.data(), out_at.data(), type, received.data(), in.data(), in_at.data(), type,
+                comm);
   MPI_Type_free(&type);
   return received;
 }
@@ -186,12 +188,14 @@ void RigidLevel<M>::build_rows(const BlockSums<M>& sums) {
     for (const auto& entry : sums.entries()) {
       const bool row = mine(entry.row), column = mine(entry.column);
       if (row == column ? !row || ghosts : !ghosts) continue;
-      const auto k = static_cast<std::size_t>(next[static_cast<std::size_t>((row ? entry.row : entry.column) - begin)]++);
+      const auto k = static_cast<std::size_t>(
+          next[static_cast<std::size_t>((row ? entry.row : entry.column) - begin)]++);
       column_[k] = local(row ? entry.column : entry.row);
       block_[k] = row ? entry.block : transposed<M>(entry.block);
     }
     for (std::int32_t i = 0; i < rows() && !ghosts; ++i)
-      if (const auto at = static_cast<std::size_t>(i); next[at] < start_[at + 1]) edge_.push_back({i, next[at]});
+      if (const auto at = static_cast<std::size_t>(i); next[at] < start_[at + 1])
+        edge_.push_back({i, next[at]});
   }
 }
 
@@ -210,10 +214,11 @@ void RigidLevel<M>::plan_exchange() {
   for (auto& n : neighbours_) {
     auto& ids = wanted[static_cast<std::size_t>(n.rank)];
     std::int32_t count = 0;
-    MPI_Sendrecv(&n.ghosts, 1, MPI_INT32_T, n.rank, 2, &count, 1, MPI_INT32_T, n.rank, 2, comm_, MPI_STATUS_IGNORE);
-    std::vector<std::int64_t> asked(static_cast<std::size_t>(count));
-    MPI_Sendrecv(ids.data(), n.ghosts, MPI_INT64_T, n.rank, 3, asked.data(), count, MPI_INT64_T, n.rank, 3, comm_,
+    MPI_Sendrecv(&n.ghosts, 1, MPI_INT32_T, n.rank, 2, &count, 1, MPI_INT32_T, n.rank, 2, comm_,
                  MPI_STATUS_IGNORE);
+    std::vector<std::int64_t> asked(static_cast<std::size_t>(count));
+    MPI_Sendrecv(ids.data(), n.ghosts, MPI_INT64_T, n.rank, 3, asked.data(), count, MPI_INT64_T, n.rank, 3,
+                 comm_, MPI_STATUS_IGNORE);
     for (const std::int64_t id : asked) n.send.push_back(static_cast<std::int32_t>(id - first()));
   }
 }
@@ -224,14 +229,16 @@ void RigidLevel<M>::invert_diagonal() {
   for (std::size_t i = 0; i < centres_.size(); ++i) {
     Dense<M> d = Dense<M>::Zero();
     for (auto k = start_[i]; k < start_[i + 1]; ++k)
-      if (column_[static_cast<std::size_t>(k)] == static_cast<std::int32_t>(i)) d = dense<M>(block_[static_cast<std::size_t>(k)]);
+      if (column_[static_cast<std::size_t>(k)] == static_cast<std::int32_t>(i))
+        d = dense<M>(block_[static_cast<std::size_t>(k)]);
     // Motions that boundary conditions leave no node for have no stiffness: they stay where they are.
     const double largest = d.diagonal().maxCoeff();
     Eigen::SelfAdjointEigenSolver<Dense<M>> solver(d);
     Dense<M> inverse = Dense<M>::Zero();
     for (int k = 0; k < M; ++k) {
       const double value = solver.eigenvalues()[k];
-      if (value > 1e-6 * largest) inverse += solver.eigenvectors().col(k) * solver.eigenvectors().col(k).transpose() / value;
+      if (value > 1e-6 * largest)
+        inverse += solver.eigenvectors().col(k) * solver.eigenvectors().col(k).transpose() / value;
     }
     for (int k = 0; k < M * M; ++k) inverse_diagonal_[i][static_cast<std::size_t>(k)] = inverse.data()[k];
   }
@@ -245,10 +252,11 @@ void RigidLevel<M>::start_filling_ghosts(std::span<double> x) const {
   sent_.resize(count);
   double* to = sent_.data();
   for (const auto& n : neighbours_) {
-    MPI_Irecv(x.data() + static_cast<std::size_t>(n.first_ghost) * M, n.ghosts * M, MPI_DOUBLE, n.rank, 4, comm_,
-              &requests_.emplace_back());
+    MPI_Irecv(x.data() + static_cast<std::size_t>(n.first_ghost) * M, n.ghosts * M, MPI_DOUBLE, n.rank, 4,
+              comm_, &requests_.emplace_back());
     double* const from = to;
-    for (const std::int32_t row : n.send) to = std::copy_n(x.data() + static_cast<std::size_t>(row) * M, M, to);
+    for (const std::int32_t row : n.send)
+      to = std::copy_n(x.data() + static_cast<std::size_t>(row) * M, M, to);
     MPI_Isend(from, static_cast<int>(to - from), MPI_DOUBLE, n.rank, 4, comm_, &requests_.emplace_back());
   }
 }
@@ -301,8 +309,8 @@ void RigidLevel<M>::multiply(std::span<double> x, std::span<double> y) const {
 }
 
 template <int M>
-void RigidLevel<M>::relax(const ChebyshevStep<double>& weights, std::span<const double> b, std::span<const double> image,
-                          std::span<double> step, std::span<double> x) const {
+void RigidLevel<M>::relax(const ChebyshevStep<double>& weights, std::span<const double> b,
+                          std::span<const double> image, std::span<double> step, std::span<double> x) const {
   weights.visit([&]<bool zero, bool first>() {
     for (std::size_t i = 0; i < centres_.size(); ++i) {
       std::array<double, M> residual, scaled{};
@@ -340,14 +348,16 @@ RigidLevel<M> RigidLevel<M>::coarsened(std::span<const std::int32_t> group, doub
   std::vector<Place> place(centres_.size() + ghosts_.size());
   for (std::size_t i = 0; i < group.size(); ++i) {
     const auto& c = centre[static_cast<std::size_t>(group[i])];
-    place[i] = {first_group + group[i], {centres_[i][0] - c[0], centres_[i][1] - c[1], centres_[i][2] - c[2]}};
+    place[i] = {first_group + group[i],
+                {centres_[i][0] - c[0], centres_[i][1] - c[1], centres_[i][2] - c[2]}};
   }
   for (const auto& n : neighbours_) {
     std::vector<Place> out;
     for (const std::int32_t row : n.send) out.push_back(place[static_cast<std::size_t>(row)]);
     MPI_Sendrecv(out.data(), static_cast<int>(out.size() * sizeof(Place)), MPI_BYTE, n.rank, 5,
-                 place.data() + n.first_ghost, static_cast<int>(static_cast<std::size_t>(n.ghosts) * sizeof(Place)),
-                 MPI_BYTE, n.rank, 5, comm_, MPI_STATUS_IGNORE);
+                 place.data() + n.first_ghost,
+                 static_cast<int>(static_cast<std::size_t>(n.ghosts) * sizeof(Place)), MPI_BYTE, n.rank, 5,
+                 comm_, MPI_STATUS_IGNORE);
   }
 
   BlockSums<M> sums;
@@ -413,7 +423,9 @@ double RigidLevel<M>::largest_eigenvalue() const {
     start[i] = scatter(static_cast<std::uint64_t>(first()) * M + i);
   return kacanov::largest_eigenvalue(
       start, [this](std::span<double> x, std::span<double> y) { multiply(x, y); },
-      [&](std::span<const double> x, std::span<double> y) { relax({0.0, 1.0, true, true}, x, x, y, y); },
+      [&](std::span<const double> x, std::span<double> y) {
+        relax({0.0, 1.0, true, true}, x, x, y, y);
+      },
       [this](const std::vector<double>& x, const std::vector<double>& y) {
         double sum = 0.0;
         for (std::size_t i = 0; i < owned_size(); ++i) sum += x[i] * y[i];
@@ -426,7 +438,8 @@ template <int M>
 std::vector<typename BlockSums<M>::Entry> RigidLevel<M>::gathered() const {
   std::vector<typename BlockSums<M>::Entry> mine;
   visit([&](std::int32_t i, std::int32_t j, const Block& block) {
-    mine.push_back({first() + i, j < rows() ? first() + j : ghosts_[static_cast<std::size_t>(j - rows())], block});
+    mine.push_back(
+        {first() + i, j < rows() ? first() + j : ghosts_[static_cast<std::size_t>(j - rows())], block});
     if (j < rows() && j != i) mine.push_back({first() + j, first() + i, transposed<M>(block)});
   });
   return exchange_entries(std::vector(static_cast<std::size_t>(ranks_), mine), comm_);

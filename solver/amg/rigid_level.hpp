@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One level of the hierarchy: a symmetric block matrix over the rigid motions of aggregates, its rows spread over the ranks.
+// One level of the hierarchy: a symmetric block matrix over the rigid motions of aggregates, its rows spread
+// over the ranks.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,8 @@
 
 namespace kacanov {
 
-/// Sums of blocks (row, column), rows numbered over all ranks; only row ≤ column is kept, the rest follows by symmetry.
+/// Sums of blocks (row, column), rows numbered over all ranks; only row ≤ column is kept, the rest follows by
+/// symmetry.
 template <int M>
 class BlockSums {
  public:
@@ -37,15 +39,16 @@ class BlockSums {
   std::deque<Entry> entries_;  // never moved: they are most of the memory of a setup
 };
 
-/// Vectors have M entries a row; those handed to multiply have room for the ghosts behind the owned rows. All is double: a long
-/// body bends with 1e-8 of the energy that the entries suggest, which single precision rounds away.
+/// Vectors have M entries a row; those handed to multiply have room for the ghosts behind the owned rows. All
+/// is double: a long body bends with 1e-8 of the energy that the entries suggest, which single precision
+/// rounds away.
 template <int M>
 class RigidLevel {
  public:
   using Block = typename BlockSums<M>::Block;
 
-  /// This rank owns rows first … first + rows − 1, the motions of aggregates with these centres. `sums` are its
-  /// contributions to any rows; they are sent to their owners. Collective.
+  /// This rank owns rows first … first + rows − 1, the motions of aggregates with these centres. `sums` are
+  /// its contributions to any rows; they are sent to their owners. Collective.
   RigidLevel(std::vector<Vector3> centres, BlockSums<M> sums, MPI_Comm comm);
 
   std::int32_t rows() const noexcept { return static_cast<std::int32_t>(centres_.size()); }
@@ -58,8 +61,8 @@ class RigidLevel {
   /// y = A x on owned rows; fills x's ghosts.
   void multiply(std::span<double> x, std::span<double> y) const;
   /// Chebyshev::smooth's step on owned rows, with D the block diagonal.
-  void relax(const ChebyshevStep<double>& weights, std::span<const double> b, std::span<const double> image, std::span<double> step,
-             std::span<double> x) const;
+  void relax(const ChebyshevStep<double>& weights, std::span<const double> b, std::span<const double> image,
+             std::span<double> step, std::span<double> x) const;
   /// Largest eigenvalue of D⁻¹A, by a few power steps, somewhat from above.
   double largest_eigenvalue() const;
 
@@ -78,7 +81,8 @@ class RigidLevel {
   void clear();
   /// Of an owned row and a local one, which if owned is not before it. They have to couple.
   Block& block(std::int32_t row, std::int32_t column);
-  /// Adds what the ranks have summed for each other's rows, in their blocks with ghosts and `outside` of these. Collective.
+  /// Adds what the ranks have summed for each other's rows, in their blocks with ghosts and `outside` of
+  /// these. Collective.
   void complete(BlockSums<M> outside);
   /// Adds this rank's contributions to any rows that couple. Collective.
   void add(const BlockSums<M>& sums);
@@ -107,7 +111,8 @@ class RigidLevel {
   std::vector<std::int64_t> first_;  ///< of each rank, and the total
   std::vector<Vector3> centres_;
   std::vector<std::int64_t> ghosts_;  ///< rows of other ranks in `column_`, ascending
-  /// Of owned row i: entries whose column is i, a later owned row (which the symmetric one follows from), or, behind these, a ghost.
+  /// Of owned row i: entries whose column is i, a later owned row (which the symmetric one follows from), or,
+  /// behind these, a ghost.
   std::vector<std::int32_t> start_, column_;
   std::vector<Block> block_, inverse_diagonal_;
   struct Edge {

@@ -9,7 +9,8 @@
 
 namespace kacanov {
 
-/// M = 3 (2D: two translations, a rotation) or 6 (3D) coefficients of a rigid motion u(x) = t + θ × (x − centre) / length.
+/// M = 3 (2D: two translations, a rotation) or 6 (3D) coefficients of a rigid motion u(x) = t + θ × (x −
+/// centre) / length.
 template <int M>
 struct RigidMotion {
   static constexpr int modes = M;
@@ -62,7 +63,8 @@ struct RigidMotion {
     }
   }
 
-  /// q += the coefficients that the motion `from` of a larger aggregate has in a part of it, whose centre lies at d.
+  /// q += the coefficients that the motion `from` of a larger aggregate has in a part of it, whose centre
+  /// lies at d.
   template <class S>
   static void add_to_part(const S* from, const double* d, double inverse_length, S* q) {
     add_motion(from, d, inverse_length, q);

@@ -37,13 +37,14 @@ class DirectSolve {
     for (const auto& entry : level.gathered())
       for (int i = 0; i < M; ++i)
         for (int j = 0; j < M; ++j) {
-          const auto row = static_cast<Eigen::Index>(entry.row) * M + i, column = static_cast<Eigen::Index>(entry.column) * M + j;
+          const auto row = static_cast<Eigen::Index>(entry.row) * M + i,
+                     column = static_cast<Eigen::Index>(entry.column) * M + j;
           const double v = entry.block[static_cast<std::size_t>(i * M + j)];
           triplets.emplace_back(row, column, v);
           if (row == column) diagonal[static_cast<std::size_t>(row)] += v;
         }
-    // Modes that boundary conditions have emptied, and rounding: a shift far below anything that moves, unless penalties
-    // so large that they swamp the body ask for more.
+    // Modes that boundary conditions have emptied, and rounding: a shift far below anything that moves,
+    // unless penalties so large that they swamp the body ask for more.
     const double largest = diagonal.empty() ? 1.0 : *std::max_element(diagonal.begin(), diagonal.end());
     Eigen::SparseMatrix<double> matrix(size, size), unit(size, size);
     matrix.setFromTriplets(triplets.begin(), triplets.end());
@@ -60,7 +61,8 @@ class DirectSolve {
     const auto at = static_cast<Eigen::Index>(level_->first()) * M;
     const auto owned = static_cast<Eigen::Index>(level_->owned_size());
     for (Eigen::Index i = 0; i < owned; ++i) all[at + i] = b[static_cast<std::size_t>(i)];
-    MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM, level_->comm());
+    MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM,
+                  level_->comm());
     const Eigen::VectorXd y = factor_.solve(all);
     for (Eigen::Index i = 0; i < owned; ++i) x[static_cast<std::size_t>(i)] = y[at + i];
   }
@@ -89,7 +91,8 @@ constexpr std::int64_t direct_rows = 400;
 template <int M>
 class ModesHierarchy final : public RigidMultigrid::Hierarchy {
  public:
-  ModesHierarchy(const Part& part, const MultigridOptions& options) : part_(part), options_(options), fine_(part, options) {}
+  ModesHierarchy(const Part& part, const MultigridOptions& options)
+      : part_(part), options_(options), fine_(part, options) {}
 
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) override {
     direct_.reset();
@@ -119,7 +122,8 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
     for (std::size_t i = 0; i < r.size(); ++i) b_[i] = static_cast<float>(r[i]);
     fine_.hold(b_);
     const auto multiply = [this](std::span<const float> x, std::span<float> y) { fine_.multiply(x, y); };
-    const auto relax = [this](const auto& weights, std::span<const float> b, std::span<const float> image, std::span<float> step,
+    const auto relax = [this](const auto& weights, std::span<const float> b, std::span<const float> image,
+                              std::span<float> step,
                               std::span<float> x) { fine_.relax(weights, b, image, step, x); };
     fine_.smoother().template smooth<float>(true, b_, x_, step_, image_, multiply, relax);
     fine_.multiply(x_, image_);
@@ -174,11 +178,15 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
       direct_->solve(first(stage.b), first(stage.x));
       return;
     }
-    const auto multiply = [&](std::span<const double>, std::span<double> y) { stage.level.multiply(stage.x, y); };
-    const auto relax = [&](const auto& weights, std::span<const double> b, std::span<const double> image, std::span<double> step,
+    const auto multiply = [&](std::span<const double>, std::span<double> y) {
+      stage.level.multiply(stage.x, y);
+    };
+    const auto relax = [&](const auto& weights, std::span<const double> b, std::span<const double> image,
+                           std::span<double> step,
                            std::span<double> x) { stage.level.relax(weights, b, image, step, x); };
     const auto smooth = [&](bool from_zero) {
-      stage.smoother.template smooth<double>(from_zero, first(stage.b), first(stage.x), first(stage.step), first(stage.image), multiply, relax);
+      stage.smoother.template smooth<double>(from_zero, first(stage.b), first(stage.x), first(stage.step),
+                                             first(stage.image), multiply, relax);
     };
     smooth(true);
     Stage<M>& next = stages_[k + 1];
@@ -228,7 +236,9 @@ void RigidMultigrid::build(std::span<const double> g, std::span<const NodeBlock>
   hierarchy_->build(g, blocks, space);
 }
 
-void RigidMultigrid::rebuild(std::span<const NodeBlock> blocks, const Space& space) { hierarchy_->rebuild(blocks, space); }
+void RigidMultigrid::rebuild(std::span<const NodeBlock> blocks, const Space& space) {
+  hierarchy_->rebuild(blocks, space);
+}
 
 void RigidMultigrid::secant(std::span<double> g) const { hierarchy_->secant(g); }
 

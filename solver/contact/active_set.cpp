@@ -17,7 +17,8 @@ std::array<double, 2> turning_force(const ActiveSet& set, std::size_t i, const d
 }
 
 /// Force of the slipping points at the traces w: y −= Tᵀ M (ψŝ + k (I − ŝŝᵀ) w).
-void subtract_slip_force(const Traces& traces, const ActiveSet& set, const Vector& tangential, std::span<double> y) {
+void subtract_slip_force(const Traces& traces, const ActiveSet& set, const Vector& tangential,
+                         std::span<double> y) {
   ContactValues force(traces.size());
   for (std::size_t i = 0; i < traces.size(); ++i) {
     const auto turning = turning_force(set, i, &tangential[2 * i]);
@@ -27,7 +28,8 @@ void subtract_slip_force(const Traces& traces, const ActiveSet& set, const Vecto
 }
 
 /// y += Tᵀ M k (I − ŝŝᵀ) T x. Returns this rank's share of what xᵀ y grows by.
-double add_slip_stiffness(const Traces& traces, const ActiveSet& set, std::span<const double> x, std::span<double> y) {
+double add_slip_stiffness(const Traces& traces, const ActiveSet& set, std::span<const double> x,
+                          std::span<double> y) {
   ContactValues trace(traces.size());
   traces.evaluate(x, trace);
   double share = 0.0;
@@ -55,10 +57,11 @@ ActiveSet decide(const Traces& traces, const ContactState& state, double c) {
     set.held[i].normal = state.lambda.normal[i] + c * (state.trace.normal[i] - points[i].gap) > 0.0;
     if (points[i].tangents == 0) continue;
     const double* lambda = &state.lambda.tangential[2 * i];
-    const double s[2] = {lambda[0] + c * state.trace.tangential[2 * i], lambda[1] + c * state.trace.tangential[2 * i + 1]};
+    const double s[2] = {lambda[0] + c * state.trace.tangential[2 * i],
+                         lambda[1] + c * state.trace.tangential[2 * i + 1]};
     const double length = std::hypot(s[0], s[1]), bound = state.bound[i];
-    // What its friction has pushed back sticks before it may slip the other way: friction beyond what a yielding body
-    // carries would throw it to and fro.
+    // What its friction has pushed back sticks before it may slip the other way: friction beyond what a
+    // yielding body carries would throw it to and fro.
     const bool turned = lambda[0] * s[0] + lambda[1] * s[1] < 0.0;
     set.held[i].tangential = bound > 0.0 && (length <= bound || turned);
     if (set.held[i].tangential || length == 0.0) continue;
@@ -90,8 +93,8 @@ std::vector<NodeBlock> slip_blocks(const Part& part, const ActiveSet& set) {
 }
 
 ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, const ActiveSet& set,
-                              const ContactState& state, double reduction, double unbalanced, double absolute, CgWork& work,
-                              std::span<double> delta) {
+                              const ContactState& state, double reduction, double unbalanced, double absolute,
+                              CgWork& work, std::span<double> delta) {
   const Traces& traces = *problem.traces;
   const TraceRows rows(part, set.held);
   Space space(part);
@@ -122,18 +125,19 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
     apply(delta, work.image);
     for (std::size_t i = 0; i < delta.size(); ++i) work.residual[i] -= work.image[i];
   }
-  const CgResult solve =
-      conjugate_gradients(space, apply, problem.precondition, delta, work, CgOptions{absolute, reduction, 2000, unbalanced});
+  const CgResult solve = conjugate_gradients(space, apply, problem.precondition, delta, work,
+                                             CgOptions{absolute, reduction, 2000, unbalanced});
   ActiveSetStep step;
   step.cg_iterations = solve.iterations;
   step.solved = solve.converged;
-  if (solve.iterations > 0 && solve.residual > 0.0) step.cg_digits = std::log10(solve.first_residual / solve.residual);
+  if (solve.iterations > 0 && solve.residual > 0.0)
+    step.cg_digits = std::log10(solve.first_residual / solve.residual);
   step.curvature = space.sum_all(apply(delta, work.image));
   return step;
 }
 
-void recover_multipliers(const Part& part, const Traces& traces, const ActiveSet& set, std::span<double> residual,
-                         ContactState& state) {
+void recover_multipliers(const Part& part, const Traces& traces, const ActiveSet& set,
+                         std::span<double> residual, ContactState& state) {
   const TraceRows rows(part, set.held);
   // Forces at held rows are what is left once the slipping points have taken theirs.
   subtract_slip_force(traces, set, state.trace.tangential, residual);
@@ -149,7 +153,8 @@ void recover_multipliers(const Part& part, const Traces& traces, const ActiveSet
     const double* w = &state.trace.tangential[2 * i];
     const double* s = &set.slip_direction[2 * i];
     if (set.held[i].tangential) {
-      for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k) friction[k] = force[at++] / root;
+      for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k)
+        friction[k] = force[at++] / root;
     } else if (point.tangents > 0) {
       const double along = w[0] * s[0] + w[1] * s[1];
       for (std::size_t k = 0; k < 2; ++k)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One primal–dual active set (semismooth Newton) step for contact and Tresca friction, the disc in 3D included.
+// One primal–dual active set (semismooth Newton) step for contact and Tresca friction, the disc in 3D
+// included.
 #pragma once
 
 #include <functional>
@@ -27,22 +28,23 @@ std::vector<NodeBlock> slip_blocks(const Part& part, const ActiveSet& set);
 struct ActiveSetStep {
   std::int64_t cg_iterations = 0;
   double cg_digits = 0.0;
-  bool solved = false;            ///< CG met its tolerance
-  double curvature = 0.0;         ///< δᵀ B δ of the linear model
+  bool solved = false;     ///< CG met its tolerance
+  double curvature = 0.0;  ///< δᵀ B δ of the linear model
 };
 
-/// Solves the linearised problem with the rows of `set` held: B δ + slip terms = F − R(ω) − CᵀMλ, Cω + Cδ on the obstacle
-/// or at rest. On entry `work.residual` is F − R(ω), without contact forces; `delta` receives the step. CG goes on until `reduction` of its first
-/// residual is left and no more than `unbalanced`, or `absolute`. The first residual alone says little: points moved onto the obstacle one by
-/// one strain the elements beside them beyond anything else.
+/// Solves the linearised problem with the rows of `set` held: B δ + slip terms = F − R(ω) − CᵀMλ, Cω + Cδ on
+/// the obstacle or at rest. On entry `work.residual` is F − R(ω), without contact forces; `delta` receives
+/// the step. CG goes on until `reduction` of its first residual is left and no more than `unbalanced`, or
+/// `absolute`. The first residual alone says little: points moved onto the obstacle one by one strain the
+/// elements beside them beyond anything else.
 ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, const ActiveSet& set,
-                              const ContactState& state, double reduction, double unbalanced, double absolute, CgWork& work,
-                              std::span<double> delta);
+                              const ContactState& state, double reduction, double unbalanced, double absolute,
+                              CgWork& work, std::span<double> delta);
 
-/// Multipliers after a step: from the forces F − R(ω) at held rows, from the friction law at slipping ones (projected
-/// onto the disc), zero elsewhere. Uses state.trace at the new ω; φ is set so that ADMM can go on from here. `residual`, F − R(ω), is
-/// used up.
-void recover_multipliers(const Part& part, const Traces& traces, const ActiveSet& set, std::span<double> residual,
-                         ContactState& state);
+/// Multipliers after a step: from the forces F − R(ω) at held rows, from the friction law at slipping ones
+/// (projected onto the disc), zero elsewhere. Uses state.trace at the new ω; φ is set so that ADMM can go on
+/// from here. `residual`, F − R(ω), is used up.
+void recover_multipliers(const Part& part, const Traces& traces, const ActiveSet& set,
+                         std::span<double> residual, ContactState& state);
 
 }  // namespace kacanov

@@ -7,9 +7,9 @@
 #include <functional>
 #include <vector>
 
-#include "linear/cg.hpp"
 #include "contact/balance.hpp"
 #include "contact/traces.hpp"
+#include "linear/cg.hpp"
 
 namespace kacanov {
 
@@ -45,11 +45,11 @@ struct AdmmOptions {
 struct AdmmResult {
   int iterations = 0;
   std::int64_t cg_iterations = 0;
-  double cg_digits = 0.0;           ///< decimal digits gained by all solves together
-  double force_residual = 0.0;      ///< ‖linear equilibrium with the new multipliers‖
-  double trace_residual = 0.0;      ///< max |Cω − φ|
+  double cg_digits = 0.0;              ///< decimal digits gained by all solves together
+  double force_residual = 0.0;         ///< ‖linear equilibrium with the new multipliers‖
+  double trace_residual = 0.0;         ///< max |Cω − φ|
   std::vector<BalanceSample> balance;  ///< of every iteration
-  double step = 0.0;                ///< left side of (15), square root
+  double step = 0.0;                   ///< left side of (15), square root
   bool converged = false;
   bool solves_converged = true;
 };

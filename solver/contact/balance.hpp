@@ -13,7 +13,8 @@
 
 namespace kacanov {
 
-/// Of one iteration, for N and T: the largest displacement open at A, and the norm of the force that moved at I.
+/// Of one iteration, for N and T: the largest displacement open at A, and the norm of the force that moved at
+/// I.
 struct BalanceSample {
   std::array<double, 2> held{}, moved{};
 };
@@ -66,9 +67,10 @@ class Balance {
   std::vector<BalanceSample> samples_;
 };
 
-/// Mean of log (A behind / I behind) over the iterations, for N and T, with what the traces at A and the forces at I are to be
-/// compared with; 0 where nothing was learnt.
-inline std::array<double, 2> mean_behind(std::span<const BalanceSample> samples, double trace_scale, double force_scale) {
+/// Mean of log (A behind / I behind) over the iterations, for N and T, with what the traces at A and the
+/// forces at I are to be compared with; 0 where nothing was learnt.
+inline std::array<double, 2> mean_behind(std::span<const BalanceSample> samples, double trace_scale,
+                                         double force_scale) {
   constexpr double most = 3.0;  // where one side is empty the other cannot be infinitely behind
   std::array<double, 2> mean{};
   if (!(trace_scale > 0.0 && force_scale > 0.0)) return mean;

@@ -4,8 +4,8 @@
 
 #include <span>
 
-#include "contact/admm.hpp"
 #include <kacanov/result.hpp>
+#include "contact/admm.hpp"
 
 namespace kacanov {
 
@@ -22,9 +22,9 @@ struct Residuals {
   double energy = 0.0;  ///< stored, as it was given
 };
 
-/// `internal` is R(ω) from the operator that is to be trusted, consistent over ranks; `energy` the stored energy at ω;
-/// `diagonal` that of the elastic B, consistent: forces of 10⁻⁹ ‖diagonal ∘ ω‖ and energies likewise are
-/// rounding, so that a body moved without strain has small residuals, and not noise over noise.
+/// `internal` is R(ω) from the operator that is to be trusted, consistent over ranks; `energy` the stored
+/// energy at ω; `diagonal` that of the elastic B, consistent: forces of 10⁻⁹ ‖diagonal ∘ ω‖ and energies
+/// likewise are rounding, so that a body moved without strain has small residuals, and not noise over noise.
 Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactState& state,
                         std::span<const double> internal, double energy, std::span<const float> diagonal);
 

@@ -6,11 +6,12 @@
 
 namespace kacanov {
 
-/// Iterates (25) and (26) from state.lambda and state.phi: λ = λ₊ + λ₋ ← λ₊ − r C B_r⁻¹ CᵀM (λ₊ − λ₋) + r (Ca − ρ), with
-/// a = B_r⁻¹ (F + r NᵀMρ) once and one solve with B_r an iteration. λ₊ is the projection of λ onto the multipliers (pressure, or
-/// the friction disc), λ₋ the rest. Where multipliers are given, a takes them along and the solves count from them.
-/// The same sequence as Algorithm 1 with α = 1, inexact solves included: CG sees the same residuals.
-/// Entry and exit as for admm(); ω appears at the end only.
-AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& work, const AdmmOptions& options);
+/// Iterates (25) and (26) from state.lambda and state.phi: λ = λ₊ + λ₋ ← λ₊ − r C B_r⁻¹ CᵀM (λ₊ − λ₋) + r (Ca
+/// − ρ), with a = B_r⁻¹ (F + r NᵀMρ) once and one solve with B_r an iteration. λ₊ is the projection of λ onto
+/// the multipliers (pressure, or the friction disc), λ₋ the rest. Where multipliers are given, a takes them
+/// along and the solves count from them. The same sequence as Algorithm 1 with α = 1, inexact solves
+/// included: CG sees the same residuals. Entry and exit as for admm(); ω appears at the end only.
+AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& work,
+                     const AdmmOptions& options);
 
 }  // namespace kacanov

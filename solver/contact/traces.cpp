@@ -52,7 +52,8 @@ double Traces::add_penalty(const Penalty& r, std::span<const double> x, std::spa
       if (i < owned()) share += force * value;
     };
     add(r.normal, point.trace);
-    for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k) add(r.tangential, point.tangent[k]);
+    for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k)
+      add(r.tangential, point.tangent[k]);
   }
   return share;
 }

@@ -33,7 +33,8 @@ class Traces {
   void evaluate(std::span<const double> omega, ContactValues& values) const;
   /// y += factor · (Nᵀ M λ_n + Tᵀ M λ_t), in free components.
   void add_force(const ContactValues& lambda, double factor, std::span<double> y) const;
-  /// y += (r_n NᵀMN + r_t TᵀMT) x for x in the space of free components. Returns this rank's share of what xᵀ y grows by.
+  /// y += (r_n NᵀMN + r_t TᵀMT) x for x in the space of free components. Returns this rank's share of what xᵀ
+  /// y grows by.
   double add_penalty(const Penalty& r, std::span<const double> x, std::span<double> y) const;
   /// ‖Nᵀ M λ_n + Tᵀ M λ_t‖ over all ranks (points of one node added up only where they share it).
   double force_norm(const ContactValues& lambda) const;

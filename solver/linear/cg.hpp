@@ -12,8 +12,8 @@
 namespace kacanov {
 
 struct CgOptions {
-  double absolute = 0.0;     ///< stop at ‖r‖ ≤ absolute ...
-  double relative = 1e-8;    ///< ... or at ‖r‖ ≤ relative · ‖r₀‖
+  double absolute = 0.0;   ///< stop at ‖r‖ ≤ absolute ...
+  double relative = 1e-8;  ///< ... or at ‖r‖ ≤ relative · ‖r₀‖
   int max_iterations = 2000;
   double most = std::numeric_limits<double>::infinity();  ///< ‖r‖ that `relative` alone may not leave
 };
@@ -32,10 +32,11 @@ struct CgWork {
   }
 };
 
-/// Solves P A P δ = P r for the correction of x. On entry `work.residual` holds b − A x (projected here); on exit the
-/// residual of the new x. `apply(p, q)`: q = A p, consistent, not projected; it returns this rank's share of pᵀq, which it has at hand.
-/// `precondition(r, z)`: z ≈ A⁻¹ r, symmetric positive definite, consistent. A breakdown (pᵀAp not positive: the operator has lost its
-/// definiteness) ends the loop unconverged.
+/// Solves P A P δ = P r for the correction of x. On entry `work.residual` holds b − A x (projected here); on
+/// exit the residual of the new x. `apply(p, q)`: q = A p, consistent, not projected; it returns this rank's
+/// share of pᵀq, which it has at hand. `precondition(r, z)`: z ≈ A⁻¹ r, symmetric positive definite,
+/// consistent. A breakdown (pᵀAp not positive: the operator has lost its definiteness) ends the loop
+/// unconverged.
 template <class Apply, class Precondition>
 CgResult conjugate_gradients(const Space& space, const Apply& apply, const Precondition& precondition,
                              std::span<double> x, CgWork& work, const CgOptions& options) {
@@ -45,13 +46,15 @@ CgResult conjugate_gradients(const Space& space, const Apply& apply, const Preco
   const std::size_t n = x.size();
   space.project(r);
   result.first_residual = result.residual = space.norm(r);
-  const double target = std::max(options.absolute, std::min(options.relative * result.first_residual, options.most));
+  const double target =
+      std::max(options.absolute, std::min(options.relative * result.first_residual, options.most));
   result.converged = result.residual <= target;
   double rz = 0.0;
   while (!result.converged && result.iterations < options.max_iterations) {
     precondition(r, z);
     space.project(z);
-    const double rz_new = space.dot(r, z);  // not before: of a residual of rounding errors, nothing is left in the space
+    const double rz_new =
+        space.dot(r, z);  // not before: of a residual of rounding errors, nothing is left in the space
     if (!(rz_new > 0.0) || !std::isfinite(rz_new)) return result;
     if (result.iterations == 0) {
       for (std::size_t i = 0; i < n; ++i) p[i] = z[i];

@@ -21,8 +21,8 @@ class DistributedOperator {
         local_(part.body(), OperatorOptions{threads, instruction_set, part.halo.shared}),
         sum_(part.halo, part.dim()) {}
 
-  /// y = B(g) x, or B_T x between use_tangent(true) and use_tangent(false). Sums for shared nodes travel while the rest is
-  /// worked out. Returns this rank's share of xᵀ y.
+  /// y = B(g) x, or B_T x between use_tangent(true) and use_tangent(false). Sums for shared nodes travel
+  /// while the rest is worked out. Returns this rank's share of xᵀ y.
   double apply(std::span<const double> x, std::span<double> y) {
     WhenEarly send;
     if (part_->halo.ranks > 1) send = [&, this] { sum_.start(y); };

@@ -13,18 +13,20 @@
 
 namespace kacanov {
 
-/// A dim × dim block added to the diagonal of a node: a contact penalty, a slip stiffness, or a direction held.
+/// A dim × dim block added to the diagonal of a node: a contact penalty, a slip stiffness, or a direction
+/// held.
 struct NodeBlock {
   std::int32_t node = 0;
   std::array<double, 9> value{};  ///< dim × dim, row-major
 };
 
-/// Symmetric positive definite and fixed between two setups. Vectors are consistent (Part). Calls are collective.
+/// Symmetric positive definite and fixed between two setups. Vectors are consistent (Part). Calls are
+/// collective.
 class Preconditioner {
  public:
   virtual ~Preconditioner() = default;
-  /// For frozen g (elements × points of this part), the blocks of *owned* nodes (several may name one), and the space the
-  /// solves live in.
+  /// For frozen g (elements × points of this part), the blocks of *owned* nodes (several may name one), and
+  /// the space the solves live in.
   void setup(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space);
   /// The same with the g of the last setup, at a fraction of the cost where few nodes see a change.
   void setup_again(std::span<const NodeBlock> blocks, const Space& space);
@@ -44,9 +46,10 @@ class Preconditioner {
   double seconds_ = 0.0;
 };
 
-/// `multigrid`: Chebyshev on the matrix-free operator over rigid motions of aggregates (RigidMultigrid). `elasticity`:
-/// unknown-based BoomerAMG on the assembled matrix, the yardstick. Threads and instruction set are the operator's.
-std::unique_ptr<Preconditioner> make_preconditioner(SolverOptions::Preconditioner kind, const Part& part, int threads,
-                                                    const std::string& instruction_set);
+/// `multigrid`: Chebyshev on the matrix-free operator over rigid motions of aggregates (RigidMultigrid).
+/// `elasticity`: unknown-based BoomerAMG on the assembled matrix, the yardstick. Threads and instruction set
+/// are the operator's.
+std::unique_ptr<Preconditioner> make_preconditioner(SolverOptions::Preconditioner kind, const Part& part,
+                                                    int threads, const std::string& instruction_set);
 
 }  // namespace kacanov

@@ -15,7 +15,9 @@ void Space::hold(std::int32_t node, const Vector3& direction) {
   Vector3 d = direction;
   for (std::size_t c = 0; c < dim; ++c)
     if (part_->held[static_cast<std::size_t>(node) * dim + c]) d[c] = 0.0;
-  const auto inner = [](const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
+  const auto inner = [](const Vector3& a, const Vector3& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  };
   const double length = std::sqrt(inner(d, d));
   if (length == 0.0) return;
   for (int pass = 0; pass < 2; ++pass)
@@ -62,8 +64,8 @@ double Space::dot(std::span<const double> x, std::span<const double> y) const {
 
 double Space::norm(std::span<const double> x) const { return std::sqrt(dot(x, x)); }
 
-std::array<double, 2> Space::dot2(std::span<const double> a, std::span<const double> b, std::span<const double> c,
-                                  std::span<const double> d) const {
+std::array<double, 2> Space::dot2(std::span<const double> a, std::span<const double> b,
+                                  std::span<const double> c, std::span<const double> d) const {
   std::array<double, 2> s{local_dot(a, b), local_dot(c, d)};
   part_->halo.sum_all(s);
   return s;

@@ -57,7 +57,8 @@ class Space {
   /// Over all ranks, of what each has.
   double sum_all(double share) const { return part_->halo.sum_all(share); }
   /// A step of conjugate gradients in one pass: x += α p, r −= α q. Returns ‖r‖.
-  double advance(double alpha, std::span<const double> p, std::span<const double> q, std::span<double> x, std::span<double> r) const;
+  double advance(double alpha, std::span<const double> p, std::span<const double> q, std::span<double> x,
+                 std::span<double> r) const;
 
  private:
   double local_dot(std::span<const double> x, std::span<const double> y) const;

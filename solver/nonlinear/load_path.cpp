@@ -45,7 +45,8 @@ LoadPath::~LoadPath() {
 void LoadPath::set(double factor) {
   const double missing = 1.0 - factor;
   for (std::size_t i = 0; i < load_.size(); ++i) part_.load[i].value = factor * load_[i].value;
-  for (std::size_t i = 0; i < prescribed_.size(); ++i) part_.prescribed[i].value = factor * prescribed_[i].value;
+  for (std::size_t i = 0; i < prescribed_.size(); ++i)
+    part_.prescribed[i].value = factor * prescribed_[i].value;
   for (std::size_t i = 0; i < gap_.size(); ++i) {
     ContactPoint& point = part_.contact[i];
     point.gap = gap_[i] + missing * (closed_[i] + depth_[static_cast<std::size_t>(point.entry)]);

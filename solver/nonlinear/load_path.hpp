@@ -6,9 +6,9 @@
 
 namespace kacanov {
 
-/// Scales the loads and prescribed displacements of a part. Obstacles that press into the body at rest are drawn
-/// back along their direction, each contact entry by the share still missing of its largest indentation; open gaps
-/// of other entries and the friction bounds stay what they are.
+/// Scales the loads and prescribed displacements of a part. Obstacles that press into the body at rest are
+/// drawn back along their direction, each contact entry by the share still missing of its largest
+/// indentation; open gaps of other entries and the friction bounds stay what they are.
 class LoadPath {
  public:
   /// Collective. `part`, under its full load, has to outlive it and has that load again in the end.
@@ -24,8 +24,9 @@ class LoadPath {
   Part& part_;
   // Of the full load.
   std::vector<Part::ComponentValue> load_, prescribed_;
-  std::vector<double> gap_, closed_;  ///< a contact point; how much of it the prescribed components of its node close
-  std::vector<double> depth_;         ///< largest indentation, one a contact entry
+  std::vector<double> gap_,
+      closed_;  ///< a contact point; how much of it the prescribed components of its node close
+  std::vector<double> depth_;  ///< largest indentation, one a contact entry
 };
 
 }  // namespace kacanov

@@ -13,19 +13,20 @@
 namespace kacanov {
 namespace {
 
-/// The contact loop of an outer step is taken this far below the residual of the step before; the first one, which
-/// is elastic, as well. A half there leaves slip on fine meshes to Newton steps that move it on by a few rows of nodes
-/// each, a tenth costs more than it saves.
+/// The contact loop of an outer step is taken this far below the residual of the step before; the first one,
+/// which is elastic, as well. A half there leaves slip on fine meshes to Newton steps that move it on by a
+/// few rows of nodes each, a tenth costs more than it saves.
 constexpr double inner_reduction = 0.2;
-/// The preconditioner is rebuilt once a step needs this many CG iterations more than it would have right after the
-/// last setup: half of what a setup costs.
+/// The preconditioner is rebuilt once a step needs this many CG iterations more than it would have right
+/// after the last setup: half of what a setup costs.
 constexpr double setup_worth = 5.0;
 /// It is rebuilt before a step where g has moved by this share in the mean.
 constexpr double drift_worth = 0.05;
 /// ... or where a penalty has moved by this factor (elastic beam, ADMM: 144 applications instead of 212).
 constexpr double penalty_worth = 3.0;
-/// Semismooth Newton steps take the secant while the residual of equilibrium is above LoopState::reach: the tangent of a
-/// state that is far off sends them too far, and contact and slip with them. Where it has, the reach becomes this share of that residual.
+/// Semismooth Newton steps take the secant while the residual of equilibrium is above LoopState::reach: the
+/// tangent of a state that is far off sends them too far, and contact and slip with them. Where it has, the
+/// reach becomes this share of that residual.
 constexpr double reach_cut = 0.5;
 /// ... but not less than this: below it is contact that goes to and fro, not the tangent that goes too far.
 constexpr double least_reach = 0.003;
@@ -35,8 +36,9 @@ constexpr double least_reach = 0.003;
 constexpr double first_penalty = 0.1;
 /// CG iterations of a rough estimate of λ_max.
 constexpr int rough_iterations = 2;
-/// ADMM iterations between two looks at the penalties' balance (and, in Kacanov's method, at g) after the first step.
-/// Ten take 6 % more of them; with three, penalties that follow Coulomb's bounds kept one beam from converging.
+/// ADMM iterations between two looks at the penalties' balance (and, in Kacanov's method, at g) after the
+/// first step. Ten take 6 % more of them; with three, penalties that follow Coulomb's bounds kept one beam
+/// from converging.
 constexpr int balancing_iterations = 5;
 /// A step of fewer moves the penalties by less.
 constexpr double trusted_iterations = 4.0;
@@ -46,7 +48,8 @@ constexpr double largest_penalty = 3.0;
 constexpr double smallest_share = 1e-4;
 /// Relative accuracy of a semismooth Newton step.
 constexpr double solve_reduction = 0.03;
-/// A step that starts within this factor of the tolerance is solved to a fifth of the tolerance: it may be the last.
+/// A step that starts within this factor of the tolerance is solved to a fifth of the tolerance: it may be
+/// the last.
 constexpr double last_reach = 100.0;
 constexpr double last_share = 0.2;
 /// Semismooth Newton decides by λ + c(w − ρ), c this share of ADMM's penalty. A whole penalty makes slipping
@@ -98,8 +101,9 @@ double body_extent(const Part& part) {
   return extent;
 }
 
-/// To be called before `bytes` are allocated in a few pieces. The allocator keeps what is free (Open MPI tells it to keep everything), but new
-/// pieces need not fit into old holes: before large ones the holes go back to the system. Before small ones that costs more time than it is worth.
+/// To be called before `bytes` are allocated in a few pieces. The allocator keeps what is free (Open MPI
+/// tells it to keep everything), but new pieces need not fit into old holes: before large ones the holes go
+/// back to the system. Before small ones that costs more time than it is worth.
 void make_room(std::size_t bytes) {
   constexpr std::size_t large = std::size_t{64} << 20;
   if (bytes >= large) malloc_trim(0);
@@ -135,7 +139,8 @@ OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOp
                         [](const Law& law) { return law.kind == Law::Kind::linear; });
   if (options.stop == SolverOptions::Stop::paper) volume_ = lumped_volume(part);
   update_bounds();
-  problem_ = {&space_, &traces_, [this](std::span<const double> x, std::span<double> y) { return op_.apply(x, y); },
+  problem_ = {&space_, &traces_,
+              [this](std::span<const double> x, std::span<double> y) { return op_.apply(x, y); },
               [this](std::span<const double> r, std::span<double> z) { amg_->apply(r, z); }};
   if (run.stop_requested) {
     op_.watch([this] {
@@ -161,7 +166,8 @@ void OuterLoop::report(const ProgressStep& step) const {
   if (run_.progress && part_.halo.rank == 0) run_.progress(step);
 }
 
-/// λ_max(K_I|A), the compliance of the part that lifts off, is to λ_min as its size to the mesh width: r_A goes with 1/λ_min and the root of that.
+/// λ_max(K_I|A), the compliance of the part that lifts off, is to λ_min as its size to the mesh width: r_A
+/// goes with 1/λ_min and the root of that.
 double OuterLoop::rough_penalty() const {
   const double width = std::pow(static_cast<double>(part_.total_contact), -1.0 / (part_.dim() - 1));
   const double normal_min = rough_lambda_min(part_, diagonal_, false);
@@ -207,8 +213,9 @@ bool OuterLoop::touches() const {
 void OuterLoop::balance_penalty(const AdmmResult& step, bool arrived, const Scales& scales, Result& result) {
   if (!(result.lambda_min > 0.0)) return;
   if (arrived) {
-    // While nothing touches, the balance sees motion alone and lowers the penalties step after step, further than contact
-    // wants them. Back to the first one: 42 iterations instead of 55, 52 instead of 57 on half balls 0.3 away.
+    // While nothing touches, the balance sees motion alone and lowers the penalties step after step, further
+    // than contact wants them. Back to the first one: 42 iterations instead of 55, 52 instead of 57 on half
+    // balls 0.3 away.
     penalty_.normal = penalty_.tangential = rough_penalty();
     result.r_active = penalty_.normal;
     return;
@@ -235,7 +242,8 @@ std::vector<NodeBlock> OuterLoop::penalty_blocks() const {
   return blocks;
 }
 
-/// Whether a new preconditioner pays: because it has served its time, or g has moved too far from the one it was built with.
+/// Whether a new preconditioner pays: because it has served its time, or g has moved too far from the one it
+/// was built with.
 bool OuterLoop::setup_pays() {
   if (preconditioner_stale_) return true;
   if (linear_) return false;
@@ -257,15 +265,17 @@ Vector OuterLoop::secant() const {
   return g;
 }
 
-/// Whether the preconditioner pins other nodes than `set`, or none at all. Every node it gets wrong costs CG a few
-/// iterations.
+/// Whether the preconditioner pins other nodes than `set`, or none at all. Every node it gets wrong costs CG
+/// a few iterations.
 bool OuterLoop::set_moved(std::span<const TraceChoice> set) const {
   return part_.halo.any(!std::equal(set.begin(), set.end(), pinned_set_.begin(), pinned_set_.end()));
 }
 
 /// Whether the preconditioner was built with penalties that are far from those of now.
 bool OuterLoop::penalty_moved() const {
-  const auto far = [](double now, double then) { return now > penalty_worth * then || then > penalty_worth * now; };
+  const auto far = [](double now, double then) {
+    return now > penalty_worth * then || then > penalty_worth * now;
+  };
   return far(penalty_.normal, setup_penalty_.normal) ||
          (friction_ && far(penalty_.tangential, setup_penalty_.tangential));
 }
@@ -481,7 +491,8 @@ void OuterLoop::iterate(Result& result) {
       retreat = worst <= aim ? 0 : std::max(0, retreat - 1);
       continue;
     }
-    if (op_.tangent() && !(residuals.certificate.equilibrium <= equilibrium)) reach = std::max(least_reach, reach_cut * equilibrium);
+    if (op_.tangent() && !(residuals.certificate.equilibrium <= equilibrium))
+      reach = std::max(least_reach, reach_cut * equilibrium);
     stalled = worst < 0.7 * best ? 0 : stalled + 1;
     best = std::min(best, worst);
     if (newton_failed_ || stalled >= patience || !std::isfinite(worst)) {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <memory>
 
-#include "contact/certificate.hpp"
-#include "contact/active_set.hpp"
 #include <kacanov/solve.hpp>
+#include "contact/active_set.hpp"
+#include "contact/certificate.hpp"
 #include "spectrum/spectrum.hpp"
 
 namespace kacanov {
@@ -17,9 +17,9 @@ namespace kacanov {
 /// them.
 struct LoopState {
   double best = HUGE_VAL;  ///< smallest residual since the last retreat
-  int stalled = 0;   ///< Newton steps without a new best residual
-  int retreat = 0;   ///< ADMM steps still to take
-  double aim = 0.0;  ///< residual at which they end early
+  int stalled = 0;         ///< Newton steps without a new best residual
+  int retreat = 0;         ///< ADMM steps still to take
+  double aim = 0.0;        ///< residual at which they end early
   int retreats = 0;
   int first_outer = 0;  ///< outer steps before this load step, or before a restart
   double reach = 0.3;   ///< residual of equilibrium up to which steps take the tangent
@@ -110,7 +110,7 @@ class OuterLoop {
   std::vector<float> diagonal_;  // of the elastic B
   Vector volume_;                // lumped nodal volumes, for (15)
   Penalty penalty_;
-  Penalty setup_penalty_;    // that the preconditioner was built with
+  Penalty setup_penalty_;  // that the preconditioner was built with
   LinearProblem problem_;
   bool friction_ = false, linear_ = false;
   bool preconditioner_stale_ = true;

@@ -41,9 +41,7 @@ void visit_load_step(LoadStep& step, Visitor&& entry) {
 
 }  // namespace
 
-bool OuterLoop::stop_agreed() const {
-  return part_.halo.any(run_.stop_requested && run_.stop_requested());
-}
+bool OuterLoop::stop_agreed() const { return part_.halo.any(run_.stop_requested && run_.stop_requested()); }
 
 void OuterLoop::keep(const Result& result) {
   if (run_.stop_requested) {
@@ -88,7 +86,9 @@ void OuterLoop::scale(double ratio, const Result& result) {
 
 Checkpoint OuterLoop::checkpoint(const Result& result) const {
   Checkpoint out;
-  const auto put = [&](const char* name, const auto& value) { out.numbers[name] = static_cast<double>(value); };
+  const auto put = [&](const char* name, const auto& value) {
+    out.numbers[name] = static_cast<double>(value);
+  };
   visit_counts(result, put);
   LoopState loop = loop_;
   loop.visit(put);
@@ -101,7 +101,8 @@ Checkpoint OuterLoop::checkpoint(const Result& result) const {
   out.fields["r"] = result.r;
   out.fields["load_steps"] = {};
   for (LoadStep step : result.load_steps) {
-    visit_load_step(step, [&](auto& value) { out.fields["load_steps"].push_back(static_cast<double>(value)); });
+    visit_load_step(step,
+                    [&](auto& value) { out.fields["load_steps"].push_back(static_cast<double>(value)); });
   }
   out.fields["displacement"] = gather_nodal(part_, state_.omega, part_.dim());
   out.fields["pressure"] = gather_contact(part_, state_.lambda.normal, 1);
@@ -128,7 +129,8 @@ void OuterLoop::restore(const Checkpoint* from, Result& result) {
   // A penalty that another rule has chosen, or the user, is none to go on with.
   double rule = 0.0;
   get("penalty_rule", rule);
-  if (options_.penalty == SolverOptions::Penalty::fixed || rule != static_cast<double>(options_.penalty)) penalty_ = {};
+  if (options_.penalty == SolverOptions::Penalty::fixed || rule != static_cast<double>(options_.penalty))
+    penalty_ = {};
   result.restarted_after = result.outer_iterations;
   loop_.first_outer = result.outer_iterations;  // who asks for a restart asks for more steps
   double steps = 0.0;
@@ -141,10 +143,12 @@ void OuterLoop::restore(const Checkpoint* from, Result& result) {
   }
   Vector history(entries);
   if (here) history = from->field("load_steps", entries);
-  if (part_.halo.ranks > 1) MPI_Bcast(history.data(), static_cast<int>(entries), MPI_DOUBLE, 0, part_.halo.comm);
+  if (part_.halo.ranks > 1)
+    MPI_Bcast(history.data(), static_cast<int>(entries), MPI_DOUBLE, 0, part_.halo.comm);
   auto next = history.begin();
   for (LoadStep& step : result.load_steps) {
-    visit_load_step(step, [&](auto& value) { value = static_cast<std::remove_reference_t<decltype(value)>>(*next++); });
+    visit_load_step(
+        step, [&](auto& value) { value = static_cast<std::remove_reference_t<decltype(value)>>(*next++); });
   }
   result.r.resize(static_cast<std::size_t>(result.outer_iterations));
   if (here) result.r = from->field("r", result.r.size());

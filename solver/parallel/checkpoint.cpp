@@ -108,8 +108,9 @@ Fingerprint fingerprint(const Problem& problem) {
 
   std::vector<double> laws;
   for (const Law& law : problem.laws) {
-    laws.insert(laws.end(), {static_cast<double>(law.kind), static_cast<double>(law.argument), law.shear, law.bulk,
-                             law.x0, law.gamma, law.n, law.q, law.mean_dilatation ? 1.0 : 0.0, static_cast<double>(law.table_x.size())});
+    laws.insert(laws.end(), {static_cast<double>(law.kind), static_cast<double>(law.argument), law.shear,
+                             law.bulk, law.x0, law.gamma, law.n, law.q, law.mean_dilatation ? 1.0 : 0.0,
+                             static_cast<double>(law.table_x.size())});
     laws.insert(laws.end(), law.table_x.begin(), law.table_x.end());
     laws.insert(laws.end(), law.table_s.begin(), law.table_s.end());
   }
@@ -118,8 +119,8 @@ Fingerprint fingerprint(const Problem& problem) {
 
   std::vector<double> contact;
   for (const ContactPoint& point : problem.contact) {
-    contact.insert(contact.end(), {static_cast<double>(point.node), point.gap, point.mass, point.tresca, point.coulomb,
-                                   static_cast<double>(point.tangents)});
+    contact.insert(contact.end(), {static_cast<double>(point.node), point.gap, point.mass, point.tresca,
+                                   point.coulomb, static_cast<double>(point.tangents)});
     for (const Vector3& v : {point.normal, point.trace, point.tangent[0], point.tangent[1]})
       contact.insert(contact.end(), v.begin(), v.end());
   }

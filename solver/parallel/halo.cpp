@@ -22,7 +22,8 @@ S* pack(std::span<const std::int32_t> nodes, std::size_t width, std::span<const 
 /// One of the lists of a neighbour.
 using Nodes = std::vector<std::int32_t> Halo::Neighbour::*;
 
-/// Starts a receive for each neighbour's `incoming` nodes, into `receive`, and a send of x at its `outgoing` ones.
+/// Starts a receive for each neighbour's `incoming` nodes, into `receive`, and a send of x at its `outgoing`
+/// ones.
 template <class S>
 void start_exchange(const Halo& halo, std::size_t width, std::span<const S> x, Nodes outgoing, Nodes incoming,
                     std::vector<S>& send, std::vector<S>& receive, std::vector<MPI_Request>& requests) {
@@ -39,7 +40,8 @@ void start_exchange(const Halo& halo, std::size_t width, std::span<const S> x, N
     if (count > 0) MPI_Irecv(from, count, type_of(S{}), n.rank, 0, halo.comm, &requests.emplace_back());
     from += count;
     S* const end = pack<S>(n.*outgoing, width, x, to);
-    if (end != to) MPI_Isend(to, static_cast<int>(end - to), type_of(S{}), n.rank, 0, halo.comm, &requests.emplace_back());
+    if (end != to)
+      MPI_Isend(to, static_cast<int>(end - to), type_of(S{}), n.rank, 0, halo.comm, &requests.emplace_back());
     to = end;
   }
 }
@@ -55,7 +57,8 @@ void copy_shared(const Halo& halo, std::span<S> x, int components) {
   const auto width = static_cast<std::size_t>(components);
   std::vector<S> send, receive;
   std::vector<MPI_Request> requests;
-  start_exchange<S>(halo, width, x, &Halo::Neighbour::send, &Halo::Neighbour::receive, send, receive, requests);
+  start_exchange<S>(halo, width, x, &Halo::Neighbour::send, &Halo::Neighbour::receive, send, receive,
+                    requests);
   wait_for(requests);
   const S* from = receive.data();
   for (const auto& n : halo.neighbours)
@@ -74,7 +77,8 @@ void sum_shared(const Halo& halo, std::span<S> x, int components) {
 }  // namespace
 
 template <class S>
-SharedSum<S>::SharedSum(const Halo& halo, int components) : halo_(&halo), width_(static_cast<std::size_t>(components)) {}
+SharedSum<S>::SharedSum(const Halo& halo, int components)
+    : halo_(&halo), width_(static_cast<std::size_t>(components)) {}
 
 template <class S>
 void SharedSum<S>::start(std::span<const S> x) {
@@ -88,7 +92,8 @@ void SharedSum<S>::finish(std::span<S> x) {
   const auto& shared = halo_->shared;
   own_.resize(shared.size() * width_);
   pack<S>(shared, width_, x, own_.data());
-  for (const std::int32_t node : shared) std::fill_n(&x[static_cast<std::size_t>(node) * width_], width_, S{0});
+  for (const std::int32_t node : shared)
+    std::fill_n(&x[static_cast<std::size_t>(node) * width_], width_, S{0});
   wait_for(requests_);
   const auto add = [&](std::span<const std::int32_t> nodes, const S* from) {
     for (const std::int32_t node : nodes)

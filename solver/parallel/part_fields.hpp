@@ -20,21 +20,20 @@ concept Sequence = requires(T values) {
 
 /// Numbers, arrays of them and structs of integers, none with holes, whose bytes nobody sets.
 template <class T>
-inline constexpr bool without_holes = std::is_arithmetic_v<T> || std::is_enum_v<T> || std::has_unique_object_representations_v<T>;
+inline constexpr bool without_holes =
+    std::is_arithmetic_v<T> || std::is_enum_v<T> || std::has_unique_object_representations_v<T>;
 template <class T, std::size_t n>
 inline constexpr bool without_holes<std::array<T, n>> = without_holes<T>;
 
-/// Writes values to a sink with `write(const void* data, std::size_t bytes)`. A sequence goes as its length, 8 bytes, and its
-/// entries; what is without holes as it lies in memory, so that equal values are equal bytes; everything else by its exchange_fields.
+/// Writes values to a sink with `write(const void* data, std::size_t bytes)`. A sequence goes as its length,
+/// 8 bytes, and its entries; what is without holes as it lies in memory, so that equal values are equal
+/// bytes; everything else by its exchange_fields.
 template <class Sink>
 class FieldWriter {
  public:
   explicit FieldWriter(Sink& sink) : sink_(sink) {}
   template <class... T>
-    requires(sizeof...(T) > 1)
-  void operator()(const T&... values) const {
-    ((*this)(values), ...);
-  }
+  requires(sizeof...(T) > 1) void operator()(const T&... values) const { ((*this)(values), ...); }
   template <class T>
   void operator()(const T& value) const {
     if constexpr (Sequence<T>) {
@@ -55,17 +54,15 @@ class FieldWriter {
   Sink& sink_;
 };
 
-/// Reads what FieldWriter has written from a source with `read(void* data, std::size_t bytes)`. Before it takes memory for a sequence it asks
-/// `expect(std::uint64_t entries, std::size_t bytes_each)`, which throws where there cannot be as much.
+/// Reads what FieldWriter has written from a source with `read(void* data, std::size_t bytes)`. Before it
+/// takes memory for a sequence it asks `expect(std::uint64_t entries, std::size_t bytes_each)`, which throws
+/// where there cannot be as much.
 template <class Source>
 class FieldReader {
  public:
   explicit FieldReader(Source& source) : source_(source) {}
   template <class... T>
-    requires(sizeof...(T) > 1)
-  void operator()(T&... values) const {
-    ((*this)(values), ...);
-  }
+  requires(sizeof...(T) > 1) void operator()(T&... values) const { ((*this)(values), ...); }
   template <class T>
   void operator()(T& value) const {
     if constexpr (Sequence<T>) {
@@ -90,33 +87,44 @@ class FieldReader {
   Source& source_;
 };
 
-// One list of fields serves both directions. A change to one of them, or to the order, is a new version of the files in tools/part_files.cpp.
+// One list of fields serves both directions. A change to one of them, or to the order, is a new version of
+// the files in tools/part_files.cpp.
 
 template <class T, class Struct>
 concept Either = std::is_same_v<std::remove_const_t<T>, Struct>;  ///< Struct or const Struct
 
 void exchange_fields(Either<Law> auto& law, const auto& stream) {
-  stream(law.kind, law.argument, law.mean_dilatation, law.bulk, law.shear, law.x0, law.gamma, law.n, law.q, law.table_x, law.table_s);
+  stream(law.kind, law.argument, law.mean_dilatation, law.bulk, law.shear, law.x0, law.gamma, law.n, law.q,
+         law.table_x, law.table_s);
 }
 
-void exchange_fields(Either<Halo::Neighbour> auto& n, const auto& stream) { stream(n.rank, n.shared, n.send, n.receive); }
+void exchange_fields(Either<Halo::Neighbour> auto& n, const auto& stream) {
+  stream(n.rank, n.shared, n.send, n.receive);
+}
 
 void exchange_fields(Either<ContactPoint> auto& point, const auto& stream) {
-  stream(point.node, point.entry, point.normal, point.trace, point.tangent, point.tangents, point.gap, point.mass, point.tresca,
-         point.coulomb);
+  stream(point.node, point.entry, point.normal, point.trace, point.tangent, point.tangents, point.gap,
+         point.mass, point.tresca, point.coulomb);
 }
 
-void exchange_fields(Either<Probe> auto& probe, const auto& stream) { stream(probe.point, probe.element, probe.weights); }
+void exchange_fields(Either<Probe> auto& probe, const auto& stream) {
+  stream(probe.point, probe.element, probe.weights);
+}
 
-void exchange_fields(Either<Part::ComponentValue> auto& entry, const auto& stream) { stream(entry.component, entry.value); }
+void exchange_fields(Either<Part::ComponentValue> auto& entry, const auto& stream) {
+  stream(entry.component, entry.value);
+}
 
-void exchange_fields(Either<IndexRuns> auto& indices, const auto& stream) { stream(indices.runs, indices.count); }
+void exchange_fields(Either<IndexRuns> auto& indices, const auto& stream) {
+  stream(indices.runs, indices.count);
+}
 
 void exchange_fields(Either<Part> auto& part, const auto& stream) {
-  stream(part.type, part.coordinates, part.elements, part.node_index, part.element_index, part.node_tags, part.element_tags,
-         part.owned_nodes, part.first_owned, part.total_nodes, part.total_elements, part.ghost_number, part.halo.neighbours,
-         part.halo.shared, part.laws, part.law_of_element, part.load, part.prescribed, part.held, part.contact, part.owned_contact,
-         part.contact_index, part.total_contact, part.probes, part.probe_index, part.total_probes, part.loose_modes);
+  stream(part.type, part.coordinates, part.elements, part.node_index, part.element_index, part.node_tags,
+         part.element_tags, part.owned_nodes, part.first_owned, part.total_nodes, part.total_elements,
+         part.ghost_number, part.halo.neighbours, part.halo.shared, part.laws, part.law_of_element, part.load,
+         part.prescribed, part.held, part.contact, part.owned_contact, part.contact_index, part.total_contact,
+         part.probes, part.probe_index, part.total_probes, part.loose_modes);
 }
 
 }  // namespace kacanov

@@ -29,7 +29,8 @@ void send_bytes(const void* data, std::size_t bytes, int to, MPI_Comm comm) {
 void receive_bytes(void* data, std::size_t bytes, int from, MPI_Comm comm) {
   char* p = static_cast<char*>(data);
   for (std::size_t at = 0; at < bytes; at += chunk_bytes)
-    MPI_Recv(p + at, static_cast<int>(std::min(chunk_bytes, bytes - at)), MPI_BYTE, from, 1, comm, MPI_STATUS_IGNORE);
+    MPI_Recv(p + at, static_cast<int>(std::min(chunk_bytes, bytes - at)), MPI_BYTE, from, 1, comm,
+             MPI_STATUS_IGNORE);
 }
 
 /// A rank as a sink, the first one as a source of fields.
@@ -44,8 +45,8 @@ struct FirstRank {
   void read(void* data, std::size_t bytes) const { receive_bytes(data, bytes, 0, comm); }
 };
 
-/// Part of every element: the one most of its corners lie in, as METIS splits the nodes (in groups along `order`, so that its
-/// graph stays small beside the mesh). Equal shares go by turns.
+/// Part of every element: the one most of its corners lie in, as METIS splits the nodes (in groups along
+/// `order`, so that its graph stays small beside the mesh). Equal shares go by turns.
 std::vector<std::uint16_t> partition_elements(const Mesh& mesh, std::span<const Index> order, int ranks) {
   std::vector<std::uint16_t> part(mesh.element_count(), 0);
   if (ranks == 1) return part;
@@ -54,7 +55,8 @@ std::vector<std::uint16_t> partition_elements(const Mesh& mesh, std::span<const 
   const std::size_t corners = mesh.type == ElementType::tet10 ? 4 : stride;
   for (std::size_t e = 0; e < part.size(); ++e) {
     std::array<Index, 8> of{};
-    for (std::size_t a = 0; a < corners; ++a) of[a] = node_part[static_cast<std::size_t>(mesh.elements[e * stride + a])];
+    for (std::size_t a = 0; a < corners; ++a)
+      of[a] = node_part[static_cast<std::size_t>(mesh.elements[e * stride + a])];
     std::ptrdiff_t most = 0;
     for (std::size_t k = 0; k < corners; ++k) {
       const Index candidate = of[(e + k) % corners];
@@ -155,8 +157,8 @@ class Splitter {
     std::vector<std::uint8_t> filled(static_cast<std::size_t>(ranks_), 0);
     for (const std::uint16_t rank : part_of_) filled[rank] = 1;
     if (std::count(filled.begin(), filled.end(), 1) == ranks_) return;
-    throw InputError("a mesh of " + std::to_string(part_of_.size()) + " elements cannot be split into " + std::to_string(ranks_) +
-                     " parts: some would be empty");
+    throw InputError("a mesh of " + std::to_string(part_of_.size()) + " elements cannot be split into " +
+                     std::to_string(ranks_) + " parts: some would be empty");
   }
 
   void take_nodes(Part& part, int rank) {
@@ -246,7 +248,8 @@ class Splitter {
     std::vector<Index> order(problem_.contact.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
-      return problem_.contact[static_cast<std::size_t>(a)].node < problem_.contact[static_cast<std::size_t>(b)].node;
+      return problem_.contact[static_cast<std::size_t>(a)].node <
+             problem_.contact[static_cast<std::size_t>(b)].node;
     });
     for (const bool owned : {true, false}) {
       for (const Index index : order) {
@@ -286,9 +289,9 @@ class Splitter {
 }  // namespace
 
 double Part::prescribed_at(std::size_t component) const noexcept {
-  const auto at = std::lower_bound(prescribed.begin(), prescribed.end(), component, [](const ComponentValue& p, std::size_t c) {
-    return static_cast<std::size_t>(p.component) < c;
-  });
+  const auto at = std::lower_bound(
+      prescribed.begin(), prescribed.end(), component,
+      [](const ComponentValue& p, std::size_t c) { return static_cast<std::size_t>(p.component) < c; });
   return at->value;
 }
 
@@ -366,7 +369,8 @@ std::vector<double> gather_nodal(const Part& part, std::span<const double> local
 
 std::vector<double> gather_contact(const Part& part, std::span<const double> local, int components) {
   return gather(std::span(part.contact_index).first(static_cast<std::size_t>(part.owned_contact)), local,
-                static_cast<std::size_t>(components), static_cast<std::size_t>(part.total_contact), part.halo);
+                static_cast<std::size_t>(components), static_cast<std::size_t>(part.total_contact),
+                part.halo);
 }
 
 }  // namespace kacanov

@@ -27,8 +27,8 @@ double start_entry(std::int64_t index) {
   return static_cast<double>(z >> 11) * 0x1.0p-52 - 1.0;
 }
 
-LanczosResult dense(const Product& product, std::span<const std::int64_t> index, std::int64_t rows, MPI_Comm comm,
-                    const LanczosOptions& options) {
+LanczosResult dense(const Product& product, std::span<const std::int64_t> index, std::int64_t rows,
+                    MPI_Comm comm, const LanczosOptions& options) {
   Eigen::MatrixXd k = Eigen::MatrixXd::Zero(rows, rows);
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm, &rank);
@@ -76,22 +76,23 @@ LanczosResult largest_eigenvalues(const Product& product, std::span<const std::i
   // ARPACK looks at its values only when a whole basis stands: a loose tolerance wants a short one.
   const int extra = options.basis > 0 ? options.basis : options.tolerance >= 1e-3 ? 7 : 19;
   const a_int basis = std::min<a_int>(static_cast<a_int>(rows), wanted + extra);
-  std::vector<double> residual(length, 0.0), v(length * static_cast<std::size_t>(basis)), work(3 * length, 0.0);
+  std::vector<double> residual(length, 0.0), v(length * static_cast<std::size_t>(basis)),
+      work(3 * length, 0.0);
   for (std::size_t i = 0; i < own; ++i) residual[i] = start_entry(index[i]);
   const a_int space = basis * (basis + 8);
   std::vector<double> values_work(static_cast<std::size_t>(space));
   std::array<a_int, 11> parameters{};
   std::array<a_int, 14> pointers{};
-  parameters[0] = 1;                                            // exact shifts
+  parameters[0] = 1;  // exact shifts
   parameters[2] = std::max(1, options.max_products / std::max(1, static_cast<int>(basis - wanted)));
   parameters[3] = 1;
-  parameters[6] = 1;                                            // standard problem
+  parameters[6] = 1;  // standard problem
   const MPI_Fint fortran_comm = MPI_Comm_c2f(comm);
-  a_int task = 0, info = 1;                                     // info 1: our start vector
+  a_int task = 0, info = 1;  // info 1: our start vector
   LanczosResult result;
   while (true) {
-    pdsaupd_c(fortran_comm, &task, "I", n, "LA", wanted, options.tolerance, residual.data(), basis, v.data(), n,
-              parameters.data(), pointers.data(), work.data(), values_work.data(), space, &info);
+    pdsaupd_c(fortran_comm, &task, "I", n, "LA", wanted, options.tolerance, residual.data(), basis, v.data(),
+              n, parameters.data(), pointers.data(), work.data(), values_work.data(), space, &info);
     if (task != 1 && task != -1) break;
     double* x = work.data() + pointers[0] - 1;
     double* y = work.data() + pointers[1] - 1;
@@ -102,7 +103,8 @@ LanczosResult largest_eigenvalues(const Product& product, std::span<const std::i
   // info 1: the iteration limit; 3: no shifts could be applied. Both leave usable values with their bounds.
   if (info < 0) throw InternalError("ARPACK pdsaupd failed with info " + std::to_string(info));
   result.converged = info == 0;
-  const std::size_t ritz = static_cast<std::size_t>(pointers[5] - 1), bounds = static_cast<std::size_t>(pointers[6] - 1);
+  const std::size_t ritz = static_cast<std::size_t>(pointers[5] - 1),
+                    bounds = static_cast<std::size_t>(pointers[6] - 1);
   std::vector<std::pair<double, double>> found;
   for (std::size_t i = 0; i < static_cast<std::size_t>(basis); ++i)
     found.emplace_back(values_work[ritz + i], std::abs(values_work[bounds + i]));

@@ -29,8 +29,8 @@ struct LanczosResult {
 using Product = std::function<void(std::span<const double> x, std::span<double> y)>;
 
 /// `index` numbers this rank's entries over all ranks, so that the start vector does not depend on
-/// the partition. Small operators (up to 24 rows in all) are formed column by column and solved densely: there ARPACK has
-/// no room to work, and breaks down on K = c·I.
+/// the partition. Small operators (up to 24 rows in all) are formed column by column and solved densely:
+/// there ARPACK has no room to work, and breaks down on K = c·I.
 LanczosResult largest_eigenvalues(const Product& product, std::span<const std::int64_t> index, MPI_Comm comm,
                                   const LanczosOptions& options);
 

@@ -137,7 +137,8 @@ std::vector<NodeBlock> TraceRows::pinning_blocks(std::span<const float> diagonal
     double trace = 0.0, largest = 0.0;
     for (std::size_t c = 0; c < dim; ++c) {
       trace += block.value[c * dim + c];
-      largest = std::max(largest, static_cast<double>(diagonal[static_cast<std::size_t>(block.node) * dim + c]));
+      largest =
+          std::max(largest, static_cast<double>(diagonal[static_cast<std::size_t>(block.node) * dim + c]));
     }
     for (double& v : block.value) v *= 1e3 * largest / trace;
   }
@@ -247,7 +248,8 @@ double rough_lambda_min(const Part& part, std::span<const float> diagonal, bool 
   const auto look = [&](const ContactPoint& point, const Vector3& row) {
     double stiffness = 0.0;
     for (std::size_t c = 0; c < dim; ++c)
-      stiffness += row[c] * row[c] * static_cast<double>(diagonal[static_cast<std::size_t>(point.node) * dim + c]);
+      stiffness +=
+          row[c] * row[c] * static_cast<double>(diagonal[static_cast<std::size_t>(point.node) * dim + c]);
     stiffest = std::max(stiffest, stiffness / point.mass);
   };
   for (const auto& point : part.contact) {

@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "linear/cg.hpp"
-#include "contact/traces.hpp"
-#include "linear/distributed_operator.hpp"
-#include "spectrum/lanczos.hpp"
-#include "linear/preconditioner.hpp"
 #include <kacanov/result.hpp>
+#include "contact/traces.hpp"
+#include "linear/cg.hpp"
+#include "linear/distributed_operator.hpp"
+#include "linear/preconditioner.hpp"
+#include "spectrum/lanczos.hpp"
 
 namespace kacanov {
 

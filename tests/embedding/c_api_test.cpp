@@ -4,8 +4,8 @@
 
 #include <thread>
 
-#include "c_example.hpp"
 #include <kacanov/reference.hpp>
+#include "c_example.hpp"
 
 TEST_CASE("every element type gives the numbers of the reference") {
   for (const std::int32_t element : {KACANOV_TRI3, KACANOV_TET4, KACANOV_TET10, KACANOV_HEX8}) {

@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "../../perf/meshes.hpp"
 #include <kacanov/reference.hpp>
+#include "../../perf/meshes.hpp"
 
 namespace kacanov::test {
 
@@ -52,11 +52,10 @@ struct OwnedBody {
   Body body() const { return {mesh.view(), laws, law_of_element}; }
 };
 
-inline OwnedBody with_one_law(meshes::OwnedMesh mesh, const Law& law) {
-  return {std::move(mesh), {law}, {}};
-}
+inline OwnedBody with_one_law(meshes::OwnedMesh mesh, const Law& law) { return {std::move(mesh), {law}, {}}; }
 
-/// Every law of `every_law` and the stiffening one, scattered over the elements; for hex8 every second one with its mean dilatation.
+/// Every law of `every_law` and the stiffening one, scattered over the elements; for hex8 every second one
+/// with its mean dilatation.
 inline OwnedBody with_every_law(meshes::OwnedMesh mesh, unsigned seed) {
   OwnedBody body{std::move(mesh), every_law(), {}};
   body.laws.push_back(stiffening_law());

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "bodies.hpp"
 #include <kacanov/operator.hpp>
+#include "bodies.hpp"
 
 using namespace kacanov;
 

@@ -9,9 +9,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "bodies.hpp"
 #include <kacanov/float_operator.hpp>
 #include <kacanov/locality.hpp>
+#include "bodies.hpp"
 
 using namespace kacanov;
 using test::difference;
@@ -231,7 +231,8 @@ TEST_CASE("early nodes are done when they are said to be, and nothing else chang
     if (mesh.coordinates[3 * node] < 0.1) early.push_back(static_cast<std::int32_t>(node));
   const auto owned = test::with_every_law(std::move(mesh), 73);
   const Body body = owned.body();
-  const auto x = test::random_vector(body.unknowns(), 74), g = some_secant(body.secant_count()), omega = some_state(body, 75);
+  const auto x = test::random_vector(body.unknowns(), 74), g = some_secant(body.secant_count()),
+             omega = some_state(body, 75);
   const std::vector<float> xf(x.begin(), x.end());
   std::vector<double> expected(x.size());
   reference::apply(body, g, x, expected);
@@ -240,7 +241,8 @@ TEST_CASE("early nodes are done when they are said to be, and nothing else chang
       CAPTURE(with);
       CAPTURE(threads);
       // Without early nodes the call comes before anything else: it still has to come.
-      const OperatorOptions options{threads, {}, with ? std::span<const std::int32_t>(early) : std::span<const std::int32_t>{}};
+      const OperatorOptions options{
+          threads, {}, with ? std::span<const std::int32_t>(early) : std::span<const std::int32_t>{}};
       Operator op(body, options);
       FloatOperator single(body, options);
       op.set_secant(g);

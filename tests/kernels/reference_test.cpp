@@ -9,8 +9,8 @@
 #include <numeric>
 
 #include "bodies.hpp"
-#include "reference/element_stiffness.hpp"
 #include "cells/dispatch.hpp"
+#include "reference/element_stiffness.hpp"
 
 using namespace kacanov;
 using test::difference;

@@ -5,12 +5,12 @@
 #include <Eigen/Dense>
 #include <numeric>
 
-#include "linear/preconditioner.hpp"
-#include "linear/cg.hpp"
+#include <kacanov/operator.hpp>
 #include "contact/projections.hpp"
 #include "contact/traces.hpp"
 #include "dense.hpp"
-#include <kacanov/operator.hpp>
+#include "linear/cg.hpp"
+#include "linear/preconditioner.hpp"
 #include "support.hpp"
 
 using namespace kacanov;
@@ -165,7 +165,8 @@ TEST_CASE("multigrid is a symmetric positive definite map, and CG solves with it
   Vector x = random_vector(part.unknowns(), 9), y = random_vector(part.unknowns(), 10);
   space.project(x);
   space.project(y);
-  for (const auto kind : {SolverOptions::Preconditioner::multigrid, SolverOptions::Preconditioner::elasticity}) {
+  for (const auto kind :
+       {SolverOptions::Preconditioner::multigrid, SolverOptions::Preconditioner::elasticity}) {
     const auto amg = make_preconditioner(kind, part, 1, "");
     amg->setup(g, blocks, space);
     Vector mx(x.size()), my(y.size());
@@ -173,12 +174,14 @@ TEST_CASE("multigrid is a symmetric positive definite map, and CG solves with it
     amg->apply(y, my);
     // Multigrid works in single precision.
     const double rounding = kind == SolverOptions::Preconditioner::multigrid ? 1e-5 : 1e-10;
-    CHECK(std::abs(space.dot(mx, y) - space.dot(x, my)) <= rounding * std::sqrt(space.dot(mx, x) * space.dot(my, y)));
+    CHECK(std::abs(space.dot(mx, y) - space.dot(x, my)) <=
+          rounding * std::sqrt(space.dot(mx, x) * space.dot(my, y)));
     CHECK(space.dot(mx, x) > 0.0);
     for (std::size_t i = 0; i < mx.size(); ++i)
       if (part.held[i]) CHECK(mx[i] == 0.0);
 
-    const Eigen::VectorXd b = Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
+    const Eigen::VectorXd b =
+        Eigen::Map<const Eigen::VectorXd>(x.data(), static_cast<Eigen::Index>(x.size()));
     Eigen::MatrixXd a = dense_stiffness(part, g);
     Eigen::MatrixXd c = dense_traces(part, false);
     a += r * c.transpose() * c;
@@ -195,7 +198,8 @@ TEST_CASE("multigrid is a symmetric positive definite map, and CG solves with it
           const double share = op.apply_dot(p, q);
           return share + traces.add_penalty({r, 0.0}, p, q);
         },
-        [&](std::span<const double> p, std::span<double> q) { amg->apply(p, q); }, u, work, {0.0, 1e-12, 200});
+        [&](std::span<const double> p, std::span<double> q) { amg->apply(p, q); }, u, work,
+        {0.0, 1e-12, 200});
     CHECK(solve.converged);
     CHECK(solve.iterations < 60);
     CHECK(solve.residual <= 1e-12 * solve.first_residual);

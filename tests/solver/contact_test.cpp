@@ -220,7 +220,8 @@ TEST_CASE("an active set that goes round in circles is left for ADMM, and the an
 }
 
 TEST_CASE("friction far beyond what a yielding body carries does not throw it about") {
-  // Moved along its obstacle by its top; to slip, the bottom would have to stretch the body by its e⁶⁵-fold yield strain.
+  // Moved along its obstacle by its top; to slip, the bottom would have to stretch the body by its e⁶⁵-fold
+  // yield strain.
   Model model;
   model.materials.push_back({everything(), logarithmic_law(1e-4, 200.0)});
   model.boundary.push_back(moved(named("top"), 3, {0.1, 0.0, -0.02}));
@@ -234,7 +235,8 @@ TEST_CASE("friction far beyond what a yielding body carries does not throw it ab
   model.solver.max_outer = 300;
   const Run other = run_alone(mesh, model);
   CHECK(other.result().status == Status::converged);
-  CHECK(distance(run.result().friction_force, other.result().friction_force) < 1e-4 * length(other.result().friction_force));
+  CHECK(distance(run.result().friction_force, other.result().friction_force) <
+        1e-4 * length(other.result().friction_force));
 }
 
 TEST_CASE("where the tangent has gone too far the secant leads on until half the residual is left") {

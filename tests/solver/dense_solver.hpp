@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A second solver for small problems that shares no line with the first but the list of loads and contact points:
-// dense matrices, elements assembled here, sequential quadratic programs whose duals are solved by projected
-// Gauss–Seidel on the dense compliance of the contact points (Jean and Moreau's way), energy line search.
+// A second solver for small problems that shares no line with the first but the list of loads and contact
+// points: dense matrices, elements assembled here, sequential quadratic programs whose duals are solved by
+// projected Gauss–Seidel on the dense compliance of the contact points (Jean and Moreau's way), energy line
+// search.
 #pragma once
 
 #include <Eigen/Dense>
@@ -54,17 +55,20 @@ inline LawValues evaluate_squared(const Law& law, double x) {
   const double l = std::log(a / x0);
   switch (law.kind) {
     case Law::Kind::logarithmic:
-      return {mu * x0 / a * (l + 1.0), -2.0 * x * mu * x0 * l / (a * a), 0.5 * mu * x0 * (1.0 + l + 0.5 * l * l)};
+      return {mu * x0 / a * (l + 1.0), -2.0 * x * mu * x0 * l / (a * a),
+              0.5 * mu * x0 * (1.0 + l + 0.5 * l * l)};
     case Law::Kind::linear_hardening:
       return {mu * (law.gamma + (1.0 - law.gamma) * x0 / a), -2.0 * x * mu * (1.0 - law.gamma) * x0 / (a * a),
               0.5 * mu * (x0 + law.gamma * (a - x0) + (1.0 - law.gamma) * x0 * l)};
     case Law::Kind::power: {
       const double g = mu * std::pow(a / x0, law.n - 1.0);
-      return {g, 2.0 * x * (law.n - 1.0) * g / a, 0.5 * mu * x0 * (1.0 + (std::pow(a / x0, law.n) - 1.0) / law.n)};
+      return {g, 2.0 * x * (law.n - 1.0) * g / a,
+              0.5 * mu * x0 * (1.0 + (std::pow(a / x0, law.n) - 1.0) / law.n)};
     }
     case Law::Kind::saturating: {
       // ∫ e^-b/qx₀ / b db from x₀ to a is E₁(1/q) − E₁(a/qx₀), E₁(z) = −Ei(−z).
-      const double q = law.q, decay = std::exp(-(a - x0) / (q * x0)), g = mu * x0 / a * (1.0 + q * (1.0 - decay));
+      const double q = law.q, decay = std::exp(-(a - x0) / (q * x0)),
+                   g = mu * x0 / a * (1.0 + q * (1.0 - decay));
       const double faded = std::exp(1.0 / q) * (std::expint(-a / (q * x0)) - std::expint(-1.0 / q));
       return {g, 2.0 * x * (mu * decay - g) / a, 0.5 * mu * x0 * (1.0 + (1.0 + q) * l - q * faded)};
     }
@@ -89,7 +93,8 @@ inline LawValues evaluate_law(const Law& law, double x) {
       return {mu * std::pow(x / x0, law.n - 1.0), mu * (law.n - 1.0) / x * std::pow(x / x0, law.n - 1.0),
               below + mu * x0 * x0 * (std::pow(x / x0, law.n + 1.0) - 1.0) / (law.n + 1.0)};
     case Law::Kind::saturating: {
-      const double decay = std::exp(-(x - x0) / (law.q * x0)), stress = mu * x0 * (1.0 + law.q * (1.0 - decay));
+      const double decay = std::exp(-(x - x0) / (law.q * x0)),
+                   stress = mu * x0 * (1.0 + law.q * (1.0 - decay));
       return {stress / x, (mu * decay - stress / x) / x,
               below + mu * x0 * ((1.0 + law.q) * (x - x0) - law.q * law.q * x0 * (1.0 - decay))};
     }
@@ -113,14 +118,15 @@ class DenseSolver {
 
   struct Answer {
     Vector u;
-    Vector forces;              ///< contact forces, a row each: M λ_n, M λ_t
+    Vector forces;  ///< contact forces, a row each: M λ_n, M λ_t
     bool converged = false;
-    double softest = 0.0;       ///< smallest eigenvalue of the tangent in free components, without contact
-    double force_scale = 0.0;   ///< ‖·‖₂ of loads, reactions or contact forces, the largest
+    double softest = 0.0;      ///< smallest eigenvalue of the tangent in free components, without contact
+    double force_scale = 0.0;  ///< ‖·‖₂ of loads, reactions or contact forces, the largest
   };
 
-  /// The conditions of the problem for any displacement and contact pressures and tractions (λ_n and λ_t, the force
-  /// of the body on the obstacle): how far they are from being met, relative to what the state itself sets.
+  /// The conditions of the problem for any displacement and contact pressures and tractions (λ_n and λ_t, the
+  /// force of the body on the obstacle): how far they are from being met, relative to what the state itself
+  /// sets.
   struct Defects {
     double equilibrium = 0.0, penetration = 0.0, tension = 0.0, cone = 0.0, products = 0.0;
     double worst() const { return std::max({equilibrium, penetration, tension, cone, products}); }
@@ -136,7 +142,8 @@ class DenseSolver {
       const ContactPoint& point = problem_.contact[i];
       scaled.segment(first_row_[i], 1 + point.tangents) *= point.mass;
       area += point.mass;
-      pressure = std::max({pressure, std::abs(lambda(first_row_[i])), lambda.segment(first_row_[i] + 1, point.tangents).norm()});
+      pressure = std::max({pressure, std::abs(lambda(first_row_[i])),
+                           lambda.segment(first_row_[i] + 1, point.tangents).norm()});
     }
     const Vector contact = rows_.transpose() * scaled, trace = rows_ * u;
     Vector reaction = force - load_ + contact, residual = reaction;
@@ -154,12 +161,14 @@ class DenseSolver {
     for (std::size_t i = 0; i < problem_.contact.size(); ++i) {
       const ContactPoint& point = problem_.contact[i];
       const double normal = lambda(first_row_[i]), open = point.gap - trace(first_row_[i]);
-      const Vector t = lambda.segment(first_row_[i] + 1, point.tangents), w = trace.segment(first_row_[i] + 1, point.tangents);
+      const Vector t = lambda.segment(first_row_[i] + 1, point.tangents),
+                   w = trace.segment(first_row_[i] + 1, point.tangents);
       const double bound = point.tresca + point.coulomb * normal;
       out.penetration = std::max(out.penetration, -open / size);
       out.tension = std::max(out.tension, -normal / pressure);
       out.cone = std::max(out.cone, (t.norm() - bound) / pressure);
-      products += point.mass * (std::abs(normal * open) + (point.tangents > 0 ? std::abs(bound * w.norm() - t.dot(w)) : 0.0));
+      products += point.mass * (std::abs(normal * open) +
+                                (point.tangents > 0 ? std::abs(bound * w.norm() - t.dot(w)) : 0.0));
     }
     out.products = area > 0.0 ? products / (pressure * size * area) : 0.0;
     return out;
@@ -216,7 +225,8 @@ class DenseSolver {
       Matrix gradients(10, 3);
       for (int a = 0; a < 4; ++a) gradients.row(a) = (4.0 * l(a) - 1.0) * corners.row(a);
       for (int e = 0; e < 6; ++e)
-        gradients.row(4 + e) = 4.0 * (l(ends[e][0]) * corners.row(ends[e][1]) + l(ends[e][1]) * corners.row(ends[e][0]));
+        gradients.row(4 + e) =
+            4.0 * (l(ends[e][0]) * corners.row(ends[e][1]) + l(ends[e][1]) * corners.row(ends[e][0]));
       return gradients;
     }
     // hex8 on [−1, 1]³, the lower face counter-clockwise first.
@@ -352,11 +362,13 @@ class DenseSolver {
     double sum = stored_energy(u) - load_.dot(u);
     const Vector trace = rows_ * u;
     for (std::size_t i = 0; i < problem_.contact.size(); ++i)
-      sum += bound(static_cast<Eigen::Index>(i)) * trace.segment(first_row_[i] + 1, problem_.contact[i].tangents).norm();
+      sum += bound(static_cast<Eigen::Index>(i)) *
+             trace.segment(first_row_[i] + 1, problem_.contact[i].tangents).norm();
     return sum;
   }
 
-  /// Projected Gauss–Seidel: forces f with v = start − W f, v_n ≤ gap ⊥ f_n ≥ 0 and f_t on its disc along v_t.
+  /// Projected Gauss–Seidel: forces f with v = start − W f, v_n ≤ gap ⊥ f_n ≥ 0 and f_t on its disc along
+  /// v_t.
   void sweep_forces(const Matrix& w, const Vector& start, const Vector& bound, Vector& f) const {
     Vector v = start - w * f;
     const auto change_by = [&](Eigen::Index row, double delta) {

@@ -39,7 +39,8 @@ struct Setting {
         TraceRows(part, std::vector<TraceChoice>(points, {false, true})).penalty_blocks(r.tangential);
     blocks.insert(blocks.end(), more.begin(), more.end());
     amg->setup(secant, blocks, space);
-    linear = {&space, &traces, [this](std::span<const double> x, std::span<double> y) { return op.apply(x, y); },
+    linear = {&space, &traces,
+              [this](std::span<const double> x, std::span<double> y) { return op.apply(x, y); },
               [this](std::span<const double> x, std::span<double> y) { amg->apply(x, y); }};
   }
 
@@ -128,7 +129,8 @@ TEST_CASE("every iterate of Algorithm 2 is that of Algorithm 1, with exact and w
             CHECK(difference(one.lambda.normal, two.lambda.normal) < 1e-8 * p);
             CHECK(difference(one.lambda.tangential, two.lambda.tangential) < 1e-8 * p);
             // The same solves; rounding moves the end of one, over a hundred iterations long, by one or two.
-            CHECK(std::abs(static_cast<double>(second.cg_iterations - first.cg_iterations)) <= 0.02 * static_cast<double>(first.cg_iterations));
+            CHECK(std::abs(static_cast<double>(second.cg_iterations - first.cg_iterations)) <=
+                  0.02 * static_cast<double>(first.cg_iterations));
             CHECK(second.trace_residual == doctest::Approx(first.trace_residual).epsilon(1e-6).scale(u));
             CHECK(second.force_residual == doctest::Approx(first.force_residual).epsilon(1e-6));
             if (exact) CHECK(second.step == doctest::Approx(first.step).epsilon(1e-6));

@@ -9,8 +9,9 @@
 
 namespace kacanov::testing {
 
-/// The body fills y > 0 (z > 0 in 3D) up to `extent`; lengths are in units of the contact's. Up to `fine` the cells
-/// measure 1/n; beyond, as many as n of them grow exponentially, and smoothly, so that meshes of different n are a family.
+/// The body fills y > 0 (z > 0 in 3D) up to `extent`; lengths are in units of the contact's. Up to `fine` the
+/// cells measure 1/n; beyond, as many as n of them grow exponentially, and smoothly, so that meshes of
+/// different n are a family.
 struct HalfSpace {
   int n = 8;
   double extent = 10.0;
@@ -46,7 +47,9 @@ struct HalfSpace {
   Mesh quarter() const {
     const double m = cells();
     Mesh mesh = make_box({{m, m, m}, {cells(), cells(), cells()}, ElementType::hex8});
-    map_nodes(mesh, [&](const Vector3& x) { return Vector3{coordinate(x[0]), coordinate(x[1]), coordinate(x[2])}; });
+    map_nodes(mesh, [&](const Vector3& x) {
+      return Vector3{coordinate(x[0]), coordinate(x[1]), coordinate(x[2])};
+    });
     return mesh;
   }
 };
@@ -65,7 +68,8 @@ inline double plane_modulus(const Law& law) {
   return 2 * law.shear * (1 + nu) / (1 - nu * nu);
 }
 
-/// Builds the problem, lets `change` rewrite what a case file cannot say (values that vary from node to node), solves.
+/// Builds the problem, lets `change` rewrite what a case file cannot say (values that vary from node to
+/// node), solves.
 inline Run run_changed(Mesh mesh, const Model& model, const std::function<void(Problem&)>& change) {
   Run run;
   run.problem = build_problem(std::move(mesh), model);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Contact problems of the half-space with an answer in closed form: Hertz, Cattaneo and Mindlin, the flat punch.
+// Contact problems of the half-space with an answer in closed form: Hertz, Cattaneo and Mindlin, the flat
+// punch.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -25,7 +26,8 @@ Hertz ball(int n) {
   const HalfSpace space{n};
   const Law law = elastic_law(1.0, 0.3);
   const double radius = 50.0, depth = 1.0 / radius, modulus = plane_modulus(law);
-  const double force = 4.0 / 3.0 * modulus * std::sqrt(radius) * std::pow(depth, 1.5), peak = 2 * modulus / (M_PI * radius);
+  const double force = 4.0 / 3.0 * modulus * std::sqrt(radius) * std::pow(depth, 1.5),
+               peak = 2 * modulus / (M_PI * radius);
   Model model;
   model.materials.push_back({everything(), law});
   model.boundary.push_back(roller(named("left"), 0));
@@ -56,8 +58,8 @@ Hertz ball(int n) {
     error += mass * std::pow(run.solution.pressure[i] - exact, 2);
     size += mass * exact * exact;
   }
-  return {4 * run.result().contact_force[2] / force, std::sqrt(4 * area / M_PI), run.solution.pressure[0] / peak,
-          std::sqrt(error / size)};
+  return {4 * run.result().contact_force[2] / force, std::sqrt(4 * area / M_PI),
+          run.solution.pressure[0] / peak, std::sqrt(error / size)};
 }
 
 /// Half-plane whose outer sides move by `shift`; contact on |x| ≤ width.
@@ -92,7 +94,8 @@ Hertz cylinder(int n) {
   round.radius = radius;
   round.centre = {0.0, -radius, 0.0};
   round.direction = Vector3{0.0, -1.0, 0.0};
-  const Run run = run_alone(HalfSpace{n, 20.0}.plane(), half_plane(law, {0.0, -0.033, 0.0}, HalfSpace::fine, round));
+  const Run run =
+      run_alone(HalfSpace{n, 20.0}.plane(), half_plane(law, {0.0, -0.033, 0.0}, HalfSpace::fine, round));
   REQUIRE(run.result().status == Status::converged);
   const double force = run.result().contact_force[1];
   const double a = 2 * std::sqrt(force * radius / (M_PI * modulus)), peak = 2 * force / (M_PI * a);
@@ -103,20 +106,21 @@ Hertz cylinder(int n) {
     if (run.solution.pressure[i] > 0.0) width += run.part.contact[i].mass;
     if (std::abs(node_of(run, i)[0]) < 1e-12) found_peak = run.solution.pressure[i];
   }
-  const double error =
-      profile_error(run, HalfSpace::fine, [&](std::size_t i) { return run.solution.pressure[i]; },
-                    [&](double x) { return std::abs(x) < a ? peak * std::sqrt(1 - x * x / (a * a)) : 0.0; });
+  const double error = profile_error(
+      run, HalfSpace::fine, [&](std::size_t i) { return run.solution.pressure[i]; },
+      [&](double x) { return std::abs(x) < a ? peak * std::sqrt(1 - x * x / (a * a)) : 0.0; });
   return {a, width / (2 * a), found_peak / peak, error};
 }
 
-/// Rigid flat punch of half-width 1: the force that is found, and the pressure in the middle and over |x| < 0.8 against
-/// P / (π √(1 − x²)).
+/// Rigid flat punch of half-width 1: the force that is found, and the pressure in the middle and over |x| <
+/// 0.8 against P / (π √(1 − x²)).
 struct Punch {
   double middle, profile;
 };
 Punch punch(int n) {
   const Law law = elastic_law(1.0, 0.3);
-  const Run run = run_alone(HalfSpace{n, 20.0}.plane(), half_plane(law, {0.0, -0.03, 0.0}, 1.0, Plane{{}, {0.0, 1.0, 0.0}}));
+  const Run run = run_alone(HalfSpace{n, 20.0}.plane(),
+                            half_plane(law, {0.0, -0.03, 0.0}, 1.0, Plane{{}, {0.0, 1.0, 0.0}}));
   REQUIRE(run.result().status == Status::converged);
   const double force = run.result().contact_force[1];
   const auto exact = [&](double x) { return force / (M_PI * std::sqrt(1 - x * x)); };
@@ -127,10 +131,10 @@ Punch punch(int n) {
   return {middle / exact(0.0), profile_error(run, 0.8, found, exact)};
 }
 
-/// Cattaneo and Mindlin: the tangential half of the problem. Where a normal pressure μp over |x| < 1 bounds the friction,
-/// p = p₀ √(1 − x²), a tangential force Q leaves |x| < c = √(1 − Q/(μP)) sticking, with the tractions
-/// μp₀ (√(1 − x²) − c √(1 − x²/c²)) there. The bounds are prescribed node by node, so that history and the coupling of
-/// normal and tangential directions (ν < ½) do not enter.
+/// Cattaneo and Mindlin: the tangential half of the problem. Where a normal pressure μp over |x| < 1 bounds
+/// the friction, p = p₀ √(1 − x²), a tangential force Q leaves |x| < c = √(1 − Q/(μP)) sticking, with the
+/// tractions μp₀ (√(1 − x²) − c √(1 − x²/c²)) there. The bounds are prescribed node by node, so that history
+/// and the coupling of normal and tangential directions (ν < ½) do not enter.
 struct Mindlin {
   double ratio;            ///< Q / μP
   double radius, profile;  ///< c found / c, error of the tractions
@@ -138,14 +142,15 @@ struct Mindlin {
 Mindlin tangential(int n, double shift) {
   const Law law = elastic_law(1.0, 0.3);
   const double bound = 0.01;  // μ p₀
-  const Run run = run_changed(HalfSpace{n, 20.0}.plane(),
-                              half_plane(law, {shift, 0.0, 0.0}, HalfSpace::fine, ConstantGap{1.0}, Friction{bound, 0.0}),
-                              [&](Problem& problem) {
-                                for (ContactPoint& point : problem.contact) {
-                                  const double x = problem.mesh.coordinates[2 * static_cast<std::size_t>(point.node)];
-                                  point.tresca = bound * std::sqrt(std::max(0.0, 1 - x * x));
-                                }
-                              });
+  const Run run =
+      run_changed(HalfSpace{n, 20.0}.plane(),
+                  half_plane(law, {shift, 0.0, 0.0}, HalfSpace::fine, ConstantGap{1.0}, Friction{bound, 0.0}),
+                  [&](Problem& problem) {
+                    for (ContactPoint& point : problem.contact) {
+                      const double x = problem.mesh.coordinates[2 * static_cast<std::size_t>(point.node)];
+                      point.tresca = bound * std::sqrt(std::max(0.0, 1 - x * x));
+                    }
+                  });
   REQUIRE(run.result().status == Status::converged);
   CHECK(run.result().active_nodes == 0);
   double limit = 0.0, stick = 0.0;
@@ -154,18 +159,19 @@ Mindlin tangential(int n, double shift) {
     if (run.solution.contact_status[i] == ContactStatus::stick) stick += run.part.contact[i].mass;
   }
   const double ratio = std::abs(run.result().friction_force[0]) / limit, c = std::sqrt(1 - ratio);
-  const double error =
-      profile_error(run, 1.0, [&](std::size_t i) { return std::abs(run.solution.traction[i][0]); },
-                    [&](double x) {
-                      const double whole = bound * std::sqrt(1 - x * x);
-                      return std::abs(x) < c ? whole - bound * c * std::sqrt(1 - x * x / (c * c)) : whole;
-                    });
+  const double error = profile_error(
+      run, 1.0, [&](std::size_t i) { return std::abs(run.solution.traction[i][0]); },
+      [&](double x) {
+        const double whole = bound * std::sqrt(1 - x * x);
+        return std::abs(x) < c ? whole - bound * c * std::sqrt(1 - x * x / (c * c)) : whole;
+      });
   return {ratio, stick / (2 * c), error};
 }
 
-/// The whole of it with Coulomb's law: a cylinder pressed and dragged at once. ν → ½ decouples the directions; then the slip of
-/// the final state points where Mindlin's increments do, and history makes no difference. With ν = 0.45 and μ = 1 what is
-/// left of the coupling moves the edge of the sticking zone by 2 % (with ν = 0.3 by 12 %).
+/// The whole of it with Coulomb's law: a cylinder pressed and dragged at once. ν → ½ decouples the
+/// directions; then the slip of the final state points where Mindlin's increments do, and history makes no
+/// difference. With ν = 0.45 and μ = 1 what is left of the coupling moves the edge of the sticking zone by 2
+/// % (with ν = 0.3 by 12 %).
 struct Dragged {
   double ratio;            ///< Q / μP
   double stick, expected;  ///< half-widths
@@ -177,8 +183,8 @@ Dragged dragged(int n, double poisson, double shift) {
   round.radius = radius;
   round.centre = {0.0, -radius, 0.0};
   round.direction = Vector3{0.0, -1.0, 0.0};
-  const Run run = run_alone(HalfSpace{n, 20.0}.plane(),
-                            half_plane(law, {shift, -0.033, 0.0}, HalfSpace::fine, round, Friction{0.0, coefficient}));
+  const Run run = run_alone(HalfSpace{n, 20.0}.plane(), half_plane(law, {shift, -0.033, 0.0}, HalfSpace::fine,
+                                                                   round, Friction{0.0, coefficient}));
   REQUIRE(run.result().status == Status::converged);
   const double force = run.result().contact_force[1], drag = std::abs(run.result().friction_force[0]);
   const double a = 2 * std::sqrt(force * radius / (M_PI * modulus));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Load steps: the way to the full load does not change where it ends, and every step is the solution of its own problem.
+// Load steps: the way to the full load does not change where it ends, and every step is the solution of its
+// own problem.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -99,7 +100,8 @@ TEST_CASE("a load step is the problem with its share of load, displacement and i
   const Run alone = run_alone(box_mesh(ElementType::tri3), share);
   const LoadStep& first = run.result().load_steps.at(0);
   CHECK(distance(first.probe.at(0), alone.probe()) < 1e-7 * length(alone.probe()));
-  CHECK(distance(first.contact_force, alone.result().contact_force) < 1e-7 * length(alone.result().contact_force));
+  CHECK(distance(first.contact_force, alone.result().contact_force) <
+        1e-7 * length(alone.result().contact_force));
   CHECK(first.active_nodes == alone.result().active_nodes);
   CHECK(first.plastic_elements == alone.result().plastic_elements);
 }

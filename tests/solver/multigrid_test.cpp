@@ -6,11 +6,11 @@
 #include <cmath>
 #include <numeric>
 
-#include "linear/cg.hpp"
+#include <kacanov/operator.hpp>
 #include "amg/aggregate_motions.hpp"
 #include "amg/aggregation.hpp"
 #include "amg/rigid_level.hpp"
-#include <kacanov/operator.hpp>
+#include "linear/cg.hpp"
 #include "linear/preconditioner.hpp"
 #include "support.hpp"
 
@@ -24,7 +24,8 @@ RigidLevel<6> chain(std::int32_t rows) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   MPI_Comm_size(MPI_COMM_WORLD, &ranks);
-  const std::int64_t first = static_cast<std::int64_t>(rank) * rows, total = static_cast<std::int64_t>(ranks) * rows;
+  const std::int64_t first = static_cast<std::int64_t>(rank) * rows,
+                     total = static_cast<std::int64_t>(ranks) * rows;
   std::vector<Vector3> centres;
   BlockSums<6> sums;
   for (std::int64_t i = first; i < first + rows; ++i) {
@@ -69,7 +70,9 @@ int iterations(const Part& part, double stretch) {
   CgWork work;
   work.resize(part.unknowns());
   for (std::size_t i = 0; i < part.unknowns(); ++i)
-    work.residual[i] = std::sin(static_cast<double>(part.node_index[i / static_cast<std::size_t>(part.dim())]) + static_cast<double>(i % static_cast<std::size_t>(part.dim())));
+    work.residual[i] =
+        std::sin(static_cast<double>(part.node_index[i / static_cast<std::size_t>(part.dim())]) +
+                 static_cast<double>(i % static_cast<std::size_t>(part.dim())));
   Vector u(part.unknowns(), 0.0);
   const CgResult solve = conjugate_gradients(
       space,
@@ -97,14 +100,16 @@ Part beam(int cells, double length, ElementType type) {
 
 namespace {
 
-/// Whether xᵀ A y on the aggregates is (Z x)ᵀ (B + blocks) (Z y) on the nodes for random motions x, y, Z into the space.
+/// Whether xᵀ A y on the aggregates is (Z x)ᵀ (B + blocks) (Z y) on the nodes for random motions x, y, Z into
+/// the space.
 template <int M>
-void check_galerkin(const Part& part, std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space,
-                    const AggregateMotions<M>& motions, const RigidLevel<M>& level) {
+void check_galerkin(const Part& part, std::span<const double> g, std::span<const NodeBlock> blocks,
+                    const Space& space, const AggregateMotions<M>& motions, const RigidLevel<M>& level) {
   const auto dim = static_cast<std::size_t>(part.dim());
   const auto random = [&](double seed) {
     Vector x(level.size());
-    for (std::size_t i = 0; i < level.owned_size(); ++i) x[i] = std::sin(seed * static_cast<double>(level.first() * M + static_cast<std::int64_t>(i) + 1));
+    for (std::size_t i = 0; i < level.owned_size(); ++i)
+      x[i] = std::sin(seed * static_cast<double>(level.first() * M + static_cast<std::int64_t>(i) + 1));
     return x;
   };
   const auto on_nodes = [&](const Vector& x) {
@@ -128,7 +133,8 @@ void check_galerkin(const Part& part, std::span<const double> g, std::span<const
   for (const NodeBlock& block : blocks)
     for (std::size_t i = 0; i < dim; ++i)
       for (std::size_t j = 0; j < dim; ++j)
-        expected += u[static_cast<std::size_t>(block.node) * dim + i] * block.value[i * dim + j] * v[static_cast<std::size_t>(block.node) * dim + j];
+        expected += u[static_cast<std::size_t>(block.node) * dim + i] * block.value[i * dim + j] *
+                    v[static_cast<std::size_t>(block.node) * dim + j];
   CHECK(std::abs(dot(x, image, level.owned_size()) - sum_all(expected)) < 1e-5 * sum_all(scale));
 }
 
@@ -138,7 +144,8 @@ TEST_CASE("the first coarse matrix is Galerkin's, summed once or again") {
   std::string set;  // the best there is
   SUBCASE("by the best loop") {}
   SUBCASE("by the plain loop") { set = "plain"; }
-  for (const ElementType type : {ElementType::tri3, ElementType::tet4, ElementType::tet10, ElementType::hex8}) {
+  for (const ElementType type :
+       {ElementType::tri3, ElementType::tet4, ElementType::tet10, ElementType::hex8}) {
     CAPTURE(static_cast<int>(type));
     const Part part = beam(type == ElementType::tri3 ? 12 : 4, 3.0, type);
     const auto dim = static_cast<std::size_t>(part.dim());
@@ -167,16 +174,19 @@ TEST_CASE("the first coarse matrix is Galerkin's, summed once or again") {
       for (std::size_t n = 0; n < part.nodes(); ++n) {
         if (part.node_index[n] % 14 == 0) later.hold(static_cast<std::int32_t>(n), Vector3{0.6, 0.8, 0.0});
         if (part.node_index[n] % 11 == 3) later.hold(static_cast<std::int32_t>(n), Vector3{0.0, 1.0, 0.0});
-        if (part.node_index[n] % 21 == 0 && part.node_index[n] % 14 != 0) later.hold(static_cast<std::int32_t>(n), Vector3{0.8, -0.6, 0.0});
+        if (part.node_index[n] % 21 == 0 && part.node_index[n] % 14 != 0)
+          later.hold(static_cast<std::int32_t>(n), Vector3{0.8, -0.6, 0.0});
       }
-      const std::vector<NodeBlock> fewer(blocks.begin(), blocks.begin() + static_cast<std::ptrdiff_t>(blocks.size() / 2));
+      const std::vector<NodeBlock> fewer(blocks.begin(),
+                                         blocks.begin() + static_cast<std::ptrdiff_t>(blocks.size() / 2));
       motions.change(g, {blocks, space}, {fewer, later}, level);
       auto x = wave(level, 0.7);
       Vector changed(level.owned_size()), summed(changed);
       level.multiply(x, changed);
       motions.sum(g, {fewer, later}, level);
       level.multiply(x, summed);
-      for (std::size_t i = 0; i < summed.size(); ++i) CHECK(changed[i] == doctest::Approx(summed[i]).epsilon(1e-10).scale(10.0));
+      for (std::size_t i = 0; i < summed.size(); ++i)
+        CHECK(changed[i] == doctest::Approx(summed[i]).epsilon(1e-10).scale(10.0));
     };
     if (dim == 3)
       check(std::integral_constant<int, 6>{});
@@ -244,7 +254,8 @@ TEST_CASE("iterations hardly depend on the mesh: size, element, stretch, contras
   for (const auto type : {ElementType::tet4, ElementType::hex8, ElementType::tri3}) {
     CAPTURE(static_cast<int>(type));
     const int fine = type == ElementType::tri3 ? 40 : 12;
-    const int small = iterations(beam(fine / 2, 3.0, type), 1.0), large = iterations(beam(fine, 3.0, type), 1.0);
+    const int small = iterations(beam(fine / 2, 3.0, type), 1.0),
+              large = iterations(beam(fine, 3.0, type), 1.0);
     CHECK(small <= 40);
     CHECK(large <= 1.5 * small);
     CHECK(iterations(beam(fine / 2, 30.0, type), 1.0) <= 5 * small);
@@ -262,8 +273,8 @@ TEST_CASE("the smoother damps eigenvectors by Chebyshev's polynomial") {
     const auto multiply = [&](std::span<const double> p, std::span<double> q) {
       for (std::size_t i = 0; i < a.size(); ++i) q[i] = a[i] * p[i];
     };
-    const auto relax = [&](const ChebyshevStep<double>& weights, std::span<const double> b, std::span<const double> ax,
-                           std::span<double> steps, std::span<double> to) {
+    const auto relax = [&](const ChebyshevStep<double>& weights, std::span<const double> b,
+                           std::span<const double> ax, std::span<double> steps, std::span<double> to) {
       weights.visit([&]<bool from_zero, bool first>() {
         for (std::size_t i = 0; i < a.size(); ++i)
           weights.take<from_zero, first>((from_zero ? b[i] : b[i] - ax[i]) / 2.0, steps[i], to[i]);
@@ -272,8 +283,9 @@ TEST_CASE("the smoother damps eigenvectors by Chebyshev's polynomial") {
     smoother.smooth<double>(false, zero, x, step, image, multiply, relax);
     const auto left = [&](double entry) {
       const auto chebyshev = [degree](double s) {
-        return std::abs(s) <= 1.0 ? std::cos(degree * std::acos(s))
-                                  : std::pow(s < 0 ? -1.0 : 1.0, degree) * std::cosh(degree * std::acosh(std::abs(s)));
+        return std::abs(s) <= 1.0
+                   ? std::cos(degree * std::acos(s))
+                   : std::pow(s < 0 ? -1.0 : 1.0, degree) * std::cosh(degree * std::acosh(std::abs(s)));
       };
       return chebyshev((0.6 - entry / 2.0) / 0.5) / chebyshev(0.6 / 0.5);
     };
@@ -281,6 +293,7 @@ TEST_CASE("the smoother damps eigenvectors by Chebyshev's polynomial") {
     // From zero, whatever x and step hold: A⁻¹ b, less what is left of it.
     std::vector<double> b(a.size(), 3.0);
     smoother.smooth<double>(true, b, x, step, image, multiply, relax);
-    for (std::size_t i = 0; i < a.size(); ++i) CHECK(x[i] == doctest::Approx(3.0 / a[i] * (1.0 - left(a[i]))).epsilon(1e-12));
+    for (std::size_t i = 0; i < a.size(); ++i)
+      CHECK(x[i] == doctest::Approx(3.0 / a[i] * (1.0 - left(a[i]))).epsilon(1e-12));
   }
 }

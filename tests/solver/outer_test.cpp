@@ -16,7 +16,8 @@ namespace {
 /// Stored energy less the work of the loads.
 double total_energy(const Run& run) {
   double work = 0.0;
-  for (const auto& entry : run.part.load) work += entry.value * run.solution.displacement[static_cast<std::size_t>(entry.component)];
+  for (const auto& entry : run.part.load)
+    work += entry.value * run.solution.displacement[static_cast<std::size_t>(entry.component)];
   return reference::energy(run.part.body(), run.solution.displacement) - work;
 }
 

@@ -41,7 +41,8 @@ TEST_CASE("every element lies on one rank, every node has one owner") {
   Part part = over_all_ranks(problem);
   std::vector<int> elements(problem.mesh.element_count(), 0), owners(problem.mesh.node_count(), 0),
       points(problem.contact.size(), 0);
-  for (std::size_t e = 0; e < part.element_count(); ++e) ++elements[static_cast<std::size_t>(part.element_index[e])];
+  for (std::size_t e = 0; e < part.element_count(); ++e)
+    ++elements[static_cast<std::size_t>(part.element_index[e])];
   for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_nodes); ++i)
     ++owners[static_cast<std::size_t>(part.node_index[i])];
   for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_contact); ++i)
@@ -69,7 +70,8 @@ TEST_CASE("every element lies on one rank, every node has one owner") {
   for (std::size_t i = 0; i < part.unknowns(); ++i) {
     const std::size_t there = 3 * static_cast<std::size_t>(part.node_index[i / 3]) + i % 3;
     if (part.coordinates[i] != problem.mesh.coordinates[there] || load[i] != problem.load[there] ||
-        part.held[i] != problem.held[there] || (part.held[i] != 0 && part.prescribed_at(i) != problem.prescribed[there]))
+        part.held[i] != problem.held[there] ||
+        (part.held[i] != 0 && part.prescribed_at(i) != problem.prescribed[there]))
       ++wrong;
   }
   CHECK(wrong == 0);
@@ -95,7 +97,8 @@ TEST_CASE("a sum in two halves is the whole one, whatever happens elsewhere in b
   for (int turn = 0; turn < 3; ++turn) {
     std::vector<float> x(3 * part.nodes()), whole;
     for (std::size_t i = 0; i < x.size(); ++i)
-      x[i] = static_cast<float>(signature(part.node_index[i / 3], static_cast<int>(i % 3)) * (1.0 + 0.3 * part.halo.rank + turn));
+      x[i] = static_cast<float>(signature(part.node_index[i / 3], static_cast<int>(i % 3)) *
+                                (1.0 + 0.3 * part.halo.rank + turn));
     whole = x;
     part.halo.sum(whole, 3);
     sum.start(x);
@@ -191,14 +194,16 @@ TEST_CASE("multigrid over the ranks is symmetric, positive definite and consiste
   }
   space.project(x);
   space.project(y);
-  for (const auto kind : {SolverOptions::Preconditioner::multigrid, SolverOptions::Preconditioner::elasticity}) {
+  for (const auto kind :
+       {SolverOptions::Preconditioner::multigrid, SolverOptions::Preconditioner::elasticity}) {
     const auto amg = make_preconditioner(kind, part, 1, "");
     amg->setup(g, {}, space);
     amg->apply(x, mx);
     amg->apply(y, my);
     // Multigrid works in single precision.
     const double rounding = kind == SolverOptions::Preconditioner::multigrid ? 1e-5 : 1e-10;
-    CHECK(std::abs(space.dot(mx, y) - space.dot(x, my)) <= rounding * std::sqrt(space.dot(mx, x) * space.dot(my, y)));
+    CHECK(std::abs(space.dot(mx, y) - space.dot(x, my)) <=
+          rounding * std::sqrt(space.dot(mx, x) * space.dot(my, y)));
     CHECK(space.dot(mx, x) > 0.0);
     Vector copy = mx;
     part.halo.copy_from_owner(copy, 3);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Random small problems, solved by the program and by an independent dense solver: not one may be called converged
-// that is not.
+// Random small problems, solved by the program and by an independent dense solver: not one may be called
+// converged that is not.
 #include <doctest/doctest.h>
 
 #include <cstdlib>
@@ -25,7 +25,9 @@ class Dice {
     return low + (high - low) * (static_cast<double>(engine_()) / 4294967296.0);
   }
   double decades(double low, double high) { return std::pow(10.0, uniform(low, high)); }
-  int whole(int low, int high) { return low + static_cast<int>(engine_() % static_cast<unsigned>(high - low + 1)); }
+  int whole(int low, int high) {
+    return low + static_cast<int>(engine_() % static_cast<unsigned>(high - low + 1));
+  }
   bool chance(double share) { return uniform(0.0, 1.0) < share; }
   Vector3 direction(int dim) {
     Vector3 v{};
@@ -53,8 +55,8 @@ Law random_law(Dice& dice, double young, double strain) {
   law.gamma = dice.decades(-1.5, -0.1);
   law.n = dice.uniform(0.2, 0.9);
   law.q = dice.decades(0.0, 1.5);
-  // Where stress still grows with strain: always for these n, γ and tables, up to √e times the yield strain for (34), about as
-  // far or further for a law that saturates.
+  // Where stress still grows with strain: always for these n, γ and tables, up to √e times the yield strain
+  // for (34), about as far or further for a law that saturates.
   const bool squared = dice.chance(0.3);
   if (squared) {
     law.argument = Law::Argument::squared;
@@ -79,7 +81,8 @@ Law random_law(Dice& dice, double young, double strain) {
 Vector3 times(double factor, const Vector3& v) { return {factor * v[0], factor * v[1], factor * v[2]}; }
 
 /// An obstacle below (c = the upright axis) or to the right (c = 0) of the body, roughly at `gap`.
-Obstacle random_obstacle(Dice& dice, int dim, std::size_t axis, double side, const Vector3& size, double gap) {
+Obstacle random_obstacle(Dice& dice, int dim, std::size_t axis, double side, const Vector3& size,
+                         double gap) {
   const int kind = dice.whole(0, 3);
   if (kind == 0) return ConstantGap{gap};
   Vector3 point = times(0.5, size), out{};
@@ -117,7 +120,8 @@ Sample random_problem(unsigned seed) {
   }
   sample.mesh = make_box(spec);
   double cell = 1e9;  // between nodes
-  for (std::size_t c = 0; c < static_cast<std::size_t>(dim); ++c) cell = std::min(cell, spec.size[c] / spec.cells[c]);
+  for (std::size_t c = 0; c < static_cast<std::size_t>(dim); ++c)
+    cell = std::min(cell, spec.size[c] / spec.cells[c]);
   if (type == ElementType::tet10) cell *= 0.5;
   map_nodes(sample.mesh, [&](const Vector3& x) {
     const Vector3 shift = dice.direction(dim);
@@ -142,15 +146,19 @@ Sample random_problem(unsigned seed) {
     shift[up] = -move * dice.uniform(0.0, 1.0);
     shift[0] = move * dice.uniform(-0.3, 0.3);
     model.boundary.push_back(moved(named("top"), dim, shift));
-    if (dice.chance(0.7)) model.boundary.push_back(traction(named("right"), times(young * strain, dice.direction(dim))));
+    if (dice.chance(0.7))
+      model.boundary.push_back(traction(named("right"), times(young * strain, dice.direction(dim))));
   } else {
     model.boundary.push_back(moved(named("left"), dim));
     if (dim == 3 && dice.chance(0.3)) model.boundary.push_back(roller(named("front"), 1));
     Vector3 pull = dice.direction(dim);
     pull[up] = -std::abs(pull[up]);
-    if (dice.chance(0.8)) model.boundary.push_back(traction(named("top"), times(young * strain, pull)));
-    else model.boundary.push_back(pressure(named("top"), young * strain * dice.uniform(-0.3, 1.0)));
-    if (dice.chance(0.3)) model.boundary.push_back(body_force(everything(), times(young * strain / length, dice.direction(dim))));
+    if (dice.chance(0.8))
+      model.boundary.push_back(traction(named("top"), times(young * strain, pull)));
+    else
+      model.boundary.push_back(pressure(named("top"), young * strain * dice.uniform(-0.3, 1.0)));
+    if (dice.chance(0.3))
+      model.boundary.push_back(body_force(everything(), times(young * strain / length, dice.direction(dim))));
   }
 
   std::optional<Friction> friction;
@@ -205,7 +213,8 @@ State state_of(const Run& run, const DenseSolver& dense) {
     state.lambda(row) = run.solution.pressure[i];
     for (int k = 0; k < point.tangents; ++k)
       for (std::size_t c = 0; c < dim; ++c)
-        state.lambda(row + 1 + k) -= run.solution.traction[i][c] * point.tangent[static_cast<std::size_t>(k)][c];
+        state.lambda(row + 1 + k) -=
+            run.solution.traction[i][c] * point.tangent[static_cast<std::size_t>(k)][c];
   }
   return state;
 }
@@ -224,15 +233,17 @@ void compare(int seed, const Sample& sample, Tally& tally) {
   const double tolerance = sample.model.solver.tolerance;
   const DenseSolver::Answer answer = dense.solve();
   const double error = (state.u - answer.u).norm();
-  // A residual of the tolerance moves the softest mode by that over its stiffness, and every other mode by less.
+  // A residual of the tolerance moves the softest mode by that over its stiffness, and every other mode by
+  // less.
   const double bound = tolerance * (answer.force_scale / answer.softest + answer.u.norm());
   const DenseSolver::Defects defects = dense.defects(state.u, state.lambda);
   if (std::getenv("KACANOV_RANDOM_VERBOSE") != nullptr)
-    std::cout << seed << (converged ? " converged" : " NOT CONVERGED") << (answer.converged ? "" : " DENSE UNDECIDED")
-              << ", unknowns " << run.part.unknowns() << ", law " << static_cast<int>(run.part.laws[0].kind)
-              << ", outer " << run.result().outer_iterations << ", tolerance " << tolerance << ", defect "
-              << defects.worst() / tolerance << ", error " << error / answer.u.norm() << " = " << error / bound
-              << " of its bound; " << run.result().message << "\n";
+    std::cout << seed << (converged ? " converged" : " NOT CONVERGED")
+              << (answer.converged ? "" : " DENSE UNDECIDED") << ", unknowns " << run.part.unknowns()
+              << ", law " << static_cast<int>(run.part.laws[0].kind) << ", outer "
+              << run.result().outer_iterations << ", tolerance " << tolerance << ", defect "
+              << defects.worst() / tolerance << ", error " << error / answer.u.norm() << " = "
+              << error / bound << " of its bound; " << run.result().message << "\n";
   ++tally.solved;
   // Not monotone there: solutions need be neither one nor any.
   const bool softened = run.result().softening_elements > 0;
@@ -256,9 +267,10 @@ void for_seeds(int count, const Use& use) {
 }
 
 void report(const Tally& tally) {
-  MESSAGE(tally.unconverged, " of ", tally.solved, " not converged, dense solver undecided on ", tally.undecided, ", ",
-          tally.softened, " in a softening range; of the others the largest defect is ", tally.worst_defect, " of the tolerance, the largest error ",
-          tally.worst_error, " of its bound");
+  MESSAGE(tally.unconverged, " of ", tally.solved, " not converged, dense solver undecided on ",
+          tally.undecided, ", ", tally.softened,
+          " in a softening range; of the others the largest defect is ", tally.worst_defect,
+          " of the tolerance, the largest error ", tally.worst_error, " of its bound");
 }
 
 }  // namespace
@@ -273,7 +285,8 @@ TEST_CASE("random problems: what is called converged is the solution of the dens
 }
 
 TEST_CASE("the dense solver sees what is not a solution") {
-  for (const int seed : {1, 2, 4, 5, 6, 7, 9, 13}) {  // every element; no softening, no body that just moves along
+  for (const int seed :
+       {1, 2, 4, 5, 6, 7, 9, 13}) {  // every element; no softening, no body that just moves along
     CAPTURE(seed);
     Sample sample = random_problem(static_cast<unsigned>(seed));
     sample.model.solver.tolerance = 1e-8;
@@ -294,7 +307,8 @@ TEST_CASE("random problems by other methods, which need not converge but may not
   Tally tally;
   for_seeds(usual_count / 5, [&](int seed, Sample sample) {
     Options& solver = sample.model.solver;
-    constexpr std::array methods{Options::Contact::admm, Options::Contact::dual_admm, Options::Contact::active_set};
+    constexpr std::array methods{Options::Contact::admm, Options::Contact::dual_admm,
+                                 Options::Contact::active_set};
     solver.contact = methods[static_cast<std::size_t>(seed % 3)];
     if (seed % 2 == 0) solver.outer = Options::Outer::kacanov;
     if (seed % 5 == 0) solver.penalty = Options::Penalty::paper;

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "problem_models.hpp"
 #include <kacanov/solve.hpp>
+#include "problem_models.hpp"
 
 namespace kacanov::testing {
 

@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "case/case_file.hpp"
 #include <kacanov/error.hpp>
+#include "case/case_file.hpp"
 #include "case/json_node.hpp"
 
 namespace kacanov::testing {

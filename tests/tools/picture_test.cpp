@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "pictures/body_drawing.hpp"
 #include <kacanov/error.hpp>
+#include "pictures/body_drawing.hpp"
 #include "pictures/picture.hpp"
 #include "pictures/png.hpp"
 #include "pictures/svg.hpp"
@@ -155,7 +155,8 @@ Bent bent_box(const BoxSpec& spec, double amount) {
   for (std::size_t i = 0; i < bent.mesh.node_count(); ++i)
     bent.displacement[dim * i + dim - 1] =
         -amount * std::pow(bent.mesh.coordinates[dim * i] / spec.size[0], 2);
-  for (std::size_t i = 0; i < bent.mesh.node_count(); ++i) bent.stress.push_back(bent.mesh.coordinates[dim * i]);
+  for (std::size_t i = 0; i < bent.mesh.node_count(); ++i)
+    bent.stress.push_back(bent.mesh.coordinates[dim * i]);
   return bent;
 }
 
@@ -172,7 +173,8 @@ TEST_CASE("the picture of a deformed body is well formed for every element type"
     CHECK(well_formed(svg));
     CHECK(finite(svg));
     CHECK(svg.find("a &lt;beam&gt; &amp; &quot;more&quot;") != std::string::npos);
-    CHECK(svg.find("Displacement to scale, largest 0.5; largest von Mises stress of an element 7;") != std::string::npos);
+    CHECK(svg.find("Displacement to scale, largest 0.5; largest von Mises stress of an element 7;") !=
+          std::string::npos);
   }
 }
 
@@ -222,8 +224,7 @@ TEST_CASE("of a convex body, the visible faces project onto its shadow once") {
   for (const ElementType type : {ElementType::tet4, ElementType::tet10, ElementType::hex8}) {
     const Bent bent = bent_box({{3, 2, 1}, {3, 2, 2}, type}, 0.0);
     const View view = View::of(bent.mesh);
-    const Surface surface =
-        visible_surface(bent.mesh, view, bent.displacement, 1, bent.stress);
+    const Surface surface = visible_surface(bent.mesh, view, bent.displacement, 1, bent.stress);
     double area = 0;
     for (const Face& f : surface.faces) {
       const auto& c = f.corners;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What breaks a run of the real program from outside: a rank that is killed, no memory, a full disk. One message, no hang, exit code 3.
+// What breaks a run of the real program from outside: a rank that is killed, no memory, a full disk. One
+// message, no hang, exit code 3.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -13,8 +14,8 @@ namespace {
 /// Where a run hangs, the test ends it and sees another exit code.
 const std::string patience = "timeout -s KILL 120";
 
-/// Starts a program of several ranks, kills the last of them once the file is there, and leaves with the program's exit code: kill_rank.sh FILE
-/// PROGRAM ARGUMENTS...
+/// Starts a program of several ranks, kills the last of them once the file is there, and leaves with the
+/// program's exit code: kill_rank.sh FILE PROGRAM ARGUMENTS...
 constexpr const char* kill_script = R"(file=$1; shift
 "$@" & program=$!
 while [ ! -e "$file" ] && kill -0 $program 2>/dev/null; do sleep 0.02; done
@@ -24,7 +25,8 @@ kill -s KILL $rank
 wait $program
 )";
 
-/// Starts a program with a limit: limited.sh "-v KILOBYTES" PROGRAM ARGUMENTS... A file that grows too large is then an error like a full disk.
+/// Starts a program with a limit: limited.sh "-v KILOBYTES" PROGRAM ARGUMENTS... A file that grows too large
+/// is then an error like a full disk.
 constexpr const char* limit_script = "ulimit $1\nshift\nexec \"$@\"\n";
 
 /// Exit code 3 and one line with this text; result.json, where it is due, has it too.
@@ -68,10 +70,10 @@ TEST_CASE("a rank that is killed ends the run, which can go on from its checkpoi
   const Workplace place;
   place.put_json("beam.json", small_beam());
   place.put("kill_rank.sh", kill_script);
-  const Outcome outcome =
-      place.run("run beam.json --output out --ranks 3 --set solver.contact=admm --set solver.r=1e-6 "
-                "--set solver.max_contact=2 --set solver.max_outer=100000000",
-                patience + " sh kill_rank.sh out/checkpoint.kacanov");
+  const Outcome outcome = place.run(
+      "run beam.json --output out --ranks 3 --set solver.contact=admm --set solver.r=1e-6 "
+      "--set solver.max_contact=2 --set solver.max_outer=100000000",
+      patience + " sh kill_rank.sh out/checkpoint.kacanov");
   check_failed(place, outcome, "a process was ended by signal 9");
   REQUIRE(place.has("out/checkpoint.kacanov"));
   CHECK(place.run("run beam.json --output out --ranks 2 --restart").exit_code == 0);
@@ -84,9 +86,11 @@ TEST_CASE("where memory runs out the run says so, on one rank and when only the 
   place.put_json("beam.json", small_beam());
   place.put_json("block.json", large_block());
   place.put("limited.sh", limit_script);
-  // What the program and MPI need for nothing depends on the machine: the least with which a small case is solved.
+  // What the program and MPI need for nothing depends on the machine: the least with which a small case is
+  // solved.
   const auto least = [&](int kilobytes, const auto& run) {
-    while (kilobytes < 4 << 20 && run("-v " + std::to_string(kilobytes)).exit_code != 0) kilobytes += 16 << 10;
+    while (kilobytes < 4 << 20 && run("-v " + std::to_string(kilobytes)).exit_code != 0)
+      kilobytes += 16 << 10;
     return kilobytes;
   };
   const int one = least(160 << 10, [&](const std::string& limit) {
@@ -103,7 +107,8 @@ TEST_CASE("where memory runs out the run says so, on one rank and when only the 
   });
   // Enough for the part, not for solving: the first rank is within the solver when the other one fails.
   const std::string limit = "-v " + std::to_string(two + (32 << 10));
-  check_failed(place, place.run(last_rank_limited(limit, "run block.json --output out"), two_ranks), "out of memory");
+  check_failed(place, place.run(last_rank_limited(limit, "run block.json --output out"), two_ranks),
+               "out of memory");
 }
 
 TEST_CASE("a limit under which MPI would crash or hang is refused before it starts") {
@@ -113,7 +118,8 @@ TEST_CASE("a limit under which MPI would crash or hang is refused before it star
   const Outcome outcome = place.run("run beam.json --ranks 2", patience + " sh limited.sh '-v 300000'");
   CHECK(outcome.exit_code == 2);
   CHECK(outcome.error ==
-        "kacanov: error: several ranks cannot be started: the address space of a process is limited to 292 MiB (ulimit -v), and MPI needs 512\n");
+        "kacanov: error: several ranks cannot be started: the address space of a process is limited to 292 "
+        "MiB (ulimit -v), and MPI needs 512\n");
   CHECK_FALSE(place.has("results"));
 }
 #endif
@@ -126,7 +132,8 @@ TEST_CASE("a signal while METIS is at work ends the program, without a failure o
   for (const std::string seconds : {"0.2", "0.4", "0.6"}) {
     INFO(seconds);
     // As many parts as take METIS seconds.
-    const Outcome outcome = place.run("partition beam.json --ranks 20000 --output parts", "timeout -s TERM --preserve-status " + seconds);
+    const Outcome outcome = place.run("partition beam.json --ranks 20000 --output parts",
+                                      "timeout -s TERM --preserve-status " + seconds);
     CHECK(outcome.exit_code == 143);
     CHECK(outcome.error.empty());
   }
@@ -140,17 +147,18 @@ TEST_CASE("a full disk: what was written stays whole, nothing half is left") {
   place.put("limited.sh", limit_script);
   REQUIRE(place.run("run beam.json --output out --set solver.max_outer=1").exit_code == 1);
   const std::string before = contents(place.path("out/checkpoint.kacanov"));
-  // A limit on the size of files stands for the full disk: the fields are larger, result.json and the checkpoint smaller.
+  // A limit on the size of files stands for the full disk: the fields are larger, result.json and the
+  // checkpoint smaller.
   const std::uintmax_t fields = std::filesystem::file_size(place.path("out/body.vtu"));
   REQUIRE(before.size() < fields / 2);
   const std::string limit = "sh limited.sh '-f " + std::to_string(fields / 2 / 512) + "'";
-  const Outcome outcome = place.run("run beam.json --output out --restart --set solver.max_outer=1", patience + " " + limit);
+  const Outcome outcome =
+      place.run("run beam.json --output out --restart --set solver.max_outer=1", patience + " " + limit);
   check_failed(place, outcome, "out/body.vtu: cannot be written: File too large");
   CHECK_FALSE(place.has("out/body.vtu"));
   check_nothing_half(place);
   CHECK(place.run("run beam.json --output out --restart").exit_code == 0);
   CHECK(place.json("out/result.json")["restarted_after"] == 2);
-
 }
 
 TEST_CASE("a full disk on several ranks, or on the last of them only") {
@@ -173,7 +181,8 @@ TEST_CASE("a full disk on several ranks, or on the last of them only") {
   check_failed(place, place.run(restart + " --ranks 2", patience + " sh limited.sh '" + limit + "'"),
                "out/body_0.vtu: cannot be written: File too large");
   check_nothing_half(place);
-  check_failed(place, place.run(last_rank_limited(limit, restart), two_ranks), "out/body_1.vtu: cannot be written: File too large");
+  check_failed(place, place.run(last_rank_limited(limit, restart), two_ranks),
+               "out/body_1.vtu: cannot be written: File too large");
   check_nothing_half(place);
   CHECK(place.has("out/body_0.vtu"));
   CHECK(place.run(restart + " --ranks 3 --set solver.max_outer=100").exit_code == 0);
@@ -187,7 +196,8 @@ TEST_CASE("a full disk leaves the parts of the split before") {
   const auto check_full = [&] {
     const Outcome outcome = place.run("partition beam.json --ranks 2 --output parts", "sh limited.sh '-f 8'");
     CHECK(outcome.exit_code == 3);
-    CHECK(outcome.error == "kacanov: internal failure: parts/unfinished/part_1.kacanov: cannot be written: File too large\n");
+    CHECK(outcome.error ==
+          "kacanov: internal failure: parts/unfinished/part_1.kacanov: cannot be written: File too large\n");
   };
   check_full();
   CHECK(std::filesystem::is_empty(place.path("parts")));

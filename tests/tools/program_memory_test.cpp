@@ -25,10 +25,13 @@ namespace {
 nlohmann::json beam(const std::string& element, const std::vector<int>& cells, bool nonlinear) {
   const std::size_t dim = cells.size();
   nlohmann::json input = small_beam();
-  input["mesh"]["box"] = {{"size", dim == 3 ? nlohmann::json{4, 1, 1} : nlohmann::json{4, 1}}, {"cells", cells}, {"element", element}};
+  input["mesh"]["box"] = {{"size", dim == 3 ? nlohmann::json{4, 1, 1} : nlohmann::json{4, 1}},
+                          {"cells", cells},
+                          {"element", element}};
   if (!nonlinear) input["material"][0]["law"] = {{"type", "linear"}};
   if (dim == 3) {
-    input["boundary"] = {{{"on", "left"}, {"displacement", {0, 0, 0}}}, {{"on", "top"}, {"traction", {0, 0, -0.01}}}};
+    input["boundary"] = {{{"on", "left"}, {"displacement", {0, 0, 0}}},
+                         {{"on", "top"}, {"traction", {0, 0, -0.01}}}};
     input["contact"][0]["obstacle"]["plane"] = {{"point", {0, 0, 0}}, {"normal", {0, 0, 1}}};
     input.erase("probe");
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cases split once into files, by the real program: the same bits as without, on 1 to 8 ranks; bad files refused on all ranks.
+// Cases split once into files, by the real program: the same bits as without, on 1 to 8 ranks; bad files
+// refused on all ranks.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -29,10 +30,12 @@ std::string square_mesh() {
   std::string nodes, elements;
   for (int y = 0; y < 5; ++y)
     for (int x = 0; x < 5; ++x)
-      nodes += std::to_string(10 * (5 * y + x + 1)) + " " + std::to_string(x) + " " + std::to_string(y) + " 0\n";
+      nodes +=
+          std::to_string(10 * (5 * y + x + 1)) + " " + std::to_string(x) + " " + std::to_string(y) + " 0\n";
   int element = 0;
   const auto add = [&](int a, int b, int c) {
-    elements += std::to_string(++element) + " 2 2 1 1 " + std::to_string(10 * a) + " " + std::to_string(10 * b) + " " + std::to_string(10 * c) + "\n";
+    elements += std::to_string(++element) + " 2 2 1 1 " + std::to_string(10 * a) + " " +
+                std::to_string(10 * b) + " " + std::to_string(10 * c) + "\n";
   };
   for (int y = 0; y < 4; ++y) {
     for (int x = 0; x < 4; ++x) {
@@ -41,7 +44,8 @@ std::string square_mesh() {
       add(corner, corner + 6, corner + 5);
     }
   }
-  return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n25\n" + nodes + "$EndNodes\n$Elements\n32\n" + elements + "$EndElements\n";
+  return "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n25\n" + nodes + "$EndNodes\n$Elements\n32\n" +
+         elements + "$EndElements\n";
 }
 
 /// Numbers of a vector or of a list of vectors agree to the tolerance, relative to the largest.
@@ -66,7 +70,8 @@ void check_refused(const Outcome& outcome, const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("a run from parts gives the bits of a run that splits the case itself, and takes its ranks from them") {
+TEST_CASE(
+    "a run from parts gives the bits of a run that splits the case itself, and takes its ranks from them") {
   const Workplace place;
   place.put_json("plane.json", small_beam());
   place.put_json("solid.json", solid_beam());
@@ -129,8 +134,10 @@ TEST_CASE("1, 2, 4 and 8 ranks agree, more of them than cores") {
     REQUIRE(outcome.exit_code == 0);
     const nlohmann::json other = place.json("other/result.json");
     CHECK(other["ranks"] == std::stoi(ranks));
-    for (const char* key : {"status", "active_nodes", "slip_nodes", "plastic_elements"}) CHECK(other[key] == one[key]);
-    for (const char* key : {"probe", "contact_force", "friction_force"}) check_close(one[key], other[key], 1e-6);
+    for (const char* key : {"status", "active_nodes", "slip_nodes", "plastic_elements"})
+      CHECK(other[key] == one[key]);
+    for (const char* key : {"probe", "contact_force", "friction_force"})
+      check_close(one[key], other[key], 1e-6);
   }
 }
 
@@ -170,8 +177,10 @@ TEST_CASE("a mesh file is read once: a run from parts does without it, but notic
   for (const std::string& other : {mesh + "\n", same_length}) {
     place.put("square.msh", other);
     const Outcome refused = place.run("run beam.json --parts parts --output out");
-    check_refused(refused, "parts/boundary.kacanov was made of another mesh: square.msh had " + std::to_string(mesh.size()) + " bytes with hash ");
-    CHECK(refused.error.find(", and now has " + std::to_string(other.size()) + " bytes with hash ") != std::string::npos);
+    check_refused(refused, "parts/boundary.kacanov was made of another mesh: square.msh had " +
+                               std::to_string(mesh.size()) + " bytes with hash ");
+    CHECK(refused.error.find(", and now has " + std::to_string(other.size()) + " bytes with hash ") !=
+          std::string::npos);
   }
   place.put("square.msh", mesh);
   CHECK(place.run("run beam.json --parts parts --output out").exit_code == 0);
@@ -181,18 +190,21 @@ TEST_CASE("parts of another case or number are refused with what differs, also u
   const Workplace place;
   place.put_json("beam.json", small_beam());
   REQUIRE(place.run("partition beam.json --ranks 2 --output parts").exit_code == 0);
-  const std::string run = "run beam.json --parts parts", mpiexec = KACANOV_MPIEXEC " --quiet --oversubscribe -n ";
+  const std::string run = "run beam.json --parts parts",
+                    mpiexec = KACANOV_MPIEXEC " --quiet --oversubscribe -n ";
   const std::string other = "parts/boundary.kacanov belongs to another case: ";
   for (const std::string& before : {std::string(), mpiexec + "2"}) {
     check_refused(place.run(run + " --set material[0].young=2.0", before),
                   other + "material differs (material[0].young: 1.0 there, 2.0 here)\n");
-    check_refused(place.run(run + " --set probe[0][1]=0.5", before), other + "probe differs (probe[0][1]: 1 there, 0.5 here)\n");
+    check_refused(place.run(run + " --set probe[0][1]=0.5", before),
+                  other + "probe differs (probe[0][1]: 1 there, 0.5 here)\n");
     check_refused(place.run("run beam.json --parts none", before), "there is no file none/boundary.kacanov");
   }
   CHECK(place.run(run + " --ranks 3").error ==
         "kacanov: error: --ranks: expected 2, as many as there are parts in parts, got 3\n");
   for (const std::string ranks : {"1", "3"})
-    check_refused(place.run(run, mpiexec + ranks), "parts/part_0.kacanov is one of 2 parts, expected as many ranks, but " + ranks);
+    check_refused(place.run(run, mpiexec + ranks),
+                  "parts/part_0.kacanov is one of 2 parts, expected as many ranks, but " + ranks);
   CHECK_FALSE(place.has("results"));
   CHECK(place.run(run + " --set solver.tolerance=1e-7").exit_code == 0);
 }
@@ -213,9 +225,11 @@ TEST_CASE("files that are missing, cut short or damaged are refused by name") {
       CHECK(outcome.error.rfind("kacanov: error: " + file + ": this ", 0) == 0);
       return outcome.error;
     };
-    for (const char* rubbish : {"", "{}"}) CHECK(refusal(rubbish).find("that this version of kacanov can read") != std::string::npos);
+    for (const char* rubbish : {"", "{}"})
+      CHECK(refusal(rubbish).find("that this version of kacanov can read") != std::string::npos);
     for (const std::size_t size : {std::size_t{22}, whole.size() / 2, whole.size() - 1})
-      CHECK(refusal(whole.substr(0, size)).find("is cut short: " + std::to_string(size) + " bytes") != std::string::npos);
+      CHECK(refusal(whole.substr(0, size)).find("is cut short: " + std::to_string(size) + " bytes") !=
+            std::string::npos);
     CHECK(refusal(whole + "x").find("is damaged") != std::string::npos);
     for (std::size_t at = 30; at < whole.size(); at += whole.size() / 30) {
       INFO(at);
@@ -241,7 +255,8 @@ TEST_CASE("what is wrong with the file of one rank ends all of them, with one me
   place.put(file, damaged);
   const Outcome outcome = place.run(run);
   CHECK(outcome.exit_code == 2);
-  CHECK(outcome.error == "kacanov: error: " + file + ": this part is damaged: its content does not match its hash\n");
+  CHECK(outcome.error ==
+        "kacanov: error: " + file + ": this part is damaged: its content does not match its hash\n");
   std::filesystem::remove(place.path(file));
   check_refused(place.run(run), "there is no file " + file);
   place.put(file, contents(place.path("parts/part_0.kacanov")));
@@ -276,10 +291,14 @@ TEST_CASE("what partition needs") {
   CHECK(place.run("partition beam.json --output parts").exit_code == 2);
   const Outcome many = place.run("partition beam.json --ranks 300 --output many");
   CHECK(many.exit_code == 2);
-  CHECK(many.error == "kacanov: error: a mesh of 128 elements cannot be split into 300 parts: some would be empty\n");
+  CHECK(many.error ==
+        "kacanov: error: a mesh of 128 elements cannot be split into 300 parts: some would be empty\n");
   const Outcome outcome = place.run("partition beam.json --ranks 2 --output file");
   CHECK(outcome.exit_code == 2);
   CHECK(outcome.error.find("--output: the folder file cannot be made") != std::string::npos);
-  CHECK(place.run("partition beam.json --ranks 2 --output parts", KACANOV_MPIEXEC " --quiet --oversubscribe -n 2").exit_code == 0);
+  CHECK(place
+            .run("partition beam.json --ranks 2 --output parts",
+                 KACANOV_MPIEXEC " --quiet --oversubscribe -n 2")
+            .exit_code == 0);
   CHECK(place.run("run beam.json --parts parts").exit_code == 0);
 }

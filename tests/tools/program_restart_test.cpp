@@ -21,18 +21,21 @@ wait $program
 
 /// With a penalty like this Algorithm 1 takes hours.
 const std::string stubborn =
-    " --set solver.contact=admm --set solver.r=1e-6 --set solver.max_contact=2 --set solver.max_outer=100000000";
+    " --set solver.contact=admm --set solver.r=1e-6 --set solver.max_contact=2 --set "
+    "solver.max_outer=100000000";
 
 void check_equal(const nlohmann::json& a, const nlohmann::json& b) {
   for (const std::size_t i : {0, 1})
     for (const std::size_t c : {0, 1})
       CHECK(a["probe"][i][c].get<double>() == doctest::Approx(b["probe"][i][c].get<double>()).epsilon(1e-5));
-  CHECK(a["contact_force"][1].get<double>() == doctest::Approx(b["contact_force"][1].get<double>()).epsilon(1e-5));
+  CHECK(a["contact_force"][1].get<double>() ==
+        doctest::Approx(b["contact_force"][1].get<double>()).epsilon(1e-5));
 }
 
 }  // namespace
 
-TEST_CASE("a signal ends a run with exit code 1, and --restart goes on to the same answer, on other ranks too") {
+TEST_CASE(
+    "a signal ends a run with exit code 1, and --restart goes on to the same answer, on other ranks too") {
   const Workplace place;
   nlohmann::json beam = small_beam();
   beam["solver"] = {{"tolerance", 1e-7}};
@@ -44,15 +47,18 @@ TEST_CASE("a signal ends a run with exit code 1, and --restart goes on to the sa
   struct Way {
     const char *signal, *first, *second;
   };
-  for (const Way& way : {Way{"TERM", "--ranks 1", "--ranks 2"}, Way{"HUP", "--ranks 2", "--ranks 1 --threads 2"}}) {
+  for (const Way& way :
+       {Way{"TERM", "--ranks 1", "--ranks 2"}, Way{"HUP", "--ranks 2", "--ranks 1 --threads 2"}}) {
     INFO(way.signal, " ", way.first, " ", way.second);
-    const Outcome outcome = place.run("run beam.json --output out " + std::string(way.first) + stubborn,
-                                      "sh interrupt.sh " + std::string(way.signal) + " out/checkpoint.kacanov");
+    const Outcome outcome =
+        place.run("run beam.json --output out " + std::string(way.first) + stubborn,
+                  "sh interrupt.sh " + std::string(way.signal) + " out/checkpoint.kacanov");
     INFO("error: ", outcome.error);
     REQUIRE(outcome.exit_code == 1);
     CHECK(outcome.error.empty());
     CHECK(outcome.output.find("\nINTERRUPTED: ") != std::string::npos);
-    CHECK(outcome.output.find("out/checkpoint.kacanov; the option --restart goes on from there") != std::string::npos);
+    CHECK(outcome.output.find("out/checkpoint.kacanov; the option --restart goes on from there") !=
+          std::string::npos);
     REQUIRE(place.has("out/checkpoint.kacanov"));
     const nlohmann::json stopped = place.json("out/result.json");
     CHECK(stopped["status"] == "interrupted");
@@ -87,7 +93,8 @@ TEST_CASE("load steps: the same answer, their history, and a restart among them"
   place.put_json("beam.json", small_beam());
   REQUIRE(place.run("run beam.json --output whole --set solver.tolerance=1e-7").exit_code == 0);
   CHECK_FALSE(place.json("whole/result.json").contains("load_steps"));
-  const std::string steps = "run beam.json --output out --set solver.tolerance=1e-7 --set solver.load_steps=3";
+  const std::string steps =
+      "run beam.json --output out --set solver.tolerance=1e-7 --set solver.load_steps=3";
   CHECK(place.run(steps + " --set solver.max_outer=2").exit_code == 1);
   const Outcome other = place.run(steps + " --set solver.load_steps=2 --restart");
   CHECK(other.exit_code == 2);
@@ -104,13 +111,15 @@ TEST_CASE("load steps: the same answer, their history, and a restart among them"
 TEST_CASE("without checkpoints there is none, and --restart says which file it expected") {
   const Workplace place;
   place.put_json("beam.json", small_beam());
-  CHECK(place.run("run beam.json --output out --set solver.max_outer=3 --set output.checkpoint=false").exit_code == 1);
+  CHECK(place.run("run beam.json --output out --set solver.max_outer=3 --set output.checkpoint=false")
+            .exit_code == 1);
   CHECK_FALSE(place.has("out/checkpoint.kacanov"));
   for (const char* ranks : {"", " --ranks 2"}) {
     const Outcome outcome = place.run("run beam.json --output out --restart" + std::string(ranks));
     CHECK(outcome.exit_code == 2);
-    CHECK(outcome.error == "kacanov: error: --restart: there is no checkpoint to go on from, expected the file "
-                           "out/checkpoint.kacanov\n");
+    CHECK(outcome.error ==
+          "kacanov: error: --restart: there is no checkpoint to go on from, expected the file "
+          "out/checkpoint.kacanov\n");
   }
   CHECK(place.json("out/result.json")["status"] == "not_converged");  // as it was
 }
@@ -125,8 +134,7 @@ TEST_CASE("a checkpoint of another case is refused with what differs; the same c
     CHECK(outcome.error.find("out/checkpoint.kacanov belongs to another case: ") != std::string::npos);
     return outcome.error.substr(outcome.error.find("case: ") + 6);
   };
-  CHECK(refusal("material[0].young=2.0") ==
-        "material differs (material[0].young: 1.0 there, 2.0 here)\n");
+  CHECK(refusal("material[0].young=2.0") == "material differs (material[0].young: 1.0 there, 2.0 here)\n");
   CHECK(refusal("contact[0].friction.tresca=0.02") ==
         "contact differs (contact[0].friction.tresca: 0.01 there, 0.02 here)\n");
   CHECK(refusal("mesh.box.cells[0]=20").find("mesh differs (mesh.box.cells[0]: 16 there, 20 here)") !=
@@ -155,7 +163,8 @@ TEST_CASE("a checkpoint that is cut short or damaged is refused") {
   const std::string front = "kacanov: error: out/checkpoint.kacanov: this ";
   CHECK(refusal("") == front + "is no checkpoint that this version of kacanov can read\n");
   CHECK(refusal("{}") == front + "is no checkpoint that this version of kacanov can read\n");
-  for (const std::size_t size : {std::size_t{21}, std::size_t{25}, std::size_t{100}, whole.size() / 2, whole.size() - 1}) {
+  for (const std::size_t size :
+       {std::size_t{21}, std::size_t{25}, std::size_t{100}, whole.size() / 2, whole.size() - 1}) {
     INFO(size);
     CHECK(refusal(whole.substr(0, size)) ==
           front + "checkpoint is cut short: " + std::to_string(size) + " bytes\n");
@@ -178,13 +187,15 @@ TEST_CASE("where a checkpoint cannot be written the one before stays, with a war
   const std::string before = contents(place.path("out/checkpoint.kacanov"));
   // A limit on the size of files stands for the full disk; the run leaves no other files of that size.
   const Outcome outcome = place.run(
-      "run beam.json --output out --restart --set solver.max_outer=2 --set output.fields=none --set output.report=false",
+      "run beam.json --output out --restart --set solver.max_outer=2 --set output.fields=none --set "
+      "output.report=false",
       "ulimit -f 6;");
   INFO("error: ", outcome.error);
   CHECK(before.size() > 6 * 512);
   CHECK(outcome.exit_code == 1);
-  CHECK(outcome.error == "kacanov: warning: out/checkpoint.kacanov: cannot be written: File too large; the checkpoint before "
-                         "it stays\n");
+  CHECK(outcome.error ==
+        "kacanov: warning: out/checkpoint.kacanov: cannot be written: File too large; the checkpoint before "
+        "it stays\n");
   CHECK(contents(place.path("out/checkpoint.kacanov")) == before);
   CHECK(place.json("out/result.json")["outer_iterations"] == 5);
   CHECK(place.run("run beam.json --output out --restart").exit_code == 0);

@@ -28,7 +28,9 @@ void Workplace::put(const std::string& name, const std::string& text) const {
   std::ofstream(path(name), std::ios::binary) << text;
 }
 
-void Workplace::put_json(const std::string& name, const nlohmann::json& json) const { put(name, json.dump()); }
+void Workplace::put_json(const std::string& name, const nlohmann::json& json) const {
+  put(name, json.dump());
+}
 
 std::filesystem::path Workplace::path(const std::string& name) const { return folder_.file(name); }
 

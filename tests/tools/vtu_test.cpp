@@ -13,8 +13,8 @@
 
 #include <kacanov/error.hpp>
 #include <kacanov/mesh.hpp>
-#include "temporary_folder.hpp"
 #include "formats/vtu_writer.hpp"
+#include "temporary_folder.hpp"
 
 using namespace kacanov;
 using namespace kacanov::testing;

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "case/case_material.hpp"
 #include <kacanov/error.hpp>
+#include "case/case_material.hpp"
 #include "case/json_node.hpp"
 
 namespace kacanov {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "case/json_node.hpp"
 #include <kacanov/law.hpp>
+#include "case/json_node.hpp"
 
 namespace kacanov {
 

@@ -3,8 +3,8 @@
 #include <charconv>
 #include <vector>
 
-#include "case/case_file.hpp"
 #include <kacanov/error.hpp>
+#include "case/case_file.hpp"
 #include "case/json_node.hpp"
 
 namespace kacanov {

@@ -44,7 +44,8 @@ void AtomicFile::commit(Durable durable) {
     fail(error);
   }
   if (durable == Durable::no) return;
-  // The new name is on the disk with its folder. Not all file systems can do that; the file is whole in any case.
+  // The new name is on the disk with its folder. Not all file systems can do that; the file is whole in any
+  // case.
   const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
   const int handle = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY);
   if (handle < 0) return;

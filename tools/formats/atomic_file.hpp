@@ -20,8 +20,8 @@ class AtomicFile {
 
   void write(const void* data, std::size_t bytes);
   void write(std::string_view text) { write(text.data(), text.size()); }
-  /// Closes the file and renames it; to be called last. A durable one is on the disk before it takes the place of the one
-  /// before it, and survives a power cut.
+  /// Closes the file and renames it; to be called last. A durable one is on the disk before it takes the
+  /// place of the one before it, and survives a power cut.
   enum class Durable { no, yes };
   void commit(Durable durable = Durable::no);
 

@@ -231,6 +231,8 @@ Mesh make_mesh(const std::string& path, GmshContent content) {
 
 Mesh read_gmsh(const std::string& path) { return make_mesh(path, parse_file(path)); }
 
-Mesh read_gmsh(const std::string& path, std::string_view bytes) { return make_mesh(path, parse_gmsh(path, bytes)); }
+Mesh read_gmsh(const std::string& path, std::string_view bytes) {
+  return make_mesh(path, parse_gmsh(path, bytes));
+}
 
 }  // namespace kacanov

@@ -5,8 +5,8 @@
 #include <array>
 #include <bit>
 
-#include "formats/atomic_file.hpp"
 #include <kacanov/error.hpp>
+#include "formats/atomic_file.hpp"
 #include "formats/xml.hpp"
 
 namespace kacanov {

@@ -22,7 +22,8 @@ enum class CellShape : std::uint8_t { line2, tri3, tri6, quad4, tet4, tet10, hex
 CellShape body_cells(ElementType type);
 CellShape facet_cells(ElementType type);
 
-/// An array for a file: one that lies there, or one that is worked out while it is written, some entries at a time.
+/// An array for a file: one that lies there, or one that is worked out while it is written, some entries at a
+/// time.
 template <typename T>
 class Values {
  public:
@@ -30,8 +31,8 @@ class Values {
 
   Values() = default;
   template <typename Array>
-    requires std::convertible_to<const Array&, std::span<const T>>
-  Values(const Array& array) : there_(array), size_(there_.size()) {}
+  requires std::convertible_to<const Array&, std::span<const T>> Values(const Array& array)
+      : there_(array), size_(there_.size()) {}
   /// `fill(first, out)` writes entries first, first + 1 ...; both are multiples of the field's components.
   Values(std::size_t size, Fill fill) : size_(size), fill_(std::move(fill)) {}
 

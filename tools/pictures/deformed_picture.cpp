@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "pictures/body_drawing.hpp"
 #include <kacanov/error.hpp>
+#include "pictures/body_drawing.hpp"
 #include "pictures/picture.hpp"
 #include "pictures/svg.hpp"
 

@@ -11,7 +11,8 @@
 
 namespace kacanov {
 
-/// A body to be drawn. Nothing is owned; everything in the numbering of the mesh, of which 3D needs the boundary only.
+/// A body to be drawn. Nothing is owned; everything in the numbering of the mesh, of which 3D needs the
+/// boundary only.
 struct DeformedPicture {
   std::string title;
   const Mesh* mesh = nullptr;

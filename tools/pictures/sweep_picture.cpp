@@ -6,9 +6,9 @@
 #include <numeric>
 
 #include <kacanov/error.hpp>
+#include "formats/xml.hpp"
 #include "pictures/picture.hpp"
 #include "pictures/svg.hpp"
-#include "formats/xml.hpp"
 
 namespace kacanov {
 namespace {

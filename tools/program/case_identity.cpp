@@ -51,7 +51,8 @@ json case_sections(const json& document, std::span<const char* const> sections) 
   return some;
 }
 
-std::vector<std::string> differing_sections(const json& there, const json& here, std::span<const char* const> sections) {
+std::vector<std::string> differing_sections(const json& there, const json& here,
+                                            std::span<const char* const> sections) {
   std::vector<std::string> names;
   for (const char* section : sections)
     if (there.value(section, json()) != here.value(section, json())) names.emplace_back(section);

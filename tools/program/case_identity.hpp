@@ -18,8 +18,10 @@ nlohmann::json case_sections(const nlohmann::json& document, std::span<const cha
 std::vector<std::string> differing_sections(const nlohmann::json& there, const nlohmann::json& here,
                                             std::span<const char* const> sections);
 
-/// What is said of sections that differ: "material differs (material[0].young: 1.0 there, 2.0 here); ...", with the first keys of each.
-std::string describe_differences(const nlohmann::json& there, const nlohmann::json& here, std::span<const std::string> sections);
+/// What is said of sections that differ: "material differs (material[0].young: 1.0 there, 2.0 here); ...",
+/// with the first keys of each.
+std::string describe_differences(const nlohmann::json& there, const nlohmann::json& here,
+                                 std::span<const std::string> sections);
 
 nlohmann::json fingerprint_json(const Fingerprint& print);
 /// The converse.

@@ -5,8 +5,8 @@
 #include <bit>
 #include <iostream>
 
-#include "program/case_identity.hpp"
 #include <kacanov/error.hpp>
+#include "program/case_identity.hpp"
 #include "program/hashed_file.hpp"
 
 namespace kacanov {
@@ -43,8 +43,9 @@ Checkpoint CheckpointFile::read() const {
                                           print_.differences(parse_fingerprint(header.at("problem"))));
   const json steps = input_->model.solver.load_steps;
   if (header.at("load_steps") != steps) {
-    text += (text.empty() ? "" : "; ") + ("solver.load_steps differs (factors " + header.at("load_steps").dump()) +
-            " there, " + steps.dump() + " here)";
+    text += (text.empty() ? "" : "; ") +
+            ("solver.load_steps differs (factors " + header.at("load_steps").dump()) + " there, " +
+            steps.dump() + " here)";
   }
   if (!text.empty()) throw InputError("--restart: " + file + " belongs to another case: " + text);
   return checkpoint;
@@ -59,18 +60,21 @@ void CheckpointFile::write(const Checkpoint& checkpoint) {
   header["load_steps"] = input_->model.solver.load_steps;
   header["case"] = case_sections(input_->document, sections);
   // As bits: JSON has no infinity.
-  for (const auto& [name, value] : checkpoint.numbers) header["numbers"][name] = std::bit_cast<std::uint64_t>(value);
+  for (const auto& [name, value] : checkpoint.numbers)
+    header["numbers"][name] = std::bit_cast<std::uint64_t>(value);
   for (const auto& [name, values] : checkpoint.fields) header["fields"][name] = values.size();
   try {
     HashedWriter file(path_.string(), magic, header);
-    for (const auto& [name, values] : checkpoint.fields) file.write(values.data(), values.size() * sizeof(double));
+    for (const auto& [name, values] : checkpoint.fields)
+      file.write(values.data(), values.size() * sizeof(double));
     file.commit();
     written_ = true;
   } catch (const InternalError& refusal) {
     // A run of hours does not end because its disk is full now.
     if (warned_ != refusal.what()) {
       std::cerr << std::string("kacanov: warning: ") + refusal.what() +
-                       (std::filesystem::exists(path_) ? "; the checkpoint before it stays\n" : "; there is no checkpoint\n");
+                       (std::filesystem::exists(path_) ? "; the checkpoint before it stays\n"
+                                                       : "; there is no checkpoint\n");
     }
     warned_ = refusal.what();
   }

@@ -7,26 +7,29 @@
 #include <string>
 #include <utility>
 
-#include "case/case_file.hpp"
 #include <kacanov/checkpoint.hpp>
+#include "case/case_file.hpp"
 
 namespace kacanov {
 
 /// Name of the file in the output folder.
 constexpr const char* checkpoint_name = "checkpoint.kacanov";
 
-/// The checkpoint of one run, of a problem with this fingerprint. Everything happens on the first rank. The case has to outlive it.
+/// The checkpoint of one run, of a problem with this fingerprint. Everything happens on the first rank. The
+/// case has to outlive it.
 class CheckpointFile {
  public:
   CheckpointFile(const std::filesystem::path& folder, const Case& input, Fingerprint print)
       : path_(folder / checkpoint_name), input_(&input), print_(std::move(print)) {}
 
-  /// Throws InputError: no such file, not a checkpoint, cut short, damaged, or of another case, with what differs.
+  /// Throws InputError: no such file, not a checkpoint, cut short, damaged, or of another case, with what
+  /// differs.
   Checkpoint read() const;
 
   /// Whether a checkpoint is worth its time: the last one took less than a fiftieth of the time since then.
   bool due() const;
-  /// Replaces the file. Where the system refuses, the one before stays, and a warning is printed (once for each reason).
+  /// Replaces the file. Where the system refuses, the one before stays, and a warning is printed (once for
+  /// each reason).
   void write(const Checkpoint& checkpoint);
   void remove() const;
 

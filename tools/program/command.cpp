@@ -57,9 +57,12 @@ ParsedCommand parse_command(int argc, const char* const* argv) {
   CLI::App* run = app.add_subcommand("run", "solve a case; writes result.json, fields and pictures");
   add_common(*run, command);
   add_output(*run, command);
-  run->add_flag("!--no-memory-check", command.memory_check, "run even where the memory does not seem to be enough");
-  run->add_flag("--restart", command.restart, "go on from the checkpoint that an unfinished run left in the folder");
-  run->add_option("--parts", command.parts, "folder that kacanov partition has written; the mesh is not read")->type_name("DIR");
+  run->add_flag("!--no-memory-check", command.memory_check,
+                "run even where the memory does not seem to be enough");
+  run->add_flag("--restart", command.restart,
+                "go on from the checkpoint that an unfinished run left in the folder");
+  run->add_option("--parts", command.parts, "folder that kacanov partition has written; the mesh is not read")
+      ->type_name("DIR");
   add_parallel(*run, command);
 
   CLI::App* spectrum =
@@ -85,12 +88,14 @@ ParsedCommand parse_command(int argc, const char* const* argv) {
   CLI::App* check =
       app.add_subcommand("check", "validate a case, show what it selects, estimate memory and time");
   add_common(*check, command);
-  check->add_option("--ranks", command.ranks, "estimate for this many processes (default: what run would take)")
+  check
+      ->add_option("--ranks", command.ranks,
+                   "estimate for this many processes (default: what run would take)")
       ->check(CLI::Range(1, 100000).description(""))
       ->type_name("N");
 
-  CLI::App* partition =
-      app.add_subcommand("partition", "split a case once into parts that the ranks of later runs read on their own");
+  CLI::App* partition = app.add_subcommand(
+      "partition", "split a case once into parts that the ranks of later runs read on their own");
   add_common(*partition, command);
   partition->add_option("--ranks", command.ranks, "number of parts, one for each MPI process of the runs")
       ->check(CLI::Range(1, 65535).description(""))

@@ -12,9 +12,9 @@ struct Command {
   enum class Kind { run, spectrum, sweep, check, partition };
   Kind kind = Kind::run;
   std::string case_file;
-  std::string output;  ///< folder; empty: results/<case name>
-  std::string parts;   ///< run: folder that `partition` has written; empty: none
-  std::optional<int> ranks, threads;  ///< of partition: `ranks` is the number of parts, and always there
+  std::string output;                  ///< folder; empty: results/<case name>
+  std::string parts;                   ///< run: folder that `partition` has written; empty: none
+  std::optional<int> ranks, threads;   ///< of partition: `ranks` is the number of parts, and always there
   std::vector<std::string> overrides;  ///< --set
   std::optional<double> tolerance;     ///< spectrum: relative, on λ_min and λ_max
   bool restart = false;                ///< run: go on from the checkpoint in the folder

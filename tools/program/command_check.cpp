@@ -4,12 +4,12 @@
 #include <cstdio>
 #include <iostream>
 
-#include "program/commands.hpp"
-#include "program/loaded_case.hpp"
-#include "program/memory_model.hpp"
 #include "problem/integration.hpp"
 #include "problem/selection.hpp"
 #include "problem/vector3.hpp"
+#include "program/commands.hpp"
+#include "program/loaded_case.hpp"
+#include "program/memory_model.hpp"
 #include "program/report.hpp"
 
 namespace kacanov {
@@ -95,7 +95,8 @@ void print_contact_gaps(const Problem& problem) {
   print_range("initial gap", low->gap, high->gap);
 }
 
-// A rough model of the time, fitted to runs of the beam in 2D and 3D: seconds of a core an unknown. The case decides more.
+// A rough model of the time, fitted to runs of the beam in 2D and 3D: seconds of a core an unknown. The case
+// decides more.
 constexpr double seconds_elastic = 1e-5, seconds_plastic = 4e-5;
 
 void print_estimate(const Problem& problem, const Case& input, int ranks) {
@@ -103,9 +104,12 @@ void print_estimate(const Problem& problem, const Case& input, int ranks) {
   ProblemSize size = size_of(problem.mesh, input.model);
   size.contact_points = static_cast<double>(problem.contact.size());
   const double seconds = unknowns * (size.nonlinear ? seconds_plastic : seconds_elastic) / ranks;
-  std::printf("  estimate       %s of memory, %s on %d %s (time within a factor of three for a usual case); available: %s\n",
-              readable_bytes(estimated_memory(size, ranks)).c_str(), readable_seconds(std::max(seconds, 0.05)).c_str(), ranks,
-              ranks == 1 ? "rank" : "ranks", readable_bytes(available_memory()).c_str());
+  std::printf(
+      "  estimate       %s of memory, %s on %d %s (time within a factor of three for a usual case); "
+      "available: %s\n",
+      readable_bytes(estimated_memory(size, ranks)).c_str(),
+      readable_seconds(std::max(seconds, 0.05)).c_str(), ranks, ranks == 1 ? "rank" : "ranks",
+      readable_bytes(available_memory()).c_str());
 }
 
 }  // namespace

@@ -11,8 +11,8 @@ int partition_command(const Command& command, const Case& input) {
   Problem problem = load_problem(input, {*command.ranks, 0});
   const std::size_t elements = problem.mesh.element_count(), nodes = problem.mesh.node_count();
   write_parts(command.output, input, std::move(problem), *command.ranks);
-  std::cout << std::to_string(elements) + " elements, " + std::to_string(nodes) + " nodes in " + std::to_string(*command.ranks) +
-                   " parts: " + command.output + "\n";
+  std::cout << std::to_string(elements) + " elements, " + std::to_string(nodes) + " nodes in " +
+                   std::to_string(*command.ranks) + " parts: " + command.output + "\n";
   return exit_converged;
 }
 

@@ -3,19 +3,19 @@
 #include <iostream>
 #include <string_view>
 
+#include <kacanov/element_fields.hpp>
+#include <kacanov/solve.hpp>
 #include "formats/atomic_file.hpp"
+#include "pictures/picture.hpp"
 #include "program/checkpoint_file.hpp"
 #include "program/commands.hpp"
-#include <kacanov/element_fields.hpp>
 #include "program/field_files.hpp"
 #include "program/interrupt.hpp"
 #include "program/loaded_case.hpp"
 #include "program/output_folder.hpp"
 #include "program/part_files.hpp"
-#include "pictures/picture.hpp"
 #include "program/report.hpp"
 #include "program/result_json.hpp"
-#include <kacanov/solve.hpp>
 
 namespace kacanov {
 namespace {
@@ -23,7 +23,8 @@ namespace {
 /// `name` without a number at its end that follows `mark`; the same where it does not end so.
 std::string_view without_number(std::string_view name, std::string_view mark) {
   const std::size_t last = name.find_last_not_of("0123456789");
-  if (last == std::string_view::npos || last + 1 == name.size() || !name.substr(0, last + 1).ends_with(mark)) return name;
+  if (last == std::string_view::npos || last + 1 == name.size() || !name.substr(0, last + 1).ends_with(mark))
+    return name;
   return name.substr(0, last + 1 - mark.size());
 }
 
@@ -31,13 +32,15 @@ std::string_view without_number(std::string_view name, std::string_view mark) {
 bool is_output(std::string_view name) {
   const std::string_view whole = without_number(name, ".part");
   if (whole == "checkpoint.kacanov") return whole != name;
-  for (const std::string_view file : {"result.json", "summary.txt", "result.pvd", "body.pvtu", "contact.vtu", "deformed.svg"})
+  for (const std::string_view file :
+       {"result.json", "summary.txt", "result.pvd", "body.pvtu", "contact.vtu", "deformed.svg"})
     if (whole == file) return true;
   constexpr std::string_view vtu = ".vtu";
   return whole.ends_with(vtu) && without_number(whole.substr(0, whole.size() - vtu.size()), "_") == "body";
 }
 
-/// Takes away what an earlier run left under names that this one may not write again, and what it was writing when it was killed.
+/// Takes away what an earlier run left under names that this one may not write again, and what it was writing
+/// when it was killed.
 void clear_folder(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> old;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
@@ -84,14 +87,17 @@ LoadedCase load(const Command& command, const Case& input, const MpiSession& mpi
 }
 
 std::string checkpoint_line(const CheckpointFile& file) {
-  return file.written() ? "  checkpoint    " + file.path().string() + "; the option --restart goes on from there\n" : "";
+  return file.written()
+             ? "  checkpoint    " + file.path().string() + "; the option --restart goes on from there\n"
+             : "";
 }
 
 }  // namespace
 
 void leave_failure(const Command& command, const Case& input, const std::string& text) {
   const std::filesystem::path folder = output_folder(command, input), file = folder / "result.json";
-  if (std::filesystem::is_directory(folder) && !std::filesystem::exists(file)) write_json(file, failure_json(text));
+  if (std::filesystem::is_directory(folder) && !std::filesystem::exists(file))
+    write_json(file, failure_json(text));
 }
 
 int run_command(const Command& command, const Case& input, MpiSession& mpi) {
@@ -152,7 +158,8 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
         {{"total", end - start}, {"read", loaded.read_seconds}, {"distribute", loaded.distribute_seconds}});
     result.seconds.emplace_back("output", end - solved);
     write_json(folder / "result.json", result_json(result, dim));
-    const std::string text = summary(result, input.model, dim) + (result.status == Status::converged ? "" : checkpoint_line(*file));
+    const std::string text = summary(result, input.model, dim) +
+                             (result.status == Status::converged ? "" : checkpoint_line(*file));
     if (input.output.report) write_file((folder / "summary.txt").string(), text);
     if (result.status == Status::converged) file->remove();  // only now that all is written
     std::cout << "\n" + text + "  files         " + folder.string() + "\n";

@@ -3,12 +3,12 @@
 #include <cstdio>
 #include <iostream>
 
-#include "program/commands.hpp"
 #include <kacanov/error.hpp>
+#include <kacanov/solve.hpp>
+#include "program/commands.hpp"
 #include "program/loaded_case.hpp"
 #include "program/report.hpp"
 #include "program/result_json.hpp"
-#include <kacanov/solve.hpp>
 
 namespace kacanov {
 namespace {

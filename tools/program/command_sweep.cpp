@@ -5,14 +5,14 @@
 #include <iostream>
 #include <sstream>
 
-#include "formats/atomic_file.hpp"
-#include "program/commands.hpp"
 #include <kacanov/error.hpp>
+#include <kacanov/solve.hpp>
+#include "formats/atomic_file.hpp"
+#include "pictures/picture.hpp"
+#include "program/commands.hpp"
 #include "program/loaded_case.hpp"
 #include "program/output_folder.hpp"
-#include "pictures/picture.hpp"
 #include "program/result_json.hpp"
-#include <kacanov/solve.hpp>
 
 namespace kacanov {
 namespace {

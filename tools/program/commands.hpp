@@ -10,7 +10,8 @@
 namespace kacanov {
 
 int run_command(const Command& command, const Case& input, MpiSession& mpi);
-/// Leaves a result.json that says why a run broke down, for a run of which no process was left to do so. Where there is one, it stays.
+/// Leaves a result.json that says why a run broke down, for a run of which no process was left to do so.
+/// Where there is one, it stays.
 void leave_failure(const Command& command, const Case& input, const std::string& text);
 int spectrum_command(const Command& command, const Case& input, const MpiSession& mpi);
 /// Not converged means here that no penalty led to convergence.

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include <kacanov/element_fields.hpp>
-#include "problem/selection.hpp"
 #include "formats/vtu_writer.hpp"
+#include "problem/selection.hpp"
 
 namespace kacanov {
 namespace {
@@ -120,7 +120,8 @@ void write_body(const std::filesystem::path& folder, const Part& part, const Sol
   grid.point_fields[1].values = tags(part.nodes(), [&part](std::size_t i) { return part.node_tag(i); });
   const auto element_field = [&](int components, std::span<double> reference::ElementFields::*which) {
     const auto width = static_cast<std::size_t>(components);
-    return Values<double>(part.element_count() * width, [&part, &solution, which, width](std::size_t first, std::span<double> out) {
+    return Values<double>(part.element_count() * width, [&part, &solution, which, width](
+                                                            std::size_t first, std::span<double> out) {
       reference::ElementFields wanted;
       wanted.*which = out;
       element_fields(part, solution.displacement, first / width, out.size() / width, wanted);
@@ -131,12 +132,14 @@ void write_body(const std::filesystem::path& folder, const Part& part, const Sol
   grid.cell_fields[1].values = element_field(1, &Fields::von_mises);
   grid.cell_fields[2].values = element_field(1, &Fields::dev_strain);
   grid.cell_fields[3].values = element_field(1, &Fields::secant);
-  grid.cell_fields[4].values = Values<std::uint8_t>(part.element_count(), [&](std::size_t first, std::span<std::uint8_t> out) {
-    reference::ElementFields wanted;
-    wanted.plastic = out;
-    element_fields(part, solution.displacement, first, out.size(), wanted);
-  });
-  grid.cell_fields[5].values = tags(part.element_count(), [&part](std::size_t e) { return part.element_tag(e); });
+  grid.cell_fields[4].values =
+      Values<std::uint8_t>(part.element_count(), [&](std::size_t first, std::span<std::uint8_t> out) {
+        reference::ElementFields wanted;
+        wanted.plastic = out;
+        element_fields(part, solution.displacement, first, out.size(), wanted);
+      });
+  grid.cell_fields[5].values =
+      tags(part.element_count(), [&part](std::size_t e) { return part.element_tag(e); });
   write_vtu((folder / piece_name(part.halo.rank, part.halo.ranks)).string(), grid);
 }
 

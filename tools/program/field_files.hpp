@@ -4,10 +4,10 @@
 
 #include <filesystem>
 
-#include "program/parallel.hpp"
 #include <kacanov/part.hpp>
 #include <kacanov/problem.hpp>
 #include <kacanov/result.hpp>
+#include "program/parallel.hpp"
 
 namespace kacanov {
 

@@ -8,7 +8,8 @@
 
 namespace kacanov {
 
-HashedWriter::HashedWriter(const std::string& path, std::string_view magic, const nlohmann::json& header) : file_(path) {
+HashedWriter::HashedWriter(const std::string& path, std::string_view magic, const nlohmann::json& header)
+    : file_(path) {
   const std::string text = header.dump();
   std::string front(magic);
   const std::uint64_t length = text.size();
@@ -36,7 +37,8 @@ HashedReader::HashedReader(const std::string& path, std::string_view magic, cons
   if (!stream_) throw InputError(path + ": cannot be read");
   std::string front(magic.size(), '\0');
   if (size_ >= magic.size()) take(front.data(), front.size());
-  if (front != magic) throw InputError(path + ": this is no " + kind + " that this version of kacanov can read");
+  if (front != magic)
+    throw InputError(path + ": this is no " + kind + " that this version of kacanov can read");
   std::uint64_t length = 0;
   take(&length, sizeof length);
   expect(length, 1);
@@ -62,11 +64,14 @@ void HashedReader::finish() {
   if (left_ != 0) fail("is damaged: its content does not match its hash");
 }
 
-void HashedReader::fail(const std::string& what) const { throw InputError(path_ + ": this " + kind_ + " " + what); }
+void HashedReader::fail(const std::string& what) const {
+  throw InputError(path_ + ": this " + kind_ + " " + what);
+}
 
 void HashedReader::take(void* data, std::size_t bytes) {
   expect(bytes, 1);
-  if (!stream_.read(static_cast<char*>(data), static_cast<std::streamsize>(bytes))) throw InputError(path_ + ": cannot be read to its end");
+  if (!stream_.read(static_cast<char*>(data), static_cast<std::streamsize>(bytes)))
+    throw InputError(path_ + ": cannot be read to its end");
   left_ -= bytes;
 }
 

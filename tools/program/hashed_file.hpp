@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Binary files that are whole or refused. Layout: a line with name and version; the length of the header, 8 bytes; the header, JSON; a hash
-// of all this, 8 bytes; the content, piece after piece; the hash chained through the pieces, 8 bytes. Numbers in the machine's byte order.
+// Binary files that are whole or refused. Layout: a line with name and version; the length of the header, 8
+// bytes; the header, JSON; a hash of all this, 8 bytes; the content, piece after piece; the hash chained
+// through the pieces, 8 bytes. Numbers in the machine's byte order.
 #pragma once
 
 #include <cstdint>

@@ -38,7 +38,9 @@ bool asks_again(timespec& first) noexcept {
     first = now;
     return false;
   }
-  return static_cast<double>(now.tv_sec - first.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec - first.tv_nsec) > 1.0;
+  return static_cast<double>(now.tv_sec - first.tv_sec) +
+             1e-9 * static_cast<double>(now.tv_nsec - first.tv_nsec) >
+         1.0;
 }
 
 void take_signals() {
@@ -47,7 +49,8 @@ void take_signals() {
   struct sigaction before {};
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, stop_signal}) {
     // What was to be ignored, as under nohup, still is.
-    if (sigaction(signal, nullptr, &before) == 0 && (before.sa_handler != SIG_IGN || signal == stop_signal)) sigaddset(&set, signal);
+    if (sigaction(signal, nullptr, &before) == 0 && (before.sa_handler != SIG_IGN || signal == stop_signal))
+      sigaddset(&set, signal);
   }
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   std::thread(wait_for_signals, set).detach();

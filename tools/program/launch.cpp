@@ -21,8 +21,8 @@
 #include <sstream>
 #include <vector>
 
-#include "program/command.hpp"
 #include <kacanov/error.hpp>
+#include "program/command.hpp"
 #include "program/interrupt.hpp"
 
 namespace kacanov {
@@ -40,7 +40,8 @@ volatile std::sig_atomic_t caught_signal = 0;
 timespec first_caught{};
 volatile std::sig_atomic_t insisting = 0;
 
-/// Asks the ranks to stop, through mpiexec and once a second: it or they may not listen yet. Asked again, mpiexec ends them.
+/// Asks the ranks to stop, through mpiexec and once a second: it or they may not listen yet. Asked again,
+/// mpiexec ends them.
 extern "C" void pass_on(int signal) {
   if (signal != SIGALRM) {
     caught_signal = signal;
@@ -62,9 +63,12 @@ int quota_cores() {
 void refuse_narrow_limit() {
   constexpr rlim_t megabyte = 1 << 20, least = 512;  // mpiexec and one rank have 200 to 300
   rlimit limit{};
-  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || limit.rlim_cur >= least * megabyte) return;
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY ||
+      limit.rlim_cur >= least * megabyte)
+    return;
   throw InputError("several ranks cannot be started: the address space of a process is limited to " +
-                   std::to_string(limit.rlim_cur / megabyte) + " MiB (ulimit -v), and MPI needs " + std::to_string(least));
+                   std::to_string(limit.rlim_cur / megabyte) + " MiB (ulimit -v), and MPI needs " +
+                   std::to_string(least));
 }
 
 [[noreturn]] void become_mpiexec(const std::vector<std::string>& words) {

@@ -33,8 +33,8 @@ std::int64_t estimate_unknowns(const MeshSource& mesh);
 std::string find_mpiexec();
 
 /// Runs this program with the same arguments on several ranks under mpiexec and waits for it. Returns the
-/// program's exit code. A signal that ends this process ends the others as well. Throws InternalError where a process died,
-/// InputError where a limit on the address space is too narrow for MPI to start.
+/// program's exit code. A signal that ends this process ends the others as well. Throws InternalError where a
+/// process died, InputError where a limit on the address space is too narrow for MPI to start.
 int run_under_mpiexec(const std::string& mpiexec, Shape shape, int argc, const char* const* argv);
 
 /// What a process that was started by run_under_mpiexec has to leave with, so that its exit code cannot be

@@ -5,11 +5,11 @@
 #include <optional>
 #include <string>
 
-#include "case/case_file.hpp"
 #include <kacanov/checkpoint.hpp>
+#include <kacanov/part.hpp>
+#include "case/case_file.hpp"
 #include "program/command.hpp"
 #include "program/parallel.hpp"
-#include <kacanov/part.hpp>
 
 namespace kacanov {
 
@@ -21,7 +21,8 @@ struct RankCount {
   int all = 1, here = 1;
 };
 
-/// Reads the mesh and puts the model on it, after checking that the one fits the other, and the run the memory. Prints warnings.
+/// Reads the mesh and puts the model on it, after checking that the one fits the other, and the run the
+/// memory. Prints warnings.
 Problem load_problem(const Case& input, RankCount ranks);
 
 /// Those of the case and of its problem, on standard error.
@@ -30,13 +31,15 @@ void print_warnings(const Case& input, const Problem& problem);
 /// A problem split over the ranks.
 struct LoadedCase {
   std::optional<Problem> problem;  ///< on the first rank
-  std::vector<std::int32_t> boundary_nodes;  ///< there, after keep_boundary: their numbers in the whole problem
-  Fingerprint print;  ///< likewise: of the whole problem
+  std::vector<std::int32_t>
+      boundary_nodes;  ///< there, after keep_boundary: their numbers in the whole problem
+  Fingerprint print;   ///< likewise: of the whole problem
   Part part;
   double read_seconds = 0.0, distribute_seconds = 0.0;
 };
 
-/// Takes the fingerprint and frees what of the problem the parts have taken over, see keep_boundary(Problem&).
+/// Takes the fingerprint and frees what of the problem the parts have taken over, see
+/// keep_boundary(Problem&).
 void keep_boundary(LoadedCase& loaded);
 
 /// Collective; what is wrong with the input is printed and ends as ReportedFailure on all ranks.

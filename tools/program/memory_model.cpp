@@ -20,32 +20,36 @@ struct Bytes {
   double of(const ProblemSize& size) const { return node * size.nodes + element * size.elements; }
 };
 
-constexpr double bytes_alone = 20e6, bytes_in_company = 32e6;  // of a process: the program, MPI and its shared memory
-constexpr double bytes_per_contact_point = 1.8e3;               // rows of traces, their spaces and blocks
-constexpr double lanes_filled = 1.07;                           // slots of the operators an element
-constexpr double nodes_of_blocks = 1.25;                        // nodes of the operators' blocks a node
-constexpr double overhead = 1.03;                               // of the allocator
+constexpr double bytes_alone = 20e6,
+                 bytes_in_company = 32e6;          // of a process: the program, MPI and its shared memory
+constexpr double bytes_per_contact_point = 1.8e3;  // rows of traces, their spaces and blocks
+constexpr double lanes_filled = 1.07;              // slots of the operators an element
+constexpr double nodes_of_blocks = 1.25;           // nodes of the operators' blocks a node
+constexpr double overhead = 1.03;                  // of the allocator
 
 /// What a part, its operators and the loops hold; see Part, Layout, OuterLoop, RigidMultigrid.
 struct Demand {
   Bytes mesh, problem, part, steady, setup, solve;
 
   explicit Demand(const ProblemSize& size) {
-    const double dim = dimension(size.type), npe = nodes_per_element(size.type), points = points_per_element(size.type);
+    const double dim = dimension(size.type), npe = nodes_per_element(size.type),
+                 points = points_per_element(size.type);
     const double slots = points * lanes_filled;
     // Local numbers of a unit's nodes, two bytes each: fans of six tetrahedra have eight.
     const double index = size.type == ElementType::tet4 ? 2.7 : 2.0 * npe;
     mesh = {8 * dim, 4 * npe};
-    problem = {17 * dim, 2};                                  // load, prescribed, held; law
-    part = {8 * dim + 4 + dim, 4 * npe};                      // coordinates, index, held; corners
+    problem = {17 * dim, 2};              // load, prescribed, held; law
+    part = {8 * dim + 4 + dim, 4 * npe};  // coordinates, index, held; corners
     const Bytes operators{nodes_of_blocks * (32 + 4 + 16 + 4), slots * (8 + 4 + 4 + 4) + 2 * index};
-    const Bytes loops{8 * dim * 6 + 4 * dim, 0};              // ω, kept ω, R(ω), three vectors of CG; diagonal
-    const double modes = dim == 3 ? 6 : 3, neighbours = dim == 3 ? 8 : 4;  // half the couplings of an aggregate of 48 nodes
-    const double rows = neighbours * modes * modes * 8 / 48.0 * 1.4;        // levels below, inverse diagonals, vectors
+    const Bytes loops{8 * dim * 6 + 4 * dim, 0};  // ω, kept ω, R(ω), three vectors of CG; diagonal
+    const double modes = dim == 3 ? 6 : 3,
+                 neighbours = dim == 3 ? 8 : 4;  // half the couplings of an aggregate of 48 nodes
+    const double rows =
+        neighbours * modes * modes * 8 / 48.0 * 1.4;  // levels below, inverse diagonals, vectors
     const Bytes multigrid{16 * dim + 4 * dim * (dim + 1) / 2 + 4 + rows, 0};
     steady = part + operators + loops + multigrid;
-    setup = {8 + 1.15 * rows, 8 * points};                    // aggregates, sums of blocks; g
-    solve = {8 * dim, size.nonlinear ? 20 * slots : 0};       // step; tangent
+    setup = {8 + 1.15 * rows, 8 * points};               // aggregates, sums of blocks; g
+    solve = {8 * dim, size.nonlinear ? 20 * slots : 0};  // step; tangent
   }
 };
 
@@ -95,7 +99,8 @@ double estimated_memory(const ProblemSize& size, int ranks) {
   const Bytes sides{8, 4.0 * facets_per_element(size.type)};  // while boundary and neighbours are sought
   const Bytes splitting{28, 4};                               // orders, ranks and new numbers
   const double reading = (demand.mesh + demand.problem + sides).of(size);
-  const double handing_out = (demand.mesh + demand.problem + splitting).of(size) + demand.part.of(size) / ranks;
+  const double handing_out =
+      (demand.mesh + demand.problem + splitting).of(size) + demand.part.of(size) / ranks;
   const double first = std::max({reading, handing_out, solving});
   return ranks * (ranks == 1 ? bytes_alone : bytes_in_company) + overhead * (first + (ranks - 1) * solving);
 }
@@ -120,9 +125,10 @@ double available_memory() {
 void refuse_what_cannot_fit(const ProblemSize& size, int ranks, int ranks_here) {
   const double needed = estimated_memory(size, ranks) * ranks_here / ranks, available = available_memory();
   if (available == 0.0 || needed <= available) return;
-  throw InputError("this case needs about " + readable_bytes(needed) + " of memory on " + std::to_string(ranks_here) +
-                   (ranks_here == 1 ? " rank, " : " ranks, ") + readable_bytes(available) +
-                   " are available: take a coarser mesh or more machines (--no-memory-check tries all the same)");
+  throw InputError(
+      "this case needs about " + readable_bytes(needed) + " of memory on " + std::to_string(ranks_here) +
+      (ranks_here == 1 ? " rank, " : " ranks, ") + readable_bytes(available) +
+      " are available: take a coarser mesh or more machines (--no-memory-check tries all the same)");
 }
 
 }  // namespace kacanov

@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "case/case_file.hpp"
 #include <kacanov/mesh.hpp>
+#include "case/case_file.hpp"
 
 namespace kacanov {
 
@@ -20,13 +20,16 @@ struct ProblemSize {
 ProblemSize size_of(const BoxSpec& box, const Model& model);
 ProblemSize size_of(const Mesh& mesh, const Model& model);
 
-/// Sum over the ranks of their largest resident memories in bytes, with the default preconditioner: within 15 % from some 10,000 nodes on.
+/// Sum over the ranks of their largest resident memories in bytes, with the default preconditioner: within 15
+/// % from some 10,000 nodes on.
 double estimated_memory(const ProblemSize& size, int ranks);
 
-/// Bytes that a new process could have: what the system calls available, less where a control group allows less. 0: unknown.
+/// Bytes that a new process could have: what the system calls available, less where a control group allows
+/// less. 0: unknown.
 double available_memory();
 
-/// Throws InputError where `ranks_here` of the `ranks` ranks of a run of this size would not fit on this machine, with both numbers.
+/// Throws InputError where `ranks_here` of the `ranks` ranks of a run of this size would not fit on this
+/// machine, with both numbers.
 void refuse_what_cannot_fit(const ProblemSize& size, int ranks, int ranks_here);
 
 }  // namespace kacanov

@@ -2,8 +2,8 @@
 // The folder a command writes to.
 #include "program/output_folder.hpp"
 
-#include "formats/atomic_file.hpp"
 #include <kacanov/error.hpp>
+#include "formats/atomic_file.hpp"
 
 namespace kacanov {
 

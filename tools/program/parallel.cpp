@@ -8,8 +8,8 @@
 #include <new>
 #include <thread>
 
-#include "program/command.hpp"
 #include <kacanov/error.hpp>
+#include "program/command.hpp"
 #include "program/launch.hpp"
 
 namespace kacanov {

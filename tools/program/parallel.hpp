@@ -33,7 +33,8 @@ class MpiSession {
   int ranks() const noexcept { return ranks_; }
   bool first() const noexcept { return rank_ == 0; }
 
-  /// What else is to be done about a failure, with its text, on the rank that prints it. It must not communicate; what it throws is lost.
+  /// What else is to be done about a failure, with its text, on the rank that prints it. It must not
+  /// communicate; what it throws is lost.
   void when_failing(std::function<void(const std::string&)> work) { when_failing_ = std::move(work); }
   /// Prints a failure and does that.
   void report(const Failure& failure) const;

@@ -5,21 +5,23 @@
 #include <sstream>
 #include <utility>
 
-#include "program/case_identity.hpp"
 #include <kacanov/error.hpp>
+#include "parallel/part_fields.hpp"
+#include "program/case_identity.hpp"
 #include "program/hashed_file.hpp"
 #include "program/output_folder.hpp"
-#include "parallel/part_fields.hpp"
 
 namespace kacanov {
 
-void exchange_fields(Either<Group> auto& group, const auto& stream) { stream(group.name, group.dimension, group.members); }
+void exchange_fields(Either<Group> auto& group, const auto& stream) {
+  stream(group.name, group.dimension, group.members);
+}
 
 /// What keep_boundary leaves.
 void exchange_fields(Either<Problem> auto& problem, const auto& stream) {
   auto& mesh = problem.mesh;
-  stream(mesh.type, mesh.coordinates, mesh.elements, mesh.node_tags, mesh.element_tags, mesh.facets, mesh.facet_element, mesh.groups,
-         problem.contact, problem.warnings);
+  stream(mesh.type, mesh.coordinates, mesh.elements, mesh.node_tags, mesh.element_tags, mesh.facets,
+         mesh.facet_element, mesh.groups, problem.contact, problem.warnings);
 }
 
 namespace {
@@ -34,7 +36,9 @@ std::filesystem::path part_file(const std::filesystem::path& folder, int rank) {
   return folder / ("part_" + std::to_string(rank) + ".kacanov");
 }
 
-std::filesystem::path boundary_file(const std::filesystem::path& folder) { return folder / "boundary.kacanov"; }
+std::filesystem::path boundary_file(const std::filesystem::path& folder) {
+  return folder / "boundary.kacanov";
+}
 
 /// Length and hash of the mesh file; null where there is none, as on a machine that has the parts only.
 json mesh_identity(const Case& input) {
@@ -58,7 +62,9 @@ HashedReader open_file(const std::filesystem::path& file, std::string_view magic
   return HashedReader(file.string(), magic, kind);
 }
 
-HashedReader open_part(const std::filesystem::path& folder, int rank) { return open_file(part_file(folder, rank), part_magic, "part"); }
+HashedReader open_part(const std::filesystem::path& folder, int rank) {
+  return open_file(part_file(folder, rank), part_magic, "part");
+}
 
 HashedReader open_boundary(const std::filesystem::path& folder) {
   return open_file(boundary_file(folder), boundary_magic, "boundary");
@@ -67,11 +73,13 @@ HashedReader open_boundary(const std::filesystem::path& folder) {
 /// Throws InputError where the parts were made of a case with another text.
 void check_case(const json& header, const Case& input, const std::string& file) {
   const json& there = header.at("case");
-  const std::string text = describe_differences(there, input.document, differing_sections(there, input.document, sections));
+  const std::string text =
+      describe_differences(there, input.document, differing_sections(there, input.document, sections));
   if (!text.empty()) throw InputError("--parts: " + file + " belongs to another case: " + text);
 }
 
-/// Throws InputError where the mesh file is at hand and is not the one that the parts were made of. It is hashed, not parsed.
+/// Throws InputError where the mesh file is at hand and is not the one that the parts were made of. It is
+/// hashed, not parsed.
 void check_mesh(const json& header, const Case& input, const std::string& file) {
   const json &there = header.at("mesh_file"), here = mesh_identity(input);
   if (here.is_null() || here == there) return;
@@ -80,8 +88,8 @@ void check_mesh(const json& header, const Case& input, const std::string& file) 
     words << mesh.at("bytes") << " bytes with hash " << std::hex << mesh.at("hash").get<std::uint64_t>();
     return words.str();
   };
-  throw InputError("--parts: " + file + " was made of another mesh: " + *input.mesh.file + " had " + text(there) + ", and now has " +
-                   text(here));
+  throw InputError("--parts: " + file + " was made of another mesh: " + *input.mesh.file + " had " +
+                   text(there) + ", and now has " + text(here));
 }
 
 /// Throws InputError unless this is the header of the part of a rank, for this case and as many ranks.
@@ -89,14 +97,16 @@ void check_part(const json& header, const Case& input, const MpiSession& mpi, co
   check_case(header, input, file);
   const int parts = header.at("parts"), part = header.at("part");
   if (parts != mpi.ranks()) {
-    throw InputError("--parts: " + file + " is one of " + std::to_string(parts) + " parts, expected as many ranks, but " +
-                     std::to_string(mpi.ranks()) + " were started");
+    throw InputError("--parts: " + file + " is one of " + std::to_string(parts) +
+                     " parts, expected as many ranks, but " + std::to_string(mpi.ranks()) + " were started");
   }
   if (part != mpi.rank())
-    throw InputError("--parts: " + file + ": expected part " + std::to_string(mpi.rank()) + ", got part " + std::to_string(part));
+    throw InputError("--parts: " + file + ": expected part " + std::to_string(mpi.rank()) + ", got part " +
+                     std::to_string(part));
 }
 
-/// A folder for files until all of them are whole; with it goes what is still there, and what an attempt that was killed has left.
+/// A folder for files until all of them are whole; with it goes what is still there, and what an attempt that
+/// was killed has left.
 class Staging {
  public:
   explicit Staging(std::filesystem::path folder) : folder_(std::move(folder)) {
@@ -148,7 +158,8 @@ void write_parts(const std::filesystem::path& folder, const Case& input, Problem
     file.commit();
   }
   std::filesystem::remove(boundary_file(folder));
-  for (int rank = 0; rank < parts; ++rank) std::filesystem::rename(part_file(staging.folder(), rank), part_file(folder, rank));
+  for (int rank = 0; rank < parts; ++rank)
+    std::filesystem::rename(part_file(staging.folder(), rank), part_file(folder, rank));
   for (int rank = parts; std::filesystem::remove(part_file(folder, rank)); ++rank) {
   }
   std::filesystem::rename(boundary_file(staging.folder()), boundary_file(folder));
@@ -187,8 +198,9 @@ LoadedCase load_parts(const std::filesystem::path& folder, const Case& input, co
   MPI_Bcast(&first_identity, 1, MPI_UINT64_T, 0, mpi.comm());
   together(mpi, [&] {
     if (identity != first_identity) {
-      throw InputError("--parts: " + part_file(folder, mpi.rank()).string() + " belongs to another split than " +
-                       boundary_file(folder).string() + "; write all of them again");
+      throw InputError("--parts: " + part_file(folder, mpi.rank()).string() +
+                       " belongs to another split than " + boundary_file(folder).string() +
+                       "; write all of them again");
     }
   });
   join(loaded.part, mpi.comm());

@@ -4,9 +4,9 @@
 #include <iostream>
 #include <optional>
 
+#include <kacanov/error.hpp>
 #include "program/command.hpp"
 #include "program/commands.hpp"
-#include <kacanov/error.hpp>
 #include "program/interrupt.hpp"
 #include "program/launch.hpp"
 #include "program/parallel.hpp"
@@ -23,7 +23,8 @@ bool needs_one(const Command& command) {
 
 /// `ranks`: those that a run would have here.
 int command_on_one(const Command& command, const Case& input, int ranks) {
-  return command.kind == Command::Kind::check ? check_command(input, command.ranks.value_or(ranks)) : partition_command(command, input);
+  return command.kind == Command::Kind::check ? check_command(input, command.ranks.value_or(ranks))
+                                              : partition_command(command, input);
 }
 
 int dispatch(const Command& command, const Case& input, MpiSession& mpi) {
@@ -69,8 +70,8 @@ std::optional<int> ranks_asked_for(const Command& command, const Case& input) {
   if (command.parts.empty()) return command.ranks;
   const int parts = count_parts(command.parts, input);
   if (command.ranks.value_or(parts) != parts) {
-    throw InputError("--ranks: expected " + std::to_string(parts) + ", as many as there are parts in " + command.parts + ", got " +
-                     std::to_string(*command.ranks));
+    throw InputError("--ranks: expected " + std::to_string(parts) + ", as many as there are parts in " +
+                     command.parts + ", got " + std::to_string(*command.ranks));
   }
   return parts;
 }
@@ -90,7 +91,8 @@ int run_on_ranks(const std::string& mpiexec, Shape shape, const Command& command
 int run_alone(const Command& command, int argc, const char* const* argv) {
   const Case input = read_case(command.case_file, command.overrides);
   check_supported(input.model.solver);
-  Shape shape = choose_shape(input, needs_one(command) ? command.ranks : ranks_asked_for(command, input), command.threads, usable_cores());
+  Shape shape = choose_shape(input, needs_one(command) ? command.ranks : ranks_asked_for(command, input),
+                             command.threads, usable_cores());
   if (needs_one(command)) {
     take_signals();
     return command_on_one(command, input, shape.ranks);

@@ -64,11 +64,10 @@ std::string readable_seconds(double seconds) {
 
 std::string summary(const Result& result, const Model& model, int dim) {
   const auto count = [](std::int64_t n) { return std::to_string(n); };
-  std::string text =
-      (result.status == Status::converged     ? "converged: "
-       : result.status == Status::interrupted ? "INTERRUPTED: "
-                                              : "NOT CONVERGED: ") +
-      result.message + "\n";
+  std::string text = (result.status == Status::converged     ? "converged: "
+                      : result.status == Status::interrupted ? "INTERRUPTED: "
+                                                             : "NOT CONVERGED: ") +
+                     result.message + "\n";
   text +=
       "  size          " + count(result.unknowns) + " unknowns, " + count(result.elements) + " elements\n";
   text += "  iterations    " + count(result.outer_iterations) + " outer, " +

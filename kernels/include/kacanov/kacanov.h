@@ -3,11 +3,12 @@
  *
  * A body is meshed with one element type; each element follows a Hencky law
  *   tau = k0 tr(eps) I + 2 g(x) dev(eps),   x = |dev(eps)| (Frobenius norm),
- * with bulk modulus k0 and secant shear modulus g. A handle keeps g (one value a quadrature point), frozen at a
- * displacement by kacanov_update, and then applies the linear operator B(g) to vectors.
+ * with bulk modulus k0 and secant shear modulus g. A handle keeps g (one value a quadrature point), frozen at
+ * a displacement by kacanov_update, and then applies the linear operator B(g) to vectors.
  *
- * Vectors are of double, or of float in the calls that end in _float. They have nodes * dimension entries, interleaved (all components of node 0, then of node 1, ...), in the
- * caller's node order. Units are the caller's; in 2D (plane strain) everything is for unit thickness.
+ * Vectors are of double, or of float in the calls that end in _float. They have nodes * dimension entries,
+ * interleaved (all components of node 0, then of node 1, ...), in the caller's node order. Units are the
+ * caller's; in 2D (plane strain) everything is for unit thickness.
  *
  * Every function that returns int returns a kacanov_code: KACANOV_OK, or what went wrong; the handle then has
  * a message that says so in words. Output arrays have undefined content after an error. Nothing is printed,
@@ -41,14 +42,14 @@ extern "C" {
 
 typedef enum kacanov_code {
   KACANOV_OK = 0,
-  KACANOV_ERROR_NULL = 1,     /* a required pointer is null */
-  KACANOV_ERROR_SIZE = 2,     /* a vector or array has another size than expected, or two of them overlap */
-  KACANOV_ERROR_MESH = 3,     /* index out of range, inverted or degenerate element, coordinate not finite */
-  KACANOV_ERROR_LAW = 4,      /* a law's parameter is missing or out of range, or a law does not exist */
-  KACANOV_ERROR_VALUE = 5,    /* an option or an entry of a vector is out of range or not finite */
-  KACANOV_ERROR_STATE = 6,    /* a call is missing that has to come first */
-  KACANOV_ERROR_MEMORY = 7,   /* out of memory */
-  KACANOV_ERROR_INTERNAL = 8  /* a defect of the library */
+  KACANOV_ERROR_NULL = 1,    /* a required pointer is null */
+  KACANOV_ERROR_SIZE = 2,    /* a vector or array has another size than expected, or two of them overlap */
+  KACANOV_ERROR_MESH = 3,    /* index out of range, inverted or degenerate element, coordinate not finite */
+  KACANOV_ERROR_LAW = 4,     /* a law's parameter is missing or out of range, or a law does not exist */
+  KACANOV_ERROR_VALUE = 5,   /* an option or an entry of a vector is out of range or not finite */
+  KACANOV_ERROR_STATE = 6,   /* a call is missing that has to come first */
+  KACANOV_ERROR_MEMORY = 7,  /* out of memory */
+  KACANOV_ERROR_INTERNAL = 8 /* a defect of the library */
 } kacanov_code;
 
 /* Node order is that of Gmsh; tet10 has its mid-side nodes on the edges 01 12 20 30 32 31. */
@@ -79,10 +80,10 @@ typedef struct kacanov_law {
   double n;          /* power */
   double q;          /* saturating */
   size_t table_size; /* table: points, from (0, 0); table_s/table_x must not increase */
-  const double *table_x;
-  const double *table_s; /* |dev tau| = 2 g a at table_x */
-  int32_t mean_dilatation; /* 1: k0 acts on the mean of tr(eps) over the element (B-bar), against locking of nearly
-                              incompressible and of plastic bodies; hex8 only */
+  const double* table_x;
+  const double* table_s;   /* |dev tau| = 2 g a at table_x */
+  int32_t mean_dilatation; /* 1: k0 acts on the mean of tr(eps) over the element (B-bar), against locking of
+                              nearly incompressible and of plastic bodies; hex8 only */
 } kacanov_law;
 
 /* The body. Zero everywhere is a valid start: every field for which zero makes sense may stay so. */
@@ -91,12 +92,12 @@ typedef struct kacanov_description {
   int32_t threads; /* threads of this operator; 0: one */
 
   size_t nodes;
-  const double *coordinates; /* component c of node i: coordinates[i * node_stride + c * component_stride] */
+  const double* coordinates; /* component c of node i: coordinates[i * node_stride + c * component_stride] */
   size_t node_stride;        /* 0: interleaved, the dimension */
   size_t component_stride;   /* 0: 1; `nodes` with node_stride 1 for one array a component */
 
   size_t elements;
-  const int32_t *connectivity; /* node a of element e: connectivity[e * element_stride + a] - index_base */
+  const int32_t* connectivity; /* node a of element e: connectivity[e * element_stride + a] - index_base */
   size_t element_stride;       /* 0: the nodes of an element */
   int32_t index_base;          /* number of the first node: 0, or 1 as in Fortran */
 
@@ -106,110 +107,116 @@ typedef struct kacanov_description {
   int32_t single; /* 1: keeps the operator in single precision too, for the calls that end in _float */
 
   size_t laws; /* may be 0 here: then kacanov_set_laws has to come before everything else */
-  const kacanov_law *law;
-  const uint16_t *law_of_element; /* one entry an element, from 0; null: all follow law 0 */
+  const kacanov_law* law;
+  const uint16_t* law_of_element; /* one entry an element, from 0; null: all follow law 0 */
 
-  const char *instruction_set; /* "avx512", "avx2", "plain"; null: what the environment variable
+  const char* instruction_set; /* "avx512", "avx2", "plain"; null: what the environment variable
                                   KACANOV_INSTRUCTION_SET says, or else the best the machine has */
 } kacanov_description;
 
 typedef struct kacanov_operator kacanov_operator;
 
-/* Checks the description and makes an operator with g = mu. `*op` is null after an error, and `message` (may be
- * null) holds at most `message_size` - 1 characters that name the field, node or element at fault. */
-KACANOV_API int kacanov_create(const kacanov_description *description, kacanov_operator **op, char *message,
+/* Checks the description and makes an operator with g = mu. `*op` is null after an error, and `message` (may
+ * be null) holds at most `message_size` - 1 characters that name the field, node or element at fault. */
+KACANOV_API int kacanov_create(const kacanov_description* description, kacanov_operator** op, char* message,
                                size_t message_size);
 
 /* Frees the handle; null is allowed. */
-KACANOV_API void kacanov_destroy(kacanov_operator *op);
+KACANOV_API void kacanov_destroy(kacanov_operator* op);
 
 /* What the last call that failed on this handle said; "" if none did. Valid until the next call. */
-KACANOV_API const char *kacanov_message(const kacanov_operator *op);
+KACANOV_API const char* kacanov_message(const kacanov_operator* op);
 
-/* Replaces all laws; g starts again as mu. Costs as much as creating the operator. After an error the handle is
- * as before. `law_of_element` null: all elements follow law 0. */
-KACANOV_API int kacanov_set_laws(kacanov_operator *op, size_t laws, const kacanov_law *law, size_t elements,
-                                 const uint16_t *law_of_element);
+/* Replaces all laws; g starts again as mu. Costs as much as creating the operator. After an error the handle
+ * is as before. `law_of_element` null: all elements follow law 0. */
+KACANOV_API int kacanov_set_laws(kacanov_operator* op, size_t laws, const kacanov_law* law, size_t elements,
+                                 const uint16_t* law_of_element);
 
-/* ---- In the following `n` is the length of the vectors, nodes * dimension; vectors must not overlap. ---- */
+/* ---- In the following `n` is the length of the vectors, nodes * dimension; vectors must not overlap. ----
+ */
 
 /* Freezes g at the displacement omega. */
-KACANOV_API int kacanov_update(kacanov_operator *op, size_t n, const double *omega);
+KACANOV_API int kacanov_update(kacanov_operator* op, size_t n, const double* omega);
 
 /* The frozen g: elements * points entries, the points of an element together. */
-KACANOV_API int kacanov_secant(kacanov_operator *op, size_t count, double *g);
-KACANOV_API int kacanov_set_secant(kacanov_operator *op, size_t count, const double *g);
+KACANOV_API int kacanov_secant(kacanov_operator* op, size_t count, double* g);
+KACANOV_API int kacanov_set_secant(kacanov_operator* op, size_t count, const double* g);
 
 /* y = B(g) x. Entries of x are not checked: what is not finite there is not finite in y. */
-KACANOV_API int kacanov_apply(kacanov_operator *op, size_t n, const double *x, double *y);
+KACANOV_API int kacanov_apply(kacanov_operator* op, size_t n, const double* x, double* y);
 
 /* The same, and dot = x . y */
-KACANOV_API int kacanov_apply_dot(kacanov_operator *op, size_t n, const double *x, double *y, double *dot);
+KACANOV_API int kacanov_apply_dot(kacanov_operator* op, size_t n, const double* x, double* y, double* dot);
 
-/* Several right sides, one after another in x and in y (vectors * n entries each); quicker than one at a time. */
-KACANOV_API int kacanov_apply_many(kacanov_operator *op, size_t n, int32_t vectors, const double *x, double *y);
+/* Several right sides, one after another in x and in y (vectors * n entries each); quicker than one at a
+ * time. */
+KACANOV_API int kacanov_apply_many(kacanov_operator* op, size_t n, int32_t vectors, const double* x,
+                                   double* y);
 
-/* Freezes g and the consistent tangent at omega; then y = B_T x, whatever becomes of g. The direction of the strain
- * in the tangent's rank-one term is kept in single precision (relative error 1e-7 of that term). */
-KACANOV_API int kacanov_update_tangent(kacanov_operator *op, size_t n, const double *omega);
-KACANOV_API int kacanov_apply_tangent(kacanov_operator *op, size_t n, const double *x, double *y);
+/* Freezes g and the consistent tangent at omega; then y = B_T x, whatever becomes of g. The direction of the
+ * strain in the tangent's rank-one term is kept in single precision (relative error 1e-7 of that term). */
+KACANOV_API int kacanov_update_tangent(kacanov_operator* op, size_t n, const double* omega);
+KACANOV_API int kacanov_apply_tangent(kacanov_operator* op, size_t n, const double* x, double* y);
 
-/* Diagonal of B(g), n entries; diagonal blocks, n * dimension entries: a row-major dimension * dimension block a
- * node. */
-KACANOV_API int kacanov_diagonal(kacanov_operator *op, size_t n, double *diagonal);
-KACANOV_API int kacanov_block_diagonal(kacanov_operator *op, size_t count, double *blocks);
+/* Diagonal of B(g), n entries; diagonal blocks, n * dimension entries: a row-major dimension * dimension
+ * block a node. */
+KACANOV_API int kacanov_diagonal(kacanov_operator* op, size_t n, double* diagonal);
+KACANOV_API int kacanov_block_diagonal(kacanov_operator* op, size_t count, double* blocks);
 
 /* Internal force f and stored energy of the true nonlinear law at omega; the frozen g plays no part. */
-KACANOV_API int kacanov_residual(kacanov_operator *op, size_t n, const double *omega, double *f);
-KACANOV_API int kacanov_energy(kacanov_operator *op, size_t n, const double *omega, double *energy);
+KACANOV_API int kacanov_residual(kacanov_operator* op, size_t n, const double* omega, double* f);
+KACANOV_API int kacanov_energy(kacanov_operator* op, size_t n, const double* omega, double* energy);
 
 /* Both in one pass, which also freezes g at omega. */
-KACANOV_API int kacanov_residual_energy_update(kacanov_operator *op, size_t n, const double *omega, double *f,
-                                               double *energy);
+KACANOV_API int kacanov_residual_energy_update(kacanov_operator* op, size_t n, const double* omega, double* f,
+                                               double* energy);
 
-/* The frozen operator on vectors of floats, for preconditioners and mixed-precision solvers: about 1e-6 relative on
- * well-shaped elements. Needs `single` in the description; g is always that of the operator in double precision. */
-KACANOV_API int kacanov_apply_float(kacanov_operator *op, size_t n, const float *x, float *y);
-KACANOV_API int kacanov_apply_dot_float(kacanov_operator *op, size_t n, const float *x, float *y, double *dot);
-KACANOV_API int kacanov_apply_many_float(kacanov_operator *op, size_t n, int32_t vectors, const float *x, float *y);
-KACANOV_API int kacanov_diagonal_float(kacanov_operator *op, size_t n, float *diagonal);
+/* The frozen operator on vectors of floats, for preconditioners and mixed-precision solvers: about 1e-6
+ * relative on well-shaped elements. Needs `single` in the description; g is always that of the operator in
+ * double precision. */
+KACANOV_API int kacanov_apply_float(kacanov_operator* op, size_t n, const float* x, float* y);
+KACANOV_API int kacanov_apply_dot_float(kacanov_operator* op, size_t n, const float* x, float* y,
+                                        double* dot);
+KACANOV_API int kacanov_apply_many_float(kacanov_operator* op, size_t n, int32_t vectors, const float* x,
+                                         float* y);
+KACANOV_API int kacanov_diagonal_float(kacanov_operator* op, size_t n, float* diagonal);
 
 /* Means over each element at a displacement; arrays that are null are left out. */
 typedef struct kacanov_fields {
   size_t elements;    /* length of the arrays, to be checked */
-  double *stress;     /* 6 an element: xx yy zz xy yz zx (zz also in plane strain) */
-  double *von_mises;  /* 1 an element */
-  double *dev_strain; /* |dev eps| */
-  double *secant;     /* g */
-  uint8_t *plastic;   /* 1 if any point is beyond yield */
+  double* stress;     /* 6 an element: xx yy zz xy yz zx (zz also in plane strain) */
+  double* von_mises;  /* 1 an element */
+  double* dev_strain; /* |dev eps| */
+  double* secant;     /* g */
+  uint8_t* plastic;   /* 1 if any point is beyond yield */
 } kacanov_fields;
-KACANOV_API int kacanov_stress(kacanov_operator *op, size_t n, const double *omega,
-                               const kacanov_fields *fields);
+KACANOV_API int kacanov_stress(kacanov_operator* op, size_t n, const double* omega,
+                               const kacanov_fields* fields);
 
 typedef struct kacanov_information {
-  size_t unknowns;            /* nodes * dimension: the `n` above */
+  size_t unknowns; /* nodes * dimension: the `n` above */
   size_t nodes;
   size_t elements;
   int32_t dimension;
   int32_t nodes_per_element;
   int32_t points_per_element; /* values of g an element */
   int32_t threads;
-  uint64_t applications;      /* of B and B_T since the operator was made */
-  size_t bytes;               /* held by the handle */
-  const char *instruction_set; /* valid as long as the handle */
+  uint64_t applications;       /* of B and B_T since the operator was made */
+  size_t bytes;                /* held by the handle */
+  const char* instruction_set; /* valid as long as the handle */
 } kacanov_information;
-KACANOV_API int kacanov_inspect(kacanov_operator *op, kacanov_information *information);
+KACANOV_API int kacanov_inspect(kacanov_operator* op, kacanov_information* information);
 
-/* The numbering the operator likes best, for callers who are free to choose theirs: entry i is the present number,
- * from 0, of what should be node (element) i. Arrays that are null are left out. */
-KACANOV_API int kacanov_locality_order(kacanov_operator *op, size_t nodes, int32_t *node_order, size_t elements,
-                                       int32_t *element_order);
+/* The numbering the operator likes best, for callers who are free to choose theirs: entry i is the present
+ * number, from 0, of what should be node (element) i. Arrays that are null are left out. */
+KACANOV_API int kacanov_locality_order(kacanov_operator* op, size_t nodes, int32_t* node_order,
+                                       size_t elements, int32_t* element_order);
 
 /* The linear law of Young's modulus > 0 and Poisson's ratio in (-1, 1/2). */
-KACANOV_API int kacanov_elastic_law(double young, double poisson, kacanov_law *law);
+KACANOV_API int kacanov_elastic_law(double young, double poisson, kacanov_law* law);
 
 /* "major.minor.patch" */
-KACANOV_API const char *kacanov_version(void);
+KACANOV_API const char* kacanov_version(void);
 
 #ifdef __cplusplus
 }

@@ -21,8 +21,9 @@ struct OperatorOptions {
   std::span<const std::int32_t> early = {};
 };
 
-/// What to do once y holds its final values at the early nodes, before the rest of it is worked out: they can be on their way
-/// while that goes on. Called on the calling thread; it may change y there. With or without it y has the same bits.
+/// What to do once y holds its final values at the early nodes, before the rest of it is worked out: they can
+/// be on their way while that goes on. Called on the calling thread; it may change y there. With or without
+/// it y has the same bits.
 using WhenEarly = std::function<void()>;
 
 /// y = B(g) x and what a solver needs round it. The body's arrays are copied as far as needed:
@@ -57,8 +58,10 @@ class Operator {
   /// before the first update_tangent.
   void apply_tangent(std::span<const double> x, std::span<double> y) const;
   /// y = B_T x and returns xᵀ y, as apply_dot.
-  double apply_tangent_dot(std::span<const double> x, std::span<double> y, const WhenEarly& when_early = {}) const;
-  /// Gives the tangent's memory back, 20 bytes an element point. apply_tangent throws until the next update_tangent.
+  double apply_tangent_dot(std::span<const double> x, std::span<double> y,
+                           const WhenEarly& when_early = {}) const;
+  /// Gives the tangent's memory back, 20 bytes an element point. apply_tangent throws until the next
+  /// update_tangent.
   void forget_tangent() noexcept;
   void diagonal(std::span<double> d) const;
   void block_diagonal(std::span<double> blocks) const;

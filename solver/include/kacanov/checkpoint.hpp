@@ -12,8 +12,8 @@
 
 namespace kacanov {
 
-/// Named numbers and fields. Fields are in the numbering of Problem::mesh and Problem::contact; entries that a later
-/// version adds do not disturb an earlier one.
+/// Named numbers and fields. Fields are in the numbering of Problem::mesh and Problem::contact; entries that
+/// a later version adds do not disturb an earlier one.
 struct Checkpoint {
   std::map<std::string, double> numbers;
   std::map<std::string, std::vector<double>> fields;
@@ -23,8 +23,8 @@ struct Checkpoint {
   const std::vector<double>& field(const std::string& name, std::size_t entries) const;
 };
 
-/// The parts of a problem that decide its solution, as hashes of what build_problem made of them: two case files that
-/// say the same in other words agree.
+/// The parts of a problem that decide its solution, as hashes of what build_problem made of them: two case
+/// files that say the same in other words agree.
 struct Fingerprint {
   std::map<std::string, std::uint64_t> sections;  ///< "mesh", "material", "boundary", "contact"
 
@@ -36,8 +36,8 @@ Fingerprint fingerprint(const Problem& problem);
 /// 64 bits of any bytes; `seed` chains several pieces. Not cryptographic.
 std::uint64_t hash_bytes(const void* data, std::size_t bytes, std::uint64_t seed = 0);
 
-/// The converse of gather_nodal and gather_contact: hands every rank its entries, ghosts included, of a field that
-/// rank 0 has. Collective.
+/// The converse of gather_nodal and gather_contact: hands every rank its entries, ghosts included, of a field
+/// that rank 0 has. Collective.
 std::vector<double> scatter_nodal(const Part& part, std::span<const double> all, int components);
 std::vector<double> scatter_contact(const Part& part, std::span<const double> all, int components);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stress and strain of a solution, a run of elements at a time: for all of them they would be most of a run's memory.
+// Stress and strain of a solution, a run of elements at a time: for all of them they would be most of a run's
+// memory.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +12,8 @@
 
 namespace kacanov {
 
-/// Fields of elements `first` … `first` + `count` − 1 of the part at ω (its nodes × dim). Spans of `out` have `count` entries
-/// (stress 6 each, xx yy zz xy yz zx), or none where not wanted.
+/// Fields of elements `first` … `first` + `count` − 1 of the part at ω (its nodes × dim). Spans of `out` have
+/// `count` entries (stress 6 each, xx yy zz xy yz zx), or none where not wanted.
 void element_fields(const Part& part, std::span<const double> omega, std::size_t first, std::size_t count,
                     const reference::ElementFields& out);
 
@@ -26,7 +27,8 @@ struct ElementRun {
 void visit_element_fields(const Part& part, std::span<const double> omega,
                           const std::function<void(const ElementRun&)>& visit);
 
-/// von Mises stress at the part's nodes: the mean of the elements round a node over all ranks, weighted by volume. Collective.
+/// von Mises stress at the part's nodes: the mean of the elements round a node over all ranks, weighted by
+/// volume. Collective.
 std::vector<double> nodal_von_mises(const Part& part, std::span<const double> omega);
 
 }  // namespace kacanov

@@ -38,7 +38,8 @@ struct Halo {
   std::int64_t sum_all(std::int64_t value) const;
 };
 
-/// Halo::sum in two halves, for what can be computed while messages travel. Keeps its buffers from one sum to the next.
+/// Halo::sum in two halves, for what can be computed while messages travel. Keeps its buffers from one sum to
+/// the next.
 template <class S>
 class SharedSum {
  public:

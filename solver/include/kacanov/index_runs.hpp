@@ -9,7 +9,8 @@
 
 namespace kacanov {
 
-/// Kept as runs of consecutive ones: no more than eight bytes each, next to nothing where the elements of a part lie together in the mesh.
+/// Kept as runs of consecutive ones: no more than eight bytes each, next to nothing where the elements of a
+/// part lie together in the mesh.
 struct IndexRuns {
   struct Run {
     std::int32_t first = 0;     ///< index
@@ -21,18 +22,23 @@ struct IndexRuns {
   std::size_t size() const noexcept { return static_cast<std::size_t>(count); }
   /// `index` has to lie above all that are there.
   void push_back(std::int32_t index) {
-    if (runs.empty() || index - runs.back().first != count - runs.back().position) runs.push_back({index, count});
+    if (runs.empty() || index - runs.back().first != count - runs.back().position)
+      runs.push_back({index, count});
     ++count;
   }
   std::int32_t operator[](std::size_t position) const noexcept {
-    const auto run = std::upper_bound(runs.begin(), runs.end(), position, [](std::size_t p, const Run& r) {
-                       return p < static_cast<std::size_t>(r.position);
-                     }) - 1;
+    const auto run = std::upper_bound(runs.begin(), runs.end(), position,
+                                      [](std::size_t p, const Run& r) {
+                                        return p < static_cast<std::size_t>(r.position);
+                                      }) -
+                     1;
     return run->first + static_cast<std::int32_t>(position) - run->position;
   }
   /// Where `index`, which has to be there, stands.
   std::int32_t position_of(std::int32_t index) const noexcept {
-    const auto run = std::upper_bound(runs.begin(), runs.end(), index, [](std::int32_t i, const Run& r) { return i < r.first; }) - 1;
+    const auto run = std::upper_bound(runs.begin(), runs.end(), index,
+                                      [](std::int32_t i, const Run& r) { return i < r.first; }) -
+                     1;
     return run->position + index - run->first;
   }
 };

@@ -37,10 +37,10 @@ struct Group {
 
 struct Mesh {
   ElementType type = ElementType::tet4;
-  std::vector<double> coordinates;     ///< nodes × dim
-  std::vector<std::int32_t> elements;  ///< elements × nodes_per_element, positively oriented
-  std::vector<std::int64_t> node_tags;     ///< the file's numbers; empty: index + 1
-  std::vector<std::int64_t> element_tags;  ///< likewise
+  std::vector<double> coordinates;          ///< nodes × dim
+  std::vector<std::int32_t> elements;       ///< elements × nodes_per_element, positively oriented
+  std::vector<std::int64_t> node_tags;      ///< the file's numbers; empty: index + 1
+  std::vector<std::int64_t> element_tags;   ///< likewise
   std::vector<std::int32_t> facets;         ///< the boundary: facets × nodes_per_facet, outwards
   std::vector<std::int32_t> facet_element;  ///< the element each facet belongs to
   std::vector<Group> groups;
@@ -73,9 +73,9 @@ void find_boundary(Mesh& mesh);
 /// squared in 2D) or non-finite element, a facet shared by three elements, or an unreferenced node.
 void check_mesh(const Mesh& mesh);
 
-/// Generated box [0, size]: 2D squares are cut by the diagonal from lower left to upper right, 3D cubes into six
-/// tetrahedra round the diagonal from the lowest to the highest corner. Sides are named left, right, front, back, bottom,
-/// top (in 2D left, right, bottom, top).
+/// Generated box [0, size]: 2D squares are cut by the diagonal from lower left to upper right, 3D cubes into
+/// six tetrahedra round the diagonal from the lowest to the highest corner. Sides are named left, right,
+/// front, back, bottom, top (in 2D left, right, bottom, top).
 struct BoxSpec {
   std::array<double, 3> size{1, 1, 1};
   std::array<int, 3> cells{1, 1, 1};

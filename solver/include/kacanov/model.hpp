@@ -18,7 +18,7 @@ using Vector3 = std::array<double, 3>;  ///< in 2D the third entry is 0
 struct Selector {
   enum class Kind { all, name, box };
   Kind kind = Kind::all;
-  std::string name;        ///< Kind::name
+  std::string name;          ///< Kind::name
   Vector3 lower{}, upper{};  ///< Kind::box, closed
 };
 
@@ -31,9 +31,9 @@ struct MaterialEntry {
 struct BoundaryEntry {
   Selector on;
   std::optional<std::array<std::optional<double>, 3>> displacement;  ///< nullopt: component is free
-  std::optional<Vector3> traction;    ///< force an area (a length in 2D)
-  std::optional<double> pressure;     ///< against the outer normal
-  std::optional<Vector3> body_force;  ///< force a volume
+  std::optional<Vector3> traction;                                   ///< force an area (a length in 2D)
+  std::optional<double> pressure;                                    ///< against the outer normal
+  std::optional<Vector3> body_force;                                 ///< force a volume
 };
 
 struct Plane {
@@ -78,9 +78,11 @@ struct SolverOptions {
   int max_outer = 100;
   int max_contact = 10000;           ///< contact iterations within an outer step
   double spectrum_tolerance = 1e-2;  ///< relative, on λ_min and λ_max
-  /// Factors on loads, prescribed displacements and indentation, one after the other; the last is 1. Empty: at once.
+  /// Factors on loads, prescribed displacements and indentation, one after the other; the last is 1. Empty:
+  /// at once.
   std::vector<double> load_steps;
-  /// Over-relaxation of ADMM, 1 ≤ α < 2. Unset: 1 with r: paper or stop: paper (Algorithm 1 as printed), else 1.7.
+  /// Over-relaxation of ADMM, 1 ≤ α < 2. Unset: 1 with r: paper or stop: paper (Algorithm 1 as printed),
+  /// else 1.7.
   std::optional<double> relaxation;
 };
 

@@ -16,8 +16,8 @@
 namespace kacanov {
 
 /// Elements are split without overlap; a node lies on every rank that has one of its elements and is
-/// owned by one of them. Owned nodes come first, neighbours close to each other (node_order). Vectors over a part are consistent: every copy of a
-/// shared entry holds the same bits.
+/// owned by one of them. Owned nodes come first, neighbours close to each other (node_order). Vectors over a
+/// part are consistent: every copy of a shared entry holds the same bits.
 struct Part {
   struct ComponentValue {
     std::int32_t component = 0;  ///< node · dim + c
@@ -25,26 +25,26 @@ struct Part {
     bool operator==(const ComponentValue&) const = default;
   };
   ElementType type = ElementType::tet4;
-  std::vector<double> coordinates;       ///< nodes × dim
+  std::vector<double> coordinates;  ///< nodes × dim
   std::vector<std::int32_t> elements;
-  std::vector<std::int32_t> node_index;  ///< index in Problem::mesh
-  IndexRuns element_index;               ///< likewise
+  std::vector<std::int32_t> node_index;               ///< index in Problem::mesh
+  IndexRuns element_index;                            ///< likewise
   std::vector<std::int64_t> node_tags, element_tags;  ///< the user's numbers; empty: index + 1
   std::int32_t owned_nodes = 0;
-  std::int64_t first_owned = 0;          ///< owned nodes are numbered first_owned … over all ranks
+  std::int64_t first_owned = 0;  ///< owned nodes are numbered first_owned … over all ranks
   std::int64_t total_nodes = 0, total_elements = 0;
-  std::vector<std::int64_t> ghost_number; ///< that number, of every local node that another rank owns
+  std::vector<std::int64_t> ghost_number;  ///< that number, of every local node that another rank owns
   Halo halo;
   std::vector<Law> laws;
   std::vector<std::uint16_t> law_of_element;  ///< empty: all follow laws[0]
   std::vector<ComponentValue> load;           ///< entries of F that are not zero, ascending; consistent
   std::vector<std::uint8_t> held;             ///< nodes × dim
   std::vector<ComponentValue> prescribed;     ///< of every held component, ascending
-  std::vector<ContactPoint> contact;     ///< of local nodes; those of owned nodes first
+  std::vector<ContactPoint> contact;          ///< of local nodes; those of owned nodes first
   std::int32_t owned_contact = 0;
   std::vector<std::int32_t> contact_index;  ///< index in Problem::contact
   std::int64_t total_contact = 0;
-  std::vector<Probe> probes;             ///< those in this rank's elements
+  std::vector<Probe> probes;  ///< those in this rank's elements
   std::vector<std::int32_t> probe_index;
   std::int32_t total_probes = 0;
   int loose_modes = 0;
@@ -79,8 +79,9 @@ struct Part {
   Body body() const noexcept { return {{type, coordinates, elements}, laws, law_of_element}; }
 };
 
-/// Splits the problem with METIS and hands out the parts one after another, so that only one lies beside the problem; that of rank 0 comes last.
-/// They have to join their ranks before they are used. Needs no MPI. Throws InputError where the mesh is too small for so many.
+/// Splits the problem with METIS and hands out the parts one after another, so that only one lies beside the
+/// problem; that of rank 0 comes last. They have to join their ranks before they are used. Needs no MPI.
+/// Throws InputError where the mesh is too small for so many.
 void split(const Problem& problem, int ranks, const std::function<void(int rank, Part&& part)>& take);
 
 /// Ties the part of this rank to the ranks that `comm` has.
@@ -90,7 +91,8 @@ void join(Part& part, MPI_Comm comm);
 /// hands every rank its part. Collective.
 Part distribute(const Problem* problem, MPI_Comm comm);
 
-/// Collects nodes × components (owned entries) on rank 0, in the numbering of Problem::mesh; empty elsewhere. Collective.
+/// Collects nodes × components (owned entries) on rank 0, in the numbering of Problem::mesh; empty elsewhere.
+/// Collective.
 std::vector<double> gather_nodal(const Part& part, std::span<const double> local, int components);
 /// Contact points × components, in the numbering of Problem::contact.
 std::vector<double> gather_contact(const Part& part, std::span<const double> local, int components);

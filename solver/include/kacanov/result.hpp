@@ -15,7 +15,7 @@ enum class Status { converged, not_converged, interrupted };
 
 /// All relative; small numbers, and nothing else, mean that the problem is solved.
 struct Certificate {
-  double equilibrium = 0.0;      ///< ‖F − R(ω) − Nᵀ M λ_n − Tᵀ M λ_f‖ on free components / force scale
+  double equilibrium = 0.0;  ///< ‖F − R(ω) − Nᵀ M λ_n − Tᵀ M λ_f‖ on free components / force scale
   double penetration = 0.0;      ///< max (Nω − ρ)⁺ / displacement scale
   double tension = 0.0;          ///< max (−λ_n)⁺ / pressure scale
   double complementarity = 0.0;  ///< contact and friction products / (pressure × displacement × area)
@@ -35,20 +35,20 @@ struct SpectrumResult {
   std::int64_t cg_iterations = 0;
   std::uint64_t operator_applications = 0;
   double seconds = 0.0;
-  bool friction = false;                    ///< C = [N; T]
-  std::int64_t traces = 0;                  ///< rows of C
+  bool friction = false;    ///< C = [N; T]
+  std::int64_t traces = 0;  ///< rows of C
 };
 
 /// The end of one load step.
 struct LoadStep {
   double factor = 1.0;
-  int outer_iterations = 0;         ///< of this step
-  std::int64_t cg_iterations = 0;   ///< likewise
+  int outer_iterations = 0;        ///< of this step
+  std::int64_t cg_iterations = 0;  ///< likewise
   std::int64_t active_nodes = 0, slip_nodes = 0;
   Vector3 contact_force{}, friction_force{};
   double max_contact_pressure = 0.0;
   std::int64_t plastic_elements = 0;
-  double worst_residual = 0.0;      ///< of the certificate, by the operator of the loop
+  double worst_residual = 0.0;  ///< of the certificate, by the operator of the loop
   std::vector<Vector3> probe;
 };
 
@@ -60,22 +60,24 @@ struct Result {
   int outer_iterations = 0;
   int restarted_after = -1;  ///< outer steps before a restart, which the counts include; −1 without one
   std::int64_t contact_iterations = 0, cg_iterations = 0;
-  std::uint64_t operator_applications = 0;    ///< all purposes together
-  std::uint64_t spectrum_applications = 0;    ///< of these: estimates of λ_min, λ_max, r_A
-  std::uint64_t contact_applications = 0;     ///< of these: solves inside the contact loop; the rest are true residuals
+  std::uint64_t operator_applications = 0;  ///< all purposes together
+  std::uint64_t spectrum_applications = 0;  ///< of these: estimates of λ_min, λ_max, r_A
+  std::uint64_t contact_applications =
+      0;                  ///< of these: solves inside the contact loop; the rest are true residuals
   std::vector<double> r;  ///< one an outer step
   double lambda_min = 0.0, lambda_max = 0.0, r_star = 0.0;
-  double r_active = 0.0;  ///< r_n as ADMM ended with it, adapted to the contact set; 0 where only the first step used ADMM
+  double r_active =
+      0.0;  ///< r_n as ADMM ended with it, adapted to the contact set; 0 where only the first step used ADMM
   Vector3 contact_force{}, friction_force{};  ///< what the obstacles do to the body
   double bound_change = 0.0;  ///< Coulomb: what ψ moved by in the last step / largest pressure; 0 without
   double max_contact_pressure = 0.0, max_von_mises = 0.0;
   std::int64_t plastic_elements = 0;
   std::int64_t softening_elements = 0;  ///< in the softening range of a squared-argument law
   std::vector<Vector3> probe;
-  std::vector<LoadStep> load_steps;     ///< those that are over; empty where the load is put on at once
+  std::vector<LoadStep> load_steps;  ///< those that are over; empty where the load is put on at once
   Certificate certificate;
   std::vector<std::pair<std::string, double>> seconds;  ///< phases in order; "total" first
-  std::uint64_t peak_memory_bytes = 0;  ///< all ranks
+  std::uint64_t peak_memory_bytes = 0;                  ///< all ranks
   int ranks = 1, threads = 1;
   std::string instruction_set;
 };
@@ -83,13 +85,14 @@ struct Result {
 /// State of a contact point.
 enum class ContactStatus : std::uint8_t { open, stick, slip };  ///< frictionless contact: slip
 
-/// This rank's fields, in the numbering of its Part. Those of elements follow from the displacement: element_fields.hpp.
+/// This rank's fields, in the numbering of its Part. Those of elements follow from the displacement:
+/// element_fields.hpp.
 struct Solution {
-  Result result;                         ///< the same on every rank
-  std::vector<double> displacement;      ///< nodes × dim
-  std::vector<double> gap;               ///< contact points: ρ − Nω, the open distance
-  std::vector<double> pressure;          ///< contact points: λ_n
-  std::vector<Vector3> traction;         ///< contact points: −λ_f, what the obstacle does to the body
+  Result result;                              ///< the same on every rank
+  std::vector<double> displacement;           ///< nodes × dim
+  std::vector<double> gap;                    ///< contact points: ρ − Nω, the open distance
+  std::vector<double> pressure;               ///< contact points: λ_n
+  std::vector<Vector3> traction;              ///< contact points: −λ_f, what the obstacle does to the body
   std::vector<ContactStatus> contact_status;  ///< contact points
 };
 

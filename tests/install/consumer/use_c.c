@@ -18,7 +18,7 @@ int main(void) {
   body.laws = 1;
   body.law = &law;
   char message[128];
-  kacanov_operator *op;
+  kacanov_operator* op;
   if (kacanov_create(&body, &op, message, sizeof message)) {
     puts(message);
     return 1;
