@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Bodies for the random cases of hard_cases: lattices of cells, bent into shape, cut into elements, written for Gmsh."""
+import itertools
+import math
+from dataclasses import dataclass, field
+
+CUBE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+TET_EDGES = [(0, 1), (1, 2), (2, 0), (3, 0), (3, 2), (3, 1)]
+KINDS = {"tri3": (2, 1), "tet4": (4, 2), "tet10": (11, 9), "hex8": (5, 3)}  # Gmsh's numbers: element, facet
+
+
+@dataclass
+class Body:
+    element: str
+    nodes: list = field(default_factory=list)     # coordinates
+    elements: list = field(default_factory=list)  # node numbers from 0
+    facets: dict = field(default_factory=dict)    # name: lists of node numbers
+
+    @property
+    def dim(self):
+        return 2 if self.element == "tri3" else 3
+
+    def write(self, path):
+        """Gmsh 2.2."""
+        kind, facet_kind = KINDS[self.element]
+        names = sorted(self.facets)
+        lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", str(len(names) + 1)]
+        lines += [f'{self.dim - 1} {i} "{name}"' for i, name in enumerate(names, 1)]
+        lines += [f'{self.dim} {len(names) + 1} "body"', "$EndPhysicalNames", "$Nodes", str(len(self.nodes))]
+        lines += [f"{i} " + " ".join(f"{c:.17g}" for c in (*x, 0.0)[:3]) for i, x in enumerate(self.nodes, 1)]
+        entries = [(facet_kind, i, f) for i, name in enumerate(names, 1) for f in self.facets[name]]
+        entries += [(kind, len(names) + 1, e) for e in self.elements]
+        lines += ["$EndNodes", "$Elements", str(len(entries))]
+        lines += [f"{i} {k} 2 {g} {g} " + " ".join(str(n + 1) for n in ns) for i, (k, g, ns) in enumerate(entries, 1)]
+        path.write_text("\n".join(lines) + "\n$EndElements\n")
+
+
+def determinant(rows):
+    (a, b, c), (d, e, f), (g, h, i) = rows
+    return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)
+
+
+def lattice(cells, element, place, keep=lambda *cell: True, name=None):
+    """A body of the cells that `keep` keeps; `place` maps a lattice point in [0, 1]^dim to its position. Facets are
+    named left, right, front, back, bottom, top, those that a missing cell has laid bare `inner` and that name;
+    `name` renames them."""
+    dim = len(cells)
+    body, number = Body(element), {}
+    sides = [("left", "right"), ("front", "back"), ("bottom", "top")] if dim == 3 else [("left", "right"), ("bottom", "top")]
+
+    def node(point):
+        if point not in number:
+            number[point] = len(body.nodes)
+            body.nodes.append(tuple(place(*(p / c for p, c in zip(point, cells)))))
+        return number[point]
+
+    kept = {cell for cell in itertools.product(*map(range, cells)) if keep(*cell)}
+    for cell in sorted(kept):
+        def corner(*offset):
+            return node(tuple(a + b for a, b in zip(cell, offset)))
+        if dim == 2:
+            a, b, c, d = corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)
+            body.elements += [[a, b, c], [a, c, d]]
+        elif element == "hex8":
+            body.elements.append([corner(*o) for o in CUBE])
+        else:
+            for order in itertools.permutations(range(3)):
+                at, path = [0, 0, 0], [corner(0, 0, 0)]
+                for axis in order:
+                    at[axis] = 1
+                    path.append(corner(*at))
+                x = [body.nodes[n] for n in path]
+                if determinant([[b - a for a, b in zip(x[0], x[k])] for k in (1, 2, 3)]) < 0:
+                    path[1], path[2] = path[2], path[1]
+                body.elements.append(path)
+        for axis, end in itertools.product(range(dim), (0, 1)):
+            beside = tuple(c + (2 * end - 1 if k == axis else 0) for k, c in enumerate(cell))
+            if beside in kept:
+                continue
+            outer = cell[axis] == (cells[axis] - 1 if end else 0)
+            side = sides[axis][end] if outer else f"inner {sides[axis][end]}"
+            offsets = [o for o in itertools.product((0, 1), repeat=dim) if o[axis] == end]
+            if dim == 3:
+                offsets[2], offsets[3] = offsets[3], offsets[2]  # round the square
+            around = [corner(*o) for o in offsets]
+            facets = [around] if dim == 2 or element == "hex8" else [around[:3], [around[0], *around[2:]]]
+            body.facets.setdefault(name(side) if name else side, []).extend(facets)
+    if element == "tet10":
+        add_middles(body)
+    return body
+
+
+def add_middles(body):
+    middle = {}
+
+    def between(a, b):
+        key = (min(a, b), max(a, b))
+        if key not in middle:
+            middle[key] = len(body.nodes)
+            body.nodes.append(tuple(0.5 * (p + q) for p, q in zip(body.nodes[a], body.nodes[b])))
+        return middle[key]
+
+    body.elements = [e + [between(e[a], e[b]) for a, b in TET_EDGES] for e in body.elements]
+    for name, facets in body.facets.items():
+        body.facets[name] = [f + [between(f[0], f[1]), between(f[1], f[2]), between(f[2], f[0])] for f in facets]
+
+
+def join(first, second):
+    """Two pieces as one mesh; the names of the second get a prime."""
+    offset = len(first.nodes)
+    joined = Body(first.element, first.nodes + second.nodes,
+                  first.elements + [[n + offset for n in e] for e in second.elements], dict(first.facets))
+    for name, facets in second.facets.items():
+        joined.facets[name + "'"] = [[n + offset for n in f] for f in facets]
+    return joined
+
+
+def cells_for(size, element, most, rng):
+    """Cells along each side, about as long as wide, so that there are at most about `most` nodes."""
+    per_cell = {"tri3": 1, "tet4": 1, "hex8": 1, "tet10": 8}[element]
+    target = rng.uniform(0.25, 1.0) * most / per_cell
+    h = (math.prod(size) / target) ** (1 / len(size))
+    return [max(1 if element == "tet10" else 2, round(s / h)) for s in size]
+
+
+def block(size, element, most, rng, distorted=False):
+    """A box; distorted: leaning, tapered, its inner lines waved. The bottom stays what it is."""
+    cells = cells_for(size, element, most, rng)
+    lean, taper, wave = (rng.uniform(-0.25, 0.25) for _ in range(3)) if distorted else (0.0, 0.0, 0.0)
+
+    def place(*s):
+        up = s[-1]
+        x = [0.5 + (c - 0.5) * (1 + taper * up) for c in s[:-1]]
+        x[0] += lean * up + 0.3 * wave * math.sin(math.pi * up) * math.sin(2 * math.pi * s[0])
+        return [*(c * length for c, length in zip(x, size)), (up + 0.2 * wave * up * (1 - up) * math.cos(3 * s[0])) * size[-1]]
+    return lattice(cells, element, place)
+
+
+def half_ball(radius, element, most, rng):
+    """Lowest point at the origin; facets `round` and `flat`. Half a disc in 2D."""
+    dim = 2 if element == "tri3" else 3
+    n = cells_for([2.0] * (dim - 1) + [1.0], element, most, rng)
+    n = [max(2, c + c % 2) for c in n[:-1]] + [n[-1]]
+
+    def finer(s):
+        return math.copysign(abs(2 * s - 1) ** 1.3, s - 0.5)
+
+    def place(*s):
+        flat, z = [finer(c) for c in s[:-1]], s[-1] ** 1.3 - 1
+        if dim == 2:
+            x, = flat
+            return [radius * x * math.sqrt(1 - z * z / 2), radius * (1 + z * math.sqrt(1 - x * x / 2))]
+        def stretch(a, b):
+            return math.sqrt(1 - a * a / 2 - b * b / 2 + a * a * b * b / 3)
+        x, y = flat
+        return [radius * x * stretch(y, z), radius * y * stretch(z, x), radius * (1 + z * stretch(x, y))]
+    return lattice(n, element, place, name=lambda side: "flat" if side == "top" else "round")
+
+
+def wedge(width, height, depth, slope, element, most, rng):
+    """A trapezium, symmetric to x = 0, `width` wide at its bottom and wider by `slope` times the height each side above."""
+    size = [width, height] if element == "tri3" else [width, depth, height]
+    cells = cells_for(size, element, most, rng)
+
+    def place(*s):
+        x = (2 * s[0] - 1) * (0.5 * width + slope * height * s[-1])
+        return [x, *(c * length for c, length in zip(s[1:-1], size[1:-1])), s[-1] * height]
+    return lattice(cells, element, place)
+
+
+def bracket(size, element, most, rng):
+    """An L: a foot along x and an upright at x = 0, each a third of the size thick."""
+    cells = cells_for(size, element, most * 1.8, rng)
+    for axis in (0, -1):
+        cells[axis] = max(3, round(cells[axis] / 3) * 3)
+    return lattice(cells, element, lambda *s: [c * length for c, length in zip(s, size)],
+                   keep=lambda *cell: cell[0] < cells[0] // 3 or cell[-1] < cells[-1] // 3)
+
+
+def hook(radius, thickness, element, most, rng):
+    """Part of a ring about the origin from straight up (`end`) over the right side; facets `inside`, `outside`, `tip`."""
+    angle = rng.uniform(0.6, 1.3) * math.pi
+    size = [radius * angle, thickness] if element == "tri3" else [radius * angle, rng.uniform(0.5, 1.5) * thickness, thickness]
+    cells = cells_for(size, element, most, rng)
+
+    def place(*s):
+        r, a = radius + (s[-1] - 0.5) * thickness, 0.5 * math.pi - angle * s[0]
+        return [r * math.cos(a), *(c * length for c, length in zip(s[1:-1], size[1:-1])), r * math.sin(a)]
+    names = {"left": "end", "right": "tip", "bottom": "inside", "top": "outside"}
+    return lattice(cells, element, place, name=lambda side: names.get(side, side))
