@@ -48,7 +48,7 @@ kacanov_test(mesh
 find_package(nlohmann_json REQUIRED)
 kacanov_test(reference_cases
   MPI SOURCES cases/reference_test.cpp
-  LIBRARIES kacanov_io nlohmann_json::nlohmann_json)
+  LIBRARIES kacanov_formats nlohmann_json::nlohmann_json)
 target_include_directories(test_reference_cases PRIVATE solver)
 set_tests_properties(reference_cases PROPERTIES LABELS slow)  # whole runs
 target_compile_definitions(test_reference_cases PRIVATE

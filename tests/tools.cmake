@@ -16,9 +16,9 @@ endforeach()
 
 kacanov_test(gmsh
   SOURCES tools/mesh_roundtrip_test.cpp tools/mesh_messages_test.cpp tools/mesh_writer.cpp
-  LIBRARIES kacanov_io)
+  LIBRARIES kacanov_formats)
 target_compile_definitions(test_gmsh PRIVATE KACANOV_EXAMPLES="${PROJECT_SOURCE_DIR}/tools/examples")
 
-kacanov_test(vtu SOURCES tools/vtu_test.cpp LIBRARIES kacanov_io)
+kacanov_test(vtu SOURCES tools/vtu_test.cpp LIBRARIES kacanov_formats)
 
-kacanov_test(picture SOURCES tools/picture_test.cpp LIBRARIES kacanov_io)
+kacanov_test(picture SOURCES tools/picture_test.cpp LIBRARIES kacanov_pictures)
