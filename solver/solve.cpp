@@ -38,7 +38,7 @@ std::uint64_t peak_memory() {
 void collect_contact(const Part& part, const ContactState& state, double least_slip, Solution& solution) {
   const auto points = std::span(part.contact);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    solution.gap.push_back(points[i].gap - state.trace.normal[i]);
+    solution.gap.push_back(state.gap[i] - state.trace.normal[i]);
     solution.pressure.push_back(state.lambda.normal[i]);
     const double* friction = &state.lambda.tangential[2 * i];
     Vector3 traction{};
@@ -214,7 +214,8 @@ Solution solve(Part& part, const SolverOptions& options, const RunOptions& run) 
   part.halo.sum(internal, part.dim());
   const double energy = part.halo.sum_all(reference::energy(part.body(), loop.state().omega));
   result.certificate =
-      kkt_residuals(loop.space(), loop.traces(), loop.state(), internal, energy, loop.diagonal()).certificate;
+      kkt_residuals(loop.space(), loop.traces(), loop.state(), {part.load, internal, energy, loop.diagonal()})
+          .certificate;
   result.status = result.certificate.worst() <= options.tolerance ? Status::converged : Status::not_converged;
   if (!finished) result.status = Status::interrupted;
   // What has not converged can be continued with more steps; what has broken down cannot.
@@ -268,11 +269,13 @@ std::vector<SpectrumResult> analyse_spectrum(const Part& part, const SolverOptio
   op.local().secant(secant);
   std::vector<SpectrumResult> results;
   if (part.total_contact == 0) return results;
-  results.push_back(estimate_spectrum(part, op, *amg, secant, false, options.spectrum_tolerance));
+  results.push_back(
+      estimate_spectrum(part, op, *amg, secant, false, {options.spectrum_tolerance, options.max_cg}));
   bool slides = false;
   for (const auto& point : part.contact) slides = slides || point.tangents > 0;
   if (part.halo.any(slides))
-    results.push_back(estimate_spectrum(part, op, *amg, secant, true, options.spectrum_tolerance));
+    results.push_back(
+        estimate_spectrum(part, op, *amg, secant, true, {options.spectrum_tolerance, options.max_cg}));
   return results;
 }
 
@@ -290,7 +293,7 @@ double active_penalty(const Part& part, const Solution& solution, const SolverOp
   }
   const TraceRows held(part, active), free(part, open);
   if (held.total() == 0) return 0.0;
-  Spectrum spectrum(part, op, *amg, secant, options.spectrum_tolerance);
+  Spectrum spectrum(part, op, *amg, secant, {options.spectrum_tolerance, options.max_cg});
   const double low = spectrum.smallest(held).value;
   if (!(low > 0.0)) return 0.0;
   const double high =

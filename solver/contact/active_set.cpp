@@ -54,7 +54,7 @@ ActiveSet decide(const Traces& traces, const ContactState& state, double c) {
   set.slip_stiffness.assign(points.size(), 0.0);
   set.slip_direction.assign(2 * points.size(), 0.0);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    set.held[i].normal = state.lambda.normal[i] + c * (state.trace.normal[i] - points[i].gap) > 0.0;
+    set.held[i].normal = state.lambda.normal[i] + c * (state.trace.normal[i] - state.gap[i]) > 0.0;
     if (points[i].tangents == 0) continue;
     const double* lambda = &state.lambda.tangential[2 * i];
     const double s[2] = {lambda[0] + c * state.trace.tangential[2 * i],
@@ -93,8 +93,8 @@ std::vector<NodeBlock> slip_blocks(const Part& part, const ActiveSet& set) {
 }
 
 ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, const ActiveSet& set,
-                              const ContactState& state, double reduction, double unbalanced, double absolute,
-                              CgWork& work, std::span<double> delta) {
+                              const ContactState& state, const CgOptions& options, CgWork& work,
+                              std::span<double> delta) {
   const Traces& traces = *problem.traces;
   const TraceRows rows(part, set.held);
   Space space(part);
@@ -107,7 +107,7 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
   for (std::size_t i = 0; i < traces.size(); ++i) {
     const auto& point = traces.points()[i];
     const double root = std::sqrt(point.mass);
-    if (set.held[i].normal) closing[at++] = root * (point.gap - state.trace.normal[i]);
+    if (set.held[i].normal) closing[at++] = root * (state.gap[i] - state.trace.normal[i]);
     if (set.held[i].tangential)
       for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k)
         closing[at++] = -root * state.trace.tangential[2 * i + k];
@@ -125,8 +125,7 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
     apply(delta, work.image);
     for (std::size_t i = 0; i < delta.size(); ++i) work.residual[i] -= work.image[i];
   }
-  const CgResult solve = conjugate_gradients(space, apply, problem.precondition, delta, work,
-                                             CgOptions{absolute, reduction, 2000, unbalanced});
+  const CgResult solve = conjugate_gradients(space, apply, problem.precondition, delta, work, options);
   ActiveSetStep step;
   step.cg_iterations = solve.iterations;
   step.solved = solve.converged;
@@ -148,7 +147,7 @@ void recover_multipliers(const Part& part, const Traces& traces, const ActiveSet
     const auto& point = traces.points()[i];
     const double root = std::sqrt(point.mass);
     state.lambda.normal[i] = set.held[i].normal ? force[at++] / root : 0.0;
-    state.phi.normal[i] = std::min(state.trace.normal[i], point.gap);
+    state.phi.normal[i] = std::min(state.trace.normal[i], state.gap[i]);
     double* friction = &state.lambda.tangential[2 * i];
     const double* w = &state.trace.tangential[2 * i];
     const double* s = &set.slip_direction[2 * i];

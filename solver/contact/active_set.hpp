@@ -34,12 +34,11 @@ struct ActiveSetStep {
 
 /// Solves the linearised problem with the rows of `set` held: B δ + slip terms = F − R(ω) − CᵀMλ, Cω + Cδ on
 /// the obstacle or at rest. On entry `work.residual` is F − R(ω), without contact forces; `delta` receives
-/// the step. CG goes on until `reduction` of its first residual is left and no more than `unbalanced`, or
-/// `absolute`. The first residual alone says little: points moved onto the obstacle one by one strain the
-/// elements beside them beyond anything else.
+/// the step. Of the options `relative` alone says little: points moved onto the obstacle one by one strain
+/// the elements beside them beyond anything else, so `most` should be what was unbalanced before. Collective.
 ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, const ActiveSet& set,
-                              const ContactState& state, double reduction, double unbalanced, double absolute,
-                              CgWork& work, std::span<double> delta);
+                              const ContactState& state, const CgOptions& options, CgWork& work,
+                              std::span<double> delta);
 
 /// Multipliers after a step: from the forces F − R(ω) at held rows, from the friction law at slipping ones
 /// (projected onto the disc), zero elsewhere. Uses state.trace at the new ω; φ is set so that ADMM can go on

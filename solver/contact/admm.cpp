@@ -33,7 +33,7 @@ void update_multipliers(const Traces& traces, ContactState& state, const Penalty
       double& phi = state.phi.normal[i];
       double& lambda = state.lambda.normal[i];
       const double w = state.trace.normal[i];
-      const NormalStep next = normal_step(alpha * w + (1.0 - alpha) * phi, lambda, point.gap, r.normal);
+      const NormalStep next = normal_step(alpha * w + (1.0 - alpha) * phi, lambda, state.gap[i], r.normal);
       shift.normal[i] = r.normal * (next.phi - phi) - (next.lambda - lambda);
       dual.normal[i] = r.normal * (phi - w) + next.lambda - lambda;
       if (owned) norm.add(point.mass, phi, next.phi);

@@ -18,6 +18,7 @@ struct ContactState {
   Vector omega;         ///< takes prescribed components along
   ContactValues trace;  ///< (Nω, Tω)
   ContactValues phi, lambda;
+  Vector gap;    ///< ρ of each contact point, under the share of the load that the state belongs to
   Vector bound;  ///< ψ of each contact point
 };
 
@@ -37,6 +38,7 @@ struct AdmmOptions {
   double force_reduction = 0.0;  ///< or relative to the contact force: where nothing else sets a scale
   double trace_tolerance = 0.0;  ///< absolute, on max |Cω − φ|
   int max_iterations = 10000;
+  int max_cg = 2000;  ///< CG iterations of one solve
   /// With ε > 0 the stop is (15), and the solves are as exact as the tolerances above.
   double step_tolerance = 0.0;
   std::span<const double> volume;  ///< lumped volume of each node for the L² norm of (15)
@@ -57,7 +59,7 @@ struct AdmmResult {
 /// How exact each solve is: the first residual is what the last projection changed, a tenth of it is exact
 /// enough (inexact ADMM) where the loop is judged by residuals and not by its steps.
 inline CgOptions solve_options(const AdmmOptions& options) {
-  return {0.2 * options.force_tolerance, options.step_tolerance > 0.0 ? 1e-12 : 0.1, 2000};
+  return {0.2 * options.force_tolerance, options.step_tolerance > 0.0 ? 1e-12 : 0.1, options.max_cg};
 }
 
 /// Whether the residuals of `result` meet the tolerances; `lambda` as it is now.

@@ -40,7 +40,7 @@ ContactSums contact_sums(const Traces& traces, const ContactState& state) {
   const auto points = traces.points().first(traces.owned());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto& point = points[i];
-    const double lambda = state.lambda.normal[i], open = point.gap - state.trace.normal[i];
+    const double lambda = state.lambda.normal[i], open = state.gap[i] - state.trace.normal[i];
     const double* slip = &state.trace.tangential[2 * i];
     const double* friction = &state.lambda.tangential[2 * i];
     s.normal_product += point.mass * std::abs(lambda * open);
@@ -75,8 +75,9 @@ ContactSums contact_sums(const Traces& traces, const ContactState& state) {
 }  // namespace
 
 Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactState& state,
-                        std::span<const double> internal, double energy, std::span<const float> diagonal) {
+                        const BodyForces& forces) {
   const Part& part = space.part();
+  const auto [load_entries, internal, energy, diagonal] = forces;
   const auto dim = static_cast<std::size_t>(part.dim());
   Vector contact(part.unknowns(), 0.0);
   traces.add_force(state.lambda, 1.0, contact);
@@ -88,9 +89,9 @@ Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactS
   // Sums of forces: the load, the obstacles, the supports; what they work; squares of their norms.
   std::array<double, 12> totals{};  // three balances, Σ|force|, ω·residual, ω·R, |·|²: residual, reaction,
                                     // contact, load, stiff; ω·stiff
-  auto loaded = part.load.begin();
+  auto loaded = load_entries.begin();
   for (std::size_t i = 0; i < part.owned_unknowns(); ++i) {
-    const bool here = loaded != part.load.end() && static_cast<std::size_t>(loaded->component) == i;
+    const bool here = loaded != load_entries.end() && static_cast<std::size_t>(loaded->component) == i;
     const double load = here ? (loaded++)->value : 0.0;
     const double unbalanced = load - internal[i] - contact[i],
                  stiff = rounding * static_cast<double>(diagonal[i]) * state.omega[i];

@@ -22,10 +22,17 @@ struct Residuals {
   double energy = 0.0;  ///< stored, as it was given
 };
 
-/// `internal` is R(ω) from the operator that is to be trusted, consistent over ranks; `energy` the stored
-/// energy at ω; `diagonal` that of the elastic B, consistent: forces of 10⁻⁹ ‖diagonal ∘ ω‖ and energies
-/// likewise are rounding, so that a body moved without strain has small residuals, and not noise over noise.
+/// What acts on the body at a displacement besides contact; all consistent over ranks.
+struct BodyForces {
+  std::span<const Part::ComponentValue> load;  ///< F, ascending
+  std::span<const double> internal;            ///< R(u), from the operator that is to be trusted
+  double energy = 0.0;                         ///< stored
+  std::span<const float> diagonal;             ///< of the elastic B
+};
+
+/// Forces of 10⁻⁹ ‖diagonal ∘ u‖ and energies likewise are rounding, so that a body moved without strain has
+/// small residuals, and not noise over noise (theory: kkt, rounding). Collective.
 Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactState& state,
-                        std::span<const double> internal, double energy, std::span<const float> diagonal);
+                        const BodyForces& forces);
 
 }  // namespace kacanov

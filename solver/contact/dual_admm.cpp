@@ -62,14 +62,13 @@ double split(const Traces& traces, const ContactValues& lambda, const Vector& bo
 }
 
 /// (15): how far ω (by the lumped volumes) and φ = ρ + λ₋/r moved, relative to what they are.
-double relative_step(const Traces& traces, const Penalty& r, const Split& parts,
+double relative_step(const Traces& traces, const Penalty& r, const Split& parts, const Vector& gap,
                      const ContactValues& minus_step, std::span<const double> omega_step,
                      std::span<const double> omega, std::span<const double> volume, std::size_t dim) {
   std::array<double, 2> sums{};
   const auto points = traces.points();
   for (std::size_t i = 0; i < traces.owned(); ++i) {
-    const double step = minus_step.normal[i] / r.normal,
-                 phi = points[i].gap + parts.minus.normal[i] / r.normal;
+    const double step = minus_step.normal[i] / r.normal, phi = gap[i] + parts.minus.normal[i] / r.normal;
     sums[0] += points[i].mass * step * step;
     sums[1] += points[i].mass * phi * phi;
     for (std::size_t k = 2 * i; k < 2 * i + static_cast<std::size_t>(points[i].tangents); ++k) {
@@ -93,8 +92,7 @@ AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& 
                      const AdmmOptions& options) {
   const Space& space = *problem.space;
   const Traces& traces = *problem.traces;
-  const auto points = traces.points();
-  const std::size_t m = points.size(), n = state.omega.size();
+  const std::size_t m = traces.size(), n = state.omega.size();
   const auto dim = static_cast<std::size_t>(space.part().dim());
   const Penalty& r = options.r;
   const bool stop_by_step = options.step_tolerance > 0.0;
@@ -120,7 +118,7 @@ AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& 
   ContactValues shift(m), step(m), lambda(m), free_trace(m), trace(m);
   for (std::size_t i = 0; i < m; ++i) {
     parts.plus.normal[i] = state.lambda.normal[i];
-    parts.minus.normal[i] = r.normal * (state.phi.normal[i] - points[i].gap);
+    parts.minus.normal[i] = r.normal * (state.phi.normal[i] - state.gap[i]);
     shift.normal[i] = r.normal * (state.phi.normal[i] - state.trace.normal[i]);
     for (std::size_t k = 2 * i; k < 2 * i + 2; ++k) {
       parts.plus.tangential[k] = state.lambda.tangential[k];
@@ -161,7 +159,7 @@ AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& 
     // v lives in the free space; prescribed components are in a.
     for (std::size_t i = 0; i < m; ++i) {
       lambda.normal[i] =
-          parts.plus.normal[i] + r.normal * (free_trace.normal[i] - trace.normal[i] - points[i].gap);
+          parts.plus.normal[i] + r.normal * (free_trace.normal[i] - trace.normal[i] - state.gap[i]);
       for (std::size_t k = 2 * i; k < 2 * i + 2; ++k)
         lambda.tangential[k] =
             parts.plus.tangential[k] + r.tangential * (free_trace.tangential[k] - trace.tangential[k]);
@@ -174,8 +172,8 @@ AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& 
       const std::size_t owned = space.part().owned_unknowns();
       Vector omega(owned);
       for (std::size_t i = 0; i < owned; ++i) omega[i] = a[i] - v[i];
-      result.step =
-          relative_step(traces, r, parts, step, std::span(moved).first(owned), omega, options.volume, dim);
+      result.step = relative_step(traces, r, parts, state.gap, step, std::span(moved).first(owned), omega,
+                                  options.volume, dim);
       result.converged = result.step < options.step_tolerance;
     } else {
       result.converged = meets_tolerances(result, options, traces, parts.plus);
@@ -187,7 +185,7 @@ AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& 
   traces.evaluate(state.omega, state.trace);
   state.lambda = parts.plus;
   for (std::size_t i = 0; i < m; ++i) {
-    state.phi.normal[i] = points[i].gap + parts.minus.normal[i] / r.normal;
+    state.phi.normal[i] = state.gap[i] + parts.minus.normal[i] / r.normal;
     for (std::size_t k = 2 * i; k < 2 * i + 2; ++k)
       state.phi.tangential[k] = parts.minus.tangential[k] / r.tangential;
   }

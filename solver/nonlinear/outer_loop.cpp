@@ -128,10 +128,11 @@ OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOp
   part.prescribe(state_.omega);
   state_.trace = state_.phi = state_.lambda = ContactValues(points);
   state_.bound.resize(points);
+  take_gaps();
   work_.resize(part.unknowns());
   traces_.evaluate(state_.omega, state_.trace);
   for (std::size_t i = 0; i < points; ++i)
-    state_.phi.normal[i] = std::min(state_.trace.normal[i], part.contact[i].gap);
+    state_.phi.normal[i] = std::min(state_.trace.normal[i], state_.gap[i]);
   bool slides = false;
   for (const auto& point : part.contact) slides = slides || point.tangents > 0;
   friction_ = part.halo.any(slides);
@@ -147,6 +148,11 @@ OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOp
       if (op_.applications() % applications_per_question == 0 && stop_agreed()) throw Interrupted{};
     });
   }
+}
+
+void OuterLoop::take_gaps() {
+  state_.gap.clear();
+  for (const ContactPoint& point : part_.contact) state_.gap.push_back(point.gap);
 }
 
 double OuterLoop::update_bounds() {
@@ -179,8 +185,8 @@ void OuterLoop::choose_first_penalty(Result& result) {
   const double before = MPI_Wtime();
   const auto applications = op_.applications();
   if (options_.penalty == SolverOptions::Penalty::paper) {
-    const auto spectrum =
-        estimate_spectrum(part_, op_, *amg_, secant(), friction_, options_.spectrum_tolerance);
+    const auto spectrum = estimate_spectrum(part_, op_, *amg_, secant(), friction_,
+                                            {options_.spectrum_tolerance, options_.max_cg});
     preconditioner_stale_ = true;
     result.lambda_min = spectrum.lambda_min;
     result.lambda_max = spectrum.lambda_max;
@@ -307,7 +313,7 @@ void OuterLoop::update_residual() {
 }
 
 Residuals OuterLoop::certify() const {
-  return kkt_residuals(space_, traces_, state_, internal_, energy_, diagonal_);
+  return kkt_residuals(space_, traces_, state_, {part_.load, internal_, energy_, diagonal_});
 }
 
 void OuterLoop::take_admm_step(Result& result, ProgressStep& line, const Residuals& before) {
@@ -331,6 +337,7 @@ void OuterLoop::take_admm_step(Result& result, ProgressStep& line, const Residua
   options.relaxation =
       options_.relaxation.value_or(by_step || options_.penalty == SolverOptions::Penalty::paper ? 1.0 : 1.7);
   options.max_iterations = options_.max_contact;
+  options.max_cg = options_.max_cg;
   const Scales& scales = before.scales;
   if (by_step) {
     options.step_tolerance = options_.tolerance;
@@ -418,8 +425,10 @@ void OuterLoop::take_newton_step(Result& result, ProgressStep& line, const Resid
   const bool last = before.certificate.worst() <= last_reach * options_.tolerance;
   const auto applications = op_.applications();
   const ActiveSetStep step =
-      active_set_step(problem_, part_, set, state_, last ? 1e-3 : solve_reduction,
-                      std::min(before.certificate.worst(), 1.0) * before.scales.force, floor, work_, delta);
+      active_set_step(problem_, part_, set, state_,
+                      {floor, last ? 1e-3 : solve_reduction, options_.max_cg,
+                       std::min(before.certificate.worst(), 1.0) * before.scales.force},
+                      work_, delta);
   result.contact_applications += op_.applications() - applications;
   line.phase = tangent ? "newton" : "active_set";
   line.r = penalty_.normal;

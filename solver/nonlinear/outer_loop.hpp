@@ -89,6 +89,7 @@ class OuterLoop {
   bool set_moved(std::span<const TraceChoice> set) const;
   void watch_preconditioner(double digits, std::int64_t iterations);
   double update_bounds();
+  void take_gaps();
   void take_admm_step(Result& result, ProgressStep& line, const Residuals& before);
   void take_newton_step(Result& result, ProgressStep& line, const Residuals& before);
   void take_damped_step(std::span<const double> delta, double curvature);

@@ -72,13 +72,14 @@ bool OuterLoop::run(Result& result) {
 }
 
 void OuterLoop::scale(double ratio, const Result& result) {
+  take_gaps();
   for (double& u : state_.omega) u *= ratio;
   part_.prescribe(state_.omega);
   for (Vector* v : {&state_.lambda.normal, &state_.lambda.tangential, &state_.phi.tangential})
     for (double& value : *v) value *= ratio;
   traces_.evaluate(state_.omega, state_.trace);
   for (std::size_t i = 0; i < part_.contact.size(); ++i)
-    state_.phi.normal[i] = std::min(state_.trace.normal[i], part_.contact[i].gap);
+    state_.phi.normal[i] = std::min(state_.trace.normal[i], state_.gap[i]);
   update_bounds();
   loop_ = {};
   loop_.first_outer = result.outer_iterations;

@@ -65,7 +65,9 @@ LanczosResult largest_eigenvalues(const Product& product, std::span<const std::i
                                   const LanczosOptions& options) {
   std::int64_t rows = static_cast<std::int64_t>(index.size());
   MPI_Allreduce(MPI_IN_PLACE, &rows, 1, MPI_INT64_T, MPI_SUM, comm);
-  if (rows == 0) return {};
+  LanczosResult result;
+  result.converged = rows == 0;
+  if (rows == 0) return result;
   if (rows <= dense_rows) return dense(product, index, rows, comm, options);
 
   // PARPACK refuses a rank without rows: such a rank carries one row of zeros, which adds the eigenvalue 0.
@@ -89,7 +91,6 @@ LanczosResult largest_eigenvalues(const Product& product, std::span<const std::i
   parameters[6] = 1;  // standard problem
   const MPI_Fint fortran_comm = MPI_Comm_c2f(comm);
   a_int task = 0, info = 1;  // info 1: our start vector
-  LanczosResult result;
   while (true) {
     pdsaupd_c(fortran_comm, &task, "I", n, "LA", wanted, options.tolerance, residual.data(), basis, v.data(),
               n, parameters.data(), pointers.data(), work.data(), values_work.data(), space, &info);

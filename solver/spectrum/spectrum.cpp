@@ -146,8 +146,8 @@ std::vector<NodeBlock> TraceRows::pinning_blocks(std::span<const float> diagonal
 }
 
 Spectrum::Spectrum(const Part& part, DistributedOperator& op, Preconditioner& amg, std::span<const double> g,
-                   double tolerance)
-    : part_(&part), op_(&op), amg_(&amg), g_(g), tolerance_(tolerance) {}
+                   const SpectrumOptions& options)
+    : part_(&part), op_(&op), amg_(&amg), g_(g), options_(options) {}
 
 CgResult Spectrum::solve(const Space& space, std::span<double> x, CgWork& work, const TraceRows* penalised,
                          double r0) {
@@ -166,7 +166,7 @@ CgResult Spectrum::solve(const Space& space, std::span<double> x, CgWork& work, 
   };
   const auto precondition = [&](std::span<const double> r, std::span<double> z) { amg_->apply(r, z); };
   // Products good to a fiftieth of what is asked of the eigenvalue.
-  const CgOptions options{0.0, std::max(1e-13, 0.02 * tolerance_), 2000};
+  const CgOptions options{0.0, std::max(1e-13, 0.02 * options_.tolerance), options_.max_cg};
   const CgResult result = conjugate_gradients(space, apply, precondition, x, work, options);
   cost_.cg_iterations += result.iterations;
   cost_.converged = cost_.converged && result.converged;
@@ -193,12 +193,13 @@ Eigenvalue Spectrum::largest(const TraceRows& rows, const TraceRows& held, doubl
     rows.apply(u, y);
   };
   LanczosOptions options;
-  options.tolerance = tolerance_;
+  options.tolerance = options_.tolerance;
   // The largest compliance is well separated: four products give it to 1e-6.
-  if (tolerance_ >= 1e-3) options.basis = 3;
+  if (options_.tolerance >= 1e-3) options.basis = 3;
   if (!loose) {
     const auto found = largest_eigenvalues(product, rows.index(), part_->halo.comm, options);
     cost_.products += found.products;
+    cost_.converged = cost_.converged && found.converged;
     if (found.values.empty()) return {};
     return {found.values[0], found.bounds[0]};
   }
@@ -206,6 +207,7 @@ Eigenvalue Spectrum::largest(const TraceRows& rows, const TraceRows& held, doubl
   if (options.wanted < 1) return {};
   const auto found = largest_eigenvalues(product, rows.index(), part_->halo.comm, options);
   cost_.products += found.products;
+  cost_.converged = cost_.converged && found.converged;
   for (std::size_t i = 0; i < found.values.size(); ++i) {
     const double theta = r0 * found.values[i];
     if (theta > 0.9999) continue;  // a rigid mode: λ is infinite
@@ -234,9 +236,10 @@ Eigenvalue Spectrum::smallest(const TraceRows& rows) {
     rows.lift_transpose(image, y);
   };
   LanczosOptions options;
-  options.tolerance = tolerance_;
+  options.tolerance = options_.tolerance;
   const auto found = largest_eigenvalues(product, rows.index(), part_->halo.comm, options);
   cost_.products += found.products;
+  cost_.converged = cost_.converged && found.converged;
   if (found.values.empty() || !(found.values[0] > 0.0)) return {};
   const double largest = found.values[0];
   return {1.0 / largest, found.bounds[0] / (largest * largest)};
@@ -286,12 +289,12 @@ double rough_lambda_max(const Part& part, DistributedOperator& op, Preconditione
 }
 
 SpectrumResult estimate_spectrum(const Part& part, DistributedOperator& op, Preconditioner& amg,
-                                 std::span<const double> g, bool friction, double tolerance) {
+                                 std::span<const double> g, bool friction, const SpectrumOptions& options) {
   const double start = MPI_Wtime();
   const auto applications = op.applications();
   const std::vector<TraceChoice> all(part.contact.size(), {true, friction}), none(part.contact.size());
   const TraceRows rows(part, all), held(part, none);
-  Spectrum spectrum(part, op, amg, g, tolerance);
+  Spectrum spectrum(part, op, amg, g, options);
   SpectrumResult result;
   result.friction = friction;
   result.traces = rows.total();
@@ -305,6 +308,7 @@ SpectrumResult estimate_spectrum(const Part& part, DistributedOperator& op, Prec
   result.bound_max = high.bound;
   if (low.value > 0.0)
     result.r_star = 1.0 / std::sqrt(low.value * (high.value > 0.0 ? high.value : low.value));
+  result.converged = spectrum.cost().converged;
   result.products = spectrum.cost().products;
   result.cg_iterations = spectrum.cost().cg_iterations;
   result.operator_applications = op.applications() - applications;

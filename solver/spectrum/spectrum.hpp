@@ -65,11 +65,16 @@ class TraceRows {
   std::int64_t total_ = 0;
 };
 
+struct SpectrumOptions {
+  double tolerance = 1e-2;  ///< relative, on eigenvalues
+  int max_cg = 2000;        ///< CG iterations of one product
+};
+
 /// Bookkeeping of a run of estimates.
 struct SpectrumCost {
   int products = 0;
   std::int64_t cg_iterations = 0;
-  bool converged = true;
+  bool converged = true;  ///< every solve and every Lanczos estimate
 };
 
 struct Eigenvalue {
@@ -80,7 +85,7 @@ class Spectrum {
  public:
   /// Uses (and re-sets) `amg`; works with the secant frozen in `op` and `g`.
   Spectrum(const Part& part, DistributedOperator& op, Preconditioner& amg, std::span<const double> g,
-           double tolerance);
+           const SpectrumOptions& options);
 
   /// λ_max of D^½ C B⁻¹ Cᵀ D^½ with the rows `held` held at zero. Where rigid modes are loose (`loose`), B⁻¹
   /// does not exist; the largest finite eigenvalue is taken from B + r₀ CᵀDC, whose eigenvalues are λ/(1 + r₀
@@ -99,7 +104,7 @@ class Spectrum {
   DistributedOperator* op_;
   Preconditioner* amg_;
   std::span<const double> g_;
-  double tolerance_;
+  SpectrumOptions options_;
   SpectrumCost cost_;
 };
 
@@ -112,6 +117,6 @@ double rough_lambda_max(const Part& part, DistributedOperator& op, Preconditione
 
 /// λ_min, λ_max, r* of (32) for N, or for [N; T] with `friction`.
 SpectrumResult estimate_spectrum(const Part& part, DistributedOperator& op, Preconditioner& amg,
-                                 std::span<const double> g, bool friction, double tolerance);
+                                 std::span<const double> g, bool friction, const SpectrumOptions& options);
 
 }  // namespace kacanov

@@ -32,6 +32,7 @@ struct Solved {
         for (std::size_t c = 0; c < 3; ++c)
           state.lambda.tangential[2 * i + k] -= run.solution.traction[i][c] * points[i].tangent[k][c];
       state.bound.push_back(points[i].tresca);
+      state.gap.push_back(points[i].gap);
     }
     state.trace = ContactValues(points.size());
     traces.evaluate(state.omega, state.trace);
@@ -44,9 +45,9 @@ struct Solved {
     Vector g(run.part.body().secant_count()), diagonal(internal.size());
     reference::secant(run.part.body(), Vector(internal.size(), 0.0), g);
     reference::diagonal(run.part.body(), g, diagonal);
-    return kkt_residuals(space, traces, state, internal, reference::energy(run.part.body(), state.omega),
-                         std::vector<float>(diagonal.begin(), diagonal.end()))
-        .certificate;
+    const std::vector<float> stiffness(diagonal.begin(), diagonal.end());
+    const double energy = reference::energy(run.part.body(), state.omega);
+    return kkt_residuals(space, traces, state, {run.part.load, internal, energy, stiffness}).certificate;
   }
   /// A contact point under pressure that sticks, one that slips, or an open one.
   std::size_t find(ContactStatus status, bool pressed) const {

@@ -63,7 +63,8 @@ struct Setting {
     traces.evaluate(state.omega, state.trace);
     for (std::size_t i = 0; i < points; ++i) {
       state.bound[i] = part.contact[i].tresca;
-      state.phi.normal[i] = part.contact[i].gap;
+      state.gap.push_back(part.contact[i].gap);
+      state.phi.normal[i] = state.gap[i];
       if (i % 2 == 0) state.lambda.normal[i] = pressure;
     }
     return state;

@@ -77,6 +77,7 @@ struct SolverOptions {
   Preconditioner preconditioner = Preconditioner::multigrid;
   int max_outer = 100;
   int max_contact = 10000;           ///< contact iterations within an outer step
+  int max_cg = 2000;                 ///< CG iterations of one solve; what takes more has not converged
   double spectrum_tolerance = 1e-2;  ///< relative, on λ_min and λ_max
   /// Factors on loads, prescribed displacements and indentation, one after the other; the last is 1. Empty:
   /// at once.

@@ -31,7 +31,8 @@ struct SpectrumResult {
   double lambda_min = 0.0, lambda_max = 0.0;
   double bound_min = 0.0, bound_max = 0.0;  ///< Ritz residual bounds, absolute, on each λ
   double r_star = 0.0;                      ///< (32)
-  int products = 0;                         ///< products with K or K⁻¹, one solve each
+  bool converged = true;  ///< every solve and both Lanczos estimates; else λ and r* are rough
+  int products = 0;       ///< products with K or K⁻¹, one solve each
   std::int64_t cg_iterations = 0;
   std::uint64_t operator_applications = 0;
   double seconds = 0.0;
