@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
+# The rooms of the solver, one program each, and whole solves.
 kacanov_test(problem
   SOURCES solver/problem_contact_test.cpp solver/problem_loads_test.cpp
           solver/problem_rigid_modes_test.cpp

@@ -1,4 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
+# Case files, file formats, pictures, and the program as its users start it.
 find_package(nlohmann_json REQUIRED)
 kacanov_test(case
   SOURCES tools/case_errors_test.cpp tools/case_values_test.cpp

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The writers of formats 2.2 and 4.1, ASCII and binary alike.
 #include "mesh_writer.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Written beside its place, flushed and renamed, so that a crash leaves the old file or the new one.
 #include "formats/atomic_file.hpp"
 
 #include <fcntl.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Gmsh's element numbers and their names.
 #include "formats/gmsh_content.hpp"
 
 namespace kacanov {

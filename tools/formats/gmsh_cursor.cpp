@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Numbers, words and raw values, and messages with the line or byte they are about.
 #include "formats/gmsh_cursor.hpp"
 
 #include <algorithm>

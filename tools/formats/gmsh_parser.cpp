@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The sections of a Gmsh file, each in its two versions.
 #include "formats/gmsh_parser.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// From the content of a Gmsh file to a mesh: which elements are the body, and what its groups name.
 #include "formats/gmsh_reader.hpp"
 
 #include <algorithm>

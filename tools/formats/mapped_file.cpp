@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The file mapped by the system, and unmapped at the end.
 #include "formats/mapped_file.hpp"
 
 #include <fcntl.h>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// A table where the numbers are dense, a sorted list where they are not.
 #include "formats/node_index.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The XML around the arrays, and the arrays themselves as raw bytes at the end.
 #include "formats/vtu_writer.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The colours of the scale, and the round numbers at which its bands end.
 #include "pictures/colour_scale.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The chunks of a PNG file with their checksums, and a small compression of its rows.
 #include "pictures/png.hpp"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Triangles of the boundary and their outlines, projected.
 #include "pictures/surface.hpp"
 
 #include <algorithm>

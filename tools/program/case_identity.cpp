@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Compares two case files section by section and names the keys that differ.
 #include "program/case_identity.hpp"
 
 #include <sstream>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Writes and checks the pieces and their hashes.
 #include "program/hashed_file.hpp"
 
 #include <filesystem>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// The fields of a part and of the boundary as the pieces of a hashed file.
 #include "program/part_files.hpp"
 
 #include <fstream>

@@ -1,0 +1,237 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Draws which room of the house includes which, and fails where an arrow runs back.
+
+usage: include_graph.py ROOT [--dot FILE]
+
+A room may include the rooms of the levels before its own, and itself. Also checked, file by file: that public
+headers include public headers only, that what is included exists, the SPDX line, the sentence that says what the
+file is for, and the number of lines.
+"""
+import argparse
+import pathlib
+import posixpath
+import re
+import statistics
+import sys
+
+# From the ground up; the rooms of one level do not know each other.
+LEVELS = [
+    ["kernels/cells"],
+    ["kernels/law"],
+    ["kernels/reference", "kernels/simd"],
+    ["kernels/operator"],
+    ["kernels/multigrid"],
+    ["kernels/c"],
+    ["kernels/examples"],
+    ["solver/mesh"],
+    ["solver/problem"],
+    ["solver/parallel"],
+    ["solver/linear"],
+    ["solver/amg", "solver/contact"],
+    ["solver/spectrum"],
+    ["solver/nonlinear"],
+    ["solver/solve"],
+    ["tools/case", "tools/formats"],
+    ["tools/pictures"],
+    ["tools/program"],
+    ["perf", "python"],
+    ["tests"],
+]
+PUBLIC = ["kernels/include/kacanov", "solver/include/kacanov"]
+# Where "room/file.hpp" is looked for, after the folder of the file itself.
+INCLUDE_FOLDERS = ["kernels", "solver", "tools", "tests/solver"]
+
+# Public headers live with the source file of their name; these have none, or one of another name.
+HEADER_ROOMS = {
+    "kacanov.h": "kernels/c",
+    "mesh_view.hpp": "kernels/cells",
+    "error.hpp": "solver/mesh",
+    "model.hpp": "solver/problem",
+    "result.hpp": "solver/problem",
+    "index_runs.hpp": "solver/parallel",
+    "part.hpp": "solver/parallel",
+}
+
+MOST_LINES = 400
+# Files that are longer, and why. An entry that is not needed any more is an error.
+LONGER = {
+    "kernels/operator/layout.cpp": "to be split",
+    "solver/amg/rigid_level.cpp": "to be split",
+    "solver/nonlinear/outer_loop.cpp": "to be split",
+    "tests/solver/closed_test.cpp": "to be split",
+    "tests/solver/dense_solver.hpp": "a second solver, which shares no line with the first, as one class",
+}
+# Arrows that still run back: (room, included room). An entry that is not needed any more is an error.
+KNOWN_BACKWARD = {
+    ("solver/contact", "solver/spectrum"),
+    ("solver/nonlinear", "solver/solve"),
+}
+
+CODE = {".cpp", ".hpp", ".h", ".c", ".py"}
+
+
+def source_files(root):
+    """Every file of the house that somebody wrote as code: what is built, and the scripts."""
+    tops = sorted({room.split("/")[0] for level in LEVELS for room in level})
+    found = [root / "CMakeLists.txt", root / ".ci/run"]
+    for top in tops:
+        for path in sorted((root / top).rglob("*")):
+            if not path.is_file() or "build" in path.parts or "__pycache__" in path.parts:
+                continue
+            if path.suffix in CODE | {".cmake"} or path.name == "CMakeLists.txt":
+                found.append(path)
+            elif not path.suffix and path.open("rb").read(2) == b"#!":
+                found.append(path)
+    return [path for path in found if path.exists()]
+
+
+def room_of(path):
+    """The room of a file, by its path relative to the root; public headers as their table or source file says."""
+    parts = path.split("/")
+    if parts[0] in ("perf", "python", "tests"):
+        return parts[0]
+    if parts[0] == "solver" and len(parts) == 2:
+        return "solver/solve"
+    return "/".join(parts[:2])
+
+
+def rooms_of_files(files):
+    """The room of each of the paths, and complaints about public headers that have none."""
+    sources = {}
+    for path in files:
+        if path.endswith(".cpp") and path.startswith(("kernels/", "solver/")):
+            sources.setdefault(path.split("/")[0] + "/" + pathlib.PurePath(path).stem, []).append(room_of(path))
+    rooms, complaints, used = {}, [], set()
+    for path in files:
+        header = pathlib.PurePath(path)
+        if str(header.parent) not in PUBLIC:
+            rooms[path] = "kernels/c" if path == "kernels/include/kacanov.h" else room_of(path)
+            continue
+        same_name = sources.get(path.split("/")[0] + "/" + header.stem, [])
+        if header.name in HEADER_ROOMS:
+            used.add(header.name)
+            rooms[path] = HEADER_ROOMS[header.name]
+        elif len(same_name) == 1:
+            rooms[path] = same_name[0]
+        else:
+            complaints.append(f"{path}: no room has one source file of this name: name its room in HEADER_ROOMS")
+    complaints += [f"HEADER_ROOMS: {name} is no public header" for name in HEADER_ROOMS.keys() - used]
+    return rooms, complaints
+
+
+def included_files(path, text, files):
+    """What the file includes of the project's own: pairs of the words in the #include and the file, or None."""
+    for bracket, name in re.findall(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', text, re.MULTILINE):
+        if bracket == "<":
+            candidates = [f"{top}/include/{name}" for top in ("kernels", "solver")]
+            if not name.startswith("kacanov"):
+                continue
+        else:
+            beside = posixpath.normpath(posixpath.join(posixpath.dirname(path), name))
+            candidates = [beside] + [f"{top}/{name}" for top in INCLUDE_FOLDERS]
+        yield name, next((c for c in candidates if c in files), None)
+
+
+def draw(texts):
+    """Arrows between rooms, each with the includes that make it, and complaints, of paths with their texts."""
+    rooms, complaints = rooms_of_files(texts)
+    arrows = {}
+    for path, text in texts.items():
+        if pathlib.PurePath(path).suffix not in CODE - {".py"} or path not in rooms:
+            continue
+        for name, target in included_files(path, text, texts):
+            if target is None:
+                complaints.append(f"{path}: includes {name}, which is not there")
+            elif target in rooms:
+                arrows.setdefault((rooms[path], rooms[target]), []).append(f"{path} includes {name}")
+                if "/include/" in path and "/include/" not in target:
+                    complaints.append(f"{path}: is installed, and includes {name}, which is not")
+    return arrows, complaints
+
+
+def backward(arrows):
+    """Complaints about arrows to a room that is not of a lower level, and about exceptions without need."""
+    level_of = {room: number for number, level in enumerate(LEVELS) for room in level}
+    complaints, met = [], set()
+    for (room, target), includes in arrows.items():
+        unknown = [r for r in (room, target) if r not in level_of]
+        complaints += [f"{r}: no such room in LEVELS: {includes[0]}" for r in unknown]
+        if unknown or room == target or level_of[target] < level_of[room]:
+            continue
+        met.add((room, target))
+        if (room, target) not in KNOWN_BACKWARD:
+            complaints += [f"{room} → {target} runs back: {include}" for include in includes]
+    complaints += [f"KNOWN_BACKWARD: {a} → {b} is gone: strike it" for a, b in KNOWN_BACKWARD - met]
+    return complaints
+
+
+def opening(text):
+    """The comment below the SPDX line, in plain words."""
+    lines = text.splitlines()
+    if lines and lines[0].startswith("#!"):
+        lines = lines[1:]
+    comment = r'\s*(//|/?\*|# )'
+    below = lines[1:4]
+    if not below or not re.match(comment + '|"""', below[0]):
+        return ""
+    kept = [line for line in below if below[0].startswith('"""') or re.match(comment, line)]
+    return " ".join(line.strip(' /*#"') for line in kept)
+
+
+def file_complaints(path, text):
+    """What the head and the length of one file lack."""
+    lines = text.splitlines()
+    head = lines[1:2] if lines and lines[0].startswith("#!") else lines[:1]
+    if not head or "SPDX-License-Identifier: BSD-3-Clause" not in head[0]:
+        yield f"{path}: no SPDX line at its top"
+    elif not re.search(r"\w+ .*[\w)][.:;]", opening(text)):
+        yield f"{path}: no sentence below the SPDX line that says what it is for"
+    if len(lines) > MOST_LINES and path not in LONGER:
+        yield f"{path}: {len(lines)} lines, more than {MOST_LINES}: split it, or say in LONGER why not"
+    if len(lines) <= MOST_LINES and path in LONGER:
+        yield f"LONGER: {path} has {len(lines)} lines: strike it"
+
+
+def print_drawing(arrows):
+    for level in LEVELS:
+        for room in level:
+            targets = [r for lower in LEVELS for r in lower if (room, r) in arrows and r != room]
+            print(f"  {room:<18}" + (f" → {', '.join(targets)}" if targets else ""))
+
+
+def write_dot(arrows, path):
+    lines = ["digraph rooms {", "  rankdir=BT; node [shape=box, fontname=sans];"]
+    lines += [f'  {{ rank=same; {" ".join(chr(34) + room + chr(34) + ";" for room in level)} }}' for level in LEVELS]
+    lines += [f'  "{a}" -> "{b}";' for a, b in sorted(arrows) if a != b]
+    path.write_text("\n".join(lines + ["}"]) + "\n", encoding="utf-8")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("root", type=pathlib.Path)
+    parser.add_argument("--dot", type=pathlib.Path, metavar="FILE", help="write the drawing for Graphviz")
+    arguments = parser.parse_args()
+    texts = {path.relative_to(arguments.root).as_posix(): path.read_text(encoding="utf-8")
+             for path in source_files(arguments.root)}
+    arrows, complaints = draw(texts)
+    complaints += backward(arrows)
+    for path, text in texts.items():
+        complaints += file_complaints(path, text)
+
+    print_drawing(arrows)
+    if arguments.dot:
+        write_dot(arrows, arguments.dot)
+    lengths = {path: len(text.splitlines()) for path, text in texts.items() if pathlib.PurePath(path).suffix in CODE}
+    largest = max(lengths, key=lengths.get)
+    print(f"{len(lengths)} source files, {sum(lengths.values())} lines; "
+          f"median {statistics.median(lengths.values()):g}, "
+          f"90th percentile {statistics.quantiles(lengths.values(), n=10)[-1]:g}, "
+          f"largest {largest} with {lengths[largest]}")
+    for complaint in complaints:
+        print(complaint, file=sys.stderr)
+    return 1 if complaints else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
