@@ -16,6 +16,7 @@ ROOT = pathlib.Path(sys.argv.pop(1)).resolve()
 DOCS = ROOT / "docs"
 RENDER = ROOT / "perf" / "render_tables"
 CODE = {".cpp", ".hpp", ".c", ".h", ".py", ".cmake", ".txt"}
+CITATION = re.compile(r"\btheory:\s+(?:(?://+|\*|#)\s*)?([a-z][a-z0-9-]*[a-z0-9])")  # a line may end before the label
 ROOMS = ("kernels", "solver", "tools", "tests", "perf", "python")
 
 
@@ -80,7 +81,7 @@ class Labels(unittest.TestCase):
             for path in (ROOT / room).rglob("*"):
                 if path.suffix not in CODE or not path.is_file() or path == pathlib.Path(__file__).resolve():
                     continue
-                for label in re.findall(r"\btheory: ([a-z][a-z0-9-]*[a-z0-9])", path.read_text(encoding="utf-8")):
+                for label in CITATION.findall(path.read_text(encoding="utf-8")):
                     if label not in self.listed:
                         wrong.append(f"{path.relative_to(ROOT)}: {label}")
         self.assertEqual(wrong, [])
