@@ -248,7 +248,9 @@ int main(int argc, char** argv) {
   CLI11_PARSE(app, argc, argv);
   if (!started_by_mpi()) {
     const int ranks = options.ranks > 0 ? options.ranks : usable_cores();
-    if (ranks > 1) return run_under_mpiexec(find_mpiexec(), {ranks, options.threads}, argc, argv);
+    if (ranks > 1)
+      return run_under_mpiexec(find_mpiexec(), {ranks, options.threads}, "",
+                               {argv, static_cast<std::size_t>(argc)});
     set_mpi_environment();
   }
   const MpiSession mpi;

@@ -7,7 +7,7 @@ kacanov_test(case
 add_library(kacanov_program_runner OBJECT tools/program_runner.cpp)
 target_link_libraries(kacanov_program_runner PUBLIC nlohmann_json::nlohmann_json kacanov_warnings)
 target_compile_definitions(kacanov_program_runner PRIVATE KACANOV_PROGRAM="$<TARGET_FILE:kacanov>")
-foreach(area program_errors program_failures program_memory program_partition program_restart program_runs)
+foreach(area program_errors program_failures program_files program_memory program_partition program_restart program_runs)
   kacanov_test(${area} SOURCES tools/${area}_test.cpp LIBRARIES kacanov_program_runner)
   target_compile_definitions(test_${area} PRIVATE
     KACANOV_PROGRAM="$<TARGET_FILE:kacanov>" KACANOV_MPIEXEC="${MPIEXEC_EXECUTABLE}")
@@ -19,6 +19,8 @@ kacanov_test(gmsh
   SOURCES tools/mesh_roundtrip_test.cpp tools/mesh_messages_test.cpp tools/mesh_writer.cpp
   LIBRARIES kacanov_formats)
 target_compile_definitions(test_gmsh PRIVATE KACANOV_EXAMPLES="${PROJECT_SOURCE_DIR}/tools/examples")
+
+kacanov_test(files SOURCES tools/control_group_test.cpp tools/mapped_file_test.cpp LIBRARIES kacanov_program)
 
 kacanov_test(vtu SOURCES tools/vtu_test.cpp LIBRARIES kacanov_formats)
 

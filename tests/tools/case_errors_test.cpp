@@ -177,7 +177,7 @@ TEST_CASE("repeated keys and numbers out of range are named by their path") {
 TEST_CASE("a case file that is not there or is a folder") {
   const auto reading = [](const char* path) {
     try {
-      read_case(path, {});
+      read_case_text(path);
     } catch (const InputError& error) {
       return std::string(error.what());
     }

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 #include <kacanov/error.hpp>
 #include "case/case_material.hpp"
@@ -13,6 +12,8 @@
 
 namespace kacanov {
 namespace {
+
+constexpr std::size_t largest_case = std::size_t{64} << 20;
 
 /// Reads the parts of a case, noting every vector on the way.
 class CaseParser {
@@ -269,21 +270,35 @@ Case parse_case(const nlohmann::json& document, const std::string& folder) {
   return CaseParser(folder).parse(document);
 }
 
-Case read_case(const std::string& path, std::span<const std::string> overrides) {
-  const std::filesystem::path file(path);
-  if (std::filesystem::is_directory(file))
+CaseText read_case_text(const std::string& path) {
+  if (std::filesystem::is_directory(path))
     throw InputError(path + ": this is a folder, expected a case file");
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream(path, std::ios::binary);
   if (!stream) {
     throw InputError(path + ": " +
-                     (std::filesystem::exists(file) ? "cannot be read" : "there is no such file"));
+                     (std::filesystem::exists(path) ? "cannot be read" : "there is no such file"));
   }
-  std::ostringstream text;
-  text << stream.rdbuf();
-  nlohmann::json document = parse_json(text.str(), path);
+  // A pipe has no size to ask for, so the text is counted as it comes.
+  CaseText read{path, {}};
+  for (std::string piece(std::size_t{1} << 16, '\0'); stream;) {
+    stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    read.text.append(piece, 0, static_cast<std::size_t>(stream.gcount()));
+    if (read.text.size() > largest_case)
+      throw InputError(path +
+                       ": this is larger than 64 MiB, which no case is; meshes have files of their own");
+  }
+  if (stream.bad()) throw InputError(path + ": cannot be read to its end");
+  return read;
+}
+
+Case parse_case(const CaseText& text, std::span<const std::string> overrides) {
+  nlohmann::json document = parse_json(text.text, text.path);
   for (const std::string& assignment : overrides) apply_override(document, assignment);
+  const std::filesystem::path file(text.path);
   Case input = parse_case(document, file.parent_path().string());
   input.name = file.stem().string();
+  // Results go to a folder of this name: not to the one above ("...json").
+  if (input.name.empty() || input.name == "." || input.name == "..") input.name = "case";
   input.document = std::move(document);
   return input;
 }

@@ -46,8 +46,17 @@ struct Case {
 /// naming the path of the key that is unknown, missing or wrong, and what was expected there.
 Case parse_case(const nlohmann::json& document, const std::string& folder);
 
-/// Reads a case file, applies `overrides` ("solver.tolerance=1e-8") to it and parses it.
-Case read_case(const std::string& path, std::span<const std::string> overrides);
+/// What a case file says, read once: others who need it are handed the text, as the file may change.
+struct CaseText {
+  std::string path, text;
+};
+
+/// Reads a file or a pipe to its end. Throws InputError naming the file if there is none, if it cannot be
+/// read, or if it is larger than 64 MiB.
+CaseText read_case_text(const std::string& path);
+
+/// Applies `overrides` ("solver.tolerance=1e-8") to a case and parses it.
+Case parse_case(const CaseText& text, std::span<const std::string> overrides);
 
 /// Sets the value at a path in the document: `key.key[index].key=value`, the value being JSON or else a
 /// string. Missing objects on the way are made; whether the keys mean anything is for parse_case to say.

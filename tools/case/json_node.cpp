@@ -17,6 +17,8 @@ using nlohmann::json;
 
 /// Numbers beyond this would overflow when squared on the way.
 constexpr double largest_number = 1e100;
+/// A case has some five levels; what is made of thousands would end the stack.
+constexpr std::size_t deepest = 64;
 
 std::string shown(const json& value) {
   std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
@@ -93,6 +95,8 @@ class Scanner : public nlohmann::json_sax<json> {
     return true;
   }
   bool push(bool array) {
+    if (levels_.size() == deepest)
+      throw InputError(path() + ": more than " + std::to_string(deepest) + " levels of brackets");
     levels_.push_back({array, 0, {}, {}});
     return true;
   }

@@ -16,8 +16,17 @@ namespace kacanov {
 
 AtomicFile::AtomicFile(std::string path)
     : path_(std::move(path)), temporary_(path_ + ".part" + std::to_string(::getpid())) {
-  file_ = std::fopen(temporary_.c_str(), "wb");
-  if (!file_) fail(errno);
+  // What stands there is of a process that is gone (its number has come round), or somebody's trap: it goes,
+  // and nothing is ever written through a link.
+  std::remove(temporary_.c_str());
+  const int handle = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+  if (handle < 0) fail(errno);
+  file_ = ::fdopen(handle, "wb");
+  if (file_) return;
+  const int error = errno;
+  ::close(handle);
+  std::remove(temporary_.c_str());
+  fail(error);
 }
 
 AtomicFile::~AtomicFile() {

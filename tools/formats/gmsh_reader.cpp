@@ -210,7 +210,14 @@ bool plain_numbers(const std::vector<std::int64_t>& tags) {
 
 GmshContent parse_file(const std::string& path) {
   const MappedFile file(path);
-  return parse_gmsh(path, file.bytes());
+  try {
+    GmshContent content = parse_gmsh(path, file.bytes());
+    file.check_unchanged();
+    return content;
+  } catch (const InputError&) {
+    file.check_unchanged();  // then that is what is wrong
+    throw;
+  }
 }
 
 Mesh make_mesh(const std::string& path, GmshContent content) {

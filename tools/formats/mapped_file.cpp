@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The file mapped by the system, and unmapped at the end.
+// A mapping that survives its file's being shortened.
 #include "formats/mapped_file.hpp"
 
 #include <fcntl.h>
@@ -7,35 +7,82 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 
 #include <kacanov/error.hpp>
 
 namespace kacanov {
+namespace {
 
-MappedFile::MappedFile(const std::string& path) {
-  const auto refuse = [&](const std::string& why) -> void { throw InputError(path + ": " + why); };
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (file < 0) refuse(std::string("cannot be opened: ") + std::strerror(errno));
-  struct stat status {};
-  const bool known = ::fstat(file, &status) == 0;
-  void* mapped = MAP_FAILED;
-  int error = errno;
-  if (known && S_ISREG(status.st_mode) && status.st_size > 0) {
-    size_ = static_cast<std::size_t>(status.st_size);
-    mapped = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file, 0);
-    error = errno;
-  }
-  ::close(file);
-  if (known && S_ISDIR(status.st_mode)) refuse("is a folder, not a file");
-  if (known && !S_ISREG(status.st_mode)) refuse("is not a regular file");
-  if (known && status.st_size == 0) refuse("is empty");
-  if (mapped == MAP_FAILED) refuse(std::string("cannot be read: ") + std::strerror(error));
-  ::madvise(mapped, size_, MADV_SEQUENTIAL);
-  data_ = static_cast<const char*>(mapped);
+/// The one range in which a bus error is answered; others are what they always were.
+std::atomic<const char*> guarded_begin = nullptr, guarded_end = nullptr;
+
+/// Puts a page of zeros where the file has none any more; the read that failed is tried again and goes on.
+void put_zeros(int, siginfo_t* info, void*) {
+  const auto* at = static_cast<const char*>(info->si_addr);
+  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
+  void* start = reinterpret_cast<void*>(reinterpret_cast<std::uintptr_t>(at) / page * page);
+  const bool ours = at >= guarded_begin.load() && at < guarded_end.load();
+  if (!ours || ::mmap(start, page, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0) == MAP_FAILED)
+    std::signal(SIGBUS, SIG_DFL);
 }
 
-MappedFile::~MappedFile() { ::munmap(const_cast<char*>(data_), size_); }
+/// From now on; an empty range ends it.
+void guard(const char* data, std::size_t size) {
+  guarded_begin = data;
+  guarded_end = data + size;
+  struct sigaction action {};
+  action.sa_handler = SIG_DFL;
+  if (size > 0) {
+    action.sa_sigaction = put_zeros;
+    action.sa_flags = SA_SIGINFO;
+  }
+  sigaction(SIGBUS, &action, nullptr);
+}
+
+std::int64_t modification(const struct stat& status) {
+  return std::int64_t{status.st_mtim.tv_sec} * 1'000'000'000 + status.st_mtim.tv_nsec;
+}
+
+}  // namespace
+
+MappedFile::MappedFile(const std::string& path) : path_(path) {
+  const auto refuse = [&](const std::string& why) -> void {
+    if (file_ >= 0) ::close(file_);
+    throw InputError(path + ": " + why);
+  };
+  file_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (file_ < 0) refuse(std::string("cannot be opened: ") + std::strerror(errno));
+  struct stat status {};
+  if (::fstat(file_, &status) != 0) refuse(std::string("cannot be read: ") + std::strerror(errno));
+  if (S_ISDIR(status.st_mode)) refuse("is a folder, not a file");
+  if (!S_ISREG(status.st_mode)) refuse("is not a regular file");
+  if (status.st_size == 0) refuse("is empty");
+  size_ = static_cast<std::size_t>(status.st_size);
+  modified_ = modification(status);
+  void* mapped = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file_, 0);
+  if (mapped == MAP_FAILED) refuse(std::string("cannot be read: ") + std::strerror(errno));
+  ::madvise(mapped, size_, MADV_SEQUENTIAL);
+  data_ = static_cast<const char*>(mapped);
+  guard(data_, size_);
+}
+
+MappedFile::~MappedFile() {
+  guard(nullptr, 0);
+  ::munmap(const_cast<char*>(data_), size_);
+  ::close(file_);
+}
+
+void MappedFile::check_unchanged() const {
+  struct stat status {};
+  if (::fstat(file_, &status) == 0 && static_cast<std::size_t>(status.st_size) == size_ &&
+      modification(status) == modified_)
+    return;
+  throw InputError(path_ + ": was changed while it was read (" + std::to_string(size_) +
+                   " bytes when it was opened)");
+}
 
 }  // namespace kacanov

@@ -104,13 +104,14 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
   const double start = MPI_Wtime();
   LoadedCase loaded = load(command, input, mpi);
   const std::filesystem::path folder = output_folder(command, input);
-  std::optional<CheckpointFile> file;  // on the first rank
+  std::optional<OutputFolder> held;  // on the first rank, as what follows
+  std::optional<CheckpointFile> file;
   std::optional<Checkpoint> left;
   together(mpi, [&] {
     if (!mpi.first()) return;
     file.emplace(folder, input, loaded.print);
     if (command.restart) left = file->read();
-    prepare_folder(folder);
+    held.emplace(folder);
     clear_folder(folder);
     if (!command.restart) file->remove();
   });

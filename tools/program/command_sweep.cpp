@@ -66,8 +66,9 @@ int sweep_command(const Command& command, const Case& input, const MpiSession& m
   });
   LoadedCase loaded = load_case(input, mpi);
   const std::filesystem::path folder = output_folder(command, input);
+  std::optional<OutputFolder> held;
   together(mpi, [&] {
-    if (mpi.first()) prepare_folder(folder);
+    if (mpi.first()) held.emplace(folder);
   });
   RunOptions options;
   options.threads = threads_of(command);

@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <sched.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -23,6 +24,7 @@
 
 #include <kacanov/error.hpp>
 #include "program/command.hpp"
+#include "program/control_group.hpp"
 #include "program/interrupt.hpp"
 
 namespace kacanov {
@@ -38,25 +40,28 @@ volatile std::sig_atomic_t running_child = 0;
 volatile std::sig_atomic_t caught_signal = 0;
 
 timespec first_caught{};
-volatile std::sig_atomic_t insisting = 0;
+volatile std::sig_atomic_t insisting = 0;  // seconds since it was asked for again
 
 /// Asks the ranks to stop, through mpiexec and once a second: it or they may not listen yet. Asked again,
-/// mpiexec ends them.
+/// mpiexec ends them; where it has not within some seconds, it is ended itself, and the ranks with it.
 extern "C" void pass_on(int signal) {
+  constexpr int patience = 5;  // seconds
   if (signal != SIGALRM) {
     caught_signal = signal;
-    if (asks_again(first_caught)) insisting = 1;
+    if (asks_again(first_caught) && insisting == 0) insisting = 1;
+  } else if (insisting > 0) {
+    insisting = insisting + 1;
   }
-  if (running_child > 0) kill(static_cast<pid_t>(running_child), insisting != 0 ? SIGTERM : stop_signal);
+  const int next = insisting == 0 ? stop_signal : insisting <= patience ? SIGTERM : SIGKILL;
+  if (running_child > 0) kill(static_cast<pid_t>(running_child), next);
   alarm(1);
 }
 
-/// CPUs a control group's quota amounts to; a large number without one.
-int quota_cores() {
-  std::ifstream file("/sys/fs/cgroup/cpu.max");
-  double quota = 0.0, period = 0.0;
-  if (!(file >> quota >> period) || period <= 0.0) return 1 << 20;
-  return std::max(1, static_cast<int>(quota / period));
+/// Stops the ranks, which are not of the terminal's foreground group, and then this process; later the
+/// converse.
+extern "C" void pause_with_ranks(int signal) {
+  if (running_child > 0) kill(static_cast<pid_t>(running_child), signal);
+  if (signal == SIGTSTP) raise(SIGSTOP);
 }
 
 /// Open MPI that cannot map its libraries and shared memory crashes with a trace, or hangs.
@@ -71,14 +76,27 @@ void refuse_narrow_limit() {
                    std::to_string(least));
 }
 
-[[noreturn]] void become_mpiexec(const std::vector<std::string>& words) {
+/// A file without a name that holds `text`, to be read from its beginning.
+int nameless_file(const std::string& text) {
+  const int file = memfd_create("kacanov-case", MFD_CLOEXEC);
+  std::size_t written = 0;
+  while (file >= 0 && written < text.size()) {
+    const ssize_t more = write(file, text.data() + written, text.size() - written);
+    if (more < 0) break;
+    written += static_cast<std::size_t>(more);
+  }
+  if (file < 0 || written < text.size() || lseek(file, 0, SEEK_SET) != 0)
+    throw InternalError(std::string("cannot hand the case to the ranks: ") + std::strerror(errno));
+  return file;
+}
+
+[[noreturn]] void become_mpiexec(const std::vector<std::string>& words, int input) {
   // Its own group, so that an interrupt from the keyboard comes once, through pass_on; and no orphan if this
   // program is killed outright.
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   std::signal(stop_signal, SIG_IGN);  // until mpiexec listens to it
-  const int nothing = open("/dev/null", O_RDONLY);
-  if (nothing >= 0) dup2(nothing, STDIN_FILENO);
+  dup2(input, STDIN_FILENO);
   std::vector<char*> pointers;
   for (const std::string& word : words) pointers.push_back(const_cast<char*>(word.c_str()));
   pointers.push_back(nullptr);
@@ -111,7 +129,8 @@ int usable_cores() {
     if (!(file >> siblings)) siblings = "cpu" + std::to_string(cpu);
     cores.insert(siblings);
   }
-  return std::clamp(static_cast<int>(cores.size()), 1, quota_cores());
+  const double quota = std::max(1.0, control_group_limits().cores);
+  return static_cast<int>(std::clamp(static_cast<double>(cores.size()), 1.0, quota));
 }
 
 std::int64_t estimate_unknowns(const MeshSource& mesh) {
@@ -164,6 +183,8 @@ void set_mpi_environment() {
       {"OMPI_MCA_btl_base_warn_component_unused", "0"},
       // Waiting ranks let others work: on a busy machine spinning ones hold up the run.
       {"OMPI_MCA_mpi_yield_when_idle", "1"},
+      // mpiexec passes SIGTSTP and SIGCONT on to the ranks.
+      {"OMPI_MCA_orte_forward_job_control", "1"},
       {"HWLOC_HIDE_ERRORS", "2"},
   };
   for (const auto& [name, value] : settings) setenv(name, value, 0);
@@ -173,7 +194,13 @@ int coded_exit(int exit_code) {
   return exit_code != 0 && std::getenv(started_mark) != nullptr ? exit_code + code_offset : exit_code;
 }
 
-int run_under_mpiexec(const std::string& mpiexec, Shape shape, int argc, const char* const* argv) {
+CaseText case_text_handed_down(const std::string& path) {
+  if (std::getenv(started_mark) == nullptr) return read_case_text(path);
+  return {path, read_case_text("/dev/stdin").text};
+}
+
+int run_under_mpiexec(const std::string& mpiexec, Shape shape, const std::string& case_text,
+                      std::span<const char* const> arguments) {
   refuse_narrow_limit();
   std::vector<std::string> words{mpiexec,
                                  "--quiet",
@@ -183,7 +210,7 @@ int run_under_mpiexec(const std::string& mpiexec, Shape shape, int argc, const c
                                  "-n",
                                  std::to_string(shape.ranks),
                                  std::filesystem::read_symlink("/proc/self/exe").string()};
-  for (int i = 1; i < argc; ++i) words.emplace_back(argv[i]);
+  for (const char* argument : arguments.subspan(1)) words.emplace_back(argument);
   set_mpi_environment();
   setenv(started_mark, "1", 1);
 
@@ -196,9 +223,14 @@ int run_under_mpiexec(const std::string& mpiexec, Shape shape, int argc, const c
       sigaction(signal, &action, nullptr);
   }
   sigaction(SIGALRM, &action, nullptr);
+  action.sa_handler = pause_with_ranks;
+  action.sa_flags = SA_RESTART;
+  for (const int signal : {SIGTSTP, SIGCONT}) sigaction(signal, &action, nullptr);
+  const int input = nameless_file(case_text);
   const pid_t child = fork();
   if (child < 0) throw InternalError(std::string("cannot start mpiexec: ") + std::strerror(errno));
-  if (child == 0) become_mpiexec(words);
+  if (child == 0) become_mpiexec(words, input);
+  close(input);
   running_child = child;
   if (caught_signal != 0) kill(child, stop_signal);
   int status = 0;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "case/case_file.hpp"
@@ -32,10 +33,16 @@ std::int64_t estimate_unknowns(const MeshSource& mesh);
 /// Path of mpiexec on PATH; empty where there is none.
 std::string find_mpiexec();
 
-/// Runs this program with the same arguments on several ranks under mpiexec and waits for it. Returns the
-/// program's exit code. A signal that ends this process ends the others as well. Throws InternalError where a
-/// process died, InputError where a limit on the address space is too narrow for MPI to start.
-int run_under_mpiexec(const std::string& mpiexec, Shape shape, int argc, const char* const* argv);
+/// Runs this program with the same arguments (argv, the program's own name first) on several ranks under
+/// mpiexec and waits for it; the first rank finds the case in its standard input. Returns the program's exit
+/// code. A signal that ends this process ends the others as well. Throws InternalError where a process died,
+/// InputError where a limit on the address space is too narrow for MPI to start.
+int run_under_mpiexec(const std::string& mpiexec, Shape shape, const std::string& case_text,
+                      std::span<const char* const> arguments);
+
+/// The case for the first rank: what run_under_mpiexec has sent, or the file where somebody else started the
+/// ranks. Throws as read_case_text.
+CaseText case_text_handed_down(const std::string& path);
 
 /// What a process that was started by run_under_mpiexec has to leave with, so that its exit code cannot be
 /// taken for one of mpiexec's own.

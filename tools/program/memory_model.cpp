@@ -3,11 +3,13 @@
 #include "program/memory_model.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 #include <string>
 
 #include <kacanov/error.hpp>
+#include "program/control_group.hpp"
 #include "program/report.hpp"
 
 namespace kacanov {
@@ -52,13 +54,6 @@ struct Demand {
     solve = {8 * dim, size.nonlinear ? 20 * slots : 0};  // step; tangent
   }
 };
-
-/// The first number in a file, 0 without one ("max": no limit).
-double number_in(const std::string& path) {
-  std::ifstream file(path);
-  double value = 0.0;
-  return file >> value ? value : 0.0;
-}
 
 /// Whether some material has another law than the linear one.
 bool nonlinear(const Model& model) {
@@ -114,12 +109,9 @@ double available_memory() {
     double kib = 0.0;
     if (words >> key >> kib && key == "MemAvailable:") available = 1024.0 * kib;
   }
-  const std::string group = "/sys/fs/cgroup/";
-  if (const double limit = number_in(group + "memory.max"); limit > 0.0) {
-    const double left = std::max(0.0, limit - number_in(group + "memory.current"));
-    available = available > 0.0 ? std::min(available, left) : left;
-  }
-  return available;
+  const double left = control_group_limits().memory;
+  if (!std::isfinite(left)) return available;
+  return available > 0.0 ? std::min(available, left) : left;
 }
 
 void refuse_what_cannot_fit(const ProblemSize& size, int ranks, int ranks_here) {

@@ -106,11 +106,22 @@ void check_part(const json& header, const Case& input, const MpiSession& mpi, co
                      std::to_string(part));
 }
 
+/// Whether this is a name of a file of a split, or of one that was being written.
+bool is_own_file(const std::string& name) {
+  return (name.starts_with("part_") || name.starts_with("boundary.")) &&
+         name.find(".kacanov") != std::string::npos;
+}
+
 /// A folder for files until all of them are whole; with it goes what is still there, and what an attempt that
-/// was killed has left.
+/// was killed has left. Throws InputError where a folder of this name has anything else in it.
 class Staging {
  public:
   explicit Staging(std::filesystem::path folder) : folder_(std::move(folder)) {
+    if (std::filesystem::exists(std::filesystem::symlink_status(folder_))) {
+      if (!std::filesystem::is_directory(std::filesystem::symlink_status(folder_))) refuse(folder_);
+      for (const auto& entry : std::filesystem::directory_iterator(folder_))
+        if (!entry.is_regular_file() || !is_own_file(entry.path().filename().string())) refuse(entry.path());
+    }
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directory(folder_);
   }
@@ -124,6 +135,10 @@ class Staging {
   const std::filesystem::path& folder() const noexcept { return folder_; }
 
  private:
+  [[noreturn]] static void refuse(const std::filesystem::path& what) {
+    throw InputError("--output: " + what.string() +
+                     " stands where parts are kept until all are written, and is none of them: move it away");
+  }
   std::filesystem::path folder_;
 };
 
@@ -137,7 +152,7 @@ std::uint64_t split_identity(json header) {
 }  // namespace
 
 void write_parts(const std::filesystem::path& folder, const Case& input, Problem problem, int parts) {
-  prepare_folder(folder);
+  const OutputFolder held(folder);
   const Staging staging(folder / "unfinished");
   const json header{{"parts", parts},
                     {"case", case_sections(input.document, sections)},

@@ -43,20 +43,33 @@ int dispatch(const Command& command, const Case& input, MpiSession& mpi) {
   return code;
 }
 
+/// Hands the first rank's text to all. Collective.
+void broadcast(const MpiSession& mpi, std::string& text) {
+  std::uint64_t size = text.size();
+  MPI_Bcast(&size, 1, MPI_UINT64_T, 0, mpi.comm());
+  text.resize(size);
+  MPI_Bcast(text.data(), static_cast<int>(size), MPI_CHAR, 0, mpi.comm());
+}
+
 /// Within MPI, with the ranks there are.
 int run_here(const Command& command, const std::optional<Case>& known) {
   take_signals();
   MpiSession mpi;
   try {
     std::optional<Case> input = known;
+    CaseText text{command.case_file, {}};
     together(mpi, [&] {
       if (!needs_one(command) && command.ranks && *command.ranks != mpi.ranks()) {
         throw InputError("--ranks: " + std::to_string(*command.ranks) + " asked for, but " +
                          std::to_string(mpi.ranks()) + " were started");
       }
-      // Every rank reads the few lines of the case file; the mesh is the first one's.
-      if (!input) input = read_case(command.case_file, command.overrides);
+      // Read once, by the first: a file that changes meanwhile would set the ranks on different cases.
+      if (!input && mpi.first()) text = case_text_handed_down(command.case_file);
     });
+    if (!input) {
+      broadcast(mpi, text.text);
+      together(mpi, [&] { input = parse_case(text, command.overrides); });
+    }
     int code = exit_converged;
     collectively(mpi, [&] { code = dispatch(command, *input, mpi); });
     return code;
@@ -77,10 +90,10 @@ std::optional<int> ranks_asked_for(const Command& command, const Case& input) {
 }
 
 /// Under mpiexec; where a process was killed, the others went with it, and only this one can still say so.
-int run_on_ranks(const std::string& mpiexec, Shape shape, const Command& command, const Case& input, int argc,
-                 const char* const* argv) {
+int run_on_ranks(const std::string& mpiexec, Shape shape, const Command& command, const Case& input,
+                 const CaseText& text, std::span<const char* const> words) {
   try {
-    return run_under_mpiexec(mpiexec, shape, argc, argv);
+    return run_under_mpiexec(mpiexec, shape, text.text, words);
   } catch (const InternalError&) {
     if (command.kind == Command::Kind::run) leave_failure(command, input, current_failure().text);
     throw;
@@ -89,7 +102,8 @@ int run_on_ranks(const std::string& mpiexec, Shape shape, const Command& command
 
 /// Started by hand: validates what is quickly validated, then goes on alone or under mpiexec.
 int run_alone(const Command& command, int argc, const char* const* argv) {
-  const Case input = read_case(command.case_file, command.overrides);
+  const CaseText text = read_case_text(command.case_file);
+  const Case input = parse_case(text, command.overrides);
   check_supported(input.model.solver);
   Shape shape = choose_shape(input, needs_one(command) ? command.ranks : ranks_asked_for(command, input),
                              command.threads, usable_cores());
@@ -99,13 +113,19 @@ int run_alone(const Command& command, int argc, const char* const* argv) {
   }
   if (shape.ranks > 1) {
     const std::string mpiexec = find_mpiexec();
-    if (!mpiexec.empty()) return run_on_ranks(mpiexec, shape, command, input, argc, argv);
+    if (!mpiexec.empty())
+      return run_on_ranks(mpiexec, shape, command, input, text, {argv, static_cast<std::size_t>(argc)});
     if (command.ranks)
       throw InputError("--ranks: mpiexec is not on the PATH; without it there is only one rank");
     std::cerr << "kacanov: note: mpiexec is not on the PATH; running on one rank\n";
   }
   set_mpi_environment();
   return run_here(command, input);
+}
+
+/// Whether what it has to say goes to files, and to the standard output only beside them.
+bool writes_files(const std::optional<Command>& command) {
+  return command && command->kind != Command::Kind::check && command->kind != Command::Kind::spectrum;
 }
 
 int say(const ParsedCommand& parsed) {
@@ -117,7 +137,9 @@ int say(const ParsedCommand& parsed) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the limit of its size is an error like a full disk
+  // A file beyond the limit of its size is an error like a full disk; who no longer reads what is printed
+  // does not end a run whose results go to files.
+  for (const int signal : {SIGXFSZ, SIGPIPE}) std::signal(signal, SIG_IGN);
   const ParsedCommand parsed = parse_command(argc, argv);
   try {
     if (started_by_mpi()) {
@@ -125,7 +147,10 @@ int main(int argc, char** argv) {
       const MpiSession mpi;
       return mpi.first() ? say(parsed) : parsed.exit_code;
     }
-    return parsed.command ? run_alone(*parsed.command, argc, argv) : say(parsed);
+    const int code = parsed.command ? run_alone(*parsed.command, argc, argv) : say(parsed);
+    if (!std::cout.flush() && !writes_files(parsed.command))
+      throw InternalError("the standard output cannot be written");
+    return code;
   } catch (...) {
     const Failure failure = current_failure();
     print_failure(failure);

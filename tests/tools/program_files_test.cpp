@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Nothing lost, nothing mixed: two runs in one folder, links and strange names, cases that come through
+// pipes, outputs that nobody takes, runs that are paused.
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "program_runner.hpp"
+
+using namespace kacanov::testing;
+
+namespace {
+
+const std::string patience = "timeout -s KILL 120";
+
+/// A run that goes on until it is asked to stop.
+const std::string endless =
+    "run beam.json --output out --set solver.contact=admm --set solver.r=1e-6 "
+    "--set solver.max_contact=2 --set solver.max_outer=100000000";
+
+/// Runs a script with sh, the program being $PROGRAM.
+Outcome script(const Workplace& place, const std::string& text) {
+  place.put("script.sh", "PROGRAM=$1\n" + text);
+  return place.run("", patience + " sh script.sh");
+}
+
+/// Waits until a file is there, for a minute at most.
+std::string await(const std::string& file) {
+  return "n=0; until [ -e " + file + " ] || [ $n = 600 ]; do sleep 0.1; n=$((n+1)); done\n";
+}
+
+}  // namespace
+
+TEST_CASE("a folder serves one run at a time, and is free again however that ends") {
+  const Workplace place;
+  place.put_json("beam.json", small_beam());
+  for (const std::string ranks : {" --ranks 1", " --ranks 2"}) {
+    INFO(ranks);
+    const Outcome second = script(place, "$PROGRAM " + endless + ranks + " >/dev/null 2>&1 & first=$!\n" +
+                                             await("out/checkpoint.kacanov") +
+                                             "$PROGRAM run beam.json --output out; code=$?\n"
+                                             "kill -KILL $first; wait $first\nexit $code\n");
+    CHECK(second.exit_code == 2);
+    CHECK(second.error.find("--output: another run (process ") != std::string::npos);
+    CHECK(count_lines(second.error) == 1);
+    // The ranks of the one that was killed need a moment to notice.
+    const Outcome third = script(place,
+                                 "n=0; until $PROGRAM run beam.json --output out --restart >/dev/null || "
+                                 "[ $n = 50 ]; do sleep 0.2; n=$((n+1)); done\n[ $n -lt 50 ]\n");
+    CHECK(third.exit_code == 0);
+    CHECK(place.json("out/result.json")["status"] == "converged");
+    CHECK_FALSE(place.has("out/.lock"));
+  }
+}
+
+TEST_CASE("nothing is written through a link that lies in wait") {
+  const Workplace place;
+  place.put_json("beam.json", small_beam());
+  place.put("precious", "kept");
+  std::filesystem::create_directory(place.path("out"));
+  std::filesystem::create_symlink(place.path("precious"), place.path("out/.lock"));
+  CHECK(place.run("run beam.json --output out").exit_code == 2);
+  CHECK(contents(place.path("precious")) == "kept");
+  std::filesystem::remove(place.path("out/.lock"));
+  std::filesystem::create_symlink(place.path("precious"), place.path("out/result.json"));
+  CHECK(place.run("run beam.json --output out").exit_code == 0);
+  CHECK(contents(place.path("precious")) == "kept");
+}
+
+TEST_CASE("a partition takes away nothing but its own files") {
+  const Workplace place;
+  place.put_json("beam.json", small_beam());
+  std::filesystem::create_directories(place.path("parts/unfinished"));
+  place.put("parts/unfinished/thesis.txt", "years");
+  const Outcome outcome = place.run("partition beam.json --ranks 2 --output parts");
+  CHECK(outcome.exit_code == 2);
+  CHECK(outcome.error.find("parts/unfinished/thesis.txt") != std::string::npos);
+  CHECK(contents(place.path("parts/unfinished/thesis.txt")) == "years");
+}
+
+TEST_CASE("a case whose name is a way up writes below results") {
+  const Workplace place;
+  place.put_json("...json", small_beam());
+  CHECK(place.run("run ...json").exit_code == 0);
+  CHECK(place.has("results/case/result.json"));
+}
+
+TEST_CASE("a case may come through a pipe, on several ranks too, and is read once") {
+  const Workplace place;
+  place.put_json("beam.json", small_beam());
+  for (const std::string ranks : {"1", "2"}) {
+    INFO(ranks);
+    const Outcome outcome =
+        script(place, "mkfifo pipe" + ranks + "\ncat beam.json > pipe" + ranks + " &\n$PROGRAM run pipe" +
+                          ranks + " --output out --ranks " + ranks + "\n");
+    CHECK(outcome.exit_code == 0);
+    CHECK(place.json("out/result.json")["ranks"].get<int>() == std::stoi(ranks));
+  }
+}
+
+TEST_CASE("too much of a case is refused by its limits") {
+  const Workplace place;
+  place.put("deep.json", std::string(300000, '['));
+  Outcome outcome = place.run("run deep.json");
+  CHECK(outcome.exit_code == 2);
+  CHECK(outcome.error.find("more than 64 levels of brackets") != std::string::npos);
+  outcome =
+      script(place, "head -c 100000000 /dev/zero | tr '\\0' ' ' > large.json; $PROGRAM run large.json\n");
+  CHECK(outcome.exit_code == 2);
+  CHECK(outcome.error.find("large.json: this is larger than 64 MiB") != std::string::npos);
+}
+
+TEST_CASE("a run whose words nobody reads writes all its files and leaves with its own code") {
+  const Workplace place;
+  place.put_json("beam.json", small_beam());
+  for (const std::string ranks : {" --ranks 1", " --ranks 2"})
+    for (const std::string sink : {" >/dev/full", " | true", " >&-"}) {
+      INFO(ranks, sink);
+      std::filesystem::remove_all(place.path("out"));
+      CHECK(
+          script(place, "{ $PROGRAM run beam.json --output out" + ranks + "; echo $? > code; }" + sink + "\n")
+              .exit_code == 0);
+      CHECK(contents(place.path("code")) == "0\n");
+      CHECK(place.json("out/result.json")["status"] == "converged");
+      CHECK(place.has("out/summary.txt"));
+    }
+  // Where printing is all there is to do, it has not been done.
+  CHECK(place.run("check beam.json", "sh -c '\"$0\" \"$@\" >/dev/full'").exit_code == 3);
+}
+
+TEST_CASE("a run of several ranks pauses and goes on with its terminal") {
+  const Workplace place;
+  place.put_json("beam.json", small_beam());
+  // Ranks that are stopped write no checkpoints; those that go on do.
+  const Outcome outcome = script(place, "$PROGRAM " + endless + " --ranks 2 >/dev/null 2>&1 & run=$!\n" +
+                                            await("out/checkpoint.kacanov") +
+                                            "kill -TSTP $run; sleep 0.5\nrm out/checkpoint.kacanov; sleep 1\n"
+                                            "[ ! -e out/checkpoint.kacanov ] || echo went on\n"
+                                            "kill -CONT $run\n" +
+                                            await("out/checkpoint.kacanov") +
+                                            "[ -e out/checkpoint.kacanov ] || echo stopped for good\n"
+                                            "kill -TERM $run; wait $run\n");
+  CHECK(outcome.exit_code == 1);
+  CHECK(outcome.output.empty());
+  CHECK(place.json("out/result.json")["status"] == "interrupted");
+}
