@@ -39,7 +39,7 @@ TEST_CASE("a folder serves one run at a time, and is free again however that end
     const Outcome second = script(place, "$PROGRAM " + endless + ranks + " >/dev/null 2>&1 & first=$!\n" +
                                              await("out/checkpoint.kacanov") +
                                              "$PROGRAM run beam.json --output out; code=$?\n"
-                                             "kill -KILL $first; wait $first\nexit $code\n");
+                                             "kill -KILL $first; wait $first 2>/dev/null\nexit $code\n");
     CHECK(second.exit_code == 2);
     CHECK(second.error.find("--output: another run (process ") != std::string::npos);
     CHECK(count_lines(second.error) == 1);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program kacanov: reads the command line, sees to its processes and hands over to a subcommand.
 #include <csignal>
+#include <cstdio>
 #include <iostream>
 #include <optional>
 
@@ -148,7 +149,7 @@ int main(int argc, char** argv) {
       return mpi.first() ? say(parsed) : parsed.exit_code;
     }
     const int code = parsed.command ? run_alone(*parsed.command, argc, argv) : say(parsed);
-    if (!std::cout.flush() && !writes_files(parsed.command))
+    if ((!std::cout.flush() || std::ferror(stdout) != 0) && !writes_files(parsed.command))
       throw InternalError("the standard output cannot be written");
     return code;
   } catch (...) {
