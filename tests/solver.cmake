@@ -70,3 +70,6 @@ kacanov_test(certificate
 kacanov_test(outer
   MPI SOURCES solver/outer_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
+kacanov_test(nonlinear
+  MPI SOURCES solver/nonlinear_test.cpp
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal)

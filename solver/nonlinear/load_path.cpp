@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The way to the full load: a part of a problem under a share of it.
+// The way to the full load: what a share of it puts on the body.
 #include "nonlinear/load_path.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace kacanov {
 namespace {
@@ -19,38 +18,36 @@ double closed_by_prescription(const Part& part, const ContactPoint& point) {
   return closed;
 }
 
+std::vector<Part::ComponentValue> scaled(std::vector<Part::ComponentValue> values, double share) {
+  for (auto& entry : values) entry.value *= share;
+  return values;
+}
+
 }  // namespace
 
-LoadPath::LoadPath(Part& part) : part_(part), load_(part.load), prescribed_(part.prescribed) {
+LoadPath::LoadPath(const Part& part) : part_(&part) {
   std::int32_t entries = 0;
   for (const ContactPoint& point : part.contact) {
     gap_.push_back(point.gap);
-    closed_.push_back(closed_by_prescription(part, point));
+    missing_.push_back(closed_by_prescription(part, point));
     entries = std::max(entries, point.entry + 1);
   }
-  depth_.assign(static_cast<std::size_t>(part.halo.max_all(entries)), 0.0);
+  // Largest indentation, one a contact entry.
+  std::vector<double> depth(static_cast<std::size_t>(part.halo.max_all(entries)), 0.0);
   for (std::size_t i = 0; i < gap_.size(); ++i) {
-    double& depth = depth_[static_cast<std::size_t>(part.contact[i].entry)];
-    depth = std::max(depth, -(gap_[i] + closed_[i]));
+    double& deepest = depth[static_cast<std::size_t>(part.contact[i].entry)];
+    deepest = std::max(deepest, -(gap_[i] + missing_[i]));
   }
-  for (double& depth : depth_) depth = part.halo.max_all(depth);
+  for (double& deepest : depth) deepest = part.halo.max_all(deepest);
+  for (std::size_t i = 0; i < gap_.size(); ++i)
+    missing_[i] += depth[static_cast<std::size_t>(part.contact[i].entry)];
 }
 
-LoadPath::~LoadPath() {
-  part_.load = std::move(load_);
-  part_.prescribed = std::move(prescribed_);
-  for (std::size_t i = 0; i < gap_.size(); ++i) part_.contact[i].gap = gap_[i];
-}
-
-void LoadPath::set(double factor) {
-  const double missing = 1.0 - factor;
-  for (std::size_t i = 0; i < load_.size(); ++i) part_.load[i].value = factor * load_[i].value;
-  for (std::size_t i = 0; i < prescribed_.size(); ++i)
-    part_.prescribed[i].value = factor * prescribed_[i].value;
-  for (std::size_t i = 0; i < gap_.size(); ++i) {
-    ContactPoint& point = part_.contact[i];
-    point.gap = gap_[i] + missing * (closed_[i] + depth_[static_cast<std::size_t>(point.entry)]);
-  }
+void LoadPath::go_to(double share) {
+  share_ = share;
+  load_ = share == 1.0 ? decltype(load_)() : scaled(part_->load, share);
+  prescribed_ = share == 1.0 ? decltype(prescribed_)() : scaled(part_->prescribed, share);
+  for (std::size_t i = 0; i < gap_.size(); ++i) gap_[i] = part_->contact[i].gap + (1.0 - share) * missing_[i];
 }
 
 }  // namespace kacanov

@@ -1,32 +1,50 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The way to the full load: a part of a problem under a share of it.
+// The way to the full load: what a share of it puts on the body.
 #pragma once
+
+#include <span>
+#include <vector>
 
 #include <kacanov/part.hpp>
 
 namespace kacanov {
 
-/// Scales the loads and prescribed displacements of a part. Obstacles that press into the body at rest are
-/// drawn back along their direction, each contact entry by the share still missing of its largest
-/// indentation; open gaps of other entries and the friction bounds stay what they are.
+/// Loads, prescribed displacements and gaps of a part at a share of the full load (theory: load-path).
+/// Obstacles that press into the body at rest are drawn back along their direction, each contact entry by the
+/// share still missing of its largest indentation; open gaps of other entries and the friction bounds stay
+/// what they are. The part itself does not change.
 class LoadPath {
  public:
-  /// Collective. `part`, under its full load, has to outlive it and has that load again in the end.
-  explicit LoadPath(Part& part);
-  LoadPath(const LoadPath&) = delete;
-  LoadPath& operator=(const LoadPath&) = delete;
-  ~LoadPath();
+  /// At the full load. Collective. `part` has to outlive it.
+  explicit LoadPath(const Part& part);
 
-  /// The part under `factor` of the load; with 1 it is the full one to the bit.
-  void set(double factor);
+  /// Any share > 0; with 1 everything is that of the part, to the bit.
+  void go_to(double share);
+  double share() const noexcept { return share_; }
+
+  /// Entries of F that are not zero, ascending.
+  std::span<const Part::ComponentValue> load() const noexcept { return share_ == 1.0 ? part_->load : load_; }
+  /// Of every constrained component, ascending.
+  std::span<const Part::ComponentValue> prescribed() const noexcept {
+    return share_ == 1.0 ? part_->prescribed : prescribed_;
+  }
+  /// One a contact point.
+  const std::vector<double>& gap() const noexcept { return gap_; }
+
+  /// f += F.
+  void add_load(std::span<double> f) const noexcept {
+    for (const auto& entry : load()) f[static_cast<std::size_t>(entry.component)] += entry.value;
+  }
+  /// Sets the constrained components of u.
+  void prescribe(std::span<double> u) const noexcept {
+    for (const auto& entry : prescribed()) u[static_cast<std::size_t>(entry.component)] = entry.value;
+  }
 
  private:
-  Part& part_;
-  // Of the full load.
-  std::vector<Part::ComponentValue> load_, prescribed_;
-  std::vector<double> gap_,
-      closed_;  ///< a contact point; how much of it the prescribed components of its node close
-  std::vector<double> depth_;  ///< largest indentation, one a contact entry
+  const Part* part_;
+  double share_ = 1.0;
+  std::vector<Part::ComponentValue> load_, prescribed_;  ///< at the share; empty at the full load
+  std::vector<double> gap_, missing_;                    ///< at the share; by how much it is wider at none
 };
 
 }  // namespace kacanov

@@ -51,6 +51,7 @@ HEADER_ROOMS = {
     "result.hpp": "solver/problem",
     "index_runs.hpp": "solver/parallel",
     "part.hpp": "solver/parallel",
+    "run_options.hpp": "solver/nonlinear",
 }
 
 MOST_LINES = 400
@@ -58,14 +59,12 @@ MOST_LINES = 400
 LONGER = {
     "kernels/operator/layout.cpp": "to be split",
     "solver/amg/rigid_level.cpp": "to be split",
-    "solver/nonlinear/outer_loop.cpp": "to be split",
     "tests/solver/closed_test.cpp": "to be split",
     "tests/solver/dense_solver.hpp": "a second solver, which shares no line with the first, as one class",
 }
 # Arrows that still run back: (room, included room). An entry that is not needed any more is an error.
 KNOWN_BACKWARD = {
     ("solver/contact", "solver/spectrum"),
-    ("solver/nonlinear", "solver/solve"),
 }
 
 CODE = {".cpp", ".hpp", ".h", ".c", ".py"}

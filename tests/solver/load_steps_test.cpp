@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "nonlinear/load_path.hpp"
 #include "support.hpp"
 
 using namespace kacanov;
@@ -104,29 +103,6 @@ TEST_CASE("a load step is the problem with its share of load, displacement and i
         1e-7 * length(alone.result().contact_force));
   CHECK(first.active_nodes == alone.result().active_nodes);
   CHECK(first.plastic_elements == alone.result().plastic_elements);
-}
-
-TEST_CASE("with the factor 1 a load path is the full problem to the bit") {
-  const Model model = pressed_block(3, elastic_law(1.0, 0.3));
-  Model other = model;
-  other.boundary[1].on = box({0.5, 0.0, 0.5}, {2.0, 1.0, 0.5});
-  const Problem problem = build_problem(box_mesh(ElementType::tet4), other);
-  Part part = distribute(&problem, MPI_COMM_SELF);
-  const Part full = part;
-  const auto is_full = [&] {
-    CHECK(part.load == full.load);
-    CHECK(part.prescribed == full.prescribed);
-    for (std::size_t i = 0; i < part.contact.size(); ++i) CHECK(part.contact[i].gap == full.contact[i].gap);
-  };
-  {
-    LoadPath path(part);
-    path.set(0.3);
-    CHECK(part.load != full.load);
-    path.set(1.0);
-    is_full();
-    path.set(0.7);
-  }
-  is_full();
 }
 
 TEST_CASE("a load step that does not converge is the last one, and named") {

@@ -12,6 +12,7 @@
 #include "program/field_files.hpp"
 #include "program/interrupt.hpp"
 #include "program/loaded_case.hpp"
+#include "program/memory_model.hpp"
 #include "program/output_folder.hpp"
 #include "program/part_files.hpp"
 #include "program/report.hpp"
@@ -129,11 +130,14 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
   if (left) options.start = &*left;
   options.threads = threads_of(command);
   options.progress = ProgressTable();
-  Solution solution = solve(loaded.part, input.model.solver, options);
+  const Solution solution = solve(loaded.part, input.model.solver, options);
 
   const double solved = MPI_Wtime();
+  RunFigures figures;
+  figures.peak_memory_bytes =
+      static_cast<std::uint64_t>(loaded.part.halo.sum_all(static_cast<std::int64_t>(peak_memory())));
   left.reset();
-  Result& result = solution.result;
+  const Result& result = solution.result;
   const int dim = loaded.part.dim();
   const ContactFields contact = gather_contact_fields(loaded.part, solution);
   std::vector<double> displacement, von_mises;
@@ -153,13 +157,12 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
                  picture(input, loaded.problem->mesh, displacement, von_mises, result.max_von_mises));
     }
     const double end = MPI_Wtime();
-    result.seconds.front().first = "solver";
-    result.seconds.insert(
-        result.seconds.begin(),
-        {{"total", end - start}, {"read", loaded.read_seconds}, {"distribute", loaded.distribute_seconds}});
-    result.seconds.emplace_back("output", end - solved);
-    write_json(folder / "result.json", result_json(result, dim));
-    const std::string text = summary(result, input.model, dim) +
+    figures.total = end - start;
+    figures.read = loaded.read_seconds;
+    figures.distribute = loaded.distribute_seconds;
+    figures.output = end - solved;
+    write_json(folder / "result.json", result_json(result, figures, dim));
+    const std::string text = summary(result, figures, input.model, dim) +
                              (result.status == Status::converged ? "" : checkpoint_line(*file));
     if (input.output.report) write_file((folder / "summary.txt").string(), text);
     if (result.status == Status::converged) file->remove();  // only now that all is written

@@ -36,8 +36,8 @@ std::string csv(std::span<const Result> results, std::span<const double> r) {
   for (std::size_t i = 0; i < results.size(); ++i) {
     const Result& result = results[i];
     text << r[i] << ',' << result.contact_iterations << ',' << result.outer_iterations << ','
-         << result.cg_iterations << ',' << result.operator_applications << ','
-         << result.seconds.front().second << ',' << status_name(result.status) << '\n';
+         << result.cg_iterations << ',' << result.operator_applications << ',' << result.seconds.total << ','
+         << status_name(result.status) << '\n';
   }
   return text.str();
 }
@@ -49,7 +49,7 @@ std::string svg(const std::string& title, std::span<const Result> results, std::
   picture.r.assign(r.begin(), r.end());
   for (const Result& result : results) {
     picture.iterations.push_back(static_cast<double>(result.contact_iterations));
-    picture.seconds.push_back(result.seconds.front().second);
+    picture.seconds.push_back(result.seconds.total);
     picture.converged.push_back(result.status == Status::converged);
   }
   picture.marks.push_back({"r*", landmarks.r_star});
@@ -103,7 +103,7 @@ int sweep_command(const Command& command, const Case& input, const MpiSession& m
       if (!mpi.first()) continue;
       std::printf("%12.4e %10lld %6d %9lld %9.2f  %s\n", value,
                   static_cast<long long>(result.contact_iterations), result.outer_iterations,
-                  static_cast<long long>(result.cg_iterations), result.seconds.front().second,
+                  static_cast<long long>(result.cg_iterations), result.seconds.total,
                   status_name(result.status));
       std::fflush(stdout);
     }

@@ -29,7 +29,7 @@ constexpr double lanes_filled = 1.07;              // slots of the operators an 
 constexpr double nodes_of_blocks = 1.25;           // nodes of the operators' blocks a node
 constexpr double overhead = 1.03;                  // of the allocator
 
-/// What a part, its operators and the loops hold; see Part, Layout, OuterLoop, RigidMultigrid.
+/// What a part, its operators and the loops hold; see Part, Layout, StepContext, RigidMultigrid.
 struct Demand {
   Bytes mesh, problem, part, steady, setup, solve;
 
@@ -54,6 +54,18 @@ struct Demand {
     solve = {8 * dim, size.nonlinear ? 20 * slots : 0};  // step; tangent
   }
 };
+
+/// The number behind a word at the beginning of a line, 0 where there is none.
+double number_after(const std::string& path, const std::string& word) {
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream words(line);
+    std::string key;
+    double value = 0.0;
+    if (words >> key >> value && key == word) return value;
+  }
+  return 0.0;
+}
 
 /// Whether some material has another law than the linear one.
 bool nonlinear(const Model& model) {
@@ -100,15 +112,12 @@ double estimated_memory(const ProblemSize& size, int ranks) {
   return ranks * (ranks == 1 ? bytes_alone : bytes_in_company) + overhead * (first + (ranks - 1) * solving);
 }
 
+std::uint64_t peak_memory() {
+  return static_cast<std::uint64_t>(1024.0 * number_after("/proc/self/status", "VmHWM:"));
+}
+
 double available_memory() {
-  double available = 0.0;
-  std::ifstream info("/proc/meminfo");
-  for (std::string line; std::getline(info, line);) {
-    std::istringstream words(line);
-    std::string key;
-    double kib = 0.0;
-    if (words >> key >> kib && key == "MemAvailable:") available = 1024.0 * kib;
-  }
+  double available = 1024.0 * number_after("/proc/meminfo", "MemAvailable:");
   const double left = control_group_limits().memory;
   if (!std::isfinite(left)) return available;
   return available > 0.0 ? std::min(available, left) : left;

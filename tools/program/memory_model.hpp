@@ -24,6 +24,9 @@ ProblemSize size_of(const Mesh& mesh, const Model& model);
 /// % from some 10,000 nodes on.
 double estimated_memory(const ProblemSize& size, int ranks);
 
+/// Largest resident memory of this process so far, in bytes. 0: unknown.
+std::uint64_t peak_memory();
+
 /// Bytes that a new process could have: what the system calls available, less where a control group allows
 /// less. 0: unknown.
 double available_memory();

@@ -28,10 +28,6 @@ std::string vector_text(const Vector3& v, int dim) {
 }  // namespace
 
 void ProgressTable::operator()(const ProgressStep& step) {
-  if (step.phase == "note") {
-    std::cout << "note: " + step.note + "\n" << std::flush;
-    return;
-  }
   if (!headed_) {
     std::cout << format("%4s  %-10s %8s %8s %10s %12s %12s %12s %12s %9s\n", "step", "method", "contact",
                         "CG", "r", "equilibrium", "penetration", "friction", "worst", "seconds");
@@ -62,7 +58,7 @@ std::string readable_seconds(double seconds) {
   return format("%.1f h", seconds / 3600.0);
 }
 
-std::string summary(const Result& result, const Model& model, int dim) {
+std::string summary(const Result& result, const RunFigures& figures, const Model& model, int dim) {
   const auto count = [](std::int64_t n) { return std::to_string(n); };
   std::string text = (result.status == Status::converged     ? "converged: "
                       : result.status == Status::interrupted ? "INTERRUPTED: "
@@ -96,9 +92,8 @@ std::string summary(const Result& result, const Model& model, int dim) {
                  c.equilibrium, c.penetration, c.tension, c.complementarity);
   text += format("                friction cone %.1e, force balance %.1e, duality gap %.1e\n",
                  c.friction_cone, c.force_balance, c.duality_gap);
-  text += "  cost          " +
-          readable_seconds(result.seconds.empty() ? 0.0 : result.seconds.front().second) + ", " +
-          readable_bytes(static_cast<double>(result.peak_memory_bytes)) + ", " + count(result.ranks) +
+  text += "  cost          " + readable_seconds(figures.total) + ", " +
+          readable_bytes(static_cast<double>(figures.peak_memory_bytes)) + ", " + count(result.ranks) +
           (result.ranks == 1 ? " rank x " : " ranks x ") + count(result.threads) +
           (result.threads == 1 ? " thread" : " threads") + " (" + result.instruction_set + ")\n";
   return text;

@@ -6,6 +6,7 @@
 
 #include <kacanov/problem.hpp>
 #include <kacanov/solve.hpp>
+#include "program/result_json.hpp"
 
 namespace kacanov {
 
@@ -24,6 +25,6 @@ std::string readable_bytes(double bytes);
 std::string readable_seconds(double seconds);
 
 /// The summary at the end of a run, several lines. Takes names of probes from the model.
-std::string summary(const Result& result, const Model& model, int dim);
+std::string summary(const Result& result, const RunFigures& figures, const Model& model, int dim);
 
 }  // namespace kacanov

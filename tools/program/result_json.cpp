@@ -38,7 +38,7 @@ const char* status_name(Status status) {
   return "interrupted";
 }
 
-ordered_json result_json(const Result& result, int dim) {
+ordered_json result_json(const Result& result, const RunFigures& figures, int dim) {
   ordered_json json;
   json["status"] = status_name(result.status);
   json["message"] = result.message;
@@ -93,9 +93,19 @@ ordered_json result_json(const Result& result, int dim) {
                          {"friction_cone", c.friction_cone},
                          {"force_balance", c.force_balance},
                          {"duality_gap", c.duality_gap}};
-  json["seconds"] = ordered_json::object();
-  for (const auto& [phase, seconds] : result.seconds) json["seconds"][phase] = seconds;
-  json["peak_memory_bytes"] = result.peak_memory_bytes;
+  const PhaseSeconds& seconds = result.seconds;
+  json["seconds"] = {{"total", figures.total},
+                     {"read", figures.read},
+                     {"distribute", figures.distribute},
+                     {"solver", seconds.total},
+                     {"prepare", seconds.prepare},
+                     {"spectrum", seconds.spectrum},
+                     {"preconditioner_setup", seconds.preconditioner_setup},
+                     {"solve", seconds.solve},
+                     {"checkpoint", seconds.checkpoint},
+                     {"certificate", seconds.certificate},
+                     {"output", figures.output}};
+  json["peak_memory_bytes"] = figures.peak_memory_bytes;
   json["ranks"] = result.ranks;
   json["threads"] = result.threads;
   json["instruction_set"] = result.instruction_set;

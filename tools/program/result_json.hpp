@@ -14,8 +14,14 @@ namespace kacanov {
 /// As the file's `status` says it.
 const char* status_name(Status status);
 
+/// What the program measures of a run besides what solve() says.
+struct RunFigures {
+  double total = 0.0, read = 0.0, distribute = 0.0, output = 0.0;  ///< seconds
+  std::uint64_t peak_memory_bytes = 0;                             ///< of all ranks together
+};
+
 /// Every key of the file. Vectors have `dim` entries; numbers that are not finite become null.
-nlohmann::ordered_json result_json(const Result& result, int dim);
+nlohmann::ordered_json result_json(const Result& result, const RunFigures& figures, int dim);
 
 /// The file of a run that broke down: status "failed" and why.
 nlohmann::ordered_json failure_json(const std::string& message);

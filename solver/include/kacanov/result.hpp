@@ -53,6 +53,17 @@ struct LoadStep {
   std::vector<Vector3> probe;
 };
 
+/// Wall time of the phases of solve(), on this rank.
+struct PhaseSeconds {
+  double total = 0.0;
+  double prepare = 0.0;               ///< operator and first state
+  double spectrum = 0.0;              ///< estimates behind the first penalty
+  double preconditioner_setup = 0.0;  ///< within the other phases
+  double solve = 0.0;                 ///< outer steps
+  double checkpoint = 0.0;            ///< written on the way
+  double certificate = 0.0;           ///< by the reference operator, and the totals
+};
+
 struct Result {
   Status status = Status::not_converged;
   std::string message;
@@ -77,8 +88,7 @@ struct Result {
   std::vector<Vector3> probe;
   std::vector<LoadStep> load_steps;  ///< those that are over; empty where the load is put on at once
   Certificate certificate;
-  std::vector<std::pair<std::string, double>> seconds;  ///< phases in order; "total" first
-  std::uint64_t peak_memory_bytes = 0;                  ///< all ranks
+  PhaseSeconds seconds;
   int ranks = 1, threads = 1;
   std::string instruction_set;
 };

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From the state of the loop to the fields and totals of a solution.
+#include "collect.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <kacanov/element_fields.hpp>
+
+namespace kacanov {
+namespace {
+
+/// What the obstacle does to the body at a point by friction.
+Vector3 traction_of(const ContactPoint& point, const double* friction) {
+  Vector3 traction{};
+  for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k)
+    for (std::size_t c = 0; c < 3; ++c) traction[c] -= friction[k] * point.tangent[k][c];
+  return traction;
+}
+
+ContactStatus status_of(const ContactPoint& point, const ContactState& state, std::size_t i,
+                        double least_slip) {
+  const double *friction = &state.lambda.tangential[2 * i], *slip = &state.trace.tangential[2 * i];
+  // The projection leaves |λ_t| = ψ to rounding where it slips; Coulomb's ψ has moved on since by what the
+  // solver tolerates.
+  const bool slips = point.tangents == 0 ||
+                     std::hypot(friction[0], friction[1]) >= state.bound[i] * (1.0 - 1e-10) ||
+                     std::hypot(slip[0], slip[1]) > least_slip;
+  const bool touches = state.lambda.normal[i] > 0.0;
+  if (!touches && (point.tangents == 0 || state.bound[i] == 0.0)) return ContactStatus::open;
+  return slips ? ContactStatus::slip : ContactStatus::stick;
+}
+
+void collect_contact_totals(const Part& part, Solution& solution) {
+  Result& result = solution.result;
+  std::array<double, 8> sums{};  // contact force, friction force, active, slip
+  double pressure = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_contact); ++i) {
+    const auto& point = part.contact[i];
+    for (std::size_t c = 0; c < 3; ++c) {
+      sums[c] -= point.mass * solution.pressure[i] * point.trace[c];
+      sums[3 + c] += point.mass * solution.traction[i][c];
+    }
+    sums[6] += solution.pressure[i] > 0.0 ? 1.0 : 0.0;
+    sums[7] += point.tangents > 0 && solution.contact_status[i] == ContactStatus::slip ? 1.0 : 0.0;
+    pressure = std::max(pressure, solution.pressure[i]);
+  }
+  part.halo.sum_all(sums);
+  for (std::size_t c = 0; c < 3; ++c) {
+    result.contact_force[c] = sums[c];
+    result.friction_force[c] = sums[3 + c];
+  }
+  result.active_nodes = std::llround(sums[6]);
+  result.slip_nodes = std::llround(sums[7]);
+  result.max_contact_pressure = part.halo.max_all(pressure);
+}
+
+void collect_element_totals(const Part& part, std::span<const double> u, Result& result) {
+  std::int64_t plastic = 0, softening = 0;
+  double von_mises = 0.0;
+  const Body body = part.body();
+  visit_element_fields(part, u, [&](const ElementRun& run) {
+    for (const std::uint8_t p : run.plastic) plastic += p;
+    for (const double v : run.von_mises) von_mises = std::max(von_mises, v);
+    for (std::size_t e = 0; e < run.dev_strain.size(); ++e)
+      softening += body.law(run.first + e).softens(run.dev_strain[e]) ? 1 : 0;
+  });
+  result.plastic_elements = part.halo.sum_all(plastic);
+  result.softening_elements = part.halo.sum_all(softening);
+  result.max_von_mises = part.halo.max_all(von_mises);
+}
+
+void collect_probes(const Part& part, std::span<const double> u, Result& result) {
+  const auto dim = static_cast<std::size_t>(part.dim());
+  const auto npe = static_cast<std::size_t>(nodes_per_element(part.type));
+  std::vector<double> all(3 * static_cast<std::size_t>(part.total_probes), 0.0);
+  for (std::size_t i = 0; i < part.probes.size(); ++i) {
+    const auto* node = &part.elements[static_cast<std::size_t>(part.probes[i].element) * npe];
+    double* to = &all[3 * static_cast<std::size_t>(part.probe_index[i])];
+    for (std::size_t a = 0; a < npe; ++a)
+      for (std::size_t c = 0; c < dim; ++c)
+        to[c] += part.probes[i].weights[a] * u[static_cast<std::size_t>(node[a]) * dim + c];
+  }
+  part.halo.sum_all(all);
+  result.probe.clear();
+  for (std::size_t i = 0; i < all.size(); i += 3) result.probe.push_back({all[i], all[i + 1], all[i + 2]});
+}
+
+}  // namespace
+
+void collect_contact(const Part& part, const ContactState& state, double tolerance, Solution& solution) {
+  double moved = 0.0;
+  for (const double v : state.omega) moved = std::max(moved, std::abs(v));
+  const double least_slip = 10.0 * tolerance * part.halo.max_all(moved);
+  solution.pressure = state.lambda.normal;
+  solution.gap = state.gap;
+  for (std::size_t i = 0; i < part.contact.size(); ++i) {
+    solution.gap[i] -= state.trace.normal[i];
+    solution.traction.push_back(traction_of(part.contact[i], &state.lambda.tangential[2 * i]));
+    solution.contact_status.push_back(status_of(part.contact[i], state, i, least_slip));
+  }
+}
+
+void collect_totals(const Part& part, const ContactState& state, Solution& solution) {
+  collect_contact_totals(part, solution);
+  collect_element_totals(part, state.omega, solution.result);
+  collect_probes(part, state.omega, solution.result);
+}
+
+}  // namespace kacanov

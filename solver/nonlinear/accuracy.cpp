@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How exactly a step is solved, from the residuals it starts with.
+#include "nonlinear/accuracy.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kacanov {
+
+AdmmOptions admm_accuracy(const SolverOptions& options, const Residuals& before, bool first,
+                          const Tuning& tuning) {
+  const bool by_step = options.stop == SolverOptions::Stop::paper;
+  const bool as_printed = by_step || options.penalty == SolverOptions::Penalty::paper;
+  const Scales& scales = before.scales;
+  AdmmOptions out;
+  out.relaxation = options.relaxation.value_or(as_printed ? 1.0 : 1.7);
+  out.max_iterations = options.max_contact;
+  out.max_cg = options.max_cg;
+  if (by_step) {
+    out.step_tolerance = options.tolerance;
+    out.force_tolerance = 1e-2 * options.tolerance * scales.force;
+    return out;
+  }
+  const double worst = scales.displacement > 0.0 ? std::min(before.certificate.worst(), 1.0) : 1.0;
+  const double reach =
+      std::max(0.5 * options.tolerance, tuning.inner_reduction * worst) * gap_share(before.certificate);
+  out.force_tolerance = reach * scales.force;
+  // With no displacement yet, any trace will do: the first step ends by its forces.
+  out.trace_tolerance = scales.displacement > 0.0 ? reach * scales.displacement : HUGE_VAL;
+  out.force_reduction = scales.force > 0.0 ? 0.0 : tuning.inner_reduction;
+  if (options.penalty == SolverOptions::Penalty::automatic && !first)
+    out.max_iterations = std::min(tuning.balancing_iterations, options.max_contact);
+  return out;
+}
+
+CgOptions newton_accuracy(const SolverOptions& options, const Residuals& before, const Tuning& tuning) {
+  const double worst = before.certificate.worst();
+  CgOptions out;
+  out.absolute = tuning.last_share * options.tolerance * gap_share(before.certificate) * before.scales.force;
+  const bool last = worst <= tuning.last_reach * options.tolerance;
+  out.relative = last ? tuning.last_reduction : tuning.solve_reduction;
+  out.max_iterations = options.max_cg;
+  // The first residual alone says little: points moved onto the obstacle strain the elements beside them.
+  out.most = std::min(worst, 1.0) * before.scales.force;
+  return out;
+}
+
+double gap_share(const Certificate& c) {
+  const double others =
+      std::max({c.equilibrium, c.penetration, c.tension, c.complementarity, c.friction_cone});
+  return others > 0.0 && std::isfinite(c.duality_gap)
+             ? std::clamp(others / std::max(others, c.duality_gap), 1e-4, 1.0)
+             : 1.0;
+}
+
+}  // namespace kacanov

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How exactly a step is solved, from the residuals it starts with.
+#pragma once
+
+#include "contact/admm.hpp"
+#include "contact/certificate.hpp"
+#include "nonlinear/tuning.hpp"
+
+namespace kacanov {
+
+/// Tolerances, relaxation and caps of the ADMM in a step (theory: inexact-solves, over-relaxation; step-stop
+/// with the paper's stop). Penalty and lumped volumes are left to the caller. `first`: the elastic step.
+AdmmOptions admm_accuracy(const SolverOptions& options, const Residuals& before, bool first,
+                          const Tuning& tuning);
+
+/// Of the CG solve of a semismooth Newton step. What may be the last step is solved well below the tolerance,
+/// so that answers do not depend on ranks or threads to more than that.
+CgOptions newton_accuracy(const SolverOptions& options, const Residuals& before, const Tuning& tuning);
+
+/// How much further than the tolerance the residuals have to fall for the duality gap to meet it, 1e-4 to 1.
+/// Where a body moves far and strains little, their work along the motion is large beside the stored energy.
+double gap_share(const Certificate& certificate);
+
+}  // namespace kacanov

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Lengths and volumes of a body.
+#pragma once
+
+#include "linear/space.hpp"
+
+namespace kacanov {
+
+/// Longest side of the body's bounding box, over all ranks. Collective.
+double body_extent(const Part& part);
+
+/// Volume of each node of this rank, a share of those of its elements on all ranks; in 2D an area.
+/// Collective.
+Vector lumped_volume(const Part& part);
+
+}  // namespace kacanov

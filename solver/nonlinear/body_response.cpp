@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The body's answer to a displacement: internal force, energy, and the operator frozen there.
+#include "nonlinear/body_response.hpp"
+
+#include <malloc.h>
+
+#include <algorithm>
+
+namespace kacanov {
+
+BodyResponse::BodyResponse(const Part& part, int threads, const std::string& instruction_set)
+    : part_(&part),
+      op_(part, threads, instruction_set),
+      diagonal_(op_.diagonal()),
+      internal_(part.unknowns()),
+      linear_(std::all_of(part.laws.begin(), part.laws.end(),
+                          [](const Law& law) { return law.kind == Law::Kind::linear; })) {}
+
+void BodyResponse::evaluate(std::span<const double> u) {
+  op_.residual(u, internal_);
+  energy_ = op_.energy(u);
+  current_ = false;
+}
+
+void BodyResponse::evaluate_and_freeze(std::span<const double> u) {
+  energy_ = op_.residual_energy_update(u, internal_);
+  current_ = true;
+}
+
+void BodyResponse::freeze_secant(std::span<const double> u) {
+  op_.use_tangent(false);
+  if (!linear_ && !current_) op_.update(u);
+}
+
+void BodyResponse::freeze_tangent(std::span<const double> u) {
+  make_room(5 * sizeof(float) * part_->body().secant_count());
+  op_.use_tangent(true);
+  op_.update(u);
+}
+
+void BodyResponse::unbalanced(const LoadPath& path, std::span<double> f) const {
+  for (std::size_t i = 0; i < internal_.size(); ++i) f[i] = -internal_[i];
+  path.add_load(f);
+}
+
+Vector BodyResponse::secant() const {
+  Vector g(part_->body().secant_count());
+  op_.local().secant(g);
+  return g;
+}
+
+void make_room(std::size_t bytes) {
+  constexpr std::size_t large = std::size_t{64} << 20;
+  if (bytes >= large) malloc_trim(0);
+}
+
+}  // namespace kacanov

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The body's answer to a displacement: internal force, energy, and the operator frozen there.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "contact/certificate.hpp"
+#include "linear/distributed_operator.hpp"
+#include "nonlinear/load_path.hpp"
+
+namespace kacanov {
+
+/// R(u), the stored energy and the secant or tangent at the u it was last asked about. What takes a
+/// displacement is collective; vectors are consistent over ranks.
+class BodyResponse {
+ public:
+  /// At rest: elastic. `part` has to outlive it.
+  BodyResponse(const Part& part, int threads, const std::string& instruction_set);
+
+  /// R(u) and the energy; the operator stays what it is.
+  void evaluate(std::span<const double> u);
+  /// The same, and freezes the secant at u, in one pass.
+  void evaluate_and_freeze(std::span<const double> u);
+  /// The elastic force in place of R(u): where prescribed displacements put in at once look like huge strains
+  /// in the first layer of elements.
+  void take_elastic_force(std::span<const double> u) { op_.apply(u, internal_); }
+  /// Makes the operator the secant at u, if it is not.
+  void freeze_secant(std::span<const double> u);
+  /// Makes the operator the tangent at u, until the next forget_tangent().
+  void freeze_tangent(std::span<const double> u);
+  void forget_tangent() {
+    op_.use_tangent(false);
+    op_.forget_tangent();
+  }
+
+  /// f = F − R(u).
+  void unbalanced(const LoadPath& path, std::span<double> f) const;
+  BodyForces forces(const LoadPath& path) const { return {path.load(), internal_, energy_, diagonal_}; }
+  std::span<const double> internal() const noexcept { return internal_; }
+  /// g as frozen: elements × points.
+  Vector secant() const;
+  /// Of the elastic B.
+  std::span<const float> diagonal() const noexcept { return diagonal_; }
+  /// All laws of this rank are linear: secant and tangent are the elastic operator.
+  bool linear() const noexcept { return linear_; }
+
+  DistributedOperator& op() noexcept { return op_; }
+  const DistributedOperator& op() const noexcept { return op_; }
+
+ private:
+  const Part* part_;
+  DistributedOperator op_;
+  std::vector<float> diagonal_;
+  Vector internal_;
+  double energy_ = 0.0;
+  bool linear_;
+  bool current_ = true;  ///< the operator's g is that of the u of R(u)
+};
+
+/// To be called before `bytes` are allocated in a few pieces. The allocator keeps what is free (Open MPI
+/// tells it to keep everything), but new pieces need not fit into old holes: before large ones the holes go
+/// back to the system. Before small ones that costs more time than it is worth.
+void make_room(std::size_t bytes);
+
+}  // namespace kacanov

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The outer loop's state on its way into a checkpoint and out of it.
+#include <algorithm>
+#include <vector>
+
+#include "nonlinear/outer_loop.hpp"
+
+namespace kacanov {
+namespace {
+
+/// The counts of a result that go on after a restart.
+template <class R, class Visitor>
+void visit_counts(R& result, Visitor&& entry) {
+  entry("outer_iterations", result.outer_iterations);
+  entry("contact_iterations", result.contact_iterations);
+  entry("cg_iterations", result.cg_iterations);
+  entry("operator_applications", result.operator_applications);
+  entry("spectrum_applications", result.spectrum_applications);
+  entry("contact_applications", result.contact_applications);
+  entry("lambda_min", result.lambda_min);
+  entry("lambda_max", result.lambda_max);
+  entry("r_star", result.r_star);
+  entry("r_active", result.r_active);
+}
+
+template <class Visitor>
+void visit_load_step(LoadStep& step, Visitor&& entry) {
+  entry(step.factor);
+  entry(step.outer_iterations);
+  entry(step.cg_iterations);
+  entry(step.active_nodes);
+  entry(step.slip_nodes);
+  entry(step.max_contact_pressure);
+  entry(step.plastic_elements);
+  entry(step.worst_residual);
+  for (double& value : step.contact_force) entry(value);
+  for (double& value : step.friction_force) entry(value);
+  for (Vector3& probe : step.probe)
+    for (double& value : probe) entry(value);
+}
+
+/// The numbers of load steps in a row, and back.
+Vector history(std::vector<LoadStep> steps) {
+  Vector all;
+  for (LoadStep& step : steps)
+    visit_load_step(step, [&](auto& value) { all.push_back(static_cast<double>(value)); });
+  return all;
+}
+
+void set_history(std::vector<LoadStep>& steps, const Vector& all) {
+  auto next = all.begin();
+  for (LoadStep& step : steps)
+    visit_load_step(
+        step, [&](auto& value) { value = static_cast<std::remove_reference_t<decltype(value)>>(*next++); });
+}
+
+}  // namespace
+
+bool OuterLoop::stop_agreed() const {
+  return context_.part.halo.any(run_.stop_requested && run_.stop_requested());
+}
+
+void OuterLoop::keep(const Result& result) {
+  if (run_.stop_requested) {
+    kept_ = Kept{context_.state, control_, result};
+    if (stop_agreed()) throw Interrupted{};
+  }
+  if (result.outer_iterations == 0) return;
+  const double before = MPI_Wtime();
+  const Halo& halo = context_.part.halo;
+  const bool due = halo.rank == 0 && run_.checkpoint && (!run_.checkpoint_due || run_.checkpoint_due());
+  if (!halo.any(due)) return;
+  const Checkpoint all = checkpoint(result);
+  if (due) run_.checkpoint(all);
+  checkpoint_seconds_ += MPI_Wtime() - before;
+}
+
+bool OuterLoop::run(Result& result) {
+  try {
+    iterate(result);
+  } catch (const Interrupted&) {
+    context_.state = kept_->state;
+    control_ = kept_->control;
+    result = kept_->result;
+    return false;
+  }
+  return true;
+}
+
+Checkpoint OuterLoop::checkpoint(const Result& result) const {
+  const Part& part = context_.part;
+  const ContactState& state = context_.state;
+  Checkpoint out;
+  const auto put = [&](const char* name, const auto& value) {
+    out.numbers[name] = static_cast<double>(value);
+  };
+  visit_counts(result, put);
+  Control control = control_;
+  control.fallback.visit(put);
+  control.linearisation.visit(put);
+  put("first_outer", first_outer_);
+  put("operator_applications", applications());
+  put("penalty_rule", options_.penalty);
+  put("penalty_normal", control.penalty.value().normal);
+  put("penalty_tangential", control.penalty.value().tangential);
+  put("load_steps_over", result.load_steps.size());
+  out.fields["r"] = result.r;
+  out.fields["load_steps"] = history(result.load_steps);
+  out.fields["displacement"] = gather_nodal(part, state.omega, part.dim());
+  out.fields["pressure"] = gather_contact(part, state.lambda.normal, 1);
+  out.fields["friction"] = gather_contact(part, state.lambda.tangential, 2);
+  out.fields["phi_normal"] = gather_contact(part, state.phi.normal, 1);
+  out.fields["phi_tangential"] = gather_contact(part, state.phi.tangential, 2);
+  out.fields["bound"] = gather_contact(part, state.bound, 1);
+  return out;
+}
+
+void OuterLoop::restore(const Checkpoint* from, Result& result) {
+  const Part& part = context_.part;
+  const bool here = part.halo.rank == 0;
+  const auto get = [&](const char* name, auto& value) {
+    double number = here ? from->number(name) : 0.0;
+    if (part.halo.ranks > 1) MPI_Bcast(&number, 1, MPI_DOUBLE, 0, part.halo.comm);
+    value = static_cast<std::remove_reference_t<decltype(value)>>(number);
+  };
+  const auto values = [&](const char* name, std::size_t entries) {
+    Vector all(entries);
+    if (here) all = from->field(name, entries);
+    if (part.halo.ranks > 1) MPI_Bcast(all.data(), static_cast<int>(entries), MPI_DOUBLE, 0, part.halo.comm);
+    return all;
+  };
+  visit_counts(result, get);
+  control_.fallback.visit(get);
+  control_.linearisation.visit(get);
+  get("operator_applications", earlier_applications_);
+  Penalty penalty;
+  get("penalty_normal", penalty.normal);
+  get("penalty_tangential", penalty.tangential);
+  // A penalty that another rule has chosen, or the user, is none to go on with.
+  double rule = 0.0;
+  get("penalty_rule", rule);
+  if (options_.penalty == SolverOptions::Penalty::fixed || rule != static_cast<double>(options_.penalty))
+    penalty = {};
+  control_.penalty.restore(penalty, result.lambda_min);
+  result.restarted_after = result.outer_iterations;
+  first_outer_ = result.outer_iterations;  // who asks for a restart asks for more steps
+  std::size_t steps = 0;
+  get("load_steps_over", steps);
+  result.load_steps.resize(steps);
+  for (LoadStep& step : result.load_steps) step.probe.resize(static_cast<std::size_t>(part.total_probes));
+  set_history(result.load_steps, values("load_steps", history(result.load_steps).size()));
+  result.r = values("r", static_cast<std::size_t>(result.outer_iterations));
+
+  const auto points = static_cast<std::size_t>(part.total_contact);
+  const auto contact = [&](const char* name, int components) {
+    const auto width = static_cast<std::size_t>(components);
+    return scatter_contact(part, here ? from->field(name, points * width) : Vector(), components);
+  };
+  const auto unknowns = static_cast<std::size_t>(part.total_nodes) * static_cast<std::size_t>(part.dim());
+  ContactState& state = context_.state;
+  state.omega = scatter_nodal(part, here ? from->field("displacement", unknowns) : Vector(), part.dim());
+  state.lambda.normal = contact("pressure", 1);
+  state.lambda.tangential = contact("friction", 2);
+  state.phi.normal = contact("phi_normal", 1);
+  state.phi.tangential = contact("phi_tangential", 2);
+  state.bound = contact("bound", 1);
+  context_.traces.evaluate(state.omega, state.trace);
+  context_.preconditioner.mark_stale();
+}
+
+}  // namespace kacanov

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// When a preconditioner is worth setting up again.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "contact/active_set.hpp"
+#include "nonlinear/tuning.hpp"
+
+namespace kacanov {
+
+/// What a preconditioner was set up for, how well it has served since, and whether another would pay. Knows
+/// nothing of the preconditioner itself; every question is about this rank.
+class PreconditionerSchedule {
+ public:
+  explicit PreconditionerSchedule(const Tuning& tuning) : tuning_(tuning) {}
+
+  /// Whether it is due whatever else: there is none, or it has served its time.
+  bool stale() const noexcept { return stale_; }
+  void mark_stale() noexcept { stale_ = true; }
+  /// Whether g is too far from that of the last setup: sums over all points of |g − g then| and of g then.
+  bool drifted(double change, double size) const noexcept { return change > tuning_.drift_worth * size; }
+  /// Whether it was built with penalties that are far from these.
+  bool penalty_moved(const Penalty& now, bool friction) const;
+  /// Whether it pins other rows than `held`, or none at all. Every node it gets wrong costs CG a few
+  /// iterations.
+  bool set_moved(std::span<const TraceChoice> held) const;
+
+  /// It was set up with a new g.
+  void built();
+  void built_for(const Penalty& penalty);
+  void built_for(std::vector<TraceChoice> held) { pinned_ = std::move(held); }
+  /// Learns from a solve: decimal digits gained, CG iterations. The first one after a setup is what it can
+  /// do; one that needs more than that by what a setup is worth makes it stale.
+  void watch(double digits, std::int64_t iterations);
+
+ private:
+  Tuning tuning_;
+  bool stale_ = true;
+  double digits_per_cg_ = 0.0;  ///< right after the last setup; 0: not known
+  Penalty penalty_;
+  std::vector<TraceChoice> pinned_;
+};
+
+}  // namespace kacanov

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One step of the outer loop: ADMM on the secant, or semismooth Newton on secant or tangent.
+#include "nonlinear/step.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "contact/dual_admm.hpp"
+#include "nonlinear/accuracy.hpp"
+#include "nonlinear/body_measures.hpp"
+#include "nonlinear/linearisation.hpp"
+
+namespace kacanov {
+namespace {
+
+/// u += t δ, t as long as damping allows. Leaves R(u) and the frozen secant at the new u.
+void take_damped(StepContext& c, std::span<const double> delta, double curvature) {
+  // The solve is over: its vectors are free.
+  Vector &from = c.work.direction, &force = c.work.image, &u = c.state.omega;
+  from = u;
+  force.assign(c.body.internal().begin(), c.body.internal().end());
+  double t = 1.0;
+  for (int trial = 0;; ++trial) {
+    for (std::size_t i = 0; i < u.size(); ++i) u[i] = from[i] + t * delta[i];
+    c.body.evaluate_and_freeze(u);
+    if (c.body.linear() || trial == c.tuning.max_damping_trials) return;
+    const std::array<double, 2> work = c.space.dot2(delta, c.body.internal(), delta, force);
+    const auto shorter = shorter_step(t, work[0] - work[1], curvature);
+    if (!shorter) return;
+    t = *shorter;
+  }
+}
+
+/// Whether any point is under pressure. Collective.
+bool touches(const StepContext& c) {
+  const Vector& pressure = c.state.lambda.normal;
+  return c.part.halo.any(std::any_of(pressure.begin(), pressure.end(), [](double p) { return p > 0.0; }));
+}
+
+}  // namespace
+
+StepContext::StepContext(const Part& the_part, const SolverOptions& the_options, const RunOptions& run,
+                         const Tuning& the_tuning)
+    : part(the_part),
+      options(the_options),
+      tuning(the_tuning),
+      path(the_part),
+      space(the_part),
+      traces(the_part),
+      body(the_part, run.threads, run.instruction_set),
+      preconditioner(
+          the_part, body,
+          make_preconditioner(the_options.preconditioner, the_part, run.threads, run.instruction_set),
+          the_tuning) {
+  linear = {&space, &traces,
+            [this](std::span<const double> x, std::span<double> y) { return body.op().apply(x, y); },
+            [this](std::span<const double> r, std::span<double> z) { preconditioner.apply(r, z); }};
+  if (options.stop == SolverOptions::Stop::paper) volume = lumped_volume(part);
+  const std::size_t points = part.contact.size();
+  state.omega.assign(part.unknowns(), 0.0);
+  state.trace = state.phi = state.lambda = ContactValues(points);
+  state.bound.resize(points);
+  work.resize(part.unknowns());
+}
+
+StepOutcome admm_step(StepContext& c, const Penalty& penalty, const Residuals& before, bool first) {
+  const bool dual = c.options.contact == SolverOptions::Contact::dual_admm;
+  if (!first) c.body.freeze_secant(c.state.omega);
+  c.preconditioner.prepare(penalty, first);
+  AdmmOptions options = admm_accuracy(c.options, before, first, c.tuning);
+  options.r = penalty;
+  options.volume = c.volume;
+  if (first) c.body.take_elastic_force(c.state.omega);
+  c.body.unbalanced(c.path, c.work.residual);
+  c.traces.add_force(c.state.lambda, -1.0, c.work.residual);
+  const bool touched = touches(c);
+  const auto applied = c.body.op().applications();
+  const AdmmResult step =
+      dual ? dual_admm(c.linear, c.state, c.work, options) : admm(c.linear, c.state, c.work, options);
+  StepOutcome outcome;
+  outcome.applications = c.body.op().applications() - applied;
+  c.preconditioner.watch(step.cg_digits, step.cg_iterations);
+  c.body.evaluate_and_freeze(c.state.omega);
+  outcome.method = dual ? "dual_admm" : "admm";
+  outcome.contact_iterations = step.iterations;
+  outcome.cg_iterations = step.cg_iterations;
+  outcome.solved = step.solves_converged;
+  outcome.arrived = !first && !touched && touches(c);
+  outcome.balance = step.balance;
+  return outcome;
+}
+
+StepOutcome newton_step(StepContext& c, double penalty, bool tangent, const Residuals& before) {
+  c.body.freeze_secant(c.state.omega);
+  const ActiveSet set = decide(c.traces, c.state, c.tuning.decision_share * penalty);
+  c.preconditioner.prepare(set);
+  // After the setup: the two do not have to fit into memory at once.
+  if (tangent) c.body.freeze_tangent(c.state.omega);
+  c.body.unbalanced(c.path, c.work.residual);
+  Vector delta(c.part.unknowns());
+  const auto applied = c.body.op().applications();
+  const ActiveSetStep step = active_set_step(c.linear, c.part, set, c.state,
+                                             newton_accuracy(c.options, before, c.tuning), c.work, delta);
+  StepOutcome outcome;
+  outcome.applications = c.body.op().applications() - applied;
+  c.body.forget_tangent();
+  outcome.method = tangent ? "newton" : "active_set";
+  outcome.contact_iterations = 1;
+  outcome.cg_iterations = step.cg_iterations;
+  outcome.solved = step.solved;
+  outcome.tangent = tangent;
+  if (!step.solved) return outcome;
+  c.preconditioner.watch(step.cg_digits, step.cg_iterations);
+  take_damped(c, delta, step.curvature);
+  c.traces.evaluate(c.state.omega, c.state.trace);
+  c.body.unbalanced(c.path, c.work.residual);
+  recover_multipliers(c.part, c.traces, set, c.work.residual, c.state);
+  return outcome;
+}
+
+}  // namespace kacanov

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One step of the outer loop: ADMM on the secant, or semismooth Newton on secant or tangent.
+#pragma once
+
+#include <cstdint>
+
+#include <kacanov/run_options.hpp>
+#include "contact/active_set.hpp"
+#include "nonlinear/contact_preconditioner.hpp"
+
+namespace kacanov {
+
+/// What steps work with: the problem, and the state they move.
+struct StepContext {
+  StepContext(const Part& part, const SolverOptions& options, const RunOptions& run, const Tuning& tuning);
+  StepContext(const StepContext&) = delete;
+  StepContext& operator=(const StepContext&) = delete;
+
+  const Part& part;
+  const SolverOptions& options;
+  Tuning tuning;
+  LoadPath path;
+  Space space;
+  Traces traces;
+  BodyResponse body;
+  ContactPreconditioner preconditioner;
+  LinearProblem linear;
+  ContactState state;
+  CgWork work;
+  Vector volume;  ///< lumped, of each node; with the paper's stop only
+
+  /// KKT residuals of the state, by the loop's own operator (theory: kkt). Collective.
+  Residuals certify() const { return kkt_residuals(space, traces, state, body.forces(path)); }
+};
+
+struct StepOutcome {
+  const char* method = "";
+  int contact_iterations = 0;
+  std::int64_t cg_iterations = 0;
+  std::uint64_t applications = 0;      ///< of the operator in those
+  bool solved = true;                  ///< every linear problem was
+  bool tangent = false;                ///< of a Newton step: by the tangent, not the secant
+  bool arrived = false;                ///< an ADMM step but the first brought the first pressure
+  std::vector<BalanceSample> balance;  ///< of an ADMM step, one an iteration
+};
+
+/// Kačanov's step (theory: kacanov): freezes the secant and takes the contact loop some way (theory: admm,
+/// dual-admm). `before`: of the state it starts from; `first`: the elastic step of a run. Collective.
+StepOutcome admm_step(StepContext& c, const Penalty& penalty, const Residuals& before, bool first);
+
+/// A semismooth Newton step (theory: active-set), damped (theory: damping), by the tangent or the secant.
+/// `penalty`: that of N, which decides the set. Where it is not solved, the state stays. Collective.
+StepOutcome newton_step(StepContext& c, double penalty, bool tangent, const Residuals& before);
+
+}  // namespace kacanov

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The numbers that steer the outer loop, each with what was measured for it.
+#pragma once
+
+#include <cstdint>
+
+namespace kacanov {
+
+/// Nobody but tests and experiments changes them. Applications are those of the operator, over whole runs.
+struct Tuning {
+  // How exactly a step is solved.
+
+  /// The contact loop of an ADMM step is taken this far below the residual of the step before; the first one,
+  /// which is elastic, as well. A half there leaves slip on fine meshes to Newton steps that move it on by a
+  /// few rows of nodes each, a tenth costs more than it saves.
+  double inner_reduction = 0.2;
+  /// Of the first residual of a semismooth Newton step. One that starts within `last_reach` of the tolerance
+  /// may be the last: it is solved to `last_reduction`, or to `last_share` of the tolerance.
+  double solve_reduction = 0.03;
+  double last_reach = 100.0, last_reduction = 1e-3, last_share = 0.2;
+
+  // Linearisation (theory: newton, damping).
+
+  /// Residual of equilibrium up to which steps take the tangent: that of a state further off sends them too
+  /// far, and contact and slip with them.
+  double first_reach = 0.3;
+  /// Where a tangent has gone too far the reach becomes this share of the residual it started from ...
+  double reach_cut = 0.5;
+  /// ... but not less than this: below it is contact that goes to and fro, not the tangent.
+  double least_reach = 0.003;
+  int max_damping_trials = 6;
+
+  // Penalties (theory: first-penalty, balance).
+
+  /// First one, times λ_min over the root of the mesh width relative to the contact surface. Three times as
+  /// much is as good for beams, and worse for the half ball; a third costs a few per cent more applications.
+  double first_penalty = 0.1;
+  /// CG iterations of a rough estimate of λ_max.
+  int rough_iterations = 2;
+  /// ADMM iterations between two looks at the balance (and, in Kacanov's method, at g) after the first step.
+  /// Ten take 6 % more of them; with three, penalties that follow Coulomb's bounds kept one beam from
+  /// converging.
+  int balancing_iterations = 5;
+  /// A step of fewer iterations moves the penalties by less.
+  double trusted_iterations = 4.0;
+  /// Penalties stay between this over λ_min, which contracts errors at held rows to a quarter (more costs CG
+  /// iterations), and that share of it.
+  double largest_penalty = 3.0, smallest_share = 1e-4;
+  /// Semismooth Newton decides by λ + c(w − ρ), c this share of ADMM's penalty. A whole penalty makes
+  /// slipping points flip on the half ball (338 applications instead of 145), a tenth costs steps on beams.
+  double decision_share = 0.3;
+
+  // When a preconditioner is set up again.
+
+  /// Once a step needs this many CG iterations more than it would have right after the last setup: half of
+  /// what a setup costs.
+  double setup_worth = 5.0;
+  /// Before a step where g has moved by this share in the mean.
+  double drift_worth = 0.05;
+  /// Where a penalty has moved by this factor (elastic beam, ADMM: 144 applications instead of 212).
+  double penalty_worth = 3.0;
+
+  // From Newton steps back to ADMM (theory: active-set), and giving up.
+
+  /// A Newton step below this share of the best residual is a new best; `patience` steps without one are
+  /// enough.
+  double progress = 0.7;
+  int patience = 6;
+  /// ADMM hands back early at this share of the best residual of the Newton steps before.
+  double retreat_gain = 0.1;
+  /// ADMM steps of the first retreat; each is twice as long as the one before, so many times.
+  int first_retreat = 2, most_doublings = 6;
+  /// A displacement of this many body sizes is a run that goes nowhere.
+  double most_displacement = 1e3;
+
+  /// Operator applications between two looks at whether the run is to stop, which cost a reduction.
+  std::uint64_t applications_per_question = 4;
+};
+
+}  // namespace kacanov

@@ -1,0 +1,376 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the outer loop is made of, each alone with made-up numbers: no body, no solve.
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+
+#include "nonlinear/accuracy.hpp"
+#include "nonlinear/fallback.hpp"
+#include "nonlinear/friction_bounds.hpp"
+#include "nonlinear/linearisation.hpp"
+#include "nonlinear/load_path.hpp"
+#include "nonlinear/penalty_control.hpp"
+#include "nonlinear/preconditioner_schedule.hpp"
+
+using namespace kacanov;
+
+namespace {
+
+const Tuning tuning;
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+/// What a checkpoint would hold of it, and back.
+template <class T>
+T copied_by_visit(T from, T blank) {
+  std::map<std::string, double> numbers;
+  from.visit([&](const char* name, auto& value) { numbers[name] = static_cast<double>(value); });
+  blank.visit([&](const char* name, auto& value) {
+    value = static_cast<std::remove_reference_t<decltype(value)>>(numbers.at(name));
+  });
+  return blank;
+}
+
+Residuals residuals(double worst) {
+  Residuals r;
+  r.certificate.equilibrium = worst;
+  r.scales = {2.0, 3.0, 1.0};
+  return r;
+}
+
+}  // namespace
+
+TEST_CASE("linearisation: the secant far off, the tangent near, and never for a linear body") {
+  using Outer = SolverOptions::Outer;
+  const Linearisation both(Outer::automatic, false, tuning);
+  CHECK(!both.takes_tangent(1.01 * tuning.first_reach));
+  CHECK(both.takes_tangent(0.99 * tuning.first_reach));
+  CHECK(Linearisation(Outer::newton, false, tuning).takes_tangent(1e3));
+  CHECK(!Linearisation(Outer::kacanov, false, tuning).takes_tangent(1e-9));
+  for (const Outer outer : {Outer::automatic, Outer::newton})
+    CHECK(!Linearisation(outer, true, tuning).takes_tangent(1e-9));
+}
+
+TEST_CASE("linearisation: a tangent that went too far is trusted less, down to a floor") {
+  Linearisation l(SolverOptions::Outer::automatic, false, tuning);
+  l.after_tangent(0.2, 0.19);
+  CHECK(l.reach() == tuning.first_reach);
+  l.after_tangent(0.2, 0.21);
+  CHECK(l.reach() == doctest::Approx(0.2 * tuning.reach_cut));
+  CHECK(copied_by_visit(l, Linearisation(SolverOptions::Outer::automatic, false, tuning)).reach() ==
+        l.reach());
+  l.after_tangent(0.08, not_a_number);
+  CHECK(l.reach() == doctest::Approx(0.08 * tuning.reach_cut));
+  l.after_tangent(1e-6, 1.0);
+  CHECK(l.reach() == tuning.least_reach);
+  l.start_again();
+  CHECK(l.reach() == tuning.first_reach);
+}
+
+TEST_CASE(
+    "damping: a quadratic energy takes whole steps, a stiffer one shorter ones, and it comes to an end") {
+  CHECK(!shorter_step(1.0, 2.0, 2.0));
+  CHECK(!shorter_step(1.0, 2.9, 2.0));
+  CHECK(*shorter_step(1.0, 4.0, 2.0) == doctest::Approx(0.5));
+  CHECK(*shorter_step(0.5, 3.01, 2.0) == doctest::Approx(0.5 * 2.0 / 3.01));
+  CHECK(*shorter_step(1.0, 1e9, 2.0) == doctest::Approx(0.1));
+  CHECK(*shorter_step(1.0, not_a_number, 2.0) == doctest::Approx(0.1));
+  // A body of stiffness 1 near the start and 100 beyond: δ = 1 by the soft model.
+  const auto work = [](double t) { return t < 0.01 ? t : 0.01 + 100.0 * (t - 0.01); };
+  double t = 1.0;
+  int trials = 0;
+  while (const auto next = shorter_step(t, work(t), 1.0)) {
+    CHECK(*next < t);
+    t = *next;
+    ++trials;
+  }
+  CHECK(trials <= tuning.max_damping_trials);
+  CHECK(work(t) <= 1.5);
+}
+
+TEST_CASE("fallback: steps that make progress never retreat") {
+  Fallback fallback(tuning);
+  double worst = 1.0;
+  for (int i = 0; i < 100; ++i) CHECK(!fallback.after_newton(worst *= 0.69, true));
+  CHECK(!fallback.retreating());
+}
+
+TEST_CASE("fallback: a stall, a failed solve and a breakdown retreat, each time for longer") {
+  Fallback fallback(tuning);
+  CHECK(!fallback.after_newton(1.0, true));
+  for (int i = 1; i < tuning.patience; ++i) CHECK(!fallback.after_newton(0.9, true));
+  CHECK(fallback.after_newton(0.9, true));
+  int expected = tuning.first_retreat;
+  for (const double worst : {0.5, 0.5, HUGE_VAL}) {
+    int steps = 0;
+    for (; fallback.retreating(); ++steps) fallback.after_admm(1e3);
+    CHECK(steps == expected);
+    expected *= 2;
+    CHECK(fallback.after_newton(worst, std::isinf(worst)));
+  }
+  // Longest of all.
+  for (int i = 0; i < 20; ++i) fallback.after_newton(1.0, false);
+  int steps = 0;
+  for (; fallback.retreating(); ++steps) fallback.after_admm(1e3);
+  CHECK(steps == tuning.first_retreat << tuning.most_doublings);
+}
+
+TEST_CASE("fallback: ADMM hands back once it is well below the best Newton step") {
+  Fallback fallback(tuning);
+  fallback.after_newton(0.4, true);
+  fallback.after_newton(0.6, false);
+  REQUIRE(fallback.retreating());
+  Fallback copy = copied_by_visit(fallback, Fallback(tuning));
+  for (Fallback* each : {&fallback, &copy}) {
+    each->after_admm(0.5 * 0.4);
+    CHECK(each->retreating());
+    each->after_admm(0.99 * tuning.retreat_gain * 0.4);
+    CHECK(!each->retreating());
+  }
+}
+
+TEST_CASE("penalties: the first one goes with 1/λ_min and the root of the mesh width") {
+  const double one = first_penalty(0.5, 100, 3, tuning);
+  CHECK(first_penalty(0.25, 100, 3, tuning) == doctest::Approx(2.0 * one));
+  CHECK(first_penalty(0.5, 1600, 3, tuning) == doctest::Approx(0.5 * one));
+  CHECK(first_penalty(0.5, 400, 2, tuning) == doctest::Approx(0.5 * first_penalty(0.5, 100, 2, tuning)));
+  CHECK(first_penalty(0.0, 100, 3, tuning) == 1.0);
+}
+
+TEST_CASE("penalties: each rule begins with its own, and only the automatic one moves") {
+  SolverOptions options;
+  const std::array<BalanceSample, 8> behind{BalanceSample{{1.0, 1.0}, {1e-3, 1e-3}}};
+  const Scales scales{1.0, 1.0, 1.0};
+  const auto chosen = [&](SolverOptions::Penalty rule) {
+    options.penalty = rule;
+    options.r = 7.0;
+    PenaltyControl control(options, 3.0, tuning);
+    CHECK(!control.chosen());
+    control.choose(5.0, 0.1);
+    CHECK(control.chosen());
+    CHECK(control.value().normal == control.value().tangential);
+    return control;
+  };
+  using Rule = SolverOptions::Penalty;
+  for (const auto& [rule, r] : {std::pair{Rule::fixed, 7.0}, {Rule::paper, 5.0}, {Rule::automatic, 3.0}}) {
+    PenaltyControl control = chosen(rule);
+    CHECK(control.value().normal == r);
+    CHECK(control.balance(behind, scales) == (rule == Rule::automatic));
+    CHECK((control.value().normal != r) == (rule == Rule::automatic));
+    if (rule == Rule::automatic) {
+      CHECK(control.go_back_to_first());
+      CHECK(control.value().normal == r);
+    }
+  }
+  options.stop = SolverOptions::Stop::paper;
+  CHECK(!chosen(Rule::automatic).balance(behind, scales));
+}
+
+TEST_CASE(
+    "penalties: up where held rows are behind, down where free ones are, by no more than e and within "
+    "bounds") {
+  PenaltyControl control(SolverOptions(), 3.0, tuning);
+  const Scales scales{1.0, 1.0, 1.0};
+  const auto after = [&](const std::vector<BalanceSample>& samples, double lambda_min = 0.1) {
+    control.choose(0.0, lambda_min);
+    control.balance(samples, scales);
+    return control.value();
+  };
+  // Held rows of N are behind, free ones of T.
+  const BalanceSample sample{{4e-3, 1e-3}, {1e-3, 4e-3}};
+  const Penalty many = after(std::vector<BalanceSample>(6, sample));
+  CHECK(many.normal > 3.0);
+  CHECK(many.tangential < 3.0);
+  CHECK(many.normal == doctest::Approx(3.0 * 2.0));
+  // Fewer iterations say less.
+  const Penalty one = after({sample});
+  CHECK(one.normal > 3.0);
+  CHECK(one.normal < many.normal);
+  // Nothing on the free side.
+  const Penalty most = after(std::vector<BalanceSample>(6, BalanceSample{{1.0, 1.0}, {0.0, 0.0}}));
+  CHECK(most.normal == doctest::Approx(3.0 * std::exp(1.0)));
+  // Bounds, and nothing to be learnt.
+  CHECK(after(std::vector<BalanceSample>(6, sample), 10.0).normal ==
+        doctest::Approx(tuning.largest_penalty / 10.0));
+  CHECK(after({}).normal == 3.0);
+  control.choose(0.0, 0.0);
+  CHECK(!control.balance(std::vector<BalanceSample>(6, sample), scales));
+}
+
+TEST_CASE(
+    "preconditioner: stale without one, fresh after a setup, stale once a step costs what a setup does") {
+  PreconditionerSchedule schedule(tuning);
+  CHECK(schedule.stale());
+  schedule.built();
+  CHECK(!schedule.stale());
+  schedule.watch(2.0, 20);  // ten iterations a digit are what it can do
+  CHECK(!schedule.stale());
+  schedule.watch(0.0, 0);
+  schedule.watch(2.0, 20 + static_cast<int>(tuning.setup_worth));
+  CHECK(!schedule.stale());
+  schedule.watch(1.0, 11 + static_cast<int>(tuning.setup_worth));
+  CHECK(schedule.stale());
+  schedule.built();
+  schedule.watch(2.0, 40);  // a new measure
+  CHECK(!schedule.stale());
+  schedule.mark_stale();
+  CHECK(schedule.stale());
+}
+
+TEST_CASE("preconditioner: what it was built for, and what has moved since") {
+  PreconditionerSchedule schedule(tuning);
+  schedule.built_for(Penalty{2.0, 1.0});
+  CHECK(!schedule.penalty_moved({2.9 / 3.0 * 2.0, 1.0}, true));
+  CHECK(schedule.penalty_moved({2.0 * 1.01 * tuning.penalty_worth, 1.0}, false));
+  CHECK(schedule.penalty_moved({2.0, 0.99 / tuning.penalty_worth}, true));
+  CHECK(!schedule.penalty_moved({2.0, 0.99 / tuning.penalty_worth}, false));
+  const std::vector<TraceChoice> set{{true, false}, {false, false}};
+  CHECK(schedule.set_moved(set));
+  schedule.built_for(set);
+  CHECK(!schedule.set_moved(set));
+  CHECK(schedule.set_moved(std::vector<TraceChoice>{{true, true}, {false, false}}));
+  schedule.built_for(Penalty{2.0, 1.0});  // pins nothing
+  CHECK(schedule.set_moved(set));
+  CHECK(!schedule.drifted(0.9 * tuning.drift_worth * 8.0, 8.0));
+  CHECK(schedule.drifted(1.1 * tuning.drift_worth * 8.0, 8.0));
+}
+
+TEST_CASE("accuracy: ADMM is solved below the residuals before it, but not far below the tolerance") {
+  SolverOptions options;
+  options.tolerance = 1e-6;
+  const auto reach = [&](double worst) {
+    return admm_accuracy(options, residuals(worst), false, tuning).force_tolerance / 2.0;
+  };
+  CHECK(reach(1e-2) == doctest::Approx(tuning.inner_reduction * 1e-2));
+  CHECK(reach(50.0) == doctest::Approx(tuning.inner_reduction));
+  CHECK(reach(1e-7) == doctest::Approx(0.5e-6));
+  const AdmmOptions later = admm_accuracy(options, residuals(1e-2), false, tuning);
+  CHECK(later.trace_tolerance / 3.0 == doctest::Approx(later.force_tolerance / 2.0));
+  CHECK(later.max_iterations == tuning.balancing_iterations);
+  CHECK(admm_accuracy(options, residuals(1e-2), true, tuning).max_iterations == options.max_contact);
+  options.max_contact = 2;
+  CHECK(admm_accuracy(options, residuals(1e-2), false, tuning).max_iterations == 2);
+  // Nothing sets a scale yet: by the forces that appear.
+  Residuals rest;
+  const AdmmOptions at_rest = admm_accuracy(options, rest, true, tuning);
+  CHECK(at_rest.force_reduction == tuning.inner_reduction);
+  CHECK(std::isinf(at_rest.trace_tolerance));
+  // The paper's stop, and what is relaxed.
+  CHECK(at_rest.relaxation == 1.7);
+  options.penalty = SolverOptions::Penalty::paper;
+  CHECK(admm_accuracy(options, rest, true, tuning).relaxation == 1.0);
+  options.relaxation = 1.3;
+  CHECK(admm_accuracy(options, rest, true, tuning).relaxation == 1.3);
+  options.stop = SolverOptions::Stop::paper;
+  CHECK(admm_accuracy(options, residuals(1e-2), false, tuning).step_tolerance == options.tolerance);
+}
+
+TEST_CASE("accuracy: a Newton step near the tolerance is solved as the last, and caps are the user's") {
+  SolverOptions options;
+  options.tolerance = 1e-6;
+  options.max_cg = 17;
+  const CgOptions far = newton_accuracy(options, residuals(1e-2), tuning),
+                  near = newton_accuracy(options, residuals(0.9e-6 * tuning.last_reach), tuning);
+  CHECK(far.relative == tuning.solve_reduction);
+  CHECK(near.relative == tuning.last_reduction);
+  CHECK(far.most == doctest::Approx(1e-2 * 2.0));
+  CHECK(far.absolute == doctest::Approx(tuning.last_share * 1e-6 * 2.0));
+  CHECK(far.max_iterations == 17);
+  CHECK(admm_accuracy(options, residuals(1e-2), false, tuning).max_cg == 17);
+}
+
+TEST_CASE("accuracy: residuals fall further where the duality gap is behind them") {
+  Certificate c;
+  CHECK(gap_share(c) == 1.0);
+  c.equilibrium = 1e-4;
+  c.duality_gap = 1e-5;
+  CHECK(gap_share(c) == 1.0);
+  c.duality_gap = 1e-2;
+  CHECK(gap_share(c) == doctest::Approx(1e-2));
+  c.duality_gap = 1e5;
+  CHECK(gap_share(c) == 1e-4);
+  c.duality_gap = HUGE_VAL;
+  CHECK(gap_share(c) == 1.0);
+}
+
+namespace {
+
+/// Two plane nodes: one on an obstacle that sits in the body by 0.3, pushed towards it by 0.1; one 0.5 away
+/// from another obstacle.
+Part two_nodes() {
+  Part part;
+  part.type = ElementType::tri3;
+  part.coordinates = {0.0, 0.0, 1.0, 0.0};
+  part.node_index = {0, 1};
+  part.owned_nodes = 2;
+  part.held = {0, 1, 0, 0};
+  part.load = {{0, 4.0}, {2, -6.0}};
+  part.prescribed = {{1, -0.1}};
+  ContactPoint in, away;
+  in.normal = away.normal = {0.0, -1.0, 0.0};
+  in.gap = -0.3 - 0.1;  // as build_problem leaves it: what is prescribed taken off
+  in.mass = away.mass = 1.0;
+  away.node = 1;
+  away.entry = 1;
+  away.gap = 0.5;
+  away.tresca = 0.2;
+  away.coulomb = 0.3;
+  away.tangents = 1;
+  part.contact = {in, away};
+  part.owned_contact = 2;
+  return part;
+}
+
+}  // namespace
+
+TEST_CASE("load path: the full load is the part's to the bit, on the way and after it") {
+  const Part part = two_nodes();
+  LoadPath path(part);
+  const auto is_full = [&] {
+    CHECK(std::equal(path.load().begin(), path.load().end(), part.load.begin(), part.load.end()));
+    CHECK(std::equal(path.prescribed().begin(), path.prescribed().end(), part.prescribed.begin(),
+                     part.prescribed.end()));
+    REQUIRE(path.gap().size() == 2);
+    for (std::size_t i = 0; i < 2; ++i) CHECK(path.gap()[i] == part.contact[i].gap);
+  };
+  is_full();
+  path.go_to(0.3);
+  CHECK(path.share() == 0.3);
+  path.go_to(1.0);
+  is_full();
+}
+
+TEST_CASE("load path: a share of forces, displacements and indentation; open gaps stay") {
+  const Part part = two_nodes();
+  LoadPath path(part);
+  for (const double share : {0.25, 0.7, 1.5}) {
+    path.go_to(share);
+    std::vector<double> f(4, 1.0), u(4, 1.0);
+    path.add_load(f);
+    path.prescribe(u);
+    CHECK(f[0] == doctest::Approx(1.0 + 4.0 * share));
+    CHECK(f[1] == 1.0);
+    CHECK(f[2] == doctest::Approx(1.0 - 6.0 * share));
+    CHECK(u == std::vector<double>{1.0, -0.1 * share, 1.0, 1.0});
+    // At none of the load the first obstacle just touches.
+    CHECK(path.gap()[0] == doctest::Approx(-0.4 * share));
+    CHECK(path.gap()[1] == 0.5);
+  }
+}
+
+TEST_CASE("friction bounds follow the pressure, and say by how much") {
+  const Part part = two_nodes();
+  CHECK(has_friction(part));
+  Vector bound(2, 0.0);
+  CHECK(follow_pressure(part, {0.0, 0.0}, bound) == 0.0);
+  CHECK(bound == Vector{0.0, 0.2});
+  CHECK(follow_pressure(part, {5.0, 2.0}, bound) == doctest::Approx(0.3 * 2.0 / 5.0));
+  CHECK(bound[1] == doctest::Approx(0.2 + 0.6));
+  CHECK(follow_pressure(part, {5.0, 2.0}, bound) == 0.0);
+  Part smooth = part;
+  for (ContactPoint& point : smooth.contact) point.tangents = 0;
+  CHECK(!has_friction(smooth));
+}
