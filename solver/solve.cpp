@@ -42,8 +42,8 @@ std::string verdict(const Result& result, const SolverOptions& options) {
     text << "interrupted after " << result.outer_iterations << " outer steps, with the worst KKT residual at "
          << worst;
   } else if (options.stop == SolverOptions::Stop::paper) {
-    text << "stopped by (15) with tolerance " << options.tolerance << ", but the worst KKT residual is "
-         << worst << ": the step was small, the error is not";
+    text << "stopped by the size of its step with tolerance " << options.tolerance
+         << ", but the worst KKT residual is " << worst << ": the step was small, the error is not";
   } else {
     text << "after " << result.outer_iterations << " outer steps the worst KKT residual is " << worst
          << ", above the tolerance " << options.tolerance;
@@ -61,6 +61,13 @@ void end_load_steps(const std::vector<double>& shares, bool finished, Result& re
   std::ostringstream place;
   place << "load step " << over + 1 << " of " << shares.size() << " (factor " << shares[over] << "): ";
   result.message = place.str() + result.message;
+}
+
+std::string unsolved_message(const Result& result, const SolverOptions& options) {
+  return "the linear solves of " + std::to_string(result.unsolved_steps) + " of " +
+         std::to_string(result.outer_iterations) +
+         " outer steps did not converge: more than solver.max_cg = " + std::to_string(options.max_cg) +
+         " iterations, or no definite operator";
 }
 
 std::string softening_message(std::int64_t elements) {
@@ -100,6 +107,7 @@ Solution solve(const Part& part, const SolverOptions& options, const RunOptions&
   if (result.message.empty()) result.message = verdict(result, options);
   if (shares.size() > 1) end_load_steps(shares, finished, result);
   if (result.softening_elements > 0) result.message += softening_message(result.softening_elements);
+  if (result.unsolved_steps > 0) result.warnings.push_back(unsolved_message(result, options));
   result.unknowns = part.total_nodes * part.dim();
   result.elements = part.total_elements;
   result.contact_nodes = part.total_contact;
@@ -135,8 +143,8 @@ std::vector<SpectrumResult> analyse_spectrum(const Part& part, const SolverOptio
   return results;
 }
 
-double active_penalty(const Part& part, const Solution& solution, const SolverOptions& options,
-                      const RunOptions& run) {
+ActivePenalty active_penalty(const Part& part, const Solution& solution, const SolverOptions& options,
+                             const RunOptions& run) {
   DistributedOperator op(part, run.threads, run.instruction_set);
   op.update(solution.displacement);
   const auto amg = make_preconditioner(options.preconditioner, part, run.threads, run.instruction_set);
@@ -148,13 +156,13 @@ double active_penalty(const Part& part, const Solution& solution, const SolverOp
     open[i] = {!active[i].normal, !active[i].tangential};
   }
   const TraceRows held(part, active), free(part, open);
-  if (held.total() == 0) return 0.0;
+  if (held.total() == 0) return {};
   Spectrum spectrum(part, op, *amg, secant, {options.spectrum_tolerance, options.max_cg});
   const double low = spectrum.smallest(held).value;
-  if (!(low > 0.0)) return 0.0;
+  if (!(low > 0.0)) return {0.0, spectrum.cost().converged};
   const double high =
       free.total() > 0 ? spectrum.largest(free, held, 0.01 / low, part.loose_modes > 0).value : 0.0;
-  return 1.0 / std::sqrt(low * (high > 0.0 ? high : low));
+  return {1.0 / std::sqrt(low * (high > 0.0 ? high : low)), spectrum.cost().converged};
 }
 
 }  // namespace kacanov

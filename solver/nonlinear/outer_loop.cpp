@@ -119,6 +119,7 @@ StepOutcome OuterLoop::take_step(bool newton, const Residuals& before, Result& r
   result.contact_iterations += step.contact_iterations;
   result.cg_iterations += step.cg_iterations;
   result.contact_applications += step.applications;
+  if (!step.solved) ++result.unsolved_steps;
   result.r.push_back(penalty.normal);
   return step;
 }
@@ -135,7 +136,11 @@ void OuterLoop::move_penalty(const StepOutcome& step, const Residuals& before, c
 
 void OuterLoop::learn(const StepOutcome& step, bool newton, const Residuals& before, const Residuals& after) {
   const double worst = after.certificate.worst();
-  if (!newton) return control_.fallback.after_admm(worst);
+  if (!newton) {
+    // As after a Newton step that was not solved: the preconditioner is the first suspect.
+    if (!step.solved) context_.preconditioner.mark_stale();
+    return control_.fallback.after_admm(worst);
+  }
   if (step.tangent)
     control_.linearisation.after_tangent(before.certificate.equilibrium, after.certificate.equilibrium);
   if (!control_.fallback.after_newton(worst, step.solved)) return;
@@ -180,6 +185,10 @@ void OuterLoop::choose_first_penalty(Result& result) {
     result.lambda_max = spectrum.lambda_max;
     result.r_star = spectrum.r_star;
     result.cg_iterations += spectrum.cg_iterations;
+    if (!spectrum.converged)
+      result.warnings.push_back(
+          "solver.r: the estimate of the spectrum behind r* has not converged, so that the "
+          "penalty is a rough one (solver.max_cg, solver.spectrum_tolerance)");
     control_.penalty.choose(result.r_star, result.lambda_min);
   } else {
     result.lambda_min = rough_lambda_min(part, context_.body.diagonal(), friction_);

@@ -216,7 +216,7 @@ TEST_CASE("a first step that nothing but a penetration sets the scale of comes t
   }
 }
 
-TEST_CASE("iterations hardly grow with the mesh, and are few beside Algorithm 1 with (32)") {
+TEST_CASE("iterations hardly grow with the mesh, and are few beside ADMM with r*") {
   for (const double tresca : {0.0, 0.01}) {
     CAPTURE(tresca);
     Model model = beam(2, logarithmic_law(0.01), 0.05, tresca);
@@ -238,4 +238,33 @@ TEST_CASE("iterations hardly grow with the mesh, and are few beside Algorithm 1 
     CHECK(balanced.result().status == Status::converged);
     CHECK(2 * balanced.result().contact_iterations < paper.result().contact_iterations);
   }
+}
+
+TEST_CASE("solves that are cut short are counted and said, whatever the loop makes of them") {
+  using Options = SolverOptions;
+  Model model = beam(2, logarithmic_law(0.01), 0.05, 0.01);
+  const Run whole = run_alone(beam_mesh(2, 4), model);
+  CHECK(whole.result().unsolved_steps == 0);
+  CHECK(whole.result().warnings.empty());
+  model.solver.max_cg = 1;
+  model.solver.max_outer = 10;
+  for (const auto contact :
+       {Options::Contact::automatic, Options::Contact::admm, Options::Contact::dual_admm}) {
+    model.solver.contact = contact;
+    const Run cut = run_alone(beam_mesh(2, 4), model);
+    CHECK(cut.result().unsolved_steps > 0);
+    REQUIRE(cut.result().warnings.size() == 1);
+    CHECK(mentions(cut.result().warnings[0], "solver.max_cg = 1"));
+  }
+}
+
+TEST_CASE("r* of an estimate that has not converged is said to be a rough one") {
+  Model model = beam(2, logarithmic_law(0.01), 0.05, 0.01);
+  model.solver.penalty = SolverOptions::Penalty::paper;
+  model.solver.max_outer = 2;
+  CHECK(run_alone(beam_mesh(2, 4), model).result().warnings.empty());
+  model.solver.max_cg = 2;
+  const Run cut = run_alone(beam_mesh(2, 4), model);
+  REQUIRE(!cut.result().warnings.empty());
+  CHECK(mentions(cut.result().warnings[0], "r*"));
 }

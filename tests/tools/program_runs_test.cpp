@@ -50,6 +50,7 @@ TEST_CASE("a run converges, says so, and writes every file and key") {
                           "ranks",
                           "threads",
                           "instruction_set",
+                          "warnings",
                           "version"}) {
     INFO(key);
     CHECK(result.contains(key));
@@ -63,6 +64,7 @@ TEST_CASE("a run converges, says so, and writes every file and key") {
             applications["outer"].get<int>() ==
         result["operator_applications"].get<int>());
   CHECK(result["status"] == "converged");
+  CHECK(result["warnings"].empty());
   CHECK(result["unknowns"] == 170);
   CHECK(result["elements"] == 128);
   CHECK(result["contact_nodes"] == 16);
@@ -232,4 +234,18 @@ TEST_CASE("help and version") {
   CHECK(place.run("--help").output.find("Exit codes: 0 converged; 1 not converged") != std::string::npos);
   CHECK(place.run("run --help").exit_code == 0);
   CHECK(place.run("--version").output.rfind("kacanov ", 0) == 0);
+}
+
+TEST_CASE("a spectrum whose solves are cut short says so and ends with exit code 1") {
+  const Workplace place;
+  place.put_json("beam.json", small_beam());
+  const std::string cut = " --set solver.max_cg=3";
+  const Outcome table = place.run("spectrum beam.json" + cut);
+  CHECK(table.exit_code == 1);
+  CHECK(table.output.find("NOT CONVERGED") != std::string::npos);
+  const Outcome json = place.run("spectrum beam.json --json" + cut);
+  CHECK(json.exit_code == 1);
+  for (const nlohmann::json& entry : nlohmann::json::parse(json.output)["spectrum"])
+    CHECK(entry["converged"] == false);
+  CHECK(place.run("spectrum beam.json").output.find("NOT CONVERGED") == std::string::npos);
 }

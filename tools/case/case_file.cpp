@@ -195,7 +195,7 @@ class CaseParser {
   void parse_solver(const Node& node) {
     using Options = SolverOptions;
     const Object object(node, {"tolerance", "outer", "contact", "r", "stop", "max_outer", "max_contact",
-                               "spectrum_tolerance", "relaxation", "preconditioner", "load_steps"});
+                               "max_cg", "spectrum_tolerance", "relaxation", "preconditioner", "load_steps"});
     Options& options = result_.model.solver;
     const auto inside = [](double v) { return v > 0.0 && v < 1.0; };
     if (const auto v = object.optional("tolerance"))
@@ -222,6 +222,7 @@ class CaseParser {
     }
     if (const auto v = object.optional("max_outer")) options.max_outer = v->integer(1);
     if (const auto v = object.optional("max_contact")) options.max_contact = v->integer(1);
+    if (const auto v = object.optional("max_cg")) options.max_cg = v->integer(1);
     if (const auto v = object.optional("load_steps")) parse_load_steps(*v);
     if (const auto v = object.optional("relaxation")) {
       options.relaxation =

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // kacanov spectrum: lambda_min, lambda_max and r* of the elastic body.
+#include <algorithm>
 #include <cstdio>
 #include <iostream>
 
@@ -24,6 +25,9 @@ void print_table(const SpectrumResult& spectrum) {
               spectrum.products, static_cast<long long>(spectrum.cg_iterations),
               static_cast<unsigned long long>(spectrum.operator_applications),
               readable_seconds(spectrum.seconds).c_str());
+  if (!spectrum.converged)
+    std::printf(
+        "  NOT CONVERGED: a solve took more than solver.max_cg iterations, or Lanczos met its limit\n");
 }
 
 }  // namespace
@@ -40,15 +44,18 @@ int spectrum_command(const Command& command, const Case& input, const MpiSession
   options.threads = threads_of(command);
   std::vector<SpectrumResult> results;
   collectively(mpi, [&] { results = analyse_spectrum(loaded.part, solver, options); });
-  if (!mpi.first()) return exit_converged;
+  const bool converged = std::all_of(results.begin(), results.end(),
+                                     [](const SpectrumResult& estimate) { return estimate.converged; });
+  const int exit_code = converged ? exit_converged : exit_not_converged;
+  if (!mpi.first()) return exit_code;
   if (command.json) {
     const std::int64_t unknowns = loaded.part.total_nodes * loaded.part.dim();
     std::cout << spectrum_json(results, unknowns, loaded.part.total_contact).dump(2) << std::endl;
-    return exit_converged;
+    return exit_code;
   }
   for (const SpectrumResult& spectrum : results) print_table(spectrum);
   std::fflush(stdout);
-  return exit_converged;
+  return exit_code;
 }
 
 }  // namespace kacanov

@@ -81,9 +81,15 @@ int sweep_command(const Command& command, const Case& input, const MpiSession& m
   std::vector<double> r;
   std::vector<Result> results;
   collectively(mpi, [&] {
-    landmarks.r_star = analyse_spectrum(loaded.part, solver, options).back().r_star;
+    const SpectrumResult elastic = analyse_spectrum(loaded.part, solver, options).back();
+    landmarks.r_star = elastic.r_star;
     solver.penalty = SolverOptions::Penalty::automatic;
-    landmarks.r_active = active_penalty(loaded.part, solve(loaded.part, solver, options), solver, options);
+    const ActivePenalty active =
+        active_penalty(loaded.part, solve(loaded.part, solver, options), solver, options);
+    landmarks.r_active = active.r;
+    if (mpi.first() && !(elastic.converged && active.converged))
+      std::cerr << "kacanov: warning: the estimates behind r* and r_A have not all converged: they are rough "
+                   "ones (solver.max_cg, solver.spectrum_tolerance)\n";
     const double low = command.r_min.value_or(landmarks.r_star / 10.0);
     const double high = command.r_max.value_or(landmarks.r_star * 100.0);
     if (!(low < high))

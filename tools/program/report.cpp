@@ -87,6 +87,7 @@ std::string summary(const Result& result, const RunFigures& figures, const Model
     text += "  probe         " + vector_text(model.probes[i], dim) + " moves by " +
             vector_text(result.probe[i], dim) + "\n";
   }
+  for (const std::string& warning : result.warnings) text += "  warning       " + warning + "\n";
   const Certificate& c = result.certificate;
   text += format("  certificate   equilibrium %.1e, penetration %.1e, tension %.1e, complementarity %.1e,\n",
                  c.equilibrium, c.penetration, c.tension, c.complementarity);

@@ -21,6 +21,7 @@ ordered_json estimate_json(const SpectrumResult& result) {
           {"lambda_max", result.lambda_max},
           {"lambda_max_bound", result.bound_max},
           {"r_star", result.r_star},
+          {"converged", result.converged},
           {"products", result.products},
           {"cg_iterations", result.cg_iterations},
           {"operator_applications", result.operator_applications},
@@ -42,6 +43,7 @@ ordered_json result_json(const Result& result, const RunFigures& figures, int di
   ordered_json json;
   json["status"] = status_name(result.status);
   json["message"] = result.message;
+  json["warnings"] = result.warnings;
   json["unknowns"] = result.unknowns;
   json["elements"] = result.elements;
   json["contact_nodes"] = result.contact_nodes;

@@ -67,9 +67,11 @@ struct PhaseSeconds {
 struct Result {
   Status status = Status::not_converged;
   std::string message;
+  std::vector<std::string> warnings;  ///< what may make the numbers less than they seem; one sentence each
   std::int64_t unknowns = 0, elements = 0;
   std::int64_t contact_nodes = 0, active_nodes = 0, slip_nodes = 0;
   int outer_iterations = 0;
+  int unsolved_steps = 0;    ///< of these, since a restart: a linear solve did not converge
   int restarted_after = -1;  ///< outer steps before a restart, which the counts include; −1 without one
   std::int64_t contact_iterations = 0, cg_iterations = 0;
   std::uint64_t operator_applications = 0;  ///< all purposes together

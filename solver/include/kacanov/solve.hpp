@@ -17,9 +17,13 @@ Solution solve(const Part& part, const SolverOptions& options, const RunOptions&
 std::vector<SpectrumResult> analyse_spectrum(const Part& part, const SolverOptions& options,
                                              const RunOptions& run);
 
-/// r_A = 1/√(λ_min(K_AA) λ_max(K_I|A)) with g and contact set of a solution: A what touches and sticks, I the
-/// rest. 0 where nothing touches. Collective.
-double active_penalty(const Part& part, const Solution& solution, const SolverOptions& options,
-                      const RunOptions& run);
+struct ActivePenalty {
+  double r = 0.0;         ///< r_A; 0 where nothing touches
+  bool converged = true;  ///< both estimates behind it, and their solves
+};
+
+/// r_A with g and contact set of a solution (theory: r-active). Collective.
+ActivePenalty active_penalty(const Part& part, const Solution& solution, const SolverOptions& options,
+                             const RunOptions& run);
 
 }  // namespace kacanov
