@@ -38,10 +38,9 @@ void collect_contact_totals(const Part& part, Solution& solution) {
   double pressure = 0.0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_contact); ++i) {
     const auto& point = part.contact[i];
-    for (std::size_t c = 0; c < 3; ++c) {
-      sums[c] -= point.mass * solution.pressure[i] * point.trace[c];
-      sums[3 + c] += point.mass * solution.traction[i][c];
-    }
+    for (const RowEntry& entry : part.contact.entries(i))
+      for (std::size_t c = 0; c < 3; ++c) sums[c] -= point.mass * solution.pressure[i] * entry.trace[c];
+    for (std::size_t c = 0; c < 3; ++c) sums[3 + c] += point.mass * solution.traction[i][c];
     sums[6] += solution.pressure[i] > 0.0 ? 1.0 : 0.0;
     sums[7] += point.tangents > 0 && solution.contact_status[i] == ContactStatus::slip ? 1.0 : 0.0;
     pressure = std::max(pressure, solution.pressure[i]);

@@ -9,6 +9,7 @@
 #include "collect.hpp"
 #include "load_steps.hpp"
 #include "nonlinear/friction_bounds.hpp"
+#include "spectrum/spectrum.hpp"
 
 namespace kacanov {
 namespace {

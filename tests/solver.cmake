@@ -61,6 +61,10 @@ kacanov_test(closed_solutions
 kacanov_test(contact
   MPI SOURCES solver/contact_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
+kacanov_test(wide_contact
+  MPI SOURCES solver/wide_contact_test.cpp
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal Eigen3::Eigen
+  RANKS 1 2 3)
 kacanov_test(dual
   MPI SOURCES solver/dual_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)

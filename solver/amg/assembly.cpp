@@ -35,7 +35,7 @@ NodeGraph node_graph(const MeshView& mesh) {
   graph.start.push_back(0);
   std::vector<std::int32_t> row;
   for (std::size_t n = 0; n < nodes; ++n) {
-    row.clear();
+    row.assign(1, static_cast<std::int32_t>(n));
     for (auto k = first[n]; k < first[n + 1]; ++k) {
       const auto e = static_cast<std::size_t>(element_of[static_cast<std::size_t>(k)]);
       const auto element = mesh.connectivity.subspan(e * npe, npe);

@@ -76,19 +76,31 @@ ActiveSet decide(const Traces& traces, const ContactState& state, double c) {
 
 std::vector<NodeBlock> slip_blocks(const Part& part, const ActiveSet& set) {
   const auto dim = static_cast<std::size_t>(part.dim());
+  const WideNodes nodes(part);
   std::vector<NodeBlock> blocks;
+  Vector wide = nodes.zeros(dim * dim);
   for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_contact); ++i) {
     if (set.slip_stiffness[i] == 0.0) continue;
-    const auto& point = part.contact[i];
-    NodeBlock block{point.node, {}};
     const double* s = &set.slip_direction[2 * i];
-    Vector3 across{};  // the tangent orthogonal to the slip
-    for (std::size_t c = 0; c < dim; ++c) across[c] = s[0] * point.tangent[1][c] - s[1] * point.tangent[0][c];
-    for (std::size_t c = 0; c < dim; ++c)
-      for (std::size_t d = 0; d < dim; ++d)
-        block.value[c * dim + d] = point.mass * set.slip_stiffness[i] * across[c] * across[d];
-    blocks.push_back(block);
+    const auto entries = part.contact.entries(i);
+    for (const RowEntry& entry : entries) {
+      NodeBlock block{entry.node, {}};
+      Vector3 across{};  // the tangent orthogonal to the slip
+      for (std::size_t c = 0; c < dim; ++c)
+        across[c] = s[0] * entry.tangent[1][c] - s[1] * entry.tangent[0][c];
+      for (std::size_t c = 0; c < dim; ++c)
+        for (std::size_t d = 0; d < dim; ++d)
+          block.value[c * dim + d] = part.contact[i].mass * set.slip_stiffness[i] * across[c] * across[d];
+      if (entries.size() == 1) {
+        blocks.push_back(block);
+        continue;
+      }
+      double* sum = &wide[nodes.position(entry.node) * dim * dim];
+      for (std::size_t k = 0; k < dim * dim; ++k) sum[k] += block.value[k];
+    }
   }
+  const auto summed = nodes.summed(std::move(wide));
+  blocks.insert(blocks.end(), summed.begin(), summed.end());
   return blocks;
 }
 

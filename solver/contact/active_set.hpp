@@ -7,7 +7,7 @@
 #include <span>
 
 #include "contact/admm.hpp"
-#include "spectrum/spectrum.hpp"
+#include "contact/trace_rows.hpp"
 
 namespace kacanov {
 
@@ -22,7 +22,7 @@ struct ActiveSet {
 /// c is a penalty like ADMM's; any positive value has the same fixed points.
 ActiveSet decide(const Traces& traces, const ContactState& state, double c);
 
-/// Slip stiffness k M (I − ŝŝᵀ) as blocks of owned nodes, for a preconditioner.
+/// Slip stiffness k M (I − ŝŝᵀ) as blocks of owned nodes, for a preconditioner. Collective.
 std::vector<NodeBlock> slip_blocks(const Part& part, const ActiveSet& set);
 
 struct ActiveSetStep {

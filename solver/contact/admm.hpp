@@ -8,19 +8,10 @@
 #include <vector>
 
 #include "contact/balance.hpp"
-#include "contact/traces.hpp"
+#include "contact/contact_state.hpp"
 #include "linear/cg.hpp"
 
 namespace kacanov {
-
-/// ω with its auxiliary and multiplier fields; kept from one linearisation to the next.
-struct ContactState {
-  Vector omega;         ///< takes prescribed components along
-  ContactValues trace;  ///< (Nω, Tω)
-  ContactValues phi, lambda;
-  Vector gap;    ///< ρ of each contact point, under the share of the load that the state belongs to
-  Vector bound;  ///< ψ of each contact point
-};
 
 /// A linearised problem: B, frozen, and its preconditioner for B + r CᵀMC.
 struct LinearProblem {

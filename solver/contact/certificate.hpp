@@ -5,7 +5,7 @@
 #include <span>
 
 #include <kacanov/result.hpp>
-#include "contact/admm.hpp"
+#include "contact/contact_state.hpp"
 
 namespace kacanov {
 

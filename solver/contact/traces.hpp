@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Normal and tangential traces N, T on the contact points, with the lumped mass M.
+// Normal and tangential traces N, T at the contact points, with the lumped mass M.
 #pragma once
 
 #include <span>
 
+#include "contact/wide_nodes.hpp"
 #include "linear/space.hpp"
 
 namespace kacanov {
@@ -20,29 +21,34 @@ struct ContactValues {
   explicit ContactValues(std::size_t points = 0) : normal(points, 0.0), tangential(2 * points, 0.0) {}
 };
 
+/// C = [N; T] of all contact points, and its transpose (theory: traces). Forces of narrow points are worked
+/// out on every rank that has the node; those of wide points by their owners, and then they travel.
 class Traces {
  public:
-  explicit Traces(const Part& part) : part_(&part) {}
+  /// Collective. The part has to outlive it.
+  explicit Traces(const Part& part) : part_(&part), wide_(part) {}
 
-  std::span<const ContactPoint> points() const noexcept { return part_->contact; }
+  std::span<const ContactPoint> points() const noexcept { return part_->contact.points(); }
+  std::span<const RowEntry> entries(std::size_t point) const noexcept {
+    return part_->contact.entries(point);
+  }
   std::size_t size() const noexcept { return part_->contact.size(); }
   std::size_t owned() const noexcept { return static_cast<std::size_t>(part_->owned_contact); }
   const Halo& halo() const noexcept { return part_->halo; }
 
   /// values = (Nω, Tω); N takes prescribed components along.
   void evaluate(std::span<const double> omega, ContactValues& values) const;
-  /// y += factor · (Nᵀ M λ_n + Tᵀ M λ_t), in free components.
+  /// y += factor · (Nᵀ M λ_n + Tᵀ M λ_t), in free components. Collective.
   void add_force(const ContactValues& lambda, double factor, std::span<double> y) const;
   /// y += (r_n NᵀMN + r_t TᵀMT) x for x in the space of free components. Returns this rank's share of what xᵀ
-  /// y grows by.
+  /// y grows by. Collective.
   double add_penalty(const Penalty& r, std::span<const double> x, std::span<double> y) const;
-  /// ‖Nᵀ M λ_n + Tᵀ M λ_t‖ over all ranks (points of one node added up only where they share it).
+  /// ‖Nᵀ M λ_n + Tᵀ M λ_t‖ over all ranks (points of one node added up only where they share it). Collective.
   double force_norm(const ContactValues& lambda) const;
-  /// Σ M over owned points of all ranks.
-  double area() const;
 
  private:
   const Part* part_;
+  WideNodes wide_;
 };
 
 }  // namespace kacanov

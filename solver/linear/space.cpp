@@ -51,8 +51,18 @@ void project_out(const Part& part, std::span<const Space::HeldDirections> held, 
 
 }  // namespace
 
-void Space::project(std::span<double> x) const { project_out(*part_, held_, x); }
-void Space::project(std::span<float> x) const { project_out(*part_, held_, x); }
+void Space::project(std::span<double> x) const {
+  project_out(*part_, held_, x);
+  if (rows_) rows_->project(x);
+}
+
+void Space::project(std::span<float> x) const {
+  project_out(*part_, held_, x);
+  if (!rows_) return;
+  Vector exact(x.begin(), x.end());
+  rows_->project(exact);
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<float>(exact[i]);
+}
 
 double Space::local_dot(std::span<const double> x, std::span<const double> y) const {
   return eight_sums(part_->owned_unknowns(), [&](std::size_t i) { return x[i] * y[i]; });

@@ -4,7 +4,9 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <kacanov/part.hpp>
@@ -24,8 +26,16 @@ double eight_sums(std::size_t n, const Term& term) {
   return ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]));
 }
 
+/// Rows over several nodes that a space holds at zero.
+class HeldRows {
+ public:
+  virtual ~HeldRows() = default;
+  /// Orthogonal projection of a consistent vector (unknowns of the part). Collective.
+  virtual void project(std::span<double> x) const = 0;
+};
+
 /// Displacements of a part that vanish in held components and, optionally, in some directions of some nodes
-/// (contact rows held during a spectrum or active-set solve).
+/// and in rows over several nodes (contact rows held during a spectrum or active-set solve).
 class Space {
  public:
   explicit Space(const Part& part) : part_(&part) {}
@@ -33,6 +43,8 @@ class Space {
   /// Holds `direction` at a local node as well; directions of one node may be dependent. Call on every rank
   /// that has a copy of the node.
   void hold(std::int32_t node, const Vector3& direction);
+  /// Holds rows that share no node with these directions. Call on every rank.
+  void hold(std::shared_ptr<const HeldRows> rows) { rows_ = std::move(rows); }
 
   /// Directions held at one local node besides its held components.
   struct HeldDirections {
@@ -45,7 +57,7 @@ class Space {
   std::size_t size() const noexcept { return part_->unknowns(); }
   const Part& part() const noexcept { return *part_; }
 
-  /// Orthogonal projection onto the space, node by node.
+  /// Orthogonal projection onto the space, node by node; collective where rows over several nodes are held.
   void project(std::span<double> x) const;
   void project(std::span<float> x) const;
   double dot(std::span<const double> x, std::span<const double> y) const;
@@ -65,6 +77,7 @@ class Space {
 
   const Part* part_;
   std::vector<HeldDirections> held_;
+  std::shared_ptr<const HeldRows> rows_;
 };
 
 }  // namespace kacanov

@@ -7,14 +7,15 @@
 namespace kacanov {
 namespace {
 
-/// How much of the gap the prescribed components of the node close: build_problem has taken it off.
-double closed_by_prescription(const Part& part, const ContactPoint& point) {
+/// How much of a point's gap the prescribed components of its nodes close: build_problem has taken it off.
+double closed_by_prescription(const Part& part, std::span<const RowEntry> entries) {
   const auto dim = static_cast<std::size_t>(part.dim());
   double closed = 0.0;
-  for (std::size_t c = 0; c < dim; ++c) {
-    const std::size_t i = static_cast<std::size_t>(point.node) * dim + c;
-    if (part.held[i]) closed += point.normal[c] * part.prescribed_at(i);
-  }
+  for (const RowEntry& entry : entries)
+    for (std::size_t c = 0; c < dim; ++c) {
+      const std::size_t i = static_cast<std::size_t>(entry.node) * dim + c;
+      if (part.held[i]) closed += entry.normal[c] * part.prescribed_at(i);
+    }
   return closed;
 }
 
@@ -27,10 +28,10 @@ std::vector<Part::ComponentValue> scaled(std::vector<Part::ComponentValue> value
 
 LoadPath::LoadPath(const Part& part) : part_(&part) {
   std::int32_t entries = 0;
-  for (const ContactPoint& point : part.contact) {
-    gap_.push_back(point.gap);
-    missing_.push_back(closed_by_prescription(part, point));
-    entries = std::max(entries, point.entry + 1);
+  for (std::size_t i = 0; i < part.contact.size(); ++i) {
+    gap_.push_back(part.contact[i].gap);
+    missing_.push_back(closed_by_prescription(part, part.contact.entries(i)));
+    entries = std::max(entries, part.contact[i].entry + 1);
   }
   // Largest indentation, one a contact entry.
   std::vector<double> depth(static_cast<std::size_t>(part.halo.max_all(entries)), 0.0);

@@ -9,6 +9,7 @@
 
 #include "nonlinear/body_measures.hpp"
 #include "nonlinear/friction_bounds.hpp"
+#include "spectrum/spectrum.hpp"
 
 namespace kacanov {
 namespace {

@@ -118,11 +118,15 @@ Fingerprint fingerprint(const Problem& problem) {
   print.sections["boundary"] = (Hash() << problem.load << problem.held << problem.prescribed).value();
 
   std::vector<double> contact;
-  for (const ContactPoint& point : problem.contact) {
+  for (std::size_t i = 0; i < problem.contact.size(); ++i) {
+    const ContactPoint& point = problem.contact[i];
     contact.insert(contact.end(), {static_cast<double>(point.node), point.gap, point.mass, point.tresca,
                                    point.coulomb, static_cast<double>(point.tangents)});
-    for (const Vector3& v : {point.normal, point.trace, point.tangent[0], point.tangent[1]})
-      contact.insert(contact.end(), v.begin(), v.end());
+    for (const RowEntry& entry : problem.contact.entries(i)) {
+      if (problem.contact.is_wide(i)) contact.push_back(static_cast<double>(entry.node));
+      for (const Vector3& v : {entry.normal, entry.trace, entry.tangent[0], entry.tangent[1]})
+        contact.insert(contact.end(), v.begin(), v.end());
+    }
   }
   print.sections["contact"] = (Hash() << contact).value();
   return print;

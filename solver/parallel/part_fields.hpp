@@ -103,8 +103,16 @@ void exchange_fields(Either<Halo::Neighbour> auto& n, const auto& stream) {
 }
 
 void exchange_fields(Either<ContactPoint> auto& point, const auto& stream) {
-  stream(point.node, point.entry, point.normal, point.trace, point.tangent, point.tangents, point.gap,
-         point.mass, point.tresca, point.coulomb);
+  stream(point.node, point.entry, point.normal, point.tangent, point.tangents, point.gap, point.mass,
+         point.tresca, point.coulomb);
+}
+
+void exchange_fields(Either<RowEntry> auto& entry, const auto& stream) {
+  stream(entry.node, entry.normal, entry.trace, entry.tangent);
+}
+
+void exchange_fields(Either<ConstraintRows> auto& rows, const auto& stream) {
+  ConstraintRows::exchange(rows, stream);
 }
 
 void exchange_fields(Either<Probe> auto& probe, const auto& stream) {
@@ -123,8 +131,8 @@ void exchange_fields(Either<Part> auto& part, const auto& stream) {
   stream(part.type, part.coordinates, part.elements, part.node_index, part.element_index, part.node_tags,
          part.element_tags, part.owned_nodes, part.first_owned, part.total_nodes, part.total_elements,
          part.ghost_number, part.halo.neighbours, part.halo.shared, part.laws, part.law_of_element, part.load,
-         part.prescribed, part.held, part.contact, part.owned_contact, part.contact_index, part.total_contact,
-         part.probes, part.probe_index, part.total_probes, part.loose_modes);
+         part.prescribed, part.held, part.contact, part.owned_contact, part.wide_contact, part.contact_index,
+         part.total_contact, part.probes, part.probe_index, part.total_probes, part.loose_modes);
 }
 
 }  // namespace kacanov

@@ -69,17 +69,47 @@ std::vector<std::uint16_t> partition_elements(const Mesh& mesh, std::span<const 
   return part;
 }
 
-/// Which ranks have each node, ascending: compressed rows.
+/// Which ranks have each node, ascending: by its elements (compressed rows), and a few by wide contact
+/// points.
 struct Sharers {
   std::vector<std::size_t> start;
   std::vector<int> rank;
-  std::span<const int> of(std::size_t node) const {
+  std::map<std::size_t, std::set<int>> more;  ///< ranks without an element there
+  std::span<const int> by_elements(std::size_t node) const {
     return std::span(rank).subspan(start[node], start[node + 1] - start[node]);
+  }
+  std::vector<int> of(std::size_t node) const {
+    const auto s = by_elements(node);
+    std::vector<int> all(s.begin(), s.end());
+    if (const auto found = more.find(node); found != more.end()) {
+      all.insert(all.end(), found->second.begin(), found->second.end());
+      std::sort(all.begin(), all.end());
+    }
+    return all;
+  }
+  bool is_shared(std::size_t node) const { return by_elements(node).size() > 1 || more.contains(node); }
+  bool has(std::size_t node, int who) const {
+    const auto s = by_elements(node);
+    if (std::binary_search(s.begin(), s.end(), who)) return true;
+    if (more.empty()) return false;
+    const auto found = more.find(node);
+    return found != more.end() && found->second.contains(who);
   }
   /// Shared nodes are dealt out in turn, so that no rank owns a whole interface.
   int owner(std::size_t node) const {
-    const auto s = of(node);
+    const auto s = by_elements(node);
     return s[node % s.size()];
+  }
+  /// Every rank gets the nodes of the wide points it owns.
+  void widen(const ConstraintRows& contact) {
+    for (std::size_t i = 0; i < contact.size(); ++i) {
+      if (!contact.is_wide(i)) continue;
+      const int rank_of_point = owner(static_cast<std::size_t>(contact[i].node));
+      for (const RowEntry& entry : contact.entries(i)) {
+        const auto node = static_cast<std::size_t>(entry.node);
+        if (!has(node, rank_of_point)) more[node].insert(rank_of_point);
+      }
+    }
   }
 };
 
@@ -129,6 +159,7 @@ class Splitter {
         global_(problem.mesh.node_count()),
         local_(problem.mesh.node_count(), -1) {
     refuse_empty_parts();
+    if (ranks > 1) sharers_.widen(problem.contact);
     const std::size_t nodes = problem.mesh.node_count();
     for (std::size_t n = 0; n < nodes; ++n) ++first_[static_cast<std::size_t>(sharers_.owner(n)) + 1];
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
@@ -171,8 +202,7 @@ class Splitter {
     for (const bool owned : {true, false}) {
       for (const Index index : order_) {
         const auto n = static_cast<std::size_t>(index);
-        const auto s = sharers_.of(n);
-        if ((sharers_.owner(n) == rank) != owned || !std::binary_search(s.begin(), s.end(), rank)) continue;
+        if ((sharers_.owner(n) == rank) != owned || !sharers_.has(n, rank)) continue;
         local_[n] = static_cast<Index>(part.node_index.size());
         part.node_index.push_back(index);
       }
@@ -222,12 +252,11 @@ class Splitter {
     std::sort(ascending.begin(), ascending.end());
     for (const Index index : ascending) {
       const auto n = static_cast<std::size_t>(index);
-      const auto s = sharers_.of(n);
-      if (s.size() == 1) continue;
+      if (!sharers_.is_shared(n)) continue;
       const Index here = local_[n];
       part.halo.shared.push_back(here);
       const int owner = sharers_.owner(n);
-      for (const int other : s) {
+      for (const int other : sharers_.of(n)) {
         if (other == rank) continue;
         auto& neighbour = all[static_cast<std::size_t>(other)];
         neighbour.shared.push_back(here);
@@ -243,23 +272,28 @@ class Splitter {
   }
 
   void take_contact(Part& part, int rank) const {
-    part.total_contact = static_cast<std::int64_t>(problem_.contact.size());
+    const ConstraintRows& contact = problem_.contact;
+    part.total_contact = static_cast<std::int64_t>(contact.size());
+    part.wide_contact = contact.any_wide();
     // Points of one node are kept together: Traces and Space rely on it.
-    std::vector<Index> order(problem_.contact.size());
+    std::vector<Index> order(contact.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
-      return problem_.contact[static_cast<std::size_t>(a)].node <
-             problem_.contact[static_cast<std::size_t>(b)].node;
+      return contact[static_cast<std::size_t>(a)].node < contact[static_cast<std::size_t>(b)].node;
     });
+    const auto to_local = [&](Index& node) { node = local_[static_cast<std::size_t>(node)]; };
     for (const bool owned : {true, false}) {
       for (const Index index : order) {
         const auto i = static_cast<std::size_t>(index);
-        ContactPoint point = problem_.contact[i];
+        ContactPoint point = contact[i];
         const auto n = static_cast<std::size_t>(point.node);
         if (local_[n] < 0 || (sharers_.owner(n) == rank) != owned) continue;
-        point.node = local_[n];
-        part.contact.push_back(point);
-        part.contact_index.push_back(static_cast<Index>(i));
+        if (!owned && contact.is_wide(i)) continue;
+        std::vector<RowEntry> entries(contact.entries(i).begin(), contact.entries(i).end());
+        to_local(point.node);
+        for (RowEntry& entry : entries) to_local(entry.node);
+        part.contact.push_back(point, entries);
+        part.contact_index.push_back(index);
       }
       if (owned) part.owned_contact = static_cast<Index>(part.contact.size());
     }

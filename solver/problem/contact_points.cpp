@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From contact entries to contact points: normals, gaps, masses and the rows of N and T.
+// Nodes against obstacles: one producer of constraint rows.
 #include "problem/contact_points.hpp"
 
 #include <algorithm>
@@ -79,26 +79,34 @@ class Faces {
   Vector3 direction_{};
 };
 
-/// Fills trace and tangents from the normal and the free components, and takes from the gap what the
-/// prescribed ones close. False where the node cannot move along the normal.
+/// ν without what is held of it.
+Vector3 free_components(const ContactPoint& point, const Problem& problem) {
+  const auto dim = static_cast<std::size_t>(problem.mesh.dim());
+  Vector3 trace{};
+  for (std::size_t c = 0; c < dim; ++c)
+    if (problem.held[static_cast<std::size_t>(point.node) * dim + c] == 0) trace[c] = point.normal[c];
+  return trace;
+}
+
+/// Fills tangents from the normal and the free components, and takes from the gap what the prescribed ones
+/// close. False where the node cannot move along the normal.
 bool restrict_to_free(ContactPoint& point, const Problem& problem, bool friction) {
   const auto dim = static_cast<std::size_t>(problem.mesh.dim());
   const std::size_t base = static_cast<std::size_t>(point.node) * dim;
   std::array<bool, 3> free{};
   for (std::size_t c = 0; c < dim; ++c) {
     free[c] = problem.held[base + c] == 0;
-    point.trace[c] = free[c] ? point.normal[c] : 0.0;
     if (!free[c]) point.gap -= point.normal[c] * problem.prescribed[base + c];
   }
-  const double length = norm(point.trace);
+  const Vector3 trace = free_components(point, problem);
+  const double length = norm(trace);
   if (length < negligible_trace) return false;
   if (!friction) return true;
   // Gram–Schmidt of the free axes against the trace and each other, the least aligned axis first.
   std::array<std::size_t, 3> axes{0, 1, 2};
-  std::sort(axes.begin(), axes.end(), [&](std::size_t a, std::size_t b) {
-    return std::abs(point.trace[a]) < std::abs(point.trace[b]);
-  });
-  const Vector3 along = (1.0 / length) * point.trace;
+  std::sort(axes.begin(), axes.end(),
+            [&](std::size_t a, std::size_t b) { return std::abs(trace[a]) < std::abs(trace[b]); });
+  const Vector3 along = (1.0 / length) * trace;
   for (const std::size_t axis : axes) {
     if (!free[axis]) continue;
     Vector3 t{};
@@ -208,7 +216,10 @@ void find_contact_points(Problem& problem, const Model& model, const Selection& 
   }
   std::stable_sort(points.begin(), points.end(),
                    [](const ContactPoint& a, const ContactPoint& b) { return a.node < b.node; });
-  problem.contact = merge_equal(points, extent(problem.mesh).size);
+  for (const ContactPoint& point : merge_equal(points, extent(problem.mesh).size)) {
+    const RowEntry entry{point.node, point.normal, free_components(point, problem), point.tangent};
+    problem.contact.push_back(point, {&entry, 1});
+  }
 }
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From contact entries to contact points: normals, gaps, masses and the rows of N and T.
+// Nodes against obstacles: one producer of constraint rows.
 #pragma once
 
 #include <kacanov/problem.hpp>
@@ -7,8 +7,9 @@
 
 namespace kacanov {
 
-/// Fills problem.contact, ascending by node; needs held and prescribed. The gap is that of the undeformed
-/// node less what its prescribed components close, so that N·ω ≤ ρ holds with the free components in N alone.
+/// Fills problem.contact with narrow points, ascending by node; needs held and prescribed. The gap is that of
+/// the undeformed node less what its prescribed components close, so that N·ω ≤ ρ holds with the free
+/// components in N alone.
 void find_contact_points(Problem& problem, const Model& model, const Selection& selection);
 
 }  // namespace kacanov

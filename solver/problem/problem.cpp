@@ -67,7 +67,7 @@ std::vector<std::int32_t> keep_boundary(Problem& problem) {
   mesh.coordinates.swap(coordinates);
   mesh.node_tags.swap(tags);
   std::for_each(mesh.facets.begin(), mesh.facets.end(), renumber);
-  for (ContactPoint& point : problem.contact) renumber(point.node);
+  problem.contact.renumber(renumber);
   free(mesh.elements);
   free(mesh.element_tags);
   free(mesh.facet_element);

@@ -102,14 +102,21 @@ void collect_rows(const Problem& problem, std::vector<Piece>& pieces,
     axis[k % dim] = 1.0;
     add_row(piece.by_displacement, row(piece, position(mesh, static_cast<std::int32_t>(node)), axis));
   }
-  for (const ContactPoint& point : problem.contact) {
-    Piece& piece = pieces[static_cast<std::size_t>(piece_of_node[static_cast<std::size_t>(point.node)])];
-    const Vector3 x = position(mesh, point.node);
-    // The whole normal: what is held of it is in the displacements' rows already.
-    add_row(piece.by_contact, row(piece, x, point.normal));
-    for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k) {
-      add_row(piece.by_contact, row(piece, x, point.tangent[k]));
+  const auto home = [&](std::int32_t node) { return piece_of_node[static_cast<std::size_t>(node)]; };
+  for (std::size_t i = 0; i < problem.contact.size(); ++i) {
+    const ContactPoint& point = problem.contact[i];
+    // What another piece has of the row counts as standing still.
+    Piece& piece = pieces[static_cast<std::size_t>(home(point.node))];
+    std::array<Vector6, 3> sums{Vector6::Zero(), Vector6::Zero(), Vector6::Zero()};
+    for (const RowEntry& entry : problem.contact.entries(i)) {
+      if (home(entry.node) != home(point.node)) continue;
+      const Vector3 x = position(mesh, entry.node);
+      // The whole normal: what is held of it is in the displacements' rows already.
+      sums[0] += row(piece, x, entry.normal);
+      for (std::size_t k = 0; k < 2; ++k) sums[k + 1] += row(piece, x, entry.tangent[k]);
     }
+    for (std::size_t k = 0; k <= static_cast<std::size_t>(point.tangents); ++k)
+      add_row(piece.by_contact, sums[k]);
   }
 }
 

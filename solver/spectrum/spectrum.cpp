@@ -2,7 +2,6 @@
 // Lanczos estimates behind the penalty: r* of (32) and r_A of the active set, with bounds.
 #include "spectrum/spectrum.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -10,140 +9,6 @@
 #include <kacanov/error.hpp>
 
 namespace kacanov {
-
-TraceRows::TraceRows(const Part& part, std::span<const TraceChoice> choice) : part_(&part) {
-  const auto dim = static_cast<std::size_t>(part.dim());
-  for (std::size_t i = 0; i < part.contact.size(); ++i) {
-    const auto& point = part.contact[i];
-    std::array<Vector3, 3> rows{};
-    std::size_t count = 0;
-    if (choice[i].normal) rows[count++] = point.trace;
-    if (choice[i].tangential)
-      for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k)
-        rows[count++] = point.tangent[k];
-    if (count == 0) continue;
-    const bool owned = i < static_cast<std::size_t>(part.owned_contact);
-    if (groups_.empty() || groups_.back().node != point.node) {
-      groups_.push_back({point.node, local_, 0, {}, {}});
-      if (owned) owned_groups_ = groups_.size();
-    }
-    auto& group = groups_.back();
-    if (static_cast<std::size_t>(group.rows) + count > group.row.size())
-      throw InputError("contact: node " +
-                       std::to_string(part.node_tag(static_cast<std::size_t>(point.node))) +
-                       " belongs to more than three contact surfaces");
-    for (std::size_t k = 0; k < count; ++k) {
-      for (std::size_t c = 0; c < dim; ++c)
-        group.row[static_cast<std::size_t>(group.rows)][c] = std::sqrt(point.mass) * rows[k][c];
-      ++group.rows;
-      ++local_;
-      if (!owned) continue;
-      index_.push_back(3 * static_cast<std::int64_t>(part.contact_index[i]) + static_cast<std::int64_t>(k));
-      root_mass_.push_back(std::sqrt(point.mass));
-    }
-  }
-  for (auto& group : groups_) {
-    Eigen::MatrixXd a(group.rows, 3);
-    for (int k = 0; k < group.rows; ++k)
-      for (int c = 0; c < 3; ++c)
-        a(k, c) = group.row[static_cast<std::size_t>(k)][static_cast<std::size_t>(c)];
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-    decomposition.setThreshold(1e-8);
-    const Eigen::MatrixXd inverse = decomposition.compute(a).pseudoInverse();
-    for (int k = 0; k < group.rows; ++k)
-      for (int c = 0; c < 3; ++c)
-        group.inverse[static_cast<std::size_t>(k)][static_cast<std::size_t>(c)] = inverse(c, k);
-  }
-  total_ = part.halo.sum_all(static_cast<std::int64_t>(index_.size()));
-}
-
-void TraceRows::hold_in(Space& space) const {
-  for (const auto& group : groups_)
-    for (std::size_t k = 0; k < static_cast<std::size_t>(group.rows); ++k)
-      space.hold(group.node, group.row[k]);
-}
-
-namespace {
-
-/// y_node += Σ_k x_k row_k, and the transpose.
-template <class Rows>
-void add_rows(const Rows& rows, std::size_t count, const double* x, double* y, std::size_t dim) {
-  for (std::size_t k = 0; k < count; ++k)
-    for (std::size_t c = 0; c < dim; ++c) y[c] += x[k] * rows[k][c];
-}
-
-template <class Rows>
-void take_rows(const Rows& rows, std::size_t count, const double* y, double* x, std::size_t dim) {
-  for (std::size_t k = 0; k < count; ++k) {
-    x[k] = 0.0;
-    for (std::size_t c = 0; c < dim; ++c) x[k] += rows[k][c] * y[c];
-  }
-}
-
-}  // namespace
-
-void TraceRows::transpose(std::span<const double> x, std::span<double> y) const {
-  const auto dim = static_cast<std::size_t>(part_->dim());
-  std::fill(y.begin(), y.end(), 0.0);
-  for (std::size_t g = 0; g < owned_groups_; ++g)
-    add_rows(groups_[g].row, static_cast<std::size_t>(groups_[g].rows), x.data() + groups_[g].first,
-             y.data() + static_cast<std::size_t>(groups_[g].node) * dim, dim);
-  part_->halo.copy_from_owner(y, part_->dim());
-}
-
-void TraceRows::apply(std::span<const double> y, std::span<double> x) const {
-  const auto dim = static_cast<std::size_t>(part_->dim());
-  for (std::size_t g = 0; g < owned_groups_; ++g)
-    take_rows(groups_[g].row, static_cast<std::size_t>(groups_[g].rows),
-              y.data() + static_cast<std::size_t>(groups_[g].node) * dim, x.data() + groups_[g].first, dim);
-}
-
-void TraceRows::lift(std::span<const double> x, std::span<double> y) const {
-  const auto dim = static_cast<std::size_t>(part_->dim());
-  std::fill(y.begin(), y.end(), 0.0);
-  for (const auto& group : groups_)
-    if (group.first < x.size())
-      add_rows(group.inverse, static_cast<std::size_t>(group.rows), x.data() + group.first,
-               y.data() + static_cast<std::size_t>(group.node) * dim, dim);
-  part_->halo.copy_from_owner(y, part_->dim());
-}
-
-void TraceRows::lift_transpose(std::span<const double> y, std::span<double> x) const {
-  const auto dim = static_cast<std::size_t>(part_->dim());
-  for (const auto& group : groups_)
-    if (group.first < x.size())
-      take_rows(group.inverse, static_cast<std::size_t>(group.rows),
-                y.data() + static_cast<std::size_t>(group.node) * dim, x.data() + group.first, dim);
-}
-
-std::vector<NodeBlock> TraceRows::penalty_blocks(double r) const {
-  const auto dim = static_cast<std::size_t>(part_->dim());
-  std::vector<NodeBlock> blocks;
-  for (std::size_t g = 0; g < owned_groups_; ++g) {
-    NodeBlock block{groups_[g].node, {}};
-    for (std::size_t k = 0; k < static_cast<std::size_t>(groups_[g].rows); ++k)
-      for (std::size_t i = 0; i < dim; ++i)
-        for (std::size_t j = 0; j < dim; ++j)
-          block.value[i * dim + j] += r * groups_[g].row[k][i] * groups_[g].row[k][j];
-    blocks.push_back(block);
-  }
-  return blocks;
-}
-
-std::vector<NodeBlock> TraceRows::pinning_blocks(std::span<const float> diagonal) const {
-  const auto dim = static_cast<std::size_t>(part_->dim());
-  std::vector<NodeBlock> blocks = penalty_blocks(1.0);
-  for (auto& block : blocks) {
-    double trace = 0.0, largest = 0.0;
-    for (std::size_t c = 0; c < dim; ++c) {
-      trace += block.value[c * dim + c];
-      largest =
-          std::max(largest, static_cast<double>(diagonal[static_cast<std::size_t>(block.node) * dim + c]));
-    }
-    for (double& v : block.value) v *= 1e3 * largest / trace;
-  }
-  return blocks;
-}
 
 Spectrum::Spectrum(const Part& part, DistributedOperator& op, Preconditioner& amg, std::span<const double> g,
                    const SpectrumOptions& options)
@@ -248,17 +113,23 @@ Eigenvalue Spectrum::smallest(const TraceRows& rows) {
 double rough_lambda_min(const Part& part, std::span<const float> diagonal, bool friction) {
   const auto dim = static_cast<std::size_t>(part.dim());
   double stiffest = 0.0;
-  const auto look = [&](const ContactPoint& point, const Vector3& row) {
-    double stiffness = 0.0;
-    for (std::size_t c = 0; c < dim; ++c)
-      stiffness +=
-          row[c] * row[c] * static_cast<double>(diagonal[static_cast<std::size_t>(point.node) * dim + c]);
-    stiffest = std::max(stiffest, stiffness / point.mass);
-  };
-  for (const auto& point : part.contact) {
-    look(point, point.trace);
+  for (std::size_t i = 0; i < part.contact.size(); ++i) {
+    const auto& point = part.contact[i];
+    const auto look = [&](const auto& row) {
+      double stiffness = 0.0, square = 0.0;
+      for (const RowEntry& entry : part.contact.entries(i))
+        for (std::size_t c = 0; c < dim; ++c) {
+          const double weight = row(entry)[c] * row(entry)[c];
+          stiffness += weight * static_cast<double>(diagonal[static_cast<std::size_t>(entry.node) * dim + c]);
+          square += weight;
+        }
+      // What the row takes of displacements like itself.
+      if (part.contact.is_wide(i)) stiffness /= square * square;
+      stiffest = std::max(stiffest, stiffness / point.mass);
+    };
+    look([](const RowEntry& entry) -> const Vector3& { return entry.trace; });
     for (std::size_t k = 0; friction && k < static_cast<std::size_t>(point.tangents); ++k)
-      look(point, point.tangent[k]);
+      look([k](const RowEntry& entry) -> const Vector3& { return entry.tangent[k]; });
   }
   stiffest = part.halo.max_all(stiffest);
   // With tangents a mode that shears and presses at once is softer: 1.6 on structured and Gmsh meshes alike.

@@ -6,64 +6,13 @@
 #include <vector>
 
 #include <kacanov/result.hpp>
-#include "contact/traces.hpp"
+#include "contact/trace_rows.hpp"
 #include "linear/cg.hpp"
 #include "linear/distributed_operator.hpp"
 #include "linear/preconditioner.hpp"
 #include "spectrum/lanczos.hpp"
 
 namespace kacanov {
-
-/// Which traces of a contact point take part.
-struct TraceChoice {
-  bool normal = false, tangential = false;
-  bool operator==(const TraceChoice&) const = default;
-};
-
-/// Rows of D^½ C for a choice of traces, over the local points, owned ones first. D is the lumped mass.
-class TraceRows {
- public:
-  /// `choice` has one entry a point of part.contact.
-  TraceRows(const Part& part, std::span<const TraceChoice> choice);
-
-  std::size_t owned() const noexcept { return index_.size(); }
-  std::span<const std::int64_t> index() const noexcept { return index_; }
-  std::int64_t total() const noexcept { return total_; }
-  /// √mass of the owned rows.
-  std::span<const double> root_mass() const noexcept { return root_mass_; }
-
-  /// Holds every row's direction in `space`.
-  void hold_in(Space& space) const;
-  /// y = Cᵀ D^½ x (overwrites), consistent.
-  void transpose(std::span<const double> x, std::span<double> y) const;
-  /// x = D^½ C y.
-  void apply(std::span<const double> y, std::span<double> x) const;
-  /// y = (D^½ C)⁺ x, node by node; consistent. `x` holds the owned rows or all local ones.
-  void lift(std::span<const double> x, std::span<double> y) const;
-  /// x = ((D^½ C)⁺)ᵀ y, as many rows as `x` has.
-  void lift_transpose(std::span<const double> y, std::span<double> x) const;
-  /// Rows of all local points: owned ones, then those of ghosts.
-  std::size_t local() const noexcept { return local_; }
-  /// r CᵀDC as diagonal blocks of owned nodes.
-  std::vector<NodeBlock> penalty_blocks(double r) const;
-  /// Blocks that pin the rows' directions for a preconditioner: 10³ times the node's `diagonal` entry.
-  std::vector<NodeBlock> pinning_blocks(std::span<const float> diagonal) const;
-
- private:
-  struct Group {  ///< rows of one node
-    std::int32_t node = 0;
-    std::size_t first = 0;  ///< its first row
-    int rows = 0;
-    std::array<Vector3, 9> row{};      ///< scaled by √mass
-    std::array<Vector3, 9> inverse{};  ///< columns of the pseudo-inverse
-  };
-  const Part* part_;
-  std::vector<Group> groups_;  ///< owned first
-  std::size_t owned_groups_ = 0, local_ = 0;
-  std::vector<std::int64_t> index_;
-  std::vector<double> root_mass_;
-  std::int64_t total_ = 0;
-};
 
 struct SpectrumOptions {
   double tolerance = 1e-2;  ///< relative, on eigenvalues

@@ -34,17 +34,18 @@ inline Eigen::MatrixXd dense_stiffness(const Part& part, std::span<const double>
 inline Eigen::MatrixXd dense_traces(const Part& part, bool friction) {
   const auto dim = static_cast<std::size_t>(part.dim());
   std::vector<Eigen::VectorXd> rows;
-  for (const auto& point : part.contact) {
-    const auto add = [&](const Vector3& direction) {
+  for (std::size_t i = 0; i < part.contact.size(); ++i) {
+    const auto add = [&](const auto& coefficients) {
       Eigen::VectorXd row = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(part.unknowns()));
-      for (std::size_t c = 0; c < dim; ++c)
-        row(static_cast<Eigen::Index>(static_cast<std::size_t>(point.node) * dim + c)) =
-            std::sqrt(point.mass) * direction[c];
+      for (const RowEntry& entry : part.contact.entries(i))
+        for (std::size_t c = 0; c < dim; ++c)
+          row(static_cast<Eigen::Index>(static_cast<std::size_t>(entry.node) * dim + c)) =
+              std::sqrt(part.contact[i].mass) * coefficients(entry)[c];
       rows.push_back(row);
     };
-    add(point.trace);
-    for (std::size_t k = 0; friction && k < static_cast<std::size_t>(point.tangents); ++k)
-      add(point.tangent[k]);
+    add([](const RowEntry& entry) { return entry.trace; });
+    for (std::size_t k = 0; friction && k < static_cast<std::size_t>(part.contact[i].tangents); ++k)
+      add([k](const RowEntry& entry) { return entry.tangent[k]; });
   }
   Eigen::MatrixXd c(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(part.unknowns()));
   for (std::size_t i = 0; i < rows.size(); ++i) c.row(static_cast<Eigen::Index>(i)) = rows[i];

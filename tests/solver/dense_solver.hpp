@@ -308,12 +308,13 @@ class DenseSolver {
     rows_ = Matrix::Zero(count, load_.size());
     for (std::size_t i = 0; i < problem_.contact.size(); ++i) {
       const ContactPoint& point = problem_.contact[i];
-      for (int k = 0; k <= point.tangents; ++k) {
-        const Vector3& direction = k == 0 ? point.trace : point.tangent[static_cast<std::size_t>(k - 1)];
-        for (int c = 0; c < dim_; ++c)
-          rows_(first_row_[i] + k, static_cast<Eigen::Index>(point.node) * dim_ + c) =
-              direction[static_cast<std::size_t>(c)];
-      }
+      for (const RowEntry& entry : problem_.contact.entries(i))
+        for (int k = 0; k <= point.tangents; ++k) {
+          const Vector3& direction = k == 0 ? entry.trace : entry.tangent[static_cast<std::size_t>(k - 1)];
+          for (int c = 0; c < dim_; ++c)
+            rows_(first_row_[i] + k, static_cast<Eigen::Index>(entry.node) * dim_ + c) =
+                direction[static_cast<std::size_t>(c)];
+        }
     }
     free_rows_ = rows_(Eigen::all, free_);
   }

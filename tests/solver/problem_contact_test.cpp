@@ -40,11 +40,16 @@ TEST_CASE("contact masses are positive and sum to the contact area") {
     const Mesh mesh = box_mesh(type);
     const Problem problem = build_problem(mesh, on_a_plane(mesh.dim()));
     CHECK(total_mass(problem) == doctest::Approx(2.0).epsilon(1e-12));
-    for (const ContactPoint& point : problem.contact) {
+    for (std::size_t i = 0; i < problem.contact.size(); ++i) {
+      const ContactPoint& point = problem.contact[i];
+      REQUIRE(problem.contact.entries(i).size() == 1);
+      const RowEntry& entry = problem.contact.entries(i).front();
+      CHECK(entry.node == point.node);
+      CHECK(entry.normal == point.normal);
       CHECK(point.mass > 0.0);
       CHECK(point.gap == doctest::Approx(0.1).epsilon(1e-12));
       CHECK(point.normal[static_cast<std::size_t>(mesh.dim() - 1)] == doctest::Approx(-1.0));
-      CHECK(point.trace == point.normal);
+      CHECK(entry.trace == point.normal);
       CHECK(point.tangents == 0);
     }
     CHECK(std::is_sorted(problem.contact.begin(), problem.contact.end(),
@@ -114,16 +119,19 @@ TEST_CASE("tangents are orthonormal, normal to the trace and free of held compon
   model.boundary.push_back(displacement(named("right"), {0.0, 0.0, std::nullopt}));
   Plane tilted{{0.0, 0.0, -0.5}, {0.3, 0.4, 1.2}};
   model.contact[0] = {named("bottom"), tilted, Friction{0.02, 0.0}};
-  for (const ContactPoint& point : build_problem(mesh, model).contact) {
+  const ConstraintRows contact = build_problem(mesh, model).contact;
+  for (std::size_t i = 0; i < contact.size(); ++i) {
+    const ContactPoint& point = contact[i];
+    const RowEntry& entry = contact.entries(i).front();
     const double x = position(mesh, point.node)[0];
     const int free = x == 0.0 ? 2 : x == 2.0 ? 1 : 3;
     CHECK(point.tangents == free - 1);
     CHECK(point.tresca == 0.02);
     CHECK(norm(point.normal) == doctest::Approx(1.0));
-    if (free < 3) CHECK(point.trace[0] == 0.0);
-    if (free < 2) CHECK(point.trace[1] == 0.0);
+    if (free < 3) CHECK(entry.trace[0] == 0.0);
+    if (free < 2) CHECK(entry.trace[1] == 0.0);
     for (std::size_t a = 0; a < static_cast<std::size_t>(point.tangents); ++a) {
-      CHECK(std::abs(dot(point.tangent[a], point.trace)) < 1e-14);
+      CHECK(std::abs(dot(entry.tangent[a], entry.trace)) < 1e-14);
       if (free < 3) CHECK(point.tangent[a][0] == 0.0);
       for (std::size_t b = 0; b <= a; ++b) {
         CHECK(dot(point.tangent[a], point.tangent[b]) == doctest::Approx(a == b ? 1.0 : 0.0));
@@ -147,11 +155,14 @@ TEST_CASE("what a prescribed component closes is taken from the gap") {
   Model model = on_a_plane(3);
   model.boundary.push_back(displacement(named("bottom"), {0.1, std::nullopt, std::nullopt}));
   model.contact[0].obstacle = Plane{{0.0, 0.0, -0.5}, {0.6, 0.0, 0.8}};
-  for (const ContactPoint& point : build_problem(mesh, model).contact) {
+  const ConstraintRows contact = build_problem(mesh, model).contact;
+  for (std::size_t i = 0; i < contact.size(); ++i) {
+    const ContactPoint& point = contact[i];
     const Vector3 x = position(mesh, point.node);
     const double undeformed = dot(x - Vector3{0.0, 0.0, -0.5}, Vector3{0.6, 0.0, 0.8});
     CHECK(point.gap == doctest::Approx(undeformed + 0.6 * 0.1).epsilon(1e-12));
-    CHECK(point.trace[0] == 0.0);
+    CHECK(contact.entries(i).front().trace[0] == 0.0);
+    CHECK(contact.entries(i).front().normal == point.normal);
   }
 }
 

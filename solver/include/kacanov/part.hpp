@@ -15,9 +15,10 @@
 
 namespace kacanov {
 
-/// Elements are split without overlap; a node lies on every rank that has one of its elements and is
-/// owned by one of them. Owned nodes come first, neighbours close to each other (node_order). Vectors over a
-/// part are consistent: every copy of a shared entry holds the same bits.
+/// Elements are split without overlap; a node lies on every rank that has one of its elements, or a wide
+/// contact point that takes part of it, and is owned by one of the former. Owned nodes come first, neighbours
+/// close to each other (node_order). Vectors over a part are consistent: every copy of a shared entry holds
+/// the same bits.
 struct Part {
   struct ComponentValue {
     std::int32_t component = 0;  ///< node · dim + c
@@ -40,8 +41,11 @@ struct Part {
   std::vector<ComponentValue> load;           ///< entries of F that are not zero, ascending; consistent
   std::vector<std::uint8_t> held;             ///< nodes × dim
   std::vector<ComponentValue> prescribed;     ///< of every held component, ascending
-  std::vector<ContactPoint> contact;          ///< of local nodes; those of owned nodes first
+  /// The points of owned nodes first, narrow ones of ghosts behind them. All nodes of an owned point are
+  /// local; wide points are with their owners only.
+  ConstraintRows contact;
   std::int32_t owned_contact = 0;
+  bool wide_contact = false;                ///< some rank has wide points
   std::vector<std::int32_t> contact_index;  ///< index in Problem::contact
   std::int64_t total_contact = 0;
   std::vector<Probe> probes;  ///< those in this rank's elements

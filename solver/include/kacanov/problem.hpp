@@ -7,24 +7,11 @@
 #include <string>
 #include <vector>
 
+#include <kacanov/constraint_rows.hpp>
 #include <kacanov/mesh.hpp>
 #include <kacanov/model.hpp>
 
 namespace kacanov {
-
-/// One node facing an obstacle: the constraint ν·ω ≤ gap and, with friction, the tangential trace.
-struct ContactPoint {
-  std::int32_t node = 0;
-  std::int32_t entry = 0;            ///< index into Model::contact
-  Vector3 normal{};                  ///< ν, unit, from the body towards the obstacle
-  Vector3 trace{};                   ///< ν restricted to the components that are not held: row of N
-  std::array<Vector3, 2> tangent{};  ///< orthonormal rows of T; `tangents` of them
-  int tangents = 0;                  ///< 0 without friction or where all tangential components are held
-  double gap = 0.0;                  ///< ρ
-  double mass = 0.0;                 ///< lumped contact mass M, an area (a length in 2D)
-  double tresca = 0.0;               ///< ψ
-  double coulomb = 0.0;              ///< μ_f
-};
 
 struct Probe {
   Vector3 point{};
@@ -40,7 +27,7 @@ struct Problem {
   std::vector<double> load;        ///< F: nodes × dim
   std::vector<std::uint8_t> held;  ///< nodes × dim: 1 where the displacement is given
   std::vector<double> prescribed;  ///< nodes × dim: its value
-  std::vector<ContactPoint> contact;
+  ConstraintRows contact;
   std::vector<Probe> probes;
   int loose_modes = 0;  ///< rigid modes that only the contact holds
   std::vector<std::string> warnings;

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Rows that share nodes: their pseudo-inverse, and the projection that holds them.
+#include "contact/row_cluster.hpp"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+
+#include <kacanov/error.hpp>
+
+namespace kacanov {
+namespace {
+
+/// Keeps the factor of dependent rows finite. What it falsifies of independent ones (this over the smallest
+/// eigenvalue of the scaled C Cᵀ) is squared by a step of refinement.
+constexpr double shift = 1e-12;
+
+using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+/// A share of a row as it travels.
+struct Travelling {
+  std::int64_t row = 0, node = 0;
+  Vector3 coefficient{};
+};
+
+/// Those of all ranks, in the order of the ranks.
+std::vector<Travelling> gathered(const std::vector<Travelling>& mine, const Halo& halo) {
+  if (halo.ranks == 1) return mine;
+  const auto ranks = static_cast<std::size_t>(halo.ranks);
+  std::vector<int> count(ranks), first(ranks, 0);
+  const auto here = static_cast<int>(mine.size());
+  MPI_Allgather(&here, 1, MPI_INT, count.data(), 1, MPI_INT, halo.comm);
+  for (std::size_t r = 1; r < ranks; ++r) first[r] = first[r - 1] + count[r - 1];
+  std::vector<Travelling> all(static_cast<std::size_t>(first.back() + count.back()));
+  MPI_Datatype type;
+  MPI_Type_contiguous(static_cast<int>(sizeof(Travelling)), MPI_BYTE, &type);
+  MPI_Type_commit(&type);
+  MPI_Allgatherv(mine.data(), here, type, all.data(), count.data(), first.data(), type, halo.comm);
+  MPI_Type_free(&type);
+  return all;
+}
+
+}  // namespace
+
+/// Of C Cᵀ with the rows scaled to length 1, a little shifted.
+struct RowCluster::Factor {
+  Eigen::VectorXd scale;  ///< one over the lengths of the rows
+  Eigen::SparseMatrix<double> gram;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> shifted;
+
+  explicit Factor(Rows rows) : scale(rows.rows()) {
+    for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+      const double length = rows.row(i).norm();
+      scale[i] = length > 0.0 ? 1.0 / length : 0.0;
+    }
+    rows = scale.asDiagonal() * rows;
+    gram = rows * rows.transpose();
+    Eigen::SparseMatrix<double> unit(gram.rows(), gram.rows());
+    unit.setIdentity();
+    shifted.compute(gram + shift * unit);
+    if (shifted.info() != Eigen::Success)
+      throw InternalError("the rows of wide contact points have no factor");
+  }
+  Eigen::VectorXd solve(const Eigen::VectorXd& b) const {
+    const Eigen::VectorXd right = scale.cwiseProduct(b);
+    Eigen::VectorXd z = shifted.solve(right);
+    z += shifted.solve(right - gram * z);
+    return scale.cwiseProduct(z);
+  }
+};
+
+RowCluster::RowCluster(const Part& part, const WideNodes& nodes, std::vector<ClusterRow> rows)
+    : part_(&part), nodes_(nodes), rows_(std::move(rows)) {
+  std::vector<Travelling> all;
+  for (const ClusterRow& row : rows_)
+    for (const auto& share : row.shares)
+      all.push_back({row.number, part.node_number(static_cast<std::size_t>(share.node)), share.coefficient});
+  all = gathered(all, part.halo);
+  std::vector<std::int64_t> node_numbers;
+  for (const Travelling& share : all) {
+    numbers_.push_back(share.row);
+    node_numbers.push_back(share.node);
+  }
+  for (auto* list : {&numbers_, &node_numbers}) {
+    std::sort(list->begin(), list->end());
+    list->erase(std::unique(list->begin(), list->end()), list->end());
+  }
+  const auto m = static_cast<Eigen::Index>(numbers_.size());
+  const auto n = static_cast<Eigen::Index>(3 * node_numbers.size());
+  std::vector<Eigen::Triplet<double>> triplets;
+  for (const Travelling& share : all) {
+    const auto row = static_cast<Eigen::Index>(position(share.row));
+    const auto node = std::lower_bound(node_numbers.begin(), node_numbers.end(), share.node);
+    for (std::size_t c = 0; c < 3; ++c)
+      if (share.coefficient[c] != 0.0)
+        triplets.emplace_back(row, 3 * (node - node_numbers.begin()) + static_cast<Eigen::Index>(c),
+                              share.coefficient[c]);
+  }
+  Rows c(m, n);
+  c.setFromTriplets(triplets.begin(), triplets.end());
+  factor_ = std::make_unique<Factor>(std::move(c));
+}
+
+RowCluster::~RowCluster() = default;
+
+std::size_t RowCluster::position(std::int64_t number) const noexcept {
+  return static_cast<std::size_t>(std::lower_bound(numbers_.begin(), numbers_.end(), number) -
+                                  numbers_.begin());
+}
+
+void RowCluster::solve_gathered(Vector& b) const {
+  part_->halo.sum_all(b);  // every entry comes from one rank
+  Eigen::Map<Eigen::VectorXd> values(b.data(), static_cast<Eigen::Index>(b.size()));
+  values = factor_->solve(values);
+}
+
+void RowCluster::add_transpose(std::span<const double> z, std::span<double> y) const {
+  const auto dim = static_cast<std::size_t>(part_->dim());
+  Vector forces = nodes_.zeros(dim);
+  for (const ClusterRow& row : rows_) {
+    const double value = z[position(row.number)];
+    for (const auto& share : row.shares)
+      for (std::size_t c = 0; c < dim; ++c)
+        forces[nodes_.position(share.node) * dim + c] += value * share.coefficient[c];
+  }
+  nodes_.add(forces, y);
+}
+
+void RowCluster::project(std::span<double> x) const {
+  const auto dim = static_cast<std::size_t>(part_->dim());
+  Vector z = solve([&](const ClusterRow& row) { return row.of(x, dim); });
+  for (double& value : z) value = -value;
+  add_transpose(z, x);
+}
+
+}  // namespace kacanov

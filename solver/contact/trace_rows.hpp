@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A choice of contact rows, scaled by the roots of their masses: what is penalised, held or pinned.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "contact/row_cluster.hpp"
+#include "contact/wide_nodes.hpp"
+#include "linear/preconditioner.hpp"
+#include "linear/space.hpp"
+
+namespace kacanov {
+
+/// Which traces of a contact point take part.
+struct TraceChoice {
+  bool normal = false, tangential = false;
+  bool operator==(const TraceChoice&) const = default;
+};
+
+/// Rows of D^½ C for a choice of traces, over the local points, owned ones first. D is the lumped mass. Rows
+/// of one node alone have a pseudo-inverse of their own; wide rows, and what shares nodes with them, one
+/// together (RowCluster).
+class TraceRows {
+ public:
+  /// `choice` has one entry a point of part.contact. Throws InputError where a node has more than nine rows
+  /// of its own. Collective.
+  TraceRows(const Part& part, std::span<const TraceChoice> choice);
+
+  std::size_t owned() const noexcept { return owned_; }
+  /// Numbers of the owned rows over all ranks, the same on any partition.
+  std::span<const std::int64_t> index() const noexcept { return std::span(index_).first(owned_); }
+  std::int64_t total() const noexcept { return total_; }
+  /// √mass of the owned rows.
+  std::span<const double> root_mass() const noexcept { return root_mass_; }
+
+  /// Holds every row in `space`.
+  void hold_in(Space& space) const;
+  /// y = Cᵀ D^½ x (overwrites), x owned rows; consistent. Collective.
+  void transpose(std::span<const double> x, std::span<double> y) const;
+  /// x = D^½ C y, owned rows.
+  void apply(std::span<const double> y, std::span<double> x) const;
+  /// y = (D^½ C)⁺ x; consistent. `x` holds the owned rows or all local ones. Collective.
+  void lift(std::span<const double> x, std::span<double> y) const;
+  /// x = ((D^½ C)⁺)ᵀ y, as many rows as `x` has: the owned ones or all local ones. Collective.
+  void lift_transpose(std::span<const double> y, std::span<double> x) const;
+  /// Rows of all local points: owned ones, then those of ghosts.
+  std::size_t local() const noexcept { return index_.size(); }
+  /// Diagonal blocks of r CᵀDC, of owned nodes (theory: augmented-lagrangian). Collective.
+  std::vector<NodeBlock> penalty_blocks(double r) const;
+  /// Blocks that pin the rows' directions for a preconditioner (theory: pinning); `diagonal` of the operator.
+  /// Collective.
+  std::vector<NodeBlock> pinning_blocks(std::span<const float> diagonal) const;
+
+ private:
+  struct Group {  ///< narrow rows of one node
+    std::int32_t node = 0;
+    std::size_t first = 0;  ///< its first row
+    int rows = 0;
+    std::array<Vector3, 9> row{};      ///< scaled by √mass
+    std::array<Vector3, 9> inverse{};  ///< columns of the pseudo-inverse
+    bool in_cluster = false;
+  };
+  void add_narrow(std::size_t point, std::span<const Vector3> rows);
+  void invert(Group& group) const;
+  void join_cluster();
+  std::vector<NodeBlock> narrow_blocks(double r) const;
+  std::vector<NodeBlock> wide_blocks(double r) const;
+
+  const Part* part_;
+  WideNodes wide_;
+  std::vector<Group> groups_;  ///< owned first
+  std::size_t owned_groups_ = 0, owned_ = 0;
+  std::vector<ClusterRow> wide_rows_;          ///< owned
+  std::shared_ptr<const RowCluster> cluster_;  ///< null where no rank has wide rows
+  std::vector<std::int64_t> index_;
+  std::vector<double> root_mass_;
+  std::int64_t total_ = 0;
+};
+
+}  // namespace kacanov

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Contact as a set of constraint rows, sparse in the nodes: what every kind of contact comes to.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <kacanov/model.hpp>
+
+namespace kacanov {
+
+/// What the rows of a contact point take of one node's displacement u.
+struct RowEntry {
+  std::int32_t node = 0;
+  Vector3 normal{};                  ///< coefficients of u in N·ω, held components included
+  Vector3 trace{};                   ///< the same in free components: the node's share of the contact force
+  std::array<Vector3, 2> tangent{};  ///< coefficients in T·ω, in free components
+};
+
+/// A group of rows with one gap, one pressure and one friction bound: N·ω ≤ gap and, with friction, the
+/// tangential trace T·ω. Its entries are the ConstraintRows' (theory: traces).
+struct ContactPoint {
+  std::int32_t node = 0;             ///< stands for it in output and messages; its owner owns the rows
+  std::int32_t entry = 0;            ///< index into Model::contact
+  Vector3 normal{};                  ///< ν, unit, from the body towards the obstacle
+  std::array<Vector3, 2> tangent{};  ///< directions of a traction's components, orthonormal
+  int tangents = 0;                  ///< rows of T; 0 without friction
+  double gap = 0.0;                  ///< ρ
+  double mass = 0.0;                 ///< lumped contact mass M, an area (a length in 2D)
+  double tresca = 0.0;               ///< ψ
+  double coulomb = 0.0;              ///< μ_f
+};
+
+/// Contact points and, in compressed rows, their entries. A point of one entry is *narrow* (a node against an
+/// obstacle), one of several is *wide* (a facet against an obstacle or another body).
+class ConstraintRows {
+ public:
+  std::size_t size() const noexcept { return points_.size(); }
+  bool empty() const noexcept { return points_.empty(); }
+  ContactPoint& operator[](std::size_t i) noexcept { return points_[i]; }
+  const ContactPoint& operator[](std::size_t i) const noexcept { return points_[i]; }
+  auto begin() noexcept { return points_.begin(); }
+  auto end() noexcept { return points_.end(); }
+  auto begin() const noexcept { return points_.begin(); }
+  auto end() const noexcept { return points_.end(); }
+  std::span<const ContactPoint> points() const noexcept { return points_; }
+
+  /// Of point i; the nodes differ.
+  std::span<const RowEntry> entries(std::size_t i) const noexcept {
+    return std::span(entries_).subspan(start_[i], start_[i + 1] - start_[i]);
+  }
+  bool is_wide(std::size_t i) const noexcept { return start_[i + 1] - start_[i] > 1; }
+  bool any_wide() const noexcept { return entries_.size() > points_.size(); }
+
+  /// Points of one node have to follow each other. `entries`: at least one.
+  void push_back(const ContactPoint& point, std::span<const RowEntry> entries) {
+    points_.push_back(point);
+    entries_.insert(entries_.end(), entries.begin(), entries.end());
+    start_.push_back(static_cast<std::uint32_t>(entries_.size()));
+  }
+  /// Calls f(node), which changes it, for every node that is named.
+  template <class F>
+  void renumber(const F& f) {
+    for (ContactPoint& point : points_) f(point.node);
+    for (RowEntry& entry : entries_) f(entry.node);
+  }
+
+  /// Lists its fields for files and messages.
+  template <class Rows, class Stream>
+  static void exchange(Rows& rows, const Stream& stream) {
+    stream(rows.points_, rows.start_, rows.entries_);
+  }
+
+ private:
+  std::vector<ContactPoint> points_;
+  std::vector<std::uint32_t> start_ = {0};  ///< points + 1
+  std::vector<RowEntry> entries_;
+};
+
+}  // namespace kacanov
