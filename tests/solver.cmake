@@ -46,15 +46,6 @@ kacanov_test(mesh
   SOURCES solver/mesh_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
-find_package(nlohmann_json REQUIRED)
-kacanov_test(reference_cases
-  MPI SOURCES cases/reference_test.cpp
-  LIBRARIES kacanov_formats nlohmann_json::nlohmann_json)
-target_include_directories(test_reference_cases PRIVATE solver)
-set_tests_properties(reference_cases PROPERTIES LABELS slow)  # whole runs
-target_compile_definitions(test_reference_cases PRIVATE
-  KACANOV_REFERENCE="${CMAKE_CURRENT_SOURCE_DIR}/cases/reference"
-  KACANOV_ROCKER="${PROJECT_SOURCE_DIR}/tools/examples/rocker.msh")
 kacanov_test(closed_solutions
   MPI SOURCES solver/closed_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
@@ -77,3 +68,15 @@ kacanov_test(outer
 kacanov_test(nonlinear
   MPI SOURCES solver/nonlinear_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
+
+# Whole runs.
+if(KACANOV_SLOW_TESTS)
+  find_package(nlohmann_json REQUIRED)
+  kacanov_test(reference_cases
+    MPI SOURCES cases/reference_test.cpp
+    LIBRARIES kacanov_formats nlohmann_json::nlohmann_json)
+  target_include_directories(test_reference_cases PRIVATE solver)
+  target_compile_definitions(test_reference_cases PRIVATE
+    KACANOV_REFERENCE="${CMAKE_CURRENT_SOURCE_DIR}/cases/reference"
+    KACANOV_ROCKER="${PROJECT_SOURCE_DIR}/tools/examples/rocker.msh")
+endif()
