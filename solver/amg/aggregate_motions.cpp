@@ -5,7 +5,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 #include <unordered_map>
 #include <utility>
 
@@ -133,11 +132,11 @@ class AggregateMotions<M>::Sums {
     for (const auto& entry : part_.prescribed) bound_[static_cast<std::size_t>(entry.component) / dim] = 1;
   }
 
-  template <class Numbers>
-  void add_elements(const Numbers& numbers) {
+  /// Adds number(0), …, number(count − 1).
+  void add_elements(std::size_t count, const auto& number) {
     elements::dispatch(part_.type, [&]<class E>(E) {
       if constexpr (static_cast<std::size_t>(E::dim) == dim) {
-        for (const std::size_t e : numbers) add_element<E>(e);
+        for (std::size_t i = 0; i < count; ++i) add_element<E>(number(i));
       }
     });
   }
@@ -263,7 +262,7 @@ void AggregateMotions<M>::sum(std::span<const double> g, const Held& held, Rigid
   level.clear();
   Sums sums(*this, g, &level);
   sums.choose(held.space, 1.0);
-  sums.add_elements(std::views::iota(std::size_t{0}, part_.element_count()));
+  sums.add_elements(part_.element_count(), [](std::size_t i) { return i; });
   for (const NodeBlock& block : held.blocks) sums.add_block(block);
   level.complete(std::move(sums.others()));
 }
@@ -292,7 +291,7 @@ void AggregateMotions<M>::change(std::span<const double> g, const Held& before, 
   Sums sums(*this, g, nullptr);
   for (const auto& [held, sign] : {std::pair{&before, -1.0}, std::pair{&after, 1.0}}) {
     sums.choose(held->space, sign);
-    sums.add_elements(elements);
+    sums.add_elements(elements.size(), [&](std::size_t i) { return elements[i]; });
     for (const NodeBlock& block : held->blocks) sums.add_block(block);
   }
   level.add(sums.others());

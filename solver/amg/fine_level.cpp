@@ -97,15 +97,14 @@ void scale(int dim, const float* inverse, const float* r, std::size_t nodes, flo
   // The columns of a block, each in four lanes the last of which is idle, times the entries of r: three
   // quarters of the scalar loop's time.
   using Four = float __attribute__((vector_size(16)));
-  using Places = int __attribute__((vector_size(16)));
   const auto load = [](const float* from) {
     Four v;
     std::memcpy(&v, from, sizeof v);
     return v;
   };
+  const auto spread = [](Four v) { return __builtin_shufflevector(v, v, 0, 2, 3, 3); };
   for (std::size_t n = 0; n < nodes; ++n, inverse += 6, r += 3, z += 3) {
-    const Four first = load(inverse), second = __builtin_shuffle(load(inverse + 1), Places{0, 2, 3, 3}),
-               third = __builtin_shuffle(load(inverse + 2), Places{0, 2, 3, 3});
+    const Four first = load(inverse), second = spread(load(inverse + 1)), third = spread(load(inverse + 2));
     const Four sum = first * r[0] + second * r[1] + third * r[2];
     std::memcpy(z, &sum, sizeof sum);
   }

@@ -77,9 +77,15 @@ template <int M>
                                           std::size_t count) {
   add_products<M>(point, pairs, count);
 }
+#ifdef __clang__  // which has no such attribute, and takes the full width anyway where vectors are spelled
+                  // out
+#define KACANOV_AVX512 "avx512f,avx512dq,avx512vl,fma"
+#else
+#define KACANOV_AVX512 "avx512f,avx512dq,avx512vl,fma,prefer-vector-width=512"
+#endif
 template <int M>
-[[gnu::target("avx512f,avx512dq,avx512vl,fma,prefer-vector-width=512")]] void add_avx512(
-    const MotionPoint<M>& point, const MotionPair* pairs, std::size_t count) {
+[[gnu::target(KACANOV_AVX512)]] void add_avx512(const MotionPoint<M>& point, const MotionPair* pairs,
+                                                std::size_t count) {
   add_products<M>(point, pairs, count);
 }
 #endif

@@ -150,9 +150,9 @@ class Groups {
       const auto named = content_.names.find(key);
       std::string name = named != content_.names.end() ? named->second : std::string();
       if (name.empty()) name = std::to_string(key.second);
-      const auto same = std::find_if(groups.begin(), groups.end(), [&](const Group& g) {
-        return g.dimension == key.first && g.name == name;
-      });
+      const auto same = std::find_if(
+          groups.begin(), groups.end(),
+          [&, dimension = key.first](const Group& g) { return g.dimension == dimension && g.name == name; });
       if (same == groups.end())
         groups.push_back({std::move(name), key.first, std::move(members)});
       else
