@@ -319,7 +319,10 @@ Part two_nodes() {
   away.tresca = 0.2;
   away.coulomb = 0.3;
   away.tangents = 1;
-  part.contact = {in, away};
+  for (const ContactPoint& point : {in, away}) {
+    const RowEntry entry{point.node, point.normal, point.normal, {}};
+    part.contact.push_back(point, {&entry, 1});
+  }
   part.owned_contact = 2;
   return part;
 }
