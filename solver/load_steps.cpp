@@ -23,7 +23,7 @@ bool worth_going_on(const OuterLoop& loop, const Result& result) {
   if (!result.message.empty()) return false;
   const SolverOptions& options = loop.context().options;
   return options.stop == SolverOptions::Stop::paper ||
-         loop.context().certify().certificate.worst() <= options.tolerance;
+         loop.context().certify().certificate.exhausted(options.tolerance);
 }
 
 }  // namespace

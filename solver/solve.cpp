@@ -39,6 +39,10 @@ std::string verdict(const Result& result, const SolverOptions& options) {
   const double worst = result.certificate.worst();
   if (result.status == Status::converged) {
     text << "all KKT residuals are at most " << worst << " (tolerance " << options.tolerance << ")";
+  } else if (result.status == Status::limited_by_rounding) {
+    text << "the KKT residuals, at most " << worst << ", can be known to "
+         << result.certificate.rounding.worst() << " only, which is above the tolerance " << options.tolerance
+         << ": parts far stiffer than others, or a body that moves far and strains little, leave no more";
   } else if (result.status == Status::interrupted) {
     text << "interrupted after " << result.outer_iterations << " outer steps, with the worst KKT residual at "
          << worst;
@@ -93,7 +97,9 @@ Solution solve(const Part& part, const SolverOptions& options, const RunOptions&
   const double looped = MPI_Wtime();
 
   result.certificate = certify_independently(context);
-  result.status = result.certificate.worst() <= options.tolerance ? Status::converged : Status::not_converged;
+  result.status = result.certificate.meets(options.tolerance)       ? Status::converged
+                  : result.certificate.exhausted(options.tolerance) ? Status::limited_by_rounding
+                                                                    : Status::not_converged;
   if (!finished) result.status = Status::interrupted;
   // What has not converged can be continued with more steps; what has broken down cannot.
   const bool wanted = part.halo.any(part.halo.rank == 0 && run.checkpoint);

@@ -8,23 +8,41 @@
 
 namespace kacanov {
 
-double Certificate::worst() const noexcept {
+namespace {
+
+constexpr std::array residual_entries{&KktResiduals::equilibrium,   &KktResiduals::penetration,
+                                      &KktResiduals::tension,       &KktResiduals::complementarity,
+                                      &KktResiduals::friction_cone, &KktResiduals::force_balance,
+                                      &KktResiduals::duality_gap};
+
+/// The larger of the two; infinite where one is no number (std::max may lose it).
+double larger(double a, double b) { return std::isnan(a) || std::isnan(b) ? HUGE_VAL : std::max(a, b); }
+
+}  // namespace
+
+double KktResiduals::worst() const noexcept {
   double w = 0.0;
-  for (const double v :
-       {equilibrium, penetration, tension, complementarity, friction_cone, force_balance, duality_gap})
-    w = std::isfinite(v) ? std::max(w, v) : HUGE_VAL;
+  for (const auto entry : residual_entries) w = larger(w, this->*entry);
   return w;
+}
+
+bool Certificate::meets(double tolerance) const noexcept {
+  return worst() <= tolerance && rounding.worst() <= tolerance;
+}
+
+bool Certificate::exhausted(double tolerance) const noexcept {
+  return std::all_of(residual_entries.begin(), residual_entries.end(),
+                     [&](const auto entry) { return this->*entry <= std::max(tolerance, rounding.*entry); });
 }
 
 namespace {
 
-/// Share of ‖diag(B) ∘ ω‖ below which a force is none to measure others by.
-constexpr double rounding = 1e-9;
-/// Share of it, and of ω·diag(B) ω, that the rounding of R(ω) alone comes to (measured: 1e-16): no residual.
-/// Matters where a body moves without strain, and a tolerance below 1e-6 of nothing is asked for.
-constexpr double noise = 1e-15;
-
-double without(double value, double noise_of_it) { return std::max(0.0, value - noise_of_it); }
+/// Forces below this share of what the softest unknown's stiffness makes of ω are none to measure others by:
+/// of the softest, because a part as stiff as rigid would else make any force look small.
+constexpr double least_force = 1e-9;
+/// Share of it, and of ω·diag(B) ω, that the rounding of R(ω) may come to (measured: 1e-16, so with room),
+/// and likewise of traces and gaps.
+constexpr double rounding = 5e-16;
 
 /// Products and extremes over the contact points.
 struct ContactSums {
@@ -33,6 +51,7 @@ struct ContactSums {
   double dual_work = 0.0;  // Σ M (λ_n (ρ − Nω) + ψ|Tω| − λ_f·Tω), the contact part of the duality gap
   double area = 0.0, force = 0.0;
   double penetration = 0.0, tension = 0.0, cone = 0.0, pressure = 0.0;
+  double trace = 0.0;  // max |Nω| + |ρ|
 };
 
 ContactSums contact_sums(const Traces& traces, const ContactState& state) {
@@ -46,17 +65,18 @@ ContactSums contact_sums(const Traces& traces, const ContactState& state) {
     s.normal_product += point.mass * std::abs(lambda * open);
     s.dual_work += point.mass * lambda * open;
     s.area += point.mass;
-    s.penetration = std::max(s.penetration, -open);
-    s.tension = std::max(s.tension, -lambda);
-    s.pressure = std::max(s.pressure, std::abs(lambda));
+    s.penetration = larger(s.penetration, -open);
+    s.tension = larger(s.tension, -lambda);
+    s.pressure = larger(s.pressure, std::abs(lambda));
+    s.trace = larger(s.trace, std::abs(state.trace.normal[i]) + std::abs(state.gap[i]));
     if (point.tangents == 0) continue;
     const double bound = state.bound[i], length = std::hypot(friction[0], friction[1]);
     const double product =
         bound * std::hypot(slip[0], slip[1]) - friction[0] * slip[0] - friction[1] * slip[1];
     s.friction_product += point.mass * std::abs(product);
     s.dual_work += point.mass * product;
-    s.cone = std::max(s.cone, length - bound);
-    s.pressure = std::max(s.pressure, length);
+    s.cone = larger(s.cone, length - bound);
+    s.pressure = larger(s.pressure, length);
   }
   std::array<double, 4> sums{s.normal_product, s.friction_product, s.dual_work, s.area};
   const Halo& halo = traces.halo();
@@ -69,7 +89,61 @@ ContactSums contact_sums(const Traces& traces, const ContactState& state) {
   s.tension = halo.max_all(s.tension);
   s.cone = halo.max_all(s.cone);
   s.pressure = halo.max_all(s.pressure);
+  s.trace = halo.max_all(s.trace);
   return s;
+}
+
+/// Sums over the unknowns: forces of the load, the obstacles and the supports, and what they work.
+struct BodySums {
+  std::array<double, 3> balance{};  // the sum of all forces
+  double all = 0.0;                 // Σ |force|
+  double residual_work = 0.0, internal_work = 0.0;
+  double residual = 0.0, reaction = 0.0, contact = 0.0, load = 0.0;  // squares of norms
+  double moved = 0.0, stiff = 0.0, stiff_work = 0.0;                 // |u|², |D∘u|², u·(D∘u)
+  double softest = HUGE_VAL;                                         // least entry of D
+};
+
+/// Over all ranks; `contact` is CᵀMλ.
+BodySums body_sums(const Part& part, std::span<const double> u, std::span<const double> contact,
+                   const BodyForces& forces) {
+  const auto dim = static_cast<std::size_t>(part.dim());
+  BodySums s;
+  auto loaded = forces.load.begin();
+  for (std::size_t i = 0; i < part.owned_unknowns(); ++i) {
+    const bool here = loaded != forces.load.end() && static_cast<std::size_t>(loaded->component) == i;
+    const double load = here ? (loaded++)->value : 0.0, diagonal = static_cast<double>(forces.diagonal[i]);
+    const double unbalanced = load - forces.internal[i] - contact[i], stiff = diagonal * u[i];
+    const double reaction = part.held[i] ? -unbalanced : 0.0, residual = part.held[i] ? 0.0 : unbalanced;
+    s.balance[i % dim] += load - contact[i] + reaction;
+    s.all += std::abs(load) + std::abs(contact[i]) + std::abs(reaction);
+    s.residual_work += residual * u[i];
+    s.internal_work += forces.internal[i] * u[i];
+    s.residual += residual * residual;
+    s.reaction += reaction * reaction;
+    s.contact += contact[i] * contact[i];
+    s.load += load * load;
+    s.moved += u[i] * u[i];
+    s.stiff += stiff * stiff;
+    s.stiff_work += stiff * u[i];
+    if (diagonal > 0.0) s.softest = std::min(s.softest, diagonal);
+  }
+  std::array sums{s.balance[0],    s.balance[1], s.balance[2], s.all,     s.residual_work,
+                  s.internal_work, s.residual,   s.reaction,   s.contact, s.load,
+                  s.moved,         s.stiff,      s.stiff_work};
+  part.halo.sum_all(sums);
+  const double softest = -part.halo.max_all(-s.softest);
+  return {{sums[0], sums[1], sums[2]},
+          sums[3],
+          sums[4],
+          sums[5],
+          sums[6],
+          sums[7],
+          sums[8],
+          sums[9],
+          sums[10],
+          sums[11],
+          sums[12],
+          softest};
 }
 
 }  // namespace
@@ -77,61 +151,44 @@ ContactSums contact_sums(const Traces& traces, const ContactState& state) {
 Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactState& state,
                         const BodyForces& forces) {
   const Part& part = space.part();
-  const auto [load_entries, internal, energy, diagonal] = forces;
-  const auto dim = static_cast<std::size_t>(part.dim());
   Vector contact(part.unknowns(), 0.0);
   traces.add_force(state.lambda, 1.0, contact);
   const ContactSums sums = contact_sums(traces, state);
 
   Residuals out;
-  out.energy = energy;
+  out.energy = forces.energy;
   Scales& scales = out.scales;
   // Sums of forces: the load, the obstacles, the supports; what they work; squares of their norms.
-  std::array<double, 12> totals{};  // three balances, Σ|force|, ω·residual, ω·R, |·|²: residual, reaction,
-                                    // contact, load, stiff; ω·stiff
-  auto loaded = load_entries.begin();
-  for (std::size_t i = 0; i < part.owned_unknowns(); ++i) {
-    const bool here = loaded != load_entries.end() && static_cast<std::size_t>(loaded->component) == i;
-    const double load = here ? (loaded++)->value : 0.0;
-    const double unbalanced = load - internal[i] - contact[i],
-                 stiff = rounding * static_cast<double>(diagonal[i]) * state.omega[i];
-    const double reaction = part.held[i] ? -unbalanced : 0.0, residual = part.held[i] ? 0.0 : unbalanced;
-    totals[i % dim] += load - contact[i] + reaction;
-    totals[3] += std::abs(load) + std::abs(contact[i]) + std::abs(reaction);
-    totals[4] += residual * state.omega[i];
-    totals[5] += internal[i] * state.omega[i];
-    totals[6] += residual * residual;
-    totals[7] += reaction * reaction;
-    totals[8] += contact[i] * contact[i];
-    totals[9] += load * load;
-    totals[10] += stiff * stiff;
-    totals[11] += stiff * state.omega[i];
-  }
-  part.halo.sum_all(totals);
-  const double stiff_force = totals[10], stiff_energy = totals[11];
-  scales.force = std::sqrt(*std::max_element(totals.begin() + 7, totals.begin() + 11));
+  const BodySums body = body_sums(part, state.omega, contact, forces);
+  const double no_force = least_force * body.softest * std::sqrt(body.moved),
+               no_energy = least_force * body.softest * body.moved;
+  scales.force = std::max(std::sqrt(std::max({body.reaction, body.contact, body.load})), no_force);
   scales.displacement = space.max_abs(state.omega);
 
   const double tiny = 1e-300;
-  scales.pressure = std::max(sums.pressure, sums.area > 0.0 ? 0.5 * totals[3] / sums.area * 1e-3 : 0.0);
+  scales.pressure = std::max(sums.pressure, sums.area > 0.0 ? 0.5 * body.all / sums.area * 1e-3 : 0.0);
   const double force = std::max(scales.force, tiny), displacement = std::max(scales.displacement, tiny);
   const double pressure = std::max(scales.pressure, tiny);
   Certificate& c = out.certificate;
-  const double force_noise = noise / rounding * std::sqrt(stiff_force),
-               energy_noise = noise / rounding * stiff_energy;
-  c.equilibrium = without(std::sqrt(totals[6]), force_noise) / force;
-  c.penetration = std::max(0.0, sums.penetration) / displacement;
-  c.tension = std::max(0.0, sums.tension) / pressure;
-  c.friction_cone = std::max(0.0, sums.cone) / pressure;
-  c.complementarity =
-      (sums.normal_product + sums.friction_product) / std::max(pressure * displacement * sums.area, tiny);
-  c.force_balance =
-      without(std::sqrt(totals[0] * totals[0] + totals[1] * totals[1] + totals[2] * totals[2]), force_noise) /
-      std::max({totals[3], std::sqrt(stiff_force), tiny});
+  const double unknown_force = rounding * std::sqrt(body.stiff), unknown_energy = rounding * body.stiff_work,
+               unknown_trace = rounding * sums.trace;
+  c.equilibrium = std::sqrt(body.residual) / force;
+  c.rounding.equilibrium = unknown_force / force;
+  c.penetration = sums.penetration / displacement;
+  c.rounding.penetration = unknown_trace / displacement;
+  c.tension = sums.tension / pressure;
+  c.friction_cone = sums.cone / pressure;
+  const double most_product = std::max(pressure * displacement * sums.area, tiny);
+  c.complementarity = (sums.normal_product + sums.friction_product) / most_product;
+  c.rounding.complementarity = sums.pressure * sums.area * unknown_trace / most_product;
+  const double all_forces = std::max({body.all, no_force, tiny});
+  c.force_balance = std::hypot(body.balance[0], body.balance[1], body.balance[2]) / all_forces;
+  c.rounding.force_balance = unknown_force / all_forces;
   // Primal minus dual energy. With τ = τ(ω) the stored energies add up to R·ω, and
   // what is left is the work of the equilibrium residual and the contact products.
-  c.duality_gap = without(std::abs(sums.dual_work - totals[4]), energy_noise) /
-                  std::max({energy, 0.5 * std::abs(totals[5]), stiff_energy, tiny});
+  const double all_energy = std::max({forces.energy, 0.5 * std::abs(body.internal_work), no_energy, tiny});
+  c.duality_gap = std::abs(sums.dual_work - body.residual_work) / all_energy;
+  c.rounding.duality_gap = unknown_energy / all_energy;
   return out;
 }
 

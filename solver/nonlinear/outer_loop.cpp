@@ -105,7 +105,7 @@ void OuterLoop::iterate(Result& result) {
       done = context_.body.linear() ||
              context_.space.norm(previous) <= options_.tolerance * context_.space.norm(state.omega);
     } else {
-      done = residuals.certificate.worst() <= options_.tolerance;
+      done = residuals.certificate.exhausted(options_.tolerance);
       learn(step, newton, before, residuals);
     }
   }

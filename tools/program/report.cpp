@@ -58,12 +58,23 @@ std::string readable_seconds(double seconds) {
   return format("%.1f h", seconds / 3600.0);
 }
 
+namespace {
+
+std::string headline(Status status) {
+  switch (status) {
+    case Status::converged: return "converged: ";
+    case Status::limited_by_rounding: return "LIMITED BY ROUNDING: ";
+    case Status::interrupted: return "INTERRUPTED: ";
+    case Status::not_converged: break;
+  }
+  return "NOT CONVERGED: ";
+}
+
+}  // namespace
+
 std::string summary(const Result& result, const RunFigures& figures, const Model& model, int dim) {
   const auto count = [](std::int64_t n) { return std::to_string(n); };
-  std::string text = (result.status == Status::converged     ? "converged: "
-                      : result.status == Status::interrupted ? "INTERRUPTED: "
-                                                             : "NOT CONVERGED: ") +
-                     result.message + "\n";
+  std::string text = headline(result.status) + result.message + "\n";
   text +=
       "  size          " + count(result.unknowns) + " unknowns, " + count(result.elements) + " elements\n";
   text += "  iterations    " + count(result.outer_iterations) + " outer, " +
@@ -93,6 +104,7 @@ std::string summary(const Result& result, const RunFigures& figures, const Model
                  c.equilibrium, c.penetration, c.tension, c.complementarity);
   text += format("                friction cone %.1e, force balance %.1e, duality gap %.1e\n",
                  c.friction_cone, c.force_balance, c.duality_gap);
+  text += format("                rounding alone leaves up to %.1e\n", c.rounding.worst());
   text += "  cost          " + readable_seconds(figures.total) + ", " +
           readable_bytes(static_cast<double>(figures.peak_memory_bytes)) + ", " + count(result.ranks) +
           (result.ranks == 1 ? " rank x " : " ranks x ") + count(result.threads) +

@@ -13,6 +13,16 @@ ordered_json entries(const Vector3& v, int dim) {
   return list;
 }
 
+ordered_json residuals_json(const KktResiduals& residuals) {
+  return {{"equilibrium", residuals.equilibrium},
+          {"penetration", residuals.penetration},
+          {"tension", residuals.tension},
+          {"complementarity", residuals.complementarity},
+          {"friction_cone", residuals.friction_cone},
+          {"force_balance", residuals.force_balance},
+          {"duality_gap", residuals.duality_gap}};
+}
+
 ordered_json estimate_json(const SpectrumResult& result) {
   return {{"traces", result.friction ? "normal and tangential" : "normal"},
           {"rows", result.traces},
@@ -34,6 +44,7 @@ const char* status_name(Status status) {
   switch (status) {
     case Status::converged: return "converged";
     case Status::not_converged: return "not_converged";
+    case Status::limited_by_rounding: return "limited_by_rounding";
     case Status::interrupted: break;
   }
   return "interrupted";
@@ -87,14 +98,8 @@ ordered_json result_json(const Result& result, const RunFigures& figures, int di
     for (const Vector3& u : step.probe) line["probe"].push_back(entries(u, dim));
     json["load_steps"].push_back(line);
   }
-  const Certificate& c = result.certificate;
-  json["certificate"] = {{"equilibrium", c.equilibrium},
-                         {"penetration", c.penetration},
-                         {"tension", c.tension},
-                         {"complementarity", c.complementarity},
-                         {"friction_cone", c.friction_cone},
-                         {"force_balance", c.force_balance},
-                         {"duality_gap", c.duality_gap}};
+  json["certificate"] = residuals_json(result.certificate);
+  json["certificate"]["rounding"] = residuals_json(result.certificate.rounding);
   const PhaseSeconds& seconds = result.seconds;
   json["seconds"] = {{"total", figures.total},
                      {"read", figures.read},

@@ -11,10 +11,11 @@
 
 namespace kacanov {
 
-enum class Status { converged, not_converged, interrupted };
+/// `limited_by_rounding`: the residuals are as small as this arithmetic can tell, which is not small enough.
+enum class Status { converged, limited_by_rounding, not_converged, interrupted };
 
-/// All relative; small numbers, and nothing else, mean that the problem is solved.
-struct Certificate {
+/// The KKT residuals of a state (theory: kkt), all relative.
+struct KktResiduals {
   double equilibrium = 0.0;  ///< ‖F − R(ω) − Nᵀ M λ_n − Tᵀ M λ_f‖ on free components / force scale
   double penetration = 0.0;      ///< max (Nω − ρ)⁺ / displacement scale
   double tension = 0.0;          ///< max (−λ_n)⁺ / pressure scale
@@ -23,7 +24,19 @@ struct Certificate {
   double force_balance = 0.0;    ///< |loads + contact + reactions| / force scale
   double duality_gap = 0.0;      ///< |primal − dual energy| / energy scale
 
+  /// The largest; infinite where one is no number.
   double worst() const noexcept;
+};
+
+/// Small numbers in both, and nothing else, mean that the problem is solved (theory: kkt, rounding).
+struct Certificate : KktResiduals {
+  /// Down to which each residual can be known: what rounding leaves of it where it ought to be zero.
+  KktResiduals rounding;
+
+  /// Whether every residual, and what rounding may hide in it, is at most `tolerance`.
+  bool meets(double tolerance) const noexcept;
+  /// Whether none that is above `tolerance` can be told from rounding: more iterations change nothing.
+  bool exhausted(double tolerance) const noexcept;
 };
 
 /// One Lanczos estimate of the spectrum of K = M^½ C B⁻¹ Cᵀ M^½, C = N or [N; T].
