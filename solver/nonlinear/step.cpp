@@ -52,6 +52,7 @@ StepContext::StepContext(const Part& the_part, const SolverOptions& the_options,
           the_part, body,
           make_preconditioner(the_options.preconditioner, the_part, run.threads, run.instruction_set),
           the_tuning) {
+  refuse_beyond_floats(part, body.diagonal());
   linear = {&space, &traces,
             [this](std::span<const double> x, std::span<double> y) { return body.op().apply(x, y); },
             [this](std::span<const double> r, std::span<double> z) { preconditioner.apply(r, z); }};

@@ -196,3 +196,67 @@ TEST_CASE("a body moved without strain, short of the obstacle, is certified") {
   for (std::size_t i = 1; i < run.solution.displacement.size(); i += 2)
     CHECK(run.solution.displacement[i] == doctest::Approx(-0.02));
 }
+
+namespace {
+
+/// A beam clamped at one end, on a plane, whose free half has `ratio` times the stiffness of the other.
+Run half_stiffened(double ratio) {
+  Model model = beam(3, elastic_law(1.0, 0.3), 1e-4);
+  MaterialEntry stiff{Selector{}, elastic_law(ratio, 0.3)};
+  stiff.on.kind = Selector::Kind::box;
+  stiff.on.lower = {2, 0, 0};
+  stiff.on.upper = {4, 1, 1};
+  model.boundary[1].on.lower[0] = 0.0;  // the soft half bends, and the stiff one is tilted on its edge
+  model.materials.push_back(stiff);
+  return run_alone(make_box({{4, 1, 1}, {8, 2, 2}, ElementType::tet4}), model);
+}
+
+}  // namespace
+
+TEST_CASE("a part as stiff as rigid makes no wrong state look right") {
+  const Vector3 rigid = half_stiffened(1e7).result().contact_force;
+  REQUIRE(length(rigid) > 0.0);
+  bool limited = false;
+  for (double ratio = 1e7; ratio < 1e29; ratio *= 100.0) {
+    INFO(ratio);
+    const Run run = half_stiffened(ratio);
+    const Certificate& c = run.result().certificate;
+    // From 1e7 on nothing changes any more but by the inverse of the ratio.
+    if (run.result().status == Status::converged)
+      CHECK(distance(run.result().contact_force, rigid) <= 1e-5 * length(rigid));
+    else
+      limited = true;
+    CHECK((run.result().status == Status::converged) == c.meets(1e-6));
+    CHECK(c.rounding.worst() >= 1e-16 * ratio);
+    if (run.result().status == Status::limited_by_rounding) {
+      CHECK(c.rounding.worst() > 1e-6);
+      CHECK(mentions(run.result().message, "can be known to"));
+    }
+  }
+  CHECK(limited);
+}
+
+TEST_CASE("what single precision cannot hold is refused, whatever else is small") {
+  for (const double ratio : {1e39, 1e60}) {
+    INFO(ratio);
+    CHECK_THROWS_WITH_AS(half_stiffened(ratio), doctest::Contains("which single precision holds"),
+                         InputError);
+  }
+}
+
+TEST_CASE("maxima keep what is no number, and rounding counts as much as the residual") {
+  Certificate c;
+  CHECK(c.meets(0.0));
+  c.tension = NAN;
+  CHECK(std::isinf(c.worst()));
+  CHECK_FALSE(c.meets(1.0));
+  CHECK_FALSE(c.exhausted(1.0));
+  c.tension = 0.0;
+  c.equilibrium = 1e-5;
+  c.rounding.equilibrium = 1e-4;
+  CHECK_FALSE(c.meets(1e-6));
+  CHECK(c.exhausted(1e-6));
+  CHECK(c.meets(1e-4));
+  c.penetration = 1e-5;
+  CHECK_FALSE(c.exhausted(1e-6));
+}
