@@ -39,7 +39,7 @@ namespace {
 
 /// Forces below this share of what the softest unknown's stiffness makes of ω are none to measure others by:
 /// of the softest, because a part as stiff as rigid would else make any force look small.
-constexpr double least_force = 1e-9;
+constexpr double least_force = 1e-8;
 /// Share of it, and of ω·diag(B) ω, that the rounding of R(ω) may come to (measured: 1e-16, so with room),
 /// and likewise of traces and gaps.
 constexpr double rounding = 5e-16;

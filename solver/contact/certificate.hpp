@@ -30,8 +30,9 @@ struct BodyForces {
   std::span<const float> diagonal;             ///< of the elastic B
 };
 
-/// Forces of 10⁻⁹ ‖diagonal ∘ u‖ and energies likewise are rounding, so that a body moved without strain has
-/// small residuals, and not noise over noise (theory: kkt, rounding). Collective.
+/// All relative to scales that the state itself sets. Where no forces to speak of act, a share of what the
+/// softest unknown's stiffness makes of u is one, so that a body moved without strain has small residuals,
+/// and not noise over noise (theory: kkt, rounding). Collective.
 Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactState& state,
                         const BodyForces& forces);
 
