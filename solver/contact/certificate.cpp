@@ -37,12 +37,12 @@ bool Certificate::exhausted(double tolerance) const noexcept {
 
 namespace {
 
-/// Forces below this share of what the softest unknown's stiffness makes of ω are none to measure others by:
-/// of the softest, because a part as stiff as rigid would else make any force look small.
-constexpr double least_force = 1e-8;
+/// Forces below this share of the harmonic mean of D times ‖u‖ are none to measure others by: of that mean,
+/// because a part as stiff as rigid would else make any force look small.
+constexpr double least_force = 1e-9;
 /// Share of it, and of ω·diag(B) ω, that the rounding of R(ω) may come to (measured: 1e-16, so with room),
 /// and likewise of traces and gaps.
-constexpr double rounding = 5e-16;
+constexpr double rounding = 3e-16;
 
 /// Products and extremes over the contact points.
 struct ContactSums {
@@ -100,7 +100,7 @@ struct BodySums {
   double residual_work = 0.0, internal_work = 0.0;
   double residual = 0.0, reaction = 0.0, contact = 0.0, load = 0.0;  // squares of norms
   double moved = 0.0, stiff = 0.0, stiff_work = 0.0;                 // |u|², |D∘u|², u·(D∘u)
-  double softest = HUGE_VAL;                                         // least entry of D
+  double softness = 0.0;                                             // mean of 1/D
 };
 
 /// Over all ranks; `contact` is CᵀMλ.
@@ -125,13 +125,13 @@ BodySums body_sums(const Part& part, std::span<const double> u, std::span<const 
     s.moved += u[i] * u[i];
     s.stiff += stiff * stiff;
     s.stiff_work += stiff * u[i];
-    if (diagonal > 0.0) s.softest = std::min(s.softest, diagonal);
+    s.softness += 1.0 / diagonal;
   }
   std::array sums{s.balance[0],    s.balance[1], s.balance[2], s.all,     s.residual_work,
                   s.internal_work, s.residual,   s.reaction,   s.contact, s.load,
-                  s.moved,         s.stiff,      s.stiff_work};
+                  s.moved,         s.stiff,      s.stiff_work, s.softness};
   part.halo.sum_all(sums);
-  const double softest = -part.halo.max_all(-s.softest);
+  const double unknowns = static_cast<double>(part.total_nodes) * part.dim();
   return {{sums[0], sums[1], sums[2]},
           sums[3],
           sums[4],
@@ -143,7 +143,7 @@ BodySums body_sums(const Part& part, std::span<const double> u, std::span<const 
           sums[10],
           sums[11],
           sums[12],
-          softest};
+          sums[13] / unknowns};
 }
 
 }  // namespace
@@ -160,8 +160,8 @@ Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactS
   Scales& scales = out.scales;
   // Sums of forces: the load, the obstacles, the supports; what they work; squares of their norms.
   const BodySums body = body_sums(part, state.omega, contact, forces);
-  const double no_force = least_force * body.softest * std::sqrt(body.moved),
-               no_energy = least_force * body.softest * body.moved;
+  const double no_force = least_force / body.softness * std::sqrt(body.moved),
+               no_energy = least_force / body.softness * body.moved;
   scales.force = std::max(std::sqrt(std::max({body.reaction, body.contact, body.load})), no_force);
   scales.displacement = space.max_abs(state.omega);
 

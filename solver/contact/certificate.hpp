@@ -31,7 +31,7 @@ struct BodyForces {
 };
 
 /// All relative to scales that the state itself sets. Where no forces to speak of act, a share of what the
-/// softest unknown's stiffness makes of u is one, so that a body moved without strain has small residuals,
+/// softer unknowns' stiffness makes of u is one, so that a body moved without strain has small residuals,
 /// and not noise over noise (theory: kkt, rounding). Collective.
 Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactState& state,
                         const BodyForces& forces);
