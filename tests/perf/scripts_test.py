@@ -228,7 +228,7 @@ case, output = json.loads(pathlib.Path(sys.argv[2]).read_text()), pathlib.Path(s
 output.mkdir()
 linear = case["material"][0]["law"]["type"] == "linear"
 (output / "result.json").write_text(json.dumps(dict(status="converged" if linear else "not_converged", message="so it goes",
-    outer_iterations=3, operator_applications=20)))
+    outer_iterations=3, operator_applications=20, unknowns=600)))
 """.format(python=sys.executable))
             program.chmod(0o755)
             done = run("hard_cases", program, "--case", "drag smooth *")
