@@ -47,7 +47,7 @@ kacanov_test(mesh
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 kacanov_test(closed_solutions
-  MPI SOURCES solver/closed_test.cpp
+  MPI SOURCES solver/closed_test.cpp solver/radial_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 kacanov_test(contact
   MPI SOURCES solver/contact_test.cpp

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Thick cylinders and spheres under pressure, against the radial equation solved as an ordinary one.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <map>
+
+#include "radial.hpp"
+#include "support.hpp"
+
+using namespace kacanov;
+using namespace kacanov::testing;
+
+namespace {
+
+constexpr double inner = 1.0, outer = 2.0;
+
+/// The facets all of whose nodes satisfy a condition, as a named part.
+void name_facets(Mesh& mesh, const std::string& name, const std::function<bool(const Vector3&)>& here) {
+  const auto dim = static_cast<std::size_t>(mesh.dim());
+  Group group{name, mesh.dim() - 1, {}};
+  for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
+    const auto nodes = mesh.facet(f);
+    if (std::all_of(nodes.begin(), nodes.end(), [&](std::int32_t n) {
+          const double* x = &mesh.coordinates[static_cast<std::size_t>(n) * dim];
+          return here({x[0], x[1], dim == 3 ? x[2] : 0.0});
+        }))
+      group.members.push_back(static_cast<std::int32_t>(f));
+  }
+  mesh.groups.push_back(group);
+}
+
+/// A quarter of a thick cylinder, an octant of a thick sphere: the shell of cubes with ½ ≤ max x ≤ 1 blown up
+/// to a round one, n cells through the wall.
+Mesh round_shell(int dim, int n) {
+  BoxSpec spec;
+  spec.cells = {2 * n, 2 * n, 2 * n};
+  spec.type = dim == 2 ? ElementType::tri3 : ElementType::tet4;
+  const Mesh cube = make_box(spec);
+  const auto d = static_cast<std::size_t>(dim);
+  const auto npe = static_cast<std::size_t>(nodes_per_element(cube.type));
+  Mesh mesh;
+  mesh.type = cube.type;
+  std::map<std::int32_t, std::int32_t> kept;
+  for (std::size_t e = 0; e < cube.element_count(); ++e) {
+    const auto nodes = std::span(cube.elements).subspan(e * npe, npe);
+    double mean = 0.0;  // of the largest coordinate: below ½ only inside the hole
+    for (const auto node : nodes) {
+      const double* x = &cube.coordinates[static_cast<std::size_t>(node) * d];
+      mean += *std::max_element(x, x + d) / static_cast<double>(npe);
+    }
+    if (mean < 0.5) continue;
+    for (const auto node : nodes) {
+      const auto [place, fresh] = kept.try_emplace(node, static_cast<std::int32_t>(kept.size()));
+      mesh.elements.push_back(place->second);
+      if (!fresh) continue;
+      const double* x = &cube.coordinates[static_cast<std::size_t>(node) * d];
+      mesh.coordinates.insert(mesh.coordinates.end(), x, x + d);
+    }
+  }
+  map_nodes(mesh, [&](Vector3 x) {
+    const double level = std::max({x[0], x[1], x[2]}), r = inner + (outer - inner) * (2 * level - 1);
+    for (double& v : x) v = std::tan(0.25 * M_PI * v / level);  // even angles
+    const double size = length(x);
+    return Vector3{r * x[0] / size, r * x[1] / size, r * x[2] / size};
+  });
+  find_boundary(mesh);
+  check_mesh(mesh);
+  name_facets(mesh, "inside", [](const Vector3& x) { return std::abs(length(x) - inner) < 1e-9; });
+  for (std::size_t c = 0; c < d; ++c)
+    name_facets(mesh, std::string("plane") + "xyz"[c],
+                [c](const Vector3& x) { return std::abs(x[c]) < 1e-9; });
+  return mesh;
+}
+
+/// L² error of the displacement relative to its norm, by the edge-midpoint (2D) or the four-point (3D) rule.
+double displacement_error(const Run& run, const RadialSolution& exact) {
+  const Part& part = run.part;
+  const auto dim = static_cast<std::size_t>(part.dim()), npe = dim + 1;
+  std::vector<double> volume(part.element_count());
+  reference::volumes(part.body(), volume);
+  const double far = dim == 2 ? 0.5 : 0.1381966011250105, near = dim == 2 ? 0.0 : 0.5854101966249685;
+  double error = 0.0, size = 0.0;
+  for (std::size_t e = 0; e < volume.size(); ++e)
+    for (std::size_t q = 0; q < npe; ++q) {
+      Vector3 x{}, u{};
+      for (std::size_t a = 0; a < npe; ++a) {
+        const auto node = static_cast<std::size_t>(part.elements[e * npe + a]);
+        for (std::size_t c = 0; c < dim; ++c) {
+          x[c] += (a == q ? near : far) * part.coordinates[node * dim + c];
+          u[c] += (a == q ? near : far) * run.solution.displacement[node * dim + c];
+        }
+      }
+      const double r = length(x), radial = exact(r);
+      const double weight = volume[e] / static_cast<double>(npe);
+      error += weight * std::pow(distance(u, {radial * x[0] / r, radial * x[1] / r, radial * x[2] / r}), 2);
+      size += weight * radial * radial;
+    }
+  return std::sqrt(error / size);
+}
+
+void check_order(int dim, const std::vector<int>& cells, double pressure_inside, double finest_error) {
+  CAPTURE(dim);
+  for (const Law& law : {elastic_law(1.0, 0.3), logarithmic_law(0.01)}) {
+    const RadialSolution exact(law, dim - 1, inner, outer, pressure_inside);
+    if (law.kind != Law::Kind::linear) CHECK(exact.largest_dev_strain() > 3 * law.x0);
+    std::vector<double> errors;
+    for (const int n : cells) {
+      Model model;
+      model.materials.push_back({everything(), law});
+      for (int c = 0; c < dim; ++c)
+        model.boundary.push_back(roller(named(std::string("plane") + "xyz"[c]), static_cast<std::size_t>(c)));
+      model.boundary.push_back(pressure(named("inside"), pressure_inside));
+      model.solver.tolerance = 1e-8;
+      const Run run = run_alone(round_shell(dim, n), model);
+      CHECK(run.result().status == Status::converged);
+      errors.push_back(displacement_error(run, exact));
+    }
+    const std::size_t last = errors.size() - 1;
+    CAPTURE(errors[last - 1]);
+    CAPTURE(errors[last]);
+    CHECK(std::log2(errors[last - 1] / errors[last]) > 1.7);
+    CHECK(errors[last] < finest_error);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the radial solution: Lamé's formulas and the incompressible limit") {
+  const Law linear = elastic_law(1.0, 0.3);
+  const double lame = linear.bulk - 2.0 / 3.0 * linear.shear, p = 0.01;
+  // u = A r + C / r^m with τ_r(a) = −p, τ_r(b) = 0.
+  for (const int m : {1, 2}) {
+    const double ratio = std::pow(inner / outer, m + 1),
+                 c = p * std::pow(inner, m + 1) / (2 * linear.shear * m * (1 - ratio));
+    const double a = p * ratio / ((1 - ratio) * ((m + 1) * lame + 2 * linear.shear));
+    const RadialSolution exact(linear, m, inner, outer, p);
+    for (const double r : {inner, 1.3, outer})
+      CHECK(exact(r) == doctest::Approx(a * r + c / std::pow(r, m)).epsilon(1e-6));
+  }
+  // Nearly incompressible: u = C/r^m and p = factor [H(x_a) − H(x_b)], H(x) = ∫ g ds.
+  const Law law = logarithmic_law(0.01, 1.0, 0.49999);
+  const auto h = [&](double x) {
+    if (x <= law.x0) return law.shear * x;
+    const double l = std::log(x / law.x0);
+    return law.shear * law.x0 * (1 + l + 0.5 * l * l);
+  };
+  for (const int m : {1, 2}) {
+    const double strain = m == 1 ? std::sqrt(2.0) : std::sqrt(6.0),
+                 factor = m == 1 ? std::sqrt(2.0) : 4 / std::sqrt(6.0);
+    const double c = 0.03;
+    const double load = factor * (h(strain * c) - h(strain * c / std::pow(outer, m + 1)));
+    const RadialSolution exact(law, m, inner, outer, load);
+    CHECK(exact(inner) == doctest::Approx(c).epsilon(2e-3));
+    CHECK(exact(outer) == doctest::Approx(c / std::pow(outer, m)).epsilon(2e-3));
+  }
+}
+
+TEST_CASE("thick cylinder under pressure: second order against the radial equation") {
+  check_order(2, {16, 32}, 0.02, 3e-3);
+}
+
+TEST_CASE("thick sphere under pressure: second order against the radial equation") {
+  check_order(3, {5, 10}, 0.02, 3e-2);
+}
