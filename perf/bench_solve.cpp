@@ -11,11 +11,11 @@
 #include <string>
 
 #include <kacanov/problem.hpp>
+#include "amg/make_preconditioner.hpp"
 #include "contact/traces.hpp"
 #include "formats/gmsh_reader.hpp"
 #include "linear/cg.hpp"
 #include "linear/distributed_operator.hpp"
-#include "linear/preconditioner.hpp"
 #include "problem/selection.hpp"
 #include "program/launch.hpp"
 #include "program/parallel.hpp"
@@ -167,7 +167,7 @@ Json measure(const Part& part, DistributedOperator& op, const std::string& kind,
   const double seconds = MPI_Wtime() - before;
   return {
       {"preconditioner", kind},
-      {"unknowns", part.total_nodes * part.dim()},
+      {"unknowns", part.total_nodes() * part.dim()},
       {"ranks", part.halo.ranks},
       {"threads", options.threads},
       {"iterations", cg.iterations},
@@ -176,9 +176,9 @@ Json measure(const Part& part, DistributedOperator& op, const std::string& kind,
       {"solve_seconds", seconds},
       {"total_seconds", ready - start + seconds},
       {"seconds_per_iteration", seconds / std::max(1, cg.iterations)},
-      {"bytes_per_unknown", static_cast<double>(held) / static_cast<double>(part.total_nodes * part.dim())},
+      {"bytes_per_unknown", static_cast<double>(held) / static_cast<double>(part.total_nodes() * part.dim())},
       {"peak_bytes_per_unknown",
-       static_cast<double>(peak) / static_cast<double>(part.total_nodes * part.dim())}};
+       static_cast<double>(peak) / static_cast<double>(part.total_nodes() * part.dim())}};
 }
 
 void run(const Options& options, const MpiSession& mpi) {

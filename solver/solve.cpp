@@ -6,6 +6,7 @@
 #include <sstream>
 #include <string>
 
+#include "amg/make_preconditioner.hpp"
 #include "collect.hpp"
 #include "load_steps.hpp"
 #include "nonlinear/friction_bounds.hpp"
@@ -115,7 +116,7 @@ Solution solve(const Part& part, const SolverOptions& options, const RunOptions&
   if (shares.size() > 1) end_load_steps(shares, finished, result);
   if (result.softening_elements > 0) result.message += softening_message(result.softening_elements);
   if (result.unsolved_steps > 0) result.warnings.push_back(unsolved_message(result, options));
-  result.unknowns = part.total_nodes * part.dim();
+  result.unknowns = part.total_nodes() * part.dim();
   result.elements = part.total_elements;
   result.contact_nodes = part.total_contact;
   result.operator_applications = loop.applications();

@@ -19,7 +19,7 @@ template <int M>
 AggregateMotions<M>::AggregateMotions(const Part& part, std::span<const double> g, double size,
                                       std::string_view instruction_set)
     : part_(part), add_products_(motion_products<M>(instruction_set)) {
-  group_ = aggregate_nodes(part.body(), g, part.owned_nodes, size);
+  group_ = aggregate_nodes(part.body(), g, part.owned_nodes(), size);
   owned_ = group_.empty() ? 0 : 1 + *std::max_element(group_.begin(), group_.end());
   centre_.assign(static_cast<std::size_t>(owned_), Vector3{});
   std::vector<double> members(centre_.size(), 0.0);
@@ -35,7 +35,7 @@ AggregateMotions<M>::AggregateMotions(const Part& part, std::span<const double> 
     const Vector3 d = offset(n);
     spread += d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
   }
-  length_ = std::sqrt(part_.halo.sum_all(spread) / static_cast<double>(part_.total_nodes));
+  length_ = std::sqrt(part_.halo.sum_all(spread) / static_cast<double>(part_.total_nodes()));
   if (!(length_ > 0.0)) length_ = 1.0;
 }
 
@@ -49,24 +49,20 @@ Vector3 AggregateMotions<M>::offset(std::size_t node) const {
 
 template <int M>
 RigidLevel<M> AggregateMotions<M>::make_level() {
-  const Halo& halo = part_.halo;
-  const auto mine = static_cast<std::int64_t>(owned_);
-  MPI_Exscan(&mine, &first_, 1, MPI_INT64_T, MPI_SUM, halo.comm);
-  if (halo.rank == 0) first_ = 0;
+  const IndexMap& halo = part_.halo;
+  first_ = halo.sum_below(owned_);
 
   // Centre and number of the aggregate of every local node, ghosts from their owners.
   const std::size_t owned_nodes = group_.size();
-  std::vector<Vector3> ghost_centre(part_.nodes() - owned_nodes);
-  Vector number(part_.nodes());
-  for (std::size_t c = 0; c <= dim; ++c) {  // the number last: its vector stays
-    for (std::size_t n = 0; n < owned_nodes; ++n) {
-      const auto a = static_cast<std::size_t>(group_[n]);
-      number[n] = c < dim ? centre_[a][c] : static_cast<double>(first_ + group_[n]);
-    }
-    halo.copy_from_owner(std::span<double>(number), 1);
-    for (std::size_t n = owned_nodes; n < number.size() && c < dim; ++n)
-      ghost_centre[n - owned_nodes][c] = number[n];
+  std::vector<std::int64_t> number(part_.nodes());
+  std::vector<double> centre(dim * part_.nodes());
+  for (std::size_t n = 0; n < owned_nodes; ++n) {
+    const auto a = static_cast<std::size_t>(group_[n]);
+    number[n] = first_ + group_[n];
+    for (std::size_t c = 0; c < dim; ++c) centre[n * dim + c] = centre_[a][c];
   }
+  halo.forward(number, 1);
+  halo.forward(centre, static_cast<int>(dim));
 
   BlockSums<M> couplings;
   const auto npe = static_cast<std::size_t>(nodes_per_element(part_.type));
@@ -74,24 +70,23 @@ RigidLevel<M> AggregateMotions<M>::make_level() {
   for (std::size_t e = 0; e < part_.element_count(); ++e) {
     distinct.clear();
     for (std::size_t a = 0; a < npe; ++a) {
-      const auto id =
-          static_cast<std::int64_t>(number[static_cast<std::size_t>(part_.elements[e * npe + a])]);
+      const std::int64_t id = number[static_cast<std::size_t>(part_.elements[e * npe + a])];
       if (std::find(distinct.begin(), distinct.end(), id) == distinct.end()) distinct.push_back(id);
     }
     for (const std::int64_t row : distinct)
       for (const std::int64_t column : distinct)
         if (row <= column) couplings.at(row, column);
   }
-  RigidLevel<M> level(centre_, std::move(couplings), halo.comm);
+  RigidLevel<M> level(centre_, std::move(couplings), halo);
 
   group_.resize(part_.nodes());
   std::unordered_map<std::int64_t, std::int32_t>
       unknown;  // to the level: no element here ties them to an owned one
-  number_.assign(level.ghosts().begin(), level.ghosts().end());
+  number_ = level.map().ghosts;
   centre_.resize(centre_.size() + number_.size());
   const auto known = static_cast<std::int32_t>(centre_.size());
   for (std::size_t n = owned_nodes; n < group_.size(); ++n) {
-    const auto id = static_cast<std::int64_t>(number[n]);
+    const std::int64_t id = number[n];
     std::int32_t at = level.local(id);
     if (at < 0) {
       at = unknown.try_emplace(id, known + static_cast<std::int32_t>(unknown.size())).first->second;
@@ -99,7 +94,7 @@ RigidLevel<M> AggregateMotions<M>::make_level() {
       number_.resize(centre_.size() - static_cast<std::size_t>(owned_));
     }
     group_[n] = at;
-    centre_[static_cast<std::size_t>(at)] = ghost_centre[n - owned_nodes];
+    for (std::size_t c = 0; c < dim; ++c) centre_[static_cast<std::size_t>(at)][c] = centre[n * dim + c];
     number_[static_cast<std::size_t>(at - owned_)] = id;
   }
   return level;
@@ -300,7 +295,7 @@ void AggregateMotions<M>::change(std::span<const double> g, const Held& before, 
 template <int M>
 void AggregateMotions<M>::restrict_forces(std::span<const float> force, std::span<double> b) const {
   std::fill(b.begin(), b.end(), 0.0);
-  for (std::size_t n = 0; n < static_cast<std::size_t>(part_.owned_nodes); ++n) {
+  for (std::size_t n = 0; n < static_cast<std::size_t>(part_.owned_nodes()); ++n) {
     std::array<double, dim> f{};
     for (std::size_t c = 0; c < dim; ++c) f[c] = static_cast<double>(force[n * dim + c]);
     RigidMotion<M>::add_force(f.data(), offset(n).data(), 1.0 / length_,
@@ -310,7 +305,7 @@ void AggregateMotions<M>::restrict_forces(std::span<const float> force, std::spa
 
 template <int M>
 void AggregateMotions<M>::prolong(std::span<const double> x, double gain, std::span<float> u) const {
-  for (std::size_t n = 0; n < static_cast<std::size_t>(part_.owned_nodes); ++n) {
+  for (std::size_t n = 0; n < static_cast<std::size_t>(part_.owned_nodes()); ++n) {
     std::array<double, dim> motion{};
     RigidMotion<M>::add_motion(x.data() + static_cast<std::size_t>(group_[n]) * M, offset(n).data(),
                                1.0 / length_, motion.data());

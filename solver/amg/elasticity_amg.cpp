@@ -6,8 +6,8 @@ namespace kacanov {
 
 ElasticityAmg::ElasticityAmg(const Part& part)
     : part_(part),
-      amg_(part.halo.comm, part.first_owned * part.dim(), static_cast<std::int64_t>(part.owned_unknowns()),
-           part.total_nodes * part.dim()) {}
+      amg_(part.halo.comm, part.halo.first() * part.dim(), static_cast<std::int64_t>(part.owned_unknowns()),
+           part.total_nodes() * part.dim()) {}
 
 void ElasticityAmg::build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space&) {
   g_.assign(g.begin(), g.end());
@@ -41,7 +41,7 @@ void ElasticityAmg::build(std::span<const double> g, std::span<const NodeBlock> 
       columns.clear();
       values.clear();
       if (part_.held[n * dim + i]) {
-        if (n >= static_cast<std::size_t>(part_.owned_nodes)) continue;
+        if (n >= static_cast<std::size_t>(part_.owned_nodes())) continue;
         columns.push_back(global(n, i));
         values.push_back(diagonal[n * dim + i]);
       } else {
@@ -72,7 +72,7 @@ void ElasticityAmg::secant(std::span<double> g) const {
 
 void ElasticityAmg::apply(std::span<const double> r, std::span<double> z) {
   amg_.apply(r.data(), z.data());
-  part_.halo.copy_from_owner(z, part_.dim());
+  part_.halo.forward(z, part_.dim());
 }
 
 }  // namespace kacanov

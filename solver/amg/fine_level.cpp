@@ -71,10 +71,10 @@ void FineLevel::multiply(std::span<const float> x, std::span<float> y) const {
   if (part_.halo.ranks > 1) {
     op_.apply(x, y, [&, this] {
       add_blocks(blocks.first(shared_blocks_), x, y);
-      sum_.start(y);
+      sum_.start_sum(y);
     });
     add_blocks(blocks.subspan(shared_blocks_), x, y);
-    sum_.finish(y);
+    sum_.finish_sum(y);
   } else {
     op_.apply(x, y);
     add_blocks(blocks, x, y);

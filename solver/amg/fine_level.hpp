@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <kacanov/float_operator.hpp>
+#include <kacanov/scatterer.hpp>
 #include "amg/chebyshev.hpp"
 #include "linear/preconditioner.hpp"
 
@@ -45,7 +46,7 @@ class FineLevel {
 
   const Part& part_;
   FloatOperator op_;
-  mutable SharedSum<float> sum_;
+  mutable Scatterer<float> sum_;
   Space space_;
   std::vector<NodeBlock> blocks_;
   std::size_t shared_blocks_ = 0;  ///< the first of them belong to nodes that other ranks have too

@@ -5,11 +5,13 @@
 
 #include <cstdint>
 #include <deque>
+#include <memory>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
-#include <kacanov/halo.hpp>
+#include <kacanov/scatterer.hpp>
 #include "amg/chebyshev.hpp"
 #include "amg/rigid_motion.hpp"
 
@@ -49,26 +51,27 @@ class RigidLevel {
 
   /// This rank owns rows first … first + rows − 1, the motions of aggregates with these centres. `sums` are
   /// its contributions to any rows; they are sent to their owners. Collective.
-  RigidLevel(std::vector<Vector3> centres, BlockSums<M> sums, MPI_Comm comm);
+  RigidLevel(std::vector<Vector3> centres, BlockSums<M> sums, const Communicator& comm);
 
   std::int32_t rows() const noexcept { return static_cast<std::int32_t>(centres_.size()); }
-  std::int64_t first() const noexcept { return first_.at(static_cast<std::size_t>(rank_)); }
-  std::int64_t total() const noexcept { return first_.back(); }
+  /// Of the rows; ghosts are the other ranks' rows that owned ones couple to, ascending.
+  const IndexMap& map() const noexcept { return *map_; }
+  std::int64_t first() const noexcept { return map_->first(); }
+  std::int64_t total() const noexcept { return map_->total(); }
   std::span<const Vector3> centres() const noexcept { return centres_; }
-  std::size_t size() const noexcept { return (centres_.size() + ghosts_.size()) * M; }  ///< of a vector
+  std::size_t size() const noexcept { return map_->size() * M; }  ///< of a vector
   std::size_t owned_size() const noexcept { return centres_.size() * M; }
 
-  /// y = A x on owned rows; fills x's ghosts.
+  /// y = A x on owned rows; fills x's ghosts. Collective.
   void multiply(std::span<double> x, std::span<double> y) const;
   /// Chebyshev::smooth's step on owned rows, with D the block diagonal.
   void relax(const ChebyshevStep<double>& weights, std::span<const double> b, std::span<const double> image,
              std::span<double> step, std::span<double> x) const;
-  /// Largest eigenvalue of D⁻¹A, by a few power steps, somewhat from above.
+  /// Largest eigenvalue of D⁻¹A, somewhat from above (kacanov::largest_eigenvalue). Collective.
   double largest_eigenvalue() const;
 
   /// Local number of a row: owned ones first, then the other ranks' rows they couple to; −1 for others.
   std::int32_t local(std::int64_t row) const;
-  std::span<const std::int64_t> ghosts() const noexcept { return ghosts_; }
   /// Calls f(row, column, block) for what is stored of every owned row.
   template <class F>
   void visit(F&& f) const {
@@ -87,30 +90,25 @@ class RigidLevel {
   /// Adds this rank's contributions to any rows that couple. Collective.
   void add(const BlockSums<M>& sums);
 
-  /// The next level: `group` of each row, groups numbered from 0.
+  /// The next level: `group` of each owned row, groups numbered from 0. Collective.
   RigidLevel coarsened(std::span<const std::int32_t> group, double length) const;
   /// Couplings between owned rows, for grouping.
   struct WeightedGraph couplings() const;
 
-  /// The whole matrix on every rank, for a direct solve.
+  /// The whole matrix on every rank, for a direct solve. Collective.
   std::vector<typename BlockSums<M>::Entry> gathered() const;
-
-  MPI_Comm comm() const noexcept { return comm_; }
 
  private:
   void send_to_owners(BlockSums<M>& sums) const;
   void add_to_rows(const typename BlockSums<M>::Entry& entry);
   std::vector<typename BlockSums<M>::Entry> exchanged(const BlockSums<M>& sums) const;
+  bool is_mine(std::int64_t row) const noexcept { return row >= first() && row < first() + rows(); }
+  std::vector<std::int64_t> ghosts_of(const BlockSums<M>& sums) const;
   void build_rows(const BlockSums<M>& sums);
-  void plan_exchange();
   void invert_diagonal();
-  int owner(std::int64_t row) const;
 
-  MPI_Comm comm_;
-  int rank_ = 0, ranks_ = 1;
-  std::vector<std::int64_t> first_;  ///< of each rank, and the total
+  std::unique_ptr<const IndexMap> map_;  ///< stays where it is when the level moves
   std::vector<Vector3> centres_;
-  std::vector<std::int64_t> ghosts_;  ///< rows of other ranks in `column_`, ascending
   /// Of owned row i: entries whose column is i, a later owned row (which the symmetric one follows from), or,
   /// behind these, a ghost.
   std::vector<std::int32_t> start_, column_;
@@ -118,16 +116,8 @@ class RigidLevel {
   struct Edge {
     std::int32_t row = 0, first = 0;  ///< where its ghosts' entries begin
   };
-  std::vector<Edge> edge_;  ///< rows with ghosts
-  struct Neighbour {
-    int rank = 0;
-    std::vector<std::int32_t> send;
-    std::int32_t first_ghost = 0, ghosts = 0;
-  };
-  std::vector<Neighbour> neighbours_;
-  mutable std::vector<double> sent_;
-  mutable std::vector<MPI_Request> requests_;
-  void start_filling_ghosts(std::span<double> x) const;
+  std::vector<Edge> edge_;                         ///< rows with ghosts
+  mutable std::optional<Scatterer<double>> fill_;  ///< of the ghosts of a vector
 };
 
 extern template class RigidLevel<3>;

@@ -61,8 +61,7 @@ class DirectSolve {
     const auto at = static_cast<Eigen::Index>(level_->first()) * M;
     const auto owned = static_cast<Eigen::Index>(level_->owned_size());
     for (Eigen::Index i = 0; i < owned; ++i) all[at + i] = b[static_cast<std::size_t>(i)];
-    MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM,
-                  level_->comm());
+    level_->map().sum_all(std::span(all.data(), static_cast<std::size_t>(all.size())));
     const Eigen::VectorXd y = factor_.solve(all);
     for (Eigen::Index i = 0; i < owned; ++i) x[static_cast<std::size_t>(i)] = y[at + i];
   }
@@ -133,7 +132,7 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
     motions_->restrict_forces(image_, first.b);
     cycle(0);
     motions_->prolong(first.x, options_.fine_gain, image_);
-    part_.halo.copy_from_owner(std::span<float>(image_), part_.dim());
+    part_.halo.forward(std::span<float>(image_), part_.dim());
     fine_.project(image_);
     for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += image_[i];
     fine_.smoother().template smooth<float>(false, b_, x_, step_, image_, multiply, relax);

@@ -79,7 +79,7 @@ ContactSums contact_sums(const Traces& traces, const ContactState& state) {
     s.pressure = larger(s.pressure, length);
   }
   std::array<double, 4> sums{s.normal_product, s.friction_product, s.dual_work, s.area};
-  const Halo& halo = traces.halo();
+  const IndexMap& halo = traces.halo();
   halo.sum_all(sums);
   s.normal_product = sums[0];
   s.friction_product = sums[1];
@@ -131,7 +131,7 @@ BodySums body_sums(const Part& part, std::span<const double> u, std::span<const 
                   s.internal_work, s.residual,   s.reaction,   s.contact, s.load,
                   s.moved,         s.stiff,      s.stiff_work, s.softness};
   part.halo.sum_all(sums);
-  const double unknowns = static_cast<double>(part.total_nodes) * part.dim();
+  const double unknowns = static_cast<double>(part.total_nodes()) * part.dim();
   return {{sums[0], sums[1], sums[2]},
           sums[3],
           sums[4],

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include <kacanov/error.hpp>
+#include "parallel/exchange.hpp"
 
 namespace kacanov {
 namespace {
@@ -22,23 +23,6 @@ struct Travelling {
   std::int64_t row = 0, node = 0;
   Vector3 coefficient{};
 };
-
-/// Those of all ranks, in the order of the ranks.
-std::vector<Travelling> gathered(const std::vector<Travelling>& mine, const Halo& halo) {
-  if (halo.ranks == 1) return mine;
-  const auto ranks = static_cast<std::size_t>(halo.ranks);
-  std::vector<int> count(ranks), first(ranks, 0);
-  const auto here = static_cast<int>(mine.size());
-  MPI_Allgather(&here, 1, MPI_INT, count.data(), 1, MPI_INT, halo.comm);
-  for (std::size_t r = 1; r < ranks; ++r) first[r] = first[r - 1] + count[r - 1];
-  std::vector<Travelling> all(static_cast<std::size_t>(first.back() + count.back()));
-  MPI_Datatype type;
-  MPI_Type_contiguous(static_cast<int>(sizeof(Travelling)), MPI_BYTE, &type);
-  MPI_Type_commit(&type);
-  MPI_Allgatherv(mine.data(), here, type, all.data(), count.data(), first.data(), type, halo.comm);
-  MPI_Type_free(&type);
-  return all;
-}
 
 }  // namespace
 

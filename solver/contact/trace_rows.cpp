@@ -139,7 +139,7 @@ void TraceRows::transpose(std::span<const double> x, std::span<double> y) const 
   for (std::size_t g = 0; g < owned_groups_; ++g)
     add_rows(groups_[g].row, static_cast<std::size_t>(groups_[g].rows), x.data() + groups_[g].first,
              y.data() + static_cast<std::size_t>(groups_[g].node) * dim, dim);
-  part_->halo.copy_from_owner(y, part_->dim());
+  part_->halo.forward(y, part_->dim());
   if (!cluster_) return;
   Vector wide = wide_.zeros(dim);
   for (const ClusterRow& row : wide_rows_)
@@ -164,7 +164,7 @@ void TraceRows::lift(std::span<const double> x, std::span<double> y) const {
     if (group.first < x.size() && !group.in_cluster)
       add_rows(group.inverse, static_cast<std::size_t>(group.rows), x.data() + group.first,
                y.data() + static_cast<std::size_t>(group.node) * dim, dim);
-  part_->halo.copy_from_owner(y, part_->dim());
+  part_->halo.forward(y, part_->dim());
   if (cluster_)
     cluster_->add_transpose(cluster_->solve([&](const ClusterRow& row) { return x[row.row]; }), y);
 }

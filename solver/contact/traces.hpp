@@ -34,7 +34,7 @@ class Traces {
   }
   std::size_t size() const noexcept { return part_->contact.size(); }
   std::size_t owned() const noexcept { return static_cast<std::size_t>(part_->owned_contact); }
-  const Halo& halo() const noexcept { return part_->halo; }
+  const IndexMap& halo() const noexcept { return part_->halo; }
 
   /// values = (Nω, Tω); N takes prescribed components along.
   void evaluate(std::span<const double> omega, ContactValues& values) const;

@@ -8,22 +8,23 @@ namespace kacanov {
 
 WideNodes::WideNodes(const Part& part) : part_(&part) {
   if (!part.wide_contact) return;
-  std::vector<float> mark(part.nodes(), 0.0F);
+  std::vector<std::int32_t> mark(part.nodes(), 0);
   for (std::size_t i = 0; i < part.contact.size(); ++i)
     if (part.contact.is_wide(i))
-      for (const RowEntry& entry : part.contact.entries(i)) mark[static_cast<std::size_t>(entry.node)] = 1.0F;
-  part.halo.sum(std::span<float>(mark), 1);
+      for (const RowEntry& entry : part.contact.entries(i)) mark[static_cast<std::size_t>(entry.node)] = 1;
+  part.halo.sum(mark, 1);
   for (std::size_t n = 0; n < mark.size(); ++n)
-    if (mark[n] > 0.0F) nodes_.push_back(static_cast<std::int32_t>(n));
+    if (mark[n] > 0) nodes_.push_back(static_cast<std::int32_t>(n));
 
-  halo_ = part.halo;
+  static_cast<Communicator&>(halo_) = part.halo;
+  halo_.shared = part.halo.shared;
+  halo_.neighbours = part.halo.neighbours;
   const auto restrict_to_these = [this](std::vector<std::int32_t>& list) {
     std::erase_if(list, [this](std::int32_t node) { return !contains(node); });
     for (std::int32_t& node : list) node = static_cast<std::int32_t>(position(node));
   };
   restrict_to_these(halo_.shared);
-  for (auto& neighbour : halo_.neighbours)
-    for (auto* list : {&neighbour.shared, &neighbour.send, &neighbour.receive}) restrict_to_these(*list);
+  for (auto& neighbour : halo_.neighbours) restrict_to_these(neighbour.shared);
   std::erase_if(halo_.neighbours, [](const auto& neighbour) { return neighbour.shared.empty(); });
 }
 
@@ -48,7 +49,7 @@ std::vector<NodeBlock> WideNodes::summed(std::vector<double> blocks) const {
   const auto dim = static_cast<std::size_t>(part_->dim());
   halo_.sum(std::span<double>(blocks), part_->dim() * part_->dim());
   std::vector<NodeBlock> out;
-  for (std::size_t k = 0; k < nodes_.size() && nodes_[k] < part_->owned_nodes; ++k) {
+  for (std::size_t k = 0; k < nodes_.size() && nodes_[k] < part_->owned_nodes(); ++k) {
     NodeBlock block{nodes_[k], {}};
     std::copy_n(&blocks[k * dim * dim], dim * dim, block.value.begin());
     out.push_back(block);

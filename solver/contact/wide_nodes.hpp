@@ -33,7 +33,7 @@ class WideNodes {
  private:
   const Part* part_;
   std::vector<std::int32_t> nodes_;  ///< ascending
-  Halo halo_;                        ///< of the part, with positions for nodes
+  IndexMap halo_;                    ///< who shares them: lists of positions, for sums
 };
 
 }  // namespace kacanov

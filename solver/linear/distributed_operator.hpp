@@ -10,6 +10,7 @@
 
 #include <kacanov/operator.hpp>
 #include <kacanov/part.hpp>
+#include <kacanov/scatterer.hpp>
 
 namespace kacanov {
 
@@ -25,9 +26,9 @@ class DistributedOperator {
   /// while the rest is worked out. Returns this rank's share of xᵀ y.
   double apply(std::span<const double> x, std::span<double> y) {
     WhenEarly send;
-    if (part_->halo.ranks > 1) send = [&, this] { sum_.start(y); };
+    if (part_->halo.ranks > 1) send = [&, this] { sum_.start_sum(y); };
     const double share = tangent_ ? local_.apply_tangent_dot(x, y, send) : local_.apply_dot(x, y, send);
-    sum_.finish(y);
+    sum_.finish_sum(y);
     ++applications_;
     if (watcher_) watcher_();
     return share;
@@ -76,7 +77,7 @@ class DistributedOperator {
  private:
   const Part* part_;
   Operator local_;
-  SharedSum<double> sum_;
+  Scatterer<double> sum_;
   bool tangent_ = false;
   std::uint64_t applications_ = 0;
   std::function<void()> watcher_;

@@ -4,11 +4,8 @@
 
 #include <array>
 #include <cstdint>
-#include <memory>
 #include <span>
-#include <string>
 
-#include <kacanov/model.hpp>
 #include "linear/space.hpp"
 
 namespace kacanov {
@@ -36,20 +33,12 @@ class Preconditioner {
   /// The g of the last setup, in single precision at the least; mu before the first.
   virtual void secant(std::span<double> g) const = 0;
 
-  int setups() const noexcept { return setups_; }
   double setup_seconds() const noexcept { return seconds_; }
 
  private:
   virtual void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) = 0;
   virtual void rebuild(std::span<const NodeBlock> blocks, const Space& space) = 0;
-  int setups_ = 0;
   double seconds_ = 0.0;
 };
-
-/// `multigrid`: Chebyshev on the matrix-free operator over rigid motions of aggregates (RigidMultigrid).
-/// `elasticity`: unknown-based BoomerAMG on the assembled matrix, the yardstick. Threads and instruction set
-/// are the operator's.
-std::unique_ptr<Preconditioner> make_preconditioner(SolverOptions::Preconditioner kind, const Part& part,
-                                                    int threads, const std::string& instruction_set);
 
 }  // namespace kacanov

@@ -67,7 +67,7 @@ void OuterLoop::keep(const Result& result) {
   }
   if (result.outer_iterations == 0) return;
   const double before = MPI_Wtime();
-  const Halo& halo = context_.part.halo;
+  const IndexMap& halo = context_.part.halo;
   const bool due = halo.rank == 0 && run_.checkpoint && (!run_.checkpoint_due || run_.checkpoint_due());
   if (!halo.any(due)) return;
   const Checkpoint all = checkpoint(result);
@@ -156,7 +156,7 @@ void OuterLoop::restore(const Checkpoint* from, Result& result) {
     const auto width = static_cast<std::size_t>(components);
     return scatter_contact(part, here ? from->field(name, points * width) : Vector(), components);
   };
-  const auto unknowns = static_cast<std::size_t>(part.total_nodes) * static_cast<std::size_t>(part.dim());
+  const auto unknowns = static_cast<std::size_t>(part.total_nodes()) * static_cast<std::size_t>(part.dim());
   ContactState& state = context_.state;
   state.omega = scatter_nodal(part, here ? from->field("displacement", unknowns) : Vector(), part.dim());
   state.lambda.normal = contact("pressure", 1);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "amg/make_preconditioner.hpp"
 #include "contact/dual_admm.hpp"
 #include "nonlinear/accuracy.hpp"
 #include "nonlinear/body_measures.hpp"

@@ -10,8 +10,6 @@
 namespace kacanov {
 namespace {
 
-using Index = std::int32_t;
-
 std::uint64_t mix(std::uint64_t h, std::uint64_t word) {
   h ^= word;
   h *= 0x9e3779b97f4a7c15ULL;
@@ -34,37 +32,6 @@ class Hash {
  private:
   std::uint64_t value_ = 0;
 };
-
-std::vector<double> scatter(std::span<const Index> index, std::span<const double> all, std::size_t width,
-                            const Halo& halo) {
-  constexpr int tag = 71;
-  const auto pick = [&](std::span<const Index> where) {
-    std::vector<double> values;
-    values.reserve(where.size() * width);
-    for (const Index i : where) {
-      const auto entry = all.subspan(static_cast<std::size_t>(i) * width, width);
-      values.insert(values.end(), entry.begin(), entry.end());
-    }
-    return values;
-  };
-  if (halo.rank == 0) {
-    for (int other = 1; other < halo.ranks; ++other) {
-      MPI_Status status;
-      int count = 0;
-      MPI_Probe(other, tag, halo.comm, &status);
-      MPI_Get_count(&status, MPI_INT32_T, &count);
-      std::vector<Index> where(static_cast<std::size_t>(count));
-      MPI_Recv(where.data(), count, MPI_INT32_T, other, tag, halo.comm, MPI_STATUS_IGNORE);
-      const std::vector<double> values = pick(where);
-      MPI_Send(values.data(), static_cast<int>(values.size()), MPI_DOUBLE, other, tag, halo.comm);
-    }
-    return pick(index);
-  }
-  std::vector<double> values(index.size() * width);
-  MPI_Send(index.data(), static_cast<int>(index.size()), MPI_INT32_T, 0, tag, halo.comm);
-  MPI_Recv(values.data(), static_cast<int>(values.size()), MPI_DOUBLE, 0, tag, halo.comm, MPI_STATUS_IGNORE);
-  return values;
-}
 
 }  // namespace
 
@@ -139,14 +106,6 @@ std::vector<std::string> Fingerprint::differences(const Fingerprint& other) cons
     if (there == other.sections.end() || there->second != hash) names.push_back(name);
   }
   return names;
-}
-
-std::vector<double> scatter_nodal(const Part& part, std::span<const double> all, int components) {
-  return scatter(part.node_index, all, static_cast<std::size_t>(components), part.halo);
-}
-
-std::vector<double> scatter_contact(const Part& part, std::span<const double> all, int components) {
-  return scatter(part.contact_index, all, static_cast<std::size_t>(components), part.halo);
 }
 
 }  // namespace kacanov

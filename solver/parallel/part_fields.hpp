@@ -98,8 +98,12 @@ void exchange_fields(Either<Law> auto& law, const auto& stream) {
          law.table_x, law.table_s);
 }
 
-void exchange_fields(Either<Halo::Neighbour> auto& n, const auto& stream) {
+void exchange_fields(Either<IndexMap::Neighbour> auto& n, const auto& stream) {
   stream(n.rank, n.shared, n.send, n.receive);
+}
+
+void exchange_fields(Either<IndexMap> auto& map, const auto& stream) {
+  stream(map.owned, map.starts, map.ghosts, map.neighbours, map.shared);
 }
 
 void exchange_fields(Either<ContactPoint> auto& point, const auto& stream) {
@@ -129,8 +133,7 @@ void exchange_fields(Either<IndexRuns> auto& indices, const auto& stream) {
 
 void exchange_fields(Either<Part> auto& part, const auto& stream) {
   stream(part.type, part.coordinates, part.elements, part.node_index, part.element_index, part.node_tags,
-         part.element_tags, part.owned_nodes, part.first_owned, part.total_nodes, part.total_elements,
-         part.ghost_number, part.halo.neighbours, part.halo.shared, part.laws, part.law_of_element, part.load,
+         part.element_tags, part.halo, part.total_elements, part.laws, part.law_of_element, part.load,
          part.prescribed, part.held, part.contact, part.owned_contact, part.wide_contact, part.contact_index,
          part.total_contact, part.probes, part.probe_index, part.total_probes, part.loose_modes);
 }

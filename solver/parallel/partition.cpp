@@ -10,28 +10,13 @@
 
 #include <kacanov/error.hpp>
 #include <kacanov/locality.hpp>
+#include "parallel/long_messages.hpp"
 #include "parallel/part_fields.hpp"
 
 namespace kacanov {
 namespace {
 
 using Index = std::int32_t;
-
-/// Messages of any length: MPI counts are 32-bit.
-constexpr std::size_t chunk_bytes = std::size_t{1} << 30;
-
-void send_bytes(const void* data, std::size_t bytes, int to, MPI_Comm comm) {
-  const char* p = static_cast<const char*>(data);
-  for (std::size_t at = 0; at < bytes; at += chunk_bytes)
-    MPI_Send(p + at, static_cast<int>(std::min(chunk_bytes, bytes - at)), MPI_BYTE, to, 1, comm);
-}
-
-void receive_bytes(void* data, std::size_t bytes, int from, MPI_Comm comm) {
-  char* p = static_cast<char*>(data);
-  for (std::size_t at = 0; at < bytes; at += chunk_bytes)
-    MPI_Recv(p + at, static_cast<int>(std::min(chunk_bytes, bytes - at)), MPI_BYTE, from, 1, comm,
-             MPI_STATUS_IGNORE);
-}
 
 /// A rank as a sink, the first one as a source of fields.
 struct OtherRank {
@@ -196,9 +181,10 @@ class Splitter {
     const Mesh& mesh = problem_.mesh;
     const auto dim = static_cast<std::size_t>(mesh.dim());
     part.type = mesh.type;
-    part.total_nodes = static_cast<std::int64_t>(mesh.node_count());
     part.total_elements = static_cast<std::int64_t>(mesh.element_count());
-    part.first_owned = first_[static_cast<std::size_t>(rank)];
+    part.halo.rank = rank;
+    part.halo.ranks = ranks_;
+    part.halo.starts = first_;
     for (const bool owned : {true, false}) {
       for (const Index index : order_) {
         const auto n = static_cast<std::size_t>(index);
@@ -206,7 +192,7 @@ class Splitter {
         local_[n] = static_cast<Index>(part.node_index.size());
         part.node_index.push_back(index);
       }
-      if (owned) part.owned_nodes = static_cast<Index>(part.node_index.size());
+      if (owned) part.halo.owned = static_cast<Index>(part.node_index.size());
     }
     part.node_index.shrink_to_fit();
     const std::size_t count = part.node_index.size();
@@ -216,7 +202,7 @@ class Splitter {
     for (const Index index : part.node_index) {
       const auto n = static_cast<std::size_t>(index);
       if (!mesh.node_tags.empty()) part.node_tags.push_back(mesh.node_tags[n]);
-      if (static_cast<Index>(local_[n]) >= part.owned_nodes) part.ghost_number.push_back(global_[n]);
+      if (local_[n] >= part.owned_nodes()) part.halo.ghosts.push_back(global_[n]);
       for (std::size_t c = n * dim; c < (n + 1) * dim; ++c) {
         part.coordinates.push_back(mesh.coordinates[c]);
         const auto component = static_cast<Index>(part.held.size());
@@ -246,7 +232,7 @@ class Splitter {
   }
 
   void plan_halo(Part& part, int rank) const {
-    std::vector<Halo::Neighbour> all(static_cast<std::size_t>(ranks_));
+    std::vector<IndexMap::Neighbour> all(static_cast<std::size_t>(ranks_));
     // Both sides walk their nodes in the mesh's order, so the lists match.
     std::vector<Index> ascending = part.node_index;
     std::sort(ascending.begin(), ascending.end());
@@ -335,11 +321,7 @@ void split(const Problem& problem, int ranks, const std::function<void(int rank,
   take(0, splitter.part(0));
 }
 
-void join(Part& part, MPI_Comm comm) {
-  part.halo.comm = comm;
-  MPI_Comm_rank(comm, &part.halo.rank);
-  MPI_Comm_size(comm, &part.halo.ranks);
-}
+void join(Part& part, MPI_Comm comm) { static_cast<Communicator&>(part.halo) = Communicator(comm); }
 
 Part distribute(const Problem* problem, MPI_Comm comm) {
   int rank = 0, ranks = 1;
@@ -361,50 +343,6 @@ Part distribute(const Problem* problem, MPI_Comm comm) {
   }
   join(part, comm);
   return part;
-}
-
-namespace {
-
-std::vector<double> gather(std::span<const Index> index, std::span<const double> local, std::size_t width,
-                           std::size_t total, const Halo& halo) {
-  std::vector<double> all;
-  if (halo.rank == 0) {
-    all.resize(total * width);
-    const auto place = [&](std::span<const Index> where, std::span<const double> what) {
-      for (std::size_t i = 0; i < where.size(); ++i)
-        std::copy_n(what.begin() + static_cast<std::ptrdiff_t>(i * width), width,
-                    all.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(where[i]) * width));
-    };
-    place(index, local);
-    for (int other = 1; other < halo.ranks; ++other) {
-      std::size_t n = 0;
-      receive_bytes(&n, sizeof n, other, halo.comm);
-      std::vector<Index> where(n);
-      std::vector<double> what(n * width);
-      receive_bytes(where.data(), n * sizeof(Index), other, halo.comm);
-      receive_bytes(what.data(), n * width * sizeof(double), other, halo.comm);
-      place(where, what);
-    }
-  } else {
-    const std::size_t n = index.size();
-    send_bytes(&n, sizeof n, 0, halo.comm);
-    send_bytes(index.data(), n * sizeof(Index), 0, halo.comm);
-    send_bytes(local.data(), n * width * sizeof(double), 0, halo.comm);
-  }
-  return all;
-}
-
-}  // namespace
-
-std::vector<double> gather_nodal(const Part& part, std::span<const double> local, int components) {
-  return gather(std::span(part.node_index).first(static_cast<std::size_t>(part.owned_nodes)), local,
-                static_cast<std::size_t>(components), static_cast<std::size_t>(part.total_nodes), part.halo);
-}
-
-std::vector<double> gather_contact(const Part& part, std::span<const double> local, int components) {
-  return gather(std::span(part.contact_index).first(static_cast<std::size_t>(part.owned_contact)), local,
-                static_cast<std::size_t>(components), static_cast<std::size_t>(part.total_contact),
-                part.halo);
 }
 
 }  // namespace kacanov

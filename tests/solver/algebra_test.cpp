@@ -6,11 +6,11 @@
 #include <numeric>
 
 #include <kacanov/operator.hpp>
+#include "amg/make_preconditioner.hpp"
 #include "contact/projections.hpp"
 #include "contact/traces.hpp"
 #include "dense.hpp"
 #include "linear/cg.hpp"
-#include "linear/preconditioner.hpp"
 #include "support.hpp"
 
 using namespace kacanov;

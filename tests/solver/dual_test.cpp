@@ -4,8 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include "amg/make_preconditioner.hpp"
 #include "linear/distributed_operator.hpp"
-#include "linear/preconditioner.hpp"
 #include "spectrum/spectrum.hpp"
 #include "support.hpp"
 

@@ -9,9 +9,9 @@
 #include <kacanov/operator.hpp>
 #include "amg/aggregate_motions.hpp"
 #include "amg/aggregation.hpp"
+#include "amg/make_preconditioner.hpp"
 #include "amg/rigid_level.hpp"
 #include "linear/cg.hpp"
-#include "linear/preconditioner.hpp"
 #include "support.hpp"
 
 using namespace kacanov;
@@ -38,7 +38,7 @@ RigidLevel<6> chain(std::int32_t rows) {
     }
     if (i + 1 < total) sums.at(i, i + 1)[1] = 0.125;
   }
-  return {std::move(centres), std::move(sums), MPI_COMM_WORLD};
+  return {std::move(centres), std::move(sums), Communicator(MPI_COMM_WORLD)};
 }
 
 double sum_all(double v) {
@@ -115,7 +115,7 @@ void check_galerkin(const Part& part, std::span<const double> g, std::span<const
   const auto on_nodes = [&](const Vector& x) {
     std::vector<float> single(part.unknowns());
     motions.prolong(x, 1.0, single);
-    part.halo.copy_from_owner(std::span<float>(single), part.dim());
+    part.halo.forward(std::span<float>(single), part.dim());
     Vector u(single.begin(), single.end());
     space.project(u);
     return u;
@@ -162,7 +162,7 @@ TEST_CASE("the first coarse matrix is Galerkin's, summed once or again") {
       Space space(part);
       for (std::size_t n = 0; n < part.nodes(); ++n) {
         if (part.node_index[n] % 7 == 0) space.hold(static_cast<std::int32_t>(n), Vector3{0.6, 0.8, 0.0});
-        if (part.node_index[n] % 5 != 0 || n >= static_cast<std::size_t>(part.owned_nodes)) continue;
+        if (part.node_index[n] % 5 != 0 || n >= static_cast<std::size_t>(part.owned_nodes())) continue;
         NodeBlock block{static_cast<std::int32_t>(n), {}};
         for (std::size_t c = 0; c < dim; ++c) block.value[c * dim + c] = 1.0 + static_cast<double>(c);
         blocks.push_back(block);

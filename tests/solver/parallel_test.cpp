@@ -6,7 +6,8 @@
 #include <cstring>
 #include <numeric>
 
-#include "linear/preconditioner.hpp"
+#include <kacanov/scatterer.hpp>
+#include "amg/make_preconditioner.hpp"
 #include "linear/space.hpp"
 #include "support.hpp"
 
@@ -43,7 +44,7 @@ TEST_CASE("every element lies on one rank, every node has one owner") {
       points(problem.contact.size(), 0);
   for (std::size_t e = 0; e < part.element_count(); ++e)
     ++elements[static_cast<std::size_t>(part.element_index[e])];
-  for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_nodes); ++i)
+  for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_nodes()); ++i)
     ++owners[static_cast<std::size_t>(part.node_index[i])];
   for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_contact); ++i)
     ++points[static_cast<std::size_t>(part.contact_index[i])];
@@ -53,7 +54,7 @@ TEST_CASE("every element lies on one rank, every node has one owner") {
     CHECK(std::all_of(count->begin(), count->end(), [](int c) { return c == 1; }));
   }
   CHECK(part.total_elements == static_cast<std::int64_t>(problem.mesh.element_count()));
-  CHECK(part.total_nodes == static_cast<std::int64_t>(problem.mesh.node_count()));
+  CHECK(part.total_nodes() == static_cast<std::int64_t>(problem.mesh.node_count()));
   CHECK(part.total_contact == static_cast<std::int64_t>(problem.contact.size()));
 
   // The part is the mesh seen through its index arrays.
@@ -80,20 +81,48 @@ TEST_CASE("every element lies on one rank, every node has one owner") {
 TEST_CASE("owned nodes are numbered on through the ranks, and ghosts know their owners' numbers") {
   const Problem problem = beam_problem(2, 4);
   Part part = over_all_ranks(problem);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_nodes); ++i)
-    CHECK(part.node_number(i) == part.first_owned + static_cast<std::int64_t>(i));
-  std::vector<double> number(part.nodes());
-  for (std::size_t i = 0; i < part.nodes(); ++i) number[i] = static_cast<double>(part.node_number(i));
-  const std::vector<double> expected = number;
-  for (std::size_t i = static_cast<std::size_t>(part.owned_nodes); i < part.nodes(); ++i) number[i] = -1.0;
-  part.halo.copy_from_owner(number, 1);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_nodes()); ++i)
+    CHECK(part.node_number(i) == part.halo.first() + static_cast<std::int64_t>(i));
+  std::vector<std::int64_t> number(part.nodes());
+  for (std::size_t i = 0; i < part.nodes(); ++i) number[i] = part.node_number(i);
+  const std::vector<std::int64_t> expected = number;
+  for (std::size_t i = static_cast<std::size_t>(part.owned_nodes()); i < part.nodes(); ++i) number[i] = -1;
+  part.halo.forward(number, 1);
   CHECK(number == expected);
+}
+
+TEST_CASE("a map made from ghosts' numbers finds their owners, numbers beyond 2^53 included") {
+  const Communicator world(MPI_COMM_WORLD);
+  // Each rank owns three more than the one before, and wants the first and last of every other rank.
+  const std::int32_t owned = 3 * world.rank + 2;
+  const std::vector<std::int64_t> starts = number_owned(owned, world);
+  std::vector<std::int64_t> ghosts;
+  for (int r = 0; r < world.ranks; ++r) {
+    if (r == world.rank) continue;
+    ghosts.push_back(starts[static_cast<std::size_t>(r)]);
+    ghosts.push_back(starts[static_cast<std::size_t>(r) + 1] - 1);
+  }
+  const IndexMap map = make_index_map(world, owned, ghosts);
+  CHECK(map.total() == world.sum_all(std::int64_t{owned}));
+  CHECK(map.first() == world.sum_below(owned));
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    const int owner = map.owner(map.number(i));
+    CHECK((owner == world.rank) == (i < static_cast<std::size_t>(owned)));
+  }
+  constexpr std::int64_t large = (std::int64_t{1} << 60) + 1;  // no double
+  std::vector<std::int64_t> value(2 * map.size(), -1);
+  for (std::size_t i = 0; i < 2 * static_cast<std::size_t>(owned); ++i)
+    value[i] = large + 2 * map.first() + static_cast<std::int64_t>(i);
+  map.forward(value, 2);
+  for (std::size_t i = 0; i < map.size(); ++i)
+    for (std::size_t c = 0; c < 2; ++c)
+      CHECK(value[2 * i + c] == large + 2 * map.number(i) + static_cast<std::int64_t>(c));
 }
 
 TEST_CASE("a sum in two halves is the whole one, whatever happens elsewhere in between") {
   const Problem problem = beam_problem(3, 2);
   Part part = over_all_ranks(problem);
-  SharedSum<float> sum(part.halo, 3);
+  Scatterer<float> sum(part.halo, 3);
   for (int turn = 0; turn < 3; ++turn) {
     std::vector<float> x(3 * part.nodes()), whole;
     for (std::size_t i = 0; i < x.size(); ++i)
@@ -101,12 +130,12 @@ TEST_CASE("a sum in two halves is the whole one, whatever happens elsewhere in b
                                 (1.0 + 0.3 * part.halo.rank + turn));
     whole = x;
     part.halo.sum(whole, 3);
-    sum.start(x);
+    sum.start_sum(x);
     std::vector<char> is_shared(part.nodes(), 0);
     for (const std::int32_t node : part.halo.shared) is_shared[static_cast<std::size_t>(node)] = 1;
     for (std::size_t i = 0; i < x.size(); ++i)
       if (is_shared[i / 3] == 0) x[i] = whole[i] = static_cast<float>(turn);
-    sum.finish(x);
+    sum.finish_sum(x);
     CHECK(x == whole);
   }
 }
@@ -145,7 +174,7 @@ TEST_CASE("halo sums count the ranks that share a node, with the same bits on ea
 
 TEST_CASE("reductions over the ranks") {
   const Problem problem = beam_problem(2, 2);
-  const Halo halo = over_all_ranks(problem).halo;
+  const IndexMap halo = over_all_ranks(problem).halo;
   const int n = halo.ranks;
   CHECK(halo.sum_all(1.0 + halo.rank) == 0.5 * n * (n + 1));
   CHECK(halo.sum_all(std::int64_t{1} << 40) == n * (std::int64_t{1} << 40));
@@ -206,7 +235,7 @@ TEST_CASE("multigrid over the ranks is symmetric, positive definite and consiste
           rounding * std::sqrt(space.dot(mx, x) * space.dot(my, y)));
     CHECK(space.dot(mx, x) > 0.0);
     Vector copy = mx;
-    part.halo.copy_from_owner(copy, 3);
+    part.halo.forward(copy, 3);
     CHECK(copy == mx);
   }
 }
@@ -276,7 +305,7 @@ TEST_CASE("the answer does not depend on the partition or on threads") {
       CHECK(result.unknowns == reference.result.unknowns);
       // Every copy of a shared displacement holds the same bits.
       std::vector<double> copy = solution.displacement;
-      all.halo.copy_from_owner(copy, dim);
+      all.halo.forward(copy, dim);
       CHECK(std::memcmp(copy.data(), solution.displacement.data(), copy.size() * sizeof(double)) == 0);
     }
   }

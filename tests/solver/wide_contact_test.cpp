@@ -118,7 +118,7 @@ Vector some_vector(const Part& part, double turn) {
 
 void check_copies(const Part& part, const Vector& y) {
   Vector copy = y;
-  part.halo.copy_from_owner(copy, part.dim());
+  part.halo.forward(copy, part.dim());
   CHECK(copy == y);
 }
 
@@ -219,7 +219,7 @@ TEST_CASE("wide rows are held by an orthogonal projection, and lifted by a pseud
       if (here < part.nodes()) unit[here * dim] = 1.0;
       rows.apply(unit, x);
       rows.transpose(x, image);
-      if (here < static_cast<std::size_t>(part.owned_nodes))
+      if (here < static_cast<std::size_t>(part.owned_nodes()))
         CHECK(diagonal[here * dim] == doctest::Approx(2.0 * image[here * dim]).epsilon(1e-12).scale(1e-6));
     }
   }

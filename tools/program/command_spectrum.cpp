@@ -49,7 +49,7 @@ int spectrum_command(const Command& command, const Case& input, const MpiSession
   const int exit_code = converged ? exit_converged : exit_not_converged;
   if (!mpi.first()) return exit_code;
   if (command.json) {
-    const std::int64_t unknowns = loaded.part.total_nodes * loaded.part.dim();
+    const std::int64_t unknowns = loaded.part.total_nodes() * loaded.part.dim();
     std::cout << spectrum_json(results, unknowns, loaded.part.total_contact).dump(2) << std::endl;
     return exit_code;
   }

@@ -8,7 +8,7 @@
 #include <functional>
 #include <vector>
 
-#include <kacanov/halo.hpp>
+#include <kacanov/index_map.hpp>
 #include <kacanov/index_runs.hpp>
 #include <kacanov/problem.hpp>
 #include <kacanov/reference.hpp>
@@ -31,11 +31,8 @@ struct Part {
   std::vector<std::int32_t> node_index;               ///< index in Problem::mesh
   IndexRuns element_index;                            ///< likewise
   std::vector<std::int64_t> node_tags, element_tags;  ///< the user's numbers; empty: index + 1
-  std::int32_t owned_nodes = 0;
-  std::int64_t first_owned = 0;  ///< owned nodes are numbered first_owned … over all ranks
-  std::int64_t total_nodes = 0, total_elements = 0;
-  std::vector<std::int64_t> ghost_number;  ///< that number, of every local node that another rank owns
-  Halo halo;
+  IndexMap halo;                                      ///< of the nodes
+  std::int64_t total_elements = 0;
   std::vector<Law> laws;
   std::vector<std::uint16_t> law_of_element;  ///< empty: all follow laws[0]
   std::vector<ComponentValue> load;           ///< entries of F that are not zero, ascending; consistent
@@ -63,13 +60,12 @@ struct Part {
     return element_tags.empty() ? std::int64_t{element_index[i]} + 1 : element_tags[i];
   }
   std::size_t unknowns() const noexcept { return coordinates.size(); }
+  std::int32_t owned_nodes() const noexcept { return halo.owned; }
+  std::int64_t total_nodes() const noexcept { return halo.total(); }
   std::size_t owned_unknowns() const noexcept {
-    return static_cast<std::size_t>(owned_nodes) * static_cast<std::size_t>(dim());
+    return static_cast<std::size_t>(owned_nodes()) * static_cast<std::size_t>(dim());
   }
-  std::int64_t node_number(std::size_t i) const noexcept {
-    const auto owned = static_cast<std::size_t>(owned_nodes);
-    return i < owned ? first_owned + static_cast<std::int64_t>(i) : ghost_number[i - owned];
-  }
+  std::int64_t node_number(std::size_t i) const noexcept { return halo.number(i); }
   /// f += F.
   void add_load(std::span<double> f) const noexcept {
     for (const auto& entry : load) f[static_cast<std::size_t>(entry.component)] += entry.value;

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The choice of a preconditioner.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <kacanov/model.hpp>
+#include "linear/preconditioner.hpp"
+
+namespace kacanov {
+
+/// `multigrid`: Chebyshev on the matrix-free operator over rigid motions of aggregates (RigidMultigrid;
+/// theory: multigrid). `elasticity`: unknown-based BoomerAMG on the assembled matrix, the yardstick (theory:
+/// elasticity-amg). Threads and instruction set are the operator's. Collective; the part has to outlive it.
+std::unique_ptr<Preconditioner> make_preconditioner(SolverOptions::Preconditioner kind, const Part& part,
+                                                    int threads, const std::string& instruction_set);
+
+}  // namespace kacanov

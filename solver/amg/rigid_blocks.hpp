@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The dense blocks of a level of the hierarchy as Eigen's matrices.
+#pragma once
+
+#include <Eigen/Dense>
+
+#include "amg/rigid_level.hpp"
+
+namespace kacanov {
+
+template <int M>
+using Dense = Eigen::Matrix<double, M, M, Eigen::RowMajor>;
+
+template <int M>
+Dense<M> dense(const typename BlockSums<M>::Block& block) {
+  return Eigen::Map<const Dense<M>>(block.data());
+}
+
+template <int M>
+typename BlockSums<M>::Block transposed(const typename BlockSums<M>::Block& block) {
+  typename BlockSums<M>::Block result;
+  for (std::size_t i = 0; i < M; ++i)
+    for (std::size_t j = 0; j < M; ++j) result[j * M + i] = block[i * M + j];
+  return result;
+}
+
+}  // namespace kacanov

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The ranks that work together, and reductions over them.
+#pragma once
+
+#include <mpi.h>
+
+#include <cstdint>
+#include <span>
+
+namespace kacanov {
+
+/// Every function is collective and gives every rank the same bits. With one rank they return at once.
+struct Communicator {
+  MPI_Comm comm = MPI_COMM_SELF;
+  int rank = 0, ranks = 1;
+
+  Communicator() = default;
+  explicit Communicator(MPI_Comm of);
+
+  double sum_all(double value) const;
+  std::int64_t sum_all(std::int64_t value) const;
+  /// Entry by entry.
+  void sum_all(std::span<double> values) const;
+  double max_all(double value) const;
+  /// Whether it holds on some rank.
+  bool any(bool here) const { return max_all(here ? 1.0 : 0.0) > 0.0; }
+  /// Sum over the ranks below this one.
+  std::int64_t sum_below(std::int64_t value) const;
+};
+
+}  // namespace kacanov

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which indices a rank owns, which it has copies of, and who has the others.
+#include <kacanov/index_map.hpp>
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include <kacanov/scatterer.hpp>
+#include "parallel/exchange.hpp"
+
+namespace kacanov {
+
+int IndexMap::owner(std::int64_t number) const noexcept {
+  return static_cast<int>(std::upper_bound(starts.begin(), starts.end(), number) - starts.begin()) - 1;
+}
+
+template <class S>
+void IndexMap::forward(std::span<S> x, int components) const {
+  if (neighbours.empty()) return;
+  Scatterer<S> scatterer(*this, components);
+  scatterer.start_forward(x);
+  scatterer.finish_forward(x);
+}
+
+template <class S>
+void IndexMap::sum(std::span<S> x, int components) const {
+  if (neighbours.empty()) return;
+  Scatterer<S> scatterer(*this, components);
+  scatterer.start_sum(x);
+  scatterer.finish_sum(x);
+}
+
+template void IndexMap::forward(std::span<double>, int) const;
+template void IndexMap::forward(std::span<float>, int) const;
+template void IndexMap::forward(std::span<std::int32_t>, int) const;
+template void IndexMap::forward(std::span<std::int64_t>, int) const;
+template void IndexMap::sum(std::span<double>, int) const;
+template void IndexMap::sum(std::span<float>, int) const;
+template void IndexMap::sum(std::span<std::int32_t>, int) const;
+template void IndexMap::sum(std::span<std::int64_t>, int) const;
+
+std::vector<std::int64_t> number_owned(std::int64_t owned, const Communicator& comm) {
+  std::vector<std::int64_t> starts(static_cast<std::size_t>(comm.ranks) + 1, 0);
+  MPI_Allgather(&owned, 1, MPI_INT64_T, starts.data() + 1, 1, MPI_INT64_T, comm.comm);
+  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  return starts;
+}
+
+IndexMap make_index_map(const Communicator& comm, std::int32_t owned, std::vector<std::int64_t> ghosts) {
+  IndexMap map;
+  static_cast<Communicator&>(map) = comm;
+  map.owned = owned;
+  map.starts = number_owned(owned, comm);
+  map.ghosts = std::move(ghosts);
+  if (comm.ranks == 1) return map;
+  std::vector<std::vector<std::int64_t>> wanted(static_cast<std::size_t>(comm.ranks));
+  std::vector<IndexMap::Neighbour> all(wanted.size());
+  for (std::size_t i = 0; i < map.ghosts.size(); ++i) {
+    const auto from = static_cast<std::size_t>(map.owner(map.ghosts[i]));
+    wanted[from].push_back(map.ghosts[i]);
+    all[from].receive.push_back(owned + static_cast<std::int32_t>(i));
+  }
+  const Received<std::int64_t> asked = exchange_all(wanted, comm);
+  for (std::size_t r = 0; r < all.size(); ++r) {
+    all[r].rank = static_cast<int>(r);
+    for (const std::int64_t number : asked.from(r))
+      all[r].send.push_back(static_cast<std::int32_t>(number - map.first()));
+    if (!all[r].send.empty() || !all[r].receive.empty()) map.neighbours.push_back(std::move(all[r]));
+  }
+  return map;
+}
+
+}  // namespace kacanov

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Scatters between owners and ghosts in two halves.
+#include <kacanov/scatterer.hpp>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace kacanov {
+namespace {
+
+MPI_Datatype type_of(double) { return MPI_DOUBLE; }
+MPI_Datatype type_of(float) { return MPI_FLOAT; }
+MPI_Datatype type_of(std::int32_t) { return MPI_INT32_T; }
+MPI_Datatype type_of(std::int64_t) { return MPI_INT64_T; }
+
+/// Copies x at `indices` to `to` and returns where that ends.
+template <class S>
+S* pack(std::span<const std::int32_t> indices, std::size_t width, std::span<const S> x, S* to) {
+  for (const std::int32_t i : indices)
+    for (std::size_t c = 0; c < width; ++c) *to++ = x[static_cast<std::size_t>(i) * width + c];
+  return to;
+}
+
+}  // namespace
+
+template <class S>
+Scatterer<S>::Scatterer(const IndexMap& map, int components)
+    : map_(&map), width_(static_cast<std::size_t>(components)) {}
+
+/// Starts a receive for each neighbour's `incoming` indices and a send of x at its `outgoing` ones.
+template <class S>
+void Scatterer<S>::start(List outgoing, List incoming, std::span<const S> x) {
+  std::size_t out = 0, in = 0;
+  for (const auto& n : map_->neighbours) {
+    out += (n.*outgoing).size() * width_;
+    in += (n.*incoming).size() * width_;
+  }
+  send_.resize(out);
+  receive_.resize(in);
+  S *to = send_.data(), *from = receive_.data();
+  for (const auto& n : map_->neighbours) {
+    const auto count = static_cast<int>((n.*incoming).size() * width_);
+    if (count > 0) MPI_Irecv(from, count, type_of(S{}), n.rank, 0, map_->comm, &requests_.emplace_back());
+    from += count;
+    S* const end = pack<S>(n.*outgoing, width_, x, to);
+    if (end != to)
+      MPI_Isend(to, static_cast<int>(end - to), type_of(S{}), n.rank, 0, map_->comm,
+                &requests_.emplace_back());
+    to = end;
+  }
+}
+
+template <class S>
+void Scatterer<S>::wait() {
+  MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
+  requests_.clear();
+}
+
+template <class S>
+void Scatterer<S>::start_forward(std::span<const S> x) {
+  start(&IndexMap::Neighbour::send, &IndexMap::Neighbour::receive, x);
+}
+
+template <class S>
+void Scatterer<S>::finish_forward(std::span<S> x) {
+  wait();
+  const S* from = receive_.data();
+  for (const auto& n : map_->neighbours)
+    for (const std::int32_t i : n.receive)
+      for (std::size_t c = 0; c < width_; ++c) x[static_cast<std::size_t>(i) * width_ + c] = *from++;
+}
+
+template <class S>
+void Scatterer<S>::start_sum(std::span<const S> x) {
+  start(&IndexMap::Neighbour::shared, &IndexMap::Neighbour::shared, x);
+}
+
+template <class S>
+void Scatterer<S>::finish_sum(std::span<S> x) {
+  if (map_->neighbours.empty()) return;
+  const auto& shared = map_->shared;
+  own_.resize(shared.size() * width_);
+  pack<S>(shared, width_, x, own_.data());
+  for (const std::int32_t i : shared) std::fill_n(&x[static_cast<std::size_t>(i) * width_], width_, S{0});
+  wait();
+  const auto add = [&](std::span<const std::int32_t> indices, const S* from) {
+    for (const std::int32_t i : indices)
+      for (std::size_t c = 0; c < width_; ++c) x[static_cast<std::size_t>(i) * width_ + c] += *from++;
+    return from;
+  };
+  const S* from = receive_.data();
+  bool own_added = false;
+  for (const auto& n : map_->neighbours) {
+    if (!own_added && n.rank > map_->rank) {
+      add(shared, own_.data());
+      own_added = true;
+    }
+    from = add(n.shared, from);
+  }
+  if (!own_added) add(shared, own_.data());
+}
+
+template class Scatterer<double>;
+template class Scatterer<float>;
+template class Scatterer<std::int32_t>;
+template class Scatterer<std::int64_t>;
+
+}  // namespace kacanov
