@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "amg/aggregation.hpp"
-#include "amg/motion_products.hpp"
 #include "cells/dispatch.hpp"
 #include "cells/point.hpp"
 
@@ -18,7 +17,7 @@ namespace kacanov {
 template <int M>
 AggregateMotions<M>::AggregateMotions(const Part& part, std::span<const double> g, double size,
                                       std::string_view instruction_set)
-    : part_(part), add_products_(motion_products<M>(instruction_set)) {
+    : part_(part), add_products_(simd::motion_products<M>(instruction_set)) {
   group_ = aggregate_nodes(part.body(), g, part.owned_nodes(), size);
   owned_ = group_.empty() ? 0 : 1 + *std::max_element(group_.begin(), group_.end());
   centre_.assign(static_cast<std::size_t>(owned_), Vector3{});
@@ -104,7 +103,7 @@ RigidLevel<M> AggregateMotions<M>::make_level() {
 template <int M>
 class AggregateMotions<M>::Sums {
   using Block = typename BlockSums<M>::Block;
-  using Rows = typename MotionPoint<M>::Rows;
+  using Rows = typename simd::MotionPoint<M>::Rows;
 
  public:
   Sums(const AggregateMotions& motions, std::span<const double> g, RigidLevel<M>* level)
@@ -220,7 +219,7 @@ class AggregateMotions<M>::Sums {
       for (std::size_t c = 0; c < dim; ++c)
         x[a * dim + c] = body_.mesh.coordinates[static_cast<std::size_t>(node[a]) * dim + c];
     }
-    std::array<MotionPair, npe*(npe + 1) / 2> pairs;
+    std::array<simd::MotionPair, npe*(npe + 1) / 2> pairs;
     std::size_t pair_count = 0;
     for (std::size_t a = 0; a < count; ++a)
       for (std::size_t b = a; b < count; ++b) {

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include <kacanov/part.hpp>
-#include "amg/motion_products.hpp"
 #include "amg/rigid_level.hpp"
 #include "linear/preconditioner.hpp"
 #include "linear/space.hpp"
+#include "simd/motion_products.hpp"
 
 namespace kacanov {
 
@@ -51,7 +51,7 @@ class AggregateMotions {
   Vector3 offset(std::size_t node) const;
 
   const Part& part_;
-  AddMotionProducts<M> add_products_;
+  simd::AddMotionProducts<M> add_products_;
   std::vector<std::int32_t> group_;   ///< of every local node: owned aggregates first, then those of other
                                       ///< ranks as the level has them, then the rest
   std::vector<Vector3> centre_;       ///< of these aggregates

@@ -5,10 +5,10 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
-#include <cstring>
 
 #include "amg/largest_eigenvalue.hpp"
 #include "amg/rigid_multigrid.hpp"
+#include "simd/node_blocks.hpp"
 
 namespace kacanov {
 
@@ -82,36 +82,6 @@ void FineLevel::multiply(std::span<const float> x, std::span<float> y) const {
   hold(y);
 }
 
-namespace {
-
-/// z = D⁻¹ r at `nodes` nodes, D⁻¹ as packed upper triangles; one more entry of z than they have is written
-/// to.
-void scale(int dim, const float* inverse, const float* r, std::size_t nodes, float* z) {
-  if (dim == 2) {
-    for (std::size_t n = 0; n < nodes; ++n, inverse += 3, r += 2, z += 2) {
-      z[0] = inverse[0] * r[0] + inverse[1] * r[1];
-      z[1] = inverse[1] * r[0] + inverse[2] * r[1];
-    }
-    return;
-  }
-  // The columns of a block, each in four lanes the last of which is idle, times the entries of r: three
-  // quarters of the scalar loop's time.
-  using Four = float __attribute__((vector_size(16)));
-  const auto load = [](const float* from) {
-    Four v;
-    std::memcpy(&v, from, sizeof v);
-    return v;
-  };
-  const auto spread = [](Four v) { return __builtin_shufflevector(v, v, 0, 2, 3, 3); };
-  for (std::size_t n = 0; n < nodes; ++n, inverse += 6, r += 3, z += 3) {
-    const Four first = load(inverse), second = spread(load(inverse + 1)), third = spread(load(inverse + 2));
-    const Four sum = first * r[0] + second * r[1] + third * r[2];
-    std::memcpy(z, &sum, sizeof sum);
-  }
-}
-
-}  // namespace
-
 void FineLevel::relax(const ChebyshevStep<float>& weights, std::span<const float> b,
                       std::span<const float> image, std::span<float> step, std::span<float> x) const {
   // In pieces that stay in the first-level cache between the three loops.
@@ -123,7 +93,8 @@ void FineLevel::relax(const ChebyshevStep<float>& weights, std::span<const float
     for (std::size_t node = 0; node < part_.nodes(); node += piece) {
       const std::size_t nodes = std::min(piece, part_.nodes() - node), at = node * dim, count = nodes * dim;
       for (std::size_t i = 0; i < count; ++i) residual[i] = zero ? b[at + i] : b[at + i] - image[at + i];
-      scale(part_.dim(), &inverse_[node * dim * (dim + 1) / 2], residual.data(), nodes, scaled.data());
+      simd::scale_by_blocks(part_.dim(), &inverse_[node * dim * (dim + 1) / 2], residual.data(), nodes,
+                            scaled.data());
       for (std::size_t i = 0; i < count; ++i) weights.take<zero, first>(scaled[i], step[at + i], x[at + i]);
     }
   });

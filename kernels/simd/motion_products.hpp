@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <string_view>
 
-namespace kacanov {
+namespace kacanov::simd {
 
 /// Numbers a motion vector has room for: M = 3 or 6 motions and zeros.
 template <int M>
@@ -39,8 +39,17 @@ template <int M>
 using AddMotionProducts = void (*)(const MotionPoint<M>&, const MotionPair* pairs, std::size_t count);
 
 /// With S_a the strains of the motions of group a, volume · S_aᵀ D S_b is added for every pair, by the loop
-/// for the instruction set of that name (as choose_instruction_set takes it).
+/// for the instruction set of that name (as choose_instruction_set takes it). M: 3 or 6.
 template <int M>
 AddMotionProducts<M> motion_products(std::string_view instruction_set);
 
-}  // namespace kacanov
+/// The loops of one instruction set.
+struct MotionLoops {
+  AddMotionProducts<3> plane;
+  AddMotionProducts<6> space;
+};
+MotionLoops motions_plain();
+MotionLoops motions_avx2();
+MotionLoops motions_avx512();
+
+}  // namespace kacanov::simd

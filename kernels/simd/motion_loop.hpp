@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The products of strains and stresses of rigid motions, one vector for all motions of an aggregate.
-#include "amg/motion_products.hpp"
+// The products of strains and stresses of rigid motions, one vector for all motions of an aggregate. Included
+// once for each instruction set, with its flags.
+#pragma once
 
 #include <cmath>
 
-#include "simd/inline.hpp"
-#include "simd/instruction_set.hpp"
+#include "simd/motion_products.hpp"
 
-namespace kacanov {
+namespace kacanov::simd {
 namespace {
 
 constexpr std::size_t most_nodes = 10;
@@ -18,10 +18,8 @@ struct Motions {
   using Vector [[gnu::vector_size(motion_lanes<M> * sizeof(double))]] = double;
 };
 
-/// Inlined into one function for each target.
 template <int M>
-KACANOV_INLINE inline void add_products(const MotionPoint<M>& point, const MotionPair* pairs,
-                                        std::size_t count) {
+void add_products(const MotionPoint<M>& point, const MotionPair* pairs, std::size_t count) {
   using Vector = typename Motions<M>::Vector;
   constexpr std::size_t dim = MotionPoint<M>::dim;
   // Strains xx, yy, zz, √2 xy, √2 yz, √2 zx, so that the product of two is that of the tensors (zz is zero in
@@ -67,45 +65,5 @@ KACANOV_INLINE inline void add_products(const MotionPoint<M>& point, const Motio
   }
 }
 
-template <int M>
-void add_plain(const MotionPoint<M>& point, const MotionPair* pairs, std::size_t count) {
-  add_products<M>(point, pairs, count);
-}
-#ifdef __x86_64__
-template <int M>
-[[gnu::target("avx2,fma")]] void add_avx2(const MotionPoint<M>& point, const MotionPair* pairs,
-                                          std::size_t count) {
-  add_products<M>(point, pairs, count);
-}
-#ifdef __clang__  // which has no such attribute, and takes the full width anyway where vectors are spelled
-                  // out
-#define KACANOV_AVX512 "avx512f,avx512dq,avx512vl,fma"
-#else
-#define KACANOV_AVX512 "avx512f,avx512dq,avx512vl,fma,prefer-vector-width=512"
-#endif
-template <int M>
-[[gnu::target(KACANOV_AVX512)]] void add_avx512(const MotionPoint<M>& point, const MotionPair* pairs,
-                                                std::size_t count) {
-  add_products<M>(point, pairs, count);
-}
-#endif
-
 }  // namespace
-
-template <int M>
-AddMotionProducts<M> motion_products(std::string_view instruction_set) {
-#ifdef __x86_64__
-  switch (simd::choose_instruction_set(instruction_set)) {
-    case simd::InstructionSet::avx512: return add_avx512<M>;
-    case simd::InstructionSet::avx2: return add_avx2<M>;
-    case simd::InstructionSet::plain: break;
-  }
-#endif
-  (void)instruction_set;
-  return add_plain<M>;
-}
-
-template AddMotionProducts<3> motion_products<3>(std::string_view);
-template AddMotionProducts<6> motion_products<6>(std::string_view);
-
-}  // namespace kacanov
+}  // namespace kacanov::simd
