@@ -32,7 +32,7 @@ using nlohmann::json;
 namespace {
 
 struct Settings {
-  std::vector<std::string> elements{"tri3", "tet4", "tet10", "hex8"};
+  std::vector<std::string> elements;
   std::vector<std::size_t> unknowns{182'000, 812'000};
   std::vector<std::string> meshes{"box", "irregular"};
   int threads = static_cast<int>(std::thread::hardware_concurrency());
@@ -42,17 +42,10 @@ struct Settings {
   bool no_matrix = false;
 };
 
-ElementType type_of(const std::string& name) {
-  if (name == "tri3") return ElementType::tri3;
-  if (name == "tet4") return ElementType::tet4;
-  if (name == "tet10") return ElementType::tet10;
-  return ElementType::hex8;
-}
-
-std::string name_of(ElementType type) {
-  for (const char* name : {"tri3", "tet4", "tet10"})
-    if (type_of(name) == type) return name;
-  return "hex8";
+std::vector<std::string> all_elements() {
+  std::vector<std::string> names;
+  for (const ElementType type : element_types()) names.emplace_back(cell(type).name);
+  return names;
 }
 
 /// Nodes and elements in the operator's order; the matrices gain from it too.
@@ -92,14 +85,14 @@ meshes::OwnedMesh make_mesh(ElementType type, std::size_t unknowns, bool irregul
   const auto dim = static_cast<std::size_t>(dimension(type));
   const double nodes = static_cast<double>(unknowns / dim);
   const bool flat = dim == 2;
-  int n = static_cast<int>(std::lround(flat ? std::sqrt(nodes / 4) : std::cbrt(nodes / 4)));
-  if (type == ElementType::tet10) n = static_cast<int>(std::lround(std::cbrt(nodes / 32)));
+  const double cells = nodes / 4 / std::pow(cell(type).order, dim);
+  int n = static_cast<int>(std::lround(flat ? std::sqrt(cells) : std::cbrt(cells)));
   n = std::max(n, 1);
   auto mesh = meshes::box(type, {4 * n, n, n}, {4, 1, 1});
   if (!irregular) return mesh;
-  meshes::jitter(mesh, type == ElementType::tet10 ? 0.05 : 0.15, 1);
+  meshes::jitter(mesh, cell(type).order == 2 ? 0.05 : 0.15, 1);
   if (type == ElementType::tet4) meshes::flip(mesh, 2, 2);
-  if (type == ElementType::tet10) meshes::straighten(mesh);
+  meshes::straighten(mesh);
   meshes::shuffle(mesh, 3);
   return in_order(mesh);
 }
@@ -128,19 +121,13 @@ double traffic(const Body& body, std::size_t held, double real) {
 /// Fused multiply-adds and other operations of a tetrahedron in a long fan, of a quadrature point elsewhere;
 /// divisions count as one.
 double flops_an_element(ElementType type) {
-  switch (type) {
-    case ElementType::tri3: return 80;
-    case ElementType::tet4: return 155;
-    case ElementType::tet10: return 4 * 190;
-    case ElementType::hex8: return 8 * 190;
-  }
-  return 0;
+  return points_per_element(type) * (dimension(type) == 2 ? 80.0 : type == ElementType::tet4 ? 155.0 : 190.0);
 }
 
 json measure(const meshes::OwnedMesh& mesh, const std::string& kind, const Settings& settings,
              const std::vector<double>& triad, const std::vector<double>& fma) {
   const ElementType type = mesh.type;
-  const std::string element = name_of(type);
+  const std::string element = std::string(cell(type).name);
   const std::vector<Law> laws{elastic_law(1.0, 0.3)};
   const Body body{mesh.view(), laws, {}};
   const std::size_t n = body.unknowns();
@@ -258,9 +245,10 @@ json measure(const meshes::OwnedMesh& mesh, const std::string& kind, const Setti
 int main(int argc, char** argv) {
   Settings settings;
   CLI::App app{"Unknowns a second of the operator against assembled matrices"};
-  const auto* element_option = app.add_option("--element", settings.elements, "tri3, tet4, tet10, hex8")
+  settings.elements = all_elements();
+  const auto* element_option = app.add_option("--element", settings.elements, "element types")
                                    ->delimiter(',')
-                                   ->check(CLI::IsMember({"tri3", "tet4", "tet10", "hex8"}));
+                                   ->check(CLI::IsMember(all_elements()));
   app.add_option("--unknowns", settings.unknowns, "sizes, met approximately")->delimiter(',');
   app.add_option("--mesh", settings.meshes,
                  "box, irregular, or a Gmsh file: its element and size are then those of the file")
@@ -288,14 +276,14 @@ int main(int argc, char** argv) {
   for (const std::string& element : settings.elements)
     for (const std::size_t unknowns : settings.unknowns)
       for (const std::string& kind : settings.meshes)
-        if (generated(kind)) add(make_mesh(type_of(element), unknowns, kind == "irregular"), kind);
+        if (generated(kind)) add(make_mesh(*element_type(element), unknowns, kind == "irregular"), kind);
   for (const std::string& file : settings.meshes)
     if (!generated(file)) {
       try {
         const meshes::OwnedMesh mesh = read_mesh(file);
-        if (asked && std::find(settings.elements.begin(), settings.elements.end(), name_of(mesh.type)) ==
-                         settings.elements.end())
-          throw std::runtime_error(file + ": has elements " + name_of(mesh.type) +
+        if (asked && std::find(settings.elements.begin(), settings.elements.end(),
+                               std::string(cell(mesh.type).name)) == settings.elements.end())
+          throw std::runtime_error(file + ": has elements " + std::string(cell(mesh.type).name) +
                                    ", none that --element asks for");
         add(mesh, file);
       } catch (const std::exception& error) {

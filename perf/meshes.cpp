@@ -11,8 +11,6 @@
 #include <unordered_map>
 #include <utility>
 
-#include "cells/tet10.hpp"
-
 namespace kacanov::meshes {
 namespace {
 
@@ -34,44 +32,21 @@ double determinant(const OwnedMesh& mesh, Index a, Index b, Index c, Index d) {
          u[2] * (v[0] * w[1] - v[1] * w[0]);
 }
 
-/// Corners of the linear elements of the cube (i, j, k); `id` numbers grid points.
-template <class Id>
-void cut_cube(ElementType type, Id id, int i, int j, int k, std::vector<Index>& out) {
-  if (type == ElementType::tri3) {
-    out.insert(out.end(), {id(i, j, 0), id(i + 1, j, 0), id(i + 1, j + 1, 0)});
-    out.insert(out.end(), {id(i, j, 0), id(i + 1, j + 1, 0), id(i, j + 1, 0)});
-  } else if (type == ElementType::hex8) {
-    for (int z = 0; z < 2; ++z)
-      out.insert(out.end(),
-                 {id(i, j, k + z), id(i + 1, j, k + z), id(i + 1, j + 1, k + z), id(i, j + 1, k + z)});
-  } else {
-    std::array<int, 3> path{0, 1, 2};
-    do {
-      std::array<int, 3> c{i, j, k};
-      std::array<Index, 4> v{id(i, j, k)};
-      for (std::size_t s = 0; s < 3; ++s) {
-        ++c[static_cast<std::size_t>(path[s])];
-        v[s + 1] = id(c[0], c[1], c[2]);
-      }
-      const bool even = path[1] == (path[0] + 1) % 3;
-      if (!even) std::swap(v[2], v[3]);
-      out.insert(out.end(), v.begin(), v.end());
-    } while (std::next_permutation(path.begin(), path.end()));
-  }
-}
-
-/// tet4 connectivity and coordinates to tet10, a new node on every edge.
+/// Linear connectivity and coordinates to quadratic, a new node on every edge.
 void raise_order(OwnedMesh& mesh) {
+  const Cell& type = cell(mesh.type);
+  const auto dim = at(type.dim), corners_of = at(type.corners);
   const std::vector<Index> corners = std::move(mesh.connectivity);
   mesh.connectivity.clear();
   std::unordered_map<std::uint64_t, Index> middle;
-  for (std::size_t e = 0; e < corners.size() / 4; ++e) {
-    for (std::size_t a = 0; a < 4; ++a) mesh.connectivity.push_back(corners[4 * e + a]);
-    for (const auto& edge : elements::Tet10::edge) {
-      const auto [low, high] = std::minmax(corners[4 * e + at(edge[0])], corners[4 * e + at(edge[1])]);
+  for (std::size_t first = 0; first < corners.size(); first += corners_of) {
+    const Index* node = &corners[first];
+    mesh.connectivity.insert(mesh.connectivity.end(), node, node + corners_of);
+    for (const CellEdge& edge : type.edges) {
+      const auto [low, high] = std::minmax(node[edge.a], node[edge.b]);
       const std::uint64_t key = static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint32_t>(high);
-      const auto [found, is_new] = middle.try_emplace(key, static_cast<Index>(mesh.coordinates.size() / 3));
-      if (is_new) mesh.coordinates.resize(mesh.coordinates.size() + 3);
+      const auto [found, is_new] = middle.try_emplace(key, static_cast<Index>(mesh.coordinates.size() / dim));
+      if (is_new) mesh.coordinates.resize(mesh.coordinates.size() + dim);
       mesh.connectivity.push_back(found->second);
     }
   }
@@ -175,7 +150,7 @@ struct Flipper {
 OwnedMesh box(ElementType type, std::array<int, 3> cells, std::array<double, 3> size) {
   OwnedMesh mesh;
   mesh.type = type;
-  const bool flat = type == ElementType::tri3;
+  const bool flat = dimension(type) == 2;
   const int nz = flat ? 0 : cells[2];
   const auto id = [&](int i, int j, int k) { return (k * (cells[1] + 1) + j) * (cells[0] + 1) + i; };
   for (int k = 0; k <= nz; ++k)
@@ -187,8 +162,10 @@ OwnedMesh box(ElementType type, std::array<int, 3> cells, std::array<double, 3> 
       }
   for (int k = 0; k < std::max(nz, 1); ++k)
     for (int j = 0; j < cells[1]; ++j)
-      for (int i = 0; i < cells[0]; ++i) cut_cube(type, id, i, j, k, mesh.connectivity);
-  if (type == ElementType::tet10) {
+      for (int i = 0; i < cells[0]; ++i)
+        for (const auto& corner : cell(type).box)
+          mesh.connectivity.push_back(id(i + corner[0], j + corner[1], k + corner[2]));
+  if (cell(type).order == 2) {
     raise_order(mesh);
     straighten(mesh);
   }
@@ -216,13 +193,15 @@ void jitter(OwnedMesh& mesh, double amount, unsigned seed) {
 }
 
 void straighten(OwnedMesh& mesh) {
-  for (std::size_t e = 0; e < mesh.connectivity.size() / 10; ++e)
-    for (std::size_t m = 0; m < 6; ++m) {
-      const auto& edge = elements::Tet10::edge[m];
-      const Index* t = &mesh.connectivity[10 * e];
-      for (std::size_t k = 0; k < 3; ++k)
-        mesh.coordinates[3 * at(t[4 + m]) + k] =
-            0.5 * (mesh.coordinates[3 * at(t[edge[0]]) + k] + mesh.coordinates[3 * at(t[edge[1]]) + k]);
+  const Cell& type = cell(mesh.type);
+  const auto dim = at(type.dim), nodes = at(type.nodes);
+  for (std::size_t first = 0; first < mesh.connectivity.size(); first += nodes)
+    for (const CellEdge& edge : type.edges) {
+      if (edge.middle < 0) continue;
+      const Index* t = &mesh.connectivity[first];
+      for (std::size_t k = 0; k < dim; ++k)
+        mesh.coordinates[dim * at(t[edge.middle]) + k] =
+            0.5 * (mesh.coordinates[dim * at(t[edge.a]) + k] + mesh.coordinates[dim * at(t[edge.b]) + k]);
     }
 }
 

@@ -18,15 +18,15 @@ struct OwnedMesh {
   MeshView view() const noexcept { return {type, coordinates, connectivity}; }
 };
 
-/// A box of `cells` cubes (squares in 2D, third entry ignored), each cut into six tetrahedra round its
-/// diagonal, two triangles, or kept as a hexahedron. tet10 gets straight sides.
+/// A box of `cells` cubes (squares in 2D, third entry ignored), each cut as Cell::box says. Quadratic
+/// elements get straight sides.
 OwnedMesh box(ElementType type, std::array<int, 3> cells, std::array<double, 3> size);
 
 /// Moves every node, mid-side ones too, by up to `amount` × the smallest extent an element has along each
 /// axis.
 void jitter(OwnedMesh& mesh, double amount, unsigned seed);
 
-/// Puts the mid-side nodes of a tet10 mesh halfway between their vertices.
+/// Puts the mid-side nodes, if any, halfway between their vertices.
 void straighten(OwnedMesh& mesh);
 
 /// Random 2–3 and 3–2 flips of a tet4 mesh: the irregular connectivity of an unstructured mesh. `rounds`

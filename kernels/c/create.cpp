@@ -15,7 +15,7 @@ using namespace kacanov::c_api;
 namespace {
 
 k::ElementType element_type(std::int32_t element) {
-  if (element < KACANOV_TRI3 || element > KACANOV_HEX8)
+  if (element < 0 || static_cast<std::size_t>(element) >= k::element_types().size())
     throw Fault(KACANOV_ERROR_VALUE, "element: there is no element type " + std::to_string(element));
   return static_cast<k::ElementType>(element);
 }
@@ -71,8 +71,9 @@ void take_laws(kacanov_operator& op, std::span<const kacanov_law> laws, const st
                bool borrow) {
   std::vector<k::Law> checked = k::c_api::checked_laws(laws);
   for (std::size_t i = 0; i < checked.size(); ++i)
-    if (checked[i].mean_dilatation && op.mesh.type != k::ElementType::hex8)
-      throw Fault(KACANOV_ERROR_LAW, "law[" + std::to_string(i) + "].mean_dilatation: is for hex8 only");
+    if (checked[i].mean_dilatation && !k::cell(op.mesh.type).mean_dilatation)
+      throw Fault(KACANOV_ERROR_LAW,
+                  "law[" + std::to_string(i) + "].mean_dilatation: is for " + k::bbar_names() + " only");
   std::vector<std::uint16_t> own;
   std::span<const std::uint16_t> of_element;
   if (law_of_element != nullptr) {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From the element type known at run time to the element's struct.
+// The list of element types, and the way from a type known at run time to its struct.
 #pragma once
 
-#include <stdexcept>
+#include <tuple>
+#include <type_traits>
+#include <utility>
 
-#include <kacanov/mesh_view.hpp>
 #include "cells/hex8.hpp"
 #include "cells/tet10.hpp"
 #include "cells/tet4.hpp"
@@ -12,16 +13,22 @@
 
 namespace kacanov::elements {
 
-/// Calls `function(E{})` with the struct of `type`.
-template <class Function>
+/// What bodies can be made of, in the order of ElementType.
+using Bodies = std::tuple<Tri3, Tet4, Tet10, Hex8>;
+/// What else meshes hold.
+using Others = std::tuple<Point1, Line2, Line3, Tri6, Quad4>;
+
+/// Calls `function(E{})` with the struct of `type`. Throws std::invalid_argument for a number that is none.
+template <std::size_t i = 0, class Function>
 decltype(auto) dispatch(ElementType type, Function&& function) {
-  switch (type) {
-    case ElementType::tri3: return function(Tri3{});
-    case ElementType::tet4: return function(Tet4{});
-    case ElementType::tet10: return function(Tet10{});
-    case ElementType::hex8: return function(Hex8{});
+  using E = std::tuple_element_t<i, Bodies>;
+  static_assert(E::type == static_cast<ElementType>(i), "Bodies and ElementType differ in their order");
+  if constexpr (i + 1 < std::tuple_size_v<Bodies>) {
+    if (type != E::type) return dispatch<i + 1>(type, std::forward<Function>(function));
+  } else if (type != E::type) {
+    cell_table::refuse(type);
   }
-  throw std::invalid_argument("unknown element type");
+  return function(E{});
 }
 
 }  // namespace kacanov::elements

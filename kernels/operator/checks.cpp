@@ -28,8 +28,8 @@ const Body& checked(const Body& body, const OperatorOptions& options) {
     if (law >= body.laws.size())
       throw std::invalid_argument("law_of_element: there is no law " + std::to_string(law));
   for (const Law& law : body.laws)
-    if (law.mean_dilatation && body.mesh.type != ElementType::hex8)
-      throw std::invalid_argument("laws: mean dilatation (B-bar) is for hex8 only");
+    if (law.mean_dilatation && !cell(body.mesh.type).mean_dilatation)
+      throw std::invalid_argument("laws: mean dilatation (B-bar) is for " + bbar_names() + " only");
   return body;
 }
 

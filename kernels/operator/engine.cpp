@@ -306,8 +306,10 @@ void Engine<Real>::add_diagonals(const BlockRange& range, const simd::Group& gro
   using elements::Point;
   const bool fan = group.shape == simd::Shape::open_fan || group.shape == simd::Shape::closed_fan;
   const auto lanes = static_cast<std::size_t>(layout_.lanes);
-  const std::size_t nodes = nodes_of(group.shape, group.length),
-                    points = points_of(group.shape, group.length);
+  const std::size_t points = fan ? group.length : E::points, nodes = !fan ? E::nodes
+                                                                     : group.shape == simd::Shape::closed_fan
+                                                                         ? points + 2
+                                                                         : points + 3;
   const std::uint16_t* index = layout_.index.data() + range.first_index + group.first_index;
   const Real* coordinates = coordinates_.data() + 4 * range.first_record;
   for (std::size_t batch = 0; batch < group.batches; ++batch)

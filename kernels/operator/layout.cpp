@@ -8,7 +8,6 @@
 #include <tuple>
 
 #include <kacanov/locality.hpp>
-#include "cells/dispatch.hpp"
 
 namespace kacanov {
 namespace {
@@ -26,21 +25,8 @@ constexpr std::size_t cache_bytes = 400 * 1024;
 /// Idle lanes work on these records, whose elements have a volume and no displacement.
 std::vector<std::array<double, 3>> idle_positions(ElementType type) {
   if (type == ElementType::tet4) return {{0, 0, 0}, {1, 1, 1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  std::vector<std::array<double, 3>> corners{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  if (type == ElementType::tri3) corners.pop_back();
-  if (type == ElementType::tet10)
-    for (const auto& edge : elements::Tet10::edge) {
-      std::array<double, 3> middle{};
-      for (std::size_t k = 0; k < 3; ++k)
-        middle[k] = 0.5 * (corners[at(edge[0])][k] + corners[at(edge[1])][k]);
-      corners.push_back(middle);
-    }
-  if (type == ElementType::hex8) {
-    corners.clear();
-    for (const auto& c : elements::Hex8::corner)
-      corners.push_back({static_cast<double>(c[0]), static_cast<double>(c[1]), static_cast<double>(c[2])});
-  }
-  return corners;
+  const auto nodes = cell(type).reference;
+  return {nodes.begin(), nodes.end()};
 }
 
 /// The idle record node k of a lane stands on. A fan's ring goes to and fro between two positions; the third
@@ -76,8 +62,7 @@ struct Builder {
   std::int32_t piece_node(const Piece& piece, Shape shape, std::uint32_t k) const {
     const std::int32_t* nodes = unit_nodes(piece.unit);
     if (shape != Shape::open_fan || k < 2) return nodes[k];
-    const Unit& unit = units.units[piece.unit];
-    const std::uint32_t ring = unit.node_count() - 2;
+    const std::uint32_t ring = units.node_count(piece.unit) - 2;
     return nodes[2 + (piece.from + k - 2) % ring];
   }
 
@@ -128,7 +113,7 @@ struct Builder {
                     std::span<const std::int32_t> slot, BlockRange& range) {
     std::vector<std::int32_t> found;
     for (const std::uint32_t u : members)
-      for (std::uint32_t k = 0; k < units.units[u].node_count(); ++k) {
+      for (std::uint32_t k = 0; k < units.node_count(u); ++k) {
         const std::int32_t node = unit_nodes(u)[k];
         if (local[at(node)] >= 0) continue;
         local[at(node)] = 0;
@@ -157,14 +142,14 @@ struct Builder {
   void add_group(const Key& key, std::span<const Piece> pieces, BlockRange& range) {
     const auto [law, shape, length] = key;
     const auto lanes = static_cast<std::size_t>(layout.lanes);
-    const std::uint32_t nodes = nodes_of(shape, length), points = points_of(shape, length);
+    const std::uint32_t nodes = units.nodes_of(shape, length), points = units.points_of(shape, length);
     const std::size_t batches = (pieces.size() + lanes - 1) / lanes;
-    layout.groups.push_back({shape, length, law, static_cast<std::uint32_t>(batches),
+    layout.groups.push_back({units.type, shape, length, law, static_cast<std::uint32_t>(batches),
                              static_cast<std::uint32_t>(layout.index.size() - range.first_index),
                              static_cast<std::uint32_t>(layout.element_point.size() - range.first_slot)});
     const auto points_an_element = static_cast<std::size_t>(points_per_element(body.mesh.type));
     // Neighbouring tet10 share up to six nodes, whose sums wait for each other: their lanes work far apart.
-    const bool apart = shape == Shape::tet10 || shape == Shape::curved_tet10;
+    const bool apart = cell(units.type).order == 2;
     const auto piece_of = [&](std::size_t batch, std::size_t lane) {
       return apart ? lane * batches + batch : batch * lanes + lane;
     };
@@ -214,7 +199,7 @@ struct Builder {
     std::size_t count = 0;
     std::vector<std::int32_t> seen;
     for (const std::uint32_t u : members)
-      for (std::uint32_t k = 0; k < units.units[u].node_count(); ++k)
+      for (std::uint32_t k = 0; k < units.node_count(u); ++k)
         if (auto& mark = local[at(unit_nodes(u)[k])]; mark < 0) {
           mark = 0;
           seen.push_back(unit_nodes(u)[k]);
@@ -242,7 +227,7 @@ std::vector<std::vector<std::uint32_t>> assign_units(Builder& builder, int parts
   std::vector<std::vector<std::uint32_t>> members(static_cast<std::size_t>(parts));
   for (const auto& [key, u] : keys) {
     const std::int32_t* nodes = builder.unit_nodes(u);
-    const std::uint32_t count = units.units[u].node_count();
+    const std::uint32_t count = units.node_count(u);
     std::int32_t best = 0;
     std::ptrdiff_t most = 0;
     for (std::uint32_t k = 0; k < count; ++k) {
@@ -265,7 +250,7 @@ std::vector<std::size_t> share_blocks(const Units& units, std::span<const std::v
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     cost[b + 1] = cost[b];
     for (const std::uint32_t u : blocks[b])  // nodes cost about as much as tetrahedra
-      cost[b + 1] += units.units[u].node_count() + points_of(units.units[u].shape, units.units[u].length);
+      cost[b + 1] += units.node_count(u) + units.points_of(units.units[u].shape, units.units[u].length);
   }
   std::vector<std::size_t> share{0};
   for (int t = 1; t < threads; ++t) {
@@ -284,7 +269,7 @@ void put_early_first(const Builder& builder, Layout& layout, std::span<const cha
   const auto has_early = [&](const std::vector<std::uint32_t>& members) {
     return std::any_of(members.begin(), members.end(), [&](std::uint32_t u) {
       const std::int32_t* nodes = builder.unit_nodes(u);
-      return std::any_of(nodes, nodes + builder.units.units[u].node_count(),
+      return std::any_of(nodes, nodes + builder.units.node_count(u),
                          [&](std::int32_t node) { return is_early[at(node)] != 0; });
     });
   };
@@ -304,8 +289,7 @@ std::vector<std::vector<std::int32_t>> find_interface(const Builder& builder, La
   const auto for_each_node = [&](std::size_t t, auto&& visit) {
     for (std::size_t b = layout.share[t]; b < layout.share[t + 1]; ++b)
       for (const std::uint32_t u : blocks[b])
-        for (std::uint32_t k = 0; k < builder.units.units[u].node_count(); ++k)
-          visit(at(builder.unit_nodes(u)[k]));
+        for (std::uint32_t k = 0; k < builder.units.node_count(u); ++k) visit(at(builder.unit_nodes(u)[k]));
   };
   for (std::size_t t = 0; t < threads; ++t)
     for_each_node(t, [&](std::size_t node) {

@@ -17,20 +17,22 @@ struct Unit {
   std::uint16_t law;
   std::uint32_t first_node;     ///< in Units::nodes
   std::uint32_t first_element;  ///< in Units::elements
-
-  std::uint32_t node_count() const noexcept;
 };
 
 /// Nodes of a fan: p, q, then the ring; its elements in ring order. Element i of a fan is the
 /// tetrahedron (p, q, ring i, ring i+1).
 struct Units {
+  ElementType type = ElementType::tet4;
   std::vector<Unit> units;
   std::vector<std::int32_t> nodes, elements;
-};
 
-/// Nodes and points a unit of this shape and length has.
-std::uint32_t nodes_of(simd::Shape shape, std::uint32_t length) noexcept;
-std::uint32_t points_of(simd::Shape shape, std::uint32_t length) noexcept;
+  /// Nodes and points a unit of this shape and length has.
+  std::uint32_t nodes_of(simd::Shape shape, std::uint32_t length) const;
+  std::uint32_t points_of(simd::Shape shape, std::uint32_t length) const;
+  std::uint32_t node_count(std::uint32_t unit) const {
+    return nodes_of(units[unit].shape, units[unit].length);
+  }
+};
 
 /// Covers a body by units of one law each. tet4: greedily, the edge with most tetrahedra left first; what
 /// is left round it is split into chains. Other elements: one by one; a tet10 with straight sides (mid-side

@@ -6,11 +6,13 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <kacanov/cells.hpp>
+
 namespace kacanov::simd {
 
-/// What a lane holds: an open or closed fan of tetrahedra, or one element. `tet10` has straight sides,
-/// `affine_hex8` is a parallelepiped.
-enum class Shape : std::uint8_t { open_fan, closed_fan, tri3, tet10, curved_tet10, hex8, affine_hex8 };
+/// What a lane holds: an open or closed fan of tetrahedra, or one element, be it an affine image of the
+/// reference element (a tet10 with straight sides, a hex8 that is a parallelepiped) or not.
+enum class Shape : std::uint8_t { open_fan, closed_fan, affine, general };
 
 /// The law of a group, as far as the loops evaluate it themselves.
 struct LawView {
@@ -25,6 +27,7 @@ struct LawView {
 
 /// Batches of one shape, length and law, one unit a lane.
 struct Group {
+  ElementType type;
   Shape shape;
   std::uint8_t length;  ///< tetrahedra of a fan; 1 for elements
   std::uint16_t law;    ///< index of its LawView

@@ -8,6 +8,7 @@
 
 namespace {
 
+using kacanov::ElementType;
 using kacanov::elements::Tet10;
 using kacanov::elements::Tri3;
 using kacanov::simd::Kernels;
@@ -95,22 +96,27 @@ struct Loops {
       const auto elements = [&]<class E>() {
         element_loop<L, Real, E>(block, group, material, u, f, vectors, stride);
       };
-      switch (group.shape) {
-        case Shape::open_fan:
-          fan_loop_of_length<L, Real, false>(block, group, material, u, f, vectors, stride);
-          break;
-        case Shape::closed_fan:
-          fan_loop_of_length<L, Real, true>(block, group, material, u, f, vectors, stride);
-          break;
-        case Shape::tri3: elements.template operator()<Tri3>(); break;
-        case Shape::tet10: tet10_loop<L, Real>(block, group, material, u, f, vectors, stride); break;
-        case Shape::curved_tet10: elements.template operator()<Tet10>(); break;
-        case Shape::hex8: hex_loop<L, Real>(block, group, material, u, f, vectors, stride); break;
-        case Shape::affine_hex8:
-          if constexpr (decltype(material)::frozen)
-            affine_hex_loop<L, Real>(block, group, material, u, f, vectors, stride);
+      switch (group.type) {
+        case ElementType::tri3: elements.template operator()<Tri3>(); break;
+        case ElementType::tet4:
+          if (group.shape == Shape::open_fan)
+            fan_loop_of_length<L, Real, false>(block, group, material, u, f, vectors, stride);
           else
-            hex_loop<L, Real>(block, group, material, u, f, vectors, stride);
+            fan_loop_of_length<L, Real, true>(block, group, material, u, f, vectors, stride);
+          break;
+        case ElementType::tet10:
+          if (group.shape == Shape::affine)
+            tet10_loop<L, Real>(block, group, material, u, f, vectors, stride);
+          else
+            elements.template operator()<Tet10>();
+          break;
+        case ElementType::hex8:
+          if constexpr (decltype(material)::frozen)
+            if (group.shape == Shape::affine) {
+              affine_hex_loop<L, Real>(block, group, material, u, f, vectors, stride);
+              break;
+            }
+          hex_loop<L, Real>(block, group, material, u, f, vectors, stride);
           break;
       }
     }

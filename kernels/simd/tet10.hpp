@@ -15,10 +15,8 @@ struct TetMiddles {
 
 constexpr TetMiddles tet_middles = [] {
   TetMiddles table{};
-  for (int m = 0; m < 6; ++m) {
-    const auto& edge = kacanov::elements::Tet10::edge[static_cast<std::size_t>(m)];
-    table.between[edge[0]][edge[1]] = table.between[edge[1]][edge[0]] = 4 + m;
-  }
+  for (const auto& edge : kacanov::elements::Tet10::edge)
+    table.between[edge.a][edge.b] = table.between[edge.b][edge.a] = edge.middle;
   return table;
 }();
 

@@ -24,7 +24,7 @@ struct Lattice {
 
 void validate(const BoxSpec& spec) {
   const int dim = dimension(spec.type);
-  const int refinement = spec.type == ElementType::tet10 ? 2 : 1;
+  const int refinement = cell(spec.type).order;
   double nodes = 1, cells = 1;
   for (std::size_t k = 0; k < static_cast<std::size_t>(dim); ++k) {
     if (!(spec.size[k] > 0) || !std::isfinite(spec.size[k]))
@@ -34,7 +34,7 @@ void validate(const BoxSpec& spec) {
     cells *= spec.cells[k];
   }
   // Unknowns, elements and the sides of all elements have to fit the indices used later.
-  const double per_cell = spec.type == ElementType::tri3 ? 2 : spec.type == ElementType::hex8 ? 1 : 6;
+  const double per_cell = cell(spec.type).box_elements();
   const double sides = cells * per_cell * facets_per_element(spec.type);
   if (nodes * dim > std::numeric_limits<std::int32_t>::max() ||
       cells * per_cell > std::numeric_limits<std::int32_t>::max() ||
@@ -58,59 +58,37 @@ void add_nodes(const Lattice& lattice, int dim, std::vector<double>& coordinates
       }
 }
 
-/// Paths from the lowest to the highest corner, one axis a step, each a positive tetrahedron.
-constexpr std::array<Index3, 6> paths{{{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
-
-/// Appends the tetrahedron of one path in the cell with lowest lattice point `at`, `step` points wide.
-void add_tetrahedron(const Lattice& lattice, const Index3& at, int step, std::size_t path, bool quadratic,
-                     std::vector<std::int32_t>& elements) {
-  std::array<Index3, 4> corner;
-  corner[0] = at;
-  for (std::size_t s = 0; s < 3; ++s) {
-    corner[s + 1] = corner[s];
-    corner[s + 1][static_cast<std::size_t>(paths[path][s])] += step;
-  }
-  if (path >= 3) std::swap(corner[2], corner[3]);  // odd permutations turn the other way
-  for (const Index3& c : corner) elements.push_back(lattice.node(c));
-  if (!quadratic) return;
-  constexpr std::array<std::array<std::size_t, 2>, 6> edges{{{0, 1}, {1, 2}, {2, 0}, {3, 0}, {3, 2}, {3, 1}}};
-  for (const auto& [a, b] : edges)
-    elements.push_back(lattice.node({(corner[a][0] + corner[b][0]) / 2, (corner[a][1] + corner[b][1]) / 2,
-                                     (corner[a][2] + corner[b][2]) / 2}));
-}
-
-void add_cell(const Lattice& lattice, const Index3& at, ElementType type,
+/// Appends the elements of the box cell with lowest lattice point `at`.
+void add_cell(const Lattice& lattice, const Index3& at, const Cell& type,
               std::vector<std::int32_t>& elements) {
-  const int step = type == ElementType::tet10 ? 2 : 1;
-  const auto corner = [&](int x, int y, int z) { return lattice.node({at[0] + x, at[1] + y, at[2] + z}); };
-  switch (type) {
-    case ElementType::tri3:
-      elements.insert(elements.end(), {corner(0, 0, 0), corner(1, 0, 0), corner(1, 1, 0)});
-      elements.insert(elements.end(), {corner(0, 0, 0), corner(1, 1, 0), corner(0, 1, 0)});
-      break;
-    case ElementType::hex8:
-      elements.insert(elements.end(), {corner(0, 0, 0), corner(1, 0, 0), corner(1, 1, 0), corner(0, 1, 0),
-                                       corner(0, 0, 1), corner(1, 0, 1), corner(1, 1, 1), corner(0, 1, 1)});
-      break;
-    case ElementType::tet4:
-    case ElementType::tet10:
-      for (std::size_t path = 0; path < paths.size(); ++path)
-        add_tetrahedron(lattice, at, step, path, type == ElementType::tet10, elements);
-      break;
+  const auto corners = static_cast<std::size_t>(type.corners);
+  for (std::size_t first = 0; first < type.box.size(); first += corners) {
+    const auto corner = type.box.subspan(first, corners);
+    // Lattice points are half an edge apart where edges have nodes in their middles.
+    const auto node = [&](std::int8_t a, std::int8_t b) {
+      Index3 place = at;
+      for (std::size_t k = 0; k < 3; ++k)
+        place[k] += type.order *
+                    (corner[static_cast<std::size_t>(a)][k] + corner[static_cast<std::size_t>(b)][k]) / 2;
+      return lattice.node(place);
+    };
+    for (std::int8_t a = 0; a < type.corners; ++a) elements.push_back(node(a, a));
+    for (const CellEdge& edge : type.edges)
+      if (edge.middle >= 0) elements.push_back(node(edge.a, edge.b));
   }
 }
 
 void add_elements(const Lattice& lattice, const Index3& cells, ElementType type,
                   std::vector<std::int32_t>& elements) {
-  const int step = type == ElementType::tet10 ? 2 : 1;
+  const Cell& facts = cell(type);
+  const int step = facts.order;
   const int layers = std::max(cells[2], 1);
-  const std::size_t per_cell = type == ElementType::tri3 ? 2 : type == ElementType::hex8 ? 1 : 6;
   elements.reserve(static_cast<std::size_t>(cells[0]) * static_cast<std::size_t>(cells[1]) *
-                   static_cast<std::size_t>(layers) * per_cell *
-                   static_cast<std::size_t>(nodes_per_element(type)));
+                   static_cast<std::size_t>(layers) * static_cast<std::size_t>(facts.box_elements()) *
+                   static_cast<std::size_t>(facts.nodes));
   for (int z = 0; z < layers; ++z)
     for (int y = 0; y < cells[1]; ++y)
-      for (int x = 0; x < cells[0]; ++x) add_cell(lattice, {x * step, y * step, z * step}, type, elements);
+      for (int x = 0; x < cells[0]; ++x) add_cell(lattice, {x * step, y * step, z * step}, facts, elements);
 }
 
 void name_sides(const Lattice& lattice, Mesh& mesh) {
@@ -140,7 +118,7 @@ Mesh make_box(const BoxSpec& spec) {
   Mesh mesh;
   mesh.type = spec.type;
   const int dim = mesh.dim();
-  const int refinement = spec.type == ElementType::tet10 ? 2 : 1;
+  const int refinement = cell(spec.type).order;
   Index3 cells = spec.cells;
   if (dim == 2) cells[2] = 0;
   const Lattice lattice{spec.size, {cells[0] * refinement, cells[1] * refinement, cells[2] * refinement}};

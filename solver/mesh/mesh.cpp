@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Facet tables, the boundary of a mesh, and what must hold before anything is computed on it.
+// The boundary of a mesh, and what must hold before anything is computed on it.
 #include <kacanov/mesh.hpp>
 
 #include <algorithm>
@@ -12,23 +12,6 @@
 
 namespace kacanov {
 namespace {
-
-constexpr std::array<std::int8_t, 6> tri3_facets{0, 1, 1, 2, 2, 0};
-constexpr std::array<std::int8_t, 12> tet4_facets{0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
-constexpr std::array<std::int8_t, 24> tet10_facets{0, 2, 1, 6, 5, 4, 0, 1, 3, 4, 9, 7,
-                                                   0, 3, 2, 7, 8, 6, 1, 2, 3, 5, 8, 9};
-constexpr std::array<std::int8_t, 24> hex8_facets{0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4,
-                                                  1, 2, 6, 5, 2, 3, 7, 6, 0, 4, 7, 3};
-
-constexpr int corners_per_facet(ElementType type) {
-  switch (type) {
-    case ElementType::tri3: return 2;
-    case ElementType::tet4: return 3;
-    case ElementType::tet10: return 3;
-    case ElementType::hex8: return 4;
-  }
-  return 0;
-}
 
 /// One facet of one element: its corner nodes, ascending, unused ones −1 and last.
 struct FacetKey {
@@ -44,8 +27,11 @@ class FacetSets {
  public:
   explicit FacetSets(const Mesh& mesh)
       : mesh_(mesh),
+        table_(cell(mesh.type).facet_nodes),
         facets_(static_cast<std::uint32_t>(facets_per_element(mesh.type))),
-        corners_(static_cast<std::size_t>(corners_per_facet(mesh.type))) {
+        element_nodes_(static_cast<std::size_t>(nodes_per_element(mesh.type))),
+        facet_nodes_(static_cast<std::size_t>(nodes_per_facet(mesh.type))),
+        corners_(static_cast<std::size_t>(cell(mesh.type).facet().corners)) {
     const std::size_t total = mesh.element_count() * facets_;
     if (total > std::numeric_limits<std::uint32_t>::max())
       throw InputError("the mesh has " + std::to_string(mesh.element_count()) +
@@ -79,13 +65,13 @@ class FacetSets {
   }
 
   std::int32_t node(std::uint32_t id, std::size_t local) const {
-    const std::size_t element = id / facets_;
-    const auto table = facet_nodes(mesh_.type, static_cast<int>(id % facets_));
-    return mesh_.elements[element * static_cast<std::size_t>(nodes_per_element(mesh_.type)) +
-                          static_cast<std::size_t>(table[local])];
+    const std::size_t element = id / facets_, facet = id % facets_;
+    return mesh_
+        .elements[element * element_nodes_ + static_cast<std::size_t>(table_[facet * facet_nodes_ + local])];
   }
   std::size_t element(std::uint32_t id) const { return id / facets_; }
   std::size_t corners() const { return corners_; }
+  std::size_t facet_nodes() const { return facet_nodes_; }
 
  private:
   std::size_t lowest_node(std::uint32_t id) const {
@@ -107,8 +93,9 @@ class FacetSets {
   }
 
   const Mesh& mesh_;
+  std::span<const std::int8_t> table_;
   std::uint32_t facets_;
-  std::size_t corners_;
+  std::size_t element_nodes_, facet_nodes_, corners_;
   std::vector<std::uint32_t> bucket_;  // by lowest node, offsets into ids_
   std::vector<std::uint32_t> ids_;
 };
@@ -123,81 +110,34 @@ bool opposite(const FacetSets& sets, std::uint32_t a, std::uint32_t b) {
   return true;
 }
 
-/// Whether two quadratic facets with the same corners have the same midside nodes.
+/// Whether two facets with the same corners have the same nodes on their edges, if any.
 bool same_midsides(const FacetSets& sets, std::uint32_t a, std::uint32_t b) {
-  std::array<std::int32_t, 3> ma{}, mb{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    ma[k] = sets.node(a, 3 + k);
-    mb[k] = sets.node(b, 3 + k);
+  std::array<std::int32_t, most_facet_nodes> ma{}, mb{};
+  for (std::size_t k = sets.corners(); k < sets.facet_nodes(); ++k) {
+    ma[k] = sets.node(a, k);
+    mb[k] = sets.node(b, k);
   }
   std::sort(ma.begin(), ma.end());
   std::sort(mb.begin(), mb.end());
   return ma == mb;
 }
 
-using Gradients = std::array<std::array<double, 3>, 10>;  ///< ∂N/∂ξ of each node
+using Gradients = std::array<double, 3 * most_nodes>;  ///< ∂N/∂ξ, nodes × dim
 
-Gradients gradients(ElementType type, double x, double y, double z) {
-  Gradients d{};
-  if (type == ElementType::hex8) {
-    constexpr std::array<std::array<int, 3>, 8> corner{
-        {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}}};
-    for (std::size_t i = 0; i < 8; ++i) {
-      const double a = corner[i][0], b = corner[i][1], c = corner[i][2];
-      d[i] = {a * (1 + b * y) * (1 + c * z) / 8, b * (1 + a * x) * (1 + c * z) / 8,
-              c * (1 + a * x) * (1 + b * y) / 8};
-    }
-    return d;
-  }
-  const std::array<double, 4> l{1 - x - y - z, x, y, z};
-  constexpr std::array<std::array<double, 3>, 4> dl{{{-1, -1, -1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-  constexpr std::array<std::array<std::size_t, 2>, 6> edge{{{0, 1}, {1, 2}, {2, 0}, {3, 0}, {3, 2}, {3, 1}}};
-  if (type != ElementType::tet10) {
-    for (std::size_t i = 0; i < 4; ++i) d[i] = dl[i];
-    if (type == ElementType::tri3) d[0] = {-1, -1, 0};
-    return d;
-  }
-  for (std::size_t k = 0; k < 3; ++k) {
-    for (std::size_t i = 0; i < 4; ++i) d[i][k] = (4 * l[i] - 1) * dl[i][k];
-    for (std::size_t e = 0; e < 6; ++e)
-      d[4 + e][k] = 4 * (l[edge[e][0]] * dl[edge[e][1]][k] + l[edge[e][1]] * dl[edge[e][0]][k]);
-  }
-  return d;
-}
-
-/// Gradients at the quadrature points, and the weight of each point (the same for all).
-struct Points {
+std::vector<Gradients> gradients_at_points(const Cell& cell) {
   std::vector<Gradients> gradients;
-  double weight = 0.0;
-};
-
-Points quadrature(ElementType type) {
-  Points points;
-  if (type == ElementType::hex8) {
-    const double s = 1 / std::sqrt(3.0);
-    for (const double z : {-s, s})
-      for (const double y : {-s, s})
-        for (const double x : {-s, s}) points.gradients.push_back(gradients(type, x, y, z));
-    points.weight = 1.0;
-  } else if (type == ElementType::tet10) {
-    const double b = (5 - std::sqrt(5.0)) / 20, a = 1 - 3 * b;
-    for (const auto& p : {std::array{b, b, b}, std::array{a, b, b}, std::array{b, a, b}, std::array{b, b, a}})
-      points.gradients.push_back(gradients(type, p[0], p[1], p[2]));
-    points.weight = 1.0 / 24;
-  } else {
-    points.gradients.push_back(gradients(type, 0, 0, 0));
-    points.weight = type == ElementType::tri3 ? 0.5 : 1.0 / 6;
-  }
-  return points;
+  for (const auto& point : cell.points) cell.gradients(point.data(), gradients.emplace_back().data());
+  return gradients;
 }
 
 class Geometry {
  public:
   explicit Geometry(const Mesh& mesh)
       : mesh_(mesh),
-        points_(quadrature(mesh.type)),
-        dim_(static_cast<std::size_t>(mesh.dim())),
-        nodes_(static_cast<std::size_t>(nodes_per_element(mesh.type))) {}
+        type_(cell(mesh.type)),
+        points_(gradients_at_points(type_)),
+        dim_(static_cast<std::size_t>(type_.dim)),
+        nodes_(static_cast<std::size_t>(type_.nodes)) {}
 
   struct Shape {
     double volume = 0.0;    ///< signed
@@ -210,21 +150,21 @@ class Geometry {
     const std::int32_t* node = mesh_.elements.data() + element * nodes_;
     Shape result;
     result.smallest = std::numeric_limits<double>::infinity();
-    const double total_weight = points_.weight * static_cast<double>(points_.gradients.size());
-    for (const Gradients& d : points_.gradients) {
+    const double total_weight = type_.weight * static_cast<double>(points_.size());
+    for (const Gradients& d : points_) {
       std::array<std::array<double, 3>, 3> j{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
       for (std::size_t r = 0; r < dim_; ++r)
         for (std::size_t c = 0; c < dim_; ++c) {
           j[r][c] = 0;
-          for (std::size_t i = 0; i < nodes_; ++i) j[r][c] += coordinate(node[i], r) * d[i][c];
+          for (std::size_t i = 0; i < nodes_; ++i) j[r][c] += coordinate(node[i], r) * d[i * dim_ + c];
         }
       const double det = j[0][0] * (j[1][1] * j[2][2] - j[1][2] * j[2][1]) -
                          j[0][1] * (j[1][0] * j[2][2] - j[1][2] * j[2][0]) +
                          j[0][2] * (j[1][0] * j[2][1] - j[1][1] * j[2][0]);
-      result.volume += points_.weight * det;
+      result.volume += type_.weight * det;
       result.smallest = std::min(result.smallest, total_weight * det);
     }
-    const std::size_t corners = mesh_.type == ElementType::tet10 ? 4 : nodes_;
+    const auto corners = static_cast<std::size_t>(type_.corners);
     double longest = 0;
     for (std::size_t a = 0; a < corners; ++a)
       for (std::size_t b = a + 1; b < corners; ++b) {
@@ -245,7 +185,8 @@ class Geometry {
     return mesh_.coordinates[static_cast<std::size_t>(node) * dim_ + k];
   }
   const Mesh& mesh_;
-  Points points_;
+  const Cell& type_;
+  std::vector<Gradients> points_;
   std::size_t dim_, nodes_;
 };
 
@@ -319,28 +260,6 @@ void check_nodes(const Mesh& mesh) {
 
 }  // namespace
 
-int facets_per_element(ElementType type) {
-  switch (type) {
-    case ElementType::tri3: return 3;
-    case ElementType::tet4: return 4;
-    case ElementType::tet10: return 4;
-    case ElementType::hex8: return 6;
-  }
-  return 0;
-}
-
-std::span<const std::int8_t> facet_nodes(ElementType type, int facet) {
-  const auto n = static_cast<std::size_t>(nodes_per_facet(type));
-  const std::size_t first = static_cast<std::size_t>(facet) * n;
-  switch (type) {
-    case ElementType::tri3: return std::span(tri3_facets).subspan(first, n);
-    case ElementType::tet4: return std::span(tet4_facets).subspan(first, n);
-    case ElementType::tet10: return std::span(tet10_facets).subspan(first, n);
-    case ElementType::hex8: return std::span(hex8_facets).subspan(first, n);
-  }
-  return {};
-}
-
 void find_boundary(Mesh& mesh) {
   const FacetSets sets(mesh);
   std::vector<std::uint32_t> boundary;
@@ -373,7 +292,7 @@ void check_mesh(const Mesh& mesh) {
   sets.visit([&](std::span<const FacetKey> keys) {
     if (keys.size() == 1) return;
     if (keys.size() > 2 || !opposite(sets, keys[0].id, keys[1].id) ||
-        (mesh.type == ElementType::tet10 && !same_midsides(sets, keys[0].id, keys[1].id)))
+        !same_midsides(sets, keys[0].id, keys[1].id))
       refuse_side(mesh, sets, keys);
   });
 }

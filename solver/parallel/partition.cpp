@@ -37,7 +37,7 @@ std::vector<std::uint16_t> partition_elements(const Mesh& mesh, std::span<const 
   if (ranks == 1) return part;
   const std::vector<Index> node_part = partition_nodes(mesh.view(), order, ranks);
   const auto stride = static_cast<std::size_t>(nodes_per_element(mesh.type));
-  const std::size_t corners = mesh.type == ElementType::tet10 ? 4 : stride;
+  const auto corners = static_cast<std::size_t>(cell(mesh.type).corners);
   for (std::size_t e = 0; e < part.size(); ++e) {
     std::array<Index, 8> of{};
     for (std::size_t a = 0; a < corners; ++a)

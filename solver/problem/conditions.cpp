@@ -46,7 +46,7 @@ void add_body_force(Problem& problem, const Vector3& force, std::span<const std:
   const Mesh& mesh = problem.mesh;
   const auto n = static_cast<std::size_t>(nodes_per_element(mesh.type));
   for (const std::int32_t e : elements) {
-    const std::array<double, 10> weights = volume_weights(mesh, static_cast<std::size_t>(e));
+    const auto weights = volume_weights(mesh, static_cast<std::size_t>(e));
     for (std::size_t k = 0; k < n; ++k) {
       add(problem.load, mesh.dim(), mesh.elements[static_cast<std::size_t>(e) * n + k], weights[k] * force);
     }
@@ -65,8 +65,9 @@ void assign_materials(Problem& problem, const Model& model, const Selection& sel
     const std::string path = path_of("material", i);
     const MaterialEntry& entry = model.materials[i];
     check_law(entry.law, path);
-    if (entry.law.mean_dilatation && mesh.type != ElementType::hex8)
-      throw InputError(path + ".bbar: expected false, or a mesh of hex8: other elements have no B-bar here");
+    if (entry.law.mean_dilatation && !cell(mesh.type).mean_dilatation)
+      throw InputError(path + ".bbar: expected false, or a mesh of " + bbar_names() +
+                       ": other elements have no B-bar here");
     problem.laws.push_back(entry.law);
     for (const std::int32_t e : selection.elements(entry.on, path)) {
       std::uint16_t& law = problem.law_of_element[static_cast<std::size_t>(e)];

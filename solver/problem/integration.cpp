@@ -61,15 +61,16 @@ std::vector<Point> simplex_rule(int dim) {
   return rule;
 }
 
-const std::vector<Point>& facet_rule(ElementType type) {
-  static const std::vector<Point> line = tensor_rule(1), square = tensor_rule(2), triangle = simplex_rule(2);
-  switch (type) {
-    case ElementType::tri3: return line;
-    case ElementType::hex8: return square;
-    case ElementType::tet4:
-    case ElementType::tet10: break;
-  }
-  return triangle;
+/// A rule that is exact for loads of constant density on cells whose faces are flat. Linear simplices do
+/// with one point: there the mean stands for any rule.
+const std::vector<Point>& rule_for(const Cell& cell) {
+  static const std::vector<Point> tensor[] = {tensor_rule(1), tensor_rule(2), tensor_rule(3)};
+  static const std::vector<Point> simplex[] = {simplex_rule(2), simplex_rule(3)};
+  static const std::vector<Point> mean[] = {{{{1.0 / 3.0, 1.0 / 3.0, 0.0}, 0.5}},
+                                            {{{0.25, 0.25, 0.25}, 1.0 / 6.0}}};
+  const auto dim = static_cast<std::size_t>(cell.dim);
+  if (!cell.simplex) return tensor[dim - 1];
+  return cell.order == 1 ? mean[dim - 2] : simplex[dim - 2];
 }
 
 /// Outer normal times the area of a flat triangle.
@@ -82,7 +83,8 @@ Vector3 area_vector(const Vector3& a, const Vector3& b, const Vector3& c) {
 FacetWeights consistent_weights(const Mesh& mesh, std::size_t facet) {
   FacetWeights weights;
   const auto nodes = mesh.facet(facet);
-  if (mesh.type == ElementType::tet4) {  // by far the most frequent, and constant
+  const Cell& type = cell(mesh.type).facet();
+  if (type.simplex && type.order == 1) {  // triangles: by far the most frequent, and constant
     const Vector3 third = (1.0 / 3.0) * area_vector(position(mesh, nodes[0]), position(mesh, nodes[1]),
                                                     position(mesh, nodes[2]));
     for (std::size_t k = 0; k < 3; ++k) {
@@ -91,8 +93,8 @@ FacetWeights consistent_weights(const Mesh& mesh, std::size_t facet) {
     }
     return weights;
   }
-  for (const Point& point : facet_rule(mesh.type)) {
-    const Shapes shapes = facet_shapes(mesh.type, point.at[0], point.at[1]);
+  for (const Point& point : rule_for(type)) {
+    const Shapes shapes = shapes_at(type, point.at);
     Vector3 along{}, across{};
     for (std::size_t k = 0; k < nodes.size(); ++k) {
       const Vector3 x = position(mesh, nodes[k]);
@@ -110,42 +112,31 @@ FacetWeights consistent_weights(const Mesh& mesh, std::size_t facet) {
 }
 
 FacetWeights lumped_weights(const Mesh& mesh, std::size_t facet) {
-  if (mesh.type != ElementType::tet10) return consistent_weights(mesh, facet);
-  constexpr std::array<std::array<std::size_t, 3>, 4> parts{{{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}}};
+  const Cell& type = cell(mesh.type).facet();
+  if (type.order == 1) return consistent_weights(mesh, facet);
   FacetWeights weights;
   const auto nodes = mesh.facet(facet);
-  for (const auto& part : parts) {
-    const Vector3 third =
-        (1.0 / 3.0) * area_vector(position(mesh, nodes[part[0]]), position(mesh, nodes[part[1]]),
-                                  position(mesh, nodes[part[2]]));
-    for (const std::size_t k : part) {
-      weights.normal[k] = weights.normal[k] + third;
-      weights.area[k] += norm(third);
+  for (const auto& part : type.triangles) {
+    const auto corner = [&](std::size_t k) {
+      return position(mesh, nodes[static_cast<std::size_t>(part[k])]);
+    };
+    const Vector3 third = (1.0 / 3.0) * area_vector(corner(0), corner(1), corner(2));
+    for (const std::int8_t k : part) {
+      const auto node = static_cast<std::size_t>(k);
+      weights.normal[node] = weights.normal[node] + third;
+      weights.area[node] += norm(third);
     }
   }
   return weights;
 }
 
-std::array<double, 10> volume_weights(const Mesh& mesh, std::size_t element) {
-  static const std::vector<Point> cube = tensor_rule(3), tetrahedron = simplex_rule(3);
-  // The mean of the element stands for any rule where the shapes are linear.
-  static const std::vector<Point> mean3{{{0.25, 0.25, 0.25}, 1.0 / 6.0}};
-  static const std::vector<Point> mean2{{{1.0 / 3.0, 1.0 / 3.0, 0.0}, 0.5}};
-  const auto rule_of = [&]() -> const std::vector<Point>& {
-    switch (mesh.type) {
-      case ElementType::tri3: return mean2;
-      case ElementType::tet4: return mean3;
-      case ElementType::tet10: return tetrahedron;
-      case ElementType::hex8: break;
-    }
-    return cube;
-  };
-  const std::vector<Point>& rule = rule_of();
-  std::array<double, 10> weights{};
-  const auto n = static_cast<std::size_t>(nodes_per_element(mesh.type));
+std::array<double, most_nodes> volume_weights(const Mesh& mesh, std::size_t element) {
+  const Cell& type = cell(mesh.type);
+  std::array<double, most_nodes> weights{};
+  const auto n = static_cast<std::size_t>(type.nodes);
   const auto nodes = std::span(mesh.elements).subspan(element * n, n);
-  for (const Point& point : rule) {
-    const Shapes shapes = element_shapes(mesh.type, point.at);
+  for (const Point& point : rule_for(type)) {
+    const Shapes shapes = shapes_at(type, point.at);
     std::array<Vector3, 3> jacobian{};  // columns: derivatives of the position
     for (std::size_t k = 0; k < n; ++k) {
       const Vector3 x = position(mesh, nodes[k]);

@@ -11,8 +11,8 @@ namespace kacanov {
 
 /// One entry a node of a facet, in the facet's order; the rest is unused.
 struct FacetWeights {
-  std::array<double, 6> area{};     ///< ∫ Nᵢ dS (a length in 2D)
-  std::array<Vector3, 6> normal{};  ///< ∫ Nᵢ n dS, n the outer normal
+  std::array<double, most_facet_nodes> area{};     ///< ∫ Nᵢ dS (a length in 2D)
+  std::array<Vector3, most_facet_nodes> normal{};  ///< ∫ Nᵢ n dS, n the outer normal
 };
 
 /// Consistent weights: exact for planar facets, and for `normal` on curved ones too.
@@ -24,6 +24,6 @@ FacetWeights consistent_weights(const Mesh& mesh, std::size_t facet);
 FacetWeights lumped_weights(const Mesh& mesh, std::size_t facet);
 
 /// ∫ Nᵢ dV (an area in 2D), one entry a node of the element.
-std::array<double, 10> volume_weights(const Mesh& mesh, std::size_t element);
+std::array<double, most_nodes> volume_weights(const Mesh& mesh, std::size_t element);
 
 }  // namespace kacanov

@@ -22,10 +22,11 @@ constexpr double slack = 1e-6;
 /// nothing where it does not converge, as for points far outside a distorted element.
 std::optional<Vector3> reference_point(const Mesh& mesh, std::span<const std::int32_t> nodes,
                                        const Vector3& x) {
+  const Cell& type = cell(mesh.type);
   Vector3 at{};
-  if (mesh.type != ElementType::hex8) at = {0.25, 0.25, mesh.dim() == 3 ? 0.25 : 0.0};
+  if (type.simplex) at = {0.25, 0.25, mesh.dim() == 3 ? 0.25 : 0.0};
   for (int step = 0; step < 30; ++step) {
-    const Shapes shapes = element_shapes(mesh.type, at);
+    const Shapes shapes = shapes_at(type, at);
     Vector3 miss = x;
     Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
     for (std::size_t k = 0; k < nodes.size(); ++k) {
@@ -48,12 +49,14 @@ std::optional<Vector3> reference_point(const Mesh& mesh, std::span<const std::in
 }
 
 /// Distance outside the reference element, negative inside.
-double outside(ElementType type, const Vector3& at) {
-  if (type == ElementType::hex8) {
-    return std::max({std::abs(at[0]), std::abs(at[1]), std::abs(at[2])}) - 1.0;
+double outside(const Cell& type, const Vector3& at) {
+  double most = -1.0, least = 1.0, rest = 1.0;
+  for (std::size_t c = 0; c < static_cast<std::size_t>(type.dim); ++c) {
+    most = std::max(most, std::abs(at[c]) - 1.0);
+    least = std::min(least, at[c]);
+    rest -= at[c];
   }
-  if (type == ElementType::tri3) return -std::min({at[0], at[1], 1.0 - at[0] - at[1]});
-  return -std::min({at[0], at[1], at[2], 1.0 - at[0] - at[1] - at[2]});
+  return type.simplex ? -std::min(least, rest) : most;
 }
 
 /// True where x lies in the element's bounding box, grown by half of it: curved elements bulge.
@@ -65,7 +68,7 @@ bool near_element(const Mesh& mesh, std::span<const std::int32_t> nodes, const V
       low = std::min(low, value);
       high = std::max(high, value);
     }
-    const double margin = (mesh.type == ElementType::tet10 ? 0.5 : 1e-5) * (high - low);
+    const double margin = (cell(mesh.type).order == 2 ? 0.5 : 1e-5) * (high - low);
     if (x[c] < low - margin || x[c] > high + margin) return false;
   }
   return true;
@@ -105,11 +108,11 @@ std::vector<Probe> locate_probes(const Mesh& mesh, const Model& model) {
       if (!near_element(mesh, nodes, probes[p].point)) continue;
       const std::optional<Vector3> at = reference_point(mesh, nodes, probes[p].point);
       if (!at) continue;
-      const double miss = outside(mesh.type, *at);
+      const double miss = outside(cell(mesh.type), *at);
       if (miss > best[p] || (probes[p].element >= 0 && miss == best[p])) continue;
       best[p] = miss;
       probes[p].element = static_cast<std::int32_t>(e);
-      probes[p].weights = element_shapes(mesh.type, *at).value;
+      probes[p].weights = shapes_at(cell(mesh.type), *at).value;
     }
   }
   for (std::size_t p = 0; p < probes.size(); ++p) {

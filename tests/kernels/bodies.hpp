@@ -14,8 +14,7 @@
 
 namespace kacanov::test {
 
-inline constexpr ElementType all_types[] = {ElementType::tri3, ElementType::tet4, ElementType::tet10,
-                                            ElementType::hex8};
+inline const std::span<const ElementType> all_types = element_types();
 
 /// One law of every kind that stays monotone, E = 1, nu = 0.3.
 inline std::vector<Law> every_law() {
@@ -54,12 +53,12 @@ struct OwnedBody {
 
 inline OwnedBody with_one_law(meshes::OwnedMesh mesh, const Law& law) { return {std::move(mesh), {law}, {}}; }
 
-/// Every law of `every_law` and the stiffening one, scattered over the elements; for hex8 every second one
-/// with its mean dilatation.
+/// Every law of `every_law` and the stiffening one, scattered over the elements; every second one
+/// with its mean dilatation where the element has that.
 inline OwnedBody with_every_law(meshes::OwnedMesh mesh, unsigned seed) {
   OwnedBody body{std::move(mesh), every_law(), {}};
   body.laws.push_back(stiffening_law());
-  for (std::size_t i = 1; body.mesh.type == ElementType::hex8 && i < body.laws.size(); i += 2)
+  for (std::size_t i = 1; cell(body.mesh.type).mean_dilatation && i < body.laws.size(); i += 2)
     body.laws[i].mean_dilatation = true;
   std::mt19937 random(seed);
   for (std::size_t e = 0; e < body.mesh.view().element_count(); ++e)
@@ -96,7 +95,7 @@ inline double dot(std::span<const double> a, std::span<const double> b) {
 /// A small perturbed box with displacements that take about half of its points beyond yield.
 inline OwnedBody small_body(ElementType type, unsigned seed) {
   meshes::OwnedMesh mesh = meshes::box(type, {3, 2, 2}, {1.5, 1.0, 1.0});
-  meshes::jitter(mesh, type == ElementType::tet10 ? 0.04 : 0.12, seed);
+  meshes::jitter(mesh, cell(type).order == 2 ? 0.04 : 0.12, seed);
   return with_every_law(std::move(mesh), seed);
 }
 

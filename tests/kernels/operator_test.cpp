@@ -49,7 +49,7 @@ void stretch(meshes::OwnedMesh& mesh, double factor) {
 /// Meshes of 1 to some hundred elements, perturbed, irregular and stretched.
 std::vector<OwnedBody> bodies(ElementType type) {
   std::vector<OwnedBody> all;
-  const double amount = type == ElementType::tet10 ? 0.04 : 0.12;
+  const double amount = cell(type).order == 2 ? 0.04 : 0.12;
   auto whole = meshes::box(type, {3, 2, 3}, {1, 1, 1});
   meshes::jitter(whole, amount, 1);
   const std::size_t count = whole.view().element_count();
@@ -60,7 +60,7 @@ std::vector<OwnedBody> bodies(ElementType type) {
   auto long_box = meshes::box(type, {9, 4, 4}, {4, 1, 1});
   meshes::jitter(long_box, amount, 3);
   if (type == ElementType::tet4) meshes::flip(long_box, 3, 4);
-  if (type == ElementType::tet10) meshes::straighten(long_box);
+  meshes::straighten(long_box);
   meshes::shuffle(long_box, 5);
   all.push_back(test::with_one_law(long_box, test::every_law()[4]));
   stretch(long_box, 1000.0);

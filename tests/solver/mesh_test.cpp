@@ -21,7 +21,7 @@ namespace {
 
 using Vector = std::array<double, 3>;
 
-constexpr std::array all_types{ElementType::tri3, ElementType::tet4, ElementType::tet10, ElementType::hex8};
+const auto all_types = element_types();
 
 Vector at(const Mesh& mesh, std::int32_t node) {
   Vector x{};
@@ -39,7 +39,7 @@ Vector area_vector(const Mesh& mesh, std::size_t facet) {
     const Vector a = at(mesh, n[0]), b = at(mesh, n[1]);
     return {b[1] - a[1], a[0] - b[0], 0};
   }
-  const std::size_t corners = mesh.type == ElementType::hex8 ? 4 : 3;
+  const auto corners = static_cast<std::size_t>(cell(mesh.type).facet().corners);
   Vector sum{};
   const Vector o = at(mesh, n[0]);
   for (std::size_t k = 1; k + 1 < corners; ++k) {

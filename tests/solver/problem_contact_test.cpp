@@ -13,7 +13,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-constexpr std::array every_type{ElementType::tri3, ElementType::tet4, ElementType::tet10, ElementType::hex8};
+const auto every_type = element_types();
 
 /// Bottom against a plane a little below, clamped at the top.
 Model on_a_plane(int dim, double gap = 0.1) {

@@ -79,8 +79,6 @@ class Writer {
 
  private:
   void collect() {
-    constexpr std::array body_types{2, 4, 11, 5}, facet_types{1, 2, 9, 3};
-    const auto shape = static_cast<std::size_t>(mesh_.type);
     const auto n = static_cast<std::size_t>(nodes_per_element(mesh_.type));
     for (int dimension = 0; dimension <= mesh_.dim(); ++dimension) {
       std::map<std::int32_t, std::vector<int>> physicals;  // of every member
@@ -96,13 +94,13 @@ class Writer {
           entities_.push_back({dimension, 0, groups, {}, {}});
         Entity& entity = entities_.back();
         if (dimension == mesh_.dim()) {
-          entity.type = body_types[shape];
+          entity.type = cell(mesh_.type).gmsh;
           const auto begin =
               mesh_.elements.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(member) * n);
           entity.elements.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(n));
           entity.tags.push_back(mesh_.element_tag(static_cast<std::size_t>(member)));
         } else if (dimension == mesh_.dim() - 1) {
-          entity.type = facet_types[shape];
+          entity.type = cell(mesh_.type).facet().gmsh;
           const auto facet = mesh_.facet(static_cast<std::size_t>(member));
           entity.elements.emplace_back(facet.begin(), facet.end());
           entity.tags.push_back(next_++);

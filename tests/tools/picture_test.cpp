@@ -163,8 +163,7 @@ Bent bent_box(const BoxSpec& spec, double amount) {
 }  // namespace
 
 TEST_CASE("the picture of a deformed body is well formed for every element type") {
-  for (const ElementType type :
-       {ElementType::tri3, ElementType::tet4, ElementType::tet10, ElementType::hex8}) {
+  for (const ElementType type : element_types()) {
     const Bent bent = bent_box({{4, 1, 1}, {8, 3, 3}, type}, 0.5);
     DeformedPicture picture = bent.picture();
     picture.planes.push_back(

@@ -72,9 +72,8 @@ std::map<std::string, Array> arrays(const std::string& file) {
 
 TEST_CASE("points, cells and fields of every element type come back") {
   const TemporaryFolder folder;
-  const std::map<ElementType, std::uint8_t> vtk_types{
-      {ElementType::tri3, 5}, {ElementType::tet4, 10}, {ElementType::tet10, 24}, {ElementType::hex8, 12}};
-  for (const auto& [type, vtk_type] : vtk_types) {
+  for (const ElementType type : element_types()) {
+    const auto vtk_type = static_cast<std::uint8_t>(cell(type).vtk);
     const Mesh mesh = make_box({{2, 1, 3}, {2, 3, 2}, type});
     const auto dim = static_cast<std::size_t>(mesh.dim());
     const auto nodes = static_cast<std::size_t>(nodes_per_element(type));
@@ -85,7 +84,7 @@ TEST_CASE("points, cells and fields of every element type come back") {
     std::iota(number.begin(), number.end(), std::int64_t{1} << 40);
     const std::vector<std::uint8_t> plastic(mesh.element_count(), 1);
     const Grid grid{mesh.dim(),
-                    body_cells(type),
+                    &cell(type),
                     mesh.coordinates,
                     mesh.elements,
                     {{"displacement", mesh.dim(), displacement}, {"node_id", 1, number}},
@@ -116,7 +115,7 @@ TEST_CASE("points, cells and fields of every element type come back") {
     REQUIRE(cells.size() == mesh.elements.size());
     for (std::size_t e = 0; e < mesh.element_count(); ++e)
       CHECK(offsets[e] == static_cast<std::int64_t>((e + 1) * nodes));
-    if (type != ElementType::tet10) {
+    if (cell(type).order == 1) {
       CHECK(cells == mesh.elements);
       continue;
     }
@@ -137,7 +136,7 @@ TEST_CASE("points, cells and fields of every element type come back") {
 TEST_CASE("an empty piece is a whole file") {
   const TemporaryFolder folder;
   const std::vector<double> none;
-  write_vtu(folder.file("empty.vtu"), {3, CellShape::tri6, {}, {}, {{"gap", 1, none}}, {}});
+  write_vtu(folder.file("empty.vtu"), {3, &cell(ElementType::tet10).facet(), {}, {}, {{"gap", 1, none}}, {}});
   auto found = arrays(read_bytes(folder.file("empty.vtu")));
   CHECK(found.size() == 5);
   CHECK(found["gap"].bytes.empty());
@@ -146,7 +145,7 @@ TEST_CASE("an empty piece is a whole file") {
 TEST_CASE("pieces and collections name their files and fields") {
   const TemporaryFolder folder;
   const std::vector<double> none;
-  const Grid grid{2, CellShape::line2, {}, {}, {{"traction", 2, none}}, {{"a<b", 1, none}}};
+  const Grid grid{2, &cell(ElementType::tri3).facet(), {}, {}, {{"traction", 2, none}}, {{"a<b", 1, none}}};
   const std::vector<std::string> pieces{"p_0.vtu", "p_1.vtu"};
   write_pvtu(folder.file("p.pvtu"), grid, pieces);
   const std::string text = read_bytes(folder.file("p.pvtu"));
@@ -172,8 +171,9 @@ TEST_CASE("what cannot be written is reported with its name, and leaves nothing 
     return false;
   };
   const std::vector<double> points(3 * 10000, 1.0), few(5, 0.0);
-  CHECK(refused(folder.file("missing/a.vtu"), {3, CellShape::tri3, points, {}, {}, {}}, "No such file"));
-  CHECK(refused(folder.file("a.vtu"), {3, CellShape::tri3, points, {}, {{"gap", 1, few}}, {}},
+  CHECK(refused(folder.file("missing/a.vtu"), {3, &cell(ElementType::tri3), points, {}, {}, {}},
+                "No such file"));
+  CHECK(refused(folder.file("a.vtu"), {3, &cell(ElementType::tri3), points, {}, {{"gap", 1, few}}, {}},
                 "gap has 5 values"));
   CHECK(folder.entries() == 0);
 
@@ -186,7 +186,7 @@ TEST_CASE("what cannot be written is reported with its name, and leaves nothing 
   const auto handler = ::signal(SIGXFSZ, SIG_IGN);
   REQUIRE(::setrlimit(RLIMIT_FSIZE, &tight) == 0);
   const bool large =
-      refused(folder.file("a.vtu"), {3, CellShape::tri3, points, {}, {}, {}}, "cannot be written");
+      refused(folder.file("a.vtu"), {3, &cell(ElementType::tri3), points, {}, {}, {}}, "cannot be written");
   ::setrlimit(RLIMIT_FSIZE, &old);
   ::signal(SIGXFSZ, handler);
   CHECK(large);

@@ -105,9 +105,9 @@ class CaseParser {
     BoxSpec spec;
     spec.type = size.size() == 2 ? ElementType::tri3 : ElementType::tet4;
     if (const auto element = box.optional("element")) {
-      constexpr std::array<ElementType, 4> types{ElementType::tri3, ElementType::tet4, ElementType::tet10,
-                                                 ElementType::hex8};
-      spec.type = types[element->choice({"tri3", "tet4", "tet10", "hex8"})];
+      std::vector<std::string_view> names;
+      for (const ElementType type : element_types()) names.push_back(cell(type).name);
+      spec.type = element_types()[element->choice(names)];
     }
     const auto dim = static_cast<std::size_t>(dimension(spec.type));
     const std::string count = std::to_string(dim) + " entries (one a dimension)";

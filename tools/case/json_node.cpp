@@ -177,15 +177,15 @@ std::vector<Node> Node::list(const std::string& what) const {
   return entries;
 }
 
-std::size_t Node::choice(std::initializer_list<const char*> words) const {
+std::size_t Node::choice(const std::vector<std::string_view>& words) const {
   std::string list;
   std::vector<std::string> candidates;
-  for (const char* word : words) {
+  for (const std::string_view word : words) {
     if (value_->is_string() && value_->get_ref<const std::string&>() == word) return candidates.size();
     list += (list.empty()                            ? ""
              : candidates.size() + 1 == words.size() ? " or "
                                                      : ", ") +
-            std::string("\"") + word + "\"";
+            ("\"" + std::string(word) + "\"");
     candidates.emplace_back(word);
   }
   std::string message = list;

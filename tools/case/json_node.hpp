@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace kacanov {
@@ -32,7 +33,7 @@ class Node {
   std::string text() const;                                   ///< a string that is not empty
   std::vector<Node> list(const std::string& expected) const;  ///< the entries of an array
   /// A string out of a few; returns its place among them.
-  std::size_t choice(std::initializer_list<const char*> words) const;
+  std::size_t choice(const std::vector<std::string_view>& words) const;
 
   [[noreturn]] void expected(const std::string& what) const;
 

@@ -4,19 +4,38 @@
 
 namespace kacanov {
 
-const char* gmsh_type_name(std::int64_t type) {
-  constexpr std::array<const char*, 32> names{
-      nullptr, "line2", "tri3",    "quad4",     "tet4",  "hex8",    "prism6",    "pyramid5",
-      "line3", "tri6",  "quad9",   "tet10",     "hex27", "prism18", "pyramid14", "point",
-      "quad8", "hex20", "prism15", "pyramid13", "tri9",  "tri10",   "tri12",     "tri15",
-      "tri15", "tri21", "line4",   "line5",     "line6", "tet20",   "tet35",     "tet56"};
-  return type > 0 && type < static_cast<std::int64_t>(names.size()) ? names[static_cast<std::size_t>(type)]
-                                                                    : nullptr;
+std::string_view gmsh_type_name(std::int64_t type) {
+  if (const auto known = gmsh_cell(type)) return cells()[*known].name;
+  switch (type) {  // those that are not supported
+    case 6: return "prism6";
+    case 7: return "pyramid5";
+    case 10: return "quad9";
+    case 12: return "hex27";
+    case 13: return "prism18";
+    case 14: return "pyramid14";
+    case 16: return "quad8";
+    case 17: return "hex20";
+    case 18: return "prism15";
+    case 19: return "pyramid13";
+    case 20: return "tri9";
+    case 21: return "tri10";
+    case 22: return "tri12";
+    case 23:
+    case 24: return "tri15";
+    case 25: return "tri21";
+    case 26: return "line4";
+    case 27: return "line5";
+    case 28: return "line6";
+    case 29: return "tet20";
+    case 30: return "tet35";
+    case 31: return "tet56";
+    default: return {};
+  }
 }
 
-std::optional<GmshShape> gmsh_shape(std::int64_t type) {
-  for (std::size_t s = 0; s < gmsh_shape_count; ++s)
-    if (gmsh_shapes[s].gmsh_type == type) return static_cast<GmshShape>(s);
+std::optional<std::size_t> gmsh_cell(std::int64_t type) {
+  for (std::size_t c = 0; c < cells().size(); ++c)
+    if (cells()[c].gmsh == type) return c;
   return std::nullopt;
 }
 

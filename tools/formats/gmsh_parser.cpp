@@ -241,8 +241,8 @@ class Parser {
       const std::int32_t dimension = in_.tag("dimension of an entity");
       const std::int32_t entity = in_.tag("number of an entity");
       const std::int32_t type = in_.tag("element type");
-      const auto shape = gmsh_shape(type);
-      if (shape && gmsh_shapes[static_cast<std::size_t>(*shape)].dimension != dimension)
+      const auto shape = gmsh_cell(type);
+      if (shape && cells()[*shape].dim != dimension)
         in_.fail("elements of type " + std::to_string(type) + " in an entity of dimension " +
                  std::to_string(dimension));
       const std::int64_t count = in_.size("number of elements in a block");
@@ -295,7 +295,7 @@ class Parser {
   }
 
   void listed_element(std::int32_t tag, std::int32_t type, std::int32_t tags) {
-    const auto shape = gmsh_shape(type);
+    const auto shape = gmsh_cell(type);
     if (!shape) refuse_type(type, tag);
     if (tags < 0) in_.fail("number of tags: expected a number ≥ 0, got " + std::to_string(tags));
     int group = 0;
@@ -315,44 +315,42 @@ class Parser {
       return;
     }
     // Gmsh writes an element that belongs to several physical groups once for each of them, in a row.
-    GmshElements& list = content_.of(*shape);
-    list.nodes.resize(list.nodes.size() - static_cast<std::size_t>(info(*shape).nodes));
+    GmshElements& list = content_.elements[*shape];
+    list.nodes.resize(list.nodes.size() - static_cast<std::size_t>(cells()[*shape].nodes));
     std::vector<int> both = content_.physicals[list.runs.back().set];
     if (group != 0) both.push_back(group);
     list.assign_last(set_of(std::move(both)));
   }
 
-  bool repeats_last(GmshShape shape) {
-    const GmshElements& list = content_.of(shape);
-    const auto n = static_cast<std::ptrdiff_t>(info(shape).nodes);
+  bool repeats_last(std::size_t shape) {
+    const GmshElements& list = content_.elements[shape];
+    const auto n = static_cast<std::ptrdiff_t>(cells()[shape].nodes);
     return list.count() > 0 && std::equal(list.nodes.end() - n, list.nodes.end(), list.nodes.end() - 2 * n);
   }
 
   // Common to both formats.
 
-  static const GmshShapeInfo& info(GmshShape shape) { return gmsh_shapes[static_cast<std::size_t>(shape)]; }
-
   [[noreturn]] void refuse_type(std::int64_t type, std::int64_t tag) const {
-    const char* name = gmsh_type_name(type);
+    const std::string name(gmsh_type_name(type));
     in_.fail("element " + std::to_string(tag) + " is of Gmsh's type " + std::to_string(type) +
-             (name ? std::string(" (") + name + ")" : std::string()) +
-             ", which is not supported: bodies are made of tri3, tet4, tet10 or hex8");
+             (name.empty() ? name : " (" + name + ")") + ", which is not supported: bodies are made of " +
+             element_names([](const Cell&) { return true; }));
   }
 
-  void reserve_elements(GmshShape shape, std::int64_t count) {
+  void reserve_elements(std::size_t shape, std::int64_t count) {
     in_.expect_room(count, 4, "elements");
-    GmshElements& list = content_.of(shape);
+    GmshElements& list = content_.elements[shape];
     const std::size_t needed = list.count() + static_cast<std::size_t>(count);
     if (needed <= list.tags.capacity()) return;
     const std::size_t capacity = std::max(needed, list.count() + list.count() / 2);
     list.tags.reserve(capacity);
-    list.nodes.reserve(capacity * static_cast<std::size_t>(info(shape).nodes));
+    list.nodes.reserve(capacity * static_cast<std::size_t>(cells()[shape].nodes));
   }
 
   template <typename Next>
-  void nodes(GmshShape shape, std::int64_t element, Next&& next) {
-    auto& list = content_.of(shape).nodes;
-    for (int k = 0; k < info(shape).nodes; ++k) {
+  void nodes(std::size_t shape, std::int64_t element, Next&& next) {
+    auto& list = content_.elements[shape].nodes;
+    for (int k = 0; k < cells()[shape].nodes; ++k) {
       const std::int64_t tag = next();
       const std::int32_t node = index_.find(tag);
       if (node < 0)
@@ -362,8 +360,8 @@ class Parser {
     }
   }
 
-  void add(GmshShape shape, std::int64_t tag, std::size_t set) {
-    GmshElements& list = content_.of(shape);
+  void add(std::size_t shape, std::int64_t tag, std::size_t set) {
+    GmshElements& list = content_.elements[shape];
     if (list.count() >= std::numeric_limits<std::int32_t>::max())
       in_.fail("more elements than 32-bit indices can number");
     list.tags.push_back(tag);

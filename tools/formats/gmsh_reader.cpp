@@ -13,38 +13,37 @@
 namespace kacanov {
 namespace {
 
-constexpr int dimension_of(std::size_t shape) { return gmsh_shapes[shape].dimension; }
+int dimension_of(std::size_t type) { return cells()[type].dim; }
 
-/// The one shape that the body is made of.
-GmshShape body_shape(const std::string& path, const GmshContent& content) {
-  std::vector<std::size_t> top;
-  for (std::size_t s = 0; s < gmsh_shape_count; ++s) {
-    if (content.elements[s].count() == 0) continue;
-    if (!top.empty() && dimension_of(s) > dimension_of(top[0])) top.clear();
-    top.push_back(s);
-  }
-  if (top.empty() || dimension_of(top[0]) < 2)
-    throw InputError(path + ": the mesh has no triangles, tetrahedra or hexahedra");
-  for (const std::size_t s : top) {
-    const auto shape = static_cast<GmshShape>(s);
-    const std::string element =
-        path + ": element " + std::to_string(content.elements[s].tags[0]) + " is a " + gmsh_shapes[s].name;
-    if (shape == GmshShape::tri6 || shape == GmshShape::quad4)
-      throw InputError(element + ": a body in 2D has to be made of tri3 only");
-    if (s != top[0])
-      throw InputError(element + ", but the mesh has elements of type " + gmsh_shapes[top[0]].name +
-                       " too: a body has to be made of one type");
-  }
-  return static_cast<GmshShape>(top[0]);
+/// Names of the elements for bodies of the dimension.
+std::string bodies_of(int dimension) {
+  return element_names(dimension == 2 ? [](const Cell& c) { return c.dim == 2; }
+                                      : [](const Cell& c) { return c.dim == 3; });
 }
 
-ElementType element_type(GmshShape body) {
-  switch (body) {
-    case GmshShape::tet4: return ElementType::tet4;
-    case GmshShape::tet10: return ElementType::tet10;
-    case GmshShape::hex8: return ElementType::hex8;
-    default: return ElementType::tri3;
+/// The one type that the body is made of, by its place among cells().
+std::size_t body_cell(const std::string& path, const GmshContent& content) {
+  std::vector<std::size_t> top;
+  for (std::size_t c = 0; c < cells().size(); ++c) {
+    if (content.elements[c].count() == 0) continue;
+    if (!top.empty() && dimension_of(c) > dimension_of(top[0])) top.clear();
+    if (top.empty() || dimension_of(c) == dimension_of(top[0])) top.push_back(c);
   }
+  if (top.empty() || dimension_of(top[0]) < 2)
+    throw InputError(path + ": the mesh has nothing that a body can be made of: " +
+                     element_names([](const Cell&) { return true; }));
+  for (const std::size_t c : top) {
+    const Cell& type = cells()[c];
+    const std::string element =
+        path + ": element " + std::to_string(content.elements[c].tags[0]) + " is a " + std::string(type.name);
+    if (!element_type(type))
+      throw InputError(element + ": a body in " + std::to_string(type.dim) + "D has to be made of " +
+                       bodies_of(type.dim));
+    if (c != top[0])
+      throw InputError(element + ", but the mesh has elements of type " + std::string(cells()[top[0]].name) +
+                       " too: a body has to be made of one type");
+  }
+  return top[0];
 }
 
 void refuse_unused_nodes(const std::string& path, const GmshContent& content, const Mesh& mesh) {
@@ -81,7 +80,7 @@ void take_coordinates(const std::string& path, GmshContent& content, Mesh& mesh)
   }
   for (std::size_t i = 0; i < nodes; ++i)
     if (!(std::abs(x[3 * i + 2] - x[2]) <= 1e-9 * (high - low)))
-      throw InputError(path + ": the mesh is made of triangles, but node " +
+      throw InputError(path + ": the mesh is made of " + std::string(cell(mesh.type).name) + ", but node " +
                        std::to_string(content.node_tags[i]) + " has another z than node " +
                        std::to_string(content.node_tags[0]) +
                        ": a 2D body has to lie in a plane z = constant (shells are not supported)");
@@ -97,7 +96,7 @@ void take_coordinates(const std::string& path, GmshContent& content, Mesh& mesh)
 class FacetIndex {
  public:
   explicit FacetIndex(const Mesh& mesh) {
-    const std::size_t corners = mesh.type == ElementType::tri3 ? 2 : mesh.type == ElementType::hex8 ? 4 : 3;
+    const auto corners = static_cast<std::size_t>(cell(mesh.type).facet().corners);
     entries_.reserve(mesh.facet_count());
     for (std::size_t f = 0; f < mesh.facet_count(); ++f)
       entries_.push_back({key(mesh.facet(f).first(corners)), static_cast<std::int32_t>(f)});
@@ -130,14 +129,14 @@ class Groups {
       if (key.first <= dim) members_.try_emplace(key);
   }
 
-  /// Appends what `member(element)` gives for the elements of one shape, in all groups they belong to.
+  /// Appends what `member(element)` gives for the elements of one type, in all groups they belong to.
   template <typename Member>
-  void add(std::size_t shape, Member&& member) {
-    const GmshElements& list = content_.elements[shape];
+  void add(std::size_t type, Member&& member) {
+    const GmshElements& list = content_.elements[type];
     for (std::size_t r = 0; r < list.runs.size(); ++r) {
       const std::size_t end = r + 1 < list.runs.size() ? list.runs[r + 1].first : list.count();
       for (const int physical : content_.physicals[list.runs[r].set]) {
-        auto& members = members_[{dimension_of(shape), physical}];
+        auto& members = members_[{dimension_of(type), physical}];
         for (std::size_t e = list.runs[r].first; e < end; ++e) member(e, members);
       }
     }
@@ -178,22 +177,22 @@ class Groups {
 std::vector<Group> find_groups(const GmshContent& content, std::size_t body, const Mesh& mesh) {
   Groups groups(content, mesh.dim());
   const FacetIndex facets(mesh);
-  for (std::size_t s = 0; s < gmsh_shape_count; ++s) {
+  for (std::size_t s = 0; s < cells().size(); ++s) {
     const GmshElements& list = content.elements[s];
     const auto nodes = [&](std::size_t e, int count) {
       return std::span(list.nodes)
-          .subspan(e * static_cast<std::size_t>(gmsh_shapes[s].nodes), static_cast<std::size_t>(count));
+          .subspan(e * static_cast<std::size_t>(cells()[s].nodes), static_cast<std::size_t>(count));
     };
     if (s == body) {
       groups.add(s, [](std::size_t e, auto& members) { members.push_back(static_cast<std::int32_t>(e)); });
     } else if (dimension_of(s) == mesh.dim() - 1) {
       groups.add(s, [&](std::size_t e, auto& members) {
-        const std::int32_t facet = facets.find(nodes(e, gmsh_shapes[s].corners));
+        const std::int32_t facet = facets.find(nodes(e, cells()[s].corners));
         if (facet >= 0) members.push_back(facet);
       });
     } else {
       groups.add(s, [&](std::size_t e, auto& members) {
-        const auto all = nodes(e, gmsh_shapes[s].nodes);
+        const auto all = nodes(e, cells()[s].nodes);
         members.insert(members.end(), all.begin(), all.end());
       });
     }
@@ -221,15 +220,15 @@ GmshContent parse_file(const std::string& path) {
 }
 
 Mesh make_mesh(const std::string& path, GmshContent content) {
-  const GmshShape body = body_shape(path, content);
+  const std::size_t body = body_cell(path, content);
   Mesh mesh;
-  mesh.type = element_type(body);
-  GmshElements& elements = content.of(body);
+  mesh.type = *element_type(cells()[body]);
+  GmshElements& elements = content.elements[body];
   mesh.elements = std::move(elements.nodes);
   refuse_unused_nodes(path, content, mesh);
   take_coordinates(path, content, mesh);
   find_boundary(mesh);
-  mesh.groups = find_groups(content, static_cast<std::size_t>(body), mesh);
+  mesh.groups = find_groups(content, body, mesh);
   if (!plain_numbers(content.node_tags)) mesh.node_tags = std::move(content.node_tags);
   if (!plain_numbers(elements.tags)) mesh.element_tags = std::move(elements.tags);
   return mesh;

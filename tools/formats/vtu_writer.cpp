@@ -13,24 +13,6 @@
 namespace kacanov {
 namespace {
 
-struct VtkCell {
-  std::uint8_t type;
-  int nodes;
-};
-
-VtkCell vtk_cell(CellShape shape) {
-  switch (shape) {
-    case CellShape::line2: return {3, 2};
-    case CellShape::tri3: return {5, 3};
-    case CellShape::tri6: return {22, 6};
-    case CellShape::quad4: return {9, 4};
-    case CellShape::tet4: return {10, 4};
-    case CellShape::tet10: return {24, 10};
-    case CellShape::hex8: return {12, 8};
-  }
-  return {0, 1};
-}
-
 constexpr const char* byte_order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
 
 std::string header(const char* type) {
@@ -90,8 +72,7 @@ class VtuFile {
   VtuFile(const std::string& path, const Grid& grid)
       : path_(path),
         grid_(grid),
-        cell_(vtk_cell(grid.shape)),
-        nodes_(static_cast<std::size_t>(cell_.nodes)),
+        nodes_(static_cast<std::size_t>(grid.cell->nodes)),
         dim_(static_cast<std::size_t>(grid.dim)),
         points_(grid.points.size() / dim_),
         cells_(grid.cells.size() / nodes_),
@@ -170,11 +151,8 @@ class VtuFile {
     append_size(cells_ * nodes_ * 4);
     Buffer<std::int32_t> nodes(file_);
     for (std::size_t c = 0; c < cells_; ++c)
-      for (std::size_t k = 0; k < nodes_; ++k) {
-        // VTK has the edges 13 and 23 of a quadratic tetrahedron the other way round.
-        const std::size_t from = grid_.shape == CellShape::tet10 && k >= 8 ? 17 - k : k;
-        nodes.push(grid_.cells[c * nodes_ + from]);
-      }
+      for (const std::int8_t from : grid_.cell->vtk_order)
+        nodes.push(grid_.cells[c * nodes_ + static_cast<std::size_t>(from)]);
     nodes.flush();
     append_size(cells_ * 8);
     Buffer<std::int64_t> offsets(file_);
@@ -182,7 +160,7 @@ class VtuFile {
     offsets.flush();
     append_size(cells_);
     Buffer<std::uint8_t> types(file_);
-    for (std::size_t c = 0; c < cells_; ++c) types.push(cell_.type);
+    for (std::size_t c = 0; c < cells_; ++c) types.push(static_cast<std::uint8_t>(grid_.cell->vtk));
     types.flush();
   }
 
@@ -190,33 +168,12 @@ class VtuFile {
 
   const std::string& path_;
   const Grid& grid_;
-  VtkCell cell_;
   std::size_t nodes_, dim_, points_, cells_;
   AtomicFile file_;
   std::uint64_t offset_ = 0;
 };
 
 }  // namespace
-
-CellShape body_cells(ElementType type) {
-  switch (type) {
-    case ElementType::tri3: return CellShape::tri3;
-    case ElementType::tet4: return CellShape::tet4;
-    case ElementType::tet10: return CellShape::tet10;
-    case ElementType::hex8: return CellShape::hex8;
-  }
-  return CellShape::tet4;
-}
-
-CellShape facet_cells(ElementType type) {
-  switch (type) {
-    case ElementType::tri3: return CellShape::line2;
-    case ElementType::tet4: return CellShape::tri3;
-    case ElementType::tet10: return CellShape::tri6;
-    case ElementType::hex8: return CellShape::quad4;
-  }
-  return CellShape::tri3;
-}
 
 void write_vtu(const std::string& path, const Grid& grid) { VtuFile(path, grid).write(); }
 

@@ -14,13 +14,9 @@
 #include <variant>
 #include <vector>
 
-#include <kacanov/mesh_view.hpp>
+#include <kacanov/cells.hpp>
 
 namespace kacanov {
-
-enum class CellShape : std::uint8_t { line2, tri3, tri6, quad4, tet4, tet10, hex8 };
-CellShape body_cells(ElementType type);
-CellShape facet_cells(ElementType type);
 
 /// An array for a file: one that lies there, or one that is worked out while it is written, some entries at a
 /// time.
@@ -70,7 +66,7 @@ struct Field {
 /// A grid and its fields. No array is owned.
 struct Grid {
   int dim = 3;
-  CellShape shape = CellShape::tet4;
+  const Cell* cell = nullptr;           ///< type of all cells
   std::span<const double> points;       ///< points × dim
   std::span<const std::int32_t> cells;  ///< cells × nodes, Gmsh's node order
   std::vector<Field> point_fields, cell_fields;

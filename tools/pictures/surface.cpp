@@ -27,31 +27,38 @@ struct Triangle {
   std::uint8_t edges = 0;
 };
 
+/// The triangles of one flat cell, their sides marked that lie on its edges.
+std::vector<Triangle> triangles_of(const Cell& flat) {
+  std::vector<Triangle> result;
+  for (const auto& corners : flat.triangles) {
+    Triangle triangle;
+    for (std::size_t k = 0; k < 3; ++k) {
+      triangle.nodes[k] = corners[k];
+      const auto on = [&](const CellEdge& e, std::int8_t node) {
+        return node == e.a || node == e.b || node == e.middle;
+      };
+      for (const CellEdge& edge : flat.edges)
+        if (on(edge, corners[k]) && on(edge, corners[(k + 1) % 3]))
+          triangle.edges = static_cast<std::uint8_t>(triangle.edges | 1 << k);
+    }
+    result.push_back(triangle);
+  }
+  return result;
+}
+
 /// The triangles to draw: all of them in 2D, those of the boundary in 3D.
 std::vector<Triangle> triangles(const Mesh& mesh) {
+  const bool whole = mesh.dim() == 2;
+  const Cell& flat = whole ? cell(mesh.type) : cell(mesh.type).facet();
+  const std::vector<Triangle> pattern = triangles_of(flat);
+  const std::vector<std::int32_t>& nodes = whole ? mesh.elements : mesh.facets;
   std::vector<Triangle> result;
-  const auto add = [&](std::int32_t a, std::int32_t b, std::int32_t c, int edges) {
-    result.push_back({{a, b, c}, static_cast<std::uint8_t>(edges)});
-  };
-  if (mesh.dim() == 2) {
-    const auto& e = mesh.elements;
-    for (std::size_t i = 0; i < e.size(); i += 3) add(e[i], e[i + 1], e[i + 2], 7);
-    return result;
-  }
-  for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-    const auto n = mesh.facet(f);
-    if (mesh.type == ElementType::tet4) {
-      add(n[0], n[1], n[2], 7);
-    } else if (mesh.type == ElementType::hex8) {
-      add(n[0], n[1], n[2], 0b011);
-      add(n[0], n[2], n[3], 0b110);
-    } else {
-      add(n[0], n[3], n[5], 0b101);
-      add(n[3], n[1], n[4], 0b011);
-      add(n[5], n[4], n[2], 0b110);
-      add(n[3], n[4], n[5], 0);
+  result.reserve(nodes.size() / static_cast<std::size_t>(flat.nodes) * pattern.size());
+  for (std::size_t first = 0; first < nodes.size(); first += static_cast<std::size_t>(flat.nodes))
+    for (Triangle triangle : pattern) {
+      for (std::int32_t& node : triangle.nodes) node = nodes[first + static_cast<std::size_t>(node)];
+      result.push_back(triangle);
     }
-  }
   return result;
 }
 

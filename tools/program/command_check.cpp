@@ -15,16 +15,6 @@
 namespace kacanov {
 namespace {
 
-const char* element_name(ElementType type) {
-  switch (type) {
-    case ElementType::tri3: return "tri3";
-    case ElementType::tet4: return "tet4";
-    case ElementType::tet10: return "tet10";
-    case ElementType::hex8: return "hex8";
-  }
-  return "";
-}
-
 std::string on_text(const Selector& on, int dim) {
   if (on.kind == Selector::Kind::all) return "all";
   if (on.kind == Selector::Kind::name) return "\"" + on.name + "\"";
@@ -121,8 +111,8 @@ int check_command(const Case& input, int ranks) {
   const Extent box = extent(mesh);
   std::printf("%s: the case is valid\n", input.name.c_str());
   std::printf("  mesh           %zu %s elements, %zu nodes, %zu unknowns, %zu boundary facets\n",
-              mesh.element_count(), element_name(mesh.type), mesh.node_count(), mesh.coordinates.size(),
-              mesh.facet_count());
+              mesh.element_count(), std::string(cell(mesh.type).name).c_str(), mesh.node_count(),
+              mesh.coordinates.size(), mesh.facet_count());
   std::printf("  extent         %s to %s\n", to_text(box.lower, dim).c_str(),
               to_text(box.upper, dim).c_str());
   for (const Group& group : mesh.groups) {

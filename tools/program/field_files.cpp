@@ -23,7 +23,7 @@ Grid body_grid(ElementType type) {
   const int dim = dimension(type);
   Grid grid;
   grid.dim = dim;
-  grid.shape = body_cells(type);
+  grid.cell = &cell(type);
   grid.point_fields = {{"displacement", dim, Real()}, {"node_id", 1, Number()}};
   grid.cell_fields = {{"stress", 6, Real()}, {"von_mises", 1, Real()}, {"dev_strain", 1, Real()},
                       {"g", 1, Real()},      {"plastic", 1, Flag()},   {"element_id", 1, Number()}};
@@ -91,7 +91,7 @@ Surface contact_surface(const Problem& problem, const Model& model, const Contac
 void write_surface(const std::filesystem::path& file, const Surface& surface, const Mesh& mesh) {
   Grid grid;
   grid.dim = mesh.dim();
-  grid.shape = facet_cells(mesh.type);
+  grid.cell = &cell(mesh.type).facet();
   grid.points = surface.points;
   grid.cells = surface.cells;
   grid.point_fields = {{"gap", 1, surface.gap},

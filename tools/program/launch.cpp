@@ -136,7 +136,7 @@ int usable_cores() {
 std::int64_t estimate_unknowns(const MeshSource& mesh) {
   if (mesh.box) {
     const int dim = dimension(mesh.box->type);
-    const int order = mesh.box->type == ElementType::tet10 ? 2 : 1;
+    const int order = cell(mesh.box->type).order;
     double nodes = 1.0;
     for (std::size_t c = 0; c < static_cast<std::size_t>(dim); ++c)
       nodes *= 1.0 + order * static_cast<double>(mesh.box->cells[c]);

@@ -80,9 +80,9 @@ ProblemSize size_of(const BoxSpec& box, const Model& model) {
   size.type = box.type;
   size.nonlinear = nonlinear(model);
   const auto dim = static_cast<std::size_t>(dimension(box.type));
-  const double order = box.type == ElementType::tet10 ? 2.0 : 1.0;
+  const double order = cell(box.type).order;
   size.nodes = 1.0;
-  size.elements = box.type == ElementType::hex8 ? 1.0 : dim == 2 ? 2.0 : 6.0;
+  size.elements = cell(box.type).box_elements();
   for (std::size_t c = 0; c < dim; ++c) {
     size.nodes *= 1.0 + order * box.cells[c];
     size.elements *= box.cells[c];

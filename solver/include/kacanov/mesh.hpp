@@ -12,21 +12,9 @@
 
 namespace kacanov {
 
-/// Nodes of a boundary facet: tri3 2, tet4 3, tet10 6 (corners, then edges 01 12 20), hex8 4.
-constexpr int nodes_per_facet(ElementType type) noexcept {
-  switch (type) {
-    case ElementType::tri3: return 2;
-    case ElementType::tet4: return 3;
-    case ElementType::tet10: return 6;
-    case ElementType::hex8: return 4;
-  }
-  return 0;
-}
-
-/// Nodes of local facet `facet` of an element, so ordered that the normal points outwards (in 2D: the
-/// body lies to the left of the directed edge).
-std::span<const std::int8_t> facet_nodes(ElementType type, int facet);
-int facets_per_element(ElementType type);
+/// Nodes of a boundary facet.
+inline int nodes_per_facet(ElementType type) { return cell(type).facet().nodes; }
+inline int facets_per_element(ElementType type) { return cell(type).facets(); }
 
 /// A named part of the mesh: a Gmsh physical group or a generated side.
 struct Group {
@@ -45,16 +33,14 @@ struct Mesh {
   std::vector<std::int32_t> facet_element;  ///< the element each facet belongs to
   std::vector<Group> groups;
 
-  int dim() const noexcept { return dimension(type); }
-  std::size_t node_count() const noexcept { return coordinates.size() / static_cast<std::size_t>(dim()); }
-  std::size_t element_count() const noexcept {
+  int dim() const { return dimension(type); }
+  std::size_t node_count() const { return coordinates.size() / static_cast<std::size_t>(dim()); }
+  std::size_t element_count() const {
     return elements.size() / static_cast<std::size_t>(nodes_per_element(type));
   }
-  std::size_t facet_count() const noexcept {
-    return facets.size() / static_cast<std::size_t>(nodes_per_facet(type));
-  }
+  std::size_t facet_count() const { return facets.size() / static_cast<std::size_t>(nodes_per_facet(type)); }
   MeshView view() const noexcept { return {type, coordinates, elements}; }
-  std::span<const std::int32_t> facet(std::size_t f) const noexcept {
+  std::span<const std::int32_t> facet(std::size_t f) const {
     const auto n = static_cast<std::size_t>(nodes_per_facet(type));
     return std::span(facets).subspan(f * n, n);
   }
@@ -73,8 +59,8 @@ void find_boundary(Mesh& mesh);
 /// squared in 2D) or non-finite element, a facet shared by three elements, or an unreferenced node.
 void check_mesh(const Mesh& mesh);
 
-/// Generated box [0, size]: 2D squares are cut by the diagonal from lower left to upper right, 3D cubes into
-/// six tetrahedra round the diagonal from the lowest to the highest corner. Sides are named left, right,
+/// Generated box [0, size]. Triangles cut squares by the diagonal from lower left to upper right, tetrahedra
+/// cut cubes into six round the diagonal from the lowest to the highest corner. Sides are named left, right,
 /// front, back, bottom, top (in 2D left, right, bottom, top).
 struct BoxSpec {
   std::array<double, 3> size{1, 1, 1};

@@ -16,7 +16,7 @@ namespace kacanov {
 struct Probe {
   Vector3 point{};
   std::int32_t element = 0;
-  std::array<double, 10> weights{};  ///< shape functions at the point
+  std::array<double, most_nodes> weights{};  ///< shape functions at the point
 };
 
 /// The whole problem, on one rank.

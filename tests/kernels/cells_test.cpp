@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The table of cells against what other programs define and what geometry demands.
+#include <kacanov/cells.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+using namespace kacanov;
+
+namespace {
+
+using Position = std::array<double, 3>;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Σ N_a(ξ) x_a of nodes given by their numbers among `nodes`.
+Position interpolate(const Cell& cell, const Position& xi, std::span<const Position> nodes) {
+  std::array<double, most_nodes> n{};
+  cell.values(xi.data(), n.data());
+  Position x{};
+  for (std::size_t a = 0; a < nodes.size(); ++a)
+    for (std::size_t k = 0; k < 3; ++k) x[k] += n[a] * nodes[a][k];
+  return x;
+}
+
+/// Columns ∂x/∂ξ_k of the map from ξ.
+std::array<Position, 3> jacobian(const Cell& cell, const Position& xi, std::span<const Position> nodes) {
+  std::array<double, 3 * most_nodes> d{};
+  cell.gradients(xi.data(), d.data());
+  std::array<Position, 3> j{};
+  for (std::size_t a = 0; a < nodes.size(); ++a)
+    for (std::size_t k = 0; k < at(cell.dim); ++k)
+      for (std::size_t i = 0; i < 3; ++i) j[k][i] += nodes[a][i] * d[a * at(cell.dim) + k];
+  return j;
+}
+
+Position cross(const Position& a, const Position& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+double dot(const Position& a, const Position& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+double distance(const Position& a, const Position& b) {
+  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+Position middle(const Position& a, const Position& b) {
+  return {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
+}
+double volume(int dim) { return dim == 2 ? 4.0 : 8.0; }
+
+/// Cells with shape functions.
+std::vector<const Cell*> shaped() {
+  std::vector<const Cell*> result;
+  for (const Cell& cell : cells())
+    if (cell.values != nullptr) result.push_back(&cell);
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("names and numbers are those of Gmsh, VTK and Abaqus") {
+  struct Known {
+    int gmsh, vtk, dim, nodes, corners;
+    const char* abaqus;
+  };
+  const std::map<std::string, Known> known{
+      {"point", {15, 1, 0, 1, 1, ""}},    {"line2", {1, 3, 1, 2, 2, ""}},
+      {"line3", {8, 21, 1, 3, 2, ""}},    {"tri3", {2, 5, 2, 3, 3, "CPE3"}},
+      {"tri6", {9, 22, 2, 6, 3, ""}},     {"quad4", {3, 9, 2, 4, 4, ""}},
+      {"tet4", {4, 10, 3, 4, 4, "C3D4"}}, {"tet10", {11, 24, 3, 10, 4, "C3D10"}},
+      {"hex8", {5, 12, 3, 8, 8, "C3D8"}},
+  };
+  CHECK(cells().size() == known.size());
+  for (const Cell& cell : cells()) {
+    const std::string name(cell.name);
+    CAPTURE(name);
+    REQUIRE(known.count(name) == 1);
+    const Known& k = known.at(name);
+    CHECK(cell.gmsh == k.gmsh);
+    CHECK(cell.vtk == k.vtk);
+    CHECK(cell.dim == k.dim);
+    CHECK(cell.nodes == k.nodes);
+    CHECK(cell.corners == k.corners);
+    CHECK(cell.abaqus == k.abaqus);
+  }
+  for (const ElementType type : element_types()) {
+    CHECK(element_type(cell(type)) == type);
+    CHECK(element_type(cell(type).name) == type);
+  }
+  CHECK_FALSE(element_type("tri6"));
+  CHECK_FALSE(element_type("hex20"));
+  CHECK_THROWS_AS(cell(static_cast<ElementType>(200)), std::invalid_argument);
+  CHECK(element_names([](const Cell& c) { return c.dim == 3; }) == "tet4, tet10 or hex8");
+}
+
+TEST_CASE("every shape function is one at its node and zero at the others") {
+  for (const Cell* cell : shaped()) {
+    CAPTURE(std::string(cell->name));
+    REQUIRE(cell->reference.size() == at(cell->nodes));
+    for (std::size_t b = 0; b < cell->reference.size(); ++b) {
+      std::array<double, most_nodes> n{};
+      cell->values(cell->reference[b].data(), n.data());
+      for (std::size_t a = 0; a < cell->reference.size(); ++a)
+        CHECK(n[a] == doctest::Approx(a == b ? 1.0 : 0.0));
+    }
+    for (const CellEdge& edge : cell->edges)
+      if (edge.middle >= 0)
+        CHECK(distance(cell->reference[at(edge.middle)],
+                       middle(cell->reference[at(edge.a)], cell->reference[at(edge.b)])) < 1e-15);
+  }
+}
+
+TEST_CASE("facets are whole, close the cell and look outwards") {
+  for (const ElementType type : element_types()) {
+    const Cell& body = cell(type);
+    const Cell& facet = body.facet();
+    CAPTURE(std::string(body.name));
+    CHECK(facet.dim == body.dim - 1);
+    Position centre{}, closed{};
+    for (const Position& x : body.reference)
+      for (std::size_t k = 0; k < 3; ++k) centre[k] += x[k] / body.nodes;
+    for (int f = 0; f < body.facets(); ++f) {
+      std::vector<Position> nodes;
+      for (const std::int8_t a : body.facet_nodes.subspan(at(f * facet.nodes), at(facet.nodes)))
+        nodes.push_back(body.reference[at(a)]);
+      for (const CellEdge& edge : facet.edges)
+        if (edge.middle >= 0)
+          CHECK(distance(nodes[at(edge.middle)], middle(nodes[at(edge.a)], nodes[at(edge.b)])) < 1e-15);
+      const Position inside = facet.simplex ? Position{1.0 / 3, 1.0 / 3, 0} : Position{};
+      const auto j = jacobian(facet, inside, nodes);
+      const Position normal = body.dim == 2 ? Position{j[0][1], -j[0][0], 0} : cross(j[0], j[1]);
+      const Position x = interpolate(facet, inside, nodes);
+      CHECK(dot(normal, {x[0] - centre[0], x[1] - centre[1], x[2] - centre[2]}) > 0.0);
+      for (std::size_t k = 0; k < 3; ++k) closed[k] += normal[k];
+    }
+    for (const double sum : closed) CHECK(sum == doctest::Approx(0.0));
+    // Every edge belongs to as many facets as meet there.
+    for (const CellEdge& edge : body.edges) {
+      int meeting = 0;
+      for (int f = 0; f < body.facets(); ++f) {
+        const auto nodes = body.facet_nodes.subspan(at(f * facet.nodes), at(facet.nodes));
+        meeting += std::ranges::count(nodes, edge.a) + std::ranges::count(nodes, edge.b) == 2;
+      }
+      CHECK(meeting == (body.dim == 2 ? 1 : 2));
+    }
+  }
+}
+
+TEST_CASE("quadrature points lie inside, their weights fill the reference cell, linear functions are exact") {
+  for (const ElementType type : element_types()) {
+    const Cell& body = cell(type);
+    CAPTURE(std::string(body.name));
+    const double size = body.simplex ? (body.dim == 2 ? 0.5 : 1.0 / 6.0) : volume(body.dim);
+    CHECK(body.weight * static_cast<double>(body.points.size()) == doctest::Approx(size));
+    for (std::size_t k = 0; k < at(body.dim); ++k) {
+      double mean = 0.0;
+      for (const Position& point : body.points) mean += point[k] / static_cast<double>(body.points.size());
+      CHECK(mean == doctest::Approx(body.simplex ? 1.0 / (body.dim + 1) : 0.0));
+    }
+  }
+}
+
+TEST_CASE("a box is cut into elements that turn the right way and fill it") {
+  for (const ElementType type : element_types()) {
+    const Cell& body = cell(type);
+    CAPTURE(std::string(body.name));
+    double sum = 0.0;
+    for (int e = 0; e < body.box_elements(); ++e) {
+      std::vector<Position> nodes;
+      for (const auto& corner : body.box.subspan(at(e * body.corners), at(body.corners)))
+        nodes.push_back({double(corner[0]), double(corner[1]), double(corner[2])});
+      for (const CellEdge& edge : body.edges)
+        if (edge.middle >= 0) nodes.push_back(middle(nodes[at(edge.a)], nodes[at(edge.b)]));
+      for (const Position& point : body.points) {
+        auto j = jacobian(body, point, nodes);
+        if (body.dim == 2) j[2] = {0, 0, 1};
+        const double det = dot(j[0], cross(j[1], j[2]));
+        CHECK(det > 0.0);
+        sum += body.weight * det;
+      }
+    }
+    CHECK(sum == doctest::Approx(1.0));
+  }
+}
+
+TEST_CASE("triangles cover flat cells") {
+  for (const Cell* flat : shaped()) {
+    if (flat->dim != 2) continue;
+    CAPTURE(std::string(flat->name));
+    double sum = 0.0;
+    for (const auto& t : flat->triangles) {
+      const Position &a = flat->reference[at(t[0])], &b = flat->reference[at(t[1])],
+                     &c = flat->reference[at(t[2])];
+      const double twice = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+      CHECK(twice > 0.0);
+      sum += 0.5 * twice;
+    }
+    CHECK(sum == doctest::Approx(flat->simplex ? 0.5 : 4.0));
+  }
+}
+
+TEST_CASE("nodes in the orders of VTK and Basix") {
+  for (const Cell& cell : cells())
+    for (const auto order : {cell.vtk_order, cell.basix_order}) {
+      std::vector<std::int8_t> sorted(order.begin(), order.end());
+      std::sort(sorted.begin(), sorted.end());
+      REQUIRE(sorted.size() == at(cell.nodes));
+      for (std::size_t k = 0; k < sorted.size(); ++k) CHECK(sorted[k] == static_cast<std::int8_t>(k));
+    }
+  // Of cells with nodes on edges both give the edges by their ends; Basix lists them from the last ones on.
+  struct Edges {
+    ElementType type;
+    std::vector<std::array<int, 2>> vtk, basix;
+  };
+  const std::vector<Edges> quadratic{{ElementType::tet10,
+                                      {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}},
+                                      {{2, 3}, {1, 3}, {1, 2}, {0, 3}, {0, 2}, {0, 1}}}};
+  for (const auto& [type, vtk, basix] : quadratic) {
+    const Cell& body = cell(type);
+    for (std::size_t e = 0; e < vtk.size(); ++e) {
+      const auto corner = [&](int a) { return body.reference[at(a)]; };
+      CHECK(distance(body.reference[at(body.vtk_order[4 + e])],
+                     middle(corner(vtk[e][0]), corner(vtk[e][1]))) == 0.0);
+      CHECK(distance(body.reference[at(body.basix_order[4 + e])],
+                     middle(corner(basix[e][0]), corner(basix[e][1]))) == 0.0);
+    }
+  }
+  // Basix runs through tensor cells with the first coordinate fastest.
+  for (const Cell* cell : shaped()) {
+    if (cell->simplex) continue;
+    for (std::size_t k = 0; k < at(cell->nodes); ++k)
+      for (std::size_t c = 0; c < at(cell->dim); ++c)
+        CHECK(cell->reference[at(cell->basix_order[k])][c] == ((k >> c & 1) != 0 ? 1.0 : -1.0));
+  }
+}
