@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any element, one a lane, by the isoparametric map at its quadrature points: tri3 and curved tet10.
+// Any element, one a lane, by the isoparametric map at its quadrature points, with B-bar where it has that.
 #pragma once
 
 #include "cells/tet10.hpp"
@@ -33,6 +33,15 @@ inline void element_loop(const Block<Real>& block, const Group& group, const Mat
   using V = typename L::V;
   constexpr int width = L::width;
   static constexpr auto gradients = reference_gradients<E, Real>();
+  bool mean = false;  // B-bar
+  if constexpr (E::mean_dilatation) mean = block.laws[group.law].mean_dilatation;
+  const auto choose = [&]() -> decltype(auto) {
+    if constexpr (E::mean_dilatation)
+      return mean ? material.without_bulk() : material;
+    else
+      return (material);
+  };
+  const Material& at_point = choose();
   const std::uint16_t* at = block.index + group.first_index;
   std::size_t point = 0;
   for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
@@ -57,8 +66,7 @@ inline void element_loop(const Block<Real>& block, const Group& group, const Mat
       const std::size_t offset = static_cast<std::size_t>(v) * stride;
       V d[E::nodes][3], force[E::nodes][3] = {};
       for (int a = 0; a < E::nodes; ++a) L::load3(u + offset, at + a * width, d[a]);
-      for (int q = 0; q < E::points; ++q) {
-        V h[9] = {};
+      const auto displacement_gradient = [&](int q, V(&h)[9]) __attribute__((always_inline)) {
         for (int k = 0; k < E::dim; ++k) {
           V slope[3] = {};  // ∂u/∂ξ_k
           for (int a = 0; a < E::nodes; ++a)
@@ -66,8 +74,26 @@ inline void element_loop(const Block<Real>& block, const Group& group, const Mat
           for (int i = 0; i < E::dim; ++i)
             for (int m = 0; m < E::dim; ++m) h[3 * i + m] += slope[i] * c[q][k][m];
         }
-        const Sym<V> s =
-            material.stress(strain_of(h), det[q], w[q], Real(E::weight), point + static_cast<std::size_t>(q));
+      };
+      [[maybe_unused]] V pressure{};  // weight times that of the mean dilatation
+      if constexpr (E::mean_dilatation)
+        if (mean) {
+          V change{}, volume{};
+          for (int q = 0; q < E::points; ++q) {
+            V h[9] = {};
+            displacement_gradient(q, h);
+            change += h[0] + h[4] + h[8];
+            volume += det[q];
+          }
+          pressure = Real(E::weight) * material.bulk() * change / volume;
+          material.add_energy(Real(0.5) * pressure * change);
+        }
+      for (int q = 0; q < E::points; ++q) {
+        V h[9] = {};
+        displacement_gradient(q, h);
+        Sym<V> s =
+            at_point.stress(strain_of(h), det[q], w[q], Real(E::weight), point + static_cast<std::size_t>(q));
+        if constexpr (E::mean_dilatation) s.xx += pressure, s.yy += pressure, s.zz += pressure;
         for (int k = 0; k < E::dim; ++k) {
           V t[3];
           multiply(s, c[q][k], t);
