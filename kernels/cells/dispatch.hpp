@@ -14,9 +14,9 @@
 namespace kacanov::elements {
 
 /// What bodies can be made of, in the order of ElementType.
-using Bodies = std::tuple<Tri3, Tet4, Tet10, Hex8>;
+using Bodies = std::tuple<Tri3, Tet4, Tet10, Hex8, Quad4>;
 /// What else meshes hold.
-using Others = std::tuple<Point1, Line2, Line3, Tri6, Quad4>;
+using Others = std::tuple<Point1, Line2, Line3, Tri6>;
 
 /// Calls `function(E{})` with the struct of `type`. Throws std::invalid_argument for a number that is none.
 template <std::size_t i = 0, class Function>

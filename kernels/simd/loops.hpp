@@ -9,6 +9,7 @@
 namespace {
 
 using kacanov::ElementType;
+using kacanov::elements::Quad4;
 using kacanov::elements::Tet10;
 using kacanov::elements::Tri3;
 using kacanov::simd::Kernels;
@@ -98,6 +99,7 @@ struct Loops {
       };
       switch (group.type) {
         case ElementType::tri3: elements.template operator()<Tri3>(); break;
+        case ElementType::quad4: elements.template operator()<Quad4>(); break;
         case ElementType::tet4:
           if (group.shape == Shape::open_fan)
             fan_loop_of_length<L, Real, false>(block, group, material, u, f, vectors, stride);

@@ -72,7 +72,7 @@ TEST_CASE("names and numbers are those of Gmsh, VTK and Abaqus") {
   const std::map<std::string, Known> known{
       {"point", {15, 1, 0, 1, 1, ""}},    {"line2", {1, 3, 1, 2, 2, ""}},
       {"line3", {8, 21, 1, 3, 2, ""}},    {"tri3", {2, 5, 2, 3, 3, "CPE3"}},
-      {"tri6", {9, 22, 2, 6, 3, ""}},     {"quad4", {3, 9, 2, 4, 4, ""}},
+      {"tri6", {9, 22, 2, 6, 3, ""}},     {"quad4", {3, 9, 2, 4, 4, "CPE4"}},
       {"tet4", {4, 10, 3, 4, 4, "C3D4"}}, {"tet10", {11, 24, 3, 10, 4, "C3D10"}},
       {"hex8", {5, 12, 3, 8, 8, "C3D8"}},
   };
@@ -97,6 +97,7 @@ TEST_CASE("names and numbers are those of Gmsh, VTK and Abaqus") {
   CHECK_FALSE(element_type("hex20"));
   CHECK_THROWS_AS(cell(static_cast<ElementType>(200)), std::invalid_argument);
   CHECK(element_names([](const Cell& c) { return c.dim == 3; }) == "tet4, tet10 or hex8");
+  CHECK(element_names([](const Cell& c) { return c.dim == 2; }) == "tri3 or quad4");
 }
 
 TEST_CASE("every shape function is one at its node and zero at the others") {

@@ -313,7 +313,7 @@ TEST_CASE("bad input is named") {
   CHECK_THROWS_WITH_AS(Operator{wrong.body()}, doctest::Contains("99"), std::invalid_argument);
   wrong = owned;
   wrong.laws[2].mean_dilatation = true;
-  CHECK_THROWS_WITH_AS(Operator{wrong.body()}, doctest::Contains("hex8"), std::invalid_argument);
+  CHECK_THROWS_WITH_AS(Operator{wrong.body()}, doctest::Contains("hex8 or quad4"), std::invalid_argument);
   wrong = owned;
   wrong.law_of_element.pop_back();
   CHECK_THROWS_AS(Operator{wrong.body()}, std::invalid_argument);

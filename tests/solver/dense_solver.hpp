@@ -229,14 +229,15 @@ class DenseSolver {
             4.0 * (l(ends[e][0]) * corners.row(ends[e][1]) + l(ends[e][1]) * corners.row(ends[e][0]));
       return gradients;
     }
-    // hex8 on [−1, 1]³, the lower face counter-clockwise first.
+    // quad4 and hex8 on [−1, 1]², [−1, 1]³, the lower face counter-clockwise first.
     constexpr int corner[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
                                   {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
-    Matrix gradients(8, 3);
-    for (int a = 0; a < 8; ++a)
-      for (int c = 0; c < 3; ++c) {
-        double value = corner[a][c] / 8.0;
-        for (int d = 0; d < 3; ++d)
+    const int dim = type == ElementType::quad4 ? 2 : 3, nodes = 1 << dim;
+    Matrix gradients(nodes, dim);
+    for (int a = 0; a < nodes; ++a)
+      for (int c = 0; c < dim; ++c) {
+        double value = corner[a][c] / double(nodes);
+        for (int d = 0; d < dim; ++d)
           if (d != c) value *= 1.0 + corner[a][d] * x(d);
         gradients(a, c) = value;
       }
@@ -252,6 +253,10 @@ class DenseSolver {
       for (const double x : {-p, p})
         for (const double y : {-p, p})
           for (const double z : {-p, p}) rule.emplace_back(Eigen::Vector3d(x, y, z), 1.0);
+    } else if (mesh.type == ElementType::quad4) {
+      const double p = 1.0 / std::sqrt(3.0);
+      for (const double x : {-p, p})
+        for (const double y : {-p, p}) rule.emplace_back(Eigen::Vector3d(x, y, 0.0), 1.0);
     } else if (mesh.type == ElementType::tet10) {
       const double off = (5.0 - std::sqrt(5.0)) / 20.0;
       for (int vertex = -1; vertex < 3; ++vertex) {

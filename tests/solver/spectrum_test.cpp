@@ -93,7 +93,7 @@ TEST_CASE("contact nodes that boundary conditions hold in part") {
 }
 
 TEST_CASE("two contact entries that meet at an edge") {
-  for (const ElementType type : {ElementType::tri3, ElementType::tet4}) {
+  for (const ElementType type : {ElementType::tri3, ElementType::quad4, ElementType::tet4}) {
     const int dim = dimension(type);
     Model model = elastic_model();
     model.boundary.push_back(moved(named("left"), dim));

@@ -98,7 +98,7 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
       {"mesh.box.size[0]=-4", "mesh.box.size[0]: expected a number > 0, got -4"},
       {"mesh.box.element=tri3", "mesh.box.size: expected 2 entries (one a dimension)"},
       {"mesh.box.element=tet5",
-       "mesh.box.element: expected \"tri3\", \"tet4\", \"tet10\" or \"hex8\", got \"tet5\""},
+       "mesh.box.element: expected \"tri3\", \"tet4\", \"tet10\", \"hex8\" or \"quad4\", got \"tet5\""},
       {"boundary[1].on.box=[[2,0,1],[1,1,1]]",
        "boundary[1].on.box: expected a lower corner that is below the upper one"},
       {"boundary[0].displacement=[null,null,null]",

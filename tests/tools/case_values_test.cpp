@@ -31,6 +31,18 @@ TEST_CASE("load steps are a number or a list of factors") {
   CHECK(steps("[0.1, 1.5, 1]") == std::vector<double>{0.1, 1.5, 1.0});
 }
 
+TEST_CASE("the element of a box is any of the table's, of its dimension") {
+  for (const ElementType type : element_types()) {
+    const bool flat = dimension(type) == 2;
+    const nlohmann::json box{{"size", flat ? std::vector{2, 1} : std::vector{2, 1, 1}},
+                             {"cells", flat ? std::vector{4, 2} : std::vector{4, 2, 2}},
+                             {"element", std::string(cell(type).name)}};
+    const nlohmann::json text{{"mesh", {{"box", box}}},
+                              {"material", {{{"on", "all"}, {"young", 1}, {"poisson", 0}}}}};
+    CHECK(parse_case(text, "folder").mesh.box->type == type);
+  }
+}
+
 TEST_CASE("every entry of the sample arrives") {
   const Case input = changed({});
   REQUIRE(input.mesh.box.has_value());

@@ -112,6 +112,19 @@ TEST_CASE("curves and points are node groups in 3D, curves are sides in 2D, inne
   CHECK(group(sheet, "4", 2).members.size() == 2);
 }
 
+TEST_CASE("quadrilaterals make a body in 2D, their sides its boundary") {
+  const Mesh sheet =
+      read(format22 + "$Nodes\n6\n1 0 0 0\n2 1 0 0\n3 2 0 0\n4 0 1 0\n5 1 1 0\n6 2 1 0\n$EndNodes\n" +
+           elements({"1 1 2 7 1 1 2", "2 1 2 8 1 2 5", "3 3 2 9 1 1 2 5 4", "4 3 2 9 1 2 3 6 5"}));
+  CHECK(sheet.type == ElementType::quad4);
+  CHECK(sheet.element_count() == 2);
+  CHECK(sheet.facet_count() == 6);
+  CHECK(group(sheet, "7", 1).members.size() == 1);
+  CHECK(group(sheet, "8", 1).members.empty());  // between the two
+  CHECK(group(sheet, "9", 2).members.size() == 2);
+  CHECK_NOTHROW(check_mesh(sheet));
+}
+
 TEST_CASE("comments, unknown sections and data are passed over") {
   const Mesh mesh = read("$Comments\nmade by hand\n$EndComments\n" + format22 +
                          "\n$Periodic\n0\n$EndPeriodic\n" + tetrahedron_nodes + "$Empty\n$EndEmpty\n" +
@@ -219,7 +232,11 @@ TEST_CASE("elements and nodes that cannot be used are named by their number") {
   check_contains(refusal(format22 + tetrahedron_nodes + elements({"31 17 0"})), {"element 31", "hex20"});
   check_contains(refusal(format22 + tetrahedron_nodes + elements({"31 777 0"})), {"element 31", "type 777"});
   check_contains(refusal(format22 + square_nodes + elements({"1 2 0 1 2 3", "17 3 0 1 2 3 4"})),
-                 {"element 17", "quad4", "made of tri3"});
+                 {"element 17 is a quad4", "tri3 too"});
+  check_contains(
+      refusal(format22 + "$Nodes\n6\n1 0 0 0\n2 2 0 0\n3 0 2 0\n4 1 0 0\n5 1 1 0\n6 0 1 0\n$EndNodes\n" +
+              elements({"8 9 0 1 2 3 4 5 6"})),
+      {"element 8", "tri6", "made of tri3 or quad4"});
   check_contains(refusal(format22 + tetrahedron_nodes + elements({"1 4 0 1 2 3 4", "6 5 0 1 2 3 4 1 2 3 4"})),
                  {"element 6 is a hex8", "tet4 too"});
   check_contains(refusal(format22 + square_nodes + elements({"1 1 0 1 2", "2 1 0 2 3"})),

@@ -9,6 +9,31 @@
 
 using namespace kacanov::testing;
 
+TEST_CASE("quadrilaterals bear the beam as triangles do, and are drawn as such") {
+  const Workplace place;
+  nlohmann::json quads = small_beam(), triangles = small_beam();
+  quads["mesh"]["box"]["element"] = "quad4";
+  quads["material"][0]["bbar"] = true;
+  triangles["mesh"]["box"]["cells"] = {64, 16};
+  place.put_json("quads.json", quads);
+  place.put_json("triangles.json", triangles);
+  for (const char* run : {"run quads.json", "run triangles.json"}) {
+    const Outcome outcome = place.run(run);
+    INFO("error: ", outcome.error);
+    CHECK(outcome.exit_code == 0);
+  }
+  const nlohmann::json coarse = place.json("results/quads/result.json"),
+                       fine = place.json("results/triangles/result.json");
+  CHECK(coarse["elements"] == 64);
+  CHECK(coarse["unknowns"] == 170);
+  CHECK(coarse["contact_nodes"] == 16);
+  CHECK(coarse["certificate"]["penetration"].get<double>() <= 1e-6);
+  CHECK(coarse["probe"][0][1].get<double>() ==
+        doctest::Approx(fine["probe"][0][1].get<double>()).epsilon(0.05));
+  CHECK(coarse["contact_force"][1].get<double>() ==
+        doctest::Approx(fine["contact_force"][1].get<double>()).epsilon(0.05));
+}
+
 TEST_CASE("a run converges, says so, and writes every file and key") {
   const Workplace place;
   place.put_json("beam.json", small_beam());

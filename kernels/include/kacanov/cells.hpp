@@ -13,7 +13,7 @@
 namespace kacanov {
 
 /// Elements that a body can be made of, with their numbers in the C interface.
-enum class ElementType : std::uint8_t { tri3, tet4, tet10, hex8 };
+enum class ElementType : std::uint8_t { tri3, tet4, tet10, hex8, quad4 };
 
 /// Ends of an edge, and the node in the middle of it, −1 without one.
 struct CellEdge {

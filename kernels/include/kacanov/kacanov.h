@@ -57,7 +57,8 @@ typedef enum kacanov_element {
   KACANOV_TRI3 = 0,  /* 2D, plane strain, 1 quadrature point */
   KACANOV_TET4 = 1,  /* 1 point */
   KACANOV_TET10 = 2, /* 4 points */
-  KACANOV_HEX8 = 3   /* 8 points */
+  KACANOV_HEX8 = 3,  /* 8 points */
+  KACANOV_QUAD4 = 4  /* 2D, plane strain, 4 points */
 } kacanov_element;
 
 /* Secant shear moduli g(a); below a = x0 always g = mu. */
@@ -83,7 +84,7 @@ typedef struct kacanov_law {
   const double* table_x;
   const double* table_s;   /* |dev tau| = 2 g a at table_x */
   int32_t mean_dilatation; /* 1: k0 acts on the mean of tr(eps) over the element (B-bar), against locking of
-                              nearly incompressible and of plastic bodies; hex8 only */
+                              nearly incompressible and of plastic bodies; hex8 and quad4 */
 } kacanov_law;
 
 /* The body. Zero everywhere is a valid start: every field for which zero makes sense may stay so. */
