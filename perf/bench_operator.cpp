@@ -16,7 +16,6 @@
 #include <utility>
 #include <vector>
 
-#include <kacanov/float_operator.hpp>
 #ifdef KACANOV_BENCH_GMSH
 #include "formats/gmsh_reader.hpp"
 #endif
@@ -155,9 +154,9 @@ json measure(const meshes::OwnedMesh& mesh, const std::string& kind, const Setti
   }
   const int most = teams.back();
   std::vector<Timed> timed;
-  for (const Operator& op : doubles) timed.push_back({[&] { op.apply(x, y); }});
-  for (const FloatOperator& op : floats) timed.push_back({[&] { op.apply(xf, yf); }});
-  const Operator& op = doubles.back();
+  for (Operator& op : doubles) timed.push_back({[&] { op.apply(x, y); }});
+  for (FloatOperator& op : floats) timed.push_back({[&] { op.apply(xf, yf); }});
+  Operator& op = doubles.back();
   timed.push_back({[&] { op.apply_tangent(x, y); }});
   timed.push_back({[&] { op.apply_dot(x, y); }});
   timed.push_back({[&] { op.apply_many(std::span(x4).first(2 * n), std::span(y4).first(2 * n), 2); }});

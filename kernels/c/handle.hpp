@@ -15,7 +15,6 @@
 #include <vector>
 
 #include <kacanov/kacanov.h>
-#include <kacanov/float_operator.hpp>
 #include <kacanov/operator.hpp>
 #include <kacanov/reference.hpp>
 #include "c/laws.hpp"

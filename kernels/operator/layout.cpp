@@ -108,7 +108,8 @@ struct Builder {
   }
 
   /// Numbers the block's nodes: new to the thread, met before, shared with other threads, each in the
-  /// locality order. `state` of a node: −1 not met by this thread, −2 shared, otherwise met.
+  /// locality order. `state` of a node: 1 if this thread has met it, else 0; `slot`: its place in the
+  /// thread's private sums where it is shared, else −1.
   void number_nodes(std::span<const std::uint32_t> members, std::vector<std::int32_t>& state,
                     std::span<const std::int32_t> slot, BlockRange& range) {
     std::vector<std::int32_t> found;

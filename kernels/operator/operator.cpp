@@ -1,128 +1,161 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The operator behind its interface: what it is given is checked here, the work is the engine's.
+// The operator's members: what they are given is checked here, the work is that of the passes.
 #include <kacanov/operator.hpp>
 
 #include <stdexcept>
-#include <utility>
-#include <vector>
 
 #include "operator/checks.hpp"
-#include "operator/engine.hpp"
+#include "operator/passes.hpp"
 
 namespace kacanov {
-struct Operator::Implementation {
-  Engine<double> engine;
-  std::uint64_t applications = 0;
 
-  Implementation(const Body& body, const OperatorOptions& options)
-      : engine(checked(body, options), options.threads, simd::choose_instruction_set(options.instruction_set),
-               options.early) {}
+template <class Real>
+BasicOperator<Real>::BasicOperator(const Body& body, const OperatorOptions& options)
+    : data_(std::make_unique<Data>(checked(body, options), options)) {}
 
-  void expect_vector(std::size_t size) const { expect_size(size, engine.unknowns(), "vector"); }
+template <class Real>
+BasicOperator<Real>::~BasicOperator() = default;
+template <class Real>
+BasicOperator<Real>::BasicOperator(BasicOperator&&) noexcept = default;
+template <class Real>
+BasicOperator<Real>& BasicOperator<Real>::operator=(BasicOperator&&) noexcept = default;
 
-  double apply_tangent(std::span<const double> x, std::span<double> y, bool with_dot,
-                       const WhenEarly& when_early) {
-    if (!engine.has_tangent()) throw std::logic_error("apply_tangent before update_tangent");
-    expect_vector(x.size());
-    expect_vector(y.size());
-    ++applications;
-    return engine.apply_tangent(x.data(), y.data(), with_dot, when_early);
+template <class Real>
+std::size_t BasicOperator<Real>::unknowns() const noexcept {
+  return data_->unknowns;
+}
+
+template <class Real>
+void BasicOperator<Real>::update(std::span<const Real> omega) {
+  expect_size(omega.size(), unknowns(), "omega");
+  data_->nonlinear(omega.data(), nullptr, {.keep_secant = true});
+}
+
+template <class Real>
+void BasicOperator<Real>::secant(std::span<double> g) const {
+  const Data& data = *data_;
+  expect_size(g.size(), data.points, "g");
+  for (std::size_t slot = 0; slot < data.secant.size(); ++slot)
+    if (const std::int32_t point = data.layout.element_point[slot]; point >= 0)
+      g[static_cast<std::size_t>(point)] = static_cast<double>(data.secant[slot]);
+}
+
+template <class Real>
+void BasicOperator<Real>::set_secant(std::span<const double> g) {
+  expect_size(g.size(), data_->points, "g");
+  data_->detach_tangent();
+  for (std::size_t slot = 0; slot < data_->secant.size(); ++slot)
+    if (const std::int32_t point = data_->layout.element_point[slot]; point >= 0)
+      data_->secant[slot] = static_cast<Real>(g[static_cast<std::size_t>(point)]);
+}
+
+template <class Real>
+void BasicOperator<Real>::apply(std::span<const Real> x, std::span<Real> y, const WhenEarly& when_early) {
+  expect_size(x.size(), unknowns(), "x");
+  expect_size(y.size(), unknowns(), "y");
+  ++data_->applications;
+  data_->apply(x.data(), y.data(), 1, false, when_early);
+}
+
+template <class Real>
+double BasicOperator<Real>::apply_dot(std::span<const Real> x, std::span<Real> y,
+                                      const WhenEarly& when_early) {
+  expect_size(x.size(), unknowns(), "x");
+  expect_size(y.size(), unknowns(), "y");
+  ++data_->applications;
+  return data_->apply(x.data(), y.data(), 1, true, when_early);
+}
+
+template <class Real>
+void BasicOperator<Real>::apply_many(std::span<const Real> x, std::span<Real> y, int vectors) {
+  if (vectors < 1) throw std::invalid_argument("vectors: expected at least 1");
+  const auto count = static_cast<std::size_t>(vectors);
+  expect_size(x.size(), unknowns() * count, "x");
+  expect_size(y.size(), unknowns() * count, "y");
+  for (int done = 0; done < vectors;) {
+    const int left = vectors - done, step = left >= 4 ? 4 : left >= 2 ? 2 : 1;
+    const std::size_t offset = unknowns() * static_cast<std::size_t>(done);
+    data_->apply(x.data() + offset, y.data() + offset, step, false);
+    done += step;
   }
-};
-
-Operator::Operator(const Body& body, const OperatorOptions& options)
-    : impl_(std::make_unique<Implementation>(body, options)) {}
-
-Operator::~Operator() = default;
-Operator::Operator(Operator&&) noexcept = default;
-Operator& Operator::operator=(Operator&&) noexcept = default;
-
-std::size_t Operator::unknowns() const noexcept { return impl_->engine.unknowns(); }
-
-void Operator::update(std::span<const double> omega) {
-  impl_->expect_vector(omega.size());
-  impl_->engine.nonlinear(omega.data(), nullptr, {.keep_secant = true});
+  data_->applications += count;
 }
 
-void Operator::secant(std::span<double> g) const {
-  expect_size(g.size(), impl_->engine.points(), "g");
-  impl_->engine.get_secant(g);
+template <class Real>
+void BasicOperator<Real>::update_tangent(std::span<const Real> omega) {
+  expect_size(omega.size(), unknowns(), "omega");
+  data_->nonlinear(omega.data(), nullptr, {.keep_secant = true, .keep_tangent = true});
 }
 
-void Operator::set_secant(std::span<const double> g) {
-  expect_size(g.size(), impl_->engine.points(), "g");
-  impl_->engine.set_secant(g);
+template <class Real>
+void BasicOperator<Real>::apply_tangent(std::span<const Real> x, std::span<Real> y,
+                                        const WhenEarly& when_early) {
+  if (data_->tangent.empty()) throw std::logic_error("apply_tangent before update_tangent");
+  expect_size(x.size(), unknowns(), "x");
+  expect_size(y.size(), unknowns(), "y");
+  ++data_->applications;
+  data_->apply_tangent(x.data(), y.data(), false, when_early);
 }
 
-void Operator::apply(std::span<const double> x, std::span<double> y) const {
-  impl_->expect_vector(x.size());
-  impl_->expect_vector(y.size());
-  ++impl_->applications;
-  impl_->engine.apply(x.data(), y.data(), 1, false);
+template <class Real>
+double BasicOperator<Real>::apply_tangent_dot(std::span<const Real> x, std::span<Real> y,
+                                              const WhenEarly& when_early) {
+  if (data_->tangent.empty()) throw std::logic_error("apply_tangent_dot before update_tangent");
+  expect_size(x.size(), unknowns(), "x");
+  expect_size(y.size(), unknowns(), "y");
+  ++data_->applications;
+  return data_->apply_tangent(x.data(), y.data(), true, when_early);
 }
 
-double Operator::apply_dot(std::span<const double> x, std::span<double> y,
-                           const WhenEarly& when_early) const {
-  impl_->expect_vector(x.size());
-  impl_->expect_vector(y.size());
-  ++impl_->applications;
-  return impl_->engine.apply(x.data(), y.data(), 1, true, when_early);
+template <class Real>
+void BasicOperator<Real>::forget_tangent() noexcept {
+  Aligned<float>().swap(data_->tangent);  // assigning {} would keep the memory
+  Aligned<Real>().swap(data_->tangent_secant);
 }
 
-void Operator::apply_many(std::span<const double> x, std::span<double> y, int vectors) const {
-  impl_->engine.apply_many(x, y, vectors);
-  impl_->applications += static_cast<std::uint64_t>(vectors);
+template <class Real>
+void BasicOperator<Real>::residual(std::span<const Real> omega, std::span<Real> f) {
+  expect_size(omega.size(), unknowns(), "omega");
+  expect_size(f.size(), unknowns(), "f");
+  data_->nonlinear(omega.data(), f.data(), {});
 }
 
-void Operator::update_tangent(std::span<const double> omega) {
-  impl_->expect_vector(omega.size());
-  impl_->engine.nonlinear(omega.data(), nullptr, {.keep_secant = true, .keep_tangent = true});
+template <class Real>
+double BasicOperator<Real>::energy(std::span<const Real> omega) {
+  expect_size(omega.size(), unknowns(), "omega");
+  return data_->nonlinear(omega.data(), nullptr, {.sum_energy = true});
 }
 
-void Operator::apply_tangent(std::span<const double> x, std::span<double> y) const {
-  impl_->apply_tangent(x, y, false, {});
+template <class Real>
+double BasicOperator<Real>::residual_energy_update(std::span<const Real> omega, std::span<Real> f) {
+  expect_size(omega.size(), unknowns(), "omega");
+  expect_size(f.size(), unknowns(), "f");
+  return data_->nonlinear(omega.data(), f.data(), {.keep_secant = true, .sum_energy = true});
 }
 
-double Operator::apply_tangent_dot(std::span<const double> x, std::span<double> y,
-                                   const WhenEarly& when_early) const {
-  return impl_->apply_tangent(x, y, true, when_early);
+template <class Real>
+std::string_view BasicOperator<Real>::instruction_set() const noexcept {
+  return simd::name(data_->set);
 }
 
-void Operator::forget_tangent() noexcept { impl_->engine.forget_tangent(); }
-
-void Operator::diagonal(std::span<double> d) const {
-  impl_->expect_vector(d.size());
-  impl_->engine.diagonal(d);
+template <class Real>
+std::size_t BasicOperator<Real>::bytes() const noexcept {
+  const Data& data = *data_;
+  std::size_t sum =
+      data.layout.bytes() +
+      (data.coordinates.size() + data.secant.size() + data.tangent_secant.size()) * sizeof(Real) +
+      data.tangent.size() * sizeof(float);
+  for (const auto& scratch : data.scratch)
+    sum += (scratch.u.size() + scratch.f.size() + scratch.sums.size()) * sizeof(Real);
+  return sum;
 }
 
-void Operator::block_diagonal(std::span<double> blocks) const {
-  expect_size(blocks.size(), unknowns() * impl_->engine.dim(), "blocks");
-  impl_->engine.block_diagonal(blocks);
+template <class Real>
+std::uint64_t BasicOperator<Real>::applications() const noexcept {
+  return data_->applications;
 }
 
-void Operator::residual(std::span<const double> omega, std::span<double> f) const {
-  impl_->expect_vector(omega.size());
-  impl_->expect_vector(f.size());
-  std::as_const(impl_->engine).nonlinear(omega.data(), f.data(), false);
-}
-
-double Operator::energy(std::span<const double> omega) const {
-  impl_->expect_vector(omega.size());
-  return std::as_const(impl_->engine).nonlinear(omega.data(), nullptr, true);
-}
-
-double Operator::residual_energy_update(std::span<const double> omega, std::span<double> f) {
-  impl_->expect_vector(omega.size());
-  impl_->expect_vector(f.size());
-  return impl_->engine.nonlinear(omega.data(), f.data(), {.keep_secant = true, .sum_energy = true});
-}
-
-std::string_view Operator::instruction_set() const noexcept {
-  return simd::name(impl_->engine.instruction_set());
-}
-
-std::size_t Operator::bytes() const noexcept { return impl_->engine.bytes(); }
-
-std::uint64_t Operator::applications() const noexcept { return impl_->applications; }
+template class BasicOperator<double>;
+template class BasicOperator<float>;
 
 }  // namespace kacanov

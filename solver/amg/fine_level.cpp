@@ -66,7 +66,7 @@ void FineLevel::add_blocks(std::span<const NodeBlock> blocks, std::span<const fl
   }
 }
 
-void FineLevel::multiply(std::span<const float> x, std::span<float> y) const {
+void FineLevel::multiply(std::span<const float> x, std::span<float> y) {
   const auto blocks = std::span(blocks_);
   if (part_.halo.ranks > 1) {
     op_.apply(x, y, [&, this] {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include <kacanov/float_operator.hpp>
+#include <kacanov/operator.hpp>
 #include <kacanov/scatterer.hpp>
 #include "amg/chebyshev.hpp"
 #include "linear/preconditioner.hpp"
@@ -29,7 +29,7 @@ class FineLevel {
   const Space& space() const noexcept { return space_; }
   void secant(std::span<double> g) const { op_.secant(g); }
   /// y = A x for x that is zero in held components.
-  void multiply(std::span<const float> x, std::span<float> y) const;
+  void multiply(std::span<const float> x, std::span<float> y);
   /// Chebyshev::smooth's step, with D the dim × dim diagonal blocks of A.
   void relax(const ChebyshevStep<float>& weights, std::span<const float> b, std::span<const float> image,
              std::span<float> step, std::span<float> x) const;
@@ -46,7 +46,7 @@ class FineLevel {
 
   const Part& part_;
   FloatOperator op_;
-  mutable Scatterer<float> sum_;
+  Scatterer<float> sum_;
   Space space_;
   std::vector<NodeBlock> blocks_;
   std::size_t shared_blocks_ = 0;  ///< the first of them belong to nodes that other ranks have too

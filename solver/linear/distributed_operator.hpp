@@ -61,7 +61,7 @@ class DistributedOperator {
     ++applications_;
     return part_->halo.sum_all(energy);
   }
-  double energy(std::span<const double> omega) const { return part_->halo.sum_all(local_.energy(omega)); }
+  double energy(std::span<const double> omega) { return part_->halo.sum_all(local_.energy(omega)); }
 
   /// Diagonal of B(g), consistent: a measure of stiffness, so single precision does.
   std::vector<float> diagonal() const {

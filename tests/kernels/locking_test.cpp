@@ -86,7 +86,7 @@ struct Cylinder {
     Law law = elastic_law(young, poisson);
     law.mean_dilatation = mean_dilatation;
     const auto owned = test::with_one_law(mesh, law);
-    const Operator op(owned.body());
+    Operator op(owned.body());
     std::vector<double> diagonal(op.unknowns());
     op.diagonal(diagonal);
     const auto u = solve([&](const auto& x, auto& y) { op.apply(x, y); }, diagonal, held, load);

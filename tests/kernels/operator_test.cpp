@@ -9,7 +9,6 @@
 #include <stdexcept>
 #include <string>
 
-#include <kacanov/float_operator.hpp>
 #include <kacanov/locality.hpp>
 #include "bodies.hpp"
 
@@ -352,6 +351,21 @@ TEST_CASE("single precision agrees to five digits") {
           reference::diagonal(body, g, expected);
           op.diagonal(z);
           CHECK(difference(z, expected) < 1e-5);
+
+          const auto omega = some_state(body, 52);
+          const std::vector<float> omega_f(omega.begin(), omega.end());
+          const double energy = reference::energy(body, omega);
+          reference::residual(body, omega, expected);
+          op.residual(omega_f, y);
+          CHECK(difference(y, expected) < 1e-4);
+          CHECK(op.energy(omega_f) == doctest::Approx(energy).epsilon(1e-4));
+          CHECK(op.residual_energy_update(omega_f, z) == doctest::Approx(energy).epsilon(1e-4));
+          CHECK(z == y);
+          op.update_tangent(omega_f);
+          reference::apply_tangent(body, omega, x, expected);
+          op.apply_tangent(xf, y);
+          CHECK(difference(y, expected) < 1e-3);
+          CHECK(op.applications() == 3);
         }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fast operator: blocks, threads, choice of instruction set.
+// The fast operator: blocks, threads, choice of instruction set; in double and in single precision.
 #pragma once
 
 #include <cstddef>
@@ -26,60 +26,83 @@ struct OperatorOptions {
 /// it y has the same bits.
 using WhenEarly = std::function<void()>;
 
-/// y = B(g) x and what a solver needs round it. The body's arrays are copied as far as needed:
-/// they may go once the constructor is done. Vectors are nodes × dim, interleaved, in the caller's
-/// numbering; any numbering will do, that of locality_order() is the fastest. Results are the same bits in
-/// every run with the same threads and instruction set. One call at a time: members share scratch memory.
-/// Throws std::invalid_argument on bad input.
-class Operator {
+/// y = B(g) x and what a solver needs round it (theory: operator), in the precision of `Real`. The body's
+/// arrays are copied as far as needed: they may go once the constructor is done.
+///
+/// Vectors have nodes × dim entries, interleaved, in the caller's numbering; any numbering will do, that of
+/// locality_order() is the fastest. Displacements have the caller's unit of length, moduli and stresses one
+/// unit, forces that times an area (a length in 2D, for unit thickness). g has elements × points entries in
+/// the caller's order of elements, always in double precision outside.
+///
+/// Results are the same bits in every run with the same threads and instruction set. Members that are not
+/// const share scratch memory: one call at a time. Members throw std::invalid_argument where a length is
+/// wrong, the constructor also for whatever else is wrong with the body or the options.
+///
+/// In single precision coordinates are kept relative to the middle of each block; relative error about 1e-6
+/// on well-shaped elements. Sums (xᵀ y, energies) are in double precision all the same.
+template <class Real>
+class BasicOperator {
  public:
-  explicit Operator(const Body& body, const OperatorOptions& options = {});
-  ~Operator();
-  Operator(Operator&&) noexcept;
-  Operator& operator=(Operator&&) noexcept;
+  explicit BasicOperator(const Body& body, const OperatorOptions& options = {});
+  ~BasicOperator();
+  BasicOperator(BasicOperator&&) noexcept;
+  BasicOperator& operator=(BasicOperator&&) noexcept;
 
   std::size_t unknowns() const noexcept;
-  /// Freezes g at ω. Starts as g = mu.
-  void update(std::span<const double> omega);
-  /// Frozen g: elements × points, the caller's element order.
+
+  /// Freezes g at the displacement ω. It starts as g = μ.
+  void update(std::span<const Real> omega);
+  /// The frozen g into `g`, rounded to Real.
   void secant(std::span<double> g) const;
   void set_secant(std::span<const double> g);
   /// y = B(g) x (overwrites y).
-  void apply(std::span<const double> x, std::span<double> y) const;
+  void apply(std::span<const Real> x, std::span<Real> y, const WhenEarly& when_early = {});
   /// y = B(g) x and returns xᵀ y (as it is without what `when_early` changes).
-  double apply_dot(std::span<const double> x, std::span<double> y, const WhenEarly& when_early = {}) const;
-  /// y_v = B(g) x_v for `vectors` ≥ 1 right sides, stored one after another; the geometry is worked out once
-  /// for up to four of them.
-  void apply_many(std::span<const double> x, std::span<double> y, int vectors) const;
+  double apply_dot(std::span<const Real> x, std::span<Real> y, const WhenEarly& when_early = {});
+  /// y_v = B(g) x_v for `vectors` ≥ 1 input vectors, stored one after another; the geometry is worked out
+  /// once for up to four of them.
+  void apply_many(std::span<const Real> x, std::span<Real> y, int vectors);
+  /// Diagonal of B(g), nodes × dim.
+  void diagonal(std::span<Real> d) const;
+  /// Diagonal blocks of B(g), nodes × dim × dim, each block row-major.
+  void block_diagonal(std::span<Real> blocks) const;
+
   /// Freezes the tangent (and g) at ω for apply_tangent.
-  void update_tangent(std::span<const double> omega);
+  void update_tangent(std::span<const Real> omega);
   /// y = B_T x with the tangent frozen last, whatever became of g since. The direction of dev ε in its
   /// rank-one term is kept in single precision (relative error 1e-7 of that term). Throws std::logic_error
   /// before the first update_tangent.
-  void apply_tangent(std::span<const double> x, std::span<double> y) const;
+  void apply_tangent(std::span<const Real> x, std::span<Real> y, const WhenEarly& when_early = {});
   /// y = B_T x and returns xᵀ y, as apply_dot.
-  double apply_tangent_dot(std::span<const double> x, std::span<double> y,
-                           const WhenEarly& when_early = {}) const;
+  double apply_tangent_dot(std::span<const Real> x, std::span<Real> y, const WhenEarly& when_early = {});
   /// Gives the tangent's memory back, 20 bytes an element point. apply_tangent throws until the next
   /// update_tangent.
   void forget_tangent() noexcept;
-  void diagonal(std::span<double> d) const;
-  void block_diagonal(std::span<double> blocks) const;
-  /// Internal force of the true law at ω.
-  void residual(std::span<const double> omega, std::span<double> f) const;
-  double energy(std::span<const double> omega) const;
-  /// Residual, energy and new g in one pass; returns the energy.
-  double residual_energy_update(std::span<const double> omega, std::span<double> f);
 
+  /// Internal force of the true law at ω into f; the frozen g plays no part.
+  void residual(std::span<const Real> omega, std::span<Real> f);
+  /// Stored energy of the true law at ω (theory: energy).
+  double energy(std::span<const Real> omega);
+  /// Residual, energy and new g in one pass; returns the energy.
+  double residual_energy_update(std::span<const Real> omega, std::span<Real> f);
+
+  /// "avx512", "avx2" or "plain": what the loops in use are built for.
   std::string_view instruction_set() const noexcept;
   /// Bytes this operator holds, index data included.
   std::size_t bytes() const noexcept;
-  /// How often B was applied (secant and tangent) since construction.
+  /// How often B was applied (secant and tangent, to one vector each) since construction.
   std::uint64_t applications() const noexcept;
 
  private:
-  struct Implementation;
-  std::unique_ptr<Implementation> impl_;
+  struct Data;
+  std::unique_ptr<Data> data_;
 };
+
+extern template class BasicOperator<double>;
+extern template class BasicOperator<float>;
+
+using Operator = BasicOperator<double>;
+/// For preconditioners, and solvers of mixed precision.
+using FloatOperator = BasicOperator<float>;
 
 }  // namespace kacanov

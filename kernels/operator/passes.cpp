@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Passes over the blocks: every thread its share, private sums where threads meet, always in the same order.
+#include "operator/passes.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "operator/checks.hpp"
+
+namespace kacanov {
+namespace {
+
+/// Strain norm up to which g is constant.
+double elastic_limit(const Law& law) {
+  double limit = law.x0;
+  if (law.kind == Law::Kind::linear) return std::numeric_limits<double>::infinity();
+  if (law.kind == Law::Kind::table) return 0.0;  // left to the law itself
+  return law.argument == Law::Argument::squared ? std::sqrt(limit) : limit;
+}
+
+void evaluate(const void* opaque, double x, double* g, double* slope, double* energy) {
+  const Law& law = *static_cast<const Law*>(opaque);
+  const Law::Moduli moduli = law.moduli(x);
+  *g = moduli.secant;
+  *slope = moduli.derivative;
+  if (energy != nullptr) *energy = law.energy(x);
+}
+
+/// Calls run(t) for every t < threads, each by one thread where the runtime grants that many, and then, all
+/// runs done, finish(t).
+template <class Run, class Finish>
+void in_parallel(int threads, Run&& run, Finish&& finish) {
+  if (threads == 1) {
+    run(std::size_t{0});
+    finish(std::size_t{0});
+    return;
+  }
+#pragma omp parallel num_threads(threads)
+  {
+    for (int t = omp_get_thread_num(); t < threads; t += omp_get_num_threads())
+      run(static_cast<std::size_t>(t));
+#pragma omp barrier
+    for (int t = omp_get_thread_num(); t < threads; t += omp_get_num_threads())
+      finish(static_cast<std::size_t>(t));
+  }
+}
+
+}  // namespace
+
+template <class Real>
+BasicOperator<Real>::Data::Data(const Body& body, const OperatorOptions& options)
+    : set(simd::choose_instruction_set(options.instruction_set)),
+      kernels(simd::kernels<Real>(set)),
+      type(body.mesh.type),
+      threads(options.threads),
+      unknowns(body.unknowns()),
+      points(body.secant_count()),
+      laws(body.laws.begin(), body.laws.end()),
+      layout(make_layout(body, kernels.lanes, threads, 4 * sizeof(Real), options.early)) {
+  for (const Law& law : laws)
+    views.push_back({law.bulk, law.secant(0.0), elastic_limit(law), law.mean_dilatation, &law, evaluate});
+  coordinates.resize(4 * layout.records());
+  fill_coordinates<Real>(layout, body.mesh, coordinates);
+  secant.resize(layout.element_point.size());
+  for (std::size_t b = 0; b < layout.blocks.size(); ++b) {
+    const BlockRange& range = layout.blocks[b];
+    const std::size_t end = b + 1 < layout.blocks.size() ? layout.blocks[b + 1].first_slot : secant.size();
+    for (std::size_t i = 0; i < range.group_count; ++i) {
+      const simd::Group& group = layout.groups[range.first_group + i];
+      const std::size_t from = range.first_slot + group.first_slot;
+      const std::size_t to = i + 1 < range.group_count
+                                 ? range.first_slot + layout.groups[range.first_group + i + 1].first_slot
+                                 : end;
+      std::fill(secant.data() + from, secant.data() + to, static_cast<Real>(views[group.law].shear));
+    }
+  }
+  scratch.resize(static_cast<std::size_t>(threads));
+  reserve_scratch(1);
+}
+
+template <class Real>
+void BasicOperator<Real>::Data::reserve_scratch(int vectors) {
+  if (vectors <= scratch_vectors) return;
+  scratch_vectors = vectors;
+  const auto count = static_cast<std::size_t>(vectors);
+  for (std::size_t t = 0; t < scratch.size(); ++t) {
+    scratch[t].u.assign(4 * layout.largest * count, Real(0));
+    scratch[t].f.assign(4 * layout.largest * count, Real(0));
+    scratch[t].sums.assign(3 * static_cast<std::size_t>(layout.slots_of_thread[t]) * count, Real(0));
+  }
+}
+
+template <class Real>
+simd::Block<Real> BasicOperator<Real>::Data::block(std::size_t b) {
+  const BlockRange& range = layout.blocks[b];
+  return {layout.groups.data() + range.first_group,
+          range.group_count,
+          views.data(),
+          layout.index.data() + range.first_index,
+          coordinates.data() + 4 * range.first_record,
+          secant.data() + range.first_slot,
+          tangent.empty() ? nullptr : tangent.data() + simd::tangent_floats * range.first_slot,
+          layout.nodes.data() + range.first_node,
+          layout.shared.data() + range.first_shared,
+          range.first,
+          range.again,
+          range.count,
+          layout.padding};
+}
+
+template <class Real>
+void BasicOperator<Real>::Data::detach_tangent() {
+  if (!tangent.empty() && tangent_secant.empty()) tangent_secant = secant;
+}
+
+template <class Real>
+void BasicOperator<Real>::Data::add_interface(Real* y, int vectors, std::size_t begin, std::size_t end) {
+  const std::size_t stride = dim();
+  for (std::size_t v = 0; v < static_cast<std::size_t>(vectors); ++v)
+    for (std::size_t i = begin; i < end; ++i)
+      for (std::size_t k = 0; k < stride; ++k) {
+        Real sum = 0;
+        for (std::uint32_t c = layout.interface_first[i]; c < layout.interface_first[i + 1]; ++c) {
+          const auto thread = static_cast<std::size_t>(layout.contributions[c].thread);
+          const auto slot = v * static_cast<std::size_t>(layout.slots_of_thread[thread]) +
+                            static_cast<std::size_t>(layout.contributions[c].slot);
+          sum += scratch[thread].sums[3 * slot + k];
+        }
+        y[v * unknowns + static_cast<std::size_t>(layout.interface_node[i]) * stride + k] = sum;
+      }
+}
+
+template <class Real>
+template <class LoopsOnBlock>
+double BasicOperator<Real>::Data::pass(const Real* x, Real* y, int vectors, const WhenEarly& when_early,
+                                       LoopsOnBlock&& loops) {
+  reserve_scratch(vectors);
+  const std::size_t stride = 4 * std::size_t{layout.largest};
+  const auto count = static_cast<std::size_t>(vectors);
+  const int dimension = static_cast<int>(dim());
+  std::vector<double> sums(scratch.size(), 0.0);
+  const auto prepare = [&](std::size_t t) {
+    std::fill_n(scratch[t].sums.begin(), 3 * static_cast<std::size_t>(layout.slots_of_thread[t]) * count,
+                Real(0));
+    for (std::size_t v = 0; t == 0 && y != nullptr && v < count; ++v)
+      for (const std::int32_t node : layout.lonely)
+        std::fill_n(y + v * unknowns + static_cast<std::size_t>(node) * dim(), dim(), Real(0));
+  };
+  const auto run = [&](std::size_t t, std::size_t begin, std::size_t end) {
+    Scratch& mine = scratch[t];
+    const auto slots = 3 * static_cast<std::size_t>(layout.slots_of_thread[t]);
+    double sum = sums[t];
+    for (std::size_t b = begin; b < end; ++b) {
+      const simd::Block<Real> at = block(b);
+      for (std::size_t v = 0; v < count; ++v)
+        kernels.gather(at, dimension, x + v * unknowns, mine.u.data() + v * stride,
+                       mine.f.data() + v * stride);
+      sum += loops(at, mine.u.data(), mine.f.data(), stride);
+      for (std::size_t v = 0; y != nullptr && v < count; ++v)
+        kernels.scatter(at, dimension, mine.f.data() + v * stride, y + v * unknowns,
+                        mine.sums.data() + v * slots);
+    }
+    sums[t] = sum;
+  };
+  const auto finish = [&](std::size_t t, std::size_t begin, std::size_t end) {
+    const std::size_t team = scratch.size(), size = end - begin;
+    if (y != nullptr) add_interface(y, vectors, begin + size * t / team, begin + size * (t + 1) / team);
+  };
+  // The same blocks in the same order with and without the pause, so the same bits.
+  const std::size_t interface_size = layout.interface_node.size();
+  if (when_early) {
+    in_parallel(
+        threads, [&](std::size_t t) { prepare(t), run(t, layout.share[t], layout.early[t]); },
+        [&](std::size_t t) { finish(t, 0, layout.early_interface); });
+    when_early();
+    in_parallel(
+        threads, [&](std::size_t t) { run(t, layout.early[t], layout.share[t + 1]); },
+        [&](std::size_t t) { finish(t, layout.early_interface, interface_size); });
+  } else {
+    in_parallel(
+        threads, [&](std::size_t t) { prepare(t), run(t, layout.share[t], layout.share[t + 1]); },
+        [&](std::size_t t) { finish(t, 0, interface_size); });
+  }
+  double total = 0.0;
+  for (const double sum : sums) total += sum;
+  return total;
+}
+
+template <class Real>
+double BasicOperator<Real>::Data::apply(const Real* x, Real* y, int vectors, bool with_dot,
+                                        const WhenEarly& when_early) {
+  return pass(x, y, vectors, when_early,
+              [&](const simd::Block<Real>& at, const Real* u, Real* f, std::size_t stride) {
+                kernels.apply(at, u, f, vectors, stride);
+                double sum = 0.0;
+                for (std::size_t v = 0; with_dot && v < static_cast<std::size_t>(vectors); ++v)
+                  sum += kernels.dot(at, u + v * stride, f + v * stride);
+                return sum;
+              });
+}
+
+template <class Real>
+double BasicOperator<Real>::Data::apply_tangent(const Real* x, Real* y, bool with_dot,
+                                                const WhenEarly& when_early) {
+  return pass(x, y, 1, when_early, [&](simd::Block<Real> at, const Real* u, Real* f, std::size_t) {
+    if (!tangent_secant.empty()) at.secant = tangent_secant.data() + (at.secant - secant.data());
+    kernels.apply_tangent(at, u, f);
+    return with_dot ? kernels.dot(at, u, f) : 0.0;
+  });
+}
+
+template <class Real>
+double BasicOperator<Real>::Data::nonlinear(const Real* omega, Real* f, simd::Nonlinear keep) {
+  if (keep.keep_tangent) {
+    tangent.resize(simd::tangent_floats * secant.size());
+    Aligned<Real>().swap(tangent_secant);
+  } else if (keep.keep_secant) {
+    detach_tangent();
+  }
+  return pass(omega, f, 1, {}, [&](const simd::Block<Real>& at, const Real* u, Real* forces, std::size_t) {
+    simd::Nonlinear out = keep;
+    kernels.nonlinear(at, u, forces, &out);
+    return out.energy;
+  });
+}
+
+template struct BasicOperator<double>::Data;
+template struct BasicOperator<float>::Data;
+
+}  // namespace kacanov

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What an operator holds, and the passes of its threads over its blocks: every thread its share, private sums
+// where threads meet, always in the same order.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <kacanov/operator.hpp>
+#include "operator/aligned.hpp"
+#include "operator/layout.hpp"
+#include "simd/instruction_set.hpp"
+
+namespace kacanov {
+
+/// Vectors are nodes × dim in the caller's numbering. Nothing is checked here: see checks.hpp and
+/// operator.cpp.
+template <class Real>
+struct BasicOperator<Real>::Data {
+  struct Scratch {
+    Aligned<Real> u, f;      ///< records of the block at hand, for up to four input vectors
+    std::vector<Real> sums;  ///< private sums on the interface, three values a slot
+  };
+
+  Data(const Body& body, const OperatorOptions& options);
+  // The views of the laws point into it.
+  Data(const Data&) = delete;
+  Data& operator=(const Data&) = delete;
+
+  std::size_t dim() const { return static_cast<std::size_t>(dimension(type)); }
+  simd::Block<Real> block(std::size_t b);
+  void reserve_scratch(int count);
+  /// To be called before g changes: the tangent frozen last keeps the g it was frozen with.
+  void detach_tangent();
+
+  /// y_v = B x_v for `count` vectors (1, 2 or 4), one after another in x and y. Returns Σ x_vᵀ y_v if
+  /// `with_dot`, else 0.
+  double apply(const Real* x, Real* y, int count, bool with_dot, const WhenEarly& when_early = {});
+  double apply_tangent(const Real* x, Real* y, bool with_dot, const WhenEarly& when_early);
+  /// Internal force at ω into f, unless that is null; what to keep. Returns the energy if that is summed.
+  double nonlinear(const Real* omega, Real* f, simd::Nonlinear keep);
+
+  /// Calls loops(block, u, f, stride) between gathering x and scattering y, and adds up what it returns.
+  template <class LoopsOnBlock>
+  double pass(const Real* x, Real* y, int count, const WhenEarly& when_early, LoopsOnBlock&& loops);
+  void add_interface(Real* y, int count, std::size_t begin, std::size_t end);
+
+  template <class E>
+  void add_diagonals(const BlockRange& range, const simd::Group& group, std::span<Real> blocks) const;
+
+  simd::InstructionSet set;
+  const simd::Kernels<Real>& kernels;
+  ElementType type;
+  int threads;
+  std::size_t unknowns, points;
+  std::vector<Law> laws;
+  std::vector<simd::LawView> views;
+  Layout layout;
+  Aligned<Real> coordinates;
+  Aligned<Real> secant;  ///< by slot
+  Aligned<float> tangent;
+  Aligned<Real> tangent_secant;  ///< g of the tangent, where it is no longer `secant`
+  std::vector<Scratch> scratch;
+  int scratch_vectors = 0;
+  std::uint64_t applications = 0;
+};
+
+}  // namespace kacanov
