@@ -5,25 +5,15 @@
 #include <omp.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "operator/checks.hpp"
 
 namespace kacanov {
 namespace {
 
-/// Strain norm up to which g is constant.
-double elastic_limit(const Law& law) {
-  double limit = law.x0;
-  if (law.kind == Law::Kind::linear) return std::numeric_limits<double>::infinity();
-  if (law.kind == Law::Kind::table) return 0.0;  // left to the law itself
-  return law.argument == Law::Argument::squared ? std::sqrt(limit) : limit;
-}
-
 void evaluate(const void* opaque, double x, double* g, double* slope, double* energy) {
   const Law& law = *static_cast<const Law*>(opaque);
-  const Law::Moduli moduli = law.moduli(x);
+  const Moduli moduli = law.moduli(x);
   *g = moduli.secant;
   *slope = moduli.derivative;
   if (energy != nullptr) *energy = law.energy(x);
@@ -61,7 +51,7 @@ BasicOperator<Real>::Data::Data(const Body& body, const OperatorOptions& options
       laws(body.laws.begin(), body.laws.end()),
       layout(make_layout(body, kernels.lanes, threads, 4 * sizeof(Real), options.early)) {
   for (const Law& law : laws)
-    views.push_back({law.bulk, law.secant(0.0), elastic_limit(law), law.mean_dilatation, &law, evaluate});
+    views.push_back({law.bulk, law.secant(0.0), law.yield_strain(), law.mean_dilatation, &law, evaluate});
   coordinates.resize(4 * layout.records());
   fill_coordinates<Real>(layout, body.mesh, coordinates);
   secant.resize(layout.element_point.size());

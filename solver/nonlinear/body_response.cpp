@@ -13,8 +13,7 @@ BodyResponse::BodyResponse(const Part& part, int threads, const std::string& ins
       op_(part, threads, instruction_set),
       diagonal_(op_.diagonal()),
       internal_(part.unknowns()),
-      linear_(std::all_of(part.laws.begin(), part.laws.end(),
-                          [](const Law& law) { return law.kind == Law::Kind::linear; })) {}
+      linear_(std::all_of(part.laws.begin(), part.laws.end(), [](const Law& law) { return law.linear(); })) {}
 
 void BodyResponse::evaluate(std::span<const double> u) {
   op_.residual(u, internal_);

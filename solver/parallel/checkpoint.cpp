@@ -75,11 +75,15 @@ Fingerprint fingerprint(const Problem& problem) {
 
   std::vector<double> laws;
   for (const Law& law : problem.laws) {
-    laws.insert(laws.end(), {static_cast<double>(law.kind), static_cast<double>(law.argument), law.shear,
-                             law.bulk, law.x0, law.gamma, law.n, law.q, law.mean_dilatation ? 1.0 : 0.0,
-                             static_cast<double>(law.table_x.size())});
-    laws.insert(laws.end(), law.table_x.begin(), law.table_x.end());
-    laws.insert(laws.end(), law.table_s.begin(), law.table_s.end());
+    laws.insert(laws.end(), {static_cast<double>(law.form.index()), static_cast<double>(law.argument),
+                             law.shear, law.bulk, law.mean_dilatation ? 1.0 : 0.0});
+    const auto append = [&](const auto& parameter) {
+      if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(parameter)>>)
+        laws.push_back(parameter);
+      else
+        laws.insert(laws.end(), parameter.begin(), parameter.end());
+    };
+    std::visit([&](const auto& form) { form.parameters(form, append); }, law.form);
   }
   print.sections["material"] = (Hash() << laws << problem.law_of_element).value();
   print.sections["boundary"] = (Hash() << problem.load << problem.held << problem.prescribed).value();

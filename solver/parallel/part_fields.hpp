@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <type_traits>
+#include <variant>
 
 #include <kacanov/part.hpp>
 
@@ -93,9 +94,19 @@ class FieldReader {
 template <class T, class Struct>
 concept Either = std::is_same_v<std::remove_const_t<T>, Struct>;  ///< Struct or const Struct
 
+/// The form of this number in the variant.
+template <std::size_t i = 0>
+Law::Form law_form(std::size_t number) {
+  if constexpr (i + 1 < std::variant_size_v<Law::Form>)
+    if (number != i) return law_form<i + 1>(number);
+  return std::variant_alternative_t<i, Law::Form>{};
+}
+
 void exchange_fields(Either<Law> auto& law, const auto& stream) {
-  stream(law.kind, law.argument, law.mean_dilatation, law.bulk, law.shear, law.x0, law.gamma, law.n, law.q,
-         law.table_x, law.table_s);
+  auto form = static_cast<std::uint8_t>(law.form.index());
+  stream(form, law.argument, law.mean_dilatation, law.bulk, law.shear);
+  if constexpr (!std::is_const_v<std::remove_reference_t<decltype(law)>>) law.form = law_form(form);
+  std::visit([&](auto& f) { f.parameters(f, stream); }, law.form);
 }
 
 void exchange_fields(Either<IndexMap::Neighbour> auto& n, const auto& stream) {

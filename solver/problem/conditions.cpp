@@ -17,12 +17,6 @@ std::string path_of(const char* list, std::size_t index) {
   return std::string(list) + "[" + std::to_string(index) + "]";
 }
 
-void check_law(const Law& law, const std::string& path) {
-  if (!(law.bulk > 0.0 && law.shear > 0.0)) {
-    throw InputError(path + ": expected a positive bulk and shear modulus");
-  }
-}
-
 void add(std::vector<double>& load, int dim, std::int32_t node, const Vector3& force) {
   for (int c = 0; c < dim; ++c) {
     load[static_cast<std::size_t>(node) * static_cast<std::size_t>(dim) + static_cast<std::size_t>(c)] +=
@@ -64,7 +58,8 @@ void assign_materials(Problem& problem, const Model& model, const Selection& sel
   for (std::size_t i = 0; i < model.materials.size(); ++i) {
     const std::string path = path_of("material", i);
     const MaterialEntry& entry = model.materials[i];
-    check_law(entry.law, path);
+    if (const std::string fault = validate(entry.law); !fault.empty())
+      throw InputError(path + ".law." + fault);
     if (entry.law.mean_dilatation && !cell(mesh.type).mean_dilatation)
       throw InputError(path + ".bbar: expected false, or a mesh of " + bbar_names() +
                        ": other elements have no B-bar here");

@@ -8,19 +8,19 @@
 #include "c_example.hpp"
 
 TEST_CASE("every element type gives the numbers of the reference") {
-  for (const std::int32_t element : {KACANOV_TRI3, KACANOV_TET4, KACANOV_TET10, KACANOV_HEX8}) {
+  for (const std::int32_t element :
+       {KACANOV_TRI3, KACANOV_TET4, KACANOV_TET10, KACANOV_HEX8, KACANOV_QUAD4}) {
     CAPTURE(element);
     Example example(element);
     example.description.threads = 2;
-    example.laws[0].mean_dilatation = element == KACANOV_HEX8;
+    example.laws[0].mean_dilatation = element == KACANOV_HEX8 || element == KACANOV_QUAD4;
     const Handle op = example.create();
     const SmallMesh& mesh = example.mesh;
     const std::size_t n = example.n();
 
     std::vector<kacanov::Law> laws(2, kacanov::elastic_law(2.0, 0.3));
-    laws[0].kind = kacanov::Law::Kind::logarithmic;
-    laws[0].x0 = 0.02;
-    laws[0].mean_dilatation = element == KACANOV_HEX8;
+    laws[0].form = kacanov::laws::Logarithmic{0.02};
+    laws[0].mean_dilatation = element == KACANOV_HEX8 || element == KACANOV_QUAD4;
     const kacanov::Body body{
         {static_cast<kacanov::ElementType>(element), mesh.coordinates, mesh.connectivity},
         laws,
@@ -106,16 +106,15 @@ TEST_CASE("every element type gives the numbers of the reference") {
 }
 
 TEST_CASE("every law arrives with its parameters") {
-  using Kind = kacanov::Law::Kind;
   const Vector table_x{0.0, 0.02, 0.05, 0.2}, table_s{0.0, 0.03, 0.06, 0.1};
-  for (const Kind kind :
-       {Kind::linear, Kind::logarithmic, Kind::linear_hardening, Kind::power, Kind::saturating, Kind::table})
+  for (const std::int32_t kind : {KACANOV_LINEAR, KACANOV_LOGARITHMIC, KACANOV_LINEAR_HARDENING,
+                                  KACANOV_POWER, KACANOV_SATURATING, KACANOV_TABLE})
     for (const bool squared : {false, true}) {
-      CAPTURE(static_cast<int>(kind));
+      CAPTURE(kind);
       CAPTURE(squared);
       Example example;
       kacanov_law& law = example.laws[0];
-      law.kind = static_cast<std::int32_t>(kind);
+      law.kind = kind;
       law.squared = squared;
       law.x0 = squared ? 0.0004 : 0.02;
       law.gamma = 0.1;
@@ -125,14 +124,15 @@ TEST_CASE("every law arrives with its parameters") {
       law.table_x = table_x.data();
       law.table_s = table_s.data();
       kacanov::Law want = kacanov::elastic_law(2.0, 0.3);
-      want.kind = kind;
       want.argument = squared ? kacanov::Law::Argument::squared : kacanov::Law::Argument::norm;
-      want.x0 = law.x0;
-      want.gamma = law.gamma;
-      want.n = law.n;
-      want.q = law.q;
-      want.table_x = table_x;
-      want.table_s = table_s;
+      using namespace kacanov;
+      const Law::Form forms[] = {laws::Linear{},
+                                 laws::Logarithmic{law.x0},
+                                 laws::LinearHardening{law.x0, law.gamma},
+                                 laws::Power{law.x0, law.n},
+                                 laws::Saturating{law.x0, law.q},
+                                 laws::Table{table_x, table_s}};
+      want.form = forms[kind];
 
       const Handle op = example.create();
       const Vector omega = random_vector(example.n(), 12, 0.1);
@@ -260,7 +260,8 @@ TEST_CASE("several right sides are applied as if one at a time") {
 }
 
 TEST_CASE("single precision follows the double one") {
-  for (const std::int32_t element : {KACANOV_TRI3, KACANOV_TET4, KACANOV_TET10, KACANOV_HEX8}) {
+  for (const std::int32_t element :
+       {KACANOV_TRI3, KACANOV_TET4, KACANOV_TET10, KACANOV_HEX8, KACANOV_QUAD4}) {
     CAPTURE(element);
     Example example(element);
     example.description.single = 1;

@@ -27,8 +27,8 @@ struct SmallMesh {
 inline SmallMesh small_mesh(std::int32_t element, std::size_t n) {
   SmallMesh mesh;
   mesh.element = element;
-  mesh.dim = element == KACANOV_TRI3 ? 2 : 3;
-  mesh.per_element = std::array<std::size_t, 4>{3, 4, 10, 8}.at(static_cast<std::size_t>(element));
+  mesh.dim = element == KACANOV_TRI3 || element == KACANOV_QUAD4 ? 2 : 3;
+  mesh.per_element = std::array<std::size_t, 5>{3, 4, 10, 8, 4}.at(static_cast<std::size_t>(element));
   const std::size_t m = n + 1, layers = mesh.dim == 3 ? m : 1;
   std::mt19937 random(7);
   std::uniform_real_distribution<double> shift(-0.1, 0.1);
@@ -49,6 +49,10 @@ inline SmallMesh small_mesh(std::int32_t element, std::size_t n) {
       for (std::size_t x = 0; x < n; ++x) {
         const std::int32_t a = node(x, y, z), b = node(x + 1, y, z), c = node(x + 1, y + 1, z),
                            d = node(x, y + 1, z);
+        if (element == KACANOV_QUAD4) {
+          add({a, b, c, d});
+          continue;
+        }
         if (mesh.dim == 2) {
           add({a, b, c});
           add({a, c, d});

@@ -18,28 +18,20 @@ inline const std::span<const ElementType> all_types = element_types();
 
 /// One law of every kind that stays monotone, E = 1, nu = 0.3.
 inline std::vector<Law> every_law() {
-  std::vector<Law> laws(6, elastic_law(1.0, 0.3));
-  for (Law& law : laws) law.x0 = 0.01;
-  laws[1].kind = Law::Kind::logarithmic;
-  laws[2].kind = Law::Kind::linear_hardening;
-  laws[2].gamma = 0.1;
-  laws[3].kind = Law::Kind::power;
-  laws[3].n = 0.3;
-  laws[4].kind = Law::Kind::saturating;
-  laws[4].q = 0.4;
-  laws[5].kind = Law::Kind::table;
-  const double mu = laws[5].shear;
-  laws[5].table_x = {0.0, 0.01, 0.02, 0.05};
-  laws[5].table_s = {0.0, 0.02 * mu, 0.03 * mu, 0.04 * mu};
-  return laws;
+  std::vector<Law> all(6, elastic_law(1.0, 0.3));
+  all[1].form = laws::Logarithmic{0.01};
+  all[2].form = laws::LinearHardening{0.01, 0.1};
+  all[3].form = laws::Power{0.01, 0.3};
+  all[4].form = laws::Saturating{0.01, 0.4};
+  const double mu = all[5].shear;
+  all[5].form = laws::Table{{0.0, 0.01, 0.02, 0.05}, {0.0, 0.02 * mu, 0.03 * mu, 0.04 * mu}};
+  return all;
 }
 
 /// A material that stiffens: g' > 0.
 inline Law stiffening_law() {
   Law law = elastic_law(1.0, 0.3);
-  law.kind = Law::Kind::table;
-  law.table_x = {0.0, 0.01, 0.02, 0.05};
-  law.table_s = {0.0, 0.02 * law.shear, 0.05 * law.shear, 0.2 * law.shear};
+  law.form = laws::Table{{0.0, 0.01, 0.02, 0.05}, {0.0, 0.02 * law.shear, 0.05 * law.shear, 0.2 * law.shear}};
   return law;
 }
 

@@ -103,14 +103,14 @@ struct Cylinder {
   /// allowed to rise.
   double plastic_pressure(double strain, bool mean_dilatation) const {
     Law law = elastic_law(young, 0.3);
-    law.kind = Law::Kind::logarithmic;
-    law.x0 = 1e-6;
+    constexpr double x0 = 1e-6;
+    law.form = laws::Logarithmic{x0};
     law.mean_dilatation = mean_dilatation;
     const auto owned = test::with_one_law(mesh, law);
     Operator op(owned.body());
     const std::size_t n = op.unknowns();
     // Outside u = C/r, x = √2 C/r²; inside the surface everything starts from that.
-    const double c = strain * law.x0 * inner_radius * inner_radius / std::numbers::sqrt2;
+    const double c = strain * x0 * inner_radius * inner_radius / std::numbers::sqrt2;
     std::vector<double> u(n, 0.0), f(n), diagonal(n);
     std::vector<char> fixed(held);
     for (std::size_t i = 0; i < n; i += dim) {
@@ -142,10 +142,10 @@ struct Cylinder {
     // The pressure does the reaction's work on the volume that the inner surface sweeps.
     const double swept = steps * facet * std::sin(half_step) * std::cos(half_step);
     const auto h = [&](double x) {  // ∫ g
-      const double l = std::log(x / law.x0);
-      return law.shear * (l < 0.0 ? x : law.x0 * (1.0 + l + 0.5 * l * l));
+      const double l = std::log(x / x0);
+      return law.shear * (l < 0.0 ? x : x0 * (1.0 + l + 0.5 * l * l));
     };
-    const double x_a = strain * law.x0, x_b = x_a * std::pow(inner_radius / outer_radius, 2);
+    const double x_a = strain * x0, x_b = x_a * std::pow(inner_radius / outer_radius, 2);
     return test::dot(f, inner_normal) / swept / (std::numbers::sqrt2 * (h(x_a) - h(x_b)));
   }
 };

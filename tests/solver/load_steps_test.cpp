@@ -56,7 +56,7 @@ TEST_CASE("the answer does not depend on the load steps") {
     for (const Law& law : {elastic_law(1.0, 0.3), logarithmic_law(0.005), hardening_law(0.005, 0.05)}) {
       const int dim = dimension(type);
       CAPTURE(dim);
-      CAPTURE(static_cast<int>(law.kind));
+      CAPTURE(law.form.index());
       Model model = pressed_block(dim, law);
       // Nothing prescribed on the left of the top where it is held already.
       model.boundary[1].on = box({0.5, 0.0, 0.0}, {2.0, 1.0, 0.5});

@@ -36,16 +36,13 @@ inline Run run_alone(Mesh mesh, const Model& model, const RunOptions& options = 
 
 inline Law logarithmic_law(double x0, double young = 1.0, double poisson = 0.3) {
   Law law = elastic_law(young, poisson);
-  law.kind = Law::Kind::logarithmic;
-  law.x0 = x0;
+  law.form = laws::Logarithmic{x0};
   return law;
 }
 
 inline Law hardening_law(double x0, double gamma) {
   Law law = elastic_law(1.0, 0.3);
-  law.kind = Law::Kind::linear_hardening;
-  law.x0 = x0;
-  law.gamma = gamma;
+  law.form = laws::LinearHardening{x0, gamma};
   return law;
 }
 

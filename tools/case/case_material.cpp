@@ -4,51 +4,85 @@
 
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include <kacanov/error.hpp>
 
 namespace kacanov {
 namespace {
 
-bool positive(double v) { return v > 0.0; }
-
 /// x0, or the yield stress it follows from: 2 mu x0 = sqrt(2/3) sigma_y for the norm.
 double yield_strain(const Object& object, const Law& law) {
-  if (object.only_one_of({"x0", "yield_stress"}) == "x0")
-    return object.required("x0").number("a number > 0", positive);
-  const double stress = object.required("yield_stress").number("a number > 0", positive);
+  if (object.only_one_of({"x0", "yield_stress"}) == "x0") return object.required("x0").number();
+  const double stress =
+      object.required("yield_stress").number("a number > 0", [](double v) { return v > 0.0; });
   const double norm = std::sqrt(2.0 / 3.0) * stress / (2.0 * law.shear);
   return law.argument == Law::Argument::squared ? norm * norm : norm;
 }
 
-void parse_table(const Node& node, Law& law, std::vector<std::string>& warnings) {
-  const char* wanted = "a list of pairs [x, s] from [0, 0] on";
-  for (const Node& point : node.list(wanted)) {
+laws::Table parse_table(const Node& node) {
+  laws::Table table;
+  for (const Node& point : node.list("a list of pairs [x, s] from [0, 0] on")) {
     const std::vector<Node> pair = point.list("a pair [x, s]");
     if (pair.size() != 2) point.expected("a pair [x, s]");
-    const double x = pair[0].number(), s = pair[1].number();
-    if (law.table_x.empty()) {
-      if (x != 0.0 || s != 0.0) point.expected("[0, 0] as the first point");
-    } else {
-      if (!(x > law.table_x.back())) pair[0].expected("a strain above that of the point before");
-      if (!(s > law.table_s.back())) pair[1].expected("a stress above that of the point before");
-      const bool second = law.table_x.size() == 1;
-      // A straight line through the origin, written with rounded numbers, is no increase.
-      if (!second && s / x > law.table_s.back() / law.table_x.back() * (1.0 + 1e-9)) {
-        point.expected("a secant s/x not above that of the point before");
-      }
-    }
-    law.table_x.push_back(x);
-    law.table_s.push_back(s);
+    table.x.push_back(pair[0].number());
+    table.s.push_back(pair[1].number());
   }
-  if (law.table_x.size() < 2) node.expected(wanted);
-  const double elastic = 2.0 * law.shear, slope = law.table_s[1] / law.table_x[1];
-  if (law.argument == Law::Argument::norm && std::abs(slope - elastic) > 0.01 * elastic) {
-    std::ostringstream text;
-    text << node.path() << ": the table starts with the slope " << slope
-         << ", young and poisson give 2 mu = " << elastic;
-    warnings.push_back(text.str());
-  }
+  return table;
+}
+
+/// The keys of each form beside `type` and `argument`, and how it is read.
+struct Entry {
+  std::string_view name;
+  Law::Form (*read)(const Node& node, const Law& law);
+};
+
+constexpr Entry entries[] = {
+    {laws::Linear::name,
+     [](const Node& node, const Law&) -> Law::Form {
+       Object(node, {"type", "argument"});
+       return laws::Linear{};
+     }},
+    {laws::Logarithmic::name,
+     [](const Node& node, const Law& law) -> Law::Form {
+       const Object object(node, {"type", "argument", "x0", "yield_stress"});
+       return laws::Logarithmic{yield_strain(object, law)};
+     }},
+    {laws::LinearHardening::name,
+     [](const Node& node, const Law& law) -> Law::Form {
+       const Object object(node, {"type", "argument", "x0", "yield_stress", "gamma"});
+       const double x0 = yield_strain(object, law);
+       return laws::LinearHardening{x0, object.required("gamma").number()};
+     }},
+    {laws::Power::name,
+     [](const Node& node, const Law& law) -> Law::Form {
+       const Object object(node, {"type", "argument", "x0", "yield_stress", "n"});
+       const double x0 = yield_strain(object, law);
+       return laws::Power{x0, object.required("n").number()};
+     }},
+    {laws::Saturating::name,
+     [](const Node& node, const Law& law) -> Law::Form {
+       const Object object(node, {"type", "argument", "x0", "yield_stress", "q"});
+       const double x0 = yield_strain(object, law);
+       return laws::Saturating{x0, object.required("q").number()};
+     }},
+    {laws::Table::name,
+     [](const Node& node, const Law&) -> Law::Form {
+       const Object object(node, {"type", "argument", "points"});
+       return parse_table(object.required("points"));
+     }},
+};
+static_assert(std::size(entries) == std::variant_size_v<Law::Form>);
+
+void compare_slopes(const Node& node, const Law& law, std::vector<std::string>& warnings) {
+  const auto* table = std::get_if<laws::Table>(&law.form);
+  if (table == nullptr || law.argument != Law::Argument::norm) return;
+  const double elastic = 2.0 * law.shear, slope = table->s[1] / table->x[1];
+  if (std::abs(slope - elastic) <= 0.01 * elastic) return;
+  std::ostringstream text;
+  text << node.path() << ".points: the table starts with the slope " << slope
+       << ", young and poisson give 2 mu = " << elastic;
+  warnings.push_back(text.str());
 }
 
 }  // namespace
@@ -56,49 +90,16 @@ void parse_table(const Node& node, Law& law, std::vector<std::string>& warnings)
 Law parse_law(double young, double poisson, const Node& node, std::vector<std::string>& warnings) {
   // Any law's key passes here, so that a wrong type is reported before keys that do not go with it.
   const Object any(node, {"type", "argument", "x0", "yield_stress", "gamma", "n", "q", "points"});
-  constexpr std::array<Law::Kind, 6> kinds{Law::Kind::linear,           Law::Kind::logarithmic,
-                                           Law::Kind::linear_hardening, Law::Kind::power,
-                                           Law::Kind::saturating,       Law::Kind::table};
   Law law = elastic_law(young, poisson);
-  law.kind = kinds[any.required("type").choice(
-      {"linear", "logarithmic", "linear_hardening", "power", "saturating", "table"})];
+  std::vector<std::string_view> names;
+  for (const Entry& entry : entries) names.push_back(entry.name);
+  const Entry& entry = entries[any.required("type").choice(names)];
   if (const auto argument = any.optional("argument")) {
     law.argument = argument->choice({"norm", "squared"}) == 0 ? Law::Argument::norm : Law::Argument::squared;
   }
-  switch (law.kind) {
-    case Law::Kind::linear: Object(node, {"type", "argument"}); break;
-    case Law::Kind::logarithmic: {
-      const Object object(node, {"type", "argument", "x0", "yield_stress"});
-      law.x0 = yield_strain(object, law);
-      break;
-    }
-    case Law::Kind::linear_hardening: {
-      const Object object(node, {"type", "argument", "x0", "yield_stress", "gamma"});
-      law.x0 = yield_strain(object, law);
-      // At 0 the displacement would not be unique.
-      law.gamma = object.required("gamma").number("a number > 0 and ≤ 1",
-                                                  [](double v) { return v > 0.0 && v <= 1.0; });
-      break;
-    }
-    case Law::Kind::power: {
-      const Object object(node, {"type", "argument", "x0", "yield_stress", "n"});
-      law.x0 = yield_strain(object, law);
-      law.n =
-          object.required("n").number("a number > 0 and ≤ 1", [](double v) { return v > 0.0 && v <= 1.0; });
-      break;
-    }
-    case Law::Kind::saturating: {
-      const Object object(node, {"type", "argument", "x0", "yield_stress", "q"});
-      law.x0 = yield_strain(object, law);
-      law.q = object.required("q").number("a number > 0", positive);
-      break;
-    }
-    case Law::Kind::table: {
-      const Object object(node, {"type", "argument", "points"});
-      parse_table(object.required("points"), law, warnings);
-      break;
-    }
-  }
+  law.form = entry.read(node, law);
+  if (const std::string fault = validate(law); !fault.empty()) throw InputError(node.path() + "." + fault);
+  compare_slopes(node, law, warnings);
   return law;
 }
 

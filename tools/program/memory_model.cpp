@@ -70,7 +70,7 @@ double number_after(const std::string& path, const std::string& word) {
 /// Whether some material has another law than the linear one.
 bool nonlinear(const Model& model) {
   return std::any_of(model.materials.begin(), model.materials.end(),
-                     [](const MaterialEntry& entry) { return entry.law.kind != Law::Kind::linear; });
+                     [](const MaterialEntry& entry) { return !entry.law.linear(); });
 }
 
 }  // namespace

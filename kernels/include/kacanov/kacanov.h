@@ -65,7 +65,7 @@ typedef enum kacanov_element {
 typedef enum kacanov_law_kind {
   KACANOV_LINEAR = 0,           /* g = mu */
   KACANOV_LOGARITHMIC = 1,      /* mu (x0/a) (ln(a/x0) + 1) */
-  KACANOV_LINEAR_HARDENING = 2, /* mu (gamma + (1 - gamma) x0/a), 0 <= gamma <= 1 */
+  KACANOV_LINEAR_HARDENING = 2, /* mu (gamma + (1 - gamma) x0/a), 0 < gamma <= 1 */
   KACANOV_POWER = 3,            /* mu (a/x0)^(n-1), 0 < n <= 1 */
   KACANOV_SATURATING = 4,       /* mu (x0/a) (1 + q (1 - exp(-(a-x0)/(q x0)))), q > 0 */
   KACANOV_TABLE = 5             /* 2 g a piecewise linear through given points */
@@ -80,7 +80,7 @@ typedef struct kacanov_law {
   double gamma;      /* linear hardening */
   double n;          /* power */
   double q;          /* saturating */
-  size_t table_size; /* table: points, from (0, 0); table_s/table_x must not increase */
+  size_t table_size; /* table: points, from (0, 0); table_s increases, table_s/table_x must not */
   const double* table_x;
   const double* table_s;   /* |dev tau| = 2 g a at table_x */
   int32_t mean_dilatation; /* 1: k0 acts on the mean of tr(eps) over the element (B-bar), against locking of

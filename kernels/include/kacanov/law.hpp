@@ -3,45 +3,158 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 namespace kacanov {
 
-/// tau = k0 tr(eps) I + 2 g(x) dev eps, x = ‖dev eps‖ (Frobenius). `paper` equation (34) is
-/// `logarithmic`. Every member function takes the norm x ≥ 0, whatever `argument` is.
+/// g and its derivative.
+struct Moduli {
+  double secant, derivative;
+};
+
+/// The forms that g can take beyond the proportional range, each a struct of its parameters with
+///
+///   name                  its `type` in case files
+///   parameters(f, visit)  calls visit(parameter) for each parameter of the form f
+///   fault()               what is wrong with the parameters, as validate() says it; empty if nothing
+///   yield()               the argument a up to which g is constant
+///   initial(mu)           g there
+///   moduli(mu, a)         g and dg/da for a > yield()
+///   energy(mu, a)         ∫ g a da from yield() to a > yield()
+///   plain_energy(mu, a)   ∫ g da from yield() to a > yield()
+///
+/// for the shear modulus mu and the argument a, a strain or its square: see Law::Argument.
+namespace laws {
+
+/// g = μ.
+struct Linear {
+  static constexpr std::string_view name = "linear";
+  static void parameters(auto&, auto&&) {}
+  std::string fault() const { return {}; }
+  double yield() const { return std::numeric_limits<double>::infinity(); }
+  double initial(double mu) const { return mu; }
+  Moduli moduli(double mu, double) const { return {mu, 0.0}; }
+  double energy(double, double) const { return 0.0; }
+  double plain_energy(double, double) const { return 0.0; }
+};
+
+/// theory: law-logarithmic
+struct Logarithmic {
+  double x0 = 0.0;  ///< yield strain, > 0, compared with the argument
+
+  static constexpr std::string_view name = "logarithmic";
+  static void parameters(auto& f, auto&& visit) { visit(f.x0); }
+  std::string fault() const;
+  double yield() const { return x0; }
+  double initial(double mu) const { return mu; }
+  Moduli moduli(double mu, double a) const;
+  double energy(double mu, double a) const;
+  double plain_energy(double mu, double a) const;
+};
+
+/// theory: law-linear-hardening
+struct LinearHardening {
+  double x0 = 0.0;     ///< as above
+  double gamma = 1.0;  ///< 0 < γ ≤ 1: the part of μ that is left in the end
+
+  static constexpr std::string_view name = "linear_hardening";
+  static void parameters(auto& f, auto&& visit) { visit(f.x0), visit(f.gamma); }
+  std::string fault() const;
+  double yield() const { return x0; }
+  double initial(double mu) const { return mu; }
+  Moduli moduli(double mu, double a) const;
+  double energy(double mu, double a) const;
+  double plain_energy(double mu, double a) const;
+};
+
+/// theory: law-power
+struct Power {
+  double x0 = 0.0;  ///< as above
+  double n = 1.0;   ///< 0 < n ≤ 1
+
+  static constexpr std::string_view name = "power";
+  static void parameters(auto& f, auto&& visit) { visit(f.x0), visit(f.n); }
+  std::string fault() const;
+  double yield() const { return x0; }
+  double initial(double mu) const { return mu; }
+  Moduli moduli(double mu, double a) const;
+  double energy(double mu, double a) const;
+  double plain_energy(double mu, double a) const;
+};
+
+/// theory: law-saturating
+struct Saturating {
+  double x0 = 0.0;  ///< as above
+  double q = 1.0;   ///< > 0: the stress tends to 1 + q times that at x0
+
+  static constexpr std::string_view name = "saturating";
+  static void parameters(auto& f, auto&& visit) { visit(f.x0), visit(f.q); }
+  std::string fault() const;
+  double yield() const { return x0; }
+  double initial(double mu) const { return mu; }
+  Moduli moduli(double mu, double a) const;
+  double energy(double mu, double a) const;
+  double plain_energy(double mu, double a) const;
+};
+
+/// theory: law-table. At least two points from (0, 0); the last piece goes on.
+struct Table {
+  std::vector<double> x;  ///< arguments, increasing
+  std::vector<double> s;  ///< 2 g a = ‖dev τ‖ there, increasing, s/x not increasing
+
+  static constexpr std::string_view name = "table";
+  static void parameters(auto& f, auto&& visit) { visit(f.x), visit(f.s); }
+  std::string fault() const;
+  double yield() const { return x[1]; }
+  double initial(double) const { return 0.5 * s[1] / x[1]; }
+  Moduli moduli(double mu, double a) const;
+  double energy(double mu, double a) const;
+  double plain_energy(double mu, double a) const;
+};
+
+}  // namespace laws
+
+/// τ = k0 tr ε I + 2 g(x) dev ε, x = ‖dev ε‖ (Frobenius; theory: laws). Moduli have the unit of stress,
+/// strains none. Every member function takes the norm x ≥ 0, whatever `argument` is.
 struct Law {
-  enum class Kind : std::uint8_t { linear, logarithmic, linear_hardening, power, saturating, table };
+  using Form = std::variant<laws::Linear, laws::Logarithmic, laws::LinearHardening, laws::Power,
+                            laws::Saturating, laws::Table>;
+  /// What the form is fed with: x or x² (theory: squared-argument).
   enum class Argument : std::uint8_t { norm, squared };
 
-  Kind kind = Kind::linear;
-  Argument argument = Argument::norm;    ///< what the formula of g is fed with: x or x²
-  double bulk = 0.0;                     ///< k0
-  double shear = 0.0;                    ///< mu = g(0)
-  double x0 = 0.0;                       ///< yield strain, compared with the argument
-  double gamma = 0.0;                    ///< linear_hardening
-  double n = 1.0;                        ///< power
-  double q = 1.0;                        ///< saturating
-  bool mean_dilatation = false;          ///< hex8 only: k0 sees the element's mean of tr(eps) (B-bar)
-  std::vector<double> table_x, table_s;  ///< table: strain norms and ‖dev tau‖, from (0, 0)
+  Form form;
+  Argument argument = Argument::norm;
+  double bulk = 0.0;             ///< k0
+  double shear = 0.0;            ///< μ = g(0); a table has its own
+  bool mean_dilatation = false;  ///< k0 sees the element's mean of tr ε (theory: b-bar); see Cell
 
-  struct Moduli {
-    double secant, derivative;
-  };
+  /// True for the form whose g is constant.
+  bool linear() const noexcept { return std::holds_alternative<laws::Linear>(form); }
   /// g and dg/dx at once.
   Moduli moduli(double x) const;
   /// Secant modulus g.
   double secant(double x) const;
   /// dg/dx with respect to the norm x.
   double secant_derivative(double x) const;
-  /// G(x) = ∫₀ˣ g(s) s ds; the energy density of a point is k0/2 tr² + 2 G(x).
+  /// G(x) = ∫₀ˣ g(s) s ds; the energy density of a point is k0/2 tr² + 2 G(x) (theory: energy).
   double energy(double x) const;
+  /// The norm up to which g is constant; infinite for linear ones.
+  double yield_strain() const;
   /// True where stress falls with strain, d(g x)/dx < 0 (possible with the squared argument only).
   bool softens(double x) const;
   /// True beyond the yield strain.
   bool plastic(double x) const;
 };
 
-/// k0 = E / (3 (1 − 2 nu)), mu = E / (2 (1 + nu)).
+/// What is wrong with a law, in the words of the case file, such as "gamma: expected a number > 0 and ≤ 1,
+/// got 0"; empty if nothing is. Whether the body's elements have a B-bar form is another question.
+std::string validate(const Law& law);
+
+/// k0 = E / (3 (1 − 2ν)), μ = E / (2 (1 + ν)) of Young's modulus and Poisson's ratio, which are not checked.
 Law elastic_law(double young, double poisson);
 
 }  // namespace kacanov
