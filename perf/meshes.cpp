@@ -173,8 +173,8 @@ OwnedMesh box(ElementType type, std::array<int, 3> cells, std::array<double, 3> 
 }
 
 void jitter(OwnedMesh& mesh, double amount, unsigned seed) {
-  const auto dim = static_cast<std::size_t>(dimension(mesh.type));
-  const auto nodes = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  const std::size_t dim = dimension(mesh.type);
+  const std::size_t nodes = nodes_per_element(mesh.type);
   std::array<double, 3> step;  // the extent of the smallest element along each axis
   step.fill(std::numeric_limits<double>::max());
   for (std::size_t e = 0; e < mesh.connectivity.size() / nodes; ++e)
@@ -229,8 +229,8 @@ void flip(OwnedMesh& mesh, int rounds, unsigned seed) {
 
 void shuffle(OwnedMesh& mesh, unsigned seed) {
   std::mt19937 random(seed);
-  const auto dim = static_cast<std::size_t>(dimension(mesh.type));
-  const auto nodes = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  const std::size_t dim = dimension(mesh.type);
+  const std::size_t nodes = nodes_per_element(mesh.type);
   std::vector<Index> place(mesh.coordinates.size() / dim);
   std::iota(place.begin(), place.end(), 0);
   std::shuffle(place.begin(), place.end(), random);
@@ -243,8 +243,7 @@ void shuffle(OwnedMesh& mesh, unsigned seed) {
   std::shuffle(order.begin(), order.end(), random);
   std::vector<Index> connectivity;
   for (const std::size_t e : order)
-    for (std::size_t a = 0; a < nodes; ++a)
-      connectivity.push_back(place[at(mesh.connectivity[e * nodes + a])]);
+    for (std::size_t a = 0; a < nodes; ++a) connectivity.push_back(place[mesh.connectivity[e * nodes + a]]);
   mesh.connectivity = std::move(connectivity);
 }
 

@@ -90,7 +90,7 @@ int kacanov_apply_many(kacanov_operator* op, size_t n, int32_t vectors, const do
   return on(op, [&](k::Operator& fast) {
     require_size(n, op->unknowns(), "n");
     if (vectors < 1) throw Fault(KACANOV_ERROR_VALUE, "vectors: expected at least 1");
-    const auto in = input(x, n * static_cast<std::size_t>(vectors), "x");
+    const auto in = input(x, n * vectors, "x");
     const auto out = output(y, in.size(), "y");
     require_disjoint(in, out, "x and y");
     fast.apply_many(in, out, vectors);
@@ -126,7 +126,7 @@ int kacanov_diagonal(kacanov_operator* op, size_t n, double* diagonal) {
 
 int kacanov_block_diagonal(kacanov_operator* op, size_t count, double* blocks) {
   return on(op, [&](k::Operator& fast) {
-    require_size(count, op->unknowns() * static_cast<std::size_t>(k::dimension(op->mesh.type)), "count");
+    require_size(count, op->unknowns() * k::dimension(op->mesh.type), "count");
     fast.block_diagonal(output(blocks, count, "blocks"));
   });
 }

@@ -21,7 +21,7 @@ k::ElementType element_type(std::int32_t element) {
 }
 
 void check_description(const kacanov_description& d) {
-  constexpr auto most = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max());
+  constexpr std::size_t most = std::numeric_limits<std::int32_t>::max();
   if (d.threads < 0 || d.threads > 4096)
     throw Fault(KACANOV_ERROR_VALUE, "threads: expected 0 to 4096, got " + std::to_string(d.threads));
   if (d.index_base != 0 && d.index_base != 1) throw Fault(KACANOV_ERROR_VALUE, "index_base: expected 0 or 1");
@@ -40,8 +40,8 @@ void check_description(const kacanov_description& d) {
 /// Fills the mesh of the handle with copies, or with the caller's arrays where they are borrowed.
 void take_mesh(const kacanov_description& d, kacanov_operator& op) {
   const k::ElementType type = element_type(d.element);
-  const auto dim = static_cast<std::size_t>(k::dimension(type));
-  const auto per_element = static_cast<std::size_t>(k::nodes_per_element(type));
+  const std::size_t dim = k::dimension(type);
+  const std::size_t per_element = k::nodes_per_element(type);
   const std::size_t node_stride = d.node_stride == 0 ? dim : d.node_stride;
   const std::size_t component_stride = d.component_stride == 0 ? 1 : d.component_stride;
   const std::size_t element_stride = d.element_stride == 0 ? per_element : d.element_stride;

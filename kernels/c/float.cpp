@@ -53,7 +53,7 @@ int kacanov_apply_dot_float(kacanov_operator* op, size_t n, const float* x, floa
 int kacanov_apply_many_float(kacanov_operator* op, size_t n, int32_t vectors, const float* x, float* y) {
   return on_single(op, n, [&](k::FloatOperator& single) {
     if (vectors < 1) throw Fault(KACANOV_ERROR_VALUE, "vectors: expected at least 1");
-    const auto in = input(x, n * static_cast<std::size_t>(vectors), "x");
+    const auto in = input(x, n * vectors, "x");
     const auto out = output(y, in.size(), "y");
     require_disjoint(in, out, "x and y");
     single.apply_many(in, out, vectors);

@@ -132,7 +132,7 @@ void refuse(ElementType type) {
 std::span<const ElementType> element_types() noexcept { return types; }
 
 std::optional<ElementType> element_type(const Cell& cell) noexcept {
-  const auto i = static_cast<std::size_t>(&cell - table.data());
+  const std::size_t i = &cell - table.data();
   return i < types.size() ? std::optional(types[i]) : std::nullopt;
 }
 

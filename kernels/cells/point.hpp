@@ -9,7 +9,7 @@ namespace kacanov::elements {
 
 /// Nodal values of one element, nodes × dim.
 template <class E>
-using Nodal = std::array<double, static_cast<std::size_t>(E::nodes* E::dim)>;
+using Nodal = std::array<double, E::nodes * E::dim>;
 
 template <class E>
 struct Point {
@@ -71,7 +71,7 @@ struct Point {
             static_cast<Real>(k * mean[i] * mean[j] + third * d[i] * d[j] + (i == j ? s * square : 0.0));
   }
 
-  static constexpr std::size_t at(int a, int i) { return static_cast<std::size_t>(a * E::dim + i); }
+  static constexpr std::size_t at(int a, int i) { return a * E::dim + i; }
 };
 
 /// All points of an element. With `mean_dilatation` (the selective B-bar method of Hughes, 1980) tr ε is its

@@ -47,9 +47,7 @@ constexpr std::array<double, E::nodes> quadratic_values(const double* xi) {
   const auto l = barycentric<E::dim>(xi);
   std::array<double, E::nodes> n{};
   for (std::size_t a = 0; a < E::corners; ++a) n[a] = l[a] * (2.0 * l[a] - 1.0);
-  for (const CellEdge& e : E::edge)
-    n[static_cast<std::size_t>(e.middle)] =
-        4.0 * l[static_cast<std::size_t>(e.a)] * l[static_cast<std::size_t>(e.b)];
+  for (const CellEdge& e : E::edge) n[e.middle] = 4.0 * l[e.a] * l[e.b];
   return n;
 }
 
@@ -62,9 +60,8 @@ constexpr std::array<double, E::nodes * E::dim> quadratic_gradients(const double
     for (std::size_t a = 0; a < E::corners; ++a)
       d[dim * a + k] = (4.0 * l[a] - 1.0) * barycentric_slope(a, k);
     for (const CellEdge& e : E::edge) {
-      const auto a = static_cast<std::size_t>(e.a), b = static_cast<std::size_t>(e.b);
-      d[dim * static_cast<std::size_t>(e.middle) + k] =
-          4.0 * (l[a] * barycentric_slope(b, k) + l[b] * barycentric_slope(a, k));
+      const std::size_t a = e.a, b = e.b;
+      d[dim * e.middle + k] = 4.0 * (l[a] * barycentric_slope(b, k) + l[b] * barycentric_slope(a, k));
     }
   }
   return d;
@@ -76,9 +73,7 @@ constexpr std::array<std::array<double, E::dim>, E::nodes> simplex_nodes() {
   std::array<std::array<double, E::dim>, E::nodes> x{};
   for (std::size_t k = 0; k < E::dim; ++k) x[k + 1][k] = 1.0;
   for (const CellEdge& e : E::edge)
-    for (std::size_t k = 0; e.middle >= 0 && k < E::dim; ++k)
-      x[static_cast<std::size_t>(e.middle)][k] =
-          0.5 * (x[static_cast<std::size_t>(e.a)][k] + x[static_cast<std::size_t>(e.b)][k]);
+    for (std::size_t k = 0; e.middle >= 0 && k < E::dim; ++k) x[e.middle][k] = 0.5 * (x[e.a][k] + x[e.b][k]);
   return x;
 }
 

@@ -162,7 +162,7 @@ std::string Table::fault() const {
 }
 
 Moduli Table::moduli(double, double a) const {
-  const auto above = static_cast<std::size_t>(std::upper_bound(x.begin() + 1, x.end(), a) - x.begin());
+  const std::size_t above = std::upper_bound(x.begin() + 1, x.end(), a) - x.begin();
   const Piece piece = piece_to(*this, std::min(above, x.size() - 1));
   if (piece.start_a == 0.0) return {0.5 * piece.slope, 0.0};
   const double stress = piece.start_s + piece.slope * (a - piece.start_a);

@@ -17,7 +17,7 @@ void BasicOperator<Real>::Data::add_diagonals(const BlockRange& range, const sim
                                               std::span<Real> blocks) const {
   using elements::Point;
   const bool fan = group.shape == simd::Shape::open_fan || group.shape == simd::Shape::closed_fan;
-  const auto lanes = static_cast<std::size_t>(layout.lanes);
+  const std::size_t lanes = layout.lanes;
   const std::size_t element_points = fan ? group.length : E::points,
                     ring_ends = group.shape == simd::Shape::closed_fan ? 2 : 3,
                     nodes = fan ? element_points + ring_ends : E::nodes;
@@ -34,17 +34,17 @@ void BasicOperator<Real>::Data::add_diagonals(const BlockRange& range, const sim
         if (fan || p == 0) {
           elements::Nodal<E> x;
           for (int a = 0; a < E::nodes; ++a) {
-            const auto k = static_cast<std::size_t>(a);
+            const std::size_t k = a;
             const std::size_t node = fan && k >= 2 ? 2 + (p + k - 2) % (nodes - 2) : k;
             record[k] = index[(batch * nodes + node) * lanes + lane];
             for (int c = 0; c < E::dim; ++c)
-              x[Point<E>::at(a, c)] = static_cast<double>(records[record[k] + static_cast<std::size_t>(c)]);
+              x[Point<E>::at(a, c)] = static_cast<double>(records[record[k] + c]);
           }
           at = elements::points_of<E>(x, laws[group.law].mean_dilatation);
         }
         const Point<E>& point = at[fan ? 0 : p];
         for (int a = 0; a < E::nodes; ++a) {
-          const std::int32_t id = layout.nodes[range.first_node + record[static_cast<std::size_t>(a)] / 4];
+          const std::int32_t id = layout.nodes[range.first_node + record[a] / 4];
           point.add_diagonal_block(a, laws[group.law].bulk, static_cast<double>(secant[slot]),
                                    blocks.data() + Point<E>::at(id, 0) * E::dim);
         }

@@ -43,7 +43,7 @@ EdgeTable make_edges(const MeshView& mesh) {
   for (std::size_t e = 0; e < count; ++e)
     for (std::uint32_t k = 0; k < 6; ++k) {
       const auto [low, high] = std::minmax(node[4 * e + edges[k][0]], node[4 * e + edges[k][1]]);
-      entries[fill[at(low)]++] = {high, static_cast<std::uint32_t>(8 * e) + k};
+      entries[fill[low]++] = {high, static_cast<std::uint32_t>(8 * e) + k};
     }
   EdgeTable table;
   table.around.reserve(entries.size());
@@ -104,7 +104,7 @@ struct Cover {
   std::vector<Arc> arcs;
 
   void add_fan(bool closed, Index p, Index q, std::span<const Arc> chain) {
-    constexpr auto longest = static_cast<std::size_t>(simd::longest_fan);
+    constexpr std::size_t longest = simd::longest_fan;
     if (chain.size() > longest) {
       add_fan(false, p, q, chain.first(longest));
       add_fan(false, p, q, chain.subspan(longest));

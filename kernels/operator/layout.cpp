@@ -74,7 +74,7 @@ struct Builder {
       const Unit& unit = units.units[u];
       classes[{unit.law, unit.shape, unit.length}].push_back({u, 0});
     }
-    const auto lanes = static_cast<std::size_t>(layout.lanes);
+    const std::size_t lanes = layout.lanes;
     const auto cut_rest = [&](std::uint16_t law, Shape shape, std::uint8_t length) {
       const auto found = classes.find({law, shape, length});
       if (found == classes.end()) return;
@@ -116,13 +116,13 @@ struct Builder {
     for (const std::uint32_t u : members)
       for (std::uint32_t k = 0; k < units.node_count(u); ++k) {
         const std::int32_t node = unit_nodes(u)[k];
-        if (local[at(node)] >= 0) continue;
-        local[at(node)] = 0;
+        if (local[node] >= 0) continue;
+        local[node] = 0;
         found.push_back(node);
       }
-    const auto kind = [&](std::int32_t node) { return slot[at(node)] >= 0 ? 2 : state[at(node)]; };
+    const auto kind = [&](std::int32_t node) { return slot[node] >= 0 ? 2 : state[node]; };
     std::sort(found.begin(), found.end(), [&](std::int32_t a, std::int32_t b) {
-      return std::make_tuple(kind(a), rank[at(a)]) < std::make_tuple(kind(b), rank[at(b)]);
+      return std::make_tuple(kind(a), rank[a]) < std::make_tuple(kind(b), rank[b]);
     });
     range.first_node = layout.nodes.size();
     range.first_shared = layout.shared.size();
@@ -132,23 +132,23 @@ struct Builder {
       const std::int32_t node = found[i];
       range.first += kind(node) == 0 ? 1 : 0;
       range.again += kind(node) <= 1 ? 1 : 0;
-      if (kind(node) == 2) layout.shared.push_back(slot[at(node)]);
-      local[at(node)] = static_cast<std::int32_t>(i);
+      if (kind(node) == 2) layout.shared.push_back(slot[node]);
+      local[node] = static_cast<std::int32_t>(i);
     }
-    for (const std::int32_t node : found) state[at(node)] = 1;
+    for (const std::int32_t node : found) state[node] = 1;
     layout.nodes.insert(layout.nodes.end(), found.begin(), found.end());
   }
 
   /// Batches of one class, appended to the index and to the slots.
   void add_group(const Key& key, std::span<const Piece> pieces, BlockRange& range) {
     const auto [law, shape, length] = key;
-    const auto lanes = static_cast<std::size_t>(layout.lanes);
+    const std::size_t lanes = layout.lanes;
     const std::uint32_t nodes = units.nodes_of(shape, length), points = units.points_of(shape, length);
     const std::size_t batches = (pieces.size() + lanes - 1) / lanes;
     layout.groups.push_back({units.type, shape, length, law, static_cast<std::uint32_t>(batches),
                              static_cast<std::uint32_t>(layout.index.size() - range.first_index),
                              static_cast<std::uint32_t>(layout.element_point.size() - range.first_slot)});
-    const auto points_an_element = static_cast<std::size_t>(points_per_element(body.mesh.type));
+    const std::size_t points_an_element = points_per_element(body.mesh.type);
     // Neighbouring tet10 share up to six nodes, whose sums wait for each other: their lanes work far apart.
     const bool apart = cell(units.type).order == 2;
     const auto piece_of = [&](std::size_t batch, std::size_t lane) {
@@ -190,7 +190,7 @@ struct Builder {
     for (const auto& [key, pieces] : classify(members))
       if (!pieces.empty()) add_group(key, pieces, range);
     range.group_count = layout.groups.size() - range.first_group;
-    for (std::size_t i = range.first_node; i < layout.nodes.size(); ++i) local[at(layout.nodes[i])] = -1;
+    for (std::size_t i = range.first_node; i < layout.nodes.size(); ++i) local[layout.nodes[i]] = -1;
     layout.largest = std::max(layout.largest, range.count + layout.padding);
     layout.blocks.push_back(range);
   }
@@ -206,7 +206,7 @@ struct Builder {
           seen.push_back(unit_nodes(u)[k]);
           ++count;
         }
-    for (const std::int32_t node : seen) local[at(node)] = -1;
+    for (const std::int32_t node : seen) local[node] = -1;
     if (count + layout.padding <= most_records) {
       if (!members.empty()) out.push_back(std::move(members));
       return;
@@ -232,12 +232,12 @@ std::vector<std::vector<std::uint32_t>> assign_units(Builder& builder, int parts
     std::int32_t best = 0;
     std::ptrdiff_t most = 0;
     for (std::uint32_t k = 0; k < count; ++k) {
-      const std::int32_t candidate = part[at(nodes[k])];
+      const std::int32_t candidate = part[nodes[k]];
       const auto votes =
-          std::count_if(nodes, nodes + count, [&](std::int32_t n) { return part[at(n)] == candidate; });
+          std::count_if(nodes, nodes + count, [&](std::int32_t n) { return part[n] == candidate; });
       if (votes > most) most = votes, best = candidate;
     }
-    members[at(best)].push_back(u);
+    members[best].push_back(u);
   }
   std::vector<std::vector<std::uint32_t>> blocks;
   for (auto& list : members) builder.cut_to_size(std::move(list), blocks);
@@ -256,7 +256,7 @@ std::vector<std::size_t> share_blocks(const Units& units, std::span<const std::v
   std::vector<std::size_t> share{0};
   for (int t = 1; t < threads; ++t) {
     const double wanted = cost.back() * t / threads;
-    auto cut = static_cast<std::size_t>(std::lower_bound(cost.begin(), cost.end(), wanted) - cost.begin());
+    std::size_t cut = std::lower_bound(cost.begin(), cost.end(), wanted) - cost.begin();
     if (cut > 0 && wanted - cost[cut - 1] < cost[cut] - wanted) --cut;
     share.push_back(std::max(cut, share.back()));
   }
@@ -271,7 +271,7 @@ void put_early_first(const Builder& builder, Layout& layout, std::span<const cha
     return std::any_of(members.begin(), members.end(), [&](std::uint32_t u) {
       const std::int32_t* nodes = builder.unit_nodes(u);
       return std::any_of(nodes, nodes + builder.units.node_count(u),
-                         [&](std::int32_t node) { return is_early[at(node)] != 0; });
+                         [&](std::int32_t node) { return is_early[node] != 0; });
     });
   };
   for (std::size_t t = 0; t + 1 < layout.share.size(); ++t) {
@@ -341,16 +341,16 @@ Layout make_layout(const Body& body, int lanes, int threads, std::size_t record_
   layout.padding = static_cast<std::uint32_t>(idle_positions(body.mesh.type).size());
   builder.local.assign(body.mesh.node_count(), -1);
   builder.rank.resize(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) builder.rank[at(order[i])] = static_cast<std::int32_t>(i);
+  for (std::size_t i = 0; i < order.size(); ++i) builder.rank[order[i]] = static_cast<std::int32_t>(i);
   const std::size_t per_block = cache_bytes / (3 * record_bytes);
   const std::size_t wanted = (body.mesh.node_count() + per_block - 1) / per_block;
   // A multiple of the threads, and each block worth its surface, but a block for every thread where possible.
-  const auto team = static_cast<std::size_t>(threads);
+  const std::size_t team = threads;
   const int parts = static_cast<int>((std::max<std::size_t>(wanted, 1) + team - 1) / team * team);
   auto blocks = assign_units(builder, parts, partition_nodes(body.mesh, order, parts));
   layout.share = share_blocks(builder.units, blocks, threads);
   std::vector<char> is_early(body.mesh.node_count(), 0);
-  for (const std::int32_t node : early) is_early[at(node)] = 1;
+  for (const std::int32_t node : early) is_early[node] = 1;
   put_early_first(builder, layout, is_early, blocks);
   const auto slot = find_interface(builder, layout, is_early, blocks);
   for (std::size_t t = 0; t + 1 < layout.share.size(); ++t) {
@@ -367,7 +367,7 @@ Layout make_layout(const Body& body, int lanes, int threads, std::size_t record_
 
 template <class Real>
 void fill_coordinates(const Layout& layout, const MeshView& mesh, std::span<Real> coordinates) {
-  const auto dim = static_cast<std::size_t>(dimension(mesh.type));
+  const std::size_t dim = dimension(mesh.type);
   const auto idle = idle_positions(mesh.type);
   for (const BlockRange& block : layout.blocks) {
     std::array<double, 3> middle{};

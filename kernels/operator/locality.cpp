@@ -43,15 +43,14 @@ std::uint64_t hilbert(std::array<std::uint32_t, 3> x, unsigned dim) {
 
 /// Mean extent of an element along each axis, 1 where there is none.
 std::array<double, 3> mean_extents(const MeshView& mesh) {
-  const auto dim = static_cast<std::size_t>(dimension(mesh.type));
-  const auto nodes = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  const std::size_t dim = dimension(mesh.type);
+  const std::size_t nodes = nodes_per_element(mesh.type);
   std::array<double, 3> sum{};
   for (std::size_t e = 0; e < mesh.element_count(); ++e)
     for (std::size_t k = 0; k < dim; ++k) {
       double low = 0.0, high = 0.0;
       for (std::size_t a = 0; a < nodes; ++a) {
-        const double x =
-            mesh.coordinates[static_cast<std::size_t>(mesh.connectivity[e * nodes + a]) * dim + k];
+        const double x = mesh.coordinates[mesh.connectivity[e * nodes + a] * dim + k];
         low = a == 0 ? x : std::min(low, x);
         high = a == 0 ? x : std::max(high, x);
       }
@@ -64,7 +63,7 @@ std::array<double, 3> mean_extents(const MeshView& mesh) {
 }  // namespace
 
 std::vector<std::int32_t> node_order(const MeshView& mesh) {
-  const auto dim = static_cast<std::size_t>(dimension(mesh.type));
+  const std::size_t dim = dimension(mesh.type);
   const std::size_t count = mesh.node_count();
   const std::array<double, 3> scale = mean_extents(mesh);
   std::array<double, 3> low{}, high{};
@@ -93,19 +92,17 @@ LocalityOrder locality_order(const MeshView& mesh) {
   LocalityOrder result;
   result.nodes = node_order(mesh);
   std::vector<std::int32_t> rank(result.nodes.size());
-  for (std::size_t i = 0; i < rank.size(); ++i)
-    rank[static_cast<std::size_t>(result.nodes[i])] = static_cast<std::int32_t>(i);
-  const auto nodes = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  for (std::size_t i = 0; i < rank.size(); ++i) rank[result.nodes[i]] = static_cast<std::int32_t>(i);
+  const std::size_t nodes = nodes_per_element(mesh.type);
   std::vector<std::int32_t> key(mesh.element_count());
   for (std::size_t e = 0; e < key.size(); ++e) {
-    key[e] = rank[static_cast<std::size_t>(mesh.connectivity[e * nodes])];
-    for (std::size_t a = 1; a < nodes; ++a)
-      key[e] = std::min(key[e], rank[static_cast<std::size_t>(mesh.connectivity[e * nodes + a])]);
+    key[e] = rank[mesh.connectivity[e * nodes]];
+    for (std::size_t a = 1; a < nodes; ++a) key[e] = std::min(key[e], rank[mesh.connectivity[e * nodes + a]]);
   }
   result.elements.resize(key.size());
   std::iota(result.elements.begin(), result.elements.end(), 0);
   std::sort(result.elements.begin(), result.elements.end(), [&](std::int32_t a, std::int32_t b) {
-    const std::int32_t ka = key[static_cast<std::size_t>(a)], kb = key[static_cast<std::size_t>(b)];
+    const std::int32_t ka = key[a], kb = key[b];
     return ka != kb ? ka < kb : a < b;
   });
   return result;
@@ -119,20 +116,19 @@ std::vector<std::int32_t> partition_nodes(const MeshView& mesh, std::span<const 
   // Groups small enough to leave METIS a choice, large enough to keep its graph small.
   const std::size_t size = std::clamp<std::size_t>(count / (128 * static_cast<std::size_t>(parts)), 1, 24);
   std::vector<std::int32_t> group(count);
-  for (std::size_t i = 0; i < count; ++i)
-    group[static_cast<std::size_t>(order[i])] = static_cast<std::int32_t>(i / size);
+  for (std::size_t i = 0; i < count; ++i) group[order[i]] = static_cast<std::int32_t>(i / size);
   const std::size_t groups = (count + size - 1) / size;
-  const auto nodes = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  const std::size_t nodes = nodes_per_element(mesh.type);
 
   // Neighbouring groups, weighted by the element sides (pairs of nodes) that join them.
   std::vector<std::vector<std::pair<std::int32_t, std::int32_t>>> neighbours(groups);
   for (std::size_t e = 0; e < mesh.element_count(); ++e)
     for (std::size_t a = 0; a < nodes; ++a)
       for (std::size_t b = 0; b < nodes; ++b) {
-        const std::int32_t from = group[static_cast<std::size_t>(mesh.connectivity[e * nodes + a])];
-        const std::int32_t to = group[static_cast<std::size_t>(mesh.connectivity[e * nodes + b])];
+        const std::int32_t from = group[mesh.connectivity[e * nodes + a]];
+        const std::int32_t to = group[mesh.connectivity[e * nodes + b]];
         if (from == to) continue;
-        auto& list = neighbours[static_cast<std::size_t>(from)];
+        auto& list = neighbours[from];
         const auto found =
             std::find_if(list.begin(), list.end(), [&](const auto& n) { return n.first == to; });
         if (found == list.end())
@@ -159,8 +155,7 @@ std::vector<std::int32_t> partition_nodes(const MeshView& mesh, std::span<const 
                           &part_count, nullptr, nullptr, options.data(), &cut, part.data());
   if (status == METIS_ERROR_MEMORY) throw std::bad_alloc();
   if (status != METIS_OK) throw std::runtime_error("METIS failed with status " + std::to_string(status));
-  for (std::size_t i = 0; i < count; ++i)
-    result[i] = static_cast<std::int32_t>(part[static_cast<std::size_t>(group[i])]);
+  for (std::size_t i = 0; i < count; ++i) result[i] = static_cast<std::int32_t>(part[group[i]]);
   return result;
 }
 

@@ -22,7 +22,7 @@ double shape_of_map(const MeshView& mesh, std::size_t element, const double* xi)
   for (std::size_t k = 0; k < dim; ++k)
     for (std::size_t i = 0; i < dim; ++i)
       for (std::size_t a = 0; a < E::nodes; ++a) {
-        const auto node = static_cast<std::size_t>(mesh.connectivity[element * E::nodes + a]);
+        const std::size_t node = mesh.connectivity[element * E::nodes + a];
         column[k][i] += mesh.coordinates[node * dim + i] * gradients[a * dim + k];
       }
   const auto& [a, b, c] = column;
@@ -48,8 +48,8 @@ std::string element_fault(const MeshView& mesh) {
 }  // namespace
 
 std::string mesh_fault(const MeshView& mesh) {
-  const auto dim = static_cast<std::size_t>(dimension(mesh.type));
-  const auto nodes = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  const std::size_t dim = dimension(mesh.type);
+  const std::size_t nodes = nodes_per_element(mesh.type);
   if (mesh.coordinates.empty() || mesh.coordinates.size() % dim != 0)
     return "coordinates: expected a positive multiple of " + std::to_string(dim) + " values";
   if (mesh.connectivity.empty() || mesh.connectivity.size() % nodes != 0)

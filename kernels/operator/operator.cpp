@@ -37,7 +37,7 @@ void BasicOperator<Real>::secant(std::span<double> g) const {
   expect_size(g.size(), data.points, "g");
   for (std::size_t slot = 0; slot < data.secant.size(); ++slot)
     if (const std::int32_t point = data.layout.element_point[slot]; point >= 0)
-      g[static_cast<std::size_t>(point)] = static_cast<double>(data.secant[slot]);
+      g[point] = static_cast<double>(data.secant[slot]);
 }
 
 template <class Real>
@@ -46,7 +46,7 @@ void BasicOperator<Real>::set_secant(std::span<const double> g) {
   data_->detach_tangent();
   for (std::size_t slot = 0; slot < data_->secant.size(); ++slot)
     if (const std::int32_t point = data_->layout.element_point[slot]; point >= 0)
-      data_->secant[slot] = static_cast<Real>(g[static_cast<std::size_t>(point)]);
+      data_->secant[slot] = static_cast<Real>(g[point]);
 }
 
 template <class Real>
@@ -69,12 +69,12 @@ double BasicOperator<Real>::apply_dot(std::span<const Real> x, std::span<Real> y
 template <class Real>
 void BasicOperator<Real>::apply_many(std::span<const Real> x, std::span<Real> y, int vectors) {
   if (vectors < 1) throw std::invalid_argument("vectors: expected at least 1");
-  const auto count = static_cast<std::size_t>(vectors);
+  const std::size_t count = vectors;
   expect_size(x.size(), unknowns() * count, "x");
   expect_size(y.size(), unknowns() * count, "y");
   for (int done = 0; done < vectors;) {
     const int left = vectors - done, step = left >= 4 ? 4 : left >= 2 ? 2 : 1;
-    const std::size_t offset = unknowns() * static_cast<std::size_t>(done);
+    const std::size_t offset = unknowns() * done;
     data_->apply(x.data() + offset, y.data() + offset, step, false);
     done += step;
   }

@@ -67,7 +67,7 @@ BasicOperator<Real>::Data::Data(const Body& body, const OperatorOptions& options
       std::fill(secant.data() + from, secant.data() + to, static_cast<Real>(views[group.law].shear));
     }
   }
-  scratch.resize(static_cast<std::size_t>(threads));
+  scratch.resize(threads);
   reserve_scratch(1);
 }
 
@@ -75,7 +75,7 @@ template <class Real>
 void BasicOperator<Real>::Data::reserve_scratch(int vectors) {
   if (vectors <= scratch_vectors) return;
   scratch_vectors = vectors;
-  const auto count = static_cast<std::size_t>(vectors);
+  const std::size_t count = vectors;
   for (std::size_t t = 0; t < scratch.size(); ++t) {
     scratch[t].u.assign(4 * layout.largest * count, Real(0));
     scratch[t].f.assign(4 * layout.largest * count, Real(0));
@@ -114,12 +114,11 @@ void BasicOperator<Real>::Data::add_interface(Real* y, int vectors, std::size_t 
       for (std::size_t k = 0; k < stride; ++k) {
         Real sum = 0;
         for (std::uint32_t c = layout.interface_first[i]; c < layout.interface_first[i + 1]; ++c) {
-          const auto thread = static_cast<std::size_t>(layout.contributions[c].thread);
-          const auto slot = v * static_cast<std::size_t>(layout.slots_of_thread[thread]) +
-                            static_cast<std::size_t>(layout.contributions[c].slot);
+          const std::size_t thread = layout.contributions[c].thread;
+          const auto slot = v * layout.slots_of_thread[thread] + layout.contributions[c].slot;
           sum += scratch[thread].sums[3 * slot + k];
         }
-        y[v * unknowns + static_cast<std::size_t>(layout.interface_node[i]) * stride + k] = sum;
+        y[v * unknowns + layout.interface_node[i] * stride + k] = sum;
       }
 }
 
@@ -129,7 +128,7 @@ double BasicOperator<Real>::Data::pass(const Real* x, Real* y, int vectors, cons
                                        LoopsOnBlock&& loops) {
   reserve_scratch(vectors);
   const std::size_t stride = 4 * std::size_t{layout.largest};
-  const auto count = static_cast<std::size_t>(vectors);
+  const std::size_t count = vectors;
   const int dimension = static_cast<int>(dim());
   std::vector<double> sums(scratch.size(), 0.0);
   const auto prepare = [&](std::size_t t) {
@@ -137,7 +136,7 @@ double BasicOperator<Real>::Data::pass(const Real* x, Real* y, int vectors, cons
                 Real(0));
     for (std::size_t v = 0; t == 0 && y != nullptr && v < count; ++v)
       for (const std::int32_t node : layout.lonely)
-        std::fill_n(y + v * unknowns + static_cast<std::size_t>(node) * dim(), dim(), Real(0));
+        std::fill_n(y + v * unknowns + node * dim(), dim(), Real(0));
   };
   const auto run = [&](std::size_t t, std::size_t begin, std::size_t end) {
     Scratch& mine = scratch[t];

@@ -29,7 +29,7 @@ struct BasicOperator<Real>::Data {
   Data(const Data&) = delete;
   Data& operator=(const Data&) = delete;
 
-  std::size_t dim() const { return static_cast<std::size_t>(dimension(type)); }
+  std::size_t dim() const { return dimension(type); }
   simd::Block<Real> block(std::size_t b);
   void reserve_scratch(int count);
   /// To be called before g changes: the tangent frozen last keeps the g it was frozen with.

@@ -15,10 +15,8 @@ namespace {
 /// Whether the nodes on edges lie in the middle of them, to rounding of the edge.
 bool straight(const MeshView& mesh, const std::int32_t* node) {
   const Cell& type = cell(mesh.type);
-  const auto dim = static_cast<std::size_t>(type.dim);
-  const auto x = [&](std::int8_t a, std::size_t k) {
-    return mesh.coordinates[dim * static_cast<std::size_t>(node[a]) + k];
-  };
+  const std::size_t dim = type.dim;
+  const auto x = [&](std::int8_t a, std::size_t k) { return mesh.coordinates[dim * node[a] + k]; };
   for (const CellEdge& edge : type.edges) {
     double off = 0.0, side = 0.0;
     for (std::size_t k = 0; edge.middle >= 0 && k < dim; ++k) {
@@ -49,8 +47,7 @@ bool parallelepiped(const MeshView& mesh, const std::int32_t* node) {
 }
 
 simd::Shape shape_of(const MeshView& mesh, std::size_t element) {
-  const std::int32_t* node =
-      &mesh.connectivity[element * static_cast<std::size_t>(nodes_per_element(mesh.type))];
+  const std::int32_t* node = &mesh.connectivity[element * nodes_per_element(mesh.type)];
   const bool is_affine = mesh.type == ElementType::hex8 ? parallelepiped(mesh, node)
                          : cell(mesh.type).order == 2   ? straight(mesh, node)
                                                         : false;

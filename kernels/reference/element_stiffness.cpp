@@ -14,9 +14,9 @@ void element_stiffness(const Body& body, std::size_t element, std::span<const do
   const Law& law = body.law(element);
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     using Point = elements::Point<E>;
-    constexpr auto width = static_cast<std::size_t>(E::nodes * E::dim);
+    constexpr std::size_t width = E::nodes * E::dim;
     elements::Nodal<E> x;
-    const std::int32_t* node = body.mesh.connectivity.data() + element * static_cast<std::size_t>(E::nodes);
+    const std::int32_t* node = body.mesh.connectivity.data() + element * E::nodes;
     for (int a = 0; a < E::nodes; ++a)
       for (int i = 0; i < E::dim; ++i) x[Point::at(a, i)] = body.mesh.coordinates[Point::at(node[a], i)];
     std::fill_n(matrix.begin(), width * width, 0.0);

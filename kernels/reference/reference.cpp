@@ -23,7 +23,7 @@ using Sym = std::array<double, 6>;
 /// A 3×3 view of it; plane strain uses the upper left 2×2.
 double component(const Sym& s, int i, int j) {
   constexpr int index[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
-  return s[static_cast<std::size_t>(index[i][j])];
+  return s[index[i][j]];
 }
 
 double inner(const Sym& a, const Sym& b) {
@@ -83,8 +83,7 @@ void add_force(const Point<E>& point, const Sym& tau, Nodal<E>& f) {
 }
 
 const std::int32_t* nodes_of(const Body& body, std::size_t element) {
-  return body.mesh.connectivity.data() +
-         element * static_cast<std::size_t>(nodes_per_element(body.mesh.type));
+  return body.mesh.connectivity.data() + element * nodes_per_element(body.mesh.type);
 }
 
 template <class E>
@@ -176,7 +175,7 @@ void apply_tangent(const Body& body, std::span<const double> omega, std::span<co
 }
 
 void diagonal(const Body& body, std::span<const double> g, std::span<double> d) {
-  const auto dim = static_cast<std::size_t>(dimension(body.mesh.type));
+  const std::size_t dim = dimension(body.mesh.type);
   std::vector<double> blocks(d.size() * dim);
   block_diagonal(body, g, blocks);
   for (std::size_t i = 0; i < d.size(); ++i) d[i] = blocks[i * dim + i % dim];

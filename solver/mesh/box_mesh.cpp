@@ -61,15 +61,13 @@ void add_nodes(const Lattice& lattice, int dim, std::vector<double>& coordinates
 /// Appends the elements of the box cell with lowest lattice point `at`.
 void add_cell(const Lattice& lattice, const Index3& at, const Cell& type,
               std::vector<std::int32_t>& elements) {
-  const auto corners = static_cast<std::size_t>(type.corners);
+  const std::size_t corners = type.corners;
   for (std::size_t first = 0; first < type.box.size(); first += corners) {
     const auto corner = type.box.subspan(first, corners);
     // Lattice points are half an edge apart where edges have nodes in their middles.
     const auto node = [&](std::int8_t a, std::int8_t b) {
       Index3 place = at;
-      for (std::size_t k = 0; k < 3; ++k)
-        place[k] += type.order *
-                    (corner[static_cast<std::size_t>(a)][k] + corner[static_cast<std::size_t>(b)][k]) / 2;
+      for (std::size_t k = 0; k < 3; ++k) place[k] += type.order * (corner[a][k] + corner[b][k]) / 2;
       return lattice.node(place);
     };
     for (std::int8_t a = 0; a < type.corners; ++a) elements.push_back(node(a, a));
@@ -95,7 +93,7 @@ void name_sides(const Lattice& lattice, Mesh& mesh) {
   constexpr std::array<std::array<const char*, 2>, 3> names3{
       {{"left", "right"}, {"front", "back"}, {"bottom", "top"}}};
   constexpr std::array<std::array<const char*, 2>, 2> names2{{{"left", "right"}, {"bottom", "top"}}};
-  const auto dim = static_cast<std::size_t>(mesh.dim());
+  const std::size_t dim = mesh.dim();
   for (std::size_t k = 0; k < dim; ++k)
     for (std::size_t end = 0; end < 2; ++end) {
       Group side{dim == 3 ? names3[k][end] : names2[k][end], mesh.dim() - 1, {}};

@@ -164,7 +164,7 @@ class Geometry {
       result.volume += type_.weight * det;
       result.smallest = std::min(result.smallest, total_weight * det);
     }
-    const auto corners = static_cast<std::size_t>(type_.corners);
+    const std::size_t corners = type_.corners;
     double longest = 0;
     for (std::size_t a = 0; a < corners; ++a)
       for (std::size_t b = a + 1; b < corners; ++b) {
@@ -237,22 +237,22 @@ constexpr double smallest_volume = 1e-14;  // of the longest edge to the power o
 }
 
 void check_nodes(const Mesh& mesh) {
-  const auto dim = static_cast<std::size_t>(mesh.dim());
+  const std::size_t dim = mesh.dim();
   for (std::size_t i = 0; i < mesh.coordinates.size(); ++i)
     if (!std::isfinite(mesh.coordinates[i]))
       throw InputError("node " + std::to_string(mesh.node_tag(i / dim)) +
                        " has a coordinate that is not a finite number");
-  const auto nodes = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  const std::size_t nodes = nodes_per_element(mesh.type);
   std::vector<bool> used(mesh.node_count(), false);
   for (std::size_t i = 0; i < mesh.elements.size(); ++i) {
-    const auto node = static_cast<std::size_t>(mesh.elements[i]);
+    const std::size_t node = mesh.elements[i];
     if (mesh.elements[i] < 0 || node >= used.size())
       throw InputError(element_name(mesh, i / nodes) + " refers to a node that does not exist");
     used[node] = true;
   }
   const auto unused = std::count(used.begin(), used.end(), false);
   if (unused == 0) return;
-  const auto first = static_cast<std::size_t>(std::find(used.begin(), used.end(), false) - used.begin());
+  const std::size_t first = std::find(used.begin(), used.end(), false) - used.begin();
   std::string message = "node " + std::to_string(mesh.node_tag(first)) + " belongs to no element";
   if (unused > 1) message += " (" + std::to_string(unused) + " nodes do not)";
   throw InputError(message);
@@ -267,7 +267,7 @@ void find_boundary(Mesh& mesh) {
     if (keys.size() == 1) boundary.push_back(keys[0].id);
   });
   std::sort(boundary.begin(), boundary.end());
-  const auto n = static_cast<std::size_t>(nodes_per_facet(mesh.type));
+  const std::size_t n = nodes_per_facet(mesh.type);
   mesh.facets.clear();
   mesh.facet_element.clear();
   mesh.facets.reserve(boundary.size() * n);

@@ -68,7 +68,7 @@ const std::vector<Point>& rule_for(const Cell& cell) {
   static const std::vector<Point> simplex[] = {simplex_rule(2), simplex_rule(3)};
   static const std::vector<Point> mean[] = {{{{1.0 / 3.0, 1.0 / 3.0, 0.0}, 0.5}},
                                             {{{0.25, 0.25, 0.25}, 1.0 / 6.0}}};
-  const auto dim = static_cast<std::size_t>(cell.dim);
+  const std::size_t dim = cell.dim;
   if (!cell.simplex) return tensor[dim - 1];
   return cell.order == 1 ? mean[dim - 2] : simplex[dim - 2];
 }
@@ -117,12 +117,10 @@ FacetWeights lumped_weights(const Mesh& mesh, std::size_t facet) {
   FacetWeights weights;
   const auto nodes = mesh.facet(facet);
   for (const auto& part : type.triangles) {
-    const auto corner = [&](std::size_t k) {
-      return position(mesh, nodes[static_cast<std::size_t>(part[k])]);
-    };
+    const auto corner = [&](std::size_t k) { return position(mesh, nodes[part[k]]); };
     const Vector3 third = (1.0 / 3.0) * area_vector(corner(0), corner(1), corner(2));
     for (const std::int8_t k : part) {
-      const auto node = static_cast<std::size_t>(k);
+      const std::size_t node = k;
       weights.normal[node] = weights.normal[node] + third;
       weights.area[node] += norm(third);
     }
@@ -133,7 +131,7 @@ FacetWeights lumped_weights(const Mesh& mesh, std::size_t facet) {
 std::array<double, most_nodes> volume_weights(const Mesh& mesh, std::size_t element) {
   const Cell& type = cell(mesh.type);
   std::array<double, most_nodes> weights{};
-  const auto n = static_cast<std::size_t>(type.nodes);
+  const std::size_t n = type.nodes;
   const auto nodes = std::span(mesh.elements).subspan(element * n, n);
   for (const Point& point : rule_for(type)) {
     const Shapes shapes = shapes_at(type, point.at);

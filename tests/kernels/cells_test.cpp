@@ -112,8 +112,8 @@ TEST_CASE("every shape function is one at its node and zero at the others") {
     }
     for (const CellEdge& edge : cell->edges)
       if (edge.middle >= 0)
-        CHECK(distance(cell->reference[at(edge.middle)],
-                       middle(cell->reference[at(edge.a)], cell->reference[at(edge.b)])) < 1e-15);
+        CHECK(distance(cell->reference[edge.middle],
+                       middle(cell->reference[edge.a], cell->reference[edge.b])) < 1e-15);
   }
 }
 
@@ -129,10 +129,10 @@ TEST_CASE("facets are whole, close the cell and look outwards") {
     for (int f = 0; f < body.facets(); ++f) {
       std::vector<Position> nodes;
       for (const std::int8_t a : body.facet_nodes.subspan(at(f * facet.nodes), at(facet.nodes)))
-        nodes.push_back(body.reference[at(a)]);
+        nodes.push_back(body.reference[a]);
       for (const CellEdge& edge : facet.edges)
         if (edge.middle >= 0)
-          CHECK(distance(nodes[at(edge.middle)], middle(nodes[at(edge.a)], nodes[at(edge.b)])) < 1e-15);
+          CHECK(distance(nodes[edge.middle], middle(nodes[edge.a], nodes[edge.b])) < 1e-15);
       const Position inside = facet.simplex ? Position{1.0 / 3, 1.0 / 3, 0} : Position{};
       const auto j = jacobian(facet, inside, nodes);
       const Position normal = body.dim == 2 ? Position{j[0][1], -j[0][0], 0} : cross(j[0], j[1]);
@@ -177,7 +177,7 @@ TEST_CASE("a box is cut into elements that turn the right way and fill it") {
       for (const auto& corner : body.box.subspan(at(e * body.corners), at(body.corners)))
         nodes.push_back({double(corner[0]), double(corner[1]), double(corner[2])});
       for (const CellEdge& edge : body.edges)
-        if (edge.middle >= 0) nodes.push_back(middle(nodes[at(edge.a)], nodes[at(edge.b)]));
+        if (edge.middle >= 0) nodes.push_back(middle(nodes[edge.a], nodes[edge.b]));
       for (const Position& point : body.points) {
         auto j = jacobian(body, point, nodes);
         if (body.dim == 2) j[2] = {0, 0, 1};
@@ -196,8 +196,7 @@ TEST_CASE("triangles cover flat cells") {
     CAPTURE(std::string(flat->name));
     double sum = 0.0;
     for (const auto& t : flat->triangles) {
-      const Position &a = flat->reference[at(t[0])], &b = flat->reference[at(t[1])],
-                     &c = flat->reference[at(t[2])];
+      const Position &a = flat->reference[t[0]], &b = flat->reference[t[1]], &c = flat->reference[t[2]];
       const double twice = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
       CHECK(twice > 0.0);
       sum += 0.5 * twice;
@@ -225,10 +224,10 @@ TEST_CASE("nodes in the orders of VTK and Basix") {
   for (const auto& [type, vtk, basix] : quadratic) {
     const Cell& body = cell(type);
     for (std::size_t e = 0; e < vtk.size(); ++e) {
-      const auto corner = [&](int a) { return body.reference[at(a)]; };
-      CHECK(distance(body.reference[at(body.vtk_order[4 + e])],
-                     middle(corner(vtk[e][0]), corner(vtk[e][1]))) == 0.0);
-      CHECK(distance(body.reference[at(body.basix_order[4 + e])],
+      const auto corner = [&](int a) { return body.reference[a]; };
+      CHECK(distance(body.reference[body.vtk_order[4 + e]], middle(corner(vtk[e][0]), corner(vtk[e][1]))) ==
+            0.0);
+      CHECK(distance(body.reference[body.basix_order[4 + e]],
                      middle(corner(basix[e][0]), corner(basix[e][1]))) == 0.0);
     }
   }

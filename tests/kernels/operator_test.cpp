@@ -41,7 +41,7 @@ meshes::OwnedMesh some_elements(meshes::OwnedMesh mesh, std::size_t count, unsig
 }
 
 void stretch(meshes::OwnedMesh& mesh, double factor) {
-  const auto dim = static_cast<std::size_t>(dimension(mesh.type));
+  const std::size_t dim = dimension(mesh.type);
   for (std::size_t i = 0; i < mesh.coordinates.size(); i += dim) mesh.coordinates[i] *= factor;
 }
 
@@ -65,7 +65,7 @@ std::vector<OwnedBody> bodies(ElementType type) {
   stretch(long_box, 1000.0);
   all.push_back(test::with_one_law(long_box, test::every_law()[1]));
   auto sheared = meshes::box(type, {7, 4, 3}, {1, 1, 1});  // hex8: parallelepipeds, and others further below
-  const auto dim = static_cast<std::size_t>(dimension(type));
+  const std::size_t dim = dimension(type);
   for (std::size_t i = 0; i < sheared.coordinates.size(); i += dim) {
     double* x = &sheared.coordinates[i];
     x[0] += 0.4 * x[1], x[1] += 0.3 * x[dim - 1];
@@ -382,13 +382,12 @@ TEST_CASE("the locality order is a renumbering that brings neighbours together")
   CHECK(is_permutation(order.nodes, mesh.view().node_count()));
   CHECK(is_permutation(order.elements, mesh.view().element_count()));
   std::vector<double> rank(order.nodes.size());
-  for (std::size_t i = 0; i < rank.size(); ++i)
-    rank[static_cast<std::size_t>(order.nodes[i])] = static_cast<double>(i);
+  for (std::size_t i = 0; i < rank.size(); ++i) rank[order.nodes[i]] = static_cast<double>(i);
   double before = 0.0, after = 0.0;  // mean distance of an element's first two nodes
   for (std::size_t e = 0; e < mesh.view().element_count(); ++e) {
     const auto a = mesh.connectivity[4 * e], b = mesh.connectivity[4 * e + 1];
     before += std::abs(static_cast<double>(a - b));
-    after += std::abs(rank[static_cast<std::size_t>(a)] - rank[static_cast<std::size_t>(b)]);
+    after += std::abs(rank[a] - rank[b]);
   }
   CHECK(after < 0.2 * before);
 }

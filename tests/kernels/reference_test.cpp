@@ -44,8 +44,8 @@ TEST_CASE("element matrices in closed form are those of the reference") {
     meshes::jitter(mesh, 0.04, 3);
     const test::OwnedBody owned = test::with_every_law(std::move(mesh), 5);
     const Body body = owned.body();
-    const auto points = static_cast<std::size_t>(points_per_element(type));
-    const auto width = static_cast<std::size_t>(nodes_per_element(type) * dimension(type));
+    const std::size_t points = points_per_element(type);
+    const std::size_t width = nodes_per_element(type) * dimension(type);
     const std::vector<double> g = some_secant(body, 11);
     std::vector<double> plain(width * width), closed(width * width, 7.0);
     for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {

@@ -16,10 +16,8 @@ struct MeshView {
   std::span<const double> coordinates;         ///< nodes × dim, interleaved
   std::span<const std::int32_t> connectivity;  ///< elements × nodes_per_element, from 0; Gmsh's order
 
-  std::size_t node_count() const { return coordinates.size() / static_cast<std::size_t>(dimension(type)); }
-  std::size_t element_count() const {
-    return connectivity.size() / static_cast<std::size_t>(nodes_per_element(type));
-  }
+  std::size_t node_count() const { return coordinates.size() / dimension(type); }
+  std::size_t element_count() const { return connectivity.size() / nodes_per_element(type); }
 };
 
 }  // namespace kacanov

@@ -21,9 +21,7 @@ struct Body {
     return law_of_element.empty() ? std::uint16_t{0} : law_of_element[element];
   }
   const Law& law(std::size_t element) const noexcept { return laws[law_index(element)]; }
-  std::size_t secant_count() const {
-    return mesh.element_count() * static_cast<std::size_t>(points_per_element(mesh.type));
-  }
+  std::size_t secant_count() const { return mesh.element_count() * points_per_element(mesh.type); }
 };
 
 namespace reference {
