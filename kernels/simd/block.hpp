@@ -84,7 +84,7 @@ struct Kernels {
   void (*scatter)(const Block<Real>&, int dim, const Real* f, Real* y, Real* sums);
   /// Σ uᵀ f over the block's local nodes.
   double (*dot)(const Block<Real>&, const Real* u, const Real* f);
-  /// f += B u for `vectors` (1, 2 or 4) right sides, `stride` values apart in u and in f.
+  /// f += B u for `vectors` (1, 2 or 4) input vectors, `stride` values apart in u and in f.
   void (*apply)(const Block<Real>&, const Real* u, Real* f, int vectors, std::size_t stride);
   /// f += B_T u.
   void (*apply_tangent)(const Block<Real>&, const Real* u, Real* f);

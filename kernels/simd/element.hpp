@@ -26,7 +26,7 @@ constexpr ReferenceGradients<E, Real> reference_gradients() {
   return table;
 }
 
-/// Geometry of all points first, then every right side, as for fans.
+/// Geometry of all points first, then every input vector, as for fans.
 template <class L, class Real, class E, class Material>
 inline void element_loop(const Block<Real>& block, const Group& group, const Material& material,
                          const Real* u, Real* f, int vectors, std::size_t stride) {

@@ -60,7 +60,7 @@ KACANOV_INLINE inline void measure_fan(const Real* coordinates, const std::uint1
   if constexpr (closed) measure(e, first, geometry.wedge[length - 1]);
 }
 
-/// Forces of one right side. p takes minus the sum of all others. A ring node's force is stored one step
+/// Forces of one input vector. p takes minus the sum of all others. A ring node's force is stored one step
 /// late, when it has long been ready.
 template <class L, class Real, bool closed, class Material, class V = typename L::V>
 KACANOV_INLINE inline void load_fan(const Material& material, const FanGeometry<V>& geometry,
@@ -117,10 +117,10 @@ KACANOV_INLINE inline void load_fan(const Material& material, const FanGeometry<
   L::add3(f, at, sum);
 }
 
-/// Geometry first, kept in the first-level cache, then every right side: the divisions no longer hold up the
-/// stresses behind them (a processor looks ahead some 60 vector operations, less than one tetrahedron), which
-/// took the loop from 149 to 113 cycles for 8 tetrahedra (Zen 4; 81 multiply-adds are the floor). A `fixed`
-/// length above zero unrolls the ring, worth 15 %.
+/// Geometry first, kept in the first-level cache, then every input vector: the divisions no longer hold up
+/// the stresses behind them (a processor looks ahead some 60 vector operations, less than one tetrahedron),
+/// which took the loop from 149 to 113 cycles for 8 tetrahedra (Zen 4; 81 multiply-adds are the floor). A
+/// `fixed` length above zero unrolls the ring, worth 15 %.
 template <class L, class Real, bool closed, int fixed, class Material>
 inline void fan_loop(const Block<Real>& block, const Group& group, const Material& material, const Real* u,
                      Real* f, int vectors, std::size_t stride) {
@@ -141,7 +141,7 @@ inline void fan_loop(const Block<Real>& block, const Group& group, const Materia
   }
 }
 
-/// The lengths that make up most of a mesh have loops of their own; several right sides and the true law,
+/// The lengths that make up most of a mesh have loops of their own; several input vectors and the true law,
 /// which are bound by other things, do with one for all.
 template <class L, class Real, bool closed, class Material>
 inline void fan_loop_of_length(const Block<Real>& block, const Group& group, const Material& material,

@@ -149,7 +149,7 @@ KACANOV_API int kacanov_apply(kacanov_operator* op, size_t n, const double* x, d
 /* The same, and dot = x . y */
 KACANOV_API int kacanov_apply_dot(kacanov_operator* op, size_t n, const double* x, double* y, double* dot);
 
-/* Several right sides, one after another in x and in y (vectors * n entries each); quicker than one at a
+/* Several input vectors, one after another in x and in y (vectors * n entries each); quicker than one at a
  * time. */
 KACANOV_API int kacanov_apply_many(kacanov_operator* op, size_t n, int32_t vectors, const double* x,
                                    double* y);

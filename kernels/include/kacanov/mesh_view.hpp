@@ -10,7 +10,7 @@
 
 namespace kacanov {
 
-/// Arrays of the caller, which must outlive the view.
+/// Arrays of the caller, which must outlive the view. Elements are positively oriented (det ∂x/∂ξ > 0).
 struct MeshView {
   ElementType type = ElementType::tet4;
   std::span<const double> coordinates;         ///< nodes × dim, interleaved

@@ -10,10 +10,11 @@
 
 namespace kacanov {
 
-/// A meshed body and its material. Nothing is owned.
+/// A meshed body and its material. Nothing is owned: the arrays must outlive it. Nothing is checked either:
+/// the operators' constructors do that.
 struct Body {
   MeshView mesh;
-  std::span<const Law> laws;
+  std::span<const Law> laws;                      ///< at least one
   std::span<const std::uint16_t> law_of_element;  ///< one entry an element; empty: laws[0] everywhere
 
   std::size_t unknowns() const noexcept { return mesh.coordinates.size(); }
@@ -24,11 +25,15 @@ struct Body {
   std::size_t secant_count() const { return mesh.element_count() * points_per_element(mesh.type); }
 };
 
+/// theory: operator. Vectors (ω, x, y, f, d) have nodes × dim entries, interleaved; g has elements × points,
+/// the points of an element together. Lengths, indices and laws are taken as they are: whoever calls has
+/// checked them. Displacements have the caller's unit of length, g that of stress, forces stress times area
+/// (in 2D stress times length, for unit thickness).
 namespace reference {
 
-/// g from ω: `g` has elements × points entries, point index fastest.
+/// g of the law at ω.
 void secant(const Body& body, std::span<const double> omega, std::span<double> g);
-/// y = B(g) x (overwrites y). Vectors are nodes × dim, interleaved.
+/// y = B(g) x (overwrites y).
 void apply(const Body& body, std::span<const double> g, std::span<const double> x, std::span<double> y);
 /// y = B_T(ω) x, the consistent tangent 2g I_dev + (2g'/x) dev ε ⊗ dev ε of the law at ω.
 void apply_tangent(const Body& body, std::span<const double> omega, std::span<const double> x,
@@ -41,13 +46,14 @@ void block_diagonal(const Body& body, std::span<const double> g, std::span<doubl
 void residual(const Body& body, std::span<const double> omega, std::span<double> f);
 /// Stored energy ∫ k0/2 tr² + 2 G(x) at ω.
 double energy(const Body& body, std::span<const double> omega);
-/// Stiffness of one element for frozen g (its points), (nodes·dim)² row-major, node-major rows.
+/// Stiffness of one element for frozen g (its own points only): `matrix` has (nodes·dim)² entries, row-major,
+/// with the components of a node together.
 void element_matrix(const Body& body, std::size_t element, std::span<const double> g,
                     std::span<double> matrix);
-/// Tangent stiffness of one element at ω.
+/// Tangent stiffness of one element at ω, a vector of the whole body; `matrix` as above.
 void element_tangent(const Body& body, std::size_t element, std::span<const double> omega,
                      std::span<double> matrix);
-/// Volumes (areas in 2D) of the elements; not positive for inverted or degenerate ones.
+/// Volumes (areas in 2D) of the elements, one entry each; not positive for inverted or degenerate ones.
 void volumes(const Body& body, std::span<double> volume);
 
 /// What a picture or an output file wants to know of an element: means over its points.
