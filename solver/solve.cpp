@@ -94,17 +94,20 @@ Solution solve(const Part& part, const SolverOptions& options, const RunOptions&
   const StepContext& context = loop.context();
   const double prepared = MPI_Wtime();
   if (restart) loop.restore(run.start, result);
-  const bool finished = run_load_steps(loop, shares, result);
+  result.message = part.no_equilibrium;
+  const bool finished = !part.no_equilibrium.empty() || run_load_steps(loop, shares, result);
   const double looped = MPI_Wtime();
 
   result.certificate = certify_independently(context);
   result.status = result.certificate.meets(options.tolerance)       ? Status::converged
                   : result.certificate.exhausted(options.tolerance) ? Status::limited_by_rounding
                                                                     : Status::not_converged;
+  if (!part.no_equilibrium.empty()) result.status = Status::not_converged;
   if (!finished) result.status = Status::interrupted;
   // What has not converged can be continued with more steps; what has broken down cannot.
   const bool wanted = part.halo.any(part.halo.rank == 0 && run.checkpoint);
-  if (wanted && result.status != Status::converged && std::isfinite(result.certificate.worst())) {
+  if (wanted && part.no_equilibrium.empty() && result.status != Status::converged &&
+      std::isfinite(result.certificate.worst())) {
     const Checkpoint all = loop.checkpoint(result);
     if (part.halo.rank == 0) run.checkpoint(all);
   }

@@ -59,7 +59,8 @@ StepContext::StepContext(const Part& the_part, const SolverOptions& the_options,
             [this](std::span<const double> r, std::span<double> z) { preconditioner.apply(r, z); }};
   if (options.stop == SolverOptions::Stop::paper) volume = lumped_volume(part);
   const std::size_t points = part.contact.size();
-  state.omega.assign(part.unknowns(), 0.0);
+  state.omega = part.start;
+  state.omega.resize(part.unknowns(), 0.0);
   state.trace = state.phi = state.lambda = ContactValues(points);
   state.bound.resize(points);
   work.resize(part.unknowns());

@@ -12,6 +12,7 @@
 #include <kacanov/locality.hpp>
 #include "parallel/long_messages.hpp"
 #include "parallel/part_fields.hpp"
+#include "problem/rigid_modes.hpp"
 
 namespace kacanov {
 namespace {
@@ -164,6 +165,8 @@ class Splitter {
     take_probes(part, rank);
     part.laws = problem_.laws;
     part.loose_modes = problem_.loose_modes;
+    part.no_equilibrium = problem_.no_equilibrium;
+    part.start = rigid_start(problem_, part.node_index);
     for (const Index n : part.node_index) local_[static_cast<std::size_t>(n)] = -1;
     return part;
   }

@@ -3,11 +3,13 @@
 #include "problem/rigid_modes.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <sstream>
 
 #include <kacanov/error.hpp>
+#include "problem/rigid_balance.hpp"
 #include "problem/vector3.hpp"
 
 namespace kacanov {
@@ -19,6 +21,8 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 /// A mode is free when the constraints see less than this of it (the square root: singular values of the
 /// scaled rows).
 constexpr double free_below = 1e-12;
+/// A load that leaves less than this of its forces is in balance by itself, up to rounding.
+constexpr double rounded_load = 1e-11;
 
 /// One piece of the mesh whose elements hang together through nodes.
 struct Piece {
@@ -90,6 +94,22 @@ std::vector<Piece> find_pieces(const Mesh& mesh, std::vector<std::int32_t>& piec
 
 void add_row(Matrix6& gram, const Vector6& values) { gram.noalias() += values * values.transpose(); }
 
+/// What the normal and the tangents of a contact point do on the modes of its piece.
+std::array<Vector6, 3> point_rows(const Problem& problem, const Piece& piece, std::size_t i,
+                                  std::span<const std::int32_t> piece_of_node) {
+  const auto home = [&](std::int32_t node) { return piece_of_node[static_cast<std::size_t>(node)]; };
+  std::array<Vector6, 3> sums{Vector6::Zero(), Vector6::Zero(), Vector6::Zero()};
+  for (const RowEntry& entry : problem.contact.entries(i)) {
+    // What another piece has of the row counts as standing still.
+    if (home(entry.node) != home(problem.contact[i].node)) continue;
+    const Vector3 x = position(problem.mesh, entry.node);
+    // The whole normal: what is held of it is in the displacements' rows already.
+    sums[0] += row(piece, x, entry.normal);
+    for (std::size_t k = 0; k < 2; ++k) sums[k + 1] += row(piece, x, entry.tangent[k]);
+  }
+  return sums;
+}
+
 void collect_rows(const Problem& problem, std::vector<Piece>& pieces,
                   std::span<const std::int32_t> piece_of_node) {
   const Mesh& mesh = problem.mesh;
@@ -102,21 +122,12 @@ void collect_rows(const Problem& problem, std::vector<Piece>& pieces,
     axis[k % dim] = 1.0;
     add_row(piece.by_displacement, row(piece, position(mesh, static_cast<std::int32_t>(node)), axis));
   }
-  const auto home = [&](std::int32_t node) { return piece_of_node[static_cast<std::size_t>(node)]; };
   for (std::size_t i = 0; i < problem.contact.size(); ++i) {
     const ContactPoint& point = problem.contact[i];
-    // What another piece has of the row counts as standing still.
-    Piece& piece = pieces[static_cast<std::size_t>(home(point.node))];
-    std::array<Vector6, 3> sums{Vector6::Zero(), Vector6::Zero(), Vector6::Zero()};
-    for (const RowEntry& entry : problem.contact.entries(i)) {
-      if (home(entry.node) != home(point.node)) continue;
-      const Vector3 x = position(mesh, entry.node);
-      // The whole normal: what is held of it is in the displacements' rows already.
-      sums[0] += row(piece, x, entry.normal);
-      for (std::size_t k = 0; k < 2; ++k) sums[k + 1] += row(piece, x, entry.tangent[k]);
-    }
+    Piece& piece = pieces[static_cast<std::size_t>(piece_of_node[static_cast<std::size_t>(point.node)])];
+    const auto rows = point_rows(problem, piece, i, piece_of_node);
     for (std::size_t k = 0; k <= static_cast<std::size_t>(point.tangents); ++k)
-      add_row(piece.by_contact, sums[k]);
+      add_row(piece.by_contact, rows[k]);
   }
 }
 
@@ -184,11 +195,117 @@ std::string list_modes(const Piece& piece, const Eigen::MatrixXd& modes, int dim
   return text;
 }
 
+/// Contact points and load of one piece on an orthonormal basis of its loose motions (columns).
+struct RigidPiece {
+  Eigen::MatrixXd basis;
+  std::vector<RigidContact> points;
+  Eigen::VectorXd load;
+};
+
+RigidPiece collect(const Problem& problem, const Piece& piece, std::int32_t number,
+                   std::span<const std::int32_t> piece_of_node, const Eigen::MatrixXd& loose) {
+  const Mesh& mesh = problem.mesh;
+  const auto dim = static_cast<std::size_t>(mesh.dim());
+  RigidPiece rigid;
+  rigid.basis = Eigen::HouseholderQR<Eigen::MatrixXd>(loose.transpose()).householderQ() *
+                Eigen::MatrixXd::Identity(6, loose.rows());
+  for (std::size_t i = 0; i < problem.contact.size(); ++i) {
+    const ContactPoint& point = problem.contact[i];
+    if (piece_of_node[static_cast<std::size_t>(point.node)] != number) continue;
+    const auto rows = point_rows(problem, piece, i, piece_of_node);
+    RigidContact contact;
+    contact.normal = rigid.basis.transpose() * rows[0];
+    for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k)
+      contact.tangent.push_back(rigid.basis.transpose() * rows[k + 1]);
+    contact.gap = point.gap;
+    contact.mass = point.mass;
+    contact.coulomb = point.coulomb;
+    contact.tresca = point.tresca;
+    rigid.points.push_back(std::move(contact));
+  }
+  Vector6 load = Vector6::Zero();
+  double forces = 0.0;
+  for (std::size_t n = 0; n < mesh.node_count(); ++n) {
+    if (piece_of_node[n] != number) continue;
+    Vector3 force{};
+    for (std::size_t c = 0; c < dim; ++c) force[c] = problem.load[n * dim + c];
+    load += row(piece, position(mesh, static_cast<std::int32_t>(n)), force);
+    forces += norm(force);
+  }
+  rigid.load = rigid.basis.transpose() * load;
+  if (rigid.load.norm() <= rounded_load * forces) rigid.load.setZero();
+  return rigid;
+}
+
+/// Why the piece cannot stay where it is.
+std::string explain(const RigidPiece& rigid, const RigidBalance& failed, const Piece& piece,
+                    const std::string& name, int dim) {
+  // Friction cones open: a body that slides is lifted a little, as the argument goes. That is not to be told.
+  Eigen::MatrixXd normals(rigid.load.size(), static_cast<Eigen::Index>(failed.supports.size()));
+  for (Eigen::Index k = 0; k < normals.cols(); ++k)
+    normals.col(k) = rigid.points[failed.supports[static_cast<std::size_t>(k)]].normal;
+  Eigen::VectorXd motion = failed.motion;
+  if (normals.cols() > 0) {
+    const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> across(normals);
+    motion -= normals * across.solve(motion);
+    if (motion.norm() < 1e-3 * failed.motion.norm()) motion = failed.motion;
+  }
+  const double needed = friction_needed(rigid.points, rigid.load);
+  double least = HUGE_VAL, most = 0.0;
+  bool coulomb = false, tresca = false;
+  for (const RigidContact& point : rigid.points) {
+    coulomb = coulomb || point.coulomb > 0.0;
+    tresca = tresca || point.tresca > 0.0;
+    if (point.tangent.empty()) continue;
+    least = std::min(least, point.coulomb);
+    most = std::max(most, point.coulomb);
+  }
+  std::ostringstream text;
+  text.precision(3);
+  if (!std::isfinite(needed) || !(coulomb || tresca)) {
+    text << "no equilibrium: the load lifts " << name << " off what alone holds it ("
+         << describe(piece, rigid.basis * failed.motion, dim) << "), and nothing else does";
+  } else {
+    text << "no equilibrium: " << name << " slides (" << describe(piece, rigid.basis * motion, dim)
+         << "): it needs ";
+    if (coulomb && !tresca && least == most)
+      text << "a friction coefficient of " << needed * most << ", and that of the contact is " << most;
+    else
+      text << "friction " << needed << " times as large";
+  }
+  return text.str();
+}
+
 std::string name_piece(const Piece& piece, const Mesh& mesh, std::size_t pieces) {
   if (pieces == 1) return "the body";
   return "the piece of the body with element " + std::to_string(mesh.element_tag(piece.first_element)) +
          " (" + std::to_string(piece.elements) + " of " + std::to_string(mesh.element_count()) +
          " elements; the mesh falls into " + std::to_string(pieces) + " pieces)";
+}
+
+/// Where the piece comes to rest, or why it does not.
+void settle(Problem& problem, const Piece& piece, std::int32_t number, const RigidPiece& rigid,
+            const std::string& name, std::span<const std::int32_t> piece_of_node) {
+  const RigidBalance found = balance(rigid.points, rigid.load);
+  if (!found.exists) {
+    if (problem.no_equilibrium.empty())
+      problem.no_equilibrium = explain(rigid, found, piece, name, problem.mesh.dim());
+    return;
+  }
+  // A pressure p presses a body of this size in by about p over that.
+  double bulk = 0.0;
+  for (const Law& law : problem.laws) bulk = std::max(bulk, law.bulk);
+  const Vector6 motion = rigid.basis * rest_on_springs(rigid.points, rigid.load, 3.0 * bulk / piece.radius);
+  const auto which = static_cast<std::int32_t>(problem.motions.size());
+  problem.motions.push_back({piece.centre,
+                             {motion[0] / piece.radius, motion[1] / piece.radius, motion[2] / piece.radius},
+                             {motion[3], motion[4], motion[5]}});
+  const bool alone =
+      std::all_of(piece_of_node.begin(), piece_of_node.end(), [](std::int32_t p) { return p == 0; });
+  if (alone) return;
+  problem.motion_of_node.resize(piece_of_node.size(), -1);
+  for (std::size_t n = 0; n < piece_of_node.size(); ++n)
+    if (piece_of_node[n] == number) problem.motion_of_node[n] = which;
 }
 
 }  // namespace
@@ -198,7 +315,8 @@ void check_rigid_modes(Problem& problem) {
   std::vector<Piece> pieces = find_pieces(problem.mesh, piece_of_node);
   collect_rows(problem, pieces, piece_of_node);
   const int dim = problem.mesh.dim();
-  for (const Piece& piece : pieces) {
+  for (std::int32_t number = 0; number < static_cast<std::int32_t>(pieces.size()); ++number) {
+    const Piece& piece = pieces[static_cast<std::size_t>(number)];
     const Eigen::MatrixXd loose = free_modes(piece.by_displacement, dim);
     if (loose.rows() == 0) continue;
     const std::string name = name_piece(piece, problem.mesh, pieces.size());
@@ -211,7 +329,24 @@ void check_rigid_modes(Problem& problem) {
     problem.warnings.push_back("only the contact holds " + name + " against " +
                                list_modes(piece, loose, dim) +
                                "; there is a solution only if the loads press it on");
+    settle(problem, piece, number, collect(problem, piece, number, piece_of_node, loose), name,
+           piece_of_node);
   }
+}
+
+std::vector<double> rigid_start(const Problem& problem, std::span<const std::int32_t> nodes) {
+  if (problem.motions.empty()) return {};
+  const auto dim = static_cast<std::size_t>(problem.mesh.dim());
+  std::vector<double> start(nodes.size() * dim);
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const auto node = static_cast<std::size_t>(nodes[k]);
+    const std::int32_t which = problem.motion_of_node.empty() ? 0 : problem.motion_of_node[node];
+    if (which < 0) continue;
+    const PieceMotion& motion = problem.motions[static_cast<std::size_t>(which)];
+    const Vector3 turned = cross(motion.turn, position(problem.mesh, nodes[k]) - motion.centre);
+    for (std::size_t c = 0; c < dim; ++c) start[k * dim + c] = motion.shift[c] + turned[c];
+  }
+  return start;
 }
 
 }  // namespace kacanov

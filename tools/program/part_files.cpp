@@ -29,7 +29,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::string_view part_magic = "kacanov part 5\n", boundary_magic = "kacanov boundary 4\n";
+constexpr std::string_view part_magic = "kacanov part 6\n", boundary_magic = "kacanov boundary 4\n";
 /// The sections of a case that parts are made of.
 constexpr const char* sections[] = {"mesh", "material", "boundary", "contact", "probe"};
 

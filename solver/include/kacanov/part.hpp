@@ -49,6 +49,8 @@ struct Part {
   std::vector<std::int32_t> probe_index;
   std::int32_t total_probes = 0;
   int loose_modes = 0;
+  std::vector<double> start;   ///< nodes × dim: displacement to start from; empty: none
+  std::string no_equilibrium;  ///< as in Problem
 
   int dim() const noexcept { return dimension(type); }
   std::size_t nodes() const noexcept { return node_index.size(); }

@@ -19,6 +19,11 @@ struct Probe {
   std::array<double, most_nodes> weights{};  ///< shape functions at the point
 };
 
+/// A rigid motion: small turn about a centre and shift.
+struct PieceMotion {
+  Vector3 centre{}, turn{}, shift{};
+};
+
 /// The whole problem, on one rank.
 struct Problem {
   Mesh mesh;
@@ -30,6 +35,11 @@ struct Problem {
   ConstraintRows contact;
   std::vector<Probe> probes;
   int loose_modes = 0;  ///< rigid modes that only the contact holds
+  /// Of pieces that contact alone holds: where they come to rest as rigid bodies, to start from.
+  std::vector<PieceMotion> motions;
+  std::vector<std::int32_t>
+      motion_of_node;          ///< index into motions, −1 for none; empty: all move by motions[0]
+  std::string no_equilibrium;  ///< why the loads of such a piece cannot be in balance; empty where they can
   std::vector<std::string> warnings;
 };
 
