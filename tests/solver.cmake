@@ -52,8 +52,8 @@ kacanov_test(closed_solutions
 kacanov_test(contact
   MPI SOURCES solver/contact_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
-kacanov_test(loose
-  MPI SOURCES solver/loose_test.cpp
+kacanov_test(coulomb
+  MPI SOURCES solver/coulomb_test.cpp solver/loose_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal Eigen3::Eigen)
 kacanov_test(wide_contact
   MPI SOURCES solver/wide_contact_test.cpp

@@ -15,6 +15,10 @@ foreach(area program_errors program_failures program_files program_memory progra
   set_tests_properties(${area} PROPERTIES PROCESSORS 2)
 endforeach()
 
+kacanov_test(program_hard SOURCES tools/program_hard_test.cpp LIBRARIES kacanov_program_runner)
+target_compile_definitions(test_program_hard PRIVATE KACANOV_HARD_CASES="${PROJECT_SOURCE_DIR}/tests/cases/hard")
+add_dependencies(test_program_hard kacanov)
+
 kacanov_test(gmsh
   SOURCES tools/mesh_roundtrip_test.cpp tools/mesh_messages_test.cpp tools/mesh_writer.cpp
   LIBRARIES kacanov_formats)

@@ -1,13 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One primal–dual active set (semismooth Newton) step for contact and Tresca friction.
+// One primal–dual active set (semismooth Newton) step for contact and friction.
 #include "contact/active_set.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "contact/held_nodes.hpp"
+#include "linear/gcr.hpp"
+
 namespace kacanov {
 namespace {
+
+/// A point just at its bound would turn with a stiffness beyond any: k is at most this times c (1e8 takes as
+/// many steps, and more CG iterations each).
+constexpr double stiffest = 1e3;
+/// Where friction follows the pressure, solves begin with so many iterations that take a multigrid cycle each
+/// (200 random cases: 75 applications in the mean case; inner solves from the start take 97), ...
+constexpr int direct_iterations = 15;
+/// ... and go on with so many that solve the symmetric part to this share each: bodies that yield all over
+/// want hundreds of CG iterations a solve.
+constexpr int nested_iterations = 12;
+constexpr double nested_reduction = 0.3;
+/// Held normals leave free what is less than this of them.
+constexpr double free_direction = 1e-8;
+/// Motion along an obstacle, relative to the displacement about, that is more than rounding.
+constexpr double imposed_slip = 1e-10;
+/// What is left of the residual in a step that is taken all the same.
+constexpr double worth_taking = 0.5;
 
 /// k (I − ŝŝᵀ) w of a slipping point: what its friction resists turning with.
 std::array<double, 2> turning_force(const ActiveSet& set, std::size_t i, const double* w) {
@@ -44,6 +65,157 @@ double add_slip_stiffness(const Traces& traces, const ActiveSet& set, std::span<
   return share;
 }
 
+/// What the held normals of a node with several points leave of a tangential motion.
+struct Edge {
+  bool any = false;                                    ///< several normals are held
+  Eigen::Matrix3d free = Eigen::Matrix3d::Identity();  ///< projector on what they leave
+  Eigen::Vector3d imposed = Eigen::Vector3d::Zero();   ///< displacement that they dictate
+  double scale = 0.0;                                  ///< largest displacement or gap about
+};
+
+Edge find_edge(const Traces& traces, const ContactState& state, const ActiveSet& set, std::size_t i) {
+  const auto points = traces.points();
+  std::size_t first = i;
+  while (first > 0 && points[first - 1].node == points[i].node) --first;
+  Eigen::Matrix<double, Eigen::Dynamic, 3> normals(0, 3);
+  Eigen::VectorXd open(0);
+  Edge edge;
+  for (std::size_t j = first; j < points.size() && points[j].node == points[i].node; ++j) {
+    if (!set.held[j].normal) continue;
+    normals.conservativeResize(normals.rows() + 1, 3);
+    normals.bottomRows<1>() = Eigen::Map<const Eigen::RowVector3d>(traces.entries(j)[0].trace.data());
+    open.conservativeResize(open.size() + 1);
+    open(open.size() - 1) = state.gap[j] - state.trace.normal[j];
+    edge.scale = std::max(edge.scale, std::abs(state.gap[j]));
+  }
+  edge.any = normals.rows() > 1;
+  if (!edge.any) return edge;
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
+  decomposition.setThreshold(free_direction);
+  const Eigen::MatrixXd back = decomposition.compute(normals).pseudoInverse();
+  edge.free -= back * normals;
+  Eigen::Vector3d u = Eigen::Vector3d::Zero();
+  const auto dim = static_cast<std::size_t>(traces.part().dim());
+  for (std::size_t c = 0; c < dim; ++c)
+    u(static_cast<Eigen::Index>(c)) = state.omega[static_cast<std::size_t>(points[i].node) * dim + c];
+  edge.scale = std::max(edge.scale, u.cwiseAbs().maxCoeff());
+  edge.imposed = back * (normals * u + open);
+  return edge;
+}
+
+/// Stick, or slip and how, of a point with friction. `pushed`: λ_n + c(Nu − ρ).
+void decide_friction(const Traces& traces, const ContactState& state, double c, double pushed, std::size_t i,
+                     ActiveSet& set) {
+  const ContactPoint& point = traces.points()[i];
+  const double* lambda = &state.lambda.tangential[2 * i];
+  const double* w = &state.trace.tangential[2 * i];
+  std::array<double, 2> s{lambda[0] + c * w[0], lambda[1] + c * w[1]};
+  const bool narrow = traces.entries(i).size() == 1;
+  // At wide points friction is that of the pressure before.
+  const bool follows = narrow && point.coulomb > 0.0;
+  const double bound = follows ? point.tresca + point.coulomb * std::max(pushed, 0.0) : state.bound[i];
+  bool driven = false;  // it slips because other normals of its node move it
+  const Edge edge = narrow ? find_edge(traces, state, set, i) : Edge();
+  if (edge.any) {
+    const auto& tangent = traces.entries(i)[0].tangent;
+    const Eigen::Map<const Eigen::Vector3d> along(tangent[0].data()), across(tangent[1].data());
+    const Eigen::Vector2d moved(along.dot(edge.imposed), across.dot(edge.imposed));
+    driven = moved.norm() > imposed_slip * edge.scale;
+    // Otherwise those normals hold what they hold, and no friction besides.
+    const Eigen::Vector3d left =
+        edge.free * (driven ? w[0] * along + w[1] * across : s[0] * along + s[1] * across);
+    s = {along.dot(left), across.dot(left)};
+    if (driven) s = {s[0] + moved(0), s[1] + moved(1)};
+  }
+  const double length = std::hypot(s[0], s[1]);
+  // What its friction has pushed back sticks before it may slip the other way: friction beyond what a
+  // yielding body carries would throw it to and fro.
+  const bool turned = lambda[0] * s[0] + lambda[1] * s[1] < 0.0;
+  set.held[i].tangential = bound > 0.0 && !driven && (length <= bound || turned);
+  if (set.held[i].tangential || length == 0.0) return;
+  if (follows && set.held[i].normal) set.coulomb[i] = point.coulomb;
+  for (std::size_t k = 0; k < 2; ++k) {
+    set.slip_direction[2 * i + k] = s[k] / length;
+    set.slip_force[2 * i + k] = (follows ? point.tresca : bound) * s[k] / length;
+  }
+  if (point.tangents == 2)
+    set.slip_stiffness[i] = std::min(driven ? bound / length : c * bound / (length - bound), stiffest * c);
+}
+
+/// The smallest nodal displacement that closes the gaps and undoes the slip of held rows; the largest of
+/// either.
+double close_rows(const TraceRows& rows, const ActiveSet& set, const Traces& traces,
+                  const ContactState& state, std::span<double> delta) {
+  Vector closing(rows.local());
+  std::size_t at = 0;
+  double furthest = 0.0;
+  for (std::size_t i = 0; i < traces.size(); ++i) {
+    const ContactPoint& point = traces.points()[i];
+    const double root = std::sqrt(point.mass);
+    if (set.held[i].normal) closing[at++] = root * (state.gap[i] - state.trace.normal[i]);
+    if (set.held[i].tangential)
+      for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k)
+        closing[at++] = -root * state.trace.tangential[2 * i + k];
+  }
+  for (const double v : closing) furthest = std::max(furthest, std::abs(v));
+  rows.lift(closing, delta);
+  return traces.halo().max_all(furthest);
+}
+
+/// Multipliers of held rows for nodal forces.
+void least_reactions(const TraceRows& rows, const ActiveSet& set, const Traces& traces,
+                     std::span<const double> residual, ContactValues& lambda) {
+  Vector force(rows.local());
+  rows.lift_transpose(residual, force);
+  std::size_t at = 0;
+  for (std::size_t i = 0; i < traces.size(); ++i) {
+    const ContactPoint& point = traces.points()[i];
+    const double root = std::sqrt(point.mass);
+    if (set.held[i].normal) lambda.normal[i] = force[at++] / root;
+    if (set.held[i].tangential)
+      for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k)
+        lambda.tangential[2 * i + k] = force[at++] / root;
+  }
+}
+
+/// conjugate_gradients for a step whose reactions are oblique (theory: coulomb-newton): GCR, first with a
+/// multigrid cycle an iteration, then with solves of the symmetric part.
+template <class Apply, class Precondition>
+CgResult solve_oblique(const Space& space, const HeldNodes& nodes, const Apply& apply,
+                       const Precondition& precondition, std::span<double> delta, CgWork& work,
+                       const CgOptions& options) {
+  nodes.subtract_sliding(work.residual);
+  space.project(work.residual);
+  Vector residual = work.residual;
+  CgResult result;
+  result.first_residual = space.norm(residual);
+  const double target =
+      std::max(options.absolute, std::min(options.relative * result.first_residual, options.most));
+  const auto oblique = [&](std::span<const double> p, std::span<double> q) {
+    apply(p, q);
+    nodes.subtract_sliding(q);
+    space.project(q);
+  };
+  const auto cycle = [&](std::span<const double> r, std::span<double> z) {
+    precondition(r, z);
+    space.project(z);
+    ++result.iterations;
+    return true;
+  };
+  const auto symmetric = [&](std::span<const double> r, std::span<double> z) {
+    std::copy(r.begin(), r.end(), work.residual.begin());
+    const CgOptions inner{0.3 * target, nested_reduction, options.max_iterations};
+    const CgResult found = conjugate_gradients(space, apply, precondition, z, work, inner);
+    result.iterations += found.iterations;
+    return found.converged;
+  };
+  GcrResult found = gcr(space, oblique, cycle, delta, residual, {target, direct_iterations});
+  if (!found.converged) found = gcr(space, oblique, symmetric, delta, residual, {target, nested_iterations});
+  result.residual = found.residual;
+  result.converged = found.converged || found.residual < worth_taking * result.first_residual;
+  return result;
+}
+
 }  // namespace
 
 ActiveSet decide(const Traces& traces, const ContactState& state, double c) {
@@ -53,24 +225,14 @@ ActiveSet decide(const Traces& traces, const ContactState& state, double c) {
   set.slip_force.assign(2 * points.size(), 0.0);
   set.slip_stiffness.assign(points.size(), 0.0);
   set.slip_direction.assign(2 * points.size(), 0.0);
+  set.coulomb.assign(points.size(), 0.0);
+  Vector pushed(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    set.held[i].normal = state.lambda.normal[i] + c * (state.trace.normal[i] - state.gap[i]) > 0.0;
-    if (points[i].tangents == 0) continue;
-    const double* lambda = &state.lambda.tangential[2 * i];
-    const double s[2] = {lambda[0] + c * state.trace.tangential[2 * i],
-                         lambda[1] + c * state.trace.tangential[2 * i + 1]};
-    const double length = std::hypot(s[0], s[1]), bound = state.bound[i];
-    // What its friction has pushed back sticks before it may slip the other way: friction beyond what a
-    // yielding body carries would throw it to and fro.
-    const bool turned = lambda[0] * s[0] + lambda[1] * s[1] < 0.0;
-    set.held[i].tangential = bound > 0.0 && (length <= bound || turned);
-    if (set.held[i].tangential || length == 0.0) continue;
-    for (std::size_t k = 0; k < 2; ++k) {
-      set.slip_direction[2 * i + k] = s[k] / length;
-      set.slip_force[2 * i + k] = bound * s[k] / length;
-    }
-    if (points[i].tangents == 2) set.slip_stiffness[i] = c * bound / (length - bound);
+    pushed[i] = state.lambda.normal[i] + c * (state.trace.normal[i] - state.gap[i]);
+    set.held[i].normal = pushed[i] > 0.0;
   }
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (points[i].tangents > 0) decide_friction(traces, state, c, pushed[i], i, set);
   return set;
 }
 
@@ -111,33 +273,22 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
   const TraceRows rows(part, set.held);
   Space space(part);
   rows.hold_in(space);
-
-  // The held rows first: the smallest nodal displacement that closes the gap and undoes the slip.
-  Vector closing(rows.local());
-  std::size_t at = 0;
-  double furthest = 0.0;
-  for (std::size_t i = 0; i < traces.size(); ++i) {
-    const auto& point = traces.points()[i];
-    const double root = std::sqrt(point.mass);
-    if (set.held[i].normal) closing[at++] = root * (state.gap[i] - state.trace.normal[i]);
-    if (set.held[i].tangential)
-      for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k)
-        closing[at++] = -root * state.trace.tangential[2 * i + k];
-  }
-  for (const double v : closing) furthest = std::max(furthest, std::abs(v));
-  furthest = part.halo.max_all(furthest);
+  const HeldNodes nodes(part, set, state);
 
   const auto apply = [&](std::span<const double> p, std::span<double> q) {
     const double share = problem.apply(p, q);
     return share + add_slip_stiffness(traces, set, p, q);
   };
   subtract_slip_force(traces, set, state.trace.tangential, work.residual);
-  rows.lift(closing, delta);
-  if (furthest > 0.0) {
+  // The held rows first.
+  const double wide = part.wide_contact ? close_rows(rows, set, traces, state, delta) : 0.0;
+  if (std::max(wide, nodes.close(delta)) > 0.0) {
     apply(delta, work.image);
     for (std::size_t i = 0; i < delta.size(); ++i) work.residual[i] -= work.image[i];
   }
-  const CgResult solve = conjugate_gradients(space, apply, problem.precondition, delta, work, options);
+  const CgResult solve = nodes.oblique()
+                             ? solve_oblique(space, nodes, apply, problem.precondition, delta, work, options)
+                             : conjugate_gradients(space, apply, problem.precondition, delta, work, options);
   ActiveSetStep step;
   step.cg_iterations = solve.iterations;
   step.solved = solve.converged;
@@ -149,30 +300,31 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
 
 void recover_multipliers(const Part& part, const Traces& traces, const ActiveSet& set,
                          std::span<double> residual, ContactState& state) {
-  const TraceRows rows(part, set.held);
+  const HeldNodes nodes(part, set, state);
   // Forces at held rows are what is left once the slipping points have taken theirs.
   subtract_slip_force(traces, set, state.trace.tangential, residual);
-  Vector force(rows.local());
-  rows.lift_transpose(residual, force);
-  std::size_t at = 0;
+  std::fill(state.lambda.normal.begin(), state.lambda.normal.end(), 0.0);
+  std::fill(state.lambda.tangential.begin(), state.lambda.tangential.end(), 0.0);
+  if (part.wide_contact) least_reactions(TraceRows(part, set.held), set, traces, residual, state.lambda);
+  nodes.reactions(residual, state.lambda);
   for (std::size_t i = 0; i < traces.size(); ++i) {
     const auto& point = traces.points()[i];
-    const double root = std::sqrt(point.mass);
-    state.lambda.normal[i] = set.held[i].normal ? force[at++] / root : 0.0;
     state.phi.normal[i] = std::min(state.trace.normal[i], state.gap[i]);
     double* friction = &state.lambda.tangential[2 * i];
     const double* w = &state.trace.tangential[2 * i];
     const double* s = &set.slip_direction[2 * i];
-    if (set.held[i].tangential) {
-      for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k)
-        friction[k] = force[at++] / root;
-    } else if (point.tangents > 0) {
+    if (!set.held[i].tangential && point.tangents > 0) {
       const double along = w[0] * s[0] + w[1] * s[1];
+      const double pressure = std::max(state.lambda.normal[i], 0.0);
       for (std::size_t k = 0; k < 2; ++k)
-        friction[k] = set.slip_force[2 * i + k] + set.slip_stiffness[i] * (w[k] - along * s[k]);
+        friction[k] = set.slip_force[2 * i + k] + set.coulomb[i] * pressure * s[k] +
+                      set.slip_stiffness[i] * (w[k] - along * s[k]);
       const double length = std::hypot(friction[0], friction[1]);
-      if (length > state.bound[i])
-        for (std::size_t k = 0; k < 2; ++k) friction[k] *= state.bound[i] / length;
+      const double bound = set.coulomb[i] > 0.0
+                               ? point.tresca + set.coulomb[i] * pressure
+                               : std::hypot(set.slip_force[2 * i], set.slip_force[2 * i + 1]);
+      if (length > bound)
+        for (std::size_t k = 0; k < 2; ++k) friction[k] *= bound / length;
     }
     for (std::size_t k = 0; k < 2; ++k) state.phi.tangential[2 * i + k] = set.held[i].tangential ? 0.0 : w[k];
   }

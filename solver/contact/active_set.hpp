@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One primal–dual active set (semismooth Newton) step for contact and Tresca friction, the disc in 3D
+// One primal–dual active set (semismooth Newton) step for contact and friction, Coulomb's and the disc in 3D
 // included.
 #pragma once
 
@@ -14,9 +14,10 @@ namespace kacanov {
 /// What each contact point does in the step: decided by λ + c(Cω − ρ), as in the projections of ADMM.
 struct ActiveSet {
   std::vector<TraceChoice> held;  ///< normal: touches; tangential: sticks
-  Vector slip_force;              ///< points × 2: ψ ŝ where it slips
-  Vector slip_stiffness;          ///< points: k of λ_f = ψ ŝ + k (I − ŝŝᵀ) Tω, 0 in 2D
-  Vector slip_direction;          ///< points × 2: ŝ
+  Vector slip_force;              ///< points × 2: ψ ŝ where it slips, without what follows the pressure
+  Vector slip_stiffness;  ///< points: k of λ_f = (ψ + μ_f λ_n) ŝ + k (I − ŝŝᵀ) Tω, 0 in 2D
+  Vector slip_direction;  ///< points × 2: ŝ
+  Vector coulomb;         ///< points: μ_f where it slips under pressure, else 0
 };
 
 /// c is a penalty like ADMM's; any positive value has the same fixed points.

@@ -21,10 +21,12 @@ struct StepNorm {
 
 /// Steps 2 and 3 at every point. `shift` becomes r(φ₊ − φ) − (λ₊ − λ), what the right side of step 1 changes
 /// by; `dual` becomes r(φ − w) + λ₊ − λ, minus which the linear equilibrium is left with.
-void update_multipliers(const Traces& traces, ContactState& state, const Penalty& r, double alpha,
+void update_multipliers(const Traces& traces, ContactState& state, const AdmmOptions& options,
                         ContactValues& shift, ContactValues& dual, double& trace_residual, StepNorm& norm,
                         Balance& balance) {
   const auto points = traces.points();
+  const Penalty& r = options.r;
+  const double alpha = options.relaxation;
   trace_residual = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const bool owned = i < traces.owned();
@@ -48,7 +50,9 @@ void update_multipliers(const Traces& traces, ContactState& state, const Penalty
     double* lambda = &state.lambda.tangential[2 * i];
     const double* w = &state.trace.tangential[2 * i];
     const double relaxed[2] = {alpha * w[0] + (1.0 - alpha) * phi[0], alpha * w[1] + (1.0 - alpha) * phi[1]};
-    const TangentialStep next = tangential_step(relaxed, lambda, state.bound[i], r.tangential);
+    const bool sticks = options.sticking && point.coulomb > 0.0 && state.lambda.normal[i] > 0.0;
+    const double bound = sticks ? HUGE_VAL : state.bound[i];
+    const TangentialStep next = tangential_step(relaxed, lambda, bound, r.tangential);
     const double slip = std::hypot(next.phi[0], next.phi[1]);
     if (slip == 0.0) {
       balance.tangential(i, std::hypot(w[0], w[1]), {});
@@ -107,8 +111,7 @@ AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work,
     traces.evaluate(state.omega, state.trace);
 
     StepNorm norm;
-    update_multipliers(traces, state, options.r, options.relaxation, shift, dual, result.trace_residual, norm,
-                       balance);
+    update_multipliers(traces, state, options, shift, dual, result.trace_residual, norm, balance);
     balance.finish(traces);
     result.force_residual = solve.residual + traces.force_norm(dual);
     traces.add_force(shift, 1.0, work.residual);

@@ -30,6 +30,8 @@ struct AdmmOptions {
   double trace_tolerance = 0.0;  ///< absolute, on max |Cω − φ|
   int max_iterations = 10000;
   int max_cg = 2000;  ///< CG iterations of one solve
+  /// Points under pressure that Coulomb's friction acts on stick, whatever their bound.
+  bool sticking = false;
   /// With ε > 0 the stop is (15), and the solves are as exact as the tolerances above.
   double step_tolerance = 0.0;
   std::span<const double> volume;  ///< lumped volume of each node for the L² norm of (15)

@@ -35,6 +35,7 @@ class Traces {
   std::size_t size() const noexcept { return part_->contact.size(); }
   std::size_t owned() const noexcept { return static_cast<std::size_t>(part_->owned_contact); }
   const IndexMap& halo() const noexcept { return part_->halo; }
+  const Part& part() const noexcept { return *part_; }
 
   /// values = (Nω, Tω); N takes prescribed components along.
   void evaluate(std::span<const double> omega, ContactValues& values) const;

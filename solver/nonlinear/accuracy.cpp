@@ -21,15 +21,23 @@ AdmmOptions admm_accuracy(const SolverOptions& options, const Residuals& before,
     out.force_tolerance = 1e-2 * options.tolerance * scales.force;
     return out;
   }
-  const double worst = scales.displacement > 0.0 ? std::min(before.certificate.worst(), 1.0) : 1.0;
-  const double reach =
-      std::max(0.5 * options.tolerance, tuning.inner_reduction * worst) * gap_share(before.certificate);
+  // At rest, or where a rigid body has been put, displacements are no scale yet.
+  const bool scaled = !first && scales.displacement > 0.0;
+  const double worst = scaled ? std::min(before.certificate.worst(), 1.0) : 1.0;
+  const double share = scaled ? gap_share(before.certificate) : 1.0;
+  const double reach = std::max(0.5 * options.tolerance, tuning.inner_reduction * worst) * share;
   out.force_tolerance = reach * scales.force;
   // With no displacement yet, any trace will do: the first step ends by its forces.
-  out.trace_tolerance = scales.displacement > 0.0 ? reach * scales.displacement : HUGE_VAL;
+  out.trace_tolerance = scaled ? reach * scales.displacement : HUGE_VAL;
   out.force_reduction = scales.force > 0.0 ? 0.0 : tuning.inner_reduction;
   if (options.penalty == SolverOptions::Penalty::automatic && !first)
     out.max_iterations = std::min(tuning.balancing_iterations, options.max_contact);
+  const bool newton_follows = options.contact == SolverOptions::Contact::automatic ||
+                              options.contact == SolverOptions::Contact::active_set;
+  if (first && newton_follows) {
+    out.sticking = true;
+    out.max_iterations = std::min(tuning.opening_iterations, options.max_contact);
+  }
   return out;
 }
 

@@ -14,6 +14,9 @@ struct Tuning {
   /// which is elastic, as well. A half there leaves slip on fine meshes to Newton steps that move it on by a
   /// few rows of nodes each, a tenth costs more than it saves.
   double inner_reduction = 0.2;
+  /// ADMM iterations of the first step where Newton steps follow: it is to guess who touches. A slender
+  /// cantilever that just reaches its obstacle took 10,000 for the same answer.
+  int opening_iterations = 20;
   /// Of the first residual of a semismooth Newton step. One that starts within `last_reach` of the tolerance
   /// may be the last: it is solved to `last_reduction`, or to `last_share` of the tolerance.
   double solve_reduction = 0.03;

@@ -193,8 +193,7 @@ TEST_CASE("Coulomb: a run cut short says that its bound still moves") {
   CHECK(mentions(run.result().message, "Coulomb's bound still moves"));
 }
 
-TEST_CASE("an active set that goes round in circles is left for ADMM, and the answer is the same") {
-  // Coulomb's bound follows the pressure: points between stick and slip go to and fro.
+TEST_CASE("Coulomb friction by Newton steps alone: no retreat to ADMM, and its answer") {
   Model model = beam(2, elastic_law(1.0, 0.3), 0.05);
   model.solver.tolerance = 1e-7;
   std::ptrdiff_t retreats = 0;
@@ -208,15 +207,15 @@ TEST_CASE("an active set that goes round in circles is left for ADMM, and the an
     std::vector<std::string> phases;
     RunOptions options;
     options.progress = [&](const ProgressStep& step) { phases.push_back(step.phase); };
-    const Run circles = run_alone(beam_mesh(2, 12), model, options);
+    const Run newton = run_alone(beam_mesh(2, 12), model, options);
     REQUIRE(phases.size() > 1);
     retreats += std::count(phases.begin() + 1, phases.end(), "admm");
     CHECK(phases.back() == "active_set");
-    CHECK(circles.result().status == Status::converged);
-    CHECK(distance(straight.probe(), circles.probe()) < 1e-5 * length(straight.probe()));
-    check_contact_laws(circles, 1e-5);
+    CHECK(newton.result().status == Status::converged);
+    CHECK(distance(straight.probe(), newton.probe()) < 1e-5 * length(straight.probe()));
+    check_contact_laws(newton, 1e-5);
   }
-  CHECK(retreats > 0);
+  CHECK(retreats == 0);
 }
 
 TEST_CASE("friction far beyond what a yielding body carries does not throw it about") {
@@ -240,10 +239,10 @@ TEST_CASE("friction far beyond what a yielding body carries does not throw it ab
 }
 
 TEST_CASE("where the tangent has gone too far the secant leads on until half the residual is left") {
-  // A block dragged up a slope, to strains of a hundred yield strains.
+  // A block dragged up a slope, to strains of thousands of yield strains.
   Model model;
-  model.materials.push_back({everything(), logarithmic_law(0.002, 200.0)});
-  model.boundary.push_back(moved(named("top"), 3, {0.3, 0.2, -0.2}));
+  model.materials.push_back({everything(), logarithmic_law(1e-4, 200.0)});
+  model.boundary.push_back(moved(named("top"), 3, {0.6, 0.2, -0.2}));
   model.contact.push_back(on_plane(named("bottom"), {}, {0.2, 0, 1}, 0.0, 0.7));
   std::vector<ProgressStep> steps;
   RunOptions options;

@@ -250,7 +250,16 @@ TEST_CASE("accuracy: ADMM is solved below the residuals before it, but not far b
   const AdmmOptions later = admm_accuracy(options, residuals(1e-2), false, tuning);
   CHECK(later.trace_tolerance / 3.0 == doctest::Approx(later.force_tolerance / 2.0));
   CHECK(later.max_iterations == tuning.balancing_iterations);
-  CHECK(admm_accuracy(options, residuals(1e-2), true, tuning).max_iterations == options.max_contact);
+  // The opening: a guess for Newton steps, where they follow.
+  const AdmmOptions opening = admm_accuracy(options, residuals(1e-2), true, tuning);
+  CHECK(opening.max_iterations == tuning.opening_iterations);
+  CHECK(opening.sticking);
+  CHECK_FALSE(later.sticking);
+  options.contact = SolverOptions::Contact::admm;
+  const AdmmOptions alone = admm_accuracy(options, residuals(1e-2), true, tuning);
+  CHECK(alone.max_iterations == options.max_contact);
+  CHECK_FALSE(alone.sticking);
+  options.contact = SolverOptions::Contact::automatic;
   options.max_contact = 2;
   CHECK(admm_accuracy(options, residuals(1e-2), false, tuning).max_iterations == 2);
   // Nothing sets a scale yet: by the forces that appear.

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Generalised conjugate residuals with inner solves: for operators near a symmetric one, as friction that
+// follows the pressure makes them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "linear/cg.hpp"
+
+namespace kacanov {
+
+struct GcrOptions {
+  double absolute = 0.0;  ///< stop at ‖r‖ ≤ absolute
+  int max_iterations = 20;
+};
+
+struct GcrResult {
+  int iterations = 0;
+  double first_residual = 0.0, residual = 0.0;
+  bool converged = false;
+};
+
+/// Solves A x = b for A that need not be symmetric; on entry `residual` holds b − A x, in the space, on exit
+/// that of the new x. `inner(r, z)` gives z near A⁻¹ r, and whether it could; `apply(z, q)` gives q = A z in
+/// the space. Two vectors are kept an iteration.
+template <class Apply, class Inner>
+GcrResult gcr(const Space& space, const Apply& apply, const Inner& inner, std::span<double> x,
+              std::span<double> residual, const GcrOptions& options) {
+  struct Direction {
+    Vector z, q;
+    double square = 0.0;
+  };
+  std::vector<Direction> kept;
+  GcrResult result;
+  result.first_residual = result.residual = space.norm(residual);
+  result.converged = result.residual <= options.absolute;
+  const std::size_t n = x.size();
+  while (!result.converged && result.iterations < options.max_iterations) {
+    Direction next{Vector(n), Vector(n)};
+    if (!inner(residual, next.z)) break;
+    apply(next.z, next.q);
+    for (const Direction& d : kept) {
+      const double share = space.dot(d.q, next.q) / d.square;
+      for (std::size_t i = 0; i < n; ++i) {
+        next.z[i] -= share * d.z[i];
+        next.q[i] -= share * d.q[i];
+      }
+    }
+    const auto [square, along] = space.dot2(next.q, next.q, next.q, residual);
+    if (!(square > 0.0) || !std::isfinite(along)) break;
+    next.square = square;
+    for (std::size_t i = 0; i < n; ++i) {
+      x[i] += along / square * next.z[i];
+      residual[i] -= along / square * next.q[i];
+    }
+    ++result.iterations;
+    result.residual = space.norm(residual);
+    result.converged = result.residual <= options.absolute;
+    kept.push_back(std::move(next));
+  }
+  return result;
+}
+
+}  // namespace kacanov

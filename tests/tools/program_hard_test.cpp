@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Small cases of friction, gaps and loose bodies that earlier versions failed on, run as users run them.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "program_runner.hpp"
+
+using namespace kacanov::testing;
+using nlohmann::json;
+
+namespace {
+
+struct Run {
+  int exit_code = 0;
+  json result;
+
+  double number(const char* key, std::size_t component) const { return result.at(key).at(component); }
+  int count(const char* key) const { return result.at(key); }
+};
+
+/// The case of that name in tests/cases/hard, at default settings.
+Run run(const std::string& name) {
+  const Workplace place;
+  const Outcome outcome = place.run("run " KACANOV_HARD_CASES "/" + name + ".json --ranks 1 --output " +
+                                    place.path("out").string());
+  CAPTURE(outcome.error);
+  REQUIRE(place.has("out/result.json"));
+  return {outcome.exit_code, place.json("out/result.json")};
+}
+
+Run converged(const std::string& name, int most_steps, int most_applications) {
+  CAPTURE(name);
+  const Run out = run(name);
+  CHECK(out.exit_code == 0);
+  CHECK(out.result.at("status") == "converged");
+  CHECK(out.count("outer_iterations") <= most_steps);
+  CHECK(out.count("operator_applications") <= most_applications);
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("a block that friction alone holds: nothing slips") {
+  const Run block = converged("block_on_floor_coulomb", 10, 100);
+  CHECK(block.count("slip_nodes") == 0);
+  CHECK(block.number("contact_force", 2) == doctest::Approx(200.0));
+  CHECK(block.number("friction_force", 0) == doctest::Approx(-40.0));
+}
+
+TEST_CASE("uniform shear under a bound that is not reached: uniform stress") {
+  const Run patch = converged("uniform_shear_patch_coulomb", 10, 100);
+  CHECK(patch.count("slip_nodes") == 0);
+  CHECK(patch.number("friction_force", 0) == doctest::Approx(-10.0));
+  CHECK(patch.result.at("max_contact_pressure").get<double>() == doctest::Approx(100.0).epsilon(1e-4));
+}
+
+TEST_CASE("a bracket on its foot, the rest held by friction") {
+  const Run bracket = converged("bracket_linear_coulomb", 20, 200);
+  // The tip's area is 0.3, its load (10, 0, −50).
+  CHECK(bracket.number("contact_force", 2) == doctest::Approx(15.0).epsilon(1e-4));
+  CHECK(bracket.count("slip_nodes") > 0);
+}
+
+TEST_CASE("nodes in the edge between floor and wall belong to both") {
+  // The load is what floor and wall bear together.
+  const Run cube = converged("cube_in_corner_coulomb", 15, 150);
+  CHECK(cube.number("contact_force", 0) + cube.number("friction_force", 0) == doctest::Approx(50.0));
+  CHECK(cube.number("contact_force", 2) + cube.number("friction_force", 2) == doctest::Approx(100.0));
+  const Run small = converged("81_unknowns", 15, 150);
+  CHECK(small.number("contact_force", 0) + small.number("friction_force", 0) == doctest::Approx(20.0));
+  CHECK(small.number("contact_force", 2) + small.number("friction_force", 2) == doctest::Approx(100.0));
+  converged("bracket", 30, 300);
+}
+
+TEST_CASE("a cantilever that just reaches its obstacle takes no thousands of ADMM iterations") {
+  const Run touch = converged("cantilever_just_touches", 20, 400);
+  CHECK(touch.number("contact_force", 2) == doctest::Approx(0.3445).epsilon(1e-3));
+}
+
+TEST_CASE("bodies fall on to their obstacles") {
+  // A width of 2 under 10; and what hangs on a pin without friction.
+  CHECK(converged("fall_through_gap", 15, 300).number("contact_force", 1) == doctest::Approx(20.0));
+  const Run hook = converged("hook_on_pin_frictionless", 30, 6000);
+  CHECK(hook.number("contact_force", 2) == doctest::Approx(-3.8334).epsilon(1e-4));
+}
+
+TEST_CASE("a body pulled off its only contact: no equilibrium, and nothing is solved") {
+  const Run lifted = run("lift_off");
+  CHECK(lifted.exit_code == 1);
+  CHECK(lifted.result.at("status") == "not_converged");
+  CHECK(lifted.count("operator_applications") == 0);
+  const auto message = lifted.result.at("message").get<std::string>();
+  CHECK(message.find("no equilibrium: the load lifts the body off") != std::string::npos);
+  CHECK(message.find("translation along z") != std::string::npos);
+}
+
+TEST_CASE("Tresca's friction at floor and wall does not cycle") { converged("tresca_floor_wall", 60, 1500); }
