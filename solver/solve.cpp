@@ -85,6 +85,7 @@ std::string softening_message(std::int64_t elements) {
 }  // namespace
 
 Solution solve(const Part& part, const SolverOptions& options, const RunOptions& run) {
+  validate(options);
   const double start = MPI_Wtime();
   Solution solution;
   Result& result = solution.result;
@@ -140,6 +141,7 @@ Solution solve(const Part& part, const SolverOptions& options, const RunOptions&
 
 std::vector<SpectrumResult> analyse_spectrum(const Part& part, const SolverOptions& options,
                                              const RunOptions& run) {
+  validate(options);
   DistributedOperator op(part, run.threads, run.instruction_set);
   const auto amg = make_preconditioner(options.preconditioner, part, run.threads, run.instruction_set);
   std::vector<double> secant(part.body().secant_count());

@@ -2,7 +2,7 @@
 # The rooms of the solver, one program each, and whole solves.
 kacanov_test(problem
   SOURCES solver/problem_contact_test.cpp solver/problem_loads_test.cpp
-          solver/problem_rigid_modes_test.cpp
+          solver/problem_rigid_modes_test.cpp solver/problem_validate_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 find_package(Eigen3 3.4 REQUIRED)

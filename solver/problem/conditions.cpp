@@ -50,16 +50,12 @@ void add_body_force(Problem& problem, const Vector3& force, std::span<const std:
 }  // namespace
 
 void assign_materials(Problem& problem, const Model& model, const Selection& selection) {
-  if (model.materials.empty()) throw InputError("material: expected at least one entry");
   constexpr std::uint16_t none = std::numeric_limits<std::uint16_t>::max();
-  if (model.materials.size() >= none) throw InputError("material: expected fewer than 65535 entries");
   const Mesh& mesh = problem.mesh;
   problem.law_of_element.assign(mesh.element_count(), none);
   for (std::size_t i = 0; i < model.materials.size(); ++i) {
     const std::string path = path_of("material", i);
     const MaterialEntry& entry = model.materials[i];
-    if (const std::string fault = validate(entry.law); !fault.empty())
-      throw InputError(path + ".law." + fault);
     if (entry.law.mean_dilatation && !cell(mesh.type).mean_dilatation)
       throw InputError(path + ".bbar: expected false, or a mesh of " + bbar_names() +
                        ": other elements have no B-bar here");

@@ -16,6 +16,7 @@
 namespace kacanov {
 
 Problem build_problem(Mesh mesh, const Model& model) {
+  validate(model);
   check_mesh(mesh);
   Problem problem;
   problem.mesh = std::move(mesh);

@@ -52,6 +52,7 @@ HEADER_ROOMS = {
     "result.hpp": "solver/problem",
     "index_runs.hpp": "solver/parallel",
     "part.hpp": "solver/parallel",
+    "rules.hpp": "solver/problem",
     "run_options.hpp": "solver/nonlinear",
 }
 

@@ -290,16 +290,20 @@ TEST_CASE("every choice of the contact method and of r leads to the same answer"
     CHECK(distance(run.result().contact_force, reference.result().contact_force) <
           1e-5 * length(reference.result().contact_force));
   };
-  for (const auto outer : {SolverOptions::Outer::kacanov, SolverOptions::Outer::newton})
-    for (const auto contact : {SolverOptions::Contact::admm, SolverOptions::Contact::active_set}) {
-      SolverOptions options = model.solver;
-      options.outer = outer;
-      options.contact = contact;
-      options.max_outer = 200;
-      CAPTURE(static_cast<int>(outer));
-      CAPTURE(static_cast<int>(contact));
-      compare(options);
-    }
+  using Outer = SolverOptions::Outer;
+  using Contact = SolverOptions::Contact;
+  for (const auto& [outer, contact] : {std::pair{Outer::kacanov, Contact::admm},
+                                       {Outer::automatic, Contact::admm},
+                                       {Outer::kacanov, Contact::active_set},
+                                       {Outer::newton, Contact::active_set}}) {
+    SolverOptions options = model.solver;
+    options.outer = outer;
+    options.contact = contact;
+    options.max_outer = 200;
+    CAPTURE(static_cast<int>(outer));
+    CAPTURE(static_cast<int>(contact));
+    compare(options);
+  }
   for (const auto penalty : {SolverOptions::Penalty::paper, SolverOptions::Penalty::fixed}) {
     SolverOptions options = model.solver;
     options.penalty = penalty;

@@ -262,3 +262,13 @@ TEST_CASE("r* of an estimate that has not converged is said to be a rough one") 
   REQUIRE(!cut.result().warnings.empty());
   CHECK(mentions(cut.result().warnings[0], "r*"));
 }
+
+TEST_CASE("solve() refuses options that make no sense, in the words of the case file") {
+  Model model = beam(2, elastic_law(1.0, 0.3), 0.05);
+  const Problem problem = build_problem(beam_mesh(2, 2), model);
+  const Part part = distribute(&problem, MPI_COMM_SELF);
+  model.solver.max_cg = 0;
+  CHECK_THROWS_WITH_AS(solve(part, model.solver, {}), "solver.max_cg: expected a whole number ≥ 1, got 0",
+                       InputError);
+  CHECK_THROWS_AS(analyse_spectrum(part, model.solver, {}), InputError);
+}

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include <kacanov/error.hpp>
 #include <kacanov/solve.hpp>
 #include "problem_models.hpp"
 

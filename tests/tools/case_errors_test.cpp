@@ -77,6 +77,7 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
        "contact[0].obstacle.plane.normal: expected a vector that is not zero"},
       {"contact[0].friction.tresca=-0.01", "contact[0].friction.tresca: expected a number ≥ 0, got -0.01"},
       {"solver.tolerance=1", "solver.tolerance: expected a number above 0 and below 1, got 1"},
+      {"solver.max_cg=0", "solver.max_cg: expected a whole number ≥ 1, got 0"},
       {"solver.max_outer=0", "solver.max_outer: expected a whole number ≥ 1, got 0"},
       {"solver.max_outer=2.5", "solver.max_outer: expected a whole number ≥ 1, got 2.5"},
       {"solver.max_contact=1e12",

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include <kacanov/error.hpp>
+#include <kacanov/rules.hpp>
 #include "case/case_material.hpp"
 #include "case/json_node.hpp"
 
@@ -26,7 +27,6 @@ class CaseParser {
     parse_mesh(top.required("mesh"));
     const Node materials = top.required("material");
     for (const Node& node : materials.list("a list of materials")) parse_material(node);
-    if (result_.model.materials.empty()) materials.expected("at least one material");
     if (const auto list = top.optional("boundary")) {
       for (const Node& node : list->list("a list of boundary conditions")) parse_boundary(node);
     }
@@ -38,6 +38,7 @@ class CaseParser {
       for (const Node& node : list->list("a list of points")) result_.model.probes.push_back(vector(node));
     }
     if (const auto node = top.optional("output")) parse_output(*node);
+    validate(result_.model);
     return std::move(result_);
   }
 
@@ -62,12 +63,6 @@ class CaseParser {
     return v;
   }
 
-  Vector3 direction(const Node& node) {
-    const Vector3 v = vector(node);
-    if (v == Vector3{}) node.expected("a vector that is not zero");
-    return v;
-  }
-
   Selector selector(const Node& node) {
     Selector on;
     if (node.value().is_string()) {
@@ -84,10 +79,6 @@ class CaseParser {
     on.lower = vector(corners[0]);
     on.upper = vector(corners[1]);
     if (corners[0].value().size() != corners[1].value().size()) box.expected("two corners of equal length");
-    for (std::size_t c = 0; c < 3; ++c) {
-      if (on.lower[c] > on.upper[c])
-        box.expected("a lower corner that is below the upper one in every direction");
-    }
     return on;
   }
 
@@ -114,7 +105,7 @@ class CaseParser {
     if (size.size() != dim) box.required("size").expected(count);
     if (cells.size() != dim) box.required("cells").expected(count);
     for (std::size_t c = 0; c < dim; ++c) {
-      spec.size[c] = size[c].number("a number > 0", [](double v) { return v > 0.0; });
+      spec.size[c] = size[c].number(positive);
       spec.cells[c] = cells[c].integer(1);
     }
     result_.mesh.box = spec;
@@ -124,9 +115,8 @@ class CaseParser {
     const Object object(node, {"on", "young", "poisson", "law", "bbar"});
     MaterialEntry entry;
     entry.on = selector(object.required("on"));
-    const double young = object.required("young").number("a number > 0", [](double v) { return v > 0.0; });
-    const double poisson = object.required("poisson").number("a number above -1 and below 0.5",
-                                                             [](double v) { return v > -1.0 && v < 0.5; });
+    const double young = object.required("young").number(positive);
+    const double poisson = object.required("poisson").number(poisson_ratio);
     entry.law = elastic_law(young, poisson);
     if (const auto law = object.optional("law"))
       entry.law = parse_law(young, poisson, *law, result_.warnings);
@@ -143,14 +133,11 @@ class CaseParser {
     if (kind == "displacement") {
       entry.displacement.emplace();
       const std::vector<Node> entries = vector_entries(value);
-      bool any = false;
       for (std::size_t c = 0; c < entries.size(); ++c) {
         if (entries[c].value().is_null()) continue;
         if (!entries[c].value().is_number()) entries[c].expected("a number, or null for a free component");
         (*entry.displacement)[c] = entries[c].number();
-        any = true;
       }
-      if (!any) value.expected("at least one component that is not null");
     } else if (kind == "traction") {
       entry.traction = vector(value);
     } else if (kind == "pressure") {
@@ -168,13 +155,13 @@ class CaseParser {
     if (kind == "gap") return ConstantGap{value.number()};
     if (kind == "plane") {
       const Object plane(value, {"point", "normal"});
-      return Plane{vector(plane.required("point")), direction(plane.required("normal"))};
+      return Plane{vector(plane.required("point")), vector(plane.required("normal"))};
     }
     const Object parts(value, {"centre", "radius", "direction"});
     Sphere sphere;
     sphere.centre = vector(parts.required("centre"));
-    sphere.radius = parts.required("radius").number("a number > 0", [](double v) { return v > 0.0; });
-    if (const auto way = parts.optional("direction")) sphere.direction = direction(*way);
+    sphere.radius = parts.required("radius").number(positive);
+    if (const auto way = parts.optional("direction")) sphere.direction = vector(*way);
     return sphere;
   }
 
@@ -186,7 +173,7 @@ class CaseParser {
     if (const auto friction = object.optional("friction")) {
       const Object parts(*friction, {"tresca", "coulomb"});
       const std::string kind = parts.only_one_of({"tresca", "coulomb"});
-      const double bound = parts.required(kind).number("a number ≥ 0", [](double v) { return v >= 0.0; });
+      const double bound = parts.required(kind).number(not_negative);
       entry.friction = kind == "tresca" ? Friction{bound, 0.0} : Friction{0.0, bound};
     }
     result_.model.contact.push_back(entry);
@@ -197,11 +184,9 @@ class CaseParser {
     const Object object(node, {"tolerance", "outer", "contact", "r", "stop", "max_outer", "max_contact",
                                "max_cg", "spectrum_tolerance", "relaxation", "preconditioner", "load_steps"});
     Options& options = result_.model.solver;
-    const auto inside = [](double v) { return v > 0.0 && v < 1.0; };
-    if (const auto v = object.optional("tolerance"))
-      options.tolerance = v->number("a number above 0 and below 1", inside);
+    if (const auto v = object.optional("tolerance")) options.tolerance = v->number(below_one);
     if (const auto v = object.optional("spectrum_tolerance")) {
-      options.spectrum_tolerance = v->number("a number above 0 and below 1", inside);
+      options.spectrum_tolerance = v->number(below_one);
     }
     if (const auto v = object.optional("outer")) {
       constexpr std::array values{Options::Outer::automatic, Options::Outer::kacanov, Options::Outer::newton};
@@ -225,8 +210,7 @@ class CaseParser {
     if (const auto v = object.optional("max_cg")) options.max_cg = v->integer(1);
     if (const auto v = object.optional("load_steps")) parse_load_steps(*v);
     if (const auto v = object.optional("relaxation")) {
-      options.relaxation =
-          v->number("a number ≥ 1 and below 2", [](double a) { return a >= 1.0 && a < 2.0; });
+      options.relaxation = v->number(over_relaxation);
     }
   }
 
@@ -238,19 +222,19 @@ class CaseParser {
       return;
     }
     for (const Node& factor : node.list("a whole number ≥ 1 or a list of factors"))
-      factors.push_back(factor.number("a factor > 0", [](double v) { return v > 0.0; }));
-    if (factors.empty() || factors.back() != 1.0) node.expected("factors on the load of which the last is 1");
+      factors.push_back(factor.number(load_factor));
+    if (factors.empty()) node.expected(last_factor);
   }
 
   void parse_penalty(const Node& node) {
     SolverOptions& options = result_.model.solver;
     if (node.value().is_number()) {
       options.penalty = SolverOptions::Penalty::fixed;
-      options.r = node.number("\"auto\", \"paper\" or a number > 0", [](double v) { return v > 0.0; });
+      options.r = node.number(penalty_number);
       return;
     }
     if (node.value() == "auto") return;
-    if (node.value() != "paper") node.expected("\"auto\", \"paper\" or a number > 0");
+    if (node.value() != "paper") node.expected(penalty_number.words);
     options.penalty = SolverOptions::Penalty::paper;
   }
 
@@ -309,23 +293,6 @@ void check_dimension(const Case& input, int dim) {
     if (vector.length == static_cast<std::size_t>(dim) || (dim == 2 && vector.third_zero)) continue;
     throw InputError(vector.path + ": expected " + std::to_string(dim) + " entries, as the mesh has " +
                      std::to_string(dim) + " dimensions, got " + std::to_string(vector.length));
-  }
-}
-
-void check_supported(const SolverOptions& solver) {
-  const auto refuse = [](const std::string& path, const std::string& value, const std::string& instead) {
-    throw InputError(path + ": " + value + " is not available; use " + instead);
-  };
-  using Options = SolverOptions;
-  // Both are the semismooth Newton method, which has no use for Algorithm 1's loop and its stop.
-  const bool by_step = solver.stop == Options::Stop::paper;
-  if (solver.contact == Options::Contact::active_set && by_step) {
-    refuse("solver.contact", "\"active_set\" together with the stop \"paper\"", "the stop \"kkt\"");
-  }
-  const bool admm = solver.contact == Options::Contact::admm || solver.contact == Options::Contact::dual_admm;
-  if (solver.outer == Options::Outer::newton && (by_step || admm)) {
-    const char* other = by_step ? "the stop \"paper\"" : "this value of solver.contact";
-    refuse("solver.outer", std::string("\"newton\" together with ") + other, "\"auto\" or \"kacanov\"");
   }
 }
 

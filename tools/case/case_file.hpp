@@ -65,7 +65,4 @@ void apply_override(nlohmann::json& document, const std::string& assignment);
 /// Throws InputError naming the first vector that does not fit a mesh of this dimension.
 void check_dimension(const Case& input, int dim);
 
-/// Throws InputError naming the first combination of options that the solver does not offer.
-void check_supported(const SolverOptions& solver);
-
 }  // namespace kacanov

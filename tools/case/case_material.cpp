@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <kacanov/error.hpp>
+#include <kacanov/rules.hpp>
 
 namespace kacanov {
 namespace {
@@ -14,8 +15,7 @@ namespace {
 /// x0, or the yield stress it follows from: 2 mu x0 = sqrt(2/3) sigma_y for the norm.
 double yield_strain(const Object& object, const Law& law) {
   if (object.only_one_of({"x0", "yield_stress"}) == "x0") return object.required("x0").number();
-  const double stress =
-      object.required("yield_stress").number("a number > 0", [](double v) { return v > 0.0; });
+  const double stress = object.required("yield_stress").number(positive);
   const double norm = std::sqrt(2.0 / 3.0) * stress / (2.0 * law.shear);
   return law.argument == Law::Argument::squared ? norm * norm : norm;
 }

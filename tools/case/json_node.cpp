@@ -15,8 +15,6 @@ namespace {
 
 using nlohmann::json;
 
-/// Numbers beyond this would overflow when squared on the way.
-constexpr double largest_number = 1e100;
 /// A case has some five levels; what is made of thousands would end the stack.
 constexpr std::size_t deepest = 64;
 
@@ -138,21 +136,20 @@ void Node::expected(const std::string& what) const {
   throw InputError(path_ + ": expected " + what + ", got " + shown(*value_));
 }
 
-double Node::number(const std::string& what, const std::function<bool(double)>& holds) const {
-  if (!value_->is_number()) expected(what);
+double Node::number(const NumberRule& rule) const {
+  if (!value_->is_number()) expected(rule.words);
   const double number = value_->get<double>();
-  if (!(std::abs(number) <= largest_number)) expected(what + " of a magnitude below 1e100");
-  if (!holds(number)) expected(what);
+  if (!(std::abs(number) <= largest_number))
+    expected(std::string(rule.words) + " of a magnitude below 1e100");
+  if (!rule.holds(number)) expected(rule.words);
   return number;
 }
 
-double Node::number() const {
-  return number("a number", [](double) { return true; });
-}
-
 int Node::integer(int least) const {
-  const double value = number("a whole number ≥ " + std::to_string(least),
-                              [least](double v) { return v == std::floor(v) && v >= least; });
+  const std::string wanted = "a whole number ≥ " + std::to_string(least);
+  if (!value_->is_number()) expected(wanted);
+  const double value = value_->get<double>();
+  if (!(value == std::floor(value) && value >= least)) expected(wanted);
   constexpr int most = std::numeric_limits<int>::max();
   if (value > most) expected("a whole number ≤ " + std::to_string(most));
   return static_cast<int>(value);

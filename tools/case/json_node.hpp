@@ -2,13 +2,14 @@
 // A JSON value that knows its path, so that whatever is wrong with it can be said in the user's terms.
 #pragma once
 
-#include <functional>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <kacanov/rules.hpp>
 
 namespace kacanov {
 
@@ -25,9 +26,7 @@ class Node {
   const std::string& path() const noexcept { return path_; }
   const nlohmann::json& value() const noexcept { return *value_; }
 
-  /// A finite number for which `holds` is true; `expected` says what that is ("a number > 0").
-  double number(const std::string& expected, const std::function<bool(double)>& holds) const;
-  double number() const;
+  double number(const NumberRule& rule = any_number) const;
   int integer(int least) const;  ///< a whole number ≥ least, also when written 1e4
   bool boolean() const;
   std::string text() const;                                   ///< a string that is not empty

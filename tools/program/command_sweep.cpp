@@ -73,8 +73,11 @@ int sweep_command(const Command& command, const Case& input, const MpiSession& m
   RunOptions options;
   options.threads = threads_of(command);
   SolverOptions solver = input.model.solver;
-  // A Newton step hardly knows r: what is swept is Algorithm 1, unless the case names another one.
-  if (solver.contact == SolverOptions::Contact::automatic) solver.contact = SolverOptions::Contact::admm;
+  // A Newton step hardly knows r: what is swept is ADMM, unless the case names another one.
+  if (solver.contact == SolverOptions::Contact::automatic) {
+    solver.contact = SolverOptions::Contact::admm;
+    solver.outer = SolverOptions::Outer::automatic;
+  }
 
   Landmarks landmarks;
   bool any_converged = false;

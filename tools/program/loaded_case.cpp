@@ -17,7 +17,6 @@ Mesh load_mesh(const MeshSource& source) {
 }
 
 Problem load_problem(const Case& input, RankCount ranks) {
-  check_supported(input.model.solver);
   const auto check_memory = [&](const ProblemSize& size) {
     if (ranks.here > 0) refuse_what_cannot_fit(size, ranks.all, ranks.here);
   };

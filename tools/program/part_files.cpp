@@ -192,7 +192,6 @@ LoadedCase load_parts(const std::filesystem::path& folder, const Case& input, co
   LoadedCase loaded;
   std::uint64_t identity = 0, first_identity = 0;
   together(mpi, [&] {
-    check_supported(input.model.solver);
     if (mpi.first()) {
       HashedReader reader = open_boundary(folder);
       check_case(reader.header(), input, boundary_file(folder).string());

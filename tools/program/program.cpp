@@ -105,7 +105,6 @@ int run_on_ranks(const std::string& mpiexec, Shape shape, const Command& command
 int run_alone(const Command& command, int argc, const char* const* argv) {
   const CaseText text = read_case_text(command.case_file);
   const Case input = parse_case(text, command.overrides);
-  check_supported(input.model.solver);
   Shape shape = choose_shape(input, needs_one(command) ? command.ranks : ranks_asked_for(command, input),
                              command.threads, usable_cores());
   if (needs_one(command)) {

@@ -68,11 +68,13 @@ struct SolverOptions {
   enum class Stop { kkt, paper };
   enum class Preconditioner { multigrid, elasticity };
 
-  double tolerance = 1e-6;  ///< on every entry of the certificate (stop: kkt), on (15) (stop: paper)
+  double tolerance =
+      1e-6;  ///< on every entry of the certificate (stop: kkt), on the size of the step (stop: paper)
   Outer outer = Outer::automatic;
   Contact contact = Contact::automatic;
-  Penalty penalty = Penalty::automatic;  ///< `r`: automatic is r_A, paper is (32)
-  double r = 0.0;                        ///< the number, with Penalty::fixed
+  Penalty penalty =
+      Penalty::automatic;  ///< `r`: balanced from a first guess (theory: balance), r* (r-star), or
+  double r = 0.0;          ///< this number, with Penalty::fixed
   Stop stop = Stop::kkt;
   Preconditioner preconditioner = Preconditioner::multigrid;
   int max_outer = 100;
@@ -82,8 +84,8 @@ struct SolverOptions {
   /// Factors on loads, prescribed displacements and indentation, one after the other; the last is 1. Empty:
   /// at once.
   std::vector<double> load_steps;
-  /// Over-relaxation of ADMM, 1 ≤ α < 2. Unset: 1 with r: paper or stop: paper (Algorithm 1 as printed),
-  /// else 1.7.
+  /// Over-relaxation of ADMM, 1 ≤ α < 2. Unset: 1 with r: paper or stop: paper, else 1.7 (theory:
+  /// over-relaxation).
   std::optional<double> relaxation;
 };
 
@@ -94,5 +96,11 @@ struct Model {
   std::vector<Vector3> probes;
   SolverOptions solver;
 };
+
+/// Throw InputError about the first thing that makes no sense, in the words and with the paths of the case
+/// file: "solver.tolerance: expected a number above 0 and below 1, got 0". What only a mesh can tell,
+/// build_problem() says. The options of a model are validated with it.
+void validate(const SolverOptions& options);
+void validate(const Model& model);
 
 }  // namespace kacanov

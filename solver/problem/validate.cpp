@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whether a model and its options make sense before there is a mesh, said in the words of the case file.
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <kacanov/error.hpp>
+#include <kacanov/model.hpp>
+#include <kacanov/rules.hpp>
+
+namespace kacanov {
+namespace {
+
+/// The shortest text that is the same number.
+std::string shown(double value) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  return {text.data(), end};
+}
+
+template <class Range>
+std::string shown_list(const Range& values) {
+  std::string text;
+  for (const double v : values) text += (text.empty() ? "" : ",") + shown(v);
+  return "[" + text + "]";
+}
+
+std::string at(const std::string& list, std::size_t index) {
+  return list + "[" + std::to_string(index) + "]";
+}
+
+[[noreturn]] void refuse(const std::string& path, const std::string& expected, const std::string& got) {
+  throw InputError(path + ": expected " + expected + ", got " + got);
+}
+
+void check(const std::string& path, double value, const NumberRule& rule = any_number) {
+  if (!(std::abs(value) <= largest_number))
+    refuse(path, std::string(rule.words) + " of a magnitude below 1e100", shown(value));
+  if (!rule.holds(value)) refuse(path, rule.words, shown(value));
+}
+
+void check(const std::string& path, const Vector3& v) {
+  for (std::size_t c = 0; c < 3; ++c) check(at(path, c), v[c]);
+}
+
+void check_direction(const std::string& path, const Vector3& v) {
+  check(path, v);
+  if (v == Vector3{}) refuse(path, "a vector that is not zero", shown_list(v));
+}
+
+void check_count(const std::string& path, int value) {
+  if (value < 1) refuse(path, "a whole number ≥ 1", std::to_string(value));
+}
+
+void check_selector(const std::string& path, const Selector& on) {
+  if (on.kind == Selector::Kind::name && on.name.empty()) refuse(path, "a string", "\"\"");
+  if (on.kind != Selector::Kind::box) return;
+  check(path + ".box[0]", on.lower);
+  check(path + ".box[1]", on.upper);
+  for (std::size_t c = 0; c < 3; ++c)
+    if (on.lower[c] > on.upper[c])
+      refuse(path + ".box", "a lower corner that is below the upper one in every direction",
+             "[" + shown_list(on.lower) + "," + shown_list(on.upper) + "]");
+}
+
+void check_material(const std::string& path, const MaterialEntry& entry) {
+  check_selector(path + ".on", entry.on);
+  if (const std::string fault = validate(entry.law); !fault.empty()) throw InputError(path + ".law." + fault);
+}
+
+void check_boundary(const std::string& path, const BoundaryEntry& entry) {
+  check_selector(path + ".on", entry.on);
+  const int kinds = (entry.displacement ? 1 : 0) + (entry.traction ? 1 : 0) + (entry.pressure ? 1 : 0) +
+                    (entry.body_force ? 1 : 0);
+  if (kinds != 1)
+    refuse(path,
+           std::string(kinds == 0 ? "" : "only ") +
+               "one of the keys displacement, traction, pressure, body_force",
+           std::to_string(kinds));
+  if (entry.displacement) {
+    bool any = false;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto& value = (*entry.displacement)[c];
+      if (value) check(at(path + ".displacement", c), *value);
+      any = any || value;
+    }
+    if (!any) refuse(path + ".displacement", "at least one component that is not null", "[null,null,null]");
+  }
+  if (entry.traction) check(path + ".traction", *entry.traction);
+  if (entry.pressure) check(path + ".pressure", *entry.pressure);
+  if (entry.body_force) check(path + ".body_force", *entry.body_force);
+}
+
+void check_obstacle(const std::string& path, const Obstacle& obstacle) {
+  if (const auto* plane = std::get_if<Plane>(&obstacle)) {
+    check(path + ".plane.point", plane->point);
+    check_direction(path + ".plane.normal", plane->normal);
+  } else if (const auto* sphere = std::get_if<Sphere>(&obstacle)) {
+    check(path + ".sphere.centre", sphere->centre);
+    check(path + ".sphere.radius", sphere->radius, positive);
+    if (sphere->direction) check_direction(path + ".sphere.direction", *sphere->direction);
+  } else {
+    check(path + ".gap", std::get<ConstantGap>(obstacle).gap);
+  }
+}
+
+void check_contact(const std::string& path, const ContactEntry& entry) {
+  check_selector(path + ".on", entry.on);
+  check_obstacle(path + ".obstacle", entry.obstacle);
+  if (!entry.friction) return;
+  check(path + ".friction.tresca", entry.friction->tresca, not_negative);
+  check(path + ".friction.coulomb", entry.friction->coulomb, not_negative);
+}
+
+[[noreturn]] void unavailable(const std::string& path, const std::string& value, const std::string& instead) {
+  throw InputError(path + ": " + value + " is not available; use " + instead);
+}
+
+/// Semismooth Newton, under both of its names, has no use for ADMM's loop and the paper's stop.
+void check_combination(const SolverOptions& options) {
+  using Options = SolverOptions;
+  const bool by_step = options.stop == Options::Stop::paper;
+  if (options.contact == Options::Contact::active_set && by_step)
+    unavailable("solver.contact", "\"active_set\" together with the stop \"paper\"", "the stop \"kkt\"");
+  const bool admm =
+      options.contact == Options::Contact::admm || options.contact == Options::Contact::dual_admm;
+  if (options.outer == Options::Outer::newton && (by_step || admm)) {
+    const char* other = by_step ? "the stop \"paper\"" : "this value of solver.contact";
+    unavailable("solver.outer", std::string("\"newton\" together with ") + other, "\"auto\" or \"kacanov\"");
+  }
+}
+
+}  // namespace
+
+void validate(const SolverOptions& options) {
+  check("solver.tolerance", options.tolerance, below_one);
+  check("solver.spectrum_tolerance", options.spectrum_tolerance, below_one);
+  if (options.penalty == SolverOptions::Penalty::fixed) check("solver.r", options.r, penalty_number);
+  check_count("solver.max_outer", options.max_outer);
+  check_count("solver.max_contact", options.max_contact);
+  check_count("solver.max_cg", options.max_cg);
+  const std::vector<double>& factors = options.load_steps;
+  for (std::size_t i = 0; i < factors.size(); ++i) check(at("solver.load_steps", i), factors[i], load_factor);
+  if (!factors.empty() && factors.back() != 1.0)
+    refuse("solver.load_steps", last_factor, shown_list(factors));
+  if (options.relaxation) check("solver.relaxation", *options.relaxation, over_relaxation);
+  check_combination(options);
+}
+
+void validate(const Model& model) {
+  if (model.materials.empty()) refuse("material", "at least one material", "[]");
+  if (model.materials.size() >= std::numeric_limits<std::uint16_t>::max())
+    throw InputError("material: expected fewer than 65535 entries");
+  for (std::size_t i = 0; i < model.materials.size(); ++i)
+    check_material(at("material", i), model.materials[i]);
+  for (std::size_t i = 0; i < model.boundary.size(); ++i)
+    check_boundary(at("boundary", i), model.boundary[i]);
+  for (std::size_t i = 0; i < model.contact.size(); ++i) check_contact(at("contact", i), model.contact[i]);
+  for (std::size_t i = 0; i < model.probes.size(); ++i) check(at("probe", i), model.probes[i]);
+  validate(model.solver);
+}
+
+}  // namespace kacanov
