@@ -24,6 +24,8 @@ kacanov_test(gmsh
   LIBRARIES kacanov_formats)
 target_compile_definitions(test_gmsh PRIVATE KACANOV_EXAMPLES="${PROJECT_SOURCE_DIR}/tools/examples")
 
+kacanov_test(memory_model SOURCES tools/memory_model_test.cpp LIBRARIES kacanov_program)
+
 kacanov_test(files SOURCES tools/control_group_test.cpp tools/mapped_file_test.cpp LIBRARIES kacanov_program)
 
 kacanov_test(vtu SOURCES tools/vtu_test.cpp LIBRARIES kacanov_formats)

@@ -15,45 +15,12 @@
 namespace kacanov {
 namespace {
 
-/// Bytes for every node and every element.
-struct Bytes {
-  double node = 0.0, element = 0.0;
-  Bytes operator+(const Bytes& b) const { return {node + b.node, element + b.element}; }
-  double of(const ProblemSize& size) const { return node * size.nodes + element * size.elements; }
-};
-
 constexpr double bytes_alone = 20e6,
                  bytes_in_company = 32e6;          // of a process: the program, MPI and its shared memory
 constexpr double bytes_per_contact_point = 1.8e3;  // rows of traces, their spaces and blocks
 constexpr double lanes_filled = 1.07;              // slots of the operators an element
 constexpr double nodes_of_blocks = 1.25;           // nodes of the operators' blocks a node
 constexpr double overhead = 1.03;                  // of the allocator
-
-/// What a part, its operators and the loops hold; see Part, Layout, StepContext, RigidMultigrid.
-struct Demand {
-  Bytes mesh, problem, part, steady, setup, solve;
-
-  explicit Demand(const ProblemSize& size) {
-    const double dim = dimension(size.type), npe = nodes_per_element(size.type),
-                 points = points_per_element(size.type);
-    const double slots = points * lanes_filled;
-    // Local numbers of a unit's nodes, two bytes each: fans of six tetrahedra have eight.
-    const double index = size.type == ElementType::tet4 ? 2.7 : 2.0 * npe;
-    mesh = {8 * dim, 4 * npe};
-    problem = {17 * dim, 2};              // load, prescribed, held; law
-    part = {8 * dim + 4 + dim, 4 * npe};  // coordinates, index, held; corners
-    const Bytes operators{nodes_of_blocks * (32 + 4 + 16 + 4), slots * (8 + 4 + 4 + 4) + 2 * index};
-    const Bytes loops{8 * dim * 6 + 4 * dim, 0};  // ω, kept ω, R(ω), three vectors of CG; diagonal
-    const double modes = dim == 3 ? 6 : 3,
-                 neighbours = dim == 3 ? 8 : 4;  // half the couplings of an aggregate of 48 nodes
-    const double rows =
-        neighbours * modes * modes * 8 / 48.0 * 1.4;  // levels below, inverse diagonals, vectors
-    const Bytes multigrid{16 * dim + 4 * dim * (dim + 1) / 2 + 4 + rows, 0};
-    steady = part + operators + loops + multigrid;
-    setup = {8 + 1.15 * rows, 8 * points};               // aggregates, sums of blocks; g
-    solve = {8 * dim, size.nonlinear ? 20 * slots : 0};  // step; tangent
-  }
-};
 
 /// The number behind a word at the beginning of a line, 0 where there is none.
 double number_after(const std::string& path, const std::string& word) {
@@ -99,16 +66,40 @@ ProblemSize size_of(const Mesh& mesh, const Model& model) {
   return size;
 }
 
+MemoryShares memory_shares(const ProblemSize& size) {
+  const double dim = dimension(size.type), npe = nodes_per_element(size.type),
+               points = points_per_element(size.type);
+  const auto bytes = [&](double node, double element) { return node * size.nodes + element * size.elements; };
+  const double slots = points * lanes_filled;
+  // Local numbers of a unit's nodes, two bytes each: fans of six tetrahedra have eight.
+  const double index = size.type == ElementType::tet4 ? 2.7 : 2.0 * npe;
+  const double modes = dim == 3 ? 6 : 3,
+               neighbours = dim == 3 ? 8 : 4;  // half the couplings of an aggregate of 48 nodes
+  const double rows =
+      neighbours * modes * modes * 8 / 48.0 * 1.4;  // levels below, inverse diagonals, vectors
+  MemoryShares shares;
+  shares.mesh = bytes(8 * dim, 4 * npe);
+  shares.problem = bytes(17 * dim, 2);              // load, prescribed, held; law
+  shares.part = bytes(8 * dim + 4 + dim, 4 * npe);  // coordinates, index, held; corners
+  shares.operators = bytes(nodes_of_blocks * (32 + 4 + 16 + 4), slots * (8 + 4 + 4 + 4) + 2 * index);
+  shares.loops = bytes(8 * dim * 6 + 4 * dim, 0);  // u, kept u, R(u), three vectors of CG; diagonal
+  shares.multigrid = bytes(16 * dim + 4 * dim * (dim + 1) / 2 + 4 + rows, 0);
+  shares.setup = bytes(8 + 1.15 * rows, 8 * points);  // aggregates, sums of blocks; g
+  shares.step = bytes(8 * dim, 0);
+  shares.tangent = size.nonlinear ? bytes(0, 20 * slots) : 0.0;
+  return shares;
+}
+
 double estimated_memory(const ProblemSize& size, int ranks) {
-  const Demand demand(size);
-  const double loops = demand.steady.of(size) + std::max(demand.setup.of(size), demand.solve.of(size));
+  const MemoryShares shares = memory_shares(size);
+  const double loops = shares.part + shares.operators + shares.loops + shares.multigrid +
+                       std::max(shares.setup, shares.step + shares.tangent);
   const double solving = (loops + bytes_per_contact_point * size.contact_points) / ranks;
-  const Bytes sides{8, 4.0 * facets_per_element(size.type)};  // while boundary and neighbours are sought
-  const Bytes splitting{28, 4};                               // orders, ranks and new numbers
-  const double reading = (demand.mesh + demand.problem + sides).of(size);
-  const double handing_out =
-      (demand.mesh + demand.problem + splitting).of(size) + demand.part.of(size) / ranks;
-  const double first = std::max({reading, handing_out, solving});
+  const double handed_in = shares.mesh + shares.problem;
+  // While boundary and neighbours are sought; orders, ranks and new numbers of the split.
+  const double sides = 8 * size.nodes + 4.0 * facets_per_element(size.type) * size.elements,
+               splitting = 28 * size.nodes + 4 * size.elements;
+  const double first = std::max({handed_in + sides, handed_in + splitting + shares.part / ranks, solving});
   return ranks * (ranks == 1 ? bytes_alone : bytes_in_company) + overhead * (first + (ranks - 1) * solving);
 }
 

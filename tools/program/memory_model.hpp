@@ -20,8 +20,18 @@ struct ProblemSize {
 ProblemSize size_of(const BoxSpec& box, const Model& model);
 ProblemSize size_of(const Mesh& mesh, const Model& model);
 
+/// What the arrays of a run hold, all ranks together, in bytes; see Part, Layout, StepContext,
+/// RigidMultigrid.
+struct MemoryShares {
+  double mesh = 0.0, problem = 0.0;  ///< on the first rank, until all have their parts
+  double part = 0.0, operators = 0.0, loops = 0.0, multigrid = 0.0;
+  double setup = 0.0;                ///< while the preconditioner is set up
+  double step = 0.0, tangent = 0.0;  ///< while a Newton step is taken
+};
+MemoryShares memory_shares(const ProblemSize& size);
+
 /// Sum over the ranks of their largest resident memories in bytes, with the default preconditioner: within 15
-/// % from some 10,000 nodes on.
+/// % from some 10,000 nodes on (measured).
 double estimated_memory(const ProblemSize& size, int ranks);
 
 /// Largest resident memory of this process so far, in bytes. 0: unknown.
