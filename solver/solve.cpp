@@ -158,6 +158,7 @@ std::vector<SpectrumResult> analyse_spectrum(const Part& part, const SolverOptio
 
 ActivePenalty active_penalty(const Part& part, const Solution& solution, const SolverOptions& options,
                              const RunOptions& run) {
+  validate(options);
   DistributedOperator op(part, run.threads, run.instruction_set);
   op.update(solution.displacement);
   const auto amg = make_preconditioner(options.preconditioner, part, run.threads, run.instruction_set);

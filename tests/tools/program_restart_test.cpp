@@ -19,7 +19,7 @@ kill -s $signal $program
 wait $program
 )";
 
-/// With a penalty like this Algorithm 1 takes hours.
+/// With a penalty like this ADMM takes hours.
 const std::string stubborn =
     " --set solver.contact=admm --set solver.r=1e-6 --set solver.max_contact=2 --set "
     "solver.max_outer=100000000";

@@ -162,7 +162,7 @@ TEST_CASE("not converged is exit code 1, with all output") {
   }
 }
 
-TEST_CASE("Coulomb friction: Newton's method and Algorithm 1 agree, within the cone") {
+TEST_CASE("Coulomb friction: Newton's method and ADMM agree, within the cone") {
   const Workplace place;
   place.put_json("beam.json", small_beam());
   const std::string arguments =

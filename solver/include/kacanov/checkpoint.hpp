@@ -31,13 +31,15 @@ struct Fingerprint {
   /// Names of the sections in which two problems differ.
   std::vector<std::string> differences(const Fingerprint& other) const;
 };
+/// Of a whole problem, before keep_boundary(). On one rank.
 Fingerprint fingerprint(const Problem& problem);
 
 /// 64 bits of any bytes; `seed` chains several pieces. Not cryptographic.
 std::uint64_t hash_bytes(const void* data, std::size_t bytes, std::uint64_t seed = 0);
 
 /// The converse of gather_nodal and gather_contact: hands every rank its entries, ghosts included, of a field
-/// that rank 0 has. Collective.
+/// that rank 0 has in the numbering of Problem::mesh (nodes × components) or Problem::contact (points ×
+/// components); elsewhere `all` is not looked at. Collective.
 std::vector<double> scatter_nodal(const Part& part, std::span<const double> all, int components);
 std::vector<double> scatter_contact(const Part& part, std::span<const double> all, int components);
 

@@ -60,32 +60,36 @@ struct ContactEntry {
   std::optional<Friction> friction;
 };
 
-/// Every field is a key of the case file's `solver`, with the same name.
+/// Every field is a key of the case file's `solver`, with the same name; `automatic` is "auto" there.
 struct SolverOptions {
+  /// Linearisation: the secant (theory: kacanov), the tangent (theory: newton), or the one and then the
+  /// other.
   enum class Outer { automatic, kacanov, newton };
+  /// Contact: ADMM (theory: admm, dual-admm), semismooth Newton (theory: active-set), or that with ADMM to
+  /// begin with and to fall back on.
   enum class Contact { automatic, admm, dual_admm, active_set };
+  /// The penalty of ADMM: balanced as it goes (theory: first-penalty, balance), r* (theory: r-star), or `r`.
   enum class Penalty { automatic, paper, fixed };
+  /// What ends a run: the KKT residuals (theory: kkt), or the size of a step (theory: step-stop).
   enum class Stop { kkt, paper };
+  /// Rigid-body-mode multigrid (theory: multigrid) or BoomerAMG (theory: elasticity-amg).
   enum class Preconditioner { multigrid, elasticity };
 
-  double tolerance =
-      1e-6;  ///< on every entry of the certificate (stop: kkt), on the size of the step (stop: paper)
+  double tolerance = 1e-6;  ///< relative, on what `stop` looks at
   Outer outer = Outer::automatic;
   Contact contact = Contact::automatic;
-  Penalty penalty =
-      Penalty::automatic;  ///< `r`: balanced from a first guess (theory: balance), r* (r-star), or
-  double r = 0.0;          ///< this number, with Penalty::fixed
+  Penalty penalty = Penalty::automatic;  ///< the key is `r`
+  double r = 0.0;                        ///< with Penalty::fixed, > 0: stress over length
   Stop stop = Stop::kkt;
   Preconditioner preconditioner = Preconditioner::multigrid;
-  int max_outer = 100;
+  int max_outer = 100;               ///< outer steps of a load step
   int max_contact = 10000;           ///< contact iterations within an outer step
   int max_cg = 2000;                 ///< CG iterations of one solve; what takes more has not converged
   double spectrum_tolerance = 1e-2;  ///< relative, on λ_min and λ_max
-  /// Factors on loads, prescribed displacements and indentation, one after the other; the last is 1. Empty:
-  /// at once.
+  /// Factors > 0 on loads, prescribed displacements and indentation, one after the other (theory: load-path);
+  /// the last is 1. Empty: at once.
   std::vector<double> load_steps;
-  /// Over-relaxation of ADMM, 1 ≤ α < 2. Unset: 1 with r: paper or stop: paper, else 1.7 (theory:
-  /// over-relaxation).
+  /// Of ADMM, 1 ≤ α < 2 (theory: over-relaxation). Unset: 1 with Penalty::paper or Stop::paper, else 1.7.
   std::optional<double> relaxation;
 };
 

@@ -14,7 +14,8 @@ namespace kacanov {
 /// `limited_by_rounding`: the residuals are as small as this arithmetic can tell, which is not small enough.
 enum class Status { converged, limited_by_rounding, not_converged, interrupted };
 
-/// The KKT residuals of a state (theory: kkt), all relative.
+/// The KKT residuals of a state, all relative to scales that it sets itself (theory: kkt, duality-gap,
+/// rounding).
 struct KktResiduals {
   double equilibrium = 0.0;  ///< ‖F − R(ω) − Nᵀ M λ_n − Tᵀ M λ_f‖ on free components / force scale
   double penetration = 0.0;      ///< max (Nω − ρ)⁺ / displacement scale
@@ -43,7 +44,7 @@ struct Certificate : KktResiduals {
 struct SpectrumResult {
   double lambda_min = 0.0, lambda_max = 0.0;
   double bound_min = 0.0, bound_max = 0.0;  ///< Ritz residual bounds, absolute, on each λ
-  double r_star = 0.0;                      ///< (32)
+  double r_star = 0.0;                      ///< theory: r-star
   bool converged = true;  ///< every solve and both Lanczos estimates; else λ and r* are rough
   int products = 0;       ///< products with K or K⁻¹, one solve each
   std::int64_t cg_iterations = 0;

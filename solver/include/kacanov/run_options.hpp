@@ -13,13 +13,13 @@ namespace kacanov {
 /// One line of progress; sent on rank 0 only.
 struct ProgressStep {
   std::string phase;  ///< how the step was taken: "admm", "dual_admm", "active_set" or "newton"
-  int outer = 0;
+  int outer = 0;      ///< outer steps so far, those before a restart included
   std::int64_t contact_iterations = 0;  ///< of this outer step
   std::int64_t cg_iterations = 0;       ///< of this outer step
-  double r = 0.0;
-  double energy = 0.0;
-  Certificate certificate;  ///< at the end of the step
-  double seconds = 0.0;     ///< since the start of the run
+  double r = 0.0;                       ///< penalty of N
+  double energy = 0.0;                  ///< stored in the body
+  Certificate certificate;              ///< at the end of the step
+  double seconds = 0.0;                 ///< since the start of the run
 };
 using Progress = std::function<void(const ProgressStep&)>;
 
@@ -27,10 +27,11 @@ using Progress = std::function<void(const ProgressStep&)>;
 struct RunOptions {
   int threads = 1;              ///< a rank
   std::string instruction_set;  ///< empty: the best there is
-  Progress progress;            ///< may be empty
+  Progress progress;            ///< called on rank 0 after every outer step; may be empty
 
-  /// Asked on every rank between operator applications; the first rank that says yes ends the run of all with
-  /// the state after the last whole outer step and Status::interrupted. Empty: never.
+  /// Asked on every rank every few operator applications (it must not communicate); the first rank that says
+  /// yes ends the run of all with the state after the last whole outer step and Status::interrupted. Empty:
+  /// never.
   std::function<bool()> stop_requested;
   /// Called on rank 0 with what a later run needs to go on: after outer steps for which `checkpoint_due` says
   /// yes (empty: all; asked on rank 0), and at the end of a run that has not converged.
