@@ -71,8 +71,8 @@ void collect_element_totals(const Part& part, std::span<const double> u, Result&
 }
 
 void collect_probes(const Part& part, std::span<const double> u, Result& result) {
-  const auto dim = static_cast<std::size_t>(part.dim());
-  const auto npe = static_cast<std::size_t>(nodes_per_element(part.type));
+  const std::size_t dim = part.dim();
+  const std::size_t npe = nodes_per_element(part.type);
   std::vector<double> all(3 * static_cast<std::size_t>(part.total_probes), 0.0);
   for (std::size_t i = 0; i < part.probes.size(); ++i) {
     const auto* node = &part.elements[static_cast<std::size_t>(part.probes[i].element) * npe];

@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t elements_a_run = 4096;
 
 Body elements_of(const Part& part, std::size_t first, std::size_t count) {
-  const auto npe = static_cast<std::size_t>(nodes_per_element(part.type));
+  const std::size_t npe = nodes_per_element(part.type);
   Body body = part.body();
   body.mesh.connectivity = body.mesh.connectivity.subspan(first * npe, count * npe);
   if (!body.law_of_element.empty()) body.law_of_element = body.law_of_element.subspan(first, count);
@@ -40,14 +40,14 @@ void visit_element_fields(const Part& part, std::span<const double> omega,
 }
 
 std::vector<double> nodal_von_mises(const Part& part, std::span<const double> omega) {
-  const auto npe = static_cast<std::size_t>(nodes_per_element(part.type));
+  const std::size_t npe = nodes_per_element(part.type);
   std::vector<double> mean(part.nodes(), 0.0), weight(part.nodes(), 0.0), volume;
   visit_element_fields(part, omega, [&](const ElementRun& run) {
     const std::size_t count = run.von_mises.size();
     volume.resize(count);
     reference::volumes(elements_of(part, run.first, count), volume);
     for (std::size_t k = 0; k < count * npe; ++k) {
-      const auto node = static_cast<std::size_t>(part.elements[run.first * npe + k]);
+      const std::size_t node = part.elements[run.first * npe + k];
       mean[node] += volume[k / npe] * run.von_mises[k / npe];
       weight[node] += volume[k / npe];
     }

@@ -12,7 +12,7 @@
 namespace kacanov {
 
 double body_extent(const Part& part) {
-  const auto dim = static_cast<std::size_t>(part.dim());
+  const std::size_t dim = part.dim();
   double extent = 0.0;
   for (std::size_t c = 0; c < dim; ++c) {
     double low = HUGE_VAL, high = -HUGE_VAL;
@@ -28,9 +28,9 @@ double body_extent(const Part& part) {
 Vector lumped_volume(const Part& part) {
   Vector volume(part.nodes(), 0.0), element(part.element_count());
   reference::volumes(part.body(), element);
-  const auto npe = static_cast<std::size_t>(nodes_per_element(part.type));
+  const std::size_t npe = nodes_per_element(part.type);
   for (std::size_t k = 0; k < part.elements.size(); ++k)
-    volume[static_cast<std::size_t>(part.elements[k])] += element[k / npe] / static_cast<double>(npe);
+    volume[part.elements[k]] += element[k / npe] / static_cast<double>(npe);
   part.halo.sum(volume, 1);
   return volume;
 }

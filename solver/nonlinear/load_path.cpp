@@ -9,7 +9,7 @@ namespace {
 
 /// How much of a point's gap the prescribed components of its nodes close: build_problem has taken it off.
 double closed_by_prescription(const Part& part, std::span<const RowEntry> entries) {
-  const auto dim = static_cast<std::size_t>(part.dim());
+  const std::size_t dim = part.dim();
   double closed = 0.0;
   for (const RowEntry& entry : entries)
     for (std::size_t c = 0; c < dim; ++c) {
@@ -36,12 +36,11 @@ LoadPath::LoadPath(const Part& part) : part_(&part) {
   // Largest indentation, one a contact entry.
   std::vector<double> depth(static_cast<std::size_t>(part.halo.max_all(entries)), 0.0);
   for (std::size_t i = 0; i < gap_.size(); ++i) {
-    double& deepest = depth[static_cast<std::size_t>(part.contact[i].entry)];
+    double& deepest = depth[part.contact[i].entry];
     deepest = std::max(deepest, -(gap_[i] + missing_[i]));
   }
   for (double& deepest : depth) deepest = part.halo.max_all(deepest);
-  for (std::size_t i = 0; i < gap_.size(); ++i)
-    missing_[i] += depth[static_cast<std::size_t>(part.contact[i].entry)];
+  for (std::size_t i = 0; i < gap_.size(); ++i) missing_[i] += depth[part.contact[i].entry];
 }
 
 void LoadPath::go_to(double share) {

@@ -33,11 +33,11 @@ class LoadPath {
 
   /// f += F.
   void add_load(std::span<double> f) const noexcept {
-    for (const auto& entry : load()) f[static_cast<std::size_t>(entry.component)] += entry.value;
+    for (const auto& entry : load()) f[entry.component] += entry.value;
   }
   /// Sets the constrained components of u.
   void prescribe(std::span<double> u) const noexcept {
-    for (const auto& entry : prescribed()) u[static_cast<std::size_t>(entry.component)] = entry.value;
+    for (const auto& entry : prescribed()) u[entry.component] = entry.value;
   }
 
  private:

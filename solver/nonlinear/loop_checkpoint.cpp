@@ -147,13 +147,13 @@ void OuterLoop::restore(const Checkpoint* from, Result& result) {
   std::size_t steps = 0;
   get("load_steps_over", steps);
   result.load_steps.resize(steps);
-  for (LoadStep& step : result.load_steps) step.probe.resize(static_cast<std::size_t>(part.total_probes));
+  for (LoadStep& step : result.load_steps) step.probe.resize(part.total_probes);
   set_history(result.load_steps, values("load_steps", history(result.load_steps).size()));
-  result.r = values("r", static_cast<std::size_t>(result.outer_iterations));
+  result.r = values("r", result.outer_iterations);
 
-  const auto points = static_cast<std::size_t>(part.total_contact);
+  const std::size_t points = part.total_contact;
   const auto contact = [&](const char* name, int components) {
-    const auto width = static_cast<std::size_t>(components);
+    const std::size_t width = components;
     return scatter_contact(part, here ? from->field(name, points * width) : Vector(), components);
   };
   const auto unknowns = static_cast<std::size_t>(part.total_nodes()) * static_cast<std::size_t>(part.dim());

@@ -60,7 +60,7 @@ std::vector<std::int32_t> keep_boundary(Problem& problem) {
   coordinates.reserve(3 * left.size());
   tags.reserve(left.size());
   for (const std::int32_t old : left) {
-    const auto n = static_cast<std::size_t>(old);
+    const std::size_t n = old;
     coordinates.insert(coordinates.end(), mesh.coordinates.begin() + static_cast<std::ptrdiff_t>(3 * n),
                        mesh.coordinates.begin() + static_cast<std::ptrdiff_t>(3 * n + 3));
     tags.push_back(mesh.node_tag(n));

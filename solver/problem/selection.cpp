@@ -59,7 +59,7 @@ std::vector<std::int32_t> nodes_of_facets(const Mesh& mesh, std::span<const std:
   std::vector<std::int32_t> nodes;
   nodes.reserve(facets.size() * static_cast<std::size_t>(nodes_per_facet(mesh.type)));
   for (const std::int32_t f : facets) {
-    const auto facet = mesh.facet(static_cast<std::size_t>(f));
+    const auto facet = mesh.facet(f);
     nodes.insert(nodes.end(), facet.begin(), facet.end());
   }
   sort_unique(nodes);
@@ -101,7 +101,7 @@ std::vector<std::int32_t> Selection::in_box(const Selector& on, const std::strin
                                             std::span<const std::int32_t> cells, int nodes_per_cell,
                                             const std::string& wanted) const {
   const double slack = 1e-9 * extent_.size;
-  const auto dim = static_cast<std::size_t>(mesh_.dim());
+  const std::size_t dim = mesh_.dim();
   std::vector<std::uint8_t> inside(mesh_.node_count());
   for (std::size_t node = 0; node < inside.size(); ++node) {
     const Vector3 x = position(mesh_, static_cast<std::int32_t>(node));
@@ -112,11 +112,10 @@ std::vector<std::int32_t> Selection::in_box(const Selector& on, const std::strin
     inside[node] = within ? 1 : 0;
   }
   std::vector<std::int32_t> chosen;
-  const auto n = static_cast<std::size_t>(nodes_per_cell);
+  const std::size_t n = nodes_per_cell;
   for (std::size_t cell = 0; cell < cells.size() / n; ++cell) {
     const auto nodes = cells.subspan(cell * n, n);
-    if (std::all_of(nodes.begin(), nodes.end(),
-                    [&](std::int32_t node) { return inside[static_cast<std::size_t>(node)] != 0; })) {
+    if (std::all_of(nodes.begin(), nodes.end(), [&](std::int32_t node) { return inside[node] != 0; })) {
       chosen.push_back(static_cast<std::int32_t>(cell));
     }
   }

@@ -70,7 +70,7 @@ std::string picture(const Case& input, const Mesh& mesh, std::span<const double>
 
 /// Values of some nodes; of none where there are no values.
 std::vector<double> picked(std::span<const double> all, std::span<const std::int32_t> nodes, int components) {
-  const auto width = static_cast<std::size_t>(components);
+  const std::size_t width = components;
   std::vector<double> some;
   some.reserve(nodes.size() * width);
   for (const std::int32_t n : nodes) {

@@ -50,7 +50,7 @@ json mesh_identity(const Case& input) {
   std::uint64_t bytes = 0, hash = 0;
   do {
     file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
-    const auto length = static_cast<std::size_t>(file.gcount());
+    const std::size_t length = file.gcount();
     hash = hash_bytes(piece.data(), length, hash);
     bytes += length;
   } while (file);

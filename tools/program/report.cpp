@@ -21,7 +21,7 @@ std::string format(const char* pattern, Arguments... arguments) {
 
 std::string vector_text(const Vector3& v, int dim) {
   std::string text = "(";
-  for (int c = 0; c < dim; ++c) text += (c > 0 ? ", " : "") + format("%.6g", v[static_cast<std::size_t>(c)]);
+  for (int c = 0; c < dim; ++c) text += (c > 0 ? ", " : "") + format("%.6g", v[c]);
   return text + ")";
 }
 

@@ -9,7 +9,7 @@ using nlohmann::ordered_json;
 
 ordered_json entries(const Vector3& v, int dim) {
   ordered_json list = ordered_json::array();
-  for (int c = 0; c < dim; ++c) list.push_back(v[static_cast<std::size_t>(c)]);
+  for (int c = 0; c < dim; ++c) list.push_back(v[c]);
   return list;
 }
 
