@@ -146,8 +146,8 @@ void exchange_fields(Either<Part> auto& part, const auto& stream) {
   stream(part.type, part.coordinates, part.elements, part.node_index, part.element_index, part.node_tags,
          part.element_tags, part.halo, part.total_elements, part.laws, part.law_of_element, part.load,
          part.prescribed, part.held, part.contact, part.owned_contact, part.wide_contact, part.contact_index,
-         part.total_contact, part.probes, part.probe_index, part.total_probes, part.loose_modes,
-         part.start, part.no_equilibrium);
+         part.total_contact, part.probes, part.probe_index, part.total_probes, part.loose_modes, part.start,
+         part.no_equilibrium);
 }
 
 }  // namespace kacanov
