@@ -171,7 +171,7 @@ Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactS
   const double pressure = std::max(scales.pressure, tiny);
   Certificate& c = out.certificate;
   const double unknown_force = rounding * std::sqrt(body.stiff), unknown_energy = rounding * body.stiff_work,
-               unknown_trace = rounding * sums.trace;
+               unknown_trace = scales.displacement > 0.0 ? rounding * sums.trace : 0.0;  // at rest: exact
   c.equilibrium = std::sqrt(body.residual) / force;
   c.rounding.equilibrium = unknown_force / force;
   c.penetration = sums.penetration / displacement;

@@ -135,6 +135,16 @@ TEST_CASE("two pieces: each has its own balance and its own fall") {
   CHECK(run.result().contact_force[2] == doctest::Approx(2e-3));
 }
 
+TEST_CASE("a body that nothing loads and nothing touches is at rest, and that is a solution") {
+  Model model = elastic_model();
+  model.boundary.push_back(moved(named("bottom"), 3));
+  ContactEntry ball;
+  ball.on = named("top");
+  ball.obstacle = Sphere{{1, 0.5, 2}, 0.7, std::nullopt};
+  model.contact.push_back(ball);
+  CHECK(run_alone(box_mesh(ElementType::tet4), model).result().status == Status::converged);
+}
+
 TEST_CASE("rigid balance: reactions in a cone") {
   // Motions x and z; one point with μ 0.5.
   RigidContact point;
