@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Algorithm 1 of the paper on one linearised contact problem, with inexact solves.
+// ADMM on one linearised contact problem, with inexact solves (theory: admm, inexact-solves).
 #include "contact/admm.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace kacanov {
 namespace {
 
-/// Σ weight (new − old)² and Σ weight new² for (15).
+/// Σ weight (new − old)² and Σ weight new² for the stop by steps (theory: step-stop).
 struct StepNorm {
   double change = 0.0, size = 0.0;
   void add(double weight, double before, double after) {

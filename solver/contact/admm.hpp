@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Algorithm 1 of the paper: ADMM (Uzawa block relaxation) on one linearised contact problem, with inexact
+// ADMM (Uzawa block relaxation; theory: admm) on one linearised contact problem, with inexact
 // solves.
 #pragma once
 
@@ -32,9 +32,10 @@ struct AdmmOptions {
   int max_cg = 2000;  ///< CG iterations of one solve
   /// Points under pressure that Coulomb's friction acts on stick, whatever their bound.
   bool sticking = false;
-  /// With ε > 0 the stop is (15), and the solves are as exact as the tolerances above.
+  /// With ε > 0 the stop is by steps (theory: step-stop), and the solves are as exact as the tolerances
+  /// above.
   double step_tolerance = 0.0;
-  std::span<const double> volume;  ///< lumped volume of each node for the L² norm of (15)
+  std::span<const double> volume;  ///< lumped volume of each node for the L² norm of that stop
 };
 
 struct AdmmResult {
@@ -44,7 +45,7 @@ struct AdmmResult {
   double force_residual = 0.0;         ///< ‖linear equilibrium with the new multipliers‖
   double trace_residual = 0.0;         ///< max |Cω − φ|
   std::vector<BalanceSample> balance;  ///< of every iteration
-  double step = 0.0;                   ///< left side of (15), square root
+  double step = 0.0;                   ///< ‖change‖ / ‖state‖ of that stop
   bool converged = false;
   bool solves_converged = true;
 };
@@ -64,8 +65,8 @@ inline bool meets_tolerances(const AdmmResult& result, const AdmmOptions& option
          result.trace_residual <= options.trace_tolerance;
 }
 
-/// Iterates until both tolerances (or (15)) are met. `work.residual` holds F − R(ω) − CᵀMλ for the
-/// linearisation at state.omega on entry, the same with the frozen B on exit (up to held components).
+/// Iterates until both tolerances (or the stop by steps) are met. `work.residual` holds F − R(ω) − CᵀMλ for
+/// the linearisation at state.omega on entry, the same with the frozen B on exit (up to held components).
 AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work, const AdmmOptions& options);
 
 }  // namespace kacanov

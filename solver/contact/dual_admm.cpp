@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Algorithm 2 of the paper: the dual form of ADMM, on multipliers alone.
+// The dual form of ADMM, on multipliers alone (theory: dual-admm).
 #include "contact/dual_admm.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ struct Split {
 };
 
 /// Projects `lambda` and notes how far both parts moved: λ₋ by `minus_step` (a force density), λ₊ as |λ₊ − λ₊
-/// before| / r at most, which is what w − φ is in Algorithm 1.
+/// before| / r at most, which is what w − φ is in admm().
 double split(const Traces& traces, const ContactValues& lambda, const Vector& bound, const Penalty& r,
              Split& parts, ContactValues& minus_step, Balance& balance) {
   double plus_step = 0.0;
@@ -61,7 +61,8 @@ double split(const Traces& traces, const ContactValues& lambda, const Vector& bo
   return traces.halo().max_all(plus_step);
 }
 
-/// (15): how far ω (by the lumped volumes) and φ = ρ + λ₋/r moved, relative to what they are.
+/// Stop by steps (theory: step-stop): how far ω (by the lumped volumes) and φ = ρ + λ₋/r moved, relative to
+/// what they are.
 double relative_step(const Traces& traces, const Penalty& r, const Split& parts, const Vector& gap,
                      const ContactValues& minus_step, std::span<const double> omega_step,
                      std::span<const double> omega, std::span<const double> volume, std::size_t dim) {

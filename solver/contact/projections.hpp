@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pointwise steps 2 and 3 of Algorithm 1: projections onto the contact and friction laws.
+// The pointwise steps of ADMM: projections onto the contact and friction laws (theory: projections).
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 namespace kacanov {
 
-/// φ_n of (11) and λ_n of (13) for one point: w = ν·ω (over-relaxed), gap ρ.
+/// φ_n and λ_n of one point: w = ν·ω (over-relaxed), gap ρ.
 struct NormalStep {
   double phi = 0.0, lambda = 0.0;
 };
@@ -16,7 +16,7 @@ inline NormalStep normal_step(double w, double lambda, double gap, double r) {
   return {w + (lambda - next) / r, next};
 }
 
-/// φ_f of (12) and λ_f of (14), two tangential components, |λ_f| ≤ ψ (a disc).
+/// φ_t and λ_t of one point, two tangential components, |λ_f| ≤ ψ (a disc).
 struct TangentialStep {
   double phi[2] = {0.0, 0.0}, lambda[2] = {0.0, 0.0};
 };

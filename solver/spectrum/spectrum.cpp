@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lanczos estimates behind the penalty: r* of (32) and r_A of the active set, with bounds.
+// Lanczos estimates behind the penalty: r* and r_A of the active set, with bounds (theory: lanczos).
 #include "spectrum/spectrum.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lanczos estimates behind the penalty: r* of (32) and r_A of the active set, with bounds.
+// Lanczos estimates behind the penalty: r* and r_A of the active set, with bounds (theory: lanczos).
 #pragma once
 
 #include <span>
@@ -64,7 +64,7 @@ double rough_lambda_min(const Part& part, std::span<const float> diagonal, bool 
 double rough_lambda_max(const Part& part, DistributedOperator& op, Preconditioner& amg, const TraceRows& rows,
                         const TraceRows& held, int steps);
 
-/// λ_min, λ_max, r* of (32) for N, or for [N; T] with `friction`.
+/// λ_min, λ_max, r* (theory: r-star) for N, or for [N; T] with `friction`.
 SpectrumResult estimate_spectrum(const Part& part, DistributedOperator& op, Preconditioner& amg,
                                  std::span<const double> g, bool friction, const SpectrumOptions& options);
 

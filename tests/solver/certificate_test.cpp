@@ -158,8 +158,7 @@ TEST_CASE("a run that is cut short says so") {
   }
 }
 
-TEST_CASE(
-    "the stop by steps (15) with the r of (32) ends far from the solution, and is not called converged") {
+TEST_CASE("the paper's stop by steps with its r* ends far from the solution, and is not called converged") {
   Model model = beam(2, elastic_law(1.0, 0.3), 0.05);
   model.solver.stop = SolverOptions::Stop::paper;
   model.solver.penalty = SolverOptions::Penalty::paper;

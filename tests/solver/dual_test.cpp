@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Algorithm 2 is Algorithm 1 without over-relaxation: the same iterates, step by step.
+// The dual form is ADMM without over-relaxation: the same iterates, step by step (theory: dual-admm).
 #include "contact/dual_admm.hpp"
 
 #include <doctest/doctest.h>
@@ -94,7 +94,7 @@ double difference(const Vector& a, const Vector& b) {
 
 }  // namespace
 
-TEST_CASE("every iterate of Algorithm 2 is that of Algorithm 1, with exact and with inexact solves") {
+TEST_CASE("every iterate of the dual form is that of ADMM, with exact and with inexact solves") {
   for (const int dim : {2, 3})
     for (const double tresca : {0.0, 0.01})
       for (const double pressure : {0.0, 0.02}) {
@@ -139,7 +139,7 @@ TEST_CASE("every iterate of Algorithm 2 is that of Algorithm 1, with exact and w
       }
 }
 
-TEST_CASE("whole runs of both take the same iterations, also when (15) stops them") {
+TEST_CASE("whole runs of both take the same iterations, also when the stop by steps ends them") {
   for (const auto stop : {SolverOptions::Stop::kkt, SolverOptions::Stop::paper})
     for (const double tresca : {0.0, 0.01}) {
       CAPTURE(static_cast<int>(stop));
