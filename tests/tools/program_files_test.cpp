@@ -108,6 +108,27 @@ TEST_CASE("too much of a case is refused by its limits") {
       script(place, "head -c 100000000 /dev/zero | tr '\\0' ' ' > large.json; $PROGRAM run large.json\n");
   CHECK(outcome.exit_code == 2);
   CHECK(outcome.error.find("large.json: this is larger than 64 MiB") != std::string::npos);
+  place.put_json("beam.json", small_beam());
+  outcome = place.run("check beam.json --set solver.load_steps=2000000000");
+  CHECK(outcome.exit_code == 2);
+  CHECK(outcome.error.find("solver.load_steps: expected at most 10000 load steps") != std::string::npos);
+}
+
+TEST_CASE("numbers come first, and no picture takes them away") {
+  const Workplace place;
+  place.put_json("beam.json", small_beam());
+  // A folder where the picture is to be: it cannot be written.
+  std::filesystem::create_directories(place.path("out/deformed.svg/in the way"));
+  Outcome outcome = place.run("run beam.json --output out");
+  CHECK(outcome.exit_code == 3);  // clearing an old picture away is not to take what is no picture
+  std::filesystem::remove_all(place.path("out"));
+  // Fields that do not fit: the run has failed, and its numbers are there.
+  place.put("limited.sh", "ulimit -f $1\nshift\nexec \"$@\"\n");
+  outcome = place.run("run beam.json --output out --set mesh.box.cells=[64,16] --set output.checkpoint=false",
+                      patience + " sh limited.sh 40");
+  CHECK(outcome.exit_code == 3);
+  CHECK(place.json("out/result.json")["status"] == "failed");
+  CHECK(place.json("out/result.json")["probe"].size() == 2);
 }
 
 TEST_CASE("a run whose words nobody reads writes all its files and leaves with its own code") {

@@ -14,6 +14,7 @@
 namespace kacanov {
 namespace {
 
+constexpr int most_load_steps = 10000;
 constexpr std::size_t largest_case = std::size_t{64} << 20;
 
 /// Reads the parts of a case, noting every vector on the way.
@@ -218,6 +219,8 @@ class CaseParser {
     std::vector<double>& factors = result_.model.solver.load_steps;
     if (node.value().is_number()) {
       const int steps = node.integer(1);
+      if (steps > most_load_steps)
+        node.expected("at most " + std::to_string(most_load_steps) + " load steps");
       for (int i = 1; i <= steps; ++i) factors.push_back(static_cast<double>(i) / steps);
       return;
     }

@@ -14,6 +14,9 @@
 namespace kacanov {
 namespace {
 
+/// Of one element; every set that comes to pass is kept.
+constexpr std::size_t most_groups = 256;
+
 class Parser {
  public:
   Parser(const std::string& path, std::string_view bytes) : in_(path, bytes) {}
@@ -102,8 +105,8 @@ class Parser {
       const std::int64_t dimension = in_.text_integer("dimension of a physical group");
       if (dimension < 0 || dimension > 3) in_.fail("dimension of a physical group: expected 0 to 3");
       const std::int64_t tag = in_.text_integer("number of a physical group");
-      if (std::abs(tag) > std::numeric_limits<std::int32_t>::max())
-        in_.fail("number of a physical group: out of range");
+      constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
+      if (tag > most || tag < -most) in_.fail("number of a physical group: out of range");
       const std::string_view rest = in_.text_rest();
       if (rest.size() < 2 || rest.front() != '"' || rest.back() != '"')
         in_.fail("expected the name of a physical group in double quotes, got " + quoted(rest));
@@ -318,6 +321,9 @@ class Parser {
     GmshElements& list = content_.elements[*shape];
     list.nodes.resize(list.nodes.size() - static_cast<std::size_t>(cells()[*shape].nodes));
     std::vector<int> both = content_.physicals[list.runs.back().set];
+    if (both.size() >= most_groups)
+      in_.fail("element " + std::to_string(tag) + " belongs to more than " + std::to_string(most_groups) +
+               " physical groups");
     if (group != 0) both.push_back(group);
     list.assign_last(set_of(std::move(both)));
   }

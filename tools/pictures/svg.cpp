@@ -38,6 +38,7 @@ std::string power_of_ten(int exponent) {
 std::string short_number(double value) {
   std::array<char, 32> digits{};
   const double size = std::abs(value);
+  if (!std::isfinite(value)) return std::isnan(value) ? "?" : value > 0 ? "∞" : "−∞";
   if (value == 0 || (size >= 1e-3 && size < 99950)) {
     std::snprintf(digits.data(), digits.size(), size >= 999.5 ? "%.0f" : "%.3g", value);
     return digits.data();

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // kacanov run: solves a case and writes everything about it.
+#include <fstream>
+#include <functional>
 #include <iostream>
 #include <string_view>
 
@@ -93,6 +95,26 @@ std::string checkpoint_line(const CheckpointFile& file) {
              : "";
 }
 
+/// What failed after the solve does not take its numbers away: they stay beside the status and the message.
+void note_failure(const std::filesystem::path& folder, const std::string& text) {
+  const std::filesystem::path file = folder / "result.json";
+  if (!std::filesystem::exists(file)) return write_json(file, failure_json(text));
+  std::ifstream stream(file);
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(stream);
+  json["status"] = "failed";
+  json["message"] = text;
+  write_json(file, json);
+}
+
+/// Pictures and texts for people cannot fail a run whose numbers are written.
+void try_to_show(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const std::exception& error) {
+    std::cerr << std::string("kacanov: warning: not shown: ") + error.what() + "\n";
+  }
+}
+
 }  // namespace
 
 void leave_failure(const Command& command, const Case& input, const std::string& text) {
@@ -118,7 +140,7 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
   });
 
   // The folder is that of all ranks, and whichever fails first can say so there.
-  mpi.when_failing([&](const std::string& text) { leave_failure(command, input, text); });
+  mpi.when_failing([folder](const std::string& text) { note_failure(folder, text); });
 
   listen_for_interrupts();
   RunOptions options;
@@ -148,23 +170,30 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
     displacement = at_boundary(solution.displacement, dim);
     von_mises = at_boundary(nodal_von_mises(loaded.part, solution.displacement), 1);
   }
+  // The numbers first: whatever fails after them, they are there.
+  figures.read = loaded.read_seconds;
+  figures.distribute = loaded.distribute_seconds;
+  figures.total = solved - start;
+  together(mpi, [&] {
+    if (mpi.first()) write_json(folder / "result.json", result_json(result, figures, dim));
+  });
   if (input.output.fields) together(mpi, [&] { write_body(folder, loaded.part, solution); });
   together(mpi, [&] {
     if (!mpi.first()) return;
     if (input.output.fields) write_collection(folder, *loaded.problem, input.model, contact, mpi.ranks());
     if (input.output.report) {
-      write_file((folder / "deformed.svg").string(),
-                 picture(input, loaded.problem->mesh, displacement, von_mises, result.max_von_mises));
+      try_to_show([&] {
+        write_file((folder / "deformed.svg").string(),
+                   picture(input, loaded.problem->mesh, displacement, von_mises, result.max_von_mises));
+      });
     }
     const double end = MPI_Wtime();
     figures.total = end - start;
-    figures.read = loaded.read_seconds;
-    figures.distribute = loaded.distribute_seconds;
     figures.output = end - solved;
     write_json(folder / "result.json", result_json(result, figures, dim));
     const std::string text = summary(result, figures, input.model, dim) +
                              (result.status == Status::converged ? "" : checkpoint_line(*file));
-    if (input.output.report) write_file((folder / "summary.txt").string(), text);
+    if (input.output.report) try_to_show([&] { write_file((folder / "summary.txt").string(), text); });
     if (result.status == Status::converged) file->remove();  // only now that all is written
     std::cout << "\n" + text + "  files         " + folder.string() + "\n";
   });

@@ -3,6 +3,7 @@
 #include "program/launch.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -11,6 +12,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -90,13 +92,42 @@ int nameless_file(const std::string& text) {
   return file;
 }
 
-[[noreturn]] void become_mpiexec(const std::vector<std::string>& words, int input) {
+/// Copies what is there to the standard output; false at the end. What nobody takes is read all the same:
+/// mpiexec ends a run whose output it cannot write.
+bool pass_output_on(int from) {
+  std::array<char, 4096> piece{};
+  const ssize_t size = read(from, piece.data(), piece.size());
+  if (size < 0) return errno == EINTR;
+  for (ssize_t done = 0; done < size;) {
+    const ssize_t more = write(STDOUT_FILENO, piece.data() + done, static_cast<std::size_t>(size - done));
+    if (more < 0 && errno != EINTR) break;
+    done += std::max<ssize_t>(more, 0);
+  }
+  return size > 0;
+}
+
+/// Passes the output of a process on until it has ended; its status.
+int wait_and_pass_on(pid_t child, int output) {
+  constexpr int patience = 100;  // milliseconds between two looks at the process, where it says nothing
+  pollfd channel{output, POLLIN, 0};
+  int status = 0;
+  bool open = true, running = true;
+  while (running) {
+    running = waitpid(child, &status, open ? WNOHANG : 0) != child;
+    // What it has left behind is taken, but who else holds its end is not waited for.
+    while (open && poll(&channel, 1, running ? patience : 0) > 0) open = pass_output_on(output);
+  }
+  return status;
+}
+
+[[noreturn]] void become_mpiexec(const std::vector<std::string>& words, int input, int output) {
   // Its own group, so that an interrupt from the keyboard comes once, through pass_on; and no orphan if this
   // program is killed outright.
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   std::signal(stop_signal, SIG_IGN);  // until mpiexec listens to it
   dup2(input, STDIN_FILENO);
+  dup2(output, STDOUT_FILENO);
   std::vector<char*> pointers;
   for (const std::string& word : words) pointers.push_back(const_cast<char*>(word.c_str()));
   pointers.push_back(nullptr);
@@ -227,15 +258,18 @@ int run_under_mpiexec(const std::string& mpiexec, Shape shape, const std::string
   action.sa_flags = SA_RESTART;
   for (const int signal : {SIGTSTP, SIGCONT}) sigaction(signal, &action, nullptr);
   const int input = nameless_file(case_text);
+  int channel[2];
+  if (pipe2(channel, O_CLOEXEC) != 0)
+    throw InternalError(std::string("cannot start mpiexec: ") + std::strerror(errno));
   const pid_t child = fork();
   if (child < 0) throw InternalError(std::string("cannot start mpiexec: ") + std::strerror(errno));
-  if (child == 0) become_mpiexec(words, input);
+  if (child == 0) become_mpiexec(words, input, channel[1]);
   close(input);
+  close(channel[1]);
   running_child = child;
   if (caught_signal != 0) kill(child, stop_signal);
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
+  const int status = wait_and_pass_on(child, channel[0]);
+  close(channel[0]);
   running_child = 0;
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   if (code == 0) return 0;
