@@ -288,7 +288,7 @@ TEST_CASE("random problems: what is called converged is the solution of the dens
   for_seeds(usual_count, [&](int seed, const Sample& sample) { compare(seed, sample, tally); });
   report(tally);
   CHECK(tally.unconverged <= tally.solved / 100);
-  CHECK(tally.limited <= tally.solved / 50);
+  CHECK(tally.limited <= 2 + tally.solved / 50);  // few are drawn under the sanitizers
   CHECK(tally.undecided <= tally.solved / 100);
   CHECK(tally.softened <= 3 + tally.solved / 20);
 }
