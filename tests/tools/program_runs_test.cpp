@@ -270,7 +270,7 @@ TEST_CASE("a spectrum whose solves are cut short says so and ends with exit code
   CHECK(table.output.find("NOT CONVERGED") != std::string::npos);
   const Outcome json = place.run("spectrum beam.json --json" + cut);
   CHECK(json.exit_code == 1);
-  for (const nlohmann::json& entry : nlohmann::json::parse(json.output)["spectrum"])
-    CHECK(entry["converged"] == false);
+  const nlohmann::json spectrum = parsed(json.output)["spectrum"];
+  for (const nlohmann::json& entry : spectrum) CHECK(entry["converged"] == false);
   CHECK(place.run("spectrum beam.json").output.find("NOT CONVERGED") == std::string::npos);
 }
