@@ -49,21 +49,21 @@ std::vector<std::string> all_elements() {
 
 /// Nodes and elements in the operator's order; the matrices gain from it too.
 meshes::OwnedMesh in_order(const meshes::OwnedMesh& mesh) {
-  const auto dim = static_cast<std::size_t>(dimension(mesh.type));
+  const std::size_t dim = dimension(mesh.type);
   const LocalityOrder order = locality_order(mesh.view());
   meshes::OwnedMesh ordered = mesh;
   std::vector<std::int32_t> rank(order.nodes.size());
   for (std::size_t i = 0; i < rank.size(); ++i) {
-    const auto old = static_cast<std::size_t>(order.nodes[i]);
+    const std::size_t old = order.nodes[i];
     rank[old] = static_cast<std::int32_t>(i);
     std::copy_n(mesh.coordinates.begin() + static_cast<std::ptrdiff_t>(old * dim), dim,
                 ordered.coordinates.begin() + static_cast<std::ptrdiff_t>(i * dim));
   }
-  const auto per_element = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  const std::size_t per_element = nodes_per_element(mesh.type);
   for (std::size_t e = 0; e < order.elements.size(); ++e)
     for (std::size_t a = 0; a < per_element; ++a)
-      ordered.connectivity[e * per_element + a] = rank[static_cast<std::size_t>(
-          mesh.connectivity[static_cast<std::size_t>(order.elements[e]) * per_element + a])];
+      ordered.connectivity[e * per_element + a] =
+          rank[mesh.connectivity[static_cast<std::size_t>(order.elements[e]) * per_element + a]];
   return ordered;
 }
 
@@ -81,7 +81,7 @@ meshes::OwnedMesh read_mesh(const std::string& path) {
 
 /// A beam 4 × 1 × 1 (4 × 1 in 2D) with about this many unknowns.
 meshes::OwnedMesh make_mesh(ElementType type, std::size_t unknowns, bool irregular) {
-  const auto dim = static_cast<std::size_t>(dimension(type));
+  const std::size_t dim = dimension(type);
   const double nodes = static_cast<double>(unknowns / dim);
   const bool flat = dim == 2;
   const double cells = nodes / 4 / std::pow(cell(type).order, dim);

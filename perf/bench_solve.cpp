@@ -54,7 +54,7 @@ Problem make_problem(const Options& options, int cells, double poisson, double a
   } else {
     mesh = read_gmsh(options.mesh);
   }
-  const auto dim = static_cast<std::size_t>(mesh.dim());
+  const std::size_t dim = mesh.dim();
   const Extent box = extent(mesh);
   const auto side = [&, low = box.lower, high = box.upper](std::size_t axis, bool upper, double from_x) {
     Selector on;
@@ -98,9 +98,9 @@ Problem make_problem(const Options& options, int cells, double poisson, double a
 /// Secant moduli that vary smoothly by a factor `jump` over the body.
 Vector secant(const Part& part, double jump) {
   const Body body = part.body();
-  const auto npe = static_cast<std::size_t>(nodes_per_element(part.type));
-  const auto points = static_cast<std::size_t>(points_per_element(part.type));
-  const auto dim = static_cast<std::size_t>(part.dim());
+  const std::size_t npe = nodes_per_element(part.type);
+  const std::size_t points = points_per_element(part.type);
+  const std::size_t dim = part.dim();
   Vector g(body.secant_count());
   for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
     double wave = 1.0;

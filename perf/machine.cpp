@@ -53,8 +53,7 @@ double triad_bytes_per_second(int threads) {
   std::vector<double> a(size), b(size, 1.0), c(size, 2.0);
   const double seconds = best_of(5, [&] {
 #pragma omp parallel for num_threads(threads) schedule(static)
-    for (std::ptrdiff_t i = 0; i < size; ++i)
-      a[static_cast<std::size_t>(i)] = b[static_cast<std::size_t>(i)] + 3.0 * c[static_cast<std::size_t>(i)];
+    for (std::ptrdiff_t i = 0; i < size; ++i) a[i] = b[i] + 3.0 * c[i];
   });
   return 24.0 * static_cast<double>(size) / seconds;
 }

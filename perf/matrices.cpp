@@ -13,16 +13,15 @@ void apply_rows(const Matrices& m, std::span<const double> x, std::span<double> 
 #pragma omp parallel for num_threads(threads) schedule(static)
   for (std::ptrdiff_t row = 0; row < rows; ++row) {
     double sum[dim] = {};
-    const auto begin = m.block_first[static_cast<std::size_t>(row)];
+    const auto begin = m.block_first[row];
     const auto end = m.block_first[static_cast<std::size_t>(row) + 1];
     for (auto b = begin; b < end; ++b) {
       const double* block = m.block.data() + static_cast<std::ptrdiff_t>(dim) * dim * b;
-      const double* from =
-          x.data() + static_cast<std::ptrdiff_t>(dim) * m.block_column[static_cast<std::size_t>(b)];
+      const double* from = x.data() + static_cast<std::ptrdiff_t>(dim) * m.block_column[b];
       for (int c = 0; c < dim; ++c)
         for (int r = 0; r < dim; ++r) sum[r] += block[dim * c + r] * from[c];
     }
-    for (int r = 0; r < dim; ++r) y[static_cast<std::size_t>(row * dim + r)] = sum[r];
+    for (int r = 0; r < dim; ++r) y[row * dim + r] = sum[r];
   }
 }
 
@@ -46,16 +45,16 @@ double Matrices::bytes_of_csr() const {
 Matrices assemble(const Body& body, std::span<const double> g) {
   Matrices m;
   m.dim = dimension(body.mesh.type);
-  const auto dim = static_cast<std::size_t>(m.dim);
-  const auto nodes = static_cast<std::size_t>(nodes_per_element(body.mesh.type));
-  const auto points = static_cast<std::size_t>(points_per_element(body.mesh.type));
+  const std::size_t dim = m.dim;
+  const std::size_t nodes = nodes_per_element(body.mesh.type);
+  const std::size_t points = points_per_element(body.mesh.type);
   const std::size_t rows = body.mesh.node_count(), count = body.mesh.element_count();
   const auto connectivity = body.mesh.connectivity;
   std::vector<std::vector<std::int32_t>> neighbours(rows);
   for (std::size_t e = 0; e < count; ++e)
     for (std::size_t a = 0; a < nodes; ++a)
       for (std::size_t b = 0; b < nodes; ++b) {
-        auto& list = neighbours[static_cast<std::size_t>(connectivity[e * nodes + a])];
+        auto& list = neighbours[connectivity[e * nodes + a]];
         const std::int32_t other = connectivity[e * nodes + b];
         const auto place = std::lower_bound(list.begin(), list.end(), other);
         if (place == list.end() || *place != other) list.insert(place, other);
@@ -73,11 +72,11 @@ Matrices assemble(const Body& body, std::span<const double> g) {
     reference::element_matrix(body, e, g.subspan(e * points, points), matrix);
     for (std::size_t a = 0; a < nodes; ++a)
       for (std::size_t b = 0; b < nodes; ++b) {
-        const auto row = static_cast<std::size_t>(connectivity[e * nodes + a]);
+        const std::size_t row = connectivity[e * nodes + a];
         const auto begin = m.block_column.begin() + m.block_first[row];
         const auto end = m.block_column.begin() + m.block_first[row + 1];
-        const auto at = static_cast<std::size_t>(std::lower_bound(begin, end, connectivity[e * nodes + b]) -
-                                                 m.block_column.begin());
+        const std::size_t at =
+            std::lower_bound(begin, end, connectivity[e * nodes + b]) - m.block_column.begin();
         for (std::size_t r = 0; r < dim; ++r)
           for (std::size_t c = 0; c < dim; ++c)
             m.block[at * dim * dim + c * dim + r] += matrix[(a * dim + r) * n + b * dim + c];
@@ -86,8 +85,7 @@ Matrices assemble(const Body& body, std::span<const double> g) {
   m.first.push_back(0);
   for (std::size_t row = 0; row < rows; ++row)
     for (std::size_t r = 0; r < dim; ++r) {
-      for (auto b = static_cast<std::size_t>(m.block_first[row]);
-           b < static_cast<std::size_t>(m.block_first[row + 1]); ++b)
+      for (std::size_t b = m.block_first[row]; b < static_cast<std::size_t>(m.block_first[row + 1]); ++b)
         for (std::size_t c = 0; c < dim; ++c) {
           m.column.push_back(m.block_column[b] * m.dim + static_cast<std::int32_t>(c));
           m.value.push_back(m.block[b * dim * dim + c * dim + r]);

@@ -225,7 +225,7 @@ std::vector<std::vector<std::uint32_t>> assign_units(Builder& builder, int parts
   std::vector<std::pair<std::int32_t, std::uint32_t>> keys(order.size());
   for (std::uint32_t u = 0; u < order.size(); ++u) keys[u] = {builder.rank[at(builder.unit_nodes(u)[0])], u};
   std::sort(keys.begin(), keys.end());
-  std::vector<std::vector<std::uint32_t>> members(static_cast<std::size_t>(parts));
+  std::vector<std::vector<std::uint32_t>> members(parts);
   for (const auto& [key, u] : keys) {
     const std::int32_t* nodes = builder.unit_nodes(u);
     const std::uint32_t count = units.node_count(u);

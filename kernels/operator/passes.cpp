@@ -30,11 +30,9 @@ void in_parallel(int threads, Run&& run, Finish&& finish) {
   }
 #pragma omp parallel num_threads(threads)
   {
-    for (int t = omp_get_thread_num(); t < threads; t += omp_get_num_threads())
-      run(static_cast<std::size_t>(t));
+    for (int t = omp_get_thread_num(); t < threads; t += omp_get_num_threads()) run(t);
 #pragma omp barrier
-    for (int t = omp_get_thread_num(); t < threads; t += omp_get_num_threads())
-      finish(static_cast<std::size_t>(t));
+    for (int t = omp_get_thread_num(); t < threads; t += omp_get_num_threads()) finish(t);
   }
 }
 

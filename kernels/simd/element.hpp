@@ -18,10 +18,9 @@ template <class E, class Real>
 constexpr ReferenceGradients<E, Real> reference_gradients() {
   ReferenceGradients<E, Real> table{};
   for (int q = 0; q < E::points; ++q) {
-    const auto d = E::gradients(&E::point[static_cast<std::size_t>(q)][0]);
+    const auto d = E::gradients(&E::point[q][0]);
     for (int a = 0; a < E::nodes; ++a)
-      for (int k = 0; k < E::dim; ++k)
-        table.at[q][a][k] = static_cast<Real>(d[static_cast<std::size_t>(a * E::dim + k)]);
+      for (int k = 0; k < E::dim; ++k) table.at[q][a][k] = static_cast<Real>(d[a * E::dim + k]);
   }
   return table;
 }

@@ -20,10 +20,10 @@ AggregateMotions<M>::AggregateMotions(const Part& part, std::span<const double> 
     : part_(part), add_products_(simd::motion_products<M>(instruction_set)) {
   group_ = aggregate_nodes(part.body(), g, part.owned_nodes(), size);
   owned_ = group_.empty() ? 0 : 1 + *std::max_element(group_.begin(), group_.end());
-  centre_.assign(static_cast<std::size_t>(owned_), Vector3{});
+  centre_.assign(owned_, Vector3{});
   std::vector<double> members(centre_.size(), 0.0);
   for (std::size_t n = 0; n < group_.size(); ++n) {
-    const auto a = static_cast<std::size_t>(group_[n]);
+    const std::size_t a = group_[n];
     members[a] += 1.0;
     for (std::size_t c = 0; c < dim; ++c) centre_[a][c] += part_.coordinates[n * dim + c];
   }
@@ -40,7 +40,7 @@ AggregateMotions<M>::AggregateMotions(const Part& part, std::span<const double> 
 
 template <int M>
 Vector3 AggregateMotions<M>::offset(std::size_t node) const {
-  const Vector3& centre = centre_[static_cast<std::size_t>(group_[node])];
+  const Vector3& centre = centre_[group_[node]];
   Vector3 d{};
   for (std::size_t c = 0; c < dim; ++c) d[c] = part_.coordinates[node * dim + c] - centre[c];
   return d;
@@ -56,7 +56,7 @@ RigidLevel<M> AggregateMotions<M>::make_level() {
   std::vector<std::int64_t> number(part_.nodes());
   std::vector<double> centre(dim * part_.nodes());
   for (std::size_t n = 0; n < owned_nodes; ++n) {
-    const auto a = static_cast<std::size_t>(group_[n]);
+    const std::size_t a = group_[n];
     number[n] = first_ + group_[n];
     for (std::size_t c = 0; c < dim; ++c) centre[n * dim + c] = centre_[a][c];
   }
@@ -64,12 +64,12 @@ RigidLevel<M> AggregateMotions<M>::make_level() {
   halo.forward(centre, static_cast<int>(dim));
 
   BlockSums<M> couplings;
-  const auto npe = static_cast<std::size_t>(nodes_per_element(part_.type));
+  const std::size_t npe = nodes_per_element(part_.type);
   std::vector<std::int64_t> distinct;
   for (std::size_t e = 0; e < part_.element_count(); ++e) {
     distinct.clear();
     for (std::size_t a = 0; a < npe; ++a) {
-      const std::int64_t id = number[static_cast<std::size_t>(part_.elements[e * npe + a])];
+      const std::int64_t id = number[part_.elements[e * npe + a]];
       if (std::find(distinct.begin(), distinct.end(), id) == distinct.end()) distinct.push_back(id);
     }
     for (const std::int64_t row : distinct)
@@ -93,8 +93,8 @@ RigidLevel<M> AggregateMotions<M>::make_level() {
       number_.resize(centre_.size() - static_cast<std::size_t>(owned_));
     }
     group_[n] = at;
-    for (std::size_t c = 0; c < dim; ++c) centre_[static_cast<std::size_t>(at)][c] = centre[n * dim + c];
-    number_[static_cast<std::size_t>(at - owned_)] = id;
+    for (std::size_t c = 0; c < dim; ++c) centre_[at][c] = centre[n * dim + c];
+    number_[at - owned_] = id;
   }
   return level;
 }
@@ -117,11 +117,11 @@ class AggregateMotions<M>::Sums {
     for (const auto& entry : space.held_directions()) {
       Eigen::Matrix3d p = Eigen::Matrix3d::Identity();
       for (int k = 0; k < entry.count; ++k) {
-        const Eigen::Map<const Eigen::Vector3d> b(entry.basis[static_cast<std::size_t>(k)].data());
+        const Eigen::Map<const Eigen::Vector3d> b(entry.basis[k].data());
         p -= b * b.transpose();
       }
       projector_.emplace(entry.node, p);
-      bound_[static_cast<std::size_t>(entry.node)] = 1;
+      bound_[entry.node] = 1;
     }
     for (const auto& entry : part_.prescribed) bound_[static_cast<std::size_t>(entry.component) / dim] = 1;
   }
@@ -137,7 +137,7 @@ class AggregateMotions<M>::Sums {
 
   void add_block(const NodeBlock& block) {
     const Rows z = rows(block.node);
-    const std::int32_t a = motions_.group_[static_cast<std::size_t>(block.node)];
+    const std::int32_t a = motions_.group_[block.node];
     Block& sum = at(a, a);
     for (std::size_t i = 0; i < M; ++i)
       for (std::size_t j = 0; j < M; ++j) {
@@ -154,7 +154,7 @@ class AggregateMotions<M>::Sums {
  private:
   /// Displacement of a node for each motion of its aggregate, in the space.
   Rows rows(std::int32_t node) const {
-    const auto n = static_cast<std::size_t>(node);
+    const std::size_t n = node;
     const auto motion = RigidMotion<M>::rows(motions_.offset(n).data(), 1.0 / motions_.length_);
     Rows z{};
     for (std::size_t c = 0; c < dim; ++c)
@@ -180,8 +180,7 @@ class AggregateMotions<M>::Sums {
     return level_ != nullptr && (is_owned(a) || is_owned(b));
   }
   std::int64_t number(std::int32_t a) const {
-    return is_owned(a) ? motions_.first_ + a
-                       : motions_.number_[static_cast<std::size_t>(a - motions_.owned_)];
+    return is_owned(a) ? motions_.first_ + a : motions_.number_[a - motions_.owned_];
   }
   /// Whether block (a, b) is the one that is kept, not (b, a).
   bool in_order(std::int32_t a, std::int32_t b) const {
@@ -196,15 +195,15 @@ class AggregateMotions<M>::Sums {
   /// digits on stretched meshes.)
   template <class E>
   void add_element(std::size_t e) {
-    constexpr auto npe = static_cast<std::size_t>(E::nodes);
+    constexpr std::size_t npe = E::nodes;
     const std::int32_t* node = body_.mesh.connectivity.data() + e * npe;
     std::array<std::int32_t, npe> which{};  // the aggregates it touches
     std::array<std::size_t, npe> local{};   // that of each node
     std::size_t count = 0;
     bool rigid = true;
     for (std::size_t a = 0; a < npe; ++a) {
-      rigid = rigid && bound_[static_cast<std::size_t>(node[a])] == 0;
-      const std::int32_t group = motions_.group_[static_cast<std::size_t>(node[a])];
+      rigid = rigid && bound_[node[a]] == 0;
+      const std::int32_t group = motions_.group_[node[a]];
       std::size_t k = 0;
       while (k < count && which[k] != group) ++k;
       if (k == count) which[count++] = group;
@@ -272,15 +271,15 @@ void AggregateMotions<M>::change(std::span<const double> g, const Held& before, 
     if (old != gone.end() && old->second->count == entry.count && old->second->basis == entry.basis)
       gone.erase(old);
     else
-      moved[static_cast<std::size_t>(entry.node)] = 1;
+      moved[entry.node] = 1;
   }
-  for (const auto& [node, entry] : gone) moved[static_cast<std::size_t>(node)] = 1;
+  for (const auto& [node, entry] : gone) moved[node] = 1;
 
-  const auto npe = static_cast<std::size_t>(nodes_per_element(part_.type));
+  const std::size_t npe = nodes_per_element(part_.type);
   std::vector<std::size_t> elements;
   for (std::size_t e = 0; e < part_.element_count(); ++e)
     if (std::any_of(&part_.elements[e * npe], &part_.elements[e * npe] + npe,
-                    [&](std::int32_t n) { return moved[static_cast<std::size_t>(n)] != 0; }))
+                    [&](std::int32_t n) { return moved[n] != 0; }))
       elements.push_back(e);
   Sums sums(*this, g, nullptr);
   for (const auto& [held, sign] : {std::pair{&before, -1.0}, std::pair{&after, 1.0}}) {

@@ -46,7 +46,7 @@ class AggregateMotions {
   void prolong(std::span<const double> x, double gain, std::span<float> u) const;
 
  private:
-  static constexpr auto dim = static_cast<std::size_t>(RigidMotion<M>::dim);
+  static constexpr std::size_t dim = RigidMotion<M>::dim;
   class Sums;
   Vector3 offset(std::size_t node) const;
 

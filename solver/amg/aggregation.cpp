@@ -17,7 +17,7 @@ struct ElementsOfSections {
 
   ElementsOfSections(const MeshView& mesh, std::span<const std::int32_t> first) : start(first.size(), 0) {
     const auto visit = [&](auto&& in_section) {
-      const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
+      const std::size_t npe = nodes_per_element(mesh.type);
       std::vector<std::int32_t> last(first.size() - 1, -1);  // element seen last
       for (std::size_t k = 0; k < mesh.connectivity.size(); ++k) {
         if (mesh.connectivity[k] >= first.back()) continue;
@@ -44,23 +44,20 @@ constexpr float weak = 0.2F;  ///< of a row's heaviest edge
 class Queues {
  public:
   Queues(std::int32_t rows, std::int32_t queues)
-      : first_(static_cast<std::size_t>(queues), none),
-        last_(first_),
-        next_(static_cast<std::size_t>(rows), none),
-        previous_(next_) {}
+      : first_(queues, none), last_(first_), next_(rows, none), previous_(next_) {}
 
   void push(std::int32_t row, std::int32_t queue) {
     const auto q = static_cast<std::size_t>(queue), r = static_cast<std::size_t>(row);
     previous_[r] = last_[q];
     next_[r] = none;
-    (last_[q] == none ? first_[q] : next_[static_cast<std::size_t>(last_[q])]) = row;
+    (last_[q] == none ? first_[q] : next_[last_[q]]) = row;
     last_[q] = row;
     lowest_ = std::min(lowest_, q);
   }
   void remove(std::int32_t row, std::int32_t queue) {
     const auto q = static_cast<std::size_t>(queue), r = static_cast<std::size_t>(row);
-    (previous_[r] == none ? first_[q] : next_[static_cast<std::size_t>(previous_[r])]) = next_[r];
-    (next_[r] == none ? last_[q] : previous_[static_cast<std::size_t>(next_[r])]) = previous_[r];
+    (previous_[r] == none ? first_[q] : next_[previous_[r]]) = next_[r];
+    (next_[r] == none ? last_[q] : previous_[next_[r]]) = previous_[r];
   }
   /// The first row of the lowest queue, `none` if all are empty.
   std::int32_t front() {
@@ -79,19 +76,16 @@ class Queues {
 std::vector<std::int32_t> match(const WeightedGraph& graph, std::span<const std::int32_t> size) {
   const std::int32_t rows = graph.rows();
   constexpr std::int32_t most_choices = 63;
-  std::vector<std::int32_t> group(static_cast<std::size_t>(rows), none), choices(group.size(), 0);
+  std::vector<std::int32_t> group(rows, none), choices(group.size(), 0);
   std::vector<float> strong(group.size(), 0.0F);  // edges heavier than this
-  const auto begin = [&](std::int32_t i) {
-    return static_cast<std::size_t>(graph.start[static_cast<std::size_t>(i)]);
-  };
+  const auto begin = [&](std::int32_t i) { return static_cast<std::size_t>(graph.start[i]); };
   const auto end = [&](std::int32_t i) {
     return static_cast<std::size_t>(graph.start[static_cast<std::size_t>(i) + 1]);
   };
   for (std::int32_t i = 0; i < rows; ++i) {
-    float& least = strong[static_cast<std::size_t>(i)];
+    float& least = strong[i];
     for (auto k = begin(i); k < end(i); ++k) least = std::max(least, weak * graph.weight[k]);
-    for (auto k = begin(i); k < end(i); ++k)
-      choices[static_cast<std::size_t>(i)] += graph.weight[k] > least ? 1 : 0;
+    for (auto k = begin(i); k < end(i); ++k) choices[i] += graph.weight[k] > least ? 1 : 0;
   }
   std::vector<std::int32_t> classes(size.begin(), size.end());
   std::sort(classes.begin(), classes.end());
@@ -99,23 +93,17 @@ std::vector<std::int32_t> match(const WeightedGraph& graph, std::span<const std:
 
   std::int32_t groups = 0;
   Queues queues(rows, most_choices + 1);
-  const auto queue_of = [&](std::int32_t i) {
-    return std::min(choices[static_cast<std::size_t>(i)], most_choices);
-  };
+  const auto queue_of = [&](std::int32_t i) { return std::min(choices[i], most_choices); };
   for (const std::int32_t now : classes) {
-    const auto waits = [&](std::int32_t i) {
-      return group[static_cast<std::size_t>(i)] == none && size[static_cast<std::size_t>(i)] == now;
-    };
+    const auto waits = [&](std::int32_t i) { return group[i] == none && size[i] == now; };
     const auto take = [&](std::int32_t i) {
       if (waits(i)) queues.remove(i, queue_of(i));
-      group[static_cast<std::size_t>(i)] = groups;
+      group[i] = groups;
       for (auto k = begin(i); k < end(i); ++k) {
         const std::int32_t j = graph.column[k];
-        if (graph.weight[k] <= strong[static_cast<std::size_t>(j)] ||
-            group[static_cast<std::size_t>(j)] != none)
-          continue;
+        if (graph.weight[k] <= strong[j] || group[j] != none) continue;
         if (waits(j)) queues.remove(j, queue_of(j));
-        --choices[static_cast<std::size_t>(j)];
+        --choices[j];
         if (waits(j)) queues.push(j, queue_of(j));
       }
     };
@@ -124,9 +112,9 @@ std::vector<std::int32_t> match(const WeightedGraph& graph, std::span<const std:
     for (std::int32_t i = queues.front(); i != none; i = queues.front()) {
       std::int32_t best = none;
       // A row whose strong neighbours are all taken waits for the next round.
-      float heaviest = strong[static_cast<std::size_t>(i)];
+      float heaviest = strong[i];
       for (auto k = begin(i); k < end(i); ++k)
-        if (group[static_cast<std::size_t>(graph.column[k])] == none && graph.weight[k] > heaviest) {
+        if (group[graph.column[k]] == none && graph.weight[k] > heaviest) {
           heaviest = graph.weight[k];
           best = graph.column[k];
         }
@@ -136,10 +124,10 @@ std::vector<std::int32_t> match(const WeightedGraph& graph, std::span<const std:
     }
   }
   // Numbered by first rows.
-  std::vector<std::int32_t> number(static_cast<std::size_t>(groups), none);
+  std::vector<std::int32_t> number(groups, none);
   std::int32_t next = 0;
   for (std::int32_t& g : group) {
-    auto& n = number[static_cast<std::size_t>(g)];
+    auto& n = number[g];
     if (n == none) n = next++;
     g = n;
   }
@@ -152,28 +140,26 @@ WeightedGraph contract(const WeightedGraph& graph, std::span<const std::int32_t>
   for (const std::int32_t g : group) ++first[static_cast<std::size_t>(g) + 1];
   std::partial_sum(first.begin(), first.end(), first.begin());
   auto next = first;
-  for (std::size_t i = 0; i < group.size(); ++i)
-    member[static_cast<std::size_t>(next[static_cast<std::size_t>(group[i])]++)] =
-        static_cast<std::int32_t>(i);
+  for (std::size_t i = 0; i < group.size(); ++i) member[next[group[i]]++] = static_cast<std::int32_t>(i);
 
   WeightedGraph coarse;
   coarse.start.reserve(static_cast<std::size_t>(groups) + 1);
   coarse.start.push_back(0);
-  std::vector<std::int64_t> place(static_cast<std::size_t>(groups), none);
+  std::vector<std::int64_t> place(groups, none);
   for (std::int32_t i = 0; i < groups; ++i) {
     const std::int64_t begin = coarse.start.back();
-    for (auto m = first[static_cast<std::size_t>(i)]; m < first[static_cast<std::size_t>(i) + 1]; ++m) {
-      const auto row = static_cast<std::size_t>(member[static_cast<std::size_t>(m)]);
+    for (auto m = first[i]; m < first[static_cast<std::size_t>(i) + 1]; ++m) {
+      const std::size_t row = member[m];
       for (auto k = graph.start[row]; k < graph.start[row + 1]; ++k) {
-        const std::int32_t j = group[static_cast<std::size_t>(graph.column[static_cast<std::size_t>(k)])];
+        const std::int32_t j = group[graph.column[k]];
         if (j == i) continue;
-        auto& at = place[static_cast<std::size_t>(j)];
+        auto& at = place[j];
         if (at < begin) {
           at = static_cast<std::int64_t>(coarse.column.size());
           coarse.column.push_back(j);
           coarse.weight.push_back(0.0F);
         }
-        coarse.weight[static_cast<std::size_t>(at)] += graph.weight[static_cast<std::size_t>(k)];
+        coarse.weight[at] += graph.weight[k];
       }
     }
     coarse.start.push_back(static_cast<std::int64_t>(coarse.column.size()));
@@ -187,10 +173,10 @@ WeightedGraph contract(const WeightedGraph& graph, std::span<const std::int32_t>
 WeightedGraph coupling_graph(const Body& body, std::span<const double> g, std::int32_t first,
                              std::int32_t last, std::span<const std::int32_t> elements) {
   const auto& mesh = body.mesh;
-  const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
-  const auto points = static_cast<std::size_t>(points_per_element(mesh.type));
-  const auto dim = static_cast<std::size_t>(dimension(mesh.type));
-  const auto rows = static_cast<std::size_t>(last - first);
+  const std::size_t npe = nodes_per_element(mesh.type);
+  const std::size_t points = points_per_element(mesh.type);
+  const std::size_t dim = dimension(mesh.type);
+  const std::size_t rows = last - first;
   const auto row_of = [&](std::int32_t node) { return static_cast<std::size_t>(node - first); };
   const auto inside = [&](std::int32_t node) { return node >= first && node < last; };
 
@@ -199,11 +185,11 @@ WeightedGraph coupling_graph(const Body& body, std::span<const double> g, std::i
     for (const std::int32_t n : mesh.connectivity.subspan(static_cast<std::size_t>(e) * npe, npe))
       if (inside(n)) ++start[row_of(n) + 1];
   std::partial_sum(start.begin(), start.end(), start.begin());
-  element.resize(static_cast<std::size_t>(start.back()));
+  element.resize(start.back());
   std::vector<std::int32_t> next(start.begin(), start.end() - 1);
   for (const std::int32_t e : elements)
     for (const std::int32_t n : mesh.connectivity.subspan(static_cast<std::size_t>(e) * npe, npe))
-      if (inside(n)) element[static_cast<std::size_t>(next[row_of(n)]++)] = e;
+      if (inside(n)) element[next[row_of(n)]++] = e;
 
   WeightedGraph graph;
   graph.start.reserve(rows + 1);
@@ -213,7 +199,7 @@ WeightedGraph coupling_graph(const Body& body, std::span<const double> g, std::i
     const auto begin = static_cast<std::int64_t>(graph.column.size());
     const double* x = mesh.coordinates.data() + static_cast<std::size_t>(n) * dim;
     for (auto k = start[row_of(n)]; k < start[row_of(n) + 1]; ++k) {
-      const auto e = static_cast<std::size_t>(element[static_cast<std::size_t>(k)]);
+      const std::size_t e = element[k];
       double stiffness = 0.0;
       for (std::size_t q = 0; q < points; ++q) stiffness += g[e * points + q];
       for (const std::int32_t m : mesh.connectivity.subspan(e * npe, npe)) {
@@ -227,7 +213,7 @@ WeightedGraph coupling_graph(const Body& body, std::span<const double> g, std::i
           graph.column.push_back(m - first);
           graph.weight.push_back(0.0F);
         }
-        graph.weight[static_cast<std::size_t>(at)] += static_cast<float>(stiffness / square);
+        graph.weight[at] += static_cast<float>(stiffness / square);
       }
     }
     graph.start.push_back(static_cast<std::int64_t>(graph.column.size()));
@@ -245,7 +231,7 @@ std::vector<std::int32_t> aggregate_nodes(const Body& body, std::span<const doub
     first.push_back(static_cast<std::int32_t>(std::int64_t{nodes} * c / sections));
   const ElementsOfSections elements(body.mesh, first);
   std::vector<std::int32_t> group;
-  group.reserve(static_cast<std::size_t>(nodes));
+  group.reserve(nodes);
   std::int32_t groups = 0;
   for (std::size_t c = 0; c + 1 < first.size(); ++c) {
     const auto mine =
@@ -262,7 +248,7 @@ std::vector<std::int32_t> aggregate_nodes(const Body& body, std::span<const doub
 
 std::vector<std::int32_t> aggregate(WeightedGraph graph, double size) {
   const std::int32_t rows = graph.rows();
-  std::vector<std::int32_t> result(static_cast<std::size_t>(rows));
+  std::vector<std::int32_t> result(rows);
   std::iota(result.begin(), result.end(), 0);
   std::vector<std::int32_t> members(result.size(), 1);
   std::int32_t before = rows;
@@ -271,9 +257,9 @@ std::vector<std::int32_t> aggregate(WeightedGraph graph, double size) {
     const std::int32_t groups = group.empty() ? 0 : 1 + *std::max_element(group.begin(), group.end());
     if (groups == before) break;
     graph = contract(graph, group, groups);
-    for (std::int32_t& r : result) r = group[static_cast<std::size_t>(r)];
-    members.assign(static_cast<std::size_t>(groups), 0);
-    for (const std::int32_t r : result) ++members[static_cast<std::size_t>(r)];
+    for (std::int32_t& r : result) r = group[r];
+    members.assign(groups, 0);
+    for (const std::int32_t r : result) ++members[r];
     before = groups;
   }
   return result;

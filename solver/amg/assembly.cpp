@@ -11,13 +11,13 @@
 namespace kacanov {
 
 std::size_t NodeGraph::position(std::int32_t row, std::int32_t column_node) const {
-  const auto first = column.begin() + start[static_cast<std::size_t>(row)];
+  const auto first = column.begin() + start[row];
   const auto last = column.begin() + start[static_cast<std::size_t>(row) + 1];
   return static_cast<std::size_t>(std::lower_bound(first, last, column_node) - column.begin());
 }
 
 NodeGraph node_graph(const MeshView& mesh) {
-  const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  const std::size_t npe = nodes_per_element(mesh.type);
   const std::size_t nodes = mesh.node_count(), elements = mesh.element_count();
 
   std::vector<std::int64_t> first(nodes + 1, 0);
@@ -27,8 +27,7 @@ NodeGraph node_graph(const MeshView& mesh) {
   auto at = first;
   for (std::size_t e = 0; e < elements; ++e)
     for (std::size_t a = 0; a < npe; ++a)
-      element_of[static_cast<std::size_t>(at[static_cast<std::size_t>(mesh.connectivity[e * npe + a])]++)] =
-          static_cast<std::int32_t>(e);
+      element_of[at[mesh.connectivity[e * npe + a]]++] = static_cast<std::int32_t>(e);
 
   NodeGraph graph;
   graph.start.reserve(nodes + 1);
@@ -37,7 +36,7 @@ NodeGraph node_graph(const MeshView& mesh) {
   for (std::size_t n = 0; n < nodes; ++n) {
     row.assign(1, static_cast<std::int32_t>(n));
     for (auto k = first[n]; k < first[n + 1]; ++k) {
-      const auto e = static_cast<std::size_t>(element_of[static_cast<std::size_t>(k)]);
+      const std::size_t e = element_of[k];
       const auto element = mesh.connectivity.subspan(e * npe, npe);
       row.insert(row.end(), element.begin(), element.end());
     }
@@ -50,9 +49,9 @@ NodeGraph node_graph(const MeshView& mesh) {
 
 std::vector<double> assemble_blocks(const Body& body, std::span<const double> g, const NodeGraph& graph) {
   const auto& mesh = body.mesh;
-  const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
-  const auto points = static_cast<std::size_t>(points_per_element(mesh.type));
-  const auto dim = static_cast<std::size_t>(dimension(mesh.type));
+  const std::size_t npe = nodes_per_element(mesh.type);
+  const std::size_t points = points_per_element(mesh.type);
+  const std::size_t dim = dimension(mesh.type);
   const std::size_t width = npe * dim;
   std::vector<double> value(graph.column.size() * dim * dim, 0.0), local(width * width);
   for (std::size_t e = 0; e < mesh.element_count(); ++e) {

@@ -11,7 +11,7 @@ ElasticityAmg::ElasticityAmg(const Part& part)
 
 void ElasticityAmg::build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space&) {
   g_.assign(g.begin(), g.end());
-  const auto dim = static_cast<std::size_t>(part_.dim());
+  const std::size_t dim = part_.dim();
   NodeGraph graph = node_graph(part_.body().mesh);
   std::vector<double> matrix = assemble_blocks(part_.body(), g, graph);
   for (const auto& b : blocks) {
@@ -45,10 +45,9 @@ void ElasticityAmg::build(std::span<const double> g, std::span<const NodeBlock> 
         columns.push_back(global(n, i));
         values.push_back(diagonal[n * dim + i]);
       } else {
-        for (auto k = static_cast<std::size_t>(graph.start[n]);
-             k < static_cast<std::size_t>(graph.start[n + 1]); ++k)
+        for (std::size_t k = graph.start[n]; k < static_cast<std::size_t>(graph.start[n + 1]); ++k)
           for (std::size_t j = 0; j < dim; ++j) {
-            const auto m = static_cast<std::size_t>(graph.column[k]);
+            const std::size_t m = graph.column[k];
             if (part_.held[m * dim + j]) continue;
             columns.push_back(global(m, j));
             values.push_back(matrix[k * dim * dim + i * dim + j]);

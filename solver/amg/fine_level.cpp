@@ -27,12 +27,11 @@ void FineLevel::rebuild(std::span<const NodeBlock> blocks, const Space& space) {
   space_ = space;
   blocks_.assign(blocks.begin(), blocks.end());
   std::vector<char> is_shared(part_.nodes(), 0);
-  for (const std::int32_t node : part_.halo.shared) is_shared[static_cast<std::size_t>(node)] = 1;
-  const auto rest = std::stable_partition(blocks_.begin(), blocks_.end(), [&](const NodeBlock& b) {
-    return is_shared[static_cast<std::size_t>(b.node)] != 0;
-  });
+  for (const std::int32_t node : part_.halo.shared) is_shared[node] = 1;
+  const auto rest = std::stable_partition(blocks_.begin(), blocks_.end(),
+                                          [&](const NodeBlock& b) { return is_shared[b.node] != 0; });
   shared_blocks_ = static_cast<std::size_t>(rest - blocks_.begin());
-  const auto dim = static_cast<std::size_t>(part_.dim());
+  const std::size_t dim = part_.dim();
   const std::size_t packed = dim * (dim + 1) / 2;
   std::vector<float> diagonal(part_.nodes() * dim * dim);
   op_.block_diagonal(diagonal);
@@ -58,7 +57,7 @@ void FineLevel::rebuild(std::span<const NodeBlock> blocks, const Space& space) {
 
 void FineLevel::add_blocks(std::span<const NodeBlock> blocks, std::span<const float> x,
                            std::span<float> y) const {
-  const auto dim = static_cast<std::size_t>(part_.dim());
+  const std::size_t dim = part_.dim();
   for (const auto& b : blocks) {
     const auto at = static_cast<std::size_t>(b.node) * dim;
     for (std::size_t i = 0; i < dim; ++i)
@@ -86,7 +85,7 @@ void FineLevel::relax(const ChebyshevStep<float>& weights, std::span<const float
                       std::span<const float> image, std::span<float> step, std::span<float> x) const {
   // In pieces that stay in the first-level cache between the three loops.
   constexpr std::size_t piece = 128;
-  const auto dim = static_cast<std::size_t>(part_.dim());
+  const std::size_t dim = part_.dim();
   std::array<float, 3 * piece> residual;
   std::array<float, 3 * piece + 1> scaled;
   weights.visit([&]<bool zero, bool first>() {
@@ -106,7 +105,7 @@ void FineLevel::project(std::span<float> x) const { space_.project(x); }
 
 void FineLevel::choose_smoother(int degree, double range) {
   std::vector<float> x(part_.unknowns());
-  const auto dim = static_cast<std::size_t>(part_.dim());
+  const std::size_t dim = part_.dim();
   for (std::size_t i = 0; i < x.size(); ++i) {
     const auto id =
         part_.node_number(i / dim) * static_cast<std::int64_t>(dim) + static_cast<std::int64_t>(i % dim);

@@ -19,7 +19,7 @@ Dense<M> prolongation(const double* offset, double inverse_length) {
   Dense<M> p;
   for (int k = 0; k < M; ++k) {
     std::array<double, M> group{}, member{};
-    group[static_cast<std::size_t>(k)] = 1.0;
+    group[k] = 1.0;
     RigidMotion<M>::add_to_part(group.data(), offset, inverse_length, member.data());
     p.col(k) = Eigen::Map<const Eigen::Matrix<double, M, 1>>(member.data());
   }
@@ -32,10 +32,10 @@ template <int M>
 RigidLevel<M> RigidLevel<M>::coarsened(std::span<const std::int32_t> group, double length) const {
   const double inverse_length = 1.0 / length;
   const std::int32_t groups = group.empty() ? 0 : 1 + *std::max_element(group.begin(), group.end());
-  std::vector<Vector3> centre(static_cast<std::size_t>(groups), Vector3{});
+  std::vector<Vector3> centre(groups, Vector3{});
   std::vector<double> members(centre.size(), 0.0);
   for (std::size_t i = 0; i < group.size(); ++i) {
-    const auto to = static_cast<std::size_t>(group[i]);
+    const std::size_t to = group[i];
     members[to] += 1.0;
     for (std::size_t c = 0; c < 3; ++c) centre[to][c] += centres_[i][c];
   }
@@ -48,8 +48,7 @@ RigidLevel<M> RigidLevel<M>::coarsened(std::span<const std::int32_t> group, doub
   std::vector<double> offset(3 * map_->size());
   for (std::size_t i = 0; i < group.size(); ++i) {
     group_of[i] = first_group + group[i];
-    for (std::size_t k = 0; k < 3; ++k)
-      offset[3 * i + k] = centres_[i][k] - centre[static_cast<std::size_t>(group[i])][k];
+    for (std::size_t k = 0; k < 3; ++k) offset[3 * i + k] = centres_[i][k] - centre[group[i]][k];
   }
   map_->forward(group_of, 1);
   map_->forward(offset, 3);
@@ -57,8 +56,8 @@ RigidLevel<M> RigidLevel<M>::coarsened(std::span<const std::int32_t> group, doub
   BlockSums<M> sums;
   for (std::size_t i = 0; i < centres_.size(); ++i) {
     const Dense<M> row = prolongation<M>(&offset[3 * i], inverse_length).transpose();
-    for (auto k = static_cast<std::size_t>(start_[i]); k < static_cast<std::size_t>(start_[i + 1]); ++k) {
-      const auto j = static_cast<std::size_t>(column_[k]);
+    for (std::size_t k = start_[i]; k < static_cast<std::size_t>(start_[i + 1]); ++k) {
+      const std::size_t j = column_[k];
       const std::int64_t here = group_of[i], other = group_of[j];
       const bool with_transpose = j != i && j < centres_.size();
       const Dense<M> product = row * dense<M>(block_[k]) * prolongation<M>(&offset[3 * j], inverse_length);
@@ -91,18 +90,18 @@ WeightedGraph RigidLevel<M>::couplings() const {
     ++graph.start[static_cast<std::size_t>(j) + 1];
   });
   std::partial_sum(graph.start.begin(), graph.start.end(), graph.start.begin());
-  graph.column.resize(static_cast<std::size_t>(graph.start.back()));
+  graph.column.resize(graph.start.back());
   graph.weight.resize(graph.column.size());
   auto next = graph.start;
   visit_edges([&](std::int32_t i, std::int32_t j, const Block& block) {
     double square = 0.0;
     for (int a = 0; a < dim; ++a)
       for (int b = 0; b < dim; ++b) {
-        const double v = block[static_cast<std::size_t>(a * M + b)];
+        const double v = block[a * M + b];
         square += v * v;
       }
     for (const auto& [from, to] : {std::pair{i, j}, std::pair{j, i}}) {
-      const auto at = static_cast<std::size_t>(next[static_cast<std::size_t>(from)]++);
+      const std::size_t at = next[from]++;
       graph.column[at] = to;
       graph.weight[at] = static_cast<float>(std::sqrt(square));
     }

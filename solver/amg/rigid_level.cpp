@@ -42,11 +42,11 @@ void RigidLevel<M>::send_to_owners(BlockSums<M>& sums) const {
 /// What the other ranks have for rows of this one, in exchange for theirs.
 template <int M>
 std::vector<typename BlockSums<M>::Entry> RigidLevel<M>::exchanged(const BlockSums<M>& sums) const {
-  std::vector<std::vector<typename BlockSums<M>::Entry>> to(static_cast<std::size_t>(map_->ranks));
+  std::vector<std::vector<typename BlockSums<M>::Entry>> to(map_->ranks);
   for (const auto& entry : sums.entries()) {
     const int row = map_->owner(entry.row), column = map_->owner(entry.column);
-    if (row != map_->rank) to[static_cast<std::size_t>(row)].push_back(entry);
-    if (column != map_->rank && column != row) to[static_cast<std::size_t>(column)].push_back(entry);
+    if (row != map_->rank) to[row].push_back(entry);
+    if (column != map_->rank && column != row) to[column].push_back(entry);
   }
   return exchange_all(to, *map_).entries;
 }
@@ -66,7 +66,7 @@ void RigidLevel<M>::clear() {
 
 template <int M>
 typename RigidLevel<M>::Block& RigidLevel<M>::block(std::int32_t row, std::int32_t column) {
-  auto k = static_cast<std::size_t>(start_[static_cast<std::size_t>(row)]);
+  std::size_t k = start_[row];
   while (column_[k] != column) ++k;
   return block_[k];
 }
@@ -76,7 +76,7 @@ void RigidLevel<M>::complete(BlockSums<M> outside) {
   if (map_->ranks > 1) {
     visit([&](std::int32_t i, std::int32_t j, const Block& sum) {
       if (j < rows()) return;
-      const std::int64_t row = first() + i, column = map_->number(static_cast<std::size_t>(j));
+      const std::int64_t row = first() + i, column = map_->number(j);
       if (row < column)
         outside.at(row, column) = sum;
       else
@@ -131,21 +131,19 @@ void RigidLevel<M>::build_rows(const BlockSums<M>& sums) {
   }
   std::partial_sum(start_.begin(), start_.end(), start_.begin());
 
-  column_.resize(static_cast<std::size_t>(start_.back()));
+  column_.resize(start_.back());
   block_.resize(column_.size());
   auto next = start_;
   for (const bool ghosts : {false, true}) {
     for (const auto& entry : sums.entries()) {
       const bool row = is_mine(entry.row), column = is_mine(entry.column);
       if (row == column ? !row || ghosts : !ghosts) continue;
-      const auto k = static_cast<std::size_t>(
-          next[static_cast<std::size_t>((row ? entry.row : entry.column) - begin)]++);
+      const std::size_t k = next[(row ? entry.row : entry.column) - begin]++;
       column_[k] = local(row ? entry.column : entry.row);
       block_[k] = row ? entry.block : transposed<M>(entry.block);
     }
     for (std::int32_t i = 0; i < rows() && !ghosts; ++i)
-      if (const auto at = static_cast<std::size_t>(i); next[at] < start_[at + 1])
-        edge_.push_back({i, next[at]});
+      if (const std::size_t at = i; next[at] < start_[at + 1]) edge_.push_back({i, next[at]});
   }
 }
 
@@ -155,8 +153,7 @@ void RigidLevel<M>::invert_diagonal() {
   for (std::size_t i = 0; i < centres_.size(); ++i) {
     Dense<M> d = Dense<M>::Zero();
     for (auto k = start_[i]; k < start_[i + 1]; ++k)
-      if (column_[static_cast<std::size_t>(k)] == static_cast<std::int32_t>(i))
-        d = dense<M>(block_[static_cast<std::size_t>(k)]);
+      if (column_[k] == static_cast<std::int32_t>(i)) d = dense<M>(block_[k]);
     // Motions that boundary conditions leave no node for have no stiffness: they stay where they are.
     const double largest = d.diagonal().maxCoeff();
     Eigen::SelfAdjointEigenSolver<Dense<M>> solver(d);
@@ -166,7 +163,7 @@ void RigidLevel<M>::invert_diagonal() {
       if (value > 1e-6 * largest)
         inverse += solver.eigenvectors().col(k) * solver.eigenvectors().col(k).transpose() / value;
     }
-    for (int k = 0; k < M * M; ++k) inverse_diagonal_[i][static_cast<std::size_t>(k)] = inverse.data()[k];
+    for (int k = 0; k < M * M; ++k) inverse_diagonal_[i][k] = inverse.data()[k];
   }
 }
 
@@ -200,8 +197,8 @@ void RigidLevel<M>::multiply(std::span<double> x, std::span<double> y) const {
   for (std::size_t i = 0; i < owned; ++i) {
     std::array<double, M> sum{};
     const double* here = x.data() + i * M;
-    for (auto k = static_cast<std::size_t>(start_[i]); k < static_cast<std::size_t>(start_[i + 1]); ++k) {
-      const auto j = static_cast<std::size_t>(column_[k]);
+    for (std::size_t k = start_[i]; k < static_cast<std::size_t>(start_[i + 1]); ++k) {
+      const std::size_t j = column_[k];
       if (j >= owned) break;
       add_product<M>(block_[k].data(), x.data() + j * M, sum.data());
       if (j != i) add_transposed<M>(block_[k].data(), here, y.data() + j * M);
@@ -210,8 +207,8 @@ void RigidLevel<M>::multiply(std::span<double> x, std::span<double> y) const {
   }
   fill_->finish_forward(x);
   for (const Edge& edge : edge_) {
-    const auto i = static_cast<std::size_t>(edge.row);
-    for (auto k = static_cast<std::size_t>(edge.first); k < static_cast<std::size_t>(start_[i + 1]); ++k)
+    const std::size_t i = edge.row;
+    for (std::size_t k = edge.first; k < static_cast<std::size_t>(start_[i + 1]); ++k)
       add_product<M>(block_[k].data(), x.data() + static_cast<std::size_t>(column_[k]) * M, y.data() + i * M);
   }
 }
@@ -250,7 +247,7 @@ template <int M>
 std::vector<typename BlockSums<M>::Entry> RigidLevel<M>::gathered() const {
   std::vector<typename BlockSums<M>::Entry> mine;
   visit([&](std::int32_t i, std::int32_t j, const Block& block) {
-    mine.push_back({first() + i, map_->number(static_cast<std::size_t>(j)), block});
+    mine.push_back({first() + i, map_->number(j), block});
     if (j < rows() && j != i) mine.push_back({first() + j, first() + i, transposed<M>(block)});
   });
   return kacanov::gathered(mine, *map_);

@@ -76,8 +76,8 @@ class RigidLevel {
   template <class F>
   void visit(F&& f) const {
     for (std::int32_t i = 0; i < rows(); ++i)
-      for (auto k = static_cast<std::size_t>(start_[static_cast<std::size_t>(i)]);
-           k < static_cast<std::size_t>(start_[static_cast<std::size_t>(i) + 1]); ++k)
+      for (std::size_t k = start_[i]; k < static_cast<std::size_t>(start_[static_cast<std::size_t>(i) + 1]);
+           ++k)
         f(i, column_[k], block_[k]);
   }
   /// To sum the matrix anew with the couplings it has: clear, add to blocks, complete.

@@ -33,15 +33,15 @@ class DirectSolve {
   explicit DirectSolve(const RigidLevel<M>& level) : level_(&level) {
     const auto size = static_cast<Eigen::Index>(level.total()) * M;
     std::vector<Eigen::Triplet<double>> triplets;
-    std::vector<double> diagonal(static_cast<std::size_t>(size), 0.0);
+    std::vector<double> diagonal(size, 0.0);
     for (const auto& entry : level.gathered())
       for (int i = 0; i < M; ++i)
         for (int j = 0; j < M; ++j) {
           const auto row = static_cast<Eigen::Index>(entry.row) * M + i,
                      column = static_cast<Eigen::Index>(entry.column) * M + j;
-          const double v = entry.block[static_cast<std::size_t>(i * M + j)];
+          const double v = entry.block[i * M + j];
           triplets.emplace_back(row, column, v);
-          if (row == column) diagonal[static_cast<std::size_t>(row)] += v;
+          if (row == column) diagonal[row] += v;
         }
     // Modes that boundary conditions have emptied, and rounding: a shift far below anything that moves,
     // unless penalties so large that they swamp the body ask for more.
@@ -60,10 +60,10 @@ class DirectSolve {
     Eigen::VectorXd all = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(level_->total()) * M);
     const auto at = static_cast<Eigen::Index>(level_->first()) * M;
     const auto owned = static_cast<Eigen::Index>(level_->owned_size());
-    for (Eigen::Index i = 0; i < owned; ++i) all[at + i] = b[static_cast<std::size_t>(i)];
-    level_->map().sum_all(std::span(all.data(), static_cast<std::size_t>(all.size())));
+    for (Eigen::Index i = 0; i < owned; ++i) all[at + i] = b[i];
+    level_->map().sum_all(std::span(all.data(), all.size()));
     const Eigen::VectorXd y = factor_.solve(all);
-    for (Eigen::Index i = 0; i < owned; ++i) x[static_cast<std::size_t>(i)] = y[at + i];
+    for (Eigen::Index i = 0; i < owned; ++i) x[i] = y[at + i];
   }
 
  private:
@@ -154,7 +154,7 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
       const auto centres = stage.level.centres();
       stage.offset.clear();
       for (std::size_t i = 0; i < stage.group.size(); ++i) {
-        const auto& c = next.centres()[static_cast<std::size_t>(stage.group[i])];
+        const auto& c = next.centres()[stage.group[i]];
         stage.offset.push_back({centres[i][0] - c[0], centres[i][1] - c[1], centres[i][2] - c[2]});
       }
       stages_.emplace_back(std::move(next));

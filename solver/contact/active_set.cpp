@@ -95,7 +95,7 @@ Edge find_edge(const Traces& traces, const ContactState& state, const ActiveSet&
   const Eigen::MatrixXd back = decomposition.compute(normals).pseudoInverse();
   edge.free -= back * normals;
   Eigen::Vector3d u = Eigen::Vector3d::Zero();
-  const auto dim = static_cast<std::size_t>(traces.part().dim());
+  const std::size_t dim = traces.part().dim();
   for (std::size_t c = 0; c < dim; ++c)
     u(static_cast<Eigen::Index>(c)) = state.omega[static_cast<std::size_t>(points[i].node) * dim + c];
   edge.scale = std::max(edge.scale, u.cwiseAbs().maxCoeff());
@@ -237,7 +237,7 @@ ActiveSet decide(const Traces& traces, const ContactState& state, double c) {
 }
 
 std::vector<NodeBlock> slip_blocks(const Part& part, const ActiveSet& set) {
-  const auto dim = static_cast<std::size_t>(part.dim());
+  const std::size_t dim = part.dim();
   const WideNodes nodes(part);
   std::vector<NodeBlock> blocks;
   Vector wide = nodes.zeros(dim * dim);

@@ -78,7 +78,7 @@ void update_multipliers(const Traces& traces, ContactState& state, const AdmmOpt
 AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work, const AdmmOptions& options) {
   const Space& space = *problem.space;
   const Traces& traces = *problem.traces;
-  const auto dim = static_cast<std::size_t>(space.part().dim());
+  const std::size_t dim = space.part().dim();
   const bool stop_by_step = options.step_tolerance > 0.0;
   const auto apply = [&](std::span<const double> p, std::span<double> q) {
     const double share = problem.apply(p, q);

@@ -106,7 +106,7 @@ struct BodySums {
 /// Over all ranks; `contact` is CᵀMλ.
 BodySums body_sums(const Part& part, std::span<const double> u, std::span<const double> contact,
                    const BodyForces& forces) {
-  const auto dim = static_cast<std::size_t>(part.dim());
+  const std::size_t dim = part.dim();
   BodySums s;
   auto loaded = forces.load.begin();
   for (std::size_t i = 0; i < part.owned_unknowns(); ++i) {

@@ -94,7 +94,7 @@ AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& 
   const Space& space = *problem.space;
   const Traces& traces = *problem.traces;
   const std::size_t m = traces.size(), n = state.omega.size();
-  const auto dim = static_cast<std::size_t>(space.part().dim());
+  const std::size_t dim = space.part().dim();
   const Penalty& r = options.r;
   const bool stop_by_step = options.step_tolerance > 0.0;
   const auto apply = [&](std::span<const double> p, std::span<double> q) {

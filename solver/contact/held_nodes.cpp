@@ -77,7 +77,7 @@ void HeldNodes::add_node(const ActiveSet& set, const ContactState& state, std::s
   }
   const auto sticking = static_cast<Eigen::Index>(tangents.size());
   MatrixXd along(3, sticking);
-  for (Eigen::Index k = 0; k < sticking; ++k) along.col(k) = tangents[static_cast<std::size_t>(k)];
+  for (Eigen::Index k = 0; k < sticking; ++k) along.col(k) = tangents[k];
   // An orthonormal basis of what sticks, and the share of each row in a force along it.
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(along * along.transpose());
   Eigen::Index rank = 0;
@@ -99,7 +99,7 @@ void HeldNodes::add_node(const ActiveSet& set, const ContactState& state, std::s
   directions = rows;
   MatrixXd sliding = MatrixXd::Zero(3, held_normals);
   for (Eigen::Index k = 0; k < held_normals; ++k) {
-    const auto i = static_cast<std::size_t>(rows_[node.first + static_cast<std::size_t>(k)].point);
+    const std::size_t i = rows_[node.first + static_cast<std::size_t>(k)].point;
     if (set.coulomb[i] == 0.0) continue;
     node.slides = true;
     for (std::size_t t = 0; t < static_cast<std::size_t>(points[i].tangents); ++t)
@@ -114,14 +114,13 @@ void HeldNodes::add_node(const ActiveSet& set, const ContactState& state, std::s
     rows_[node.first + static_cast<std::size_t>(held_normals + k)].react =
         from_eigen(friction.row(k).transpose());
   const Eigen::Matrix3d taken = sliding * react.topRows(held_normals);
-  for (Eigen::Index c = 0; c < 3; ++c)
-    node.sliding[static_cast<std::size_t>(c)] = from_eigen(taken.row(c).transpose());
+  for (Eigen::Index c = 0; c < 3; ++c) node.sliding[c] = from_eigen(taken.row(c).transpose());
   node.last = rows_.size();
   nodes_.push_back(node);
 }
 
 double HeldNodes::close(std::span<double> delta) const {
-  const auto dim = static_cast<std::size_t>(part_->dim());
+  const std::size_t dim = part_->dim();
   double furthest = 0.0;
   for (const Node& node : nodes_)
     for (std::size_t c = 0; c < dim; ++c) {
@@ -132,7 +131,7 @@ double HeldNodes::close(std::span<double> delta) const {
 }
 
 void HeldNodes::subtract_sliding(std::span<double> force) const {
-  const auto dim = static_cast<std::size_t>(part_->dim());
+  const std::size_t dim = part_->dim();
   for (const Node& node : nodes_) {
     if (!node.slides) continue;
     double* f = force.data() + static_cast<std::size_t>(node.node) * dim;
@@ -144,12 +143,12 @@ void HeldNodes::subtract_sliding(std::span<double> force) const {
 }
 
 void HeldNodes::reactions(std::span<const double> force, ContactValues& lambda) const {
-  const auto dim = static_cast<std::size_t>(part_->dim());
+  const std::size_t dim = part_->dim();
   for (const Node& node : nodes_) {
     const double* f = force.data() + static_cast<std::size_t>(node.node) * dim;
     for (std::size_t r = node.first; r < node.last; ++r) {
       const Row& row = rows_[r];
-      const auto i = static_cast<std::size_t>(row.point);
+      const std::size_t i = row.point;
       double value = 0.0;
       for (std::size_t c = 0; c < dim; ++c) value += row.react[c] * f[c];
       value /= part_->contact.points()[i].mass;

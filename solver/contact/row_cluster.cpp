@@ -58,7 +58,7 @@ RowCluster::RowCluster(const Part& part, const WideNodes& nodes, std::vector<Clu
   std::vector<Travelling> all;
   for (const ClusterRow& row : rows_)
     for (const auto& share : row.shares)
-      all.push_back({row.number, part.node_number(static_cast<std::size_t>(share.node)), share.coefficient});
+      all.push_back({row.number, part.node_number(share.node), share.coefficient});
   all = gathered(all, part.halo);
   std::vector<std::int64_t> node_numbers;
   for (const Travelling& share : all) {
@@ -99,7 +99,7 @@ void RowCluster::solve_gathered(Vector& b) const {
 }
 
 void RowCluster::add_transpose(std::span<const double> z, std::span<double> y) const {
-  const auto dim = static_cast<std::size_t>(part_->dim());
+  const std::size_t dim = part_->dim();
   Vector forces = nodes_.zeros(dim);
   for (const ClusterRow& row : rows_) {
     const double value = z[position(row.number)];
@@ -111,7 +111,7 @@ void RowCluster::add_transpose(std::span<const double> z, std::span<double> y) c
 }
 
 void RowCluster::project(std::span<double> x) const {
-  const auto dim = static_cast<std::size_t>(part_->dim());
+  const std::size_t dim = part_->dim();
   Vector z = solve([&](const ClusterRow& row) { return row.of(x, dim); });
   for (double& value : z) value = -value;
   add_transpose(z, x);

@@ -51,7 +51,7 @@ void scale_to(std::vector<NodeBlock>& blocks, double share, std::span<const floa
 }  // namespace
 
 TraceRows::TraceRows(const Part& part, std::span<const TraceChoice> choice) : part_(&part), wide_(part) {
-  const auto dim = static_cast<std::size_t>(part.dim());
+  const std::size_t dim = part.dim();
   for (std::size_t i = 0; i < part.contact.size(); ++i) {
     const auto& point = part.contact[i];
     const auto entries = part.contact.entries(i);
@@ -96,21 +96,20 @@ void TraceRows::add_narrow(std::size_t point, std::span<const Vector3> rows) {
   if (point < static_cast<std::size_t>(part_->owned_contact)) owned_groups_ = groups_.size();
   auto& group = groups_.back();
   if (static_cast<std::size_t>(group.rows) + rows.size() > group.row.size())
-    throw InputError("contact: node " + std::to_string(part_->node_tag(static_cast<std::size_t>(node))) +
+    throw InputError("contact: node " + std::to_string(part_->node_tag(node)) +
                      " belongs to more than three contact surfaces");
-  for (const Vector3& row : rows) group.row[static_cast<std::size_t>(group.rows++)] = row;
+  for (const Vector3& row : rows) group.row[group.rows++] = row;
 }
 
 void TraceRows::invert(Group& group) const {
   Eigen::MatrixXd a(group.rows, 3);
   for (int k = 0; k < group.rows; ++k)
-    for (int c = 0; c < 3; ++c) a(k, c) = group.row[static_cast<std::size_t>(k)][static_cast<std::size_t>(c)];
+    for (int c = 0; c < 3; ++c) a(k, c) = group.row[k][c];
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
   decomposition.setThreshold(1e-8);
   const Eigen::MatrixXd inverse = decomposition.compute(a).pseudoInverse();
   for (int k = 0; k < group.rows; ++k)
-    for (int c = 0; c < 3; ++c)
-      group.inverse[static_cast<std::size_t>(k)][static_cast<std::size_t>(c)] = inverse(c, k);
+    for (int c = 0; c < 3; ++c) group.inverse[k][c] = inverse(c, k);
 }
 
 /// Wide rows and all narrow ones at wide nodes.
@@ -134,10 +133,10 @@ void TraceRows::hold_in(Space& space) const {
 }
 
 void TraceRows::transpose(std::span<const double> x, std::span<double> y) const {
-  const auto dim = static_cast<std::size_t>(part_->dim());
+  const std::size_t dim = part_->dim();
   std::fill(y.begin(), y.end(), 0.0);
   for (std::size_t g = 0; g < owned_groups_; ++g)
-    add_rows(groups_[g].row, static_cast<std::size_t>(groups_[g].rows), x.data() + groups_[g].first,
+    add_rows(groups_[g].row, groups_[g].rows, x.data() + groups_[g].first,
              y.data() + static_cast<std::size_t>(groups_[g].node) * dim, dim);
   part_->halo.forward(y, part_->dim());
   if (!cluster_) return;
@@ -150,19 +149,19 @@ void TraceRows::transpose(std::span<const double> x, std::span<double> y) const 
 }
 
 void TraceRows::apply(std::span<const double> y, std::span<double> x) const {
-  const auto dim = static_cast<std::size_t>(part_->dim());
+  const std::size_t dim = part_->dim();
   for (std::size_t g = 0; g < owned_groups_; ++g)
-    take_rows(groups_[g].row, static_cast<std::size_t>(groups_[g].rows),
-              y.data() + static_cast<std::size_t>(groups_[g].node) * dim, x.data() + groups_[g].first, dim);
+    take_rows(groups_[g].row, groups_[g].rows, y.data() + static_cast<std::size_t>(groups_[g].node) * dim,
+              x.data() + groups_[g].first, dim);
   for (const ClusterRow& row : wide_rows_) x[row.row] = row.of(y, dim);
 }
 
 void TraceRows::lift(std::span<const double> x, std::span<double> y) const {
-  const auto dim = static_cast<std::size_t>(part_->dim());
+  const std::size_t dim = part_->dim();
   std::fill(y.begin(), y.end(), 0.0);
   for (const auto& group : groups_)
     if (group.first < x.size() && !group.in_cluster)
-      add_rows(group.inverse, static_cast<std::size_t>(group.rows), x.data() + group.first,
+      add_rows(group.inverse, group.rows, x.data() + group.first,
                y.data() + static_cast<std::size_t>(group.node) * dim, dim);
   part_->halo.forward(y, part_->dim());
   if (cluster_)
@@ -170,11 +169,11 @@ void TraceRows::lift(std::span<const double> x, std::span<double> y) const {
 }
 
 void TraceRows::lift_transpose(std::span<const double> y, std::span<double> x) const {
-  const auto dim = static_cast<std::size_t>(part_->dim());
+  const std::size_t dim = part_->dim();
   for (const auto& group : groups_)
     if (group.first < x.size() && !group.in_cluster)
-      take_rows(group.inverse, static_cast<std::size_t>(group.rows),
-                y.data() + static_cast<std::size_t>(group.node) * dim, x.data() + group.first, dim);
+      take_rows(group.inverse, group.rows, y.data() + static_cast<std::size_t>(group.node) * dim,
+                x.data() + group.first, dim);
   if (!cluster_) return;
   const Vector z = cluster_->solve([&](const ClusterRow& row) { return row.of(y, dim); });
   for (const ClusterRow& row : cluster_->rows()) x[row.row] = z[cluster_->position(row.number)];
@@ -185,7 +184,7 @@ void TraceRows::lift_transpose(std::span<const double> y, std::span<double> x) c
 }
 
 std::vector<NodeBlock> TraceRows::narrow_blocks(double r) const {
-  const auto dim = static_cast<std::size_t>(part_->dim());
+  const std::size_t dim = part_->dim();
   std::vector<NodeBlock> blocks;
   for (std::size_t g = 0; g < owned_groups_; ++g) {
     NodeBlock block{groups_[g].node, {}};
@@ -200,7 +199,7 @@ std::vector<NodeBlock> TraceRows::narrow_blocks(double r) const {
 
 std::vector<NodeBlock> TraceRows::wide_blocks(double r) const {
   if (!cluster_) return {};
-  const auto dim = static_cast<std::size_t>(part_->dim());
+  const std::size_t dim = part_->dim();
   Vector sums = wide_.zeros(dim * dim);
   for (const ClusterRow& row : wide_rows_)
     for (const auto& share : row.shares)
@@ -219,7 +218,7 @@ std::vector<NodeBlock> TraceRows::penalty_blocks(double r) const {
 }
 
 std::vector<NodeBlock> TraceRows::pinning_blocks(std::span<const float> diagonal) const {
-  const auto dim = static_cast<std::size_t>(part_->dim());
+  const std::size_t dim = part_->dim();
   std::vector<NodeBlock> blocks = narrow_blocks(1.0), wide = wide_blocks(1.0);
   scale_to(blocks, pinned_narrow, diagonal, dim);
   scale_to(wide, pinned_wide, diagonal, dim);

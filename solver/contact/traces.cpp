@@ -16,10 +16,10 @@ double inner(const Vector3& row, const double* u, std::size_t dim) {
 }  // namespace
 
 void Traces::evaluate(std::span<const double> omega, ContactValues& values) const {
-  const auto dim = static_cast<std::size_t>(part_->dim());
+  const std::size_t dim = part_->dim();
   const auto all = points();
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const auto tangents = static_cast<std::size_t>(all[i].tangents);
+    const std::size_t tangents = all[i].tangents;
     double normal = 0.0, tangential[2] = {0.0, 0.0};
     for (const RowEntry& entry : entries(i)) {
       const double* u = omega.data() + static_cast<std::size_t>(entry.node) * dim;
@@ -32,7 +32,7 @@ void Traces::evaluate(std::span<const double> omega, ContactValues& values) cons
 }
 
 void Traces::add_force(const ContactValues& lambda, double factor, std::span<double> y) const {
-  const auto dim = static_cast<std::size_t>(part_->dim());
+  const std::size_t dim = part_->dim();
   const auto all = points();
   Vector wide = wide_.zeros(dim);
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -50,7 +50,7 @@ void Traces::add_force(const ContactValues& lambda, double factor, std::span<dou
 }
 
 double Traces::add_penalty(const Penalty& r, std::span<const double> x, std::span<double> y) const {
-  const auto dim = static_cast<std::size_t>(part_->dim());
+  const std::size_t dim = part_->dim();
   Vector wide = wide_.zeros(dim);
   double share = 0.0;
   for (std::size_t i = 0; i < size(); ++i) {

@@ -11,7 +11,7 @@ WideNodes::WideNodes(const Part& part) : part_(&part) {
   std::vector<std::int32_t> mark(part.nodes(), 0);
   for (std::size_t i = 0; i < part.contact.size(); ++i)
     if (part.contact.is_wide(i))
-      for (const RowEntry& entry : part.contact.entries(i)) mark[static_cast<std::size_t>(entry.node)] = 1;
+      for (const RowEntry& entry : part.contact.entries(i)) mark[entry.node] = 1;
   part.halo.sum(mark, 1);
   for (std::size_t n = 0; n < mark.size(); ++n)
     if (mark[n] > 0) nodes_.push_back(static_cast<std::int32_t>(n));
@@ -37,7 +37,7 @@ bool WideNodes::contains(std::int32_t node) const noexcept {
 }
 
 void WideNodes::add(std::span<double> forces, std::span<double> y) const {
-  const auto dim = static_cast<std::size_t>(part_->dim());
+  const std::size_t dim = part_->dim();
   halo_.sum(forces, part_->dim());
   for (std::size_t k = 0; k < nodes_.size(); ++k)
     for (std::size_t c = 0; c < dim; ++c)
@@ -46,7 +46,7 @@ void WideNodes::add(std::span<double> forces, std::span<double> y) const {
 
 std::vector<NodeBlock> WideNodes::summed(std::vector<double> blocks) const {
   if (!part_->wide_contact) return {};
-  const auto dim = static_cast<std::size_t>(part_->dim());
+  const std::size_t dim = part_->dim();
   halo_.sum(std::span<double>(blocks), part_->dim() * part_->dim());
   std::vector<NodeBlock> out;
   for (std::size_t k = 0; k < nodes_.size() && nodes_[k] < part_->owned_nodes(); ++k) {

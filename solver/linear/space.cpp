@@ -11,7 +11,7 @@ void Space::hold(std::int32_t node, const Vector3& direction) {
   // Points of one node follow each other in Part::contact, so looking at the last entry is enough.
   if (held_.empty() || held_.back().node != node) held_.push_back({node, 0, {}});
   auto& entry = held_.back();
-  const auto dim = static_cast<std::size_t>(part_->dim());
+  const std::size_t dim = part_->dim();
   Vector3 d = direction;
   for (std::size_t c = 0; c < dim; ++c)
     if (part_->held[static_cast<std::size_t>(node) * dim + c]) d[c] = 0.0;
@@ -22,26 +22,26 @@ void Space::hold(std::int32_t node, const Vector3& direction) {
   if (length == 0.0) return;
   for (int pass = 0; pass < 2; ++pass)
     for (int k = 0; k < entry.count; ++k) {
-      const auto& b = entry.basis[static_cast<std::size_t>(k)];
+      const auto& b = entry.basis[k];
       const double s = inner(d, b);
       for (std::size_t c = 0; c < 3; ++c) d[c] -= s * b[c];
     }
   const double rest = std::sqrt(inner(d, d));
   if (rest <= 1e-8 * length || entry.count == 3) return;  // dependent on what is held already
   for (double& c : d) c /= rest;
-  entry.basis[static_cast<std::size_t>(entry.count++)] = d;
+  entry.basis[entry.count++] = d;
 }
 
 namespace {
 
 template <class S>
 void project_out(const Part& part, std::span<const Space::HeldDirections> held, std::span<S> x) {
-  for (const auto& entry : part.prescribed) x[static_cast<std::size_t>(entry.component)] = S{0};
-  const auto dim = static_cast<std::size_t>(part.dim());
+  for (const auto& entry : part.prescribed) x[entry.component] = S{0};
+  const std::size_t dim = part.dim();
   for (const auto& entry : held) {
     S* u = x.data() + static_cast<std::size_t>(entry.node) * dim;
     for (int k = 0; k < entry.count; ++k) {
-      const auto& b = entry.basis[static_cast<std::size_t>(k)];
+      const auto& b = entry.basis[k];
       double s = 0.0;
       for (std::size_t c = 0; c < dim; ++c) s += b[c] * static_cast<double>(u[c]);
       for (std::size_t c = 0; c < dim; ++c) u[c] = static_cast<S>(static_cast<double>(u[c]) - s * b[c]);

@@ -29,9 +29,9 @@ class FacetSets {
       : mesh_(mesh),
         table_(cell(mesh.type).facet_nodes),
         facets_(static_cast<std::uint32_t>(facets_per_element(mesh.type))),
-        element_nodes_(static_cast<std::size_t>(nodes_per_element(mesh.type))),
-        facet_nodes_(static_cast<std::size_t>(nodes_per_facet(mesh.type))),
-        corners_(static_cast<std::size_t>(cell(mesh.type).facet().corners)) {
+        element_nodes_(nodes_per_element(mesh.type)),
+        facet_nodes_(nodes_per_facet(mesh.type)),
+        corners_(cell(mesh.type).facet().corners) {
     const std::size_t total = mesh.element_count() * facets_;
     if (total > std::numeric_limits<std::uint32_t>::max())
       throw InputError("the mesh has " + std::to_string(mesh.element_count()) +
@@ -136,8 +136,8 @@ class Geometry {
       : mesh_(mesh),
         type_(cell(mesh.type)),
         points_(gradients_at_points(type_)),
-        dim_(static_cast<std::size_t>(type_.dim)),
-        nodes_(static_cast<std::size_t>(type_.nodes)) {}
+        dim_(type_.dim),
+        nodes_(type_.nodes) {}
 
   struct Shape {
     double volume = 0.0;    ///< signed

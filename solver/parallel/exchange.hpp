@@ -20,8 +20,7 @@ struct Received {
   std::vector<T> entries;
   std::vector<int> starts;  ///< ranks + 1
   std::span<const T> from(std::size_t rank) const {
-    return std::span(entries).subspan(static_cast<std::size_t>(starts[rank]),
-                                      static_cast<std::size_t>(starts[rank + 1] - starts[rank]));
+    return std::span(entries).subspan(starts[rank], starts[rank + 1] - starts[rank]);
   }
 };
 
@@ -41,7 +40,7 @@ Received<T> exchange_all(const std::vector<std::vector<T>>& to, const Communicat
   Received<T> received;
   received.starts.assign(ranks + 1, 0);
   std::partial_sum(in.begin(), in.end(), received.starts.begin() + 1);
-  received.entries.resize(static_cast<std::size_t>(received.starts.back()));
+  received.entries.resize(received.starts.back());
   MPI_Datatype type;
   MPI_Type_contiguous(static_cast<int>(sizeof(T)), MPI_BYTE, &type);
   MPI_Type_commit(&type);
@@ -56,11 +55,11 @@ template <class T>
 std::vector<T> gathered(const std::vector<T>& mine, const Communicator& comm) {
   static_assert(std::is_trivially_copyable_v<T>);
   if (comm.ranks == 1) return mine;
-  std::vector<int> count(static_cast<std::size_t>(comm.ranks)), first(count.size());
+  std::vector<int> count(comm.ranks), first(count.size());
   const auto here = static_cast<int>(mine.size());
   MPI_Allgather(&here, 1, MPI_INT, count.data(), 1, MPI_INT, comm.comm);
   std::exclusive_scan(count.begin(), count.end(), first.begin(), 0);
-  std::vector<T> all(static_cast<std::size_t>(first.back() + count.back()));
+  std::vector<T> all(first.back() + count.back());
   MPI_Datatype type;
   MPI_Type_contiguous(static_cast<int>(sizeof(T)), MPI_BYTE, &type);
   MPI_Type_commit(&type);

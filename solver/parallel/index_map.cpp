@@ -54,10 +54,10 @@ IndexMap make_index_map(const Communicator& comm, std::int32_t owned, std::vecto
   map.starts = number_owned(owned, comm);
   map.ghosts = std::move(ghosts);
   if (comm.ranks == 1) return map;
-  std::vector<std::vector<std::int64_t>> wanted(static_cast<std::size_t>(comm.ranks));
+  std::vector<std::vector<std::int64_t>> wanted(comm.ranks);
   std::vector<IndexMap::Neighbour> all(wanted.size());
   for (std::size_t i = 0; i < map.ghosts.size(); ++i) {
-    const auto from = static_cast<std::size_t>(map.owner(map.ghosts[i]));
+    const std::size_t from = map.owner(map.ghosts[i]);
     wanted[from].push_back(map.ghosts[i]);
     all[from].receive.push_back(owned + static_cast<std::int32_t>(i));
   }

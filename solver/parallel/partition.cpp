@@ -37,12 +37,11 @@ std::vector<std::uint16_t> partition_elements(const Mesh& mesh, std::span<const 
   std::vector<std::uint16_t> part(mesh.element_count(), 0);
   if (ranks == 1) return part;
   const std::vector<Index> node_part = partition_nodes(mesh.view(), order, ranks);
-  const auto stride = static_cast<std::size_t>(nodes_per_element(mesh.type));
-  const auto corners = static_cast<std::size_t>(cell(mesh.type).corners);
+  const std::size_t stride = nodes_per_element(mesh.type);
+  const std::size_t corners = cell(mesh.type).corners;
   for (std::size_t e = 0; e < part.size(); ++e) {
     std::array<Index, 8> of{};
-    for (std::size_t a = 0; a < corners; ++a)
-      of[a] = node_part[static_cast<std::size_t>(mesh.elements[e * stride + a])];
+    for (std::size_t a = 0; a < corners; ++a) of[a] = node_part[mesh.elements[e * stride + a]];
     std::ptrdiff_t most = 0;
     for (std::size_t k = 0; k < corners; ++k) {
       const Index candidate = of[(e + k) % corners];
@@ -90,9 +89,9 @@ struct Sharers {
   void widen(const ConstraintRows& contact) {
     for (std::size_t i = 0; i < contact.size(); ++i) {
       if (!contact.is_wide(i)) continue;
-      const int rank_of_point = owner(static_cast<std::size_t>(contact[i].node));
+      const int rank_of_point = owner(contact[i].node);
       for (const RowEntry& entry : contact.entries(i)) {
-        const auto node = static_cast<std::size_t>(entry.node);
+        const std::size_t node = entry.node;
         if (!has(node, rank_of_point)) more[node].insert(rank_of_point);
       }
     }
@@ -102,7 +101,7 @@ struct Sharers {
 Sharers find_sharers(const Mesh& mesh, std::span<const std::uint16_t> part, int ranks) {
   Sharers sharers;
   const std::size_t nodes = mesh.node_count();
-  const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  const std::size_t npe = nodes_per_element(mesh.type);
   sharers.start.assign(nodes + 1, 0);
   if (ranks == 1) {
     std::iota(sharers.start.begin(), sharers.start.end(), std::size_t{0});
@@ -113,14 +112,14 @@ Sharers find_sharers(const Mesh& mesh, std::span<const std::uint16_t> part, int 
   constexpr int none = -1, several = -2;
   std::vector<int> only(nodes, none);
   for (std::size_t k = 0; k < mesh.elements.size(); ++k) {
-    int& rank = only[static_cast<std::size_t>(mesh.elements[k])];
+    int& rank = only[mesh.elements[k]];
     const int here = part[k / npe];
     if (rank == none) rank = here;
     if (rank != here) rank = several;
   }
   std::map<std::size_t, std::set<int>> lists;
   for (std::size_t k = 0; k < mesh.elements.size(); ++k) {
-    const auto n = static_cast<std::size_t>(mesh.elements[k]);
+    const std::size_t n = mesh.elements[k];
     if (only[n] == several) lists[n].insert(part[k / npe]);
   }
   for (std::size_t n = 0; n < nodes; ++n) {
@@ -151,8 +150,8 @@ class Splitter {
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
     auto next = first_;
     for (const Index index : order_) {
-      const auto n = static_cast<std::size_t>(index);
-      global_[n] = next[static_cast<std::size_t>(sharers_.owner(n))]++;
+      const std::size_t n = index;
+      global_[n] = next[sharers_.owner(n)]++;
     }
   }
 
@@ -167,13 +166,13 @@ class Splitter {
     part.loose_modes = problem_.loose_modes;
     part.no_equilibrium = problem_.no_equilibrium;
     part.start = rigid_start(problem_, part.node_index);
-    for (const Index n : part.node_index) local_[static_cast<std::size_t>(n)] = -1;
+    for (const Index n : part.node_index) local_[n] = -1;
     return part;
   }
 
  private:
   void refuse_empty_parts() const {
-    std::vector<std::uint8_t> filled(static_cast<std::size_t>(ranks_), 0);
+    std::vector<std::uint8_t> filled(ranks_, 0);
     for (const std::uint16_t rank : part_of_) filled[rank] = 1;
     if (std::count(filled.begin(), filled.end(), 1) == ranks_) return;
     throw InputError("a mesh of " + std::to_string(part_of_.size()) + " elements cannot be split into " +
@@ -182,7 +181,7 @@ class Splitter {
 
   void take_nodes(Part& part, int rank) {
     const Mesh& mesh = problem_.mesh;
-    const auto dim = static_cast<std::size_t>(mesh.dim());
+    const std::size_t dim = mesh.dim();
     part.type = mesh.type;
     part.total_elements = static_cast<std::int64_t>(mesh.element_count());
     part.halo.rank = rank;
@@ -190,7 +189,7 @@ class Splitter {
     part.halo.starts = first_;
     for (const bool owned : {true, false}) {
       for (const Index index : order_) {
-        const auto n = static_cast<std::size_t>(index);
+        const std::size_t n = index;
         if ((sharers_.owner(n) == rank) != owned || !sharers_.has(n, rank)) continue;
         local_[n] = static_cast<Index>(part.node_index.size());
         part.node_index.push_back(index);
@@ -203,7 +202,7 @@ class Splitter {
     part.held.reserve(count * dim);
     if (!mesh.node_tags.empty()) part.node_tags.reserve(count);
     for (const Index index : part.node_index) {
-      const auto n = static_cast<std::size_t>(index);
+      const std::size_t n = index;
       if (!mesh.node_tags.empty()) part.node_tags.push_back(mesh.node_tags[n]);
       if (local_[n] >= part.owned_nodes()) part.halo.ghosts.push_back(global_[n]);
       for (std::size_t c = n * dim; c < (n + 1) * dim; ++c) {
@@ -218,8 +217,8 @@ class Splitter {
 
   void take_elements(Part& part, int rank) const {
     const Mesh& mesh = problem_.mesh;
-    const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
-    const auto count = static_cast<std::size_t>(std::count(part_of_.begin(), part_of_.end(), rank));
+    const std::size_t npe = nodes_per_element(mesh.type);
+    const std::size_t count = std::count(part_of_.begin(), part_of_.end(), rank);
     const bool several_laws = problem_.laws.size() > 1;
     if (!mesh.element_tags.empty()) part.element_tags.reserve(count);
     if (several_laws) part.law_of_element.reserve(count);
@@ -229,32 +228,31 @@ class Splitter {
       part.element_index.push_back(static_cast<Index>(e));
       if (!mesh.element_tags.empty()) part.element_tags.push_back(mesh.element_tags[e]);
       if (several_laws) part.law_of_element.push_back(problem_.law_of_element[e]);
-      for (std::size_t a = 0; a < npe; ++a)
-        part.elements.push_back(local_[static_cast<std::size_t>(mesh.elements[e * npe + a])]);
+      for (std::size_t a = 0; a < npe; ++a) part.elements.push_back(local_[mesh.elements[e * npe + a]]);
     }
   }
 
   void plan_halo(Part& part, int rank) const {
-    std::vector<IndexMap::Neighbour> all(static_cast<std::size_t>(ranks_));
+    std::vector<IndexMap::Neighbour> all(ranks_);
     // Both sides walk their nodes in the mesh's order, so the lists match.
     std::vector<Index> ascending = part.node_index;
     std::sort(ascending.begin(), ascending.end());
     for (const Index index : ascending) {
-      const auto n = static_cast<std::size_t>(index);
+      const std::size_t n = index;
       if (!sharers_.is_shared(n)) continue;
       const Index here = local_[n];
       part.halo.shared.push_back(here);
       const int owner = sharers_.owner(n);
       for (const int other : sharers_.of(n)) {
         if (other == rank) continue;
-        auto& neighbour = all[static_cast<std::size_t>(other)];
+        auto& neighbour = all[other];
         neighbour.shared.push_back(here);
         if (owner == rank) neighbour.send.push_back(here);
         if (owner == other) neighbour.receive.push_back(here);
       }
     }
     for (int other = 0; other < ranks_; ++other) {
-      auto& neighbour = all[static_cast<std::size_t>(other)];
+      auto& neighbour = all[other];
       neighbour.rank = other;
       if (!neighbour.shared.empty()) part.halo.neighbours.push_back(std::move(neighbour));
     }
@@ -267,15 +265,14 @@ class Splitter {
     // Points of one node are kept together: Traces and Space rely on it.
     std::vector<Index> order(contact.size());
     std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
-      return contact[static_cast<std::size_t>(a)].node < contact[static_cast<std::size_t>(b)].node;
-    });
-    const auto to_local = [&](Index& node) { node = local_[static_cast<std::size_t>(node)]; };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](Index a, Index b) { return contact[a].node < contact[b].node; });
+    const auto to_local = [&](Index& node) { node = local_[node]; };
     for (const bool owned : {true, false}) {
       for (const Index index : order) {
-        const auto i = static_cast<std::size_t>(index);
+        const std::size_t i = index;
         ContactPoint point = contact[i];
-        const auto n = static_cast<std::size_t>(point.node);
+        const std::size_t n = point.node;
         if (local_[n] < 0 || (sharers_.owner(n) == rank) != owned) continue;
         if (!owned && contact.is_wide(i)) continue;
         std::vector<RowEntry> entries(contact.entries(i).begin(), contact.entries(i).end());
@@ -291,7 +288,7 @@ class Splitter {
   void take_probes(Part& part, int rank) const {
     part.total_probes = static_cast<Index>(problem_.probes.size());
     for (std::size_t i = 0; i < problem_.probes.size(); ++i) {
-      const auto e = static_cast<std::size_t>(problem_.probes[i].element);
+      const std::size_t e = problem_.probes[i].element;
       if (part_of_[e] != rank) continue;
       Probe probe = problem_.probes[i];
       probe.element = part.element_index.position_of(probe.element);

@@ -24,8 +24,7 @@ S* pack(std::span<const std::int32_t> indices, std::size_t width, std::span<cons
 }  // namespace
 
 template <class S>
-Scatterer<S>::Scatterer(const IndexMap& map, int components)
-    : map_(&map), width_(static_cast<std::size_t>(components)) {}
+Scatterer<S>::Scatterer(const IndexMap& map, int components) : map_(&map), width_(components) {}
 
 /// Starts a receive for each neighbour's `incoming` indices and a send of x at its `outgoing` ones.
 template <class S>

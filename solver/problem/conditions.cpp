@@ -20,15 +20,15 @@ std::string path_of(const char* list, std::size_t index) {
 void add(std::vector<double>& load, int dim, std::int32_t node, const Vector3& force) {
   for (int c = 0; c < dim; ++c) {
     load[static_cast<std::size_t>(node) * static_cast<std::size_t>(dim) + static_cast<std::size_t>(c)] +=
-        force[static_cast<std::size_t>(c)];
+        force[c];
   }
 }
 
 void add_facet_loads(Problem& problem, const BoundaryEntry& entry, std::span<const std::int32_t> facets) {
   const Mesh& mesh = problem.mesh;
   for (const std::int32_t f : facets) {
-    const FacetWeights weights = consistent_weights(mesh, static_cast<std::size_t>(f));
-    const auto nodes = mesh.facet(static_cast<std::size_t>(f));
+    const FacetWeights weights = consistent_weights(mesh, f);
+    const auto nodes = mesh.facet(f);
     for (std::size_t k = 0; k < nodes.size(); ++k) {
       if (entry.traction) add(problem.load, mesh.dim(), nodes[k], weights.area[k] * *entry.traction);
       if (entry.pressure) add(problem.load, mesh.dim(), nodes[k], -*entry.pressure * weights.normal[k]);
@@ -38,9 +38,9 @@ void add_facet_loads(Problem& problem, const BoundaryEntry& entry, std::span<con
 
 void add_body_force(Problem& problem, const Vector3& force, std::span<const std::int32_t> elements) {
   const Mesh& mesh = problem.mesh;
-  const auto n = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  const std::size_t n = nodes_per_element(mesh.type);
   for (const std::int32_t e : elements) {
-    const auto weights = volume_weights(mesh, static_cast<std::size_t>(e));
+    const auto weights = volume_weights(mesh, e);
     for (std::size_t k = 0; k < n; ++k) {
       add(problem.load, mesh.dim(), mesh.elements[static_cast<std::size_t>(e) * n + k], weights[k] * force);
     }
@@ -61,10 +61,9 @@ void assign_materials(Problem& problem, const Model& model, const Selection& sel
                        ": other elements have no B-bar here");
     problem.laws.push_back(entry.law);
     for (const std::int32_t e : selection.elements(entry.on, path)) {
-      std::uint16_t& law = problem.law_of_element[static_cast<std::size_t>(e)];
+      std::uint16_t& law = problem.law_of_element[e];
       if (law != none && model.materials[law].on.kind != Selector::Kind::all) {
-        throw InputError(path + ".on: element " +
-                         std::to_string(mesh.element_tag(static_cast<std::size_t>(e))) +
+        throw InputError(path + ".on: element " + std::to_string(mesh.element_tag(e)) +
                          " already has the material of " + path_of("material", law) +
                          " (only an entry on \"all\" may be overridden)");
       }
@@ -95,7 +94,7 @@ void assemble_load(Problem& problem, const Model& model, const Selection& select
 
 void hold_displacements(Problem& problem, const Model& model, const Selection& selection) {
   const Mesh& mesh = problem.mesh;
-  const auto dim = static_cast<std::size_t>(mesh.dim());
+  const std::size_t dim = mesh.dim();
   std::vector<std::int32_t> holder(problem.held.size(), -1);
   for (std::size_t i = 0; i < model.boundary.size(); ++i) {
     const BoundaryEntry& entry = model.boundary[i];
@@ -108,10 +107,10 @@ void hold_displacements(Problem& problem, const Model& model, const Selection& s
         const std::size_t k = static_cast<std::size_t>(node) * dim + c;
         if (problem.held[k] != 0 && problem.prescribed[k] != *value) {
           std::ostringstream text;
-          text << path << ".displacement: node " << mesh.node_tag(static_cast<std::size_t>(node)) << " at "
+          text << path << ".displacement: node " << mesh.node_tag(node) << " at "
                << to_text(position(mesh, node), mesh.dim()) << " is given "
                << "xyz"[c] << " = " << *value << " here and " << problem.prescribed[k] << " by "
-               << path_of("boundary", static_cast<std::size_t>(holder[k]));
+               << path_of("boundary", holder[k]);
           throw InputError(text.str());
         }
         problem.held[k] = 1;

@@ -49,8 +49,8 @@ class Faces {
     if (const auto* sphere = std::get_if<Sphere>(&obstacle_)) return at_sphere(*sphere, x, node);
     const double length = norm(outer);
     if (!(length > 0.0)) {
-      throw InputError(path_ + ".gap: the outer normal at node " +
-                       std::to_string(mesh_.node_tag(static_cast<std::size_t>(node))) + " is zero");
+      throw InputError(path_ + ".gap: the outer normal at node " + std::to_string(mesh_.node_tag(node)) +
+                       " is zero");
     }
     return Facing{(1.0 / length) * outer, std::get<ConstantGap>(obstacle_).gap};
   }
@@ -66,8 +66,7 @@ class Faces {
     }
     const double distance = norm(to_centre);
     if (!(distance > 0.0)) {
-      throw InputError(path_ + ".sphere: node " +
-                       std::to_string(mesh_.node_tag(static_cast<std::size_t>(node))) +
+      throw InputError(path_ + ".sphere: node " + std::to_string(mesh_.node_tag(node)) +
                        " lies at the centre, where no direction leads out; give a \"direction\"");
     }
     return Facing{(1.0 / distance) * to_centre, distance - sphere.radius};
@@ -81,7 +80,7 @@ class Faces {
 
 /// ν without what is held of it.
 Vector3 free_components(const ContactPoint& point, const Problem& problem) {
-  const auto dim = static_cast<std::size_t>(problem.mesh.dim());
+  const std::size_t dim = problem.mesh.dim();
   Vector3 trace{};
   for (std::size_t c = 0; c < dim; ++c)
     if (problem.held[static_cast<std::size_t>(point.node) * dim + c] == 0) trace[c] = point.normal[c];
@@ -91,7 +90,7 @@ Vector3 free_components(const ContactPoint& point, const Problem& problem) {
 /// Fills tangents from the normal and the free components, and takes from the gap what the prescribed ones
 /// close. False where the node cannot move along the normal.
 bool restrict_to_free(ContactPoint& point, const Problem& problem, bool friction) {
-  const auto dim = static_cast<std::size_t>(problem.mesh.dim());
+  const std::size_t dim = problem.mesh.dim();
   const std::size_t base = static_cast<std::size_t>(point.node) * dim;
   std::array<bool, 3> free{};
   for (std::size_t c = 0; c < dim; ++c) {
@@ -113,12 +112,12 @@ bool restrict_to_free(ContactPoint& point, const Problem& problem, bool friction
     t[axis] = 1.0;
     t = t - dot(t, along) * along;
     for (int k = 0; k < point.tangents; ++k) {
-      const Vector3& other = point.tangent[static_cast<std::size_t>(k)];
+      const Vector3& other = point.tangent[k];
       t = t - dot(t, other) * other;
     }
     // The last free axis is spanned by the trace and the tangents so far.
     if (norm(t) < negligible_trace || point.tangents == 2) continue;
-    point.tangent[static_cast<std::size_t>(point.tangents++)] = (1.0 / norm(t)) * t;
+    point.tangent[point.tangents++] = (1.0 / norm(t)) * t;
   }
   return true;
 }
@@ -160,8 +159,8 @@ std::vector<ContactPoint> points_of_entry(const Problem& problem, const ContactE
   std::vector<double> mass(nodes.size());
   std::vector<Vector3> outer(nodes.size());
   for (const std::int32_t f : facets) {
-    const FacetWeights weights = lumped_weights(mesh, static_cast<std::size_t>(f));
-    const auto facet = mesh.facet(static_cast<std::size_t>(f));
+    const FacetWeights weights = lumped_weights(mesh, f);
+    const auto facet = mesh.facet(f);
     for (std::size_t k = 0; k < facet.size(); ++k) {
       const auto place =
           static_cast<std::size_t>(std::lower_bound(nodes.begin(), nodes.end(), facet[k]) - nodes.begin());
@@ -201,10 +200,9 @@ void find_contact_points(Problem& problem, const Model& model, const Selection& 
     const std::string path = "contact[" + std::to_string(i) + "]";
     const std::vector<std::int32_t> facets = selection.facets(model.contact[i].on, path);
     for (const std::int32_t f : facets) {
-      std::int32_t& owner = entry_of_facet[static_cast<std::size_t>(f)];
+      std::int32_t& owner = entry_of_facet[f];
       if (owner >= 0) {
-        const auto element =
-            static_cast<std::size_t>(problem.mesh.facet_element[static_cast<std::size_t>(f)]);
+        const auto element = static_cast<std::size_t>(problem.mesh.facet_element[f]);
         throw InputError(path + ".on: the facet of element " +
                          std::to_string(problem.mesh.element_tag(element)) + " already belongs to contact[" +
                          std::to_string(owner) + "]");

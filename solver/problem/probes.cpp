@@ -34,8 +34,7 @@ std::optional<Vector3> reference_point(const Mesh& mesh, std::span<const std::in
       miss = miss - shapes.value[k] * node;
       for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) {
-          jacobian(i, j) +=
-              node[static_cast<std::size_t>(i)] * shapes.gradient[k][static_cast<std::size_t>(j)];
+          jacobian(i, j) += node[i] * shapes.gradient[k][j];
         }
       }
     }
@@ -87,8 +86,8 @@ std::string outside_message(const Mesh& mesh, std::size_t index, const Vector3& 
   }
   std::ostringstream text;
   text << "probe[" << index << "]: the point " << to_text(x, mesh.dim())
-       << " lies outside the body; the nearest node, " << mesh.node_tag(static_cast<std::size_t>(nearest))
-       << " at " << to_text(position(mesh, nearest), mesh.dim()) << ", is " << least << " away";
+       << " lies outside the body; the nearest node, " << mesh.node_tag(nearest) << " at "
+       << to_text(position(mesh, nearest), mesh.dim()) << ", is " << least << " away";
   return text.str();
 }
 
@@ -101,7 +100,7 @@ std::vector<Probe> locate_probes(const Mesh& mesh, const Model& model) {
     probes[p].point = model.probes[p];
     probes[p].element = -1;
   }
-  const auto n = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  const std::size_t n = nodes_per_element(mesh.type);
   for (std::size_t e = 0; e < mesh.element_count() && !probes.empty(); ++e) {
     const auto nodes = std::span(mesh.elements).subspan(e * n, n);
     for (std::size_t p = 0; p < probes.size(); ++p) {

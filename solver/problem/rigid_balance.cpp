@@ -38,11 +38,11 @@ struct Reactions {
       if (!(share(k) > 0.0)) continue;
       column.col(kept) = column.col(k).eval();
       share(kept) = share(k);
-      point[static_cast<std::size_t>(kept++)] = point[static_cast<std::size_t>(k)];
+      point[kept++] = point[k];
     }
     column.conservativeResize(Eigen::NoChange, kept);
     share.conservativeResize(kept);
-    point.resize(static_cast<std::size_t>(kept));
+    point.resize(kept);
   }
   /// Least squares with shares ≥ 0, from those there are (Lawson and Hanson's inner loop).
   void fit(const VectorXd& load) {
@@ -139,7 +139,7 @@ RigidBalance balance(const std::vector<RigidContact>& points, const VectorXd& lo
     if (!(rest.norm() < before * (1.0 - 1e-14))) break;
   }
   for (const std::ptrdiff_t of : reactions.point)
-    if (of >= 0) result.supports.push_back(static_cast<std::size_t>(of));
+    if (of >= 0) result.supports.push_back(of);
   result.exists = rest.norm() <= 10.0 * balanced;
   if (!result.exists) result.motion = rest.head(motions);
   return result;

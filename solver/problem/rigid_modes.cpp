@@ -44,9 +44,9 @@ Vector6 row(const Piece& piece, const Vector3& x, const Vector3& direction) {
 }
 
 std::int32_t find_root(std::vector<std::int32_t>& parent, std::int32_t node) {
-  while (parent[static_cast<std::size_t>(node)] != node) {
-    std::int32_t& up = parent[static_cast<std::size_t>(node)];
-    up = parent[static_cast<std::size_t>(up)];
+  while (parent[node] != node) {
+    std::int32_t& up = parent[node];
+    up = parent[up];
     node = up;
   }
   return node;
@@ -56,23 +56,23 @@ std::int32_t find_root(std::vector<std::int32_t>& parent, std::int32_t node) {
 std::vector<Piece> find_pieces(const Mesh& mesh, std::vector<std::int32_t>& piece_of_node) {
   std::vector<std::int32_t> parent(mesh.node_count());
   std::iota(parent.begin(), parent.end(), 0);
-  const auto n = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  const std::size_t n = nodes_per_element(mesh.type);
   for (std::size_t e = 0; e < mesh.element_count(); ++e) {
     const std::int32_t first = find_root(parent, mesh.elements[e * n]);
     for (std::size_t k = 1; k < n; ++k) {
-      parent[static_cast<std::size_t>(find_root(parent, mesh.elements[e * n + k]))] = first;
+      parent[find_root(parent, mesh.elements[e * n + k])] = first;
     }
   }
   std::vector<Piece> pieces;
   piece_of_node.assign(mesh.node_count(), -1);
   const auto piece_of = [&](std::int32_t node) -> Piece& {
-    const auto root = static_cast<std::size_t>(find_root(parent, node));
+    const std::size_t root = find_root(parent, node);
     if (piece_of_node[root] < 0) {
       piece_of_node[root] = static_cast<std::int32_t>(pieces.size());
       pieces.emplace_back();
     }
-    piece_of_node[static_cast<std::size_t>(node)] = piece_of_node[root];
-    return pieces[static_cast<std::size_t>(piece_of_node[root])];
+    piece_of_node[node] = piece_of_node[root];
+    return pieces[piece_of_node[root]];
   };
   for (std::size_t e = 0; e < mesh.element_count(); ++e) {
     Piece& piece = piece_of(mesh.elements[e * n]);
@@ -97,7 +97,7 @@ void add_row(Matrix6& gram, const Vector6& values) { gram.noalias() += values * 
 /// What the normal and the tangents of a contact point do on the modes of its piece.
 std::array<Vector6, 3> point_rows(const Problem& problem, const Piece& piece, std::size_t i,
                                   std::span<const std::int32_t> piece_of_node) {
-  const auto home = [&](std::int32_t node) { return piece_of_node[static_cast<std::size_t>(node)]; };
+  const auto home = [&](std::int32_t node) { return piece_of_node[node]; };
   std::array<Vector6, 3> sums{Vector6::Zero(), Vector6::Zero(), Vector6::Zero()};
   for (const RowEntry& entry : problem.contact.entries(i)) {
     // What another piece has of the row counts as standing still.
@@ -113,18 +113,18 @@ std::array<Vector6, 3> point_rows(const Problem& problem, const Piece& piece, st
 void collect_rows(const Problem& problem, std::vector<Piece>& pieces,
                   std::span<const std::int32_t> piece_of_node) {
   const Mesh& mesh = problem.mesh;
-  const auto dim = static_cast<std::size_t>(mesh.dim());
+  const std::size_t dim = mesh.dim();
   for (std::size_t k = 0; k < problem.held.size(); ++k) {
     if (problem.held[k] == 0) continue;
     const std::size_t node = k / dim;
-    Piece& piece = pieces[static_cast<std::size_t>(piece_of_node[node])];
+    Piece& piece = pieces[piece_of_node[node]];
     Vector3 axis{};
     axis[k % dim] = 1.0;
     add_row(piece.by_displacement, row(piece, position(mesh, static_cast<std::int32_t>(node)), axis));
   }
   for (std::size_t i = 0; i < problem.contact.size(); ++i) {
     const ContactPoint& point = problem.contact[i];
-    Piece& piece = pieces[static_cast<std::size_t>(piece_of_node[static_cast<std::size_t>(point.node)])];
+    Piece& piece = pieces[piece_of_node[point.node]];
     const auto rows = point_rows(problem, piece, i, piece_of_node);
     for (std::size_t k = 0; k <= static_cast<std::size_t>(point.tangents); ++k)
       add_row(piece.by_contact, rows[k]);
@@ -205,13 +205,13 @@ struct RigidPiece {
 RigidPiece collect(const Problem& problem, const Piece& piece, std::int32_t number,
                    std::span<const std::int32_t> piece_of_node, const Eigen::MatrixXd& loose) {
   const Mesh& mesh = problem.mesh;
-  const auto dim = static_cast<std::size_t>(mesh.dim());
+  const std::size_t dim = mesh.dim();
   RigidPiece rigid;
   rigid.basis = Eigen::HouseholderQR<Eigen::MatrixXd>(loose.transpose()).householderQ() *
                 Eigen::MatrixXd::Identity(6, loose.rows());
   for (std::size_t i = 0; i < problem.contact.size(); ++i) {
     const ContactPoint& point = problem.contact[i];
-    if (piece_of_node[static_cast<std::size_t>(point.node)] != number) continue;
+    if (piece_of_node[point.node] != number) continue;
     const auto rows = point_rows(problem, piece, i, piece_of_node);
     RigidContact contact;
     contact.normal = rigid.basis.transpose() * rows[0];
@@ -242,8 +242,7 @@ std::string explain(const RigidPiece& rigid, const RigidBalance& failed, const P
                     const std::string& name, int dim) {
   // Friction cones open: a body that slides is lifted a little, as the argument goes. That is not to be told.
   Eigen::MatrixXd normals(rigid.load.size(), static_cast<Eigen::Index>(failed.supports.size()));
-  for (Eigen::Index k = 0; k < normals.cols(); ++k)
-    normals.col(k) = rigid.points[failed.supports[static_cast<std::size_t>(k)]].normal;
+  for (Eigen::Index k = 0; k < normals.cols(); ++k) normals.col(k) = rigid.points[failed.supports[k]].normal;
   Eigen::VectorXd motion = failed.motion;
   if (normals.cols() > 0) {
     const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> across(normals);
@@ -316,7 +315,7 @@ void check_rigid_modes(Problem& problem) {
   collect_rows(problem, pieces, piece_of_node);
   const int dim = problem.mesh.dim();
   for (std::int32_t number = 0; number < static_cast<std::int32_t>(pieces.size()); ++number) {
-    const Piece& piece = pieces[static_cast<std::size_t>(number)];
+    const Piece& piece = pieces[number];
     const Eigen::MatrixXd loose = free_modes(piece.by_displacement, dim);
     if (loose.rows() == 0) continue;
     const std::string name = name_piece(piece, problem.mesh, pieces.size());
@@ -336,13 +335,13 @@ void check_rigid_modes(Problem& problem) {
 
 std::vector<double> rigid_start(const Problem& problem, std::span<const std::int32_t> nodes) {
   if (problem.motions.empty()) return {};
-  const auto dim = static_cast<std::size_t>(problem.mesh.dim());
+  const std::size_t dim = problem.mesh.dim();
   std::vector<double> start(nodes.size() * dim);
   for (std::size_t k = 0; k < nodes.size(); ++k) {
-    const auto node = static_cast<std::size_t>(nodes[k]);
+    const std::size_t node = nodes[k];
     const std::int32_t which = problem.motion_of_node.empty() ? 0 : problem.motion_of_node[node];
     if (which < 0) continue;
-    const PieceMotion& motion = problem.motions[static_cast<std::size_t>(which)];
+    const PieceMotion& motion = problem.motions[which];
     const Vector3 turned = cross(motion.turn, position(problem.mesh, nodes[k]) - motion.centre);
     for (std::size_t c = 0; c < dim; ++c) start[k * dim + c] = motion.shift[c] + turned[c];
   }

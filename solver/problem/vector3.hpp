@@ -26,7 +26,7 @@ inline Vector3 cross(const Vector3& a, const Vector3& b) {
 
 /// Position of a node; the third entry is 0 in 2D.
 inline Vector3 position(const Mesh& mesh, std::int32_t node) {
-  const auto dim = static_cast<std::size_t>(mesh.dim());
+  const std::size_t dim = mesh.dim();
   const double* x = mesh.coordinates.data() + static_cast<std::size_t>(node) * dim;
   return {x[0], x[1], dim == 3 ? x[2] : 0.0};
 }

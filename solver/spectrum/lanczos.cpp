@@ -33,11 +33,11 @@ LanczosResult dense(const Product& product, std::span<const std::int64_t> index,
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm, &rank);
   MPI_Comm_size(comm, &ranks);
-  std::vector<int> counts(static_cast<std::size_t>(ranks)), first(static_cast<std::size_t>(ranks), 0);
+  std::vector<int> counts(ranks), first(ranks, 0);
   const int mine = static_cast<int>(index.size());
   MPI_Allgather(&mine, 1, MPI_INT, counts.data(), 1, MPI_INT, comm);
   for (std::size_t r = 1; r < counts.size(); ++r) first[r] = first[r - 1] + counts[r - 1];
-  const auto offset = static_cast<std::int64_t>(first[static_cast<std::size_t>(rank)]);
+  const auto offset = static_cast<std::int64_t>(first[rank]);
 
   LanczosResult result;
   std::vector<double> x(index.size()), y(index.size());
@@ -73,7 +73,7 @@ LanczosResult largest_eigenvalues(const Product& product, std::span<const std::i
   // PARPACK refuses a rank without rows: such a rank carries one row of zeros, which adds the eigenvalue 0.
   const std::size_t own = index.size();
   const auto n = static_cast<a_int>(std::max<std::size_t>(own, 1));
-  const auto length = static_cast<std::size_t>(n);
+  const std::size_t length = n;
   const a_int wanted = options.wanted;
   // ARPACK looks at its values only when a whole basis stands: a loose tolerance wants a short one.
   const int extra = options.basis > 0 ? options.basis : options.tolerance >= 1e-3 ? 7 : 19;
@@ -82,7 +82,7 @@ LanczosResult largest_eigenvalues(const Product& product, std::span<const std::i
       work(3 * length, 0.0);
   for (std::size_t i = 0; i < own; ++i) residual[i] = start_entry(index[i]);
   const a_int space = basis * (basis + 8);
-  std::vector<double> values_work(static_cast<std::size_t>(space));
+  std::vector<double> values_work(space);
   std::array<a_int, 11> parameters{};
   std::array<a_int, 14> pointers{};
   parameters[0] = 1;  // exact shifts
@@ -104,8 +104,7 @@ LanczosResult largest_eigenvalues(const Product& product, std::span<const std::i
   // info 1: the iteration limit; 3: no shifts could be applied. Both leave usable values with their bounds.
   if (info < 0) throw InternalError("ARPACK pdsaupd failed with info " + std::to_string(info));
   result.converged = info == 0;
-  const std::size_t ritz = static_cast<std::size_t>(pointers[5] - 1),
-                    bounds = static_cast<std::size_t>(pointers[6] - 1);
+  const std::size_t ritz = pointers[5] - 1, bounds = static_cast<std::size_t>(pointers[6] - 1);
   std::vector<std::pair<double, double>> found;
   for (std::size_t i = 0; i < static_cast<std::size_t>(basis); ++i)
     found.emplace_back(values_work[ritz + i], std::abs(values_work[bounds + i]));

@@ -111,7 +111,7 @@ Eigenvalue Spectrum::smallest(const TraceRows& rows) {
 }
 
 double rough_lambda_min(const Part& part, std::span<const float> diagonal, bool friction) {
-  const auto dim = static_cast<std::size_t>(part.dim());
+  const std::size_t dim = part.dim();
   double stiffest = 0.0;
   for (std::size_t i = 0; i < part.contact.size(); ++i) {
     const auto& point = part.contact[i];

@@ -28,7 +28,7 @@ inline SmallMesh small_mesh(std::int32_t element, std::size_t n) {
   SmallMesh mesh;
   mesh.element = element;
   mesh.dim = element == KACANOV_TRI3 || element == KACANOV_QUAD4 ? 2 : 3;
-  mesh.per_element = std::array<std::size_t, 5>{3, 4, 10, 8, 4}.at(static_cast<std::size_t>(element));
+  mesh.per_element = std::array<std::size_t, 5>{3, 4, 10, 8, 4}.at(element);
   const std::size_t m = n + 1, layers = mesh.dim == 3 ? m : 1;
   std::mt19937 random(7);
   std::uniform_real_distribution<double> shift(-0.1, 0.1);

@@ -58,7 +58,7 @@ struct Cylinder {
 
   explicit Cylinder(ElementType type)
       : mesh(meshes::box(type, {5, steps, 1}, {5, steps, 1})),
-        dim(static_cast<std::size_t>(dimension(type))),
+        dim(dimension(type)),
         layers(dim == 3 ? 2.0 : 1.0),
         held(mesh.coordinates.size(), 0),
         load(held.size(), 0.0),

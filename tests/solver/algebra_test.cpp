@@ -207,7 +207,7 @@ TEST_CASE("multigrid is a symmetric positive definite map, and CG solves with it
     CHECK(solve.iterations < 60);
     CHECK(solve.residual <= 1e-12 * solve.first_residual);
     for (std::size_t i = 0; i < free.size(); ++i)
-      CHECK(u[static_cast<std::size_t>(free[i])] ==
+      CHECK(u[free[i]] ==
             doctest::Approx(exact(static_cast<Eigen::Index>(i))).epsilon(1e-9).scale(exact.norm()));
   }
 }

@@ -103,9 +103,8 @@ TEST_CASE("each fault shows in its entry") {
     CHECK(c.equilibrium > 1e-4);
   }
   SUBCASE("pressure across a gap") {
-    const std::size_t open = static_cast<std::size_t>(
-        std::max_element(beam.run.solution.gap.begin(), beam.run.solution.gap.end()) -
-        beam.run.solution.gap.begin());
+    const std::size_t open = std::max_element(beam.run.solution.gap.begin(), beam.run.solution.gap.end()) -
+                             beam.run.solution.gap.begin();
     REQUIRE(beam.run.solution.gap[open] > 1e-6);
     beam.state.lambda.normal[open] = pressure;
     CHECK(beam.certify().complementarity > 1e-8);
@@ -118,10 +117,9 @@ TEST_CASE("each fault shows in its entry") {
   SUBCASE("friction along the slip") {
     // Where the way is longest, most work is wrong.
     const auto& slips = beam.state.trace.tangential;
-    const auto most = static_cast<std::size_t>(
-        std::max_element(slips.begin(), slips.end(),
-                         [](double a, double b) { return std::abs(a) < std::abs(b); }) -
-        slips.begin());
+    const std::size_t most = std::max_element(slips.begin(), slips.end(),
+                                              [](double a, double b) { return std::abs(a) < std::abs(b); }) -
+                             slips.begin();
     beam.state.lambda.tangential[most] *= -1.0;
     const Certificate c = beam.certify();
     CHECK(c.friction_cone < tolerance);

@@ -69,7 +69,7 @@ TEST_CASE("a run goes on from any of its checkpoints to the same answer, on othe
     for (const int at : {1, steps / 2, steps - 1}) {
       CAPTURE(at);
       Checkpoint from;
-      if (first) from = checkpoints[static_cast<std::size_t>(at - 1)];
+      if (first) from = checkpoints[at - 1];
       const Ending rest = run(together, each, {}, first ? &from : nullptr);
       CHECK(rest.result.status == Status::converged);
       CHECK(rest.result.restarted_after == at);

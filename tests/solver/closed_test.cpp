@@ -40,7 +40,7 @@ Vector3 strain_under(const Law& law, int dim, Vector3 stress) {
 
 /// Greatest distance of the nodal displacements from a field.
 double largest_error(const Run& run, const std::function<Vector3(const Vector3&)>& exact) {
-  const auto dim = static_cast<std::size_t>(run.part.dim());
+  const std::size_t dim = run.part.dim();
   double worst = 0.0;
   for (std::size_t i = 0; i < run.part.nodes(); ++i) {
     const double* x = &run.part.coordinates[i * dim];
@@ -61,7 +61,7 @@ TEST_CASE("contact patch: a loaded block on a frictionless plane strains evenly"
     for (const Law& law : {elastic_law(1.0, 0.3), logarithmic_law(0.01), elastic_law(1.0, 0.45)}) {
       const int dim = dimension(type);
       CAPTURE(dim);
-      const auto up = static_cast<std::size_t>(dim - 1);
+      const std::size_t up = dim - 1;
       Vector3 normal{}, stress{};
       normal[up] = 1.0;
       stress[up] = -p;
@@ -123,8 +123,7 @@ TEST_CASE("contact patch, turned: a block held by nothing but three planes") {
               return turn({strain[0] * y[0], strain[1] * y[1], dim == 3 ? strain[2] * y[2] : 0.0});
             }) < 1e-6 * length(strain));
       for (std::size_t i = 0; i < run.part.contact.size(); ++i)
-        CHECK(run.solution.pressure[i] ==
-              doctest::Approx(press[static_cast<std::size_t>(run.part.contact[i].entry)]).epsilon(1e-5));
+        CHECK(run.solution.pressure[i] == doctest::Approx(press[run.part.contact[i].entry]).epsilon(1e-5));
     }
 }
 
@@ -142,7 +141,7 @@ TEST_CASE("confined block: gap, indentation and prescribed displacement in one d
       CAPTURE(dim);
       CAPTURE(gap);
       CAPTURE(drop);
-      const auto up = static_cast<std::size_t>(dim - 1);
+      const std::size_t up = dim - 1;
       const double height = dim == 2 ? 1.0 : 0.5;
       Model model;
       model.materials.push_back({everything(), law});
@@ -172,7 +171,7 @@ TEST_CASE("confined block: gap, indentation and prescribed displacement in one d
 TEST_CASE("a block that does not reach the obstacle") {
   for (const ElementType type : straight) {
     const int dim = dimension(type);
-    const auto up = static_cast<std::size_t>(dim - 1);
+    const std::size_t up = dim - 1;
     Vector3 down{}, weight{};
     down[up] = -0.02;
     weight[up] = -0.001;
@@ -198,7 +197,7 @@ TEST_CASE("block under its own weight: the plane carries it all") {
   for (const ElementType type : element_types()) {
     const int dim = dimension(type);
     CAPTURE(static_cast<int>(type));
-    const auto up = static_cast<std::size_t>(dim - 1);
+    const std::size_t up = dim - 1;
     Vector3 weight{}, normal{};
     weight[up] = -0.01;
     normal[up] = 1.0;
@@ -228,7 +227,7 @@ TEST_CASE("no contact: even tension, and a stretched bar") {
       Model model;
       model.materials.push_back({everything(), law});
       model.boundary.push_back(roller(named("left"), 0));
-      model.boundary.push_back(roller(named("bottom"), static_cast<std::size_t>(dim - 1)));
+      model.boundary.push_back(roller(named("bottom"), dim - 1));
       if (dim == 3) model.boundary.push_back(roller(named("front"), 1));
       const Vector3 strain = strain_under(law, dim, {0.02, 0.0, 0.0});
       if (prescribed)

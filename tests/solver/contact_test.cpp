@@ -16,7 +16,7 @@ namespace {
 
 /// Displacement of a contact point's node.
 Vector3 displacement_at(const Run& run, const ContactPoint& point) {
-  const auto dim = static_cast<std::size_t>(run.part.dim());
+  const std::size_t dim = run.part.dim();
   const double* u = &run.solution.displacement[static_cast<std::size_t>(point.node) * dim];
   return {u[0], u[1], dim == 3 ? u[2] : 0.0};
 }

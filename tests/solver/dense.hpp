@@ -12,8 +12,8 @@ namespace kacanov::testing {
 
 /// B(g), boundary conditions left out.
 inline Eigen::MatrixXd dense_stiffness(const Part& part, std::span<const double> g) {
-  const auto dim = static_cast<std::size_t>(part.dim());
-  const auto npe = static_cast<std::size_t>(nodes_per_element(part.type));
+  const std::size_t dim = part.dim();
+  const std::size_t npe = nodes_per_element(part.type);
   const std::size_t rows = npe * dim, points = g.size() / part.element_count();
   const auto n = static_cast<Eigen::Index>(part.unknowns());
   Eigen::MatrixXd b = Eigen::MatrixXd::Zero(n, n);
@@ -32,7 +32,7 @@ inline Eigen::MatrixXd dense_stiffness(const Part& part, std::span<const double>
 
 /// Rows of M^½ N, or of M^½ [N; T] with `friction`.
 inline Eigen::MatrixXd dense_traces(const Part& part, bool friction) {
-  const auto dim = static_cast<std::size_t>(part.dim());
+  const std::size_t dim = part.dim();
   std::vector<Eigen::VectorXd> rows;
   for (std::size_t i = 0; i < part.contact.size(); ++i) {
     const auto add = [&](const auto& coefficients) {

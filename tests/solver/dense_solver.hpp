@@ -125,7 +125,7 @@ class DenseSolver {
     const auto n = static_cast<Eigen::Index>(problem.load.size());
     load_ = Eigen::Map<const Vector>(problem.load.data(), n);
     for (Eigen::Index i = 0; i < n; ++i)
-      if (!problem.held[static_cast<std::size_t>(i)]) free_.push_back(i);
+      if (!problem.held[i]) free_.push_back(i);
     find_points();
     find_rows();
   }
@@ -165,7 +165,7 @@ class DenseSolver {
     residual -= reaction;
     Vector free_contact = contact;
     for (Eigen::Index i = 0; i < u.size(); ++i)
-      if (problem_.held[static_cast<std::size_t>(i)]) free_contact(i) = 0.0;
+      if (problem_.held[i]) free_contact(i) = 0.0;
     Defects out;
     // What the rounding of the forces themselves comes to is no defect.
     out.equilibrium = std::max(0.0, residual.norm() - 1e-6 * rounding) /
@@ -285,8 +285,8 @@ class DenseSolver {
       Matrix x(npe, dim_);
       std::vector<Eigen::Index> unknowns;
       for (int a = 0; a < npe; ++a) {
-        const auto node = static_cast<std::size_t>(
-            mesh.elements[e * static_cast<std::size_t>(npe) + static_cast<std::size_t>(a)]);
+        const std::size_t node =
+            mesh.elements[e * static_cast<std::size_t>(npe) + static_cast<std::size_t>(a)];
         for (int c = 0; c < dim_; ++c) {
           x(a, c) = mesh.coordinates[node * static_cast<std::size_t>(dim_) + static_cast<std::size_t>(c)];
           unknowns.push_back(static_cast<Eigen::Index>(node) * dim_ + c);
@@ -329,10 +329,9 @@ class DenseSolver {
       const ContactPoint& point = problem_.contact[i];
       for (const RowEntry& entry : problem_.contact.entries(i))
         for (int k = 0; k <= point.tangents; ++k) {
-          const Vector3& direction = k == 0 ? entry.trace : entry.tangent[static_cast<std::size_t>(k - 1)];
+          const Vector3& direction = k == 0 ? entry.trace : entry.tangent[k - 1];
           for (int c = 0; c < dim_; ++c)
-            rows_(first_row_[i] + k, static_cast<Eigen::Index>(entry.node) * dim_ + c) =
-                direction[static_cast<std::size_t>(c)];
+            rows_(first_row_[i] + k, static_cast<Eigen::Index>(entry.node) * dim_ + c) = direction[c];
         }
     }
     free_rows_ = rows_(Eigen::all, free_);

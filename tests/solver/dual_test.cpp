@@ -46,9 +46,9 @@ struct Setting {
 
   static Problem make(int dim, double gap, double tresca) {
     Model model = beam(dim, elastic_law(1.0, 0.3), 0.05, tresca);
-    std::get<Plane>(model.contact[0].obstacle).point[static_cast<std::size_t>(dim - 1)] = -gap;
+    std::get<Plane>(model.contact[0].obstacle).point[dim - 1] = -gap;
     // A prescribed displacement that lifts the clamped end: it must go through both loops alike.
-    (*model.boundary[0].displacement)[static_cast<std::size_t>(dim - 1)] = 0.002;
+    (*model.boundary[0].displacement)[dim - 1] = 0.002;
     return build_problem(beam_mesh(dim, dim == 2 ? 6 : 2), model);
   }
 

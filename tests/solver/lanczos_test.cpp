@@ -53,7 +53,7 @@ void check_largest(const Eigen::VectorXd& values, int wanted, double tolerance) 
     const int expected = std::min(wanted, static_cast<int>(values.size()));
     REQUIRE(found.values.size() == static_cast<std::size_t>(expected));
     for (int i = 0; i < expected; ++i) {
-      const auto at = static_cast<std::size_t>(i);
+      const std::size_t at = i;
       CHECK(found.values[at] == doctest::Approx(sorted(i)).epsilon(tolerance + 1e-12));
       // Every Ritz value lies within its bound of some eigenvalue.
       const double nearest = (values.array() - found.values[at]).abs().minCoeff();

@@ -14,7 +14,7 @@ namespace {
 
 /// A block pressed by a prescribed displacement, a load and a ball that sits in it by 0.03 at rest.
 Model pressed_block(int dim, const Law& law) {
-  const auto up = static_cast<std::size_t>(dim - 1);
+  const std::size_t up = dim - 1;
   Vector3 load{}, under{};
   load[0] = 0.004;
   under[up] = -1.0;
@@ -61,7 +61,7 @@ TEST_CASE("the answer does not depend on the load steps") {
       // Nothing prescribed on the left of the top where it is held already.
       model.boundary[1].on = box({0.5, 0.0, 0.0}, {2.0, 1.0, 0.5});
       if (dim == 2) std::get<Sphere>(model.contact[0].obstacle).centre[2] = 0.0;
-      model.boundary[1].on.lower[static_cast<std::size_t>(dim - 1)] = dim == 2 ? 1.0 : 0.5;
+      model.boundary[1].on.lower[dim - 1] = dim == 2 ? 1.0 : 0.5;
       const Run at_once = run_alone(box_mesh(type), model);
       REQUIRE(at_once.result().status == Status::converged);
       CHECK(at_once.result().load_steps.empty());

@@ -26,9 +26,8 @@ const auto all_types = element_types();
 Vector at(const Mesh& mesh, std::int32_t node) {
   Vector x{};
   for (int k = 0; k < mesh.dim(); ++k)
-    x[static_cast<std::size_t>(k)] =
-        mesh.coordinates[static_cast<std::size_t>(node) * static_cast<std::size_t>(mesh.dim()) +
-                         static_cast<std::size_t>(k)];
+    x[k] = mesh.coordinates[static_cast<std::size_t>(node) * static_cast<std::size_t>(mesh.dim()) +
+                            static_cast<std::size_t>(k)];
   return x;
 }
 
@@ -39,7 +38,7 @@ Vector area_vector(const Mesh& mesh, std::size_t facet) {
     const Vector a = at(mesh, n[0]), b = at(mesh, n[1]);
     return {b[1] - a[1], a[0] - b[0], 0};
   }
-  const auto corners = static_cast<std::size_t>(cell(mesh.type).facet().corners);
+  const std::size_t corners = cell(mesh.type).facet().corners;
   Vector sum{};
   const Vector o = at(mesh, n[0]);
   for (std::size_t k = 1; k + 1 < corners; ++k) {
@@ -128,7 +127,7 @@ TEST_CASE("the sides of a box are named, complete and turned outwards") {
       CHECK(std::is_sorted(mesh.groups[g].members.begin(), mesh.groups[g].members.end()));
       Vector sum{};
       for (const std::int32_t f : mesh.groups[g].members) {
-        const Vector a = area_vector(mesh, static_cast<std::size_t>(f));
+        const Vector a = area_vector(mesh, f);
         for (std::size_t k = 0; k < 3; ++k) sum[k] += a[k];
       }
       const std::size_t axis = g / 2;
@@ -201,7 +200,7 @@ TEST_CASE("the boundary does not depend on the order of the elements") {
     std::vector<std::size_t> order(mesh.element_count());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::shuffle(order.begin(), order.end(), std::mt19937(1));
-    const auto n = static_cast<std::size_t>(nodes_per_element(type));
+    const std::size_t n = nodes_per_element(type);
     std::vector<std::int32_t> shuffled;
     for (const std::size_t e : order)
       shuffled.insert(shuffled.end(), mesh.elements.begin() + static_cast<std::ptrdiff_t>(e * n),

@@ -105,7 +105,7 @@ namespace {
 template <int M>
 void check_galerkin(const Part& part, std::span<const double> g, std::span<const NodeBlock> blocks,
                     const Space& space, const AggregateMotions<M>& motions, const RigidLevel<M>& level) {
-  const auto dim = static_cast<std::size_t>(part.dim());
+  const std::size_t dim = part.dim();
   const auto random = [&](double seed) {
     Vector x(level.size());
     for (std::size_t i = 0; i < level.owned_size(); ++i)
@@ -147,7 +147,7 @@ TEST_CASE("the first coarse matrix is Galerkin's, summed once or again") {
   for (const ElementType type : element_types()) {
     CAPTURE(static_cast<int>(type));
     const Part part = beam(dimension(type) == 2 ? 12 : 4, 3.0, type);
-    const auto dim = static_cast<std::size_t>(part.dim());
+    const std::size_t dim = part.dim();
     Vector g(part.body().secant_count(), 1.0);
     const auto check = [&]<int M>(std::integral_constant<int, M>) {
       AggregateMotions<M> motions(part, g, 8.0, set);
@@ -207,10 +207,10 @@ TEST_CASE("aggregates follow the strong couplings and leave nobody out") {
   const auto group = aggregate_nodes({mesh.view(), laws, law}, g, nodes, 12.0, section);
   REQUIRE(group.size() == mesh.node_count());
   const std::int32_t groups = 1 + *std::max_element(group.begin(), group.end());
-  std::vector<int> members(static_cast<std::size_t>(groups), 0);
+  std::vector<int> members(groups, 0);
   std::vector<double> low(members.size(), HUGE_VAL), high(members.size(), -HUGE_VAL);
   for (std::size_t n = 0; n < group.size(); ++n) {
-    const auto a = static_cast<std::size_t>(group[n]);
+    const std::size_t a = group[n];
     ++members[a];
     low[a] = std::min(low[a], mesh.coordinates[3 * n]);
     high[a] = std::max(high[a], mesh.coordinates[3 * n]);
@@ -231,7 +231,7 @@ TEST_CASE("a level is symmetric, and the next one is its Galerkin matrix, on any
   CHECK(dot(ax, y, ax.size()) == doctest::Approx(dot(ay, x, ax.size())).epsilon(1e-12));
   CHECK(dot(ax, x, ax.size()) > 0.0);
 
-  std::vector<std::int32_t> group(static_cast<std::size_t>(level.rows()));
+  std::vector<std::int32_t> group(level.rows());
   for (std::size_t i = 0; i < group.size(); ++i) group[i] = static_cast<std::int32_t>(i / 3);
   const double length = 0.8;
   const auto next = level.coarsened(group, length);
@@ -240,7 +240,7 @@ TEST_CASE("a level is symmetric, and the next one is its Galerkin matrix, on any
   std::vector<double> ac(next.owned_size()), p(level.size(), 0.0);
   next.multiply(c, ac);
   for (std::size_t i = 0; i < group.size(); ++i) {
-    const auto a = static_cast<std::size_t>(group[i]);
+    const std::size_t a = group[i];
     Vector3 offset{};
     for (std::size_t k = 0; k < 3; ++k) offset[k] = level.centres()[i][k] - next.centres()[a][k];
     RigidMotion<6>::add_to_part(&c[6 * a], offset.data(), 1.0 / length, &p[6 * i]);

@@ -16,8 +16,7 @@ namespace {
 /// Stored energy less the work of the loads.
 double total_energy(const Run& run) {
   double work = 0.0;
-  for (const auto& entry : run.part.load)
-    work += entry.value * run.solution.displacement[static_cast<std::size_t>(entry.component)];
+  for (const auto& entry : run.part.load) work += entry.value * run.solution.displacement[entry.component];
   return reference::energy(run.part.body(), run.solution.displacement) - work;
 }
 
@@ -31,8 +30,8 @@ std::vector<Law> curved_laws() {
 /// The mesh with nodes, elements and the corners within an element written down in another order.
 Mesh shuffled(const Mesh& mesh, unsigned seed) {
   std::mt19937 engine(seed);
-  const auto dim = static_cast<std::size_t>(mesh.dim());
-  const auto npe = static_cast<std::size_t>(nodes_per_element(mesh.type));
+  const std::size_t dim = mesh.dim();
+  const std::size_t npe = nodes_per_element(mesh.type);
   std::vector<std::int32_t> node(mesh.node_count()), element(mesh.element_count());
   std::iota(node.begin(), node.end(), 0);
   std::iota(element.begin(), element.end(), 0);
@@ -47,7 +46,7 @@ Mesh shuffled(const Mesh& mesh, unsigned seed) {
   for (const auto e : element) {
     std::vector<std::int32_t> corners;
     for (std::size_t a = 0; a < npe; ++a)
-      corners.push_back(node[static_cast<std::size_t>(mesh.elements[static_cast<std::size_t>(e) * npe + a])]);
+      corners.push_back(node[mesh.elements[static_cast<std::size_t>(e) * npe + a]]);
     std::rotate(corners.begin(), corners.begin() + 1, corners.begin() + 3);  // even: the orientation stays
     other.elements.insert(other.elements.end(), corners.begin(), corners.end());
   }

@@ -42,12 +42,10 @@ TEST_CASE("every element lies on one rank, every node has one owner") {
   Part part = over_all_ranks(problem);
   std::vector<int> elements(problem.mesh.element_count(), 0), owners(problem.mesh.node_count(), 0),
       points(problem.contact.size(), 0);
-  for (std::size_t e = 0; e < part.element_count(); ++e)
-    ++elements[static_cast<std::size_t>(part.element_index[e])];
-  for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_nodes()); ++i)
-    ++owners[static_cast<std::size_t>(part.node_index[i])];
+  for (std::size_t e = 0; e < part.element_count(); ++e) ++elements[part.element_index[e]];
+  for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_nodes()); ++i) ++owners[part.node_index[i]];
   for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_contact); ++i)
-    ++points[static_cast<std::size_t>(part.contact_index[i])];
+    ++points[part.contact_index[i]];
   for (auto* count : {&elements, &owners, &points}) {
     MPI_Allreduce(MPI_IN_PLACE, count->data(), static_cast<int>(count->size()), MPI_INT, MPI_SUM,
                   MPI_COMM_WORLD);
@@ -58,13 +56,11 @@ TEST_CASE("every element lies on one rank, every node has one owner") {
   CHECK(part.total_contact == static_cast<std::int64_t>(problem.contact.size()));
 
   // The part is the mesh seen through its index arrays.
-  const auto npe = static_cast<std::size_t>(nodes_per_element(part.type));
+  const std::size_t npe = nodes_per_element(part.type);
   std::size_t wrong = 0;
   for (std::size_t k = 0; k < part.elements.size(); ++k) {
-    const auto e = static_cast<std::size_t>(part.element_index[k / npe]);
-    if (part.node_index[static_cast<std::size_t>(part.elements[k])] !=
-        problem.mesh.elements[e * npe + k % npe])
-      ++wrong;
+    const std::size_t e = part.element_index[k / npe];
+    if (part.node_index[part.elements[k]] != problem.mesh.elements[e * npe + k % npe]) ++wrong;
   }
   std::vector<double> load(part.unknowns());
   part.add_load(load);
@@ -86,7 +82,7 @@ TEST_CASE("owned nodes are numbered on through the ranks, and ghosts know their 
   std::vector<std::int64_t> number(part.nodes());
   for (std::size_t i = 0; i < part.nodes(); ++i) number[i] = part.node_number(i);
   const std::vector<std::int64_t> expected = number;
-  for (std::size_t i = static_cast<std::size_t>(part.owned_nodes()); i < part.nodes(); ++i) number[i] = -1;
+  for (std::size_t i = part.owned_nodes(); i < part.nodes(); ++i) number[i] = -1;
   part.halo.forward(number, 1);
   CHECK(number == expected);
 }
@@ -99,7 +95,7 @@ TEST_CASE("a map made from ghosts' numbers finds their owners, numbers beyond 2^
   std::vector<std::int64_t> ghosts;
   for (int r = 0; r < world.ranks; ++r) {
     if (r == world.rank) continue;
-    ghosts.push_back(starts[static_cast<std::size_t>(r)]);
+    ghosts.push_back(starts[r]);
     ghosts.push_back(starts[static_cast<std::size_t>(r) + 1] - 1);
   }
   const IndexMap map = make_index_map(world, owned, ghosts);
@@ -132,7 +128,7 @@ TEST_CASE("a sum in two halves is the whole one, whatever happens elsewhere in b
     part.halo.sum(whole, 3);
     sum.start_sum(x);
     std::vector<char> is_shared(part.nodes(), 0);
-    for (const std::int32_t node : part.halo.shared) is_shared[static_cast<std::size_t>(node)] = 1;
+    for (const std::int32_t node : part.halo.shared) is_shared[node] = 1;
     for (std::size_t i = 0; i < x.size(); ++i)
       if (is_shared[i / 3] == 0) x[i] = whole[i] = static_cast<float>(turn);
     sum.finish_sum(x);
@@ -154,7 +150,7 @@ TEST_CASE("halo sums count the ranks that share a node, with the same bits on ea
   const std::size_t nodes = problem.mesh.node_count();
   std::vector<double> sharers(nodes, 0.0), largest(nodes, -1e300), smallest(nodes, 1e300);
   for (std::size_t i = 0; i < part.nodes(); ++i) {
-    const auto n = static_cast<std::size_t>(part.node_index[i]);
+    const std::size_t n = part.node_index[i];
     sharers[n] = 1.0;
     largest[n] = smallest[n] = x[2 * i + 1];
   }
@@ -162,8 +158,7 @@ TEST_CASE("halo sums count the ranks that share a node, with the same bits on ea
   MPI_Allreduce(MPI_IN_PLACE, largest.data(), static_cast<int>(nodes), MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
   MPI_Allreduce(MPI_IN_PLACE, smallest.data(), static_cast<int>(nodes), MPI_DOUBLE, MPI_MIN, MPI_COMM_WORLD);
   CHECK(std::memcmp(largest.data(), smallest.data(), nodes * sizeof(double)) == 0);
-  for (std::size_t i = 0; i < part.nodes(); ++i)
-    CHECK(x[2 * i] == sharers[static_cast<std::size_t>(part.node_index[i])]);
+  for (std::size_t i = 0; i < part.nodes(); ++i) CHECK(x[2 * i] == sharers[part.node_index[i]]);
   // `shared` lists exactly the nodes with more than one copy.
   std::vector<std::int32_t> listed = part.halo.shared, found;
   for (std::size_t i = 0; i < part.nodes(); ++i)

@@ -21,8 +21,8 @@ Model on_a_plane(int dim, double gap = 0.1) {
   const auto last = dim == 3 ? std::optional<double>(0.0) : std::nullopt;
   model.boundary.push_back(displacement(named("top"), {0.0, 0.0, last}));
   Plane plane;
-  plane.point[static_cast<std::size_t>(dim - 1)] = -gap;
-  plane.normal[static_cast<std::size_t>(dim - 1)] = 5.0;
+  plane.point[dim - 1] = -gap;
+  plane.normal[dim - 1] = 5.0;
   model.contact.push_back({named("bottom"), plane, std::nullopt});
   return model;
 }
@@ -48,7 +48,7 @@ TEST_CASE("contact masses are positive and sum to the contact area") {
       CHECK(entry.normal == point.normal);
       CHECK(point.mass > 0.0);
       CHECK(point.gap == doctest::Approx(0.1).epsilon(1e-12));
-      CHECK(point.normal[static_cast<std::size_t>(mesh.dim() - 1)] == doctest::Approx(-1.0));
+      CHECK(point.normal[mesh.dim() - 1] == doctest::Approx(-1.0));
       CHECK(entry.trace == point.normal);
       CHECK(point.tangents == 0);
     }
@@ -72,7 +72,7 @@ TEST_CASE("a constant gap lies along the body's outer normal, whatever its sign"
     model.contact[0].obstacle = ConstantGap{-0.02};
     for (const ContactPoint& point : build_problem(mesh, model).contact) {
       CHECK(point.gap == -0.02);
-      CHECK(point.normal[static_cast<std::size_t>(mesh.dim() - 1)] == doctest::Approx(-1.0));
+      CHECK(point.normal[mesh.dim() - 1] == doctest::Approx(-1.0));
     }
   }
 }

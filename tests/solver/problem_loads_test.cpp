@@ -21,7 +21,7 @@ struct Resultant {
 
 Resultant resultant(const Problem& problem) {
   Resultant sum;
-  const auto dim = static_cast<std::size_t>(problem.mesh.dim());
+  const std::size_t dim = problem.mesh.dim();
   for (std::size_t node = 0; node < problem.mesh.node_count(); ++node) {
     Vector3 f{};
     for (std::size_t c = 0; c < dim; ++c) f[c] = problem.load[node * dim + c];
@@ -197,7 +197,7 @@ TEST_CASE("a probe reproduces linear fields, inside, at nodes and on the boundar
     REQUIRE(problem.probes.size() == 4);
     for (const Probe& probe : problem.probes) {
       Vector3 x{};
-      const auto n = static_cast<std::size_t>(nodes_per_element(type));
+      const std::size_t n = nodes_per_element(type);
       for (std::size_t k = 0; k < n; ++k) {
         x = x +
             probe.weights[k] * position(mesh, mesh.elements[static_cast<std::size_t>(probe.element) * n + k]);

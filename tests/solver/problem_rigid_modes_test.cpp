@@ -14,7 +14,7 @@ constexpr auto none = std::nullopt;
 /// Two copies of a mesh side by side, sharing no node.
 Mesh twice(const Mesh& one, double offset) {
   Mesh two = one;
-  const auto dim = static_cast<std::size_t>(one.dim());
+  const std::size_t dim = one.dim();
   const auto nodes = static_cast<std::int32_t>(one.node_count());
   for (std::size_t k = 0; k < one.coordinates.size(); ++k) {
     two.coordinates.push_back(one.coordinates[k] + (k % dim == 0 ? offset : 0.0));

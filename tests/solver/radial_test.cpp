@@ -17,7 +17,7 @@ constexpr double inner = 1.0, outer = 2.0;
 
 /// The facets all of whose nodes satisfy a condition, as a named part.
 void name_facets(Mesh& mesh, const std::string& name, const std::function<bool(const Vector3&)>& here) {
-  const auto dim = static_cast<std::size_t>(mesh.dim());
+  const std::size_t dim = mesh.dim();
   Group group{name, mesh.dim() - 1, {}};
   for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
     const auto nodes = mesh.facet(f);
@@ -37,8 +37,8 @@ Mesh round_shell(int dim, int n) {
   spec.cells = {2 * n, 2 * n, 2 * n};
   spec.type = dim == 2 ? ElementType::tri3 : ElementType::tet4;
   const Mesh cube = make_box(spec);
-  const auto d = static_cast<std::size_t>(dim);
-  const auto npe = static_cast<std::size_t>(nodes_per_element(cube.type));
+  const std::size_t d = dim;
+  const std::size_t npe = nodes_per_element(cube.type);
   Mesh mesh;
   mesh.type = cube.type;
   std::map<std::int32_t, std::int32_t> kept;
@@ -85,7 +85,7 @@ double displacement_error(const Run& run, const RadialSolution& exact) {
     for (std::size_t q = 0; q < npe; ++q) {
       Vector3 x{}, u{};
       for (std::size_t a = 0; a < npe; ++a) {
-        const auto node = static_cast<std::size_t>(part.elements[e * npe + a]);
+        const std::size_t node = part.elements[e * npe + a];
         for (std::size_t c = 0; c < dim; ++c) {
           x[c] += (a == q ? near : far) * part.coordinates[node * dim + c];
           u[c] += (a == q ? near : far) * run.solution.displacement[node * dim + c];
@@ -109,7 +109,7 @@ void check_order(int dim, const std::vector<int>& cells, double pressure_inside,
       Model model;
       model.materials.push_back({everything(), law});
       for (int c = 0; c < dim; ++c)
-        model.boundary.push_back(roller(named(std::string("plane") + "xyz"[c]), static_cast<std::size_t>(c)));
+        model.boundary.push_back(roller(named(std::string("plane") + "xyz"[c]), c));
       model.boundary.push_back(pressure(named("inside"), pressure_inside));
       model.solver.tolerance = 1e-8;
       const Run run = run_alone(round_shell(dim, n), model);

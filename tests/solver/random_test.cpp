@@ -111,7 +111,7 @@ Sample random_problem(unsigned seed) {
                              ElementType::tet10};
   const ElementType type = types[seed % 5];
   const int dim = dimension(type);
-  const auto up = static_cast<std::size_t>(dim - 1);
+  const std::size_t up = dim - 1;
   BoxSpec spec;
   spec.type = type;
   const int most = dim == 2 ? 5 : type == ElementType::tet10 ? 1 : 2;
@@ -181,7 +181,7 @@ Sample random_problem(unsigned seed) {
   }
 
   constexpr std::array tolerances{1e-5, 1e-6, 1e-7, 1e-8};
-  model.solver.tolerance = tolerances[static_cast<std::size_t>(dice.whole(0, 3))];
+  model.solver.tolerance = tolerances[dice.whole(0, 3)];
   return sample;
 }
 
@@ -201,21 +201,20 @@ struct State {
   Eigen::VectorXd u, lambda;
 };
 State state_of(const Run& run, const DenseSolver& dense) {
-  const auto dim = static_cast<std::size_t>(run.part.dim());
+  const std::size_t dim = run.part.dim();
   const std::vector<double> u = gather_nodal(run.part, run.solution.displacement, run.part.dim());
   State state{Eigen::Map<const Eigen::VectorXd>(u.data(), static_cast<Eigen::Index>(u.size())), {}};
   Eigen::Index rows = 0;
   for (const ContactPoint& point : run.problem.contact) rows += 1 + point.tangents;
   state.lambda = Eigen::VectorXd::Zero(rows);
   for (std::size_t i = 0; i < run.part.contact.size(); ++i) {
-    const auto index = static_cast<std::size_t>(run.part.contact_index[i]);
+    const std::size_t index = run.part.contact_index[i];
     const ContactPoint& point = run.problem.contact[index];
     const Eigen::Index row = dense.first_rows()[index];
     state.lambda(row) = run.solution.pressure[i];
     for (int k = 0; k < point.tangents; ++k)
       for (std::size_t c = 0; c < dim; ++c)
-        state.lambda(row + 1 + k) -=
-            run.solution.traction[i][c] * point.tangent[static_cast<std::size_t>(k)][c];
+        state.lambda(row + 1 + k) -= run.solution.traction[i][c] * point.tangent[k][c];
   }
   return state;
 }
@@ -318,7 +317,7 @@ TEST_CASE("random problems by other methods, which need not converge but may not
     Options& solver = sample.model.solver;
     constexpr std::array methods{Options::Contact::admm, Options::Contact::dual_admm,
                                  Options::Contact::active_set};
-    solver.contact = methods[static_cast<std::size_t>(seed % 3)];
+    solver.contact = methods[seed % 3];
     if (seed % 2 == 0) solver.outer = Options::Outer::kacanov;
     if (seed % 5 == 0) solver.penalty = Options::Penalty::paper;
     if (seed % 5 == 1 && seed % 3 < 2) solver.stop = Options::Stop::paper;

@@ -51,7 +51,7 @@ Mesh random_box(int dim, std::mt19937& engine, Rotation& rotation, Vector3& shea
   Mesh mesh = make_box(spec);
   shear = {0.4 * (uniform(engine) - 0.5), 0.4 * (uniform(engine) - 0.5), 0};
   rotation = Rotation(dim, 3.0 * uniform(engine));
-  const auto last = static_cast<std::size_t>(dim - 1);
+  const std::size_t last = dim - 1;
   const double cell = spec.size[last] / spec.cells[last];
   map_nodes(mesh, [&](Vector3 x) {
     const double height = x[last];
@@ -193,9 +193,7 @@ TEST_CASE("rows of traces: transpose and pseudo-inverse") {
   const Eigen::MatrixXd inverse = c.completeOrthogonalDecomposition().pseudoInverse();
   Eigen::VectorXd x = Eigen::VectorXd::Random(c.rows()), y = Eigen::VectorXd::Random(c.cols());
   Eigen::VectorXd out_x(c.rows()), out_y(c.cols());
-  const auto view = [](Eigen::VectorXd& v) {
-    return std::span<double>(v.data(), static_cast<std::size_t>(v.size()));
-  };
+  const auto view = [](Eigen::VectorXd& v) { return std::span<double>(v.data(), v.size()); };
   rows.transpose(view(x), view(out_y));
   CHECK((out_y - c.transpose() * x).norm() < 1e-12);
   rows.apply(view(y), view(out_x));
@@ -208,7 +206,7 @@ TEST_CASE("rows of traces: transpose and pseudo-inverse") {
   for (const NodeBlock& block : rows.penalty_blocks(2.0))
     for (Eigen::Index i = 0; i < 3; ++i)
       for (Eigen::Index j = 0; j < 3; ++j)
-        penalty(3 * block.node + i, 3 * block.node + j) -= block.value[static_cast<std::size_t>(3 * i + j)];
+        penalty(3 * block.node + i, 3 * block.node + j) -= block.value[3 * i + j];
   CHECK(penalty.norm() < 1e-12);
 }
 

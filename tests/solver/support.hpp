@@ -73,7 +73,7 @@ inline BoundaryEntry moved(Selector on, int dim, const Vector3& u = {}) {
 /// The paper's beam [0,4]×[0,1] (×[0,1] in 3D, z up): fixed at x = 0, loaded by f on the far half of its top,
 /// its underside on a plane. Everything is selected by boxes, so that it fits any mesh of the beam.
 inline Model beam(int dim, const Law& law, double f, double tresca = 0.0) {
-  const auto up = static_cast<std::size_t>(dim - 1);
+  const std::size_t up = dim - 1;
   Vector3 normal{}, load{}, far{4, 1, dim == 3 ? 1.0 : 0.0}, under = far, end = far, top{2, 0, 0}, tip = far;
   normal[up] = 1.0;
   load[up] = -f;
@@ -100,7 +100,7 @@ inline Mesh beam_mesh(int dim, int n) {
 
 /// Moves every node; the boundary and the named parts stay what they are.
 inline void map_nodes(Mesh& mesh, const std::function<Vector3(const Vector3&)>& map) {
-  const auto dim = static_cast<std::size_t>(mesh.dim());
+  const std::size_t dim = mesh.dim();
   for (std::size_t i = 0; i < mesh.node_count(); ++i) {
     double* x = mesh.coordinates.data() + i * dim;
     const Vector3 y = map({x[0], x[1], dim == 3 ? x[2] : 0.0});

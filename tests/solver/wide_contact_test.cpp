@@ -26,9 +26,9 @@ constexpr std::array every_type{ElementType::tri3, ElementType::tet4, ElementTyp
 void press_facet(const Problem& problem, std::int32_t facet, const Plane& plane, double tresca,
                  ConstraintRows& rows) {
   const Mesh& mesh = problem.mesh;
-  const auto dim = static_cast<std::size_t>(mesh.dim());
-  const auto nodes = mesh.facet(static_cast<std::size_t>(facet));
-  const FacetWeights weights = lumped_weights(mesh, static_cast<std::size_t>(facet));
+  const std::size_t dim = mesh.dim();
+  const auto nodes = mesh.facet(facet);
+  const FacetWeights weights = lumped_weights(mesh, facet);
   ContactPoint point;
   point.node = nodes[0];
   point.normal = (-1.0 / norm(plane.normal)) * plane.normal;
@@ -37,8 +37,7 @@ void press_facet(const Problem& problem, std::int32_t facet, const Plane& plane,
     const Vector3 some = dim == 2 ? Vector3{0, 0, 1} : Vector3{0.2, 1, 0.1}, t = cross(point.normal, some);
     point.tangent[0] = (1.0 / norm(t)) * t;
     point.tangents = 1;
-    if (dim == 3)
-      point.tangent[static_cast<std::size_t>(point.tangents++)] = cross(point.normal, point.tangent[0]);
+    if (dim == 3) point.tangent[point.tangents++] = cross(point.normal, point.tangent[0]);
   }
   for (std::size_t k = 0; k < nodes.size(); ++k) point.mass += weights.area[k];
   std::vector<RowEntry> entries;
@@ -68,7 +67,7 @@ Sample block(ElementType type, double narrow_from, double tresca, double load = 
   Sample sample;
   const Mesh mesh = box_mesh(type);
   const int dim = mesh.dim();
-  const auto up = static_cast<std::size_t>(dim - 1);
+  const std::size_t up = dim - 1;
   Vector3 below{}, normal{};
   below[up] = -0.01;
   normal[up] = 1.0;
@@ -85,7 +84,7 @@ Sample block(ElementType type, double narrow_from, double tresca, double load = 
   ConstraintRows rows;
   const auto facets = Selection(mesh).facets(named("bottom"), "");
   for (const std::int32_t f : facets) {
-    const auto nodes = mesh.facet(static_cast<std::size_t>(f));
+    const auto nodes = mesh.facet(f);
     const bool left = std::all_of(nodes.begin(), nodes.end(),
                                   [&](std::int32_t n) { return position(mesh, n)[0] <= narrow_from + 1e-9; });
     if (left) press_facet(problem, f, {below, normal}, tresca, rows);
@@ -109,7 +108,7 @@ double signature(std::int64_t node, std::size_t c) {
 
 /// A consistent vector that does not depend on the partition, zero where displacements are given.
 Vector some_vector(const Part& part, double turn) {
-  const auto dim = static_cast<std::size_t>(part.dim());
+  const std::size_t dim = part.dim();
   Vector x(part.unknowns());
   for (std::size_t i = 0; i < x.size(); ++i)
     x[i] = part.held[i] ? 0.0 : std::sin(turn + 3.0 * signature(part.node_index[i / dim], i % dim));
@@ -207,7 +206,7 @@ TEST_CASE("wide rows are held by an orthogonal projection, and lifted by a pseud
     CHECK(part.halo.sum_all(product) == doctest::Approx(free.dot(lifted, v)).epsilon(1e-10));
     // Node blocks are the diagonal of r CᵀDC.
     Vector diagonal(part.unknowns(), 0.0), unit(part.unknowns(), 0.0), image(part.unknowns());
-    const auto dim = static_cast<std::size_t>(part.dim());
+    const std::size_t dim = part.dim();
     for (const NodeBlock& block : rows.penalty_blocks(2.0))
       for (std::size_t c = 0; c < dim; ++c)
         diagonal[static_cast<std::size_t>(block.node) * dim + c] += block.value[c * dim + c];

@@ -79,7 +79,7 @@ class Writer {
 
  private:
   void collect() {
-    const auto n = static_cast<std::size_t>(nodes_per_element(mesh_.type));
+    const std::size_t n = nodes_per_element(mesh_.type);
     for (int dimension = 0; dimension <= mesh_.dim(); ++dimension) {
       std::map<std::int32_t, std::vector<int>> physicals;  // of every member
       if (dimension == mesh_.dim())
@@ -98,10 +98,10 @@ class Writer {
           const auto begin =
               mesh_.elements.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(member) * n);
           entity.elements.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(n));
-          entity.tags.push_back(mesh_.element_tag(static_cast<std::size_t>(member)));
+          entity.tags.push_back(mesh_.element_tag(member));
         } else if (dimension == mesh_.dim() - 1) {
           entity.type = cell(mesh_.type).facet().gmsh;
-          const auto facet = mesh_.facet(static_cast<std::size_t>(member));
+          const auto facet = mesh_.facet(member);
           entity.elements.emplace_back(facet.begin(), facet.end());
           entity.tags.push_back(next_++);
         } else {
@@ -153,7 +153,7 @@ class Writer {
   }
 
   void position(std::size_t node) {
-    const auto dim = static_cast<std::size_t>(mesh_.dim());
+    const std::size_t dim = mesh_.dim();
     for (std::size_t k = 0; k < 3; ++k) out_.real(k < dim ? mesh_.coordinates[node * dim + k] : 0.125);
   }
 
@@ -171,7 +171,7 @@ class Writer {
       out_.size(last - first);
       out_.end_record();
       for (std::size_t i = first; i < last; ++i) {
-        out_.size(static_cast<std::size_t>(mesh_.node_tag(i)));
+        out_.size(mesh_.node_tag(i));
         out_.end_record();
       }
       for (std::size_t i = first; i < last; ++i) {
@@ -209,9 +209,8 @@ class Writer {
       out_.size(e.tags.size());
       out_.end_record();
       for (std::size_t k = 0; k < e.tags.size(); ++k) {
-        out_.size(static_cast<std::size_t>(e.tags[k]));
-        for (const std::int32_t node : e.elements[k])
-          out_.size(static_cast<std::size_t>(mesh_.node_tag(static_cast<std::size_t>(node))));
+        out_.size(e.tags[k]);
+        for (const std::int32_t node : e.elements[k]) out_.size(mesh_.node_tag(node));
         out_.end_record();
       }
     }
@@ -237,8 +236,7 @@ class Writer {
           }
           out_.tag(e.physicals.empty() ? 0 : e.physicals[p]);
           out_.tag(1);
-          for (const std::int32_t node : e.elements[k])
-            out_.tag(mesh_.node_tag(static_cast<std::size_t>(node)));
+          for (const std::int32_t node : e.elements[k]) out_.tag(mesh_.node_tag(node));
           out_.end_record();
         }
     out_.end("Elements");

@@ -150,7 +150,7 @@ struct Bent {
 /// A box bent down, with a stress that grows along it.
 Bent bent_box(const BoxSpec& spec, double amount) {
   Bent bent{make_box(spec), {}, {}};
-  const auto dim = static_cast<std::size_t>(bent.mesh.dim());
+  const std::size_t dim = bent.mesh.dim();
   bent.displacement.assign(bent.mesh.coordinates.size(), 0.0);
   for (std::size_t i = 0; i < bent.mesh.node_count(); ++i)
     bent.displacement[dim * i + dim - 1] =

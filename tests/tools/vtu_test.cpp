@@ -75,8 +75,8 @@ TEST_CASE("points, cells and fields of every element type come back") {
   for (const ElementType type : element_types()) {
     const auto vtk_type = static_cast<std::uint8_t>(cell(type).vtk);
     const Mesh mesh = make_box({{2, 1, 3}, {2, 3, 2}, type});
-    const auto dim = static_cast<std::size_t>(mesh.dim());
-    const auto nodes = static_cast<std::size_t>(nodes_per_element(type));
+    const std::size_t dim = mesh.dim();
+    const std::size_t nodes = nodes_per_element(type);
     std::vector<double> displacement(mesh.coordinates.size()), stress(6 * mesh.element_count());
     std::iota(displacement.begin(), displacement.end(), 0.5);
     std::iota(stress.begin(), stress.end(), -3.0);

@@ -101,7 +101,7 @@ class CaseParser {
       for (const ElementType type : element_types()) names.push_back(cell(type).name);
       spec.type = element_types()[element->choice(names)];
     }
-    const auto dim = static_cast<std::size_t>(dimension(spec.type));
+    const std::size_t dim = dimension(spec.type);
     const std::string count = std::to_string(dim) + " entries (one a dimension)";
     if (size.size() != dim) box.required("size").expected(count);
     if (cells.size() != dim) box.required("cells").expected(count);
@@ -270,7 +270,7 @@ CaseText read_case_text(const std::string& path) {
   CaseText read{path, {}};
   for (std::string piece(std::size_t{1} << 16, '\0'); stream;) {
     stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
-    read.text.append(piece, 0, static_cast<std::size_t>(stream.gcount()));
+    read.text.append(piece, 0, stream.gcount());
     if (read.text.size() > largest_case)
       throw InputError(path +
                        ": this is larger than 64 MiB, which no case is; meshes have files of their own");

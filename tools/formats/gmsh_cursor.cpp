@@ -50,7 +50,7 @@ void GmshCursor::fail_word(const char* expected, const char* what) const {
   const std::string_view rest = data_.substr(last_);
   if (rest[0] == '\n' || rest[0] == '\r') fail(start + "but the line ends");
   const auto end = std::find_if(rest.begin(), rest.end(), is_space);
-  fail(start + "got " + quoted(rest.substr(0, static_cast<std::size_t>(end - rest.begin()))));
+  fail(start + "got " + quoted(rest.substr(0, end - rest.begin())));
 }
 
 std::string_view GmshCursor::line() {
@@ -68,7 +68,7 @@ bool GmshCursor::skip_blank_lines() {
 }
 
 void GmshCursor::finish_word(const char* end, const char* expected, const char* what) {
-  const auto stop = static_cast<std::size_t>(end - data_.data());
+  const std::size_t stop = end - data_.data();
   if (stop < data_.size() && !is_space(data_[stop])) fail_word(expected, what);
   position_ = stop;
 }

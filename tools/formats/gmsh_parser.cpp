@@ -127,7 +127,7 @@ class Parser {
     }
     in_.end_record();
     for (int dimension = 0; dimension < 4; ++dimension)
-      for (std::int64_t i = 0; i < counts[static_cast<std::size_t>(dimension)]; ++i) entity(dimension);
+      for (std::int64_t i = 0; i < counts[dimension]; ++i) entity(dimension);
   }
 
   void entity(int dimension) {
@@ -209,7 +209,7 @@ class Parser {
     in_.expect_room(total, 8, "nodes");
     if (total > std::numeric_limits<std::int32_t>::max() / 3)
       in_.fail(std::to_string(total) + " nodes are more than 32-bit indices can number");
-    content_.node_tags.reserve(static_cast<std::size_t>(total));
+    content_.node_tags.reserve(total);
     content_.coordinates.reserve(3 * static_cast<std::size_t>(total));
   }
 

@@ -48,10 +48,10 @@ std::size_t body_cell(const std::string& path, const GmshContent& content) {
 
 void refuse_unused_nodes(const std::string& path, const GmshContent& content, const Mesh& mesh) {
   std::vector<bool> used(content.node_tags.size(), false);
-  for (const std::int32_t node : mesh.elements) used[static_cast<std::size_t>(node)] = true;
+  for (const std::int32_t node : mesh.elements) used[node] = true;
   const auto count = std::count(used.begin(), used.end(), false);
   if (count == 0) return;
-  const auto first = static_cast<std::size_t>(std::find(used.begin(), used.end(), false) - used.begin());
+  const std::size_t first = std::find(used.begin(), used.end(), false) - used.begin();
   const bool lower =
       std::any_of(content.elements.begin(), content.elements.end(), [&](const GmshElements& list) {
         return std::find(list.nodes.begin(), list.nodes.end(), static_cast<std::int32_t>(first)) !=
@@ -96,7 +96,7 @@ void take_coordinates(const std::string& path, GmshContent& content, Mesh& mesh)
 class FacetIndex {
  public:
   explicit FacetIndex(const Mesh& mesh) {
-    const auto corners = static_cast<std::size_t>(cell(mesh.type).facet().corners);
+    const std::size_t corners = cell(mesh.type).facet().corners;
     entries_.reserve(mesh.facet_count());
     for (std::size_t f = 0; f < mesh.facet_count(); ++f)
       entries_.push_back({key(mesh.facet(f).first(corners)), static_cast<std::int32_t>(f)});
@@ -180,8 +180,7 @@ std::vector<Group> find_groups(const GmshContent& content, std::size_t body, con
   for (std::size_t s = 0; s < cells().size(); ++s) {
     const GmshElements& list = content.elements[s];
     const auto nodes = [&](std::size_t e, int count) {
-      return std::span(list.nodes)
-          .subspan(e * static_cast<std::size_t>(cells()[s].nodes), static_cast<std::size_t>(count));
+      return std::span(list.nodes).subspan(e * static_cast<std::size_t>(cells()[s].nodes), count);
     };
     if (s == body) {
       groups.add(s, [](std::size_t e, auto& members) { members.push_back(static_cast<std::int32_t>(e)); });

@@ -20,7 +20,7 @@ std::optional<std::int64_t> NodeIndex::assign(std::span<const std::int64_t> tags
   if (range / 4 < count) {
     table_.assign(static_cast<std::size_t>(range) + 1, -1);
     for (std::size_t i = 0; i < tags.size(); ++i) {
-      std::int32_t& place = table_[static_cast<std::size_t>(tags[i] - first_)];
+      std::int32_t& place = table_[tags[i] - first_];
       if (place >= 0) return tags[i];
       place = static_cast<std::int32_t>(i);
     }

@@ -19,7 +19,7 @@ class NodeIndex {
   /// Index of the node with this number, −1 if there is none.
   std::int32_t find(std::int64_t tag) const {
     if (tag < first_ || tag > last_) return -1;
-    if (!table_.empty()) return table_[static_cast<std::size_t>(tag - first_)];
+    if (!table_.empty()) return table_[tag - first_];
     return sorted_.empty() ? static_cast<std::int32_t>(tag - first_) : find_sorted(tag);
   }
 

@@ -72,8 +72,8 @@ class VtuFile {
   VtuFile(const std::string& path, const Grid& grid)
       : path_(path),
         grid_(grid),
-        nodes_(static_cast<std::size_t>(grid.cell->nodes)),
-        dim_(static_cast<std::size_t>(grid.dim)),
+        nodes_(grid.cell->nodes),
+        dim_(grid.dim),
         points_(grid.points.size() / dim_),
         cells_(grid.cells.size() / nodes_),
         file_(path) {}
@@ -140,7 +140,7 @@ class VtuFile {
   void append(const Field& field) {
     std::visit(
         [&](const auto& values) {
-          append_padded(values, static_cast<std::size_t>(field.components), written_components(grid_, field));
+          append_padded(values, field.components, written_components(grid_, field));
         },
         field.values);
   }

@@ -65,8 +65,7 @@ class Image {
         palette.push_back(colours_.colour(b, static_cast<double>(s) / (shades - 1)));
     return "<image x=\"" + svg_number(frame_.left) + "\" y=\"" + svg_number(frame_.top) + "\" width=\"" +
            svg_number(width_ / pixels) + "\" height=\"" + svg_number(height_ / pixels) +
-           "\" xlink:href=\"data:image/png;base64," +
-           base64(encode_png(static_cast<std::size_t>(width_), index_, palette)) + "\"/>\n";
+           "\" xlink:href=\"data:image/png;base64," + base64(encode_png(width_, index_, palette)) + "\"/>\n";
   }
 
  private:

@@ -47,20 +47,18 @@ class Painter {
 
   /// All polygons of a band as one path.
   std::string flat() {
-    std::vector<std::string> bands(static_cast<std::size_t>(colours_.bands()));
+    std::vector<std::string> bands(colours_.bands());
     std::string edges;
     for (const Face& face : surface_.faces) {
-      polygons(face, [&](int band, const std::vector<Corner>& polygon) {
-        append_polygon(bands[static_cast<std::size_t>(band)], polygon);
-      });
+      polygons(face,
+               [&](int band, const std::vector<Corner>& polygon) { append_polygon(bands[band], polygon); });
       append_edges(edges, face);
     }
     std::string text = "<g stroke-width=\"0.6\" stroke-linejoin=\"round\">\n";
     for (int b = 0; b < colours_.bands(); ++b) {
-      if (bands[static_cast<std::size_t>(b)].empty()) continue;
+      if (bands[b].empty()) continue;
       const std::string colour = hex(colours_.colour(b, 1));
-      text += "<path fill=\"" + colour + "\" stroke=\"" + colour + "\" d=\"" +
-              bands[static_cast<std::size_t>(b)] + "\"/>\n";
+      text += "<path fill=\"" + colour + "\" stroke=\"" + colour + "\" d=\"" + bands[b] + "\"/>\n";
     }
     text += "</g>\n";
     text += "<path fill=\"none\" stroke=\"#000\" stroke-opacity=\"0.3\" stroke-width=\"0.35\" d=\"" + edges +

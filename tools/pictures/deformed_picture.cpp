@@ -55,7 +55,7 @@ struct Box {
 };
 
 Box body_box(const Mesh& mesh) {
-  const auto dim = static_cast<std::size_t>(mesh.dim());
+  const std::size_t dim = mesh.dim();
   Box box = Box::empty();
   for (std::size_t i = 0; i < mesh.node_count(); ++i) {
     Vector at{};
@@ -122,7 +122,7 @@ class Drawing {
         nodal_values_(finite_or_zero(picture.von_mises)),
         box_(body_box(mesh_)),
         view_(View::of(mesh_)),
-        largest_(largest_norm(displacement_, static_cast<std::size_t>(dim_))),
+        largest_(largest_norm(displacement_, dim_)),
         scale_(picture.scale > 0 ? picture.scale : fitting_scale(largest_, box_.diagonal())),
         surface_(visible_surface(mesh_, view_, displacement_, scale_, nodal_values_)),
         colours_(nodal_values_) {
@@ -165,9 +165,7 @@ class Drawing {
     frame_.high_y = seen.high[1] + (frame_.height / frame_.scale - h) / 2;
   }
 
-  Vector project(const Vector& at) const {
-    return view_.project(std::span(at).first(static_cast<std::size_t>(dim_)));
-  }
+  Vector project(const Vector& at) const { return view_.project(std::span(at).first(dim_)); }
 
   void obstacle(SvgCanvas& canvas, const std::vector<Vector>& patch) const {
     std::vector<std::array<double, 2>> p;

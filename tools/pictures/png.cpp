@@ -107,7 +107,7 @@ class Deflate {
     const auto l = std::upper_bound(lengths.begin(), lengths.end(), length) - lengths.begin() - 1;
     literal(257 + static_cast<std::uint32_t>(l));
     const int length_bits = l < 8 || l == 28 ? 0 : static_cast<int>(l / 4) - 1;
-    bits(static_cast<std::uint32_t>(length - lengths[static_cast<std::size_t>(l)]), length_bits);
+    bits(static_cast<std::uint32_t>(length - lengths[l]), length_bits);
     // The distance codes: two for every power of two.
     std::uint32_t symbol = 0, base = 1;
     int extra = 0;

@@ -66,7 +66,7 @@ std::vector<Triangle> triangles(const Mesh& mesh) {
 class Shape {
  public:
   Shape(const Mesh& mesh, const View& view, std::span<const double> displacement, double scale) {
-    const auto dim = static_cast<std::size_t>(mesh.dim());
+    const std::size_t dim = mesh.dim();
     points_.resize(mesh.node_count());
     Vector at{};
     for (std::size_t i = 0; i < points_.size(); ++i) {
@@ -75,7 +75,7 @@ class Shape {
       points_[i] = view.project(std::span(at).first(dim));
     }
   }
-  const Vector& at(std::int32_t node) const { return points_[static_cast<std::size_t>(node)]; }
+  const Vector& at(std::int32_t node) const { return points_[node]; }
   Vector normal(const Triangle& t) const {
     return unit(cross(minus(at(t.nodes[1]), at(t.nodes[0])), minus(at(t.nodes[2]), at(t.nodes[0]))));
   }
@@ -182,7 +182,7 @@ Surface visible_surface(const Mesh& mesh, const View& view, std::span<const doub
     Face face;
     for (std::size_t k = 0; k < 3; ++k) {
       face.corners[k] = shape.at(t.nodes[k]);
-      face.values[k] = values[static_cast<std::size_t>(t.nodes[k])];
+      face.values[k] = values[t.nodes[k]];
     }
     face.shade = mesh.dim() == 3 ? shade_of(normal) : shades - 1;
     face.edges = t.edges;

@@ -15,7 +15,7 @@ void append_svg_number(std::string& text, double value) {
   const long hundredths = std::lround(value * 100);
   const int length = std::snprintf(digits.data(), digits.size(), "%s%ld.%02ld", hundredths < 0 ? "-" : "",
                                    std::labs(hundredths) / 100, std::labs(hundredths) % 100);
-  std::string_view number(digits.data(), static_cast<std::size_t>(length));
+  std::string_view number(digits.data(), length);
   while (number.back() == '0') number.remove_suffix(1);
   if (number.back() == '.') number.remove_suffix(1);
   text += number;
@@ -30,8 +30,7 @@ std::string svg_number(double value) {
 std::string power_of_ten(int exponent) {
   constexpr std::array<const char*, 10> raised{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
   std::string text = exponent < 0 ? "10⁻" : "10";
-  for (const char digit : std::to_string(std::abs(exponent)))
-    text += raised[static_cast<std::size_t>(digit - '0')];
+  for (const char digit : std::to_string(std::abs(exponent))) text += raised[digit - '0'];
   return text;
 }
 

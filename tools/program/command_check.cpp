@@ -33,7 +33,7 @@ std::string path_of(const char* list, std::size_t index) {
 std::string facets_text(const Mesh& mesh, std::span<const std::int32_t> facets) {
   double area = 0.0;
   for (const std::int32_t f : facets) {
-    for (const double w : consistent_weights(mesh, static_cast<std::size_t>(f)).area) area += w;
+    for (const double w : consistent_weights(mesh, f).area) area += w;
   }
   std::array<char, 80> text{};
   std::snprintf(text.data(), text.size(), "%zu facets, %s %.6g", facets.size(),
@@ -124,7 +124,7 @@ int check_command(const Case& input, int ranks) {
   print_selections(problem, input.model);
   print_contact_gaps(problem);
   for (std::size_t i = 0; i < problem.probes.size(); ++i) {
-    const auto element = static_cast<std::size_t>(problem.probes[i].element);
+    const std::size_t element = problem.probes[i].element;
     std::printf("  %-14s %s in element %lld\n", path_of("probe", i).c_str(),
                 to_text(problem.probes[i].point, dim).c_str(),
                 static_cast<long long>(mesh.element_tag(element)));

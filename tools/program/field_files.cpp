@@ -50,7 +50,7 @@ constexpr std::int64_t no_contact_point = -1;
 
 Surface contact_surface(const Problem& problem, const Model& model, const ContactFields& fields) {
   const Mesh& mesh = problem.mesh;
-  const auto dim = static_cast<std::size_t>(mesh.dim());
+  const std::size_t dim = mesh.dim();
   Surface surface;
   const Selection selection(mesh);
   for (std::size_t entry = 0; entry < model.contact.size(); ++entry) {
@@ -62,7 +62,7 @@ Surface contact_surface(const Problem& problem, const Model& model, const Contac
       for (std::size_t c = 0; c < dim; ++c) {
         surface.points.push_back(mesh.coordinates[static_cast<std::size_t>(node) * dim + c]);
       }
-      surface.node_id.push_back(mesh.node_tag(static_cast<std::size_t>(node)));
+      surface.node_id.push_back(mesh.node_tag(node));
       while (point != problem.contact.end() && point->node < node) ++point;
       // The entry's own point, or the one it was merged with.
       auto chosen = problem.contact.end();
@@ -70,7 +70,7 @@ Surface contact_surface(const Problem& problem, const Model& model, const Contac
         if (chosen == problem.contact.end() || p->entry == static_cast<std::int32_t>(entry)) chosen = p;
       }
       const bool there = chosen != problem.contact.end();
-      const auto i = static_cast<std::size_t>(chosen - problem.contact.begin());
+      const std::size_t i = chosen - problem.contact.begin();
       surface.gap.push_back(there ? fields.gap[i] : 0.0);
       surface.pressure.push_back(there ? fields.pressure[i] : 0.0);
       surface.status.push_back(there ? static_cast<std::int64_t>(fields.status[i]) : no_contact_point);
@@ -78,7 +78,7 @@ Surface contact_surface(const Problem& problem, const Model& model, const Contac
         surface.traction.push_back(there ? fields.traction[3 * i + c] : 0.0);
     }
     for (const std::int32_t f : facets) {
-      for (const std::int32_t node : mesh.facet(static_cast<std::size_t>(f))) {
+      for (const std::int32_t node : mesh.facet(f)) {
         surface.cells.push_back(
             first +
             static_cast<std::int32_t>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin()));
@@ -119,7 +119,7 @@ void write_body(const std::filesystem::path& folder, const Part& part, const Sol
   grid.point_fields[0].values = Values<double>(solution.displacement);
   grid.point_fields[1].values = tags(part.nodes(), [&part](std::size_t i) { return part.node_tag(i); });
   const auto element_field = [&](int components, std::span<double> reference::ElementFields::*which) {
-    const auto width = static_cast<std::size_t>(components);
+    const std::size_t width = components;
     return Values<double>(part.element_count() * width, [&part, &solution, which, width](
                                                             std::size_t first, std::span<double> out) {
       reference::ElementFields wanted;

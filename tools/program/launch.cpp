@@ -99,7 +99,7 @@ bool pass_output_on(int from) {
   const ssize_t size = read(from, piece.data(), piece.size());
   if (size < 0) return errno == EINTR;
   for (ssize_t done = 0; done < size;) {
-    const ssize_t more = write(STDOUT_FILENO, piece.data() + done, static_cast<std::size_t>(size - done));
+    const ssize_t more = write(STDOUT_FILENO, piece.data() + done, size - done);
     if (more < 0 && errno != EINTR) break;
     done += std::max<ssize_t>(more, 0);
   }

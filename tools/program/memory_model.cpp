@@ -46,7 +46,7 @@ ProblemSize size_of(const BoxSpec& box, const Model& model) {
   ProblemSize size;
   size.type = box.type;
   size.nonlinear = nonlinear(model);
-  const auto dim = static_cast<std::size_t>(dimension(box.type));
+  const std::size_t dim = dimension(box.type);
   const double order = cell(box.type).order;
   size.nodes = 1.0;
   size.elements = cell(box.type).box_elements();

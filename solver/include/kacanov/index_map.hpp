@@ -26,13 +26,13 @@ struct IndexMap : Communicator {
   std::vector<Neighbour> neighbours;  ///< ascending rank
   std::vector<std::int32_t> shared;   ///< every local index that another rank has too
 
-  std::int64_t first() const noexcept { return starts[static_cast<std::size_t>(rank)]; }
+  std::int64_t first() const noexcept { return starts[rank]; }
   std::int64_t total() const noexcept { return starts.back(); }
   /// Owned indices and ghosts.
   std::size_t size() const noexcept { return static_cast<std::size_t>(owned) + ghosts.size(); }
   /// Number of a local index over all ranks.
   std::int64_t number(std::size_t local) const noexcept {
-    const auto mine = static_cast<std::size_t>(owned);
+    const std::size_t mine = owned;
     return local < mine ? first() + static_cast<std::int64_t>(local) : ghosts[local - mine];
   }
   /// Rank that owns a number.

@@ -41,7 +41,7 @@ struct Mesh {
   std::size_t facet_count() const { return facets.size() / static_cast<std::size_t>(nodes_per_facet(type)); }
   MeshView view() const noexcept { return {type, coordinates, elements}; }
   std::span<const std::int32_t> facet(std::size_t f) const {
-    const auto n = static_cast<std::size_t>(nodes_per_facet(type));
+    const std::size_t n = nodes_per_facet(type);
     return std::span(facets).subspan(f * n, n);
   }
   std::int64_t node_tag(std::size_t i) const noexcept {

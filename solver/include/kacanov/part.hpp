@@ -70,13 +70,13 @@ struct Part {
   std::int64_t node_number(std::size_t i) const noexcept { return halo.number(i); }
   /// f += F.
   void add_load(std::span<double> f) const noexcept {
-    for (const auto& entry : load) f[static_cast<std::size_t>(entry.component)] += entry.value;
+    for (const auto& entry : load) f[entry.component] += entry.value;
   }
   /// The given displacement of a held component.
   double prescribed_at(std::size_t component) const noexcept;
   /// Sets held components of ω.
   void prescribe(std::span<double> omega) const noexcept {
-    for (const auto& p : prescribed) omega[static_cast<std::size_t>(p.component)] = p.value;
+    for (const auto& p : prescribed) omega[p.component] = p.value;
   }
   Body body() const noexcept { return {{type, coordinates, elements}, laws, law_of_element}; }
 };
