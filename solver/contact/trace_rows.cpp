@@ -82,8 +82,9 @@ TraceRows::TraceRows(const Part& part, std::span<const TraceChoice> choice) : pa
   }
   for (Group& group : groups_) invert(group);
   total_ = part.halo.sum_all(static_cast<std::int64_t>(owned_));
-  if (!part.halo.any(!wide_rows_.empty())) return;
-  join_cluster();
+  any_wide_ = part.wide_contact && part.halo.any(!wide_rows_.empty());
+  if (any_wide_)
+    for (Group& group : groups_) group.in_cluster = wide_.contains(group.node);
 }
 
 /// Rows of a narrow point, behind those of its node so far.
@@ -112,24 +113,23 @@ void TraceRows::invert(Group& group) const {
     for (int c = 0; c < 3; ++c) group.inverse[k][c] = inverse(c, k);
 }
 
-/// Wide rows and all narrow ones at wide nodes.
-void TraceRows::join_cluster() {
+const std::shared_ptr<const RowCluster>& TraceRows::cluster() const {
+  if (!any_wide_ || cluster_) return cluster_;
   std::vector<ClusterRow> rows = wide_rows_;
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
-    Group& group = groups_[g];
-    group.in_cluster = wide_.contains(group.node);
-    if (!group.in_cluster || g >= owned_groups_) continue;
-    for (std::size_t k = 0; k < static_cast<std::size_t>(group.rows); ++k)
+  for (std::size_t g = 0; g < owned_groups_; ++g) {
+    const Group& group = groups_[g];
+    for (std::size_t k = 0; group.in_cluster && k < static_cast<std::size_t>(group.rows); ++k)
       rows.push_back({group.first + k, index_[group.first + k], {{group.node, group.row[k]}}});
   }
   cluster_ = std::make_shared<RowCluster>(*part_, wide_, std::move(rows));
+  return cluster_;
 }
 
 void TraceRows::hold_in(Space& space) const {
   for (const auto& group : groups_)
     for (std::size_t k = 0; k < static_cast<std::size_t>(group.rows) && !group.in_cluster; ++k)
       space.hold(group.node, group.row[k]);
-  if (cluster_) space.hold(cluster_);
+  if (any_wide_) space.hold(cluster());
 }
 
 void TraceRows::transpose(std::span<const double> x, std::span<double> y) const {
@@ -139,7 +139,7 @@ void TraceRows::transpose(std::span<const double> x, std::span<double> y) const 
     add_rows(groups_[g].row, groups_[g].rows, x.data() + groups_[g].first,
              y.data() + static_cast<std::size_t>(groups_[g].node) * dim, dim);
   part_->halo.forward(y, part_->dim());
-  if (!cluster_) return;
+  if (!any_wide_) return;
   Vector wide = wide_.zeros(dim);
   for (const ClusterRow& row : wide_rows_)
     for (const auto& share : row.shares)
@@ -164,8 +164,8 @@ void TraceRows::lift(std::span<const double> x, std::span<double> y) const {
       add_rows(group.inverse, group.rows, x.data() + group.first,
                y.data() + static_cast<std::size_t>(group.node) * dim, dim);
   part_->halo.forward(y, part_->dim());
-  if (cluster_)
-    cluster_->add_transpose(cluster_->solve([&](const ClusterRow& row) { return x[row.row]; }), y);
+  if (any_wide_)
+    cluster()->add_transpose(cluster()->solve([&](const ClusterRow& row) { return x[row.row]; }), y);
 }
 
 void TraceRows::lift_transpose(std::span<const double> y, std::span<double> x) const {
@@ -174,9 +174,9 @@ void TraceRows::lift_transpose(std::span<const double> y, std::span<double> x) c
     if (group.first < x.size() && !group.in_cluster)
       take_rows(group.inverse, group.rows, y.data() + static_cast<std::size_t>(group.node) * dim,
                 x.data() + group.first, dim);
-  if (!cluster_) return;
-  const Vector z = cluster_->solve([&](const ClusterRow& row) { return row.of(y, dim); });
-  for (const ClusterRow& row : cluster_->rows()) x[row.row] = z[cluster_->position(row.number)];
+  if (!any_wide_) return;
+  const Vector z = cluster()->solve([&](const ClusterRow& row) { return row.of(y, dim); });
+  for (const ClusterRow& row : cluster()->rows()) x[row.row] = z[cluster_->position(row.number)];
   for (std::size_t g = owned_groups_; g < groups_.size(); ++g)  // ghosts
     for (std::size_t k = 0; k < static_cast<std::size_t>(groups_[g].rows); ++k)
       if (const std::size_t row = groups_[g].first + k; groups_[g].in_cluster && row < x.size())
@@ -198,7 +198,7 @@ std::vector<NodeBlock> TraceRows::narrow_blocks(double r) const {
 }
 
 std::vector<NodeBlock> TraceRows::wide_blocks(double r) const {
-  if (!cluster_) return {};
+  if (!any_wide_) return {};
   const std::size_t dim = part_->dim();
   Vector sums = wide_.zeros(dim * dim);
   for (const ClusterRow& row : wide_rows_)

@@ -35,7 +35,7 @@ class TraceRows {
   /// √mass of the owned rows.
   std::span<const double> root_mass() const noexcept { return root_mass_; }
 
-  /// Holds every row in `space`.
+  /// Holds every row in `space`. Collective.
   void hold_in(Space& space) const;
   /// y = Cᵀ D^½ x (overwrites), x owned rows; consistent. Collective.
   void transpose(std::span<const double> x, std::span<double> y) const;
@@ -64,7 +64,9 @@ class TraceRows {
   };
   void add_narrow(std::size_t point, std::span<const Vector3> rows);
   void invert(Group& group) const;
-  void join_cluster();
+  /// Wide rows and narrow ones at their nodes; null where no rank has wide rows. Made when first asked for:
+  /// blocks and products do without its factor. Collective.
+  const std::shared_ptr<const RowCluster>& cluster() const;
   std::vector<NodeBlock> narrow_blocks(double r) const;
   std::vector<NodeBlock> wide_blocks(double r) const;
 
@@ -72,8 +74,9 @@ class TraceRows {
   WideNodes wide_;
   std::vector<Group> groups_;  ///< owned first
   std::size_t owned_groups_ = 0, owned_ = 0;
-  std::vector<ClusterRow> wide_rows_;          ///< owned
-  std::shared_ptr<const RowCluster> cluster_;  ///< null where no rank has wide rows
+  std::vector<ClusterRow> wide_rows_;  ///< owned
+  bool any_wide_ = false;              ///< some rank has wide rows
+  mutable std::shared_ptr<const RowCluster> cluster_;
   std::vector<std::int64_t> index_;
   std::vector<double> root_mass_;
   std::int64_t total_ = 0;
