@@ -166,8 +166,8 @@ def internal_force(mesh, material, u):
     return force, math.sqrt(sum((k * c) ** 2 for k, v in zip(diagonal, u) for c in v))
 
 
-def facet_weights(mesh, facet, lumped):
-    """(node, area, outer normal times area) of a facet, whose corners go round."""
+def facet_weights(mesh, facet):
+    """(node, area, outer normal times area) of a facet, whose corners go round, for loads and contact alike."""
     x = [mesh.nodes[n] for n in facet]
     if mesh.dim == 2:
         along = minus(x[1], x[0])
@@ -185,18 +185,9 @@ def facet_weights(mesh, facet, lumped):
                     entry[1] += value * length(normal)
                     entry[2] = [v + value * c for v, c in zip(entry[2], normal)]
         return out
-    parts = [(0, 1, 2)]
-    if mesh.type == "tet10":
-        if not lumped:  # straight sides: a sixth of the area at each middle of an edge twice over
-            normal = [c / 2 for c in cross(minus(x[1], x[0]), minus(x[2], x[0]))]
-            return [(n, length(normal) / 3, [c / 3 for c in normal]) for n in facet[3:]]
-        parts = [(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)]
-    out = []
-    for part in parts:
-        a, b, c = (x[k] for k in part)
-        third = [v / 6 for v in cross(minus(b, a), minus(c, a))]
-        out += [(facet[k], length(third), third) for k in part]
-    return out
+    third = [c / 6 for c in cross(minus(x[1], x[0]), minus(x[2], x[0]))]
+    # Of tet10 with straight sides the middles of the edges have all.
+    return [(n, length(third), third) for n in (facet[3:] if mesh.type == "tet10" else facet)]
 
 
 def outward(mesh):
@@ -212,7 +203,7 @@ def outward(mesh):
             element = next(e for e in behind[facet[0]] if set(facet) <= set(e))
             middle = [sum(mesh.nodes[n][c] for n in element) / len(element) for c in range(3)]
             at = [sum(mesh.nodes[n][c] for n in facet[:corners]) / corners for c in range(3)]
-            normal = [sum(w[2][c] for w in facet_weights(mesh, facet, True)) for c in range(3)]
+            normal = [sum(w[2][c] for w in facet_weights(mesh, facet)) for c in range(3)]
             signs[tuple(facet)] = 1 if dot(normal, minus(at, middle)) > 0 else -1
     return signs
 
@@ -239,7 +230,7 @@ def loads_and_supports(mesh, boundary):
                     held.update({(n, c): value for n in facet})
             if "displacement" in entry:
                 continue
-            for n, area, normal in facet_weights(mesh, facet, False):
+            for n, area, normal in facet_weights(mesh, facet):
                 for c in range(mesh.dim):
                     load[n][c] += area * entry["traction"][c] if "traction" in entry else (
                         -entry["pressure"] * signs[tuple(facet)] * normal[c])
@@ -252,7 +243,7 @@ def contact_points(mesh, contact):
     for number, entry in enumerate(contact):
         mass = collections.Counter()
         for facet in mesh.facets[entry["on"]]:
-            for n, area, _ in facet_weights(mesh, facet, True):
+            for n, area, _ in facet_weights(mesh, facet):
                 mass[n] += area
         for n, area in mass.items():
             if "plane" in entry["obstacle"]:

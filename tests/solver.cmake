@@ -42,6 +42,13 @@ kacanov_test(half_space
   MPI SOURCES solver/half_space_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
+kacanov_test(quadratic_contact
+  MPI SOURCES solver/quadratic_contact_test.cpp
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal kacanov_formats
+  RANKS 1 2 4)
+target_compile_definitions(test_quadratic_contact PRIVATE
+  KACANOV_UNEVEN_CUBE="${CMAKE_CURRENT_SOURCE_DIR}/cases/patch/uneven_cube.msh")
+
 kacanov_test(mesh
   SOURCES solver/mesh_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)

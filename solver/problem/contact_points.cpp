@@ -169,7 +169,10 @@ std::vector<ContactPoint> points_of_entry(const Problem& problem, const ContactE
     }
   }
   std::vector<ContactPoint> points;
+  std::size_t candidates = 0;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
+    if (!(mass[k] > 0.0)) continue;  // corners of quadratic facets bear nothing
+    ++candidates;
     const std::optional<Facing> facing = faces.at(nodes[k], outer[k]);
     if (!facing) continue;
     ContactPoint point;
@@ -185,7 +188,7 @@ std::vector<ContactPoint> points_of_entry(const Problem& problem, const ContactE
     if (restrict_to_free(point, problem, friction)) points.push_back(point);
   }
   if (points.empty()) {
-    throw InputError(path + ": none of the " + std::to_string(nodes.size()) +
+    throw InputError(path + ": none of the " + std::to_string(candidates) +
                      " nodes can touch the obstacle: each is held by a displacement or misses it");
   }
   return points;

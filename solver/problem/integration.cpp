@@ -78,6 +78,18 @@ Vector3 area_vector(const Vector3& a, const Vector3& b, const Vector3& c) {
   return 0.5 * cross(b - a, c - a);
 }
 
+/// Outer normal of a facet times its area over that of the reference cell, at a point with these shapes.
+Vector3 normal_at(const Mesh& mesh, std::span<const std::int32_t> nodes, const Shapes& shapes) {
+  Vector3 along{}, across{};
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const Vector3 x = position(mesh, nodes[k]);
+    along = along + shapes.gradient[k][0] * x;
+    across = across + shapes.gradient[k][1] * x;
+  }
+  // In 2D the body lies to the left of the edge.
+  return mesh.dim() == 2 ? Vector3{along[1], -along[0], 0.0} : cross(along, across);
+}
+
 }  // namespace
 
 FacetWeights consistent_weights(const Mesh& mesh, std::size_t facet) {
@@ -95,14 +107,7 @@ FacetWeights consistent_weights(const Mesh& mesh, std::size_t facet) {
   }
   for (const Point& point : rule_for(type)) {
     const Shapes shapes = shapes_at(type, point.at);
-    Vector3 along{}, across{};
-    for (std::size_t k = 0; k < nodes.size(); ++k) {
-      const Vector3 x = position(mesh, nodes[k]);
-      along = along + shapes.gradient[k][0] * x;
-      across = across + shapes.gradient[k][1] * x;
-    }
-    // In 2D the body lies to the left of the edge.
-    const Vector3 normal = mesh.dim() == 2 ? Vector3{along[1], -along[0], 0.0} : cross(along, across);
+    const Vector3 normal = normal_at(mesh, nodes, shapes);
     for (std::size_t k = 0; k < nodes.size(); ++k) {
       weights.normal[k] = weights.normal[k] + point.weight * shapes.value[k] * normal;
       weights.area[k] += point.weight * shapes.value[k] * norm(normal);
@@ -114,16 +119,13 @@ FacetWeights consistent_weights(const Mesh& mesh, std::size_t facet) {
 FacetWeights lumped_weights(const Mesh& mesh, std::size_t facet) {
   const Cell& type = cell(mesh.type).facet();
   if (type.order == 1) return consistent_weights(mesh, facet);
+  // The rule of the mid-sides: exact for what is quadratic, so that each weighs what it does in an even load.
   FacetWeights weights;
   const auto nodes = mesh.facet(facet);
-  for (const auto& part : type.triangles) {
-    const auto corner = [&](std::size_t k) { return position(mesh, nodes[part[k]]); };
-    const Vector3 third = (1.0 / 3.0) * area_vector(corner(0), corner(1), corner(2));
-    for (const std::int8_t k : part) {
-      const std::size_t node = k;
-      weights.normal[node] = weights.normal[node] + third;
-      weights.area[node] += norm(third);
-    }
+  for (const CellEdge& edge : type.edges) {
+    const std::size_t k = edge.middle;
+    weights.normal[k] = 1.0 / 6.0 * normal_at(mesh, nodes, shapes_at(type, type.reference[k]));
+    weights.area[k] = norm(weights.normal[k]);
   }
   return weights;
 }

@@ -18,9 +18,8 @@ struct FacetWeights {
 /// Consistent weights: exact for planar facets, and for `normal` on curved ones too.
 FacetWeights consistent_weights(const Mesh& mesh, std::size_t facet);
 
-/// Weights of the lumped contact mass. They differ from the consistent ones for the six-node triangle alone,
-/// whose corners would weigh nothing: there each of its four sub-triangles is lumped, so that all are
-/// positive.
+/// Weights of the lumped contact mass (theory: contact-mass). For linear facets they are the consistent ones;
+/// of the six-node triangle the mid-sides have a third each, as in the consistent load, and the corners none.
 FacetWeights lumped_weights(const Mesh& mesh, std::size_t facet);
 
 /// ∫ Nᵢ dV (an area in 2D), one entry a node of the element.

@@ -44,13 +44,39 @@ struct HalfSpace {
   }
 
   /// The quarter x, y > 0; symmetry at left and front; the surface is bottom.
-  Mesh quarter() const {
+  Mesh quarter(ElementType type = ElementType::hex8) const {
     const double m = cells();
-    Mesh mesh = make_box({{m, m, m}, {cells(), cells(), cells()}, ElementType::hex8});
+    Mesh mesh = make_box({{m, m, m}, {cells(), cells(), cells()}, type});
     map_nodes(mesh, [&](const Vector3& x) {
       return Vector3{coordinate(x[0]), coordinate(x[1]), coordinate(x[2])};
     });
+    straighten(mesh);
     return mesh;
+  }
+
+  /// The half y > 0; symmetry at front; the surface is bottom.
+  Mesh half() const {
+    const double m = cells();
+    Mesh mesh = make_box({{2 * m, m, m}, {2 * cells(), cells(), cells()}, ElementType::hex8});
+    map_nodes(mesh, [&](const Vector3& x) {
+      const double i = x[0] - m;
+      return Vector3{std::copysign(coordinate(std::abs(i)), i), coordinate(x[1]), coordinate(x[2])};
+    });
+    return mesh;
+  }
+
+  /// Nodes in the middle of edges go back there.
+  static void straighten(Mesh& mesh) {
+    const Cell& type = cell(mesh.type);
+    const auto npe = static_cast<std::size_t>(type.nodes);
+    for (std::size_t e = 0; e < mesh.element_count(); ++e)
+      for (const CellEdge& edge : type.edges) {
+        if (edge.middle < 0) continue;
+        const auto at = [&](std::int8_t k) {
+          return &mesh.coordinates[3 * static_cast<std::size_t>(mesh.elements[e * npe + k])];
+        };
+        for (std::size_t c = 0; c < 3; ++c) at(edge.middle)[c] = 0.5 * (at(edge.a)[c] + at(edge.b)[c]);
+      }
   }
 };
 

@@ -57,6 +57,15 @@ TEST_CASE("uniform shear under a bound that is not reached: uniform stress") {
   CHECK(patch.result.at("max_contact_pressure").get<double>() == doctest::Approx(100.0).epsilon(1e-4));
 }
 
+TEST_CASE("quadratic facets: an even pressure reads as one, a shear below its bound sticks") {
+  const Run pressed = converged("patch_tet10_pressure", 10, 100);
+  CHECK(pressed.result.at("max_contact_pressure").get<double>() == doctest::Approx(100.0).epsilon(1e-5));
+  const Run sheared = converged("shear_patch_tet10_tresca", 10, 100);
+  CHECK(sheared.count("slip_nodes") == 0);
+  CHECK(sheared.number("friction_force", 0) == doctest::Approx(-10.0));
+  CHECK(sheared.result.at("max_contact_pressure").get<double>() == doctest::Approx(100.0).epsilon(1e-4));
+}
+
 TEST_CASE("a bracket on its foot, the rest held by friction") {
   const Run bracket = converged("bracket_linear_coulomb", 20, 200);
   // The tip's area is 0.3, its load (10, 0, −50).

@@ -3,6 +3,8 @@
 #include "program/field_files.hpp"
 
 #include <algorithm>
+#include <array>
+#include <map>
 
 #include <kacanov/element_fields.hpp>
 #include "formats/vtu_writer.hpp"
@@ -48,6 +50,64 @@ struct Surface {
 /// Nodes that are no contact points (held, or missing the obstacle) have this status and zero fields.
 constexpr std::int64_t no_contact_point = -1;
 
+/// Corners of quadratic facets are no contact points (theory: contact-mass): values run on linearly from the
+/// three mid-sides of each facet, the mean of the facets round a corner is taken, and the status that most of
+/// the mid-sides beside it have. `entry`: the facets of an entry in places of the surface.
+class CornerValues {
+ public:
+  explicit CornerValues(Surface& surface) : surface_(surface) {}
+
+  void spread(std::span<const std::int32_t> entry, const Cell& facet) {
+    if (facet.order == 1) return;
+    const std::size_t nodes = facet.nodes;
+    for (std::size_t f = 0; f < entry.size(); f += nodes)
+      for (std::int8_t corner = 0; corner < facet.corners; ++corner)
+        add(entry.subspan(f, nodes), facet, corner);
+    for (const auto& [corner, sums] : corners_) set(corner, sums);
+  }
+
+ private:
+  struct Sums {
+    int facets = 0;
+    double gap = 0.0, pressure = 0.0;
+    Vector3 traction{};
+    std::array<int, 3> status{};  ///< how many mid-sides beside it are open, stick, slip
+  };
+
+  void add(std::span<const std::int32_t> facet, const Cell& type, std::int8_t corner) {
+    if (surface_.status[facet[corner]] != no_contact_point) return;
+    const bool whole = std::all_of(type.edges.begin(), type.edges.end(), [&](const CellEdge& edge) {
+      return surface_.status[facet[edge.middle]] != no_contact_point;
+    });
+    Sums sums = corners_[facet[corner]];
+    for (const CellEdge& edge : type.edges) {
+      const std::size_t middle = facet[edge.middle];
+      const std::int64_t status = surface_.status[middle];
+      const bool beside = edge.a == corner || edge.b == corner;
+      if (beside && status != no_contact_point) ++sums.status[status];
+      if (!whole) continue;
+      const double share = beside ? 1.0 : -1.0;
+      sums.gap += share * surface_.gap[middle];
+      sums.pressure += share * surface_.pressure[middle];
+      for (std::size_t c = 0; c < 3; ++c) sums.traction[c] += share * surface_.traction[3 * middle + c];
+    }
+    if (whole) ++sums.facets;
+    corners_[facet[corner]] = sums;
+  }
+
+  void set(std::size_t corner, const Sums& sums) {
+    if (sums.facets == 0) return;
+    const auto most = std::max_element(sums.status.begin(), sums.status.end());
+    surface_.status[corner] = most - sums.status.begin();
+    surface_.gap[corner] = sums.gap / sums.facets;
+    surface_.pressure[corner] = std::max(0.0, sums.pressure / sums.facets);
+    for (std::size_t c = 0; c < 3; ++c) surface_.traction[3 * corner + c] = sums.traction[c] / sums.facets;
+  }
+
+  Surface& surface_;
+  std::map<std::int32_t, Sums> corners_;
+};
+
 Surface contact_surface(const Problem& problem, const Model& model, const ContactFields& fields) {
   const Mesh& mesh = problem.mesh;
   const std::size_t dim = mesh.dim();
@@ -77,6 +137,7 @@ Surface contact_surface(const Problem& problem, const Model& model, const Contac
       for (std::size_t c = 0; c < 3; ++c)
         surface.traction.push_back(there ? fields.traction[3 * i + c] : 0.0);
     }
+    const std::size_t cells_before = surface.cells.size();
     for (const std::int32_t f : facets) {
       for (const std::int32_t node : mesh.facet(f)) {
         surface.cells.push_back(
@@ -84,6 +145,7 @@ Surface contact_surface(const Problem& problem, const Model& model, const Contac
             static_cast<std::int32_t>(std::lower_bound(nodes.begin(), nodes.end(), node) - nodes.begin()));
       }
     }
+    CornerValues(surface).spread(std::span(surface.cells).subspan(cells_before), cell(mesh.type).facet());
   }
   return surface;
 }
