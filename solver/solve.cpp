@@ -21,6 +21,14 @@ std::size_t steps_over(const Part& part, const RunOptions& run) {
   return static_cast<std::size_t>(part.halo.max_all(here ? run.start->number("load_steps_over") : 0.0));
 }
 
+/// Shares of the load one after the other; with load curves the times of their points.
+std::vector<double> load_points(const Part& part, const SolverOptions& options) {
+  if (part.steps.empty()) return options.load_steps.empty() ? std::vector{1.0} : options.load_steps;
+  std::vector<double> times;
+  for (std::size_t i = 1; i < part.steps.size(); ++i) times.push_back(part.steps[i].time);
+  return times;
+}
+
 /// KKT residuals by the reference operator: the certificate does not trust the one the loop ran on.
 Certificate certify_independently(const StepContext& context) {
   const Part& part = context.part;
@@ -65,7 +73,8 @@ void end_load_steps(const std::vector<double>& shares, bool finished, Result& re
   if (finished) result.load_steps.push_back(load_step_line(result, shares[over]));
   if (over + 1 == shares.size() && finished) return;
   std::ostringstream place;
-  place << "load step " << over + 1 << " of " << shares.size() << " (factor " << shares[over] << "): ";
+  place << "load step " << over + 1 << " of " << shares.size() << (result.by_time ? " (time " : " (factor ")
+        << shares[over] << "): ";
   result.message = place.str() + result.message;
 }
 
@@ -90,7 +99,8 @@ Solution solve(const Part& part, const SolverOptions& options, const RunOptions&
   Solution solution;
   Result& result = solution.result;
   const bool restart = part.halo.any(part.halo.rank == 0 && run.start != nullptr);
-  const std::vector<double> shares = options.load_steps.empty() ? std::vector{1.0} : options.load_steps;
+  const std::vector<double> shares = load_points(part, options);
+  result.by_time = !part.steps.empty();
   OuterLoop loop(part, options, run, shares[steps_over(part, run)]);
   const StepContext& context = loop.context();
   const double prepared = MPI_Wtime();
@@ -117,7 +127,7 @@ Solution solve(const Part& part, const SolverOptions& options, const RunOptions&
   collect_contact(part, context.state, options.tolerance, solution);
   collect_totals(part, context.state, solution);
   if (result.message.empty()) result.message = verdict(result, options);
-  if (shares.size() > 1) end_load_steps(shares, finished, result);
+  if (shares.size() > 1 || result.by_time) end_load_steps(shares, finished, result);
   if (result.softening_elements > 0) result.message += softening_message(result.softening_elements);
   if (result.unsolved_steps > 0) result.warnings.push_back(unsolved_message(result, options));
   result.unknowns = part.total_nodes() * part.dim();

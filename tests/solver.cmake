@@ -49,6 +49,11 @@ kacanov_test(quadratic_contact
 target_compile_definitions(test_quadratic_contact PRIVATE
   KACANOV_UNEVEN_CUBE="${CMAKE_CURRENT_SOURCE_DIR}/cases/patch/uneven_cube.msh")
 
+kacanov_test(friction_history
+  MPI SOURCES solver/friction_history_test.cpp
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal
+  RANKS 1 2)
+
 kacanov_test(mesh
   SOURCES solver/mesh_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)

@@ -119,7 +119,12 @@ void decide_friction(const Traces& traces, const ContactState& state, double c, 
   if (edge.any) {
     const auto& tangent = traces.entries(i)[0].tangent;
     const Eigen::Map<const Eigen::Vector3d> along(tangent[0].data()), across(tangent[1].data());
-    const Eigen::Vector2d moved(along.dot(edge.imposed), across.dot(edge.imposed));
+    Eigen::Vector2d moved(along.dot(edge.imposed), across.dot(edge.imposed));
+    if (!state.origin.empty()) {  // slip is counted from there
+      const Eigen::Vector3d from = state.origin[2 * i] * along + state.origin[2 * i + 1] * across;
+      const Eigen::Vector3d dictated = from - edge.free * from;
+      moved -= Eigen::Vector2d(along.dot(dictated), across.dot(dictated));
+    }
     driven = moved.norm() > imposed_slip * edge.scale;
     // Otherwise those normals hold what they hold, and no friction besides.
     const Eigen::Vector3d left =

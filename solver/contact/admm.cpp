@@ -108,7 +108,7 @@ AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work,
     if (solve.iterations > 0 && solve.residual > 0.0)
       result.cg_digits += std::log10(solve.first_residual / solve.residual);
     result.solves_converged = result.solves_converged && solve.converged;
-    traces.evaluate(state.omega, state.trace);
+    state.evaluate(traces);
 
     StepNorm norm;
     update_multipliers(traces, state, options, shift, dual, result.trace_residual, norm, balance);

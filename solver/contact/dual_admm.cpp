@@ -144,6 +144,7 @@ AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& 
     if (result.iterations == 0) {
       solve(a);
       traces.evaluate(a, free_trace);
+      for (std::size_t k = 0; k < state.origin.size(); ++k) free_trace.tangential[k] -= state.origin[k];
       for (double& x : work.residual) x = -x;
       for (std::size_t i = 0; i < moved.size(); ++i) moved[i] = a[i] - state.omega[i];
     } else {
@@ -183,7 +184,7 @@ AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& 
   }
 
   for (std::size_t i = 0; i < n; ++i) state.omega[i] = a[i] - v[i];
-  traces.evaluate(state.omega, state.trace);
+  state.evaluate(traces);
   state.lambda = parts.plus;
   for (std::size_t i = 0; i < m; ++i) {
     state.phi.normal[i] = state.gap[i] + parts.minus.normal[i] / r.normal;

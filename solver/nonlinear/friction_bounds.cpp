@@ -12,6 +12,11 @@ bool has_friction(const Part& part) {
                                    [](const ContactPoint& point) { return point.tangents > 0; }));
 }
 
+bool has_slip_history(const Part& part) {
+  return part.halo.any(std::any_of(part.contact.begin(), part.contact.end(),
+                                   [](const ContactPoint& point) { return point.since_step; }));
+}
+
 double follow_pressure(const Part& part, const Vector& pressure, Vector& bound) {
   double change = 0.0, largest = 0.0;
   for (std::size_t i = 0; i < part.contact.size(); ++i) {

@@ -9,6 +9,9 @@ namespace kacanov {
 /// Whether some point of some rank may slide with friction. Collective.
 bool has_friction(const Part& part);
 
+/// Whether slip of some point of some rank is counted from the load step before. Collective.
+bool has_slip_history(const Part& part);
+
 /// ψ = Tresca's bound + μ_f λ_n for all points of this rank (theory: coulomb). Returns the largest change of
 /// `bound` over all ranks, relative to the largest pressure; 0 without pressure. Collective.
 double follow_pressure(const Part& part, const Vector& pressure, Vector& bound);

@@ -3,18 +3,23 @@
 #include "nonlinear/load_path.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include "problem/load_curves.hpp"
 
 namespace kacanov {
 namespace {
 
-/// How much of a point's gap the prescribed components of its nodes close: build_problem has taken it off.
-double closed_by_prescription(const Part& part, std::span<const RowEntry> entries) {
+/// How much of a point's gap the prescribed components of its nodes close with these values (one each).
+double closed_by_prescription(const Part& part, std::span<const RowEntry> entries,
+                              std::span<const Part::ComponentValue> prescribed) {
   const std::size_t dim = part.dim();
   double closed = 0.0;
   for (const RowEntry& entry : entries)
     for (std::size_t c = 0; c < dim; ++c) {
       const std::size_t i = static_cast<std::size_t>(entry.node) * dim + c;
-      if (part.held[i]) closed += entry.normal[c] * part.prescribed_at(i);
+      if (!part.held[i]) continue;
+      closed += entry.normal[c] * prescribed[part.prescribed_place(i)].value;
     }
   return closed;
 }
@@ -30,24 +35,87 @@ LoadPath::LoadPath(const Part& part) : part_(&part) {
   std::int32_t entries = 0;
   for (std::size_t i = 0; i < part.contact.size(); ++i) {
     gap_.push_back(part.contact[i].gap);
-    missing_.push_back(closed_by_prescription(part, part.contact.entries(i)));
+    closed_.push_back(closed_by_prescription(part, part.contact.entries(i), part.prescribed));
     entries = std::max(entries, part.contact[i].entry + 1);
   }
   // Largest indentation, one a contact entry.
   std::vector<double> depth(static_cast<std::size_t>(part.halo.max_all(entries)), 0.0);
   for (std::size_t i = 0; i < gap_.size(); ++i) {
     double& deepest = depth[part.contact[i].entry];
-    deepest = std::max(deepest, -(gap_[i] + missing_[i]));
+    deepest = std::max(deepest, -(gap_[i] + closed_[i]));
   }
   for (double& deepest : depth) deepest = part.halo.max_all(deepest);
-  for (std::size_t i = 0; i < gap_.size(); ++i) missing_[i] += depth[part.contact[i].entry];
+  for (std::size_t i = 0; i < gap_.size(); ++i) depth_.push_back(depth[part.contact[i].entry]);
+  if (part.steps.empty()) return;
+  find_acting(depth);
+  go_to(part.steps.back().time);
+}
+
+void LoadPath::find_acting(const std::vector<double>& depth) {
+  const LoadFactors& factors = part_->steps.front();
+  acts_.assign(factors.boundary.size() + factors.contact.size(), 0);
+  for (const EntryForce& force : part_->forces)
+    if (force.value != 0.0) acts_[force.entry] = 1;
+  for (std::size_t k = 0; k < part_->prescribed.size(); ++k)
+    if (part_->prescribed[k].value != 0.0) acts_[part_->prescribed_by[k]] = 1;
+  for (std::size_t e = 0; e < depth.size(); ++e)
+    if (depth[e] > 0.0) acts_[factors.boundary.size() + e] = 1;
+  for (std::uint8_t& acts : acts_) acts = part_->halo.any(acts != 0) ? 1 : 0;
+}
+
+double LoadPath::growth_to(double share) const {
+  if (part_->steps.empty()) return share / share_;
+  const LoadFactors now = factors_at(part_->steps, share_), then = factors_at(part_->steps, share);
+  double largest = 0.0, growth = 1.0;
+  const auto visit = [&](const auto& look) {
+    for (std::size_t e = 0; e < acts_.size(); ++e) {
+      const std::size_t c = e - now.boundary.size();
+      if (!acts_[e]) continue;
+      if (e < now.boundary.size())
+        look(now.boundary[e], then.boundary[e]);
+      else
+        look(now.contact[c], then.contact[c]);
+    }
+  };
+  visit([&](double before, double after) {
+    if (std::abs(before) <= largest) return;
+    largest = std::abs(before);
+    growth = after / before;
+  });
+  bool in_proportion = true;
+  visit([&](double before, double after) {
+    in_proportion = in_proportion && std::abs(after - growth * before) <= 1e-12 * std::abs(after);
+  });
+  return in_proportion ? growth : 1.0;
 }
 
 void LoadPath::go_to(double share) {
   share_ = share;
-  load_ = share == 1.0 ? decltype(load_)() : scaled(part_->load, share);
-  prescribed_ = share == 1.0 ? decltype(prescribed_)() : scaled(part_->prescribed, share);
-  for (std::size_t i = 0; i < gap_.size(); ++i) gap_[i] = part_->contact[i].gap + (1.0 - share) * missing_[i];
+  if (!part_->steps.empty()) return go_along_curves(share);
+  whole_ = share == 1.0;
+  load_ = whole_ ? decltype(load_)() : scaled(part_->load, share);
+  prescribed_ = whole_ ? decltype(prescribed_)() : scaled(part_->prescribed, share);
+  for (std::size_t i = 0; i < gap_.size(); ++i)
+    gap_[i] = part_->contact[i].gap + (1.0 - share) * (closed_[i] + depth_[i]);
+}
+
+void LoadPath::go_along_curves(double time) {
+  whole_ = false;
+  const LoadFactors factors = factors_at(part_->steps, time);
+  load_.clear();
+  for (const EntryForce& force : part_->forces) {
+    if (load_.empty() || load_.back().component != force.component) load_.push_back({force.component, 0.0});
+    load_.back().value += factors.boundary[force.entry] * force.value;
+  }
+  prescribed_ = part_->prescribed;
+  for (std::size_t k = 0; k < prescribed_.size(); ++k)
+    prescribed_[k].value *= factors.boundary[part_->prescribed_by[k]];
+  for (std::size_t i = 0; i < gap_.size(); ++i) {
+    const ContactPoint& point = part_->contact[i];
+    gap_[i] = point.gap + closed_[i] -
+              closed_by_prescription(*part_, part_->contact.entries(i), prescribed_) +
+              (1.0 - factors.contact[point.entry]) * depth_[i];
+  }
 }
 
 }  // namespace kacanov

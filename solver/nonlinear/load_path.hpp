@@ -2,6 +2,7 @@
 // The way to the full load: what a share of it puts on the body.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -9,24 +10,28 @@
 
 namespace kacanov {
 
-/// Loads, prescribed displacements and gaps of a part at a share of the full load (theory: load-path).
+/// Loads, prescribed displacements and gaps of a part at a share of the full load, or, where the part has
+/// load curves, at a time of theirs, which then stands for the share everywhere (theory: load-path).
 /// Obstacles that press into the body at rest are drawn back along their direction, each contact entry by the
 /// share still missing of its largest indentation; open gaps of other entries and the friction bounds stay
 /// what they are. The part itself does not change.
 class LoadPath {
  public:
-  /// At the full load. Collective. `part` has to outlive it.
+  /// At the full load, or the end of the curves. Collective. `part` has to outlive it.
   explicit LoadPath(const Part& part);
 
   /// Any share > 0; with 1 everything is that of the part, to the bit.
   void go_to(double share);
   double share() const noexcept { return share_; }
+  /// What the state is to be multiplied by to start at another share: with load curves 1, unless all that
+  /// acts grows in proportion.
+  double growth_to(double share) const;
 
   /// Entries of F that are not zero, ascending.
-  std::span<const Part::ComponentValue> load() const noexcept { return share_ == 1.0 ? part_->load : load_; }
+  std::span<const Part::ComponentValue> load() const noexcept { return whole_ ? part_->load : load_; }
   /// Of every constrained component, ascending.
   std::span<const Part::ComponentValue> prescribed() const noexcept {
-    return share_ == 1.0 ? part_->prescribed : prescribed_;
+    return whole_ ? part_->prescribed : prescribed_;
   }
   /// One a contact point.
   const std::vector<double>& gap() const noexcept { return gap_; }
@@ -41,10 +46,16 @@ class LoadPath {
   }
 
  private:
+  void go_along_curves(double time);
+  void find_acting(const std::vector<double>& depth);
+
   const Part* part_;
   double share_ = 1.0;
+  bool whole_ = true;                                    ///< at the full load
   std::vector<Part::ComponentValue> load_, prescribed_;  ///< at the share; empty at the full load
-  std::vector<double> gap_, missing_;                    ///< at the share; by how much it is wider at none
+  /// At the share; how deep the entry's obstacle presses in; what the full prescribed displacements close.
+  std::vector<double> gap_, depth_, closed_;
+  std::vector<std::uint8_t> acts_;  ///< boundary entries, then contact entries: whether any factor matters
 };
 
 }  // namespace kacanov

@@ -112,6 +112,11 @@ Checkpoint OuterLoop::checkpoint(const Result& result) const {
   out.fields["phi_normal"] = gather_contact(part, state.phi.normal, 1);
   out.fields["phi_tangential"] = gather_contact(part, state.phi.tangential, 2);
   out.fields["bound"] = gather_contact(part, state.bound, 1);
+  if (history_) {
+    Vector origin = state.origin;
+    origin.resize(2 * state.bound.size(), 0.0);
+    out.fields["slip_origin"] = gather_contact(part, origin, 2);
+  }
   return out;
 }
 
@@ -164,7 +169,8 @@ void OuterLoop::restore(const Checkpoint* from, Result& result) {
   state.phi.normal = contact("phi_normal", 1);
   state.phi.tangential = contact("phi_tangential", 2);
   state.bound = contact("bound", 1);
-  context_.traces.evaluate(state.omega, state.trace);
+  if (history_) state.origin = contact("slip_origin", 2);
+  state.evaluate(context_.traces);
   context_.preconditioner.mark_stale();
 }
 

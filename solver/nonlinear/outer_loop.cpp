@@ -42,6 +42,7 @@ OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOp
       control_{PenaltyControl(options, own_first_penalty(context_), tuning),
                Linearisation(options.outer, context_.body.linear(), tuning), Fallback(tuning)},
       friction_(has_friction(part)),
+      history_(has_slip_history(part)),
       extent_(body_extent(part)) {
   context_.path.go_to(share);
   take_load();
@@ -58,16 +59,17 @@ void OuterLoop::take_load() {
   ContactState& state = context_.state;
   context_.path.prescribe(state.omega);
   state.gap = context_.path.gap();
-  context_.traces.evaluate(state.omega, state.trace);
+  state.evaluate(context_.traces);
   for (std::size_t i = 0; i < state.gap.size(); ++i)
     state.phi.normal[i] = std::min(state.trace.normal[i], state.gap[i]);
   follow_pressure(context_.part, state.lambda.normal, state.bound);
 }
 
 void OuterLoop::go_to(double share, const Result& result) {
-  const double ratio = share / context_.path.share();
+  const double ratio = history_ ? 1.0 : context_.path.growth_to(share);
   context_.path.go_to(share);
   ContactState& state = context_.state;
+  if (history_) state.count_slip_from_here(context_.traces.points());
   for (Vector* v : {&state.omega, &state.lambda.normal, &state.lambda.tangential, &state.phi.tangential})
     for (double& value : *v) value *= ratio;
   take_load();

@@ -23,7 +23,8 @@ class OuterLoop {
   /// result. Where the run is to stop, state and result are those after the last whole outer step, and false
   /// is returned.
   bool run(Result& result);
-  /// Another share of the load: starts from the same multiple of the state there is (theory: load-path).
+  /// Another share of the load: starts from the same multiple of the state there is (theory: load-path), or,
+  /// with load curves or a slip history, from that state itself.
   void go_to(double share, const Result& result);
 
   /// Goes on from a checkpoint, which rank 0 has.
@@ -72,6 +73,7 @@ class OuterLoop {
   Control control_;
   int first_outer_ = 0;  ///< outer steps before this load step, or before a restart
   bool friction_;
+  bool history_;   ///< slip of some point is counted from the load step before
   double extent_;  ///< of the body
   std::uint64_t earlier_applications_ = 0;
   double spectrum_seconds_ = 0.0, checkpoint_seconds_ = 0.0;

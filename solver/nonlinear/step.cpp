@@ -115,7 +115,7 @@ StepOutcome newton_step(StepContext& c, double penalty, bool tangent, const Resi
   if (!step.solved) return outcome;
   c.preconditioner.watch(step.cg_digits, step.cg_iterations);
   take_damped(c, delta, step.curvature);
-  c.traces.evaluate(c.state.omega, c.state.trace);
+  c.state.evaluate(c.traces);
   c.body.unbalanced(c.path, c.work.residual);
   recover_multipliers(c.part, c.traces, set, c.work.residual, c.state);
   return outcome;

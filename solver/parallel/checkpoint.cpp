@@ -87,12 +87,25 @@ Fingerprint fingerprint(const Problem& problem) {
   }
   print.sections["material"] = (Hash() << laws << problem.law_of_element).value();
   print.sections["boundary"] = (Hash() << problem.load << problem.held << problem.prescribed).value();
+  if (!problem.steps.empty()) {
+    std::vector<double> curves;
+    for (const LoadFactors& step : problem.steps) {
+      curves.push_back(step.time);
+      curves.insert(curves.end(), step.boundary.begin(), step.boundary.end());
+      curves.insert(curves.end(), step.contact.begin(), step.contact.end());
+    }
+    for (const EntryForce& force : problem.forces)
+      curves.insert(curves.end(),
+                    {static_cast<double>(force.component), static_cast<double>(force.entry), force.value});
+    print.sections["steps"] = (Hash() << curves << problem.holder).value();
+  }
 
   std::vector<double> contact;
   for (std::size_t i = 0; i < problem.contact.size(); ++i) {
     const ContactPoint& point = problem.contact[i];
     contact.insert(contact.end(), {static_cast<double>(point.node), point.gap, point.mass, point.tresca,
                                    point.coulomb, static_cast<double>(point.tangents)});
+    if (point.since_step) contact.push_back(1.0);
     for (const RowEntry& entry : problem.contact.entries(i)) {
       if (problem.contact.is_wide(i)) contact.push_back(static_cast<double>(entry.node));
       for (const Vector3& v : {entry.normal, entry.trace, entry.tangent[0], entry.tangent[1]})
@@ -109,6 +122,8 @@ std::vector<std::string> Fingerprint::differences(const Fingerprint& other) cons
     const auto there = other.sections.find(name);
     if (there == other.sections.end() || there->second != hash) names.push_back(name);
   }
+  for (const auto& [name, hash] : other.sections)
+    if (!sections.contains(name)) names.push_back(name);
   return names;
 }
 

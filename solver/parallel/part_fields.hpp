@@ -119,7 +119,7 @@ void exchange_fields(Either<IndexMap> auto& map, const auto& stream) {
 
 void exchange_fields(Either<ContactPoint> auto& point, const auto& stream) {
   stream(point.node, point.entry, point.normal, point.tangent, point.tangents, point.gap, point.mass,
-         point.tresca, point.coulomb);
+         point.tresca, point.coulomb, point.since_step);
 }
 
 void exchange_fields(Either<RowEntry> auto& entry, const auto& stream) {
@@ -138,6 +138,14 @@ void exchange_fields(Either<Part::ComponentValue> auto& entry, const auto& strea
   stream(entry.component, entry.value);
 }
 
+void exchange_fields(Either<LoadFactors> auto& factors, const auto& stream) {
+  stream(factors.time, factors.boundary, factors.contact);
+}
+
+void exchange_fields(Either<EntryForce> auto& force, const auto& stream) {
+  stream(force.component, force.entry, force.value);
+}
+
 void exchange_fields(Either<IndexRuns> auto& indices, const auto& stream) {
   stream(indices.runs, indices.count);
 }
@@ -145,9 +153,9 @@ void exchange_fields(Either<IndexRuns> auto& indices, const auto& stream) {
 void exchange_fields(Either<Part> auto& part, const auto& stream) {
   stream(part.type, part.coordinates, part.elements, part.node_index, part.element_index, part.node_tags,
          part.element_tags, part.halo, part.total_elements, part.laws, part.law_of_element, part.load,
-         part.prescribed, part.held, part.contact, part.owned_contact, part.wide_contact, part.contact_index,
-         part.total_contact, part.probes, part.probe_index, part.total_probes, part.loose_modes, part.start,
-         part.no_equilibrium);
+         part.prescribed, part.steps, part.forces, part.prescribed_by, part.held, part.contact,
+         part.owned_contact, part.wide_contact, part.contact_index, part.total_contact, part.probes,
+         part.probe_index, part.total_probes, part.loose_modes, part.start, part.no_equilibrium);
 }
 
 }  // namespace kacanov

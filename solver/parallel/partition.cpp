@@ -163,6 +163,7 @@ class Splitter {
     take_contact(part, rank);
     take_probes(part, rank);
     part.laws = problem_.laws;
+    part.steps = problem_.steps;
     part.loose_modes = problem_.loose_modes;
     part.no_equilibrium = problem_.no_equilibrium;
     part.start = rigid_start(problem_, part.node_index);
@@ -209,10 +210,26 @@ class Splitter {
         part.coordinates.push_back(mesh.coordinates[c]);
         const auto component = static_cast<Index>(part.held.size());
         if (problem_.load[c] != 0.0) part.load.push_back({component, problem_.load[c]});
-        if (problem_.held[c] != 0) part.prescribed.push_back({component, problem_.prescribed[c]});
+        if (problem_.held[c] != 0) {
+          part.prescribed.push_back({component, problem_.prescribed[c]});
+          if (!problem_.steps.empty()) part.prescribed_by.push_back(problem_.holder[c]);
+        }
         part.held.push_back(problem_.held[c]);
       }
     }
+    take_forces(part);
+  }
+
+  void take_forces(Part& part) const {
+    const Index dim = problem_.mesh.dim();
+    for (EntryForce force : problem_.forces) {
+      const Index node = local_[static_cast<std::size_t>(force.component / dim)];
+      if (node < 0) continue;
+      force.component = node * dim + force.component % dim;
+      part.forces.push_back(force);
+    }
+    std::stable_sort(part.forces.begin(), part.forces.end(),
+                     [](const EntryForce& a, const EntryForce& b) { return a.component < b.component; });
   }
 
   void take_elements(Part& part, int rank) const {
@@ -308,11 +325,11 @@ class Splitter {
 
 }  // namespace
 
-double Part::prescribed_at(std::size_t component) const noexcept {
+std::size_t Part::prescribed_place(std::size_t component) const noexcept {
   const auto at = std::lower_bound(
       prescribed.begin(), prescribed.end(), component,
       [](const ComponentValue& p, std::size_t c) { return static_cast<std::size_t>(p.component) < c; });
-  return at->value;
+  return static_cast<std::size_t>(at - prescribed.begin());
 }
 
 void split(const Problem& problem, int ranks, const std::function<void(int rank, Part&& part)>& take) {

@@ -2,12 +2,14 @@
 // Materials, loads and given displacements: the entries of a model carried over to a mesh.
 #include "problem/conditions.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <sstream>
 
 #include <kacanov/error.hpp>
 #include "problem/integration.hpp"
+#include "problem/load_curves.hpp"
 #include "problem/vector3.hpp"
 
 namespace kacanov {
@@ -83,19 +85,53 @@ void assign_materials(Problem& problem, const Model& model, const Selection& sel
   }
 }
 
+namespace {
+
+/// Moves what an entry has put on problem.load over to the forces entry by entry.
+void keep_apart(Problem& problem, std::size_t entry) {
+  for (std::size_t k = 0; k < problem.load.size(); ++k) {
+    if (problem.load[k] == 0.0) continue;
+    problem.forces.push_back(
+        {static_cast<std::int32_t>(k), static_cast<std::int32_t>(entry), problem.load[k]});
+    problem.load[k] = 0.0;
+  }
+}
+
+}  // namespace
+
 void assemble_load(Problem& problem, const Model& model, const Selection& selection) {
+  problem.steps = load_curves(model);
   for (std::size_t i = 0; i < model.boundary.size(); ++i) {
     const BoundaryEntry& entry = model.boundary[i];
     const std::string path = path_of("boundary", i);
     if (entry.traction || entry.pressure) add_facet_loads(problem, entry, selection.facets(entry.on, path));
     if (entry.body_force) add_body_force(problem, *entry.body_force, selection.elements(entry.on, path));
+    if (!problem.steps.empty()) keep_apart(problem, i);
   }
+  if (problem.steps.empty()) return;
+  std::stable_sort(problem.forces.begin(), problem.forces.end(),
+                   [](const EntryForce& a, const EntryForce& b) { return a.component < b.component; });
+  problem.load = load_at(problem, 1);
+}
+
+std::vector<double> load_at(const Problem& problem, std::size_t step) {
+  std::vector<double> load(problem.mesh.coordinates.size(), 0.0);
+  for (const EntryForce& force : problem.forces)
+    load[force.component] += problem.steps[step].boundary[force.entry] * force.value;
+  return load;
 }
 
 void hold_displacements(Problem& problem, const Model& model, const Selection& selection) {
   const Mesh& mesh = problem.mesh;
   const std::size_t dim = mesh.dim();
   std::vector<std::int32_t> holder(problem.held.size(), -1);
+  const auto refuse = [&](std::size_t entry, std::size_t k, const std::string& why) {
+    const std::size_t node = k / dim;
+    throw InputError(path_of("boundary", entry) + ".displacement: node " +
+                     std::to_string(mesh.node_tag(node)) + " at " +
+                     to_text(position(mesh, static_cast<std::int32_t>(node)), mesh.dim()) + " is given " +
+                     why + path_of("boundary", static_cast<std::size_t>(holder[k])));
+  };
   for (std::size_t i = 0; i < model.boundary.size(); ++i) {
     const BoundaryEntry& entry = model.boundary[i];
     if (!entry.displacement) continue;
@@ -107,18 +143,19 @@ void hold_displacements(Problem& problem, const Model& model, const Selection& s
         const std::size_t k = static_cast<std::size_t>(node) * dim + c;
         if (problem.held[k] != 0 && problem.prescribed[k] != *value) {
           std::ostringstream text;
-          text << path << ".displacement: node " << mesh.node_tag(node) << " at "
-               << to_text(position(mesh, node), mesh.dim()) << " is given "
-               << "xyz"[c] << " = " << *value << " here and " << problem.prescribed[k] << " by "
-               << path_of("boundary", holder[k]);
-          throw InputError(text.str());
+          text << "xyz"[c] << " = " << *value << " here and " << problem.prescribed[k] << " by ";
+          refuse(i, k, text.str());
         }
+        if (problem.held[k] != 0 && *value != 0.0 && !problem.steps.empty() &&
+            !same_course(problem.steps, i, static_cast<std::size_t>(holder[k])))
+          refuse(i, k, std::string(1, "xyz"[c]) + " here with other factors in steps than by ");
         problem.held[k] = 1;
         problem.prescribed[k] = *value;
         holder[k] = static_cast<std::int32_t>(i);
       }
     }
   }
+  if (!problem.steps.empty()) problem.holder = std::move(holder);
 }
 
 }  // namespace kacanov

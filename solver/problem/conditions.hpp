@@ -10,8 +10,12 @@ namespace kacanov {
 /// Fills laws and law_of_element. An entry may overlap only an earlier entry on "all", which it overrides.
 void assign_materials(Problem& problem, const Model& model, const Selection& selection);
 
-/// Adds tractions, pressures and body forces to problem.load, which has nodes × dim entries.
+/// Adds tractions, pressures and body forces to problem.load, which has nodes × dim entries. With load curves
+/// fills steps and forces, and the load is that of the first step.
 void assemble_load(Problem& problem, const Model& model, const Selection& selection);
+
+/// F of a point of the load curves.
+std::vector<double> load_at(const Problem& problem, std::size_t step);
 
 /// Fills held and prescribed. Two entries may hold one component of a node only at the same value.
 void hold_displacements(Problem& problem, const Model& model, const Selection& selection);

@@ -143,6 +143,7 @@ std::vector<ContactPoint> merge_equal(const std::vector<ContactPoint>& points, d
     if (twin->tangents == 0) {
       twin->tangents = point.tangents;
       twin->tangent = point.tangent;
+      twin->since_step = point.since_step;
     }
     twin->mass = mass;
   }
@@ -184,6 +185,7 @@ std::vector<ContactPoint> points_of_entry(const Problem& problem, const ContactE
     if (friction) {
       point.tresca = entry.friction->tresca;
       point.coulomb = entry.friction->coulomb;
+      point.since_step = entry.friction->reference == Friction::Reference::step;
     }
     if (restrict_to_free(point, problem, friction)) points.push_back(point);
   }

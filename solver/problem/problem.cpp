@@ -41,6 +41,8 @@ std::vector<std::int32_t> keep_boundary(Problem& problem) {
   free(problem.load);
   free(problem.held);
   free(problem.prescribed);
+  free(problem.forces);
+  free(problem.holder);
   Mesh& mesh = problem.mesh;
   std::vector<std::int32_t> left;
   if (mesh.dim() == 2) {

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include <kacanov/error.hpp>
+#include "problem/conditions.hpp"
 #include "problem/rigid_balance.hpp"
 #include "problem/vector3.hpp"
 
@@ -202,10 +203,28 @@ struct RigidPiece {
   Eigen::VectorXd load;
 };
 
-RigidPiece collect(const Problem& problem, const Piece& piece, std::int32_t number,
-                   std::span<const std::int32_t> piece_of_node, const Eigen::MatrixXd& loose) {
+/// What a load does on the loose motions of a piece (columns of the basis).
+Eigen::VectorXd load_of(const Problem& problem, const Piece& piece, std::int32_t number,
+                        std::span<const std::int32_t> piece_of_node, std::span<const double> load,
+                        const Eigen::MatrixXd& basis) {
   const Mesh& mesh = problem.mesh;
   const std::size_t dim = mesh.dim();
+  Vector6 sum = Vector6::Zero();
+  double forces = 0.0;
+  for (std::size_t n = 0; n < mesh.node_count(); ++n) {
+    if (piece_of_node[n] != number) continue;
+    Vector3 force{};
+    for (std::size_t c = 0; c < dim; ++c) force[c] = load[n * dim + c];
+    sum += row(piece, position(mesh, static_cast<std::int32_t>(n)), force);
+    forces += norm(force);
+  }
+  Eigen::VectorXd work = basis.transpose() * sum;
+  if (work.norm() <= rounded_load * forces) work.setZero();
+  return work;
+}
+
+RigidPiece collect(const Problem& problem, const Piece& piece, std::int32_t number,
+                   std::span<const std::int32_t> piece_of_node, const Eigen::MatrixXd& loose) {
   RigidPiece rigid;
   rigid.basis = Eigen::HouseholderQR<Eigen::MatrixXd>(loose.transpose()).householderQ() *
                 Eigen::MatrixXd::Identity(6, loose.rows());
@@ -223,17 +242,7 @@ RigidPiece collect(const Problem& problem, const Piece& piece, std::int32_t numb
     contact.tresca = point.tresca;
     rigid.points.push_back(std::move(contact));
   }
-  Vector6 load = Vector6::Zero();
-  double forces = 0.0;
-  for (std::size_t n = 0; n < mesh.node_count(); ++n) {
-    if (piece_of_node[n] != number) continue;
-    Vector3 force{};
-    for (std::size_t c = 0; c < dim; ++c) force[c] = problem.load[n * dim + c];
-    load += row(piece, position(mesh, static_cast<std::int32_t>(n)), force);
-    forces += norm(force);
-  }
-  rigid.load = rigid.basis.transpose() * load;
-  if (rigid.load.norm() <= rounded_load * forces) rigid.load.setZero();
+  rigid.load = load_of(problem, piece, number, piece_of_node, problem.load, rigid.basis);
   return rigid;
 }
 
@@ -290,6 +299,15 @@ void settle(Problem& problem, const Piece& piece, std::int32_t number, const Rig
     if (problem.no_equilibrium.empty())
       problem.no_equilibrium = explain(rigid, found, piece, name, problem.mesh.dim());
     return;
+  }
+  RigidPiece later = rigid;
+  for (std::size_t step = 2; step < problem.steps.size() && problem.no_equilibrium.empty(); ++step) {
+    later.load = load_of(problem, piece, number, piece_of_node, load_at(problem, step), rigid.basis);
+    const RigidBalance then = balance(later.points, later.load);
+    if (then.exists) continue;
+    std::ostringstream place;
+    place << " (load step " << step << ", time " << problem.steps[step].time << ")";
+    problem.no_equilibrium = explain(later, then, piece, name, problem.mesh.dim()) + place.str();
   }
   // A pressure p presses a body of this size in by about p over that.
   double bulk = 0.0;

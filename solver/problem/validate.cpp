@@ -10,6 +10,7 @@
 #include <kacanov/error.hpp>
 #include <kacanov/model.hpp>
 #include <kacanov/rules.hpp>
+#include "problem/load_curves.hpp"
 
 namespace kacanov {
 namespace {
@@ -135,6 +136,25 @@ void check_combination(const SolverOptions& options) {
 
 }  // namespace
 
+namespace {
+
+void check_steps(const Model& model) {
+  if (!model.steps.empty() && !model.solver.load_steps.empty())
+    unavailable("steps", "a list of load curves together with solver.load_steps", "one of the two");
+  double before = 0.0;
+  for (std::size_t i = 0; i < model.steps.size(); ++i) {
+    const std::string path = at("steps", i);
+    const LoadStage& step = model.steps[i];
+    check(path + ".time", step.time);
+    if (!(step.time > before)) refuse(path + ".time", "a time after " + shown(before), shown(step.time));
+    before = step.time;
+    for (const auto& [name, factor] : step.factors) check(path + ".factors[\"" + name + "\"]", factor);
+  }
+  load_curves(model);
+}
+
+}  // namespace
+
 void validate(const SolverOptions& options) {
   check("solver.tolerance", options.tolerance, below_one);
   check("solver.spectrum_tolerance", options.spectrum_tolerance, below_one);
@@ -161,6 +181,7 @@ void validate(const Model& model) {
   for (std::size_t i = 0; i < model.contact.size(); ++i) check_contact(at("contact", i), model.contact[i]);
   for (std::size_t i = 0; i < model.probes.size(); ++i) check(at("probe", i), model.probes[i]);
   validate(model.solver);
+  check_steps(model);
 }
 
 }  // namespace kacanov

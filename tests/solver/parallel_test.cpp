@@ -68,7 +68,7 @@ TEST_CASE("every element lies on one rank, every node has one owner") {
     const std::size_t there = 3 * static_cast<std::size_t>(part.node_index[i / 3]) + i % 3;
     if (part.coordinates[i] != problem.mesh.coordinates[there] || load[i] != problem.load[there] ||
         part.held[i] != problem.held[there] ||
-        (part.held[i] != 0 && part.prescribed_at(i) != problem.prescribed[there]))
+        (part.held[i] != 0 && part.prescribed[part.prescribed_place(i)].value != problem.prescribed[there]))
       ++wrong;
   }
   CHECK(wrong == 0);

@@ -24,7 +24,7 @@ class CaseParser {
 
   Case parse(const nlohmann::json& document) {
     const Object top(Node(document, ""),
-                     {"mesh", "material", "boundary", "contact", "solver", "probe", "output"});
+                     {"mesh", "material", "boundary", "contact", "steps", "solver", "probe", "output"});
     parse_mesh(top.required("mesh"));
     const Node materials = top.required("material");
     for (const Node& node : materials.list("a list of materials")) parse_material(node);
@@ -34,6 +34,7 @@ class CaseParser {
     if (const auto list = top.optional("contact")) {
       for (const Node& node : list->list("a list of contact entries")) parse_contact(node);
     }
+    if (const auto list = top.optional("steps")) parse_steps(*list);
     if (const auto node = top.optional("solver")) parse_solver(*node);
     if (const auto list = top.optional("probe")) {
       for (const Node& node : list->list("a list of points")) result_.model.probes.push_back(vector(node));
@@ -172,12 +173,31 @@ class CaseParser {
     entry.on = selector(object.required("on"));
     entry.obstacle = obstacle(object.required("obstacle"));
     if (const auto friction = object.optional("friction")) {
-      const Object parts(*friction, {"tresca", "coulomb"});
+      const Object parts(*friction, {"tresca", "coulomb", "reference"});
       const std::string kind = parts.only_one_of({"tresca", "coulomb"});
       const double bound = parts.required(kind).number(not_negative);
       entry.friction = kind == "tresca" ? Friction{bound, 0.0} : Friction{0.0, bound};
+      if (const auto from = parts.optional("reference"); from && from->choice({"start", "step"}) == 1)
+        entry.friction->reference = Friction::Reference::step;
     }
     result_.model.contact.push_back(entry);
+  }
+
+  void parse_steps(const Node& node) {
+    const std::vector<Node> steps = node.list("a list of load steps");
+    if (steps.size() > most_load_steps)
+      node.expected("at most " + std::to_string(most_load_steps) + " load steps");
+    if (steps.empty()) node.expected("at least one load step");
+    for (const Node& step : steps) {
+      const Object object(step, {"time", "factors"});
+      LoadStage stage;
+      stage.time = object.required("time").number();
+      const Node factors = object.required("factors");
+      if (!factors.value().is_object()) factors.expected("an object of entries and their factors");
+      for (const auto& [name, value] : factors.value().items())
+        stage.factors[name] = Node(value, factors.path() + "[\"" + name + "\"]").number();
+      result_.model.steps.push_back(std::move(stage));
+    }
   }
 
   void parse_solver(const Node& node) {

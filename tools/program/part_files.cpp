@@ -29,9 +29,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::string_view part_magic = "kacanov part 6\n", boundary_magic = "kacanov boundary 4\n";
+constexpr std::string_view part_magic = "kacanov part 7\n", boundary_magic = "kacanov boundary 5\n";
 /// The sections of a case that parts are made of.
-constexpr const char* sections[] = {"mesh", "material", "boundary", "contact", "probe"};
+constexpr const char* sections[] = {"mesh", "material", "boundary", "contact", "steps", "probe"};
 
 std::filesystem::path part_file(const std::filesystem::path& folder, int rank) {
   return folder / ("part_" + std::to_string(rank) + ".kacanov");

@@ -84,7 +84,7 @@ ordered_json result_json(const Result& result, const RunFigures& figures, int di
   json["probe"] = ordered_json::array();
   for (const Vector3& u : result.probe) json["probe"].push_back(entries(u, dim));
   for (const LoadStep& step : result.load_steps) {
-    ordered_json line{{"factor", step.factor},
+    ordered_json line{{result.by_time ? "time" : "factor", step.factor},
                       {"outer_iterations", step.outer_iterations},
                       {"cg_iterations", step.cg_iterations},
                       {"active_nodes", step.active_nodes},

@@ -26,7 +26,8 @@ struct Checkpoint {
 /// The parts of a problem that decide its solution, as hashes of what build_problem made of them: two case
 /// files that say the same in other words agree.
 struct Fingerprint {
-  std::map<std::string, std::uint64_t> sections;  ///< "mesh", "material", "boundary", "contact"
+  std::map<std::string, std::uint64_t>
+      sections;  ///< "mesh", "material", "boundary", "contact", with curves "steps"
 
   /// Names of the sections in which two problems differ.
   std::vector<std::string> differences(const Fingerprint& other) const;

@@ -32,6 +32,7 @@ struct ContactPoint {
   double mass = 0.0;                 ///< lumped contact mass M, an area (a length in 2D)
   double tresca = 0.0;               ///< ψ
   double coulomb = 0.0;              ///< μ_f
+  bool since_step = false;           ///< slip is counted from the end of the load step before
 };
 
 /// Contact points and, in compressed rows, their entries. A point of one entry is *narrow* (a node against an

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -50,8 +51,12 @@ struct ConstantGap {
 using Obstacle = std::variant<Plane, Sphere, ConstantGap>;
 
 struct Friction {
+  /// What slip is counted from: the undeformed body, or the end of the load step before (theory:
+  /// slip-history).
+  enum class Reference { start, step };
   double tresca = 0.0;   ///< bound psi on |tau_t|, a stress
   double coulomb = 0.0;  ///< coefficient mu_f
+  Reference reference = Reference::start;
 };
 
 struct ContactEntry {
@@ -93,10 +98,21 @@ struct SolverOptions {
   std::optional<double> relaxation;
 };
 
+/// A point of the load curves (theory: load-path): from here on the entries that are named have these
+/// factors, on loads, prescribed displacements or indentation; between two points they change linearly with
+/// time.
+struct LoadStage {
+  double time = 0.0;                      ///< > 0, ascending
+  std::map<std::string, double> factors;  ///< by entry: "boundary[1]", "contact[0]"
+};
+
 struct Model {
   std::vector<MaterialEntry> materials;
   std::vector<BoundaryEntry> boundary;
   std::vector<ContactEntry> contact;
+  /// One load step each. Entries that none names have the factor 1, others 0 until they are named. Empty: all
+  /// loads go together, by SolverOptions::load_steps.
+  std::vector<LoadStage> steps;
   std::vector<Vector3> probes;
   SolverOptions solver;
 };

@@ -38,6 +38,9 @@ struct Part {
   std::vector<ComponentValue> load;           ///< entries of F that are not zero, ascending; consistent
   std::vector<std::uint8_t> held;             ///< nodes × dim
   std::vector<ComponentValue> prescribed;     ///< of every held component, ascending
+  std::vector<LoadFactors> steps;             ///< as in Problem
+  std::vector<EntryForce> forces;             ///< likewise, by components of the part
+  std::vector<std::int32_t> prescribed_by;    ///< boundary entry of each of `prescribed`; with steps only
   /// The points of owned nodes first, narrow ones of ghosts behind them. All nodes of an owned point are
   /// local; wide points are with their owners only.
   ConstraintRows contact;
@@ -72,8 +75,8 @@ struct Part {
   void add_load(std::span<double> f) const noexcept {
     for (const auto& entry : load) f[entry.component] += entry.value;
   }
-  /// The given displacement of a held component.
-  double prescribed_at(std::size_t component) const noexcept;
+  /// Place of a held component in `prescribed`.
+  std::size_t prescribed_place(std::size_t component) const noexcept;
   /// Sets held components of ω.
   void prescribe(std::span<double> omega) const noexcept {
     for (const auto& p : prescribed) omega[p.component] = p.value;

@@ -24,14 +24,30 @@ struct PieceMotion {
   Vector3 centre{}, turn{}, shift{};
 };
 
+/// A point of the load curves: what each entry is multiplied by.
+struct LoadFactors {
+  double time = 0.0;
+  std::vector<double> boundary, contact;  ///< one an entry
+};
+
+/// What a boundary entry puts on one component of a node.
+struct EntryForce {
+  std::int32_t component = 0;  ///< node · dim + c
+  std::int32_t entry = 0;
+  double value = 0.0;
+};
+
 /// The whole problem, on one rank.
 struct Problem {
   Mesh mesh;
   std::vector<Law> laws;
   std::vector<std::uint16_t> law_of_element;
-  std::vector<double> load;        ///< F: nodes × dim
-  std::vector<std::uint8_t> held;  ///< nodes × dim: 1 where the displacement is given
-  std::vector<double> prescribed;  ///< nodes × dim: its value
+  std::vector<double> load;          ///< F: nodes × dim; with load curves that of their first step
+  std::vector<std::uint8_t> held;    ///< nodes × dim: 1 where the displacement is given
+  std::vector<double> prescribed;    ///< nodes × dim: its value
+  std::vector<LoadFactors> steps;    ///< load curves, from the time 0 on; empty: none, and so are these:
+  std::vector<EntryForce> forces;    ///< F entry by entry at the factor 1, ascending by component
+  std::vector<std::int32_t> holder;  ///< nodes × dim: boundary entry that gives the displacement, else −1
   ConstraintRows contact;
   std::vector<Probe> probes;
   int loose_modes = 0;  ///< rigid modes that only the contact holds

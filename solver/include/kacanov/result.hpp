@@ -102,6 +102,7 @@ struct Result {
   std::int64_t plastic_elements = 0;
   std::int64_t softening_elements = 0;  ///< in the softening range of a squared-argument law
   std::vector<Vector3> probe;
+  bool by_time = false;              ///< the factors of the load steps are times of the load curves
   std::vector<LoadStep> load_steps;  ///< those that are over; empty where the load is put on at once
   Certificate certificate;
   PhaseSeconds seconds;

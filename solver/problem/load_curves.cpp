@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Load curves of a model, entry by entry.
+#include "problem/load_curves.hpp"
+
+#include <algorithm>
+
+#include <kacanov/error.hpp>
+
+namespace kacanov {
+namespace {
+
+/// The factor of the entry of that name; null where there is none.
+double* factor_of(LoadFactors& factors, const std::string& name) {
+  const auto in = [&](const char* list, std::vector<double>& values) -> double* {
+    for (std::size_t i = 0; i < values.size(); ++i)
+      if (name == std::string(list) + "[" + std::to_string(i) + "]") return &values[i];
+    return nullptr;
+  };
+  if (double* found = in("boundary", factors.boundary)) return found;
+  return in("contact", factors.contact);
+}
+
+}  // namespace
+
+std::vector<LoadFactors> load_curves(const Model& model) {
+  if (model.steps.empty()) return {};
+  LoadFactors now{0.0, std::vector<double>(model.boundary.size(), 1.0),
+                  std::vector<double>(model.contact.size(), 1.0)};
+  for (std::size_t i = 0; i < model.steps.size(); ++i)
+    for (const auto& [name, factor] : model.steps[i].factors) {
+      double* start = factor_of(now, name);
+      if (start == nullptr)
+        throw InputError("steps[" + std::to_string(i) +
+                         "].factors: expected entries such as \"boundary[0]\" (of " +
+                         std::to_string(model.boundary.size()) + ") or \"contact[0]\" (of " +
+                         std::to_string(model.contact.size()) + "), got \"" + name + "\"");
+      *start = 0.0;
+    }
+  std::vector<LoadFactors> curves{now};
+  for (const LoadStage& step : model.steps) {
+    now.time = step.time;
+    for (const auto& [name, factor] : step.factors) *factor_of(now, name) = factor;
+    curves.push_back(now);
+  }
+  return curves;
+}
+
+LoadFactors factors_at(const std::vector<LoadFactors>& curves, double time) {
+  const auto after = std::lower_bound(curves.begin(), curves.end(), time,
+                                      [](const LoadFactors& f, double t) { return f.time < t; });
+  if (after == curves.end()) return curves.back();
+  if (after == curves.begin() || after->time == time) return *after;
+  const LoadFactors& before = *(after - 1);
+  const double share = (time - before.time) / (after->time - before.time);
+  LoadFactors now = before;
+  now.time = time;
+  const auto mix = [share](std::vector<double>& values, const std::vector<double>& next) {
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] += share * (next[i] - values[i]);
+  };
+  mix(now.boundary, after->boundary);
+  mix(now.contact, after->contact);
+  return now;
+}
+
+bool same_course(const std::vector<LoadFactors>& curves, std::size_t entry, std::size_t other) {
+  return std::all_of(curves.begin(), curves.end(), [&](const LoadFactors& factors) {
+    return factors.boundary[entry] == factors.boundary[other];
+  });
+}
+
+}  // namespace kacanov
