@@ -54,6 +54,11 @@ kacanov_test(friction_history
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal
   RANKS 1 2)
 
+kacanov_test(closed_friction
+  MPI SOURCES solver/closed_friction_test.cpp
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal
+  RANKS 1 2 4)
+
 kacanov_test(mesh
   SOURCES solver/mesh_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)

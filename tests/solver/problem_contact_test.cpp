@@ -140,6 +140,29 @@ TEST_CASE("tangents are orthonormal, normal to the trace and free of held compon
   }
 }
 
+TEST_CASE("tet10: a corner that stands out towards its obstacle is told of, one that does not is not") {
+  const auto warned = [](int cells, const Vector3& normal) {
+    Model model = elastic_model();
+    model.boundary.push_back(displacement(named("top"), {0.0, 0.0, 0.0}));
+    ContactEntry contact;
+    contact.on = named("bottom");
+    if (norm(normal) > 0.0)
+      contact.obstacle = Plane{{}, normal};
+    else
+      contact.obstacle = Sphere{{0.5, 0.5, -0.48}, 0.5, std::nullopt};
+    model.contact.push_back(contact);
+    const Mesh mesh = make_box({{1, 1, 1}, {cells, cells, cells}, ElementType::tet10});
+    const auto warnings = build_problem(mesh, model).warnings;
+    return std::any_of(warnings.begin(), warnings.end(),
+                       [](const std::string& w) { return mentions(w, "is a corner of quadratic facets"); });
+  };
+  CHECK(warned(2, {}));
+  CHECK_FALSE(warned(8, {}));
+  CHECK_FALSE(warned(2, {0, 0, 1}));
+  CHECK_FALSE(warned(2, {0.02, 0.02, 1}));
+  CHECK(warned(2, {0.3, 0.3, 1}));
+}
+
 TEST_CASE("displacement wins: nodes held along the normal are no contact points") {
   const Mesh mesh = box_mesh(ElementType::tet4);
   Model model = on_a_plane(3);
