@@ -26,10 +26,10 @@ void require_finite(std::span<const double> values, const char* name) {
 }
 
 /// A displacement: of the right length and finite.
-std::span<const double> state(const kacanov_operator& op, std::size_t n, const double* omega) {
+std::span<const double> state(const kacanov_operator& op, std::size_t n, const double* u) {
   require_size(n, op.unknowns(), "n");
-  const auto span = input(omega, n, "omega");
-  require_finite(span, "omega");
+  const auto span = input(u, n, "u");
+  require_finite(span, "u");
   return span;
 }
 
@@ -39,9 +39,9 @@ const char* kacanov_message(const kacanov_operator* op) {
   return op == nullptr ? "op: null pointer" : op->message;
 }
 
-int kacanov_update(kacanov_operator* op, size_t n, const double* omega) {
+int kacanov_update(kacanov_operator* op, size_t n, const double* u) {
   return on(op, [&](k::Operator& fast) {
-    fast.update(state(*op, n, omega));
+    fast.update(state(*op, n, u));
     op->single_is_current = false;
   });
 }
@@ -97,9 +97,9 @@ int kacanov_apply_many(kacanov_operator* op, size_t n, int32_t vectors, const do
   });
 }
 
-int kacanov_update_tangent(kacanov_operator* op, size_t n, const double* omega) {
+int kacanov_update_tangent(kacanov_operator* op, size_t n, const double* u) {
   return on(op, [&](k::Operator& fast) {
-    fast.update_tangent(state(*op, n, omega));
+    fast.update_tangent(state(*op, n, u));
     op->single_is_current = false;
     op->has_tangent = true;
   });
@@ -131,38 +131,38 @@ int kacanov_block_diagonal(kacanov_operator* op, size_t count, double* blocks) {
   });
 }
 
-int kacanov_residual(kacanov_operator* op, size_t n, const double* omega, double* f) {
+int kacanov_residual(kacanov_operator* op, size_t n, const double* u, double* f) {
   return on(op, [&](k::Operator& fast) {
-    const auto at = state(*op, n, omega);
+    const auto at = state(*op, n, u);
     const auto out = output(f, n, "f");
-    require_disjoint(at, out, "omega and f");
+    require_disjoint(at, out, "u and f");
     fast.residual(at, out);
   });
 }
 
-int kacanov_energy(kacanov_operator* op, size_t n, const double* omega, double* energy) {
+int kacanov_energy(kacanov_operator* op, size_t n, const double* u, double* energy) {
   return on(op, [&](k::Operator& fast) {
-    const auto at = state(*op, n, omega);
+    const auto at = state(*op, n, u);
     require(energy, "energy");
     *energy = fast.energy(at);
   });
 }
 
-int kacanov_residual_energy_update(kacanov_operator* op, size_t n, const double* omega, double* f,
+int kacanov_residual_energy_update(kacanov_operator* op, size_t n, const double* u, double* f,
                                    double* energy) {
   return on(op, [&](k::Operator& fast) {
-    const auto at = state(*op, n, omega);
+    const auto at = state(*op, n, u);
     const auto out = output(f, n, "f");
     require(energy, "energy");
-    require_disjoint(at, out, "omega and f");
+    require_disjoint(at, out, "u and f");
     *energy = fast.residual_energy_update(at, out);
     op->single_is_current = false;
   });
 }
 
-int kacanov_stress(kacanov_operator* op, size_t n, const double* omega, const kacanov_fields* fields) {
+int kacanov_stress(kacanov_operator* op, size_t n, const double* u, const kacanov_fields* fields) {
   return on(op, [&](k::Operator&) {
-    const auto at = state(*op, n, omega);
+    const auto at = state(*op, n, u);
     require(fields, "fields");
     const std::size_t elements = op->mesh.element_count();
     require_size(fields->elements, elements, "fields.elements");

@@ -69,9 +69,9 @@ class Operator:
         self.call("apply", x, y)
         return y
 
-    def energy(self, omega):
+    def energy(self, u):
         value = np.zeros(1)
-        self.call("energy", omega, value)
+        self.call("energy", u, value)
         return value[0]
 
 
@@ -105,14 +105,14 @@ def main():
 
     # Uniform strain: the energy is known, inner nodes are in equilibrium.
     strain = np.array([[0.010, 0.002, 0.0], [0.002, -0.004, 0.001], [0.0, 0.001, 0.003]])
-    omega = (points @ strain).ravel()
+    u = (points @ strain).ravel()
     lame = young * poisson / ((1 + poisson) * (1 - 2 * poisson))
     exact = 0.5 * lame * np.trace(strain) ** 2 + young / (2 * (1 + poisson)) * np.sum(strain**2)
-    assert abs(op.energy(omega) - exact) < 1e-12 * exact
-    force = op.apply(omega).reshape(-1, 3)
+    assert abs(op.energy(u) - exact) < 1e-12 * exact
+    force = op.apply(u).reshape(-1, 3)
     inside = np.all((points > 0) & (points < 1), axis=1)
     assert np.abs(force[inside]).max() < 1e-14 * np.abs(force).max() * 100
-    assert abs(omega @ force.ravel() - 2 * exact) < 1e-12 * exact
+    assert abs(u @ force.ravel() - 2 * exact) < 1e-12 * exact
 
     # Symmetric, and blind to rigid motion.
     rng = np.random.default_rng(0)
@@ -128,7 +128,7 @@ def main():
         print("as it should:", error)
     else:
         raise AssertionError("a displacement that is not a number was accepted")
-    print(f"{op.size} unknowns, energy {op.energy(omega):.12e}, exact {exact:.12e}")
+    print(f"{op.size} unknowns, energy {op.energy(u):.12e}, exact {exact:.12e}")
 
 
 if __name__ == "__main__":

@@ -123,14 +123,14 @@ int main(int argc, char** argv) {
   KSPConvergedReason reason;
   PetscCall(KSPGetIterationNumber(ksp, &iterations));
   PetscCall(KSPGetConvergedReason(ksp, &reason));
-  const PetscScalar* omega;
+  const PetscScalar* values;
   double error = 0.0;
-  PetscCall(VecGetArrayRead(u, &omega));
+  PetscCall(VecGetArrayRead(u, &values));
   for (size_t i = 0; i < unknowns; ++i) {
     const double exact = stress / young * coordinates[i] * (i % 3 == 0 ? 1.0 : -poisson);
-    error = PetscMax(error, PetscAbsReal(omega[i] - exact) / (stress / young * length));
+    error = PetscMax(error, PetscAbsReal(values[i] - exact) / (stress / young * length));
   }
-  PetscCall(VecRestoreArrayRead(u, &omega));
+  PetscCall(VecRestoreArrayRead(u, &values));
   PetscCall(PetscPrintf(PETSC_COMM_SELF, "%d unknowns: %s after %d iterations, largest relative error %.2e\n",
                         (int)unknowns, KSPConvergedReasons[reason], (int)iterations, error));
 

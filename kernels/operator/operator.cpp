@@ -26,9 +26,9 @@ std::size_t BasicOperator<Real>::unknowns() const noexcept {
 }
 
 template <class Real>
-void BasicOperator<Real>::update(std::span<const Real> omega) {
-  expect_size(omega.size(), unknowns(), "omega");
-  data_->nonlinear(omega.data(), nullptr, {.keep_secant = true});
+void BasicOperator<Real>::update(std::span<const Real> u) {
+  expect_size(u.size(), unknowns(), "u");
+  data_->nonlinear(u.data(), nullptr, {.keep_secant = true});
 }
 
 template <class Real>
@@ -82,9 +82,9 @@ void BasicOperator<Real>::apply_many(std::span<const Real> x, std::span<Real> y,
 }
 
 template <class Real>
-void BasicOperator<Real>::update_tangent(std::span<const Real> omega) {
-  expect_size(omega.size(), unknowns(), "omega");
-  data_->nonlinear(omega.data(), nullptr, {.keep_secant = true, .keep_tangent = true});
+void BasicOperator<Real>::update_tangent(std::span<const Real> u) {
+  expect_size(u.size(), unknowns(), "u");
+  data_->nonlinear(u.data(), nullptr, {.keep_secant = true, .keep_tangent = true});
 }
 
 template <class Real>
@@ -114,23 +114,23 @@ void BasicOperator<Real>::forget_tangent() noexcept {
 }
 
 template <class Real>
-void BasicOperator<Real>::residual(std::span<const Real> omega, std::span<Real> f) {
-  expect_size(omega.size(), unknowns(), "omega");
+void BasicOperator<Real>::residual(std::span<const Real> u, std::span<Real> f) {
+  expect_size(u.size(), unknowns(), "u");
   expect_size(f.size(), unknowns(), "f");
-  data_->nonlinear(omega.data(), f.data(), {});
+  data_->nonlinear(u.data(), f.data(), {});
 }
 
 template <class Real>
-double BasicOperator<Real>::energy(std::span<const Real> omega) {
-  expect_size(omega.size(), unknowns(), "omega");
-  return data_->nonlinear(omega.data(), nullptr, {.sum_energy = true});
+double BasicOperator<Real>::energy(std::span<const Real> u) {
+  expect_size(u.size(), unknowns(), "u");
+  return data_->nonlinear(u.data(), nullptr, {.sum_energy = true});
 }
 
 template <class Real>
-double BasicOperator<Real>::residual_energy_update(std::span<const Real> omega, std::span<Real> f) {
-  expect_size(omega.size(), unknowns(), "omega");
+double BasicOperator<Real>::residual_energy_update(std::span<const Real> u, std::span<Real> f) {
+  expect_size(u.size(), unknowns(), "u");
   expect_size(f.size(), unknowns(), "f");
-  return data_->nonlinear(omega.data(), f.data(), {.keep_secant = true, .sum_energy = true});
+  return data_->nonlinear(u.data(), f.data(), {.keep_secant = true, .sum_energy = true});
 }
 
 template <class Real>

@@ -200,16 +200,16 @@ double BasicOperator<Real>::Data::apply_tangent(const Real* x, Real* y, bool wit
 }
 
 template <class Real>
-double BasicOperator<Real>::Data::nonlinear(const Real* omega, Real* f, simd::Nonlinear keep) {
+double BasicOperator<Real>::Data::nonlinear(const Real* u, Real* f, simd::Nonlinear keep) {
   if (keep.keep_tangent) {
     tangent.resize(simd::tangent_floats * secant.size());
     Aligned<Real>().swap(tangent_secant);
   } else if (keep.keep_secant) {
     detach_tangent();
   }
-  return pass(omega, f, 1, {}, [&](const simd::Block<Real>& at, const Real* u, Real* forces, std::size_t) {
+  return pass(u, f, 1, {}, [&](const simd::Block<Real>& at, const Real* local, Real* forces, std::size_t) {
     simd::Nonlinear out = keep;
-    kernels.nonlinear(at, u, forces, &out);
+    kernels.nonlinear(at, local, forces, &out);
     return out.energy;
   });
 }

@@ -39,8 +39,8 @@ struct BasicOperator<Real>::Data {
   /// `with_dot`, else 0.
   double apply(const Real* x, Real* y, int count, bool with_dot, const WhenEarly& when_early = {});
   double apply_tangent(const Real* x, Real* y, bool with_dot, const WhenEarly& when_early);
-  /// Internal force at ω into f, unless that is null; what to keep. Returns the energy if that is summed.
-  double nonlinear(const Real* omega, Real* f, simd::Nonlinear keep);
+  /// Internal force at u into f, unless that is null; what to keep. Returns the energy if that is summed.
+  double nonlinear(const Real* u, Real* f, simd::Nonlinear keep);
 
   /// Calls loops(block, u, f, stride) between gathering x and scattering y, and adds up what it returns.
   template <class LoopsOnBlock>

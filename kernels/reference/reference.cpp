@@ -102,15 +102,15 @@ void scatter_add(const Body& body, std::size_t element, const Nodal<E>& local, s
     for (int i = 0; i < E::dim; ++i) values[Point<E>::at(node[a], i)] += local[Point<E>::at(a, i)];
 }
 
-/// Calls visit(element, law, point index, point, strain of `omega`) for every quadrature point.
+/// Calls visit(element, law, point index, point, strain of `u`) for every quadrature point.
 template <class E, class Visit>
-void for_each_point(const Body& body, std::span<const double> omega, Visit&& visit) {
+void for_each_point(const Body& body, std::span<const double> u, Visit&& visit) {
   for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
     const Nodal<E> x = gather<E>(body, e, body.mesh.coordinates);
-    const Nodal<E> u = gather<E>(body, e, omega);
+    const Nodal<E> local = gather<E>(body, e, u);
     const auto points = points_of<E>(x, body.law(e).mean_dilatation);
     for (std::size_t q = 0; q < E::points; ++q)
-      visit(e, body.law(e), q, points[q], strain_at<E>(points[q], u));
+      visit(e, body.law(e), q, points[q], strain_at<E>(points[q], local));
   }
 }
 
@@ -147,11 +147,12 @@ void fill_matrix(const Body& body, std::size_t element, std::span<double> matrix
 
 }  // namespace
 
-void secant(const Body& body, std::span<const double> omega, std::span<double> g) {
+void secant(const Body& body, std::span<const double> u, std::span<double> g) {
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
-    for_each_point<E>(body, omega,
-                      [&](std::size_t e, const Law& law, std::size_t q, const Point<E>&,
-                          const Strain& strain) { g[e * E::points + q] = law.secant(strain.norm()); });
+    for_each_point<E>(
+        body, u, [&](std::size_t e, const Law& law, std::size_t q, const Point<E>&, const Strain& strain) {
+          g[e * E::points + q] = law.secant(strain.norm());
+        });
   });
 }
 
@@ -164,12 +165,12 @@ void apply(const Body& body, std::span<const double> g, std::span<const double> 
   });
 }
 
-void apply_tangent(const Body& body, std::span<const double> omega, std::span<const double> x,
+void apply_tangent(const Body& body, std::span<const double> u, std::span<const double> x,
                    std::span<double> y) {
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     assemble<E>(body, x, y,
                 [&](std::size_t e, const Law& law, std::size_t, const Point<E>& point, const Strain& strain) {
-                  return tangent_stress(law, strain_at<E>(point, gather<E>(body, e, omega)), strain);
+                  return tangent_stress(law, strain_at<E>(point, gather<E>(body, e, u)), strain);
                 });
   });
 }
@@ -198,21 +199,20 @@ void block_diagonal(const Body& body, std::span<const double> g, std::span<doubl
   });
 }
 
-void residual(const Body& body, std::span<const double> omega, std::span<double> f) {
+void residual(const Body& body, std::span<const double> u, std::span<double> f) {
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
-    assemble<E>(body, omega, f,
+    assemble<E>(body, u, f,
                 [](std::size_t, const Law& law, std::size_t, const Point<E>&, const Strain& strain) {
                   return stress(law, law.secant(strain.norm()), strain);
                 });
   });
 }
 
-double energy(const Body& body, std::span<const double> omega) {
+double energy(const Body& body, std::span<const double> u) {
   double sum = 0.0;
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     for_each_point<E>(
-        body, omega,
-        [&](std::size_t, const Law& law, std::size_t, const Point<E>& point, const Strain& strain) {
+        body, u, [&](std::size_t, const Law& law, std::size_t, const Point<E>& point, const Strain& strain) {
           sum +=
               point.volume * (0.5 * law.bulk * strain.trace * strain.trace + 2.0 * law.energy(strain.norm()));
         });
@@ -230,13 +230,13 @@ void element_matrix(const Body& body, std::size_t element, std::span<const doubl
   });
 }
 
-void element_tangent(const Body& body, std::size_t element, std::span<const double> omega,
+void element_tangent(const Body& body, std::size_t element, std::span<const double> u,
                      std::span<double> matrix) {
   const Law& law = body.law(element);
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
-    const Nodal<E> u = gather<E>(body, element, omega);
+    const Nodal<E> local = gather<E>(body, element, u);
     fill_matrix<E>(body, element, matrix, [&](std::size_t, const Point<E>& point, const Strain& strain) {
-      return tangent_stress(law, strain_at<E>(point, u), strain);
+      return tangent_stress(law, strain_at<E>(point, local), strain);
     });
   });
 }
@@ -251,19 +251,19 @@ void volumes(const Body& body, std::span<double> volume) {
   });
 }
 
-void fields(const Body& body, std::span<const double> omega, const ElementFields& out) {
+void fields(const Body& body, std::span<const double> u, const ElementFields& out) {
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
       const Law& law = body.law(e);
       const Nodal<E> x = gather<E>(body, e, body.mesh.coordinates);
-      const Nodal<E> u = gather<E>(body, e, omega);
+      const Nodal<E> local = gather<E>(body, e, u);
       Sym tau{};
       double volume = 0.0, dev_strain = 0.0, g_mean = 0.0, von_mises = 0.0;
       bool plastic = false;
       const auto points = points_of<E>(x, law.mean_dilatation);
       for (std::size_t q = 0; q < E::points; ++q) {
         const Point<E>& point = points[q];
-        const Strain strain = strain_at<E>(point, u);
+        const Strain strain = strain_at<E>(point, local);
         const double norm = strain.norm(), g = law.secant(norm);
         const Sym point_tau = stress(law, g, strain);
         for (std::size_t i = 0; i < 6; ++i) tau[i] += point.volume * point_tau[i];

@@ -35,11 +35,11 @@ TEST_CASE("every element type gives the numbers of the reference") {
     const std::size_t points = mesh.elements() * static_cast<std::size_t>(information.points_per_element);
     REQUIRE(points == body.secant_count());
 
-    const Vector omega = random_vector(n, 1, 0.1), x = random_vector(n, 2);
+    const Vector u = random_vector(n, 1, 0.1), x = random_vector(n, 2);
     Vector g(points), want_g(points), y(n), want(n);
-    REQUIRE(kacanov_update(op.get(), n, omega.data()) == KACANOV_OK);
+    REQUIRE(kacanov_update(op.get(), n, u.data()) == KACANOV_OK);
     REQUIRE(kacanov_secant(op.get(), points, g.data()) == KACANOV_OK);
-    kacanov::reference::secant(body, omega, want_g);
+    kacanov::reference::secant(body, u, want_g);
     CHECK(distance(g, want_g) < 1e-12);
     CHECK(distance(g, Vector(points, laws[0].shear)) > 0.1);  // the state is well beyond yield
 
@@ -59,21 +59,21 @@ TEST_CASE("every element type gives the numbers of the reference") {
     kacanov::reference::block_diagonal(body, want_g, want_blocks);
     CHECK(distance(blocks, want_blocks) < 1e-12);
 
-    REQUIRE(kacanov_update_tangent(op.get(), n, omega.data()) == KACANOV_OK);
+    REQUIRE(kacanov_update_tangent(op.get(), n, u.data()) == KACANOV_OK);
     REQUIRE(kacanov_apply_tangent(op.get(), n, x.data(), y.data()) == KACANOV_OK);
-    kacanov::reference::apply_tangent(body, omega, x, want);
+    kacanov::reference::apply_tangent(body, u, x, want);
     CHECK(distance(y, want) < 1e-6);  // its rank-one term is kept in single precision
 
     double energy = 0.0;
-    REQUIRE(kacanov_residual(op.get(), n, omega.data(), y.data()) == KACANOV_OK);
-    REQUIRE(kacanov_energy(op.get(), n, omega.data(), &energy) == KACANOV_OK);
-    kacanov::reference::residual(body, omega, want);
+    REQUIRE(kacanov_residual(op.get(), n, u.data(), y.data()) == KACANOV_OK);
+    REQUIRE(kacanov_energy(op.get(), n, u.data(), &energy) == KACANOV_OK);
+    kacanov::reference::residual(body, u, want);
     CHECK(distance(y, want) < 1e-12);
-    CHECK(energy == doctest::Approx(kacanov::reference::energy(body, omega)));
-    // Away from omega and back, in one pass.
+    CHECK(energy == doctest::Approx(kacanov::reference::energy(body, u)));
+    // Away from u and back, in one pass.
     REQUIRE(kacanov_update(op.get(), n, Vector(n, 0.0).data()) == KACANOV_OK);
     double again = 0.0;
-    REQUIRE(kacanov_residual_energy_update(op.get(), n, omega.data(), y.data(), &again) == KACANOV_OK);
+    REQUIRE(kacanov_residual_energy_update(op.get(), n, u.data(), y.data(), &again) == KACANOV_OK);
     CHECK(distance(y, want) < 1e-12);
     CHECK(again == doctest::Approx(energy));
     REQUIRE(kacanov_secant(op.get(), points, g.data()) == KACANOV_OK);
@@ -90,8 +90,8 @@ TEST_CASE("every element type gives the numbers of the reference") {
     fields.dev_strain = strain.data();
     fields.secant = mean_g.data();
     fields.plastic = plastic.data();
-    REQUIRE(kacanov_stress(op.get(), n, omega.data(), &fields) == KACANOV_OK);
-    kacanov::reference::fields(body, omega,
+    REQUIRE(kacanov_stress(op.get(), n, u.data(), &fields) == KACANOV_OK);
+    kacanov::reference::fields(body, u,
                                {.stress = want_stress,
                                 .von_mises = want_mises,
                                 .dev_strain = want_strain,
@@ -135,14 +135,14 @@ TEST_CASE("every law arrives with its parameters") {
       want.form = forms[kind];
 
       const Handle op = example.create();
-      const Vector omega = random_vector(example.n(), 12, 0.1);
+      const Vector u = random_vector(example.n(), 12, 0.1);
       const std::size_t elements = example.mesh.elements();
       Vector strain(elements), g(elements);
       kacanov_fields fields{};
       fields.elements = elements;
       fields.dev_strain = strain.data();
-      REQUIRE(kacanov_stress(op.get(), example.n(), omega.data(), &fields) == KACANOV_OK);
-      REQUIRE(kacanov_update(op.get(), example.n(), omega.data()) == KACANOV_OK);
+      REQUIRE(kacanov_stress(op.get(), example.n(), u.data(), &fields) == KACANOV_OK);
+      REQUIRE(kacanov_update(op.get(), example.n(), u.data()) == KACANOV_OK);
       REQUIRE(kacanov_secant(op.get(), elements, g.data()) == KACANOV_OK);
       for (std::size_t e = 0; e < elements; e += 2)  // odd ones follow the linear law
         CHECK(g[e] == doctest::Approx(want.secant(strain[e])).epsilon(1e-12));
@@ -276,14 +276,14 @@ TEST_CASE("single precision follows the double one") {
       CHECK(distance(Vector(y_float.begin(), y_float.end()), want) < 1e-5);
     };
     check();
-    const Vector omega = random_vector(n, 10, 0.1), doubled = random_vector(n, 11, 0.2);
-    REQUIRE(kacanov_update(op.get(), n, omega.data()) == KACANOV_OK);
+    const Vector u = random_vector(n, 10, 0.1), doubled = random_vector(n, 11, 0.2);
+    REQUIRE(kacanov_update(op.get(), n, u.data()) == KACANOV_OK);
     check();
     REQUIRE(kacanov_update_tangent(op.get(), n, doubled.data()) == KACANOV_OK);
     check();
     double energy = 0.0, dot = 0.0, want_dot = 0.0;
     Vector y(n), diagonal(n);
-    REQUIRE(kacanov_residual_energy_update(op.get(), n, omega.data(), y.data(), &energy) == KACANOV_OK);
+    REQUIRE(kacanov_residual_energy_update(op.get(), n, u.data(), y.data(), &energy) == KACANOV_OK);
     check();
     REQUIRE(kacanov_apply_dot(op.get(), n, x.data(), y.data(), &want_dot) == KACANOV_OK);
     REQUIRE(kacanov_apply_dot_float(op.get(), n, x_float.data(), y_float.data(), &dot) == KACANOV_OK);

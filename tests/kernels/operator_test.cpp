@@ -142,15 +142,15 @@ TEST_CASE("y = B x, its dot product and several right sides") {
 TEST_CASE("residual, energy, new g and tangent at a state") {
   for_every_operator([](const Body& body, Operator& op) {
     const std::size_t n = body.unknowns();
-    const auto omega = some_state(body, 31), x = test::random_vector(n, 32);
+    const auto u = some_state(body, 31), x = test::random_vector(n, 32);
     std::vector<double> f(n), expected(n), g(body.secant_count()), expected_g(g.size()), y(n);
-    reference::residual(body, omega, expected);
-    reference::secant(body, omega, expected_g);
-    const double energy = reference::energy(body, omega);
+    reference::residual(body, u, expected);
+    reference::secant(body, u, expected_g);
+    const double energy = reference::energy(body, u);
 
-    op.residual(omega, f);
+    op.residual(u, f);
     CHECK(difference(f, expected) < 1e-13);
-    CHECK(op.energy(omega) == doctest::Approx(energy).epsilon(1e-12));
+    CHECK(op.energy(u) == doctest::Approx(energy).epsilon(1e-12));
     const std::vector<double> zero(n, 0.0);
     std::vector<double> elastic(g.size());
     reference::secant(body, zero, elastic);
@@ -158,16 +158,16 @@ TEST_CASE("residual, energy, new g and tangent at a state") {
     CHECK(difference(g, elastic) < 1e-14);  // neither residual nor energy changed g = mu
 
     std::vector<double> fused(n);
-    CHECK(op.residual_energy_update(omega, fused) == doctest::Approx(energy).epsilon(1e-12));
+    CHECK(op.residual_energy_update(u, fused) == doctest::Approx(energy).epsilon(1e-12));
     CHECK(fused == f);
     op.secant(g);
     CHECK(difference(g, expected_g) < 1e-12);
-    op.apply(omega, y);
+    op.apply(u, y);
     CHECK(difference(y, expected) < 1e-13);
 
     op.update(zero);
-    op.update_tangent(omega);
-    reference::apply_tangent(body, omega, x, expected);
+    op.update_tangent(u);
+    reference::apply_tangent(body, u, x, expected);
     const double xy = op.apply_tangent_dot(x, y);
     CHECK(xy == doctest::Approx(test::dot(x, y)).epsilon(1e-12));
     op.apply_tangent(x, y);
@@ -231,7 +231,7 @@ TEST_CASE("early nodes are done when they are said to be, and nothing else chang
   const auto owned = test::with_every_law(std::move(mesh), 73);
   const Body body = owned.body();
   const auto x = test::random_vector(body.unknowns(), 74), g = some_secant(body.secant_count()),
-             omega = some_state(body, 75);
+             u = some_state(body, 75);
   const std::vector<float> xf(x.begin(), x.end());
   std::vector<double> expected(x.size());
   reference::apply(body, g, x, expected);
@@ -279,7 +279,7 @@ TEST_CASE("early nodes are done when they are said to be, and nothing else chang
       op.apply(x, y);
       CHECK(difference(y, expected) < 1e-13);
       check(yf, [&](const WhenEarly& ready) { single.apply(xf, yf, ready); });
-      op.update_tangent(omega);
+      op.update_tangent(u);
       check(y, [&](const WhenEarly& ready) { dot = op.apply_tangent_dot(x, y, ready); });
       op.apply_tangent(x, y);
       CHECK(dot == doctest::Approx(test::dot(x, y)).epsilon(1e-12));
@@ -352,17 +352,17 @@ TEST_CASE("single precision agrees to five digits") {
           op.diagonal(z);
           CHECK(difference(z, expected) < 1e-5);
 
-          const auto omega = some_state(body, 52);
-          const std::vector<float> omega_f(omega.begin(), omega.end());
-          const double energy = reference::energy(body, omega);
-          reference::residual(body, omega, expected);
-          op.residual(omega_f, y);
+          const auto u = some_state(body, 52);
+          const std::vector<float> u_f(u.begin(), u.end());
+          const double energy = reference::energy(body, u);
+          reference::residual(body, u, expected);
+          op.residual(u_f, y);
           CHECK(difference(y, expected) < 1e-4);
-          CHECK(op.energy(omega_f) == doctest::Approx(energy).epsilon(1e-4));
-          CHECK(op.residual_energy_update(omega_f, z) == doctest::Approx(energy).epsilon(1e-4));
+          CHECK(op.energy(u_f) == doctest::Approx(energy).epsilon(1e-4));
+          CHECK(op.residual_energy_update(u_f, z) == doctest::Approx(energy).epsilon(1e-4));
           CHECK(z == y);
-          op.update_tangent(omega_f);
-          reference::apply_tangent(body, omega, x, expected);
+          op.update_tangent(u_f);
+          reference::apply_tangent(body, u, x, expected);
           op.apply_tangent(xf, y);
           CHECK(difference(y, expected) < 1e-3);
           CHECK(op.applications() == 3);

@@ -179,7 +179,7 @@ TEST_CASE("residual is the gradient of the energy, the tangent that of the resid
   }
 }
 
-TEST_CASE("B with g frozen at omega gives the residual at omega, and fields report that g") {
+TEST_CASE("B with g frozen at u gives the residual at u, and fields report that g") {
   for (const ElementType type : test::all_types) {
     CAPTURE(static_cast<int>(type));
     auto mesh = meshes::box(type, {5, 4, 2}, {2.5, 2.0, 1.0});

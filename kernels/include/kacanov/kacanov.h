@@ -136,8 +136,8 @@ KACANOV_API int kacanov_set_laws(kacanov_operator* op, size_t laws, const kacano
 /* ---- In the following `n` is the length of the vectors, nodes * dimension; vectors must not overlap. ----
  */
 
-/* Freezes g at the displacement omega. */
-KACANOV_API int kacanov_update(kacanov_operator* op, size_t n, const double* omega);
+/* Freezes g at the displacement u. */
+KACANOV_API int kacanov_update(kacanov_operator* op, size_t n, const double* u);
 
 /* The frozen g: elements * points entries, the points of an element together. */
 KACANOV_API int kacanov_secant(kacanov_operator* op, size_t count, double* g);
@@ -154,9 +154,9 @@ KACANOV_API int kacanov_apply_dot(kacanov_operator* op, size_t n, const double* 
 KACANOV_API int kacanov_apply_many(kacanov_operator* op, size_t n, int32_t vectors, const double* x,
                                    double* y);
 
-/* Freezes g and the consistent tangent at omega; then y = B_T x, whatever becomes of g. The direction of the
+/* Freezes g and the consistent tangent at u; then y = B_T x, whatever becomes of g. The direction of the
  * strain in the tangent's rank-one term is kept in single precision (relative error 1e-7 of that term). */
-KACANOV_API int kacanov_update_tangent(kacanov_operator* op, size_t n, const double* omega);
+KACANOV_API int kacanov_update_tangent(kacanov_operator* op, size_t n, const double* u);
 KACANOV_API int kacanov_apply_tangent(kacanov_operator* op, size_t n, const double* x, double* y);
 
 /* Diagonal of B(g), n entries; diagonal blocks, n * dimension entries: a row-major dimension * dimension
@@ -164,12 +164,12 @@ KACANOV_API int kacanov_apply_tangent(kacanov_operator* op, size_t n, const doub
 KACANOV_API int kacanov_diagonal(kacanov_operator* op, size_t n, double* diagonal);
 KACANOV_API int kacanov_block_diagonal(kacanov_operator* op, size_t count, double* blocks);
 
-/* Internal force f and stored energy of the true nonlinear law at omega; the frozen g plays no part. */
-KACANOV_API int kacanov_residual(kacanov_operator* op, size_t n, const double* omega, double* f);
-KACANOV_API int kacanov_energy(kacanov_operator* op, size_t n, const double* omega, double* energy);
+/* Internal force f and stored energy of the true nonlinear law at u; the frozen g plays no part. */
+KACANOV_API int kacanov_residual(kacanov_operator* op, size_t n, const double* u, double* f);
+KACANOV_API int kacanov_energy(kacanov_operator* op, size_t n, const double* u, double* energy);
 
-/* Both in one pass, which also freezes g at omega. */
-KACANOV_API int kacanov_residual_energy_update(kacanov_operator* op, size_t n, const double* omega, double* f,
+/* Both in one pass, which also freezes g at u. */
+KACANOV_API int kacanov_residual_energy_update(kacanov_operator* op, size_t n, const double* u, double* f,
                                                double* energy);
 
 /* The frozen operator on vectors of floats, for preconditioners and mixed-precision solvers: about 1e-6
@@ -191,8 +191,7 @@ typedef struct kacanov_fields {
   double* secant;     /* g */
   uint8_t* plastic;   /* 1 if any point is beyond yield */
 } kacanov_fields;
-KACANOV_API int kacanov_stress(kacanov_operator* op, size_t n, const double* omega,
-                               const kacanov_fields* fields);
+KACANOV_API int kacanov_stress(kacanov_operator* op, size_t n, const double* u, const kacanov_fields* fields);
 
 typedef struct kacanov_information {
   size_t unknowns; /* nodes * dimension: the `n` above */

@@ -50,8 +50,8 @@ class BasicOperator {
 
   std::size_t unknowns() const noexcept;
 
-  /// Freezes g at the displacement ω. It starts as g = μ.
-  void update(std::span<const Real> omega);
+  /// Freezes g at the displacement u. It starts as g = μ.
+  void update(std::span<const Real> u);
   /// The frozen g into `g`, rounded to Real.
   void secant(std::span<double> g) const;
   void set_secant(std::span<const double> g);
@@ -67,8 +67,8 @@ class BasicOperator {
   /// Diagonal blocks of B(g), nodes × dim × dim, each block row-major.
   void block_diagonal(std::span<Real> blocks) const;
 
-  /// Freezes the tangent (and g) at ω for apply_tangent.
-  void update_tangent(std::span<const Real> omega);
+  /// Freezes the tangent (and g) at u for apply_tangent.
+  void update_tangent(std::span<const Real> u);
   /// y = B_T x with the tangent frozen last, whatever became of g since. The direction of dev ε in its
   /// rank-one term is kept in single precision (relative error 1e-7 of that term). Throws std::logic_error
   /// before the first update_tangent.
@@ -79,12 +79,12 @@ class BasicOperator {
   /// update_tangent.
   void forget_tangent() noexcept;
 
-  /// Internal force of the true law at ω into f; the frozen g plays no part.
-  void residual(std::span<const Real> omega, std::span<Real> f);
-  /// Stored energy of the true law at ω (theory: energy).
-  double energy(std::span<const Real> omega);
+  /// Internal force of the true law at u into f; the frozen g plays no part.
+  void residual(std::span<const Real> u, std::span<Real> f);
+  /// Stored energy of the true law at u (theory: energy).
+  double energy(std::span<const Real> u);
   /// Residual, energy and new g in one pass; returns the energy.
-  double residual_energy_update(std::span<const Real> omega, std::span<Real> f);
+  double residual_energy_update(std::span<const Real> u, std::span<Real> f);
 
   /// "avx512", "avx2" or "plain": what the loops in use are built for.
   std::string_view instruction_set() const noexcept;

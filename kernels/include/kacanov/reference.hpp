@@ -25,33 +25,33 @@ struct Body {
   std::size_t secant_count() const { return mesh.element_count() * points_per_element(mesh.type); }
 };
 
-/// theory: operator. Vectors (ω, x, y, f, d) have nodes × dim entries, interleaved; g has elements × points,
+/// theory: operator. Vectors (u, x, y, f, d) have nodes × dim entries, interleaved; g has elements × points,
 /// the points of an element together. Lengths, indices and laws are taken as they are: whoever calls has
 /// checked them. Displacements have the caller's unit of length, g that of stress, forces stress times area
 /// (in 2D stress times length, for unit thickness).
 namespace reference {
 
-/// g of the law at ω.
-void secant(const Body& body, std::span<const double> omega, std::span<double> g);
+/// g of the law at u.
+void secant(const Body& body, std::span<const double> u, std::span<double> g);
 /// y = B(g) x (overwrites y).
 void apply(const Body& body, std::span<const double> g, std::span<const double> x, std::span<double> y);
-/// y = B_T(ω) x, the consistent tangent 2g I_dev + (2g'/x) dev ε ⊗ dev ε of the law at ω.
-void apply_tangent(const Body& body, std::span<const double> omega, std::span<const double> x,
+/// y = B_T(u) x, the consistent tangent 2g I_dev + (2g'/x) dev ε ⊗ dev ε of the law at u.
+void apply_tangent(const Body& body, std::span<const double> u, std::span<const double> x,
                    std::span<double> y);
 /// Diagonal of B(g).
 void diagonal(const Body& body, std::span<const double> g, std::span<double> d);
 /// dim × dim diagonal blocks of B(g), nodes × dim × dim, row-major.
 void block_diagonal(const Body& body, std::span<const double> g, std::span<double> blocks);
-/// Internal force of the true nonlinear law at ω (overwrites f).
-void residual(const Body& body, std::span<const double> omega, std::span<double> f);
-/// Stored energy ∫ k0/2 tr² + 2 G(x) at ω.
-double energy(const Body& body, std::span<const double> omega);
+/// Internal force of the true nonlinear law at u (overwrites f).
+void residual(const Body& body, std::span<const double> u, std::span<double> f);
+/// Stored energy ∫ k0/2 tr² + 2 G(x) at u.
+double energy(const Body& body, std::span<const double> u);
 /// Stiffness of one element for frozen g (its own points only): `matrix` has (nodes·dim)² entries, row-major,
 /// with the components of a node together.
 void element_matrix(const Body& body, std::size_t element, std::span<const double> g,
                     std::span<double> matrix);
-/// Tangent stiffness of one element at ω, a vector of the whole body; `matrix` as above.
-void element_tangent(const Body& body, std::size_t element, std::span<const double> omega,
+/// Tangent stiffness of one element at u, a vector of the whole body; `matrix` as above.
+void element_tangent(const Body& body, std::size_t element, std::span<const double> u,
                      std::span<double> matrix);
 /// Volumes (areas in 2D) of the elements, one entry each; not positive for inverted or degenerate ones.
 void volumes(const Body& body, std::span<double> volume);
@@ -65,7 +65,7 @@ struct ElementFields {
   std::span<std::uint8_t> plastic;  ///< elements: 1 if any point is beyond yield
 };
 /// Fills the spans that are not empty.
-void fields(const Body& body, std::span<const double> omega, const ElementFields& out);
+void fields(const Body& body, std::span<const double> u, const ElementFields& out);
 
 }  // namespace reference
 }  // namespace kacanov

@@ -23,7 +23,7 @@ int main(void) {
     puts(message);
     return 1;
   }
-  const double uniform[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}; /* omega = x: tr eps = 3, dev eps = 0 */
+  const double uniform[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}; /* u = x: tr eps = 3, dev eps = 0 */
   double energy;
   if (kacanov_energy(op, 12, uniform, &energy)) {
     puts(kacanov_message(op));

@@ -12,6 +12,6 @@ int main() {
   const std::vector<std::uint16_t> law_of_element{0};
   kacanov::Operator op({{kacanov::ElementType::tet4, coordinates, connectivity}, laws, law_of_element});
   std::vector<double> force(12);
-  const double twice_energy = op.apply_dot(coordinates, force);  // ω = x: tr ε = 3, dev ε = 0
+  const double twice_energy = op.apply_dot(coordinates, force);  // u = x: tr ε = 3, dev ε = 0
   return std::abs(twice_energy - laws[0].bulk * 9.0 / 6.0) < 1e-14 ? 0 : 1;
 }
