@@ -181,7 +181,7 @@ double BasicOperator<Real>::Data::apply(const Real* x, Real* y, int vectors, boo
                                         const WhenEarly& when_early) {
   return pass(x, y, vectors, when_early,
               [&](const simd::Block<Real>& at, const Real* u, Real* f, std::size_t stride) {
-                kernels.apply(at, u, f, vectors, stride);
+                kernels.apply(at, {u, f, vectors, stride});
                 double sum = 0.0;
                 for (std::size_t v = 0; with_dot && v < static_cast<std::size_t>(vectors); ++v)
                   sum += kernels.dot(at, u + v * stride, f + v * stride);

@@ -74,6 +74,16 @@ struct Nonlinear {
   double energy = 0.0;  ///< added to
 };
 
+/// Input vectors on the records of a block and, for each, what is added to: `count` of them (1, 2 or 4),
+/// `stride` values apart in u and in f.
+template <class Real>
+struct Vectors {
+  const Real* u;
+  Real* f;
+  int count = 1;
+  std::size_t stride = 0;
+};
+
 /// The loops of one instruction set. `u` and `f` are records of local nodes; `dim` 2 or 3.
 template <class Real>
 struct Kernels {
@@ -84,8 +94,8 @@ struct Kernels {
   void (*scatter)(const Block<Real>&, int dim, const Real* f, Real* y, Real* sums);
   /// Σ uᵀ f over the block's local nodes.
   double (*dot)(const Block<Real>&, const Real* u, const Real* f);
-  /// f += B u for `vectors` (1, 2 or 4) input vectors, `stride` values apart in u and in f.
-  void (*apply)(const Block<Real>&, const Real* u, Real* f, int vectors, std::size_t stride);
+  /// f += B u.
+  void (*apply)(const Block<Real>&, const Vectors<Real>&);
   /// f += B_T u.
   void (*apply_tangent)(const Block<Real>&, const Real* u, Real* f);
   /// f += internal force of the true law at u.

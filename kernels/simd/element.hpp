@@ -28,7 +28,7 @@ constexpr ReferenceGradients<E, Real> reference_gradients() {
 /// Geometry of all points first, then every input vector, as for fans.
 template <class L, class Real, class E, class Material>
 inline void element_loop(const Block<Real>& block, const Group& group, const Material& material,
-                         const Real* u, Real* f, int vectors, std::size_t stride) {
+                         Vectors<Real> vectors) {
   using V = typename L::V;
   constexpr int width = L::width;
   static constexpr auto gradients = reference_gradients<E, Real>();
@@ -61,10 +61,10 @@ inline void element_loop(const Block<Real>& block, const Group& group, const Mat
         w[q] = Real(E::weight) / det[q];
       }
     }
-    for (int v = 0; v < vectors; ++v) {
-      const std::size_t offset = static_cast<std::size_t>(v) * stride;
+    for (int v = 0; v < vectors.count; ++v) {
+      const std::size_t offset = static_cast<std::size_t>(v) * vectors.stride;
       V d[E::nodes][3], force[E::nodes][3] = {};
-      for (int a = 0; a < E::nodes; ++a) L::load3(u + offset, at + a * width, d[a]);
+      for (int a = 0; a < E::nodes; ++a) L::load3(vectors.u + offset, at + a * width, d[a]);
       const auto displacement_gradient = [&](int q, V(&h)[9]) __attribute__((always_inline)) {
         for (int k = 0; k < E::dim; ++k) {
           V slope[3] = {};  // ∂u/∂ξ_k
@@ -100,7 +100,7 @@ inline void element_loop(const Block<Real>& block, const Group& group, const Mat
             for (int i = 0; i < E::dim; ++i) force[a][i] += t[i] * gradients.at[q][a][k];
         }
       }
-      for (int a = 0; a < E::nodes; ++a) L::add3(f + offset, at + a * width, force[a]);
+      for (int a = 0; a < E::nodes; ++a) L::add3(vectors.f + offset, at + a * width, force[a]);
     }
     at += E::nodes * width;
     point += E::points;

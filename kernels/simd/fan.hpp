@@ -60,13 +60,20 @@ KACANOV_INLINE inline void measure_fan(const Real* coordinates, const std::uint1
   if constexpr (closed) measure(e, first, geometry.wedge[length - 1]);
 }
 
+/// Where a batch of fans stands: its indices, its first point, and how many tetrahedra each fan has.
+struct FanPlace {
+  const std::uint16_t* at;
+  std::size_t point;
+  int length;
+};
+
 /// Forces of one input vector. p takes minus the sum of all others. A ring node's force is stored one step
 /// late, when it has long been ready.
 template <class L, class Real, bool closed, class Material, class V = typename L::V>
 KACANOV_INLINE inline void load_fan(const Material& material, const FanGeometry<V>& geometry,
-                                    std::size_t point, const std::uint16_t* at, int length, const Real* u,
-                                    Real* f) {
-  at = read_anew(at);
+                                    const FanPlace& fan, const Real* u, Real* f) {
+  const std::uint16_t* at = read_anew(fan.at);
+  const int length = fan.length;
   const std::uint16_t* ring = at + 2 * L::width;
   V p[3], dq[3], d[3], first[3];
   V fq[3] = {}, carry[3] = {}, done[3] = {}, first_force[3] = {}, sum[3] = {};
@@ -93,7 +100,7 @@ KACANOV_INLINE inline void load_fan(const Material& material, const FanGeometry<
         h[3 * r + c] = dq[r] * wedge.c[c] - d[r] * next_spoke[c] + next[r] * spoke[c];
     if (i > 1) L::add3(f, ring + (i - 1) * L::width, done);
     const Sym<V> s = material.stress(strain_of(h), wedge.det, wedge.w, Real(1.0 / 6.0),
-                                     point + static_cast<std::size_t>(i));
+                                     fan.point + static_cast<std::size_t>(i));
     subtract_product(s, next_spoke, carry);
     for (int k = 0; k < 3; ++k) {
       sum[k] += carry[k];
@@ -122,8 +129,8 @@ KACANOV_INLINE inline void load_fan(const Material& material, const FanGeometry<
 /// which took the loop from 149 to 113 cycles for 8 tetrahedra (Zen 4; 81 multiply-adds are the floor). A
 /// `fixed` length above zero unrolls the ring, worth 15 %.
 template <class L, class Real, bool closed, int fixed, class Material>
-inline void fan_loop(const Block<Real>& block, const Group& group, const Material& material, const Real* u,
-                     Real* f, int vectors, std::size_t stride) {
+inline void fan_loop(const Block<Real>& block, const Group& group, const Material& material,
+                     Vectors<Real> vectors) {
   const int length = fixed > 0 ? fixed : int{group.length};
   const std::uint16_t* at = block.index + group.first_index;
   std::size_t point = 0;
@@ -132,9 +139,10 @@ inline void fan_loop(const Block<Real>& block, const Group& group, const Materia
     material.fetch_ahead(point, length * L::width);
     FanGeometry<typename L::V> geometry;
     measure_fan<L, Real, closed>(block.coordinates, at, length, geometry);
-    for (int v = 0; v < vectors; ++v) {
-      const std::size_t offset = static_cast<std::size_t>(v) * stride;
-      load_fan<L, Real, closed>(material, geometry, point, at, length, u + offset, f + offset);
+    for (int v = 0; v < vectors.count; ++v) {
+      const std::size_t offset = static_cast<std::size_t>(v) * vectors.stride;
+      load_fan<L, Real, closed>(material, geometry, {at, point, length}, vectors.u + offset,
+                                vectors.f + offset);
     }
     at += (length + (closed ? 2 : 3)) * L::width;
     point += static_cast<std::size_t>(length);
@@ -145,10 +153,8 @@ inline void fan_loop(const Block<Real>& block, const Group& group, const Materia
 /// which are bound by other things, do with one for all.
 template <class L, class Real, bool closed, class Material>
 inline void fan_loop_of_length(const Block<Real>& block, const Group& group, const Material& material,
-                               const Real* u, Real* f, int vectors, std::size_t stride) {
-  const auto run = [&]<int fixed>() {
-    fan_loop<L, Real, closed, fixed>(block, group, material, u, f, vectors, stride);
-  };
+                               Vectors<Real> vectors) {
+  const auto run = [&]<int fixed>() { fan_loop<L, Real, closed, fixed>(block, group, material, vectors); };
   if constexpr (Material::frozen) {
     switch (group.length - (closed ? 3 : 0)) {
       case 1: return run.template operator()<1 + (closed ? 3 : 0)>();

@@ -184,8 +184,8 @@ KACANOV_INLINE inline Sym<V> hex_strain(const V* a, const V* b, const V* d, cons
 
 /// Slopes are eight times too large, so determinants are 512 times: the weight takes that back.
 template <class L, class Real, class Material>
-inline void hex_loop(const Block<Real>& block, const Group& group, const Material& material, const Real* u,
-                     Real* f, int vectors, std::size_t stride) {
+inline void hex_loop(const Block<Real>& block, const Group& group, const Material& material,
+                     Vectors<Real> vectors) {
   using V = typename L::V;
   constexpr Real weight = Real(1.0 / 512.0);
   const bool mean = block.laws[group.law].mean_dilatation;
@@ -201,12 +201,12 @@ inline void hex_loop(const Block<Real>& block, const Group& group, const Materia
       hex_load<L>(block.coordinates, at, m);
       hex_slopes(m, j);
     }
-    for (int v = 0; v < vectors; ++v) {
-      const std::size_t offset = static_cast<std::size_t>(v) * stride;
+    for (int v = 0; v < vectors.count; ++v) {
+      const std::size_t offset = static_cast<std::size_t>(v) * vectors.stride;
       HexSlopes<V> slopes, forces;
       {
         V m[3][8];
-        hex_load<L>(u + offset, at, m);
+        hex_load<L>(vectors.u + offset, at, m);
         hex_slopes(m, slopes);
       }
       V pressure{};  // weight times that of the mean dilatation
@@ -239,7 +239,7 @@ inline void hex_loop(const Block<Real>& block, const Group& group, const Materia
       }
       V m[3][8];
       hex_gather(forces, m);
-      hex_add<L>(m, at, f + offset);
+      hex_add<L>(m, at, vectors.f + offset);
     }
     at += 8 * L::width;
     point += 8;
@@ -287,7 +287,7 @@ KACANOV_INLINE inline void affine_stress(const TangentMaterial<L, Real>& materia
 /// diagonal in the modes. Some 350 multiplications and 390 additions a batch.
 template <class L, class Real, class Material>
 inline void affine_hex_loop(const Block<Real>& block, const Group& group, const Material& material,
-                            const Real* u, Real* f, int vectors, std::size_t stride) {
+                            Vectors<Real> vectors) {
   using V = typename L::V;
   const std::uint16_t* at = block.index + group.first_index;
   const V bulk = Real(8) * material.bulk();
@@ -309,10 +309,10 @@ inline void affine_hex_loop(const Block<Real>& block, const Group& group, const 
       for (int k = 0; k < 3; ++k) cross(x[(k + 1) % 3], x[(k + 2) % 3], c[k]);
       w = Real(1.0 / 128.0) / inner(x[0], c[0]);
     }
-    for (int v = 0; v < vectors; ++v) {
-      const std::size_t offset = static_cast<std::size_t>(v) * stride;
+    for (int v = 0; v < vectors.count; ++v) {
+      const std::size_t offset = static_cast<std::size_t>(v) * vectors.stride;
       V m[3][8], e[5][8], trace[8];
-      hex_load<L>(u + offset, at, m);
+      hex_load<L>(vectors.u + offset, at, m);
 #pragma GCC unroll 8
       for (int s = 0; s < 7; ++s) {
         // ∂u/∂ξ_k has a mode for each of u that has bit k, without that bit.
@@ -357,7 +357,7 @@ inline void affine_hex_loop(const Block<Real>& block, const Group& group, const 
             for (int k = 0; k < 3; ++k) m[k][s | 1 << direction] = force[k];
           }
       }
-      hex_add<L>(m, at, f + offset);
+      hex_add<L>(m, at, vectors.f + offset);
     }
     at += 8 * L::width;
     point += 8;

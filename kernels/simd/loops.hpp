@@ -89,51 +89,46 @@ struct Loops {
   }
 
   template <class MakeMaterial>
-  static void sweep(const Block<Real>& block, const Real* u, Real* f, int vectors, std::size_t stride,
-                    MakeMaterial&& make) {
+  static void sweep(const Block<Real>& block, const Vectors<Real>& vectors, MakeMaterial&& make) {
     for (std::size_t i = 0; i < block.group_count; ++i) {
       const Group& group = block.groups[i];
       const auto material = make(group);
-      const auto elements = [&]<class E>() {
-        element_loop<L, Real, E>(block, group, material, u, f, vectors, stride);
-      };
+      const auto elements = [&]<class E>() { element_loop<L, Real, E>(block, group, material, vectors); };
       switch (group.type) {
         case ElementType::tri3: elements.template operator()<Tri3>(); break;
         case ElementType::quad4: elements.template operator()<Quad4>(); break;
         case ElementType::tet4:
           if (group.shape == Shape::open_fan)
-            fan_loop_of_length<L, Real, false>(block, group, material, u, f, vectors, stride);
+            fan_loop_of_length<L, Real, false>(block, group, material, vectors);
           else
-            fan_loop_of_length<L, Real, true>(block, group, material, u, f, vectors, stride);
+            fan_loop_of_length<L, Real, true>(block, group, material, vectors);
           break;
         case ElementType::tet10:
           if (group.shape == Shape::affine)
-            tet10_loop<L, Real>(block, group, material, u, f, vectors, stride);
+            tet10_loop<L, Real>(block, group, material, vectors);
           else
             elements.template operator()<Tet10>();
           break;
         case ElementType::hex8:
           if constexpr (decltype(material)::frozen)
             if (group.shape == Shape::affine) {
-              affine_hex_loop<L, Real>(block, group, material, u, f, vectors, stride);
+              affine_hex_loop<L, Real>(block, group, material, vectors);
               break;
             }
-          hex_loop<L, Real>(block, group, material, u, f, vectors, stride);
+          hex_loop<L, Real>(block, group, material, vectors);
           break;
       }
     }
   }
 
-  static void apply(const Block<Real>& block, const Real* u, Real* f, int vectors, std::size_t stride) {
-    sweep(block, u, f, vectors, stride,
-          [&](const Group& group) { return SecantMaterial<L, Real>(block, group); });
+  static void apply(const Block<Real>& block, const Vectors<Real>& vectors) {
+    sweep(block, vectors, [&](const Group& group) { return SecantMaterial<L, Real>(block, group); });
   }
   static void apply_tangent(const Block<Real>& block, const Real* u, Real* f) {
-    sweep(block, u, f, 1, 0, [&](const Group& group) { return TangentMaterial<L, Real>(block, group); });
+    sweep(block, {u, f}, [&](const Group& group) { return TangentMaterial<L, Real>(block, group); });
   }
   static void nonlinear(const Block<Real>& block, const Real* u, Real* f, Nonlinear* out) {
-    sweep(block, u, f, 1, 0,
-          [&](const Group& group) { return NonlinearMaterial<L, Real>(block, group, *out); });
+    sweep(block, {u, f}, [&](const Group& group) { return NonlinearMaterial<L, Real>(block, group, *out); });
   }
 
   static constexpr Kernels<Real> table{L::width, gather, scatter, dot, apply, apply_tangent, nonlinear};

@@ -16,6 +16,7 @@ using kacanov::simd::LawView;
 using kacanov::simd::longest_fan;
 using kacanov::simd::Nonlinear;
 using kacanov::simd::tangent_floats;
+using kacanov::simd::Vectors;
 
 /// Symmetric tensor of vectors.
 template <class V>

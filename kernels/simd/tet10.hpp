@@ -23,8 +23,8 @@ constexpr TetMiddles tet_middles = [] {
 /// ∂u/∂λ_i at vertex j is 4 u_ij − u_i, and 3 u_i for i = j. A point's value of a linear function is `rest`
 /// times the value at its vertex plus `far` times the sum of all four; the transpose of that is the same.
 template <class L, class Real, class Material>
-inline void tet10_loop(const Block<Real>& block, const Group& group, const Material& material, const Real* u,
-                       Real* f, int vectors, std::size_t stride) {
+inline void tet10_loop(const Block<Real>& block, const Group& group, const Material& material,
+                       Vectors<Real> vectors) {
   using V = typename L::V;
   constexpr Real far = Real(kacanov::elements::Tet10::far);
   constexpr Real rest = Real(kacanov::elements::Tet10::near - kacanov::elements::Tet10::far);
@@ -41,12 +41,12 @@ inline void tet10_loop(const Block<Real>& block, const Group& group, const Mater
     cross(x[3], x[1], c[1]);
     cross(x[1], x[2], c[2]);
     const V det = inner(x[1], c[0]), w = Real(1.0 / 24.0) / det;
-    for (int v = 0; v < vectors; ++v) {
-      const std::size_t offset = static_cast<std::size_t>(v) * stride;
+    for (int v = 0; v < vectors.count; ++v) {
+      const std::size_t offset = static_cast<std::size_t>(v) * vectors.stride;
       const std::uint16_t* from = read_anew(at);
       V d[10][3], h[4][9], h_sum[9], s[4][6], s_sum[6];
 #pragma GCC unroll 10
-      for (int a = 0; a < 10; ++a) L::load3(u + offset, from + a * L::width, d[a]);
+      for (int a = 0; a < 10; ++a) L::load3(vectors.u + offset, from + a * L::width, d[a]);
 #pragma GCC unroll 4
       for (int j = 0; j < 4; ++j) {
         V r[3][3];  // ∂u/∂λ_{i+1} − ∂u/∂λ_0 at vertex j
@@ -98,7 +98,7 @@ inline void tet10_loop(const Block<Real>& block, const Group& group, const Mater
       }
       from = read_anew(at);
 #pragma GCC unroll 10
-      for (int a = 0; a < 10; ++a) L::add3(f + offset, from + a * L::width, force[a]);
+      for (int a = 0; a < 10; ++a) L::add3(vectors.f + offset, from + a * L::width, force[a]);
     }
     at += 10 * L::width;
     point += 4;
