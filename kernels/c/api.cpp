@@ -33,6 +33,11 @@ std::span<const double> state(const kacanov_operator& op, std::size_t n, const d
   return span;
 }
 
+void require_tangent(const kacanov_operator& op) {
+  if (!op.has_tangent)
+    throw Fault(KACANOV_ERROR_STATE, "no tangent is frozen yet: kacanov_update_tangent first");
+}
+
 }  // namespace
 
 const char* kacanov_message(const kacanov_operator* op) {
@@ -107,8 +112,7 @@ int kacanov_update_tangent(kacanov_operator* op, size_t n, const double* u) {
 
 int kacanov_apply_tangent(kacanov_operator* op, size_t n, const double* x, double* y) {
   return on(op, [&](k::Operator& fast) {
-    if (!op->has_tangent)
-      throw Fault(KACANOV_ERROR_STATE, "no tangent is frozen yet: kacanov_update_tangent first");
+    require_tangent(*op);
     require_size(n, op->unknowns(), "n");
     const auto in = input(x, n, "x");
     const auto out = output(y, n, "y");
@@ -128,6 +132,22 @@ int kacanov_block_diagonal(kacanov_operator* op, size_t count, double* blocks) {
   return on(op, [&](k::Operator& fast) {
     require_size(count, op->unknowns() * k::dimension(op->mesh.type), "count");
     fast.block_diagonal(output(blocks, count, "blocks"));
+  });
+}
+
+int kacanov_diagonal_tangent(kacanov_operator* op, size_t n, double* diagonal) {
+  return on(op, [&](k::Operator& fast) {
+    require_tangent(*op);
+    require_size(n, op->unknowns(), "n");
+    fast.diagonal_tangent(output(diagonal, n, "diagonal"));
+  });
+}
+
+int kacanov_block_diagonal_tangent(kacanov_operator* op, size_t count, double* blocks) {
+  return on(op, [&](k::Operator& fast) {
+    require_tangent(*op);
+    require_size(count, op->unknowns() * k::dimension(op->mesh.type), "count");
+    fast.block_diagonal_tangent(output(blocks, count, "blocks"));
   });
 }
 

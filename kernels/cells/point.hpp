@@ -71,6 +71,19 @@ struct Point {
             static_cast<Real>(k * mean[i] * mean[j] + third * d[i] * d[j] + (i == j ? s * square : 0.0));
   }
 
+  /// Adds what the tangent's rank-one term `factor` d ⊗ d gives node a on the diagonal: volume factor
+  /// (d∇)(d∇)ᵀ. `d` is symmetric, without trace: xx yy zz xy yz zx.
+  template <class Real>
+  void add_rank_one_block(int a, double factor, const std::array<double, 6>& d, Real* block) const {
+    constexpr int entry[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
+    double along[E::dim] = {};
+    for (int i = 0; i < E::dim; ++i)
+      for (int k = 0; k < E::dim; ++k) along[i] += d[entry[i][k]] * gradient[a][k];
+    for (int i = 0; i < E::dim; ++i)
+      for (int j = 0; j < E::dim; ++j)
+        block[i * E::dim + j] += static_cast<Real>(volume * factor * along[i] * along[j]);
+  }
+
   static constexpr std::size_t at(int a, int i) { return a * E::dim + i; }
 };
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The diagonal and the diagonal blocks of B, from the data that its loops read.
+// The diagonals and diagonal blocks of secant and tangent, from the data that their loops read.
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <stdexcept>
 
 #include "cells/dispatch.hpp"
 #include "cells/point.hpp"
@@ -10,11 +12,12 @@
 
 namespace kacanov {
 
-/// Finds the element of every slot again in its batch and adds what each of its nodes has on the diagonal.
+/// Finds the element of every slot again in its batch. Calls visit(point, the caller's nodes, law, slot) for
+/// each of its points.
 template <class Real>
-template <class E>
-void BasicOperator<Real>::Data::add_diagonals(const BlockRange& range, const simd::Group& group,
-                                              std::span<Real> blocks) const {
+template <class E, class Visit>
+void BasicOperator<Real>::Data::visit_points(const BlockRange& range, const simd::Group& group,
+                                             const Visit& visit) const {
   using elements::Point;
   const bool fan = group.shape == simd::Shape::open_fan || group.shape == simd::Shape::closed_fan;
   const std::size_t lanes = layout.lanes;
@@ -23,9 +26,10 @@ void BasicOperator<Real>::Data::add_diagonals(const BlockRange& range, const sim
                     nodes = fan ? element_points + ring_ends : E::nodes;
   const std::uint16_t* index = layout.index.data() + range.first_index + group.first_index;
   const Real* records = coordinates.data() + 4 * range.first_record;
+  const Law& law = laws[group.law];
   for (std::size_t batch = 0; batch < group.batches; ++batch)
     for (std::size_t lane = 0; lane < lanes; ++lane) {
-      std::array<std::size_t, E::nodes> record{};
+      std::array<std::int32_t, E::nodes> id{};
       std::array<Point<E>, E::points> at{};  // of the element at hand
       for (std::size_t p = 0; p < element_points; ++p) {
         const std::size_t slot =
@@ -36,46 +40,93 @@ void BasicOperator<Real>::Data::add_diagonals(const BlockRange& range, const sim
           for (int a = 0; a < E::nodes; ++a) {
             const std::size_t k = a;
             const std::size_t node = fan && k >= 2 ? 2 + (p + k - 2) % (nodes - 2) : k;
-            record[k] = index[(batch * nodes + node) * lanes + lane];
-            for (int c = 0; c < E::dim; ++c)
-              x[Point<E>::at(a, c)] = static_cast<double>(records[record[k] + c]);
+            const std::size_t record = index[(batch * nodes + node) * lanes + lane];
+            id[k] = layout.nodes[range.first_node + record / 4];
+            for (int c = 0; c < E::dim; ++c) x[Point<E>::at(a, c)] = static_cast<double>(records[record + c]);
           }
-          at = elements::points_of<E>(x, laws[group.law].mean_dilatation);
+          at = elements::points_of<E>(x, law.mean_dilatation);
         }
-        const Point<E>& point = at[fan ? 0 : p];
-        for (int a = 0; a < E::nodes; ++a) {
-          const std::int32_t id = layout.nodes[range.first_node + record[a] / 4];
-          point.add_diagonal_block(a, laws[group.law].bulk, static_cast<double>(secant[slot]),
-                                   blocks.data() + Point<E>::at(id, 0) * E::dim);
-        }
+        visit(at[fan ? 0 : p], id, law, slot);
       }
     }
 }
 
+/// Sums blocks: add(point, a, law, slot, block) adds that of node a of an element.
+template <class Real>
+template <class Add>
+void BasicOperator<Real>::Data::sum_blocks(std::span<Real> blocks, const Add& add) const {
+  expect_size(blocks.size(), unknowns * dim(), "blocks");
+  std::fill(blocks.begin(), blocks.end(), Real(0));
+  for (const BlockRange& range : layout.blocks)
+    for (std::size_t i = 0; i < range.group_count; ++i)
+      elements::dispatch(type, [&]<class E>(E) {
+        visit_points<E>(
+            range, layout.groups[range.first_group + i],
+            [&](const elements::Point<E>& point, const auto& node, const Law& law, std::size_t slot) {
+              for (int a = 0; a < E::nodes; ++a)
+                add(point, a, law, slot, blocks.data() + elements::Point<E>::at(node[a], 0) * E::dim);
+            });
+      });
+}
+
+namespace {
+
+/// d[i]: entry i % dim of row i of the blocks.
+template <class Real>
+void take_diagonal(std::span<const Real> blocks, std::size_t dim, std::span<Real> d) {
+  for (std::size_t i = 0; i < d.size(); ++i) d[i] = blocks[i * dim + i % dim];
+}
+
+}  // namespace
+
 template <class Real>
 void BasicOperator<Real>::block_diagonal(std::span<Real> blocks) const {
   const Data& data = *data_;
-  expect_size(blocks.size(), data.unknowns * data.dim(), "blocks");
-  std::fill(blocks.begin(), blocks.end(), Real(0));
-  for (const BlockRange& range : data.layout.blocks)
-    for (std::size_t i = 0; i < range.group_count; ++i)
-      elements::dispatch(data.type, [&]<class E>(E) {
-        data.template add_diagonals<E>(range, data.layout.groups[range.first_group + i], blocks);
-      });
+  data.sum_blocks(blocks, [&](const auto& point, int a, const Law& law, std::size_t slot, Real* block) {
+    point.add_diagonal_block(a, law.bulk, static_cast<double>(data.secant[slot]), block);
+  });
 }
 
 template <class Real>
 void BasicOperator<Real>::diagonal(std::span<Real> d) const {
   expect_size(d.size(), unknowns(), "d");
-  const std::size_t dim = data_->dim();
-  std::vector<Real> blocks(d.size() * dim);
+  std::vector<Real> blocks(d.size() * data_->dim());
   block_diagonal(blocks);
-  for (std::size_t i = 0; i < d.size(); ++i) d[i] = blocks[i * dim + i % dim];
+  take_diagonal<Real>(blocks, data_->dim(), d);
+}
+
+template <class Real>
+void BasicOperator<Real>::block_diagonal_tangent(std::span<Real> blocks) const {
+  const Data& data = *data_;
+  if (data.tangent.empty()) throw std::logic_error("block_diagonal_tangent before update_tangent");
+  const Aligned<Real>& g = data.tangent_secant.empty() ? data.secant : data.tangent_secant;
+  const std::size_t lanes = data.layout.lanes;
+  data.sum_blocks(blocks, [&](const auto& point, int a, const Law& law, std::size_t slot, Real* block) {
+    point.add_diagonal_block(a, law.bulk, static_cast<double>(g[slot]), block);
+    // √|2 g'/x| dev ε, component by component over the lanes; see material.hpp.
+    const std::size_t lane = slot % lanes;
+    const float* t = data.tangent.data() + simd::tangent_floats * (slot - lane) + lane;
+    const auto kept = [&](std::size_t k) { return static_cast<double>(t[k * lanes]); };
+    const std::array<double, 6> d{kept(0), kept(1), -(kept(0) + kept(1)), kept(2), kept(3), kept(4)};
+    point.add_rank_one_block(a, std::signbit(t[0]) ? 1.0 : -1.0, d, block);
+  });
+}
+
+template <class Real>
+void BasicOperator<Real>::diagonal_tangent(std::span<Real> d) const {
+  expect_size(d.size(), unknowns(), "d");
+  std::vector<Real> blocks(d.size() * data_->dim());
+  block_diagonal_tangent(blocks);
+  take_diagonal<Real>(blocks, data_->dim(), d);
 }
 
 template void BasicOperator<double>::diagonal(std::span<double>) const;
 template void BasicOperator<float>::diagonal(std::span<float>) const;
 template void BasicOperator<double>::block_diagonal(std::span<double>) const;
 template void BasicOperator<float>::block_diagonal(std::span<float>) const;
+template void BasicOperator<double>::diagonal_tangent(std::span<double>) const;
+template void BasicOperator<float>::diagonal_tangent(std::span<float>) const;
+template void BasicOperator<double>::block_diagonal_tangent(std::span<double>) const;
+template void BasicOperator<float>::block_diagonal_tangent(std::span<float>) const;
 
 }  // namespace kacanov

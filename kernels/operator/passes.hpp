@@ -47,8 +47,10 @@ struct BasicOperator<Real>::Data {
   double pass(const Real* x, Real* y, int count, const WhenEarly& when_early, LoopsOnBlock&& loops);
   void add_interface(Real* y, int count, std::size_t begin, std::size_t end);
 
-  template <class E>
-  void add_diagonals(const BlockRange& range, const simd::Group& group, std::span<Real> blocks) const;
+  template <class E, class Visit>
+  void visit_points(const BlockRange& range, const simd::Group& group, const Visit& visit) const;
+  template <class Add>
+  void sum_blocks(std::span<Real> blocks, const Add& add) const;
 
   simd::InstructionSet set;
   const simd::Kernels<Real>& kernels;

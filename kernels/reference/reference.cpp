@@ -199,6 +199,23 @@ void block_diagonal(const Body& body, std::span<const double> g, std::span<doubl
   });
 }
 
+void block_diagonal_tangent(const Body& body, std::span<const double> u, std::span<double> blocks) {
+  std::fill(blocks.begin(), blocks.end(), 0.0);
+  elements::dispatch(body.mesh.type, [&]<class E>(E) {
+    for_each_point<E>(
+        body, u,
+        [&](std::size_t e, const Law& law, std::size_t, const Point<E>& point, const Strain& strain) {
+          const std::int32_t* node = nodes_of(body, e);
+          const double x = strain.norm(), slope = law.secant_derivative(x);
+          for (int a = 0; a < E::nodes; ++a) {
+            double* block = blocks.data() + Point<E>::at(node[a], 0) * E::dim;
+            point.add_diagonal_block(a, law.bulk, law.secant(x), block);
+            if (slope != 0.0) point.add_rank_one_block(a, 2.0 * slope / x, strain.dev, block);
+          }
+        });
+  });
+}
+
 void residual(const Body& body, std::span<const double> u, std::span<double> f) {
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     assemble<E>(body, u, f,

@@ -63,6 +63,11 @@ TEST_CASE("every element type gives the numbers of the reference") {
     REQUIRE(kacanov_apply_tangent(op.get(), n, x.data(), y.data()) == KACANOV_OK);
     kacanov::reference::apply_tangent(body, u, x, want);
     CHECK(distance(y, want) < 1e-6);  // its rank-one term is kept in single precision
+    REQUIRE(kacanov_block_diagonal_tangent(op.get(), blocks.size(), blocks.data()) == KACANOV_OK);
+    kacanov::reference::block_diagonal_tangent(body, u, want_blocks);
+    CHECK(distance(blocks, want_blocks) < 1e-6);
+    REQUIRE(kacanov_diagonal_tangent(op.get(), n, y.data()) == KACANOV_OK);
+    for (std::size_t i = 0; i < n; ++i) CHECK(y[i] == blocks[i * mesh.dim + i % mesh.dim]);
 
     double energy = 0.0;
     REQUIRE(kacanov_residual(op.get(), n, u.data(), y.data()) == KACANOV_OK);

@@ -202,6 +202,8 @@ TEST_CASE("no call takes a null handle, and none a vector of another length") {
       [&](kacanov_operator* h, std::size_t m) { return kacanov_apply_tangent(h, m, x.data(), y.data()); },
       [&](kacanov_operator* h, std::size_t m) { return kacanov_diagonal(h, m, y.data()); },
       [&](kacanov_operator* h, std::size_t m) { return kacanov_block_diagonal(h, 3 * m, y.data()); },
+      [&](kacanov_operator* h, std::size_t m) { return kacanov_diagonal_tangent(h, m, y.data()); },
+      [&](kacanov_operator* h, std::size_t m) { return kacanov_block_diagonal_tangent(h, 3 * m, y.data()); },
       [&](kacanov_operator* h, std::size_t m) { return kacanov_residual(h, m, x.data(), y.data()); },
       [&](kacanov_operator* h, std::size_t m) { return kacanov_energy(h, m, x.data(), &value); },
       [&](kacanov_operator* h, std::size_t m) {

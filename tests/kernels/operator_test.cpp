@@ -191,6 +191,16 @@ TEST_CASE("diagonals") {
     op.block_diagonal(blocks);
     reference::block_diagonal(body, g, expected_blocks);
     CHECK(difference(blocks, expected_blocks) < 1e-13);
+
+    CHECK_THROWS_AS(op.block_diagonal_tangent(blocks), std::logic_error);
+    const auto u = some_state(body, 33);
+    op.update_tangent(u);
+    op.set_secant(g);  // the tangent stays what it was frozen as
+    op.block_diagonal_tangent(blocks);
+    reference::block_diagonal_tangent(body, u, expected_blocks);
+    CHECK(difference(blocks, expected_blocks) < 3e-7);  // the rank-one term is kept in single precision
+    op.diagonal_tangent(actual);
+    for (std::size_t i = 0; i < n; ++i) CHECK(actual[i] == blocks[i * dim + i % dim]);
   });
 }
 

@@ -211,7 +211,7 @@ TEST_CASE("element matrices sum to the operator, and the diagonals are theirs") 
     const std::size_t dim = dim_of(owned), nodes = static_cast<std::size_t>(nodes_per_element(type));
     const std::size_t n = nodes * dim, points = g.size() / body.mesh.element_count();
     std::vector<double> matrix(n * n), tangent(n * n), y(x.size()), yt(x.size()), diagonal(x.size()),
-        blocks(x.size() * dim);
+        blocks(x.size() * dim), tangent_blocks(blocks.size());
     for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
       reference::element_matrix(body, e, std::span(g).subspan(e * points, points), matrix);
       reference::element_tangent(body, e, u, tangent);
@@ -223,7 +223,10 @@ TEST_CASE("element matrices sum to the operator, and the diagonals are theirs") 
           CHECK(matrix[r * n + c] == doctest::Approx(matrix[c * n + r]).epsilon(1e-12));
           y[unknown(r)] += matrix[r * n + c] * x[unknown(c)];
           yt[unknown(r)] += tangent[r * n + c] * x[unknown(c)];
-          if (r / dim == c / dim) blocks[unknown(r) * dim + c % dim] += matrix[r * n + c];
+          if (r / dim == c / dim) {
+            blocks[unknown(r) * dim + c % dim] += matrix[r * n + c];
+            tangent_blocks[unknown(r) * dim + c % dim] += tangent[r * n + c];
+          }
           if (r == c) diagonal[unknown(r)] += matrix[r * n + c];
         }
     }
@@ -236,6 +239,8 @@ TEST_CASE("element matrices sum to the operator, and the diagonals are theirs") 
     CHECK(difference(actual, diagonal) < 1e-13);
     reference::block_diagonal(body, g, actual_blocks);
     CHECK(difference(actual_blocks, blocks) < 1e-13);
+    reference::block_diagonal_tangent(body, u, actual_blocks);
+    CHECK(difference(actual_blocks, tangent_blocks) < 1e-13);
   }
 }
 

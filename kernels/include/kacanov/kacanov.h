@@ -164,6 +164,10 @@ KACANOV_API int kacanov_apply_tangent(kacanov_operator* op, size_t n, const doub
 KACANOV_API int kacanov_diagonal(kacanov_operator* op, size_t n, double* diagonal);
 KACANOV_API int kacanov_block_diagonal(kacanov_operator* op, size_t count, double* blocks);
 
+/* The same of the tangent frozen last. */
+KACANOV_API int kacanov_diagonal_tangent(kacanov_operator* op, size_t n, double* diagonal);
+KACANOV_API int kacanov_block_diagonal_tangent(kacanov_operator* op, size_t count, double* blocks);
+
 /* Internal force f and stored energy of the true nonlinear law at u; the frozen g plays no part. */
 KACANOV_API int kacanov_residual(kacanov_operator* op, size_t n, const double* u, double* f);
 KACANOV_API int kacanov_energy(kacanov_operator* op, size_t n, const double* u, double* energy);

@@ -75,7 +75,10 @@ class BasicOperator {
   void apply_tangent(std::span<const Real> x, std::span<Real> y, const WhenEarly& when_early = {});
   /// y = B_T x and returns xᵀ y, as apply_dot.
   double apply_tangent_dot(std::span<const Real> x, std::span<Real> y, const WhenEarly& when_early = {});
-  /// Gives the tangent's memory back, 20 bytes an element point. apply_tangent throws until the next
+  /// Diagonal and diagonal blocks of B_T, as those of B(g). Throw std::logic_error before update_tangent.
+  void diagonal_tangent(std::span<Real> d) const;
+  void block_diagonal_tangent(std::span<Real> blocks) const;
+  /// Gives the tangent's memory back, 20 bytes an element point. What needs the tangent throws until the next
   /// update_tangent.
   void forget_tangent() noexcept;
 

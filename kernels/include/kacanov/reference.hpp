@@ -42,6 +42,8 @@ void apply_tangent(const Body& body, std::span<const double> u, std::span<const 
 void diagonal(const Body& body, std::span<const double> g, std::span<double> d);
 /// dim × dim diagonal blocks of B(g), nodes × dim × dim, row-major.
 void block_diagonal(const Body& body, std::span<const double> g, std::span<double> blocks);
+/// dim × dim diagonal blocks of B_T(u), as those of B(g).
+void block_diagonal_tangent(const Body& body, std::span<const double> u, std::span<double> blocks);
 /// Internal force of the true nonlinear law at u (overwrites f).
 void residual(const Body& body, std::span<const double> u, std::span<double> f);
 /// Stored energy ∫ k0/2 tr² + 2 G(x) at u.
