@@ -19,15 +19,25 @@ struct StepNorm {
   }
 };
 
-/// Steps 2 and 3 at every point. `shift` becomes r(φ₊ − φ) − (λ₊ − λ), what the right side of step 1 changes
-/// by; `dual` becomes r(φ − w) + λ₊ − λ, minus which the linear equilibrium is left with.
-void update_multipliers(const Traces& traces, ContactState& state, const AdmmOptions& options,
-                        ContactValues& shift, ContactValues& dual, double& trace_residual, StepNorm& norm,
-                        Balance& balance) {
+/// What steps 2 and 3 leave behind besides φ and λ.
+struct PointwiseSteps {
+  ContactValues shift;  ///< r(φ₊ − φ) − (λ₊ − λ): what the input vector of step 1 changes by
+  ContactValues dual;   ///< r(φ − w) + λ₊ − λ: minus it is what the linear equilibrium is left with
+  Balance balance;
+  StepNorm norm;                ///< of φ
+  double trace_residual = 0.0;  ///< max |w − φ₊|
+
+  explicit PointwiseSteps(std::size_t points) : shift(points), dual(points), balance(points) {}
+};
+
+/// Steps 2 and 3 at every point. Collective.
+void update_multipliers(const Traces& traces, const AdmmOptions& options, ContactState& state,
+                        PointwiseSteps& steps) {
   const auto points = traces.points();
   const Penalty& r = options.r;
   const double alpha = options.relaxation;
-  trace_residual = 0.0;
+  steps.trace_residual = 0.0;
+  steps.norm = {};
   for (std::size_t i = 0; i < points.size(); ++i) {
     const bool owned = i < traces.owned();
     const auto& point = points[i];
@@ -36,14 +46,14 @@ void update_multipliers(const Traces& traces, ContactState& state, const AdmmOpt
       double& lambda = state.lambda.normal[i];
       const double w = state.trace.normal[i];
       const NormalStep next = normal_step(alpha * w + (1.0 - alpha) * phi, lambda, state.gap[i], r.normal);
-      shift.normal[i] = r.normal * (next.phi - phi) - (next.lambda - lambda);
-      dual.normal[i] = r.normal * (phi - w) + next.lambda - lambda;
-      if (owned) norm.add(point.mass, phi, next.phi);
+      steps.shift.normal[i] = r.normal * (next.phi - phi) - (next.lambda - lambda);
+      steps.dual.normal[i] = r.normal * (phi - w) + next.lambda - lambda;
+      if (owned) steps.norm.add(point.mass, phi, next.phi);
       const bool touches = next.lambda > 0.0;
-      balance.normal(i, touches ? w - next.phi : 0.0, touches ? 0.0 : r.normal * (phi - w));
+      steps.balance.normal(i, touches ? w - next.phi : 0.0, touches ? 0.0 : r.normal * (phi - w));
       phi = next.phi;
       lambda = next.lambda;
-      trace_residual = std::max(trace_residual, std::abs(w - phi));
+      steps.trace_residual = std::max(steps.trace_residual, std::abs(w - phi));
     }
     if (point.tangents == 0) continue;
     double* phi = &state.phi.tangential[2 * i];
@@ -55,22 +65,23 @@ void update_multipliers(const Traces& traces, ContactState& state, const AdmmOpt
     const TangentialStep next = tangential_step(relaxed, lambda, bound, r.tangential);
     const double slip = std::hypot(next.phi[0], next.phi[1]);
     if (slip == 0.0) {
-      balance.tangential(i, std::hypot(w[0], w[1]), {});
+      steps.balance.tangential(i, std::hypot(w[0], w[1]), {});
     } else {
       const double along[2] = {next.phi[0] / slip, next.phi[1] / slip};
       const double force = r.tangential * (along[0] * (phi[0] - w[0]) + along[1] * (phi[1] - w[1]));
-      balance.tangential(i, along[0] * w[1] - along[1] * w[0], {force * along[0], force * along[1]});
+      steps.balance.tangential(i, along[0] * w[1] - along[1] * w[0], {force * along[0], force * along[1]});
     }
     for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k) {
-      shift.tangential[2 * i + k] = r.tangential * (next.phi[k] - phi[k]) - (next.lambda[k] - lambda[k]);
-      dual.tangential[2 * i + k] = r.tangential * (phi[k] - w[k]) + next.lambda[k] - lambda[k];
-      if (owned) norm.add(point.mass, phi[k], next.phi[k]);
+      steps.shift.tangential[2 * i + k] =
+          r.tangential * (next.phi[k] - phi[k]) - (next.lambda[k] - lambda[k]);
+      steps.dual.tangential[2 * i + k] = r.tangential * (phi[k] - w[k]) + next.lambda[k] - lambda[k];
+      if (owned) steps.norm.add(point.mass, phi[k], next.phi[k]);
       phi[k] = next.phi[k];
       lambda[k] = next.lambda[k];
-      trace_residual = std::max(trace_residual, std::abs(w[k] - phi[k]));
+      steps.trace_residual = std::max(steps.trace_residual, std::abs(w[k] - phi[k]));
     }
   }
-  trace_residual = traces.halo().max_all(trace_residual);
+  steps.trace_residual = traces.halo().max_all(steps.trace_residual);
 }
 
 }  // namespace
@@ -85,20 +96,20 @@ AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work,
     return share + traces.add_penalty(options.r, p, q);
   };
 
-  ContactValues shift(traces.size()), dual(traces.size());
-  // The penalty's part of the residual, CᵀM r(φ − Cω), in (factor 1) or out (−1).
+  PointwiseSteps steps(traces.size());
+  // The penalty's part of the residual, CᵀM r(φ − Cu), in (factor 1) or out (−1).
   const auto add_penalty_residual = [&](double factor) {
     for (std::size_t i = 0; i < traces.size(); ++i) {
-      shift.normal[i] = options.r.normal * (state.phi.normal[i] - state.trace.normal[i]);
+      steps.shift.normal[i] = options.r.normal * (state.phi.normal[i] - state.trace.normal[i]);
       for (std::size_t k = 2 * i; k < 2 * i + 2; ++k)
-        shift.tangential[k] = options.r.tangential * (state.phi.tangential[k] - state.trace.tangential[k]);
+        steps.shift.tangential[k] =
+            options.r.tangential * (state.phi.tangential[k] - state.trace.tangential[k]);
     }
-    traces.add_force(shift, factor, work.residual);
+    traces.add_force(steps.shift, factor, work.residual);
   };
   add_penalty_residual(1.0);
 
   AdmmResult result;
-  Balance balance(traces.size());
   Vector before(stop_by_step ? state.omega.size() : 0);
   while (!result.converged && result.iterations < options.max_iterations) {
     if (stop_by_step) before = state.omega;
@@ -110,16 +121,16 @@ AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work,
     result.solves_converged = result.solves_converged && solve.converged;
     state.evaluate(traces);
 
-    StepNorm norm;
-    update_multipliers(traces, state, options, shift, dual, result.trace_residual, norm, balance);
-    balance.finish(traces);
-    result.force_residual = solve.residual + traces.force_norm(dual);
-    traces.add_force(shift, 1.0, work.residual);
+    update_multipliers(traces, options, state, steps);
+    steps.balance.finish(traces);
+    result.trace_residual = steps.trace_residual;
+    result.force_residual = solve.residual + traces.force_norm(steps.dual);
+    traces.add_force(steps.shift, 1.0, work.residual);
     ++result.iterations;
     if (stop_by_step) {
       for (std::size_t i = 0; i < space.part().owned_unknowns(); ++i)
-        norm.add(options.volume[i / dim], before[i], state.omega[i]);
-      std::array<double, 2> sums{norm.change, norm.size};
+        steps.norm.add(options.volume[i / dim], before[i], state.omega[i]);
+      std::array<double, 2> sums{steps.norm.change, steps.norm.size};
       traces.halo().sum_all(sums);
       result.step = sums[1] > 0.0 ? std::sqrt(sums[0] / sums[1]) : 0.0;
       result.converged = result.step < options.step_tolerance;
@@ -129,7 +140,7 @@ AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work,
     if (!std::isfinite(result.force_residual)) break;
   }
   add_penalty_residual(-1.0);
-  result.balance = balance.samples();
+  result.balance = steps.balance.samples();
   return result;
 }
 

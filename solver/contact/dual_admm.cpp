@@ -11,30 +11,34 @@
 namespace kacanov {
 namespace {
 
-/// λ₊ and λ₋ at every point.
+/// λ₊ and λ₋ at every point, and how far both moved last.
 struct Split {
   ContactValues plus, minus;
-  explicit Split(std::size_t points) : plus(points), minus(points) {}
+  ContactValues minus_step;  ///< of λ₋, a force density
+  double plus_step = 0.0;  ///< the largest |λ₊ − λ₊ before| / r, which is what w − φ is in admm()
+  Balance balance;
+
+  explicit Split(std::size_t points) : plus(points), minus(points), minus_step(points), balance(points) {}
 };
 
-/// Projects `lambda` and notes how far both parts moved: λ₋ by `minus_step` (a force density), λ₊ as |λ₊ − λ₊
-/// before| / r at most, which is what w − φ is in admm().
-double split(const Traces& traces, const ContactValues& lambda, const Vector& bound, const Penalty& r,
-             Split& parts, ContactValues& minus_step, Balance& balance) {
-  double plus_step = 0.0;
+/// Projects `lambda`. Collective.
+void project(const Traces& traces, const Penalty& r, const Vector& bound, const ContactValues& lambda,
+             Split& split) {
+  auto& [plus, minus, minus_step, plus_step, balance] = split;
+  plus_step = 0.0;
   const auto points = traces.points();
-  const auto set = [&](double& plus, double& minus, double& step, double projected, double whole) {
-    const double moved = projected - plus;
-    step = (whole - projected) - minus;
-    plus = projected;
-    minus = whole - projected;
+  // What λ₊ moved by, now that it is `projected` of the `whole`.
+  const auto set = [](double& of_plus, double& of_minus, double& step, double projected, double whole) {
+    const double moved = projected - of_plus;
+    step = (whole - projected) - of_minus;
+    of_plus = projected;
+    of_minus = whole - projected;
     return moved;
   };
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double n = lambda.normal[i];
     const double moved =
-        set(parts.plus.normal[i], parts.minus.normal[i], minus_step.normal[i], std::max(n, 0.0), n) /
-        r.normal;
+        set(plus.normal[i], minus.normal[i], minus_step.normal[i], std::max(n, 0.0), n) / r.normal;
     plus_step = std::max(plus_step, std::abs(moved));
     balance.normal(i, n > 0.0 ? moved : 0.0, n > 0.0 ? 0.0 : minus_step.normal[i]);
     if (points[i].tangents == 0) continue;
@@ -44,9 +48,9 @@ double split(const Traces& traces, const ContactValues& lambda, const Vector& bo
     double slide[2] = {0.0, 0.0};
     for (std::size_t k = 0; k < static_cast<std::size_t>(points[i].tangents); ++k) {
       const std::size_t at = 2 * i + k;
-      slide[k] = set(parts.plus.tangential[at], parts.minus.tangential[at], minus_step.tangential[at],
-                     scale * t[k], t[k]) /
-                 r.tangential;
+      slide[k] =
+          set(plus.tangential[at], minus.tangential[at], minus_step.tangential[at], scale * t[k], t[k]) /
+          r.tangential;
       plus_step = std::max(plus_step, std::abs(slide[k]));
     }
     if (scale == 1.0) {
@@ -58,30 +62,37 @@ double split(const Traces& traces, const ContactValues& lambda, const Vector& bo
       balance.tangential(i, along[0] * slide[1] - along[1] * slide[0], {force * along[0], force * along[1]});
     }
   }
-  return traces.halo().max_all(plus_step);
+  plus_step = traces.halo().max_all(plus_step);
 }
 
-/// Stop by steps (theory: step-stop): how far ω (by the lumped volumes) and φ = ρ + λ₋/r moved, relative to
-/// what they are.
-double relative_step(const Traces& traces, const Penalty& r, const Split& parts, const Vector& gap,
-                     const ContactValues& minus_step, std::span<const double> omega_step,
-                     std::span<const double> omega, std::span<const double> volume, std::size_t dim) {
+/// The owned unknowns of u, and how far they moved.
+struct BodyStep {
+  std::span<const double> moved, u;
+};
+
+/// Stop by steps (theory: step-stop): how far u (by the lumped volumes) and φ = ρ + λ₋/r moved, relative to
+/// what they are. Collective.
+double relative_step(const Traces& traces, const AdmmOptions& options, const Split& split, const Vector& gap,
+                     const BodyStep& body) {
   std::array<double, 2> sums{};
+  const Penalty& r = options.r;
   const auto points = traces.points();
   for (std::size_t i = 0; i < traces.owned(); ++i) {
-    const double step = minus_step.normal[i] / r.normal, phi = gap[i] + parts.minus.normal[i] / r.normal;
+    const double step = split.minus_step.normal[i] / r.normal,
+                 phi = gap[i] + split.minus.normal[i] / r.normal;
     sums[0] += points[i].mass * step * step;
     sums[1] += points[i].mass * phi * phi;
     for (std::size_t k = 2 * i; k < 2 * i + static_cast<std::size_t>(points[i].tangents); ++k) {
-      const double slide = minus_step.tangential[k] / r.tangential,
-                   slip = parts.minus.tangential[k] / r.tangential;
+      const double slide = split.minus_step.tangential[k] / r.tangential,
+                   slip = split.minus.tangential[k] / r.tangential;
       sums[0] += points[i].mass * slide * slide;
       sums[1] += points[i].mass * slip * slip;
     }
   }
-  for (std::size_t i = 0; i < omega_step.size(); ++i) {
-    sums[0] += volume[i / dim] * omega_step[i] * omega_step[i];
-    sums[1] += volume[i / dim] * omega[i] * omega[i];
+  const std::size_t dim = traces.part().dim();
+  for (std::size_t i = 0; i < body.u.size(); ++i) {
+    sums[0] += options.volume[i / dim] * body.moved[i] * body.moved[i];
+    sums[1] += options.volume[i / dim] * body.u[i] * body.u[i];
   }
   traces.halo().sum_all(sums);
   return sums[1] > 0.0 ? std::sqrt(sums[0] / sums[1]) : 0.0;
@@ -94,7 +105,6 @@ AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& 
   const Space& space = *problem.space;
   const Traces& traces = *problem.traces;
   const std::size_t m = traces.size(), n = state.omega.size();
-  const std::size_t dim = space.part().dim();
   const Penalty& r = options.r;
   const bool stop_by_step = options.step_tolerance > 0.0;
   const auto apply = [&](std::span<const double> p, std::span<double> q) {
@@ -102,7 +112,6 @@ AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& 
     return share + traces.add_penalty(r, p, q);
   };
   AdmmResult result;
-  Balance balance(m);
   double error = 0.0;
   const auto solve = [&](Vector& x) {
     const CgResult cg =
@@ -114,9 +123,9 @@ AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& 
     error = cg.residual;
   };
 
-  // λ₋ = r (φ_n − ρ) and r φ_f, by (22).
+  // λ₋ = r (φ_n − ρ) and r φ_t (theory: dual-admm).
   Split parts(m);
-  ContactValues shift(m), step(m), lambda(m), free_trace(m), trace(m);
+  ContactValues shift(m), lambda(m), free_trace(m), trace(m);
   for (std::size_t i = 0; i < m; ++i) {
     parts.plus.normal[i] = state.lambda.normal[i];
     parts.minus.normal[i] = r.normal * (state.phi.normal[i] - state.gap[i]);
@@ -133,7 +142,7 @@ AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& 
       d.tangential[k] = parts.plus.tangential[k] - parts.minus.tangential[k];
   };
 
-  // The warm start: a = B_r⁻¹ (F + r NᵀMρ − CᵀM (λ₊ − λ₋)) with the multipliers there are, from ω; the
+  // The warm start: a = B_r⁻¹ (F + r NᵀMρ − CᵀM (λ₊ − λ₋)) with the multipliers there are, from u; the
   // paper's a where there are none. v = B_r⁻¹ CᵀM Δ(λ₊ − λ₋) counts from them, and takes over what residual a
   // is left with.
   traces.add_force(shift, 1.0, work.residual);
@@ -166,16 +175,16 @@ AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& 
         lambda.tangential[k] =
             parts.plus.tangential[k] + r.tangential * (free_trace.tangential[k] - trace.tangential[k]);
     }
-    result.trace_residual = split(traces, lambda, state.bound, r, parts, step, balance);
-    balance.finish(traces);
-    result.force_residual = error + traces.force_norm(step);
+    project(traces, r, state.bound, lambda, parts);
+    parts.balance.finish(traces);
+    result.trace_residual = parts.plus_step;
+    result.force_residual = error + traces.force_norm(parts.minus_step);
     ++result.iterations;
     if (stop_by_step) {
       const std::size_t owned = space.part().owned_unknowns();
-      Vector omega(owned);
-      for (std::size_t i = 0; i < owned; ++i) omega[i] = a[i] - v[i];
-      result.step = relative_step(traces, r, parts, state.gap, step, std::span(moved).first(owned), omega,
-                                  options.volume, dim);
+      Vector u(owned);
+      for (std::size_t i = 0; i < owned; ++i) u[i] = a[i] - v[i];
+      result.step = relative_step(traces, options, parts, state.gap, {std::span(moved).first(owned), u});
       result.converged = result.step < options.step_tolerance;
     } else {
       result.converged = meets_tolerances(result, options, traces, parts.plus);
@@ -191,7 +200,7 @@ AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& 
     for (std::size_t k = 2 * i; k < 2 * i + 2; ++k)
       state.phi.tangential[k] = parts.minus.tangential[k] / r.tangential;
   }
-  result.balance = balance.samples();
+  result.balance = parts.balance.samples();
   return result;
 }
 
