@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The operator over all ranks: each applies its elements, the halo adds up shared nodes.
+// The operator over all ranks: each applies its elements, and what they share is added up.
 #pragma once
 
 #include <cstdint>
@@ -14,54 +14,50 @@
 
 namespace kacanov {
 
-/// Input and output vectors are consistent (Part).
+/// The operators of all ranks' elements as one. Vectors have the part's unknowns and are consistent (Part) on
+/// the way in and out; g has elements × points of the part. Units are the problem's. Members that are not
+/// const are collective, and so is diagonal().
 class DistributedOperator {
  public:
+  /// The elastic operator. `part` has to outlive it; threads and instruction set are OperatorOptions'.
   DistributedOperator(const Part& part, int threads, const std::string& instruction_set)
       : part_(&part),
         local_(part.body(), OperatorOptions{threads, instruction_set, part.halo.shared}),
         sum_(part.halo, part.dim()) {}
 
-  /// y = B(g) x, or B_T x between use_tangent(true) and use_tangent(false). Sums for shared nodes travel
-  /// while the rest is worked out. Returns this rank's share of xᵀ y.
+  /// y = B(g) x. What the ranks share travels while the rest is worked out. Returns this rank's share of xᵀ
+  /// y.
   double apply(std::span<const double> x, std::span<double> y) {
-    WhenEarly send;
-    if (part_->halo.ranks > 1) send = [&, this] { sum_.start_sum(y); };
-    const double share = tangent_ ? local_.apply_tangent_dot(x, y, send) : local_.apply_dot(x, y, send);
-    sum_.finish_sum(y);
-    ++applications_;
-    if (watcher_) watcher_();
-    return share;
+    return apply_and_sum(y, [&](const WhenEarly& send) { return local_.apply_dot(x, y, send); });
+  }
+  /// y = B_T x with the tangent frozen last, likewise.
+  double apply_tangent(std::span<const double> x, std::span<double> y) {
+    return apply_and_sum(y, [&](const WhenEarly& send) { return local_.apply_tangent_dot(x, y, send); });
   }
   /// Called after every application, on all ranks alike. It may throw to leave whatever loops go on.
   void watch(std::function<void()> watcher) { watcher_ = std::move(watcher); }
-  void use_tangent(bool on) noexcept { tangent_ = on; }
-  bool tangent() const noexcept { return tangent_; }
 
-  /// Freezes g (and the tangent, if in use) at ω.
-  void update(std::span<const double> omega) {
-    if (tangent_)
-      local_.update_tangent(omega);
-    else
-      local_.update(omega);
-  }
-  /// Gives the tangent's memory back until the next update.
+  /// Freezes g at u.
+  void update(std::span<const double> u) { local_.update(u); }
+  /// Freezes the tangent, and g, at u.
+  void update_tangent(std::span<const double> u) { local_.update_tangent(u); }
+  /// Gives the tangent's memory back until the next update_tangent().
   void forget_tangent() noexcept { local_.forget_tangent(); }
   void set_secant(std::span<const double> g) { local_.set_secant(g); }
   /// Internal force of the true law; counts as an application.
-  void residual(std::span<const double> omega, std::span<double> f) {
-    local_.residual(omega, f);
+  void residual(std::span<const double> u, std::span<double> f) {
+    local_.residual(u, f);
     part_->halo.sum(f, part_->dim());
     ++applications_;
   }
-  /// The same with the stored energy, which is returned, and g frozen at ω, in one pass.
-  double residual_energy_update(std::span<const double> omega, std::span<double> f) {
-    const double energy = local_.residual_energy_update(omega, f);
+  /// The same with the stored energy, which is returned, and g frozen at u, in one pass.
+  double residual_energy_update(std::span<const double> u, std::span<double> f) {
+    const double energy = local_.residual_energy_update(u, f);
     part_->halo.sum(f, part_->dim());
     ++applications_;
     return part_->halo.sum_all(energy);
   }
-  double energy(std::span<const double> omega) { return part_->halo.sum_all(local_.energy(omega)); }
+  double energy(std::span<const double> u) { return part_->halo.sum_all(local_.energy(u)); }
 
   /// Diagonal of B(g), consistent: a measure of stiffness, so single precision does.
   std::vector<float> diagonal() const {
@@ -75,10 +71,21 @@ class DistributedOperator {
   std::uint64_t applications() const noexcept { return applications_; }
 
  private:
+  /// Calls work(send), which calls `send` once what the ranks share is there, and adds that up in y.
+  template <class Work>
+  double apply_and_sum(std::span<double> y, const Work& work) {
+    WhenEarly send;
+    if (part_->halo.ranks > 1) send = [&, this] { sum_.start_sum(y); };
+    const double share = work(send);
+    sum_.finish_sum(y);
+    ++applications_;
+    if (watcher_) watcher_();
+    return share;
+  }
+
   const Part* part_;
   Operator local_;
   Scatterer<double> sum_;
-  bool tangent_ = false;
   std::uint64_t applications_ = 0;
   std::function<void()> watcher_;
 };

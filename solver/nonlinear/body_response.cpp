@@ -27,14 +27,12 @@ void BodyResponse::evaluate_and_freeze(std::span<const double> u) {
 }
 
 void BodyResponse::freeze_secant(std::span<const double> u) {
-  op_.use_tangent(false);
   if (!linear_ && !current_) op_.update(u);
 }
 
 void BodyResponse::freeze_tangent(std::span<const double> u) {
   make_room(5 * sizeof(float) * part_->body().secant_count());
-  op_.use_tangent(true);
-  op_.update(u);
+  op_.update_tangent(u);
 }
 
 void BodyResponse::unbalanced(const LoadPath& path, std::span<double> f) const {

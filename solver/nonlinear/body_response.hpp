@@ -25,14 +25,11 @@ class BodyResponse {
   /// The elastic force in place of R(u): where prescribed displacements put in at once look like huge strains
   /// in the first layer of elements.
   void take_elastic_force(std::span<const double> u) { op_.apply(u, internal_); }
-  /// Makes the operator the secant at u, if it is not.
+  /// Freezes the secant at u, if it is not.
   void freeze_secant(std::span<const double> u);
-  /// Makes the operator the tangent at u, until the next forget_tangent().
+  /// Freezes the tangent at u, until forget_tangent().
   void freeze_tangent(std::span<const double> u);
-  void forget_tangent() {
-    op_.use_tangent(false);
-    op_.forget_tangent();
-  }
+  void forget_tangent() noexcept { op_.forget_tangent(); }
 
   /// f = F − R(u).
   void unbalanced(const LoadPath& path, std::span<double> f) const;

@@ -54,9 +54,13 @@ StepContext::StepContext(const Part& the_part, const SolverOptions& the_options,
           make_preconditioner(the_options.preconditioner, the_part, run.threads, run.instruction_set),
           the_tuning) {
   refuse_beyond_floats(part, body.diagonal());
-  linear = {&space, &traces,
+  secant = {&space, &traces,
             [this](std::span<const double> x, std::span<double> y) { return body.op().apply(x, y); },
             [this](std::span<const double> r, std::span<double> z) { preconditioner.apply(r, z); }};
+  tangent = secant;
+  tangent.apply = [this](std::span<const double> x, std::span<double> y) {
+    return body.op().apply_tangent(x, y);
+  };
   if (options.stop == SolverOptions::Stop::paper) volume = lumped_volume(part);
   const std::size_t points = part.contact.size();
   state.omega = part.start;
@@ -79,7 +83,7 @@ StepOutcome admm_step(StepContext& c, const Penalty& penalty, const Residuals& b
   const bool touched = touches(c);
   const auto applied = c.body.op().applications();
   const AdmmResult step =
-      dual ? dual_admm(c.linear, c.state, c.work, options) : admm(c.linear, c.state, c.work, options);
+      dual ? dual_admm(c.secant, c.state, c.work, options) : admm(c.secant, c.state, c.work, options);
   StepOutcome outcome;
   outcome.applications = c.body.op().applications() - applied;
   c.preconditioner.watch(step.cg_digits, step.cg_iterations);
@@ -102,7 +106,7 @@ StepOutcome newton_step(StepContext& c, double penalty, bool tangent, const Resi
   c.body.unbalanced(c.path, c.work.residual);
   Vector delta(c.part.unknowns());
   const auto applied = c.body.op().applications();
-  const ActiveSetStep step = active_set_step(c.linear, c.part, set, c.state,
+  const ActiveSetStep step = active_set_step(tangent ? c.tangent : c.secant, c.part, set, c.state,
                                              newton_accuracy(c.options, before, c.tuning), c.work, delta);
   StepOutcome outcome;
   outcome.applications = c.body.op().applications() - applied;

@@ -24,7 +24,7 @@ struct StepContext {
   Traces traces;
   BodyResponse body;
   ContactPreconditioner preconditioner;
-  LinearProblem linear;
+  LinearProblem secant, tangent;  ///< by what `body` has frozen
   ContactState state;
   CgWork work;
   Vector volume;  ///< lumped, of each node; with the paper's stop only
