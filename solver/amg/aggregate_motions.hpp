@@ -4,10 +4,8 @@
 
 #include <span>
 #include <string_view>
-#include <vector>
 
-#include <kacanov/part.hpp>
-#include "amg/rigid_level.hpp"
+#include "amg/aggregates.hpp"
 #include "linear/preconditioner.hpp"
 #include "linear/space.hpp"
 #include "simd/motion_products.hpp"
@@ -19,15 +17,14 @@ namespace kacanov {
 template <int M>
 class AggregateMotions {
  public:
-  /// Some `size` nodes each. `g`: elements × points.
-  AggregateMotions(const Part& part, std::span<const double> g, double size,
-                   std::string_view instruction_set);
+  /// Some `size` nodes each. g: elements × points, a stress; the instruction set is OperatorOptions'. The
+  /// part has to outlive it. Collective.
+  AggregateMotions(const Part& part, std::span<const double> g, double size, std::string_view instruction_set)
+      : aggregates_(part, g, size), add_products_(simd::motion_products<M>(instruction_set)) {}
 
-  /// Makes rotations comparable to translations: the root mean square of the nodes' distances from their
-  /// centres.
-  double length() const noexcept { return length_; }
-  /// The level over them with all couplings that elements make, zero so far. To be called once. Collective.
-  RigidLevel<M> make_level();
+  /// Aggregates'.
+  double length() const noexcept { return aggregates_.length(); }
+  RigidLevel<M> make_level() { return aggregates_.make_level(); }
   /// What a setup holds and adds: the motions of the nodes are projected onto the space.
   struct Held {
     std::span<const NodeBlock> blocks;
@@ -46,19 +43,11 @@ class AggregateMotions {
   void prolong(std::span<const double> x, double gain, std::span<float> u) const;
 
  private:
-  static constexpr std::size_t dim = RigidMotion<M>::dim;
-  class Sums;
-  Vector3 offset(std::size_t node) const;
+  static constexpr std::size_t dim = Aggregates<M>::dim;
+  const Part& part() const noexcept { return aggregates_.part(); }
 
-  const Part& part_;
+  Aggregates<M> aggregates_;
   simd::AddMotionProducts<M> add_products_;
-  std::vector<std::int32_t> group_;   ///< of every local node: owned aggregates first, then those of other
-                                      ///< ranks as the level has them, then the rest
-  std::vector<Vector3> centre_;       ///< of these aggregates
-  std::vector<std::int64_t> number_;  ///< of those that are not owned, over all ranks
-  std::int32_t owned_ = 0;            ///< aggregates
-  std::int64_t first_ = 0;            ///< of the owned ones, over all ranks
-  double length_ = 1.0;
 };
 
 extern template class AggregateMotions<3>;

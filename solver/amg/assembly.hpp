@@ -16,6 +16,7 @@ struct NodeGraph {
   std::vector<std::int32_t> column;
 
   std::size_t rows() const noexcept { return start.size() - 1; }
+  /// Entries of a row.
   std::size_t row_size(std::size_t row) const noexcept {
     return static_cast<std::size_t>(start[row + 1] - start[row]);
   }
@@ -23,10 +24,12 @@ struct NodeGraph {
   std::size_t position(std::int32_t row, std::int32_t column_node) const;
 };
 
+/// The graph of a rank's elements. Not collective.
 NodeGraph node_graph(const MeshView& mesh);
 
-/// Sum of the element matrices for frozen g (elements × points): one dim × dim block (row-major) an entry of
-/// the graph. Rows of shared nodes hold this rank's contributions only.
+/// Sum of the element matrices for frozen g (elements × points, a stress): one dim × dim block (row-major) an
+/// entry of the graph, which is node_graph() of this body. Rows of shared nodes hold this rank's
+/// contributions only. Not collective.
 std::vector<double> assemble_blocks(const Body& body, std::span<const double> g, const NodeGraph& graph);
 
 }  // namespace kacanov

@@ -11,25 +11,29 @@
 
 namespace kacanov {
 
+/// In hypre's words.
 struct BoomerAmgOptions {
-  int functions = 1;  ///< unknowns a node, interleaved
-  double strong_threshold = 0.5;
-  int aggressive_levels = 0;
+  int functions = 1;              ///< unknowns a node, interleaved
+  double strong_threshold = 0.5;  ///< couplings below this share of a row's largest are weak
+  int aggressive_levels = 0;      ///< the first of them are coarsened twice at once
 };
 
-/// Filled row by row, then one V-cycle at a time. Contributions to rows of other ranks are sent to them.
+/// Filled row by row, then one V-cycle at a time. Contributions to rows of other ranks are sent to them. All
+/// is collective but add_row(); what hypre refuses is an InternalError with its words.
 class BoomerAmg {
  public:
-  /// This rank owns the global rows first … first + count − 1. Throws InputError where 32-bit hypre cannot
-  /// number `total` rows.
+  /// This rank owns the global rows first … first + count − 1 of `total`. Throws InputError where 32-bit
+  /// hypre cannot number as many.
   BoomerAmg(MPI_Comm comm, std::int64_t first, std::int64_t count, std::int64_t total);
   ~BoomerAmg();
   BoomerAmg(const BoomerAmg&) = delete;
   BoomerAmg& operator=(const BoomerAmg&) = delete;
 
-  /// Drops the last matrix and starts a new one; upper bounds of the owned rows' lengths.
+  /// Drops the last matrix and starts a new one; upper bounds of the `count` owned rows' lengths.
   void begin(std::span<const HYPRE_Int> row_sizes);
+  /// Adds values at global columns, one each, to a row of any rank.
   void add_row(HYPRE_BigInt row, std::span<HYPRE_BigInt> columns, std::span<double> values);
+  /// Assembles the matrix and sets the hierarchy up.
   void finish(const BoomerAmgOptions& options);
   /// z = one V-cycle on r from zero; `count` owned entries each.
   void apply(const double* r, double* z);

@@ -32,28 +32,34 @@ struct ChebyshevStep {
   }
 };
 
+/// The vectors of a smoother, of one length: the input b, what is smoothed, and scratch.
+template <class S>
+struct SmootherVectors {
+  std::span<const S> b;
+  std::span<S> x, step, image;
+};
+
 /// Damps the eigenvectors of D⁻¹A with eigenvalues in [lower, upper]; a symmetric smoother, the same
 /// polynomial in D⁻¹A every time.
 struct Chebyshev {
   int degree = 2;
   double lower = 0.1, upper = 1.1;
 
-  /// Vectors of one length, `step` and `image` scratch. With `from_zero` x is taken as zero, whatever it
-  /// holds. `multiply(x, y)`: y = A x; `relax(weights, b, image, step, x)`: the step above in one pass,
-  /// `image` A x.
+  /// With `from_zero` x is taken as zero, whatever it holds. `multiply(x, y)`: y = A x; `relax(weights, b,
+  /// image, step, x)`: the step above in one pass, `image` A x. Collective where these are.
   template <class S, class Multiply, class Relax>
-  void smooth(bool from_zero, std::span<const S> b, std::span<S> x, std::span<S> step, std::span<S> image,
-              const Multiply& multiply, const Relax& relax) const {
+  void smooth(bool from_zero, const SmootherVectors<S>& on, const Multiply& multiply,
+              const Relax& relax) const {
     const double theta = 0.5 * (upper + lower), delta = 0.5 * (upper - lower), sigma = theta / delta;
     double rho = 1.0 / sigma;
     for (int k = 0; k < degree; ++k) {
       const bool first = k == 0, zero = first && from_zero;
-      if (!zero) multiply(x, image);
+      if (!zero) multiply(on.x, on.image);
       const double next = 1.0 / (2.0 * sigma - rho);
       const auto keep = static_cast<S>(first ? 0.0 : next * rho);
       const auto add = static_cast<S>(first ? 1.0 / theta : 2.0 * next / delta);
       if (!first) rho = next;
-      relax(ChebyshevStep<S>{keep, add, zero, first}, b, image, step, x);
+      relax(ChebyshevStep<S>{keep, add, zero, first}, on.b, on.image, on.step, on.x);
     }
   }
 };

@@ -8,8 +8,11 @@
 
 namespace kacanov {
 
+/// One V-cycle of BoomerAMG, the components of a node apart from each other (theory: elasticity-amg), on
+/// B(g) + blocks with held components cut out. Directions that the space holds are left to the blocks.
 class ElasticityAmg final : public Preconditioner {
  public:
+  /// The part has to outlive it. Throws InputError where hypre cannot number the unknowns. Collective.
   explicit ElasticityAmg(const Part& part);
   void apply(std::span<const double> r, std::span<double> z) override;
   void secant(std::span<double> g) const override;

@@ -17,16 +17,21 @@ struct MultigridOptions;
 
 /// A = B(g) + blocks on free components, in single precision, never stored. Directions that the space of the
 /// setup holds are held by stiff blocks here, so that the smoother stays definite in the spaces of later
-/// solves; corrections from below are projected. Vectors are consistent (Part).
+/// solves; corrections from below are projected. Vectors have the part's unknowns and are consistent (Part);
+/// blocks are of owned nodes, g has elements × points, stresses. build, rebuild, multiply, project and
+/// choose_smoother are collective.
 class FineLevel {
  public:
+  /// g = μ and no blocks until build(). The part has to outlive it.
   FineLevel(const Part& part, const MultigridOptions& options);
+  /// Freezes g and takes the blocks and the space over; D follows.
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space);
   /// With the g of the last build.
   void rebuild(std::span<const NodeBlock> blocks, const Space& space);
   /// What it was built with.
   std::span<const NodeBlock> blocks() const noexcept { return blocks_; }
   const Space& space() const noexcept { return space_; }
+  /// g as it is held: in single precision.
   void secant(std::span<double> g) const { op_.secant(g); }
   /// y = A x for x that is zero in held components.
   void multiply(std::span<const float> x, std::span<float> y);
@@ -37,7 +42,8 @@ class FineLevel {
   void hold(std::span<float> x) const;
   /// Onto the space of the setup.
   void project(std::span<float> x) const;
-  /// Estimates the largest eigenvalue of D⁻¹A.
+  /// Estimates the largest eigenvalue of D⁻¹A for a polynomial of this degree on [Λ/range, Λ] (theory:
+  /// chebyshev).
   void choose_smoother(int degree, double range);
   const Chebyshev& smoother() const noexcept { return smoother_; }
 

@@ -19,9 +19,10 @@ inline float scatter(std::uint64_t index) {
   return static_cast<float>(static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1.0);
 }
 
-/// Lanczos' estimate after ten steps of conjugate gradients preconditioned by D, a tenth added since it comes
-/// from below. `r` holds the start (of scatter()ed entries), vectors are as long as `multiply(x, y)` and
-/// `scale(x, y)` want them; `dot` sums over what this process owns and all ranks.
+/// Λ (theory: chebyshev): Lanczos' estimate after ten steps of conjugate gradients preconditioned by D, a
+/// tenth added since it comes from below; 1 where the start is zero. `r` holds the start (of scatter()ed
+/// entries) and is used up. `multiply(x, y)`: y = A x; `scale(x, y)`: y = D⁻¹ x, on vectors as long as r;
+/// `dot` sums over what this process owns and all ranks. Collective where these are.
 template <class S, class Multiply, class Scale, class Dot>
 double largest_eigenvalue(std::vector<S>& r, const Multiply& multiply, const Scale& scale, const Dot& dot) {
   constexpr int steps = 10;

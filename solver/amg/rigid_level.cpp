@@ -189,7 +189,7 @@ inline void add_transposed(const double* block, const double* x, double* y) {
 }  // namespace
 
 template <int M>
-void RigidLevel<M>::multiply(std::span<double> x, std::span<double> y) const {
+void RigidLevel<M>::multiply(std::span<double> x, std::span<double> y) {
   fill_->start_forward(x);
   const auto mine = y.first(owned_size());
   std::fill(mine.begin(), mine.end(), 0.0);
@@ -227,7 +227,7 @@ void RigidLevel<M>::relax(const ChebyshevStep<double>& weights, std::span<const 
 }
 
 template <int M>
-double RigidLevel<M>::largest_eigenvalue() const {
+double RigidLevel<M>::largest_eigenvalue() {
   std::vector<double> start(size());
   for (std::size_t i = 0; i < owned_size(); ++i)
     start[i] = scatter(static_cast<std::uint64_t>(first()) * M + i);

@@ -41,6 +41,7 @@ class BlockSums {
   std::deque<Entry> entries_;  // never moved: they are most of the memory of a setup
 };
 
+/// A Galerkin matrix over rigid motions, distributed by rows: M × M blocks, symmetric (theory: multigrid).
 /// Vectors have M entries a row; those handed to multiply have room for the ghosts behind the owned rows. All
 /// is double: a long body bends with 1e-8 of the energy that the entries suggest, which single precision
 /// rounds away.
@@ -63,12 +64,12 @@ class RigidLevel {
   std::size_t owned_size() const noexcept { return centres_.size() * M; }
 
   /// y = A x on owned rows; fills x's ghosts. Collective.
-  void multiply(std::span<double> x, std::span<double> y) const;
+  void multiply(std::span<double> x, std::span<double> y);
   /// Chebyshev::smooth's step on owned rows, with D the block diagonal.
   void relax(const ChebyshevStep<double>& weights, std::span<const double> b, std::span<const double> image,
              std::span<double> step, std::span<double> x) const;
   /// Largest eigenvalue of D⁻¹A, somewhat from above (kacanov::largest_eigenvalue). Collective.
-  double largest_eigenvalue() const;
+  double largest_eigenvalue();
 
   /// Local number of a row: owned ones first, then the other ranks' rows they couple to; −1 for others.
   std::int32_t local(std::int64_t row) const;
@@ -90,7 +91,8 @@ class RigidLevel {
   /// Adds this rank's contributions to any rows that couple. Collective.
   void add(const BlockSums<M>& sums);
 
-  /// The next level: `group` of each owned row, groups numbered from 0. Collective.
+  /// The next level: `group` of each owned row, groups numbered from 0; `length` makes rotations comparable
+  /// to translations, as on this one. Collective.
   RigidLevel coarsened(std::span<const std::int32_t> group, double length) const;
   /// Couplings between owned rows, for grouping.
   struct WeightedGraph couplings() const;
@@ -116,8 +118,8 @@ class RigidLevel {
   struct Edge {
     std::int32_t row = 0, first = 0;  ///< where its ghosts' entries begin
   };
-  std::vector<Edge> edge_;                         ///< rows with ghosts
-  mutable std::optional<Scatterer<double>> fill_;  ///< of the ghosts of a vector
+  std::vector<Edge> edge_;                 ///< rows with ghosts
+  std::optional<Scatterer<double>> fill_;  ///< of the ghosts of a vector
 };
 
 extern template class RigidLevel<3>;

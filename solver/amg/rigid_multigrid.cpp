@@ -2,15 +2,14 @@
 // Multigrid without a matrix on the fine level: Chebyshev on the operator, rigid motions of aggregates below.
 #include "amg/rigid_multigrid.hpp"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include <kacanov/error.hpp>
 #include "amg/aggregate_motions.hpp"
 #include "amg/aggregation.hpp"
 #include "amg/chebyshev.hpp"
+#include "amg/direct_solve.hpp"
 #include "amg/fine_level.hpp"
 
 namespace kacanov {
@@ -25,51 +24,6 @@ struct RigidMultigrid::Hierarchy {
 };
 
 namespace {
-
-/// A sparse factor of the last level, the same on every rank.
-template <int M>
-class DirectSolve {
- public:
-  explicit DirectSolve(const RigidLevel<M>& level) : level_(&level) {
-    const auto size = static_cast<Eigen::Index>(level.total()) * M;
-    std::vector<Eigen::Triplet<double>> triplets;
-    std::vector<double> diagonal(size, 0.0);
-    for (const auto& entry : level.gathered())
-      for (int i = 0; i < M; ++i)
-        for (int j = 0; j < M; ++j) {
-          const auto row = static_cast<Eigen::Index>(entry.row) * M + i,
-                     column = static_cast<Eigen::Index>(entry.column) * M + j;
-          const double v = entry.block[i * M + j];
-          triplets.emplace_back(row, column, v);
-          if (row == column) diagonal[row] += v;
-        }
-    // Modes that boundary conditions have emptied, and rounding: a shift far below anything that moves,
-    // unless penalties so large that they swamp the body ask for more.
-    const double largest = diagonal.empty() ? 1.0 : *std::max_element(diagonal.begin(), diagonal.end());
-    Eigen::SparseMatrix<double> matrix(size, size), unit(size, size);
-    matrix.setFromTriplets(triplets.begin(), triplets.end());
-    unit.setIdentity();
-    for (double shift = 1e-10; shift < 1e-3; shift *= 100.0) {
-      factor_.compute(matrix + (largest > 0.0 ? shift * largest : 1.0) * unit);
-      if (factor_.info() == Eigen::Success) return;
-    }
-    throw InternalError("the coarsest matrix of the preconditioner is not definite");
-  }
-  /// x = A⁻¹ b on owned rows.
-  void solve(std::span<const double> b, std::span<double> x) const {
-    Eigen::VectorXd all = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(level_->total()) * M);
-    const auto at = static_cast<Eigen::Index>(level_->first()) * M;
-    const auto owned = static_cast<Eigen::Index>(level_->owned_size());
-    for (Eigen::Index i = 0; i < owned; ++i) all[at + i] = b[i];
-    level_->map().sum_all(std::span(all.data(), all.size()));
-    const Eigen::VectorXd y = factor_.solve(all);
-    for (Eigen::Index i = 0; i < owned; ++i) x[i] = y[at + i];
-  }
-
- private:
-  const RigidLevel<M>* level_;
-  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor_;
-};
 
 /// A coarse level with its smoother, its vectors and the way down.
 template <int M>
@@ -124,7 +78,7 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
     const auto relax = [this](const auto& weights, std::span<const float> b, std::span<const float> image,
                               std::span<float> step,
                               std::span<float> x) { fine_.relax(weights, b, image, step, x); };
-    fine_.smoother().template smooth<float>(true, b_, x_, step_, image_, multiply, relax);
+    fine_.smoother().template smooth<float>(true, {b_, x_, step_, image_}, multiply, relax);
     fine_.multiply(x_, image_);
     for (std::size_t i = 0; i < b_.size(); ++i) image_[i] = b_[i] - image_[i];
     fine_.project(image_);
@@ -135,7 +89,7 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
     part_.halo.forward(std::span<float>(image_), part_.dim());
     fine_.project(image_);
     for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += image_[i];
-    fine_.smoother().template smooth<float>(false, b_, x_, step_, image_, multiply, relax);
+    fine_.smoother().template smooth<float>(false, {b_, x_, step_, image_}, multiply, relax);
     for (std::size_t i = 0; i < z.size(); ++i) z[i] = static_cast<double>(x_[i]);
   }
 
@@ -184,8 +138,9 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
                            std::span<double> step,
                            std::span<double> x) { stage.level.relax(weights, b, image, step, x); };
     const auto smooth = [&](bool from_zero) {
-      stage.smoother.template smooth<double>(from_zero, first(stage.b), first(stage.x), first(stage.step),
-                                             first(stage.image), multiply, relax);
+      stage.smoother.template smooth<double>(
+          from_zero, {first(stage.b), first(stage.x), first(stage.step), first(stage.image)}, multiply,
+          relax);
     };
     smooth(true);
     Stage<M>& next = stages_[k + 1];

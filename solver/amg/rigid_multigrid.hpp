@@ -29,9 +29,11 @@ struct MultigridOptions {
 /// z = one symmetric cycle on r. Level 0 is B(g) + blocks in single precision, never stored, smoothed by
 /// Chebyshev's iteration on D⁻¹A with 3 × 3 blocks. The levels below are Galerkin matrices over the rigid
 /// motions of aggregates, which pairwise matching along strong couplings makes; the last is factorised on
-/// every rank.
+/// every rank (theory: multigrid, aggregation, over-correction).
 class RigidMultigrid final : public Preconditioner {
  public:
+  /// Nothing is set up yet. The part has to outlive it. A setup throws InternalError where the coarsest
+  /// matrix is not definite.
   RigidMultigrid(const Part& part, const MultigridOptions& options);
   ~RigidMultigrid() override;
   void apply(std::span<const double> r, std::span<double> z) override;

@@ -104,7 +104,7 @@ namespace {
 /// the space.
 template <int M>
 void check_galerkin(const Part& part, std::span<const double> g, std::span<const NodeBlock> blocks,
-                    const Space& space, const AggregateMotions<M>& motions, const RigidLevel<M>& level) {
+                    const Space& space, const AggregateMotions<M>& motions, RigidLevel<M>& level) {
   const std::size_t dim = part.dim();
   const auto random = [&](double seed) {
     Vector x(level.size());
@@ -279,7 +279,7 @@ TEST_CASE("the smoother damps eigenvectors by Chebyshev's polynomial") {
           weights.take<from_zero, first>((from_zero ? b[i] : b[i] - ax[i]) / 2.0, steps[i], to[i]);
       });
     };
-    smoother.smooth<double>(false, zero, x, step, image, multiply, relax);
+    smoother.smooth<double>(false, {zero, x, step, image}, multiply, relax);
     const auto left = [&](double entry) {
       const auto chebyshev = [degree](double s) {
         return std::abs(s) <= 1.0
@@ -291,7 +291,7 @@ TEST_CASE("the smoother damps eigenvectors by Chebyshev's polynomial") {
     for (std::size_t i = 0; i < a.size(); ++i) CHECK(x[i] == doctest::Approx(left(a[i])).epsilon(1e-12));
     // From zero, whatever x and step hold: A⁻¹ b, less what is left of it.
     std::vector<double> b(a.size(), 3.0);
-    smoother.smooth<double>(true, b, x, step, image, multiply, relax);
+    smoother.smooth<double>(true, {b, x, step, image}, multiply, relax);
     for (std::size_t i = 0; i < a.size(); ++i)
       CHECK(x[i] == doctest::Approx(3.0 / a[i] * (1.0 - left(a[i]))).epsilon(1e-12));
   }

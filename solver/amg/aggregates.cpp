@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Centres and numbers of aggregates, and the level of the motions they can make.
+#include "amg/aggregates.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+#include <utility>
+
+#include "amg/aggregation.hpp"
+
+namespace kacanov {
+
+template <int M>
+Aggregates<M>::Aggregates(const Part& part, std::span<const double> g, double size) : part_(part) {
+  group_ = aggregate_nodes(part.body(), g, part.owned_nodes(), size);
+  owned_ = group_.empty() ? 0 : 1 + *std::max_element(group_.begin(), group_.end());
+  centre_.assign(owned_, Vector3{});
+  std::vector<double> members(centre_.size(), 0.0);
+  for (std::size_t n = 0; n < group_.size(); ++n) {
+    const std::size_t a = group_[n];
+    members[a] += 1.0;
+    for (std::size_t c = 0; c < dim; ++c) centre_[a][c] += part_.coordinates[n * dim + c];
+  }
+  for (std::size_t a = 0; a < centre_.size(); ++a)
+    for (double& c : centre_[a]) c /= members[a];
+  double spread = 0.0;
+  for (std::size_t n = 0; n < group_.size(); ++n) {
+    const Vector3 d = offset(n);
+    spread += d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+  }
+  length_ = std::sqrt(part_.halo.sum_all(spread) / static_cast<double>(part_.total_nodes()));
+  if (!(length_ > 0.0)) length_ = 1.0;
+}
+
+template <int M>
+RigidLevel<M> Aggregates<M>::make_level() {
+  const IndexMap& nodes = part_.halo;
+  first_ = nodes.sum_below(owned_);
+
+  // Centre and number of the aggregate of every local node, ghosts from their owners.
+  const std::size_t owned_nodes = group_.size();
+  std::vector<std::int64_t> number(part_.nodes());
+  std::vector<double> centre(dim * part_.nodes());
+  for (std::size_t n = 0; n < owned_nodes; ++n) {
+    const std::size_t a = group_[n];
+    number[n] = first_ + group_[n];
+    for (std::size_t c = 0; c < dim; ++c) centre[n * dim + c] = centre_[a][c];
+  }
+  nodes.forward(number, 1);
+  nodes.forward(centre, static_cast<int>(dim));
+
+  BlockSums<M> couplings;
+  const std::size_t npe = nodes_per_element(part_.type);
+  std::vector<std::int64_t> distinct;
+  for (std::size_t e = 0; e < part_.element_count(); ++e) {
+    distinct.clear();
+    for (std::size_t a = 0; a < npe; ++a) {
+      const std::int64_t id = number[part_.elements[e * npe + a]];
+      if (std::find(distinct.begin(), distinct.end(), id) == distinct.end()) distinct.push_back(id);
+    }
+    for (const std::int64_t row : distinct)
+      for (const std::int64_t column : distinct)
+        if (row <= column) couplings.at(row, column);
+  }
+  RigidLevel<M> level(centre_, std::move(couplings), nodes);
+
+  group_.resize(part_.nodes());
+  std::unordered_map<std::int64_t, std::int32_t>
+      unknown;  // to the level: no element here ties them to an owned one
+  number_ = level.map().ghosts;
+  centre_.resize(centre_.size() + number_.size());
+  const auto known = static_cast<std::int32_t>(centre_.size());
+  for (std::size_t n = owned_nodes; n < group_.size(); ++n) {
+    const std::int64_t id = number[n];
+    std::int32_t at = level.local(id);
+    if (at < 0) {
+      at = unknown.try_emplace(id, known + static_cast<std::int32_t>(unknown.size())).first->second;
+      centre_.resize(std::max(centre_.size(), static_cast<std::size_t>(at) + 1));
+      number_.resize(centre_.size() - static_cast<std::size_t>(owned_));
+    }
+    group_[n] = at;
+    for (std::size_t c = 0; c < dim; ++c) centre_[at][c] = centre[n * dim + c];
+    number_[at - owned_] = id;
+  }
+  return level;
+}
+
+template class Aggregates<3>;
+template class Aggregates<6>;
+
+}  // namespace kacanov

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The last level of the multigrid, solved directly.
+#pragma once
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include <kacanov/error.hpp>
+#include "amg/rigid_level.hpp"
+
+namespace kacanov {
+
+/// A sparse factor of the last level, the same on every rank.
+template <int M>
+class DirectSolve {
+ public:
+  /// Throws InternalError where the matrix is not definite. The level has to outlive it. Collective.
+  explicit DirectSolve(const RigidLevel<M>& level) : level_(&level) {
+    const auto size = static_cast<Eigen::Index>(level.total()) * M;
+    std::vector<Eigen::Triplet<double>> triplets;
+    std::vector<double> diagonal(size, 0.0);
+    for (const auto& entry : level.gathered())
+      for (int i = 0; i < M; ++i)
+        for (int j = 0; j < M; ++j) {
+          const auto row = static_cast<Eigen::Index>(entry.row) * M + i,
+                     column = static_cast<Eigen::Index>(entry.column) * M + j;
+          const double v = entry.block[i * M + j];
+          triplets.emplace_back(row, column, v);
+          if (row == column) diagonal[row] += v;
+        }
+    // Modes that boundary conditions have emptied, and rounding: a shift far below anything that moves,
+    // unless penalties so large that they swamp the body ask for more.
+    const double largest = diagonal.empty() ? 1.0 : *std::max_element(diagonal.begin(), diagonal.end());
+    Eigen::SparseMatrix<double> matrix(size, size), unit(size, size);
+    matrix.setFromTriplets(triplets.begin(), triplets.end());
+    unit.setIdentity();
+    for (double shift = 1e-10; shift < 1e-3; shift *= 100.0) {
+      factor_.compute(matrix + (largest > 0.0 ? shift * largest : 1.0) * unit);
+      if (factor_.info() == Eigen::Success) return;
+    }
+    throw InternalError("the coarsest matrix of the preconditioner is not definite");
+  }
+  /// x = A⁻¹ b on owned rows, M entries each. Collective.
+  void solve(std::span<const double> b, std::span<double> x) const {
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(level_->total()) * M);
+    const auto at = static_cast<Eigen::Index>(level_->first()) * M;
+    const auto owned = static_cast<Eigen::Index>(level_->owned_size());
+    for (Eigen::Index i = 0; i < owned; ++i) all[at + i] = b[i];
+    level_->map().sum_all(std::span(all.data(), all.size()));
+    const Eigen::VectorXd y = factor_.solve(all);
+    for (Eigen::Index i = 0; i < owned; ++i) x[i] = y[at + i];
+  }
+
+ private:
+  const RigidLevel<M>* level_;
+  Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> factor_;
+};
+
+}  // namespace kacanov
