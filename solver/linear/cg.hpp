@@ -11,6 +11,7 @@
 
 namespace kacanov {
 
+/// When a solve stops (theory: cg).
 struct CgOptions {
   double absolute = 0.0;   ///< stop at ‖r‖ ≤ absolute ...
   double relative = 1e-8;  ///< ... or at ‖r‖ ≤ relative · ‖r₀‖
@@ -20,7 +21,7 @@ struct CgOptions {
 
 struct CgResult {
   int iterations = 0;
-  double first_residual = 0.0, residual = 0.0;
+  double first_residual = 0.0, residual = 0.0;  ///< ‖r‖ in the space
   bool converged = false;
 };
 
@@ -36,7 +37,7 @@ struct CgWork {
 /// exit the residual of the new x. `apply(p, q)`: q = A p, consistent, not projected; it returns this rank's
 /// share of pᵀq, which it has at hand. `precondition(r, z)`: z ≈ A⁻¹ r, symmetric positive definite,
 /// consistent. A breakdown (pᵀAp not positive: the operator has lost its definiteness) ends the loop
-/// unconverged.
+/// unconverged. All vectors have the part's unknowns. Collective.
 template <class Apply, class Precondition>
 CgResult conjugate_gradients(const Space& space, const Apply& apply, const Precondition& precondition,
                              std::span<double> x, CgWork& work, const CgOptions& options) {

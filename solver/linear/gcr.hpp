@@ -24,7 +24,7 @@ struct GcrResult {
 
 /// Solves A x = b for A that need not be symmetric; on entry `residual` holds b − A x, in the space, on exit
 /// that of the new x. `inner(r, z)` gives z near A⁻¹ r, and whether it could; `apply(z, q)` gives q = A z in
-/// the space. Two vectors are kept an iteration.
+/// the space. Two vectors of the part's unknowns are kept an iteration. Collective.
 template <class Apply, class Inner>
 GcrResult gcr(const Space& space, const Apply& apply, const Inner& inner, std::span<double> x,
               std::span<double> residual, const GcrOptions& options) {

@@ -17,8 +17,8 @@ struct NodeBlock {
   std::array<double, 9> value{};  ///< dim × dim, row-major
 };
 
-/// Symmetric positive definite and fixed between two setups. Vectors are consistent (Part). Calls are
-/// collective.
+/// z ≈ (B(g) + blocks)⁻¹ r: symmetric positive definite and fixed between two setups. Vectors have the part's
+/// unknowns and are consistent (Part). Calls are collective.
 class Preconditioner {
  public:
   virtual ~Preconditioner() = default;
@@ -27,12 +27,13 @@ class Preconditioner {
   void setup(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space);
   /// The same with the g of the last setup, at a fraction of the cost where few nodes see a change.
   void setup_again(std::span<const NodeBlock> blocks, const Space& space);
-  /// z ≈ A⁻¹ r.
+  /// z ≈ A⁻¹ r (overwrites z). To be called after a setup.
   virtual void apply(std::span<const double> r, std::span<double> z) = 0;
 
   /// The g of the last setup, in single precision at the least; mu before the first.
   virtual void secant(std::span<double> g) const = 0;
 
+  /// Wall time of all setups so far, on this rank.
   double setup_seconds() const noexcept { return seconds_; }
 
  private:

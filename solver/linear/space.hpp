@@ -38,6 +38,7 @@ class HeldRows {
 /// and in rows over several nodes (contact rows held during a spectrum or active-set solve).
 class Space {
  public:
+  /// Held are the prescribed components alone. The part has to outlive it.
   explicit Space(const Part& part) : part_(&part) {}
 
   /// Holds `direction` at a local node as well; directions of one node may be dependent. Call on every rank
@@ -60,15 +61,17 @@ class Space {
   /// Orthogonal projection onto the space, node by node; collective where rows over several nodes are held.
   void project(std::span<double> x) const;
   void project(std::span<float> x) const;
+  /// Inner product and 2-norm of consistent vectors over all ranks, each unknown once. Collective.
   double dot(std::span<const double> x, std::span<const double> y) const;
   double norm(std::span<const double> x) const;
-  /// a·b and c·d for the price of one reduction.
+  /// a·b and c·d for the price of one reduction. Collective.
   std::array<double, 2> dot2(std::span<const double> a, std::span<const double> b, std::span<const double> c,
                              std::span<const double> d) const;
+  /// max |x_i| over all ranks. Collective.
   double max_abs(std::span<const double> x) const;
-  /// Over all ranks, of what each has.
+  /// Over all ranks, of what each has. Collective.
   double sum_all(double share) const { return part_->halo.sum_all(share); }
-  /// A step of conjugate gradients in one pass: x += α p, r −= α q. Returns ‖r‖.
+  /// A step of conjugate gradients in one pass: x += α p, r −= α q. Returns ‖r‖. Collective.
   double advance(double alpha, std::span<const double> p, std::span<const double> q, std::span<double> x,
                  std::span<double> r) const;
 

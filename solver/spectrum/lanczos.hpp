@@ -11,6 +11,7 @@
 
 namespace kacanov {
 
+/// When an estimate stops (theory: lanczos).
 struct LanczosOptions {
   double tolerance = 1e-2;  ///< Ritz bound relative to the value
   int wanted = 1;           ///< how many of the largest
@@ -19,7 +20,7 @@ struct LanczosOptions {
 };
 
 struct LanczosResult {
-  std::vector<double> values;  ///< descending
+  std::vector<double> values;  ///< descending, `wanted` at the most
   std::vector<double> bounds;  ///< absolute Ritz residual bounds
   int products = 0;
   bool converged = false;
@@ -28,9 +29,10 @@ struct LanczosResult {
 /// y = K x on the entries this rank owns (possibly none). Collective.
 using Product = std::function<void(std::span<const double> x, std::span<double> y)>;
 
-/// `index` numbers this rank's entries over all ranks, so that the start vector does not depend on
-/// the partition. Small operators (up to 24 rows in all) are formed column by column and solved densely:
-/// there ARPACK has no room to work, and breaks down on K = c·I.
+/// The largest eigenvalues of a symmetric operator, with bounds. `index` numbers this rank's entries over all
+/// ranks, so that the start vector does not depend on the partition. Small operators (up to 24 rows in all)
+/// are formed column by column and solved densely: there ARPACK has no room to work, and breaks down on K =
+/// c·I. Throws InternalError where ARPACK fails. Collective.
 LanczosResult largest_eigenvalues(const Product& product, std::span<const std::int64_t> index, MPI_Comm comm,
                                   const LanczosOptions& options);
 

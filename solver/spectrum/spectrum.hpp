@@ -27,12 +27,15 @@ struct SpectrumCost {
 };
 
 struct Eigenvalue {
-  double value = 0.0, bound = 0.0;
+  double value = 0.0, bound = 0.0;  ///< bound: of the Ritz residual, absolute
 };
 
+/// Extreme eigenvalues of the compliance K (theory: compliance, lanczos, lanczos-loose), units of length over
+/// stress. Everything is collective.
 class Spectrum {
  public:
-  /// Uses (and re-sets) `amg`; works with the secant frozen in `op` and `g`.
+  /// Uses (and re-sets) `amg`; works with the secant frozen in `op` and `g` (elements × points). What is
+  /// passed has to outlive it.
   Spectrum(const Part& part, DistributedOperator& op, Preconditioner& amg, std::span<const double> g,
            const SpectrumOptions& options);
 
@@ -57,14 +60,16 @@ class Spectrum {
   SpectrumCost cost_;
 };
 
-/// 1/λ_min from above and below alike, without a solve: the stiffest contact row, nᵀ diag(B) n / mass.
+/// λ_min without a solve, from the stiffest contact row, nᵀ diag(B) n / mass (theory: first-penalty); 0
+/// without contact. `diagonal`: of the part's unknowns. Collective.
 double rough_lambda_min(const Part& part, std::span<const float> diagonal, bool friction);
 /// λ_max with the rows `held` at zero, from below: uᵀCᵀDCu / uᵀBu for what at most `steps` CG iterations make
-/// of an even pressure on `rows`. `amg` as it stands: it may hold penalties.
+/// of an even pressure on `rows`. `amg` as it stands: it may hold penalties. Collective.
 double rough_lambda_max(const Part& part, DistributedOperator& op, Preconditioner& amg, const TraceRows& rows,
                         const TraceRows& held, int steps);
 
-/// λ_min, λ_max, r* (theory: r-star) for N, or for [N; T] with `friction`.
+/// λ_min, λ_max, r* (theory: r-star) for N, or for [N; T] with `friction`, with g (elements × points) as
+/// frozen in `op`. Collective.
 SpectrumResult estimate_spectrum(const Part& part, DistributedOperator& op, Preconditioner& amg,
                                  std::span<const double> g, bool friction, const SpectrumOptions& options);
 
