@@ -40,18 +40,18 @@ namespace {
 /// Forces below this share of the harmonic mean of D times ‖u‖ are none to measure others by: of that mean,
 /// because a part as stiff as rigid would else make any force look small.
 constexpr double least_force = 1e-9;
-/// Share of it, and of ω·diag(B) ω, that the rounding of R(ω) may come to (measured: 1e-16, so with room),
+/// Share of it, and of u·diag(B) u, that the rounding of R(u) may come to (measured: 1e-16, so with room),
 /// and likewise of traces and gaps.
 constexpr double rounding = 3e-16;
 
 /// Products and extremes over the contact points.
 struct ContactSums {
-  double normal_product = 0.0;    // Σ M λ_n |Nω − ρ|
-  double friction_product = 0.0;  // Σ M | ψ|Tω| − λ_f·Tω |
-  double dual_work = 0.0;  // Σ M (λ_n (ρ − Nω) + ψ|Tω| − λ_f·Tω), the contact part of the duality gap
+  double normal_product = 0.0;    // Σ M λ_n |Nu − ρ|
+  double friction_product = 0.0;  // Σ M | ψ|Tu| − λ_t·Tu |
+  double dual_work = 0.0;  // Σ M (λ_n (ρ − Nu) + ψ|Tu| − λ_t·Tu), the contact part of the duality gap
   double area = 0.0, force = 0.0;
   double penetration = 0.0, tension = 0.0, cone = 0.0, pressure = 0.0;
-  double trace = 0.0;  // max |Nω| + |ρ|
+  double trace = 0.0;  // max |Nu| + |ρ|
 };
 
 ContactSums contact_sums(const Traces& traces, const ContactState& state) {
@@ -78,18 +78,13 @@ ContactSums contact_sums(const Traces& traces, const ContactState& state) {
     s.cone = larger(s.cone, length - bound);
     s.pressure = larger(s.pressure, length);
   }
-  std::array<double, 4> sums{s.normal_product, s.friction_product, s.dual_work, s.area};
-  const IndexMap& halo = traces.halo();
-  halo.sum_all(sums);
-  s.normal_product = sums[0];
-  s.friction_product = sums[1];
-  s.dual_work = sums[2];
-  s.area = sums[3];
-  s.penetration = halo.max_all(s.penetration);
-  s.tension = halo.max_all(s.tension);
-  s.cone = halo.max_all(s.cone);
-  s.pressure = halo.max_all(s.pressure);
-  s.trace = halo.max_all(s.trace);
+  const Communicator& ranks = traces.halo();
+  ranks.sum_each({&s.normal_product, &s.friction_product, &s.dual_work, &s.area});
+  s.penetration = ranks.max_all(s.penetration);
+  s.tension = ranks.max_all(s.tension);
+  s.cone = ranks.max_all(s.cone);
+  s.pressure = ranks.max_all(s.pressure);
+  s.trace = ranks.max_all(s.trace);
   return s;
 }
 
@@ -127,23 +122,11 @@ BodySums body_sums(const Part& part, std::span<const double> u, std::span<const 
     s.stiff_work += stiff * u[i];
     s.softness += 1.0 / diagonal;
   }
-  std::array sums{s.balance[0],    s.balance[1], s.balance[2], s.all,     s.residual_work,
-                  s.internal_work, s.residual,   s.reaction,   s.contact, s.load,
-                  s.moved,         s.stiff,      s.stiff_work, s.softness};
-  part.halo.sum_all(sums);
-  const double unknowns = static_cast<double>(part.total_nodes()) * part.dim();
-  return {{sums[0], sums[1], sums[2]},
-          sums[3],
-          sums[4],
-          sums[5],
-          sums[6],
-          sums[7],
-          sums[8],
-          sums[9],
-          sums[10],
-          sums[11],
-          sums[12],
-          sums[13] / unknowns};
+  part.halo.sum_each({&s.balance[0], &s.balance[1], &s.balance[2], &s.all, &s.residual_work, &s.internal_work,
+                      &s.residual, &s.reaction, &s.contact, &s.load, &s.moved, &s.stiff, &s.stiff_work,
+                      &s.softness});
+  s.softness /= static_cast<double>(part.total_nodes()) * part.dim();
+  return s;
 }
 
 }  // namespace
@@ -184,7 +167,7 @@ Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactS
   const double all_forces = std::max({body.all, no_force, tiny});
   c.force_balance = std::hypot(body.balance[0], body.balance[1], body.balance[2]) / all_forces;
   c.rounding.force_balance = unknown_force / all_forces;
-  // Primal minus dual energy. With τ = τ(ω) the stored energies add up to R·ω, and
+  // Primal minus dual energy. With τ = τ(u) the stored energies add up to R·u, and
   // what is left is the work of the equilibrium residual and the contact products.
   const double all_energy = std::max({forces.energy, 0.5 * std::abs(body.internal_work), no_energy, tiny});
   c.duality_gap = std::abs(sums.dual_work - body.residual_work) / all_energy;

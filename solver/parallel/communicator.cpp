@@ -2,6 +2,8 @@
 // The ranks that work together, and reductions over them.
 #include <kacanov/communicator.hpp>
 
+#include <vector>
+
 namespace kacanov {
 
 Communicator::Communicator(MPI_Comm of) : comm(of) {
@@ -17,6 +19,15 @@ double Communicator::sum_all(double value) const {
 void Communicator::sum_all(std::span<double> values) const {
   if (ranks > 1)
     MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, comm);
+}
+
+void Communicator::sum_each(std::initializer_list<double*> numbers) const {
+  if (ranks == 1) return;
+  std::vector<double> sums;
+  for (const double* number : numbers) sums.push_back(*number);
+  sum_all(sums);
+  auto sum = sums.begin();
+  for (double* number : numbers) *number = *sum++;
 }
 
 double Communicator::max_all(double value) const {

@@ -5,6 +5,7 @@
 #include <mpi.h>
 
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 
 namespace kacanov {
@@ -21,6 +22,8 @@ struct Communicator {
   std::int64_t sum_all(std::int64_t value) const;
   /// Entry by entry.
   void sum_all(std::span<double> values) const;
+  /// Each of some numbers that lie apart, in one message.
+  void sum_each(std::initializer_list<double*> numbers) const;
   double max_all(double value) const;
   /// Whether it holds on some rank.
   bool any(bool here) const { return max_all(here ? 1.0 : 0.0) > 0.0; }
