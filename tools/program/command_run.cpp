@@ -3,6 +3,7 @@
 #include <fstream>
 #include <functional>
 #include <iostream>
+#include <memory>
 #include <string_view>
 
 #include <kacanov/element_fields.hpp>
@@ -127,20 +128,21 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
   const double start = MPI_Wtime();
   LoadedCase loaded = load(command, input, mpi);
   const std::filesystem::path folder = output_folder(command, input);
-  std::optional<OutputFolder> held;  // on the first rank, as what follows
+  std::shared_ptr<OutputFolder> held;  // on the first rank, as what follows
   std::optional<CheckpointFile> file;
   std::optional<Checkpoint> left;
   together(mpi, [&] {
     if (!mpi.first()) return;
     file.emplace(folder, input, loaded.print);
     if (command.restart) left = file->read();
-    held.emplace(folder);
+    held = std::make_shared<OutputFolder>(folder);
     clear_folder(folder);
     if (!command.restart) file->remove();
   });
 
-  // The folder is that of all ranks, and whichever fails first can say so there.
-  mpi.when_failing([folder](const std::string& text) { note_failure(folder, text); });
+  // The folder is that of all ranks, and whichever fails first can say so there. The session keeps the folder
+  // held until then.
+  mpi.when_failing([folder, held](const std::string& text) { note_failure(folder, text); });
 
   listen_for_interrupts();
   RunOptions options;
@@ -190,6 +192,7 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
     const double end = MPI_Wtime();
     figures.total = end - start;
     figures.output = end - solved;
+    // Once more, now that it is known what the output took.
     write_json(folder / "result.json", result_json(result, figures, dim));
     const std::string text = summary(result, figures, input.model, dim) +
                              (result.status == Status::converged ? "" : checkpoint_line(*file));
