@@ -223,7 +223,7 @@ TEST_CASE("aggregates follow the strong couplings and leave nobody out") {
 }
 
 TEST_CASE("a level is symmetric, and the next one is its Galerkin matrix, on any number of ranks") {
-  const auto level = chain(9);
+  auto level = chain(9);
   auto x = wave(level, 0.7), y = wave(level, 1.9);
   std::vector<double> ax(level.owned_size()), ay(ax);
   level.multiply(x, ax);
@@ -234,7 +234,7 @@ TEST_CASE("a level is symmetric, and the next one is its Galerkin matrix, on any
   std::vector<std::int32_t> group(level.rows());
   for (std::size_t i = 0; i < group.size(); ++i) group[i] = static_cast<std::int32_t>(i / 3);
   const double length = 0.8;
-  const auto next = level.coarsened(group, length);
+  auto next = level.coarsened(group, length);
   CHECK(next.total() * 3 == level.total());
   auto c = wave(next, 1.1);
   std::vector<double> ac(next.owned_size()), p(level.size(), 0.0);
