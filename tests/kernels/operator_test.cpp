@@ -151,8 +151,7 @@ TEST_CASE("residual, energy, new g and tangent at a state") {
     op.residual(u, f);
     CHECK(difference(f, expected) < 1e-13);
     CHECK(op.energy(u) == doctest::Approx(energy).epsilon(1e-12));
-    const std::vector<double> zero(n, 0.0);
-    std::vector<double> elastic(g.size());
+    std::vector<double> zero(n, 0.0), elastic(g.size());
     reference::secant(body, zero, elastic);
     op.secant(g);
     CHECK(difference(g, elastic) < 1e-14);  // neither residual nor energy changed g = mu
@@ -181,7 +180,7 @@ TEST_CASE("residual, energy, new g and tangent at a state") {
 
 TEST_CASE("diagonals") {
   for_every_operator([](const Body& body, Operator& op) {
-    const auto g = some_secant(body.secant_count());
+    const auto g = some_secant(body.secant_count()), u = some_state(body, 33);
     const std::size_t n = body.unknowns(), dim = static_cast<std::size_t>(dimension(body.mesh.type));
     op.set_secant(g);
     std::vector<double> actual(n), expected(n), blocks(n * dim), expected_blocks(n * dim);
@@ -191,9 +190,7 @@ TEST_CASE("diagonals") {
     op.block_diagonal(blocks);
     reference::block_diagonal(body, g, expected_blocks);
     CHECK(difference(blocks, expected_blocks) < 1e-13);
-
     CHECK_THROWS_AS(op.block_diagonal_tangent(blocks), std::logic_error);
-    const auto u = some_state(body, 33);
     op.update_tangent(u);
     op.set_secant(g);  // the tangent stays what it was frozen as
     op.block_diagonal_tangent(blocks);
