@@ -111,8 +111,7 @@ void decide_friction(const Traces& traces, const ContactState& state, double c, 
   const double* w = &state.trace.tangential[2 * i];
   std::array<double, 2> s{lambda[0] + c * w[0], lambda[1] + c * w[1]};
   const bool narrow = traces.entries(i).size() == 1;
-  // At wide points friction is that of the pressure before.
-  const bool follows = narrow && point.coulomb > 0.0;
+  const bool follows = point.coulomb > 0.0;
   const double bound = follows ? point.tresca + point.coulomb * std::max(pushed, 0.0) : state.bound[i];
   bool driven = false;  // it slips because other normals of its node move it
   const Edge edge = narrow ? find_edge(traces, state, set, i) : Edge();

@@ -27,7 +27,8 @@ Vector3 from_eigen(const Eigen::Vector3d& v) { return {v(0), v(1), v(2)}; }
 
 }  // namespace
 
-HeldNodes::HeldNodes(const Part& part, const ActiveSet& set, const ContactState& state) : part_(&part) {
+HeldNodes::HeldNodes(const Part& part, const ActiveSet& set, const ContactState& state)
+    : part_(&part), wide_(part, set) {
   const auto points = part.contact.points();
   const WideNodes wide(part);
   for (std::size_t i = 0; i < points.size();) {
@@ -39,7 +40,8 @@ HeldNodes::HeldNodes(const Part& part, const ActiveSet& set, const ContactState&
     if (held && !wide.contains(points[i].node)) add_node(set, state, i, end);
     i = end;
   }
-  oblique_ = part.halo.any(std::any_of(nodes_.begin(), nodes_.end(), [](const Node& n) { return n.slides; }));
+  oblique_ = wide_.any() ||
+             part.halo.any(std::any_of(nodes_.begin(), nodes_.end(), [](const Node& n) { return n.slides; }));
 }
 
 void HeldNodes::add_node(const ActiveSet& set, const ContactState& state, std::size_t first,
@@ -131,6 +133,7 @@ double HeldNodes::close(std::span<double> delta) const {
 }
 
 void HeldNodes::subtract_sliding(std::span<double> force) const {
+  wide_.subtract(force);
   const std::size_t dim = part_->dim();
   for (const Node& node : nodes_) {
     if (!node.slides) continue;
@@ -143,6 +146,7 @@ void HeldNodes::subtract_sliding(std::span<double> force) const {
 }
 
 void HeldNodes::reactions(std::span<const double> force, ContactValues& lambda) const {
+  wide_.reactions(force, lambda);
   const std::size_t dim = part_->dim();
   for (const Node& node : nodes_) {
     const double* f = force.data() + static_cast<std::size_t>(node.node) * dim;

@@ -6,13 +6,15 @@
 #include <vector>
 
 #include "contact/active_set.hpp"
+#include "contact/wide_sliding.hpp"
 
 namespace kacanov {
 
 /// Nodes with held rows. Several contact entries may meet in a node, as in the edge between a floor and a
 /// wall. Normals come first: friction acts only in directions that they leave free, so that no row is held
 /// twice. What is left over is shared by the entries in proportion to what each can bear. The reaction of a
-/// point that slides under Coulomb friction acts along ν + μ ŝ.
+/// point that slides under Coulomb friction acts along ν + μ ŝ. Nodes of wide points are left to RowCluster,
+/// and their sliding friction to WideSliding.
 class HeldNodes {
  public:
   HeldNodes(const Part& part, const ActiveSet& set, const ContactState& state);
@@ -23,9 +25,10 @@ class HeldNodes {
   /// stays. Returns the largest component, over all ranks. Collective.
   double close(std::span<double> delta) const;
   /// Takes from the nodal forces the sliding friction of the reactions they call for. What is left of them in
-  /// free directions is out of balance.
+  /// free directions is out of balance. Collective.
   void subtract_sliding(std::span<double> force) const;
-  /// λ_n and λ_f of held rows for nodal forces, friction of those that slide under Coulomb's law included.
+  /// λ_n and λ_f of held rows for nodal forces, friction of those that slide under Coulomb's law included; at
+  /// wide points where any of them slides. Collective.
   void reactions(std::span<const double> force, ContactValues& lambda) const;
 
  private:
@@ -43,6 +46,7 @@ class HeldNodes {
   void add_node(const ActiveSet& set, const ContactState& state, std::size_t first, std::size_t last);
 
   const Part* part_;
+  WideSliding wide_;
   std::vector<Node> nodes_;
   std::vector<Row> rows_;
   bool oblique_ = false;

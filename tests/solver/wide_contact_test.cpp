@@ -259,6 +259,37 @@ TEST_CASE("wide rows: every contact method finds what a dense solver finds, on a
       }
 }
 
+TEST_CASE("wide rows: Coulomb friction follows the pressure inside the Newton step") {
+  int ranks = 1;
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  // Means over the triangles of tet4 depend on each other: their pressures, and so the bounds, are not
+  // unique.
+  for (const ElementType type : {ElementType::tri3, ElementType::tet10, ElementType::hex8})
+    for (const double narrow_from : {1.0, 5.0}) {
+      CAPTURE(static_cast<int>(type));
+      CAPTURE(narrow_from);
+      Sample sample = block(type, narrow_from, 1e-12);
+      for (ContactPoint& point : sample.problem.contact) point.coulomb = 0.3;
+      Part part = distribute(on_first(sample.problem), MPI_COMM_WORLD);
+      const Solution solution = solve(part, sample.model.solver, {});
+      CAPTURE(solution.result.message);
+      CHECK(solution.result.status == Status::converged);
+      CHECK(solution.result.slip_nodes > 0);
+      // With friction of the pressure before 10 to 12, and 17 to 19 with narrow points beside the wide ones.
+      CHECK(solution.result.outer_iterations <= (narrow_from > 2.0 ? 8 : 19));
+      if (ranks > 1) continue;
+      sample.model.solver.contact = SolverOptions::Contact::admm;
+      const Solution fixed = solve(part, sample.model.solver, {});
+      CHECK(fixed.result.status == Status::converged);
+      double most = 0.0, size = 0.0;
+      for (std::size_t i = 0; i < part.unknowns(); ++i) {
+        most = std::max(most, std::abs(solution.displacement[i] - fixed.displacement[i]));
+        size = std::max(size, std::abs(fixed.displacement[i]));
+      }
+      CHECK(most < 1e-5 * size);
+    }
+}
+
 TEST_CASE("wide rows: the assembled preconditioner takes nodes that a rank has for its rows alone") {
   Sample sample = block(ElementType::hex8, 5.0, 0.01);
   sample.model.solver.preconditioner = SolverOptions::Preconditioner::elasticity;
