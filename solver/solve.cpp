@@ -103,6 +103,7 @@ Solution solve(const Part& part, const SolverOptions& options, const RunOptions&
   result.by_time = !part.steps.empty();
   OuterLoop loop(part, options, run, shares[steps_over(part, run)]);
   const StepContext& context = loop.context();
+  if (!restart && run.coarse != nullptr) loop.adopt(interpolate(*run.coarse, part));
   const double prepared = MPI_Wtime();
   if (restart) loop.restore(run.start, result);
   result.message = part.no_equilibrium;

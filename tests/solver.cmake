@@ -30,6 +30,10 @@ kacanov_test(checkpoint
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal
   RANKS 1 2)
 
+kacanov_test(coarse_start
+  MPI SOURCES solver/coarse_start_test.cpp
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
+
 kacanov_test(load_steps
   MPI SOURCES solver/load_steps_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
@@ -60,7 +64,7 @@ kacanov_test(closed_friction
   RANKS 1 2 4)
 
 kacanov_test(mesh
-  SOURCES solver/mesh_test.cpp
+  SOURCES solver/mesh_test.cpp solver/refine_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 kacanov_test(closed_solutions

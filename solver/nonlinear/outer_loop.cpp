@@ -78,6 +78,17 @@ void OuterLoop::go_to(double share, const Result& result) {
   first_outer_ = result.outer_iterations;
 }
 
+void OuterLoop::adopt(const Start& start) {
+  ContactState& state = context_.state;
+  state.omega = start.displacement;
+  state.lambda.normal = start.pressure;
+  state.lambda.tangential = start.friction;
+  adopted_ = true;
+  coarse_lambda_max_ = start.lambda_max;
+  take_load();
+  state.phi.tangential = state.trace.tangential;
+}
+
 void OuterLoop::iterate(Result& result) {
   keep(result);
   if (!control_.penalty.chosen()) choose_first_penalty(result);
@@ -93,7 +104,8 @@ void OuterLoop::iterate(Result& result) {
   while (!done && result.outer_iterations - first_outer_ < options_.max_outer) {
     if (result.outer_iterations > before_this_call) keep(result);
     if (by_step) previous = state.omega;
-    const bool newton = may_newton && result.outer_iterations > 0 && !control_.fallback.retreating();
+    const bool newton =
+        may_newton && (adopted_ || result.outer_iterations > 0) && !control_.fallback.retreating();
     const Residuals before = residuals;
     const StepOutcome step = take_step(newton, before, result);
     result.bound_change = follow_pressure(context_.part, state.lambda.normal, context_.state.bound);
@@ -196,8 +208,12 @@ void OuterLoop::choose_first_penalty(Result& result) {
   } else {
     result.lambda_min = rough_lambda_min(part, context_.body.diagonal(), friction_);
     control_.penalty.choose(0.0, result.lambda_min);
-    context_.preconditioner.set_up(control_.penalty.value());
-    if (part.loose_modes == 0) result.lambda_max = rough_largest(context_);
+    if (adopted_) {
+      result.lambda_max = coarse_lambda_max_;
+    } else {
+      context_.preconditioner.set_up(control_.penalty.value());
+      if (part.loose_modes == 0) result.lambda_max = rough_largest(context_);
+    }
     if (result.lambda_min > 0.0 && result.lambda_max > 0.0)
       result.r_star = 1.0 / std::sqrt(result.lambda_min * result.lambda_max);
   }

@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include <kacanov/coarse_solution.hpp>
+
 #include "nonlinear/fallback.hpp"
 #include "nonlinear/linearisation.hpp"
 #include "nonlinear/penalty_control.hpp"
@@ -27,6 +29,8 @@ class OuterLoop {
   /// with load curves or a slip history, from that state itself.
   void go_to(double share, const Result& result);
 
+  /// Starts from what a coarser mesh says (theory: nested). Penalties begin as from rest.
+  void adopt(const Start& start);
   /// Goes on from a checkpoint, which rank 0 has.
   void restore(const Checkpoint* from, Result& result);
   /// What restore() needs, on rank 0.
@@ -71,7 +75,9 @@ class OuterLoop {
   double start_;
   StepContext context_;
   Control control_;
-  int first_outer_ = 0;  ///< outer steps before this load step, or before a restart
+  int first_outer_ = 0;             ///< outer steps before this load step, or before a restart
+  bool adopted_ = false;            ///< a coarser mesh has given the state
+  double coarse_lambda_max_ = 0.0;  ///< and this
   bool friction_;
   bool history_;   ///< slip of some point is counted from the load step before
   double extent_;  ///< of the body

@@ -34,6 +34,63 @@ TEST_CASE("quadrilaterals bear the beam as triangles do, and are drawn as such")
         doctest::Approx(fine["contact_force"][1].get<double>()).epsilon(0.05));
 }
 
+TEST_CASE("a large box starts from coarser ones: the same answer for fewer applications") {
+  const Workplace place;
+  nlohmann::json beam = small_beam();
+  beam["mesh"]["box"]["cells"] = {256, 64};
+  place.put_json("beam.json", beam);
+  for (const char* run : {"run beam.json --output nested --ranks 2", "run beam.json --output one --ranks 1",
+                          "run beam.json --output alone --set solver.nested=false"}) {
+    const Outcome outcome = place.run(run);
+    INFO("error: ", outcome.error);
+    CHECK(outcome.exit_code == 0);
+  }
+  const nlohmann::json nested = place.json("nested/result.json"), one = place.json("one/result.json"),
+                       alone = place.json("alone/result.json");
+  CHECK(!alone.contains("nested"));
+  REQUIRE(nested["nested"].size() == 2);
+  CHECK(nested["nested"][0]["unknowns"] == 65 * 17 * 2);
+  CHECK(nested["nested"][1]["unknowns"] == 129 * 33 * 2);
+  CHECK(nested["operator_applications"] < alone["operator_applications"]);
+  for (const nlohmann::json& other : {one, alone})
+    CHECK(nested["probe"][0][1].get<double>() ==
+          doctest::Approx(other["probe"][0][1].get<double>()).epsilon(1e-5));
+}
+
+TEST_CASE("a mesh file is refined with its groups, and solved from the coarse mesh on") {
+  const Workplace place;
+  place.put("bar.msh",
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 1 \"left\"\n1 2 \"right\"\n"
+            "2 3 \"bar\"\n$EndPhysicalNames\n$Nodes\n6\n1 0 0 0\n2 1 0 0\n3 2 0 0\n4 0 1 0\n5 1 1 0\n"
+            "6 2 1 0\n$EndNodes\n$Elements\n4\n1 1 2 1 1 1 4\n2 1 2 2 2 3 6\n3 3 2 3 3 1 2 5 4\n"
+            "4 3 2 3 3 2 3 6 5\n$EndElements\n");
+  place.put_json("bar.json", nlohmann::json::parse(R"({
+    "mesh": {"file": "bar.msh", "refine": 3},
+    "material": [{"on": "bar", "young": 1.0, "poisson": 0.0, "law": {"type": "linear"}}],
+    "boundary": [{"on": "left", "displacement": [0, 0]}, {"on": "right", "traction": [0.1, 0]}],
+    "probe": [[2, 0.5]]})"));
+  const Outcome outcome = place.run("run bar.json");
+  INFO("error: ", outcome.error);
+  CHECK(outcome.exit_code == 0);
+  const nlohmann::json result = place.json("results/bar/result.json");
+  CHECK(result["elements"] == 2 * 64);
+  CHECK(result["nested"].size() == 3);
+  CHECK(result["probe"][0][0].get<double>() == doctest::Approx(0.2).epsilon(1e-6));
+}
+
+TEST_CASE("a refined box is the box with twice the cells") {
+  const Workplace place;
+  nlohmann::json beam = small_beam();
+  place.put_json("fine.json", beam);
+  beam["mesh"] = {{"box", {{"size", {4, 1}}, {"cells", {8, 2}}}}, {"refine", 1}};
+  place.put_json("twice.json", beam);
+  for (const char* run : {"run fine.json", "run twice.json"}) CHECK(place.run(run).exit_code == 0);
+  CHECK(place.json("results/fine/result.json")["probe"] == place.json("results/twice/result.json")["probe"]);
+  const Outcome refused = place.run("check twice.json --set mesh.refine=11");
+  CHECK(refused.exit_code == 2);
+  CHECK(refused.error.find("mesh.refine: expected at most 10") != std::string::npos);
+}
+
 TEST_CASE("a run converges, says so, and writes every file and key") {
   const Workplace place;
   place.put_json("beam.json", small_beam());

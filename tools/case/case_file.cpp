@@ -14,6 +14,7 @@
 namespace kacanov {
 namespace {
 
+constexpr int most_refinements = 10, most_cells = 1 << 30;
 constexpr int most_load_steps = 10000;
 constexpr std::size_t largest_case = std::size_t{64} << 20;
 
@@ -85,7 +86,12 @@ class CaseParser {
   }
 
   void parse_mesh(const Node& node) {
-    const Object object(node, {"file", "box"});
+    const Object object(node, {"file", "box", "refine"});
+    if (const auto times = object.optional("refine")) {
+      result_.mesh.refine = times->integer(0);
+      if (result_.mesh.refine > most_refinements)
+        times->expected("at most " + std::to_string(most_refinements) + ": each makes eight elements of one");
+    }
     if (object.only_one_of({"file", "box"}) == "file") {
       const std::filesystem::path file = object.required("file").text();
       result_.mesh.file =
@@ -110,6 +116,12 @@ class CaseParser {
       spec.size[c] = size[c].number(positive);
       spec.cells[c] = cells[c].integer(1);
     }
+    for (; result_.mesh.refine > 0; --result_.mesh.refine)
+      for (std::size_t c = 0; c < dim; ++c) {
+        if (spec.cells[c] > most_cells / 2)
+          cells[c].expected("at most " + std::to_string(most_cells) + " cells once mesh.refine has cut them");
+        spec.cells[c] *= 2;
+      }
     result_.mesh.box = spec;
   }
 
@@ -202,8 +214,9 @@ class CaseParser {
 
   void parse_solver(const Node& node) {
     using Options = SolverOptions;
-    const Object object(node, {"tolerance", "outer", "contact", "r", "stop", "max_outer", "max_contact",
-                               "max_cg", "spectrum_tolerance", "relaxation", "preconditioner", "load_steps"});
+    const Object object(node,
+                        {"tolerance", "outer", "contact", "r", "stop", "max_outer", "max_contact", "max_cg",
+                         "spectrum_tolerance", "relaxation", "preconditioner", "load_steps", "nested"});
     Options& options = result_.model.solver;
     if (const auto v = object.optional("tolerance")) options.tolerance = v->number(below_one);
     if (const auto v = object.optional("spectrum_tolerance")) {
@@ -230,6 +243,7 @@ class CaseParser {
     if (const auto v = object.optional("max_contact")) options.max_contact = v->integer(1);
     if (const auto v = object.optional("max_cg")) options.max_cg = v->integer(1);
     if (const auto v = object.optional("load_steps")) parse_load_steps(*v);
+    if (const auto v = object.optional("nested")) options.nested = v->boolean();
     if (const auto v = object.optional("relaxation")) {
       options.relaxation = v->number(over_relaxation);
     }

@@ -17,6 +17,7 @@ namespace kacanov {
 struct MeshSource {
   std::optional<std::string> file;  ///< path, relative ones taken from the case file's folder
   std::optional<BoxSpec> box;
+  int refine = 0;  ///< times that the mesh of the file is refined; a box has its cells cut already
 };
 
 struct OutputOptions {

@@ -11,6 +11,7 @@
 #include "formats/atomic_file.hpp"
 #include "pictures/picture.hpp"
 #include "program/checkpoint_file.hpp"
+#include "program/coarse_run.hpp"
 #include "program/commands.hpp"
 #include "program/field_files.hpp"
 #include "program/interrupt.hpp"
@@ -154,10 +155,15 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
   if (left) options.start = &*left;
   options.threads = threads_of(command);
   options.progress = ProgressTable();
+  CoarseRun coarse;
+  if (!command.restart) coarse = solve_coarser(input, mpi, options);
+  if (coarse.solution) options.coarse = &*coarse.solution;
   const Solution solution = solve(loaded.part, input.model.solver, options);
 
   const double solved = MPI_Wtime();
+  coarse.solution.reset();
   RunFigures figures;
+  figures.nested = coarse.levels;
   figures.peak_memory_bytes =
       static_cast<std::uint64_t>(loaded.part.halo.sum_all(static_cast<std::int64_t>(peak_memory())));
   left.reset();

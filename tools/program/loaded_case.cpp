@@ -7,13 +7,17 @@
 #include <cstdlib>
 #include <iostream>
 
+#include <kacanov/refine.hpp>
 #include "formats/gmsh_reader.hpp"
 #include "program/memory_model.hpp"
 
 namespace kacanov {
 
 Mesh load_mesh(const MeshSource& source) {
-  return source.file ? read_gmsh(*source.file) : make_box(*source.box);
+  if (source.box) return make_box(*source.box);
+  Mesh mesh = read_gmsh(*source.file);
+  for (int times = 0; times < source.refine; ++times) mesh = refine(mesh);
+  return mesh;
 }
 
 Problem load_problem(const Case& input, RankCount ranks) {

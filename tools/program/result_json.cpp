@@ -112,6 +112,12 @@ ordered_json result_json(const Result& result, const RunFigures& figures, int di
                      {"checkpoint", seconds.checkpoint},
                      {"certificate", seconds.certificate},
                      {"output", figures.output}};
+  for (const CoarseLevel& level : figures.nested)
+    json["nested"].push_back({{"unknowns", level.unknowns},
+                              {"outer_iterations", level.outer_iterations},
+                              {"cg_iterations", level.cg_iterations},
+                              {"operator_applications", level.operator_applications},
+                              {"seconds", level.seconds}});
   json["peak_memory_bytes"] = figures.peak_memory_bytes;
   json["ranks"] = result.ranks;
   json["threads"] = result.threads;

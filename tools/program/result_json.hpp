@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <kacanov/result.hpp>
 
@@ -14,10 +15,20 @@ namespace kacanov {
 /// As the file's `status` says it.
 const char* status_name(Status status);
 
+/// What a coarser mesh took.
+struct CoarseLevel {
+  std::int64_t unknowns = 0;
+  int outer_iterations = 0;
+  std::int64_t cg_iterations = 0;
+  std::uint64_t operator_applications = 0;
+  double seconds = 0.0;  ///< everything from the mesh to the solution
+};
+
 /// What the program measures of a run besides what solve() says.
 struct RunFigures {
   double total = 0.0, read = 0.0, distribute = 0.0, output = 0.0;  ///< seconds
   std::uint64_t peak_memory_bytes = 0;                             ///< of all ranks together
+  std::vector<CoarseLevel> nested;                                 ///< coarsest first
 };
 
 /// Every key of the file. Vectors have `dim` entries; numbers that are not finite become null.

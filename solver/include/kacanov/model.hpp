@@ -94,6 +94,8 @@ struct SolverOptions {
   /// Factors > 0 on loads, prescribed displacements and indentation, one after the other (theory: load-path);
   /// the last is 1. Empty: at once.
   std::vector<double> load_steps;
+  /// Whether coarser meshes are solved first where there are some (theory: nested).
+  bool nested = true;
   /// Of ADMM, 1 ≤ α < 2 (theory: over-relaxation). Unset: 1 with Penalty::paper or Stop::paper, else 1.7.
   std::optional<double> relaxation;
 };

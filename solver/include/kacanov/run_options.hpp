@@ -6,6 +6,7 @@
 #include <string>
 
 #include <kacanov/checkpoint.hpp>
+#include <kacanov/coarse_solution.hpp>
 #include <kacanov/result.hpp>
 
 namespace kacanov {
@@ -39,6 +40,8 @@ struct RunOptions {
   std::function<bool()> checkpoint_due;
   /// Where to go on from; on rank 0, of the same problem.
   const Checkpoint* start = nullptr;
+  /// The same body solved on a coarser mesh, to start from; the same on every rank. `start` goes before it.
+  const CoarseSolution* coarse = nullptr;
 };
 
 }  // namespace kacanov

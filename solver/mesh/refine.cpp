@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Uniform refinement: every edge is halved, groups and curved edges are kept.
+#include <kacanov/refine.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include <kacanov/error.hpp>
+
+namespace kacanov {
+namespace {
+
+/// The middle of some corners of an element, as a set of bits.
+using Corners = std::uint32_t;
+
+constexpr Corners bit(std::size_t corner) { return Corners{1} << corner; }
+
+/// Corners of the children of one element, children × corners. Of a tetrahedron's inner octahedron `diagonal`
+/// (1, 2, 3) says which of its diagonals the four inner children share: the one from the middle of edge
+/// 0–diagonal.
+std::vector<Corners> children_of(const Cell& type, std::size_t diagonal) {
+  const std::size_t corners = type.corners;
+  std::vector<Corners> children;
+  for (std::size_t child = 0; child < corners; ++child)
+    for (std::size_t a = 0; a < corners; ++a) {
+      if (type.simplex) {
+        children.push_back(bit(child) | bit(a));
+        continue;
+      }
+      Corners around = 0;  // those on every side that both corners are on
+      for (std::size_t b = 0; b < corners; ++b) {
+        bool in = true;
+        for (std::size_t k = 0; k < static_cast<std::size_t>(type.dim); ++k)
+          in = in && (type.reference[child][k] != type.reference[a][k] ||
+                      type.reference[b][k] == type.reference[a][k]);
+        if (in) around |= bit(b);
+      }
+      children.push_back(around);
+    }
+  if (!type.simplex) return children;
+  const auto middle = [](std::size_t a, std::size_t b) { return bit(a) | bit(b); };
+  if (type.dim == 2) {
+    for (const Corners corner : {middle(0, 1), middle(1, 2), middle(2, 0)}) children.push_back(corner);
+    return children;
+  }
+  const std::size_t i = diagonal, j = i % 3 + 1, k = j % 3 + 1;
+  const std::array ring{middle(0, j), middle(0, k), middle(i, k), middle(i, j)};
+  for (std::size_t t = 0; t < 4; ++t)
+    for (const Corners corner : {middle(0, i), middle(j, k), ring[t], ring[(t + 1) % 4]})
+      children.push_back(corner);
+  return children;
+}
+
+std::size_t children_count(const Cell& type) { return std::size_t{1} << type.dim; }
+
+/// Of a facet, whatever its order: the way to find it again.
+using FacetKey = std::array<std::int32_t, 4>;
+struct FacetHash {
+  std::size_t operator()(const FacetKey& key) const noexcept {
+    std::uint64_t h = 0;
+    for (const std::int32_t n : key) h = (h ^ static_cast<std::uint32_t>(n)) * 0x9e3779b97f4a7c15U;
+    return h ^ (h >> 29);
+  }
+};
+
+class Refinement {
+ public:
+  explicit Refinement(const Mesh& coarse) : coarse_(coarse), type_(cell(coarse.type)) {}
+
+  Mesh done() {
+    fine_.type = coarse_.type;
+    fine_.coordinates = coarse_.coordinates;
+    fine_.node_tags = coarse_.node_tags;
+    for (std::size_t d = 1; d < patterns_.size(); ++d) patterns_[d] = children_of(type_, d);
+    fine_.elements.reserve(coarse_.elements.size() * children_count(type_));
+    for (std::size_t e = 0; e < coarse_.element_count(); ++e) split(e);
+    number_new_nodes();
+    find_boundary(fine_);
+    for (const Group& group : coarse_.groups) take_over(group);
+    return std::move(fine_);
+  }
+
+ private:
+  std::size_t dim() const { return static_cast<std::size_t>(type_.dim); }
+
+  std::span<const std::int32_t> nodes(std::size_t e) const {
+    const std::size_t n = type_.nodes;
+    return std::span(coarse_.elements).subspan(e * n, n);
+  }
+
+  /// The node between two that share an edge, or across a quadrilateral: made at `at` where it is new.
+  std::int32_t between(std::int32_t a, std::int32_t b, const std::array<double, 3>& at) {
+    const std::uint64_t low = static_cast<std::uint32_t>(std::min(a, b)),
+                        high = static_cast<std::uint32_t>(std::max(a, b));
+    const auto [place, fresh] = between_.try_emplace(low << 32 | high, 0);
+    if (fresh) place->second = add(at);
+    return place->second;
+  }
+
+  std::int32_t add(const std::array<double, 3>& at) {
+    const std::size_t node = fine_.node_count();
+    if ((node + 1) * dim() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
+      throw InputError("mesh.refine: so fine a mesh has more unknowns than 32-bit indices can number");
+    fine_.coordinates.insert(fine_.coordinates.end(), at.begin(), at.begin() + type_.dim);
+    return static_cast<std::int32_t>(node);
+  }
+
+  /// Where the element's map takes a point of the reference cell.
+  std::array<double, 3> position(std::span<const std::int32_t> of, const std::array<double, 3>& xi) const {
+    std::array<double, most_nodes> shape{};
+    type_.values(xi.data(), shape.data());
+    std::array<double, 3> x{};
+    for (std::size_t a = 0; a < of.size(); ++a)
+      for (std::size_t c = 0; c < dim(); ++c)
+        x[c] += shape[a] * coarse_.coordinates[static_cast<std::size_t>(of[a]) * dim() + c];
+    return x;
+  }
+
+  std::array<double, 3> reference(Corners corners) const {
+    std::array<double, 3> xi{};
+    double count = 0.0;
+    for (std::size_t a = 0; a < static_cast<std::size_t>(type_.corners); ++a)
+      if ((corners & bit(a)) != 0) {
+        count += 1.0;
+        for (std::size_t c = 0; c < 3; ++c) xi[c] += type_.reference[a][c];
+      }
+    for (double& c : xi) c /= count;
+    return xi;
+  }
+
+  /// The corner of a child that lies in the middle of these corners of its parent.
+  std::int32_t corner(std::span<const std::int32_t> of, Corners corners) {
+    std::array<std::int32_t, 8> around{};
+    std::array<std::size_t, 8> local{};
+    std::size_t count = 0;
+    for (std::size_t a = 0; a < static_cast<std::size_t>(type_.corners); ++a)
+      if ((corners & bit(a)) != 0) {
+        local[count] = a;
+        around[count++] = of[a];
+      }
+    if (count == 1) return around[0];
+    const std::array<double, 3> xi = reference(corners);
+    if (count == 2) {
+      for (const CellEdge& edge : type_.edges)
+        if (edge.middle >= 0 && corners == (bit(edge.a) | bit(edge.b))) return of[edge.middle];
+      return between(around[0], around[1], position(of, xi));
+    }
+    if (count == static_cast<std::size_t>(type_.corners)) {  // its own
+      if (inner_ < 0) inner_ = add(position(of, xi));
+      return inner_;
+    }
+    // A quadrilateral is known by its lowest node and the one across.
+    const auto lowest =
+        static_cast<std::size_t>(std::min_element(around.begin(), around.begin() + 4) - around.begin());
+    std::size_t across = lowest;
+    for (std::size_t b = 0; b < 4; ++b)
+      if (distance(local[b], local[lowest]) > distance(local[across], local[lowest])) across = b;
+    return between(around[lowest], around[across], position(of, xi));
+  }
+
+  double distance(std::size_t a, std::size_t b) const {
+    double square = 0.0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double d = type_.reference[a][c] - type_.reference[b][c];
+      square += d * d;
+    }
+    return square;
+  }
+
+  /// The shortest diagonal of a tetrahedron's inner octahedron.
+  std::size_t diagonal(std::span<const std::int32_t> of) const {
+    if (type_.dim == 2 || !type_.simplex) return 1;
+    std::size_t best = 1;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 1; i <= 3; ++i) {
+      const std::size_t j = i % 3 + 1, k = j % 3 + 1;
+      const auto from = position(of, reference(bit(0) | bit(i))),
+                 to = position(of, reference(bit(j) | bit(k)));
+      double square = 0.0;
+      for (std::size_t c = 0; c < 3; ++c) square += (from[c] - to[c]) * (from[c] - to[c]);
+      if (square < least * (1.0 - 1e-9)) {
+        least = square;
+        best = i;
+      }
+    }
+    return best;
+  }
+
+  void split(std::size_t e) {
+    const auto of = nodes(e);
+    inner_ = -1;
+    const std::vector<Corners>& pattern = patterns_[diagonal(of)];
+    const std::size_t corners = type_.corners;
+    for (std::size_t child = 0; child < pattern.size(); child += corners) {
+      const std::size_t first = fine_.elements.size();
+      for (std::size_t a = 0; a < corners; ++a) fine_.elements.push_back(corner(of, pattern[child + a]));
+      for (const CellEdge& edge : type_.edges) {
+        if (edge.middle < 0) continue;
+        const auto from = reference(pattern[child + edge.a]), to = reference(pattern[child + edge.b]);
+        const std::array<double, 3> xi{0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1]),
+                                       0.5 * (from[2] + to[2])};
+        fine_.elements.push_back(
+            between(fine_.elements[first + edge.a], fine_.elements[first + edge.b], position(of, xi)));
+      }
+    }
+  }
+
+  /// Numbers after the largest that the file has.
+  void number_new_nodes() {
+    if (fine_.node_tags.empty()) return;
+    std::int64_t next = *std::max_element(fine_.node_tags.begin(), fine_.node_tags.end());
+    fine_.node_tags.reserve(fine_.node_count());
+    while (fine_.node_tags.size() < fine_.node_count()) fine_.node_tags.push_back(++next);
+  }
+
+  void take_over(const Group& group) {
+    Group to{group.name, group.dimension, {}};
+    if (group.dimension == type_.dim)
+      elements_of(group, to.members);
+    else if (group.dimension == type_.dim - 1)
+      facets_of(group, to.members);
+    else
+      nodes_of(group, to.members);
+    std::sort(to.members.begin(), to.members.end());
+    fine_.groups.push_back(std::move(to));
+  }
+
+  void elements_of(const Group& group, std::vector<std::int32_t>& members) const {
+    const auto children = static_cast<std::int32_t>(children_count(type_));
+    for (const std::int32_t e : group.members)
+      for (std::int32_t c = 0; c < children; ++c) members.push_back(e * children + c);
+  }
+
+  FacetKey key(std::span<const std::int32_t> corners) const {
+    FacetKey k;
+    k.fill(-1);
+    std::copy(corners.begin(), corners.end(), k.begin());
+    std::sort(k.begin(), k.end());
+    return k;
+  }
+
+  /// Fine facets inside the facets of a group.
+  void facets_of(const Group& group, std::vector<std::int32_t>& members) {
+    const Cell& type = type_.facet();
+    const std::size_t corners = type.corners;
+    if (facet_.empty())
+      for (std::size_t f = 0; f < fine_.facet_count(); ++f)
+        facet_.emplace(key(fine_.facet(f).first(corners)), static_cast<std::int32_t>(f));
+    std::vector<std::array<std::int32_t, 4>> children;
+    for (const std::int32_t f : group.members) {
+      children.clear();
+      split_facet(coarse_.facet(f), children);
+      for (const auto& child : children)
+        if (const auto found = facet_.find(key(std::span(child).first(corners))); found != facet_.end())
+          members.push_back(found->second);
+    }
+  }
+
+  std::int32_t known(std::int32_t a, std::int32_t b) const {
+    const std::uint64_t low = static_cast<std::uint32_t>(std::min(a, b)),
+                        high = static_cast<std::uint32_t>(std::max(a, b));
+    const auto found = between_.find(low << 32 | high);
+    return found == between_.end() ? -1 : found->second;
+  }
+
+  void split_facet(std::span<const std::int32_t> of,
+                   std::vector<std::array<std::int32_t, 4>>& children) const {
+    const Cell& type = type_.facet();
+    const std::size_t corners = type.corners;
+    std::array<std::int32_t, 4> middle{};  // of the edge from each corner to the next
+    for (std::size_t a = 0; a < corners; ++a) {
+      const std::size_t b = (a + 1) % corners;
+      middle[a] = type.order == 2 ? of[corners + a] : known(of[a], of[b]);
+    }
+    if (corners == 2) {
+      children.push_back({of[0], middle[0]});
+      children.push_back({middle[0], of[1]});
+      return;
+    }
+    for (std::size_t a = 0; a < corners; ++a) {
+      std::array<std::int32_t, 4> child{of[a], middle[a], middle[(a + corners - 1) % corners]};
+      if (corners == 4) child[3] = centre(of);
+      children.push_back(child);
+    }
+    if (corners == 3) children.push_back(middle);
+  }
+
+  std::int32_t centre(std::span<const std::int32_t> of) const {
+    const auto lowest = static_cast<std::size_t>(std::min_element(of.begin(), of.begin() + 4) - of.begin());
+    return known(of[lowest], of[(lowest + 2) % 4]);
+  }
+
+  /// Of a point its node; of a line also those in the middle of edges whose ends it has.
+  void nodes_of(const Group& group, std::vector<std::int32_t>& members) const {
+    members = group.members;
+    if (group.dimension == 0) return;
+    std::vector<char> in(fine_.node_count(), 0);
+    for (const std::int32_t n : group.members) in[n] = 1;
+    for (const auto& [pair, node] : between_)
+      if (in[pair >> 32] != 0 && in[pair & 0xffffffffU] != 0) members.push_back(node);
+  }
+
+  const Mesh& coarse_;
+  const Cell& type_;
+  Mesh fine_;
+  std::array<std::vector<Corners>, 4> patterns_;  ///< by the diagonal, from 1
+  std::unordered_map<std::uint64_t, std::int32_t> between_;
+  std::unordered_map<FacetKey, std::int32_t, FacetHash> facet_;
+  std::int32_t inner_ = -1;  ///< node in the middle of the element at hand
+};
+
+}  // namespace
+
+Mesh refine(const Mesh& mesh) { return Refinement(mesh).done(); }
+
+}  // namespace kacanov

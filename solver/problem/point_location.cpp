@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Finds the element that a point lies in.
+#include "problem/point_location.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "problem/shapes.hpp"
+#include "problem/vector3.hpp"
+
+namespace kacanov {
+namespace {
+
+/// Rounding leaves points of shared facets this far outside of both elements, in reference coordinates.
+constexpr double rounding = 1e-9;
+
+Vector3 position(const MeshView& mesh, std::int32_t node) {
+  const std::size_t dim = dimension(mesh.type);
+  const double* x = mesh.coordinates.data() + static_cast<std::size_t>(node) * dim;
+  return {x[0], x[1], dim == 3 ? x[2] : 0.0};
+}
+
+struct Bounds {
+  Vector3 low{}, high{};
+  void take(const Vector3& x) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      low[c] = std::min(low[c], x[c]);
+      high[c] = std::max(high[c], x[c]);
+    }
+  }
+};
+
+Bounds bounds(const MeshView& mesh, std::span<const std::int32_t> nodes) {
+  const Vector3 first = position(mesh, nodes[0]);
+  Bounds box{first, first};
+  for (const std::int32_t node : nodes) box.take(position(mesh, node));
+  const double grown = cell(mesh.type).order == 2 ? 0.5 : 1e-5;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double margin = grown * (box.high[c] - box.low[c]);
+    box.low[c] -= margin;
+    box.high[c] += margin;
+  }
+  return box;
+}
+
+}  // namespace
+
+std::optional<Vector3> reference_point(const MeshView& mesh, std::span<const std::int32_t> nodes,
+                                       const Vector3& x) {
+  const Cell& type = cell(mesh.type);
+  const bool affine = type.simplex && type.order == 1;
+  Vector3 at{};
+  if (type.simplex) at = {0.25, 0.25, type.dim == 3 ? 0.25 : 0.0};
+  for (int step = 0; step < 30; ++step) {
+    const Shapes shapes = shapes_at(type, at);
+    Vector3 miss = x;
+    Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      const Vector3 node = position(mesh, nodes[k]);
+      miss = miss - shapes.value[k] * node;
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) jacobian(i, j) += node[i] * shapes.gradient[k][j];
+    }
+    if (type.dim == 2) jacobian(2, 2) = 1.0;
+    const Eigen::Vector3d move = jacobian.inverse() * Eigen::Vector3d(miss[0], miss[1], miss[2]);
+    at = at + Vector3{move[0], move[1], move[2]};
+    if (affine) return at;
+    if (!(norm(at) < 10.0)) return std::nullopt;
+    if (move.norm() < 1e-12) return at;
+  }
+  return std::nullopt;
+}
+
+double outside(const Cell& type, const Vector3& at) {
+  double most = -1.0, least = 1.0, rest = 1.0;
+  for (std::size_t c = 0; c < static_cast<std::size_t>(type.dim); ++c) {
+    most = std::max(most, std::abs(at[c]) - 1.0);
+    least = std::min(least, at[c]);
+    rest -= at[c];
+  }
+  return type.simplex ? -std::min(least, rest) : most;
+}
+
+bool near_element(const MeshView& mesh, std::span<const std::int32_t> nodes, const Vector3& x) {
+  const Bounds box = bounds(mesh, nodes);
+  for (std::size_t c = 0; c < static_cast<std::size_t>(dimension(mesh.type)); ++c)
+    if (x[c] < box.low[c] || x[c] > box.high[c]) return false;
+  return true;
+}
+
+PointLocator::PointLocator(const MeshView& mesh) : mesh_(mesh) {
+  const std::size_t dim = dimension(mesh.type), npe = nodes_per_element(mesh.type);
+  const auto elements = static_cast<std::int32_t>(mesh.connectivity.size() / npe);
+  Bounds all = bounds(mesh, nodes(0));
+  for (std::int32_t e = 1; e < elements; ++e) {
+    const Bounds box = bounds(mesh, nodes(e));
+    all.take(box.low);
+    all.take(box.high);
+  }
+  low_ = all.low;
+  // A box for four elements: an element then lies in eight boxes at most where all are alike.
+  double volume = 1.0;
+  for (std::size_t c = 0; c < dim; ++c) volume *= all.high[c] - all.low[c];
+  const double width = std::pow(4.0 * volume / elements, 1.0 / static_cast<double>(dim));
+  for (std::size_t c = 0; c < dim; ++c) {
+    const double length = all.high[c] - all.low[c];
+    count_[c] = std::max<std::int64_t>(1, std::llround(std::min(length / width, 1e5)));
+    inverse_[c] = length > 0.0 ? static_cast<double>(count_[c]) / length : 0.0;
+  }
+  const auto visit = [&](auto&& take) {
+    for (std::int32_t e = 0; e < elements; ++e) {
+      const Bounds box = bounds(mesh, nodes(e));
+      const Cells from = box_of(box.low), to = box_of(box.high);
+      for (std::int64_t k = from[2]; k <= to[2]; ++k)
+        for (std::int64_t j = from[1]; j <= to[1]; ++j)
+          for (std::int64_t i = from[0]; i <= to[0]; ++i) take((k * count_[1] + j) * count_[0] + i, e);
+    }
+  };
+  start_.assign(count_[0] * count_[1] * count_[2] + 1, 0);
+  visit([&](std::int64_t box, std::int32_t) { ++start_[box + 1]; });
+  std::partial_sum(start_.begin(), start_.end(), start_.begin());
+  element_.resize(start_.back());
+  std::vector<std::int64_t> next(start_.begin(), start_.end() - 1);
+  visit([&](std::int64_t box, std::int32_t e) { element_[next[box]++] = e; });
+}
+
+PointLocator::Cells PointLocator::box_of(const Vector3& x) const {
+  Cells box{};
+  for (std::size_t c = 0; c < 3; ++c)
+    box[c] = static_cast<std::int64_t>(
+        std::clamp((x[c] - low_[c]) * inverse_[c], 0.0, static_cast<double>(count_[c] - 1)));
+  return box;
+}
+
+std::span<const std::int32_t> PointLocator::nodes(std::int32_t element) const {
+  const std::size_t npe = nodes_per_element(mesh_.type);
+  return mesh_.connectivity.subspan(static_cast<std::size_t>(element) * npe, npe);
+}
+
+PointLocator::Place PointLocator::find(const Vector3& x) const {
+  double least = std::numeric_limits<double>::infinity();
+  std::optional<Place> best;
+  const std::int64_t rings = *std::max_element(count_.begin(), count_.end());
+  search_ring(x, {0, true}, least, best);
+  for (std::int64_t ring = 0, last = rings; ring <= last && least > rounding; ++ring) {
+    const bool had = best.has_value();
+    search_ring(x, {ring, false}, least, best);
+    if (best && !had) last = std::min(rings, ring + 1);  // a nearer one may lie in the next
+  }
+  return best ? *best : Place{};
+}
+
+void PointLocator::search_ring(const Vector3& x, const Ring& where, double& least,
+                               std::optional<Place>& best) const {
+  const auto [ring, only_near] = where;
+  const Cells middle = box_of(x);
+  Cells from{}, to{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    from[c] = std::max<std::int64_t>(0, middle[c] - ring);
+    to[c] = std::min(count_[c] - 1, middle[c] + ring);
+  }
+  for (std::int64_t k = from[2]; k <= to[2]; ++k)
+    for (std::int64_t j = from[1]; j <= to[1]; ++j)
+      for (std::int64_t i = from[0]; i <= to[0]; ++i) {
+        const std::int64_t away =
+            std::max({std::abs(k - middle[2]), std::abs(j - middle[1]), std::abs(i - middle[0])});
+        if (away != ring) continue;
+        const std::int64_t box = (k * count_[1] + j) * count_[0] + i;
+        for (std::int64_t m = start_[box]; m < start_[box + 1]; ++m) {
+          if (only_near && !near_element(mesh_, nodes(element_[m]), x)) continue;
+          const std::optional<Vector3> at = reference_point(mesh_, nodes(element_[m]), x);
+          if (!at) continue;
+          const double miss = outside(cell(mesh_.type), *at);
+          if (miss < least - rounding) {
+            least = miss;
+            best = Place{element_[m], *at};
+          }
+          if (least <= rounding) return;
+        }
+      }
+}
+
+}  // namespace kacanov

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Uniform refinement: a refined box is the box with half the cells' size, curves and groups are kept.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <set>
+
+#include <kacanov/refine.hpp>
+#include "problem/vector3.hpp"
+
+using namespace kacanov;
+
+namespace {
+
+BoxSpec box_of(ElementType type, std::array<int, 3> cells) {
+  BoxSpec spec;
+  spec.type = type;
+  spec.size = {2.0, 1.0, 1.5};
+  spec.cells = cells;
+  return spec;
+}
+
+/// Coordinates on a fine grid of whole numbers, so that equal points compare equal.
+std::set<std::array<long, 3>> points(const Mesh& mesh) {
+  std::set<std::array<long, 3>> all;
+  for (std::size_t n = 0; n < mesh.node_count(); ++n) {
+    const Vector3 x = position(mesh, static_cast<std::int32_t>(n));
+    all.insert({std::lround(x[0] * 1e6), std::lround(x[1] * 1e6), std::lround(x[2] * 1e6)});
+  }
+  return all;
+}
+
+/// Length or area of the straight facets of a group.
+double measure(const Mesh& mesh, const Group& group) {
+  double sum = 0.0;
+  for (const std::int32_t f : group.members) {
+    const auto n = mesh.facet(f);
+    const Vector3 a = position(mesh, n[0]), b = position(mesh, n[1]);
+    if (mesh.dim() == 2) {
+      sum += norm(b - a);
+      continue;
+    }
+    const Vector3 c = position(mesh, n[2]);
+    sum += norm(cross(b - a, c - a)) * (cell(mesh.type).facet().corners == 4 ? 1.0 : 0.5);
+  }
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("a refined box has the nodes, the elements and the sides of a box with twice the cells") {
+  for (const ElementType type : element_types()) {
+    CAPTURE(cell(type).name);
+    const Mesh coarse = make_box(box_of(type, {3, 2, 1}));
+    const Mesh twice = make_box(box_of(type, {6, 4, 2}));
+    const Mesh fine = refine(coarse);
+    CHECK_NOTHROW(check_mesh(fine));
+    CHECK(fine.element_count() == twice.element_count());
+    CHECK(fine.facet_count() == twice.facet_count());
+    CHECK(fine.node_count() == twice.node_count());
+    CHECK(points(fine) == points(twice));
+    REQUIRE(fine.groups.size() == coarse.groups.size());
+    for (std::size_t g = 0; g < fine.groups.size(); ++g) {
+      CAPTURE(fine.groups[g].name);
+      const std::size_t children = std::size_t{1} << coarse.groups[g].dimension;
+      if (coarse.groups[g].dimension >= coarse.dim() - 1)
+        CHECK(fine.groups[g].members.size() == coarse.groups[g].members.size() * children);
+      if (coarse.groups[g].dimension == coarse.dim() - 1)
+        CHECK(measure(fine, fine.groups[g]) ==
+              doctest::Approx(measure(coarse, coarse.groups[g])).epsilon(1e-12));
+    }
+  }
+}
+
+TEST_CASE("edges keep their curves: new nodes lie where the element's own map takes them") {
+  Mesh mesh = make_box(box_of(ElementType::tet10, {2, 2, 2}));
+  for (std::size_t n = 0; n < mesh.node_count(); ++n) {
+    double* x = &mesh.coordinates[3 * n];
+    x[2] += 0.1 * x[0] * x[0];  // a parabola, which quadratic edges follow exactly
+  }
+  const Mesh fine = refine(refine(mesh));
+  CHECK_NOTHROW(check_mesh(fine));
+  double low = 1.0;
+  for (const Group& group : fine.groups) {
+    if (group.name != "bottom") continue;
+    for (const std::int32_t f : group.members)
+      for (const std::int32_t n : fine.facet(f)) {
+        const Vector3 x = position(fine, n);
+        CHECK(x[2] == doctest::Approx(0.1 * x[0] * x[0]).epsilon(1e-12));
+        low = std::min(low, x[0]);
+      }
+  }
+  CHECK(low == 0.0);
+}
+
+TEST_CASE("repeated refinement keeps tetrahedra in shape") {
+  Mesh mesh = make_box(box_of(ElementType::tet4, {1, 1, 1}));
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> shift(-0.1, 0.1);
+  for (double& x : mesh.coordinates) x += shift(random);
+  const auto worst_shape = [](const Mesh& m) {
+    double worst = 1e300;
+    for (std::size_t e = 0; e < m.element_count(); ++e) {
+      const std::int32_t* n = &m.elements[4 * e];
+      const Vector3 o = position(m, n[0]), a = position(m, n[1]) - o, b = position(m, n[2]) - o,
+                    c = position(m, n[3]) - o;
+      const double edge = std::max({norm(a), norm(b), norm(c), norm(a - b), norm(b - c), norm(c - a)});
+      worst = std::min(worst, dot(cross(a, b), c) / (edge * edge * edge));
+    }
+    return worst;
+  };
+  const double first = worst_shape(refine(mesh));
+  CHECK(first > 0.0);
+  CHECK(worst_shape(refine(refine(refine(mesh)))) > 0.5 * first);
+}
+
+TEST_CASE("named points and lines, tags and materials are taken over") {
+  Mesh mesh = make_box(box_of(ElementType::tri3, {2, 1, 0}));
+  mesh.node_tags = {10, 20, 30, 40, 50, 60};
+  mesh.groups.push_back({"half", 2, {0, 1}});
+  mesh.groups.push_back({"corner", 0, {0}});
+  const Mesh fine = refine(mesh);
+  CHECK(std::equal(mesh.node_tags.begin(), mesh.node_tags.end(), fine.node_tags.begin()));
+  CHECK(fine.node_tags.size() == fine.node_count());
+  CHECK(std::set<std::int64_t>(fine.node_tags.begin(), fine.node_tags.end()).size() == fine.node_count());
+  CHECK(fine.element_tags.empty());
+  CHECK(fine.groups[fine.groups.size() - 2].members == std::vector<std::int32_t>{0, 1, 2, 3, 4, 5, 6, 7});
+  CHECK(fine.groups.back().members == std::vector<std::int32_t>{0});
+
+  Mesh solid = make_box(box_of(ElementType::hex8, {1, 1, 1}));
+  solid.groups.push_back({"edge", 1, {0, 1}});
+  const Group edge = refine(solid).groups.back();
+  CHECK(edge.members.size() == 3);  // its ends and what is between
+}

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Solves a case on coarser meshes first, each from the one before.
+#include "program/coarse_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <string>
+
+#include <kacanov/error.hpp>
+#include <kacanov/solve.hpp>
+#include "program/loaded_case.hpp"
+#include "program/report.hpp"
+
+namespace kacanov {
+namespace {
+
+/// Below this a mesh is solved at once: a coarser one costs as much as it saves.
+constexpr std::int64_t least_fine = 20000, least_coarse = 1500;
+/// What a start has to be known to: interpolation adds more than that.
+constexpr double coarse_tolerance = 1e-3;
+
+std::int64_t unknowns_of(const BoxSpec& box) {
+  const std::int64_t dim = dimension(box.type);
+  std::int64_t nodes = 1;
+  for (std::int64_t c = 0; c < dim; ++c)
+    nodes *= static_cast<std::int64_t>(box.cells[c]) * cell(box.type).order + 1;
+  return nodes * dim;
+}
+
+std::string level_line(const CoarseLevel& level) {
+  return "from a mesh of " + std::to_string(level.unknowns) +
+         " unknowns: " + std::to_string(level.outer_iterations) + " steps, " +
+         std::to_string(level.cg_iterations) + " CG, " + readable_seconds(level.seconds) + "\n";
+}
+
+/// What makes a coarser mesh, on the first rank.
+using MakeMesh = std::function<Mesh()>;
+
+/// Half as many cells along each axis, coarsest first.
+std::vector<BoxSpec> coarser_boxes(const BoxSpec& fine) {
+  std::vector<BoxSpec> boxes;
+  if (unknowns_of(fine) < least_fine) return boxes;
+  BoxSpec box = fine;
+  const auto dim = static_cast<std::size_t>(dimension(fine.type));
+  while (true) {
+    if (*std::min_element(box.cells.begin(), box.cells.begin() + static_cast<std::ptrdiff_t>(dim)) < 4) break;
+    for (std::size_t c = 0; c < dim; ++c) box.cells[c] /= 2;
+    if (unknowns_of(box) < least_coarse) break;
+    boxes.push_back(box);
+  }
+  std::reverse(boxes.begin(), boxes.end());
+  return boxes;
+}
+
+/// Coarsest first.
+std::vector<MakeMesh> coarser_meshes(const MeshSource& source) {
+  std::vector<MakeMesh> meshes;
+  if (source.box)
+    for (const BoxSpec& box : coarser_boxes(*source.box)) meshes.push_back([box] { return make_box(box); });
+  for (int times = 0; source.file && times < source.refine; ++times)
+    meshes.push_back([source, times] { return load_mesh({source.file, {}, times}); });
+  return meshes;
+}
+
+/// The case on this mesh; nothing where it does not fit.
+std::optional<Problem> coarse_problem(const Case& input, const MakeMesh& mesh) {
+  try {
+    Model model = input.model;
+    model.probes.clear();
+    return build_problem(mesh(), model);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+/// Takes u on to what halving the mesh once more may be expected to give: errors of order p + 1 fall to
+/// 2⁻⁽ᵖ⁺¹⁾ each time, and so do the differences of levels (Richardson).
+void extrapolate(const CoarseSolution& before, const Part& part, std::span<double> u) {
+  const std::vector<double> from = interpolate(before, part).displacement;
+  const double share = std::ldexp(1.0, -(cell(part.type).order + 1));
+  for (std::size_t i = 0; i < u.size(); ++i) u[i] += share * (u[i] - from[i]);
+}
+
+/// Solves on one mesh, from `run.solution` where there is one, and puts what comes out there.
+void solve_level(const Case& input, const MakeMesh& mesh, const MpiSession& mpi, RunOptions options,
+                 CoarseRun& run) {
+  const double start = MPI_Wtime();
+  std::optional<Problem> problem;
+  int fits = 0;
+  together(mpi, [&] {
+    if (mpi.first()) problem = coarse_problem(input, mesh);
+    fits = problem.has_value() ? 1 : 0;
+  });
+  MPI_Bcast(&fits, 1, MPI_INT, 0, mpi.comm());
+  if (fits == 0) return;
+  const Part part = distribute(problem ? &*problem : nullptr, mpi.comm());
+  SolverOptions solver = input.model.solver;
+  solver.tolerance = std::max(solver.tolerance, coarse_tolerance);
+  options.coarse = run.solution ? &*run.solution : nullptr;
+  Solution solution = solve(part, solver, options);
+  if (run.solution) extrapolate(*run.solution, part, solution.displacement);
+  if (solution.result.status == Status::converged)
+    run.solution = whole_solution(part, problem ? &*problem : nullptr, solution);
+  const Result& result = solution.result;
+  run.levels.push_back({result.unknowns, result.outer_iterations, result.cg_iterations,
+                        result.operator_applications, MPI_Wtime() - start});
+  if (mpi.first()) std::cout << level_line(run.levels.back()) << std::flush;
+}
+
+}  // namespace
+
+CoarseRun solve_coarser(const Case& input, const MpiSession& mpi, const RunOptions& options) {
+  CoarseRun run;
+  if (!input.model.solver.nested || !input.model.solver.load_steps.empty()) return run;
+  RunOptions coarse = options;
+  coarse.progress = nullptr;
+  coarse.checkpoint = nullptr;
+  coarse.start = nullptr;
+  for (const MakeMesh& mesh : coarser_meshes(input.mesh)) {
+    int stop = options.stop_requested && options.stop_requested() ? 1 : 0;
+    MPI_Allreduce(MPI_IN_PLACE, &stop, 1, MPI_INT, MPI_MAX, mpi.comm());
+    if (stop != 0) break;
+    solve_level(input, mesh, mpi, coarse, run);
+  }
+  return run;
+}
+
+}  // namespace kacanov
