@@ -95,18 +95,22 @@ Start interpolate(const CoarseSolution& coarse, const Part& part) {
   for (std::size_t i = 0; i < part.contact.size(); ++i) {
     const ContactPoint& point = part.contact[i];
     const Weights weights = weights_at(coarse, locator, position(point.node));
-    // Nodes that bear no contact, as those that are held and corners of quadratic facets, say nothing.
+    // Nodes that bear no contact, as those that are held and corners of quadratic facets, say nothing; where
+    // all that count lie so, the others of the element do.
     double known = 0.0, pressure = 0.0;
     Vector3 friction{};
-    for (std::size_t a = 0; a < weights.nodes.size(); ++a) {
-      if (!(weights.value[a] > 0.0)) continue;
-      auto at = std::lower_bound(coarse.contact.begin(), coarse.contact.end(), weights.nodes[a],
-                                 [](const auto& entry, std::int32_t node) { return entry.node < node; });
-      for (; at != coarse.contact.end() && at->node == weights.nodes[a]; ++at) {
-        if (at->entry != point.entry) continue;
-        known += weights.value[a];
-        pressure += weights.value[a] * at->pressure;
-        friction = friction + weights.value[a] * at->friction;
+    for (const bool all : {false, true}) {
+      if (known > 0.1) break;
+      for (std::size_t a = 0; a < weights.nodes.size(); ++a) {
+        const double weight = all ? 1.0 : std::max(weights.value[a], 0.0);
+        auto at = std::lower_bound(coarse.contact.begin(), coarse.contact.end(), weights.nodes[a],
+                                   [](const auto& entry, std::int32_t node) { return entry.node < node; });
+        for (; at != coarse.contact.end() && at->node == weights.nodes[a]; ++at) {
+          if (at->entry != point.entry) continue;
+          known += weight;
+          pressure += weight * at->pressure;
+          friction = friction + weight * at->friction;
+        }
       }
     }
     if (!(known > 0.1)) continue;

@@ -113,7 +113,8 @@ void solve_level(const Case& input, const MakeMesh& mesh, const MpiSession& mpi,
 
 CoarseRun solve_coarser(const Case& input, const MpiSession& mpi, const RunOptions& options) {
   CoarseRun run;
-  if (!input.model.solver.nested || !input.model.solver.load_steps.empty()) return run;
+  const Model& model = input.model;
+  if (!model.solver.nested || !model.solver.load_steps.empty() || !model.steps.empty()) return run;
   RunOptions coarse = options;
   coarse.progress = nullptr;
   coarse.checkpoint = nullptr;
