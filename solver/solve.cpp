@@ -15,10 +15,12 @@
 namespace kacanov {
 namespace {
 
-/// Load steps that the run to go on from has behind it, on all ranks.
-std::size_t steps_over(const Part& part, const RunOptions& run) {
+/// Load steps of so many that the run to go on from has behind it, on all ranks.
+std::size_t steps_over(const Part& part, const RunOptions& run, std::size_t steps) {
   const bool here = part.halo.rank == 0 && run.start != nullptr;
-  return static_cast<std::size_t>(part.halo.max_all(here ? run.start->number("load_steps_over") : 0.0));
+  const auto most = static_cast<std::int64_t>(steps) - 1;
+  return static_cast<std::size_t>(
+      part.halo.max_all(here ? static_cast<double>(run.start->count("load_steps_over", most)) : 0.0));
 }
 
 /// Shares of the load one after the other; with load curves the times of their points.
@@ -101,7 +103,7 @@ Solution solve(const Part& part, const SolverOptions& options, const RunOptions&
   const bool restart = part.halo.any(part.halo.rank == 0 && run.start != nullptr);
   const std::vector<double> shares = load_points(part, options);
   result.by_time = !part.steps.empty();
-  OuterLoop loop(part, options, run, shares[steps_over(part, run)]);
+  OuterLoop loop(part, options, run, shares[steps_over(part, run, shares.size())]);
   const StepContext& context = loop.context();
   if (!restart && run.coarse != nullptr) loop.adopt(interpolate(*run.coarse, part));
   const double prepared = MPI_Wtime();

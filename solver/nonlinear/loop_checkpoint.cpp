@@ -124,9 +124,14 @@ void OuterLoop::restore(const Checkpoint* from, Result& result) {
   const Part& part = context_.part;
   const bool here = part.halo.rank == 0;
   const auto get = [&](const char* name, auto& value) {
-    double number = here ? from->number(name) : 0.0;
+    using Value = std::remove_reference_t<decltype(value)>;
+    // Counts beyond what the others hold could not be added to.
+    constexpr std::int64_t most = std::int64_t{1} << (sizeof(Value) == 4 ? 30 : 50);
+    double number = 0.0;
+    if (here)
+      number = std::is_integral_v<Value> ? static_cast<double>(from->count(name, most)) : from->number(name);
     if (part.halo.ranks > 1) MPI_Bcast(&number, 1, MPI_DOUBLE, 0, part.halo.comm);
-    value = static_cast<std::remove_reference_t<decltype(value)>>(number);
+    value = static_cast<Value>(number);
   };
   const auto values = [&](const char* name, std::size_t entries) {
     Vector all(entries);

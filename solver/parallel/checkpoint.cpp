@@ -3,6 +3,7 @@
 #include <kacanov/checkpoint.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include <kacanov/error.hpp>
@@ -39,6 +40,14 @@ double Checkpoint::number(const std::string& name) const {
   const auto found = numbers.find(name);
   if (found == numbers.end()) throw InputError("the checkpoint has no number \"" + name + "\"");
   return found->second;
+}
+
+std::int64_t Checkpoint::count(const std::string& name, std::int64_t most) const {
+  const double value = number(name);
+  if (!(value >= 0.0 && value <= static_cast<double>(most)) || value != std::floor(value))
+    throw InputError("the checkpoint's number \"" + name + "\" is " + std::to_string(value) +
+                     ", expected a whole number from 0 to " + std::to_string(most));
+  return static_cast<std::int64_t>(value);
 }
 
 const std::vector<double>& Checkpoint::field(const std::string& name, std::size_t entries) const {

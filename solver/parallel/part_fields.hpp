@@ -77,6 +77,10 @@ class FieldReader {
         source_.read(value.data(), value.size() * sizeof(Entry));
       else
         for (Entry& entry : value) (*this)(entry);
+    } else if constexpr (std::is_same_v<T, bool>) {
+      std::uint8_t byte = 0;  // of a damaged file it may be any
+      source_.read(&byte, 1);
+      value = byte != 0;
     } else if constexpr (without_holes<T>) {
       source_.read(&value, sizeof(T));
     } else {

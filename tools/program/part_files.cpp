@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <kacanov/error.hpp>
+#include "parallel/check_part.hpp"
 #include "parallel/part_fields.hpp"
 #include "program/case_identity.hpp"
 #include "program/hashed_file.hpp"
@@ -207,6 +208,11 @@ LoadedCase load_parts(const std::filesystem::path& folder, const Case& input, co
     check_part(reader.header(), input, mpi, part_file(folder, mpi.rank()).string());
     FieldReader{reader}(loaded.part);
     reader.finish();
+    try {
+      check_part(loaded.part, mpi.rank(), mpi.ranks());
+    } catch (const InputError& error) {
+      throw InputError("--parts: " + part_file(folder, mpi.rank()).string() + ": " + error.what());
+    }
     identity = split_identity(reader.header());
     if (mpi.first()) print_warnings(input, *loaded.problem);
   });

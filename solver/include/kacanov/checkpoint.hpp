@@ -18,8 +18,10 @@ struct Checkpoint {
   std::map<std::string, double> numbers;
   std::map<std::string, std::vector<double>> fields;
 
-  /// Throw InputError naming what is missing, or how many entries it has and should have.
+  /// Throw InputError naming what is missing, or what it is and should be.
   double number(const std::string& name) const;
+  /// A number that has to be whole and from 0 to `most`.
+  std::int64_t count(const std::string& name, std::int64_t most) const;
   const std::vector<double>& field(const std::string& name, std::size_t entries) const;
 };
 

@@ -69,6 +69,14 @@ class ConstraintRows {
     for (RowEntry& entry : entries_) f(entry.node);
   }
 
+  /// Whether every point has its entries, as after push_back(); what is read from files need not.
+  bool consistent() const noexcept {
+    if (start_.size() != points_.size() + 1 || start_.front() != 0 || start_.back() != entries_.size())
+      return false;
+    for (std::size_t i = 0; i < points_.size(); ++i)
+      if (start_[i + 1] <= start_[i]) return false;
+    return true;
+  }
   /// Lists its fields for files and messages.
   template <class Rows, class Stream>
   static void exchange(Rows& rows, const Stream& stream) {
