@@ -2,6 +2,7 @@
 // Small crooked boxes of every element type, as plain arrays.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Any lines as arguments of --set, on a case that has every kind of entry.
+#include <kacanov/error.hpp>
+#include <vector>
+
+#include "../tools/case_samples.hpp"
+#include "bytes.hpp"
+
+using namespace kacanov;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const std::string sample = testing::complete_case().dump();
+  std::vector<std::string> lines(1);
+  for (const char c : fuzz::Bytes(data, size).rest()) {
+    if (c == '\n')
+      lines.emplace_back();
+    else
+      lines.back() += c;
+  }
+  try {
+    parse_case(CaseText{"sample.json", sample}, lines);
+  } catch (const InputError&) {
+  }
+  return 0;
+}
