@@ -21,7 +21,7 @@ kacanov_test(lanczos
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal Eigen3::Eigen
   RANKS 1 2 3)
 kacanov_test(parallel
-  MPI SOURCES solver/parallel_test.cpp
+  MPI SOURCES solver/parallel_test.cpp solver/check_part_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal
   RANKS 1 2 3 4)
 

@@ -3,6 +3,7 @@
 #include "amg/aggregation.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <utility>
@@ -247,6 +248,9 @@ std::vector<std::int32_t> aggregate_nodes(const Body& body, std::span<const doub
 }
 
 std::vector<std::int32_t> aggregate(WeightedGraph graph, double size) {
+  // Of a state that has broken down; what is no number would not be counted as it is compared.
+  for (float& weight : graph.weight)
+    if (!std::isfinite(weight)) weight = 0.0F;
   const std::int32_t rows = graph.rows();
   std::vector<std::int32_t> result(rows);
   std::iota(result.begin(), result.end(), 0);

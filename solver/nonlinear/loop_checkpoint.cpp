@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The outer loop's state on its way into a checkpoint and out of it.
 #include <algorithm>
+#include <cmath>
+#include <string>
 #include <vector>
 
+#include <kacanov/error.hpp>
 #include "nonlinear/outer_loop.hpp"
 
 namespace kacanov {
@@ -161,14 +164,21 @@ void OuterLoop::restore(const Checkpoint* from, Result& result) {
   set_history(result.load_steps, values("load_steps", history(result.load_steps).size()));
   result.r = values("r", result.outer_iterations);
 
+  const auto finite = [&](const char* name, std::size_t entries) {
+    if (!here) return Vector();
+    const Vector& field = from->field(name, entries);
+    if (!std::all_of(field.begin(), field.end(), [](double v) { return std::isfinite(v); }))
+      throw InputError(std::string("the checkpoint's field \"") + name +
+                       "\" has an entry that is not finite");
+    return field;
+  };
   const std::size_t points = part.total_contact;
   const auto contact = [&](const char* name, int components) {
-    const std::size_t width = components;
-    return scatter_contact(part, here ? from->field(name, points * width) : Vector(), components);
+    return scatter_contact(part, finite(name, points * static_cast<std::size_t>(components)), components);
   };
   const auto unknowns = static_cast<std::size_t>(part.total_nodes()) * static_cast<std::size_t>(part.dim());
   ContactState& state = context_.state;
-  state.omega = scatter_nodal(part, here ? from->field("displacement", unknowns) : Vector(), part.dim());
+  state.omega = scatter_nodal(part, finite("displacement", unknowns), part.dim());
   state.lambda.normal = contact("pressure", 1);
   state.lambda.tangential = contact("friction", 2);
   state.phi.normal = contact("phi_normal", 1);

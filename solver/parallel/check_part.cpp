@@ -176,6 +176,8 @@ void check_part(const Part& part, int rank, int ranks) {
   for (const Probe& probe : part.probes) expect_indices("probes", std::array{probe.element}, elements);
   expect(part.loose_modes >= 0, "loose modes", "are fewer than none");
   if (!part.start.empty()) expect_length("start", part.start.size(), unknowns);
+  const auto finite = [](double v) { return std::isfinite(v); };
+  expect(std::all_of(part.start.begin(), part.start.end(), finite), "start", "is not finite");
 }
 
 }  // namespace kacanov
