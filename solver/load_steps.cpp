@@ -2,6 +2,10 @@
 // From one share of the load to the next, and the history of what each came to.
 #include "load_steps.hpp"
 
+#include <algorithm>
+#include <sstream>
+#include <string>
+
 #include "collect.hpp"
 
 namespace kacanov {
@@ -18,6 +22,31 @@ LoadStep line_now(const OuterLoop& loop, double share, const Result& result) {
   return load_step_line(now.result, share);
 }
 
+/// Largest displacement over the body, of a state at a share of the load, for a whole one.
+double stretched(const OuterLoop& loop, const OuterLoop::Place& place) {
+  return loop.context().space.max_abs(place.state.omega) / place.share;
+}
+
+/// What it means that nothing beyond `last` converges; `failed`: where the last attempt has left off.
+std::string explain_stop(const OuterLoop& loop, const OuterLoop::Place& last, double target,
+                         const OuterLoop::Place& failed, const std::string& why) {
+  std::ostringstream text;
+  text.precision(4);
+  if (last.share == 0.0) {
+    text << (why.empty() ? "no state of balance is found, not even under a small part of the load" : why);
+    return text.str();
+  }
+  constexpr double collapsing = 2.0;
+  const bool collapse =
+      !loop.context().body.linear() && stretched(loop, failed) > collapsing * stretched(loop, last);
+  text << (collapse ? "plastic collapse: the body carries " : "contact and friction do not settle beyond ")
+       << "the load factor " << last.share << " of " << target
+       << (collapse ? " and not " : "; tried in vain: ") << failed.share
+       << ". Numbers and fields are those of " << last.share;
+  if (!why.empty()) text << "; at " << failed.share << " " << why;
+  return text.str();
+}
+
 /// Whether the next load step has something to start from.
 bool worth_going_on(const OuterLoop& loop, const Result& result) {
   if (!result.message.empty()) return false;
@@ -26,17 +55,64 @@ bool worth_going_on(const OuterLoop& loop, const Result& result) {
          loop.context().certify().certificate.exhausted(options.tolerance);
 }
 
+/// Runs where the loop stands, and says whether it has arrived.
+bool arrives(OuterLoop& loop, bool& finished, Result& result) {
+  finished = loop.run(result);
+  const bool arrived = finished && result.message.empty() &&
+                       loop.context().certify().certificate.exhausted(loop.context().options.tolerance);
+  if (arrived) result.load_reached = loop.context().path.share();
+  return arrived;
+}
+
+/// Brings the loop, which stands at `target`, there; where it gives up, from `start` in parts: each is halved
+/// until it converges, and what follows is twice as long. False: the run was asked to stop.
+bool reach(OuterLoop& loop, const OuterLoop::Place& start, double target, Result& result) {
+  bool finished = true;
+  if (arrives(loop, finished, result) || !finished || !loop.gave_up()) return finished;
+  if (result.cg_iterations == 0) {
+    result.message =
+        "no linear problem could be solved: elements that are next to flat, or parts far stiffer "
+        "than others, leave no definite operator in this arithmetic; kacanov check names the "
+        "worst element";
+    return true;
+  }
+  const OuterLoop::Place whole = loop.place();
+  OuterLoop::Place failed = whole, last = start;
+  std::string why = result.message;
+  double over = 0.0;  // of the way from the start
+  for (double part = 0.5; part >= loop.context().tuning.smallest_part; part *= 0.5) {
+    ++result.load_cuts;
+    while (over < 1.0) {
+      const double next = std::min(over + part, 1.0);
+      loop.go_from(last, next == 1.0 ? target : start.share + next * (target - start.share), result);
+      const bool arrived = arrives(loop, finished, result);
+      if (!finished) return false;
+      if (!arrived) break;
+      over = next;
+      last = loop.place();
+      part *= 2.0;
+    }
+    if (over == 1.0) return true;
+    why = result.message;
+    failed = loop.place();
+  }
+  result.message = explain_stop(loop, last, target, failed, why);
+  loop.stand_at(last.share > 0.0 ? last : whole, result);
+  return true;
+}
+
 }  // namespace
 
 bool run_load_steps(OuterLoop& loop, std::span<const double> shares, Result& result) {
-  bool finished = loop.run(result);
-  while (finished && result.load_steps.size() + 1 < shares.size() && worth_going_on(loop, result)) {
+  OuterLoop::Place start = loop.rest();
+  for (;;) {
     const std::size_t over = result.load_steps.size();
+    const bool finished = reach(loop, start, shares[over], result);
+    if (!finished || over + 1 == shares.size() || !worth_going_on(loop, result)) return finished;
     result.load_steps.push_back(line_now(loop, shares[over], result));
-    loop.go_to(shares[over + 1], result);
-    finished = loop.run(result);
+    start = loop.next_start();
+    loop.go_from(start, shares[over + 1], result);
   }
-  return finished;
 }
 
 LoadStep load_step_line(const Result& result, double share) {

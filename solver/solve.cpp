@@ -117,6 +117,7 @@ Solution solve(const Part& part, const SolverOptions& options, const RunOptions&
                   : result.certificate.exhausted(options.tolerance) ? Status::limited_by_rounding
                                                                     : Status::not_converged;
   if (!part.no_equilibrium.empty()) result.status = Status::not_converged;
+  if (context.path.share() != shares.back()) result.status = Status::not_converged;
   if (!finished) result.status = Status::interrupted;
   // What has not converged can be continued with more steps; what has broken down cannot.
   const bool wanted = part.halo.any(part.halo.rank == 0 && run.checkpoint);

@@ -90,7 +90,7 @@ kacanov_test(outer
   MPI SOURCES solver/outer_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 kacanov_test(nonlinear
-  MPI SOURCES solver/nonlinear_test.cpp
+  MPI SOURCES solver/nonlinear_test.cpp solver/augmented_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 # Whole runs.

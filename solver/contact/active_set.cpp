@@ -224,12 +224,7 @@ CgResult solve_oblique(const Space& space, const HeldNodes& nodes, const Apply& 
 
 ActiveSet decide(const Traces& traces, const ContactState& state, double c) {
   const auto points = traces.points();
-  ActiveSet set;
-  set.held.resize(points.size());
-  set.slip_force.assign(2 * points.size(), 0.0);
-  set.slip_stiffness.assign(points.size(), 0.0);
-  set.slip_direction.assign(2 * points.size(), 0.0);
-  set.coulomb.assign(points.size(), 0.0);
+  ActiveSet set(points.size());
   Vector pushed(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     pushed[i] = state.lambda.normal[i] + c * (state.trace.normal[i] - state.gap[i]);

@@ -18,6 +18,14 @@ struct ActiveSet {
   Vector slip_stiffness;  ///< points: k of λ_f = (ψ + μ_f λ_n) ŝ + k (I − ŝŝᵀ) Tω, 0 in 2D
   Vector slip_direction;  ///< points × 2: ŝ
   Vector coulomb;         ///< points: μ_f where it slips under pressure, else 0
+
+  /// Nothing held, and nothing slips.
+  explicit ActiveSet(std::size_t points = 0)
+      : held(points),
+        slip_force(2 * points, 0.0),
+        slip_stiffness(points, 0.0),
+        slip_direction(2 * points, 0.0),
+        coulomb(points, 0.0) {}
 };
 
 /// c is a penalty like ADMM's; any positive value has the same fixed points.

@@ -44,6 +44,20 @@ void ContactPreconditioner::prepare(const ActiveSet& set) {
   schedule_.built_for(set.held);
 }
 
+void ContactPreconditioner::prepare(const ActiveSet& set, double penalty, double loose) {
+  const bool again = worn();
+  if (!again && !part_->halo.any(schedule_.set_moved(set.held, penalty))) return;
+  auto blocks = TraceRows(*part_, set.held).penalty_blocks(penalty);
+  const auto slip = slip_blocks(*part_, set);
+  blocks.insert(blocks.end(), slip.begin(), slip.end());
+  if (loose > 0.0) {
+    const auto all = penalty_blocks({loose, loose});
+    blocks.insert(blocks.end(), all.begin(), all.end());
+  }
+  build(again, blocks, Space(*part_));
+  schedule_.built_for(set.held, penalty);
+}
+
 bool ContactPreconditioner::worn() const {
   if (schedule_.stale()) return true;
   if (body_->linear()) return false;

@@ -27,6 +27,8 @@ class ContactPreconditioner {
   void prepare(const Penalty& penalty, bool first);
   /// Before a semismooth Newton step with this set, where it pays.
   void prepare(const ActiveSet& set);
+  /// Before a step that has penalties on the held rows of this set, where it pays; `loose` on all rows.
+  void prepare(const ActiveSet& set, double penalty, double loose);
   void watch(double digits, std::int64_t iterations) { schedule_.watch(digits, iterations); }
   void mark_stale() noexcept { schedule_.mark_stale(); }
 

@@ -6,9 +6,20 @@
 
 namespace kacanov {
 
-void Fallback::after_admm(double worst) { steps_left_ = worst <= aim_ ? 0 : std::max(0, steps_left_ - 1); }
+void Fallback::count(double worst) {
+  ++idle_;
+  if (!(worst < tuning_.gain * lowest_)) return;
+  lowest_ = worst;
+  idle_ = 0;
+}
+
+void Fallback::after_admm(double worst) {
+  count(worst);
+  steps_left_ = worst <= aim_ ? 0 : std::max(0, steps_left_ - 1);
+}
 
 bool Fallback::after_newton(double worst, bool solved) {
+  count(worst);
   stalled_ = worst < tuning_.progress * best_ ? 0 : stalled_ + 1;
   best_ = std::min(best_, worst);
   if (solved && stalled_ < tuning_.patience && std::isfinite(worst)) return false;

@@ -20,6 +20,8 @@ class Fallback {
   void after_admm(double worst);
   /// The same for a Newton step; `solved`: its linear problem was. Whether a retreat begins.
   bool after_newton(double worst, bool solved);
+  /// Whether nothing has been gained for so long that nothing is to be hoped for.
+  bool stuck() const noexcept { return idle_ >= tuning_.most_idle; }
   void start_again() { *this = Fallback(tuning_); }
 
   /// Entries of a checkpoint.
@@ -30,6 +32,8 @@ class Fallback {
     entry("retreat", steps_left_);
     entry("aim", aim_);
     entry("retreats", retreats_);
+    entry("lowest", lowest_);
+    entry("idle", idle_);
   }
 
  private:
@@ -39,6 +43,9 @@ class Fallback {
   int steps_left_ = 0;      ///< ADMM steps still to take
   double aim_ = 0.0;        ///< residual at which they end early
   int retreats_ = 0;
+  double lowest_ = HUGE_VAL;  ///< residual that counts as the last gain
+  int idle_ = 0;              ///< steps since
+  void count(double worst);
 };
 
 }  // namespace kacanov

@@ -8,11 +8,12 @@
 namespace kacanov {
 
 bool Linearisation::takes_tangent(double equilibrium) const {
-  const bool far = outer_ == SolverOptions::Outer::automatic && equilibrium > reach_;
+  const bool far = outer_ == SolverOptions::Outer::automatic && (equilibrium > reach_ || cut_short_);
   return outer_ != SolverOptions::Outer::kacanov && !linear_ && !far;
 }
 
-void Linearisation::after_tangent(double before, double after) {
+void Linearisation::after_tangent(double before, double after, double length) {
+  cut_short_ = length < tuning_.short_step;
   if (!(after <= before)) reach_ = std::max(tuning_.least_reach, tuning_.reach_cut * before);
 }
 

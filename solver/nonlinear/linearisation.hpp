@@ -19,10 +19,15 @@ class Linearisation {
 
   /// For a step from a state with this residual of equilibrium.
   bool takes_tangent(double equilibrium) const;
-  /// Learns from a tangent step: the residual of equilibrium before and after (NaN: after a breakdown).
-  void after_tangent(double before, double after);
+  /// Learns from a tangent step: the residual of equilibrium before and after (NaN: after a breakdown), and
+  /// how much of it was taken.
+  void after_tangent(double before, double after, double length = 1.0);
+  void after_secant() noexcept { cut_short_ = false; }
   /// Forgets what it has learnt, for another load.
-  void start_again() { reach_ = tuning_.first_reach; }
+  void start_again() {
+    reach_ = tuning_.first_reach;
+    cut_short_ = false;
+  }
 
   double reach() const noexcept { return reach_; }
   /// Entries of a checkpoint.
@@ -35,7 +40,8 @@ class Linearisation {
   SolverOptions::Outer outer_;
   bool linear_;
   Tuning tuning_;
-  double reach_;  ///< residual of equilibrium up to which steps take the tangent
+  bool cut_short_ = false;  ///< the last tangent step was: the next takes the secant
+  double reach_;            ///< residual of equilibrium up to which steps take the tangent
 };
 
 /// Whether a step of length `t` along δ is too long, and what to try instead; nothing if it may stay (theory:

@@ -24,6 +24,8 @@ void visit_counts(R& result, Visitor&& entry) {
   entry("lambda_max", result.lambda_max);
   entry("r_star", result.r_star);
   entry("r_active", result.r_active);
+  entry("load_reached", result.load_reached);
+  entry("load_cuts", result.load_cuts);
 }
 
 template <class Visitor>
@@ -156,6 +158,7 @@ void OuterLoop::restore(const Checkpoint* from, Result& result) {
     penalty = {};
   control_.penalty.restore(penalty, result.lambda_min);
   result.restarted_after = result.outer_iterations;
+  opening_ = result.outer_iterations == 0;
   first_outer_ = result.outer_iterations;  // who asks for a restart asks for more steps
   std::size_t steps = 0;
   get("load_steps_over", steps);

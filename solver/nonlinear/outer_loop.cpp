@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
 #include <utility>
 
+#include "nonlinear/augmented_step.hpp"
 #include "nonlinear/body_measures.hpp"
 #include "nonlinear/friction_bounds.hpp"
 #include "spectrum/spectrum.hpp"
@@ -40,7 +42,8 @@ OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOp
       start_(MPI_Wtime()),
       context_(part, options, run, tuning),
       control_{PenaltyControl(options, own_first_penalty(context_), tuning),
-               Linearisation(options.outer, context_.body.linear(), tuning), Fallback(tuning)},
+               Linearisation(options.outer, context_.body.linear(), tuning), Fallback(tuning),
+               AugmentedControl(tuning)},
       friction_(has_friction(part)),
       history_(has_slip_history(part)),
       extent_(body_extent(part)) {
@@ -65,11 +68,32 @@ void OuterLoop::take_load() {
   follow_pressure(context_.part, state.lambda.normal, state.bound);
 }
 
-void OuterLoop::go_to(double share, const Result& result) {
-  const double ratio = history_ ? 1.0 : context_.path.growth_to(share);
+OuterLoop::Place OuterLoop::rest() const {
+  Place place;
+  place.state = context_.state;
+  put_to_rest(context_.part, place.state);
+  return place;
+}
+
+OuterLoop::Place OuterLoop::next_start() const {
+  Place start = place();
+  if (history_) start.state.count_slip_from_here(context_.traces.points());
+  return start;
+}
+
+void OuterLoop::go_from(const Place& place, double share, const Result& result) {
+  opening_ = place.share == 0.0;
+  adopted_ = false;
+  double ratio = 1.0;
+  if (opening_) {
+    control_.penalty.go_back_to_first();
+  } else {
+    context_.path.go_to(place.share);
+    if (!history_) ratio = context_.path.growth_to(share);
+  }
   context_.path.go_to(share);
   ContactState& state = context_.state;
-  if (history_) state.count_slip_from_here(context_.traces.points());
+  state = place.state;
   for (Vector* v : {&state.omega, &state.lambda.normal, &state.lambda.tangential, &state.phi.tangential})
     for (double& value : *v) value *= ratio;
   take_load();
@@ -89,9 +113,15 @@ void OuterLoop::adopt(const Start& start) {
   state.phi.tangential = state.trace.tangential;
 }
 
+void OuterLoop::stand_at(const Place& place, const Result& result) {
+  go_from(place, place.share, result);
+  context_.body.evaluate(context_.state.omega);
+}
+
 void OuterLoop::iterate(Result& result) {
   keep(result);
   if (!control_.penalty.chosen()) choose_first_penalty(result);
+  gave_up_ = false;
   const bool by_step = options_.stop == SolverOptions::Stop::paper;
   const bool may_newton = !by_step && (options_.contact == SolverOptions::Contact::automatic ||
                                        options_.contact == SolverOptions::Contact::active_set);
@@ -99,28 +129,32 @@ void OuterLoop::iterate(Result& result) {
   const ContactState& state = context_.state;
   context_.body.evaluate(state.omega);
   Residuals residuals = certify();
+  best_.worst = HUGE_VAL;
   bool done = false;
   Vector previous;
   while (!done && result.outer_iterations - first_outer_ < options_.max_outer) {
     if (result.outer_iterations > before_this_call) keep(result);
     if (by_step) previous = state.omega;
-    const bool newton =
-        may_newton && (adopted_ || result.outer_iterations > 0) && !control_.fallback.retreating();
+    const bool newton = may_newton && (adopted_ || !opening_) && !control_.fallback.retreating();
     const Residuals before = residuals;
     const StepOutcome step = take_step(newton, before, result);
     result.bound_change = follow_pressure(context_.part, state.lambda.normal, context_.state.bound);
     residuals = certify();
-    if (!newton) move_penalty(step, before, residuals, result);
+    if (!step.balance.empty()) move_penalty(step, before, residuals, result);
+    opening_ = false;
     report(step, residuals, result);
     result.message = hopeless(residuals, newton);
-    if (!result.message.empty()) return;
+    gave_up_ = !result.message.empty();
+    if (gave_up_) return;
     if (by_step) {
       for (std::size_t i = 0; i < previous.size(); ++i) previous[i] -= state.omega[i];
       done = context_.body.linear() ||
              context_.space.norm(previous) <= options_.tolerance * context_.space.norm(state.omega);
     } else {
       done = residuals.certificate.exhausted(options_.tolerance);
-      learn(step, newton, before, residuals);
+      if (!done) residuals = learn(step, newton, before, residuals, result.lambda_min);
+      gave_up_ = !done && may_newton && control_.fallback.stuck();
+      if (gave_up_) return;
     }
   }
 }
@@ -129,7 +163,9 @@ StepOutcome OuterLoop::take_step(bool newton, const Residuals& before, Result& r
   const Penalty& penalty = control_.penalty.value();
   const bool tangent = newton && control_.linearisation.takes_tangent(before.certificate.equilibrium);
   const StepOutcome step = newton ? newton_step(context_, penalty.normal, tangent, before)
-                                  : admm_step(context_, penalty, before, result.outer_iterations == 0);
+                           : control_.fallback.retreating()
+                               ? augmented_step(context_, control_.augmented, before)
+                               : admm_step(context_, penalty, before, opening_);
   ++result.outer_iterations;
   result.contact_iterations += step.contact_iterations;
   result.cg_iterations += step.cg_iterations;
@@ -142,35 +178,64 @@ StepOutcome OuterLoop::take_step(bool newton, const Residuals& before, Result& r
 void OuterLoop::move_penalty(const StepOutcome& step, const Residuals& before, const Residuals& after,
                              Result& result) {
   // Before the first step no displacement sets a scale.
-  const bool first = result.outer_iterations == 1;
+  const bool first = opening_;
   const bool moved = step.arrived
                          ? control_.penalty.go_back_to_first()
                          : control_.penalty.balance(step.balance, first ? after.scales : before.scales);
   if (moved && !first) result.r_active = control_.penalty.value().normal;
 }
 
-void OuterLoop::learn(const StepOutcome& step, bool newton, const Residuals& before, const Residuals& after) {
+Residuals OuterLoop::learn(const StepOutcome& step, bool newton, const Residuals& before,
+                           const Residuals& after, double lambda_min) {
   const double worst = after.certificate.worst();
+  keep_best(after, newton);
   if (!newton) {
     // As after a Newton step that was not solved: the preconditioner is the first suspect.
     if (!step.solved) context_.preconditioner.mark_stale();
-    return control_.fallback.after_admm(worst);
+    control_.fallback.after_admm(worst);
+    return after;
   }
   if (step.tangent)
-    control_.linearisation.after_tangent(before.certificate.equilibrium, after.certificate.equilibrium);
-  if (!control_.fallback.after_newton(worst, step.solved)) return;
+    control_.linearisation.after_tangent(before.certificate.equilibrium, after.certificate.equilibrium,
+                                         step.length);
+  else
+    control_.linearisation.after_secant();
+  if (!control_.fallback.after_newton(worst, step.solved && !ran_away(after))) return after;
   context_.preconditioner.mark_stale();
+  if (!best_.by_multipliers) control_.augmented.begin(control_.penalty.value().normal, lambda_min);
+  return go_back();
+}
+
+void OuterLoop::keep_best(const Residuals& residuals, bool newton) {
+  const double worst = residuals.certificate.worst();
+  const bool retreating = !newton && control_.fallback.retreating();
+  if ((retreating || worst < best_.worst) && !ran_away(residuals))
+    best_ = {context_.state, worst, retreating};
+}
+
+Residuals OuterLoop::go_back() {
+  if (best_.worst < HUGE_VAL) context_.state = best_.state;
   for (double& pressure : context_.state.lambda.normal) pressure = std::max(pressure, 0.0);
+  follow_pressure(context_.part, context_.state.lambda.normal, context_.state.bound);
+  context_.body.evaluate_and_freeze(context_.state.omega);
+  return certify();
+}
+
+bool OuterLoop::ran_away(const Residuals& residuals) const {
+  return residuals.scales.displacement > context_.tuning.most_displacement * extent_;
 }
 
 std::string OuterLoop::hopeless(const Residuals& residuals, bool newton) const {
   const double worst = residuals.certificate.worst(), moved = residuals.scales.displacement;
-  if (!std::isfinite(worst) && !newton) return "the iteration broke down: residuals are not finite";
-  if (options_.stop == SolverOptions::Stop::paper || worst <= options_.tolerance ||
-      !(moved > context_.tuning.most_displacement * extent_))
+  if (newton) return {};
+  if (!std::isfinite(worst)) return "the iteration broke down: residuals are not finite";
+  if (options_.stop == SolverOptions::Stop::paper || worst <= options_.tolerance || !ran_away(residuals))
     return {};
-  return "the displacement has grown to " + std::to_string(moved / extent_) +
-         " times the body's size: the load is beyond what the material or the supports can carry";
+  std::ostringstream text;
+  text.precision(3);
+  text << "the displacement has grown to " << moved / extent_
+       << " times the body's size: the load is beyond what the material or the supports can carry";
+  return text.str();
 }
 
 void OuterLoop::report(const StepOutcome& step, const Residuals& residuals, const Result& result) const {

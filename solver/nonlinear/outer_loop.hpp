@@ -7,6 +7,7 @@
 
 #include <kacanov/coarse_solution.hpp>
 
+#include "nonlinear/augmented_control.hpp"
 #include "nonlinear/fallback.hpp"
 #include "nonlinear/linearisation.hpp"
 #include "nonlinear/penalty_control.hpp"
@@ -25,9 +26,22 @@ class OuterLoop {
   /// result. Where the run is to stop, state and result are those after the last whole outer step, and false
   /// is returned.
   bool run(Result& result);
-  /// Another share of the load: starts from the same multiple of the state there is (theory: load-path), or,
-  /// with load curves or a slip history, from that state itself.
-  void go_to(double share, const Result& result);
+  /// A state that the loop can go on from; at no share of the load: at rest.
+  struct Place {
+    ContactState state;
+    double share = 0.0;
+  };
+  Place place() const { return {context_.state, context_.path.share()}; }
+  Place rest() const;
+  /// Where the next load step begins: here, with its slip counted from here.
+  Place next_start() const;
+  /// Another share of the load: starts from the same multiple of that state (theory: load-path), or, with
+  /// load curves or a slip history, from that state itself.
+  void go_from(const Place& place, double share, const Result& result);
+  /// Just that state, at its share of the load.
+  void stand_at(const Place& place, const Result& result);
+  /// Whether the last run() ended because more steps promise nothing, and not for their number.
+  bool gave_up() const noexcept { return gave_up_; }
 
   /// Starts from what a coarser mesh says (theory: nested). Penalties begin as from rest.
   void adopt(const Start& start);
@@ -54,12 +68,20 @@ class OuterLoop {
     PenaltyControl penalty;
     Linearisation linearisation;
     Fallback fallback;
+    AugmentedControl augmented;
   };
 
   void iterate(Result& result);
   /// The next step, by Newton's method or ADMM, and its counts.
   StepOutcome take_step(bool newton, const Residuals& before, Result& result);
-  void learn(const StepOutcome& step, bool newton, const Residuals& before, const Residuals& after);
+  /// From the residuals after the step; those of the state to go on from are returned.
+  Residuals learn(const StepOutcome& step, bool newton, const Residuals& before, const Residuals& after,
+                  double lambda_min);
+  /// Keeps the state if there has been no better.
+  void keep_best(const Residuals& residuals, bool newton);
+  /// Goes back to it.
+  Residuals go_back();
+  bool ran_away(const Residuals& residuals) const;
   /// Why nothing is to be hoped for; empty otherwise.
   std::string hopeless(const Residuals& residuals, bool newton) const;
   void report(const StepOutcome& step, const Residuals& residuals, const Result& result) const;
@@ -78,11 +100,21 @@ class OuterLoop {
   int first_outer_ = 0;             ///< outer steps before this load step, or before a restart
   bool adopted_ = false;            ///< a coarser mesh has given the state
   double coarse_lambda_max_ = 0.0;  ///< and this
+  bool opening_ = true;             ///< the next step is the first from rest
+  bool gave_up_ = false;
+  int first_outer_ = 0;  ///< outer steps before this load step, or before a restart
   bool friction_;
   bool history_;   ///< slip of some point is counted from the load step before
   double extent_;  ///< of the body
   std::uint64_t earlier_applications_ = 0;
   double spectrum_seconds_ = 0.0, checkpoint_seconds_ = 0.0;
+
+  struct Best {
+    ContactState state;
+    double worst = HUGE_VAL;
+    bool by_multipliers = false;  ///< the end of a retreat so far
+  };
+  Best best_;  ///< of this load step
 
   struct Kept {
     ContactState state;

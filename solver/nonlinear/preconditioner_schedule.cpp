@@ -13,8 +13,8 @@ bool PreconditionerSchedule::penalty_moved(const Penalty& now, bool friction) co
   return far(now.normal, penalty_.normal) || (friction && far(now.tangential, penalty_.tangential));
 }
 
-bool PreconditionerSchedule::set_moved(std::span<const TraceChoice> held) const {
-  return !std::equal(held.begin(), held.end(), pinned_.begin(), pinned_.end());
+bool PreconditionerSchedule::set_moved(std::span<const TraceChoice> held, double penalty) const {
+  return held_by_ != penalty || !std::equal(held.begin(), held.end(), pinned_.begin(), pinned_.end());
 }
 
 void PreconditionerSchedule::built() {

@@ -24,14 +24,17 @@ class PreconditionerSchedule {
   bool drifted(double change, double size) const noexcept { return change > tuning_.drift_worth * size; }
   /// Whether it was built with penalties that are far from these.
   bool penalty_moved(const Penalty& now, bool friction) const;
-  /// Whether it pins other rows than `held`, or none at all. Every node it gets wrong costs CG a few
-  /// iterations.
-  bool set_moved(std::span<const TraceChoice> held) const;
+  /// Whether it holds other rows than `held`, or none at all, or by another penalty (0: pins them). Every
+  /// node it gets wrong costs CG a few iterations.
+  bool set_moved(std::span<const TraceChoice> held, double penalty = 0.0) const;
 
   /// It was set up with a new g.
   void built();
   void built_for(const Penalty& penalty);
-  void built_for(std::vector<TraceChoice> held) { pinned_ = std::move(held); }
+  void built_for(std::vector<TraceChoice> held, double penalty = 0.0) {
+    pinned_ = std::move(held);
+    held_by_ = penalty;
+  }
   /// Learns from a solve: decimal digits gained, CG iterations. The first one after a setup is what it can
   /// do; one that needs more than that by what a setup is worth makes it stale.
   void watch(double digits, std::int64_t iterations);
@@ -42,6 +45,7 @@ class PreconditionerSchedule {
   double digits_per_cg_ = 0.0;  ///< right after the last setup; 0: not known
   Penalty penalty_;
   std::vector<TraceChoice> pinned_;
+  double held_by_ = 0.0;  ///< penalty of those rows; 0: pinned
 };
 
 }  // namespace kacanov

@@ -15,7 +15,7 @@ namespace kacanov {
 namespace {
 
 /// u += t δ, t as long as damping allows. Leaves R(u) and the frozen secant at the new u.
-void take_damped(StepContext& c, std::span<const double> delta, double curvature) {
+double take_damped(StepContext& c, std::span<const double> delta, double curvature) {
   // The solve is over: its vectors are free.
   Vector &from = c.work.direction, &force = c.work.image, &u = c.state.omega;
   from = u;
@@ -24,10 +24,10 @@ void take_damped(StepContext& c, std::span<const double> delta, double curvature
   for (int trial = 0;; ++trial) {
     for (std::size_t i = 0; i < u.size(); ++i) u[i] = from[i] + t * delta[i];
     c.body.evaluate_and_freeze(u);
-    if (c.body.linear() || trial == c.tuning.max_damping_trials) return;
+    if (c.body.linear() || trial == c.tuning.max_damping_trials) return t;
     const std::array<double, 2> work = c.space.dot2(delta, c.body.internal(), delta, force);
     const auto shorter = shorter_step(t, work[0] - work[1], curvature);
-    if (!shorter) return;
+    if (!shorter) return t;
     t = *shorter;
   }
 }
@@ -62,12 +62,16 @@ StepContext::StepContext(const Part& the_part, const SolverOptions& the_options,
     return body.op().apply_tangent(x, y);
   };
   if (options.stop == SolverOptions::Stop::paper) volume = lumped_volume(part);
-  const std::size_t points = part.contact.size();
+  put_to_rest(part, state);
+  work.resize(part.unknowns());
+}
+
+void put_to_rest(const Part& part, ContactState& state) {
   state.omega = part.start;
   state.omega.resize(part.unknowns(), 0.0);
-  state.trace = state.phi = state.lambda = ContactValues(points);
-  state.bound.resize(points);
-  work.resize(part.unknowns());
+  state.trace = state.phi = state.lambda = ContactValues(part.contact.size());
+  state.bound.assign(part.contact.size(), 0.0);
+  state.origin.clear();
 }
 
 StepOutcome admm_step(StepContext& c, const Penalty& penalty, const Residuals& before, bool first) {
@@ -118,7 +122,7 @@ StepOutcome newton_step(StepContext& c, double penalty, bool tangent, const Resi
   outcome.tangent = tangent;
   if (!step.solved) return outcome;
   c.preconditioner.watch(step.cg_digits, step.cg_iterations);
-  take_damped(c, delta, step.curvature);
+  outcome.length = take_damped(c, delta, step.curvature);
   c.state.evaluate(c.traces);
   c.body.unbalanced(c.path, c.work.residual);
   recover_multipliers(c.part, c.traces, set, c.work.residual, c.state);

@@ -33,12 +33,16 @@ struct StepContext {
   Residuals certify() const { return kkt_residuals(space, traces, state, body.forces(path)); }
 };
 
+/// No multipliers, and the displacement to start from.
+void put_to_rest(const Part& part, ContactState& state);
+
 struct StepOutcome {
   const char* method = "";
   int contact_iterations = 0;
   std::int64_t cg_iterations = 0;
   std::uint64_t applications = 0;      ///< of the operator in those
   bool solved = true;                  ///< every linear problem was
+  double length = 1.0;                 ///< of a Newton step: how much of it was taken
   bool tangent = false;                ///< of a Newton step: by the tangent, not the secant
   bool arrived = false;                ///< an ADMM step but the first brought the first pressure
   std::vector<BalanceSample> balance;  ///< of an ADMM step, one an iteration

@@ -32,6 +32,8 @@ struct Tuning {
   /// ... but not less than this: below it is contact that goes to and fro, not the tangent.
   double least_reach = 0.003;
   int max_damping_trials = 6;
+  /// A tangent step of which less was taken is followed by one of the secant.
+  double short_step = 0.1;
 
   // Penalties (theory: first-penalty, balance).
 
@@ -53,6 +55,24 @@ struct Tuning {
   /// slipping points flip on the half ball (338 applications instead of 145), a tenth costs steps on beams.
   double decision_share = 0.3;
 
+  // The method of multipliers (theory: augmented-newton).
+
+  /// Largest penalty over 1/λ_min.
+  double augmented_penalty = 10.0;
+  /// It grows by so much where a round takes so few Newton steps, and falls by it where it takes so many.
+  double augmented_change = 3.0;
+  int augmented_few = 3, augmented_many = 8;
+  /// How far the second round's multipliers follow the first's; from then on Anderson's acceleration knows.
+  double augmented_following = 0.5;
+  /// Rounds that it remembers.
+  int augmented_memory = 6;
+  /// What is left unbalanced, as a share of the force that the multipliers move by.
+  double augmented_balance = 0.1;
+  /// Newton steps between two moves of the multipliers.
+  int augmented_iterations = 10;
+  /// Share of the penalty on all rows where contact alone holds motions.
+  double loose_share = 1e-5;
+
   // When a preconditioner is set up again.
 
   /// Once a step needs this many CG iterations more than it would have right after the last setup: half of
@@ -73,6 +93,11 @@ struct Tuning {
   double retreat_gain = 0.1;
   /// ADMM steps of the first retreat; each is twice as long as the one before, so many times.
   int first_retreat = 2, most_doublings = 6;
+  /// After so many steps without a residual below this share of the lowest the load is cut.
+  int most_idle = 40;
+  double gain = 0.7;
+  /// The smallest part of a load step that is tried.
+  double smallest_part = 1.0 / 64;
   /// A displacement of this many body sizes is a run that goes nowhere.
   double most_displacement = 1e3;
 

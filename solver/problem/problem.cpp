@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <sstream>
 #include <type_traits>
 
 #include <kacanov/error.hpp>
@@ -15,11 +16,29 @@
 
 namespace kacanov {
 
+namespace {
+
+/// Flatter elements leave single precision, in which the preconditioner works, nothing to hold on to.
+constexpr double sliver = 1e-7;
+
+void warn_of_shape(Problem& problem, const FlatElement& flattest) {
+  if (flattest.share >= sliver) return;
+  std::ostringstream text;
+  text.precision(2);
+  text << "element " << problem.mesh.element_tag(flattest.element) << " is next to flat: its volume is "
+       << flattest.share
+       << " of its longest edge cubed; linear solves may fail on such elements, mesh them anew";
+  problem.warnings.push_back(text.str());
+}
+
+}  // namespace
+
 Problem build_problem(Mesh mesh, const Model& model) {
   validate(model);
-  check_mesh(mesh);
+  const FlatElement flattest = check_mesh(mesh);
   Problem problem;
   problem.mesh = std::move(mesh);
+  warn_of_shape(problem, flattest);
   const std::size_t unknowns = problem.mesh.coordinates.size();
   problem.load.assign(unknowns, 0.0);
   problem.held.assign(unknowns, 0);

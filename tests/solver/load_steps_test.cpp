@@ -138,3 +138,50 @@ TEST_CASE("a run goes on in the middle of its load steps") {
             1e-6 * length(whole.result.load_steps[i].probe[0]));
   }
 }
+
+namespace {
+
+/// A cube on the floor pulled along x, its stress uniform: `share` of what a law bears without hardening.
+Model pulled(const Law& law, double share) {
+  Model model;
+  model.materials.push_back({everything(), law});
+  model.boundary.push_back(roller(named("left"), 0));
+  model.boundary.push_back(roller(named("front"), 1));
+  model.contact.push_back(on_plane(named("bottom"), {}, {0, 0, 1}));
+  // ‖dev τ‖ = √(2/3) σ at uniaxial stress, 2 μ x₀ at yield.
+  const double yield = std::sqrt(1.5) * 2.0 * law.shear * 0.002;
+  const auto* saturating = std::get_if<laws::Saturating>(&law.form);
+  const double limit = yield * (saturating ? 1.0 + saturating->q : 1.0);
+  model.boundary.push_back(traction(named("right"), {share * limit, 0, 0}));
+  model.boundary.push_back(traction(named("top"), {0, 0, -1e-4 * limit}));
+  return model;
+}
+
+}  // namespace
+
+TEST_CASE("beyond a limit load the run ends with the factor that it has reached, and says so") {
+  Law law = elastic_law(1.0, 0.3);
+  law.form = laws::Saturating{0.002, 2.0};
+  const Mesh cube = make_box({{1, 1, 1}, {2, 2, 2}, ElementType::hex8});
+  const Run below = run_alone(cube, pulled(law, 0.99));
+  CHECK(below.result().status == Status::converged);
+  CHECK(below.result().load_cuts == 0);
+  CHECK(below.result().load_reached == 1.0);
+  const Run beyond = run_alone(cube, pulled(law, 1.05));
+  CHECK(beyond.result().status == Status::not_converged);
+  CHECK(beyond.result().load_cuts > 0);
+  // Within a part of a load step of the limit, and with the state that belongs to it.
+  CHECK(beyond.result().load_reached < 1.001 / 1.05);
+  CHECK(beyond.result().load_reached > 0.97 / 1.05);
+  CHECK(mentions(beyond.result().message, "plastic collapse: the body carries the load factor 0.9"));
+  CHECK(beyond.result().certificate.worst() <= 1e-6);
+}
+
+TEST_CASE("nearly perfect plasticity a little beyond its yield load converges") {
+  const Mesh cube = make_box({{1, 1, 1}, {2, 2, 2}, ElementType::hex8});
+  Law flat = elastic_law(1.0, 0.3);
+  flat.form = laws::LinearHardening{0.002, 1e-6};
+  CHECK(run_alone(cube, pulled(flat, 1.01)).result().status == Status::converged);
+  flat.form = laws::Power{0.002, 0.02};
+  CHECK(run_alone(cube, pulled(flat, 1.01)).result().status == Status::converged);
+}

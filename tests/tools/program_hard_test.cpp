@@ -89,6 +89,22 @@ TEST_CASE("a cantilever that just reaches its obstacle takes no thousands of ADM
   CHECK(touch.number("contact_force", 2) == doctest::Approx(0.3445).epsilon(1e-3));
 }
 
+TEST_CASE("a slender cantilever whose tip touches, ADMM cut short") {
+  const Run touch = converged("slender_cantilever_touch", 20, 400);
+  CHECK(touch.number("contact_force", 2) == doctest::Approx(0.419).epsilon(1e-3));
+}
+
+TEST_CASE("slivers are named, and nothing is tried for long where they leave no operator") {
+  const Workplace place;
+  const Outcome outcome =
+      place.run("run " KACANOV_HARD_CASES "/sliver.json --ranks 1 --output " + place.path("out").string());
+  CHECK(outcome.exit_code == 1);
+  CHECK(outcome.error.find("is next to flat: its volume is") != std::string::npos);
+  const json result = place.json("out/result.json");
+  CHECK(result.at("message").get<std::string>().find("no linear problem could be solved") == 0);
+  CHECK(result.at("load_reached") == 0.0);
+}
+
 TEST_CASE("bodies fall on to their obstacles") {
   // A width of 2 under 10; and what hangs on a pin without friction.
   CHECK(converged("fall_through_gap", 15, 300).number("contact_force", 1) == doctest::Approx(20.0));

@@ -92,6 +92,10 @@ std::string summary(const Result& result, const RunFigures& figures, const Model
     text += format("  penalty       r* = %.3g, adapted %.3g (rough lambda %.4g to %.4g)\n", result.r_star,
                    result.r_active, result.lambda_min, result.lambda_max);
   }
+  if (result.load_cuts > 0)
+    text += format("  load          reached the factor %.4g, ", result.load_reached) +
+            count(result.load_cuts) +
+            (result.load_cuts == 1 ? " load step was halved\n" : " load steps were halved\n");
   text += format("  stress        von Mises up to %.6g, ", result.max_von_mises) +
           count(result.plastic_elements) + " elements beyond yield\n";
   for (std::size_t i = 0; i < result.probe.size(); ++i) {

@@ -81,6 +81,8 @@ ordered_json result_json(const Result& result, const RunFigures& figures, int di
   json["max_von_mises"] = result.max_von_mises;
   json["plastic_elements"] = result.plastic_elements;
   json["softening_elements"] = result.softening_elements;
+  json["load_reached"] = result.load_reached;
+  json["load_cuts"] = result.load_cuts;
   json["probe"] = ordered_json::array();
   for (const Vector3& u : result.probe) json["probe"].push_back(entries(u, dim));
   for (const LoadStep& step : result.load_steps) {
