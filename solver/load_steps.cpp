@@ -3,6 +3,7 @@
 #include "load_steps.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -64,9 +65,10 @@ bool arrives(OuterLoop& loop, bool& finished, Result& result) {
   return arrived;
 }
 
-/// Brings the loop, which stands at `target`, there; where it gives up, from `start` in parts: each is halved
-/// until it converges, and what follows is twice as long. False: the run was asked to stop.
-bool reach(OuterLoop& loop, const OuterLoop::Place& start, double target, Result& result) {
+/// Brings the loop, which stands at `target`, there; where it gives up, from `before` (none: from rest) in
+/// parts: each is halved until it converges, and what follows is twice as long. False: the run was asked to
+/// stop.
+bool reach(OuterLoop& loop, const std::optional<OuterLoop::Place>& before, double target, Result& result) {
   bool finished = true;
   if (arrives(loop, finished, result) || !finished || !loop.gave_up()) return finished;
   if (result.cg_iterations == 0) {
@@ -76,7 +78,7 @@ bool reach(OuterLoop& loop, const OuterLoop::Place& start, double target, Result
         "worst element";
     return true;
   }
-  const OuterLoop::Place whole = loop.place();
+  const OuterLoop::Place start = before ? *before : loop.rest(), whole = loop.place();
   OuterLoop::Place failed = whole, last = start;
   std::string why = result.message;
   double over = 0.0;  // of the way from the start
@@ -104,14 +106,14 @@ bool reach(OuterLoop& loop, const OuterLoop::Place& start, double target, Result
 }  // namespace
 
 bool run_load_steps(OuterLoop& loop, std::span<const double> shares, Result& result) {
-  OuterLoop::Place start = loop.rest();
+  std::optional<OuterLoop::Place> start;  // none: from rest
   for (;;) {
     const std::size_t over = result.load_steps.size();
     const bool finished = reach(loop, start, shares[over], result);
     if (!finished || over + 1 == shares.size() || !worth_going_on(loop, result)) return finished;
     result.load_steps.push_back(line_now(loop, shares[over], result));
     start = loop.next_start();
-    loop.go_from(start, shares[over + 1], result);
+    loop.go_from(*start, shares[over + 1], result);
   }
 }
 
