@@ -102,7 +102,7 @@ struct Result {
   std::int64_t plastic_elements = 0;
   std::int64_t softening_elements = 0;  ///< in the softening range of a squared-argument law
   std::vector<Vector3> probe;
-  bool by_time = false;              ///< the factors of the load steps are times of the load curves
+  bool by_time = false;       ///< the factors of the load steps are times of the load curves
   double load_reached = 0.0;  ///< factor of the last state that converged; 0: none has
   int load_cuts = 0;          ///< how often a load step, or a part of one, was halved because it did not
   std::vector<LoadStep> load_steps;  ///< those that are over; empty where the load is put on at once
