@@ -15,6 +15,20 @@ foreach(area program_errors program_failures program_files program_memory progra
   set_tests_properties(${area} PROPERTIES PROCESSORS 2)
 endforeach()
 
+kacanov_test(program_verify
+  SOURCES tools/program_verify_test.cpp tools/mesh_writer.cpp
+  LIBRARIES kacanov_program_runner kacanov_formats)
+add_dependencies(test_program_verify kacanov)
+set_tests_properties(program_verify PROPERTIES PROCESSORS 2)
+
+# Small random cases, each verified from its files; perf/verify_answers draws 500 by itself.
+find_package(Python3 COMPONENTS Interpreter)
+if(Python3_FOUND)
+  add_test(NAME verified_answers
+    COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/perf/verify_answers" $<TARGET_FILE:kacanov> --count 60)
+  kacanov_test_properties(verified_answers 1)
+endif()
+
 kacanov_test(program_hard SOURCES tools/program_hard_test.cpp LIBRARIES kacanov_program_runner)
 target_compile_definitions(test_program_hard PRIVATE KACANOV_HARD_CASES="${PROJECT_SOURCE_DIR}/tests/cases/hard")
 add_dependencies(test_program_hard kacanov)

@@ -103,14 +103,20 @@ ParsedCommand parse_command(int argc, const char* const* argv) {
       ->required();
   partition->add_option("--output", command.output, "folder for the parts")->type_name("DIR")->required();
 
+  CLI::App* verify = app.add_subcommand(
+      "verify", "recompute the certificate of a run from its files alone, by an assembly of its own");
+  add_common(*verify, command);
+  verify->add_option("--output", command.output, "folder of the run (default: results/<case name>)")
+      ->type_name("DIR");
+
   ParsedCommand parsed;
-  const std::vector<std::string> names{"run", "spectrum", "sweep", "check", "partition"};
+  const std::vector<std::string> names{"run", "spectrum", "sweep", "check", "partition", "verify"};
   const std::string first = argc > 1 ? argv[1] : "";
   if (!first.empty() && first[0] != '-' && std::find(names.begin(), names.end(), first) == names.end()) {
     const std::string guess = closest_word(first, names);
     parsed.error = usage_error("there is no command \"" + first + "\"" +
                                (guess.empty() ? "" : " (did you mean \"" + guess + "\"?)") +
-                               "; there are: run, spectrum, sweep, check, partition");
+                               "; there are: run, spectrum, sweep, check, partition, verify");
     parsed.exit_code = exit_bad_input;
     return parsed;
   }
@@ -133,6 +139,7 @@ ParsedCommand parse_command(int argc, const char* const* argv) {
   if (sweep->parsed()) command.kind = Command::Kind::sweep;
   if (check->parsed()) command.kind = Command::Kind::check;
   if (partition->parsed()) command.kind = Command::Kind::partition;
+  if (verify->parsed()) command.kind = Command::Kind::verify;
   parsed.command = command;
   return parsed;
 }

@@ -9,7 +9,7 @@
 namespace kacanov {
 
 struct Command {
-  enum class Kind { run, spectrum, sweep, check, partition };
+  enum class Kind { run, spectrum, sweep, check, partition, verify };
   Kind kind = Kind::run;
   std::string case_file;
   std::string output;                  ///< folder; empty: results/<case name>

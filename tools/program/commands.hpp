@@ -16,8 +16,10 @@ void leave_failure(const Command& command, const Case& input, const std::string&
 int spectrum_command(const Command& command, const Case& input, const MpiSession& mpi);
 /// Not converged means here that no penalty led to convergence.
 int sweep_command(const Command& command, const Case& input, const MpiSession& mpi);
-/// The next two need no MPI: everything happens on one rank. `ranks`: those of the run to be foreseen.
+/// The rest needs no MPI: everything happens on one rank. `ranks`: those of the run to be foreseen.
 int check_command(const Case& input, int ranks);
 int partition_command(const Command& command, const Case& input);
+/// Not converged means here that the answer does not fulfil its tolerance, or is not what the result says.
+int verify_command(const Command& command, const Case& input);
 
 }  // namespace kacanov

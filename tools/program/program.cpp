@@ -19,13 +19,15 @@ using namespace kacanov;
 
 /// Whether everything happens on one rank, without MPI.
 bool needs_one(const Command& command) {
-  return command.kind == Command::Kind::check || command.kind == Command::Kind::partition;
+  return command.kind == Command::Kind::check || command.kind == Command::Kind::partition ||
+         command.kind == Command::Kind::verify;
 }
 
 /// `ranks`: those that a run would have here.
 int command_on_one(const Command& command, const Case& input, int ranks) {
-  return command.kind == Command::Kind::check ? check_command(input, command.ranks.value_or(ranks))
-                                              : partition_command(command, input);
+  if (command.kind == Command::Kind::check) return check_command(input, command.ranks.value_or(ranks));
+  return command.kind == Command::Kind::verify ? verify_command(command, input)
+                                               : partition_command(command, input);
 }
 
 int dispatch(const Command& command, const Case& input, MpiSession& mpi) {
@@ -34,7 +36,8 @@ int dispatch(const Command& command, const Case& input, MpiSession& mpi) {
     case Command::Kind::spectrum: return spectrum_command(command, input, mpi);
     case Command::Kind::sweep: return sweep_command(command, input, mpi);
     case Command::Kind::check:
-    case Command::Kind::partition: break;
+    case Command::Kind::partition:
+    case Command::Kind::verify: break;
   }
   int code = exit_converged;
   together(mpi, [&] {
@@ -125,7 +128,8 @@ int run_alone(const Command& command, int argc, const char* const* argv) {
 
 /// Whether what it has to say goes to files, and to the standard output only beside them.
 bool writes_files(const std::optional<Command>& command) {
-  return command && command->kind != Command::Kind::check && command->kind != Command::Kind::spectrum;
+  return command && command->kind != Command::Kind::check && command->kind != Command::Kind::spectrum &&
+         command->kind != Command::Kind::verify;
 }
 
 int say(const ParsedCommand& parsed) {

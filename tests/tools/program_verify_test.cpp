@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// kacanov verify: right answers pass, whoever changed them; what was tampered with does not.
+#include <doctest/doctest.h>
+
+#include <cstring>
+
+#include "mesh_writer.hpp"
+#include "program_runner.hpp"
+
+using namespace kacanov;
+using namespace kacanov::testing;
+
+namespace {
+
+nlohmann::json cube(const std::string& element) {
+  nlohmann::json cube = parsed(R"({
+    "mesh": {"box": {"size": [2, 1, 1], "cells": [4, 2, 2]}},
+    "material": [{"on": "all", "young": 200, "poisson": 0.3, "law": {"type": "power", "x0": 0.001, "n": 0.5}}],
+    "boundary": [{"on": "top", "displacement": [0.002, null, -0.004]}, {"on": "left", "pressure": 0.1},
+                 {"on": "all", "body_force": [0, 0.05, -0.1]}],
+    "contact": [{"on": "bottom", "obstacle": {"sphere": {"centre": [1, 0.5, -3], "radius": 3}},
+                 "friction": {"coulomb": 0.3}},
+                {"on": "right", "obstacle": {"gap": 0.001}, "friction": {"tresca": 0.05}}],
+    "output": {"report": false}})");
+  cube["mesh"]["box"]["element"] = element;
+  return cube;
+}
+
+/// Adds to what a VTU file says of its third node, along x, in an array of doubles; each begins with its
+/// length.
+void change_array(const Workplace& place, const std::string& file, const std::string& name, double by) {
+  std::string text = contents(place.path(file));
+  const std::size_t at = text.find("Name=\"" + name + "\"");
+  REQUIRE(at != std::string::npos);
+  const std::size_t offset = text.find("offset=\"", at) + 8;
+  const std::size_t data = text.find('_', text.find("<AppendedData")) + 1;
+  const std::size_t width = name == "pressure" ? 1 : 3;
+  const std::size_t place_of_number =
+      data + std::stoul(text.substr(offset)) + sizeof(std::uint64_t) + 2 * width * sizeof(double);
+  double value = 0.0;
+  std::memcpy(&value, text.data() + place_of_number, sizeof value);
+  value += by;
+  std::memcpy(text.data() + place_of_number, &value, sizeof value);
+  place.put(file, text);
+}
+
+}  // namespace
+
+TEST_CASE("what has converged is verified from its files, of every element, on one rank and two") {
+  const Workplace place;
+  for (const char* element : {"tet4", "tet10", "hex8"}) {
+    INFO(element);
+    place.put_json("cube.json", cube(element));
+    for (const char* ranks : {"1", "2"}) {
+      const Outcome run = place.run(std::string("run cube.json --output out --ranks ") + ranks);
+      INFO(run.error);
+      REQUIRE(run.exit_code == 0);
+      const Outcome outcome = place.run("verify cube.json --output out");
+      INFO(outcome.error, outcome.output);
+      CHECK(outcome.exit_code == 0);
+      CHECK(outcome.output.find("the answer meets its tolerance 1.00e-06") != std::string::npos);
+      for (const char* name : {"equilibrium", "duality_gap", "contact_force[z]", "max_contact_pressure"})
+        CHECK(outcome.output.find(name) != std::string::npos);
+    }
+  }
+  // A tolerance that the answer does not meet, of another case on the same mesh.
+  const Outcome outcome = place.run("verify cube.json --output out --set solver.tolerance=1e-15");
+  CHECK(outcome.exit_code == 1);
+  CHECK(outcome.output.find("does not meet its tolerance") != std::string::npos);
+  CHECK(place.run("verify cube.json --output out --set material[0].young=201").exit_code == 1);
+  CHECK(place.run("verify cube.json --output out --set contact[0].friction.coulomb=0.2").exit_code == 1);
+}
+
+TEST_CASE("what has been changed in the files is found") {
+  const Workplace place;
+  place.put_json("beam.json", small_beam());
+  const auto verified = [&] { return place.run("verify beam.json --output out"); };
+  const auto renewed = [&] { REQUIRE(place.run("run beam.json --output out").exit_code == 0); };
+  renewed();
+  REQUIRE(verified().exit_code == 0);
+
+  nlohmann::json result = place.json("out/result.json");
+  result["contact_force"][1] = result["contact_force"][1].get<double>() * (1 + 1e-9);
+  place.put_json("out/result.json", result);
+  Outcome outcome = verified();
+  CHECK(outcome.exit_code == 1);
+  CHECK(outcome.output.find("differs") != std::string::npos);
+  result = nlohmann::json{{"status", "failed"}, {"message", "error: of some kind"}};
+  place.put_json("out/result.json", result);
+  CHECK(verified().exit_code == 2);
+
+  struct Change {
+    const char *file, *array;
+    double by;
+  };
+  for (const Change& change :
+       {Change{"out/body.vtu", "displacement", 1e-5}, Change{"out/contact.vtu", "pressure", 1e-4},
+        Change{"out/contact.vtu", "tangential_traction", 1e-4}}) {
+    INFO(change.array);
+    renewed();
+    change_array(place, change.file, change.array, change.by);
+    CHECK(verified().exit_code == 1);
+  }
+  renewed();
+  change_array(place, "out/body.vtu", "Points", 1e-3);
+  CHECK(verified().exit_code == 2);
+  renewed();
+  std::filesystem::remove(place.path("out/contact.vtu"));
+  outcome = verified();
+  CHECK(outcome.exit_code == 2);
+  CHECK(outcome.error.find("cannot be read") != std::string::npos);
+}
+
+TEST_CASE("an answer that has not converged is not verified, and its certificate is right all the same") {
+  const Workplace place;
+  place.put_json("beam.json", small_beam());
+  REQUIRE(place.run("run beam.json --output out --set solver.max_outer=2").exit_code == 1);
+  const Outcome outcome = place.run("verify beam.json --output out");
+  CHECK(outcome.exit_code == 1);
+  CHECK(outcome.output.find("does not meet its tolerance") != std::string::npos);
+  CHECK(outcome.output.find("differs") == std::string::npos);
+}
+
+TEST_CASE("the verifier reads every form of Gmsh's format by itself") {
+  const Workplace place;
+  nlohmann::json input = cube("hex8");
+  for (const ElementType type : {ElementType::tet10, ElementType::hex8})
+    for (const GmshForm& form : {GmshForm{true, false, false, false}, GmshForm{true, true, true, false},
+                                 GmshForm{false, false, false, true}, GmshForm{false, true, false, false}}) {
+      place.put("cube.msh", gmsh_file(make_box({{2, 1, 1}, {4, 2, 2}, type}), form));
+      input["mesh"] = {{"file", "cube.msh"}};
+      place.put_json("cube.json", input);
+      REQUIRE(place.run("run cube.json --output out").exit_code == 0);
+      const Outcome outcome = place.run("verify cube.json --output out");
+      INFO(outcome.output, outcome.error);
+      CHECK(outcome.exit_code == 0);
+    }
+}

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The boundary of a mesh, and what an `on` selects there.
+#include "verify/mesh.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <set>
+
+namespace kacanov::verify {
+namespace {
+
+Indices sorted_corners(const Indices& cell, int corners) {
+  Indices key(cell.begin(), cell.begin() + corners);
+  std::sort(key.begin(), key.end());
+  return key;
+}
+
+void find_boundary(Mesh& mesh) {
+  const std::vector<std::vector<int>> sides = facets(mesh.shape);
+  const int corners = corner_count(facet_shape(mesh.shape));
+  std::map<Indices, Indices> once;  // corners of a facet, the facet
+  for (const Indices& element : mesh.elements)
+    for (const std::vector<int>& side : sides) {
+      Indices facet;
+      for (const int place : side) facet.push_back(element[place]);
+      const Indices key = sorted_corners(facet, corners);
+      if (!once.emplace(key, facet).second) once.erase(key);
+    }
+  for (auto& [key, facet] : once) mesh.facets.push_back(std::move(facet));
+}
+
+const std::string* name_of(const nlohmann::json& on) {
+  return on.is_string() ? &on.get_ref<const std::string&>() : nullptr;
+}
+
+/// Which of the cells lie in the closed box with all their nodes.
+std::vector<std::size_t> in_box(const Mesh& mesh, const nlohmann::json& on,
+                                const std::vector<Indices>& cells) {
+  const nlohmann::json& corners = on.at("box");
+  const Real slack = 1e-9L * mesh.size();
+  const std::size_t dim = mesh.dim();
+  const auto inside = [&](Index node) {
+    for (std::size_t c = 0; c < dim; ++c) {
+      const Real x = mesh.nodes[node][c];
+      if (x < corners.at(0).at(c).get<double>() - slack || x > corners.at(1).at(c).get<double>() + slack)
+        return false;
+    }
+    return true;
+  };
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (std::all_of(cells[i].begin(), cells[i].end(), inside)) chosen.push_back(i);
+  return chosen;
+}
+
+}  // namespace
+
+Real Mesh::size() const {
+  Vec low = nodes.at(0), high = low;
+  for (const Vec& x : nodes)
+    for (std::size_t c = 0; c < 3; ++c) {
+      low[c] = std::min(low[c], x[c]);
+      high[c] = std::max(high[c], x[c]);
+    }
+  return norm(high - low);
+}
+
+Mesh load_mesh(const nlohmann::json& source, const std::filesystem::path& folder) {
+  Mesh mesh;
+  if (source.contains("box"))
+    mesh = make_box(source.at("box"));
+  else if (source.contains("file"))
+    mesh = read_gmsh(folder / source.at("file").get<std::string>());
+  else
+    throw Failure("mesh: the verifier knows `file` and `box` only");
+  find_boundary(mesh);
+  return mesh;
+}
+
+std::vector<std::size_t> select_facets(const Mesh& mesh, const nlohmann::json& on) {
+  const std::string* name = name_of(on);
+  if (!name) return in_box(mesh, on, mesh.facets);
+  std::vector<std::size_t> chosen(mesh.facets.size());
+  std::iota(chosen.begin(), chosen.end(), std::size_t{0});
+  if (*name == "all") return chosen;
+  const int corners = corner_count(facet_shape(mesh.shape));
+  std::set<Indices> wanted;
+  for (const NamedGroup& group : mesh.groups)
+    if (group.name == *name && group.dimension == mesh.dim() - 1)
+      for (const Indices& cell : group.cells) wanted.insert(sorted_corners(cell, corners));
+  std::erase_if(chosen,
+                [&](std::size_t f) { return !wanted.contains(sorted_corners(mesh.facets[f], corners)); });
+  return chosen;
+}
+
+std::vector<std::size_t> select_elements(const Mesh& mesh, const nlohmann::json& on) {
+  const std::string* name = name_of(on);
+  if (!name) return in_box(mesh, on, mesh.elements);
+  std::vector<std::size_t> chosen;
+  if (*name == "all") {
+    chosen.resize(mesh.elements.size());
+    std::iota(chosen.begin(), chosen.end(), std::size_t{0});
+    return chosen;
+  }
+  for (const NamedGroup& group : mesh.groups)
+    if (group.name == *name && group.dimension == mesh.dim())
+      for (const Indices& cell : group.cells) chosen.push_back(cell[0]);
+  std::sort(chosen.begin(), chosen.end());
+  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+  return chosen;
+}
+
+Indices nodes_of(const Mesh& mesh, const std::vector<std::size_t>& facets) {
+  std::set<Index> nodes;
+  for (const std::size_t f : facets) nodes.insert(mesh.facets[f].begin(), mesh.facets[f].end());
+  return {nodes.begin(), nodes.end()};
+}
+
+Indices select_nodes(const Mesh& mesh, const nlohmann::json& on) {
+  Indices nodes = nodes_of(mesh, select_facets(mesh, on));
+  const std::string* name = name_of(on);
+  if (!name || *name == "all") return nodes;
+  std::set<Index> all(nodes.begin(), nodes.end());
+  for (const NamedGroup& group : mesh.groups)
+    if (group.name == *name && group.dimension < mesh.dim() - 1)
+      for (const Indices& cell : group.cells) all.insert(cell.begin(), cell.end());
+  return {all.begin(), all.end()};
+}
+
+}  // namespace kacanov::verify

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Laws, loads and supports of a case.
+#include "verify/problem.hpp"
+
+namespace kacanov::verify {
+namespace {
+
+Vec place(const Mesh& mesh, Index node) { return mesh.nodes[node]; }
+
+void add_surface_load(Problem& problem, const nlohmann::json& entry) {
+  for (const std::size_t f : select_facets(problem.mesh, entry.at("on"))) {
+    const Indices& facet = problem.mesh.facets[f];
+    const FacetIntegrals integrals = consistent(problem.mesh, facet);
+    for (std::size_t k = 0; k < facet.size(); ++k) {
+      Vec& load = problem.load[facet[k]];
+      if (entry.contains("traction"))
+        load = load + integrals.area[k] * read_vector(entry.at("traction"));
+      else
+        load = load - Real(entry.at("pressure").get<double>()) * integrals.normal[k];
+    }
+  }
+}
+
+void add_body_force(Problem& problem, const nlohmann::json& entry) {
+  const Mesh& mesh = problem.mesh;
+  const Vec force = read_vector(entry.at("body_force"));
+  const std::size_t dim = mesh.dim();
+  for (const std::size_t e : select_elements(mesh, entry.at("on")))
+    for (const QuadraturePoint& point : load_rule(mesh.shape)) {
+      const Functions f = functions(mesh.shape, point.at);
+      std::array<Vec, 3> along{};
+      if (mesh.dim() == 2) along[2] = {0, 0, 1};
+      for (std::size_t a = 0; a < f.value.size(); ++a)
+        for (std::size_t k = 0; k < dim; ++k)
+          along[k] = along[k] + f.gradient[a][k] * place(mesh, mesh.elements[e][a]);
+      const Real volume = point.weight * dot(along[0], cross(along[1], along[2]));
+      for (std::size_t a = 0; a < f.value.size(); ++a) {
+        Vec& load = problem.load[mesh.elements[e][a]];
+        load = load + volume * f.value[a] * force;
+      }
+    }
+}
+
+void hold(Problem& problem, const nlohmann::json& entry) {
+  const nlohmann::json& values = entry.at("displacement");
+  const std::size_t dim = problem.mesh.dim();
+  for (const Index node : select_nodes(problem.mesh, entry.at("on")))
+    for (std::size_t c = 0; c < dim; ++c) {
+      if (values.at(c).is_null()) continue;
+      problem.held[node][c] = true;
+      problem.prescribed[node][c] = values.at(c).get<double>();
+    }
+}
+
+}  // namespace
+
+Vec read_vector(const nlohmann::json& list) {
+  Vec v{};
+  for (std::size_t c = 0; c < list.size() && c < 3; ++c) v[c] = list.at(c).get<double>();
+  return v;
+}
+
+FacetIntegrals consistent(const Mesh& mesh, const Indices& facet) {
+  FacetIntegrals out{std::vector<Real>(facet.size()), std::vector<Vec>(facet.size())};
+  const Shape shape = facet_shape(mesh.shape);
+  for (const QuadraturePoint& point : load_rule(shape)) {
+    const Functions f = functions(shape, point.at);
+    Vec along{}, across{};
+    for (std::size_t k = 0; k < facet.size(); ++k) {
+      along = along + f.gradient[k][0] * place(mesh, facet[k]);
+      across = across + f.gradient[k][1] * place(mesh, facet[k]);
+    }
+    const Vec normal = mesh.dim() == 2 ? Vec{along[1], -along[0], 0} : cross(along, across);
+    for (std::size_t k = 0; k < facet.size(); ++k) {
+      out.area[k] += point.weight * f.value[k] * norm(normal);
+      out.normal[k] = out.normal[k] + point.weight * f.value[k] * normal;
+    }
+  }
+  return out;
+}
+
+Problem read_problem(const nlohmann::json& document, const std::filesystem::path& folder) {
+  Problem problem;
+  problem.mesh = load_mesh(document.at("mesh"), folder);
+  const std::size_t nodes = problem.mesh.nodes.size();
+  problem.law_of_element.assign(problem.mesh.elements.size(), 0);
+  problem.load.assign(nodes, {});
+  problem.held.assign(nodes, {});
+  problem.prescribed.assign(nodes, {});
+  for (const auto& entry : document.at("material")) {
+    for (const std::size_t e : select_elements(problem.mesh, entry.at("on")))
+      problem.law_of_element[e] = problem.laws.size();
+    problem.laws.push_back(read_law(entry));
+  }
+  for (const auto& entry : document.value("boundary", nlohmann::json::array())) {
+    if (entry.contains("displacement")) hold(problem, entry);
+    if (entry.contains("traction") || entry.contains("pressure")) add_surface_load(problem, entry);
+    if (entry.contains("body_force")) add_body_force(problem, entry);
+  }
+  find_rows(document.value("contact", nlohmann::json::array()), problem);
+  if (document.contains("solver")) problem.tolerance = document.at("solver").value("tolerance", 1e-6);
+  for (const auto& point : document.value("probe", nlohmann::json::array()))
+    problem.probes.push_back(read_vector(point));
+  return problem;
+}
+
+}  // namespace kacanov::verify

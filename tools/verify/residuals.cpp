@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The entries of the certificate (theory: kkt, duality-gap, rounding), and the forces, of an answer.
+#include "verify/residuals.hpp"
+
+#include "verify/body.hpp"
+
+namespace kacanov::verify {
+namespace {
+
+constexpr Real tiny = 1e-300L, least_force = 1e-9L, delta = 3e-16L;
+
+/// u in the directions that are free and orthogonal to the row's normal.
+Vec tangential(const Problem& problem, const ContactRow& row, const std::vector<Vec>& u) {
+  Vec sum{};
+  for (const ContactRow::Share& share : row.shares) {
+    const auto node = static_cast<std::size_t>(share.node);
+    Vec free = u[node];
+    for (std::size_t c = 0; c < 3; ++c)
+      if (problem.held[node][c]) free[c] = 0;
+    const Vec along = 1 / norm(share.normal) * share.normal;
+    // The weight of a node in a row of several is the length of its normal among theirs.
+    const Real weight = row.shares.size() == 1 ? Real(1) : norm(share.normal);
+    sum = sum + weight * (free - dot(free, along) * along);
+  }
+  return sum;
+}
+
+struct ContactSums {
+  Real products = 0, work = 0, area = 0, pressure = 0, trace = 0;
+  Real penetration = 0, tension = 0, cone = 0;
+  std::vector<Vec> force;  ///< CᵀMλ, one a node
+};
+
+ContactSums sum_contact(const Problem& problem, const Answer& answer, Findings& findings) {
+  ContactSums sums;
+  sums.force.assign(problem.mesh.nodes.size(), {});
+  for (std::size_t i = 0; i < problem.rows.size(); ++i) {
+    const ContactRow& row = problem.rows[i];
+    const Real lambda = answer.pressure[i];
+    const Vec& traction = answer.traction[i];
+    Real trace = 0;
+    for (const ContactRow::Share& share : row.shares) {
+      trace += dot(share.normal, answer.u[share.node]);
+      Vec& force = sums.force[share.node];
+      const Real weight = row.shares.size() == 1 ? Real(1) : norm(share.normal);
+      force = force + row.mass * (lambda * share.normal - weight * traction);
+      findings.contact_force = findings.contact_force - row.mass * lambda * share.normal;
+    }
+    findings.friction_force = findings.friction_force + row.mass * traction;
+    findings.force += row.mass * (std::abs(lambda) + norm(traction));
+    findings.pressure = larger(findings.pressure, lambda);
+    const Real open = row.gap - trace;
+    sums.products += row.mass * std::abs(lambda * open);
+    sums.work += row.mass * lambda * open;
+    sums.area += row.mass;
+    sums.penetration = larger(sums.penetration, -open);
+    sums.tension = larger(sums.tension, -lambda);
+    sums.pressure = larger(sums.pressure, std::abs(lambda));
+    sums.trace = larger(sums.trace, std::abs(trace) + std::abs(row.gap));
+    if (!row.friction) continue;
+    const Vec slip = tangential(problem, row, answer.u);
+    const Real bound = row.tresca + row.coulomb * lambda, length = norm(traction);
+    const Real product = bound * norm(slip) + dot(traction, slip);
+    sums.products += row.mass * std::abs(product);
+    sums.work += row.mass * product;
+    sums.cone = larger(sums.cone, length - bound);
+    sums.pressure = larger(sums.pressure, length);
+  }
+  return sums;
+}
+
+struct BodySums {
+  Vec balance{};
+  Real all = 0, residual_work = 0, internal_work = 0, residual = 0, reaction = 0, contact = 0, load = 0;
+  Real moved = 0, stiff = 0, stiff_work = 0, softness = 0, displacement = 0, supports = 0;
+};
+
+BodySums sum_body(const Problem& problem, const Answer& answer, const BodyResponse& body,
+                  const std::vector<Vec>& contact) {
+  BodySums s;
+  const auto dim = static_cast<std::size_t>(problem.mesh.dim());
+  for (std::size_t n = 0; n < problem.mesh.nodes.size(); ++n)
+    for (std::size_t c = 0; c < dim; ++c) {
+      const Real u = answer.u[n][c], load = problem.load[n][c], d = body.diagonal[n][c];
+      const Real unbalanced = load - body.internal[n][c] - contact[n][c];
+      const bool held = problem.held[n][c];
+      const Real reaction = held ? -unbalanced : 0, residual = held ? 0 : unbalanced;
+      s.balance[c] += load - contact[n][c] + reaction;
+      s.all += std::abs(load) + std::abs(contact[n][c]) + std::abs(reaction);
+      s.residual_work += residual * u;
+      s.internal_work += body.internal[n][c] * u;
+      s.residual += residual * residual;
+      s.reaction += reaction * reaction;
+      s.contact += contact[n][c] * contact[n][c];
+      s.load += load * load;
+      s.moved += u * u;
+      s.stiff += d * u * d * u;
+      s.stiff_work += d * u * u;
+      s.softness += 1 / d;
+      s.displacement = larger(s.displacement, std::abs(u));
+      if (held) s.supports = larger(s.supports, std::abs(u - problem.prescribed[n][c]));
+    }
+  s.softness /= static_cast<Real>(problem.mesh.nodes.size() * dim);
+  return s;
+}
+
+}  // namespace
+
+Findings examine(const Problem& problem, const Answer& answer) {
+  Findings findings;
+  const BodyResponse response = respond(problem, answer.u);
+  const ContactSums sums = sum_contact(problem, answer, findings);
+  const BodySums body = sum_body(problem, answer, response, sums.force);
+  findings.von_mises = response.most_von_mises;
+  findings.unknown_stress = response.unknown_stress;
+
+  const Real soft = least_force / body.softness;
+  const Real no_force = soft * std::sqrt(body.moved), no_energy = soft * body.moved;
+  const Real force =
+      larger(larger(std::sqrt(larger(body.reaction, larger(body.contact, body.load))), no_force), tiny);
+  const Real moved = larger(body.displacement, tiny), all = larger(larger(body.all, no_force), tiny);
+  const Real pressure =
+      larger(larger(sums.pressure, sums.area > 0 ? body.all / 2 / sums.area * 1e-3L : Real(0)), tiny);
+  const Real product = larger(pressure * moved * sums.area, tiny);
+  const Real energy =
+      larger(larger(response.energy, std::abs(body.internal_work) / 2), larger(no_energy, tiny));
+  const Real unknown_force = delta * std::sqrt(body.stiff);
+  const Real unknown_trace = body.displacement > 0 ? delta * sums.trace : 0;
+  findings.supports = body.supports / moved;
+  findings.entries = {
+      {"equilibrium", std::sqrt(body.residual) / force, unknown_force / force},
+      {"penetration", sums.penetration / moved, unknown_trace / moved},
+      {"tension", sums.tension / pressure, 0},
+      {"complementarity", sums.products / product, sums.pressure * sums.area * unknown_trace / product},
+      {"friction_cone", sums.cone / pressure, 0},
+      {"force_balance", norm(body.balance) / all, unknown_force / all},
+      {"duality_gap", std::abs(sums.work - body.residual_work) / energy, delta * body.stiff_work / energy}};
+  return findings;
+}
+
+}  // namespace kacanov::verify

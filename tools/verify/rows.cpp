@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Contact rows: who faces an obstacle, along which direction, at what distance (theory: traces,
+// contact-mass).
+#include <algorithm>
+#include <map>
+
+#include "verify/problem.hpp"
+
+namespace kacanov::verify {
+namespace {
+
+struct Facing {
+  Vec normal{};
+  Real gap = 0;
+  bool missed = false, grazing = false;
+};
+
+Facing face(const nlohmann::json& obstacle, const Vec& x, const Vec& outer) {
+  if (obstacle.contains("gap")) return {1 / norm(outer) * outer, obstacle.at("gap").get<double>()};
+  if (obstacle.contains("plane")) {
+    const Vec normal = read_vector(obstacle.at("plane").at("normal")),
+              point = read_vector(obstacle.at("plane").at("point"));
+    const Vec direction = -1 / norm(normal) * normal;
+    return {direction, dot(point - x, direction)};
+  }
+  const nlohmann::json& sphere = obstacle.at("sphere");
+  const Vec to_centre = read_vector(sphere.at("centre")) - x;
+  const Real radius = sphere.at("radius").get<double>();
+  if (!sphere.contains("direction")) return {1 / norm(to_centre) * to_centre, norm(to_centre) - radius};
+  const Vec way = read_vector(sphere.at("direction")), direction = 1 / norm(way) * way;
+  const Real along = dot(to_centre, direction);
+  const Real inside = radius * radius - dot(to_centre, to_centre) + along * along;
+  const Real unsure = 1e-13L * (radius * radius + dot(to_centre, to_centre));
+  return {direction, along - std::sqrt(std::max(inside, Real(0))), inside < -unsure,
+          std::abs(inside) <= unsure};
+}
+
+/// The lumped mass of a facet's nodes and their share of its normal: the rule that turns a facet's
+/// multipliers into forces. Six-node facets are cut into four triangles.
+FacetIntegrals contact_weights(const Mesh& mesh, const Indices& facet) {
+  if (facet_shape(mesh.shape) != Shape::tri6) return consistent(mesh, facet);
+  FacetIntegrals out{std::vector<Real>(6), std::vector<Vec>(6)};
+  constexpr std::size_t parts[4][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
+  for (const auto& part : parts) {
+    const auto at = [&](std::size_t k) { return mesh.nodes[facet[part[k]]]; };
+    const Vec third = Real(1) / 6 * cross(at(1) - at(0), at(2) - at(0));
+    for (const std::size_t k : part) {
+      out.area[k] += norm(third);
+      out.normal[k] = out.normal[k] + third;
+    }
+  }
+  return out;
+}
+
+/// Joins a row to one of the same node that faces the same way at the same gap.
+bool joined(std::vector<ContactRow>& rows, const ContactRow& row, Real size) {
+  for (ContactRow& twin : rows) {
+    if (norm(twin.normal - row.normal) >= 1e-9L || std::abs(twin.gap - row.gap) >= 1e-9L * size) continue;
+    const Real mass = twin.mass + row.mass;
+    twin.tresca = (twin.mass * twin.tresca + row.mass * row.tresca) / mass;
+    twin.coulomb = (twin.mass * twin.coulomb + row.mass * row.coulomb) / mass;
+    twin.friction = twin.friction || row.friction;
+    twin.mass = mass;
+    twin.written.insert(twin.written.end(), row.written.begin(), row.written.end());
+    return true;
+  }
+  return false;
+}
+
+/// Leaves the free components in the row and takes from the gap what prescribed ones close; false where none
+/// are left.
+bool restrict_to_free(const Problem& problem, ContactRow& row) {
+  Vec free = row.normal;
+  const auto node = static_cast<std::size_t>(row.node);
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (!problem.held[node][c]) continue;
+    row.gap -= free[c] * problem.prescribed[node][c];
+    free[c] = 0;
+  }
+  row.shares = {{row.node, free}};
+  return norm(free) >= 1e-8L;
+}
+
+}  // namespace
+
+void find_rows(const nlohmann::json& contact, Problem& problem) {
+  const Mesh& mesh = problem.mesh;
+  const Real size = mesh.size();
+  std::map<Index, std::vector<ContactRow>> rows;
+  for (const auto& entry : contact) {
+    struct Sums {
+      Real mass = 0;
+      Vec outer{};
+    };
+    std::map<Index, Sums> sums;
+    for (const std::size_t f : select_facets(mesh, entry.at("on"))) {
+      const FacetIntegrals weights = contact_weights(mesh, mesh.facets[f]);
+      for (std::size_t k = 0; k < mesh.facets[f].size(); ++k) {
+        Sums& sum = sums[mesh.facets[f][k]];
+        sum.mass += weights.area[k];
+        sum.outer = sum.outer + weights.normal[k];
+      }
+    }
+    const nlohmann::json friction = entry.value("friction", nlohmann::json::object());
+    for (const auto& [node, sum] : sums) {
+      ContactRow row;
+      row.node = node;
+      row.written = {problem.surface_tags.size()};
+      problem.surface_tags.push_back(mesh.tags[node]);
+      const Facing facing = face(entry.at("obstacle"), mesh.nodes[node], sum.outer);
+      if (facing.missed) continue;
+      row.normal = facing.normal;
+      row.gap = facing.gap;
+      row.grazing = facing.grazing;
+      row.mass = sum.mass;
+      row.tresca = friction.value("tresca", 0.0);
+      row.coulomb = friction.value("coulomb", 0.0);
+      row.friction = row.tresca > 0 || row.coulomb > 0;
+      if (restrict_to_free(problem, row) && !joined(rows[node], row, size)) rows[node].push_back(row);
+    }
+  }
+  for (auto& [node, of_node] : rows)
+    for (ContactRow& row : of_node) problem.rows.push_back(std::move(row));
+}
+
+}  // namespace kacanov::verify

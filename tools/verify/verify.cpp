@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The front of the verifier: reads the answer, examines it, and compares with what the result says.
+#include "verify/verify.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <map>
+
+#include "verify/residuals.hpp"
+#include "verify/vtu.hpp"
+
+namespace kacanov::verify {
+namespace {
+
+using nlohmann::json;
+
+json read_result(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream) throw Failure(file.string() + ": cannot be read");
+  json result = json::parse(stream, nullptr, false);
+  if (result.is_discarded()) throw Failure(file.string() + ": is no JSON");
+  if (result.value("status", "") == "failed") throw Failure(file.string() + ": this run has failed");
+  return result;
+}
+
+const Array& array_of(const std::map<std::string, Array>& arrays, const std::string& name, std::size_t width,
+                      const std::string& file) {
+  const auto found = arrays.find(name);
+  if (found == arrays.end() || found->second.components != width || found->second.values.size() % width != 0)
+    throw Failure(file + ": expected an array " + name + " with " + std::to_string(width) + " components");
+  return found->second;
+}
+
+Vec triple(const Array& array, std::size_t i) {
+  return {array.values.at(3 * i), array.values.at(3 * i + 1), array.values.at(3 * i + 2)};
+}
+
+/// The displacement of every node, from all pieces; copies have to agree.
+std::vector<Vec> read_displacement(const std::filesystem::path& folder, const Mesh& mesh) {
+  std::map<std::int64_t, std::size_t> index;
+  for (std::size_t n = 0; n < mesh.tags.size(); ++n) index[mesh.tags[n]] = n;
+  const std::string file = (folder / "body.vtu").string();
+  std::vector<Vec> u(mesh.nodes.size());
+  std::vector<bool> known(u.size(), false);
+  const Real slack = 1e-14L * mesh.size();
+  for (const auto& piece : read_body(folder)) {
+    const Array &ids = array_of(piece, "node_id", 1, file), &points = array_of(piece, "Points", 3, file),
+                &values = array_of(piece, "displacement", 3, file);
+    for (std::size_t i = 0; i < ids.values.size(); ++i) {
+      const auto found = index.find(static_cast<std::int64_t>(ids.values[i]));
+      const std::string name = file + ": node " + std::to_string(static_cast<std::int64_t>(ids.values[i]));
+      if (found == index.end()) throw Failure(name + " is not in the mesh");
+      const std::size_t n = found->second;
+      Vec away = triple(points, i) - mesh.nodes[n];
+      if (mesh.dim() == 2) away[2] = 0;
+      if (!(norm(away) <= slack)) throw Failure(name + " lies elsewhere in the mesh");
+      const Vec value = triple(values, i);
+      if (known[n] && u[n] != value) throw Failure(name + " moves differently on two ranks");
+      u[n] = value;
+      known[n] = true;
+    }
+  }
+  if (!std::all_of(known.begin(), known.end(), [](bool b) { return b; }))
+    throw Failure(file + ": there are nodes of the mesh that it does not have");
+  return u;
+}
+
+void read_multipliers(const std::filesystem::path& folder, Problem& problem, Answer& answer) {
+  if (problem.rows.empty()) return;
+  const std::string file = (folder / "contact.vtu").string();
+  const auto arrays = read_point_data(file);
+  const Array &ids = array_of(arrays, "node_id", 1, file), &pressure = array_of(arrays, "pressure", 1, file),
+              &traction = array_of(arrays, "tangential_traction", 3, file),
+              &status = array_of(arrays, "status", 1, file);
+  if (ids.values.size() != problem.surface_tags.size())
+    throw Failure(file + ": has " + std::to_string(ids.values.size()) + " nodes, expected " +
+                  std::to_string(problem.surface_tags.size()) + ", as the contact entries select");
+  for (std::size_t i = 0; i < ids.values.size(); ++i)
+    if (static_cast<std::int64_t>(ids.values[i]) != problem.surface_tags[i])
+      throw Failure(file + ": expected node " + std::to_string(problem.surface_tags[i]) + " in place " +
+                    std::to_string(i));
+  std::erase_if(problem.rows,
+                [&](const ContactRow& row) { return row.grazing && status.values[row.written[0]] < 0; });
+  for (const ContactRow& row : problem.rows) {
+    answer.pressure.push_back(pressure.values[row.written[0]]);
+    answer.traction.push_back(triple(traction, row.written[0]));
+    for (const std::size_t i : row.written) {
+      if (status.values[i] < 0)
+        throw Failure(file + ": node " + std::to_string(problem.surface_tags[i]) +
+                      " is a contact node, and is marked as none");
+      if (pressure.values[i] != answer.pressure.back() || triple(traction, i) != answer.traction.back())
+        throw Failure(file + ": node " + std::to_string(problem.surface_tags[i]) +
+                      " is one contact node of two entries, and has two pressures");
+    }
+  }
+}
+
+/// The table, and whether what the result says is what is found.
+class Comparison {
+ public:
+  explicit Comparison(const json& result) : result_(result) {
+    text_ = "                        the result says      recomputed        rounding\n";
+  }
+
+  void entry(const Entry& entry) {
+    const json& says = result_.at("certificate").at(entry.name);
+    const Real said = says.is_number() ? Real(says.get<double>()) : HUGE_VALL;
+    // Beside rounding, both are the same sums of the same numbers.
+    const bool agrees =
+        std::abs(said - entry.residual) <= 1e-3L * larger(said, entry.residual) + 2 * entry.rounding + 1e-14L;
+    line(entry.name, said, entry.residual, entry.rounding, agrees);
+  }
+
+  void vector(const char* name, const Vec& found, Real scale) {
+    const json& says = result_.at(name);
+    for (std::size_t c = 0; c < says.size(); ++c) {
+      const Real said = says.at(c).get<double>();
+      line(std::string(name) + "[" + "xyz"[c] + "]", said, found[c], 0,
+           std::abs(said - found[c]) <= 1e-11L * scale);
+    }
+  }
+
+  void number(const char* name, Real found, Real rounding) {
+    const Real said = result_.at(name).get<double>();
+    line(name, said, found, rounding,
+         std::abs(said - found) <= 1e-11L * larger(std::abs(said), std::abs(found)) + rounding);
+  }
+
+  void count(const char* name, std::size_t found) {
+    if (result_.at(name).get<std::int64_t>() != static_cast<std::int64_t>(found)) {
+      agrees_ = false;
+      text_ += std::string("  ") + name + ": " + std::to_string(found) + ", and the result says " +
+               result_.at(name).dump() + "\n";
+    }
+  }
+
+  bool agrees() const { return agrees_; }
+  const std::string& text() const { return text_; }
+
+ private:
+  void line(const std::string& name, Real said, Real found, Real rounding, bool agrees) {
+    std::array<char, 160> row{};
+    std::snprintf(row.data(), row.size(), "  %-22s %16.8Lg %15.8Lg %15.2Lg%s\n", name.c_str(), said, found,
+                  rounding, agrees ? "" : "  differs");
+    text_ += row.data();
+    agrees_ = agrees_ && agrees;
+  }
+
+  const json& result_;
+  std::string text_;
+  bool agrees_ = true;
+};
+
+std::string scientific(Real value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.2Le", value);
+  return text.data();
+}
+
+}  // namespace
+
+Verdict verify(const json& document, const std::filesystem::path& folder,
+               const std::filesystem::path& output) {
+  const json result = read_result(output / "result.json");
+  Problem problem = read_problem(document, folder);
+  Answer answer;
+  answer.u = read_displacement(output, problem.mesh);
+  read_multipliers(output, problem, answer);
+  const Findings found = examine(problem, answer);
+
+  Comparison comparison(result);
+  Real worst = 0, unknown = 0;
+  for (const Entry& entry : found.entries) {
+    comparison.entry(entry);
+    worst = larger(worst, entry.residual);
+    unknown = larger(unknown, entry.rounding);
+  }
+  if (!problem.rows.empty()) {
+    comparison.vector("contact_force", found.contact_force, found.force);
+    comparison.vector("friction_force", found.friction_force, found.force);
+    comparison.number("max_contact_pressure", found.pressure, 0);
+  }
+  comparison.number("max_von_mises", found.von_mises, found.unknown_stress);
+  comparison.count("unknowns", problem.mesh.nodes.size() * problem.mesh.dim());
+  comparison.count("elements", problem.mesh.elements.size());
+  comparison.count("contact_nodes", problem.rows.size());
+
+  Verdict verdict;
+  verdict.table = comparison.text();
+  const std::string status = result.value("status", ""), limit = scientific(problem.tolerance);
+  const bool held = found.supports <= 1e-14L, small = worst <= problem.tolerance,
+             known = unknown <= problem.tolerance;
+  verdict.fulfilled = status == "converged" && small && known && held && comparison.agrees();
+  verdict.sentence =
+      !held ? "the supports are not where they are prescribed, by " + scientific(found.supports) +
+                  " of the displacement"
+      : !small
+          ? "the answer does not meet its tolerance " + limit + ": the worst residual is " + scientific(worst)
+      : !known ? "rounding hides more than the tolerance " + limit + ": " + scientific(unknown)
+      : !comparison.agrees()
+          ? "the answer meets its tolerance " + limit + ", but the result says something else than is found"
+      : status != "converged"
+          ? "the answer meets its tolerance " + limit + ", but the result says " + status
+          : "the answer meets its tolerance " + limit + ": the worst residual is " + scientific(worst);
+  return verdict;
+}
+
+}  // namespace kacanov::verify
