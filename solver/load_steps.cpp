@@ -8,6 +8,7 @@
 #include <string>
 
 #include "collect.hpp"
+#include "users_units.hpp"
 
 namespace kacanov {
 namespace {
@@ -20,7 +21,9 @@ LoadStep line_now(const OuterLoop& loop, double share, const Result& result) {
   collect_contact(context.part, context.state, context.options.tolerance, now);
   collect_totals(context.part, context.state, now);
   now.result.certificate = context.certify().certificate;
-  return load_step_line(now.result, share);
+  LoadStep line = load_step_line(now.result, share);
+  to_users_units(line, loop.units());
+  return line;
 }
 
 /// Largest displacement over the body, of a state at a share of the load, for a whole one.

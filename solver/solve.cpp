@@ -10,7 +10,9 @@
 #include "collect.hpp"
 #include "load_steps.hpp"
 #include "nonlinear/friction_bounds.hpp"
+#include "parallel/own_units.hpp"
 #include "spectrum/spectrum.hpp"
+#include "users_units.hpp"
 
 namespace kacanov {
 namespace {
@@ -95,15 +97,19 @@ std::string softening_message(std::int64_t elements) {
 
 }  // namespace
 
-Solution solve(const Part& part, const SolverOptions& options, const RunOptions& run) {
-  validate(options);
+Solution solve(Part& part, const SolverOptions& users_options, const RunOptions& run) {
+  validate(users_options);
   const double start = MPI_Wtime();
+  const InOwnUnits scaled(part);
+  SolverOptions options = users_options;
+  options.r /= scaled.units().penalty();
   Solution solution;
   Result& result = solution.result;
   const bool restart = part.halo.any(part.halo.rank == 0 && run.start != nullptr);
   const std::vector<double> shares = load_points(part, options);
   result.by_time = !part.steps.empty();
   OuterLoop loop(part, options, run, shares[steps_over(part, run, shares.size())]);
+  loop.work_in(scaled.units());
   const StepContext& context = loop.context();
   if (!restart && run.coarse != nullptr) loop.adopt(interpolate(*run.coarse, part));
   const double prepared = MPI_Wtime();
@@ -130,6 +136,7 @@ Solution solve(const Part& part, const SolverOptions& options, const RunOptions&
   solution.displacement = context.state.omega;
   collect_contact(part, context.state, options.tolerance, solution);
   collect_totals(part, context.state, solution);
+  to_users_units(solution, scaled.units());
   if (result.message.empty()) result.message = verdict(result, options);
   if (shares.size() > 1 || result.by_time) end_load_steps(shares, finished, result);
   if (result.softening_elements > 0) result.message += softening_message(result.softening_elements);
@@ -153,9 +160,15 @@ Solution solve(const Part& part, const SolverOptions& options, const RunOptions&
   return solution;
 }
 
-std::vector<SpectrumResult> analyse_spectrum(const Part& part, const SolverOptions& options,
+Solution solve(const Part& part, const SolverOptions& options, const RunOptions& run) {
+  Part own = part;
+  return solve(own, options, run);
+}
+
+std::vector<SpectrumResult> analyse_spectrum(Part& part, const SolverOptions& options,
                                              const RunOptions& run) {
   validate(options);
+  const InOwnUnits scaled(part);
   DistributedOperator op(part, run.threads, run.instruction_set);
   const auto amg = make_preconditioner(options.preconditioner, part, run.threads, run.instruction_set);
   std::vector<double> secant(part.body().secant_count());
@@ -167,14 +180,24 @@ std::vector<SpectrumResult> analyse_spectrum(const Part& part, const SolverOptio
   if (has_friction(part))
     results.push_back(
         estimate_spectrum(part, op, *amg, secant, true, {options.spectrum_tolerance, options.max_cg}));
+  for (SpectrumResult& result : results) to_users_units(result, scaled.units());
   return results;
 }
 
-ActivePenalty active_penalty(const Part& part, const Solution& solution, const SolverOptions& options,
+std::vector<SpectrumResult> analyse_spectrum(const Part& part, const SolverOptions& options,
+                                             const RunOptions& run) {
+  Part own = part;
+  return analyse_spectrum(own, options, run);
+}
+
+ActivePenalty active_penalty(Part& part, const Solution& solution, const SolverOptions& options,
                              const RunOptions& run) {
   validate(options);
+  const InOwnUnits scaled(part);
+  std::vector<double> displacement = solution.displacement;
+  for (double& u : displacement) u /= scaled.units().displacement;
   DistributedOperator op(part, run.threads, run.instruction_set);
-  op.update(solution.displacement);
+  op.update(displacement);
   const auto amg = make_preconditioner(options.preconditioner, part, run.threads, run.instruction_set);
   std::vector<double> secant(part.body().secant_count());
   op.local().secant(secant);
@@ -190,7 +213,13 @@ ActivePenalty active_penalty(const Part& part, const Solution& solution, const S
   if (!(low > 0.0)) return {0.0, spectrum.cost().converged};
   const double high =
       free.total() > 0 ? spectrum.largest(free, held, 0.01 / low, part.loose_modes > 0).value : 0.0;
-  return {1.0 / std::sqrt(low * (high > 0.0 ? high : low)), spectrum.cost().converged};
+  return {scaled.units().penalty() / std::sqrt(low * (high > 0.0 ? high : low)), spectrum.cost().converged};
+}
+
+ActivePenalty active_penalty(const Part& part, const Solution& solution, const SolverOptions& options,
+                             const RunOptions& run) {
+  Part own = part;
+  return active_penalty(own, solution, options, run);
 }
 
 }  // namespace kacanov

@@ -83,6 +83,9 @@ kacanov_test(wide_contact
 kacanov_test(dual
   MPI SOURCES solver/dual_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
+kacanov_test(units
+  MPI SOURCES solver/units_test.cpp
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 kacanov_test(certificate
   MPI SOURCES solver/certificate_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)

@@ -59,6 +59,24 @@ void set_history(std::vector<LoadStep>& steps, const Vector& all) {
         step, [&](auto& value) { value = static_cast<std::remove_reference_t<decltype(value)>>(*next++); });
 }
 
+/// What of a checkpoint has a unit; the history of load steps is in the user's as it is.
+void scale(Checkpoint& checkpoint, const Units& factors) {
+  for (const char* name : {"r_star", "r_active", "penalty_normal", "penalty_tangential"})
+    if (const auto found = checkpoint.numbers.find(name); found != checkpoint.numbers.end())
+      found->second *= factors.penalty();
+  for (const char* name : {"lambda_min", "lambda_max"})
+    if (const auto found = checkpoint.numbers.find(name); found != checkpoint.numbers.end())
+      found->second /= factors.penalty();
+  for (auto& [name, values] : checkpoint.fields) {
+    const double factor = name == "load_steps" ? 1.0
+                          : name == "r"        ? factors.penalty()
+                          : name == "pressure" || name == "friction" || name == "bound"
+                              ? factors.stress()
+                              : factors.displacement;
+    for (double& value : values) value *= factor;
+  }
+}
+
 }  // namespace
 
 bool OuterLoop::stop_agreed() const {
@@ -122,12 +140,19 @@ Checkpoint OuterLoop::checkpoint(const Result& result) const {
     origin.resize(2 * state.bound.size(), 0.0);
     out.fields["slip_origin"] = gather_contact(part, origin, 2);
   }
+  scale(out, units_);
   return out;
 }
 
-void OuterLoop::restore(const Checkpoint* from, Result& result) {
+void OuterLoop::restore(const Checkpoint* users, Result& result) {
   const Part& part = context_.part;
   const bool here = part.halo.rank == 0;
+  Checkpoint own;
+  if (here) {
+    own = *users;
+    scale(own, units_.inverse());
+  }
+  const Checkpoint* from = &own;
   const auto get = [&](const char* name, auto& value) {
     using Value = std::remove_reference_t<decltype(value)>;
     // Counts beyond what the others hold could not be added to.

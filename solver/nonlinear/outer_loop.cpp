@@ -245,8 +245,8 @@ void OuterLoop::report(const StepOutcome& step, const Residuals& residuals, cons
   line.outer = result.outer_iterations;
   line.contact_iterations = step.contact_iterations;
   line.cg_iterations = step.cg_iterations;
-  line.r = result.r.back();
-  line.energy = residuals.energy;
+  line.r = result.r.back() * units_.penalty();
+  line.energy = residuals.energy * units_.energy();
   line.certificate = residuals.certificate;
   line.seconds = MPI_Wtime() - start_;
   run_.progress(line);

@@ -12,6 +12,7 @@
 #include "nonlinear/linearisation.hpp"
 #include "nonlinear/penalty_control.hpp"
 #include "nonlinear/step.hpp"
+#include "parallel/units.hpp"
 
 namespace kacanov {
 
@@ -21,6 +22,14 @@ class OuterLoop {
   /// At rest under `share` of the load. What is passed has to outlive the loop.
   OuterLoop(const Part& part, const SolverOptions& options, const RunOptions& run, double share = 1.0,
             const Tuning& tuning = {});
+
+  /// The part's, where they are not the user's: what the loop hands out is in the user's. Before run() and
+  /// restore().
+  void work_in(const Units& units) {
+    extent_ *= units_.strain() / units.strain();
+    units_ = units;
+  }
+  const Units& units() const noexcept { return units_; }
 
   /// Runs until the KKT residuals meet the tolerance, or max_outer steps. Fills the loop's entries of the
   /// result. Where the run is to stop, state and result are those after the last whole outer step, and false
@@ -105,7 +114,8 @@ class OuterLoop {
   int first_outer_ = 0;  ///< outer steps before this load step, or before a restart
   bool friction_;
   bool history_;   ///< slip of some point is counted from the load step before
-  double extent_;  ///< of the body
+  double extent_;  ///< of the body, in the unit of displacements
+  Units units_;
   std::uint64_t earlier_applications_ = 0;
   double spectrum_seconds_ = 0.0, checkpoint_seconds_ = 0.0;
 

@@ -3,6 +3,7 @@
 #include <kacanov/problem.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <sstream>
 #include <type_traits>
@@ -15,8 +16,17 @@
 #include "problem/selection.hpp"
 
 namespace kacanov {
-
 namespace {
+
+/// Squares of forces and products of four lengths are to fit in a double, with the digits of a residual.
+void refuse_out_of_range(const std::string& what, double value) {
+  constexpr double least = 1e-45, most = 1e45;
+  if (!std::isfinite(value) || (value >= least && value <= most)) return;
+  std::ostringstream text;
+  text << what << " is " << value << ", expected between " << least << " and " << most
+       << ", so that double precision holds what follows from it: take other units";
+  throw InputError(text.str());
+}
 
 /// Flatter elements leave single precision, in which the preconditioner works, nothing to hold on to.
 constexpr double sliver = 1e-7;
@@ -35,6 +45,12 @@ void warn_of_shape(Problem& problem, const FlatElement& flattest) {
 
 Problem build_problem(Mesh mesh, const Model& model) {
   validate(model);
+  if (!mesh.coordinates.empty()) refuse_out_of_range("mesh: the size of the body", extent(mesh).size);
+  for (std::size_t i = 0; i < model.materials.size(); ++i) {
+    const Law& law = model.materials[i].law;
+    for (const double modulus : {law.bulk, law.secant(0.0)})
+      refuse_out_of_range("material[" + std::to_string(i) + "]: a modulus", modulus);
+  }
   const FlatElement flattest = check_mesh(mesh);
   Problem problem;
   problem.mesh = std::move(mesh);

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Chooses the units of a part and takes it there and back.
+#include "parallel/own_units.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+#include <variant>
+
+namespace kacanov {
+namespace {
+
+double power_below(double value) { return std::ldexp(1.0, std::ilogb(value)); }
+
+/// The largest along an axis.
+double extent_of(const Part& part) {
+  const std::size_t dim = part.dim();
+  double extent = 0.0;
+  for (std::size_t c = 0; c < dim; ++c) {
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (std::size_t i = c; i < part.coordinates.size(); i += dim) {
+      low = std::min(low, part.coordinates[i]);
+      high = std::max(high, part.coordinates[i]);
+    }
+    extent = std::max(extent, part.halo.max_all(high) + part.halo.max_all(-low));
+  }
+  return extent;
+}
+
+void scale(std::vector<double>& values, double factor) {
+  for (double& value : values) value *= factor;
+}
+
+/// Parameters of a form in units of its argument and of moduli. One that is added says here what its own are.
+template <class Form>
+void measure(Form& form, double argument, double modulus) {
+  if constexpr (std::is_same_v<Form, laws::Table>) {
+    scale(form.x, 1.0 / argument);
+    scale(form.s, 1.0 / (modulus * argument));
+  } else if constexpr (!std::is_same_v<Form, laws::Linear>) {
+    form.x0 /= argument;  // the others have none
+  }
+}
+
+void measure(Law& law, const Units& units) {
+  law.bulk /= units.modulus;
+  law.shear /= units.modulus;
+  const bool squared = law.argument == Law::Argument::squared;
+  const double argument = squared ? units.strain() * units.strain() : units.strain();
+  std::visit([&](auto& form) { measure(form, argument, units.modulus); }, law.form);
+}
+
+/// Multiplies all that has a unit, but for the laws.
+void scale(Part& part, const Units& factors) {
+  scale(part.coordinates, factors.length);
+  scale(part.start, factors.displacement);
+  for (Part::ComponentValue& entry : part.load) entry.value *= factors.force();
+  for (Part::ComponentValue& entry : part.prescribed) entry.value *= factors.displacement;
+  for (ContactPoint& point : part.contact) {
+    point.gap *= factors.displacement;
+    point.mass *= factors.area();
+    point.tresca *= factors.stress();
+  }
+  for (Probe& probe : part.probes)
+    for (double& x : probe.point) x *= factors.length;
+}
+
+}  // namespace
+
+Units units_of(const Part& part) {
+  Units units;
+  units.dim = part.dim();
+  units.length = power_below(extent_of(part));
+  int stiffest = std::ilogb(part.laws.at(0).secant(0.0)), softest = stiffest;
+  for (const Law& law : part.laws) {
+    stiffest = std::max(stiffest, std::ilogb(law.secant(0.0)));
+    softest = std::min(softest, std::ilogb(law.secant(0.0)));
+  }
+  units.modulus = std::ldexp(1.0, softest + (stiffest - softest) / 2);
+  double moved = 0.0, load = 0.0;
+  for (const auto& entry : part.prescribed) moved = std::max(moved, std::abs(entry.value));
+  for (const ContactPoint& point : part.contact) moved = std::max(moved, -point.gap);
+  for (const auto& entry : part.load) load = std::max(load, std::abs(entry.value));
+  const double width = units.dim == 2 ? 1.0 : units.length;
+  const double most = part.halo.max_all(std::max(moved, load / units.modulus / width));
+  units.displacement = most > 0.0 ? power_below(most) : units.length;
+  return units;
+}
+
+InOwnUnits::InOwnUnits(Part& part) : part_(part), units_(units_of(part)), laws_(part.laws) {
+  scale(part, units_.inverse());
+  for (Law& law : part.laws) measure(law, units_);
+}
+
+InOwnUnits::~InOwnUnits() {
+  scale(part_, units_);
+  part_.laws.swap(laws_);
+}
+
+}  // namespace kacanov

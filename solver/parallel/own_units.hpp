@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Solves in units of the problem's own, so that its user's may be any (theory: units).
+#pragma once
+
+#include <vector>
+
+#include <kacanov/part.hpp>
+#include "parallel/units.hpp"
+
+namespace kacanov {
+
+/// The body's extent, the middle of its moduli, and the displacement that loads, prescribed displacements and
+/// indentations come to, each as the power of two below. The same on every rank. Collective.
+Units units_of(const Part& part);
+
+/// A part in its own units while this lives, and in the user's, to the bit, before and after.
+class InOwnUnits {
+ public:
+  /// Collective.
+  explicit InOwnUnits(Part& part);
+  ~InOwnUnits();
+  InOwnUnits(const InOwnUnits&) = delete;
+  InOwnUnits& operator=(const InOwnUnits&) = delete;
+
+  const Units& units() const noexcept { return units_; }
+
+ private:
+  Part& part_;
+  Units units_;
+  std::vector<Law> laws_;  ///< in the user's units
+};
+
+}  // namespace kacanov

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From the units of a part to its user's: everything that has a unit in what a run reports.
+#include "users_units.hpp"
+
+namespace kacanov {
+namespace {
+
+void scale(Vector3& vector, double factor) {
+  for (double& value : vector) value *= factor;
+}
+
+void scale(std::vector<double>& values, double factor) {
+  for (double& value : values) value *= factor;
+}
+
+void to_users_units(Result& result, const Units& units) {
+  scale(result.r, units.penalty());
+  result.lambda_min /= units.penalty();
+  result.lambda_max /= units.penalty();
+  result.r_star *= units.penalty();
+  result.r_active *= units.penalty();
+  scale(result.contact_force, units.force());
+  scale(result.friction_force, units.force());
+  result.max_contact_pressure *= units.stress();
+  result.max_von_mises *= units.stress();
+  for (Vector3& probe : result.probe) scale(probe, units.displacement);
+}
+
+}  // namespace
+
+void to_users_units(Solution& solution, const Units& units) {
+  to_users_units(solution.result, units);
+  scale(solution.displacement, units.displacement);
+  scale(solution.gap, units.displacement);
+  scale(solution.pressure, units.stress());
+  for (Vector3& traction : solution.traction) scale(traction, units.stress());
+}
+
+void to_users_units(LoadStep& step, const Units& units) {
+  scale(step.contact_force, units.force());
+  scale(step.friction_force, units.force());
+  step.max_contact_pressure *= units.stress();
+  for (Vector3& probe : step.probe) scale(probe, units.displacement);
+}
+
+void to_users_units(SpectrumResult& spectrum, const Units& units) {
+  spectrum.lambda_min /= units.penalty();
+  spectrum.lambda_max /= units.penalty();
+  spectrum.bound_min /= units.penalty();
+  spectrum.bound_max /= units.penalty();
+  spectrum.r_star *= units.penalty();
+}
+
+}  // namespace kacanov
