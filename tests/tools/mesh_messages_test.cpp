@@ -10,6 +10,7 @@
 
 #include <kacanov/error.hpp>
 #include "formats/gmsh_reader.hpp"
+#include "formats/printable.hpp"
 #include "temporary_folder.hpp"
 
 using namespace kacanov;
@@ -199,6 +200,33 @@ TEST_CASE("what is wrong in ASCII is named with its line") {
                  {"line 6", "double quotes"});
   check_contains(refusal(format22 + "$PhysicalNames\n2\n3 1 \"a\"\n3 1 \"b\"\n$EndPhysicalNames\n"),
                  {"line 7", "named twice"});
+}
+
+TEST_CASE("names that are no UTF-8 or move a terminal's cursor are refused, and shown by number") {
+  const auto named = [](const std::string& name) {
+    return format22 + "$PhysicalNames\n1\n3 7 \"" + name + "\"\n$EndPhysicalNames\n" + tetrahedron_nodes +
+           elements({"1 4 2 7 7 1 2 3 4"});
+  };
+  CHECK(refusal(named("wälzlager 轴承")) == "(accepted)");
+  for (const char* name : {"\x1b[2J", "a\xff", "a\xc3", "\xed\xa0\x80", "\xc0\xaf",
+                           "\xc2\x9b"
+                           "2J",
+                           "tab\tin it", "\x7f"})
+    check_contains(refusal(named(name)),
+                   {"line 6", "physical group 7: its name is no UTF-8, or has control characters"});
+  CHECK(printable("wälzlager 轴承\n") == "wälzlager 轴承\n");
+  CHECK(printable("\x1b[2J\xff\xc2\x9b") == "\\x1b[2J\\xff\\xc2\\x9b");
+}
+
+TEST_CASE("what belongs to thousands of groups is refused before it takes the square of them") {
+  std::string many;
+  for (int g = 1; g <= 300; ++g) many += " " + std::to_string(g);
+  check_contains(refusal(format41 + "$Entities\n0 0 0 1\n5 0 0 0 1 1 1 300" + many + " 0\n$EndEntities\n"),
+                 {"line 6", "entity 5 belongs to more than 256 physical groups"});
+  std::vector<std::string> lines;
+  for (int g = 1; g <= 300; ++g) lines.push_back("1 4 2 " + std::to_string(g) + " 1 1 2 3 4");
+  check_contains(refusal(format22 + tetrahedron_nodes + elements(lines)),
+                 {"element 1 belongs to more than 256 physical groups"});
 }
 
 TEST_CASE("the parts of format 4.1 have to agree with one another") {

@@ -57,10 +57,19 @@ void AtomicFile::commit(Durable durable) {
   // The new name is on the disk with its folder. Not all file systems can do that; the file is whole in any
   // case.
   const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
-  const int handle = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY);
+  const int handle = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_CLOEXEC);
   if (handle < 0) return;
   ::fsync(handle);
   ::close(handle);
+}
+
+void sync_file(const std::string& path) {
+  const int handle = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const bool done = handle >= 0 && ::fsync(handle) == 0;
+  // Some file systems know no such thing for folders.
+  const int error = errno == EINVAL ? 0 : errno;
+  if (handle >= 0) ::close(handle);
+  if (!done && error != 0) throw InternalError(path + ": cannot be put on the disk: " + std::strerror(error));
 }
 
 void write_file(const std::string& path, std::string_view text) {

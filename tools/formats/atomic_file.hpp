@@ -32,6 +32,9 @@ class AtomicFile {
   std::FILE* file_ = nullptr;
 };
 
+/// Puts a file, or the names in a folder, on the disk, so that they survive a power cut.
+void sync_file(const std::string& path);
+
 /// The whole of a small file at once.
 void write_file(const std::string& path, std::string_view text);
 

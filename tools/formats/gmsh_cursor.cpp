@@ -9,6 +9,7 @@
 #include <limits>
 
 #include <kacanov/error.hpp>
+#include "formats/printable.hpp"
 
 namespace kacanov {
 namespace {
@@ -105,6 +106,15 @@ void GmshCursor::text_end_of_line() {
 std::string_view GmshCursor::text_rest() {
   skip_blanks();
   return line();
+}
+
+std::string_view GmshCursor::text_name(const std::string& of) {
+  const std::string_view rest = text_rest();
+  if (rest.size() < 2 || rest.front() != '"' || rest.back() != '"')
+    fail("expected the name of a physical group in double quotes, got " + quoted(rest));
+  const std::string_view name = rest.substr(1, rest.size() - 2);
+  if (printable(name) != name) fail(of + ": its name is no UTF-8, or has control characters");
+  return name;
 }
 
 std::int32_t GmshCursor::tag(const char* what) {

@@ -31,6 +31,8 @@ class GmshCursor {
   void text_end_of_line();
   /// The rest of the line without its end, blanks in front removed; moves behind it.
   std::string_view text_rest();
+  /// A name in double quotes, without them: the rest of the line. `of`: what it names, for messages.
+  std::string_view text_name(const std::string& of);
 
   /// An `int`: 32 bits in a binary file.
   std::int32_t tag(const char* what);

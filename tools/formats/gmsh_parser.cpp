@@ -15,7 +15,7 @@ namespace kacanov {
 namespace {
 
 /// Of one element; every set that comes to pass is kept.
-constexpr std::size_t most_groups = 256;
+constexpr std::int64_t most_groups = 256;
 
 class Parser {
  public:
@@ -107,11 +107,9 @@ class Parser {
       const std::int64_t tag = in_.text_integer("number of a physical group");
       constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
       if (tag > most || tag < -most) in_.fail("number of a physical group: out of range");
-      const std::string_view rest = in_.text_rest();
-      if (rest.size() < 2 || rest.front() != '"' || rest.back() != '"')
-        in_.fail("expected the name of a physical group in double quotes, got " + quoted(rest));
+      const std::string_view name = in_.text_name("physical group " + std::to_string(tag));
       const auto key = std::pair(static_cast<int>(dimension), static_cast<int>(std::abs(tag)));
-      if (!content_.names.emplace(key, rest.substr(1, rest.size() - 2)).second)
+      if (!content_.names.emplace(key, name).second)
         in_.fail("physical group " + std::to_string(tag) + " of dimension " + std::to_string(dimension) +
                  " is named twice");
     }
@@ -135,6 +133,7 @@ class Parser {
     for (int k = 0; k < (dimension == 0 ? 3 : 6); ++k) in_.real("bounding box of an entity");
     const std::int64_t count = in_.size("number of physical groups of an entity");
     in_.expect_room(count, 2, "physical groups");
+    if (count > most_groups) refuse_groups("entity", tag);
     std::vector<int> physicals;
     for (std::int64_t k = 0; k < count; ++k)
       physicals.push_back(physical(in_.tag("number of a physical group")));
@@ -321,9 +320,7 @@ class Parser {
     GmshElements& list = content_.elements[*shape];
     list.nodes.resize(list.nodes.size() - static_cast<std::size_t>(cells()[*shape].nodes));
     std::vector<int> both = content_.physicals[list.runs.back().set];
-    if (both.size() >= most_groups)
-      in_.fail("element " + std::to_string(tag) + " belongs to more than " + std::to_string(most_groups) +
-               " physical groups");
+    if (both.size() >= std::size_t{most_groups}) refuse_groups("element", tag);
     if (group != 0) both.push_back(group);
     list.assign_last(set_of(std::move(both)));
   }
@@ -335,6 +332,11 @@ class Parser {
   }
 
   // Common to both formats.
+
+  [[noreturn]] void refuse_groups(const char* what, std::int64_t tag) const {
+    in_.fail(what + (" " + std::to_string(tag)) + " belongs to more than " + std::to_string(most_groups) +
+             " physical groups");
+  }
 
   [[noreturn]] void refuse_type(std::int64_t type, std::int64_t tag) const {
     const std::string name(gmsh_type_name(type));

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "formats/printable.hpp"
 #include "problem/integration.hpp"
 #include "problem/selection.hpp"
 #include "problem/vector3.hpp"
@@ -17,7 +18,7 @@ namespace {
 
 std::string on_text(const Selector& on, int dim) {
   if (on.kind == Selector::Kind::all) return "all";
-  if (on.kind == Selector::Kind::name) return "\"" + on.name + "\"";
+  if (on.kind == Selector::Kind::name) return "\"" + printable(on.name) + "\"";
   return "box " + to_text(on.lower, dim) + " to " + to_text(on.upper, dim);
 }
 

@@ -54,7 +54,9 @@ void clear_folder(const std::filesystem::path& folder) {
 }
 
 void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& json) {
-  write_file(file.string(), json.dump(2) + "\n");
+  // A message may quote what is no UTF-8, such as the name of a file.
+  using Handler = nlohmann::ordered_json::error_handler_t;
+  write_file(file.string(), json.dump(2, ' ', false, Handler::replace) + "\n");
 }
 
 std::string picture(const Case& input, const Mesh& mesh, std::span<const double> displacement,
@@ -185,7 +187,15 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
   together(mpi, [&] {
     if (mpi.first()) write_json(folder / "result.json", result_json(result, figures, dim));
   });
-  if (input.output.fields) together(mpi, [&] { write_body(folder, loaded.part, solution); });
+  // Where a checkpoint goes, what takes its place is on the disk first.
+  const bool replaced = loaded.part.halo.any(mpi.first() && result.status == Status::converged &&
+                                             std::filesystem::exists(file->path()));
+  if (input.output.fields) {
+    together(mpi, [&] {
+      write_body(folder, loaded.part, solution);
+      if (replaced) sync_file((folder / body_file(mpi.rank(), mpi.ranks())).string());
+    });
+  }
   together(mpi, [&] {
     if (!mpi.first()) return;
     if (input.output.fields) write_collection(folder, *loaded.problem, input.model, contact, mpi.ranks());
@@ -203,7 +213,12 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
     const std::string text = summary(result, figures, input.model, dim) +
                              (result.status == Status::converged ? "" : checkpoint_line(*file));
     if (input.output.report) try_to_show([&] { write_file((folder / "summary.txt").string(), text); });
-    if (result.status == Status::converged) file->remove();  // only now that all is written
+    if (replaced) {
+      for (const char* name : {"result.json", "contact.vtu", "body.pvtu", "result.pvd"})
+        if (std::filesystem::exists(folder / name)) sync_file((folder / name).string());
+      sync_file(folder.string());
+      file->remove();
+    }
     std::cout << "\n" + text + "  files         " + folder.string() + "\n";
   });
   return result.status == Status::converged ? exit_converged : exit_not_converged;

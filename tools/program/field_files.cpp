@@ -11,11 +11,12 @@
 #include "problem/selection.hpp"
 
 namespace kacanov {
-namespace {
 
-std::string piece_name(int rank, int ranks) {
+std::string body_file(int rank, int ranks) {
   return ranks == 1 ? "body.vtu" : "body_" + std::to_string(rank) + ".vtu";
 }
+
+namespace {
 
 /// Names and types of the body's fields; the values are filled in by the caller.
 Grid body_grid(ElementType type) {
@@ -202,15 +203,15 @@ void write_body(const std::filesystem::path& folder, const Part& part, const Sol
       });
   grid.cell_fields[5].values =
       tags(part.element_count(), [&part](std::size_t e) { return part.element_tag(e); });
-  write_vtu((folder / piece_name(part.halo.rank, part.halo.ranks)).string(), grid);
+  write_vtu((folder / body_file(part.halo.rank, part.halo.ranks)).string(), grid);
 }
 
 void write_collection(const std::filesystem::path& folder, const Problem& problem, const Model& model,
                       const ContactFields& contact, int ranks) {
-  std::vector<PvdPart> parts{{"body", piece_name(0, ranks)}};
+  std::vector<PvdPart> parts{{"body", body_file(0, ranks)}};
   if (ranks > 1) {
     std::vector<std::string> pieces;
-    for (int rank = 0; rank < ranks; ++rank) pieces.push_back(piece_name(rank, ranks));
+    for (int rank = 0; rank < ranks; ++rank) pieces.push_back(body_file(rank, ranks));
     write_pvtu((folder / "body.pvtu").string(), body_grid(problem.mesh.type), pieces);
     parts[0].file = "body.pvtu";
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include <kacanov/part.hpp>
 #include <kacanov/problem.hpp>
@@ -19,7 +20,10 @@ struct ContactFields {
 /// Collective; empty on other ranks.
 ContactFields gather_contact_fields(const Part& part, const Solution& solution);
 
-/// This rank's piece of the body, body.vtu or body_<rank>.vtu.
+/// Name of a rank's piece of the body: body.vtu, or body_<rank>.vtu where there are several.
+std::string body_file(int rank, int ranks);
+
+/// Writes this rank's piece.
 void write_body(const std::filesystem::path& folder, const Part& part, const Solution& solution);
 
 /// What ties the pieces together, and the contact surface; on the first rank.

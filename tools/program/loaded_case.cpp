@@ -9,6 +9,7 @@
 
 #include <kacanov/refine.hpp>
 #include "formats/gmsh_reader.hpp"
+#include "formats/printable.hpp"
 #include "program/memory_model.hpp"
 
 namespace kacanov {
@@ -35,7 +36,8 @@ Problem load_problem(const Case& input, RankCount ranks) {
 
 void print_warnings(const Case& input, const Problem& problem) {
   for (const auto* warnings : {&input.warnings, &problem.warnings})
-    for (const std::string& warning : *warnings) std::cerr << "kacanov: warning: " + warning + "\n";
+    for (const std::string& warning : *warnings)
+      std::cerr << "kacanov: warning: " + printable(warning) + "\n";
 }
 
 LoadedCase load_case(const Case& input, const MpiSession& mpi, bool memory_check) {

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include <kacanov/error.hpp>
+#include "formats/printable.hpp"
 #include "program/command.hpp"
 #include "program/launch.hpp"
 
@@ -48,7 +49,9 @@ Failure current_failure() {
   }
 }
 
-void print_failure(const Failure& failure) { std::cerr << "kacanov: " + failure.text + "\n" << std::flush; }
+void print_failure(const Failure& failure) {
+  std::cerr << "kacanov: " + printable(failure.text) + "\n" << std::flush;
+}
 
 void together(const MpiSession& mpi, const std::function<void()>& work) {
   Failure failure;

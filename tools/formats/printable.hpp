@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Names from files on their way to a terminal: what would move its cursor, or is no UTF-8, is shown by
+// number.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace kacanov {
+
+/// Bytes of the UTF-8 character that `text` begins with, 1 to 4; 0 where none is there.
+inline std::size_t utf8_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+  const unsigned first = byte(0);
+  if (first < 0x80) return text.empty() ? 0 : 1;
+  const std::size_t length = first >= 0xf5   ? 0
+                             : first >= 0xf0 ? 4
+                             : first >= 0xe0 ? 3
+                             : first >= 0xc2 ? 2
+                                             : 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+  // Longer forms than need be, surrogates, and what is beyond the last character.
+  if ((first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) >= 0xa0) ||
+      (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) >= 0x90))
+    return 0;
+  return length;
+}
+
+/// The text with control characters other than line ends, and bytes that are no UTF-8, as \x1b.
+inline std::string printable(std::string_view text) {
+  std::string result;
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    const auto first = static_cast<unsigned char>(text[0]);
+    // C1 controls, which some terminals obey, are two bytes in UTF-8: 0xc2 0x80 to 0xc2 0x9f.
+    const bool control = (first < 0x20 && first != '\n') || first == 0x7f ||
+                         (length == 2 && first == 0xc2 && static_cast<unsigned char>(text[1]) < 0xa0);
+    if (length > 0 && !control) {
+      result += text.substr(0, length);
+      text.remove_prefix(length);
+      continue;
+    }
+    constexpr const char* digits = "0123456789abcdef";
+    result += {'\\', 'x', digits[first >> 4], digits[first & 15]};
+    text.remove_prefix(1);
+  }
+  return result;
+}
+
+}  // namespace kacanov
