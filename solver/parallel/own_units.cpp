@@ -55,6 +55,7 @@ void scale(Part& part, const Units& factors) {
   scale(part.coordinates, factors.length);
   scale(part.start, factors.displacement);
   for (Part::ComponentValue& entry : part.load) entry.value *= factors.force();
+  for (EntryForce& entry : part.forces) entry.value *= factors.force();
   for (Part::ComponentValue& entry : part.prescribed) entry.value *= factors.displacement;
   for (ContactPoint& point : part.contact) {
     point.gap *= factors.displacement;
@@ -81,6 +82,7 @@ Units units_of(const Part& part) {
   for (const auto& entry : part.prescribed) moved = std::max(moved, std::abs(entry.value));
   for (const ContactPoint& point : part.contact) moved = std::max(moved, -point.gap);
   for (const auto& entry : part.load) load = std::max(load, std::abs(entry.value));
+  for (const auto& entry : part.forces) load = std::max(load, std::abs(entry.value));
   const double width = units.dim == 2 ? 1.0 : units.length;
   const double most = part.halo.max_all(std::max(moved, load / units.modulus / width));
   units.displacement = most > 0.0 ? power_below(most) : units.length;

@@ -7,23 +7,23 @@ namespace {
 
 Vec place(const Mesh& mesh, Index node) { return mesh.nodes[node]; }
 
-void add_surface_load(Problem& problem, const nlohmann::json& entry) {
+void add_surface_load(Problem& problem, const nlohmann::json& entry, Real factor) {
   for (const std::size_t f : select_facets(problem.mesh, entry.at("on"))) {
     const Indices& facet = problem.mesh.facets[f];
     const FacetIntegrals integrals = consistent(problem.mesh, facet);
     for (std::size_t k = 0; k < facet.size(); ++k) {
       Vec& load = problem.load[facet[k]];
       if (entry.contains("traction"))
-        load = load + integrals.area[k] * read_vector(entry.at("traction"));
+        load = load + factor * integrals.area[k] * read_vector(entry.at("traction"));
       else
-        load = load - Real(entry.at("pressure").get<double>()) * integrals.normal[k];
+        load = load - factor * Real(entry.at("pressure").get<double>()) * integrals.normal[k];
     }
   }
 }
 
-void add_body_force(Problem& problem, const nlohmann::json& entry) {
+void add_body_force(Problem& problem, const nlohmann::json& entry, Real factor) {
   const Mesh& mesh = problem.mesh;
-  const Vec force = read_vector(entry.at("body_force"));
+  const Vec force = factor * read_vector(entry.at("body_force"));
   const std::size_t dim = mesh.dim();
   for (const std::size_t e : select_elements(mesh, entry.at("on")))
     for (const QuadraturePoint& point : load_rule(mesh.shape)) {
@@ -41,15 +41,23 @@ void add_body_force(Problem& problem, const nlohmann::json& entry) {
     }
 }
 
-void hold(Problem& problem, const nlohmann::json& entry) {
+void hold(Problem& problem, const nlohmann::json& entry, Real factor) {
   const nlohmann::json& values = entry.at("displacement");
   const std::size_t dim = problem.mesh.dim();
   for (const Index node : select_nodes(problem.mesh, entry.at("on")))
     for (std::size_t c = 0; c < dim; ++c) {
       if (values.at(c).is_null()) continue;
       problem.held[node][c] = true;
-      problem.prescribed[node][c] = values.at(c).get<double>();
+      problem.prescribed[node][c] = factor * Real(values.at(c).get<double>());
     }
+}
+
+/// What the last of the load curves' steps multiplies an entry by: 1 where none names it (user guide: steps).
+Real last_factor(const nlohmann::json& document, const std::string& list, std::size_t index) {
+  Real factor = 1;
+  for (const auto& step : document.value("steps", nlohmann::json::array()))
+    factor = step.at("factors").value(list + "[" + std::to_string(index) + "]", static_cast<double>(factor));
+  return factor;
 }
 
 }  // namespace
@@ -60,17 +68,21 @@ Vec read_vector(const nlohmann::json& list) {
   return v;
 }
 
+Vec normal_at(const Mesh& mesh, const Indices& facet, const Functions& at) {
+  Vec along{}, across{};
+  for (std::size_t k = 0; k < facet.size(); ++k) {
+    along = along + at.gradient[k][0] * place(mesh, facet[k]);
+    across = across + at.gradient[k][1] * place(mesh, facet[k]);
+  }
+  return mesh.dim() == 2 ? Vec{along[1], -along[0], 0} : cross(along, across);
+}
+
 FacetIntegrals consistent(const Mesh& mesh, const Indices& facet) {
   FacetIntegrals out{std::vector<Real>(facet.size()), std::vector<Vec>(facet.size())};
   const Shape shape = facet_shape(mesh.shape);
   for (const QuadraturePoint& point : load_rule(shape)) {
     const Functions f = functions(shape, point.at);
-    Vec along{}, across{};
-    for (std::size_t k = 0; k < facet.size(); ++k) {
-      along = along + f.gradient[k][0] * place(mesh, facet[k]);
-      across = across + f.gradient[k][1] * place(mesh, facet[k]);
-    }
-    const Vec normal = mesh.dim() == 2 ? Vec{along[1], -along[0], 0} : cross(along, across);
+    const Vec normal = normal_at(mesh, facet, f);
     for (std::size_t k = 0; k < facet.size(); ++k) {
       out.area[k] += point.weight * f.value[k] * norm(normal);
       out.normal[k] = out.normal[k] + point.weight * f.value[k] * normal;
@@ -92,12 +104,18 @@ Problem read_problem(const nlohmann::json& document, const std::filesystem::path
       problem.law_of_element[e] = problem.laws.size();
     problem.laws.push_back(read_law(entry));
   }
-  for (const auto& entry : document.value("boundary", nlohmann::json::array())) {
-    if (entry.contains("displacement")) hold(problem, entry);
-    if (entry.contains("traction") || entry.contains("pressure")) add_surface_load(problem, entry);
-    if (entry.contains("body_force")) add_body_force(problem, entry);
+  const auto boundary = document.value("boundary", nlohmann::json::array());
+  for (std::size_t i = 0; i < boundary.size(); ++i) {
+    const nlohmann::json& entry = boundary.at(i);
+    const Real factor = last_factor(document, "boundary", i);
+    if (entry.contains("displacement")) hold(problem, entry, factor);
+    if (entry.contains("traction") || entry.contains("pressure")) add_surface_load(problem, entry, factor);
+    if (entry.contains("body_force")) add_body_force(problem, entry, factor);
   }
-  find_rows(document.value("contact", nlohmann::json::array()), problem);
+  const auto contact = document.value("contact", nlohmann::json::array());
+  for (std::size_t i = 0; i < contact.size(); ++i)
+    problem.contact_factor.push_back(last_factor(document, "contact", i));
+  find_rows(contact, problem);
   if (document.contains("solver")) problem.tolerance = document.at("solver").value("tolerance", 1e-6);
   for (const auto& point : document.value("probe", nlohmann::json::array()))
     problem.probes.push_back(read_vector(point));

@@ -17,7 +17,9 @@ struct ContactRow {
   Index node = 0;                    ///< that it stands for in contact.vtu
   std::vector<std::size_t> written;  ///< its places in contact.vtu: one an entry that has a part in it
   Vec normal{};                      ///< ν
+  std::size_t entry = 0;             ///< of `contact`
   Real gap = 0, mass = 0, tresca = 0, coulomb = 0;
+  Real closed = 0;  ///< by prescribed components, and off the gap
   bool friction = false;
   bool grazing = false;  ///< whether it meets the sphere is a matter of rounding
 };
@@ -29,6 +31,7 @@ struct Problem {
   std::vector<Vec> load;                  ///< F, one a node
   std::vector<std::array<bool, 3>> held;  ///< components with a prescribed displacement
   std::vector<Vec> prescribed;
+  std::vector<Real> contact_factor;  ///< of each contact entry at the last load step
   std::vector<ContactRow> rows;
   std::vector<std::int64_t> surface_tags;  ///< numbers of the nodes in contact.vtu, in its order
   std::vector<Vec> probes;
@@ -48,6 +51,8 @@ struct FacetIntegrals {
   std::vector<Vec> normal;
 };
 FacetIntegrals consistent(const Mesh& mesh, const Indices& facet);
+/// Outer normal times the area over that of the reference cell, at a point with these functions.
+Vec normal_at(const Mesh& mesh, const Indices& facet, const Functions& at);
 
 Vec read_vector(const nlohmann::json& list);
 

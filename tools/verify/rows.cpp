@@ -36,18 +36,15 @@ Facing face(const nlohmann::json& obstacle, const Vec& x, const Vec& outer) {
 }
 
 /// The lumped mass of a facet's nodes and their share of its normal: the rule that turns a facet's
-/// multipliers into forces. Six-node facets are cut into four triangles.
+/// multipliers into forces. Six-node facets have the rule of their mid-sides, and corners bear nothing.
 FacetIntegrals contact_weights(const Mesh& mesh, const Indices& facet) {
   if (facet_shape(mesh.shape) != Shape::tri6) return consistent(mesh, facet);
   FacetIntegrals out{std::vector<Real>(6), std::vector<Vec>(6)};
-  constexpr std::size_t parts[4][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
-  for (const auto& part : parts) {
-    const auto at = [&](std::size_t k) { return mesh.nodes[facet[part[k]]]; };
-    const Vec third = Real(1) / 6 * cross(at(1) - at(0), at(2) - at(0));
-    for (const std::size_t k : part) {
-      out.area[k] += norm(third);
-      out.normal[k] = out.normal[k] + third;
-    }
+  const Real half = Real(1) / 2;
+  const std::array<Vec, 3> middles{{{half, 0, 0}, {half, half, 0}, {0, half, 0}}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    out.normal[k + 3] = Real(1) / 6 * normal_at(mesh, facet, functions(Shape::tri6, middles[k]));
+    out.area[k + 3] = norm(out.normal[k + 3]);
   }
   return out;
 }
@@ -74,7 +71,7 @@ bool restrict_to_free(const Problem& problem, ContactRow& row) {
   const auto node = static_cast<std::size_t>(row.node);
   for (std::size_t c = 0; c < 3; ++c) {
     if (!problem.held[node][c]) continue;
-    row.gap -= free[c] * problem.prescribed[node][c];
+    row.closed += free[c] * problem.prescribed[node][c];
     free[c] = 0;
   }
   row.shares = {{row.node, free}};
@@ -87,7 +84,8 @@ void find_rows(const nlohmann::json& contact, Problem& problem) {
   const Mesh& mesh = problem.mesh;
   const Real size = mesh.size();
   std::map<Index, std::vector<ContactRow>> rows;
-  for (const auto& entry : contact) {
+  for (std::size_t number = 0; number < contact.size(); ++number) {
+    const nlohmann::json& entry = contact.at(number);
     struct Sums {
       Real mass = 0;
       Vec outer{};
@@ -102,11 +100,17 @@ void find_rows(const nlohmann::json& contact, Problem& problem) {
       }
     }
     const nlohmann::json friction = entry.value("friction", nlohmann::json::object());
+    if (friction.value("reference", "start") != "start")
+      throw Failure("contact[" + std::to_string(number) +
+                    "].friction.reference: slip counts from the end of a load "
+                    "step that no file holds, so that the verifier cannot tell it");
     for (const auto& [node, sum] : sums) {
       ContactRow row;
       row.node = node;
+      row.entry = number;
       row.written = {problem.surface_tags.size()};
       problem.surface_tags.push_back(mesh.tags[node]);
+      if (!(sum.mass > 0)) continue;
       const Facing facing = face(entry.at("obstacle"), mesh.nodes[node], sum.outer);
       if (facing.missed) continue;
       row.normal = facing.normal;
@@ -119,8 +123,15 @@ void find_rows(const nlohmann::json& contact, Problem& problem) {
       if (restrict_to_free(problem, row) && !joined(rows[node], row, size)) rows[node].push_back(row);
     }
   }
+  // Where an obstacle presses in, the share of its deepest indentation that the last load step lacks.
+  std::vector<Real> depth(problem.contact_factor.size());
   for (auto& [node, of_node] : rows)
-    for (ContactRow& row : of_node) problem.rows.push_back(std::move(row));
+    for (ContactRow& row : of_node) {
+      depth[row.entry] = larger(depth[row.entry], -row.gap);
+      problem.rows.push_back(std::move(row));
+    }
+  for (ContactRow& row : problem.rows)
+    row.gap += (1 - problem.contact_factor[row.entry]) * depth[row.entry] - row.closed;
 }
 
 }  // namespace kacanov::verify
