@@ -3,6 +3,7 @@
 #include <kacanov/solve.hpp>
 
 #include <cmath>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -100,18 +101,21 @@ std::string softening_message(std::int64_t elements) {
 Solution solve(Part& part, const SolverOptions& users_options, const RunOptions& run) {
   validate(users_options);
   const double start = MPI_Wtime();
+  const bool restart = part.halo.any(part.halo.rank == 0 && run.start != nullptr);
+  std::optional<Start> coarse;
+  if (!restart && run.coarse != nullptr) coarse = interpolate(*run.coarse, part);
   const InOwnUnits scaled(part);
+  if (coarse) to_own_units(*coarse, scaled.units());
   SolverOptions options = users_options;
   options.r /= scaled.units().penalty();
   Solution solution;
   Result& result = solution.result;
-  const bool restart = part.halo.any(part.halo.rank == 0 && run.start != nullptr);
   const std::vector<double> shares = load_points(part, options);
   result.by_time = !part.steps.empty();
   OuterLoop loop(part, options, run, shares[steps_over(part, run, shares.size())]);
   loop.work_in(scaled.units());
   const StepContext& context = loop.context();
-  if (!restart && run.coarse != nullptr) loop.adopt(interpolate(*run.coarse, part));
+  if (coarse) loop.adopt(*coarse);
   const double prepared = MPI_Wtime();
   if (restart) loop.restore(run.start, result);
   result.message = part.no_equilibrium;

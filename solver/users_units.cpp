@@ -51,4 +51,11 @@ void to_users_units(SpectrumResult& spectrum, const Units& units) {
   spectrum.r_star *= units.penalty();
 }
 
+void to_own_units(Start& start, const Units& units) {
+  scale(start.displacement, 1.0 / units.displacement);
+  scale(start.pressure, 1.0 / units.stress());
+  scale(start.friction, 1.0 / units.stress());
+  start.lambda_max *= units.penalty();
+}
+
 }  // namespace kacanov

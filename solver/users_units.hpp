@@ -2,6 +2,7 @@
 // From the units of a part to its user's: everything that has a unit in what a run reports.
 #pragma once
 
+#include <kacanov/coarse_solution.hpp>
 #include <kacanov/result.hpp>
 #include "parallel/units.hpp"
 
@@ -12,5 +13,8 @@ namespace kacanov {
 void to_users_units(Solution& solution, const Units& units);
 void to_users_units(LoadStep& step, const Units& units);
 void to_users_units(SpectrumResult& spectrum, const Units& units);
+
+/// The other way: what a run starts from.
+void to_own_units(Start& start, const Units& units);
 
 }  // namespace kacanov

@@ -68,12 +68,20 @@ Real Mesh::size() const {
 
 Mesh load_mesh(const nlohmann::json& source, const std::filesystem::path& folder) {
   Mesh mesh;
-  if (source.contains("box"))
-    mesh = make_box(source.at("box"));
-  else if (source.contains("file"))
+  const int refine = source.value("refine", 0);
+  if (source.contains("file") && refine > 0)
+    throw Failure(
+        "mesh.refine: the nodes of a refined file have numbers that no file holds; the verifier knows "
+        "refined boxes only");
+  if (source.contains("box")) {
+    nlohmann::json box = source.at("box");
+    for (auto& cells : box.at("cells")) cells = cells.get<int>() << refine;
+    mesh = make_box(box);
+  } else if (source.contains("file")) {
     mesh = read_gmsh(folder / source.at("file").get<std::string>());
-  else
+  } else {
     throw Failure("mesh: the verifier knows `file` and `box` only");
+  }
   find_boundary(mesh);
   return mesh;
 }
