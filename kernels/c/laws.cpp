@@ -19,6 +19,7 @@ Law::Form form_of(const kacanov_law& from, const std::string& where) {
     case KACANOV_POWER: return laws::Power{from.x0, from.n};
     case KACANOV_SATURATING: return laws::Saturating{from.x0, from.q};
     case KACANOV_TABLE: return table_of(from, where);
+    case KACANOV_RAMBERG_OSGOOD: return laws::RambergOsgood{from.x0, from.q, from.n};
   }
   throw Fault(KACANOV_ERROR_LAW, where + "kind: there is no law " + std::to_string(from.kind));
 }

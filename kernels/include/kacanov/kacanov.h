@@ -68,7 +68,8 @@ typedef enum kacanov_law_kind {
   KACANOV_LINEAR_HARDENING = 2, /* mu (gamma + (1 - gamma) x0/a), 0 < gamma <= 1 */
   KACANOV_POWER = 3,            /* mu (a/x0)^(n-1), 0 < n <= 1 */
   KACANOV_SATURATING = 4,       /* mu (x0/a) (1 + q (1 - exp(-(a-x0)/(q x0)))), q > 0 */
-  KACANOV_TABLE = 5             /* 2 g a piecewise linear through given points */
+  KACANOV_TABLE = 5,            /* 2 g a piecewise linear through given points */
+  KACANOV_RAMBERG_OSGOOD = 6    /* mu t x0/a with a/x0 = t + q t^n, from a = 0 on; q > 0, n > 1, not squared */
 } kacanov_law_kind;
 
 typedef struct kacanov_law {
@@ -78,8 +79,8 @@ typedef struct kacanov_law {
   double shear;      /* mu > 0 */
   double x0;         /* yield strain, compared with a; > 0 for all kinds but linear and table */
   double gamma;      /* linear hardening */
-  double n;          /* power */
-  double q;          /* saturating */
+  double n;          /* power, Ramberg-Osgood */
+  double q;          /* saturating, Ramberg-Osgood */
   size_t table_size; /* table: points, from (0, 0); table_s increases, table_s/table_x must not */
   const double* table_x;
   const double* table_s;   /* |dev tau| = 2 g a at table_x */

@@ -2,8 +2,10 @@
 // Hencky laws: secant shear modulus g, its derivative and its energy.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -25,7 +27,8 @@ struct Moduli {
 ///   initial(mu)           g there
 ///   moduli(mu, a)         g and dg/da for a > yield()
 ///   energy(mu, a)         ∫ g a da from yield() to a > yield()
-///   plain_energy(mu, a)   ∫ g da from yield() to a > yield()
+///   plain_energy(mu, a)   ∫ g da from yield() to a > yield(); a form without it does not take squares
+///   proof()               the argument that counts as plastic where it is not yield(); else left out
 ///
 /// for the shear modulus mu and the argument a, a strain or its square: see Law::Argument.
 namespace laws {
@@ -116,13 +119,29 @@ struct Table {
   double plain_energy(double mu, double a) const;
 };
 
+/// theory: law-ramberg-osgood. x/x0 = t + a tⁿ, t = s/(2μ x0).
+struct RambergOsgood {
+  double x0 = 0.0;  ///< > 0: the elastic strain at the reference stress
+  double a = 0.0;   ///< > 0: plastic over elastic strain there
+  double n = 2.0;   ///< > 1
+
+  static constexpr std::string_view name = "ramberg_osgood";
+  static void parameters(auto& f, auto&& visit) { visit(f.x0), visit(f.a), visit(f.n); }
+  std::string fault() const;
+  double yield() const;
+  double proof() const { return x0 * (1.0 + a); }
+  double initial(double mu) const { return mu; }
+  Moduli moduli(double mu, double x) const;
+  double energy(double mu, double x) const;
+};
+
 }  // namespace laws
 
 /// τ = k0 tr ε I + 2 g(x) dev ε, x = ‖dev ε‖ (Frobenius; theory: laws). Moduli have the unit of stress,
 /// strains none. Every member function takes the norm x ≥ 0, whatever `argument` is.
 struct Law {
   using Form = std::variant<laws::Linear, laws::Logarithmic, laws::LinearHardening, laws::Power,
-                            laws::Saturating, laws::Table>;
+                            laws::Saturating, laws::Table, laws::RambergOsgood>;
   /// What the form is fed with: x or x² (theory: squared-argument).
   enum class Argument : std::uint8_t { norm, squared };
 
@@ -144,9 +163,12 @@ struct Law {
   double energy(double x) const;
   /// The norm up to which g is constant; infinite for linear ones.
   double yield_strain() const;
+  /// The norm beyond which plastic(): the yield strain, or that of the reference stress where g falls from
+  /// the first.
+  double proof_strain() const;
   /// True where stress falls with strain, d(g x)/dx < 0 (possible with the squared argument only).
   bool softens(double x) const;
-  /// True beyond the yield strain.
+  /// True beyond the proof strain.
   bool plastic(double x) const;
 };
 
@@ -156,5 +178,20 @@ std::string validate(const Law& law);
 
 /// k0 = E / (3 (1 − 2ν)), μ = E / (2 (1 + ν)) of Young's modulus and Poisson's ratio, which are not checked.
 Law elastic_law(double young, double poisson);
+/// Young's modulus, from k0 and μ.
+double young_modulus(const Law& law);
+
+// Laws from what a test in tension says (theory: uniaxial), with the elastic constants of `elastic`.
+
+/// Of the slope 2μ: what a curve gets where its stress does not grow, as beyond the last row of a table, so
+/// that the displacement is unique.
+inline constexpr double plateau_slope = 1e-4;
+/// Rows of (stress, plastic strain): the first strain 0, strains growing, stresses not falling. Beyond the
+/// last row the stress grows by plateau_slope. Empty rows, and what else validate() refuses, are not checked.
+laws::Table plastic_table(const Law& elastic, std::span<const std::array<double, 2>> rows);
+/// Bilinear: `tangent` of stress over total strain beyond the yield stress, 0 < tangent < E.
+laws::LinearHardening bilinear(const Law& elastic, double yield_stress, double tangent);
+/// ε = σ/E + alpha (sigma0/E) (σ/sigma0)ⁿ.
+laws::RambergOsgood ramberg_osgood(const Law& elastic, double sigma0, double alpha, double n);
 
 }  // namespace kacanov
