@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include <kacanov/element_fields.hpp>
+#include "body_totals.hpp"
 
 namespace kacanov {
 namespace {
@@ -55,21 +55,6 @@ void collect_contact_totals(const Part& part, Solution& solution) {
   result.max_contact_pressure = part.halo.max_all(pressure);
 }
 
-void collect_element_totals(const Part& part, std::span<const double> u, Result& result) {
-  std::int64_t plastic = 0, softening = 0;
-  double von_mises = 0.0;
-  const Body body = part.body();
-  visit_element_fields(part, u, [&](const ElementRun& run) {
-    for (const std::uint8_t p : run.plastic) plastic += p;
-    for (const double v : run.von_mises) von_mises = std::max(von_mises, v);
-    for (std::size_t e = 0; e < run.dev_strain.size(); ++e)
-      softening += body.law(run.first + e).softens(run.dev_strain[e]) ? 1 : 0;
-  });
-  result.plastic_elements = part.halo.sum_all(plastic);
-  result.softening_elements = part.halo.sum_all(softening);
-  result.max_von_mises = part.halo.max_all(von_mises);
-}
-
 void collect_probes(const Part& part, std::span<const double> u, Result& result) {
   const std::size_t dim = part.dim();
   const std::size_t npe = nodes_per_element(part.type);
@@ -103,7 +88,7 @@ void collect_contact(const Part& part, const ContactState& state, double toleran
 
 void collect_totals(const Part& part, const ContactState& state, Solution& solution) {
   collect_contact_totals(part, solution);
-  collect_element_totals(part, state.omega, solution.result);
+  collect_body_totals(part, state.omega, solution.result);
   collect_probes(part, state.omega, solution.result);
 }
 

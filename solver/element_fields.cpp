@@ -31,25 +31,41 @@ void visit_element_fields(const Part& part, std::span<const double> omega,
   for (run.first = 0; run.first < elements; run.first += elements_a_run) {
     const std::size_t count = std::min(elements_a_run, elements - run.first);
     run.stress.resize(6 * count);
-    for (auto* field : {&run.von_mises, &run.dev_strain, &run.secant}) field->resize(count);
+    for (auto* field :
+         {&run.von_mises, &run.dev_strain, &run.secant, &run.strain, &run.rotation, &run.volume})
+      field->resize(count);
     run.plastic.resize(count);
-    element_fields(part, omega, run.first, count,
-                   {run.stress, run.von_mises, run.dev_strain, run.secant, run.plastic});
+    element_fields(
+        part, omega, run.first, count,
+        {run.stress, run.von_mises, run.dev_strain, run.secant, run.plastic, run.strain, run.rotation});
+    reference::volumes(elements_of(part, run.first, count), run.volume);
+    visit(run);
+  }
+}
+
+void visit_point_stress(const Part& part, std::span<const double> omega,
+                        const std::function<void(const PointRun&)>& visit) {
+  const std::size_t elements = part.element_count();
+  const std::size_t points = points_per_element(part.type);
+  PointRun run;
+  for (run.first = 0; run.first < elements; run.first += elements_a_run) {
+    const std::size_t count = std::min(elements_a_run, elements - run.first);
+    run.position.resize(count * points);
+    run.stress.resize(6 * count * points);
+    reference::point_fields(elements_of(part, run.first, count), omega, {run.position, run.stress});
     visit(run);
   }
 }
 
 std::vector<double> nodal_von_mises(const Part& part, std::span<const double> omega) {
   const std::size_t npe = nodes_per_element(part.type);
-  std::vector<double> mean(part.nodes(), 0.0), weight(part.nodes(), 0.0), volume;
+  std::vector<double> mean(part.nodes(), 0.0), weight(part.nodes(), 0.0);
   visit_element_fields(part, omega, [&](const ElementRun& run) {
     const std::size_t count = run.von_mises.size();
-    volume.resize(count);
-    reference::volumes(elements_of(part, run.first, count), volume);
     for (std::size_t k = 0; k < count * npe; ++k) {
       const std::size_t node = part.elements[run.first * npe + k];
-      mean[node] += volume[k / npe] * run.von_mises[k / npe];
-      weight[node] += volume[k / npe];
+      mean[node] += run.volume[k / npe] * run.von_mises[k / npe];
+      weight[node] += run.volume[k / npe];
     }
   });
   part.halo.sum(mean, 1);

@@ -9,6 +9,7 @@
 
 #include "amg/make_preconditioner.hpp"
 #include "collect.hpp"
+#include "entry_totals.hpp"
 #include "load_steps.hpp"
 #include "nonlinear/friction_bounds.hpp"
 #include "parallel/own_units.hpp"
@@ -34,12 +35,17 @@ std::vector<double> load_points(const Part& part, const SolverOptions& options) 
   return times;
 }
 
-/// KKT residuals by the reference operator: the certificate does not trust the one the loop ran on.
-Certificate certify_independently(const StepContext& context) {
-  const Part& part = context.part;
+/// R(u) by the reference operator. Collective.
+Vector internal_force(const Part& part, std::span<const double> u) {
   Vector internal(part.unknowns());
-  reference::residual(part.body(), context.state.omega, internal);
+  reference::residual(part.body(), u, internal);
   part.halo.sum(internal, part.dim());
+  return internal;
+}
+
+/// KKT residuals by the reference operator: the certificate does not trust the one the loop ran on.
+Certificate certify_independently(const StepContext& context, std::span<const double> internal) {
+  const Part& part = context.part;
   BodyForces forces = context.body.forces(context.path);
   forces.internal = internal;
   forces.energy = part.halo.sum_all(reference::energy(part.body(), context.state.omega));
@@ -122,7 +128,8 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   const bool finished = !part.no_equilibrium.empty() || run_load_steps(loop, shares, result);
   const double looped = MPI_Wtime();
 
-  result.certificate = certify_independently(context);
+  const Vector internal = internal_force(part, context.state.omega);
+  result.certificate = certify_independently(context, internal);
   result.status = result.certificate.meets(options.tolerance)       ? Status::converged
                   : result.certificate.exhausted(options.tolerance) ? Status::limited_by_rounding
                                                                     : Status::not_converged;
@@ -140,6 +147,7 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   solution.displacement = context.state.omega;
   collect_contact(part, context.state, options.tolerance, solution);
   collect_totals(part, context.state, solution);
+  collect_entries(part, context.state, context.path, internal, solution);
   to_users_units(solution, scaled.units());
   if (result.message.empty()) result.message = verdict(result, options);
   if (shares.size() > 1 || result.by_time) end_load_steps(shares, finished, result);

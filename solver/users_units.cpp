@@ -13,7 +13,41 @@ void scale(std::vector<double>& values, double factor) {
   for (double& value : values) value *= factor;
 }
 
+void scale(Resultant& resultant, const Units& units) {
+  scale(resultant.force, units.force());
+  scale(resultant.moment, units.force() * units.length);
+}
+
+void scale(ContactTotals& contact, const Units& units) {
+  scale(contact.total, units);
+  scale(contact.normal_force, units.force());
+  scale(contact.friction_force, units.force());
+  contact.area *= units.area();
+  contact.max_pressure *= units.stress();
+  contact.least_gap *= units.displacement;
+  contact.first_gap *= units.displacement;
+}
+
+void scale(Extreme& extreme, double factor, double length) {
+  extreme.value *= factor;
+  scale(extreme.at, length);
+}
+
+void scale(BodySize& body, double length) {
+  scale(body.lower, length);
+  scale(body.upper, length);
+  body.size *= length;
+  body.volume *= body.dim == 2 ? length * length : length * length * length;
+}
+
+/// What boundary entries load the body with is in the user's units throughout.
 void to_users_units(Result& result, const Units& units) {
+  for (ContactTotals& contact : result.contact) scale(contact, units);
+  for (BoundaryTotals& reaction : result.reaction) scale(reaction.total, units);
+  scale(result.max_displacement, units.displacement, units.length);
+  scale(result.max_strain, units.strain(), units.length);
+  scale(result.max_rotation, units.strain(), units.length);
+  scale(result.body, units.length);
   scale(result.r, units.penalty());
   result.lambda_min /= units.penalty();
   result.lambda_max /= units.penalty();

@@ -38,6 +38,20 @@ kacanov_test(load_steps
   MPI SOURCES solver/load_steps_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
+kacanov_test(entry_totals
+  MPI SOURCES solver/entry_totals_test.cpp
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal
+  RANKS 1 2 3)
+
+kacanov_test(validity
+  MPI SOURCES solver/validity_test.cpp solver/uniaxial_bar_test.cpp
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
+
+kacanov_test(nodal_stress
+  MPI SOURCES solver/nodal_stress_test.cpp
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal
+  RANKS 1 2 3)
+
 kacanov_test(random_problems
   MPI SOURCES solver/random_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal Eigen3::Eigen)

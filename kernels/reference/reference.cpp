@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "cells/dispatch.hpp"
@@ -55,12 +56,39 @@ Sym tangent_stress(const Law& law, const Strain& at, const Strain& strain) {
   return tau;
 }
 
+/// ∂u_i/∂x_k.
+using Gradient = std::array<std::array<double, 3>, 3>;
+
 template <class E>
-Strain strain_at(const Point<E>& point, const Nodal<E>& u) {
-  double h[3][3] = {};
+Gradient gradient_at(const Point<E>& point, const Nodal<E>& u) {
+  Gradient h{};
   for (int a = 0; a < E::nodes; ++a)
     for (int i = 0; i < E::dim; ++i)
       for (int k = 0; k < E::dim; ++k) h[i][k] += u[point.at(a, i)] * point.gradient[a][k];
+  return h;
+}
+
+/// The largest magnitude of an eigenvalue of the symmetric part, by Cardano's formulas.
+double largest_principal(const Gradient& h) {
+  const double mean = (h[0][0] + h[1][1] + h[2][2]) / 3.0;
+  const double a = h[0][0] - mean, b = h[1][1] - mean, c = h[2][2] - mean;
+  const double d = 0.5 * (h[0][1] + h[1][0]), e = 0.5 * (h[1][2] + h[2][1]), f = 0.5 * (h[2][0] + h[0][2]);
+  const double p = std::sqrt((a * a + b * b + c * c + 2.0 * (d * d + e * e + f * f)) / 6.0);
+  if (!(p > 0.0)) return std::abs(mean);
+  const double det = a * (b * c - e * e) - d * (d * c - e * f) + f * (d * e - b * f);
+  const double angle = std::acos(std::clamp(0.5 * det / (p * p * p), -1.0, 1.0)) / 3.0;
+  const double third = 2.0 * std::numbers::pi / 3.0;
+  return std::max(std::abs(mean + 2.0 * p * std::cos(angle)),
+                  std::abs(mean + 2.0 * p * std::cos(angle + third)));
+}
+
+double rotation_angle(const Gradient& h) {
+  return 0.5 * std::hypot(h[2][1] - h[1][2], h[0][2] - h[2][0], h[1][0] - h[0][1]);
+}
+
+template <class E>
+Strain strain_at(const Point<E>& point, const Nodal<E>& u) {
+  const Gradient h = gradient_at<E>(point, u);
   Strain s;
   const double trace = h[0][0] + h[1][1] + h[2][2];
   s.dev = {h[0][0] - trace / 3.0,     h[1][1] - trace / 3.0,     h[2][2] - trace / 3.0,
@@ -275,7 +303,7 @@ void fields(const Body& body, std::span<const double> u, const ElementFields& ou
       const Nodal<E> x = gather<E>(body, e, body.mesh.coordinates);
       const Nodal<E> local = gather<E>(body, e, u);
       Sym tau{};
-      double volume = 0.0, dev_strain = 0.0, g_mean = 0.0, von_mises = 0.0;
+      double volume = 0.0, dev_strain = 0.0, g_mean = 0.0, von_mises = 0.0, largest = 0.0, rotation = 0.0;
       bool plastic = false;
       const auto points = points_of<E>(x, law.mean_dilatation);
       for (std::size_t q = 0; q < E::points; ++q) {
@@ -289,6 +317,10 @@ void fields(const Body& body, std::span<const double> u, const ElementFields& ou
         g_mean += point.volume * g;
         von_mises += point.volume * std::sqrt(1.5) * 2.0 * g * norm;
         plastic = plastic || law.plastic(norm);
+        if (out.strain.empty() && out.rotation.empty()) continue;
+        const Gradient h = gradient_at<E>(point, u);
+        largest = std::max(largest, largest_principal(h));
+        rotation = std::max(rotation, rotation_angle(h));
       }
       if (!out.stress.empty())
         for (std::size_t i = 0; i < 6; ++i) out.stress[6 * e + i] = tau[i] / volume;
@@ -296,7 +328,27 @@ void fields(const Body& body, std::span<const double> u, const ElementFields& ou
       if (!out.dev_strain.empty()) out.dev_strain[e] = dev_strain / volume;
       if (!out.secant.empty()) out.secant[e] = g_mean / volume;
       if (!out.plastic.empty()) out.plastic[e] = plastic ? 1 : 0;
+      if (!out.strain.empty()) out.strain[e] = largest;
+      if (!out.rotation.empty()) out.rotation[e] = rotation;
     }
+  });
+}
+
+void point_fields(const Body& body, std::span<const double> omega, const PointFields& out) {
+  elements::dispatch(body.mesh.type, [&]<class E>(E) {
+    for_each_point<E>(
+        body, omega,
+        [&](std::size_t e, const Law& law, std::size_t q, const Point<E>&, const Strain& strain) {
+          const std::size_t k = e * E::points + q;
+          const Sym tau = stress(law, law.secant(strain.norm()), strain);
+          std::copy(tau.begin(), tau.end(), &out.stress[6 * k]);
+          const auto shape = E::values(E::point[q].data());
+          const std::int32_t* node = nodes_of(body, e);
+          out.position[k] = {};
+          for (int a = 0; a < E::nodes; ++a)
+            for (int i = 0; i < E::dim; ++i)
+              out.position[k][i] += shape[a] * body.mesh.coordinates[Point<E>::at(node[a], i)];
+        });
   });
 }
 

@@ -63,6 +63,10 @@ void LoadPath::find_acting(const std::vector<double>& depth) {
   for (std::uint8_t& acts : acts_) acts = part_->halo.any(acts != 0) ? 1 : 0;
 }
 
+double LoadPath::factor_of(std::int32_t entry) const {
+  return part_->steps.empty() ? share_ : factors_at(part_->steps, share_).boundary[entry];
+}
+
 double LoadPath::growth_to(double share) const {
   if (part_->steps.empty()) return share / share_;
   const LoadFactors now = factors_at(part_->steps, share_), then = factors_at(part_->steps, share);

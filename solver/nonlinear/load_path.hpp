@@ -23,6 +23,8 @@ class LoadPath {
   /// Any share > 0; with 1 everything is that of the part, to the bit.
   void go_to(double share);
   double share() const noexcept { return share_; }
+  /// What the loads of a boundary entry are multiplied by.
+  double factor_of(std::int32_t entry) const;
   /// What the state is to be multiplied by to start at another share: with load curves 1, unless all that
   /// acts grows in proportion.
   double growth_to(double share) const;

@@ -35,6 +35,11 @@ double Communicator::max_all(double value) const {
   return value;
 }
 
+void Communicator::max_all(std::span<double> values) const {
+  if (ranks > 1)
+    MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_MAX, comm);
+}
+
 std::int64_t Communicator::sum_all(std::int64_t value) const {
   if (ranks > 1) MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_INT64_T, MPI_SUM, comm);
   return value;

@@ -150,6 +150,14 @@ void exchange_fields(Either<EntryForce> auto& force, const auto& stream) {
   stream(force.component, force.entry, force.value);
 }
 
+void exchange_fields(Either<PointShare> auto& share, const auto& stream) {
+  stream(share.point, share.entry, share.share);
+}
+
+void exchange_fields(Either<AppliedLoad> auto& load, const auto& stream) {
+  stream(load.entry, load.total.force, load.total.moment);
+}
+
 void exchange_fields(Either<IndexRuns> auto& indices, const auto& stream) {
   stream(indices.runs, indices.count);
 }
@@ -157,9 +165,10 @@ void exchange_fields(Either<IndexRuns> auto& indices, const auto& stream) {
 void exchange_fields(Either<Part> auto& part, const auto& stream) {
   stream(part.type, part.coordinates, part.elements, part.node_index, part.element_index, part.node_tags,
          part.element_tags, part.halo, part.total_elements, part.laws, part.law_of_element, part.load,
-         part.prescribed, part.steps, part.forces, part.prescribed_by, part.held, part.contact,
-         part.owned_contact, part.wide_contact, part.contact_index, part.total_contact, part.probes,
-         part.probe_index, part.total_probes, part.loose_modes, part.start, part.no_equilibrium);
+         part.prescribed, part.steps, part.forces, part.prescribed_by, part.held, part.supports, part.applied,
+         part.contact, part.owned_contact, part.contact_shares, part.wide_contact, part.contact_index,
+         part.total_contact, part.probes, part.probe_index, part.total_probes, part.loose_modes, part.start,
+         part.no_equilibrium);
 }
 
 }  // namespace kacanov

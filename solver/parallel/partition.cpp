@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include <kacanov/error.hpp>
@@ -164,6 +165,7 @@ class Splitter {
     take_probes(part, rank);
     part.laws = problem_.laws;
     part.steps = problem_.steps;
+    part.applied = problem_.applied;
     part.loose_modes = problem_.loose_modes;
     part.no_equilibrium = problem_.no_equilibrium;
     part.start = rigid_start(problem_, part.node_index);
@@ -218,6 +220,7 @@ class Splitter {
       }
     }
     take_forces(part);
+    take_supports(part, rank);
   }
 
   void take_forces(Part& part) const {
@@ -230,6 +233,18 @@ class Splitter {
     }
     std::stable_sort(part.forces.begin(), part.forces.end(),
                      [](const EntryForce& a, const EntryForce& b) { return a.component < b.component; });
+  }
+
+  void take_supports(Part& part, int rank) const {
+    for (Support support : problem_.supports) {
+      const std::size_t n = support.node;
+      if (sharers_.owner(n) != rank) continue;
+      support.node = local_[n];
+      part.supports.push_back(support);
+    }
+    std::sort(part.supports.begin(), part.supports.end(), [](const Support& a, const Support& b) {
+      return std::tie(a.node, a.axis, a.entry) < std::tie(b.node, b.axis, b.entry);
+    });
   }
 
   void take_elements(Part& part, int rank) const {
@@ -299,6 +314,18 @@ class Splitter {
         part.contact_index.push_back(index);
       }
       if (owned) part.owned_contact = static_cast<Index>(part.contact.size());
+    }
+    take_shares(part);
+  }
+
+  void take_shares(Part& part) const {
+    const std::vector<PointShare>& shares = problem_.contact_shares;
+    const auto before = [](const PointShare& share, Index point) { return share.point < point; };
+    for (Index i = 0; i < part.owned_contact; ++i) {
+      const Index point = part.contact_index[i];
+      for (auto share = std::lower_bound(shares.begin(), shares.end(), point, before);
+           share != shares.end() && share->point == point; ++share)
+        part.contact_shares.push_back({i, share->entry, share->share});
     }
   }
 

@@ -19,37 +19,72 @@ std::string path_of(const char* list, std::size_t index) {
   return std::string(list) + "[" + std::to_string(index) + "]";
 }
 
-void add(std::vector<double>& load, int dim, std::int32_t node, const Vector3& force) {
-  for (int c = 0; c < dim; ++c) {
-    load[static_cast<std::size_t>(node) * static_cast<std::size_t>(dim) + static_cast<std::size_t>(c)] +=
-        force[c];
+/// Puts the forces of one entry on the nodes, and adds them up.
+class LoadOfEntry {
+ public:
+  LoadOfEntry(Problem& problem, std::size_t entry) : problem_(problem) {
+    applied_.entry = static_cast<std::int32_t>(entry);
   }
-}
 
-void add_facet_loads(Problem& problem, const BoundaryEntry& entry, std::span<const std::int32_t> facets) {
-  const Mesh& mesh = problem.mesh;
+  void add(std::int32_t node, const Vector3& force) {
+    const std::size_t dim = problem_.mesh.dim();
+    Vector3 here{};
+    for (std::size_t c = 0; c < dim; ++c) {
+      here[c] = force[c];
+      problem_.load[node * dim + c] += force[c];
+    }
+    Resultant& total = applied_.total;
+    total.force = total.force + here;
+    total.moment = total.moment + cross(position(problem_.mesh, node), here);
+  }
+  void finish() const { problem_.applied.push_back(applied_); }
+
+ private:
+  Problem& problem_;
+  AppliedLoad applied_;
+};
+
+void add_pressure(const Mesh& mesh, double pressure, std::span<const std::int32_t> facets,
+                  LoadOfEntry& load) {
   for (const std::int32_t f : facets) {
     const FacetWeights weights = consistent_weights(mesh, f);
     const auto nodes = mesh.facet(f);
-    for (std::size_t k = 0; k < nodes.size(); ++k) {
-      if (entry.traction) add(problem.load, mesh.dim(), nodes[k], weights.area[k] * *entry.traction);
-      if (entry.pressure) add(problem.load, mesh.dim(), nodes[k], -*entry.pressure * weights.normal[k]);
-    }
+    for (std::size_t k = 0; k < nodes.size(); ++k) load.add(nodes[k], -pressure * weights.normal[k]);
   }
 }
 
-void add_body_force(Problem& problem, const Vector3& force, std::span<const std::int32_t> elements) {
-  const Mesh& mesh = problem.mesh;
+void add_traction(const Mesh& mesh, const Vector3& traction, std::span<const std::int32_t> facets,
+                  LoadOfEntry& load) {
+  for (const std::int32_t f : facets) {
+    const FacetWeights weights = consistent_weights(mesh, f);
+    const auto nodes = mesh.facet(f);
+    for (std::size_t k = 0; k < nodes.size(); ++k) load.add(nodes[k], weights.area[k] * traction);
+  }
+}
+
+double area_of(const Mesh& mesh, std::span<const std::int32_t> facets) {
+  double area = 0.0;
+  for (const std::int32_t f : facets)
+    for (const double weight : consistent_weights(mesh, f).area) area += weight;
+  return area;
+}
+
+void add_body_force(const Mesh& mesh, const Vector3& force, std::span<const std::int32_t> elements,
+                    LoadOfEntry& load) {
   const std::size_t n = nodes_per_element(mesh.type);
   for (const std::int32_t e : elements) {
     const auto weights = volume_weights(mesh, e);
-    for (std::size_t k = 0; k < n; ++k) {
-      add(problem.load, mesh.dim(), mesh.elements[static_cast<std::size_t>(e) * n + k], weights[k] * force);
-    }
+    for (std::size_t k = 0; k < n; ++k) load.add(mesh.elements[e * n + k], weights[k] * force);
   }
 }
 
 }  // namespace
+
+bool locks_without_bbar(const Law& law, ElementType type) {
+  constexpr double nearly_incompressible = 0.45;
+  const double poisson = (3.0 * law.bulk - 2.0 * law.shear) / (2.0 * (3.0 * law.bulk + law.shear));
+  return cell(type).mean_dilatation && (!law.linear() || poisson > nearly_incompressible);
+}
 
 void assign_materials(Problem& problem, const Model& model, const Selection& selection) {
   constexpr std::uint16_t none = std::numeric_limits<std::uint16_t>::max();
@@ -58,18 +93,21 @@ void assign_materials(Problem& problem, const Model& model, const Selection& sel
   for (std::size_t i = 0; i < model.materials.size(); ++i) {
     const std::string path = path_of("material", i);
     const MaterialEntry& entry = model.materials[i];
-    if (entry.law.mean_dilatation && !cell(mesh.type).mean_dilatation)
+    Law law = entry.law;
+    law.mean_dilatation =
+        entry.bbar.value_or(entry.law.mean_dilatation || locks_without_bbar(entry.law, mesh.type));
+    if (law.mean_dilatation && !cell(mesh.type).mean_dilatation)
       throw InputError(path + ".bbar: expected false, or a mesh of " + bbar_names() +
                        ": other elements have no B-bar here");
-    problem.laws.push_back(entry.law);
+    problem.laws.push_back(law);
     for (const std::int32_t e : selection.elements(entry.on, path)) {
-      std::uint16_t& law = problem.law_of_element[e];
-      if (law != none && model.materials[law].on.kind != Selector::Kind::all) {
+      std::uint16_t& there = problem.law_of_element[e];
+      if (there != none && model.materials[there].on.kind != Selector::Kind::all) {
         throw InputError(path + ".on: element " + std::to_string(mesh.element_tag(e)) +
-                         " already has the material of " + path_of("material", law) +
+                         " already has the material of " + path_of("material", there) +
                          " (only an entry on \"all\" may be overridden)");
       }
-      law = static_cast<std::uint16_t>(i);
+      there = static_cast<std::uint16_t>(i);
     }
   }
   std::size_t bare = 0, first = 0;
@@ -103,9 +141,20 @@ void assemble_load(Problem& problem, const Model& model, const Selection& select
   problem.steps = load_curves(model);
   for (std::size_t i = 0; i < model.boundary.size(); ++i) {
     const BoundaryEntry& entry = model.boundary[i];
+    if (entry.displacement) continue;
     const std::string path = path_of("boundary", i);
-    if (entry.traction || entry.pressure) add_facet_loads(problem, entry, selection.facets(entry.on, path));
-    if (entry.body_force) add_body_force(problem, *entry.body_force, selection.elements(entry.on, path));
+    const Mesh& mesh = problem.mesh;
+    LoadOfEntry load(problem, i);
+    if (entry.body_force) {
+      add_body_force(mesh, *entry.body_force, selection.elements(entry.on, path), load);
+    } else {
+      const std::vector<std::int32_t> facets = selection.facets(entry.on, path);
+      if (entry.traction) add_traction(mesh, *entry.traction, facets, load);
+      if (entry.total_force)
+        add_traction(mesh, (1.0 / area_of(mesh, facets)) * *entry.total_force, facets, load);
+      if (entry.pressure) add_pressure(mesh, *entry.pressure, facets, load);
+    }
+    load.finish();
     if (!problem.steps.empty()) keep_apart(problem, i);
   }
   if (problem.steps.empty()) return;
@@ -140,7 +189,7 @@ void hold_displacements(Problem& problem, const Model& model, const Selection& s
       for (std::size_t c = 0; c < dim; ++c) {
         const std::optional<double>& value = (*entry.displacement)[c];
         if (!value) continue;
-        const std::size_t k = static_cast<std::size_t>(node) * dim + c;
+        const std::size_t k = node * dim + c;
         if (problem.held[k] != 0 && problem.prescribed[k] != *value) {
           std::ostringstream text;
           text << "xyz"[c] << " = " << *value << " here and " << problem.prescribed[k] << " by ";
@@ -152,6 +201,7 @@ void hold_displacements(Problem& problem, const Model& model, const Selection& s
         problem.held[k] = 1;
         problem.prescribed[k] = *value;
         holder[k] = static_cast<std::int32_t>(i);
+        problem.supports.push_back({node, static_cast<std::int32_t>(c), static_cast<std::int32_t>(i)});
       }
     }
   }

@@ -7,6 +7,9 @@
 
 namespace kacanov {
 
+/// Whether elements of this type are too stiff for the law without B-bar, and have that form.
+bool locks_without_bbar(const Law& law, ElementType type);
+
 /// Fills laws and law_of_element. An entry may overlap only an earlier entry on "all", which it overrides.
 void assign_materials(Problem& problem, const Model& model, const Selection& selection);
 

@@ -84,7 +84,7 @@ Vector3 free_components(const ContactPoint& point, const Problem& problem) {
   const std::size_t dim = problem.mesh.dim();
   Vector3 trace{};
   for (std::size_t c = 0; c < dim; ++c)
-    if (problem.held[static_cast<std::size_t>(point.node) * dim + c] == 0) trace[c] = point.normal[c];
+    if (problem.held[point.node * dim + c] == 0) trace[c] = point.normal[c];
   return trace;
 }
 
@@ -92,7 +92,7 @@ Vector3 free_components(const ContactPoint& point, const Problem& problem) {
 /// close. False where the node cannot move along the normal.
 bool restrict_to_free(ContactPoint& point, const Problem& problem, bool friction) {
   const std::size_t dim = problem.mesh.dim();
-  const std::size_t base = static_cast<std::size_t>(point.node) * dim;
+  const std::size_t base = point.node * dim;
   std::array<bool, 3> free{};
   for (std::size_t c = 0; c < dim; ++c) {
     free[c] = problem.held[base + c] == 0;
@@ -124,8 +124,9 @@ bool restrict_to_free(ContactPoint& point, const Problem& problem, bool friction
 }
 
 /// Joins points of one node that face the same way at the same gap: masses add up, bounds are averaged by
-/// mass.
-std::vector<ContactPoint> merge_equal(const std::vector<ContactPoint>& points, double size) {
+/// mass. What was joined is in `shares`.
+std::vector<ContactPoint> merge_equal(const std::vector<ContactPoint>& points, double size,
+                                      std::vector<PointShare>& shares) {
   std::vector<ContactPoint> merged;
   for (const ContactPoint& point : points) {
     ContactPoint* twin = nullptr;
@@ -138,6 +139,12 @@ std::vector<ContactPoint> merge_equal(const std::vector<ContactPoint>& points, d
       merged.push_back(point);
       continue;
     }
+    const auto joined = static_cast<std::int32_t>(twin - merged.data());
+    const auto of_node = [&](const PointShare& s) { return merged[s.point].node == point.node; };
+    auto known = shares.rbegin();
+    while (known != shares.rend() && of_node(*known) && known->point != joined) ++known;
+    if (known == shares.rend() || known->point != joined) shares.push_back({joined, twin->entry, twin->mass});
+    shares.push_back({joined, point.entry, point.mass});
     const double mass = twin->mass + point.mass;
     twin->tresca = (twin->mass * twin->tresca + point.mass * point.tresca) / mass;
     twin->coulomb = (twin->mass * twin->coulomb + point.mass * point.coulomb) / mass;
@@ -148,6 +155,9 @@ std::vector<ContactPoint> merge_equal(const std::vector<ContactPoint>& points, d
     }
     twin->mass = mass;
   }
+  for (PointShare& share : shares) share.share /= merged[share.point].mass;
+  std::stable_sort(shares.begin(), shares.end(),
+                   [](const PointShare& a, const PointShare& b) { return a.point < b.point; });
   return merged;
 }
 
@@ -249,7 +259,7 @@ void find_contact_points(Problem& problem, const Model& model, const Selection& 
     for (const std::int32_t f : facets) {
       std::int32_t& owner = entry_of_facet[f];
       if (owner >= 0) {
-        const auto element = static_cast<std::size_t>(problem.mesh.facet_element[f]);
+        const std::size_t element = problem.mesh.facet_element[f];
         throw InputError(path + ".on: the facet of element " +
                          std::to_string(problem.mesh.element_tag(element)) + " already belongs to contact[" +
                          std::to_string(owner) + "]");
@@ -262,7 +272,7 @@ void find_contact_points(Problem& problem, const Model& model, const Selection& 
   }
   std::stable_sort(points.begin(), points.end(),
                    [](const ContactPoint& a, const ContactPoint& b) { return a.node < b.node; });
-  for (const ContactPoint& point : merge_equal(points, extent(problem.mesh).size)) {
+  for (const ContactPoint& point : merge_equal(points, extent(problem.mesh).size, problem.contact_shares)) {
     const RowEntry entry{point.node, point.normal, free_components(point, problem), point.tangent};
     problem.contact.push_back(point, {&entry, 1});
   }

@@ -9,15 +9,15 @@
 namespace kacanov {
 namespace {
 
-/// The factor of the entry of that name; null where there is none.
-double* factor_of(LoadFactors& factors, const std::string& name) {
-  const auto in = [&](const char* list, std::vector<double>& values) -> double* {
+/// The factor of the entry of that name, or at that place; null where there is none.
+double* factor_of(const Model& model, LoadFactors& factors, const std::string& name) {
+  const auto in = [&](const auto& entries, auto unnamed, std::vector<double>& values) -> double* {
     for (std::size_t i = 0; i < values.size(); ++i)
-      if (name == std::string(list) + "[" + std::to_string(i) + "]") return &values[i];
+      if (name == entry_name(entries[i], i) || name == entry_name(unnamed, i)) return &values[i];
     return nullptr;
   };
-  if (double* found = in("boundary", factors.boundary)) return found;
-  return in("contact", factors.contact);
+  if (double* found = in(model.boundary, BoundaryEntry(), factors.boundary)) return found;
+  return in(model.contact, ContactEntry(), factors.contact);
 }
 
 }  // namespace
@@ -28,10 +28,10 @@ std::vector<LoadFactors> load_curves(const Model& model) {
                   std::vector<double>(model.contact.size(), 1.0)};
   for (std::size_t i = 0; i < model.steps.size(); ++i)
     for (const auto& [name, factor] : model.steps[i].factors) {
-      double* start = factor_of(now, name);
+      double* start = factor_of(model, now, name);
       if (start == nullptr)
         throw InputError("steps[" + std::to_string(i) +
-                         "].factors: expected entries such as \"boundary[0]\" (of " +
+                         "].factors: expected names of entries, or places such as \"boundary[0]\" (of " +
                          std::to_string(model.boundary.size()) + ") or \"contact[0]\" (of " +
                          std::to_string(model.contact.size()) + "), got \"" + name + "\"");
       *start = 0.0;
@@ -39,7 +39,7 @@ std::vector<LoadFactors> load_curves(const Model& model) {
   std::vector<LoadFactors> curves{now};
   for (const LoadStage& step : model.steps) {
     now.time = step.time;
-    for (const auto& [name, factor] : step.factors) *factor_of(now, name) = factor;
+    for (const auto& [name, factor] : step.factors) *factor_of(model, now, name) = factor;
     curves.push_back(now);
   }
   return curves;

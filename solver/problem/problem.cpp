@@ -78,6 +78,7 @@ std::vector<std::int32_t> keep_boundary(Problem& problem) {
   free(problem.prescribed);
   free(problem.forces);
   free(problem.holder);
+  free(problem.supports);
   Mesh& mesh = problem.mesh;
   std::vector<std::int32_t> left;
   if (mesh.dim() == 2) {

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <string>
 
 #include <kacanov/error.hpp>
@@ -74,12 +75,12 @@ void check_material(const std::string& path, const MaterialEntry& entry) {
 
 void check_boundary(const std::string& path, const BoundaryEntry& entry) {
   check_selector(path + ".on", entry.on);
-  const int kinds = (entry.displacement ? 1 : 0) + (entry.traction ? 1 : 0) + (entry.pressure ? 1 : 0) +
-                    (entry.body_force ? 1 : 0);
+  const int kinds = (entry.displacement ? 1 : 0) + (entry.traction ? 1 : 0) + (entry.total_force ? 1 : 0) +
+                    (entry.pressure ? 1 : 0) + (entry.body_force ? 1 : 0);
   if (kinds != 1)
     refuse(path,
            std::string(kinds == 0 ? "" : "only ") +
-               "one of the keys displacement, traction, pressure, body_force",
+               "one of the keys displacement, traction, pressure, body_force, total_force",
            std::to_string(kinds));
   if (entry.displacement) {
     bool any = false;
@@ -91,6 +92,7 @@ void check_boundary(const std::string& path, const BoundaryEntry& entry) {
     if (!any) refuse(path + ".displacement", "at least one component that is not null", "[null,null,null]");
   }
   if (entry.traction) check(path + ".traction", *entry.traction);
+  if (entry.total_force) check(path + ".total_force", *entry.total_force);
   if (entry.pressure) check(path + ".pressure", *entry.pressure);
   if (entry.body_force) check(path + ".body_force", *entry.body_force);
 }
@@ -114,6 +116,21 @@ void check_contact(const std::string& path, const ContactEntry& entry) {
   if (!entry.friction) return;
   check(path + ".friction.tresca", entry.friction->tresca, not_negative);
   check(path + ".friction.coulomb", entry.friction->coulomb, not_negative);
+}
+
+/// Results and load curves know entries by their names.
+void check_names(const Model& model) {
+  std::map<std::string, std::string> place;
+  const auto check_list = [&](const std::string& list, const auto& entries) {
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+      const std::string name = entry_name(entries[i], i);
+      const auto [there, added] = place.emplace(name, at(list, i));
+      if (!added)
+        refuse(at(list, i) + ".name", "another name than that of " + there->second, "\"" + name + "\"");
+    }
+  };
+  check_list("boundary", model.boundary);
+  check_list("contact", model.contact);
 }
 
 [[noreturn]] void unavailable(const std::string& path, const std::string& value, const std::string& instead) {
@@ -155,6 +172,14 @@ void check_steps(const Model& model) {
 
 }  // namespace
 
+std::string entry_name(const BoundaryEntry& entry, std::size_t index) {
+  return entry.name.empty() ? at("boundary", index) : entry.name;
+}
+
+std::string entry_name(const ContactEntry& entry, std::size_t index) {
+  return entry.name.empty() ? at("contact", index) : entry.name;
+}
+
 void validate(const SolverOptions& options) {
   check("solver.tolerance", options.tolerance, below_one);
   check("solver.spectrum_tolerance", options.spectrum_tolerance, below_one);
@@ -179,6 +204,7 @@ void validate(const Model& model) {
   for (std::size_t i = 0; i < model.boundary.size(); ++i)
     check_boundary(at("boundary", i), model.boundary[i]);
   for (std::size_t i = 0; i < model.contact.size(); ++i) check_contact(at("contact", i), model.contact[i]);
+  check_names(model);
   for (std::size_t i = 0; i < model.probes.size(); ++i) check(at("probe", i), model.probes[i]);
   validate(model.solver);
   check_steps(model);

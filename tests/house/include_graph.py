@@ -26,6 +26,7 @@ LEVELS = [
     ["kernels/examples"],
     ["solver/mesh"],
     ["solver/problem"],
+    ["solver/validity"],
     ["solver/parallel"],
     ["solver/linear"],
     ["solver/amg", "solver/contact"],
@@ -50,9 +51,11 @@ HEADER_ROOMS = {
     "model.hpp": "solver/problem",
     "constraint_rows.hpp": "solver/problem",
     "result.hpp": "solver/problem",
+    "totals.hpp": "solver/problem",
     "index_runs.hpp": "solver/parallel",
     "part.hpp": "solver/parallel",
     "rules.hpp": "solver/problem",
+    "validity.hpp": "solver/validity",
     "run_options.hpp": "solver/nonlinear",
 }
 

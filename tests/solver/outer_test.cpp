@@ -171,7 +171,7 @@ Model indented_cube() {
   Law law = elastic_law(2e5, 0.3);
   law.form = laws::LinearHardening{400.0 / (2 * mu), 0.01};
   Model model;
-  model.materials.push_back({everything(), law});
+  model.materials.push_back({everything(), law, false});  // step-42's elements are plain ones
   model.boundary.push_back(moved(named("bottom"), 3));
   for (const char* side : {"left", "right", "front", "back"})
     model.boundary.push_back(displacement(named(side), {0.0, 0.0, std::nullopt}));

@@ -15,12 +15,12 @@ namespace {
 
 const auto every_type = element_types();
 
-struct Resultant {
+struct Total {
   Vector3 force{}, moment{};
 };
 
-Resultant resultant(const Problem& problem) {
-  Resultant sum;
+Total resultant(const Problem& problem) {
+  Total sum;
   const std::size_t dim = problem.mesh.dim();
   for (std::size_t node = 0; node < problem.mesh.node_count(); ++node) {
     Vector3 f{};
@@ -51,7 +51,7 @@ TEST_CASE("a traction sums to itself times the area, and to the moment about any
     Model model = held_at_left(mesh.dim());
     const Vector3 t{0.3, -0.7, flat ? 0.0 : 0.2};
     model.boundary.push_back(traction(named("right"), t));
-    const Resultant sum = resultant(build_problem(mesh, model));
+    const Total sum = resultant(build_problem(mesh, model));
     const double area = flat ? 1.0 : 0.5;
     const Vector3 centre{2.0, 0.5, flat ? 0.0 : 0.25};
     check_equal(sum.force, area * t);
@@ -67,7 +67,7 @@ TEST_CASE("a pressure on one side pushes against the outer normal, on all sides 
     model.boundary.push_back(pressure(named("right"), 2.0));
     check_equal(resultant(build_problem(mesh, model)).force, {flat ? -2.0 : -1.0, 0.0, 0.0});
     model.boundary.back().on = everything();
-    const Resultant closed = resultant(build_problem(mesh, model));
+    const Total closed = resultant(build_problem(mesh, model));
     check_equal(closed.force, {});
     check_equal(closed.moment, {});
   }
@@ -85,7 +85,7 @@ TEST_CASE("a pressure balances on a closed curved surface") {
     }
     Model model = held_at_left(3);
     model.boundary.push_back(pressure(everything(), 1.0));
-    const Resultant closed = resultant(build_problem(mesh, model));
+    const Total closed = resultant(build_problem(mesh, model));
     check_equal(closed.force, {});
   }
 }
@@ -97,7 +97,7 @@ TEST_CASE("a body force sums to itself times the volume, and acts in its centre"
     Model model = held_at_left(mesh.dim());
     const Vector3 b{0.1, -9.0, flat ? 0.0 : 3.0};
     model.boundary.push_back(body_force(everything(), b));
-    const Resultant sum = resultant(build_problem(mesh, model));
+    const Total sum = resultant(build_problem(mesh, model));
     const double volume = flat ? 2.0 : 1.0;
     check_equal(sum.force, volume * b);
     check_equal(sum.moment, cross({1.0, 0.5, flat ? 0.0 : 0.25}, volume * b));

@@ -116,9 +116,11 @@ TEST_CASE("models: the path of the key, what was expected, what was there") {
        "material[0].law.shear: expected a number > 0, got -1"},
       {[](Model& m) { m.boundary[0].on.name.clear(); }, "boundary[0].on: expected a string, got \"\""},
       {[](Model& m) { m.boundary[1].pressure = 1.0; },
-       "boundary[1]: expected only one of the keys displacement, traction, pressure, body_force, got 2"},
+       "boundary[1]: expected only one of the keys displacement, traction, pressure, body_force, "
+       "total_force, got 2"},
       {[](Model& m) { m.boundary[1].traction.reset(); },
-       "boundary[1]: expected one of the keys displacement, traction, pressure, body_force, got 0"},
+       "boundary[1]: expected one of the keys displacement, traction, pressure, body_force, total_force, got "
+       "0"},
       {[](Model& m) { m.boundary[0].displacement->fill(std::nullopt); },
        "boundary[0].displacement: expected at least one component that is not null, got [null,null,null]"},
       {[](Model& m) { (*m.boundary[0].displacement)[1] = HUGE_VAL; },

@@ -123,7 +123,9 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
       {"boundary[1]={\"on\":\"left\"}",
        "boundary[1]: expected one of the keys displacement, traction, pressure, body_force"},
       {"boundary[1].pressure=1",
-       "boundary[1]: expected only one of the keys displacement, traction, pressure, body_force, got "
+       "boundary[1]: expected only one of the keys displacement, traction, pressure, body_force, "
+       "total_force, "
+       "density, got "
        "traction and pressure"},
       {"mesh.file=a.msh", "mesh: expected only one of the keys file, box, got file and box"},
       {"material[0].law.yield_stress=1",
@@ -135,6 +137,28 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
        "contact[0].friction: expected only one of the keys tresca, coulomb"},
       {"contact[0].obstacle.gap=0",
        "contact[0].obstacle: expected only one of the keys plane, sphere, gap, got plane and gap"},
+      {"boundary[1].name=", "boundary[1].name: expected a string, got \"\""},
+      {"boundary[1].name=boundary[2]",
+       "boundary[2].name: expected another name than that of boundary[1], got \"boundary[2]\""},
+      {"contact[2].name=contact[0]",
+       "contact[2].name: expected another name than that of contact[0], got \"contact[0]\""},
+      {"contact[0].name=3", "contact[0].name: expected a string, got 3"},
+      {"boundary[3]={\"on\":\"all\",\"density\":1}", "boundary[3].acceleration: this key is missing"},
+      {"boundary[3]={\"on\":\"all\",\"density\":0,\"acceleration\":[0,0,1]}",
+       "boundary[3].density: expected a number > 0, got 0"},
+      {"boundary[3].acceleration=[0,0,-1]",
+       "boundary[3].acceleration: expected this key beside density alone"},
+      {"boundary[1]={\"on\":\"left\",\"total_force\":3}",
+       "boundary[1].total_force: expected a list of 2 or 3 numbers, got 3"},
+      // Materials by tests in tension.
+      {"material[0].plastic=[[250,0]]",
+       "material[0]: expected only one of the keys law, plastic, tangent_modulus"},
+      {"material[0].yield_stress=1",
+       "material[0].yield_stress: expected this key beside tangent_modulus alone"},
+      {"material[0].law={\"type\":\"ramberg_osgood\",\"sigma0\":1,\"alpha\":1,\"n\":1}",
+       "material[0].law.n: expected a number > 1, got 1"},
+      {"material[0].law={\"type\":\"ramberg_osgood\",\"sigma0\":1,\"alpha\":1,\"n\":5,\"argument\":\"norm\"}",
+       "material[0].law.argument: unknown key"},
       // Laws.
       {"material[0].law={\"type\":\"linear_hardening\",\"x0\":0.01}",
        "material[0].law.gamma: this key is missing"},
@@ -165,6 +189,30 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
     CHECK(message.rfind(row.message, 0) == 0);
     CHECK(message.find('\n') == std::string::npos);
   }
+}
+
+TEST_CASE("mistakes in what a test in tension says") {
+  const auto said = [](const std::string& keys) {
+    return complaint("material[0]={\"on\":\"all\",\"young\":200,\"poisson\":0.3," + keys + "}");
+  };
+  CHECK(said("\"plastic\":[[1,0],[2,0.1]]").empty());
+  CHECK(said("\"yield_stress\":1,\"tangent_modulus\":2").empty());
+  const auto starts = [&](const std::string& keys, const char* message) {
+    const std::string found = said(keys);
+    INFO(keys, "\n", found);
+    CHECK(found.rfind(message, 0) == 0);
+  };
+  starts("\"plastic\":[]", "material[0].plastic: expected at least one pair [stress, plastic strain]");
+  starts("\"plastic\":[3]", "material[0].plastic[0]: expected a pair [stress, plastic strain], got 3");
+  starts("\"plastic\":[[0,0]]", "material[0].plastic[0][0]: expected a number > 0, got 0");
+  starts("\"plastic\":[[1,0.1]]", "material[0].plastic[0]: expected a first plastic strain of 0");
+  starts("\"plastic\":[[1,0],[2,0]]", "material[0].plastic[1]: expected a plastic strain above");
+  starts("\"plastic\":[[1,0],[0.9,1]]", "material[0].plastic[1]: expected a stress not below");
+  starts("\"plastic\":[[1,0],[1.1,0.1],[2,0.11]]",
+         "material[0].plastic[2]: expected a plastic strain over stress");
+  starts("\"yield_stress\":1,\"tangent_modulus\":200",
+         "material[0].tangent_modulus: expected a number below young");
+  starts("\"tangent_modulus\":20", "material[0].yield_stress: this key is missing");
 }
 
 TEST_CASE("text that is no JSON is placed by line and column") {

@@ -133,6 +133,39 @@ TEST_CASE("every law takes its own constants") {
   CHECK(table.secant(0.1) == doctest::Approx(0.1));
 }
 
+TEST_CASE("names, total forces, gravity and B-bar arrive") {
+  const Case plain = changed({});
+  CHECK(entry_name(plain.model.boundary[1], 1) == "boundary[1]");
+  CHECK(entry_name(plain.model.contact[2], 2) == "contact[2]");
+  CHECK_FALSE(plain.model.materials[0].bbar.has_value());
+  const Case input = changed({"boundary[1].name=lid", "contact[0].name=floor", "material[0].bbar=false",
+                              R"(boundary[2]={"on":"right","total_force":[1,2,3]})",
+                              R"(boundary[3]={"on":"all","density":7.85e-9,"acceleration":[0,0,-9810]})"});
+  const Model& model = input.model;
+  CHECK(entry_name(model.boundary[1], 1) == "lid");
+  CHECK(entry_name(model.contact[0], 0) == "floor");
+  CHECK(model.materials[0].bbar == false);
+  CHECK(model.boundary[2].total_force == Vector3{1, 2, 3});
+  CHECK((*model.boundary[3].body_force)[2] == doctest::Approx(-7.85e-9 * 9810));
+}
+
+TEST_CASE("materials by tests in tension become laws") {
+  const auto law = [](const std::string& keys) {
+    return changed({"material[0]={\"on\":\"all\",\"young\":200,\"poisson\":0.3," + keys + "}"})
+        .model.materials[0]
+        .law;
+  };
+  const double mu = 200 / 2.6;
+  const Law rows = law(R"("plastic":[[1,0],[2,0.1]])");
+  CHECK(rows.yield_strain() == doctest::Approx(std::sqrt(2.0 / 3.0) / (2 * mu)));
+  const double x = std::sqrt(2.0 / 3.0) * 2 / (2 * mu) + std::sqrt(1.5) * 0.1;
+  CHECK(std::sqrt(1.5) * 2 * rows.secant(x) * x == doctest::Approx(2.0));
+  CHECK(std::get<laws::LinearHardening>(law(R"("yield_stress":1,"tangent_modulus":2)").form).gamma ==
+        doctest::Approx((400.0 / 198) / (400.0 / 198 + 3 * mu)));
+  const Law ramberg = law(R"("law":{"type":"ramberg_osgood","sigma0":1,"alpha":0.5,"n":5})");
+  CHECK(std::get<laws::RambergOsgood>(ramberg.form).a == doctest::Approx(3 * mu * 0.5 / 200));
+}
+
 TEST_CASE("a table that contradicts the elastic constants is warned of") {
   CHECK(changed({R"(material[0].law={"type":"table","points":[[0,0],[0.01,0.0077],[0.1,0.02]]})"})
             .warnings.empty());

@@ -101,6 +101,7 @@ TEST_CASE("curves and points are node groups in 3D, curves are sides in 2D, inne
   CHECK(group(body, "1", 0).members == std::vector<std::int32_t>{3});
   CHECK(group(body, "2", 1).members == std::vector<std::int32_t>{0, 2});
   CHECK(group(body, "3", 2).members.empty());
+  CHECK(group(body, "3", 2).inner == 1);
   CHECK(body.facet_count() == 6);
   CHECK(body.groups.size() == 3);
 
@@ -271,9 +272,21 @@ TEST_CASE("elements and nodes that cannot be used are named by their number") {
                  {"nothing that a body can be made of"});
   check_contains(refusal(format22 + tetrahedron_nodes + elements({"1 2 0 1 2 3", "2 2 0 1 2 4"})),
                  {"node 4 has another z", "plane"});
-  const std::string lonely = refusal(format22 + square_nodes + elements({"1 2 0 1 2 3"}));
-  check_contains(lonely, {"node 4 belongs to no element"});
-  CHECK(lonely.find("apart") == std::string::npos);
-  check_contains(refusal(format22 + square_nodes + elements({"1 15 0 4", "2 2 0 1 2 3"})),
-                 {"node 4", "only to points"});
+}
+
+TEST_CASE("nodes that no element of the body has are left out, with a warning") {
+  // The first node and the fourth; a point and a side refer to them.
+  const Mesh mesh = read(
+      format22 + "$Nodes\n5\n7 9 9 0\n8 0 0 0\n9 1 0 0\n10 5 5 0\n11 0 1 0\n$EndNodes\n" +
+      elements({"1 15 2 1 1 7", "2 15 2 1 1 11", "3 1 2 2 1 8 9", "4 1 2 2 1 9 10", "5 2 2 3 1 8 9 11"}));
+  REQUIRE(mesh.warnings.size() == 1);
+  check_contains(mesh.warnings[0],
+                 {"a.msh: 2 nodes belong to no element of the body and are left out", "node 7"});
+  CHECK(mesh.coordinates == std::vector<double>{0, 0, 1, 0, 0, 1});
+  CHECK(mesh.elements == std::vector<std::int32_t>{0, 1, 2});
+  CHECK(mesh.node_tags == std::vector<std::int64_t>{8, 9, 11});
+  CHECK(group(mesh, "1", 0).members == std::vector<std::int32_t>{2});
+  CHECK(group(mesh, "2", 1).members.size() == 1);
+  CHECK(group(mesh, "2", 1).inner == 1);
+  CHECK_NOTHROW(check_mesh(mesh));
 }

@@ -133,6 +133,16 @@ TEST_CASE("a run converges, says so, and writes every file and key") {
                           "threads",
                           "instruction_set",
                           "warnings",
+                          "contact",
+                          "reaction",
+                          "load",
+                          "max_displacement",
+                          "max_strain",
+                          "max_rotation",
+                          "max_von_mises_nodal",
+                          "plastic_share",
+                          "mesh",
+                          "case",
                           "version"}) {
     INFO(key);
     CHECK(result.contains(key));
@@ -146,7 +156,8 @@ TEST_CASE("a run converges, says so, and writes every file and key") {
             applications["outer"].get<int>() ==
         result["operator_applications"].get<int>());
   CHECK(result["status"] == "converged");
-  CHECK(result["warnings"].empty());
+  REQUIRE(result["warnings"].size() == 2);  // the paper's load is far beyond small strains
+  CHECK(result["warnings"][0].get<std::string>().rfind("strains reach ", 0) == 0);
   CHECK(result["unknowns"] == 170);
   CHECK(result["elements"] == 128);
   CHECK(result["contact_nodes"] == 16);
@@ -155,6 +166,42 @@ TEST_CASE("a run converges, says so, and writes every file and key") {
   CHECK(result["contact_force"][1].get<double>() > 0.0);
   CHECK(result["seconds"].contains("total"));
   CHECK(result["r"].size() == result["outer_iterations"]);
+}
+
+TEST_CASE("every entry has its forces under its name, and they balance") {
+  const Workplace place;
+  nlohmann::json document = small_beam();
+  document["contact"][0]["name"] = "floor";
+  document["boundary"][0]["name"] = "clamp";
+  document["boundary"][1]["traction"] = {0.0, -0.003};
+  place.put_json("beam.json", document);
+  for (const char* ranks : {"--ranks 1", "--ranks 2"}) {
+    const Outcome outcome = place.run(std::string("run beam.json --output out ") + ranks);
+    INFO("error: ", outcome.error);
+    REQUIRE(outcome.exit_code == 0);
+    const nlohmann::json result = place.json("out/result.json");
+    CHECK(result["warnings"].empty());
+    CHECK(outcome.output.find("obstacle      floor: force (") != std::string::npos);
+    const nlohmann::json &floor = result["contact"]["floor"], &clamp = result["reaction"]["clamp"],
+                         &load = result["load"]["boundary[1]"];
+    CHECK(load["force"][1].get<double>() == doctest::Approx(-0.006));
+    CHECK(load["moment"][2].get<double>() == doctest::Approx(-0.018));
+    for (const std::size_t c : {0, 1})
+      CHECK(std::abs(floor["force"][c].get<double>() + clamp["force"][c].get<double>() +
+                     load["force"][c].get<double>()) < 1e-7);
+    CHECK(std::abs(floor["moment"][2].get<double>() + clamp["moment"][2].get<double>() +
+                   load["moment"][2].get<double>()) < 1e-7);
+    CHECK(floor["normal_force"] == result["contact_force"]);
+    CHECK(floor["friction_force"] == result["friction_force"]);
+    CHECK(floor["sticking"].get<int>() + floor["slipping"].get<int>() == result["active_nodes"]);
+    CHECK(floor["max_pressure"] == result["max_contact_pressure"]);
+    CHECK(result["mesh"]["volume"].get<double>() == doctest::Approx(4.0));
+    CHECK(result["mesh"]["nodes"] == 85);
+    CHECK(result["mesh"]["upper"] == nlohmann::json({4.0, 1.0}));
+    CHECK(result["case"] == document);
+    CHECK(result["max_displacement"]["relative"].get<double>() < 0.1);
+    CHECK(result["max_strain"]["at"].size() == 2);
+  }
 }
 
 TEST_CASE("the answer does not depend on ranks and threads") {

@@ -126,24 +126,34 @@ class CaseParser {
   }
 
   void parse_material(const Node& node) {
-    const Object object(node, {"on", "young", "poisson", "law", "bbar"});
+    const Object object(
+        node, {"on", "young", "poisson", "law", "plastic", "yield_stress", "tangent_modulus", "bbar"});
     MaterialEntry entry;
     entry.on = selector(object.required("on"));
     const double young = object.required("young").number(positive);
     const double poisson = object.required("poisson").number(poisson_ratio);
     entry.law = elastic_law(young, poisson);
-    if (const auto law = object.optional("law"))
-      entry.law = parse_law(young, poisson, *law, result_.warnings);
-    if (const auto bbar = object.optional("bbar")) entry.law.mean_dilatation = bbar->boolean();
+    const std::string kind = object.at_most_one_of({"law", "plastic", "tangent_modulus"});
+    if (kind == "law") entry.law = parse_law(young, poisson, object.required("law"), result_.warnings);
+    if (kind == "plastic") entry.law = parse_plastic(young, poisson, object.required("plastic"));
+    if (kind == "tangent_modulus") entry.law = parse_bilinear(young, poisson, object);
+    if (const auto yield_stress = object.optional("yield_stress"); yield_stress && kind != "tangent_modulus")
+      yield_stress->expected("this key beside tangent_modulus alone");
+    if (const auto bbar = object.optional("bbar")) entry.bbar = bbar->boolean();
     result_.model.materials.push_back(entry);
   }
 
   void parse_boundary(const Node& node) {
-    const Object object(node, {"on", "displacement", "traction", "pressure", "body_force"});
+    const Object object(node, {"on", "name", "displacement", "traction", "pressure", "body_force",
+                               "total_force", "density", "acceleration"});
     BoundaryEntry entry;
     entry.on = selector(object.required("on"));
-    const std::string kind = object.only_one_of({"displacement", "traction", "pressure", "body_force"});
+    if (const auto name = object.optional("name")) entry.name = name->text();
+    const std::string kind =
+        object.only_one_of({"displacement", "traction", "pressure", "body_force", "total_force", "density"});
     const Node value = object.required(kind);
+    const auto acceleration = object.optional("acceleration");
+    if (acceleration && kind != "density") acceleration->expected("this key beside density alone");
     if (kind == "displacement") {
       entry.displacement.emplace();
       const std::vector<Node> entries = vector_entries(value);
@@ -154,8 +164,15 @@ class CaseParser {
       }
     } else if (kind == "traction") {
       entry.traction = vector(value);
+    } else if (kind == "total_force") {
+      entry.total_force = vector(value);
     } else if (kind == "pressure") {
       entry.pressure = value.number();
+    } else if (kind == "density") {
+      const double density = value.number(positive);
+      Vector3 force = vector(object.required("acceleration"));
+      for (double& component : force) component *= density;
+      entry.body_force = force;
     } else {
       entry.body_force = vector(value);
     }
@@ -180,9 +197,10 @@ class CaseParser {
   }
 
   void parse_contact(const Node& node) {
-    const Object object(node, {"on", "obstacle", "friction"});
+    const Object object(node, {"on", "name", "obstacle", "friction"});
     ContactEntry entry;
     entry.on = selector(object.required("on"));
+    if (const auto name = object.optional("name")) entry.name = name->text();
     entry.obstacle = obstacle(object.required("obstacle"));
     if (const auto friction = object.optional("friction")) {
       const Object parts(*friction, {"tresca", "coulomb", "reference"});

@@ -2,6 +2,7 @@
 // The `material` entries of a case: elastic constants and laws.
 #include "case/case_material.hpp"
 
+#include <array>
 #include <cmath>
 #include <sstream>
 #include <utility>
@@ -71,6 +72,13 @@ constexpr Entry entries[] = {
        const Object object(node, {"type", "argument", "points"});
        return parse_table(object.required("points"));
      }},
+    {laws::RambergOsgood::name,
+     [](const Node& node, const Law& law) -> Law::Form {
+       const Object object(node, {"type", "sigma0", "alpha", "n"});
+       const double sigma0 = object.required("sigma0").number(positive);
+       const double alpha = object.required("alpha").number(positive);
+       return ramberg_osgood(law, sigma0, alpha, object.required("n").number(above_one));
+     }},
 };
 static_assert(std::size(entries) == std::variant_size_v<Law::Form>);
 
@@ -85,11 +93,50 @@ void compare_slopes(const Node& node, const Law& law, std::vector<std::string>& 
   warnings.push_back(text.str());
 }
 
+std::array<double, 2> parse_row(const Node& node) {
+  const char* wanted = "a pair [stress, plastic strain]";
+  const std::vector<Node> pair = node.list(wanted);
+  if (pair.size() != 2) node.expected(wanted);
+  return {pair[0].number(positive), pair[1].number(not_negative)};
+}
+
 }  // namespace
+
+Law parse_plastic(double young, double poisson, const Node& node) {
+  std::vector<std::array<double, 2>> rows;
+  for (const Node& row : node.list("a list of pairs [stress, plastic strain]")) {
+    const auto [stress, strain] = parse_row(row);
+    if (rows.empty() && strain != 0.0) row.expected("a first plastic strain of 0");
+    if (!rows.empty()) {
+      const auto [last_stress, last_strain] = rows.back();
+      if (!(strain > last_strain)) row.expected("a plastic strain above that of the row before");
+      if (stress < last_stress)
+        row.expected("a stress not below that of the row before: softening has no unique answer");
+      if (last_strain > 0.0 && strain / stress < last_strain / last_stress)
+        row.expected("a plastic strain over stress not below that of the row before");
+    }
+    rows.push_back({stress, strain});
+  }
+  if (rows.empty()) node.expected("at least one pair [stress, plastic strain]");
+  Law law = elastic_law(young, poisson);
+  law.form = plastic_table(law, rows);
+  return law;
+}
+
+Law parse_bilinear(double young, double poisson, const Object& material) {
+  const double yield_stress = material.required("yield_stress").number(positive);
+  const Node tangent = material.required("tangent_modulus");
+  const double modulus = tangent.number(positive);
+  if (!(modulus < young)) tangent.expected("a number below young");
+  Law law = elastic_law(young, poisson);
+  law.form = bilinear(law, yield_stress, modulus);
+  return law;
+}
 
 Law parse_law(double young, double poisson, const Node& node, std::vector<std::string>& warnings) {
   // Any law's key passes here, so that a wrong type is reported before keys that do not go with it.
-  const Object any(node, {"type", "argument", "x0", "yield_stress", "gamma", "n", "q", "points"});
+  const Object any(
+      node, {"type", "argument", "x0", "yield_stress", "gamma", "n", "q", "points", "sigma0", "alpha"});
   Law law = elastic_law(young, poisson);
   std::vector<std::string_view> names;
   for (const Entry& entry : entries) names.push_back(entry.name);

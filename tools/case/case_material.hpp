@@ -14,4 +14,10 @@ namespace kacanov {
 /// allowed but looks mistaken.
 Law parse_law(double young, double poisson, const Node& node, std::vector<std::string>& warnings);
 
+/// The law of `plastic`: rows of uniaxial true stress and equivalent plastic strain (theory: uniaxial).
+Law parse_plastic(double young, double poisson, const Node& node);
+
+/// The law of a material's `yield_stress` and `tangent_modulus`.
+Law parse_bilinear(double young, double poisson, const Object& material);
+
 }  // namespace kacanov

@@ -196,9 +196,18 @@ std::size_t Node::choice(const std::vector<std::string_view>& words) const {
   expected(list);
 }
 
-Object::Object(const Node& node, std::initializer_list<const char*> keys) : node_(node) {
+namespace {
+
+std::string list_of(std::initializer_list<const char*> keys) {
   std::string list;
   for (const char* key : keys) list += (list.empty() ? "" : ", ") + std::string(key);
+  return list;
+}
+
+}  // namespace
+
+Object::Object(const Node& node, std::initializer_list<const char*> keys) : node_(node) {
+  const std::string list = list_of(keys);
   if (!node.value().is_object()) node.expected("an object with the keys " + list);
   const std::vector<std::string> known(keys.begin(), keys.end());
   for (const auto& [key, value] : node.value().items()) {
@@ -226,17 +235,23 @@ std::optional<Node> Object::optional(const std::string& key) const {
 }
 
 std::string Object::only_one_of(std::initializer_list<const char*> keys) const {
-  std::string list;
-  std::vector<std::string> present;
-  for (const char* key : keys) {
-    list += (list.empty() ? "" : ", ") + std::string(key);
-    if (node_.value().contains(key)) present.emplace_back(key);
-  }
-  if (present.size() == 1) return present.front();
-  const std::string where = node_.path().empty() ? "the case" : node_.path();
-  if (present.empty()) throw InputError(where + ": expected one of the keys " + list);
-  throw InputError(where + ": expected only one of the keys " + list + ", got " + present[0] + " and " +
-                   present[1]);
+  const std::string present = at_most_one_of(keys);
+  if (!present.empty()) return present;
+  throw InputError(place() + ": expected one of the keys " + list_of(keys));
 }
+
+std::string Object::at_most_one_of(std::initializer_list<const char*> keys) const {
+  std::string present;
+  for (const char* key : keys) {
+    if (!node_.value().contains(key)) continue;
+    if (!present.empty())
+      throw InputError(place() + ": expected only one of the keys " + list_of(keys) + ", got " + present +
+                       " and " + key);
+    present = key;
+  }
+  return present;
+}
+
+std::string Object::place() const { return node_.path().empty() ? "the case" : node_.path(); }
 
 }  // namespace kacanov

@@ -49,9 +49,12 @@ class Object {
   std::optional<Node> optional(const std::string& key) const;
   /// The one of several keys that is there; none or several are errors.
   std::string only_one_of(std::initializer_list<const char*> keys) const;
+  /// The same; empty where none is there.
+  std::string at_most_one_of(std::initializer_list<const char*> keys) const;
 
  private:
   std::string path_of(const std::string& key) const;
+  std::string place() const;
   Node node_;
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include <kacanov/error.hpp>
@@ -46,25 +47,32 @@ std::size_t body_cell(const std::string& path, const GmshContent& content) {
   return top[0];
 }
 
-void refuse_unused_nodes(const std::string& path, const GmshContent& content, const Mesh& mesh) {
-  std::vector<bool> used(content.node_tags.size(), false);
-  for (const std::int32_t node : mesh.elements) used[node] = true;
-  const auto count = std::count(used.begin(), used.end(), false);
-  if (count == 0) return;
-  const std::size_t first = std::find(used.begin(), used.end(), false) - used.begin();
-  const bool lower =
-      std::any_of(content.elements.begin(), content.elements.end(), [&](const GmshElements& list) {
-        return std::find(list.nodes.begin(), list.nodes.end(), static_cast<std::int32_t>(first)) !=
-               list.nodes.end();
-      });
-  std::string message =
-      path + ": node " + std::to_string(content.node_tags[first]) + " belongs to no element of the body";
-  if (count > 1) message += " (" + std::to_string(count) + " nodes do not)";
-  if (lower)
-    message +=
-        ", only to points, lines or surfaces apart from it: a physical group for the body alone keeps Gmsh "
-        "from saving them";
-  throw InputError(message);
+/// Drops nodes that no element of the body has, with a warning: geometry's points, other bodies' leftovers.
+/// What refers to them refers to −1 from then on.
+void drop_unused_nodes(const std::string& path, GmshContent& content, Mesh& mesh) {
+  const std::size_t nodes = content.node_tags.size();
+  std::vector<std::int32_t> place(nodes, -1);
+  for (const std::int32_t node : mesh.elements) place[node] = 0;
+  const auto unused = std::count(place.begin(), place.end(), -1);
+  if (unused == 0) return;
+  const std::size_t first = std::find(place.begin(), place.end(), -1) - place.begin();
+  mesh.warnings.push_back(path + ": " + std::to_string(unused) +
+                          (unused == 1 ? " node belongs" : " nodes belong") +
+                          " to no element of the body and are left out, the first node " +
+                          std::to_string(content.node_tags[first]));
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < nodes; ++i) {
+    if (place[i] < 0) continue;
+    place[i] = static_cast<std::int32_t>(kept);
+    content.node_tags[kept] = content.node_tags[i];
+    for (std::size_t c = 0; c < 3; ++c) content.coordinates[3 * kept + c] = content.coordinates[3 * i + c];
+    ++kept;
+  }
+  content.node_tags.resize(kept);
+  content.coordinates.resize(3 * kept);
+  const auto renumber = [&](std::int32_t& node) { node = place[node]; };
+  std::for_each(mesh.elements.begin(), mesh.elements.end(), renumber);
+  for (GmshElements& list : content.elements) std::for_each(list.nodes.begin(), list.nodes.end(), renumber);
 }
 
 /// Takes over the coordinates; in 2D drops z, which has to be the same everywhere.
@@ -124,6 +132,12 @@ class FacetIndex {
 
 class Groups {
  public:
+  /// Of one group; `inner` counts facets that are not on the boundary.
+  struct Members {
+    std::vector<std::int32_t> list;
+    std::int64_t inner = 0;
+  };
+
   Groups(const GmshContent& content, int dim) : content_(content), dim_(dim) {
     for (const auto& [key, name] : content.names)
       if (key.first <= dim) members_.try_emplace(key);
@@ -136,7 +150,7 @@ class Groups {
     for (std::size_t r = 0; r < list.runs.size(); ++r) {
       const std::size_t end = r + 1 < list.runs.size() ? list.runs[r + 1].first : list.count();
       for (const int physical : content_.physicals[list.runs[r].set]) {
-        auto& members = members_[{dimension_of(type), physical}];
+        Members& members = members_[{dimension_of(type), physical}];
         for (std::size_t e = list.runs[r].first; e < end; ++e) member(e, members);
       }
     }
@@ -145,7 +159,8 @@ class Groups {
   /// One group for every name and dimension.
   std::vector<Group> finish() {
     std::vector<Group> groups;
-    for (auto& [key, members] : members_) {
+    for (auto& [key, found] : members_) {
+      auto& [members, inner] = found;
       const auto named = content_.names.find(key);
       std::string name = named != content_.names.end() ? named->second : std::string();
       if (name.empty()) name = std::to_string(key.second);
@@ -153,9 +168,11 @@ class Groups {
           groups.begin(), groups.end(),
           [&, dimension = key.first](const Group& g) { return g.dimension == dimension && g.name == name; });
       if (same == groups.end())
-        groups.push_back({std::move(name), key.first, std::move(members)});
-      else
+        groups.push_back({std::move(name), key.first, std::move(members), inner});
+      else {
         same->members.insert(same->members.end(), members.begin(), members.end());
+        same->inner += inner;
+      }
     }
     for (Group& group : groups) {
       std::sort(group.members.begin(), group.members.end());
@@ -171,7 +188,7 @@ class Groups {
  private:
   const GmshContent& content_;
   int dim_;
-  std::map<std::pair<int, int>, std::vector<std::int32_t>> members_;
+  std::map<std::pair<int, int>, Members> members_;
 };
 
 std::vector<Group> find_groups(const GmshContent& content, std::size_t body, const Mesh& mesh) {
@@ -183,16 +200,21 @@ std::vector<Group> find_groups(const GmshContent& content, std::size_t body, con
       return std::span(list.nodes).subspan(e * static_cast<std::size_t>(cells()[s].nodes), count);
     };
     if (s == body) {
-      groups.add(s, [](std::size_t e, auto& members) { members.push_back(static_cast<std::int32_t>(e)); });
+      groups.add(s,
+                 [](std::size_t e, auto& members) { members.list.push_back(static_cast<std::int32_t>(e)); });
     } else if (dimension_of(s) == mesh.dim() - 1) {
       groups.add(s, [&](std::size_t e, auto& members) {
         const std::int32_t facet = facets.find(nodes(e, cells()[s].corners));
-        if (facet >= 0) members.push_back(facet);
+        if (facet >= 0)
+          members.list.push_back(facet);
+        else
+          ++members.inner;
       });
     } else {
       groups.add(s, [&](std::size_t e, auto& members) {
         const auto all = nodes(e, cells()[s].nodes);
-        members.insert(members.end(), all.begin(), all.end());
+        std::copy_if(all.begin(), all.end(), std::back_inserter(members.list),
+                     [](std::int32_t node) { return node >= 0; });
       });
     }
   }
@@ -224,7 +246,7 @@ Mesh make_mesh(const std::string& path, GmshContent content) {
   mesh.type = *element_type(cells()[body]);
   GmshElements& elements = content.elements[body];
   mesh.elements = std::move(elements.nodes);
-  refuse_unused_nodes(path, content, mesh);
+  drop_unused_nodes(path, content, mesh);
   take_coordinates(path, content, mesh);
   find_boundary(mesh);
   mesh.groups = find_groups(content, body, mesh);

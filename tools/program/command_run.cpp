@@ -7,7 +7,9 @@
 #include <string_view>
 
 #include <kacanov/element_fields.hpp>
+#include <kacanov/nodal_stress.hpp>
 #include <kacanov/solve.hpp>
+#include <kacanov/validity.hpp>
 #include "formats/atomic_file.hpp"
 #include "pictures/picture.hpp"
 #include "program/checkpoint_file.hpp"
@@ -80,7 +82,7 @@ std::vector<double> picked(std::span<const double> all, std::span<const std::int
   std::vector<double> some;
   some.reserve(nodes.size() * width);
   for (const std::int32_t n : nodes) {
-    const auto values = all.subspan(static_cast<std::size_t>(n) * width, width);
+    const auto values = all.subspan(n * width, width);
     some.insert(some.end(), values.begin(), values.end());
   }
   return some;
@@ -91,6 +93,16 @@ LoadedCase load(const Command& command, const Case& input, const MpiSession& mpi
   LoadedCase loaded = load_case(input, mpi, command.memory_check);
   keep_boundary(loaded);
   return loaded;
+}
+
+/// What was said of the case and of its problem stands before what the run says.
+void gather_warnings(const Case& input, const Problem& problem, Result& result) {
+  std::vector<std::string> all = input.warnings;
+  all.insert(all.end(), problem.warnings.begin(), problem.warnings.end());
+  const std::vector<std::string> found = examine(result, input.model);
+  all.insert(all.end(), result.warnings.begin(), result.warnings.end());
+  all.insert(all.end(), found.begin(), found.end());
+  result.warnings = std::move(all);
 }
 
 std::string checkpoint_line(const CheckpointFile& file) {
@@ -160,7 +172,7 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
   CoarseRun coarse;
   if (!command.restart) coarse = solve_coarser(input, mpi, options);
   if (coarse.solution) options.coarse = &*coarse.solution;
-  const Solution solution = solve(loaded.part, input.model.solver, options);
+  Solution solution = solve(loaded.part, input.model.solver, options);
 
   const double solved = MPI_Wtime();
   coarse.solution.reset();
@@ -169,9 +181,12 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
   figures.peak_memory_bytes =
       static_cast<std::uint64_t>(loaded.part.halo.sum_all(static_cast<std::int64_t>(peak_memory())));
   left.reset();
-  const Result& result = solution.result;
+  Result& result = solution.result;
   const int dim = loaded.part.dim();
+  if (mpi.first()) gather_warnings(input, *loaded.problem, result);
   const ContactFields contact = gather_contact_fields(loaded.part, solution);
+  const NodalStress nodal = recover_stress(loaded.part, solution.displacement);
+  result.max_von_mises_nodal = nodal.max_von_mises;
   std::vector<double> displacement, von_mises;
   if (input.output.report) {
     const auto at_boundary = [&](std::span<const double> local, int components) {
@@ -185,14 +200,15 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
   figures.distribute = loaded.distribute_seconds;
   figures.total = solved - start;
   together(mpi, [&] {
-    if (mpi.first()) write_json(folder / "result.json", result_json(result, figures, dim));
+    if (mpi.first())
+      write_json(folder / "result.json", result_json(result, figures, input, loaded.problem->mesh));
   });
   // Where a checkpoint goes, what takes its place is on the disk first.
   const bool replaced = loaded.part.halo.any(mpi.first() && result.status == Status::converged &&
                                              std::filesystem::exists(file->path()));
   if (input.output.fields) {
     together(mpi, [&] {
-      write_body(folder, loaded.part, solution);
+      write_body(folder, loaded.part, solution, nodal);
       if (replaced) sync_file((folder / body_file(mpi.rank(), mpi.ranks())).string());
     });
   }
@@ -209,7 +225,7 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
     figures.total = end - start;
     figures.output = end - solved;
     // Once more, now that it is known what the output took.
-    write_json(folder / "result.json", result_json(result, figures, dim));
+    write_json(folder / "result.json", result_json(result, figures, input, loaded.problem->mesh));
     const std::string text = summary(result, figures, input.model, dim) +
                              (result.status == Status::converged ? "" : checkpoint_line(*file));
     if (input.output.report) try_to_show([&] { write_file((folder / "summary.txt").string(), text); });

@@ -27,7 +27,10 @@ Grid body_grid(ElementType type) {
   Grid grid;
   grid.dim = dim;
   grid.cell = &cell(type);
-  grid.point_fields = {{"displacement", dim, Real()}, {"node_id", 1, Number()}};
+  grid.point_fields = {{"displacement", dim, Real()},
+                       {"node_id", 1, Number()},
+                       {"nodal_stress", 6, Real()},
+                       {"nodal_von_mises", 1, Real()}};
   grid.cell_fields = {{"stress", 6, Real()}, {"von_mises", 1, Real()}, {"dev_strain", 1, Real()},
                       {"g", 1, Real()},      {"plastic", 1, Flag()},   {"element_id", 1, Number()}};
   return grid;
@@ -121,7 +124,7 @@ Surface contact_surface(const Problem& problem, const Model& model, const Contac
     auto point = problem.contact.begin();
     for (const std::int32_t node : nodes) {
       for (std::size_t c = 0; c < dim; ++c) {
-        surface.points.push_back(mesh.coordinates[static_cast<std::size_t>(node) * dim + c]);
+        surface.points.push_back(mesh.coordinates[node * dim + c]);
       }
       surface.node_id.push_back(mesh.node_tag(node));
       while (point != problem.contact.end() && point->node < node) ++point;
@@ -175,12 +178,15 @@ ContactFields gather_contact_fields(const Part& part, const Solution& solution) 
           gather_contact(part, status, 1), gather_contact(part, traction, 3)};
 }
 
-void write_body(const std::filesystem::path& folder, const Part& part, const Solution& solution) {
+void write_body(const std::filesystem::path& folder, const Part& part, const Solution& solution,
+                const NodalStress& nodal) {
   Grid grid = body_grid(part.type);
   grid.points = part.coordinates;
   grid.cells = part.elements;
   grid.point_fields[0].values = Values<double>(solution.displacement);
   grid.point_fields[1].values = tags(part.nodes(), [&part](std::size_t i) { return part.node_tag(i); });
+  grid.point_fields[2].values = Values<double>(nodal.stress);
+  grid.point_fields[3].values = Values<double>(nodal.von_mises);
   const auto element_field = [&](int components, std::span<double> reference::ElementFields::*which) {
     const std::size_t width = components;
     return Values<double>(part.element_count() * width, [&part, &solution, which, width](

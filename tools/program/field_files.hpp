@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 
+#include <kacanov/nodal_stress.hpp>
 #include <kacanov/part.hpp>
 #include <kacanov/problem.hpp>
 #include <kacanov/result.hpp>
@@ -23,8 +24,9 @@ ContactFields gather_contact_fields(const Part& part, const Solution& solution);
 /// Name of a rank's piece of the body: body.vtu, or body_<rank>.vtu where there are several.
 std::string body_file(int rank, int ranks);
 
-/// Writes this rank's piece.
-void write_body(const std::filesystem::path& folder, const Part& part, const Solution& solution);
+/// Writes this rank's piece. `nodal`: recover_stress() of the solution.
+void write_body(const std::filesystem::path& folder, const Part& part, const Solution& solution,
+                const NodalStress& nodal);
 
 /// What ties the pieces together, and the contact surface; on the first rank.
 void write_collection(const std::filesystem::path& folder, const Problem& problem, const Model& model,

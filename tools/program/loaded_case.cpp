@@ -8,6 +8,7 @@
 #include <iostream>
 
 #include <kacanov/refine.hpp>
+#include <kacanov/validity.hpp>
 #include "formats/gmsh_reader.hpp"
 #include "formats/printable.hpp"
 #include "program/memory_model.hpp"
@@ -30,6 +31,10 @@ Problem load_problem(const Case& input, RankCount ranks) {
   check_memory(size_of(mesh, input.model));
   check_dimension(input, mesh.dim());
   Problem problem = build_problem(std::move(mesh), input.model);
+  problem.warnings.insert(problem.warnings.begin(), problem.mesh.warnings.begin(),
+                          problem.mesh.warnings.end());
+  const std::vector<std::string> found = examine(problem, input.model);
+  problem.warnings.insert(problem.warnings.end(), found.begin(), found.end());
   print_warnings(input, problem);
   return problem;
 }

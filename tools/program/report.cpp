@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 
@@ -19,10 +20,56 @@ std::string format(const char* pattern, Arguments... arguments) {
   return buffer.data();
 }
 
+/// What rounding leaves of a component is 0.
 std::string vector_text(const Vector3& v, int dim) {
+  constexpr double rounding = 1e-12;
+  const double least = rounding * norm(v);
   std::string text = "(";
-  for (int c = 0; c < dim; ++c) text += (c > 0 ? ", " : "") + format("%.6g", v[c]);
+  for (int c = 0; c < dim; ++c)
+    text += (c > 0 ? ", " : "") + format("%.6g", std::abs(v[c]) > least ? v[c] : 0.0);
   return text + ")";
+}
+
+/// Of a moment: a number in 2D.
+std::string moment_text(const Vector3& v, int dim) {
+  return dim == 2 ? format("%.6g", v[2]) : vector_text(v, dim);
+}
+
+std::string count(std::int64_t n) { return std::to_string(n); }
+
+/// The summary lists no more entries of a kind; result.json has all.
+constexpr std::size_t most_lines = 8;
+
+template <class Totals, class Line>
+std::string entry_lines(const char* heading, const std::vector<Totals>& totals, const Line& line) {
+  std::string text;
+  for (std::size_t i = 0; i < totals.size(); ++i) {
+    if (i == most_lines) return text + format("                and %zu more\n", totals.size() - i);
+    text += format("  %-13s ", heading) + line(totals[i]) + "\n";
+  }
+  return text;
+}
+
+std::string contact_line(const ContactTotals& contact, const Model& model, int dim) {
+  const ContactEntry& entry = model.contact[contact.entry];
+  std::string text = entry_name(entry, static_cast<std::size_t>(contact.entry)) + ": force " +
+                     vector_text(contact.total.force, dim);
+  if (entry.friction) text += ", of it friction " + vector_text(contact.friction_force, dim);
+  const std::int64_t touching = contact.sticking + contact.slipping;
+  if (touching == 0) return text + format(", touches nowhere, least gap %.4g", contact.least_gap);
+  text += ", " + count(touching) + " of " + count(touching + contact.open) + " nodes touch";
+  if (entry.friction) text += ", " + count(contact.slipping) + " of them slip";
+  return text + format(", pressure up to %.6g", contact.max_pressure);
+}
+
+std::string boundary_line(const BoundaryTotals& totals, const Model& model, int dim) {
+  const std::size_t i = totals.entry;
+  return entry_name(model.boundary[i], i) + ": force " + vector_text(totals.total.force, dim) + ", moment " +
+         moment_text(totals.total.moment, dim);
+}
+
+std::string place_text(const Extreme& extreme, int dim) {
+  return format("%.4g at ", extreme.value) + vector_text(extreme.at, dim);
 }
 
 }  // namespace
@@ -73,7 +120,6 @@ std::string headline(Status status) {
 }  // namespace
 
 std::string summary(const Result& result, const RunFigures& figures, const Model& model, int dim) {
-  const auto count = [](std::int64_t n) { return std::to_string(n); };
   std::string text = headline(result.status) + result.message + "\n";
   text +=
       "  size          " + count(result.unknowns) + " unknowns, " + count(result.elements) + " elements\n";
@@ -96,8 +142,19 @@ std::string summary(const Result& result, const RunFigures& figures, const Model
     text += format("  load          reached the factor %.4g, ", result.load_reached) +
             count(result.load_cuts) +
             (result.load_cuts == 1 ? " load step was halved\n" : " load steps were halved\n");
-  text += format("  stress        von Mises up to %.6g, ", result.max_von_mises) +
-          count(result.plastic_elements) + " elements beyond yield\n";
+  text += format("  stress        von Mises up to %.6g in elements, ", result.max_von_mises) +
+          place_text(result.max_von_mises_nodal, dim) + " of nodes\n";
+  text += "  yield         " + count(result.plastic_elements) + " elements beyond it" +
+          format(", %.3g %% of the volume\n", 100.0 * result.plastic_share);
+  text += "  displacement  up to " + place_text(result.max_displacement, dim) +
+          format(", %.2g of the body's size\n", result.max_displacement.value / result.body.size);
+  text += "  strain        up to " + place_text(result.max_strain, dim) +
+          format(", rotation up to %.3g\n", result.max_rotation.value);
+  const auto of_boundary = [&](const BoundaryTotals& totals) { return boundary_line(totals, model, dim); };
+  text += entry_lines("load", result.load, of_boundary);
+  text += entry_lines("support", result.reaction, of_boundary);
+  text += entry_lines("obstacle", result.contact,
+                      [&](const ContactTotals& totals) { return contact_line(totals, model, dim); });
   for (std::size_t i = 0; i < result.probe.size(); ++i) {
     text += "  probe         " + vector_text(model.probes[i], dim) + " moves by " +
             vector_text(result.probe[i], dim) + "\n";

@@ -23,6 +23,46 @@ ordered_json residuals_json(const KktResiduals& residuals) {
           {"duality_gap", residuals.duality_gap}};
 }
 
+ordered_json extreme_json(const Extreme& extreme, const char* what, int dim) {
+  return {{"value", extreme.value}, {"at", entries(extreme.at, dim)}, {what, extreme.tag}};
+}
+
+ordered_json contact_json(const ContactTotals& contact, int dim) {
+  return {{"force", entries(contact.total.force, dim)},
+          {"normal_force", entries(contact.normal_force, dim)},
+          {"friction_force", entries(contact.friction_force, dim)},
+          {"moment", contact.total.moment},
+          {"area", contact.area},
+          {"max_pressure", contact.max_pressure},
+          {"sticking", contact.sticking},
+          {"slipping", contact.slipping},
+          {"open", contact.open},
+          {"least_gap", contact.least_gap}};
+}
+
+ordered_json boundary_json(std::span<const BoundaryTotals> totals, const Model& model, int dim) {
+  ordered_json json = ordered_json::object();
+  for (const BoundaryTotals& total : totals)
+    json[entry_name(model.boundary[total.entry], total.entry)] = {{"force", entries(total.total.force, dim)},
+                                                                  {"moment", total.total.moment}};
+  return json;
+}
+
+ordered_json mesh_json(const Result& result, const MeshSource& source, const Mesh& mesh) {
+  const int dim = mesh.dim();
+  ordered_json json;
+  if (source.file) json["file"] = *source.file;
+  json["element"] = cell(mesh.type).name;
+  json["nodes"] = result.unknowns / dim;
+  json["elements"] = result.elements;
+  json["boundary_facets"] = mesh.facet_count();
+  json["lower"] = entries(result.body.lower, dim);
+  json["upper"] = entries(result.body.upper, dim);
+  json["size"] = result.body.size;
+  json["volume"] = result.body.volume;
+  return json;
+}
+
 ordered_json estimate_json(const SpectrumResult& result) {
   return {{"traces", result.friction ? "normal and tangential" : "normal"},
           {"rows", result.traces},
@@ -50,7 +90,9 @@ const char* status_name(Status status) {
   return "interrupted";
 }
 
-ordered_json result_json(const Result& result, const RunFigures& figures, int dim) {
+ordered_json result_json(const Result& result, const RunFigures& figures, const Case& input,
+                         const Mesh& mesh) {
+  const int dim = mesh.dim();
   ordered_json json;
   json["status"] = status_name(result.status);
   json["message"] = result.message;
@@ -79,10 +121,23 @@ ordered_json result_json(const Result& result, const RunFigures& figures, int di
   json["bound_change"] = result.bound_change;
   json["max_contact_pressure"] = result.max_contact_pressure;
   json["max_von_mises"] = result.max_von_mises;
+  json["max_von_mises_nodal"] = result.max_von_mises_nodal.value;
+  json["max_von_mises_at"] = entries(result.max_von_mises_nodal.at, dim);
   json["plastic_elements"] = result.plastic_elements;
+  json["plastic_share"] = result.plastic_share;
   json["softening_elements"] = result.softening_elements;
   json["load_reached"] = result.load_reached;
   json["load_cuts"] = result.load_cuts;
+  json["max_displacement"] = extreme_json(result.max_displacement, "node", dim);
+  json["max_displacement"]["relative"] = result.max_displacement.value / result.body.size;
+  json["max_strain"] = extreme_json(result.max_strain, "element", dim);
+  json["max_rotation"] = extreme_json(result.max_rotation, "element", dim);
+  json["contact"] = ordered_json::object();
+  for (const ContactTotals& contact : result.contact)
+    json["contact"][entry_name(input.model.contact[contact.entry], contact.entry)] =
+        contact_json(contact, dim);
+  json["reaction"] = boundary_json(result.reaction, input.model, dim);
+  json["load"] = boundary_json(result.load, input.model, dim);
   json["probe"] = ordered_json::array();
   for (const Vector3& u : result.probe) json["probe"].push_back(entries(u, dim));
   for (const LoadStep& step : result.load_steps) {
@@ -100,6 +155,7 @@ ordered_json result_json(const Result& result, const RunFigures& figures, int di
     for (const Vector3& u : step.probe) line["probe"].push_back(entries(u, dim));
     json["load_steps"].push_back(line);
   }
+  json["mesh"] = mesh_json(result, input.mesh, mesh);
   json["certificate"] = residuals_json(result.certificate);
   json["certificate"]["rounding"] = residuals_json(result.certificate.rounding);
   const PhaseSeconds& seconds = result.seconds;
@@ -125,6 +181,7 @@ ordered_json result_json(const Result& result, const RunFigures& figures, int di
   json["threads"] = result.threads;
   json["instruction_set"] = result.instruction_set;
   json["version"] = KACANOV_VERSION;
+  json["case"] = ordered_json(input.document);
   return json;
 }
 

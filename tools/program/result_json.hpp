@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <kacanov/result.hpp>
+#include "case/case_file.hpp"
 
 namespace kacanov {
 
@@ -31,8 +32,10 @@ struct RunFigures {
   std::vector<CoarseLevel> nested;                                 ///< coarsest first
 };
 
-/// Every key of the file. Vectors have `dim` entries; numbers that are not finite become null.
-nlohmann::ordered_json result_json(const Result& result, const RunFigures& figures, int dim);
+/// Every key of the file. `mesh` needs its type and facets only. Vectors have as many entries as the mesh has
+/// dimensions, moments always three; numbers that are not finite become null.
+nlohmann::ordered_json result_json(const Result& result, const RunFigures& figures, const Case& input,
+                                   const Mesh& mesh);
 
 /// The file of a run that broke down: status "failed" and why.
 nlohmann::ordered_json failure_json(const std::string& message);

@@ -2,6 +2,7 @@
 // The operator as one plain loop an element: the truth the fast ones are tested against.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -58,16 +59,27 @@ void element_tangent(const Body& body, std::size_t element, std::span<const doub
 /// Volumes (areas in 2D) of the elements, one entry each; not positive for inverted or degenerate ones.
 void volumes(const Body& body, std::span<double> volume);
 
-/// What a picture or an output file wants to know of an element: means over its points.
+/// What a picture, an output file or a summary wants to know of an element: means over its points, or the
+/// largest value of any point.
 struct ElementFields {
   std::span<double> stress;         ///< elements × 6: xx yy zz xy yz zx (zz also in plane strain)
   std::span<double> von_mises;      ///< elements
   std::span<double> dev_strain;     ///< elements: ‖dev ε‖
   std::span<double> secant;         ///< elements: g
   std::span<std::uint8_t> plastic;  ///< elements: 1 if any point is beyond yield
+  std::span<double> strain = {};    ///< elements: the largest principal strain of any point, or its opposite
+  std::span<double> rotation = {};  ///< elements: the largest angle of rotation of any point, radians
 };
 /// Fills the spans that are not empty.
 void fields(const Body& body, std::span<const double> u, const ElementFields& out);
+
+/// What the quadrature points have: elements × points, an element's together.
+struct PointFields {
+  std::span<std::array<double, 3>> position;  ///< undeformed; the third entry is 0 in 2D
+  std::span<double> stress;                   ///< × 6, as in ElementFields
+};
+/// Fills both.
+void point_fields(const Body& body, std::span<const double> omega, const PointFields& out);
 
 }  // namespace reference
 }  // namespace kacanov

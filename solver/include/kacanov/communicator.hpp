@@ -25,6 +25,8 @@ struct Communicator {
   /// Each of some numbers that lie apart, in one message.
   void sum_each(std::initializer_list<double*> numbers) const;
   double max_all(double value) const;
+  /// Entry by entry.
+  void max_all(std::span<double> values) const;
   /// Whether it holds on some rank.
   bool any(bool here) const { return max_all(here ? 1.0 : 0.0) > 0.0; }
   /// Sum over the ranks below this one.

@@ -20,12 +20,22 @@ void element_fields(const Part& part, std::span<const double> omega, std::size_t
 /// All fields of some elements in a row.
 struct ElementRun {
   std::size_t first = 0;
-  std::vector<double> stress, von_mises, dev_strain, secant;
+  std::vector<double> stress, von_mises, dev_strain, secant, strain, rotation, volume;
   std::vector<std::uint8_t> plastic;
 };
 /// Calls visit(run) for the whole part, some thousand elements at a time.
 void visit_element_fields(const Part& part, std::span<const double> omega,
                           const std::function<void(const ElementRun&)>& visit);
+
+/// What the quadrature points of some elements in a row have, an element's together.
+struct PointRun {
+  std::size_t first = 0;  ///< element
+  std::vector<Vector3> position;
+  std::vector<double> stress;  ///< × 6, as of elements
+};
+/// Calls visit(run) for the whole part, some thousand elements at a time.
+void visit_point_stress(const Part& part, std::span<const double> omega,
+                        const std::function<void(const PointRun&)>& visit);
 
 /// von Mises stress at the part's nodes: the mean of the elements round a node over all ranks, weighted by
 /// volume. Collective.

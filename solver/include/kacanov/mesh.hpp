@@ -21,6 +21,7 @@ struct Group {
   std::string name;
   int dimension = 0;                  ///< dim: elements; dim − 1: facets; below: nodes
   std::vector<std::int32_t> members;  ///< indices of elements, of `facets`, or of nodes; ascending
+  std::int64_t inner = 0;             ///< facets it had besides, which are not on the boundary
 };
 
 struct Mesh {
@@ -32,6 +33,7 @@ struct Mesh {
   std::vector<std::int32_t> facets;         ///< the boundary: facets × nodes_per_facet, outwards
   std::vector<std::int32_t> facet_element;  ///< the element each facet belongs to
   std::vector<Group> groups;
+  std::vector<std::string> warnings;  ///< what its reader left out
 
   int dim() const { return dimension(type); }
   std::size_t node_count() const { return coordinates.size() / static_cast<std::size_t>(dim()); }

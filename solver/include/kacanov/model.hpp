@@ -26,6 +26,9 @@ struct Selector {
 struct MaterialEntry {
   Selector on;
   Law law;
+  /// B-bar (theory: b-bar). Unset: as the law has it, and wherever its elements have that form and lock
+  /// without: in plastic and in nearly incompressible bodies.
+  std::optional<bool> bbar = {};
 };
 
 /// Exactly one of the optionals is set.
@@ -33,8 +36,10 @@ struct BoundaryEntry {
   Selector on;
   std::optional<std::array<std::optional<double>, 3>> displacement;  ///< nullopt: component is free
   std::optional<Vector3> traction;                                   ///< force an area (a length in 2D)
+  std::optional<Vector3> total_force;                                ///< spread evenly over the facets' area
   std::optional<double> pressure;                                    ///< against the outer normal
   std::optional<Vector3> body_force;                                 ///< force a volume
+  std::string name = {};                                             ///< see entry_name()
 };
 
 struct Plane {
@@ -63,7 +68,12 @@ struct ContactEntry {
   Selector on;
   Obstacle obstacle;
   std::optional<Friction> friction;
+  std::string name = {};  ///< see entry_name()
 };
+
+/// What results and messages call an entry: its own name, or its place, "boundary[1]", "contact[0]".
+std::string entry_name(const BoundaryEntry& entry, std::size_t index);
+std::string entry_name(const ContactEntry& entry, std::size_t index);
 
 /// Every field is a key of the case file's `solver`, with the same name; `automatic` is "auto" there.
 struct SolverOptions {
@@ -105,7 +115,7 @@ struct SolverOptions {
 /// time.
 struct LoadStage {
   double time = 0.0;                      ///< > 0, ascending
-  std::map<std::string, double> factors;  ///< by entry: "boundary[1]", "contact[0]"
+  std::map<std::string, double> factors;  ///< by entry_name() or place: "boundary[1]", "contact[0]"
 };
 
 struct Model {

@@ -41,10 +41,13 @@ struct Part {
   std::vector<LoadFactors> steps;             ///< as in Problem
   std::vector<EntryForce> forces;             ///< likewise, by components of the part
   std::vector<std::int32_t> prescribed_by;    ///< boundary entry of each of `prescribed`; with steps only
+  std::vector<Support> supports;              ///< of owned nodes, by node and axis
+  std::vector<AppliedLoad> applied;           ///< of the whole problem
   /// The points of owned nodes first, narrow ones of ghosts behind them. All nodes of an owned point are
   /// local; wide points are with their owners only.
   ConstraintRows contact;
   std::int32_t owned_contact = 0;
+  std::vector<PointShare> contact_shares;   ///< of owned points, by point
   bool wide_contact = false;                ///< some rank has wide points
   std::vector<std::int32_t> contact_index;  ///< index in Problem::contact
   std::int64_t total_contact = 0;

@@ -10,6 +10,7 @@
 #include <kacanov/constraint_rows.hpp>
 #include <kacanov/mesh.hpp>
 #include <kacanov/model.hpp>
+#include <kacanov/totals.hpp>
 
 namespace kacanov {
 
@@ -37,6 +38,26 @@ struct EntryForce {
   double value = 0.0;
 };
 
+/// That a displacement entry holds a component of a node; several may hold the same one.
+struct Support {
+  std::int32_t node = 0, axis = 0;
+  std::int32_t entry = 0;  ///< index into Model::boundary
+  bool operator==(const Support&) const = default;
+};
+
+/// A contact point that several entries were joined in: what of it belongs to one of them, by its mass.
+struct PointShare {
+  std::int32_t point = 0;
+  std::int32_t entry = 0;  ///< index into Model::contact
+  double share = 1.0;
+};
+
+/// What a traction, pressure or body force comes to.
+struct AppliedLoad {
+  std::int32_t entry = 0;  ///< index into Model::boundary
+  Resultant total;
+};
+
 /// The whole problem, on one rank.
 struct Problem {
   Mesh mesh;
@@ -48,7 +69,10 @@ struct Problem {
   std::vector<LoadFactors> steps;    ///< load curves, from the time 0 on; empty: none, and so are these:
   std::vector<EntryForce> forces;    ///< F entry by entry at the factor 1, ascending by component
   std::vector<std::int32_t> holder;  ///< nodes × dim: boundary entry that gives the displacement, else −1
+  std::vector<Support> supports;     ///< by node and axis
+  std::vector<AppliedLoad> applied;  ///< at the factor 1
   ConstraintRows contact;
+  std::vector<PointShare> contact_shares;  ///< of points of several entries, by point
   std::vector<Probe> probes;
   int loose_modes = 0;  ///< rigid modes that only the contact holds
   /// Of pieces that contact alone holds: where they come to rest as rigid bodies, to start from.

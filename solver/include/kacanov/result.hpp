@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <kacanov/model.hpp>
+#include <kacanov/totals.hpp>
 
 namespace kacanov {
 
@@ -100,7 +101,16 @@ struct Result {
   double bound_change = 0.0;  ///< Coulomb: what ψ moved by in the last step / largest pressure; 0 without
   double max_contact_pressure = 0.0, max_von_mises = 0.0;
   std::int64_t plastic_elements = 0;
-  std::int64_t softening_elements = 0;  ///< in the softening range of a squared-argument law
+  std::int64_t softening_elements = 0;   ///< in the softening range of a squared-argument law
+  double plastic_share = 0.0;            ///< of the volume: elements beyond yield
+  std::vector<ContactTotals> contact;    ///< one a contact entry
+  std::vector<BoundaryTotals> reaction;  ///< one a displacement entry
+  std::vector<BoundaryTotals> load;      ///< one an entry of another kind, at the share of the load reached
+  Extreme max_displacement;              ///< |u| at a node
+  Extreme max_strain;                    ///< largest principal strain, or its opposite, at a quadrature point
+  Extreme max_rotation;         ///< angle of the infinitesimal rotation at a quadrature point, in radians
+  Extreme max_von_mises_nodal;  ///< of recovered stress; for whoever calls recover_stress() to fill in
+  BodySize body;
   std::vector<Vector3> probe;
   bool by_time = false;       ///< the factors of the load steps are times of the load curves
   double load_reached = 0.0;  ///< factor of the last state that converged; 0: none has

@@ -16,6 +16,7 @@ inline constexpr double largest_number = 1e100;
 inline constexpr NumberRule any_number{"a number", [](double) { return true; }};
 inline constexpr NumberRule positive{"a number > 0", [](double v) { return v > 0.0; }};
 inline constexpr NumberRule not_negative{"a number ≥ 0", [](double v) { return v >= 0.0; }};
+inline constexpr NumberRule above_one{"a number > 1", [](double v) { return v > 1.0; }};
 inline constexpr NumberRule below_one{"a number above 0 and below 1",
                                       [](double v) { return v > 0.0 && v < 1.0; }};
 inline constexpr NumberRule poisson_ratio{"a number above -1 and below 0.5",

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The extremes of a body's displacement, strain and stress with their places, and its size.
+#pragma once
+
+#include <span>
+
+#include <kacanov/part.hpp>
+#include <kacanov/result.hpp>
+
+namespace kacanov {
+
+/// Extremes, plastic and softening elements, and the undeformed body, over all ranks. `u`: nodes × dim of the
+/// part. Collective.
+void collect_body_totals(const Part& part, std::span<const double> u, Result& result);
+
+}  // namespace kacanov

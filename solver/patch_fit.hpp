@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Polynomials fitted to samples round corners, by normal equations that add up over ranks.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <kacanov/model.hpp>
+
+namespace kacanov {
+
+/// Monomials 1, x_i and, of order 2, x_i x_j.
+class Monomials {
+ public:
+  static constexpr std::size_t most = 10;
+  Monomials(int dim, int order);
+  std::size_t count() const noexcept { return count_; }
+  std::size_t linear() const noexcept { return 1 + dim_; }  ///< those of order 0 and 1
+  std::array<double, most> at(const Vector3& x) const;
+
+ private:
+  std::size_t dim_, count_;
+  bool quadratic_;
+};
+
+/// Least squares round many centres at once, six values a sample.
+class PatchFits {
+ public:
+  static constexpr std::size_t values = 6;
+  PatchFits(std::size_t centres, const Monomials& monomials);
+
+  /// `x`: from the centre, in units of the patch's size.
+  void add(std::size_t centre, const Vector3& x, const double* sample);
+  /// The sums of centre i, to be added up over ranks.
+  std::span<double> sums(std::size_t centre) noexcept {
+    return std::span(sums_).subspan(centre * width_, width_);
+  }
+  std::size_t width() const noexcept { return width_; }
+  /// Whether any sample came.
+  bool has(std::size_t centre) const noexcept { return sums_[centre * width_] > 0.0; }
+  /// Solves the normal equations of all centres in place. What too few samples leave open is kept small,
+  /// the higher orders first.
+  void solve();
+  /// After solve(): the polynomial's values.
+  std::array<double, values> evaluate(std::size_t centre, const Vector3& x) const;
+
+ private:
+  Monomials monomials_;
+  std::size_t pairs_, width_;
+  std::vector<double> sums_;  ///< centre by centre: upper triangle of the matrix, row by row; then the sides
+};
+
+}  // namespace kacanov

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The checks, one a file; each adds a sentence to the warnings where something looks mistaken.
+#pragma once
+
+#include <kacanov/validity.hpp>
+
+namespace kacanov::validity {
+
+using Warnings = std::vector<std::string>;
+
+// Before the solve.
+
+/// No load, no prescribed displacement, no obstacle that presses in.
+void no_load(const Problem& problem, Warnings& warnings);
+/// Young's modulus, yield stress and loads that lie orders apart.
+void mixed_units(const Problem& problem, const Model& model, Warnings& warnings);
+/// Facets of a contact entry whose outer normal points away from where the obstacle is.
+void looking_away(const Problem& problem, const Model& model, Warnings& warnings);
+/// Facets of a group that are not on the boundary of the body, and so have been left out.
+void inner_facets(const Problem& problem, const Model& model, Warnings& warnings);
+/// Elements thinner than a millionth of their length.
+void thin_elements(const Problem& problem, Warnings& warnings);
+/// Elements whose B-bar form was declined where they lock.
+void locking(const Problem& problem, const Model& model, Warnings& warnings);
+
+// After it.
+
+/// Strains or rotations beyond what a theory of small strains is good for.
+void large_strain(const Result& result, Warnings& warnings);
+/// Displacements that are not small beside the body.
+void large_displacement(const Result& result, Warnings& warnings);
+/// Contact entries that nothing presses on: lifted off, or never reached.
+void idle_contact(const Result& result, const Model& model, Warnings& warnings);
+
+/// Three significant digits, for sentences.
+std::string rounded(double value);
+
+}  // namespace kacanov::validity

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// All checks of a problem, and all of a result.
+#include <kacanov/validity.hpp>
+
+#include <sstream>
+
+#include "validity/checks.hpp"
+
+namespace kacanov {
+
+std::vector<std::string> examine(const Problem& problem, const Model& model) {
+  validity::Warnings warnings;
+  validity::no_load(problem, warnings);
+  validity::mixed_units(problem, model, warnings);
+  validity::looking_away(problem, model, warnings);
+  validity::inner_facets(problem, model, warnings);
+  validity::thin_elements(problem, warnings);
+  validity::locking(problem, model, warnings);
+  return warnings;
+}
+
+std::vector<std::string> examine(const Result& result, const Model& model) {
+  validity::Warnings warnings;
+  validity::large_strain(result, warnings);
+  validity::large_displacement(result, warnings);
+  validity::idle_contact(result, model, warnings);
+  return warnings;
+}
+
+std::string validity::rounded(double value) {
+  std::ostringstream text;
+  text.precision(3);
+  text << value;
+  return text.str();
+}
+
+}  // namespace kacanov

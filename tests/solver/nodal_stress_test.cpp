@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Recovered nodal stress: exact for the polynomials it fits, right at a notch, the same on any number of
+// ranks.
+#include <kacanov/nodal_stress.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "support.hpp"
+
+using namespace kacanov;
+using namespace kacanov::testing;
+
+namespace {
+
+Part over_all_ranks(const Problem& problem) {
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  return distribute(rank == 0 ? &problem : nullptr, MPI_COMM_WORLD);
+}
+
+/// Displacements of the part's nodes by their positions.
+template <class Field>
+std::vector<double> nodal(const Part& part, const Field& field) {
+  const std::size_t dim = part.dim();
+  std::vector<double> u(part.unknowns());
+  for (std::size_t n = 0; n < part.nodes(); ++n) {
+    Vector3 x{};
+    for (std::size_t c = 0; c < dim; ++c) x[c] = part.coordinates[n * dim + c];
+    const Vector3 value = field(x);
+    for (std::size_t c = 0; c < dim; ++c) u[n * dim + c] = value[c];
+  }
+  return u;
+}
+
+Problem block(ElementType type, const std::vector<MaterialEntry>& materials, int cells = 2) {
+  Mesh mesh = box_mesh(type, {2.0, 1.0, 1.0}, cells);
+  Model model;
+  model.materials = materials;
+  model.boundary.push_back(moved(named("left"), mesh.dim()));
+  return build_problem(mesh, model);
+}
+
+constexpr double half_width = 20.0;
+
+/// A quarter of a square plate with a hole of radius 1, 24 elements a turn, as wide at the hole as long.
+Mesh plate_with_hole() {
+  Mesh mesh = make_box({{1.0, 1.0, 0.3}, {11, 6, 1}, ElementType::tet10});
+  map_nodes(mesh, [](const Vector3& x) {
+    const double angle = 0.5 * std::numbers::pi * x[1], c = std::cos(angle), s = std::sin(angle);
+    const double r = std::pow(half_width / std::max(c, s), x[0]);
+    return Vector3{r * c, r * s, x[2]};
+  });
+  return mesh;
+}
+
+}  // namespace
+
+TEST_CASE("even stress is met at every node of every element") {
+  for (const ElementType type : element_types()) {
+    CAPTURE(static_cast<int>(type));
+    const Problem problem = block(type, {{everything(), elastic_law(1.0, 0.25)}});
+    const Part part = over_all_ranks(problem);
+    const int dim = part.dim();
+    const NodalStress found =
+        recover_stress(part, nodal(part, [](const Vector3& x) {
+                         return Vector3{0.3 * x[0] + 0.1 * x[1], -0.2 * x[1], 0.1 * x[2]};
+                       }));
+    const double trace = dim == 3 ? 0.2 : 0.1, bulk = 1.0 / 1.5, mu = 0.4;
+    const std::array<double, 3> strain{0.3, -0.2, dim == 3 ? 0.1 : 0.0};
+    for (std::size_t n = 0; n < part.nodes(); ++n) {
+      for (std::size_t c = 0; c < 3; ++c)
+        CHECK(found.stress[6 * n + c] == doctest::Approx(bulk * trace + 2 * mu * (strain[c] - trace / 3)));
+      CHECK(found.stress[6 * n + 3] == doctest::Approx(mu * 0.1));
+    }
+    CHECK(found.max_von_mises.value == doctest::Approx(found.von_mises[0]));
+  }
+}
+
+TEST_CASE("quadratic displacements of tet10 give their linear stress, at middles of edges too") {
+  const Problem problem = block(ElementType::tet10, {{everything(), elastic_law(1.0, 0.0)}});
+  const Part part = over_all_ranks(problem);
+  const NodalStress found = recover_stress(part, nodal(part, [](const Vector3& x) {
+                                             return Vector3{x[0] * x[1], 0, 0};
+                                           }));
+  for (std::size_t n = 0; n < part.nodes(); ++n) {
+    const double x = part.coordinates[3 * n], y = part.coordinates[3 * n + 1];
+    CHECK(std::abs(found.stress[6 * n] - y) < 1e-6);
+    CHECK(std::abs(found.stress[6 * n + 3] - 0.5 * x) < 1e-6);
+  }
+}
+
+TEST_CASE("materials are kept apart; where they meet the larger stress is shown") {
+  for (const ElementType type : {ElementType::tet4, ElementType::tet10, ElementType::hex8}) {
+    CAPTURE(static_cast<int>(type));
+    const Problem problem = block(
+        type, {{everything(), elastic_law(1.0, 0.0)}, {box({0, 0, 0}, {1, 1, 1}), elastic_law(10.0, 0.0)}});
+    const Part part = over_all_ranks(problem);
+    const NodalStress found = recover_stress(part, nodal(part, [](const Vector3& x) {
+                                               return Vector3{0.1 * x[0], 0, 0};
+                                             }));
+    for (std::size_t n = 0; n < part.nodes(); ++n)
+      CHECK(found.stress[6 * n] == doctest::Approx(part.coordinates[3 * n] <= 1.0 + 1e-9 ? 1.0 : 0.1));
+    CHECK(found.max_von_mises.value == doctest::Approx(1.0));
+  }
+}
+
+TEST_CASE("a hole in a plate in tension: three times the stress, within 3 %") {
+  const Mesh mesh = plate_with_hole();
+  Model model = elastic_model();
+  model.materials[0].law = elastic_law(1.0, 0.0);
+  model.boundary.push_back(roller(named("front"), 1));
+  model.boundary.push_back(roller(named("back"), 0));
+  model.boundary.push_back(roller(named("bottom"), 2));
+  model.boundary.push_back(traction(box({half_width, 0, 0}, {half_width, half_width, 0.3}), {0.001, 0, 0}));
+  model.solver.tolerance = 1e-8;
+  const Problem problem = build_problem(mesh, model);
+  const Part part = over_all_ranks(problem);
+  const Solution solution = solve(part, model.solver, {});
+  REQUIRE(solution.result.status == Status::converged);
+  const NodalStress found = recover_stress(part, solution.displacement);
+  // Heywood: 2 + (1 − d/W)³ of the net stress, for d/W = 0.05.
+  const double net = 1.0 / 0.95, expected = (2.0 + std::pow(0.95, 3)) * net;
+  CHECK(found.max_von_mises.value / 0.001 == doctest::Approx(expected).epsilon(0.03));
+  CHECK(distance({0, 1, found.max_von_mises.at[2]}, found.max_von_mises.at) < 1e-9);
+  // Means of elements are far from it.
+  CHECK(solution.result.max_von_mises / 0.001 < 2.8);
+  MESSAGE("stress concentration ", found.max_von_mises.value / 0.001, ", of elements ",
+          solution.result.max_von_mises / 0.001);
+  // The same bits in every copy, and what one rank finds.
+  const Run alone = run_alone(mesh, model);
+  CHECK(recover_stress(alone.part, alone.solution.displacement).max_von_mises.value ==
+        doctest::Approx(found.max_von_mises.value).epsilon(1e-6));
+  std::vector<double> copies = found.von_mises;
+  part.halo.forward(copies, 1);
+  CHECK(copies == found.von_mises);
+}
