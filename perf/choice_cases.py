@@ -44,7 +44,7 @@ def half_ball(n, gap, friction, kind, folder):
     if not mesh.exists():
         mesh.write_text(half_ball_mesh(n))
     return {"mesh": {"file": str(mesh)},
-            "material": [{"on": "all", "young": 1.0, "poisson": 0.3, "law": law(kind, 0.01)}],
+            "material": [{"on": "all", "young": 1.0, "poisson": 0.3, "law": law(kind, 0.01), "bbar": False}],
             "boundary": [{"on": "flat", "displacement": [0.005 if friction else 0, 0, -0.05 - gap]}],
             "contact": [plane(3, gap, 0.01 if friction else 0, "round")]}
 
@@ -55,7 +55,7 @@ def step42(n):
     x0 = 400.0 / (2 * 2e5 / 2.6)
     return {"mesh": {"box": {"size": [1, 1, 1], "cells": [n, n, n], "element": "hex8"}},
             "material": [{"on": "all", "young": 2e5, "poisson": 0.3,
-                          "law": {"type": "linear_hardening", "x0": x0, "gamma": 0.01}}],
+                          "law": {"type": "linear_hardening", "x0": x0, "gamma": 0.01}, "bbar": False}],
             "boundary": [{"on": "bottom", "displacement": [0, 0, 0]}] + sides,
             "contact": [{"on": "top", "obstacle": {"sphere": {"centre": [0.5, 0.5, 1.59], "radius": 0.6,
                                                               "direction": [0, 0, 1]}}}]}

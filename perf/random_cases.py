@@ -277,5 +277,5 @@ def random_case(seed, index):
     friction = "tresca" if d.tresca else f"mu {d.mu:g}" if d.mu else "smooth"
     name = f"{index} {kind.__name__} {d.element} {friction} {d.law} {'unit' if d.unit else 'steel'}"
     law = laws(d.unit)[d.law]
-    return name, {"mesh": {"file": "random.msh"}, "material": [{"on": "all", "young": d.young, "poisson": 0.3, "law": law}],
+    return name, {"mesh": {"file": "random.msh"}, "material": [{"on": "all", "young": d.young, "poisson": 0.3, "law": law, "bbar": False}],
                   "boundary": boundary, "contact": contact}, body
