@@ -140,6 +140,29 @@ TEST_CASE("loads have the force and moment of what is put on") {
   }
 }
 
+TEST_CASE("loads are those of the share, or of the load curves, that was reached") {
+  const Mesh mesh = box_mesh(ElementType::quad4);
+  Model model = elastic_model();
+  model.boundary.push_back(moved(named("left"), 2));
+  model.boundary.push_back(traction(named("right"), {0.1, 0.0, 0.0}));
+  model.boundary.push_back(traction(named("top"), {0.0, 0.1, 0.0}));
+  model.boundary[1].name = "hook";
+  model.steps = {{1.0, {{"hook", 1.0}}}, {2.0, {{"hook", -0.5}, {"boundary[2]", 3.0}}}};
+  const Run run = run_on_all(mesh, model);
+  REQUIRE(run.result().status == Status::converged);
+  REQUIRE(run.result().load.size() == 2);
+  CHECK(run.result().load[0].total.force[0] == doctest::Approx(-0.05));
+  CHECK(run.result().load[1].total.force[1] == doctest::Approx(0.6));
+  CHECK(run.result().reaction[0].total.force[0] == doctest::Approx(0.05).epsilon(1e-5));
+  CHECK(run.result().reaction[0].total.force[1] == doctest::Approx(-0.6).epsilon(1e-5));
+  model.steps.clear();
+  model.solver.load_steps = {0.5, 1.0};
+  CHECK(run_on_all(mesh, model).result().load[0].total.force[0] == doctest::Approx(0.1));
+  model.contact.push_back(on_plane(named("bottom"), {0, -1, 0}, {0, 1, 0}));
+  model.contact[0].name = "hook";
+  CHECK(mentions(refusal(mesh, model), "contact[0].name: expected another name than that of boundary[1]"));
+}
+
 TEST_CASE("a reaction of several entries is divided among them evenly, component by component") {
   // Pulled along x between rollers; the left side is held twice, and a third entry holds only its y.
   const Mesh mesh = box_mesh(ElementType::hex8, {2.0, 1.0, 1.0});
@@ -214,7 +237,7 @@ TEST_CASE("a plane and a ball that pinch a block push back what each is pushed w
 TEST_CASE("extremes have a value and a place that do not depend on the ranks") {
   const Mesh mesh = box_mesh(ElementType::tet4, {2.0, 1.0, 0.5});
   Model model = elastic_model();
-  // Uniaxial tension: u = (0.01 x, −0.3 · 0.01 y, −0.3 · 0.01 z) and a turn about z added by hand below.
+  // Uniaxial tension: u = (0.01 x, −0.3 · 0.01 y, −0.3 · 0.01 z).
   model.boundary.push_back(roller(named("left"), 0));
   model.boundary.push_back(roller(named("front"), 1));
   model.boundary.push_back(roller(named("bottom"), 2));

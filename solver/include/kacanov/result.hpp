@@ -105,7 +105,7 @@ struct Result {
   double plastic_share = 0.0;            ///< of the volume: elements beyond yield
   std::vector<ContactTotals> contact;    ///< one a contact entry
   std::vector<BoundaryTotals> reaction;  ///< one a displacement entry
-  std::vector<BoundaryTotals> load;      ///< one an entry of another kind, at the share of the load reached
+  std::vector<BoundaryTotals> load;      ///< one an entry of another kind, times its factor at the end
   Extreme max_displacement;              ///< |u| at a node
   Extreme max_strain;                    ///< largest principal strain, or its opposite, at a quadrature point
   Extreme max_rotation;         ///< angle of the infinitesimal rotation at a quadrature point, in radians
