@@ -69,7 +69,7 @@ typedef enum kacanov_law_kind {
   KACANOV_POWER = 3,            /* mu (a/x0)^(n-1), 0 < n <= 1 */
   KACANOV_SATURATING = 4,       /* mu (x0/a) (1 + q (1 - exp(-(a-x0)/(q x0)))), q > 0 */
   KACANOV_TABLE = 5,            /* 2 g a piecewise linear through given points */
-  KACANOV_RAMBERG_OSGOOD = 6    /* mu t x0/a with a/x0 = t + q t^n, from a = 0 on; q > 0, n > 1, not squared */
+  KACANOV_RAMBERG_OSGOOD = 6 /* mu t x0/a with a/x0 = t + q t^n, from a = 0 on; q > 0, n > 1, not squared */
 } kacanov_law_kind;
 
 typedef struct kacanov_law {
