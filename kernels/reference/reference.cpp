@@ -318,7 +318,7 @@ void fields(const Body& body, std::span<const double> u, const ElementFields& ou
         von_mises += point.volume * std::sqrt(1.5) * 2.0 * g * norm;
         plastic = plastic || law.plastic(norm);
         if (out.strain.empty() && out.rotation.empty()) continue;
-        const Gradient h = gradient_at<E>(point, u);
+        const Gradient h = gradient_at<E>(point, local);
         largest = std::max(largest, largest_principal(h));
         rotation = std::max(rotation, rotation_angle(h));
       }
@@ -334,11 +334,10 @@ void fields(const Body& body, std::span<const double> u, const ElementFields& ou
   });
 }
 
-void point_fields(const Body& body, std::span<const double> omega, const PointFields& out) {
+void point_fields(const Body& body, std::span<const double> u, const PointFields& out) {
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     for_each_point<E>(
-        body, omega,
-        [&](std::size_t e, const Law& law, std::size_t q, const Point<E>&, const Strain& strain) {
+        body, u, [&](std::size_t e, const Law& law, std::size_t q, const Point<E>&, const Strain& strain) {
           const std::size_t k = e * E::points + q;
           const Sym tau = stress(law, law.secant(strain.norm()), strain);
           std::copy(tau.begin(), tau.end(), &out.stress[6 * k]);

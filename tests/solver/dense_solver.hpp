@@ -314,6 +314,22 @@ class DenseSolver {
         }
         points_.push_back(point);
       }
+      if (law(e).mean_dilatation) take_mean_dilatation(static_cast<std::ptrdiff_t>(rule.size()));
+    }
+  }
+
+  /// B-bar: the trace at each of the last points becomes their mean.
+  void take_mean_dilatation(std::ptrdiff_t count) {
+    const auto first = points_.end() - count;
+    Eigen::RowVectorXd mean = Eigen::RowVectorXd::Zero(first->b.cols());
+    double volume = 0.0;
+    for (auto point = first; point != points_.end(); ++point) {
+      mean += point->weight * point->b.topRows(3).colwise().sum();
+      volume += point->weight;
+    }
+    for (auto point = first; point != points_.end(); ++point) {
+      const Eigen::RowVectorXd shift = (mean / volume - point->b.topRows(3).colwise().sum()) / 3.0;
+      point->b.topRows(3).rowwise() += shift;
     }
   }
 

@@ -79,7 +79,7 @@ struct PointFields {
   std::span<double> stress;                   ///< × 6, as in ElementFields
 };
 /// Fills both.
-void point_fields(const Body& body, std::span<const double> omega, const PointFields& out);
+void point_fields(const Body& body, std::span<const double> u, const PointFields& out);
 
 }  // namespace reference
 }  // namespace kacanov
