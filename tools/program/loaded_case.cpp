@@ -18,7 +18,9 @@ namespace kacanov {
 Mesh load_mesh(const MeshSource& source) {
   if (source.box) return make_box(*source.box);
   Mesh mesh = read_gmsh(*source.file);
+  const std::vector<std::string> warnings = mesh.warnings;
   for (int times = 0; times < source.refine; ++times) mesh = refine(mesh);
+  mesh.warnings = warnings;
   return mesh;
 }
 
