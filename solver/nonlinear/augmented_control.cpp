@@ -49,58 +49,54 @@ void put(const Traces& traces, const Vector& all, ContactState& state) {
 void AugmentedControl::begin(double penalty, double lambda_min) {
   penalty_ = penalty > 0.0 ? penalty : 1.0;
   most_ = lambda_min > 0.0 ? tuning_.augmented_penalty / lambda_min : penalty_;
-  from_.clear();
-  last_rest_.clear();
+  rounds_ = 0;
   changes_.clear();
 }
 
 void AugmentedControl::advance(const Traces& traces, ContactState& state) {
-  const Vector image = joined(state.lambda);
-  Vector next = image;
-  if (from_.size() == image.size() && !image.empty()) {
-    const Vector rest = difference(image, from_);
-    std::array<double, 1> size{product(traces, rest, rest)};
-    traces.halo().sum_all(size);
-    if (!last_rest_.empty()) {
-      changes_.push_front({difference(rest, last_rest_), difference(image, last_image_)});
-      if (size[0] > 4.0 * last_size_) changes_.clear();
+  Round now{{}, joined(state.lambda)};
+  Vector next = now.image;
+  if (rounds_ > 0) {
+    now.rest = difference(now.image, from_);
+    const double size = traces.halo().sum_all(product(traces, now.rest, now.rest));
+    if (rounds_ > 1) {
+      changes_.push_front({difference(now.rest, last_.rest), difference(now.image, last_.image)});
+      // A map that has changed this much is another one: other points touch or slip.
+      if (size > 4.0 * last_size_) changes_.clear();
       if (changes_.size() > static_cast<std::size_t>(tuning_.augmented_memory)) changes_.pop_back();
     }
-    last_rest_ = rest;
-    last_image_ = image;
-    last_size_ = size[0];
-    const std::size_t m = changes_.size();
-    if (m > 0) {
-      Vector sums;
-      for (std::size_t a = 0; a < m; ++a) {
-        for (std::size_t b = 0; b < m; ++b)
-          sums.push_back(product(traces, changes_[a].rest, changes_[b].rest));
-        sums.push_back(product(traces, changes_[a].rest, rest));
-      }
-      traces.halo().sum_all(sums);
-      const auto n = static_cast<Eigen::Index>(m);
-      Eigen::MatrixXd gram(n, n);
-      Eigen::VectorXd right(n);
-      for (std::size_t a = 0; a < m; ++a) {
-        const auto row = static_cast<Eigen::Index>(a);
-        for (std::size_t b = 0; b < m; ++b) gram(row, static_cast<Eigen::Index>(b)) = sums[a * (m + 1) + b];
-        right(row) = sums[a * (m + 1) + m];
-      }
-      const Eigen::VectorXd scale = gram.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-      gram = scale.asDiagonal() * gram * scale.asDiagonal();
-      gram.diagonal().array() += 1e-10;
-      const Eigen::VectorXd share =
-          scale.cwiseProduct(gram.ldlt().solve(Eigen::VectorXd(scale.cwiseProduct(right))));
-      for (std::size_t a = 0; a < m; ++a)
-        for (std::size_t i = 0; i < next.size(); ++i)
-          next[i] -= share(static_cast<Eigen::Index>(a)) * changes_[a].image[i];
-    } else {
-      for (std::size_t i = 0; i < next.size(); ++i)
-        next[i] = from_[i] + tuning_.augmented_following * rest[i];
-    }
+    next = mixed(traces, now);
+    last_ = std::move(now);
+    last_size_ = size;
   }
   put(traces, next, state);
   from_ = joined(state.lambda);
+  ++rounds_;
+}
+
+Vector AugmentedControl::mixed(const Traces& traces, const Round& now) const {
+  Vector next = now.image;
+  if (changes_.empty()) {
+    for (std::size_t i = 0; i < next.size(); ++i)
+      next[i] = from_[i] + tuning_.augmented_following * now.rest[i];
+    return next;
+  }
+  const auto m = static_cast<Eigen::Index>(changes_.size());
+  Vector sums;
+  for (const Round& a : changes_) {
+    for (const Round& b : changes_) sums.push_back(product(traces, a.rest, b.rest));
+    sums.push_back(product(traces, a.rest, now.rest));
+  }
+  traces.halo().sum_all(sums);
+  const Eigen::Map<const Eigen::MatrixXd> all(sums.data(), m + 1, m);  // a column for each change
+  const Eigen::VectorXd scale = all.topRows(m).diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  Eigen::MatrixXd gram = scale.asDiagonal() * all.topRows(m) * scale.asDiagonal();
+  gram.diagonal().array() += 1e-10;  // changes that say the same
+  const Eigen::VectorXd right = scale.cwiseProduct(all.row(m).transpose());
+  const Eigen::VectorXd share = scale.cwiseProduct(gram.ldlt().solve(right));
+  for (Eigen::Index k = 0; k < m; ++k)
+    for (std::size_t i = 0; i < next.size(); ++i) next[i] -= share(k) * changes_[k].image[i];
+  return next;
 }
 
 void AugmentedControl::learn(int iterations) {

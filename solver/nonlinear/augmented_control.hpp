@@ -19,6 +19,7 @@ class AugmentedControl {
 
   /// For rounds from another state: `penalty` is that of ADMM; 0 where there is no contact.
   void begin(double penalty, double lambda_min);
+  bool begun() const noexcept { return penalty_ > 0.0; }
   double penalty() const noexcept { return penalty_; }
   /// Puts the multipliers and bounds of the next round into the state, whose multipliers are what the last
   /// one came to. Collective.
@@ -26,23 +27,20 @@ class AugmentedControl {
   /// Newton steps that the last round took.
   void learn(int iterations);
 
-  /// Entries of a checkpoint.
-  template <class Visitor>
-  void visit(Visitor&& entry) {
-    entry("augmented_penalty", penalty_);
-    entry("augmented_most", most_);
-  }
-
  private:
   Tuning tuning_;
-  double penalty_ = 1.0, most_ = 1.0;
-  Vector from_;  ///< multipliers that the last round began with; empty before the first
-  Vector last_rest_, last_image_;
-  struct Change {
+  double penalty_ = 0.0, most_ = 0.0;
+  /// What a round has made of its multipliers: the image of the map, and what that is off by.
+  struct Round {
     Vector rest, image;
   };
-  std::deque<Change> changes_;
-  double last_size_ = 0.0;
+  int rounds_ = 0;             ///< begun; the same on all ranks, of which some have no contact
+  Vector from_;                ///< multipliers that the last one began with
+  Round last_;                 ///< the one before
+  double last_size_ = 0.0;     ///< |rest|² of that
+  std::deque<Round> changes_;  ///< from round to round, the newest first
+  /// What the changes say about where nothing is off any more. Collective.
+  Vector mixed(const Traces& traces, const Round& now) const;
 };
 
 }  // namespace kacanov

@@ -161,6 +161,8 @@ void OuterLoop::iterate(Result& result) {
 
 StepOutcome OuterLoop::take_step(bool newton, const Residuals& before, Result& result) {
   const Penalty& penalty = control_.penalty.value();
+  if (control_.fallback.retreating() && !control_.augmented.begun())  // after a restart
+    control_.augmented.begin(penalty.normal, result.lambda_min);
   const bool tangent = newton && control_.linearisation.takes_tangent(before.certificate.equilibrium);
   const StepOutcome step = newton ? newton_step(context_, penalty.normal, tangent, before)
                            : control_.fallback.retreating()

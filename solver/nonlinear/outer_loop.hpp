@@ -111,7 +111,6 @@ class OuterLoop {
   double coarse_lambda_max_ = 0.0;  ///< and this
   bool opening_ = true;             ///< the next step is the first from rest
   bool gave_up_ = false;
-  int first_outer_ = 0;  ///< outer steps before this load step, or before a restart
   bool friction_;
   bool history_;   ///< slip of some point is counted from the load step before
   double extent_;  ///< of the body, in the unit of displacements
