@@ -14,6 +14,36 @@ Real table_stress(const Law& law, Real a) {
   return law.s[end - 1] + slope * (a - law.x[end - 1]);
 }
 
+/// The y that y (1 + share (y x / x0)^(n − 1)) = 1 has, which is the elastic share of the strain x, by
+/// halving.
+Real elastic_share(const Law& law, Real x) {
+  Real low = 0, high = 1;
+  for (int step = 0; step < 80; ++step) {
+    const Real y = (low + high) / 2;
+    (y * (1 + law.share * std::pow(y * x / law.x0, law.parameter - 1)) < 1 ? low : high) = y;
+  }
+  return (low + high) / 2;
+}
+
+Real deviator(Real stress) { return std::sqrt(Real(2) / 3) * stress; }
+
+/// Rows of stress and plastic strain in tension (theory: uniaxial); where the stress stays, it grows by a ten
+/// thousandth of the elastic slope.
+void read_plastic(const nlohmann::json& rows, Law& law) {
+  law.form = Law::Form::table;
+  law.x = law.s = {0};
+  const Real slope = 1e-4L * 2 * law.shear;
+  for (const auto& row : rows) {
+    const Real s = deviator(row.at(0).get<double>());
+    const Real x = s / (2 * law.shear) + std::sqrt(Real(3) / 2) * Real(row.at(1).get<double>());
+    const Real least = law.x.size() > 1 ? law.s.back() + slope * (x - law.x.back()) : 0;
+    law.x.push_back(x);
+    law.s.push_back(std::max(s, least));
+  }
+  law.x.push_back(law.x.back() + law.x[1]);
+  law.s.push_back(law.s.back() + slope * law.x[1]);
+}
+
 /// ∫ g(s) s ds from a to b by five Gauss points, where the law has no kink between.
 Real piece(const Law& law, Real a, Real b) {
   static const Real inner = std::sqrt(5 - 2 * std::sqrt(Real(10) / 7)) / 3,
@@ -42,6 +72,7 @@ Real halved_until_it_settles(const Law& law, Real a, Real b, Real whole, int dep
 
 Real Law::secant(Real strain) const {
   const Real a = squared ? strain * strain : strain;
+  if (form == Form::ramberg_osgood) return a > 0 ? shear * elastic_share(*this, a) : shear;
   if (form == Form::table) return a > x[1] ? table_stress(*this, a) / (2 * a) : s[1] / (2 * x[1]);
   if (form == Form::linear || a <= x0) return shear;
   switch (form) {
@@ -66,15 +97,26 @@ Real Law::energy(Real strain) const {
   return sum + halved_until_it_settles(*this, from, strain, piece(*this, from, strain), 40);
 }
 
-Law read_law(const nlohmann::json& entry) {
+namespace {
+
+/// As read_law, but for B-bar.
+Law read_form(const nlohmann::json& entry) {
   Law law;
   const Real young = entry.at("young").get<double>(), poisson = entry.at("poisson").get<double>();
   law.bulk = young / (3 * (1 - 2 * poisson));
   law.shear = young / (2 * (1 + poisson));
-  law.bbar = entry.value("bbar", false);
+  if (entry.contains("plastic")) read_plastic(entry.at("plastic"), law);
+  if (entry.contains("tangent_modulus")) {
+    const Real tangent = entry.at("tangent_modulus").get<double>();
+    const Real plastic = young * tangent / (young - tangent);
+    law.form = Law::Form::linear_hardening;
+    law.x0 = deviator(entry.at("yield_stress").get<double>()) / (2 * law.shear);
+    law.parameter = plastic / (plastic + 3 * law.shear);
+  }
   if (!entry.contains("law")) return law;
   const nlohmann::json& text = entry.at("law");
-  static const char* names[] = {"linear", "logarithmic", "linear_hardening", "power", "saturating", "table"};
+  static const char* names[] = {"linear",     "logarithmic", "linear_hardening", "power",
+                                "saturating", "table",       "ramberg_osgood"};
   const std::string type = text.at("type");
   const auto found = std::find(std::begin(names), std::end(names), type);
   if (found == std::end(names)) throw Failure("material: the verifier knows no law of type " + type);
@@ -88,14 +130,29 @@ Law read_law(const nlohmann::json& entry) {
     return law;
   }
   if (law.form == Law::Form::linear) return law;
+  if (law.form == Law::Form::ramberg_osgood) {
+    law.x0 = deviator(text.at("sigma0").get<double>()) / (2 * law.shear);
+    law.share = 3 * law.shear * Real(text.at("alpha").get<double>()) / young;
+    law.parameter = text.at("n").get<double>();
+    return law;
+  }
   if (text.contains("x0")) {
     law.x0 = text.at("x0").get<double>();
   } else {
-    law.x0 = std::sqrt(Real(2) / 3) * Real(text.at("yield_stress").get<double>()) / (2 * law.shear);
+    law.x0 = deviator(text.at("yield_stress").get<double>()) / (2 * law.shear);
     if (law.squared) law.x0 *= law.x0;
   }
   for (const char* key : {"gamma", "n", "q"})
     if (text.contains(key)) law.parameter = text.at(key).get<double>();
+  return law;
+}
+
+}  // namespace
+
+Law read_law(const nlohmann::json& entry, bool may_lock) {
+  Law law = read_form(entry);
+  const bool locks = law.form != Law::Form::linear || entry.at("poisson").get<double>() > 0.45;
+  law.bbar = entry.value("bbar", may_lock && locks);
   return law;
 }
 

@@ -9,12 +9,13 @@
 namespace kacanov::verify {
 
 struct Law {
-  enum class Form { linear, logarithmic, linear_hardening, power, saturating, table };
+  enum class Form { linear, logarithmic, linear_hardening, power, saturating, table, ramberg_osgood };
   Form form = Form::linear;
   bool squared = false;  ///< the formulas are fed with x² in place of x
   bool bbar = false;
   Real bulk = 0, shear = 0;
-  Real x0 = 0, parameter = 0;  ///< γ, n or q
+  Real x0 = 0, parameter = 0;  ///< γ, n or q; of Ramberg and Osgood n
+  Real share = 0;              ///< of Ramberg and Osgood: plastic over elastic strain at x0
   std::vector<Real> x, s;      ///< of a table
 
   /// g at the strain norm x.
@@ -23,7 +24,8 @@ struct Law {
   Real energy(Real strain) const;
 };
 
-/// An entry of `material`.
-Law read_law(const nlohmann::json& entry);
+/// An entry of `material`. `may_lock`: on elements that have B-bar, which is on by itself where they would
+/// lock.
+Law read_law(const nlohmann::json& entry, bool may_lock);
 
 }  // namespace kacanov::verify

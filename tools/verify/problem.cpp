@@ -8,13 +8,19 @@ namespace {
 Vec place(const Mesh& mesh, Index node) { return mesh.nodes[node]; }
 
 void add_surface_load(Problem& problem, const nlohmann::json& entry, Real factor) {
-  for (const std::size_t f : select_facets(problem.mesh, entry.at("on"))) {
+  const std::vector<std::size_t> facets = select_facets(problem.mesh, entry.at("on"));
+  Real area = 0;
+  for (const std::size_t f : facets)
+    for (const Real share : consistent(problem.mesh, problem.mesh.facets[f]).area) area += share;
+  for (const std::size_t f : facets) {
     const Indices& facet = problem.mesh.facets[f];
     const FacetIntegrals integrals = consistent(problem.mesh, facet);
     for (std::size_t k = 0; k < facet.size(); ++k) {
       Vec& load = problem.load[facet[k]];
       if (entry.contains("traction"))
         load = load + factor * integrals.area[k] * read_vector(entry.at("traction"));
+      else if (entry.contains("total_force"))
+        load = load + factor / area * integrals.area[k] * read_vector(entry.at("total_force"));
       else
         load = load - factor * Real(entry.at("pressure").get<double>()) * integrals.normal[k];
     }
@@ -23,7 +29,10 @@ void add_surface_load(Problem& problem, const nlohmann::json& entry, Real factor
 
 void add_body_force(Problem& problem, const nlohmann::json& entry, Real factor) {
   const Mesh& mesh = problem.mesh;
-  const Vec force = factor * read_vector(entry.at("body_force"));
+  const bool weight = entry.contains("density");
+  const Vec force =
+      weight ? factor * Real(entry.at("density").get<double>()) * read_vector(entry.at("acceleration"))
+             : factor * read_vector(entry.at("body_force"));
   const std::size_t dim = mesh.dim();
   for (const std::size_t e : select_elements(mesh, entry.at("on")))
     for (const QuadraturePoint& point : load_rule(mesh.shape)) {
@@ -54,9 +63,11 @@ void hold(Problem& problem, const nlohmann::json& entry, Real factor) {
 
 /// What the last of the load curves' steps multiplies an entry by: 1 where none names it (user guide: steps).
 Real last_factor(const nlohmann::json& document, const std::string& list, std::size_t index) {
-  Real factor = 1;
+  const std::string place = list + "[" + std::to_string(index) + "]";
+  const std::string name = document.at(list).at(index).value("name", place);
+  double factor = 1;
   for (const auto& step : document.value("steps", nlohmann::json::array()))
-    factor = step.at("factors").value(list + "[" + std::to_string(index) + "]", static_cast<double>(factor));
+    factor = step.at("factors").value(name, step.at("factors").value(place, factor));
   return factor;
 }
 
@@ -102,15 +113,17 @@ Problem read_problem(const nlohmann::json& document, const std::filesystem::path
   for (const auto& entry : document.at("material")) {
     for (const std::size_t e : select_elements(problem.mesh, entry.at("on")))
       problem.law_of_element[e] = problem.laws.size();
-    problem.laws.push_back(read_law(entry));
+    problem.laws.push_back(
+        read_law(entry, problem.mesh.shape == Shape::quad4 || problem.mesh.shape == Shape::hex8));
   }
   const auto boundary = document.value("boundary", nlohmann::json::array());
   for (std::size_t i = 0; i < boundary.size(); ++i) {
     const nlohmann::json& entry = boundary.at(i);
     const Real factor = last_factor(document, "boundary", i);
     if (entry.contains("displacement")) hold(problem, entry, factor);
-    if (entry.contains("traction") || entry.contains("pressure")) add_surface_load(problem, entry, factor);
-    if (entry.contains("body_force")) add_body_force(problem, entry, factor);
+    if (entry.contains("traction") || entry.contains("total_force") || entry.contains("pressure"))
+      add_surface_load(problem, entry, factor);
+    if (entry.contains("body_force") || entry.contains("density")) add_body_force(problem, entry, factor);
   }
   const auto contact = document.value("contact", nlohmann::json::array());
   for (std::size_t i = 0; i < contact.size(); ++i)
