@@ -251,7 +251,8 @@ void compare(int seed, const Sample& sample, Tally& tally) {
   tally.undecided += !answer.converged && !softened;
   const bool limited = run.result().status == Status::limited_by_rounding;
   tally.limited += limited;
-  tally.unconverged += !converged && !limited && !softened;
+  // Nor may there be any beyond a limit load, where the dense solver does not settle either.
+  tally.unconverged += !converged && !limited && !softened && answer.converged;
   // Moved without strain, or to a tolerance that nobody can keep: right all the same.
   if (limited) {
     CHECK(run.result().certificate.rounding.worst() > tolerance);
@@ -286,9 +287,9 @@ TEST_CASE("random problems: what is called converged is the solution of the dens
   Tally tally;
   for_seeds(usual_count, [&](int seed, const Sample& sample) { compare(seed, sample, tally); });
   report(tally);
-  CHECK(tally.unconverged <= tally.solved / 100);
+  CHECK(tally.unconverged <= tally.solved / 500);
   CHECK(tally.limited <= 2 + tally.solved / 50);  // few are drawn under the sanitizers
-  CHECK(tally.undecided <= tally.solved / 100);
+  CHECK(tally.undecided <= tally.solved / 50);
   CHECK(tally.softened <= 3 + tally.solved / 20);
 }
 

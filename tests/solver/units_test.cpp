@@ -67,7 +67,7 @@ Run solved(int dim, const Model& model, const Scale& s, const RunOptions& option
 std::vector<Model> models(int dim) {
   std::vector<Model> all;
   Model model = beam(dim, logarithmic_law(2e-3), 2e-3, 5e-4);
-  model.boundary.push_back({everything(), {}, {}, {}, Vector3{1e-4, 0, 0}});
+  model.boundary.push_back({everything(), {}, {}, {}, {}, Vector3{1e-4, 0, 0}});
   model.solver.load_steps = {0.5, 1.0};
   all.push_back(model);
   model = beam(dim, elastic_law(1.0, 0.3), 1e-3);
@@ -80,7 +80,7 @@ std::vector<Model> models(int dim) {
   table.argument = Law::Argument::norm;
   model = beam(dim, table, 2e-3);
   model.contact[0].obstacle = ConstantGap{1e-3};
-  model.boundary.push_back({box({4, 0, 0}, {4, 1, 1}), {}, {}, 1e-4, {}});
+  model.boundary.push_back(pressure(box({4, 0, 0}, {4, 1, 1}), 1e-4));
   model.solver.contact = SolverOptions::Contact::admm;
   model.solver.penalty = SolverOptions::Penalty::fixed;
   model.solver.r = 0.3;

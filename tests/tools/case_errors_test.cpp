@@ -97,7 +97,7 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
       {"steps=[{\"time\":2,\"factors\":{}},{\"time\":1,\"factors\":{}}]",
        "steps[1].time: expected a time after 2, got 1"},
       {"steps=[{\"time\":1,\"factors\":{\"boundary[9]\":1}}]",
-       "steps[0].factors: expected entries such as \"boundary[0]\""},
+       "steps[0].factors: expected names of entries, or places such as \"boundary[0]\""},
       {"steps=[{\"time\":1,\"factors\":{\"boundary[1]\":\"on\"}}]",
        "steps[0].factors[\"boundary[1]\"]: expected a number, got \"on\""},
       {"steps=[{\"time\":1,\"factors\":[1]}]",

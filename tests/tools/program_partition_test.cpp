@@ -267,7 +267,7 @@ TEST_CASE("parts of two splits of a mesh file that has changed do not mix") {
   const Workplace place;
   nlohmann::json square = small_beam();
   square["mesh"] = {{"file", "square.msh"}};
-  square["boundary"] = {{{"on", {{"box", {{0, 0}, {0, 4}}}}}, {"displacement", {0, 0}}}};
+  square["boundary"] = {{{"on", {{"box", {{0, 0}, {0, 4}}}}}, {"displacement", {0.1, 0}}}};
   square.erase("contact");
   square.erase("probe");
   place.put_json("square.json", square);
