@@ -13,12 +13,12 @@ void scale(std::vector<double>& values, double factor) {
   for (double& value : values) value *= factor;
 }
 
-void scale(Resultant& resultant, const Units& units) {
+void scale(Resultant& resultant, const UnitSystem& units) {
   scale(resultant.force, units.force());
   scale(resultant.moment, units.force() * units.length);
 }
 
-void scale(ContactTotals& contact, const Units& units) {
+void scale(ContactTotals& contact, const UnitSystem& units) {
   scale(contact.total, units);
   scale(contact.normal_force, units.force());
   scale(contact.friction_force, units.force());
@@ -41,7 +41,7 @@ void scale(BodySize& body, double length) {
 }
 
 /// What boundary entries load the body with is in the user's units throughout.
-void to_users_units(Result& result, const Units& units) {
+void to_users_units(Result& result, const UnitSystem& units) {
   for (ContactTotals& contact : result.contact) scale(contact, units);
   for (BoundaryTotals& reaction : result.reaction) scale(reaction.total, units);
   scale(result.max_displacement, units.displacement, units.length);
@@ -62,7 +62,7 @@ void to_users_units(Result& result, const Units& units) {
 
 }  // namespace
 
-void to_users_units(Solution& solution, const Units& units) {
+void to_users_units(Solution& solution, const UnitSystem& units) {
   to_users_units(solution.result, units);
   scale(solution.displacement, units.displacement);
   scale(solution.gap, units.displacement);
@@ -70,14 +70,14 @@ void to_users_units(Solution& solution, const Units& units) {
   for (Vector3& traction : solution.traction) scale(traction, units.stress());
 }
 
-void to_users_units(LoadStep& step, const Units& units) {
+void to_users_units(LoadStep& step, const UnitSystem& units) {
   scale(step.contact_force, units.force());
   scale(step.friction_force, units.force());
   step.max_contact_pressure *= units.stress();
   for (Vector3& probe : step.probe) scale(probe, units.displacement);
 }
 
-void to_users_units(SpectrumResult& spectrum, const Units& units) {
+void to_users_units(SpectrumResult& spectrum, const UnitSystem& units) {
   spectrum.lambda_min /= units.penalty();
   spectrum.lambda_max /= units.penalty();
   spectrum.bound_min /= units.penalty();
@@ -85,7 +85,7 @@ void to_users_units(SpectrumResult& spectrum, const Units& units) {
   spectrum.r_star *= units.penalty();
 }
 
-void to_own_units(Start& start, const Units& units) {
+void to_own_units(Start& start, const UnitSystem& units) {
   scale(start.displacement, 1.0 / units.displacement);
   scale(start.pressure, 1.0 / units.stress());
   scale(start.friction, 1.0 / units.stress());

@@ -4,17 +4,17 @@
 
 #include <kacanov/coarse_solution.hpp>
 #include <kacanov/result.hpp>
-#include "parallel/units.hpp"
+#include "parallel/unit_system.hpp"
 
 namespace kacanov {
 
 /// Multiplies by the units. Load steps in a result are left alone: each is in the user's units from its end
 /// on.
-void to_users_units(Solution& solution, const Units& units);
-void to_users_units(LoadStep& step, const Units& units);
-void to_users_units(SpectrumResult& spectrum, const Units& units);
+void to_users_units(Solution& solution, const UnitSystem& units);
+void to_users_units(LoadStep& step, const UnitSystem& units);
+void to_users_units(SpectrumResult& spectrum, const UnitSystem& units);
 
 /// The other way: what a run starts from.
-void to_own_units(Start& start, const Units& units);
+void to_own_units(Start& start, const UnitSystem& units);
 
 }  // namespace kacanov

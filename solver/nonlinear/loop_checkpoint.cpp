@@ -60,7 +60,7 @@ void set_history(std::vector<LoadStep>& steps, const Vector& all) {
 }
 
 /// What of a checkpoint has a unit; the history of load steps is in the user's as it is.
-void scale(Checkpoint& checkpoint, const Units& factors) {
+void scale(Checkpoint& checkpoint, const UnitSystem& factors) {
   for (const char* name : {"r_star", "r_active", "penalty_normal", "penalty_tangential"})
     if (const auto found = checkpoint.numbers.find(name); found != checkpoint.numbers.end())
       found->second *= factors.penalty();

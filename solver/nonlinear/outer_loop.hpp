@@ -12,7 +12,7 @@
 #include "nonlinear/linearisation.hpp"
 #include "nonlinear/penalty_control.hpp"
 #include "nonlinear/step.hpp"
-#include "parallel/units.hpp"
+#include "parallel/unit_system.hpp"
 
 namespace kacanov {
 
@@ -25,11 +25,11 @@ class OuterLoop {
 
   /// The part's, where they are not the user's: what the loop hands out is in the user's. Before run() and
   /// restore().
-  void work_in(const Units& units) {
+  void work_in(const UnitSystem& units) {
     extent_ *= units_.strain() / units.strain();
     units_ = units;
   }
-  const Units& units() const noexcept { return units_; }
+  const UnitSystem& units() const noexcept { return units_; }
 
   /// Runs until the KKT residuals meet the tolerance, or max_outer steps. Fills the loop's entries of the
   /// result. Where the run is to stop, state and result are those after the last whole outer step, and false
@@ -114,7 +114,7 @@ class OuterLoop {
   bool friction_;
   bool history_;   ///< slip of some point is counted from the load step before
   double extent_;  ///< of the body, in the unit of displacements
-  Units units_;
+  UnitSystem units_;
   std::uint64_t earlier_applications_ = 0;
   double spectrum_seconds_ = 0.0, checkpoint_seconds_ = 0.0;
 

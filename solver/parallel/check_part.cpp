@@ -133,6 +133,34 @@ void check_contact(const Part& part, std::size_t nodes, int ranks) {
   }
 }
 
+/// What each entry's totals are summed of.
+void check_entries(const Part& part) {
+  const auto owned = static_cast<std::size_t>(part.owned_nodes()),
+             axes = static_cast<std::size_t>(part.dim());
+  const std::size_t entries = part.steps.empty() ? most_entries : part.steps.front().boundary.size();
+  const std::size_t contacts = part.steps.empty() ? most_entries : part.steps.front().contact.size();
+  const Support* before = nullptr;
+  for (const Support& support : part.supports) {
+    expect_indices("supports", std::array{support.node}, owned);
+    expect_indices("supports", std::array{support.axis}, axes);
+    expect_indices("supports", std::array{support.entry}, entries);
+    expect(before == nullptr || before->node < support.node ||
+               (before->node == support.node && before->axis <= support.axis),
+           "supports", "are out of order");
+    before = &support;
+  }
+  std::int32_t point = 0;
+  for (const PointShare& share : part.contact_shares) {
+    expect_indices("shares of contact points", std::array{share.point},
+                   static_cast<std::size_t>(part.owned_contact));
+    expect_indices("shares of contact points", std::array{share.entry}, contacts);
+    expect(share.point >= point, "shares of contact points", "are out of order");
+    point = share.point;
+  }
+  for (const AppliedLoad& load : part.applied)
+    expect_indices("loads of entries", std::array{load.entry}, entries);
+}
+
 }  // namespace
 
 void check_part(const Part& part, int rank, int ranks) {
@@ -170,6 +198,7 @@ void check_part(const Part& part, int rank, int ranks) {
 
   check_contact(part, nodes, ranks);
   check_steps(part, unknowns);
+  check_entries(part);
   expect_length("numbers of probes", part.probe_index.size(), part.probes.size());
   expect_total("probes", part.total_probes, part.probes.size(), ranks);
   expect_indices("numbers of probes", part.probe_index, static_cast<std::size_t>(part.total_probes));

@@ -42,7 +42,7 @@ void measure(Form& form, double argument, double modulus) {
   }
 }
 
-void measure(Law& law, const Units& units) {
+void measure(Law& law, const UnitSystem& units) {
   law.bulk /= units.modulus;
   law.shear /= units.modulus;
   const bool squared = law.argument == Law::Argument::squared;
@@ -51,7 +51,7 @@ void measure(Law& law, const Units& units) {
 }
 
 /// Multiplies all that has a unit, but for the laws.
-void scale(Part& part, const Units& factors) {
+void scale(Part& part, const UnitSystem& factors) {
   scale(part.coordinates, factors.length);
   scale(part.start, factors.displacement);
   for (Part::ComponentValue& entry : part.load) entry.value *= factors.force();
@@ -68,8 +68,8 @@ void scale(Part& part, const Units& factors) {
 
 }  // namespace
 
-Units units_of(const Part& part) {
-  Units units;
+UnitSystem units_of(const Part& part) {
+  UnitSystem units;
   units.dim = part.dim();
   units.length = power_below(extent_of(part));
   int stiffest = std::ilogb(part.laws.at(0).secant(0.0)), softest = stiffest;

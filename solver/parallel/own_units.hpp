@@ -5,13 +5,13 @@
 #include <vector>
 
 #include <kacanov/part.hpp>
-#include "parallel/units.hpp"
+#include "parallel/unit_system.hpp"
 
 namespace kacanov {
 
 /// The body's extent, the middle of its moduli, and the displacement that loads, prescribed displacements and
 /// indentations come to, each as the power of two below. The same on every rank. Collective.
-Units units_of(const Part& part);
+UnitSystem units_of(const Part& part);
 
 /// A part in its own units while this lives, and in the user's, to the bit, before and after.
 class InOwnUnits {
@@ -22,11 +22,11 @@ class InOwnUnits {
   InOwnUnits(const InOwnUnits&) = delete;
   InOwnUnits& operator=(const InOwnUnits&) = delete;
 
-  const Units& units() const noexcept { return units_; }
+  const UnitSystem& units() const noexcept { return units_; }
 
  private:
   Part& part_;
-  Units units_;
+  UnitSystem units_;
   std::vector<Law> laws_;  ///< in the user's units
 };
 

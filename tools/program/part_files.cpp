@@ -94,6 +94,19 @@ void check_mesh(const json& header, const Case& input, const std::string& file) 
                    text(there) + ", and now has " + text(here));
 }
 
+/// Throws InputError where a part names entries that the case does not have.
+void check_entries(const Part& part, const Model& model) {
+  const auto below = [](std::int32_t entry, std::size_t count) {
+    return static_cast<std::size_t>(entry) < count;
+  };
+  bool fits = true;
+  for (const Support& support : part.supports) fits = fits && below(support.entry, model.boundary.size());
+  for (const AppliedLoad& load : part.applied) fits = fits && below(load.entry, model.boundary.size());
+  for (const ContactPoint& point : part.contact) fits = fits && below(point.entry, model.contact.size());
+  for (const PointShare& share : part.contact_shares) fits = fits && below(share.entry, model.contact.size());
+  if (!fits) throw InputError("the part names an entry that the case does not have");
+}
+
 /// Throws InputError unless this is the header of the part of a rank, for this case and as many ranks.
 void check_part(const json& header, const Case& input, const MpiSession& mpi, const std::string& file) {
   check_case(header, input, file);
@@ -210,6 +223,7 @@ LoadedCase load_parts(const std::filesystem::path& folder, const Case& input, co
     reader.finish();
     try {
       check_part(loaded.part, mpi.rank(), mpi.ranks());
+      check_entries(loaded.part, input.model);
     } catch (const InputError& error) {
       throw InputError("--parts: " + part_file(folder, mpi.rank()).string() + ": " + error.what());
     }

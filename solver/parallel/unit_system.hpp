@@ -6,7 +6,7 @@ namespace kacanov {
 
 /// Powers of two, measured in the user's units: numbers change their exponents and keep their digits (theory:
 /// units). All 1: the user's own.
-struct Units {
+struct UnitSystem {
   int dim = 3;
   double length = 1.0;        ///< of coordinates
   double displacement = 1.0;  ///< of gaps, too: small strains set nothing of it against lengths
@@ -19,7 +19,7 @@ struct Units {
   double energy() const noexcept { return force() * displacement; }
   double penalty() const noexcept { return modulus / length; }  ///< stress over displacement
   /// What takes numbers in the user's units to these by multiplication.
-  Units inverse() const noexcept { return {dim, 1.0 / length, 1.0 / displacement, 1.0 / modulus}; }
+  UnitSystem inverse() const noexcept { return {dim, 1.0 / length, 1.0 / displacement, 1.0 / modulus}; }
 };
 
 }  // namespace kacanov
