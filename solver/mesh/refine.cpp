@@ -68,6 +68,13 @@ struct FacetHash {
   }
 };
 
+/// Of two nodes, whatever their order: the lower one in the upper half.
+std::uint64_t pair_key(std::int32_t a, std::int32_t b) {
+  const std::uint64_t low = static_cast<std::uint32_t>(std::min(a, b)),
+                      high = static_cast<std::uint32_t>(std::max(a, b));
+  return low << 32 | high;
+}
+
 class Refinement {
  public:
   explicit Refinement(const Mesh& coarse) : coarse_(coarse), type_(cell(coarse.type)) {}
@@ -95,9 +102,7 @@ class Refinement {
 
   /// The node between two that share an edge, or across a quadrilateral: made at `at` where it is new.
   std::int32_t between(std::int32_t a, std::int32_t b, const std::array<double, 3>& at) {
-    const std::uint64_t low = static_cast<std::uint32_t>(std::min(a, b)),
-                        high = static_cast<std::uint32_t>(std::max(a, b));
-    const auto [place, fresh] = between_.try_emplace(low << 32 | high, 0);
+    const auto [place, fresh] = between_.try_emplace(pair_key(a, b), 0);
     if (fresh) place->second = add(at);
     return place->second;
   }
@@ -262,9 +267,7 @@ class Refinement {
   }
 
   std::int32_t known(std::int32_t a, std::int32_t b) const {
-    const std::uint64_t low = static_cast<std::uint32_t>(std::min(a, b)),
-                        high = static_cast<std::uint32_t>(std::max(a, b));
-    const auto found = between_.find(low << 32 | high);
+    const auto found = between_.find(pair_key(a, b));
     return found == between_.end() ? -1 : found->second;
   }
 

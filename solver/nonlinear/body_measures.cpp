@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lengths and volumes of a body.
+// Volumes of a body, and what single precision holds of it.
 #include "nonlinear/body_measures.hpp"
 
 #include <algorithm>
@@ -10,20 +10,6 @@
 #include <kacanov/error.hpp>
 
 namespace kacanov {
-
-double body_extent(const Part& part) {
-  const std::size_t dim = part.dim();
-  double extent = 0.0;
-  for (std::size_t c = 0; c < dim; ++c) {
-    double low = HUGE_VAL, high = -HUGE_VAL;
-    for (std::size_t i = c; i < part.coordinates.size(); i += dim) {
-      low = std::min(low, part.coordinates[i]);
-      high = std::max(high, part.coordinates[i]);
-    }
-    extent = std::max(extent, part.halo.max_all(high) + part.halo.max_all(-low));
-  }
-  return extent;
-}
 
 Vector lumped_volume(const Part& part) {
   Vector volume(part.nodes(), 0.0), element(part.element_count());

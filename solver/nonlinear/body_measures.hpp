@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lengths and volumes of a body.
+// Volumes of a body, and what single precision holds of it.
 #pragma once
 
 #include <span>
@@ -7,9 +7,6 @@
 #include "linear/space.hpp"
 
 namespace kacanov {
-
-/// Longest side of the body's bounding box, over all ranks. Collective.
-double body_extent(const Part& part);
 
 /// Volume of each node of this rank, a share of those of its elements on all ranks; in 2D an area.
 /// Collective.

@@ -76,15 +76,12 @@ CoarseSolution whole_solution(const Part& part, const Problem* problem, const So
 Start interpolate(const CoarseSolution& coarse, const Part& part) {
   const PointLocator locator(coarse.view());
   const std::size_t dim = part.dim();
-  const auto position = [&](std::size_t node) {
-    const double* x = part.coordinates.data() + node * dim;
-    return Vector3{x[0], x[1], dim == 3 ? x[2] : 0.0};
-  };
+  const MeshView mesh = part.body().mesh;
   Start start;
   start.lambda_max = coarse.lambda_max;
   start.displacement.resize(part.unknowns());
   for (std::size_t n = 0; n < part.nodes(); ++n) {
-    const Weights weights = weights_at(coarse, locator, position(n));
+    const Weights weights = weights_at(coarse, locator, position(mesh, static_cast<std::int32_t>(n)));
     for (std::size_t a = 0; a < weights.nodes.size(); ++a)
       for (std::size_t c = 0; c < dim; ++c)
         start.displacement[n * dim + c] +=
@@ -94,7 +91,7 @@ Start interpolate(const CoarseSolution& coarse, const Part& part) {
   start.friction.resize(2 * part.contact.size());
   for (std::size_t i = 0; i < part.contact.size(); ++i) {
     const ContactPoint& point = part.contact[i];
-    const Weights weights = weights_at(coarse, locator, position(point.node));
+    const Weights weights = weights_at(coarse, locator, position(mesh, point.node));
     // Nodes that bear no contact, as those that are held and corners of quadratic facets, say nothing; where
     // all that count lie so, the others of the element do.
     double known = 0.0, pressure = 0.0;

@@ -7,25 +7,12 @@
 #include <type_traits>
 #include <variant>
 
+#include "parallel/body_extent.hpp"
+
 namespace kacanov {
 namespace {
 
 double power_below(double value) { return std::ldexp(1.0, std::ilogb(value)); }
-
-/// The largest along an axis.
-double extent_of(const Part& part) {
-  const std::size_t dim = part.dim();
-  double extent = 0.0;
-  for (std::size_t c = 0; c < dim; ++c) {
-    double low = HUGE_VAL, high = -HUGE_VAL;
-    for (std::size_t i = c; i < part.coordinates.size(); i += dim) {
-      low = std::min(low, part.coordinates[i]);
-      high = std::max(high, part.coordinates[i]);
-    }
-    extent = std::max(extent, part.halo.max_all(high) + part.halo.max_all(-low));
-  }
-  return extent;
-}
 
 void scale(std::vector<double>& values, double factor) {
   for (double& value : values) value *= factor;
@@ -71,7 +58,7 @@ void scale(Part& part, const UnitSystem& factors) {
 UnitSystem units_of(const Part& part) {
   UnitSystem units;
   units.dim = part.dim();
-  units.length = power_below(extent_of(part));
+  units.length = power_below(body_extent(part));
   int stiffest = std::ilogb(part.laws.at(0).secant(0.0)), softest = stiffest;
   for (const Law& law : part.laws) {
     stiffest = std::max(stiffest, std::ilogb(law.secant(0.0)));

@@ -18,12 +18,6 @@ namespace {
 /// Rounding leaves points of shared facets this far outside of both elements, in reference coordinates.
 constexpr double rounding = 1e-9;
 
-Vector3 position(const MeshView& mesh, std::int32_t node) {
-  const std::size_t dim = dimension(mesh.type);
-  const double* x = mesh.coordinates.data() + static_cast<std::size_t>(node) * dim;
-  return {x[0], x[1], dim == 3 ? x[2] : 0.0};
-}
-
 struct Bounds {
   Vector3 low{}, high{};
   void take(const Vector3& x) {

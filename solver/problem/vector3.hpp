@@ -25,11 +25,12 @@ inline Vector3 cross(const Vector3& a, const Vector3& b) {
 }
 
 /// Position of a node; the third entry is 0 in 2D.
-inline Vector3 position(const Mesh& mesh, std::int32_t node) {
-  const std::size_t dim = mesh.dim();
+inline Vector3 position(const MeshView& mesh, std::int32_t node) {
+  const std::size_t dim = dimension(mesh.type);
   const double* x = mesh.coordinates.data() + static_cast<std::size_t>(node) * dim;
   return {x[0], x[1], dim == 3 ? x[2] : 0.0};
 }
+inline Vector3 position(const Mesh& mesh, std::int32_t node) { return position(mesh.view(), node); }
 
 /// "(1, 2)" or "(1, 2, 3)", for messages.
 std::string to_text(const Vector3& v, int dim);

@@ -94,6 +94,21 @@ inline double plane_modulus(const Law& law) {
   return 2 * law.shear * (1 + nu) / (1 - nu * nu);
 }
 
+/// A ball that sits in the surface of a quarter by `depth` at rest, without friction; far sides are held.
+inline Model pressed_ball(const Law& law, double radius, double depth) {
+  Model model;
+  model.materials.push_back({everything(), law});
+  model.boundary.push_back(roller(named("left"), 0));
+  model.boundary.push_back(roller(named("front"), 1));
+  for (const char* side : {"right", "back", "top"}) model.boundary.push_back(moved(named(side), 3));
+  Sphere sphere;
+  sphere.radius = radius;
+  sphere.centre = {0.0, 0.0, depth - radius};
+  sphere.direction = Vector3{0.0, 0.0, -1.0};
+  model.contact.push_back({box({0, 0, 0}, {HalfSpace::fine, HalfSpace::fine, 0}), sphere, std::nullopt});
+  return model;
+}
+
 /// Builds the problem, lets `change` rewrite what a case file cannot say (values that vary from node to
 /// node), solves.
 inline Run run_changed(Mesh mesh, const Model& model, const std::function<void(Problem&)>& change) {

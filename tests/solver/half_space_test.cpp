@@ -28,16 +28,7 @@ Hertz ball(int n) {
   const double radius = 50.0, depth = 1.0 / radius, modulus = plane_modulus(law);
   const double force = 4.0 / 3.0 * modulus * std::sqrt(radius) * std::pow(depth, 1.5),
                peak = 2 * modulus / (M_PI * radius);
-  Model model;
-  model.materials.push_back({everything(), law});
-  model.boundary.push_back(roller(named("left"), 0));
-  model.boundary.push_back(roller(named("front"), 1));
-  for (const char* side : {"right", "back", "top"}) model.boundary.push_back(moved(named(side), 3));
-  Sphere sphere;
-  sphere.radius = radius;
-  sphere.centre = {0.0, 0.0, depth - radius};
-  sphere.direction = Vector3{0.0, 0.0, -1.0};
-  model.contact.push_back({box({0, 0, 0}, {HalfSpace::fine, HalfSpace::fine, 0}), sphere, std::nullopt});
+  const Model model = pressed_ball(law, radius, depth);
   const Run run = run_changed(space.quarter(), model, [&](Problem& problem) {
     // Far away the ball is a point force.
     for (std::size_t i = 0; i < problem.mesh.node_count(); ++i) {

@@ -41,16 +41,7 @@ Hertz ball(int n) {
   const HalfSpace space{n};
   const Law law = elastic_law(1.0, 0.3);
   const double radius = 50.0, depth = 1.0 / radius, modulus = plane_modulus(law);
-  Model model;
-  model.materials.push_back({everything(), law});
-  model.boundary.push_back(roller(named("left"), 0));
-  model.boundary.push_back(roller(named("front"), 1));
-  for (const char* side : {"right", "back", "top"}) model.boundary.push_back(moved(named(side), 3));
-  Sphere sphere;
-  sphere.radius = radius;
-  sphere.centre = {0.0, 0.0, depth - radius};
-  sphere.direction = Vector3{0.0, 0.0, -1.0};
-  model.contact.push_back({box({0, 0, 0}, {HalfSpace::fine, HalfSpace::fine, 0}), sphere, std::nullopt});
+  const Model model = pressed_ball(law, radius, depth);
   const Run run = run_alone(space.quarter(ElementType::tet10), model);
   REQUIRE(run.result().status == Status::converged);
   const double force = 4 * run.result().contact_force[2], a = std::cbrt(0.75 * force * radius / modulus);
