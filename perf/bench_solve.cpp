@@ -138,12 +138,12 @@ Json measure(const Part& part, DistributedOperator& op, const std::string& kind,
   reset_peak();
   const std::int64_t heap = heap_bytes(), resident = status_bytes("VmRSS:");
   const auto amg = make_preconditioner(preconditioner(kind), part, options.threads, "");
-  MPI_Barrier(part.halo.comm);
+  MPI_Barrier(part.node_map.comm);
   const double start = MPI_Wtime();
   amg->setup(g, blocks, space);
   const double ready = MPI_Wtime();
-  const std::int64_t held = part.halo.sum_all(heap_bytes() - heap);
-  const std::int64_t peak = part.halo.sum_all(status_bytes("VmHWM:") - resident);
+  const std::int64_t held = part.node_map.sum_all(heap_bytes() - heap);
+  const std::int64_t peak = part.node_map.sum_all(status_bytes("VmHWM:") - resident);
   CgWork work;
   work.resize(part.unknowns());
   Vector x(part.unknowns(), 0.0);
@@ -161,7 +161,7 @@ Json measure(const Part& part, DistributedOperator& op, const std::string& kind,
   return {
       {"preconditioner", kind},
       {"unknowns", part.total_nodes() * part.dim()},
-      {"ranks", part.halo.ranks},
+      {"ranks", part.node_map.ranks},
       {"threads", options.threads},
       {"iterations", cg.iterations},
       {"converged", cg.converged},

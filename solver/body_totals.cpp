@@ -35,7 +35,7 @@ BodySize size_of_body(const Part& part, double volume) {
       reach[3 + c] = std::max(reach[3 + c], -x[c]);
     }
   }
-  part.halo.max_all(reach);
+  part.node_map.max_all(reach);
   BodySize body;
   body.dim = part.dim();
   body.upper = {reach[0], reach[1], reach[2]};
@@ -65,10 +65,10 @@ void collect_body_totals(const Part& part, std::span<const double> u, Result& re
       rotation.take(run.rotation[e], run.first + e, index);
     }
   });
-  part.halo.sum_all(volumes);
-  result.plastic_elements = part.halo.sum_all(plastic);
-  result.softening_elements = part.halo.sum_all(softening);
-  result.max_von_mises = part.halo.max_all(von_mises);
+  part.node_map.sum_all(volumes);
+  result.plastic_elements = part.node_map.sum_all(plastic);
+  result.softening_elements = part.node_map.sum_all(softening);
+  result.max_von_mises = part.node_map.max_all(von_mises);
   result.plastic_share = volumes[1] / volumes[0];
   result.max_strain = agree_on_element(part, strain);
   result.max_rotation = agree_on_element(part, rotation);

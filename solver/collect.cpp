@@ -45,14 +45,14 @@ void collect_contact_totals(const Part& part, Solution& solution) {
     sums[7] += point.tangents > 0 && solution.contact_status[i] == ContactStatus::slip ? 1.0 : 0.0;
     pressure = std::max(pressure, solution.pressure[i]);
   }
-  part.halo.sum_all(sums);
+  part.node_map.sum_all(sums);
   for (std::size_t c = 0; c < 3; ++c) {
     result.contact_force[c] = sums[c];
     result.friction_force[c] = sums[3 + c];
   }
   result.active_nodes = std::llround(sums[6]);
   result.slip_nodes = std::llround(sums[7]);
-  result.max_contact_pressure = part.halo.max_all(pressure);
+  result.max_contact_pressure = part.node_map.max_all(pressure);
 }
 
 void collect_probes(const Part& part, std::span<const double> u, Result& result) {
@@ -66,7 +66,7 @@ void collect_probes(const Part& part, std::span<const double> u, Result& result)
       for (std::size_t c = 0; c < dim; ++c)
         to[c] += part.probes[i].weights[a] * u[static_cast<std::size_t>(node[a]) * dim + c];
   }
-  part.halo.sum_all(all);
+  part.node_map.sum_all(all);
   result.probe.clear();
   for (std::size_t i = 0; i < all.size(); i += 3) result.probe.push_back({all[i], all[i + 1], all[i + 2]});
 }
@@ -75,8 +75,8 @@ void collect_probes(const Part& part, std::span<const double> u, Result& result)
 
 void collect_contact(const Part& part, const ContactState& state, double tolerance, Solution& solution) {
   double moved = 0.0;
-  for (const double v : state.omega) moved = std::max(moved, std::abs(v));
-  const double least_slip = 10.0 * tolerance * part.halo.max_all(moved);
+  for (const double v : state.u) moved = std::max(moved, std::abs(v));
+  const double least_slip = 10.0 * tolerance * part.node_map.max_all(moved);
   solution.pressure = state.lambda.normal;
   solution.gap = state.gap;
   for (std::size_t i = 0; i < part.contact.size(); ++i) {
@@ -88,8 +88,8 @@ void collect_contact(const Part& part, const ContactState& state, double toleran
 
 void collect_totals(const Part& part, const ContactState& state, Solution& solution) {
   collect_contact_totals(part, solution);
-  collect_body_totals(part, state.omega, solution.result);
-  collect_probes(part, state.omega, solution.result);
+  collect_body_totals(part, state.u, solution.result);
+  collect_probes(part, state.u, solution.result);
 }
 
 }  // namespace kacanov

@@ -19,12 +19,12 @@ Body elements_of(const Part& part, std::size_t first, std::size_t count) {
 
 }  // namespace
 
-void element_fields(const Part& part, std::span<const double> omega, std::size_t first, std::size_t count,
+void element_fields(const Part& part, std::span<const double> u, std::size_t first, std::size_t count,
                     const reference::ElementFields& out) {
-  reference::fields(elements_of(part, first, count), omega, out);
+  reference::fields(elements_of(part, first, count), u, out);
 }
 
-void visit_element_fields(const Part& part, std::span<const double> omega,
+void visit_element_fields(const Part& part, std::span<const double> u,
                           const std::function<void(const ElementRun&)>& visit) {
   const std::size_t elements = part.element_count();
   ElementRun run;
@@ -36,14 +36,14 @@ void visit_element_fields(const Part& part, std::span<const double> omega,
       field->resize(count);
     run.plastic.resize(count);
     element_fields(
-        part, omega, run.first, count,
+        part, u, run.first, count,
         {run.stress, run.von_mises, run.dev_strain, run.secant, run.plastic, run.strain, run.rotation});
     reference::volumes(elements_of(part, run.first, count), run.volume);
     visit(run);
   }
 }
 
-void visit_point_stress(const Part& part, std::span<const double> omega,
+void visit_point_stress(const Part& part, std::span<const double> u,
                         const std::function<void(const PointRun&)>& visit) {
   const std::size_t elements = part.element_count();
   const std::size_t points = points_per_element(part.type);
@@ -52,15 +52,15 @@ void visit_point_stress(const Part& part, std::span<const double> omega,
     const std::size_t count = std::min(elements_a_run, elements - run.first);
     run.position.resize(count * points);
     run.stress.resize(6 * count * points);
-    reference::point_fields(elements_of(part, run.first, count), omega, {run.position, run.stress});
+    reference::point_fields(elements_of(part, run.first, count), u, {run.position, run.stress});
     visit(run);
   }
 }
 
-std::vector<double> nodal_von_mises(const Part& part, std::span<const double> omega) {
+std::vector<double> nodal_von_mises(const Part& part, std::span<const double> u) {
   const std::size_t npe = nodes_per_element(part.type);
   std::vector<double> mean(part.nodes(), 0.0), weight(part.nodes(), 0.0);
-  visit_element_fields(part, omega, [&](const ElementRun& run) {
+  visit_element_fields(part, u, [&](const ElementRun& run) {
     const std::size_t count = run.von_mises.size();
     for (std::size_t k = 0; k < count * npe; ++k) {
       const std::size_t node = part.elements[run.first * npe + k];
@@ -68,8 +68,8 @@ std::vector<double> nodal_von_mises(const Part& part, std::span<const double> om
       weight[node] += run.volume[k / npe];
     }
   });
-  part.halo.sum(mean, 1);
-  part.halo.sum(weight, 1);
+  part.node_map.sum(mean, 1);
+  part.node_map.sum(weight, 1);
   for (std::size_t n = 0; n < mean.size(); ++n) mean[n] /= weight[n];
   return mean;
 }

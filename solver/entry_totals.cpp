@@ -60,7 +60,7 @@ std::size_t count_contact_entries(const Part& part) {
   std::int32_t count = 0;
   for (const ContactPoint& point : part.contact) count = std::max(count, point.entry + 1);
   for (const PointShare& share : part.contact_shares) count = std::max(count, share.entry + 1);
-  return static_cast<std::size_t>(part.halo.max_all(count));
+  return static_cast<std::size_t>(part.node_map.max_all(count));
 }
 
 void collect_contact(const Part& part, const ContactState& state, Solution& solution) {
@@ -87,8 +87,8 @@ void collect_contact(const Part& part, const ContactState& state, Solution& solu
     for (; joined != part.contact_shares.end() && static_cast<std::size_t>(joined->point) == i; ++joined)
       take(joined->entry, joined->share);
   }
-  part.halo.sum_all(numbers(sums));
-  part.halo.max_all(numbers(peaks));
+  part.node_map.sum_all(numbers(sums));
+  part.node_map.max_all(numbers(peaks));
   solution.result.contact.clear();
   for (std::size_t e = 0; e < sums.size(); ++e) {
     const ContactSums& sum = sums[e];
@@ -127,7 +127,7 @@ class Reactions {
 void collect_reactions(const Part& part, Reactions reactions, Result& result) {
   std::int32_t count = 0;
   for (const Support& support : part.supports) count = std::max(count, support.entry + 1);
-  std::vector<Resultant> sums(static_cast<std::size_t>(part.halo.max_all(count)));
+  std::vector<Resultant> sums(static_cast<std::size_t>(part.node_map.max_all(count)));
   std::vector<double> there(sums.size(), 0.0);  // whether the entry holds anything
   for (auto first = part.supports.begin(); first != part.supports.end();) {
     const auto last = std::find_if(first, part.supports.end(), [&](const Support& s) {
@@ -144,8 +144,8 @@ void collect_reactions(const Part& part, Reactions reactions, Result& result) {
       there[first->entry] = 1.0;
     }
   }
-  part.halo.sum_all(numbers(sums));
-  part.halo.max_all(there);
+  part.node_map.sum_all(numbers(sums));
+  part.node_map.max_all(there);
   result.reaction.clear();
   for (std::size_t e = 0; e < sums.size(); ++e)
     if (there[e] > 0.0) result.reaction.push_back({static_cast<std::int32_t>(e), sums[e]});

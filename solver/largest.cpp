@@ -20,15 +20,15 @@ Vector3 middle(const Part& part, std::size_t element) {
 /// at(local) and tag(local) tell of the place, on the rank that has it.
 template <class At, class Tag>
 Extreme agree(const Part& part, const Largest& here, const At& at, const Tag& tag) {
-  const IndexMap& halo = part.halo;
+  const IndexMap& node_map = part.node_map;
   Extreme extreme;
-  extreme.value = std::max(halo.max_all(here.value), 0.0);
+  extreme.value = std::max(node_map.max_all(here.value), 0.0);
   constexpr double none = -std::numeric_limits<double>::max();
-  const double lowest = -halo.max_all(here.value == extreme.value ? -1.0 * here.index : none);
+  const double lowest = -node_map.max_all(here.value == extreme.value ? -1.0 * here.index : none);
   const bool mine = here.value == extreme.value && here.index == lowest;
   if (mine) extreme.at = at(here.local);
-  halo.sum_all(extreme.at);
-  extreme.tag = halo.sum_all(mine ? tag(here.local) : std::int64_t{0});
+  node_map.sum_all(extreme.at);
+  extreme.tag = node_map.sum_all(mine ? tag(here.local) : std::int64_t{0});
   return extreme;
 }
 

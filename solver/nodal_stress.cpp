@@ -74,7 +74,7 @@ class Recovery {
     std::vector<double> of_element(part_.element_count()), size(part_.nodes(), 0.0);
     reference::volumes(part_.body(), of_element);
     for (std::size_t k = 0; k < part_.elements.size(); ++k) size[part_.elements[k]] += of_element[k / nodes_];
-    part_.halo.sum(size, 1);
+    part_.node_map.sum(size, 1);
     for (double& v : size) v = part_.dim() == 3 ? std::cbrt(v) : std::sqrt(v);
     return size;
   }
@@ -106,15 +106,15 @@ class Recovery {
 
   /// Over the ranks that share a corner.
   void add_up(PatchFits& fits) const {
-    if (part_.halo.ranks == 1) return;
+    if (part_.node_map.ranks == 1) return;
     std::vector<double> one(part_.nodes(), 0.0);
     for (std::size_t k = 0; k < fits.width(); ++k) {
-      for (const std::int32_t n : part_.halo.shared) {
+      for (const std::int32_t n : part_.node_map.shared) {
         const std::ptrdiff_t corner = corner_.of_node(n);
         one[n] = corner < 0 ? 0.0 : fits.sums(corner)[k];
       }
-      part_.halo.sum(one, 1);
-      for (const std::int32_t n : part_.halo.shared)
+      part_.node_map.sum(one, 1);
+      for (const std::int32_t n : part_.node_map.shared)
         if (const std::ptrdiff_t corner = corner_.of_node(n); corner >= 0) fits.sums(corner)[k] = one[n];
     }
   }
@@ -150,8 +150,8 @@ class Recovery {
         }
       }
     }
-    part_.halo.sum(mean, 6);
-    part_.halo.sum(seen_, 1);
+    part_.node_map.sum(mean, 6);
+    part_.node_map.sum(seen_, 1);
     for (std::size_t n = 0; n < part_.nodes(); ++n) {
       if (seen_[n] == 0.0) continue;
       Stress stress;

@@ -21,10 +21,10 @@ namespace {
 
 /// Load steps of so many that the run to go on from has behind it, on all ranks.
 std::size_t steps_over(const Part& part, const RunOptions& run, std::size_t steps) {
-  const bool here = part.halo.rank == 0 && run.start != nullptr;
+  const bool here = part.node_map.rank == 0 && run.start != nullptr;
   const auto most = static_cast<std::int64_t>(steps) - 1;
   return static_cast<std::size_t>(
-      part.halo.max_all(here ? static_cast<double>(run.start->count("load_steps_over", most)) : 0.0));
+      part.node_map.max_all(here ? static_cast<double>(run.start->count("load_steps_over", most)) : 0.0));
 }
 
 /// Shares of the load one after the other; with load curves the times of their points.
@@ -39,7 +39,7 @@ std::vector<double> load_points(const Part& part, const SolverOptions& options) 
 Vector internal_force(const Part& part, std::span<const double> u) {
   Vector internal(part.unknowns());
   reference::residual(part.body(), u, internal);
-  part.halo.sum(internal, part.dim());
+  part.node_map.sum(internal, part.dim());
   return internal;
 }
 
@@ -48,7 +48,7 @@ Certificate certify_independently(const StepContext& context, std::span<const do
   const Part& part = context.part;
   BodyForces forces = context.body.forces(context.path);
   forces.internal = internal;
-  forces.energy = part.halo.sum_all(reference::energy(part.body(), context.state.omega));
+  forces.energy = part.node_map.sum_all(reference::energy(part.body(), context.state.u));
   return kkt_residuals(context.space, context.traces, context.state, forces).certificate;
 }
 
@@ -107,7 +107,7 @@ std::string softening_message(std::int64_t elements) {
 Solution solve(Part& part, const SolverOptions& users_options, const RunOptions& run) {
   validate(users_options);
   const double start = MPI_Wtime();
-  const bool restart = part.halo.any(part.halo.rank == 0 && run.start != nullptr);
+  const bool restart = part.node_map.any(part.node_map.rank == 0 && run.start != nullptr);
   std::optional<Start> coarse;
   if (!restart && run.coarse != nullptr) coarse = interpolate(*run.coarse, part);
   const InOwnUnits scaled(part);
@@ -128,7 +128,7 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   const bool finished = !part.no_equilibrium.empty() || run_load_steps(loop, shares, result);
   const double looped = MPI_Wtime();
 
-  const Vector internal = internal_force(part, context.state.omega);
+  const Vector internal = internal_force(part, context.state.u);
   result.certificate = certify_independently(context, internal);
   result.status = result.certificate.meets(options.tolerance)       ? Status::converged
                   : result.certificate.exhausted(options.tolerance) ? Status::limited_by_rounding
@@ -137,14 +137,14 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   if (context.path.share() != shares.back()) result.status = Status::not_converged;
   if (!finished) result.status = Status::interrupted;
   // What has not converged can be continued with more steps; what has broken down cannot.
-  const bool wanted = part.halo.any(part.halo.rank == 0 && run.checkpoint);
+  const bool wanted = part.node_map.any(part.node_map.rank == 0 && run.checkpoint);
   if (wanted && part.no_equilibrium.empty() && result.status != Status::converged &&
       std::isfinite(result.certificate.worst())) {
     const Checkpoint all = loop.checkpoint(result);
-    if (part.halo.rank == 0) run.checkpoint(all);
+    if (part.node_map.rank == 0) run.checkpoint(all);
   }
 
-  solution.displacement = context.state.omega;
+  solution.displacement = context.state.u;
   collect_contact(part, context.state, options.tolerance, solution);
   collect_totals(part, context.state, solution);
   collect_entries(part, context.state, context.path, internal, solution);
@@ -157,7 +157,7 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   result.elements = part.total_elements;
   result.contact_nodes = part.total_contact;
   result.operator_applications = loop.applications();
-  result.ranks = part.halo.ranks;
+  result.ranks = part.node_map.ranks;
   result.threads = run.threads;
   result.instruction_set = context.body.op().local().instruction_set();
   PhaseSeconds& seconds = result.seconds;

@@ -29,13 +29,13 @@ Aggregates<M>::Aggregates(const Part& part, std::span<const double> g, double si
     const Vector3 d = offset(n);
     spread += d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
   }
-  length_ = std::sqrt(part_.halo.sum_all(spread) / static_cast<double>(part_.total_nodes()));
+  length_ = std::sqrt(part_.node_map.sum_all(spread) / static_cast<double>(part_.total_nodes()));
   if (!(length_ > 0.0)) length_ = 1.0;
 }
 
 template <int M>
 RigidLevel<M> Aggregates<M>::make_level() {
-  const IndexMap& nodes = part_.halo;
+  const IndexMap& nodes = part_.node_map;
   first_ = nodes.sum_below(owned_);
 
   // Centre and number of the aggregate of every local node, ghosts from their owners.

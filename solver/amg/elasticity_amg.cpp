@@ -6,8 +6,8 @@ namespace kacanov {
 
 ElasticityAmg::ElasticityAmg(const Part& part)
     : part_(part),
-      amg_(part.halo.comm, part.halo.first() * part.dim(), static_cast<std::int64_t>(part.owned_unknowns()),
-           part.total_nodes() * part.dim()) {}
+      amg_(part.node_map.comm, part.node_map.first() * part.dim(),
+           static_cast<std::int64_t>(part.owned_unknowns()), part.total_nodes() * part.dim()) {}
 
 void ElasticityAmg::build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space&) {
   g_.assign(g.begin(), g.end());
@@ -24,7 +24,7 @@ void ElasticityAmg::build(std::span<const double> g, std::span<const NodeBlock> 
         &matrix[graph.position(static_cast<std::int32_t>(n), static_cast<std::int32_t>(n)) * dim * dim];
     for (std::size_t i = 0; i < dim; ++i) diagonal[n * dim + i] = block[i * dim + i];
   }
-  part_.halo.sum(diagonal, part_.dim());
+  part_.node_map.sum(diagonal, part_.dim());
 
   std::vector<HYPRE_Int> sizes(part_.owned_unknowns());
   for (std::size_t i = 0; i < sizes.size(); ++i)
@@ -71,7 +71,7 @@ void ElasticityAmg::secant(std::span<double> g) const {
 
 void ElasticityAmg::apply(std::span<const double> r, std::span<double> z) {
   amg_.apply(r.data(), z.data());
-  part_.halo.forward(z, part_.dim());
+  part_.node_map.forward(z, part_.dim());
 }
 
 }  // namespace kacanov

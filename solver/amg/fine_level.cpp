@@ -14,8 +14,8 @@ namespace kacanov {
 
 FineLevel::FineLevel(const Part& part, const MultigridOptions& options)
     : part_(part),
-      op_(part.body(), OperatorOptions{options.threads, options.instruction_set, part.halo.shared}),
-      sum_(part.halo, part.dim()),
+      op_(part.body(), OperatorOptions{options.threads, options.instruction_set, part.node_map.shared}),
+      sum_(part.node_map, part.dim()),
       space_(part) {}
 
 void FineLevel::build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) {
@@ -27,7 +27,7 @@ void FineLevel::rebuild(std::span<const NodeBlock> blocks, const Space& space) {
   space_ = space;
   blocks_.assign(blocks.begin(), blocks.end());
   std::vector<char> is_shared(part_.nodes(), 0);
-  for (const std::int32_t node : part_.halo.shared) is_shared[node] = 1;
+  for (const std::int32_t node : part_.node_map.shared) is_shared[node] = 1;
   const auto rest = std::stable_partition(blocks_.begin(), blocks_.end(),
                                           [&](const NodeBlock& b) { return is_shared[b.node] != 0; });
   shared_blocks_ = static_cast<std::size_t>(rest - blocks_.begin());
@@ -38,7 +38,7 @@ void FineLevel::rebuild(std::span<const NodeBlock> blocks, const Space& space) {
   for (const auto& b : blocks_)
     for (std::size_t k = 0; k < dim * dim; ++k)
       diagonal[static_cast<std::size_t>(b.node) * dim * dim + k] += static_cast<float>(b.value[k]);
-  part_.halo.sum(std::span<float>(diagonal), static_cast<int>(dim * dim));
+  part_.node_map.sum(std::span<float>(diagonal), static_cast<int>(dim * dim));
   inverse_.resize(part_.nodes() * packed);
   for (std::size_t n = 0; n < part_.nodes(); ++n) {
     Eigen::Matrix3d d = Eigen::Matrix3d::Identity();
@@ -67,7 +67,7 @@ void FineLevel::add_blocks(std::span<const NodeBlock> blocks, std::span<const fl
 
 void FineLevel::multiply(std::span<const float> x, std::span<float> y) {
   const auto blocks = std::span(blocks_);
-  if (part_.halo.ranks > 1) {
+  if (part_.node_map.ranks > 1) {
     op_.apply(x, y, [&, this] {
       add_blocks(blocks.first(shared_blocks_), x, y);
       sum_.start_sum(y);
@@ -121,7 +121,7 @@ void FineLevel::choose_smoother(int degree, double range) {
       [&](const std::vector<float>& p, const std::vector<float>& q) {
         double sum = 0.0;
         for (std::size_t i = 0; i < owned; ++i) sum += static_cast<double>(p[i]) * static_cast<double>(q[i]);
-        return part_.halo.sum_all(sum);
+        return part_.node_map.sum_all(sum);
       });
   smoother_ = {degree, largest / range, largest};
 }

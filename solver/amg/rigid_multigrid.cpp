@@ -86,7 +86,7 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
     motions_->restrict_forces(image_, first.b);
     cycle(0);
     motions_->prolong(first.x, options_.fine_gain, image_);
-    part_.halo.forward(std::span<float>(image_), part_.dim());
+    part_.node_map.forward(std::span<float>(image_), part_.dim());
     fine_.project(image_);
     for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += image_[i];
     fine_.smoother().template smooth<float>(false, {b_, x_, step_, image_}, multiply, relax);

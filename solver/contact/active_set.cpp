@@ -97,7 +97,7 @@ Edge find_edge(const Traces& traces, const ContactState& state, const ActiveSet&
   Eigen::Vector3d u = Eigen::Vector3d::Zero();
   const std::size_t dim = traces.part().dim();
   for (std::size_t c = 0; c < dim; ++c)
-    u(static_cast<Eigen::Index>(c)) = state.omega[static_cast<std::size_t>(points[i].node) * dim + c];
+    u(static_cast<Eigen::Index>(c)) = state.u[static_cast<std::size_t>(points[i].node) * dim + c];
   edge.scale = std::max(edge.scale, u.cwiseAbs().maxCoeff());
   edge.imposed = back * (normals * u + open);
   return edge;
@@ -163,7 +163,7 @@ double close_rows(const TraceRows& rows, const ActiveSet& set, const Traces& tra
   }
   for (const double v : closing) furthest = std::max(furthest, std::abs(v));
   rows.lift(closing, delta);
-  return traces.halo().max_all(furthest);
+  return traces.ranks().max_all(furthest);
 }
 
 /// Multipliers of held rows for nodal forces.

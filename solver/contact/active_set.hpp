@@ -11,13 +11,13 @@
 
 namespace kacanov {
 
-/// What each contact point does in the step: decided by λ + c(Cω − ρ), as in the projections of ADMM.
+/// What each contact point does in the step: decided by λ + c(Cu − ρ), as in the projections of ADMM.
 struct ActiveSet {
   std::vector<TraceChoice> held;  ///< normal: touches; tangential: sticks
   Vector slip_force;              ///< points × 2: ψ ŝ where it slips, without what follows the pressure
-  Vector slip_stiffness;  ///< points: k of λ_f = (ψ + μ_f λ_n) ŝ + k (I − ŝŝᵀ) Tω, 0 in 2D
-  Vector slip_direction;  ///< points × 2: ŝ
-  Vector coulomb;         ///< points: μ_f where it slips under pressure, else 0
+  Vector slip_stiffness;          ///< points: k of λ_t = (ψ + μ_f λ_n) ŝ + k (I − ŝŝᵀ) Tu, 0 in 2D
+  Vector slip_direction;          ///< points × 2: ŝ
+  Vector coulomb;                 ///< points: μ_f where it slips under pressure, else 0
 
   /// Nothing held, and nothing slips.
   explicit ActiveSet(std::size_t points = 0)
@@ -41,17 +41,17 @@ struct ActiveSetStep {
   double curvature = 0.0;  ///< δᵀ B δ of the linear model
 };
 
-/// Solves the linearised problem with the rows of `set` held: B δ + slip terms = F − R(ω) − CᵀMλ, Cω + Cδ on
-/// the obstacle or at rest. On entry `work.residual` is F − R(ω), without contact forces; `delta` receives
+/// Solves the linearised problem with the rows of `set` held: B δ + slip terms = F − R(u) − CᵀMλ, Cu + Cδ on
+/// the obstacle or at rest. On entry `work.residual` is F − R(u), without contact forces; `delta` receives
 /// the step. Of the options `relative` alone says little: points moved onto the obstacle one by one strain
 /// the elements beside them beyond anything else, so `most` should be what was unbalanced before. Collective.
 ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, const ActiveSet& set,
                               const ContactState& state, const CgOptions& options, CgWork& work,
                               std::span<double> delta);
 
-/// Multipliers after a step: from the forces F − R(ω) at held rows, from the friction law at slipping ones
-/// (projected onto the disc), zero elsewhere. Uses state.trace at the new ω; φ is set so that ADMM can go on
-/// from here. `residual`, F − R(ω), is used up.
+/// Multipliers after a step: from the forces F − R(u) at held rows, from the friction law at slipping ones
+/// (projected onto the disc), zero elsewhere. Uses state.trace at the new u; φ is set so that ADMM can go on
+/// from here. `residual`, F − R(u), is used up.
 void recover_multipliers(const Part& part, const Traces& traces, const ActiveSet& set,
                          std::span<double> residual, ContactState& state);
 

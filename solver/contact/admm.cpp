@@ -81,7 +81,7 @@ void update_multipliers(const Traces& traces, const AdmmOptions& options, Contac
       steps.trace_residual = std::max(steps.trace_residual, std::abs(w[k] - phi[k]));
     }
   }
-  steps.trace_residual = traces.halo().max_all(steps.trace_residual);
+  steps.trace_residual = traces.ranks().max_all(steps.trace_residual);
 }
 
 }  // namespace
@@ -110,11 +110,11 @@ AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work,
   add_penalty_residual(1.0);
 
   AdmmResult result;
-  Vector before(stop_by_step ? state.omega.size() : 0);
+  Vector before(stop_by_step ? state.u.size() : 0);
   while (!result.converged && result.iterations < options.max_iterations) {
-    if (stop_by_step) before = state.omega;
+    if (stop_by_step) before = state.u;
     const CgResult solve =
-        conjugate_gradients(space, apply, problem.precondition, state.omega, work, solve_options(options));
+        conjugate_gradients(space, apply, problem.precondition, state.u, work, solve_options(options));
     result.cg_iterations += solve.iterations;
     if (solve.iterations > 0 && solve.residual > 0.0)
       result.cg_digits += std::log10(solve.first_residual / solve.residual);
@@ -129,9 +129,9 @@ AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work,
     ++result.iterations;
     if (stop_by_step) {
       for (std::size_t i = 0; i < space.part().owned_unknowns(); ++i)
-        steps.norm.add(options.volume[i / dim], before[i], state.omega[i]);
+        steps.norm.add(options.volume[i / dim], before[i], state.u[i]);
       std::array<double, 2> sums{steps.norm.change, steps.norm.size};
-      traces.halo().sum_all(sums);
+      traces.ranks().sum_all(sums);
       result.step = sums[1] > 0.0 ? std::sqrt(sums[0] / sums[1]) : 0.0;
       result.converged = result.step < options.step_tolerance;
     } else {

@@ -24,10 +24,10 @@ struct LinearProblem {
 
 struct AdmmOptions {
   Penalty r;
-  double relaxation = 1.0;       ///< α: Nω is replaced by α Nω + (1 − α) φ in steps 2 and 3
+  double relaxation = 1.0;       ///< α: Nu is replaced by α Nu + (1 − α) φ in steps 2 and 3
   double force_tolerance = 0.0;  ///< absolute, on the residual of the linear equilibrium
   double force_reduction = 0.0;  ///< or relative to the contact force: where nothing else sets a scale
-  double trace_tolerance = 0.0;  ///< absolute, on max |Cω − φ|
+  double trace_tolerance = 0.0;  ///< absolute, on max |Cu − φ|
   int max_iterations = 10000;
   int max_cg = 2000;  ///< CG iterations of one solve
   /// Points under pressure that Coulomb's friction acts on stick, whatever their bound.
@@ -43,7 +43,7 @@ struct AdmmResult {
   std::int64_t cg_iterations = 0;
   double cg_digits = 0.0;              ///< decimal digits gained by all solves together
   double force_residual = 0.0;         ///< ‖linear equilibrium with the new multipliers‖
-  double trace_residual = 0.0;         ///< max |Cω − φ|
+  double trace_residual = 0.0;         ///< max |Cu − φ|
   std::vector<BalanceSample> balance;  ///< of every iteration
   double step = 0.0;                   ///< ‖change‖ / ‖state‖ of that stop
   bool converged = false;
@@ -65,8 +65,8 @@ inline bool meets_tolerances(const AdmmResult& result, const AdmmOptions& option
          result.trace_residual <= options.trace_tolerance;
 }
 
-/// Iterates until both tolerances (or the stop by steps) are met. `work.residual` holds F − R(ω) − CᵀMλ for
-/// the linearisation at state.omega on entry, the same with the frozen B on exit (up to held components).
+/// Iterates until both tolerances (or the stop by steps) are met. `work.residual` holds F − R(u) − CᵀMλ for
+/// the linearisation at state.u on entry, the same with the frozen B on exit (up to held components).
 AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work, const AdmmOptions& options);
 
 }  // namespace kacanov

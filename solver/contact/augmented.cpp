@@ -34,7 +34,7 @@ double AugmentedContact::value(const ContactValues& trace) const {
     }
     sum += points[i].mass * here;
   }
-  return traces_->halo().sum_all(0.5 / r_ * sum);
+  return traces_->ranks().sum_all(0.5 / r_ * sum);
 }
 
 ContactValues AugmentedContact::multipliers(const ContactValues& trace) const {

@@ -50,7 +50,7 @@ class Balance {
         part_.normal = free_.normal;
       else
         part_.tangential = free_.tangential;
-      sample.held[k] = traces.halo().max_all(held_[k]);
+      sample.held[k] = traces.ranks().max_all(held_[k]);
       sample.moved[k] = traces.force_norm(part_);
       std::fill(part_.normal.begin(), part_.normal.end(), 0.0);
       std::fill(part_.tangential.begin(), part_.tangential.end(), 0.0);

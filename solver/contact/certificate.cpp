@@ -78,7 +78,7 @@ ContactSums contact_sums(const Traces& traces, const ContactState& state) {
     s.cone = larger(s.cone, length - bound);
     s.pressure = larger(s.pressure, length);
   }
-  const Communicator& ranks = traces.halo();
+  const Communicator& ranks = traces.ranks();
   ranks.sum_each({&s.normal_product, &s.friction_product, &s.dual_work, &s.area});
   s.penetration = ranks.max_all(s.penetration);
   s.tension = ranks.max_all(s.tension);
@@ -122,9 +122,9 @@ BodySums body_sums(const Part& part, std::span<const double> u, std::span<const 
     s.stiff_work += stiff * u[i];
     s.softness += 1.0 / diagonal;
   }
-  part.halo.sum_each({&s.balance[0], &s.balance[1], &s.balance[2], &s.all, &s.residual_work, &s.internal_work,
-                      &s.residual, &s.reaction, &s.contact, &s.load, &s.moved, &s.stiff, &s.stiff_work,
-                      &s.softness});
+  part.node_map.sum_each({&s.balance[0], &s.balance[1], &s.balance[2], &s.all, &s.residual_work,
+                          &s.internal_work, &s.residual, &s.reaction, &s.contact, &s.load, &s.moved, &s.stiff,
+                          &s.stiff_work, &s.softness});
   s.softness /= static_cast<double>(part.total_nodes()) * part.dim();
   return s;
 }
@@ -142,11 +142,11 @@ Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactS
   out.energy = forces.energy;
   Scales& scales = out.scales;
   // Sums of forces: the load, the obstacles, the supports; what they work; squares of their norms.
-  const BodySums body = body_sums(part, state.omega, contact, forces);
+  const BodySums body = body_sums(part, state.u, contact, forces);
   const double no_force = least_force / body.softness * std::sqrt(body.moved),
                no_energy = least_force / body.softness * body.moved;
   scales.force = std::max(std::sqrt(std::max({body.reaction, body.contact, body.load})), no_force);
-  scales.displacement = space.max_abs(state.omega);
+  scales.displacement = space.max_abs(state.u);
 
   const double tiny = 1e-300;
   scales.pressure = std::max(sums.pressure, sums.area > 0.0 ? 0.5 * body.all / sums.area * 1e-3 : 0.0);

@@ -12,7 +12,7 @@ namespace kacanov {
 /// What the residuals are measured by.
 struct Scales {
   double force = 0.0;         ///< ‖·‖₂ of nodal forces: the largest of load, reactions, contact
-  double displacement = 0.0;  ///< max |ω|
+  double displacement = 0.0;  ///< max |u|
   double pressure = 0.0;      ///< max |λ|, or force per contact area
 };
 

@@ -6,22 +6,22 @@
 
 namespace kacanov {
 
-/// ω with its auxiliary and multiplier fields; kept from one linearisation to the next.
+/// u with its auxiliary and multiplier fields; kept from one linearisation to the next.
 struct ContactState {
-  Vector omega;         ///< takes prescribed components along
-  ContactValues trace;  ///< (Nω, Tω), the latter less `origin`: what friction acts on is slip
+  Vector u;             ///< takes prescribed components along
+  ContactValues trace;  ///< (Nu, Tu), the latter less `origin`: what friction acts on is slip
   ContactValues phi, lambda;
   Vector gap;    ///< ρ of each contact point, under the share of the load that the state belongs to
   Vector bound;  ///< ψ of each contact point
-  /// Points × 2: the Tω that slip is counted from (theory: slip-history); empty: rest.
+  /// Points × 2: the Tu that slip is counted from (theory: slip-history); empty: rest.
   Vector origin;
 
-  /// Fills `trace` from `omega`.
+  /// Fills `trace` from `u`.
   void evaluate(const Traces& traces) {
-    traces.evaluate(omega, trace);
+    traces.evaluate(u, trace);
     for (std::size_t k = 0; k < origin.size(); ++k) trace.tangential[k] -= origin[k];
   }
-  /// From here on slip of the points that follow the load steps is counted from `omega`, whose traces `trace`
+  /// From here on slip of the points that follow the load steps is counted from `u`, whose traces `trace`
   /// holds.
   void count_slip_from_here(std::span<const ContactPoint> points) {
     origin.resize(2 * points.size(), 0.0);

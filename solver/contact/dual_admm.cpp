@@ -62,7 +62,7 @@ void project(const Traces& traces, const Penalty& r, const Vector& bound, const 
       balance.tangential(i, along[0] * slide[1] - along[1] * slide[0], {force * along[0], force * along[1]});
     }
   }
-  plus_step = traces.halo().max_all(plus_step);
+  plus_step = traces.ranks().max_all(plus_step);
 }
 
 /// The owned unknowns of u, and how far they moved.
@@ -94,7 +94,7 @@ double relative_step(const Traces& traces, const AdmmOptions& options, const Spl
     sums[0] += options.volume[i / dim] * body.moved[i] * body.moved[i];
     sums[1] += options.volume[i / dim] * body.u[i] * body.u[i];
   }
-  traces.halo().sum_all(sums);
+  traces.ranks().sum_all(sums);
   return sums[1] > 0.0 ? std::sqrt(sums[0] / sums[1]) : 0.0;
 }
 
@@ -104,7 +104,7 @@ AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& 
                      const AdmmOptions& options) {
   const Space& space = *problem.space;
   const Traces& traces = *problem.traces;
-  const std::size_t m = traces.size(), n = state.omega.size();
+  const std::size_t m = traces.size(), n = state.u.size();
   const Penalty& r = options.r;
   const bool stop_by_step = options.step_tolerance > 0.0;
   const auto apply = [&](std::span<const double> p, std::span<double> q) {
@@ -146,7 +146,7 @@ AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& 
   // paper's a where there are none. v = B_r⁻¹ CᵀM Δ(λ₊ − λ₋) counts from them, and takes over what residual a
   // is left with.
   traces.add_force(shift, 1.0, work.residual);
-  Vector a = state.omega, v(n, 0.0), moved(stop_by_step ? n : 0);
+  Vector a = state.u, v(n, 0.0), moved(stop_by_step ? n : 0);
   ContactValues now(m), before(m), change(m);
   difference(before);
   while (!result.converged && result.iterations < options.max_iterations) {
@@ -155,7 +155,7 @@ AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& 
       traces.evaluate(a, free_trace);
       for (std::size_t k = 0; k < state.origin.size(); ++k) free_trace.tangential[k] -= state.origin[k];
       for (double& x : work.residual) x = -x;
-      for (std::size_t i = 0; i < moved.size(); ++i) moved[i] = a[i] - state.omega[i];
+      for (std::size_t i = 0; i < moved.size(); ++i) moved[i] = a[i] - state.u[i];
     } else {
       difference(now);
       for (std::size_t i = 0; i < m; ++i) change.normal[i] = now.normal[i] - before.normal[i];
@@ -192,7 +192,7 @@ AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& 
     if (!std::isfinite(result.force_residual)) break;
   }
 
-  for (std::size_t i = 0; i < n; ++i) state.omega[i] = a[i] - v[i];
+  for (std::size_t i = 0; i < n; ++i) state.u[i] = a[i] - v[i];
   state.evaluate(traces);
   state.lambda = parts.plus;
   for (std::size_t i = 0; i < m; ++i) {

@@ -40,8 +40,8 @@ HeldNodes::HeldNodes(const Part& part, const ActiveSet& set, const ContactState&
     if (held && !wide.contains(points[i].node)) add_node(set, state, i, end);
     i = end;
   }
-  oblique_ = wide_.any() ||
-             part.halo.any(std::any_of(nodes_.begin(), nodes_.end(), [](const Node& n) { return n.slides; }));
+  oblique_ = wide_.any() || part.node_map.any(std::any_of(nodes_.begin(), nodes_.end(),
+                                                          [](const Node& n) { return n.slides; }));
 }
 
 void HeldNodes::add_node(const ActiveSet& set, const ContactState& state, std::size_t first,
@@ -129,7 +129,7 @@ double HeldNodes::close(std::span<double> delta) const {
       delta[static_cast<std::size_t>(node.node) * dim + c] = node.closing[c];
       furthest = std::max(furthest, std::abs(node.closing[c]));
     }
-  return part_->halo.max_all(furthest);
+  return part_->node_map.max_all(furthest);
 }
 
 void HeldNodes::subtract_sliding(std::span<double> force) const {

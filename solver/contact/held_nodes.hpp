@@ -27,7 +27,7 @@ class HeldNodes {
   /// Takes from the nodal forces the sliding friction of the reactions they call for. What is left of them in
   /// free directions is out of balance. Collective.
   void subtract_sliding(std::span<double> force) const;
-  /// λ_n and λ_f of held rows for nodal forces, friction of those that slide under Coulomb's law included; at
+  /// λ_n and λ_t of held rows for nodal forces, friction of those that slide under Coulomb's law included; at
   /// wide points where any of them slides. Collective.
   void reactions(std::span<const double> force, ContactValues& lambda) const;
 

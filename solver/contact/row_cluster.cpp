@@ -59,7 +59,7 @@ RowCluster::RowCluster(const Part& part, const WideNodes& nodes, std::vector<Clu
   for (const ClusterRow& row : rows_)
     for (const auto& share : row.shares)
       all.push_back({row.number, part.node_number(share.node), share.coefficient});
-  all = gathered(all, part.halo);
+  all = gathered(all, part.node_map);
   std::vector<std::int64_t> node_numbers;
   for (const Travelling& share : all) {
     numbers_.push_back(share.row);
@@ -93,7 +93,7 @@ std::size_t RowCluster::position(std::int64_t number) const noexcept {
 }
 
 void RowCluster::solve_gathered(Vector& b) const {
-  part_->halo.sum_all(b);  // every entry comes from one rank
+  part_->node_map.sum_all(b);  // every entry comes from one rank
   Eigen::Map<Eigen::VectorXd> values(b.data(), static_cast<Eigen::Index>(b.size()));
   values = factor_->solve(values);
 }

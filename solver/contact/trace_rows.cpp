@@ -81,8 +81,8 @@ TraceRows::TraceRows(const Part& part, std::span<const TraceChoice> choice) : pa
     if (entries.size() == 1) add_narrow(i, std::span(narrow).first(rows));
   }
   for (Group& group : groups_) invert(group);
-  total_ = part.halo.sum_all(static_cast<std::int64_t>(owned_));
-  any_wide_ = part.wide_contact && part.halo.any(!wide_rows_.empty());
+  total_ = part.node_map.sum_all(static_cast<std::int64_t>(owned_));
+  any_wide_ = part.wide_contact && part.node_map.any(!wide_rows_.empty());
   if (any_wide_)
     for (Group& group : groups_) group.in_cluster = wide_.contains(group.node);
 }
@@ -138,7 +138,7 @@ void TraceRows::transpose(std::span<const double> x, std::span<double> y) const 
   for (std::size_t g = 0; g < owned_groups_; ++g)
     add_rows(groups_[g].row, groups_[g].rows, x.data() + groups_[g].first,
              y.data() + static_cast<std::size_t>(groups_[g].node) * dim, dim);
-  part_->halo.forward(y, part_->dim());
+  part_->node_map.forward(y, part_->dim());
   if (!any_wide_) return;
   Vector wide = wide_.zeros(dim);
   for (const ClusterRow& row : wide_rows_)
@@ -163,7 +163,7 @@ void TraceRows::lift(std::span<const double> x, std::span<double> y) const {
     if (group.first < x.size() && !group.in_cluster)
       add_rows(group.inverse, group.rows, x.data() + group.first,
                y.data() + static_cast<std::size_t>(group.node) * dim, dim);
-  part_->halo.forward(y, part_->dim());
+  part_->node_map.forward(y, part_->dim());
   if (any_wide_)
     cluster()->add_transpose(cluster()->solve([&](const ClusterRow& row) { return x[row.row]; }), y);
 }

@@ -15,16 +15,16 @@ double inner(const Vector3& row, const double* u, std::size_t dim) {
 
 }  // namespace
 
-void Traces::evaluate(std::span<const double> omega, ContactValues& values) const {
+void Traces::evaluate(std::span<const double> u, ContactValues& values) const {
   const std::size_t dim = part_->dim();
   const auto all = points();
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::size_t tangents = all[i].tangents;
     double normal = 0.0, tangential[2] = {0.0, 0.0};
     for (const RowEntry& entry : entries(i)) {
-      const double* u = omega.data() + static_cast<std::size_t>(entry.node) * dim;
-      normal += inner(entry.normal, u, dim);
-      for (std::size_t k = 0; k < tangents; ++k) tangential[k] += inner(entry.tangent[k], u, dim);
+      const double* at = u.data() + static_cast<std::size_t>(entry.node) * dim;
+      normal += inner(entry.normal, at, dim);
+      for (std::size_t k = 0; k < tangents; ++k) tangential[k] += inner(entry.tangent[k], at, dim);
     }
     values.normal[i] = normal;
     for (std::size_t k = 0; k < tangents; ++k) values.tangential[2 * i + k] = tangential[k];
@@ -83,7 +83,7 @@ double Traces::force_norm(const ContactValues& lambda) const {
     Vector force(part_->unknowns(), 0.0);
     add_force(lambda, 1.0, force);
     for (std::size_t i = 0; i < part_->owned_unknowns(); ++i) sum += force[i] * force[i];
-    return std::sqrt(halo().sum_all(sum));
+    return std::sqrt(ranks().sum_all(sum));
   }
   // Points of one node follow each other; their forces add up before the norm is taken.
   const auto all = points().first(owned());
@@ -100,7 +100,7 @@ double Traces::force_norm(const ContactValues& lambda) const {
     if (i + 1 == all.size() || all[i + 1].node != point.node)
       sum += force[0] * force[0] + force[1] * force[1] + force[2] * force[2];
   }
-  return std::sqrt(halo().sum_all(sum));
+  return std::sqrt(ranks().sum_all(sum));
 }
 
 }  // namespace kacanov

@@ -34,11 +34,11 @@ class Traces {
   }
   std::size_t size() const noexcept { return part_->contact.size(); }
   std::size_t owned() const noexcept { return static_cast<std::size_t>(part_->owned_contact); }
-  const IndexMap& halo() const noexcept { return part_->halo; }
+  const Communicator& ranks() const noexcept { return part_->node_map; }
   const Part& part() const noexcept { return *part_; }
 
-  /// values = (Nω, Tω); N takes prescribed components along.
-  void evaluate(std::span<const double> omega, ContactValues& values) const;
+  /// values = (Nu, Tu); N takes prescribed components along.
+  void evaluate(std::span<const double> u, ContactValues& values) const;
   /// y += factor · (Nᵀ M λ_n + Tᵀ M λ_t), in free components. Collective.
   void add_force(const ContactValues& lambda, double factor, std::span<double> y) const;
   /// y += (r_n NᵀMN + r_t TᵀMT) x for x in the space of free components. Returns this rank's share of what xᵀ

@@ -33,7 +33,7 @@ class WideNodes {
  private:
   const Part* part_;
   std::vector<std::int32_t> nodes_;  ///< ascending
-  IndexMap halo_;                    ///< who shares them: lists of positions, for sums
+  IndexMap map_;                     ///< who shares them: lists of positions, for sums
 };
 
 }  // namespace kacanov

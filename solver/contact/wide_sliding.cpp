@@ -61,7 +61,7 @@ WideSliding::WideSliding(const Part& part, const ActiveSet& set) : part_(&part),
     add_point(set, i);
     slides = slides || (set.held[i].normal && set.coulomb[i] > 0.0);
   }
-  if (part.halo.any(slides)) factorise();
+  if (part.node_map.any(slides)) factorise();
 }
 
 WideSliding::~WideSliding() = default;
@@ -97,7 +97,7 @@ void WideSliding::factorise() {
       all.push_back({row.held.number, part_->node_number(row.held.shares[k].node),
                      row.held.shares[k].coefficient,
                      row.slides.shares.empty() ? Vector3{} : row.slides.shares[k].coefficient});
-  all = gathered(all, part_->halo);
+  all = gathered(all, part_->node_map);
   std::vector<std::int64_t> nodes;
   for (const Travelling& share : all) {
     numbers_.push_back(share.row);
@@ -133,7 +133,7 @@ std::vector<double> WideSliding::solve(std::span<const double> force) const {
   std::vector<double> all(numbers_.size(), 0.0);
   for (const Row& row : rows_)
     if (row.owned) all[position(row.held.number)] = row.held.of(force, part_->dim());
-  part_->halo.sum_all(all);  // every entry comes from one rank
+  part_->node_map.sum_all(all);  // every entry comes from one rank
   Eigen::Map<Eigen::VectorXd> values(all.data(), static_cast<Eigen::Index>(all.size()));
   values = factor_->solve(values);
   return all;

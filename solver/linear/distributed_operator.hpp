@@ -22,8 +22,8 @@ class DistributedOperator {
   /// The elastic operator. `part` has to outlive it; threads and instruction set are OperatorOptions'.
   DistributedOperator(const Part& part, int threads, const std::string& instruction_set)
       : part_(&part),
-        local_(part.body(), OperatorOptions{threads, instruction_set, part.halo.shared}),
-        sum_(part.halo, part.dim()) {}
+        local_(part.body(), OperatorOptions{threads, instruction_set, part.node_map.shared}),
+        sum_(part.node_map, part.dim()) {}
 
   /// y = B(g) x. What the ranks share travels while the rest is worked out. Returns this rank's share of xᵀ
   /// y.
@@ -47,23 +47,23 @@ class DistributedOperator {
   /// Internal force of the true law; counts as an application.
   void residual(std::span<const double> u, std::span<double> f) {
     local_.residual(u, f);
-    part_->halo.sum(f, part_->dim());
+    part_->node_map.sum(f, part_->dim());
     ++applications_;
   }
   /// The same with the stored energy, which is returned, and g frozen at u, in one pass.
   double residual_energy_update(std::span<const double> u, std::span<double> f) {
     const double energy = local_.residual_energy_update(u, f);
-    part_->halo.sum(f, part_->dim());
+    part_->node_map.sum(f, part_->dim());
     ++applications_;
-    return part_->halo.sum_all(energy);
+    return part_->node_map.sum_all(energy);
   }
-  double energy(std::span<const double> u) { return part_->halo.sum_all(local_.energy(u)); }
+  double energy(std::span<const double> u) { return part_->node_map.sum_all(local_.energy(u)); }
 
   /// Diagonal of B(g), consistent: a measure of stiffness, so single precision does.
   std::vector<float> diagonal() const {
     std::vector<double> exact(local_.unknowns());
     local_.diagonal(exact);
-    part_->halo.sum(exact, part_->dim());
+    part_->node_map.sum(exact, part_->dim());
     return {exact.begin(), exact.end()};
   }
 
@@ -75,7 +75,7 @@ class DistributedOperator {
   template <class Work>
   double apply_and_sum(std::span<double> y, const Work& work) {
     WhenEarly send;
-    if (part_->halo.ranks > 1) send = [&, this] { sum_.start_sum(y); };
+    if (part_->node_map.ranks > 1) send = [&, this] { sum_.start_sum(y); };
     const double share = work(send);
     sum_.finish_sum(y);
     ++applications_;

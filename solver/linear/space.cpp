@@ -69,7 +69,7 @@ double Space::local_dot(std::span<const double> x, std::span<const double> y) co
 }
 
 double Space::dot(std::span<const double> x, std::span<const double> y) const {
-  return part_->halo.sum_all(local_dot(x, y));
+  return part_->node_map.sum_all(local_dot(x, y));
 }
 
 double Space::norm(std::span<const double> x) const { return std::sqrt(dot(x, x)); }
@@ -77,7 +77,7 @@ double Space::norm(std::span<const double> x) const { return std::sqrt(dot(x, x)
 std::array<double, 2> Space::dot2(std::span<const double> a, std::span<const double> b,
                                   std::span<const double> c, std::span<const double> d) const {
   std::array<double, 2> s{local_dot(a, b), local_dot(c, d)};
-  part_->halo.sum_all(s);
+  part_->node_map.sum_all(s);
   return s;
 }
 
@@ -96,7 +96,7 @@ double Space::advance(double alpha, std::span<const double> p, std::span<const d
 double Space::max_abs(std::span<const double> x) const {
   double m = 0.0;
   for (const double v : x) m = std::max(m, std::abs(v));
-  return part_->halo.max_all(m);
+  return part_->node_map.max_all(m);
 }
 
 }  // namespace kacanov

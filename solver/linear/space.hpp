@@ -70,7 +70,7 @@ class Space {
   /// max |x_i| over all ranks. Collective.
   double max_abs(std::span<const double> x) const;
   /// Over all ranks, of what each has. Collective.
-  double sum_all(double share) const { return part_->halo.sum_all(share); }
+  double sum_all(double share) const { return part_->node_map.sum_all(share); }
   /// A step of conjugate gradients in one pass: x += α p, r −= α q. Returns ‖r‖. Collective.
   double advance(double alpha, std::span<const double> p, std::span<const double> q, std::span<double> x,
                  std::span<double> r) const;

@@ -58,7 +58,7 @@ void AugmentedControl::advance(const Traces& traces, ContactState& state) {
   Vector next = now.image;
   if (rounds_ > 0) {
     now.rest = difference(now.image, from_);
-    const double size = traces.halo().sum_all(product(traces, now.rest, now.rest));
+    const double size = traces.ranks().sum_all(product(traces, now.rest, now.rest));
     if (rounds_ > 1) {
       changes_.push_front({difference(now.rest, last_.rest), difference(now.image, last_.image)});
       // A map that has changed this much is another one: other points touch or slip.
@@ -87,7 +87,7 @@ Vector AugmentedControl::mixed(const Traces& traces, const Round& now) const {
     for (const Round& b : changes_) sums.push_back(product(traces, a.rest, b.rest));
     sums.push_back(product(traces, a.rest, now.rest));
   }
-  traces.halo().sum_all(sums);
+  traces.ranks().sum_all(sums);
   const Eigen::Map<const Eigen::MatrixXd> all(sums.data(), m + 1, m);  // a column for each change
   const Eigen::VectorXd scale = all.topRows(m).diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   Eigen::MatrixXd gram = scale.asDiagonal() * all.topRows(m) * scale.asDiagonal();

@@ -33,7 +33,7 @@ class Descent {
   bool step(bool tangent, const CgOptions& options, StepOutcome& outcome) {
     const ActiveSet set = contact_.derivative(c_.state.trace);
     c_.preconditioner.prepare(set, contact_.penalty(), loose());
-    if (tangent) c_.body.freeze_tangent(c_.state.omega);
+    if (tangent) c_.body.freeze_tangent(c_.state.u);
     const LinearProblem& problem = tangent ? c_.tangent : c_.secant;
     std::fill(delta_.begin(), delta_.end(), 0.0);
     const Vector pull = c_.work.residual;
@@ -64,7 +64,7 @@ class Descent {
   }
 
   void follow(double slope) {
-    Vector &from = c_.work.direction, &u = c_.state.omega;
+    Vector &from = c_.work.direction, &u = c_.state.u;
     from = u;
     Vector& rest = c_.work.residual;
     t_ = find_step(slope, [&](double t) {

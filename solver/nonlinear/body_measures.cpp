@@ -17,7 +17,7 @@ Vector lumped_volume(const Part& part) {
   const std::size_t npe = nodes_per_element(part.type);
   for (std::size_t k = 0; k < part.elements.size(); ++k)
     volume[part.elements[k]] += element[k / npe] / static_cast<double>(npe);
-  part.halo.sum(volume, 1);
+  part.node_map.sum(volume, 1);
   return volume;
 }
 
@@ -28,8 +28,8 @@ void refuse_beyond_floats(const Part& part, std::span<const float> diagonal) {
     stiffest = std::max(stiffest, static_cast<double>(d));
     softest = std::min(softest, static_cast<double>(d));
   }
-  stiffest = part.halo.max_all(stiffest);
-  softest = -part.halo.max_all(-softest);
+  stiffest = part.node_map.max_all(stiffest);
+  softest = -part.node_map.max_all(-softest);
   if (stiffest <= most && softest >= least) return;
   std::ostringstream text;
   text << "material: the stiffness of nodes (modulus times width) goes from " << softest << " to " << stiffest

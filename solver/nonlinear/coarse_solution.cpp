@@ -67,9 +67,9 @@ CoarseSolution whole_solution(const Part& part, const Problem* problem, const So
                      [](const auto& a, const auto& b) { return a.node < b.node; });
   }
   for (std::vector<double>* values : {&coarse.coordinates, &coarse.displacement})
-    broadcast(*values, part.halo);
-  broadcast(coarse.elements, part.halo);
-  broadcast(coarse.contact, part.halo);
+    broadcast(*values, part.node_map);
+  broadcast(coarse.elements, part.node_map);
+  broadcast(coarse.contact, part.node_map);
   return coarse;
 }
 

@@ -33,7 +33,7 @@ void ContactPreconditioner::prepare(const Penalty& penalty, bool first) {
 void ContactPreconditioner::prepare(const ActiveSet& set) {
   make_room(2 * sizeof(double) * part_->body().secant_count());  // g of now and then
   const bool again = worn();
-  if (!again && !part_->halo.any(schedule_.set_moved(set.held))) return;
+  if (!again && !part_->node_map.any(schedule_.set_moved(set.held))) return;
   const TraceRows rows(*part_, set.held);
   Space space(*part_);
   rows.hold_in(space);
@@ -46,7 +46,7 @@ void ContactPreconditioner::prepare(const ActiveSet& set) {
 
 void ContactPreconditioner::prepare(const ActiveSet& set, double penalty, double loose) {
   const bool again = worn();
-  if (!again && !part_->halo.any(schedule_.set_moved(set.held, penalty))) return;
+  if (!again && !part_->node_map.any(schedule_.set_moved(set.held, penalty))) return;
   auto blocks = TraceRows(*part_, set.held).penalty_blocks(penalty);
   const auto slip = slip_blocks(*part_, set);
   blocks.insert(blocks.end(), slip.begin(), slip.end());
@@ -69,7 +69,7 @@ bool ContactPreconditioner::worn() const {
     sums[0] += std::abs(now[i] - then[i]);
     sums[1] += then[i];
   }
-  part_->halo.sum_all(sums);
+  part_->node_map.sum_all(sums);
   return schedule_.drifted(sums[0], sums[1]);
 }
 

@@ -8,13 +8,13 @@
 namespace kacanov {
 
 bool has_friction(const Part& part) {
-  return part.halo.any(std::any_of(part.contact.begin(), part.contact.end(),
-                                   [](const ContactPoint& point) { return point.tangents > 0; }));
+  return part.node_map.any(std::any_of(part.contact.begin(), part.contact.end(),
+                                       [](const ContactPoint& point) { return point.tangents > 0; }));
 }
 
 bool has_slip_history(const Part& part) {
-  return part.halo.any(std::any_of(part.contact.begin(), part.contact.end(),
-                                   [](const ContactPoint& point) { return point.since_step; }));
+  return part.node_map.any(std::any_of(part.contact.begin(), part.contact.end(),
+                                       [](const ContactPoint& point) { return point.since_step; }));
 }
 
 double follow_pressure(const Part& part, const Vector& pressure, Vector& bound) {
@@ -25,8 +25,8 @@ double follow_pressure(const Part& part, const Vector& pressure, Vector& bound) 
     largest = std::max(largest, pressure[i]);
     bound[i] = now;
   }
-  change = part.halo.max_all(change);
-  largest = part.halo.max_all(largest);
+  change = part.node_map.max_all(change);
+  largest = part.node_map.max_all(largest);
   return largest > 0.0 ? change / largest : 0.0;
 }
 

@@ -39,12 +39,12 @@ LoadPath::LoadPath(const Part& part) : part_(&part) {
     entries = std::max(entries, part.contact[i].entry + 1);
   }
   // Largest indentation, one a contact entry.
-  std::vector<double> depth(static_cast<std::size_t>(part.halo.max_all(entries)), 0.0);
+  std::vector<double> depth(static_cast<std::size_t>(part.node_map.max_all(entries)), 0.0);
   for (std::size_t i = 0; i < gap_.size(); ++i) {
     double& deepest = depth[part.contact[i].entry];
     deepest = std::max(deepest, -(gap_[i] + closed_[i]));
   }
-  for (double& deepest : depth) deepest = part.halo.max_all(deepest);
+  for (double& deepest : depth) deepest = part.node_map.max_all(deepest);
   for (std::size_t i = 0; i < gap_.size(); ++i) depth_.push_back(depth[part.contact[i].entry]);
   if (part.steps.empty()) return;
   find_acting(depth);
@@ -60,7 +60,7 @@ void LoadPath::find_acting(const std::vector<double>& depth) {
     if (part_->prescribed[k].value != 0.0) acts_[part_->prescribed_by[k]] = 1;
   for (std::size_t e = 0; e < depth.size(); ++e)
     if (depth[e] > 0.0) acts_[factors.boundary.size() + e] = 1;
-  for (std::uint8_t& acts : acts_) acts = part_->halo.any(acts != 0) ? 1 : 0;
+  for (std::uint8_t& acts : acts_) acts = part_->node_map.any(acts != 0) ? 1 : 0;
 }
 
 double LoadPath::factor_of(std::int32_t entry) const {

@@ -80,7 +80,7 @@ void scale(Checkpoint& checkpoint, const UnitSystem& factors) {
 }  // namespace
 
 bool OuterLoop::stop_agreed() const {
-  return context_.part.halo.any(run_.stop_requested && run_.stop_requested());
+  return context_.part.node_map.any(run_.stop_requested && run_.stop_requested());
 }
 
 void OuterLoop::keep(const Result& result) {
@@ -90,9 +90,9 @@ void OuterLoop::keep(const Result& result) {
   }
   if (result.outer_iterations == 0) return;
   const double before = MPI_Wtime();
-  const IndexMap& halo = context_.part.halo;
-  const bool due = halo.rank == 0 && run_.checkpoint && (!run_.checkpoint_due || run_.checkpoint_due());
-  if (!halo.any(due)) return;
+  const Communicator& ranks = context_.part.node_map;
+  const bool due = ranks.rank == 0 && run_.checkpoint && (!run_.checkpoint_due || run_.checkpoint_due());
+  if (!ranks.any(due)) return;
   const Checkpoint all = checkpoint(result);
   if (due) run_.checkpoint(all);
   checkpoint_seconds_ += MPI_Wtime() - before;
@@ -129,7 +129,7 @@ Checkpoint OuterLoop::checkpoint(const Result& result) const {
   put("load_steps_over", result.load_steps.size());
   out.fields["r"] = result.r;
   out.fields["load_steps"] = history(result.load_steps);
-  out.fields["displacement"] = gather_nodal(part, state.omega, part.dim());
+  out.fields["displacement"] = gather_nodal(part, state.u, part.dim());
   out.fields["pressure"] = gather_contact(part, state.lambda.normal, 1);
   out.fields["friction"] = gather_contact(part, state.lambda.tangential, 2);
   out.fields["phi_normal"] = gather_contact(part, state.phi.normal, 1);
@@ -146,7 +146,7 @@ Checkpoint OuterLoop::checkpoint(const Result& result) const {
 
 void OuterLoop::restore(const Checkpoint* users, Result& result) {
   const Part& part = context_.part;
-  const bool here = part.halo.rank == 0;
+  const bool here = part.node_map.rank == 0;
   Checkpoint own;
   if (here) {
     own = *users;
@@ -160,13 +160,14 @@ void OuterLoop::restore(const Checkpoint* users, Result& result) {
     double number = 0.0;
     if (here)
       number = std::is_integral_v<Value> ? static_cast<double>(from->count(name, most)) : from->number(name);
-    if (part.halo.ranks > 1) MPI_Bcast(&number, 1, MPI_DOUBLE, 0, part.halo.comm);
+    if (part.node_map.ranks > 1) MPI_Bcast(&number, 1, MPI_DOUBLE, 0, part.node_map.comm);
     value = static_cast<Value>(number);
   };
   const auto values = [&](const char* name, std::size_t entries) {
     Vector all(entries);
     if (here) all = from->field(name, entries);
-    if (part.halo.ranks > 1) MPI_Bcast(all.data(), static_cast<int>(entries), MPI_DOUBLE, 0, part.halo.comm);
+    if (part.node_map.ranks > 1)
+      MPI_Bcast(all.data(), static_cast<int>(entries), MPI_DOUBLE, 0, part.node_map.comm);
     return all;
   };
   visit_counts(result, get);
@@ -206,7 +207,7 @@ void OuterLoop::restore(const Checkpoint* users, Result& result) {
   };
   const auto unknowns = static_cast<std::size_t>(part.total_nodes()) * static_cast<std::size_t>(part.dim());
   ContactState& state = context_.state;
-  state.omega = scatter_nodal(part, finite("displacement", unknowns), part.dim());
+  state.u = scatter_nodal(part, finite("displacement", unknowns), part.dim());
   state.lambda.normal = contact("pressure", 1);
   state.lambda.tangential = contact("friction", 2);
   state.phi.normal = contact("phi_normal", 1);

@@ -61,7 +61,7 @@ OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOp
 
 void OuterLoop::take_load() {
   ContactState& state = context_.state;
-  context_.path.prescribe(state.omega);
+  context_.path.prescribe(state.u);
   state.gap = context_.path.gap();
   state.evaluate(context_.traces);
   for (std::size_t i = 0; i < state.gap.size(); ++i)
@@ -95,7 +95,7 @@ void OuterLoop::go_from(const Place& place, double share, const Result& result) 
   context_.path.go_to(share);
   ContactState& state = context_.state;
   state = place.state;
-  for (Vector* v : {&state.omega, &state.lambda.normal, &state.lambda.tangential, &state.phi.tangential})
+  for (Vector* v : {&state.u, &state.lambda.normal, &state.lambda.tangential, &state.phi.tangential})
     for (double& value : *v) value *= ratio;
   take_load();
   control_.linearisation.start_again();
@@ -105,7 +105,7 @@ void OuterLoop::go_from(const Place& place, double share, const Result& result) 
 
 void OuterLoop::adopt(const Start& start) {
   ContactState& state = context_.state;
-  state.omega = start.displacement;
+  state.u = start.displacement;
   state.lambda.normal = start.pressure;
   state.lambda.tangential = start.friction;
   adopted_ = true;
@@ -116,7 +116,7 @@ void OuterLoop::adopt(const Start& start) {
 
 void OuterLoop::stand_at(const Place& place, const Result& result) {
   go_from(place, place.share, result);
-  context_.body.evaluate(context_.state.omega);
+  context_.body.evaluate(context_.state.u);
 }
 
 void OuterLoop::iterate(Result& result) {
@@ -128,14 +128,14 @@ void OuterLoop::iterate(Result& result) {
                                        options_.contact == SolverOptions::Contact::active_set);
   const int before_this_call = result.outer_iterations;
   const ContactState& state = context_.state;
-  context_.body.evaluate(state.omega);
+  context_.body.evaluate(state.u);
   Residuals residuals = certify();
   best_.worst = HUGE_VAL;
   bool done = false;
   Vector previous;
   while (!done && result.outer_iterations - first_outer_ < options_.max_outer) {
     if (result.outer_iterations > before_this_call) keep(result);
-    if (by_step) previous = state.omega;
+    if (by_step) previous = state.u;
     const bool newton = may_newton && (adopted_ || !opening_) && !control_.fallback.retreating();
     const Residuals before = residuals;
     const StepOutcome step = take_step(newton, before, result);
@@ -148,9 +148,9 @@ void OuterLoop::iterate(Result& result) {
     gave_up_ = !result.message.empty();
     if (gave_up_) return;
     if (by_step) {
-      for (std::size_t i = 0; i < previous.size(); ++i) previous[i] -= state.omega[i];
+      for (std::size_t i = 0; i < previous.size(); ++i) previous[i] -= state.u[i];
       done = context_.body.linear() ||
-             context_.space.norm(previous) <= options_.tolerance * context_.space.norm(state.omega);
+             context_.space.norm(previous) <= options_.tolerance * context_.space.norm(state.u);
     } else {
       done = residuals.certificate.exhausted(options_.tolerance);
       if (!done) residuals = learn(step, newton, before, residuals, result.lambda_min);
@@ -220,7 +220,7 @@ Residuals OuterLoop::go_back() {
   if (best_.worst < HUGE_VAL) context_.state = best_.state;
   for (double& pressure : context_.state.lambda.normal) pressure = std::max(pressure, 0.0);
   follow_pressure(context_.part, context_.state.lambda.normal, context_.state.bound);
-  context_.body.evaluate_and_freeze(context_.state.omega);
+  context_.body.evaluate_and_freeze(context_.state.u);
   return certify();
 }
 
@@ -242,7 +242,7 @@ std::string OuterLoop::hopeless(const Residuals& residuals, bool newton) const {
 }
 
 void OuterLoop::report(const StepOutcome& step, const Residuals& residuals, const Result& result) const {
-  if (!run_.progress || context_.part.halo.rank != 0) return;
+  if (!run_.progress || context_.part.node_map.rank != 0) return;
   ProgressStep line;
   line.phase = step.method;
   line.outer = result.outer_iterations;

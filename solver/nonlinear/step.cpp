@@ -17,7 +17,7 @@ namespace {
 /// u += t δ, t as long as damping allows. Leaves R(u) and the frozen secant at the new u.
 double take_damped(StepContext& c, std::span<const double> delta, double curvature) {
   // The solve is over: its vectors are free.
-  Vector &from = c.work.direction, &force = c.work.image, &u = c.state.omega;
+  Vector &from = c.work.direction, &force = c.work.image, &u = c.state.u;
   from = u;
   force.assign(c.body.internal().begin(), c.body.internal().end());
   double t = 1.0;
@@ -35,7 +35,7 @@ double take_damped(StepContext& c, std::span<const double> delta, double curvatu
 /// Whether any point is under pressure. Collective.
 bool touches(const StepContext& c) {
   const Vector& pressure = c.state.lambda.normal;
-  return c.part.halo.any(std::any_of(pressure.begin(), pressure.end(), [](double p) { return p > 0.0; }));
+  return c.part.node_map.any(std::any_of(pressure.begin(), pressure.end(), [](double p) { return p > 0.0; }));
 }
 
 }  // namespace
@@ -67,8 +67,8 @@ StepContext::StepContext(const Part& the_part, const SolverOptions& the_options,
 }
 
 void put_to_rest(const Part& part, ContactState& state) {
-  state.omega = part.start;
-  state.omega.resize(part.unknowns(), 0.0);
+  state.u = part.start;
+  state.u.resize(part.unknowns(), 0.0);
   state.trace = state.phi = state.lambda = ContactValues(part.contact.size());
   state.bound.assign(part.contact.size(), 0.0);
   state.origin.clear();
@@ -76,12 +76,12 @@ void put_to_rest(const Part& part, ContactState& state) {
 
 StepOutcome admm_step(StepContext& c, const Penalty& penalty, const Residuals& before, bool first) {
   const bool dual = c.options.contact == SolverOptions::Contact::dual_admm;
-  if (!first) c.body.freeze_secant(c.state.omega);
+  if (!first) c.body.freeze_secant(c.state.u);
   c.preconditioner.prepare(penalty, first);
   AdmmOptions options = admm_accuracy(c.options, before, first, c.tuning);
   options.r = penalty;
   options.volume = c.volume;
-  if (first) c.body.take_elastic_force(c.state.omega);
+  if (first) c.body.take_elastic_force(c.state.u);
   c.body.unbalanced(c.path, c.work.residual);
   c.traces.add_force(c.state.lambda, -1.0, c.work.residual);
   const bool touched = touches(c);
@@ -91,7 +91,7 @@ StepOutcome admm_step(StepContext& c, const Penalty& penalty, const Residuals& b
   StepOutcome outcome;
   outcome.applications = c.body.op().applications() - applied;
   c.preconditioner.watch(step.cg_digits, step.cg_iterations);
-  c.body.evaluate_and_freeze(c.state.omega);
+  c.body.evaluate_and_freeze(c.state.u);
   outcome.method = dual ? "dual_admm" : "admm";
   outcome.contact_iterations = step.iterations;
   outcome.cg_iterations = step.cg_iterations;
@@ -102,11 +102,11 @@ StepOutcome admm_step(StepContext& c, const Penalty& penalty, const Residuals& b
 }
 
 StepOutcome newton_step(StepContext& c, double penalty, bool tangent, const Residuals& before) {
-  c.body.freeze_secant(c.state.omega);
+  c.body.freeze_secant(c.state.u);
   const ActiveSet set = decide(c.traces, c.state, c.tuning.decision_share * penalty);
   c.preconditioner.prepare(set);
   // After the setup: the two do not have to fit into memory at once.
-  if (tangent) c.body.freeze_tangent(c.state.omega);
+  if (tangent) c.body.freeze_tangent(c.state.u);
   c.body.unbalanced(c.path, c.work.residual);
   Vector delta(c.part.unknowns());
   const auto applied = c.body.op().applications();

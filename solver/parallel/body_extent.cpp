@@ -16,7 +16,7 @@ double body_extent(const Part& part) {
       low = std::min(low, part.coordinates[i]);
       high = std::max(high, part.coordinates[i]);
     }
-    extent = std::max(extent, part.halo.max_all(high) + part.halo.max_all(-low));
+    extent = std::max(extent, part.node_map.max_all(high) + part.node_map.max_all(-low));
   }
   return extent;
 }

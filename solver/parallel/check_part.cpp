@@ -177,8 +177,8 @@ void check_part(const Part& part, int rank, int ranks) {
   expect_total("elements", part.total_elements, elements, ranks);
   if (!part.node_tags.empty()) expect_length("node tags", part.node_tags.size(), nodes);
   if (!part.element_tags.empty()) expect_length("element tags", part.element_tags.size(), elements);
-  check_map(part.halo, nodes, rank, ranks);
-  expect_indices("node numbers", part.node_index, static_cast<std::size_t>(part.halo.total()));
+  check_map(part.node_map, nodes, rank, ranks);
+  expect_indices("node numbers", part.node_index, static_cast<std::size_t>(part.node_map.total()));
 
   expect(!part.laws.empty(), "laws", "are none");
   for (const Law& law : part.laws)

@@ -71,7 +71,7 @@ UnitSystem units_of(const Part& part) {
   for (const auto& entry : part.load) load = std::max(load, std::abs(entry.value));
   for (const auto& entry : part.forces) load = std::max(load, std::abs(entry.value));
   const double width = units.dim == 2 ? 1.0 : units.length;
-  const double most = part.halo.max_all(std::max(moved, load / units.modulus / width));
+  const double most = part.node_map.max_all(std::max(moved, load / units.modulus / width));
   units.displacement = most > 0.0 ? power_below(most) : units.length;
   return units;
 }

@@ -160,7 +160,7 @@ class Splitter {
     Part part;
     take_nodes(part, rank);
     take_elements(part, rank);
-    plan_halo(part, rank);
+    plan_scatters(part, rank);
     take_contact(part, rank);
     take_probes(part, rank);
     part.laws = problem_.laws;
@@ -187,9 +187,9 @@ class Splitter {
     const std::size_t dim = mesh.dim();
     part.type = mesh.type;
     part.total_elements = static_cast<std::int64_t>(mesh.element_count());
-    part.halo.rank = rank;
-    part.halo.ranks = ranks_;
-    part.halo.starts = first_;
+    part.node_map.rank = rank;
+    part.node_map.ranks = ranks_;
+    part.node_map.starts = first_;
     for (const bool owned : {true, false}) {
       for (const Index index : order_) {
         const std::size_t n = index;
@@ -197,7 +197,7 @@ class Splitter {
         local_[n] = static_cast<Index>(part.node_index.size());
         part.node_index.push_back(index);
       }
-      if (owned) part.halo.owned = static_cast<Index>(part.node_index.size());
+      if (owned) part.node_map.owned = static_cast<Index>(part.node_index.size());
     }
     part.node_index.shrink_to_fit();
     const std::size_t count = part.node_index.size();
@@ -207,7 +207,7 @@ class Splitter {
     for (const Index index : part.node_index) {
       const std::size_t n = index;
       if (!mesh.node_tags.empty()) part.node_tags.push_back(mesh.node_tags[n]);
-      if (local_[n] >= part.owned_nodes()) part.halo.ghosts.push_back(global_[n]);
+      if (local_[n] >= part.owned_nodes()) part.node_map.ghosts.push_back(global_[n]);
       for (std::size_t c = n * dim; c < (n + 1) * dim; ++c) {
         part.coordinates.push_back(mesh.coordinates[c]);
         const auto component = static_cast<Index>(part.held.size());
@@ -264,7 +264,7 @@ class Splitter {
     }
   }
 
-  void plan_halo(Part& part, int rank) const {
+  void plan_scatters(Part& part, int rank) const {
     std::vector<IndexMap::Neighbour> all(ranks_);
     // Both sides walk their nodes in the mesh's order, so the lists match.
     std::vector<Index> ascending = part.node_index;
@@ -273,7 +273,7 @@ class Splitter {
       const std::size_t n = index;
       if (!sharers_.is_shared(n)) continue;
       const Index here = local_[n];
-      part.halo.shared.push_back(here);
+      part.node_map.shared.push_back(here);
       const int owner = sharers_.owner(n);
       for (const int other : sharers_.of(n)) {
         if (other == rank) continue;
@@ -286,7 +286,7 @@ class Splitter {
     for (int other = 0; other < ranks_; ++other) {
       auto& neighbour = all[other];
       neighbour.rank = other;
-      if (!neighbour.shared.empty()) part.halo.neighbours.push_back(std::move(neighbour));
+      if (!neighbour.shared.empty()) part.node_map.neighbours.push_back(std::move(neighbour));
     }
   }
 
@@ -365,7 +365,7 @@ void split(const Problem& problem, int ranks, const std::function<void(int rank,
   take(0, splitter.part(0));
 }
 
-void join(Part& part, MPI_Comm comm) { static_cast<Communicator&>(part.halo) = Communicator(comm); }
+void join(Part& part, MPI_Comm comm) { static_cast<Communicator&>(part.node_map) = Communicator(comm); }
 
 Part distribute(const Problem* problem, MPI_Comm comm) {
   int rank = 0, ranks = 1;

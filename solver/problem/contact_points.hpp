@@ -8,7 +8,7 @@
 namespace kacanov {
 
 /// Fills problem.contact with narrow points, ascending by node; needs held and prescribed. The gap is that of
-/// the undeformed node less what its prescribed components close, so that N·ω ≤ ρ holds with the free
+/// the undeformed node less what its prescribed components close, so that N·u ≤ ρ holds with the free
 /// components in N alone.
 void find_contact_points(Problem& problem, const Model& model, const Selection& selection);
 

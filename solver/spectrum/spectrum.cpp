@@ -62,7 +62,7 @@ Eigenvalue Spectrum::largest(const TraceRows& rows, const TraceRows& held, doubl
   // The largest compliance is well separated: four products give it to 1e-6.
   if (options_.tolerance >= 1e-3) options.basis = 3;
   if (!loose) {
-    const auto found = largest_eigenvalues(product, rows.index(), part_->halo.comm, options);
+    const auto found = largest_eigenvalues(product, rows.index(), part_->node_map.comm, options);
     cost_.products += found.products;
     cost_.converged = cost_.converged && found.converged;
     if (found.values.empty()) return {};
@@ -70,7 +70,7 @@ Eigenvalue Spectrum::largest(const TraceRows& rows, const TraceRows& held, doubl
   }
   options.wanted = static_cast<int>(std::min<std::int64_t>(1 + part_->loose_modes, rows.total() - 1));
   if (options.wanted < 1) return {};
-  const auto found = largest_eigenvalues(product, rows.index(), part_->halo.comm, options);
+  const auto found = largest_eigenvalues(product, rows.index(), part_->node_map.comm, options);
   cost_.products += found.products;
   cost_.converged = cost_.converged && found.converged;
   for (std::size_t i = 0; i < found.values.size(); ++i) {
@@ -102,7 +102,7 @@ Eigenvalue Spectrum::smallest(const TraceRows& rows) {
   };
   LanczosOptions options;
   options.tolerance = options_.tolerance;
-  const auto found = largest_eigenvalues(product, rows.index(), part_->halo.comm, options);
+  const auto found = largest_eigenvalues(product, rows.index(), part_->node_map.comm, options);
   cost_.products += found.products;
   cost_.converged = cost_.converged && found.converged;
   if (found.values.empty() || !(found.values[0] > 0.0)) return {};
@@ -131,7 +131,7 @@ double rough_lambda_min(const Part& part, std::span<const float> diagonal, bool 
     for (std::size_t k = 0; friction && k < static_cast<std::size_t>(point.tangents); ++k)
       look([k](const RowEntry& entry) -> const Vector3& { return entry.tangent[k]; });
   }
-  stiffest = part.halo.max_all(stiffest);
+  stiffest = part.node_map.max_all(stiffest);
   // With tangents a mode that shears and presses at once is softer: 1.6 on structured and Gmsh meshes alike.
   return stiffest > 0.0 ? 1.0 / (friction ? 1.6 * stiffest : stiffest) : 0.0;
 }
@@ -155,7 +155,7 @@ double rough_lambda_max(const Part& part, DistributedOperator& op, Preconditione
   double square = 0.0;
   for (const double v : trace) square += v * v;
   const double energy = space.dot(u, force) - space.dot(u, work.residual);
-  square = part.halo.sum_all(square);
+  square = part.node_map.sum_all(square);
   return energy > 0.0 ? square / energy : 0.0;
 }
 

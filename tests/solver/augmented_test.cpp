@@ -114,8 +114,8 @@ TEST_CASE("the method of multipliers alone comes to the answer of the others") {
     CHECK_FALSE(loop.gave_up());
     CHECK(result.outer_iterations <= 40);
     double most = 0.0, size = 0.0;
-    for (std::size_t i = 0; i < loop.state().omega.size(); ++i) {
-      most = std::max(most, std::abs(loop.state().omega[i] - other.solution.displacement[i]));
+    for (std::size_t i = 0; i < loop.state().u.size(); ++i) {
+      most = std::max(most, std::abs(loop.state().u[i] - other.solution.displacement[i]));
       size = std::max(size, std::abs(other.solution.displacement[i]));
     }
     CHECK(most < 1e-5 * size);

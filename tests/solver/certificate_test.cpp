@@ -24,7 +24,7 @@ struct Solved {
 
   explicit Solved(Run solved) : run(std::move(solved)), space(run.part), traces(run.part) {
     const auto& points = run.part.contact;
-    state.omega = run.solution.displacement;
+    state.u = run.solution.displacement;
     state.lambda = ContactValues(points.size());
     state.lambda.normal = run.solution.pressure;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -35,18 +35,18 @@ struct Solved {
       state.gap.push_back(points[i].gap);
     }
     state.trace = ContactValues(points.size());
-    traces.evaluate(state.omega, state.trace);
+    traces.evaluate(state.u, state.trace);
   }
 
   Certificate certify() {
-    traces.evaluate(state.omega, state.trace);
-    Vector internal(state.omega.size());
-    reference::residual(run.part.body(), state.omega, internal);
+    traces.evaluate(state.u, state.trace);
+    Vector internal(state.u.size());
+    reference::residual(run.part.body(), state.u, internal);
     Vector g(run.part.body().secant_count()), diagonal(internal.size());
     reference::secant(run.part.body(), Vector(internal.size(), 0.0), g);
     reference::diagonal(run.part.body(), g, diagonal);
     const std::vector<float> stiffness(diagonal.begin(), diagonal.end());
-    const double energy = reference::energy(run.part.body(), state.omega);
+    const double energy = reference::energy(run.part.body(), state.u);
     return kkt_residuals(space, traces, state, {run.part.load, internal, energy, stiffness}).certificate;
   }
   /// A contact point under pressure that sticks, one that slips, or an open one.
@@ -80,19 +80,19 @@ TEST_CASE("each fault shows in its entry") {
   const std::size_t stick = beam.find(ContactStatus::stick, true),
                     slip = beam.find(ContactStatus::slip, true);
   SUBCASE("a free node moved") {
-    std::size_t i = beam.state.omega.size() / 2;
+    std::size_t i = beam.state.u.size() / 2;
     while (beam.run.part.held[i]) ++i;
-    beam.state.omega[i] += 1e-3;
+    beam.state.u[i] += 1e-3;
     const Certificate c = beam.certify();
     CHECK(c.equilibrium > 1e-4);
     CHECK(c.duality_gap > 1e-5);
   }
   SUBCASE("a node pushed into the obstacle") {
     const ContactPoint& point = beam.run.part.contact[stick];
-    beam.state.omega[2 * static_cast<std::size_t>(point.node) + 1] -= 1e-3;
+    beam.state.u[2 * static_cast<std::size_t>(point.node) + 1] -= 1e-3;
     const Certificate c = beam.certify();
     double largest = 0.0;
-    for (const double u : beam.state.omega) largest = std::max(largest, std::abs(u));
+    for (const double u : beam.state.u) largest = std::max(largest, std::abs(u));
     CHECK(c.penetration == doctest::Approx(1e-3 / largest).epsilon(1e-3));
     CHECK(c.complementarity > 1e-6);
   }
@@ -128,7 +128,7 @@ TEST_CASE("each fault shows in its entry") {
   }
   SUBCASE("a node that sticks, moved") {
     const ContactPoint& point = beam.run.part.contact[stick];
-    beam.state.omega[2 * static_cast<std::size_t>(point.node)] += 1e-3;
+    beam.state.u[2 * static_cast<std::size_t>(point.node)] += 1e-3;
     CHECK(beam.certify().complementarity > 1e-6);
   }
   SUBCASE("all multipliers forgotten") {
@@ -139,7 +139,7 @@ TEST_CASE("each fault shows in its entry") {
 
 TEST_CASE("a state that is not a number is the worst of all") {
   Solved beam = solved_beam(0.0);
-  beam.state.omega[100] = NAN;
+  beam.state.u[100] = NAN;
   CHECK(std::isinf(beam.certify().worst()));
 }
 

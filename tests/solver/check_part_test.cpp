@@ -17,7 +17,7 @@ namespace {
 
 /// What check_part says of a part after a change; empty where it accepts it.
 std::string complaint(Part part, const std::function<void(Part&)>& change) {
-  const int rank = part.halo.rank, ranks = part.halo.ranks;
+  const int rank = part.node_map.rank, ranks = part.node_map.ranks;
   change(part);
   try {
     check_part(part, rank, ranks);
@@ -41,13 +41,13 @@ TEST_CASE("a part that was split is accepted, and each field that does not fit i
           {"element type", [](Part& p) { p.type = static_cast<ElementType>(77); }},
           {"coordinates", [](Part& p) { p.coordinates.pop_back(); }},
           {"element numbers", [](Part& p) { p.element_index.runs[0].position = 3; }},
-          {"node map", [](Part& p) { p.halo.owned = 1 << 20; }},
-          {"first nodes", [](Part& p) { p.halo.starts.pop_back(); }},
+          {"node map", [](Part& p) { p.node_map.owned = 1 << 20; }},
+          {"first nodes", [](Part& p) { p.node_map.starts.pop_back(); }},
           {"neighbours",
            [](Part& p) {
-             p.halo.neighbours.push_back({p.halo.rank, {}, {}, {}});
+             p.node_map.neighbours.push_back({p.node_map.rank, {}, {}, {}});
            }},
-          {"shared nodes", [](Part& p) { p.halo.shared.push_back(1 << 28); }},
+          {"shared nodes", [](Part& p) { p.node_map.shared.push_back(1 << 28); }},
           {"node numbers", [](Part& p) { p.node_index[0] = 1 << 29; }},
           {"laws", [](Part& p) { p.laws.clear(); }},
           {"laws of elements", [](Part& p) { p.law_of_element.assign(p.element_count(), 7); }},

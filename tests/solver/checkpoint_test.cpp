@@ -57,7 +57,7 @@ TEST_CASE("a run goes on from any of its checkpoints to the same answer, on othe
   coulomb.contact[0].friction = Friction{0.0, 0.3};
   for (const Model& each : {model, coulomb, with(model, Options::Outer::kacanov, Options::Contact::admm)}) {
     Part together = part_of(mesh, each, MPI_COMM_WORLD), alone = part_of(mesh, each, MPI_COMM_SELF);
-    const bool first = together.halo.rank == 0;
+    const bool first = together.node_map.rank == 0;
     std::vector<Checkpoint> checkpoints;
     RunOptions options;
     if (first) options.checkpoint = [&](const Checkpoint& c) { checkpoints.push_back(c); };
@@ -91,7 +91,7 @@ TEST_CASE("a stop leaves the last whole step, on all ranks, wherever it comes") 
   const Mesh mesh = beam_mesh(2, 4);
   const Model model = beam(2, logarithmic_law(0.01), 0.05, 0.01);
   Part part = part_of(mesh, model, MPI_COMM_WORLD);
-  const bool first = part.halo.rank == 0, last = part.halo.rank == part.halo.ranks - 1;
+  const bool first = part.node_map.rank == 0, last = part.node_map.rank == part.node_map.ranks - 1;
   int questions = 0;
   RunOptions counting;
   counting.stop_requested = [&] { return ++questions < 0; };
@@ -133,10 +133,10 @@ TEST_CASE("what has not converged can be continued with more steps") {
   model.solver.max_outer = 3;
   CHECK(run(part, model, options).result.status == Status::not_converged);
   model.solver.max_outer = 100;
-  const Ending rest = run(part, model, {}, part.halo.rank == 0 ? &left : nullptr);
+  const Ending rest = run(part, model, {}, part.node_map.rank == 0 ? &left : nullptr);
   CHECK(rest.result.status == Status::converged);
   CHECK(rest.result.restarted_after == 3);
-  if (part.halo.rank == 0) CHECK(difference(rest.displacement, whole.displacement) < 1e-5);
+  if (part.node_map.rank == 0) CHECK(difference(rest.displacement, whole.displacement) < 1e-5);
 }
 
 TEST_CASE("a run goes on by another method, with a penalty of its own") {
@@ -152,12 +152,12 @@ TEST_CASE("a run goes on by another method, with a penalty of its own") {
   RunOptions options;
   options.checkpoint = [&](const Checkpoint& c) { left = c; };
   CHECK(run(part, slow, options).result.status == Status::not_converged);
-  const Ending rest = run(part, model, {}, part.halo.rank == 0 ? &left : nullptr);
+  const Ending rest = run(part, model, {}, part.node_map.rank == 0 ? &left : nullptr);
   CHECK(rest.result.status == Status::converged);
   CHECK(rest.result.restarted_after == 20);
   CHECK(rest.result.r.at(19) == 1e-6);
   CHECK(rest.result.r.at(20) > 1e-3);
-  if (part.halo.rank == 0) CHECK(difference(rest.displacement, whole.displacement) < 1e-5);
+  if (part.node_map.rank == 0) CHECK(difference(rest.displacement, whole.displacement) < 1e-5);
 }
 
 TEST_CASE("a fingerprint knows what differs") {

@@ -53,9 +53,9 @@ ContactState some_state(const Part& part, const Traces& traces) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> value(-1, 1);
   ContactState state;
-  for (std::size_t i = 0; i < part.unknowns(); ++i) state.omega.push_back(part.held[i] ? 0.0 : value(random));
+  for (std::size_t i = 0; i < part.unknowns(); ++i) state.u.push_back(part.held[i] ? 0.0 : value(random));
   state.trace = ContactValues(part.contact.size());
-  traces.evaluate(state.omega, state.trace);
+  traces.evaluate(state.u, state.trace);
   for (std::size_t i = 0; i < part.contact.size(); ++i) {
     state.gap.push_back(part.contact[i].gap);
     state.bound.push_back(1.0 + 0.1 * static_cast<double>(i));
@@ -104,7 +104,7 @@ TEST_CASE(
 
     Vector closed(part.unknowns(), 0.0);
     CHECK(nodes.close(closed) > 0.0);
-    for (std::size_t i = 0; i < closed.size(); ++i) closed[i] += state.omega[i];
+    for (std::size_t i = 0; i < closed.size(); ++i) closed[i] += state.u[i];
     ContactValues trace(part.contact.size());
     traces.evaluate(closed, trace);
     for (std::size_t i = 0; i < part.contact.size(); ++i) {
@@ -113,11 +113,11 @@ TEST_CASE(
     }
 
     // A force of reactions comes back as such: C of what remains is nothing.
-    Vector force = state.omega;
+    Vector force = state.u;
     nodes.subtract_sliding(force);
     ContactValues lambda(part.contact.size());
-    nodes.reactions(state.omega, lambda);
-    Vector rest = state.omega;
+    nodes.reactions(state.u, lambda);
+    Vector rest = state.u;
     ContactValues whole = lambda;
     for (std::size_t i = 0; i < part.contact.size() && slips; ++i)
       for (std::size_t k = 0; k < 2; ++k)

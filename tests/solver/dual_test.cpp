@@ -52,15 +52,15 @@ struct Setting {
     return build_problem(beam_mesh(dim, dim == 2 ? 6 : 2), model);
   }
 
-  /// ω with its prescribed components, and multipliers that may be none.
+  /// u with its prescribed components, and multipliers that may be none.
   ContactState start(double pressure) const {
     ContactState state;
     const std::size_t points = part.contact.size();
-    state.omega.assign(part.unknowns(), 0.0);
-    part.prescribe(state.omega);
+    state.u.assign(part.unknowns(), 0.0);
+    part.prescribe(state.u);
     state.trace = state.phi = state.lambda = ContactValues(points);
     state.bound.resize(points);
-    traces.evaluate(state.omega, state.trace);
+    traces.evaluate(state.u, state.trace);
     for (std::size_t i = 0; i < points; ++i) {
       state.bound[i] = part.contact[i].tresca;
       state.gap.push_back(part.contact[i].gap);
@@ -70,10 +70,10 @@ struct Setting {
     return state;
   }
 
-  /// F − B ω − CᵀMλ, as the loops want it on entry.
+  /// F − B u − CᵀMλ, as the loops want it on entry.
   void residual(const ContactState& state, CgWork& work) {
     work.resize(part.unknowns());
-    op.apply(state.omega, work.image);
+    op.apply(state.u, work.image);
     for (std::size_t i = 0; i < work.residual.size(); ++i) work.residual[i] = -work.image[i];
     part.add_load(work.residual);
     traces.add_force(state.lambda, -1.0, work.residual);
@@ -123,8 +123,8 @@ TEST_CASE("every iterate of the dual form is that of ADMM, with exact and with i
             const AdmmResult second = dual_admm(setting.linear, two, work, options);
             CHECK(first.iterations == iterations);
             CHECK(second.iterations == iterations);
-            const double u = largest(one.omega), p = largest(one.lambda.normal);
-            CHECK(difference(one.omega, two.omega) < 1e-8 * u);
+            const double u = largest(one.u), p = largest(one.lambda.normal);
+            CHECK(difference(one.u, two.u) < 1e-8 * u);
             CHECK(difference(one.phi.normal, two.phi.normal) < 1e-8 * u);
             CHECK(difference(one.phi.tangential, two.phi.tangential) < 1e-8 * u);
             CHECK(difference(one.lambda.normal, two.lambda.normal) < 1e-8 * p);

@@ -68,7 +68,7 @@ TEST_CASE("a film's friction runs through a loop where slip is counted from the 
     if (restart) {
       // In the middle of the loop.
       RunOptions rest;
-      if (part.halo.rank == 0) rest.start = &all[all.size() / 2];
+      if (part.node_map.rank == 0) rest.start = &all[all.size() / 2];
       solution = solve(part, model.solver, rest);
     }
     CHECK(solution.result.status == Status::converged);
@@ -129,7 +129,7 @@ TEST_CASE("Cattaneo and Mindlin in 3D: pressed, dragged and let back, stick to a
     double stick = 0.0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_contact); ++i)
       if (solution.contact_status[i] == ContactStatus::stick) stick += part.contact[i].mass;
-    stick = std::sqrt(2 * part.halo.sum_all(stick) / std::numbers::pi);
+    stick = std::sqrt(2 * part.node_map.sum_all(stick) / std::numbers::pi);
     CAPTURE(ratio(1));
     CHECK(ratio(0) < 1e-6);
     CHECK(ratio(1) > 0.3);

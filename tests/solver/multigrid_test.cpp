@@ -78,7 +78,7 @@ int iterations(const Part& part, double stretch) {
       space,
       [&](std::span<const double> p, std::span<double> q) {
         const double share = op.apply_dot(p, q);
-        part.halo.sum(q, part.dim());
+        part.node_map.sum(q, part.dim());
         return share;
       },
       [&](std::span<const double> p, std::span<double> q) { amg->apply(p, q); }, u, work, {0.0, 1e-8, 400});
@@ -115,7 +115,7 @@ void check_galerkin(const Part& part, std::span<const double> g, std::span<const
   const auto on_nodes = [&](const Vector& x) {
     std::vector<float> single(part.unknowns());
     motions.prolong(x, 1.0, single);
-    part.halo.forward(std::span<float>(single), part.dim());
+    part.node_map.forward(std::span<float>(single), part.dim());
     Vector u(single.begin(), single.end());
     space.project(u);
     return u;

@@ -314,7 +314,7 @@ Part two_nodes() {
   part.type = ElementType::tri3;
   part.coordinates = {0.0, 0.0, 1.0, 0.0};
   part.node_index = {0, 1};
-  part.halo.owned = 2;
+  part.node_map.owned = 2;
   part.held = {0, 1, 0, 0};
   part.load = {{0, 4.0}, {2, -6.0}};
   part.prescribed = {{1, -0.1}};

@@ -197,7 +197,7 @@ TEST_CASE("step-42 of deal.II: its force, in at most 12 steps on any mesh") {
 }
 
 TEST_CASE("a first step that nothing but a penetration sets the scale of comes to an end") {
-  // No load, no prescribed displacement: at ω = 0 there is no force to measure residuals by.
+  // No load, no prescribed displacement: at u = 0 there is no force to measure residuals by.
   for (const auto contact : {SolverOptions::Contact::admm, SolverOptions::Contact::dual_admm}) {
     Model model = indented_cube();
     model.solver.outer = SolverOptions::Outer::kacanov;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any number of ranks: partition, halo and gathers by what they must do, and the same answer as on one rank.
+// Any number of ranks: partition, scatters and gathers by what they must do, and the same answer as on one
+// rank.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -78,12 +79,12 @@ TEST_CASE("owned nodes are numbered on through the ranks, and ghosts know their 
   const Problem problem = beam_problem(2, 4);
   Part part = over_all_ranks(problem);
   for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_nodes()); ++i)
-    CHECK(part.node_number(i) == part.halo.first() + static_cast<std::int64_t>(i));
+    CHECK(part.node_number(i) == part.node_map.first() + static_cast<std::int64_t>(i));
   std::vector<std::int64_t> number(part.nodes());
   for (std::size_t i = 0; i < part.nodes(); ++i) number[i] = part.node_number(i);
   const std::vector<std::int64_t> expected = number;
   for (std::size_t i = part.owned_nodes(); i < part.nodes(); ++i) number[i] = -1;
-  part.halo.forward(number, 1);
+  part.node_map.forward(number, 1);
   CHECK(number == expected);
 }
 
@@ -118,17 +119,17 @@ TEST_CASE("a map made from ghosts' numbers finds their owners, numbers beyond 2^
 TEST_CASE("a sum in two halves is the whole one, whatever happens elsewhere in between") {
   const Problem problem = beam_problem(3, 2);
   Part part = over_all_ranks(problem);
-  Scatterer<float> sum(part.halo, 3);
+  Scatterer<float> sum(part.node_map, 3);
   for (int turn = 0; turn < 3; ++turn) {
     std::vector<float> x(3 * part.nodes()), whole;
     for (std::size_t i = 0; i < x.size(); ++i)
       x[i] = static_cast<float>(signature(part.node_index[i / 3], static_cast<int>(i % 3)) *
-                                (1.0 + 0.3 * part.halo.rank + turn));
+                                (1.0 + 0.3 * part.node_map.rank + turn));
     whole = x;
-    part.halo.sum(whole, 3);
+    part.node_map.sum(whole, 3);
     sum.start_sum(x);
     std::vector<char> is_shared(part.nodes(), 0);
-    for (const std::int32_t node : part.halo.shared) is_shared[node] = 1;
+    for (const std::int32_t node : part.node_map.shared) is_shared[node] = 1;
     for (std::size_t i = 0; i < x.size(); ++i)
       if (is_shared[i / 3] == 0) x[i] = whole[i] = static_cast<float>(turn);
     sum.finish_sum(x);
@@ -136,16 +137,16 @@ TEST_CASE("a sum in two halves is the whole one, whatever happens elsewhere in b
   }
 }
 
-TEST_CASE("halo sums count the ranks that share a node, with the same bits on each") {
+TEST_CASE("sums over shared nodes count the ranks that share a node, with the same bits on each") {
   const Problem problem = beam_problem(3, 2);
   Part part = over_all_ranks(problem);
   // Each rank adds a number that rounds: a sum in another order would differ in its last bits.
   std::vector<double> x(2 * part.nodes());
   for (std::size_t i = 0; i < part.nodes(); ++i) {
     x[2 * i] = 1.0;
-    x[2 * i + 1] = 0.1 * (1 + part.halo.rank) * (1.0 + signature(part.node_index[i], 0));
+    x[2 * i + 1] = 0.1 * (1 + part.node_map.rank) * (1.0 + signature(part.node_index[i], 0));
   }
-  part.halo.sum(x, 2);
+  part.node_map.sum(x, 2);
   // All copies, gathered by mesh node.
   const std::size_t nodes = problem.mesh.node_count();
   std::vector<double> sharers(nodes, 0.0), largest(nodes, -1e300), smallest(nodes, 1e300);
@@ -160,7 +161,7 @@ TEST_CASE("halo sums count the ranks that share a node, with the same bits on ea
   CHECK(std::memcmp(largest.data(), smallest.data(), nodes * sizeof(double)) == 0);
   for (std::size_t i = 0; i < part.nodes(); ++i) CHECK(x[2 * i] == sharers[part.node_index[i]]);
   // `shared` lists exactly the nodes with more than one copy.
-  std::vector<std::int32_t> listed = part.halo.shared, found;
+  std::vector<std::int32_t> listed = part.node_map.shared, found;
   for (std::size_t i = 0; i < part.nodes(); ++i)
     if (x[2 * i] > 1.5) found.push_back(static_cast<std::int32_t>(i));
   std::sort(listed.begin(), listed.end());
@@ -169,13 +170,13 @@ TEST_CASE("halo sums count the ranks that share a node, with the same bits on ea
 
 TEST_CASE("reductions over the ranks") {
   const Problem problem = beam_problem(2, 2);
-  const IndexMap halo = over_all_ranks(problem).halo;
-  const int n = halo.ranks;
-  CHECK(halo.sum_all(1.0 + halo.rank) == 0.5 * n * (n + 1));
-  CHECK(halo.sum_all(std::int64_t{1} << 40) == n * (std::int64_t{1} << 40));
-  CHECK(halo.max_all(-1.0 - halo.rank) == -1.0);
-  std::array<double, 2> pair{1.0, static_cast<double>(halo.rank)};
-  halo.sum_all(pair);
+  const IndexMap nodes = over_all_ranks(problem).node_map;
+  const int n = nodes.ranks;
+  CHECK(nodes.sum_all(1.0 + nodes.rank) == 0.5 * n * (n + 1));
+  CHECK(nodes.sum_all(std::int64_t{1} << 40) == n * (std::int64_t{1} << 40));
+  CHECK(nodes.max_all(-1.0 - nodes.rank) == -1.0);
+  std::array<double, 2> pair{1.0, static_cast<double>(nodes.rank)};
+  nodes.sum_all(pair);
   CHECK(pair[0] == n);
   CHECK(pair[1] == 0.5 * n * (n - 1));
 }
@@ -190,7 +191,7 @@ TEST_CASE("gathers return to the numbering of the problem") {
     contact[i] = signature(part.contact_index[i / 3], static_cast<int>(i % 3));
   const auto all_nodal = gather_nodal(part, nodal, 2);
   const auto all_contact = gather_contact(part, contact, 3);
-  if (part.halo.rank > 0) {
+  if (part.node_map.rank > 0) {
     CHECK(all_nodal.empty());
     CHECK(all_contact.empty());
     return;
@@ -230,7 +231,7 @@ TEST_CASE("multigrid over the ranks is symmetric, positive definite and consiste
           rounding * std::sqrt(space.dot(mx, x) * space.dot(my, y)));
     CHECK(space.dot(mx, x) > 0.0);
     Vector copy = mx;
-    part.halo.forward(copy, 3);
+    part.node_map.forward(copy, 3);
     CHECK(copy == mx);
   }
 }
@@ -285,7 +286,7 @@ TEST_CASE("the answer does not depend on the partition or on threads") {
       const Solution solution = solve(all, options, run);
       const Result& result = solution.result;
       CHECK(result.status == Status::converged);
-      CHECK(result.ranks == all.halo.ranks);
+      CHECK(result.ranks == all.node_map.ranks);
       CHECK(result.threads == threads);
       CHECK(distance(result.probe.at(0), reference.result.probe.at(0)) <
             1e-6 * length(reference.result.probe.at(0)));
@@ -300,7 +301,7 @@ TEST_CASE("the answer does not depend on the partition or on threads") {
       CHECK(result.unknowns == reference.result.unknowns);
       // Every copy of a shared displacement holds the same bits.
       std::vector<double> copy = solution.displacement;
-      all.halo.forward(copy, dim);
+      all.node_map.forward(copy, dim);
       CHECK(std::memcmp(copy.data(), solution.displacement.data(), copy.size() * sizeof(double)) == 0);
     }
   }
@@ -313,7 +314,7 @@ TEST_CASE("progress is told on rank 0 only") {
   int lines = 0;
   run.progress = [&](const ProgressStep&) { ++lines; };
   const Solution solution = solve(part, {}, run);
-  if (part.halo.rank == 0)
+  if (part.node_map.rank == 0)
     CHECK(lines >= solution.result.outer_iterations);
   else
     CHECK(lines == 0);

@@ -117,7 +117,7 @@ Vector some_vector(const Part& part, double turn) {
 
 void check_copies(const Part& part, const Vector& y) {
   Vector copy = y;
-  part.halo.forward(copy, part.dim());
+  part.node_map.forward(copy, part.dim());
   CHECK(copy == y);
 }
 
@@ -148,14 +148,14 @@ TEST_CASE("wide rows: forces are the transpose of traces on any number of ranks,
                                    whole.contact_index.begin());
       CHECK(nu.normal[i] == doctest::Approx(all.normal[at]).epsilon(1e-13));
     }
-    product = part.halo.sum_all(product);
+    product = part.node_map.sum_all(product);
     Vector force(part.unknowns(), 0.0), penalty(part.unknowns(), 0.0);
     traces.add_force(nu, 1.0, force);
     CHECK(space.dot(force, v) == doctest::Approx(product).epsilon(1e-12));
     CHECK(traces.force_norm(nu) == doctest::Approx(space.norm(force)).epsilon(1e-12));
     CHECK(traces.force_norm(nu) == doctest::Approx(alone.force_norm(all)).epsilon(1e-12));
     const double share = traces.add_penalty({1.0, 1.0}, u, penalty);
-    CHECK(part.halo.sum_all(share) == doctest::Approx(space.dot(u, penalty)).epsilon(1e-12));
+    CHECK(part.node_map.sum_all(share) == doctest::Approx(space.dot(u, penalty)).epsilon(1e-12));
     for (std::size_t i = 0; i < penalty.size(); ++i) CHECK(std::abs(penalty[i] - force[i]) < 1e-14);
     check_copies(part, force);
     check_copies(part, penalty);
@@ -172,7 +172,7 @@ TEST_CASE("wide rows are held by an orthogonal projection, and lifted by a pseud
     const auto norm = [&](const Vector& x) {
       double sum = 0.0;
       for (std::size_t i = 0; i < rows.owned(); ++i) sum += x[i] * x[i];
-      return std::sqrt(part.halo.sum_all(sum));
+      return std::sqrt(part.node_map.sum_all(sum));
     };
     const Space free(part);
     Space space(part);
@@ -203,7 +203,7 @@ TEST_CASE("wide rows are held by an orthogonal projection, and lifted by a pseud
       CHECK(back[i] == owned[i]);
       product += x[i] * owned[i];
     }
-    CHECK(part.halo.sum_all(product) == doctest::Approx(free.dot(lifted, v)).epsilon(1e-10));
+    CHECK(part.node_map.sum_all(product) == doctest::Approx(free.dot(lifted, v)).epsilon(1e-10));
     // Node blocks are the diagonal of r CᵀDC.
     Vector diagonal(part.unknowns(), 0.0), unit(part.unknowns(), 0.0), image(part.unknowns());
     const std::size_t dim = part.dim();
@@ -252,7 +252,7 @@ TEST_CASE("wide rows: every contact method finds what a dense solver finds, on a
           // As many as with narrow rows: pinning leaves the preconditioner what wide rows leave free.
           if (contact == Contact::automatic) CHECK(solution.result.cg_iterations < 200);
           const std::vector<double> u = gather_nodal(part, solution.displacement, part.dim());
-          if (part.halo.rank > 0) continue;
+          if (part.node_map.rank > 0) continue;
           const Eigen::Map<const Eigen::VectorXd> all(u.data(), static_cast<Eigen::Index>(u.size()));
           CHECK((all - answer.u).norm() <= 1e-6 * answer.u.norm());
         }

@@ -179,7 +179,7 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
   RunFigures figures;
   figures.nested = coarse.levels;
   figures.peak_memory_bytes =
-      static_cast<std::uint64_t>(loaded.part.halo.sum_all(static_cast<std::int64_t>(peak_memory())));
+      static_cast<std::uint64_t>(loaded.part.node_map.sum_all(static_cast<std::int64_t>(peak_memory())));
   left.reset();
   Result& result = solution.result;
   const int dim = loaded.part.dim();
@@ -204,8 +204,8 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
       write_json(folder / "result.json", result_json(result, figures, input, loaded.problem->mesh));
   });
   // Where a checkpoint goes, what takes its place is on the disk first.
-  const bool replaced = loaded.part.halo.any(mpi.first() && result.status == Status::converged &&
-                                             std::filesystem::exists(file->path()));
+  const bool replaced = loaded.part.node_map.any(mpi.first() && result.status == Status::converged &&
+                                                 std::filesystem::exists(file->path()));
   if (input.output.fields) {
     together(mpi, [&] {
       write_body(folder, loaded.part, solution, nodal);

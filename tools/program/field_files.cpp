@@ -209,7 +209,7 @@ void write_body(const std::filesystem::path& folder, const Part& part, const Sol
       });
   grid.cell_fields[5].values =
       tags(part.element_count(), [&part](std::size_t e) { return part.element_tag(e); });
-  write_vtu((folder / body_file(part.halo.rank, part.halo.ranks)).string(), grid);
+  write_vtu((folder / body_file(part.node_map.rank, part.node_map.ranks)).string(), grid);
 }
 
 void write_collection(const std::filesystem::path& folder, const Problem& problem, const Model& model,

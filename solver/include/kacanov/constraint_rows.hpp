@@ -15,13 +15,13 @@ namespace kacanov {
 /// What the rows of a contact point take of one node's displacement u.
 struct RowEntry {
   std::int32_t node = 0;
-  Vector3 normal{};                  ///< coefficients of u in N·ω, held components included
+  Vector3 normal{};                  ///< coefficients of u in N·u, held components included
   Vector3 trace{};                   ///< the same in free components: the node's share of the contact force
-  std::array<Vector3, 2> tangent{};  ///< coefficients in T·ω, in free components
+  std::array<Vector3, 2> tangent{};  ///< coefficients in T·u, in free components
 };
 
-/// A group of rows with one gap, one pressure and one friction bound: N·ω ≤ gap and, with friction, the
-/// tangential trace T·ω. Its entries are the ConstraintRows' (theory: traces).
+/// A group of rows with one gap, one pressure and one friction bound: N·u ≤ gap and, with friction, the
+/// tangential trace T·u. Its entries are the ConstraintRows' (theory: traces).
 struct ContactPoint {
   std::int32_t node = 0;             ///< stands for it in output and messages; its owner owns the rows
   std::int32_t entry = 0;            ///< index into Model::contact

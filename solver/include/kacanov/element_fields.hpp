@@ -12,9 +12,9 @@
 
 namespace kacanov {
 
-/// Fields of elements `first` … `first` + `count` − 1 of the part at ω (its nodes × dim). Spans of `out` have
+/// Fields of elements `first` … `first` + `count` − 1 of the part at u (its nodes × dim). Spans of `out` have
 /// `count` entries (stress 6 each, xx yy zz xy yz zx), or none where not wanted.
-void element_fields(const Part& part, std::span<const double> omega, std::size_t first, std::size_t count,
+void element_fields(const Part& part, std::span<const double> u, std::size_t first, std::size_t count,
                     const reference::ElementFields& out);
 
 /// All fields of some elements in a row.
@@ -24,7 +24,7 @@ struct ElementRun {
   std::vector<std::uint8_t> plastic;
 };
 /// Calls visit(run) for the whole part, some thousand elements at a time.
-void visit_element_fields(const Part& part, std::span<const double> omega,
+void visit_element_fields(const Part& part, std::span<const double> u,
                           const std::function<void(const ElementRun&)>& visit);
 
 /// What the quadrature points of some elements in a row have, an element's together.
@@ -34,11 +34,11 @@ struct PointRun {
   std::vector<double> stress;  ///< × 6, as of elements
 };
 /// Calls visit(run) for the whole part, some thousand elements at a time.
-void visit_point_stress(const Part& part, std::span<const double> omega,
+void visit_point_stress(const Part& part, std::span<const double> u,
                         const std::function<void(const PointRun&)>& visit);
 
 /// von Mises stress at the part's nodes: the mean of the elements round a node over all ranks, weighted by
 /// volume. Collective.
-std::vector<double> nodal_von_mises(const Part& part, std::span<const double> omega);
+std::vector<double> nodal_von_mises(const Part& part, std::span<const double> u);
 
 }  // namespace kacanov

@@ -31,7 +31,7 @@ struct Part {
   std::vector<std::int32_t> node_index;               ///< index in Problem::mesh
   IndexRuns element_index;                            ///< likewise
   std::vector<std::int64_t> node_tags, element_tags;  ///< the user's numbers; empty: index + 1
-  IndexMap halo;                                      ///< of the nodes
+  IndexMap node_map;                                  ///< of the nodes
   std::int64_t total_elements = 0;
   std::vector<Law> laws;
   std::vector<std::uint16_t> law_of_element;  ///< empty: all follow laws[0]
@@ -68,21 +68,21 @@ struct Part {
     return element_tags.empty() ? std::int64_t{element_index[i]} + 1 : element_tags[i];
   }
   std::size_t unknowns() const noexcept { return coordinates.size(); }
-  std::int32_t owned_nodes() const noexcept { return halo.owned; }
-  std::int64_t total_nodes() const noexcept { return halo.total(); }
+  std::int32_t owned_nodes() const noexcept { return node_map.owned; }
+  std::int64_t total_nodes() const noexcept { return node_map.total(); }
   std::size_t owned_unknowns() const noexcept {
     return static_cast<std::size_t>(owned_nodes()) * static_cast<std::size_t>(dim());
   }
-  std::int64_t node_number(std::size_t i) const noexcept { return halo.number(i); }
+  std::int64_t node_number(std::size_t i) const noexcept { return node_map.number(i); }
   /// f += F.
   void add_load(std::span<double> f) const noexcept {
     for (const auto& entry : load) f[entry.component] += entry.value;
   }
   /// Place of a held component in `prescribed`.
   std::size_t prescribed_place(std::size_t component) const noexcept;
-  /// Sets held components of ω.
-  void prescribe(std::span<double> omega) const noexcept {
-    for (const auto& p : prescribed) omega[p.component] = p.value;
+  /// Sets held components of u.
+  void prescribe(std::span<double> u) const noexcept {
+    for (const auto& p : prescribed) u[p.component] = p.value;
   }
   Body body() const noexcept { return {{type, coordinates, elements}, laws, law_of_element}; }
 };

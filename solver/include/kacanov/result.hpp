@@ -18,11 +18,11 @@ enum class Status { converged, limited_by_rounding, not_converged, interrupted }
 /// The KKT residuals of a state, all relative to scales that it sets itself (theory: kkt, duality-gap,
 /// rounding).
 struct KktResiduals {
-  double equilibrium = 0.0;  ///< ‖F − R(ω) − Nᵀ M λ_n − Tᵀ M λ_f‖ on free components / force scale
-  double penetration = 0.0;      ///< max (Nω − ρ)⁺ / displacement scale
+  double equilibrium = 0.0;  ///< ‖F − R(u) − Nᵀ M λ_n − Tᵀ M λ_t‖ on free components / force scale
+  double penetration = 0.0;      ///< max (Nu − ρ)⁺ / displacement scale
   double tension = 0.0;          ///< max (−λ_n)⁺ / pressure scale
   double complementarity = 0.0;  ///< contact and friction products / (pressure × displacement × area)
-  double friction_cone = 0.0;    ///< max (|λ_f| − ψ)⁺ / pressure scale
+  double friction_cone = 0.0;    ///< max (|λ_t| − ψ)⁺ / pressure scale
   double force_balance = 0.0;    ///< |loads + contact + reactions| / force scale
   double duality_gap = 0.0;      ///< |primal − dual energy| / energy scale
 
@@ -130,9 +130,9 @@ enum class ContactStatus : std::uint8_t { open, stick, slip };  ///< frictionles
 struct Solution {
   Result result;                              ///< the same on every rank
   std::vector<double> displacement;           ///< nodes × dim
-  std::vector<double> gap;                    ///< contact points: ρ − Nω, the open distance
+  std::vector<double> gap;                    ///< contact points: ρ − Nu, the open distance
   std::vector<double> pressure;               ///< contact points: λ_n
-  std::vector<Vector3> traction;              ///< contact points: −λ_f, what the obstacle does to the body
+  std::vector<Vector3> traction;              ///< contact points: −λ_t, what the obstacle does to the body
   std::vector<ContactStatus> contact_status;  ///< contact points
 };
 
