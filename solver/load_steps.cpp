@@ -76,8 +76,9 @@ bool reach(OuterLoop& loop, const std::optional<OuterLoop::Place>& before, doubl
   if (arrives(loop, finished, result) || !finished || !loop.gave_up()) return finished;
   if (result.cg_iterations == 0) {
     result.message =
-        "no linear problem could be solved: elements that are next to flat, or parts far stiffer "
-        "than others, leave no definite operator in this arithmetic; kacanov check names the "
+        "no linear problem could be solved: elements that are next to flat, parts far stiffer than others, "
+        "or a "
+        "Poisson's ratio next to 0.5, leave no definite operator in this arithmetic; kacanov check names the "
         "worst element";
     return true;
   }

@@ -52,6 +52,16 @@ Certificate certify_independently(const StepContext& context, std::span<const do
   return kkt_residuals(context.space, context.traces, context.state, forces).certificate;
 }
 
+/// `gave_up`: the loop has found nothing more to gain. Where rounding alone is above the tolerance, that is
+/// why.
+Status status_of(const Certificate& certificate, double tolerance, bool gave_up) {
+  const double unknown = certificate.rounding.worst();
+  if (certificate.meets(tolerance)) return Status::converged;
+  if (certificate.exhausted(tolerance)) return Status::limited_by_rounding;
+  return gave_up && unknown > tolerance && std::isfinite(unknown) ? Status::limited_by_rounding
+                                                                  : Status::not_converged;
+}
+
 std::string verdict(const Result& result, const SolverOptions& options) {
   std::ostringstream text;
   text.precision(2);
@@ -60,9 +70,13 @@ std::string verdict(const Result& result, const SolverOptions& options) {
   if (result.status == Status::converged) {
     text << "all KKT residuals are at most " << worst << " (tolerance " << options.tolerance << ")";
   } else if (result.status == Status::limited_by_rounding) {
-    text << "the KKT residuals, at most " << worst << ", can be known to "
-         << result.certificate.rounding.worst() << " only, which is above the tolerance " << options.tolerance
+    const double unknown = result.certificate.rounding.worst();
+    text << "the KKT residuals, at most " << worst << ", can be known to " << unknown << " only, "
+         << (unknown > options.tolerance ? "which is above" : "too much beside") << " the tolerance "
+         << options.tolerance
          << ": parts far stiffer than others, or a body that moves far and strains little, leave no more";
+    if (!result.certificate.exhausted(options.tolerance))
+      text << "; and nothing better than these residuals was found: the numbers are no solution";
   } else if (result.status == Status::interrupted) {
     text << "interrupted after " << result.outer_iterations << " outer steps, with the worst KKT residual at "
          << worst;
@@ -130,9 +144,10 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
 
   const Vector internal = internal_force(part, context.state.u);
   result.certificate = certify_independently(context, internal);
-  result.status = result.certificate.meets(options.tolerance)       ? Status::converged
-                  : result.certificate.exhausted(options.tolerance) ? Status::limited_by_rounding
-                                                                    : Status::not_converged;
+  result.status = status_of(result.certificate, options.tolerance, loop.gave_up() && !loop.ran_away());
+  if (result.status == Status::limited_by_rounding && !result.certificate.exhausted(options.tolerance))
+    result.message.clear();  // it is not the load that stops it
+  result.load_factor = context.path.share();
   if (!part.no_equilibrium.empty()) result.status = Status::not_converged;
   if (context.path.share() != shares.back()) result.status = Status::not_converged;
   if (!finished) result.status = Status::interrupted;

@@ -27,22 +27,25 @@ double KktResiduals::worst() const noexcept {
 }
 
 bool Certificate::meets(double tolerance) const noexcept {
-  return worst() <= tolerance && rounding.worst() <= tolerance;
+  return std::all_of(residual_entries.begin(), residual_entries.end(),
+                     [&](const auto entry) { return this->*entry + rounding.*entry <= tolerance; });
 }
 
 bool Certificate::exhausted(double tolerance) const noexcept {
-  return std::all_of(residual_entries.begin(), residual_entries.end(),
-                     [&](const auto entry) { return this->*entry <= std::max(tolerance, rounding.*entry); });
+  return std::all_of(residual_entries.begin(), residual_entries.end(), [&](const auto entry) {
+    const double residual = this->*entry, unknown = rounding.*entry;
+    return residual <= unknown || residual + unknown <= tolerance;
+  });
 }
 
 namespace {
 
 /// Forces below this share of the harmonic mean of D times ‖u‖ are none to measure others by: of that mean,
 /// because a part as stiff as rigid would else make any force look small.
-constexpr double least_force = 1e-9;
-/// Share of it, and of u·diag(B) u, that the rounding of R(u) may come to (measured: 1e-16, so with room),
-/// and likewise of traces and gaps.
-constexpr double rounding = 3e-16;
+constexpr double least_force = 3e-9;
+/// Share of D∘u, and of u·(D∘u), that the rounding of R(u) may come to: nine units of it, because a row of B
+/// is a few times its diagonal (measured: up to 5.4e-16); and of traces and gaps, which are short sums.
+constexpr double rounding = 1e-15, rounding_of_traces = 3e-16;
 
 /// Products and extremes over the contact points.
 struct ContactSums {
@@ -95,6 +98,7 @@ struct BodySums {
   double residual_work = 0.0, internal_work = 0.0;
   double residual = 0.0, reaction = 0.0, contact = 0.0, load = 0.0;  // squares of norms
   double moved = 0.0, stiff = 0.0, stiff_work = 0.0;                 // |u|², |D∘u|², u·(D∘u)
+  double moved_all = 0.0, stiff_all = 0.0;                           // Σ |u|, Σ |D∘u|
   double softness = 0.0;                                             // mean of 1/D
 };
 
@@ -119,12 +123,14 @@ BodySums body_sums(const Part& part, std::span<const double> u, std::span<const 
     s.load += load * load;
     s.moved += u[i] * u[i];
     s.stiff += stiff * stiff;
+    s.moved_all += std::abs(u[i]);
+    s.stiff_all += std::abs(stiff);
     s.stiff_work += stiff * u[i];
     s.softness += 1.0 / diagonal;
   }
   part.node_map.sum_each({&s.balance[0], &s.balance[1], &s.balance[2], &s.all, &s.residual_work,
                           &s.internal_work, &s.residual, &s.reaction, &s.contact, &s.load, &s.moved, &s.stiff,
-                          &s.stiff_work, &s.softness});
+                          &s.stiff_work, &s.moved_all, &s.stiff_all, &s.softness});
   s.softness /= static_cast<double>(part.total_nodes()) * part.dim();
   return s;
 }
@@ -154,7 +160,8 @@ Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactS
   const double pressure = std::max(scales.pressure, tiny);
   Certificate& c = out.certificate;
   const double unknown_force = rounding * std::sqrt(body.stiff), unknown_energy = rounding * body.stiff_work,
-               unknown_trace = scales.displacement > 0.0 ? rounding * sums.trace : 0.0;  // at rest: exact
+               unknown_trace =
+                   scales.displacement > 0.0 ? rounding_of_traces * sums.trace : 0.0;  // at rest: exact
   c.equilibrium = std::sqrt(body.residual) / force;
   c.rounding.equilibrium = unknown_force / force;
   c.penetration = sums.penetration / displacement;
@@ -164,9 +171,10 @@ Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactS
   const double most_product = std::max(pressure * displacement * sums.area, tiny);
   c.complementarity = (sums.normal_product + sums.friction_product) / most_product;
   c.rounding.complementarity = sums.pressure * sums.area * unknown_trace / most_product;
-  const double all_forces = std::max({body.all, no_force, tiny});
+  const double all_forces = std::max({body.all, least_force / body.softness * body.moved_all, tiny});
   c.force_balance = std::hypot(body.balance[0], body.balance[1], body.balance[2]) / all_forces;
-  c.rounding.force_balance = unknown_force / all_forces;
+  // Equal elements that move alike are off alike: nothing averages out in a sum.
+  c.rounding.force_balance = rounding * body.stiff_all / all_forces;
   // Primal minus dual energy. With τ = τ(u) the stored energies add up to R·u, and
   // what is left is the work of the equilibrium residual and the contact products.
   const double all_energy = std::max({forces.energy, 0.5 * std::abs(body.internal_work), no_energy, tiny});

@@ -51,6 +51,8 @@ class OuterLoop {
   void stand_at(const Place& place, const Result& result);
   /// Whether the last run() ended because more steps promise nothing, and not for their number.
   bool gave_up() const noexcept { return gave_up_; }
+  /// Whether the body has left for good, as one that its supports or its material do not hold.
+  bool ran_away() const { return ran_away(certify()); }
 
   /// Starts from what a coarser mesh says (theory: nested). Penalties begin as from rest.
   void adopt(const Start& start);

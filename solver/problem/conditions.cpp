@@ -81,7 +81,8 @@ void add_body_force(const Mesh& mesh, const Vector3& force, std::span<const std:
 }  // namespace
 
 bool locks_without_bbar(const Law& law, ElementType type) {
-  constexpr double nearly_incompressible = 0.45;
+  // Worked back from the moduli, ν is off by a few of its last digits, one way or the other with the units.
+  constexpr double nearly_incompressible = 0.45 * (1.0 + 1e-12);
   const double poisson = (3.0 * law.bulk - 2.0 * law.shear) / (2.0 * (3.0 * law.bulk + law.shear));
   return cell(type).mean_dilatation && (!law.linear() || poisson > nearly_incompressible);
 }

@@ -254,7 +254,8 @@ TEST_CASE("maxima keep what is no number, and rounding counts as much as the res
   c.rounding.equilibrium = 1e-4;
   CHECK_FALSE(c.meets(1e-6));
   CHECK(c.exhausted(1e-6));
-  CHECK(c.meets(1e-4));
+  CHECK_FALSE(c.meets(1e-4));  // the true residual may be above
+  CHECK(c.meets(1.1e-4 * (1 + 1e-15)));
   c.penetration = 1e-5;
   CHECK_FALSE(c.exhausted(1e-6));
 }

@@ -129,6 +129,11 @@ TEST_CASE("B-bar is taken where elements lock without it, and asked for where it
   model.materials[0].law = elastic_law(1.0, 0.49);
   CHECK(taken(ElementType::hex8));
   CHECK_FALSE(taken(ElementType::tet10));
+  // 0.45 is on the one side of the bound, whatever the units.
+  for (double young = 1e-3; young < 1e12; young *= 1.7) {
+    model.materials[0].law = elastic_law(young, 0.45);
+    CHECK_FALSE(taken(ElementType::hex8));
+  }
   model.materials[0].law = logarithmic_law(0.01);
   CHECK(taken(ElementType::hex8));
   CHECK(said(validity::locking, problem(ElementType::hex8), model).empty());

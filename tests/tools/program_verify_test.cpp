@@ -121,6 +121,26 @@ TEST_CASE("an answer that has not converged is not verified, and its certificate
   CHECK(outcome.output.find("differs") == std::string::npos);
 }
 
+TEST_CASE("numbers of a part of the load are recomputed at that part") {
+  const Workplace place;
+  nlohmann::json beam = small_beam();
+  // Softer and softer: from some load on there is no balance.
+  beam["mesh"]["box"] = {{"size", {4, 1}}, {"cells", {4, 1}}, {"element", "quad4"}};
+  beam["material"][0]["law"] = {{"type", "logarithmic"}, {"argument", "squared"}, {"x0", 1e-6}};
+  beam["boundary"][1] = {{"on", "top"}, {"traction", {0, -0.002}}};
+  beam["contact"][0] = {{"on", "bottom"}, {"obstacle", {{"gap", 0.5}}}};
+  place.put_json("beam.json", beam);
+  REQUIRE(place.run("run beam.json --output out").exit_code == 1);
+  const nlohmann::json result = place.json("out/result.json");
+  REQUIRE(result["load_factor"].get<double>() < 1.0);
+  REQUIRE(result["load_factor"] == result["load_reached"]);
+  const Outcome outcome = place.run("verify beam.json --output out");
+  INFO(outcome.output, outcome.error);
+  CHECK(outcome.exit_code == 1);
+  CHECK(outcome.output.find("differs") == std::string::npos);
+  CHECK(outcome.output.find("the result says not_converged") != std::string::npos);
+}
+
 TEST_CASE("the verifier reads every form of Gmsh's format by itself") {
   const Workplace place;
   nlohmann::json input = cube("hex8");

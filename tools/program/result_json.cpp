@@ -50,7 +50,7 @@ ordered_json boundary_json(std::span<const BoundaryTotals> totals, const Model& 
 
 ordered_json mesh_json(const Result& result, const MeshSource& source, const Mesh& mesh) {
   const int dim = mesh.dim();
-  ordered_json json;
+  ordered_json json = ordered_json::object();
   if (source.file) json["file"] = *source.file;
   json["element"] = cell(mesh.type).name;
   json["nodes"] = result.unknowns / dim;
@@ -93,7 +93,7 @@ const char* status_name(Status status) {
 ordered_json result_json(const Result& result, const RunFigures& figures, const Case& input,
                          const Mesh& mesh) {
   const int dim = mesh.dim();
-  ordered_json json;
+  ordered_json json = ordered_json::object();
   json["status"] = status_name(result.status);
   json["message"] = result.message;
   json["warnings"] = result.warnings;
@@ -127,6 +127,7 @@ ordered_json result_json(const Result& result, const RunFigures& figures, const 
   json["plastic_share"] = result.plastic_share;
   json["softening_elements"] = result.softening_elements;
   json["load_reached"] = result.load_reached;
+  json["load_factor"] = result.load_factor;
   json["load_cuts"] = result.load_cuts;
   json["max_displacement"] = extreme_json(result.max_displacement, "node", dim);
   json["max_displacement"]["relative"] = result.max_displacement.value / result.body.size;
@@ -191,7 +192,7 @@ ordered_json failure_json(const std::string& message) {
 
 ordered_json spectrum_json(std::span<const SpectrumResult> results, std::int64_t unknowns,
                            std::int64_t contact_nodes) {
-  ordered_json json;
+  ordered_json json = ordered_json::object();
   json["unknowns"] = unknowns;
   json["contact_nodes"] = contact_nodes;
   const SpectrumResult& decisive = results.back();

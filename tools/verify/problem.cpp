@@ -2,6 +2,8 @@
 // Laws, loads and supports of a case.
 #include "verify/problem.hpp"
 
+#include <algorithm>
+
 namespace kacanov::verify {
 namespace {
 
@@ -61,13 +63,25 @@ void hold(Problem& problem, const nlohmann::json& entry, Real factor) {
     }
 }
 
-/// What the last of the load curves' steps multiplies an entry by: 1 where none names it (user guide: steps).
-Real last_factor(const nlohmann::json& document, const std::string& list, std::size_t index) {
+/// What an entry is multiplied by: the load factor, or what the load curves have for it at that time, linear
+/// between their steps, 0 before the first that names it and 1 where none does (user guide: steps).
+Real factor_at(Real load, const nlohmann::json& document, const std::string& list, std::size_t index) {
+  const auto steps = document.value("steps", nlohmann::json::array());
+  if (steps.empty()) return load;
   const std::string place = list + "[" + std::to_string(index) + "]";
   const std::string name = document.at(list).at(index).value("name", place);
-  double factor = 1;
-  for (const auto& step : document.value("steps", nlohmann::json::array()))
-    factor = step.at("factors").value(name, step.at("factors").value(place, factor));
+  const auto names_it = [&](const nlohmann::json& step) {
+    return step.at("factors").contains(name) || step.at("factors").contains(place);
+  };
+  if (std::none_of(steps.begin(), steps.end(), names_it)) return 1;
+  Real before = 0, factor = 0, since = 0;
+  for (const auto& step : steps) {
+    const Real time = step.at("time").get<double>();
+    before = factor;
+    factor = step.at("factors").value(name, step.at("factors").value(place, static_cast<double>(before)));
+    if (load < time) return before + (load - since) / (time - since) * (factor - before);
+    since = time;
+  }
   return factor;
 }
 
@@ -102,7 +116,7 @@ FacetIntegrals consistent(const Mesh& mesh, const Indices& facet) {
   return out;
 }
 
-Problem read_problem(const nlohmann::json& document, const std::filesystem::path& folder) {
+Problem read_problem(const nlohmann::json& document, const std::filesystem::path& folder, Real load) {
   Problem problem;
   problem.mesh = load_mesh(document.at("mesh"), folder);
   const std::size_t nodes = problem.mesh.nodes.size();
@@ -119,7 +133,7 @@ Problem read_problem(const nlohmann::json& document, const std::filesystem::path
   const auto boundary = document.value("boundary", nlohmann::json::array());
   for (std::size_t i = 0; i < boundary.size(); ++i) {
     const nlohmann::json& entry = boundary.at(i);
-    const Real factor = last_factor(document, "boundary", i);
+    const Real factor = factor_at(load, document, "boundary", i);
     if (entry.contains("displacement")) hold(problem, entry, factor);
     if (entry.contains("traction") || entry.contains("total_force") || entry.contains("pressure"))
       add_surface_load(problem, entry, factor);
@@ -127,7 +141,7 @@ Problem read_problem(const nlohmann::json& document, const std::filesystem::path
   }
   const auto contact = document.value("contact", nlohmann::json::array());
   for (std::size_t i = 0; i < contact.size(); ++i)
-    problem.contact_factor.push_back(last_factor(document, "contact", i));
+    problem.contact_factor.push_back(factor_at(load, document, "contact", i));
   find_rows(contact, problem);
   if (document.contains("solver")) problem.tolerance = document.at("solver").value("tolerance", 1e-6);
   for (const auto& point : document.value("probe", nlohmann::json::array()))

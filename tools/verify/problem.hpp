@@ -20,6 +20,8 @@ struct ContactRow {
   std::size_t entry = 0;             ///< of `contact`
   Real gap = 0, mass = 0, tresca = 0, coulomb = 0;
   Real closed = 0;  ///< by prescribed components, and off the gap
+  Real gap_from =
+      0;  ///< lengths that the gap is a difference of, which in double leaves some of them unknown
   bool friction = false;
   bool grazing = false;  ///< whether it meets the sphere is a matter of rounding
 };
@@ -31,7 +33,7 @@ struct Problem {
   std::vector<Vec> load;                  ///< F, one a node
   std::vector<std::array<bool, 3>> held;  ///< components with a prescribed displacement
   std::vector<Vec> prescribed;
-  std::vector<Real> contact_factor;  ///< of each contact entry at the last load step
+  std::vector<Real> contact_factor;  ///< of each contact entry
   std::vector<ContactRow> rows;
   std::vector<std::int64_t> surface_tags;  ///< numbers of the nodes in contact.vtu, in its order
   std::vector<Vec> probes;
@@ -39,8 +41,8 @@ struct Problem {
 };
 
 /// Of a case that the program has accepted; throws Failure for what the verifier does not know. `folder`:
-/// where relative paths start.
-Problem read_problem(const nlohmann::json& document, const std::filesystem::path& folder);
+/// where relative paths start; load: the factor of the whole load, or with load curves the time.
+Problem read_problem(const nlohmann::json& document, const std::filesystem::path& folder, Real load);
 
 /// Finds the contact rows of a problem whose supports are known.
 void find_rows(const nlohmann::json& contact, Problem& problem);

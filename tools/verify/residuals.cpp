@@ -7,7 +7,7 @@
 namespace kacanov::verify {
 namespace {
 
-constexpr Real tiny = 1e-300L, least_force = 1e-9L, delta = 3e-16L;
+constexpr Real tiny = 1e-300L, least_force = 3e-9L, delta = 1e-15L, delta_of_traces = 3e-16L;
 
 /// u in the directions that are free and orthogonal to the row's normal.
 Vec tangential(const Problem& problem, const ContactRow& row, const std::vector<Vec>& u) {
@@ -27,7 +27,7 @@ Vec tangential(const Problem& problem, const ContactRow& row, const std::vector<
 
 struct ContactSums {
   Real products = 0, work = 0, area = 0, pressure = 0, trace = 0;
-  Real penetration = 0, tension = 0, cone = 0;
+  Real penetration = 0, tension = 0, cone = 0, gap_from = 0;
   std::vector<Vec> force;  ///< CᵀMλ, one a node
 };
 
@@ -56,6 +56,7 @@ ContactSums sum_contact(const Problem& problem, const Answer& answer, Findings& 
     sums.penetration = larger(sums.penetration, -open);
     sums.tension = larger(sums.tension, -lambda);
     sums.pressure = larger(sums.pressure, std::abs(lambda));
+    sums.gap_from = larger(sums.gap_from, row.gap_from);
     sums.trace = larger(sums.trace, std::abs(trace) + std::abs(row.gap));
     if (!row.friction) continue;
     const Vec slip = tangential(problem, row, answer.u);
@@ -72,7 +73,8 @@ ContactSums sum_contact(const Problem& problem, const Answer& answer, Findings& 
 struct BodySums {
   Vec balance{};
   Real all = 0, residual_work = 0, internal_work = 0, residual = 0, reaction = 0, contact = 0, load = 0;
-  Real moved = 0, stiff = 0, stiff_work = 0, softness = 0, displacement = 0, supports = 0;
+  Real moved = 0, stiff = 0, stiff_work = 0, moved_all = 0, stiff_all = 0, softness = 0, displacement = 0,
+       supports = 0;
 };
 
 BodySums sum_body(const Problem& problem, const Answer& answer, const BodyResponse& body,
@@ -96,6 +98,8 @@ BodySums sum_body(const Problem& problem, const Answer& answer, const BodyRespon
       s.moved += u * u;
       s.stiff += d * u * d * u;
       s.stiff_work += d * u * u;
+      s.moved_all += std::abs(u);
+      s.stiff_all += std::abs(d * u);
       s.softness += 1 / d;
       s.displacement = larger(s.displacement, std::abs(u));
       if (held) s.supports = larger(s.supports, std::abs(u - problem.prescribed[n][c]));
@@ -118,14 +122,16 @@ Findings examine(const Problem& problem, const Answer& answer) {
   const Real no_force = soft * std::sqrt(body.moved), no_energy = soft * body.moved;
   const Real force =
       larger(larger(std::sqrt(larger(body.reaction, larger(body.contact, body.load))), no_force), tiny);
-  const Real moved = larger(body.displacement, tiny), all = larger(larger(body.all, no_force), tiny);
+  const Real moved = larger(body.displacement, tiny),
+             all = larger(larger(body.all, soft * body.moved_all), tiny);
   const Real pressure =
       larger(larger(sums.pressure, sums.area > 0 ? body.all / 2 / sums.area * 1e-3L : Real(0)), tiny);
   const Real product = larger(pressure * moved * sums.area, tiny);
   const Real energy =
       larger(larger(response.energy, std::abs(body.internal_work) / 2), larger(no_energy, tiny));
   const Real unknown_force = delta * std::sqrt(body.stiff);
-  const Real unknown_trace = body.displacement > 0 ? delta * sums.trace : 0;
+  const Real unknown_trace = body.displacement > 0 ? delta_of_traces * sums.trace : 0;
+  findings.unknown_gap = delta_of_traces * sums.gap_from / moved;
   findings.supports = body.supports / moved;
   findings.entries = {
       {"equilibrium", std::sqrt(body.residual) / force, unknown_force / force},
@@ -133,7 +139,7 @@ Findings examine(const Problem& problem, const Answer& answer) {
       {"tension", sums.tension / pressure, 0},
       {"complementarity", sums.products / product, sums.pressure * sums.area * unknown_trace / product},
       {"friction_cone", sums.cone / pressure, 0},
-      {"force_balance", norm(body.balance) / all, unknown_force / all},
+      {"force_balance", norm(body.balance) / all, delta * body.stiff_all / all},
       {"duality_gap", std::abs(sums.work - body.residual_work) / energy, delta * body.stiff_work / energy}};
   return findings;
 }

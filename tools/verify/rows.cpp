@@ -12,26 +12,28 @@ namespace {
 struct Facing {
   Vec normal{};
   Real gap = 0;
+  Real from = 0;  ///< lengths that the gap is a difference of
   bool missed = false, grazing = false;
 };
 
 Facing face(const nlohmann::json& obstacle, const Vec& x, const Vec& outer) {
-  if (obstacle.contains("gap")) return {1 / norm(outer) * outer, obstacle.at("gap").get<double>()};
+  if (obstacle.contains("gap")) return {1 / norm(outer) * outer, obstacle.at("gap").get<double>(), 0};
   if (obstacle.contains("plane")) {
     const Vec normal = read_vector(obstacle.at("plane").at("normal")),
               point = read_vector(obstacle.at("plane").at("point"));
     const Vec direction = -1 / norm(normal) * normal;
-    return {direction, dot(point - x, direction)};
+    return {direction, dot(point - x, direction), norm(point - x)};
   }
   const nlohmann::json& sphere = obstacle.at("sphere");
   const Vec to_centre = read_vector(sphere.at("centre")) - x;
   const Real radius = sphere.at("radius").get<double>();
-  if (!sphere.contains("direction")) return {1 / norm(to_centre) * to_centre, norm(to_centre) - radius};
+  const Real from = norm(to_centre) + radius;
+  if (!sphere.contains("direction")) return {1 / norm(to_centre) * to_centre, norm(to_centre) - radius, from};
   const Vec way = read_vector(sphere.at("direction")), direction = 1 / norm(way) * way;
   const Real along = dot(to_centre, direction);
   const Real inside = radius * radius - dot(to_centre, to_centre) + along * along;
   const Real unsure = 1e-13L * (radius * radius + dot(to_centre, to_centre));
-  return {direction, along - std::sqrt(std::max(inside, Real(0))), inside < -unsure,
+  return {direction, along - std::sqrt(std::max(inside, Real(0))), from, inside < -unsure,
           std::abs(inside) <= unsure};
 }
 
@@ -115,6 +117,7 @@ void find_rows(const nlohmann::json& contact, Problem& problem) {
       if (facing.missed) continue;
       row.normal = facing.normal;
       row.gap = facing.gap;
+      row.gap_from = facing.from;
       row.grazing = facing.grazing;
       row.mass = sum.mass;
       row.tresca = friction.value("tresca", 0.0);
@@ -123,7 +126,7 @@ void find_rows(const nlohmann::json& contact, Problem& problem) {
       if (restrict_to_free(problem, row) && !joined(rows[node], row, size)) rows[node].push_back(row);
     }
   }
-  // Where an obstacle presses in, the share of its deepest indentation that the last load step lacks.
+  // Where an obstacle presses in, the share of its deepest indentation that is lacking.
   std::vector<Real> depth(problem.contact_factor.size());
   for (auto& [node, of_node] : rows)
     for (ContactRow& row : of_node) {

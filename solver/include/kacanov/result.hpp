@@ -12,7 +12,8 @@
 
 namespace kacanov {
 
-/// `limited_by_rounding`: the residuals are as small as this arithmetic can tell, which is not small enough.
+/// `limited_by_rounding`: what this arithmetic can tell of the residuals is more than the tolerance, and the
+/// run has come to where more steps change nothing (theory: rounding).
 enum class Status { converged, limited_by_rounding, not_converged, interrupted };
 
 /// The KKT residuals of a state, all relative to scales that it sets itself (theory: kkt, duality-gap,
@@ -35,7 +36,7 @@ struct Certificate : KktResiduals {
   /// Down to which each residual can be known: what rounding leaves of it where it ought to be zero.
   KktResiduals rounding;
 
-  /// Whether every residual, and what rounding may hide in it, is at most `tolerance`.
+  /// Whether every residual with what rounding may hide in it is at most `tolerance`: the true one is then.
   bool meets(double tolerance) const noexcept;
   /// Whether none that is above `tolerance` can be told from rounding: more iterations change nothing.
   bool exhausted(double tolerance) const noexcept;
@@ -114,6 +115,7 @@ struct Result {
   std::vector<Vector3> probe;
   bool by_time = false;       ///< the factors of the load steps are times of the load curves
   double load_reached = 0.0;  ///< factor of the last state that converged; 0: none has
+  double load_factor = 1.0;   ///< factor of the state that all numbers and fields are of
   int load_cuts = 0;          ///< how often a load step, or a part of one, was halved because it did not
   std::vector<LoadStep> load_steps;  ///< those that are over; empty where the load is put on at once
   Certificate certificate;
