@@ -70,7 +70,7 @@ std::string describe_differences(const json& there, const json& here, std::span<
 }
 
 json fingerprint_json(const Fingerprint& print) {
-  json out;
+  json out = json::object();
   for (const auto& [name, hash] : print.sections) out[name] = hash;
   return out;
 }

@@ -26,6 +26,11 @@ Checkpoint CheckpointFile::read() const {
   if (!std::filesystem::exists(path_))
     throw InputError("--restart: there is no checkpoint to go on from, expected the file " + file);
   HashedReader reader(file, magic, "checkpoint");
+  return reading_header(file, [&] { return take(reader); });
+}
+
+Checkpoint CheckpointFile::take(HashedReader& reader) const {
+  const std::string file = path_.string();
   const json& header = reader.header();
   Checkpoint checkpoint;
   for (const auto& [name, bits] : header.at("numbers").items())
@@ -55,7 +60,7 @@ bool CheckpointFile::due() const { return Clock::now() - last_ > cost_ / share_o
 
 void CheckpointFile::write(const Checkpoint& checkpoint) {
   const auto start = Clock::now();
-  json header;
+  json header = json::object();
   header["problem"] = fingerprint_json(print_);
   header["load_steps"] = input_->model.solver.load_steps;
   header["case"] = case_sections(input_->document, sections);

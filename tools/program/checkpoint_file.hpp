@@ -9,6 +9,7 @@
 
 #include <kacanov/checkpoint.hpp>
 #include "case/case_file.hpp"
+#include "program/hashed_file.hpp"
 
 namespace kacanov {
 
@@ -38,6 +39,8 @@ class CheckpointFile {
 
  private:
   using Clock = std::chrono::steady_clock;
+
+  Checkpoint take(HashedReader& reader) const;
 
   std::filesystem::path path_;
   const Case* input_;

@@ -105,6 +105,18 @@ void gather_warnings(const Case& input, const Problem& problem, Result& result) 
   result.warnings = std::move(all);
 }
 
+/// The solve; what is wrong with the checkpoint it starts from, in the file of this name, is said of that
+/// file.
+Solution solve_from(Part& part, const SolverOptions& solver, const RunOptions& options,
+                    const std::string& checkpoint) {
+  try {
+    return solve(part, solver, options);
+  } catch (const InputError& error) {
+    if (checkpoint.empty()) throw;
+    throw InputError("--restart: " + checkpoint + ": " + error.what());
+  }
+}
+
 std::string checkpoint_line(const CheckpointFile& file) {
   return file.written()
              ? "  checkpoint    " + file.path().string() + "; the option --restart goes on from there\n"
@@ -172,7 +184,7 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
   CoarseRun coarse;
   if (!command.restart) coarse = solve_coarser(input, mpi, options);
   if (coarse.solution) options.coarse = &*coarse.solution;
-  Solution solution = solve(loaded.part, input.model.solver, options);
+  Solution solution = solve_from(loaded.part, input.model.solver, options, left ? file->path().string() : "");
 
   const double solved = MPI_Wtime();
   coarse.solution.reset();

@@ -48,7 +48,8 @@ HashedReader::HashedReader(const std::string& path, std::string_view magic, cons
   take(front.data() + front.size() - length, length);
   hash_ = hash_bytes(front.data(), front.size(), hash_);
   check_hash();
-  header_ = nlohmann::json::parse(std::string_view(front).substr(front.size() - length));
+  header_ = nlohmann::json::parse(std::string_view(front).substr(front.size() - length), nullptr, false);
+  if (!header_.is_object()) fail("has a header that is no JSON object");
 }
 
 void HashedReader::expect(std::uint64_t entries, std::size_t bytes_each) const {

@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include <kacanov/error.hpp>
 #include "formats/atomic_file.hpp"
 
 namespace kacanov {
@@ -50,5 +51,15 @@ class HashedReader {
   std::uint64_t size_ = 0, left_ = 0, hash_ = 0;
   nlohmann::json header_;
 };
+
+/// Does work that looks into a header: what it misses there is the file's fault, an InputError naming it.
+template <class Work>
+decltype(auto) reading_header(const std::string& path, Work&& work) {
+  try {
+    return work();
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(path + ": its header has not what is expected: " + error.what());
+  }
+}
 
 }  // namespace kacanov

@@ -10,6 +10,7 @@
 #include "parallel/check_part.hpp"
 #include "parallel/part_fields.hpp"
 #include "program/case_identity.hpp"
+#include "program/check_boundary.hpp"
 #include "program/hashed_file.hpp"
 #include "program/output_folder.hpp"
 
@@ -197,8 +198,11 @@ void write_parts(const std::filesystem::path& folder, const Case& input, Problem
 
 int count_parts(const std::filesystem::path& folder, const Case& input) {
   const HashedReader reader = open_boundary(folder);
-  check_case(reader.header(), input, boundary_file(folder).string());
-  return reader.header().at("parts");
+  const std::string file = boundary_file(folder).string();
+  return reading_header(file, [&]() -> int {
+    check_case(reader.header(), input, file);
+    return reader.header().at("parts");
+  });
 }
 
 LoadedCase load_parts(const std::filesystem::path& folder, const Case& input, const MpiSession& mpi) {
@@ -208,26 +212,35 @@ LoadedCase load_parts(const std::filesystem::path& folder, const Case& input, co
   together(mpi, [&] {
     if (mpi.first()) {
       HashedReader reader = open_boundary(folder);
-      check_case(reader.header(), input, boundary_file(folder).string());
-      check_mesh(reader.header(), input, boundary_file(folder).string());
+      const std::string file = boundary_file(folder).string();
+      reading_header(file, [&] {
+        check_case(reader.header(), input, file);
+        check_mesh(reader.header(), input, file);
+        loaded.print = parse_fingerprint(reader.header().at("problem"));
+      });
       const FieldReader read{reader};
       read(loaded.problem.emplace());
       read(loaded.boundary_nodes);
       reader.finish();
-      loaded.print = parse_fingerprint(reader.header().at("problem"));
       first_identity = split_identity(reader.header());
     }
     HashedReader reader = open_part(folder, mpi.rank());
-    check_part(reader.header(), input, mpi, part_file(folder, mpi.rank()).string());
+    const std::string file = part_file(folder, mpi.rank()).string();
+    reading_header(file, [&] { check_part(reader.header(), input, mpi, file); });
     FieldReader{reader}(loaded.part);
     reader.finish();
     try {
       check_part(loaded.part, mpi.rank(), mpi.ranks());
       check_entries(loaded.part, input.model);
     } catch (const InputError& error) {
-      throw InputError("--parts: " + part_file(folder, mpi.rank()).string() + ": " + error.what());
+      throw InputError("--parts: " + file + ": " + error.what());
     }
     identity = split_identity(reader.header());
+    if (mpi.first()) try {
+        check_boundary(*loaded.problem, loaded.boundary_nodes, loaded.part);
+      } catch (const InputError& error) {
+        throw InputError("--parts: " + boundary_file(folder).string() + ": " + error.what());
+      }
     if (mpi.first()) print_warnings(input, *loaded.problem);
   });
   MPI_Bcast(&first_identity, 1, MPI_UINT64_T, 0, mpi.comm());

@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The program kacanov: reads the command line, sees to its processes and hands over to a subcommand.
+#include <unistd.h>
+
+#include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
+#include <exception>
 #include <iostream>
+#include <new>
 #include <optional>
 
 #include <kacanov/error.hpp>
@@ -132,6 +138,30 @@ bool writes_files(const std::optional<Command>& command) {
          command->kind != Command::Kind::verify;
 }
 
+std::atomic<bool> out_of_memory = false;
+
+[[noreturn]] void note_lack_of_memory() {
+  out_of_memory = true;
+  throw std::bad_alloc();
+}
+
+/// The last way out: where memory ends, even taking a JSON document apart may ask for some, and throw where
+/// nothing may be thrown. Allocates nothing.
+[[noreturn]] void end_at_once() {
+  const char* what = out_of_memory ? "out of memory" : "a failure of a failure";
+  try {
+    if (std::current_exception()) throw;
+  } catch (const std::bad_alloc&) {
+    what = "out of memory";
+  } catch (const std::exception& error) {
+    what = error.what();
+  } catch (...) {
+  }
+  for (const char* text : {"kacanov: internal failure: ", what, "\n"})
+    if (write(STDERR_FILENO, text, std::strlen(text)) < 0) break;
+  _exit(coded_exit(exit_failure));
+}
+
 int say(const ParsedCommand& parsed) {
   std::cout << parsed.output << std::flush;
   std::cerr << parsed.error << std::flush;
@@ -141,6 +171,8 @@ int say(const ParsedCommand& parsed) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::set_terminate(end_at_once);
+  std::set_new_handler(note_lack_of_memory);
   // A file beyond the limit of its size is an error like a full disk; who no longer reads what is printed
   // does not end a run whose results go to files.
   for (const int signal : {SIGXFSZ, SIGPIPE}) std::signal(signal, SIG_IGN);
