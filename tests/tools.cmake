@@ -15,6 +15,11 @@ foreach(area program_errors program_failures program_files program_memory progra
   set_tests_properties(${area} PROPERTIES PROCESSORS 2)
 endforeach()
 
+kacanov_test(program_crafted
+  SOURCES tools/program_crafted_test.cpp
+  LIBRARIES kacanov_program_runner kacanov_program kacanov_solver_internal)
+add_dependencies(test_program_crafted kacanov)
+
 kacanov_test(program_verify
   SOURCES tools/program_verify_test.cpp tools/mesh_writer.cpp
   LIBRARIES kacanov_program_runner kacanov_formats)
@@ -27,6 +32,18 @@ if(Python3_FOUND)
   add_test(NAME verified_answers
     COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/perf/verify_answers" $<TARGET_FILE:kacanov> --count 60)
   kacanov_test_properties(verified_answers 1)
+endif()
+
+# What a small run does where files, memory or the power fail, and when it is killed: places far apart here,
+# every one with perf/endure by itself. The preloaded library and the sanitizers do not mix.
+add_library(kacanov_faults MODULE tools/faults.cpp)
+target_link_libraries(kacanov_faults PRIVATE ${CMAKE_DL_LIBS} kacanov_warnings)
+target_compile_features(kacanov_faults PRIVATE cxx_std_20)
+if(Python3_FOUND AND NOT KACANOV_SANITIZE)
+  add_test(NAME endured_faults
+    COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/perf/endure" $<TARGET_FILE:kacanov>
+      $<TARGET_FILE:kacanov_faults> --every 61 --kills 3)
+  kacanov_test_properties(endured_faults 1)
 endif()
 
 kacanov_test(program_hard SOURCES tools/program_hard_test.cpp LIBRARIES kacanov_program_runner)
