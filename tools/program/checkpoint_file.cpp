@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include <kacanov/error.hpp>
+#include "formats/printable.hpp"
 #include "program/case_identity.hpp"
 #include "program/hashed_file.hpp"
 
@@ -77,7 +78,7 @@ void CheckpointFile::write(const Checkpoint& checkpoint) {
   } catch (const InternalError& refusal) {
     // A run of hours does not end because its disk is full now.
     if (warned_ != refusal.what()) {
-      std::cerr << std::string("kacanov: warning: ") + refusal.what() +
+      std::cerr << "kacanov: warning: " + printable(refusal.what()) +
                        (std::filesystem::exists(path_) ? "; the checkpoint before it stays\n"
                                                        : "; there is no checkpoint\n");
     }

@@ -2,6 +2,7 @@
 // kacanov partition: splits a case once into files that the ranks of later runs read on their own.
 #include <iostream>
 
+#include "formats/printable.hpp"
 #include "program/commands.hpp"
 #include "program/part_files.hpp"
 
@@ -12,7 +13,7 @@ int partition_command(const Command& command, const Case& input) {
   const std::size_t elements = problem.mesh.element_count(), nodes = problem.mesh.node_count();
   write_parts(command.output, input, std::move(problem), *command.ranks);
   std::cout << std::to_string(elements) + " elements, " + std::to_string(nodes) + " nodes in " +
-                   std::to_string(*command.ranks) + " parts: " + command.output + "\n";
+                   std::to_string(*command.ranks) + " parts: " + printable(command.output) + "\n";
   return exit_converged;
 }
 

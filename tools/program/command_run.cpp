@@ -11,6 +11,7 @@
 #include <kacanov/solve.hpp>
 #include <kacanov/validity.hpp>
 #include "formats/atomic_file.hpp"
+#include "formats/printable.hpp"
 #include "pictures/picture.hpp"
 #include "program/checkpoint_file.hpp"
 #include "program/coarse_run.hpp"
@@ -118,9 +119,9 @@ Solution solve_from(Part& part, const SolverOptions& solver, const RunOptions& o
 }
 
 std::string checkpoint_line(const CheckpointFile& file) {
-  return file.written()
-             ? "  checkpoint    " + file.path().string() + "; the option --restart goes on from there\n"
-             : "";
+  return file.written() ? "  checkpoint    " + printable(file.path().string()) +
+                              "; the option --restart goes on from there\n"
+                        : "";
 }
 
 /// What failed after the solve does not take its numbers away: they stay beside the status and the message.
@@ -139,7 +140,7 @@ void try_to_show(const std::function<void()>& work) {
   try {
     work();
   } catch (const std::exception& error) {
-    std::cerr << std::string("kacanov: warning: not shown: ") + error.what() + "\n";
+    std::cerr << "kacanov: warning: not shown: " + printable(error.what()) + "\n";
   }
 }
 
@@ -247,7 +248,7 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
       sync_file(folder.string());
       file->remove();
     }
-    std::cout << "\n" + text + "  files         " + folder.string() + "\n";
+    std::cout << "\n" + text + "  files         " + printable(folder.string()) + "\n";
   });
   return result.status == Status::converged ? exit_converged : exit_not_converged;
 }

@@ -8,6 +8,7 @@
 #include <kacanov/error.hpp>
 #include <kacanov/solve.hpp>
 #include "formats/atomic_file.hpp"
+#include "formats/printable.hpp"
 #include "pictures/picture.hpp"
 #include "program/commands.hpp"
 #include "program/loaded_case.hpp"
@@ -121,7 +122,8 @@ int sweep_command(const Command& command, const Case& input, const MpiSession& m
     if (!mpi.first()) return;
     write_file((folder / "sweep.csv").string(), csv(results, r));
     write_file((folder / "sweep.svg").string(), svg(input.name, results, r, landmarks));
-    std::cout << "files: " + (folder / "sweep.csv").string() + ", " + (folder / "sweep.svg").string() + "\n";
+    std::cout << "files: " + printable((folder / "sweep.csv").string()) + ", " +
+                     printable((folder / "sweep.svg").string()) + "\n";
   });
   return any_converged ? exit_converged : exit_not_converged;
 }
