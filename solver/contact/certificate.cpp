@@ -54,7 +54,7 @@ struct ContactSums {
   double dual_work = 0.0;  // Σ M (λ_n (ρ − Nu) + ψ|Tu| − λ_t·Tu), the contact part of the duality gap
   double area = 0.0, force = 0.0;
   double penetration = 0.0, tension = 0.0, cone = 0.0, pressure = 0.0;
-  double trace = 0.0;  // max |Nu| + |ρ|
+  double unknown_trace = 0.0, unknown_product = 0.0;  // what rounding leaves of a gap, and of Σ M λ times it
 };
 
 ContactSums contact_sums(const Traces& traces, const ContactState& state) {
@@ -71,23 +71,27 @@ ContactSums contact_sums(const Traces& traces, const ContactState& state) {
     s.penetration = larger(s.penetration, -open);
     s.tension = larger(s.tension, -lambda);
     s.pressure = larger(s.pressure, std::abs(lambda));
-    s.trace = larger(s.trace, std::abs(state.trace.normal[i]) + std::abs(state.gap[i]));
+    // A point that is open by more than that is open, and not its own residual.
+    const double unknown = rounding_of_traces * (std::abs(state.trace.normal[i]) + std::abs(state.gap[i]));
+    if (open <= unknown) s.unknown_trace = larger(s.unknown_trace, unknown);
+    s.unknown_product += point.mass * std::abs(lambda) * unknown;
     if (point.tangents == 0) continue;
     const double bound = state.bound[i], length = std::hypot(friction[0], friction[1]);
     const double product =
         bound * std::hypot(slip[0], slip[1]) - friction[0] * slip[0] - friction[1] * slip[1];
     s.friction_product += point.mass * std::abs(product);
+    s.unknown_product += point.mass * (bound + length) * rounding_of_traces * std::hypot(slip[0], slip[1]);
     s.dual_work += point.mass * product;
     s.cone = larger(s.cone, length - bound);
     s.pressure = larger(s.pressure, length);
   }
   const Communicator& ranks = traces.ranks();
-  ranks.sum_each({&s.normal_product, &s.friction_product, &s.dual_work, &s.area});
+  ranks.sum_each({&s.normal_product, &s.friction_product, &s.dual_work, &s.area, &s.unknown_product});
   s.penetration = ranks.max_all(s.penetration);
   s.tension = ranks.max_all(s.tension);
   s.cone = ranks.max_all(s.cone);
   s.pressure = ranks.max_all(s.pressure);
-  s.trace = ranks.max_all(s.trace);
+  s.unknown_trace = ranks.max_all(s.unknown_trace);
   return s;
 }
 
@@ -159,18 +163,17 @@ Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactS
   const double force = std::max(scales.force, tiny), displacement = std::max(scales.displacement, tiny);
   const double pressure = std::max(scales.pressure, tiny);
   Certificate& c = out.certificate;
-  const double unknown_force = rounding * std::sqrt(body.stiff), unknown_energy = rounding * body.stiff_work,
-               unknown_trace =
-                   scales.displacement > 0.0 ? rounding_of_traces * sums.trace : 0.0;  // at rest: exact
+  const double unknown_force = rounding * std::sqrt(body.stiff), unknown_energy = rounding * body.stiff_work;
+  const double moved = scales.displacement > 0.0 ? 1.0 : 0.0;  // at rest, traces and gaps are exact
   c.equilibrium = std::sqrt(body.residual) / force;
   c.rounding.equilibrium = unknown_force / force;
   c.penetration = sums.penetration / displacement;
-  c.rounding.penetration = unknown_trace / displacement;
+  c.rounding.penetration = moved * sums.unknown_trace / displacement;
   c.tension = sums.tension / pressure;
   c.friction_cone = sums.cone / pressure;
   const double most_product = std::max(pressure * displacement * sums.area, tiny);
   c.complementarity = (sums.normal_product + sums.friction_product) / most_product;
-  c.rounding.complementarity = sums.pressure * sums.area * unknown_trace / most_product;
+  c.rounding.complementarity = moved * sums.unknown_product / most_product;
   const double all_forces = std::max({body.all, least_force / body.softness * body.moved_all, tiny});
   c.force_balance = std::hypot(body.balance[0], body.balance[1], body.balance[2]) / all_forces;
   // Equal elements that move alike are off alike: nothing averages out in a sum.
