@@ -91,6 +91,9 @@ TEST_CASE(
     changes.push_back({"its header has not what is expected", [key](RawCheckpoint& c) {
                          c.header[key] = {1, "x"};
                        }});
+  nlohmann::json deep = 1;
+  for (int level = 0; level < 300; ++level) deep = nlohmann::json::array({deep});
+  changes.push_back({"64 levels", [&deep](RawCheckpoint& c) { c.header["case"] = deep; }});
   changes.push_back({"no JSON object", [](RawCheckpoint& c) { c.header = 7; }});
   for (const Change& change : changes) {
     INFO(change.words, ", change ", &change - changes.data());

@@ -98,6 +98,26 @@ TEST_CASE("a case may come through a pipe, on several ranks too, and is read onc
   }
 }
 
+TEST_CASE("a pipe where a file belongs is refused and not waited for") {
+  const Workplace place;
+  place.put_json("beam.json", small_beam());
+  const auto refused = [&](const std::string& pipe, const std::string& arguments) {
+    INFO(pipe);
+    const Outcome outcome = script(
+        place, "rm -f " + pipe + "; mkfifo " + pipe + "; timeout -s KILL 20 $PROGRAM " + arguments + "\n");
+    CHECK(outcome.exit_code == 2);
+    CHECK(outcome.error.find(pipe) != std::string::npos);
+    CHECK(outcome.error.find("regular") != std::string::npos);
+  };
+  REQUIRE(place.run("partition beam.json --ranks 1 --output parts").exit_code == 0);
+  REQUIRE(place.run("run beam.json --output out").exit_code == 0);
+  refused("out/body.vtu", "verify beam.json --output out");
+  refused("out/result.json", "verify beam.json --output out");
+  refused("out/checkpoint.kacanov", "run beam.json --output out --restart");
+  refused("parts/part_0.kacanov", "run beam.json --parts parts");
+  refused("parts/boundary.kacanov", "run beam.json --parts parts");
+}
+
 TEST_CASE("too much of a case is refused by its limits") {
   const Workplace place;
   place.put("deep.json", std::string(300000, '['));
@@ -112,6 +132,17 @@ TEST_CASE("too much of a case is refused by its limits") {
   outcome = place.run("check beam.json --set solver.load_steps=2000000000");
   CHECK(outcome.exit_code == 2);
   CHECK(outcome.error.find("solver.load_steps: expected at most 10000 load steps") != std::string::npos);
+}
+
+TEST_CASE("what a name has of a terminal's language does not get there") {
+  const Workplace place;
+  const std::string name = "red\033[31m";
+  place.put_json(name + ".json", small_beam());
+  const Outcome outcome = place.run("run '" + name + ".json'");
+  CHECK(outcome.exit_code == 0);
+  CHECK(outcome.output.find('\033') == std::string::npos);
+  CHECK(outcome.output.find("red\\x1b[31m") != std::string::npos);
+  CHECK(place.has("results/" + name + "/result.json"));
 }
 
 TEST_CASE("numbers come first, and no picture takes them away") {

@@ -31,8 +31,12 @@ void HashedWriter::commit() {
 }
 
 HashedReader::HashedReader(const std::string& path, std::string_view magic, const std::string& kind)
-    : path_(path), kind_(kind), stream_(path, std::ios::binary) {
+    : path_(path), kind_(kind) {
   std::error_code error;
+  // What waits for a writer would wait for ever.
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+    throw InputError(path + ": is not a regular file");
+  stream_.open(path, std::ios::binary);
   size_ = left_ = std::filesystem::file_size(path, error);
   if (error) throw InputError(path + ": cannot be read: " + error.message());
   if (!stream_) throw InputError(path + ": cannot be read");
@@ -48,7 +52,12 @@ HashedReader::HashedReader(const std::string& path, std::string_view magic, cons
   take(front.data() + front.size() - length, length);
   hash_ = hash_bytes(front.data(), front.size(), hash_);
   check_hash();
-  header_ = nlohmann::json::parse(std::string_view(front).substr(front.size() - length), nullptr, false);
+  constexpr int most_levels = 64;  // as in a case
+  const auto watch = [&](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
+    if (depth > most_levels) fail("has a header with more than 64 levels of brackets");
+    return true;
+  };
+  header_ = nlohmann::json::parse(std::string_view(front).substr(front.size() - length), watch, false);
   if (!header_.is_object()) fail("has a header that is no JSON object");
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 
+#include "verify/file.hpp"
 #include "verify/mesh.hpp"
 
 namespace kacanov::verify {
@@ -25,7 +26,7 @@ const std::map<int, GmshType>& types() {
 /// Numbers one after another, as text or as bytes.
 class Numbers {
  public:
-  explicit Numbers(const std::filesystem::path& file) : file_(file.string()), in_(file, std::ios::binary) {
+  explicit Numbers(const std::filesystem::path& file) : file_(file.string()), in_(open_file(file)) {
     if (!in_) fail("cannot be read");
   }
   [[noreturn]] void fail(const std::string& what) const { throw Failure(file_ + ": " + what); }

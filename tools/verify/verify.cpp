@@ -7,6 +7,7 @@
 #include <fstream>
 #include <map>
 
+#include "verify/file.hpp"
 #include "verify/residuals.hpp"
 #include "verify/vtu.hpp"
 
@@ -16,8 +17,7 @@ namespace {
 using nlohmann::json;
 
 json read_result(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) throw Failure(file.string() + ": cannot be read");
+  std::ifstream stream = open_file(file);
   json result = json::parse(stream, nullptr, false);
   if (result.is_discarded()) throw Failure(file.string() + ": is no JSON");
   if (result.value("status", "") == "failed") throw Failure(file.string() + ": this run has failed");

@@ -7,12 +7,13 @@
 #include <fstream>
 #include <sstream>
 
+#include "verify/file.hpp"
+
 namespace kacanov::verify {
 namespace {
 
 std::string whole(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw Failure(file.string() + ": cannot be read");
+  const std::ifstream stream = open_file(file);
   std::ostringstream text;
   text << stream.rdbuf();
   return text.str();
