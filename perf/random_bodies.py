@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 
 CUBE = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
 TET_EDGES = [(0, 1), (1, 2), (2, 0), (3, 0), (3, 2), (3, 1)]
-KINDS = {"tri3": (2, 1), "tet4": (4, 2), "tet10": (11, 9), "hex8": (5, 3)}  # Gmsh's numbers: element, facet
+FLAT = ("tri3", "quad4")
+KINDS = {"tri3": (2, 1), "quad4": (3, 1), "tet4": (4, 2), "tet10": (11, 9), "hex8": (5, 3)}  # Gmsh's numbers: element, facet
 
 
 @dataclass
@@ -18,7 +19,7 @@ class Body:
 
     @property
     def dim(self):
-        return 2 if self.element == "tri3" else 3
+        return 2 if self.element in FLAT else 3
 
     def write(self, path):
         """Gmsh 2.2."""
@@ -60,7 +61,7 @@ def lattice(cells, element, place, keep=lambda *cell: True, name=None):
             return node(tuple(a + b for a, b in zip(cell, offset)))
         if dim == 2:
             a, b, c, d = corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)
-            body.elements += [[a, b, c], [a, c, d]]
+            body.elements += [[a, b, c, d]] if element == "quad4" else [[a, b, c], [a, c, d]]
         elif element == "hex8":
             body.elements.append([corner(*o) for o in CUBE])
         else:
@@ -117,7 +118,7 @@ def join(first, second):
 
 def cells_for(size, element, most, rng):
     """Cells along each side, about as long as wide, so that there are at most about `most` nodes."""
-    per_cell = {"tri3": 1, "tet4": 1, "hex8": 1, "tet10": 8}[element]
+    per_cell = {"tri3": 1, "quad4": 1, "tet4": 1, "hex8": 1, "tet10": 8}[element]
     target = rng.uniform(0.25, 1.0) * most / per_cell
     h = (math.prod(size) / target) ** (1 / len(size))
     return [max(1 if element == "tet10" else 2, round(s / h)) for s in size]
@@ -138,7 +139,7 @@ def block(size, element, most, rng, distorted=False):
 
 def half_ball(radius, element, most, rng):
     """Lowest point at the origin; facets `round` and `flat`. Half a disc in 2D."""
-    dim = 2 if element == "tri3" else 3
+    dim = 2 if element in FLAT else 3
     n = cells_for([2.0] * (dim - 1) + [1.0], element, most, rng)
     n = [max(2, c + c % 2) for c in n[:-1]] + [n[-1]]
 
@@ -159,7 +160,7 @@ def half_ball(radius, element, most, rng):
 
 def wedge(width, height, depth, slope, element, most, rng):
     """A trapezium, symmetric to x = 0, `width` wide at its bottom and wider by `slope` times the height each side above."""
-    size = [width, height] if element == "tri3" else [width, depth, height]
+    size = [width, height] if element in FLAT else [width, depth, height]
     cells = cells_for(size, element, most, rng)
 
     def place(*s):
@@ -180,7 +181,7 @@ def bracket(size, element, most, rng):
 def hook(radius, thickness, element, most, rng):
     """Part of a ring about the origin from straight up (`end`) over the right side; facets `inside`, `outside`, `tip`."""
     angle = rng.uniform(0.6, 1.3) * math.pi
-    size = [radius * angle, thickness] if element == "tri3" else [radius * angle, rng.uniform(0.5, 1.5) * thickness, thickness]
+    size = [radius * angle, thickness] if element in FLAT else [radius * angle, rng.uniform(0.5, 1.5) * thickness, thickness]
     cells = cells_for(size, element, most, rng)
 
     def place(*s):
