@@ -17,8 +17,9 @@ namespace {
 struct ContactSums {
   Vector3 normal{}, friction{}, moment{};
   double area = 0.0, sticking = 0.0, slipping = 0.0, open = 0.0;
+  double rubbing = 0.0, rubbing_open = 0.0;  // Σ M|λ_t|, and that of open points
 };
-static_assert(sizeof(ContactSums) == 13 * sizeof(double));
+static_assert(sizeof(ContactSums) == 15 * sizeof(double));
 
 /// Largest values, likewise: minima are there with their signs changed.
 struct ContactPeaks {
@@ -70,12 +71,16 @@ void collect_contact(const Part& part, const ContactState& state, Solution& solu
   for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_contact); ++i) {
     const ContactSums force = force_of_point(part, state, i);
     const double mass = part.contact[i].mass, pressure = solution.pressure[i];
+    const double* friction = &state.lambda.tangential[2 * i];
     const auto take = [&](std::int32_t entry, double share) {
       ContactSums& sum = sums[entry];
       ContactPeaks& peak = peaks[entry];
       add(sum, share, force);
       const bool touches = pressure > 0.0;
       sum.area += touches ? share * mass : 0.0;
+      const double rubbing = share * mass * std::hypot(friction[0], friction[1]);
+      sum.rubbing += rubbing;
+      sum.rubbing_open += touches ? 0.0 : rubbing;
       const bool sticks = solution.contact_status[i] == ContactStatus::stick;
       (!touches ? sum.open : sticks ? sum.sticking : sum.slipping) += 1.0;
       peak.pressure = std::max(peak.pressure, pressure);
@@ -92,17 +97,19 @@ void collect_contact(const Part& part, const ContactState& state, Solution& solu
   solution.result.contact.clear();
   for (std::size_t e = 0; e < sums.size(); ++e) {
     const ContactSums& sum = sums[e];
-    solution.result.contact.push_back({.entry = static_cast<std::int32_t>(e),
-                                       .total = {sum.normal + sum.friction, sum.moment},
-                                       .normal_force = sum.normal,
-                                       .friction_force = sum.friction,
-                                       .area = sum.area,
-                                       .max_pressure = peaks[e].pressure,
-                                       .least_gap = -peaks[e].closed,
-                                       .first_gap = -peaks[e].first_closed,
-                                       .sticking = std::llround(sum.sticking),
-                                       .slipping = std::llround(sum.slipping),
-                                       .open = std::llround(sum.open)});
+    solution.result.contact.push_back(
+        {.entry = static_cast<std::int32_t>(e),
+         .total = {sum.normal + sum.friction, sum.moment},
+         .normal_force = sum.normal,
+         .friction_force = sum.friction,
+         .area = sum.area,
+         .max_pressure = peaks[e].pressure,
+         .least_gap = -peaks[e].closed,
+         .first_gap = -peaks[e].first_closed,
+         .sticking = std::llround(sum.sticking),
+         .slipping = std::llround(sum.slipping),
+         .open = std::llround(sum.open),
+         .open_friction = sum.rubbing > 0.0 ? sum.rubbing_open / sum.rubbing : 0.0});
   }
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "collect.hpp"
+#include "unsettled.hpp"
 #include "users_units.hpp"
 
 namespace kacanov {
@@ -37,7 +38,7 @@ std::string explain_stop(const OuterLoop& loop, const OuterLoop::Place& last, do
   std::ostringstream text;
   text.precision(4);
   if (last.share == 0.0) {
-    text << (why.empty() ? "no state of balance is found, not even under a small part of the load" : why);
+    text << "no state of balance is found, not even under a small part of the load: " << why;
     return text.str();
   }
   constexpr double collapsing = 2.0;
@@ -47,7 +48,7 @@ std::string explain_stop(const OuterLoop& loop, const OuterLoop::Place& last, do
        << "the load factor " << last.share << " of " << target
        << (collapse ? " and not " : "; tried in vain: ") << failed.share
        << ". Numbers and fields are those of " << last.share;
-  if (!why.empty()) text << "; at " << failed.share << " " << why;
+  text << "; at " << failed.share << ": " << why;
   return text.str();
 }
 
@@ -68,6 +69,11 @@ bool arrives(OuterLoop& loop, bool& finished, Result& result) {
   return arrived;
 }
 
+/// Why it has not.
+std::string reason(const OuterLoop& loop, const Result& result) {
+  return result.message.empty() ? what_is_unsettled(loop) : result.message;
+}
+
 /// Brings the loop, which stands at `target`, there; where it gives up, from `before` (none: from rest) in
 /// parts: each is halved until it converges, and what follows is twice as long. False: the run was asked to
 /// stop.
@@ -84,7 +90,7 @@ bool reach(OuterLoop& loop, const std::optional<OuterLoop::Place>& before, doubl
   }
   const OuterLoop::Place start = before ? *before : loop.rest(), whole = loop.place();
   OuterLoop::Place failed = whole, last = start;
-  std::string why = result.message;
+  std::string why = reason(loop, result);
   double over = 0.0;  // of the way from the start
   for (double part = 0.5; part >= loop.context().tuning.smallest_part; part *= 0.5) {
     ++result.load_cuts;
@@ -99,7 +105,7 @@ bool reach(OuterLoop& loop, const std::optional<OuterLoop::Place>& before, doubl
       part *= 2.0;
     }
     if (over == 1.0) return true;
-    why = result.message;
+    why = reason(loop, result);
     failed = loop.place();
   }
   result.message = explain_stop(loop, last, target, failed, why);

@@ -14,6 +14,7 @@
 #include "nonlinear/friction_bounds.hpp"
 #include "parallel/own_units.hpp"
 #include "spectrum/spectrum.hpp"
+#include "unsettled.hpp"
 #include "users_units.hpp"
 
 namespace kacanov {
@@ -164,7 +165,11 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   collect_totals(part, context.state, solution);
   collect_entries(part, context.state, context.path, internal, solution);
   to_users_units(solution, scaled.units());
-  if (result.message.empty()) result.message = verdict(result, options);
+  if (result.message.empty()) {
+    result.message = verdict(result, options);
+    if (result.status == Status::not_converged && options.stop != SolverOptions::Stop::paper)
+      result.message += "; " + what_is_unsettled(loop);
+  }
   if (shares.size() > 1 || result.by_time) end_load_steps(shares, finished, result);
   if (result.softening_elements > 0) result.message += softening_message(result.softening_elements);
   if (result.unsolved_steps > 0) result.warnings.push_back(unsolved_message(result, options));

@@ -35,7 +35,7 @@ kacanov_test(coarse_start
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 kacanov_test(load_steps
-  MPI SOURCES solver/load_steps_test.cpp
+  MPI SOURCES solver/load_steps_test.cpp solver/unsettled_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 kacanov_test(entry_totals

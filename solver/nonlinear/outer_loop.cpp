@@ -123,6 +123,7 @@ void OuterLoop::iterate(Result& result) {
   keep(result);
   if (!control_.penalty.chosen()) choose_first_penalty(result);
   gave_up_ = false;
+  changes_.start_again();
   const bool by_step = options_.stop == SolverOptions::Stop::paper;
   const bool may_newton = !by_step && (options_.contact == SolverOptions::Contact::automatic ||
                                        options_.contact == SolverOptions::Contact::active_set);
@@ -140,6 +141,7 @@ void OuterLoop::iterate(Result& result) {
     const Residuals before = residuals;
     const StepOutcome step = take_step(newton, before, result);
     result.bound_change = follow_pressure(context_.part, state.lambda.normal, context_.state.bound);
+    changes_.note(context_.part.contact.points(), state);
     residuals = certify();
     if (!step.balance.empty()) move_penalty(step, before, residuals, result);
     opening_ = false;

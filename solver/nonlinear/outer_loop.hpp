@@ -8,6 +8,7 @@
 #include <kacanov/coarse_solution.hpp>
 
 #include "nonlinear/augmented_control.hpp"
+#include "nonlinear/contact_changes.hpp"
 #include "nonlinear/fallback.hpp"
 #include "nonlinear/linearisation.hpp"
 #include "nonlinear/penalty_control.hpp"
@@ -63,6 +64,8 @@ class OuterLoop {
 
   const StepContext& context() const noexcept { return context_; }
   const ContactState& state() const noexcept { return context_.state; }
+  /// Of the steps of the last run().
+  const ContactChanges& contact_changes() const noexcept { return changes_; }
   Residuals certify() const { return context_.certify(); }
   /// Of the operator, those before a restart included.
   std::uint64_t applications() const noexcept {
@@ -117,6 +120,7 @@ class OuterLoop {
   bool history_;   ///< slip of some point is counted from the load step before
   double extent_;  ///< of the body, in the unit of displacements
   UnitSystem units_;
+  ContactChanges changes_;
   std::uint64_t earlier_applications_ = 0;
   double spectrum_seconds_ = 0.0, checkpoint_seconds_ = 0.0;
 

@@ -31,6 +31,8 @@ void large_strain(const Result& result, Warnings& warnings);
 void large_displacement(const Result& result, Warnings& warnings);
 /// Contact entries that nothing presses on: lifted off, or never reached.
 void idle_contact(const Result& result, const Model& model, Warnings& warnings);
+/// Tresca's friction where nothing presses.
+void open_friction(const Result& result, const Model& model, Warnings& warnings);
 
 /// Three significant digits, for sentences.
 std::string rounded(double value);

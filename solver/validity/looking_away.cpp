@@ -13,6 +13,7 @@ namespace {
 /// Cosine between outer normal and direction of contact below which a facet looks away: three degrees beyond
 /// a right angle.
 constexpr double turned = -0.05;
+constexpr const char* look_away = "facets look away from the obstacle";
 
 /// Sum of the directions in which an entry's contact points at a facet's nodes look; zero without any.
 Vector3 direction_at(const ConstraintRows& contact, std::span<const std::int32_t> nodes, std::int32_t entry) {
@@ -53,11 +54,16 @@ void looking_away(const Problem& problem, const Model& model, Warnings& warnings
       if (++away == 1) first = mesh.element_tag(element);
     }
     if (away == 0) continue;
-    warnings.push_back(name + ": " + std::to_string(away) + " of its " + std::to_string(facets.size()) +
-                       " facets look away from the obstacle, the first that of element " +
-                       std::to_string(first) +
+    warnings.push_back(name + ": " + std::to_string(away) + " of its " + std::to_string(facets.size()) + " " +
+                       look_away + ", the first that of element " + std::to_string(first) +
                        ": is the obstacle's normal or direction the right way round?");
   }
 }
 
 }  // namespace kacanov::validity
+
+std::string kacanov::likely_cause(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings)
+    if (warning.find(validity::look_away) != std::string::npos) return warning;
+  return {};
+}

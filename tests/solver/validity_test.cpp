@@ -86,6 +86,8 @@ TEST_CASE("facets that look away from their obstacle") {
   CHECK(found().empty());
   model.contact[0].obstacle = Sphere{{1, 0.5, -3}, 3.0, Vector3{0, 0, 1}};
   CHECK(mentions(found(), "look away"));
+  CHECK(mentions(likely_cause({"something else", found()}), "look away"));
+  CHECK(likely_cause({"something else"}).empty());
   // All of the boundary: the gap tells.
   model.contact[0] = on_plane(everything(), {}, {0, 0, 1});
   CHECK(found().empty());
@@ -172,4 +174,16 @@ TEST_CASE("contact that bears nothing") {
   model.contact[0].obstacle = Plane{{0, 0, -0.1}, {0, 0, 1}};
   model.contact[0].name = "floor";
   CHECK(mentions(found(), "floor: nothing reaches this obstacle; of the least gap of 0.1 at rest"));
+}
+
+TEST_CASE("Tresca's friction on nodes that are open") {
+  Model model = sound_model();
+  model.boundary[1].traction = Vector3{5.0, 0, -20.0};
+  model.contact[0].friction = Friction{1.0, 0.0};
+  const auto found = [&] { return said(validity::open_friction, run_alone(block(), model).result(), model); };
+  CHECK(found().empty());
+  model.boundary[1].traction = Vector3{5.0, 0, 20.0};
+  CHECK(mentions(found(), "contact[0].friction: 100 % of it acts at nodes without pressure"));
+  model.contact[0].friction = Friction{0.0, 0.3};
+  CHECK(found().empty());
 }

@@ -122,4 +122,20 @@ TEST_CASE("a body pulled off its only contact: no equilibrium, and nothing is so
   CHECK(message.find("translation along z") != std::string::npos);
 }
 
+TEST_CASE("a floor whose normal looks the wrong way is named by the failure that it brings") {
+  const Workplace place;
+  place.put("case.json", R"({
+    "mesh": {"box": {"size": [1, 1, 1], "cells": [2, 2, 2], "element": "hex8"}},
+    "material": [{"on": "all", "young": 210000, "poisson": 0.3}],
+    "boundary": [{"on": "top", "traction": [0, 0, -100]}],
+    "contact": [{"on": "bottom", "obstacle": {"plane": {"point": [0, 0, 0], "normal": [0, 0, -1]}},
+                 "friction": {"coulomb": 0.3}}]})");
+  const std::string file = place.path("case.json").string(), out = place.path("out").string();
+  const Outcome outcome = place.run("run " + file + " --ranks 1 --output " + out);
+  CHECK(outcome.exit_code == 1);
+  const auto message = place.json("out/result.json").at("message").get<std::string>();
+  CHECK(message.find("no equilibrium") == 0);
+  CHECK(message.find("contact[0]: 4 of its 4 facets look away from the obstacle") != std::string::npos);
+}
+
 TEST_CASE("Tresca's friction at floor and wall does not cycle") { converged("tresca_floor_wall", 60, 1500); }

@@ -96,6 +96,12 @@ LoadedCase load(const Command& command, const Case& input, const MpiSession& mpi
   return loaded;
 }
 
+/// A run that has failed says what may be behind it, where something is known.
+void name_cause(const Problem& problem, Result& result) {
+  const std::string cause = likely_cause(problem.warnings);
+  if (result.status == Status::not_converged && !cause.empty()) result.message += "; " + cause;
+}
+
 /// What was said of the case and of its problem stands before what the run says.
 void gather_warnings(const Case& input, const Problem& problem, Result& result) {
   std::vector<std::string> all = input.warnings;
@@ -196,7 +202,10 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
   left.reset();
   Result& result = solution.result;
   const int dim = loaded.part.dim();
-  if (mpi.first()) gather_warnings(input, *loaded.problem, result);
+  if (mpi.first()) {
+    name_cause(*loaded.problem, result);
+    gather_warnings(input, *loaded.problem, result);
+  }
   const ContactFields contact = gather_contact_fields(loaded.part, solution);
   const NodalStress nodal = recover_stress(loaded.part, solution.displacement);
   result.max_von_mises_nodal = nodal.max_von_mises;

@@ -26,6 +26,7 @@ struct ContactTotals {
   /// Nodes under pressure that hold on to the obstacle, those that do not (all without friction), and nodes
   /// without pressure. A node of two entries counts in both.
   std::int64_t sticking = 0, slipping = 0, open = 0;
+  double open_friction = 0.0;  ///< of Σ M|λ_t|, the share at nodes without pressure: Tresca's acts there too
 };
 
 /// What one boundary entry does to the body: a support by its reactions, a load by itself, times its factor.

@@ -15,6 +15,9 @@ namespace kacanov {
 /// case file; `problem` is whole (before keep_boundary) and made of `model`.
 std::vector<std::string> examine(const Problem& problem, const Model& model);
 
+/// Of those warnings what may be why a run does not converge; empty where none is.
+std::string likely_cause(const std::vector<std::string>& warnings);
+
 /// After: strains, rotations and displacements that are not small, contact that bears nothing. Likewise.
 std::vector<std::string> examine(const Result& result, const Model& model);
 
