@@ -103,47 +103,108 @@ Edge find_edge(const Traces& traces, const ContactState& state, const ActiveSet&
   return edge;
 }
 
-/// Stick, or slip and how, of a point with friction. `pushed`: λ_n + c(Nu − ρ).
-void decide_friction(const Traces& traces, const ContactState& state, double c, double pushed, std::size_t i,
-                     ActiveSet& set) {
+/// What friction at a point answers to: λ_t + c Tu, of which held normals of its node leave a part.
+struct Pull {
+  std::array<double, 2> s{};
+  double bound = 0.0;   ///< that of the pressure to come
+  bool driven = false;  ///< it slips because other normals of its node move it
+  bool edge = false;    ///< several normals of its node are held
+};
+
+/// `pushed`: λ_n + c(Nu − ρ).
+Pull pull_of(const Traces& traces, const ContactState& state, double c, double pushed, std::size_t i,
+             const ActiveSet& set) {
   const ContactPoint& point = traces.points()[i];
   const double* lambda = &state.lambda.tangential[2 * i];
   const double* w = &state.trace.tangential[2 * i];
-  std::array<double, 2> s{lambda[0] + c * w[0], lambda[1] + c * w[1]};
-  const bool narrow = traces.entries(i).size() == 1;
-  const bool follows = point.coulomb > 0.0;
-  const double bound = follows ? point.tresca + point.coulomb * std::max(pushed, 0.0) : state.bound[i];
-  bool driven = false;  // it slips because other normals of its node move it
-  const Edge edge = narrow ? find_edge(traces, state, set, i) : Edge();
-  if (edge.any) {
+  Pull pull;
+  pull.s = {lambda[0] + c * w[0], lambda[1] + c * w[1]};
+  pull.bound = point.coulomb > 0.0 ? point.tresca + point.coulomb * std::max(pushed, 0.0) : state.bound[i];
+  if (traces.entries(i).size() > 1) return pull;
+  const Edge edge = find_edge(traces, state, set, i);
+  pull.edge = edge.any;
+  if (!edge.any) return pull;
+  const auto& tangent = traces.entries(i)[0].tangent;
+  const Eigen::Map<const Eigen::Vector3d> along(tangent[0].data()), across(tangent[1].data());
+  Eigen::Vector2d moved(along.dot(edge.imposed), across.dot(edge.imposed));
+  if (!state.origin.empty()) {  // slip is counted from there
+    const Eigen::Vector3d from = state.origin[2 * i] * along + state.origin[2 * i + 1] * across;
+    const Eigen::Vector3d dictated = from - edge.free * from;
+    moved -= Eigen::Vector2d(along.dot(dictated), across.dot(dictated));
+  }
+  pull.driven = moved.norm() > imposed_slip * edge.scale;
+  // Otherwise those normals hold what they hold, and no friction besides.
+  const Eigen::Vector3d left =
+      edge.free * (pull.driven ? w[0] * along + w[1] * across : pull.s[0] * along + pull.s[1] * across);
+  pull.s = {along.dot(left), across.dot(left)};
+  if (pull.driven) pull.s = {pull.s[0] + moved(0), pull.s[1] + moved(1)};
+  return pull;
+}
+
+/// Points of one node that stick or slip together: in the direction that their normals leave free they share
+/// one force, however it is divided.
+struct SharedPull {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero(), friction = Eigen::Vector3d::Zero();
+  double bound = 0.0, mass = 0.0;
+
+  void add(const Traces& traces, const ContactState& state, std::size_t i, const Pull& pull) {
     const auto& tangent = traces.entries(i)[0].tangent;
-    const Eigen::Map<const Eigen::Vector3d> along(tangent[0].data()), across(tangent[1].data());
-    Eigen::Vector2d moved(along.dot(edge.imposed), across.dot(edge.imposed));
-    if (!state.origin.empty()) {  // slip is counted from there
-      const Eigen::Vector3d from = state.origin[2 * i] * along + state.origin[2 * i + 1] * across;
-      const Eigen::Vector3d dictated = from - edge.free * from;
-      moved -= Eigen::Vector2d(along.dot(dictated), across.dot(dictated));
+    const double m = traces.points()[i].mass;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Eigen::Map<const Eigen::Vector3d> t(tangent[k].data());
+      force += m * pull.s[k] * t;
+      friction += m * state.lambda.tangential[2 * i + k] * t;
     }
-    driven = moved.norm() > imposed_slip * edge.scale;
-    // Otherwise those normals hold what they hold, and no friction besides.
-    const Eigen::Vector3d left =
-        edge.free * (driven ? w[0] * along + w[1] * across : s[0] * along + s[1] * across);
-    s = {along.dot(left), across.dot(left)};
-    if (driven) s = {s[0] + moved(0), s[1] + moved(1)};
+    bound += m * pull.bound;
+    mass += m;
   }
-  const double length = std::hypot(s[0], s[1]);
-  // What its friction has pushed back sticks before it may slip the other way: friction beyond what a
-  // yielding body carries would throw it to and fro.
-  const bool turned = lambda[0] * s[0] + lambda[1] * s[1] < 0.0;
-  set.held[i].tangential = bound > 0.0 && !driven && (length <= bound || turned);
-  if (set.held[i].tangential || length == 0.0) return;
-  if (follows && set.held[i].normal) set.coulomb[i] = point.coulomb;
-  for (std::size_t k = 0; k < 2; ++k) {
-    set.slip_direction[2 * i + k] = s[k] / length;
-    set.slip_force[2 * i + k] = (follows ? point.tresca : bound) * s[k] / length;
+};
+
+/// Stick, or slip and how, of the points first to last, which are those of one node. `pushed`: one a point.
+void decide_friction(const Traces& traces, const ContactState& state, double c, const Vector& pushed,
+                     std::size_t first, std::size_t last, ActiveSet& set) {
+  const auto points = traces.points();
+  std::vector<Pull> pulls(last - first);
+  SharedPull shared;
+  const auto shares = [&](std::size_t i) {
+    return pulls[i - first].edge && !pulls[i - first].driven && set.held[i].normal;
+  };
+  for (std::size_t i = first; i < last; ++i) {
+    if (points[i].tangents == 0) continue;
+    pulls[i - first] = pull_of(traces, state, c, pushed[i], i, set);
+    if (shares(i)) shared.add(traces, state, i, pulls[i - first]);
   }
-  if (point.tangents == 2)
-    set.slip_stiffness[i] = std::min(driven ? bound / length : c * bound / (length - bound), stiffest * c);
+  for (std::size_t i = first; i < last; ++i) {
+    const ContactPoint& point = points[i];
+    if (point.tangents == 0) continue;
+    const auto& [s, bound, driven, edge] = pulls[i - first];
+    const double* lambda = &state.lambda.tangential[2 * i];
+    const bool together = shares(i) && shared.mass > 0.0;
+    const double own = std::hypot(s[0], s[1]);
+    const double length = together ? shared.force.norm() / shared.mass : own;
+    const double most = together ? shared.bound / shared.mass : bound;
+    // What its friction has pushed back sticks before it may slip the other way: friction beyond what a
+    // yielding body carries would throw it to and fro.
+    const bool turned =
+        (together ? shared.force.dot(shared.friction) : lambda[0] * s[0] + lambda[1] * s[1]) < 0.0;
+    set.held[i].tangential = most > 0.0 && !driven && (length <= most || turned);
+    if (set.held[i].tangential || length == 0.0) continue;
+    std::array<double, 2> direction{};
+    for (std::size_t k = 0; k < 2; ++k)
+      direction[k] =
+          together
+              ? shared.force.dot(Eigen::Map<const Eigen::Vector3d>(traces.entries(i)[0].tangent[k].data())) /
+                    shared.force.norm()
+              : s[k] / length;
+    const bool follows = point.coulomb > 0.0;
+    if (follows && set.held[i].normal) set.coulomb[i] = point.coulomb;
+    for (std::size_t k = 0; k < 2; ++k) {
+      set.slip_direction[2 * i + k] = direction[k];
+      set.slip_force[2 * i + k] = (follows ? point.tresca : bound) * direction[k];
+    }
+    if (point.tangents == 2)
+      set.slip_stiffness[i] = std::min(driven ? bound / length : c * bound / (length - most), stiffest * c);
+  }
 }
 
 /// The smallest nodal displacement that closes the gaps and undoes the slip of held rows; the largest of
@@ -230,8 +291,11 @@ ActiveSet decide(const Traces& traces, const ContactState& state, double c) {
     pushed[i] = state.lambda.normal[i] + c * (state.trace.normal[i] - state.gap[i]);
     set.held[i].normal = pushed[i] > 0.0;
   }
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (points[i].tangents > 0) decide_friction(traces, state, c, pushed[i], i, set);
+  for (std::size_t first = 0, last; first < points.size(); first = last) {
+    last = first + 1;
+    while (last < points.size() && points[last].node == points[first].node) ++last;
+    decide_friction(traces, state, c, pushed, first, last, set);
+  }
   return set;
 }
 
@@ -281,18 +345,20 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
   subtract_slip_force(traces, set, state.trace.tangential, work.residual);
   // The held rows first.
   const double wide = part.wide_contact ? close_rows(rows, set, traces, state, delta) : 0.0;
-  if (std::max(wide, nodes.close(delta)) > 0.0) {
+  ActiveSetStep step;
+  step.closing = std::max(wide, nodes.close(delta));
+  if (step.closing > 0.0) {
     apply(delta, work.image);
     for (std::size_t i = 0; i < delta.size(); ++i) work.residual[i] -= work.image[i];
   }
   const CgResult solve = nodes.oblique()
                              ? solve_oblique(space, nodes, apply, problem.precondition, delta, work, options)
                              : conjugate_gradients(space, apply, problem.precondition, delta, work, options);
-  ActiveSetStep step;
   step.cg_iterations = solve.iterations;
   step.solved = solve.converged;
   if (solve.iterations > 0 && solve.residual > 0.0)
     step.cg_digits = std::log10(solve.first_residual / solve.residual);
+  step.turning = space.sum_all(add_slip_stiffness(traces, set, delta, work.image));
   step.curvature = space.sum_all(apply(delta, work.image));
   return step;
 }

@@ -154,7 +154,7 @@ TEST_CASE("a cube in a corner converges under any friction, in few steps") {
         CAPTURE(load[1]);
         const Run run = run_alone(cube(3), cube_in_corner(load, coulomb, across));
         CHECK(run.result().status == Status::converged);
-        CHECK(run.result().outer_iterations <= 30);
+        CHECK(run.result().outer_iterations <= 12);
       }
 }
 
