@@ -67,14 +67,16 @@ class Descent {
     Vector &from = c_.work.direction, &u = c_.state.u;
     from = u;
     Vector& rest = c_.work.residual;
-    t_ = find_step(slope, [&](double t) {
-      for (std::size_t i = 0; i < u.size(); ++i) u[i] = from[i] + t * delta_[i];
-      c_.body.evaluate_and_freeze(u);
-      c_.state.evaluate(c_.traces);
-      c_.body.unbalanced(c_.path, rest);
-      c_.traces.add_force(contact_.multipliers(c_.state.trace), -1.0, rest);
-      return -c_.space.dot(delta_, rest);
-    });
+    t_ = find_step(slope,
+                   [&](double t) {
+                     for (std::size_t i = 0; i < u.size(); ++i) u[i] = from[i] + t * delta_[i];
+                     c_.body.evaluate_and_freeze(u);
+                     c_.state.evaluate(c_.traces);
+                     c_.body.unbalanced(c_.path, rest);
+                     c_.traces.add_force(contact_.multipliers(c_.state.trace), -1.0, rest);
+                     return -c_.space.dot(delta_, rest);
+                   },
+                   {.longest = c_.body.linear() ? 1.0 : c_.tuning.longest_step});
   }
 
   StepContext& c_;

@@ -9,26 +9,39 @@
 #include "contact/dual_admm.hpp"
 #include "nonlinear/accuracy.hpp"
 #include "nonlinear/body_measures.hpp"
+#include "nonlinear/line_search.hpp"
 #include "nonlinear/linearisation.hpp"
 
 namespace kacanov {
 namespace {
 
-/// u += t δ, t as long as damping allows. Leaves R(u) and the frozen secant at the new u.
-double take_damped(StepContext& c, std::span<const double> delta, double curvature) {
+/// u += t δ, t as long as damping allows, or as the body wants it. Leaves R(u) and the frozen secant at the
+/// new u.
+double take_damped(StepContext& c, std::span<const double> delta, const ActiveSetStep& step) {
   // The solve is over: its vectors are free.
   Vector &from = c.work.direction, &force = c.work.image, &u = c.state.u;
   from = u;
   force.assign(c.body.internal().begin(), c.body.internal().end());
-  double t = 1.0;
-  for (int trial = 0;; ++trial) {
+  const auto work_at = [&](double t) {
     for (std::size_t i = 0; i < u.size(); ++i) u[i] = from[i] + t * delta[i];
     c.body.evaluate_and_freeze(u);
-    if (c.body.linear() || trial == c.tuning.max_damping_trials) return t;
     const std::array<double, 2> work = c.space.dot2(delta, c.body.internal(), delta, force);
-    const auto shorter = shorter_step(t, work[0] - work[1], curvature);
-    if (!shorter) return t;
-    t = *shorter;
+    return work[0] - work[1];
+  };
+  double t = 1.0;
+  for (int trial = 0;; ++trial) {
+    const double work = work_at(t);
+    if (c.body.linear() || trial == c.tuning.max_damping_trials) return t;
+    const auto shorter = shorter_step(t, work, step.curvature);
+    if (shorter) {
+      t = *shorter;
+      continue;
+    }
+    const bool closed = step.closing <= c.tuning.closed_rows * c.space.max_abs(delta);
+    const LineSearchOptions search{.longest = c.tuning.longest_step};
+    if (t < 1.0 || !closed || !(work + step.turning < (1.0 - search.steep) * step.curvature)) return t;
+    return find_step(
+        -step.curvature, [&](double s) { return work_at(s) + s * step.turning - step.curvature; }, search);
   }
 }
 
@@ -122,7 +135,7 @@ StepOutcome newton_step(StepContext& c, double penalty, bool tangent, const Resi
   outcome.tangent = tangent;
   if (!step.solved) return outcome;
   c.preconditioner.watch(step.cg_digits, step.cg_iterations);
-  outcome.length = take_damped(c, delta, step.curvature);
+  outcome.length = take_damped(c, delta, step);
   c.state.evaluate(c.traces);
   c.body.unbalanced(c.path, c.work.residual);
   recover_multipliers(c.part, c.traces, set, c.work.residual, c.state);

@@ -32,6 +32,10 @@ struct Tuning {
   /// ... but not less than this: below it is contact that goes to and fro, not the tangent.
   double least_reach = 0.003;
   int max_damping_trials = 6;
+  /// A step that leaves half of its slope is too short, and goes on up to so many times itself, where its
+  /// rows are closed but for this share of it: the secant of a body far beyond yield lags behind by orders of
+  /// magnitude.
+  double longest_step = 1e6, closed_rows = 1e-6;
   /// A tangent step of which less was taken is followed by one of the secant.
   double short_step = 0.1;
 
@@ -99,7 +103,7 @@ struct Tuning {
   /// The smallest part of a load step that is tried.
   double smallest_part = 1.0 / 64;
   /// A displacement of this many body sizes is a run that goes nowhere.
-  double most_displacement = 1e3;
+  double most_displacement = 1e7;
 
   /// Operator applications between two looks at whether the run is to stop, which cost a reduction.
   std::uint64_t applications_per_question = 4;

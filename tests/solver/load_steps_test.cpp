@@ -177,6 +177,17 @@ TEST_CASE("beyond a limit load the run ends with the factor that it has reached,
   CHECK(beyond.result().certificate.worst() <= 1e-6);
 }
 
+TEST_CASE("strains of orders of magnitude beyond the yield strain take few steps") {
+  Law flat = elastic_law(1.0, 0.3);
+  flat.form = laws::Power{0.002, 0.1};
+  // 3¹⁰ times the yield strain; Kačanov's steps alone would take hundreds.
+  const Run run = run_alone(make_box({{1, 1, 1}, {2, 2, 2}, ElementType::hex8}), pulled(flat, 3.0));
+  CHECK(run.result().status == Status::converged);
+  CHECK(run.result().load_cuts == 0);
+  CHECK(run.result().outer_iterations <= 15);
+  CHECK(run.result().max_displacement.value > 30.0);
+}
+
 TEST_CASE("nearly perfect plasticity a little beyond its yield load converges") {
   const Mesh cube = make_box({{1, 1, 1}, {2, 2, 2}, ElementType::hex8});
   Law flat = elastic_law(1.0, 0.3);
