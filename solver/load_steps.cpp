@@ -96,6 +96,7 @@ bool reach(OuterLoop& loop, const std::optional<OuterLoop::Place>& before, doubl
     ++result.load_cuts;
     while (over < 1.0) {
       const double next = std::min(over + part, 1.0);
+      part = next - over;  // what fails is halved, not what it was meant to be
       loop.go_from(last, next == 1.0 ? target : start.share + next * (target - start.share), result);
       const bool arrived = arrives(loop, finished, result);
       if (!finished) return false;

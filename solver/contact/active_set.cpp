@@ -360,6 +360,8 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
     step.cg_digits = std::log10(solve.first_residual / solve.residual);
   step.turning = space.sum_all(add_slip_stiffness(traces, set, delta, work.image));
   step.curvature = space.sum_all(apply(delta, work.image));
+  nodes.subtract_sliding(work.image);
+  step.slope = nodes.oblique() ? space.dot(delta, work.image) : step.curvature;
   return step;
 }
 

@@ -39,8 +39,10 @@ struct ActiveSetStep {
   double cg_digits = 0.0;
   bool solved = false;     ///< CG met its tolerance
   double curvature = 0.0;  ///< δᵀ B δ of the linear model
-  double turning = 0.0;    ///< of it, by what slips
-  double closing = 0.0;    ///< the largest displacement that closes a gap or undoes a slip of held rows
+  /// The same with the force that friction lets through: what the residual falls by along δ. Of it, by what
+  /// slips.
+  double slope = 0.0, turning = 0.0;
+  double closing = 0.0;  ///< the largest displacement that closes a gap or undoes a slip of held rows
 };
 
 /// Solves the linearised problem with the rows of `set` held: B δ + slip terms = F − R(u) − CᵀMλ, Cu + Cδ on

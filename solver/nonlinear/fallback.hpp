@@ -16,8 +16,8 @@ class Fallback {
 
   /// Whether ADMM is to take the next step.
   bool retreating() const noexcept { return steps_left_ > 0; }
-  /// `worst`: largest KKT residual after the step.
-  void after_admm(double worst);
+  /// `worst`: largest KKT residual after the step; `solved`: its linear problems were.
+  void after_admm(double worst, bool solved = true);
   /// The same for a Newton step; `solved`: its linear problem was. Whether a retreat begins.
   bool after_newton(double worst, bool solved);
   /// Whether nothing has been gained for so long that nothing is to be hoped for.

@@ -197,7 +197,7 @@ Residuals OuterLoop::learn(const StepOutcome& step, bool newton, const Residuals
   if (!newton) {
     // As after a Newton step that was not solved: the preconditioner is the first suspect.
     if (!step.solved) context_.preconditioner.mark_stale();
-    control_.fallback.after_admm(worst);
+    control_.fallback.after_admm(worst, step.solved);
     return after;
   }
   if (step.tangent)

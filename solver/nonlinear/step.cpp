@@ -7,6 +7,7 @@
 
 #include "amg/make_preconditioner.hpp"
 #include "contact/dual_admm.hpp"
+#include "contact/held_nodes.hpp"
 #include "nonlinear/accuracy.hpp"
 #include "nonlinear/body_measures.hpp"
 #include "nonlinear/line_search.hpp"
@@ -17,32 +18,41 @@ namespace {
 
 /// u += t δ, t as long as damping allows, or as the body wants it. Leaves R(u) and the frozen secant at the
 /// new u.
-double take_damped(StepContext& c, std::span<const double> delta, const ActiveSetStep& step) {
+double take_damped(StepContext& c, std::span<const double> delta, const ActiveSetStep& step,
+                   const HeldNodes& nodes) {
   // The solve is over: its vectors are free.
   Vector &from = c.work.direction, &force = c.work.image, &u = c.state.u;
   from = u;
   force.assign(c.body.internal().begin(), c.body.internal().end());
-  const auto work_at = [&](double t) {
+  const auto go_to = [&](double t) {
     for (std::size_t i = 0; i < u.size(); ++i) u[i] = from[i] + t * delta[i];
     c.body.evaluate_and_freeze(u);
-    const std::array<double, 2> work = c.space.dot2(delta, c.body.internal(), delta, force);
-    return work[0] - work[1];
   };
   double t = 1.0;
   for (int trial = 0;; ++trial) {
-    const double work = work_at(t);
+    go_to(t);
     if (c.body.linear() || trial == c.tuning.max_damping_trials) return t;
-    const auto shorter = shorter_step(t, work, step.curvature);
-    if (shorter) {
-      t = *shorter;
-      continue;
-    }
-    const bool closed = step.closing <= c.tuning.closed_rows * c.space.max_abs(delta);
-    const LineSearchOptions search{.longest = c.tuning.longest_step};
-    if (t < 1.0 || !closed || !(work + step.turning < (1.0 - search.steep) * step.curvature)) return t;
-    return find_step(
-        -step.curvature, [&](double s) { return work_at(s) + s * step.turning - step.curvature; }, search);
+    const std::array<double, 2> work = c.space.dot2(delta, c.body.internal(), delta, force);
+    const auto shorter = shorter_step(t, work[0] - work[1], step.curvature);
+    if (!shorter) break;
+    t = *shorter;
   }
+  const auto slope_here = [&](double s) {
+    Vector& grown = c.work.residual;
+    for (std::size_t i = 0; i < u.size(); ++i) grown[i] = c.body.internal()[i] - force[i];
+    nodes.subtract_sliding(grown);
+    return c.space.dot(delta, grown) + s * step.turning - step.slope;
+  };
+  const bool closed = step.closing <= c.tuning.closed_rows * c.space.max_abs(delta);
+  const LineSearchOptions search{.longest = c.tuning.longest_step};
+  if (t < 1.0 || !closed || !(slope_here(1.0) < -search.steep * step.slope)) return t;
+  return find_step(
+      -step.slope,
+      [&](double s) {
+        go_to(s);
+        return slope_here(s);
+      },
+      search);
 }
 
 /// Whether any point is under pressure. Collective.
@@ -135,7 +145,7 @@ StepOutcome newton_step(StepContext& c, double penalty, bool tangent, const Resi
   outcome.tangent = tangent;
   if (!step.solved) return outcome;
   c.preconditioner.watch(step.cg_digits, step.cg_iterations);
-  outcome.length = take_damped(c, delta, step);
+  outcome.length = take_damped(c, delta, step, HeldNodes(c.part, set, c.state));
   c.state.evaluate(c.traces);
   c.body.unbalanced(c.path, c.work.residual);
   recover_multipliers(c.part, c.traces, set, c.work.residual, c.state);

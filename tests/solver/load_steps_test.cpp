@@ -170,6 +170,8 @@ TEST_CASE("beyond a limit load the run ends with the factor that it has reached,
   const Run beyond = run_alone(cube, pulled(law, 1.05));
   CHECK(beyond.result().status == Status::not_converged);
   CHECK(beyond.result().load_cuts > 0);
+  CHECK(beyond.result().load_cuts <= 7);
+  CHECK(beyond.result().outer_iterations <= 150);
   // Within a part of a load step of the limit, and with the state that belongs to it.
   CHECK(beyond.result().load_reached < 1.001 / 1.05);
   CHECK(beyond.result().load_reached > 0.97 / 1.05);

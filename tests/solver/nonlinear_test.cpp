@@ -118,6 +118,16 @@ TEST_CASE("fallback: a stall, a failed solve and a breakdown retreat, each time 
   CHECK(steps == tuning.first_retreat << tuning.most_doublings);
 }
 
+TEST_CASE("fallback: steps without a gain are counted, and those without a solution for more") {
+  for (const bool solved : {true, false}) {
+    Fallback fallback(tuning);
+    fallback.after_newton(1.0, false);
+    int steps = 0;
+    for (; !fallback.stuck(); ++steps) fallback.after_admm(1.0, solved);
+    CHECK(steps == tuning.most_idle / (solved ? 1 : tuning.unsolved_worth));
+  }
+}
+
 TEST_CASE("fallback: ADMM hands back once it is well below the best Newton step") {
   Fallback fallback(tuning);
   fallback.after_newton(0.4, true);
