@@ -146,7 +146,8 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   const Vector internal = internal_force(part, context.state.u);
   result.certificate = certify_independently(context, internal);
   result.status = status_of(result.certificate, options.tolerance, loop.gave_up() && !loop.ran_away());
-  if (result.status == Status::limited_by_rounding && !result.certificate.exhausted(options.tolerance))
+  if (result.status == Status::limited_by_rounding && !result.certificate.exhausted(options.tolerance) &&
+      result.cg_iterations > 0)
     result.message.clear();  // it is not the load that stops it
   result.load_factor = context.path.share();
   if (!part.no_equilibrium.empty()) result.status = Status::not_converged;
