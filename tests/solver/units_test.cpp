@@ -154,11 +154,11 @@ TEST_CASE("in any units results are the same numbers") {
         const Run run = solved(dim, model, s);
         CHECK(run.result().status == Status::converged);
         CHECK(run.result().max_von_mises / s.modulus ==
-              doctest::Approx(plain.result().max_von_mises).epsilon(1e-11));
+              doctest::Approx(plain.result().max_von_mises).epsilon(1e-12));
         CHECK(run.result().max_contact_pressure / s.modulus ==
-              doctest::Approx(plain.result().max_contact_pressure).epsilon(1e-10));
+              doctest::Approx(plain.result().max_contact_pressure).epsilon(1e-12));
         for (std::size_t c = 0; c < 2; ++c)
-          CHECK(run.probe()[c] / s.length == doctest::Approx(plain.probe()[c]).epsilon(1e-11));
+          CHECK(run.probe()[c] / s.length == doctest::Approx(plain.probe()[c]).epsilon(1e-12));
       }
     }
 }
