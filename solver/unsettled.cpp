@@ -52,7 +52,7 @@ std::string what_is_unsettled(const OuterLoop& loop) {
   if (!cycles.empty())
     return cycles + "; smaller load steps (solver.load_steps) or a finer mesh there may help";
   std::string text = std::string("largest is ") + largest_residual(loop.certify().certificate);
-  if (part.total_contact > 0) text += ", while contact has settled";
+  if (part.total_contact > 0) text += "; no contact node goes to and fro";
   if (!loop.context().body.linear()) text += "; smaller load steps (solver.load_steps) may help";
   return text;
 }
