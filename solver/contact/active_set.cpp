@@ -243,12 +243,18 @@ void least_reactions(const TraceRows& rows, const ActiveSet& set, const Traces& 
   }
 }
 
+/// What a step solves where reactions are normal to what they hold.
+struct SymmetricPart {
+  const Space& space;
+  std::function<double(std::span<const double>, std::span<double>)> apply;
+  const std::function<void(std::span<const double>, std::span<double>)>& precondition;
+};
+
 /// conjugate_gradients for a step whose reactions are oblique (theory: coulomb-newton): GCR, first with a
 /// multigrid cycle an iteration, then with solves of the symmetric part.
-template <class Apply, class Precondition>
-CgResult solve_oblique(const Space& space, const HeldNodes& nodes, const Apply& apply,
-                       const Precondition& precondition, std::span<double> delta, CgWork& work,
-                       const CgOptions& options) {
+CgResult solve_oblique(const SymmetricPart& part, const HeldNodes& nodes, std::span<double> delta,
+                       CgWork& work, const CgOptions& options) {
+  const Space& space = part.space;
   nodes.subtract_sliding(work.residual);
   space.project(work.residual);
   Vector residual = work.residual;
@@ -257,12 +263,12 @@ CgResult solve_oblique(const Space& space, const HeldNodes& nodes, const Apply& 
   const double target =
       std::max(options.absolute, std::min(options.relative * result.first_residual, options.most));
   const auto oblique = [&](std::span<const double> p, std::span<double> q) {
-    apply(p, q);
+    part.apply(p, q);
     nodes.subtract_sliding(q);
     space.project(q);
   };
   const auto cycle = [&](std::span<const double> r, std::span<double> z) {
-    precondition(r, z);
+    part.precondition(r, z);
     space.project(z);
     ++result.iterations;
     return true;
@@ -270,7 +276,7 @@ CgResult solve_oblique(const Space& space, const HeldNodes& nodes, const Apply& 
   const auto symmetric = [&](std::span<const double> r, std::span<double> z) {
     std::copy(r.begin(), r.end(), work.residual.begin());
     const CgOptions inner{0.3 * target, nested_reduction, options.max_iterations};
-    const CgResult found = conjugate_gradients(space, apply, precondition, z, work, inner);
+    const CgResult found = conjugate_gradients(space, part.apply, part.precondition, z, work, inner);
     result.iterations += found.iterations;
     return found.converged;
   };
@@ -330,13 +336,14 @@ std::vector<NodeBlock> slip_blocks(const Part& part, const ActiveSet& set) {
 }
 
 ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, const ActiveSet& set,
-                              const ContactState& state, const CgOptions& options, CgWork& work,
-                              std::span<double> delta) {
+                              const ContactState& state, const CgOptions& options, CgWork& work) {
   const Traces& traces = *problem.traces;
   const TraceRows rows(part, set.held);
   Space space(part);
   rows.hold_in(space);
   const HeldNodes nodes(part, set, state);
+  ActiveSetStep step;
+  Vector& delta = step.delta = Vector(part.unknowns());
 
   const auto apply = [&](std::span<const double> p, std::span<double> q) {
     const double share = problem.apply(p, q);
@@ -351,8 +358,9 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
     apply(delta, work.image);
     for (std::size_t i = 0; i < delta.size(); ++i) work.residual[i] -= work.image[i];
   }
+  const SymmetricPart symmetric{space, apply, problem.precondition};
   const CgResult solve = nodes.oblique()
-                             ? solve_oblique(space, nodes, apply, problem.precondition, delta, work, options)
+                             ? solve_oblique(symmetric, nodes, delta, work, options)
                              : conjugate_gradients(space, apply, problem.precondition, delta, work, options);
   step.cg_iterations = solve.iterations;
   step.solved = solve.converged;

@@ -35,6 +35,7 @@ ActiveSet decide(const Traces& traces, const ContactState& state, double c);
 std::vector<NodeBlock> slip_blocks(const Part& part, const ActiveSet& set);
 
 struct ActiveSetStep {
+  Vector delta;  ///< the step, unknowns of the part
   std::int64_t cg_iterations = 0;
   double cg_digits = 0.0;
   bool solved = false;     ///< CG met its tolerance
@@ -46,12 +47,11 @@ struct ActiveSetStep {
 };
 
 /// Solves the linearised problem with the rows of `set` held: B δ + slip terms = F − R(u) − CᵀMλ, Cu + Cδ on
-/// the obstacle or at rest. On entry `work.residual` is F − R(u), without contact forces; `delta` receives
-/// the step. Of the options `relative` alone says little: points moved onto the obstacle one by one strain
-/// the elements beside them beyond anything else, so `most` should be what was unbalanced before. Collective.
+/// the obstacle or at rest. On entry `work.residual` is F − R(u), without contact forces. Of the options
+/// `relative` alone says little: points moved onto the obstacle one by one strain the elements beside them
+/// beyond anything else, so `most` should be what was unbalanced before. Collective.
 ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, const ActiveSet& set,
-                              const ContactState& state, const CgOptions& options, CgWork& work,
-                              std::span<double> delta);
+                              const ContactState& state, const CgOptions& options, CgWork& work);
 
 /// Multipliers after a step: from the forces F − R(u) at held rows, from the friction law at slipping ones
 /// (projected onto the disc), zero elsewhere. Uses state.trace at the new u; φ is set so that ADMM can go on

@@ -18,8 +18,8 @@ namespace {
 
 /// u += t δ, t as long as damping allows, or as the body wants it. Leaves R(u) and the frozen secant at the
 /// new u.
-double take_damped(StepContext& c, std::span<const double> delta, const ActiveSetStep& step,
-                   const HeldNodes& nodes) {
+double take_damped(StepContext& c, const ActiveSetStep& step, const HeldNodes& nodes) {
+  const Vector& delta = step.delta;
   // The solve is over: its vectors are free.
   Vector &from = c.work.direction, &force = c.work.image, &u = c.state.u;
   from = u;
@@ -131,10 +131,9 @@ StepOutcome newton_step(StepContext& c, double penalty, bool tangent, const Resi
   // After the setup: the two do not have to fit into memory at once.
   if (tangent) c.body.freeze_tangent(c.state.u);
   c.body.unbalanced(c.path, c.work.residual);
-  Vector delta(c.part.unknowns());
   const auto applied = c.body.op().applications();
   const ActiveSetStep step = active_set_step(tangent ? c.tangent : c.secant, c.part, set, c.state,
-                                             newton_accuracy(c.options, before, c.tuning), c.work, delta);
+                                             newton_accuracy(c.options, before, c.tuning), c.work);
   StepOutcome outcome;
   outcome.applications = c.body.op().applications() - applied;
   c.body.forget_tangent();
@@ -145,7 +144,7 @@ StepOutcome newton_step(StepContext& c, double penalty, bool tangent, const Resi
   outcome.tangent = tangent;
   if (!step.solved) return outcome;
   c.preconditioner.watch(step.cg_digits, step.cg_iterations);
-  outcome.length = take_damped(c, delta, step, HeldNodes(c.part, set, c.state));
+  outcome.length = take_damped(c, step, HeldNodes(c.part, set, c.state));
   c.state.evaluate(c.traces);
   c.body.unbalanced(c.path, c.work.residual);
   recover_multipliers(c.part, c.traces, set, c.work.residual, c.state);
