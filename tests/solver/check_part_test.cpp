@@ -66,8 +66,9 @@ TEST_CASE("a part that was split is accepted, and each field that does not fit i
           {"contact points", [](Part& p) { p.owned_contact = 1 << 20; }},
       };
       for (const auto& [field, change] : faults) {
-        CAPTURE(field);
-        CHECK(complaint(part, change).find(std::string("the part's ") + field) == 0);
+        const std::string name = field;
+        CAPTURE(name);
+        CHECK(complaint(part, change).find("the part's " + name) == 0);
       }
       if (!part.contact.empty()) {
         CHECK(complaint(part, [](Part& p) { p.contact[0].node = 1 << 28; }) != "");

@@ -135,9 +135,9 @@ TEST_CASE("confined block: gap, indentation and prescribed displacement in one d
     double gap, drop, expected_closing;
   };
   for (const ElementType type : straight)
-    for (const auto& [gap, drop, closing] :
-         {Case{0.005, 0.02, 0.015}, Case{-0.01, 0.0, 0.01}, Case{-0.01, 0.005, 0.015}}) {
+    for (const Case& each : {Case{0.005, 0.02, 0.015}, Case{-0.01, 0.0, 0.01}, Case{-0.01, 0.005, 0.015}}) {
       const int dim = dimension(type);
+      const double gap = each.gap, drop = each.drop, closing = each.expected_closing;
       CAPTURE(dim);
       CAPTURE(gap);
       CAPTURE(drop);

@@ -299,8 +299,8 @@ TEST_CASE("every choice of the contact method and of r leads to the same answer"
     options.outer = outer;
     options.contact = contact;
     options.max_outer = 200;
-    CAPTURE(static_cast<int>(outer));
-    CAPTURE(static_cast<int>(contact));
+    CAPTURE(static_cast<int>(options.outer));
+    CAPTURE(static_cast<int>(options.contact));
     compare(options);
   }
   for (const auto penalty : {SolverOptions::Penalty::paper, SolverOptions::Penalty::fixed}) {

@@ -271,10 +271,10 @@ TEST_CASE("the answer does not depend on the partition or on threads") {
     int dim, n;
     double tresca;
   };
-  for (const auto& [dim, n, tresca] : {Case{2, 8, 0.0}, Case{2, 8, 0.01}, Case{3, 3, 0.01}}) {
-    CAPTURE(dim);
-    CAPTURE(tresca);
-    const Problem problem = beam_problem(dim, n, tresca);
+  for (const Case& each : {Case{2, 8, 0.0}, Case{2, 8, 0.01}, Case{3, 3, 0.01}}) {
+    CAPTURE(each.dim);
+    CAPTURE(each.tresca);
+    const Problem problem = beam_problem(each.dim, each.n, each.tresca);
     SolverOptions options;
     options.tolerance = 1e-8;
     Part all = over_all_ranks(problem), alone = distribute(&problem, MPI_COMM_SELF);
@@ -301,7 +301,7 @@ TEST_CASE("the answer does not depend on the partition or on threads") {
       CHECK(result.unknowns == reference.result.unknowns);
       // Every copy of a shared displacement holds the same bits.
       std::vector<double> copy = solution.displacement;
-      all.node_map.forward(copy, dim);
+      all.node_map.forward(copy, each.dim);
       CHECK(std::memcmp(copy.data(), solution.displacement.data(), copy.size() * sizeof(double)) == 0);
     }
   }
