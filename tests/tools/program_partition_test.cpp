@@ -54,9 +54,9 @@ void check_close(const nlohmann::json& one, const nlohmann::json& other, double 
   REQUIRE(a.size() == b.size());
   double largest = 0.0;
   for (const auto& value : a) largest = std::max(largest, std::abs(value.get<double>()));
-  for (const auto& [key, value] : a.items()) {
-    INFO(key);
-    CHECK(std::abs(value.get<double>() - b[key].get<double>()) <= tolerance * largest);
+  for (const auto& item : a.items()) {
+    INFO(item.key());
+    CHECK(std::abs(item.value().get<double>() - b[item.key()].get<double>()) <= tolerance * largest);
   }
 }
 
