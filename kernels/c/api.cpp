@@ -9,10 +9,10 @@
 
 #include <kacanov/locality.hpp>
 #include "c/handle.hpp"
+#include "c/sized.hpp"
 
-#ifndef KACANOV_VERSION
-#error "the build has to define KACANOV_VERSION"
-#endif
+#define KACANOV_TEXT_OF(number) #number
+#define KACANOV_TEXT(number) KACANOV_TEXT_OF(number)
 
 namespace k = kacanov;
 using namespace kacanov::c_api;
@@ -184,17 +184,18 @@ int kacanov_stress(kacanov_operator* op, size_t n, const double* u, const kacano
   return on(op, [&](k::Operator&) {
     const auto at = state(*op, n, u);
     require(fields, "fields");
+    const auto wanted = read_sized<kacanov_fields>(fields, fields_bytes, "fields.", "kacanov_fields");
     const std::size_t elements = op->mesh.element_count();
-    require_size(fields->elements, elements, "fields.elements");
+    require_size(wanted.elements, elements, "fields.elements");
     const auto span = [&](auto* data, std::size_t per_element) {
       return std::span(data, data == nullptr ? 0 : per_element * elements);
     };
     k::reference::fields(op->body(), at,
-                         {.stress = span(fields->stress, 6),
-                          .von_mises = span(fields->von_mises, 1),
-                          .dev_strain = span(fields->dev_strain, 1),
-                          .secant = span(fields->secant, 1),
-                          .plastic = span(fields->plastic, 1)});
+                         {.stress = span(wanted.stress, 6),
+                          .von_mises = span(wanted.von_mises, 1),
+                          .dev_strain = span(wanted.dev_strain, 1),
+                          .secant = span(wanted.secant, 1),
+                          .plastic = span(wanted.plastic, 1)});
   });
 }
 
@@ -202,19 +203,21 @@ int kacanov_inspect(kacanov_operator* op, kacanov_information* information) {
   return on(op, [&](k::Operator& fast) {
     require(information, "information");
     const k::MeshView& mesh = op->mesh;
-    *information = {.unknowns = op->unknowns(),
-                    .nodes = mesh.node_count(),
-                    .elements = mesh.element_count(),
-                    .dimension = k::dimension(mesh.type),
-                    .nodes_per_element = k::nodes_per_element(mesh.type),
-                    .points_per_element = k::points_per_element(mesh.type),
-                    .threads = op->options.threads,
-                    .applications = fast.applications(),
-                    .bytes = fast.bytes() + (op->single ? op->single->bytes() : 0) +
-                             op->coordinates.size() * sizeof(double) +
-                             op->connectivity.size() * sizeof(std::int32_t) +
-                             op->own_law_of_element.size() * sizeof(std::uint16_t),
-                    .instruction_set = op->instruction_set.c_str()};
+    const kacanov_information found{.struct_size = sizeof(kacanov_information),
+                                    .unknowns = op->unknowns(),
+                                    .nodes = mesh.node_count(),
+                                    .elements = mesh.element_count(),
+                                    .dimension = k::dimension(mesh.type),
+                                    .nodes_per_element = k::nodes_per_element(mesh.type),
+                                    .points_per_element = k::points_per_element(mesh.type),
+                                    .threads = op->options.threads,
+                                    .applications = fast.applications(),
+                                    .bytes = fast.bytes() + (op->single ? op->single->bytes() : 0) +
+                                             op->coordinates.size() * sizeof(double) +
+                                             op->connectivity.size() * sizeof(std::int32_t) +
+                                             op->own_law_of_element.size() * sizeof(std::uint16_t),
+                                    .instruction_set = op->instruction_set.c_str()};
+    write_sized(found, information, information_bytes, "information.", "kacanov_information");
   });
 }
 
@@ -233,11 +236,31 @@ int kacanov_elastic_law(double young, double poisson, kacanov_law* law) {
   if (law == nullptr) return KACANOV_ERROR_NULL;
   if (!(young > 0.0 && young < 1e300 && poisson > -1.0 && poisson < 0.5)) return KACANOV_ERROR_LAW;
   const k::Law made = k::elastic_law(young, poisson);
-  *law = {};
-  law->kind = KACANOV_LINEAR;
-  law->bulk = made.bulk;
-  law->shear = made.shear;
-  return KACANOV_OK;
+  kacanov_law linear{};
+  linear.kind = KACANOV_LINEAR;
+  linear.bulk = made.bulk;
+  linear.shear = made.shear;
+  return guarded(nullptr, 0, [&] { write_sized(linear, law, law_bytes, "law.", "kacanov_law"); });
 }
 
-const char* kacanov_version(void) { return KACANOV_VERSION; }
+const char* kacanov_code_text(int code) {
+  switch (code) {
+    case KACANOV_OK: return "no error";
+    case KACANOV_ERROR_NULL: return "a required pointer is null";
+    case KACANOV_ERROR_SIZE:
+      return "an array or a struct has another size than expected, or two arrays overlap";
+    case KACANOV_ERROR_MESH: return "the mesh has an index, an element or a coordinate that cannot be";
+    case KACANOV_ERROR_LAW: return "a law, or a parameter of one, is missing or out of range";
+    case KACANOV_ERROR_VALUE: return "an option or an entry of a vector is out of range or not finite";
+    case KACANOV_ERROR_STATE:
+      return "another call has to come first, or the handle is in use by another thread";
+    case KACANOV_ERROR_MEMORY: return "out of memory";
+    case KACANOV_ERROR_INTERNAL: return "a defect of the library";
+    default: return "not a code of this library";
+  }
+}
+
+const char* kacanov_version(void) {
+  return KACANOV_TEXT(KACANOV_VERSION_MAJOR) "." KACANOV_TEXT(KACANOV_VERSION_MINOR) "." KACANOV_TEXT(
+      KACANOV_VERSION_PATCH);
+}

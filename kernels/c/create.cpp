@@ -2,17 +2,22 @@
 // The C interface's making and unmaking of handles.
 #include <kacanov/kacanov.h>
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <utility>
 
 #include "c/handle.hpp"
+#include "c/sized.hpp"
 #include "operator/mesh_check.hpp"
 
 namespace k = kacanov;
 using namespace kacanov::c_api;
 
 namespace {
+
+/// Below this a thread costs more than it brings: it wakes and waits for some 5 µs.
+constexpr std::size_t unknowns_a_thread = 3000;
 
 k::ElementType element_type(std::int32_t element) {
   if (element < 0 || static_cast<std::size_t>(element) >= k::element_types().size())
@@ -67,9 +72,8 @@ void take_mesh(const kacanov_description& d, kacanov_operator& op) {
 }
 
 /// Gives the handle its laws and makes the operator; the handle changes only if all goes well.
-void take_laws(kacanov_operator& op, std::span<const kacanov_law> laws, const std::uint16_t* law_of_element,
+void take_laws(kacanov_operator& op, std::vector<k::Law> checked, const std::uint16_t* law_of_element,
                bool borrow) {
-  std::vector<k::Law> checked = k::c_api::checked_laws(laws);
   for (std::size_t i = 0; i < checked.size(); ++i)
     if (checked[i].mean_dilatation && !k::cell(op.mesh.type).mean_dilatation)
       throw Fault(KACANOV_ERROR_LAW,
@@ -109,17 +113,18 @@ int kacanov_create(const kacanov_description* description, kacanov_operator** op
   return guarded(message, message_size, [&] {
     require(description, "description");
     require(op, "op");
-    const kacanov_description& d = *description;
+    const auto d = read_sized<kacanov_description>(description, description_bytes, "", "kacanov_description");
     check_description(d);
     auto made = std::make_unique<kacanov_operator>();
     take_mesh(d, *made);
     if (const std::string fault = k::mesh_fault(made->mesh); !fault.empty())
       throw Fault(KACANOV_ERROR_MESH, fault);
-    made->options.threads = d.threads == 0 ? 1 : d.threads;
+    const std::size_t worth = std::max<std::size_t>(made->unknowns() / unknowns_a_thread, 1);
+    made->options.threads = static_cast<int>(std::clamp<std::size_t>(d.threads, 1, worth));
     if (d.instruction_set != nullptr) made->instruction_set = d.instruction_set;
     made->options.instruction_set = made->instruction_set;
     made->wants_single = d.single != 0;
-    if (d.laws > 0) take_laws(*made, {d.law, d.laws}, d.law_of_element, d.borrow != 0);
+    if (d.laws > 0) take_laws(*made, checked_laws(d.laws, d.law), d.law_of_element, d.borrow != 0);
     *op = made.release();
   });
 }
@@ -128,11 +133,10 @@ void kacanov_destroy(kacanov_operator* op) { delete op; }
 
 int kacanov_set_laws(kacanov_operator* op, size_t laws, const kacanov_law* law, size_t elements,
                      const uint16_t* law_of_element) {
-  if (op == nullptr) return KACANOV_ERROR_NULL;
-  return guarded(op->message, sizeof op->message, [&] {
+  return alone(op, [&] {
     require(law, "law");
     if (laws == 0) throw Fault(KACANOV_ERROR_SIZE, "laws: expected at least 1");
     require_size(elements, op->mesh.element_count(), "elements");
-    take_laws(*op, {law, laws}, law_of_element, false);
+    take_laws(*op, checked_laws(laws, law), law_of_element, false);
   });
 }

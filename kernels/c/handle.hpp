@@ -2,6 +2,7 @@
 // The handle of the C interface, and how its functions check arguments and report faults.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -12,6 +13,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <kacanov/kacanov.h>
@@ -34,6 +36,7 @@ struct kacanov_operator {
   bool wants_single = false;
   bool single_is_current = false;  ///< its g is that of `fast`
   bool has_tangent = false;
+  std::atomic<bool> busy = false;  ///< a call is at work
   char message[512] = "";
 
   std::size_t unknowns() const noexcept { return mesh.coordinates.size(); }
@@ -61,6 +64,9 @@ int guarded(char* message, std::size_t size, Work&& work) noexcept {
   } catch (const std::bad_alloc&) {
     copy_message("out of memory", message, size);
     return KACANOV_ERROR_MEMORY;
+  } catch (const std::system_error& error) {
+    copy_message(error.what(), message, size);
+    return KACANOV_ERROR_MEMORY;
   } catch (const std::length_error&) {
     copy_message("out of memory: a size is beyond any memory", message, size);
     return KACANOV_ERROR_MEMORY;
@@ -83,11 +89,20 @@ inline void require_size(std::size_t got, std::size_t expected, const char* name
                                         std::to_string(got));
 }
 
-/// Runs `work` on a handle that has laws; see guarded().
+/// Runs `work` unless a call is at work on the handle; see guarded(). The message is left to that call.
+template <class Work>
+int alone(kacanov_operator* op, Work&& work) noexcept {
+  if (op == nullptr) return KACANOV_ERROR_NULL;
+  if (op->busy.exchange(true, std::memory_order_acquire)) return KACANOV_ERROR_STATE;
+  const int code = guarded(op->message, sizeof op->message, work);
+  op->busy.store(false, std::memory_order_release);
+  return code;
+}
+
+/// The same on a handle that has laws.
 template <class Work>
 int on(kacanov_operator* op, Work&& work) noexcept {
-  if (op == nullptr) return KACANOV_ERROR_NULL;
-  return guarded(op->message, sizeof op->message, [&] {
+  return alone(op, [&] {
     if (!op->fast) throw Fault(KACANOV_ERROR_STATE, "the operator has no laws yet: kacanov_set_laws first");
     work(*op->fast);
   });

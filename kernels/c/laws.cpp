@@ -2,6 +2,10 @@
 // From the laws of the C interface to ours, checked.
 #include "c/laws.hpp"
 
+#include <cstdint>
+
+#include "c/sized.hpp"
+
 namespace kacanov::c_api {
 namespace {
 
@@ -29,6 +33,7 @@ Law checked_law(const kacanov_law& from, const std::string& where) {
     throw Fault(KACANOV_ERROR_LAW, where + "squared: expected 0 or 1");
   if (from.mean_dilatation != 0 && from.mean_dilatation != 1)
     throw Fault(KACANOV_ERROR_LAW, where + "mean_dilatation: expected 0 or 1");
+  if (from.reserved != 0) throw Fault(KACANOV_ERROR_LAW, where + "reserved: expected 0");
   Law law;
   law.form = form_of(from, where);
   law.argument = from.squared != 0 ? Law::Argument::squared : Law::Argument::norm;
@@ -41,13 +46,19 @@ Law checked_law(const kacanov_law& from, const std::string& where) {
 
 }  // namespace
 
-std::vector<Law> checked_laws(std::span<const kacanov_law> laws) {
-  if (laws.size() > 65536)
-    throw Fault(KACANOV_ERROR_SIZE, "laws: at most 65536, the range of law_of_element");
+std::vector<Law> checked_laws(std::size_t count, const kacanov_law* laws) {
+  if (count > 65536) throw Fault(KACANOV_ERROR_SIZE, "laws: at most 65536, the range of law_of_element");
+  const std::size_t stride = laws->struct_size;
+  const auto* at = reinterpret_cast<const unsigned char*>(laws);
   std::vector<Law> out;
-  out.reserve(laws.size());
-  for (std::size_t i = 0; i < laws.size(); ++i)
-    out.push_back(checked_law(laws[i], "law[" + std::to_string(i) + "]."));
+  out.reserve(count);
+  for (std::size_t i = 0; i < count; ++i, at += stride) {
+    const std::string where = "law[" + std::to_string(i) + "].";
+    const auto law = read_sized<kacanov_law>(at, law_bytes, where, "kacanov_law");
+    if (std::size_t size = 0; std::memcpy(&size, at, sizeof size), size != stride)
+      throw Fault(KACANOV_ERROR_SIZE, where + "struct_size: differs from that of law[0]");
+    out.push_back(checked_law(law, where));
+  }
   return out;
 }
 

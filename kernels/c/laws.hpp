@@ -24,8 +24,9 @@ class Fault : public std::runtime_error {
   kacanov_code code_;
 };
 
-/// Throws Fault that names the law by its index and the parameter at fault.
-std::vector<Law> checked_laws(std::span<const kacanov_law> laws);
+/// `count` laws one after another, each of the size the first says it has. Throws Fault that names the law by
+/// its index and the parameter at fault.
+std::vector<Law> checked_laws(std::size_t count, const kacanov_law* laws);
 
 /// Throws Fault for the first element whose law does not exist.
 void check_law_of_element(std::span<const std::uint16_t> law_of_element, std::size_t laws);

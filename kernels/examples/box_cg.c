@@ -101,13 +101,14 @@ int main(void) {
   const Bar bar = make_bar(4 * n, n);
   const size_t unknowns = 3 * bar.nodes;
 
-  kacanov_law law;
+  kacanov_law law = {0};
+  law.struct_size = sizeof law;
   if (kacanov_elastic_law(1.0, 0.3, &law) != KACANOV_OK) return EXIT_FAILURE;
   law.kind = KACANOV_LOGARITHMIC;
   law.x0 = 0.002;
 
-  kacanov_description body;
-  memset(&body, 0, sizeof body);
+  kacanov_description body = {0};
+  body.struct_size = sizeof body;
   body.element = KACANOV_TET4;
   body.threads = 2;
   body.nodes = bar.nodes;
@@ -154,8 +155,8 @@ int main(void) {
 
   double* mises = allocate(bar.elements, sizeof(double));
   uint8_t* plastic = allocate(bar.elements, 1);
-  kacanov_fields fields;
-  memset(&fields, 0, sizeof fields);
+  kacanov_fields fields = {0};
+  fields.struct_size = sizeof fields;
   fields.elements = bar.elements;
   fields.von_mises = mises;
   fields.plastic = plastic;
@@ -166,7 +167,8 @@ int main(void) {
     largest = fmax(largest, mises[e]);
     yielding += plastic[e];
   }
-  kacanov_information information;
+  kacanov_information information = {0};
+  information.struct_size = sizeof information;
   check(kacanov_inspect(op, &information), op);
   printf("%zu unknowns, %s, %zu bytes; largest von Mises stress %.4e, %zu of %zu elements beyond yield\n",
          information.unknowns, information.instruction_set, information.bytes, largest, yielding,

@@ -14,16 +14,16 @@ Doubles = ct.POINTER(ct.c_double)
 
 class Law(ct.Structure):  # kacanov_law
     _fields_ = [
-        ("kind", ct.c_int32), ("squared", ct.c_int32),
+        ("struct_size", ct.c_size_t), ("kind", ct.c_int32), ("squared", ct.c_int32),
         ("bulk", ct.c_double), ("shear", ct.c_double), ("x0", ct.c_double),
         ("gamma", ct.c_double), ("n", ct.c_double), ("q", ct.c_double),
         ("table_size", ct.c_size_t), ("table_x", Doubles), ("table_s", Doubles),
-        ("mean_dilatation", ct.c_int32)]
+        ("mean_dilatation", ct.c_int32), ("reserved", ct.c_int32)]
 
 
 class Description(ct.Structure):  # kacanov_description
     _fields_ = [
-        ("element", ct.c_int32), ("threads", ct.c_int32),
+        ("struct_size", ct.c_size_t), ("element", ct.c_int32), ("threads", ct.c_int32),
         ("nodes", ct.c_size_t), ("coordinates", Doubles),
         ("node_stride", ct.c_size_t), ("component_stride", ct.c_size_t),
         ("elements", ct.c_size_t), ("connectivity", ct.POINTER(ct.c_int32)),
@@ -40,11 +40,12 @@ class Operator:
         # A caller's own layout: one array a component, as numpy often has it.
         columns = np.ascontiguousarray(points.T, dtype=np.float64)
         tetrahedra = np.ascontiguousarray(tetrahedra, dtype=np.int32)
-        law = Law()
+        law = Law(struct_size=ct.sizeof(Law))
         if library.kacanov_elastic_law(ct.c_double(young), ct.c_double(poisson), ct.byref(law)):
             raise ValueError("Young's modulus or Poisson's ratio is out of range")
         body = Description(
-            element=1, threads=threads, nodes=len(points), coordinates=columns.ctypes.data_as(Doubles),
+            struct_size=ct.sizeof(Description), element=1, threads=threads,
+            nodes=len(points), coordinates=columns.ctypes.data_as(Doubles),
             node_stride=1, component_stride=len(points), elements=len(tetrahedra),
             connectivity=tetrahedra.ctypes.data_as(ct.POINTER(ct.c_int32)), laws=1, law=ct.pointer(law))
         message = ct.create_string_buffer(256)

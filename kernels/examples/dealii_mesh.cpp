@@ -38,6 +38,7 @@ class ConstrainedOperator {
           std::fill_n(held.begin() + 3 * static_cast<std::ptrdiff_t>(face->vertex_index(v)), 3, true);
     }
     kacanov_description body{};
+    body.struct_size = sizeof body;
     body.element = KACANOV_HEX8;
     body.threads = 2;
     body.nodes = mesh.n_vertices();
@@ -86,7 +87,8 @@ int main() {
   dealii::Triangulation<3> mesh;
   dealii::GridGenerator::hyper_ball(mesh);
   mesh.refine_global(3);
-  kacanov_law law;
+  kacanov_law law{};
+  law.struct_size = sizeof law;
   if (kacanov_elastic_law(1.0, 0.3, &law) != KACANOV_OK) return EXIT_FAILURE;
   const ConstrainedOperator op(mesh, law);
 

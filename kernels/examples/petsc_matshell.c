@@ -82,9 +82,11 @@ int main(int argc, char** argv) {
           connectivity[at++] = corner + nx + 1;
         }
 
-  kacanov_law law;
+  kacanov_law law = {0};
+  law.struct_size = sizeof law;
   PetscCheck(kacanov_elastic_law(young, poisson, &law) == KACANOV_OK, PETSC_COMM_SELF, PETSC_ERR_LIB, "law");
   kacanov_description body = {0};
+  body.struct_size = sizeof body;
   body.element = KACANOV_HEX8;
   body.threads = 2;
   body.nodes = nodes;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <mutex>
 #include <new>
 #include <numeric>
 #include <stdexcept>
@@ -119,6 +120,25 @@ void refuse_what_metis_cannot_hold(std::size_t graph) {
   if (room == nullptr) throw std::bad_alloc();
   std::free(room);
 }
+/// METIS draws from the process's rand(), seeds it anew, and would leave it so. While one of these lives,
+/// METIS has a state of its own, and one thread has METIS: its result is the same whoever else makes
+/// operators.
+class OwnRandom {
+ public:
+  OwnRandom() : alone_(mutex()), before_(initstate(1, state_.data(), state_.size())) {}
+  ~OwnRandom() { setstate(before_); }
+  OwnRandom(const OwnRandom&) = delete;
+  OwnRandom& operator=(const OwnRandom&) = delete;
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex one;
+    return one;
+  }
+  std::lock_guard<std::mutex> alone_;
+  std::array<char, 128> state_{};
+  char* before_;
+};
 
 }  // namespace
 
@@ -166,6 +186,7 @@ std::vector<std::int32_t> partition_nodes(const MeshView& mesh, std::span<const 
   METIS_SetDefaultOptions(options.data());
   options[METIS_OPTION_SEED] = 1;
   options[METIS_OPTION_UFACTOR] = 10;  // thousandths of imbalance: shares of threads are made of parts
+  const OwnRandom random;
   const int status =
       METIS_PartGraphKway(&n, &constraints, start.data(), adjacent.data(), nullptr, nullptr, weight.data(),
                           &part_count, nullptr, nullptr, options.data(), &cut, part.data());

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "operator/checks.hpp"
+#include "operator/threads.hpp"
 
 namespace kacanov {
 namespace {
@@ -23,9 +24,9 @@ void evaluate(const void* opaque, double x, double* g, double* slope, double* en
 /// runs done, finish(t).
 template <class Run, class Finish>
 void in_parallel(int threads, Run&& run, Finish&& finish) {
-  if (threads == 1) {
-    run(std::size_t{0});
-    finish(std::size_t{0});
+  if (threads == 1 || is_forked_child()) {
+    for (int t = 0; t < threads; ++t) run(t);
+    for (int t = 0; t < threads; ++t) finish(t);
     return;
   }
 #pragma omp parallel num_threads(threads)
@@ -67,6 +68,7 @@ BasicOperator<Real>::Data::Data(const Body& body, const OperatorOptions& options
   }
   scratch.resize(threads);
   reserve_scratch(1);
+  start_team(threads);
 }
 
 template <class Real>

@@ -352,7 +352,6 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
   subtract_slip_force(traces, set, state.trace.tangential, work.residual);
   // The held rows first.
   const double wide = part.wide_contact ? close_rows(rows, set, traces, state, delta) : 0.0;
-  ActiveSetStep step;
   step.closing = std::max(wide, nodes.close(delta));
   if (step.closing > 0.0) {
     apply(delta, work.image);

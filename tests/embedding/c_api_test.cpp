@@ -25,11 +25,11 @@ TEST_CASE("every element type gives the numbers of the reference") {
         {static_cast<kacanov::ElementType>(element), mesh.coordinates, mesh.connectivity},
         laws,
         example.law_of_element};
-    kacanov_information information;
+    auto information = sized<kacanov_information>();
     REQUIRE(kacanov_inspect(op.get(), &information) == KACANOV_OK);
     CHECK(information.unknowns == n);
     CHECK(information.elements == mesh.elements());
-    CHECK(information.threads == 2);
+    CHECK(information.threads == 1);  // far too small for two
     CHECK(information.bytes > 0);
     CHECK(std::string(information.instruction_set) != "");
     const std::size_t points = mesh.elements() * static_cast<std::size_t>(information.points_per_element);
@@ -88,7 +88,7 @@ TEST_CASE("every element type gives the numbers of the reference") {
     Vector stress(6 * elements), mises(elements), strain(elements), mean_g(elements);
     Vector want_stress(stress.size()), want_mises(elements), want_strain(elements), want_mean_g(elements);
     std::vector<std::uint8_t> plastic(elements), want_plastic(elements);
-    kacanov_fields fields{};
+    auto fields = sized<kacanov_fields>();
     fields.elements = elements;
     fields.stress = stress.data();
     fields.von_mises = mises.data();
@@ -143,7 +143,7 @@ TEST_CASE("every law arrives with its parameters") {
       const Vector u = random_vector(example.n(), 12, 0.1);
       const std::size_t elements = example.mesh.elements();
       Vector strain(elements), g(elements);
-      kacanov_fields fields{};
+      auto fields = sized<kacanov_fields>();
       fields.elements = elements;
       fields.dev_strain = strain.data();
       REQUIRE(kacanov_stress(op.get(), example.n(), u.data(), &fields) == KACANOV_OK);
@@ -156,8 +156,8 @@ TEST_CASE("every law arrives with its parameters") {
 
 #if defined(__x86_64__)
 // What a binding in another language mirrors: examples/ctypes_numpy.py does.
-static_assert(sizeof(kacanov_law) == 88);
-static_assert(sizeof(kacanov_description) == 112);
+static_assert(sizeof(kacanov_law) == 96);
+static_assert(sizeof(kacanov_description) == 120);
 #endif
 
 TEST_CASE("coordinates and connectivity may lie in any regular order") {
@@ -192,7 +192,7 @@ TEST_CASE("coordinates and connectivity may lie in any regular order") {
     CHECK(applied(op, x) == want);
   }
   SUBCASE("copied arrays may go, and cost memory") {
-    kacanov_information copied, borrowed;
+    auto copied = sized<kacanov_information>(), borrowed = copied;
     Vector coordinates = plain.mesh.coordinates;
     plain.description.coordinates = coordinates.data();
     const Handle op = plain.create();

@@ -164,7 +164,7 @@ TEST_CASE("bad vectors have a code and leave the state alone") {
   CHECK(kacanov_residual(op.get(), n, nullptr, y.data()) == KACANOV_ERROR_NULL);
   CHECK(kacanov_inspect(op.get(), nullptr) == KACANOV_ERROR_NULL);
   CHECK(kacanov_stress(op.get(), n, x.data(), nullptr) == KACANOV_ERROR_NULL);
-  kacanov_fields fields{};
+  auto fields = sized<kacanov_fields>();
   fields.elements = points + 1;
   CHECK(kacanov_stress(op.get(), n, x.data(), &fields) == KACANOV_ERROR_SIZE);
 
@@ -189,9 +189,9 @@ TEST_CASE("no call takes a null handle, and none a vector of another length") {
   Vector x(n), y(3 * n);
   std::vector<float> a(n), b(n);
   double value = 0.0;
-  kacanov_fields fields{};
+  auto fields = sized<kacanov_fields>();
   fields.elements = example.mesh.elements();
-  kacanov_information information;
+  auto information = sized<kacanov_information>();
   using Call = std::function<int(kacanov_operator*, std::size_t)>;
   const std::vector<Call> with_length = {
       [&](kacanov_operator* h, std::size_t m) { return kacanov_update(h, m, x.data()); },
@@ -278,7 +278,7 @@ TEST_CASE("null handles and short message buffers do no harm") {
   CHECK(std::strlen(kacanov_message(nullptr)) > 0);
   kacanov_destroy(nullptr);
   CHECK(kacanov_elastic_law(1.0, 0.5, nullptr) == KACANOV_ERROR_NULL);
-  kacanov_law law;
+  auto law = sized<kacanov_law>();
   CHECK(kacanov_elastic_law(1.0, 0.5, &law) == KACANOV_ERROR_LAW);
   CHECK(kacanov_elastic_law(nan_value, 0.3, &law) == KACANOV_ERROR_LAW);
 

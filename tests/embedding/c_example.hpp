@@ -21,8 +21,16 @@ struct Destroy {
 };
 using Handle = std::unique_ptr<kacanov_operator, Destroy>;
 
+/// A struct of the C interface: its size, and zeros.
+template <class Struct>
+Struct sized() {
+  Struct made{};
+  made.struct_size = sizeof made;
+  return made;
+}
+
 inline kacanov_law logarithmic() {
-  kacanov_law law;
+  auto law = sized<kacanov_law>();
   REQUIRE(kacanov_elastic_law(2.0, 0.3, &law) == KACANOV_OK);
   law.kind = KACANOV_LOGARITHMIC;
   law.x0 = 0.02;
@@ -34,7 +42,7 @@ struct Example {
   SmallMesh mesh;
   std::vector<kacanov_law> laws;
   std::vector<std::uint16_t> law_of_element;
-  kacanov_description description{};
+  kacanov_description description = sized<kacanov_description>();
 
   explicit Example(std::int32_t element = KACANOV_TET4, std::size_t n = 2) : mesh(small_mesh(element, n)) {
     laws = {logarithmic(), logarithmic()};

@@ -22,7 +22,8 @@ void damage(SmallMesh& mesh, Bytes& in) {
 }
 
 kacanov_law some_law(Bytes& in, const std::vector<double>& x, const std::vector<double>& s) {
-  kacanov_law law;
+  kacanov_law law{};
+  law.struct_size = sizeof law;
   if (kacanov_elastic_law(1.0, 0.3, &law) != KACANOV_OK) std::abort();
   law.kind = static_cast<std::int32_t>(in.below(7));
   law.squared = static_cast<std::int32_t>(in.below(3));
@@ -53,6 +54,7 @@ void call(kacanov_operator* op, Bytes& in, const kacanov_information& about) {
   std::vector<double> stress(6 * about.elements);
   std::vector<std::int32_t> nodes(about.nodes), elements(about.elements);
   kacanov_fields fields{};
+  fields.struct_size = sizeof fields;
   fields.elements = about.elements;
   fields.stress = stress.data();
   double number = 0.0;
@@ -103,6 +105,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (auto& law : law_of_element) law = static_cast<std::uint16_t>(in.below(laws.size() + 1));
 
   kacanov_description description{};
+  description.struct_size = sizeof description;
   description.element = in.below(16) == 0 ? in.take<std::int32_t>() : mesh.element;
   description.threads = static_cast<std::int32_t>(in.below(3));
   // Fewer than the arrays hold is fine; more is the caller's crime.
@@ -127,6 +130,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (code == KACANOV_ERROR_INTERNAL) std::fprintf(stderr, "%s\n", message);
   kacanov::fuzz::expect((code == KACANOV_OK) == (op != nullptr) && code < KACANOV_ERROR_INTERNAL);
   kacanov_information about{};
+  about.struct_size = sizeof about;
   if (op != nullptr && kacanov_inspect(op, &about) == KACANOV_OK)
     for (int k = 0; k < 12 && !in.empty(); ++k) call(op, in, about);
   kacanov_destroy(op);

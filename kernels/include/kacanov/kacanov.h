@@ -12,10 +12,20 @@
  *
  * Every function that returns int returns a kacanov_code: KACANOV_OK, or what went wrong; the handle then has
  * a message that says so in words. Output arrays have undefined content after an error. Nothing is printed,
- * there is no global state and no MPI. A handle may be used by one thread at a time; different handles are
- * independent. Arrays passed in stay the caller's.
+ * there is no global state and no MPI. A handle is used by one thread at a time: a call that finds another at
+ * work returns KACANOV_ERROR_STATE and does nothing, not even a message. Different handles are independent.
+ * Arrays passed in stay the caller's.
+ *
+ * Structs grow at their end, and the library keeps up with callers built against older headers: every struct
+ * begins with struct_size, which the caller sets to its sizeof. What an old caller's struct does not have is
+ * taken as zero; what a newer caller's has beyond this library has to be zero. Names and numbers stay.
+ *
+ * Threads are those of OpenMP, one team a calling thread. A small body uses fewer than asked for (see
+ * kacanov_information.threads). After fork() the child has none of its parent's threads: operators there use
+ * one. Where the machine is shared, set OMP_WAIT_POLICY=passive, or waiting threads take the time of others.
  *
  *   kacanov_description body = {0};
+ *   body.struct_size = sizeof body;
  *   body.element = KACANOV_TET4;
  *   ...                                            coordinates, connectivity, laws, threads
  *   char message[256];
@@ -36,6 +46,11 @@
 #define KACANOV_API
 #endif
 
+/* The version of this header; kacanov_version() has that of the library. */
+#define KACANOV_VERSION_MAJOR 0
+#define KACANOV_VERSION_MINOR 2
+#define KACANOV_VERSION_PATCH 0
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -47,7 +62,7 @@ typedef enum kacanov_code {
   KACANOV_ERROR_MESH = 3,    /* index out of range, inverted or degenerate element, coordinate not finite */
   KACANOV_ERROR_LAW = 4,     /* a law's parameter is missing or out of range, or a law does not exist */
   KACANOV_ERROR_VALUE = 5,   /* an option or an entry of a vector is out of range or not finite */
-  KACANOV_ERROR_STATE = 6,   /* a call is missing that has to come first */
+  KACANOV_ERROR_STATE = 6,   /* a call is missing that has to come first, or the handle is in use */
   KACANOV_ERROR_MEMORY = 7,  /* out of memory */
   KACANOV_ERROR_INTERNAL = 8 /* a defect of the library */
 } kacanov_code;
@@ -73,25 +88,28 @@ typedef enum kacanov_law_kind {
 } kacanov_law_kind;
 
 typedef struct kacanov_law {
-  int32_t kind;      /* kacanov_law_kind */
-  int32_t squared;   /* 0: a = x = |dev eps|; 1: a = x^2 */
-  double bulk;       /* k0 > 0 */
-  double shear;      /* mu > 0 */
-  double x0;         /* yield strain, compared with a; > 0 for all kinds but linear and table */
-  double gamma;      /* linear hardening */
-  double n;          /* power, Ramberg-Osgood */
-  double q;          /* saturating, Ramberg-Osgood */
-  size_t table_size; /* table: points, from (0, 0); table_s increases, table_s/table_x must not */
+  size_t struct_size; /* sizeof(kacanov_law); the same for all laws of an array */
+  int32_t kind;       /* kacanov_law_kind */
+  int32_t squared;    /* 0: a = x = |dev eps|; 1: a = x^2 */
+  double bulk;        /* k0 > 0 */
+  double shear;       /* mu > 0 */
+  double x0;          /* yield strain, compared with a; > 0 for all kinds but linear and table */
+  double gamma;       /* linear hardening */
+  double n;           /* power, Ramberg-Osgood */
+  double q;           /* saturating, Ramberg-Osgood */
+  size_t table_size;  /* table: points, from (0, 0); table_s increases, table_s/table_x must not */
   const double* table_x;
   const double* table_s;   /* |dev tau| = 2 g a at table_x */
   int32_t mean_dilatation; /* 1: k0 acts on the mean of tr(eps) over the element (B-bar), against locking of
                               nearly incompressible and of plastic bodies; hex8 and quad4 */
+  int32_t reserved;        /* 0 */
 } kacanov_law;
 
-/* The body. Zero everywhere is a valid start: every field for which zero makes sense may stay so. */
+/* The body. Zeros and struct_size are a valid start: what may be zero may stay so. */
 typedef struct kacanov_description {
-  int32_t element; /* kacanov_element */
-  int32_t threads; /* threads of this operator; 0: one */
+  size_t struct_size; /* sizeof(kacanov_description) */
+  int32_t element;    /* kacanov_element */
+  int32_t threads;    /* at most so many threads for this operator; 0: one */
 
   size_t nodes;
   const double* coordinates; /* component c of node i: coordinates[i * node_stride + c * component_stride] */
@@ -189,6 +207,7 @@ KACANOV_API int kacanov_diagonal_float(kacanov_operator* op, size_t n, float* di
 
 /* Means over each element at a displacement; arrays that are null are left out. */
 typedef struct kacanov_fields {
+  size_t struct_size; /* sizeof(kacanov_fields) */
   size_t elements;    /* length of the arrays, to be checked */
   double* stress;     /* 6 an element: xx yy zz xy yz zx (zz also in plane strain) */
   double* von_mises;  /* 1 an element */
@@ -199,13 +218,14 @@ typedef struct kacanov_fields {
 KACANOV_API int kacanov_stress(kacanov_operator* op, size_t n, const double* u, const kacanov_fields* fields);
 
 typedef struct kacanov_information {
-  size_t unknowns; /* nodes * dimension: the `n` above */
+  size_t struct_size; /* set by the caller before the call: sizeof(kacanov_information) */
+  size_t unknowns;    /* nodes * dimension: the `n` above */
   size_t nodes;
   size_t elements;
   int32_t dimension;
   int32_t nodes_per_element;
-  int32_t points_per_element; /* values of g an element */
-  int32_t threads;
+  int32_t points_per_element;  /* values of g an element */
+  int32_t threads;             /* that are used: at most those asked for */
   uint64_t applications;       /* of B and B_T since the operator was made */
   size_t bytes;                /* held by the handle */
   const char* instruction_set; /* valid as long as the handle */
@@ -217,8 +237,11 @@ KACANOV_API int kacanov_inspect(kacanov_operator* op, kacanov_information* infor
 KACANOV_API int kacanov_locality_order(kacanov_operator* op, size_t nodes, int32_t* node_order,
                                        size_t elements, int32_t* element_order);
 
-/* The linear law of Young's modulus > 0 and Poisson's ratio in (-1, 1/2). */
+/* The linear law of Young's modulus > 0 and Poisson's ratio in (-1, 1/2). law->struct_size has to be set. */
 KACANOV_API int kacanov_elastic_law(double young, double poisson, kacanov_law* law);
+
+/* What a kacanov_code means, in a few words; never null. */
+KACANOV_API const char* kacanov_code_text(int code);
 
 /* "major.minor.patch" */
 KACANOV_API const char* kacanov_version(void);

@@ -7,9 +7,11 @@
 int main(void) {
   const double coordinates[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
   const int32_t connectivity[4] = {0, 1, 2, 3};
-  kacanov_law law;
+  kacanov_law law = {0};
+  law.struct_size = sizeof law;
   if (kacanov_elastic_law(1.0, 0.25, &law)) return 1;
   kacanov_description body = {0};
+  body.struct_size = sizeof body;
   body.element = KACANOV_TET4;
   body.nodes = 4;
   body.coordinates = coordinates;

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Structs of callers built against other versions of the header: read and written by the size they say they
+// have.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <string>
+
+#include "c/laws.hpp"
+
+namespace kacanov::c_api {
+
+/// Throws Fault unless `size`, the first field of a caller's struct, is at least that of the first version
+/// that made the promise.
+inline void require_struct_size(std::size_t size, std::size_t least, const std::string& where,
+                                const char* type) {
+  if (size < least)
+    throw Fault(KACANOV_ERROR_SIZE, where + "struct_size: expected sizeof(" + type + "), " +
+                                        std::to_string(least) + " or more, got " + std::to_string(size));
+  constexpr std::size_t most = 1 << 16;
+  if (size > most)
+    throw Fault(KACANOV_ERROR_SIZE,
+                where + "struct_size: expected sizeof(" + type + "), got " + std::to_string(size));
+}
+
+/// The caller's struct at `from`: what it lacks is zero. Throws Fault for the sizes above, and where a newer
+/// caller asks for something by a field that is not known here.
+template <class Struct>
+Struct read_sized(const void* from, std::size_t least, const std::string& where, const char* type) {
+  const auto* bytes = static_cast<const unsigned char*>(from);
+  std::size_t size = 0;
+  std::memcpy(&size, bytes, sizeof size);
+  require_struct_size(size, least, where, type);
+  if (size > sizeof(Struct) &&
+      std::any_of(bytes + sizeof(Struct), bytes + size, [](unsigned char byte) { return byte != 0; }))
+    throw Fault(KACANOV_ERROR_VALUE, where + "a field beyond the " + std::to_string(sizeof(Struct)) +
+                                         " bytes of " + type + " that this library knows is not zero");
+  Struct to{};
+  std::memcpy(&to, bytes, std::min(size, sizeof(Struct)));
+  to.struct_size = sizeof(Struct);
+  return to;
+}
+
+/// Writes as much of `from` as the caller's struct has room for; the caller's size stays, and what a newer
+/// caller's struct has beyond is set to zero.
+template <class Struct>
+void write_sized(const Struct& from, Struct* to, std::size_t least, const std::string& where,
+                 const char* type) {
+  const std::size_t size = to->struct_size;
+  require_struct_size(size, least, where, type);
+  auto* bytes = reinterpret_cast<unsigned char*>(to);
+  std::memcpy(bytes + sizeof size, reinterpret_cast<const unsigned char*>(&from) + sizeof size,
+              std::min(size, sizeof(Struct)) - sizeof size);
+  if (size > sizeof(Struct)) std::memset(bytes + sizeof(Struct), 0, size - sizeof(Struct));
+}
+
+// What the structs of version 0.2 had, the first with struct_size: fields that come later are not counted
+// here.
+constexpr std::size_t law_bytes = offsetof(kacanov_law, reserved) + sizeof(std::int32_t),
+                      description_bytes =
+                          offsetof(kacanov_description, instruction_set) + sizeof(const char*),
+                      fields_bytes = offsetof(kacanov_fields, plastic) + sizeof(std::uint8_t*),
+                      information_bytes =
+                          offsetof(kacanov_information, instruction_set) + sizeof(const char*);
+
+}  // namespace kacanov::c_api

@@ -1,0 +1,254 @@
+/* SPDX-License-Identifier: BSD-3-Clause */
+/* kacanov.h as version 0.2 released it, never to be changed: what a client built against it does has to work. */
+/* The C interface: matrix-free operators of small-strain elastoplasticity for other finite element codes.
+ *
+ * A body is meshed with one element type; each element follows a Hencky law
+ *   tau = k0 tr(eps) I + 2 g(x) dev(eps),   x = |dev(eps)| (Frobenius norm),
+ * with bulk modulus k0 and secant shear modulus g. A handle keeps g (one value a quadrature point), frozen at
+ * a displacement by kacanov_update, and then applies the linear operator B(g) to vectors.
+ *
+ * Vectors are of double, or of float in the calls that end in _float. They have nodes * dimension entries,
+ * interleaved (all components of node 0, then of node 1, ...), in the caller's node order. Units are the
+ * caller's; in 2D (plane strain) everything is for unit thickness.
+ *
+ * Every function that returns int returns a kacanov_code: KACANOV_OK, or what went wrong; the handle then has
+ * a message that says so in words. Output arrays have undefined content after an error. Nothing is printed,
+ * there is no global state and no MPI. A handle is used by one thread at a time: a call that finds another at
+ * work returns KACANOV_ERROR_STATE and does nothing, not even a message. Different handles are independent.
+ * Arrays passed in stay the caller's.
+ *
+ * Structs grow at their end, and the library keeps up with callers built against older headers: every struct
+ * begins with struct_size, which the caller sets to its sizeof. What an old caller's struct does not have is
+ * taken as zero; what a newer caller's has beyond this library has to be zero. Names and numbers stay.
+ *
+ * Threads are those of OpenMP, one team a calling thread. A small body uses fewer than asked for (see
+ * kacanov_information.threads). After fork() the child has none of its parent's threads: operators there use
+ * one. Where the machine is shared, set OMP_WAIT_POLICY=passive, or waiting threads take the time of others.
+ *
+ *   kacanov_description body = {0};
+ *   body.struct_size = sizeof body;
+ *   body.element = KACANOV_TET4;
+ *   ...                                            coordinates, connectivity, laws, threads
+ *   char message[256];
+ *   kacanov_operator *op;
+ *   if (kacanov_create(&body, &op, message, sizeof message)) { puts(message); return 1; }
+ *   kacanov_apply(op, n, x, y);
+ *   kacanov_destroy(op);
+ */
+#ifndef KACANOV_H
+#define KACANOV_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(__GNUC__)
+#define KACANOV_API __attribute__((visibility("default")))
+#else
+#define KACANOV_API
+#endif
+
+/* The version of this header; kacanov_version() has that of the library. */
+#define KACANOV_VERSION_MAJOR 0
+#define KACANOV_VERSION_MINOR 2
+#define KACANOV_VERSION_PATCH 0
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum kacanov_code {
+  KACANOV_OK = 0,
+  KACANOV_ERROR_NULL = 1,    /* a required pointer is null */
+  KACANOV_ERROR_SIZE = 2,    /* a vector or array has another size than expected, or two of them overlap */
+  KACANOV_ERROR_MESH = 3,    /* index out of range, inverted or degenerate element, coordinate not finite */
+  KACANOV_ERROR_LAW = 4,     /* a law's parameter is missing or out of range, or a law does not exist */
+  KACANOV_ERROR_VALUE = 5,   /* an option or an entry of a vector is out of range or not finite */
+  KACANOV_ERROR_STATE = 6,   /* a call is missing that has to come first, or the handle is in use */
+  KACANOV_ERROR_MEMORY = 7,  /* out of memory */
+  KACANOV_ERROR_INTERNAL = 8 /* a defect of the library */
+} kacanov_code;
+
+/* Node order is that of Gmsh; tet10 has its mid-side nodes on the edges 01 12 20 30 32 31. */
+typedef enum kacanov_element {
+  KACANOV_TRI3 = 0,  /* 2D, plane strain, 1 quadrature point */
+  KACANOV_TET4 = 1,  /* 1 point */
+  KACANOV_TET10 = 2, /* 4 points */
+  KACANOV_HEX8 = 3,  /* 8 points */
+  KACANOV_QUAD4 = 4  /* 2D, plane strain, 4 points */
+} kacanov_element;
+
+/* Secant shear moduli g(a); below a = x0 always g = mu. */
+typedef enum kacanov_law_kind {
+  KACANOV_LINEAR = 0,           /* g = mu */
+  KACANOV_LOGARITHMIC = 1,      /* mu (x0/a) (ln(a/x0) + 1) */
+  KACANOV_LINEAR_HARDENING = 2, /* mu (gamma + (1 - gamma) x0/a), 0 < gamma <= 1 */
+  KACANOV_POWER = 3,            /* mu (a/x0)^(n-1), 0 < n <= 1 */
+  KACANOV_SATURATING = 4,       /* mu (x0/a) (1 + q (1 - exp(-(a-x0)/(q x0)))), q > 0 */
+  KACANOV_TABLE = 5,            /* 2 g a piecewise linear through given points */
+  KACANOV_RAMBERG_OSGOOD = 6 /* mu t x0/a with a/x0 = t + q t^n, from a = 0 on; q > 0, n > 1, not squared */
+} kacanov_law_kind;
+
+typedef struct kacanov_law {
+  size_t struct_size; /* sizeof(kacanov_law); the same for all laws of an array */
+  int32_t kind;       /* kacanov_law_kind */
+  int32_t squared;    /* 0: a = x = |dev eps|; 1: a = x^2 */
+  double bulk;        /* k0 > 0 */
+  double shear;       /* mu > 0 */
+  double x0;          /* yield strain, compared with a; > 0 for all kinds but linear and table */
+  double gamma;       /* linear hardening */
+  double n;           /* power, Ramberg-Osgood */
+  double q;           /* saturating, Ramberg-Osgood */
+  size_t table_size;  /* table: points, from (0, 0); table_s increases, table_s/table_x must not */
+  const double* table_x;
+  const double* table_s;   /* |dev tau| = 2 g a at table_x */
+  int32_t mean_dilatation; /* 1: k0 acts on the mean of tr(eps) over the element (B-bar), against locking of
+                              nearly incompressible and of plastic bodies; hex8 and quad4 */
+  int32_t reserved;        /* 0 */
+} kacanov_law;
+
+/* The body. Zeros and struct_size are a valid start: what may be zero may stay so. */
+typedef struct kacanov_description {
+  size_t struct_size; /* sizeof(kacanov_description) */
+  int32_t element;    /* kacanov_element */
+  int32_t threads;    /* at most so many threads for this operator; 0: one */
+
+  size_t nodes;
+  const double* coordinates; /* component c of node i: coordinates[i * node_stride + c * component_stride] */
+  size_t node_stride;        /* 0: interleaved, the dimension */
+  size_t component_stride;   /* 0: 1; `nodes` with node_stride 1 for one array a component */
+
+  size_t elements;
+  const int32_t* connectivity; /* node a of element e: connectivity[e * element_stride + a] - index_base */
+  size_t element_stride;       /* 0: the nodes of an element */
+  int32_t index_base;          /* number of the first node: 0, or 1 as in Fortran */
+
+  int32_t borrow; /* 1: coordinates, connectivity and law_of_element are not copied but used where they are;
+                     they must then have default strides, base 0, and outlive the handle */
+
+  int32_t single; /* 1: keeps the operator in single precision too, for the calls that end in _float */
+
+  size_t laws; /* may be 0 here: then kacanov_set_laws has to come before everything else */
+  const kacanov_law* law;
+  const uint16_t* law_of_element; /* one entry an element, from 0; null: all follow law 0 */
+
+  const char* instruction_set; /* "avx512", "avx2", "plain"; null: what the environment variable
+                                  KACANOV_INSTRUCTION_SET says, or else the best the machine has */
+} kacanov_description;
+
+typedef struct kacanov_operator kacanov_operator;
+
+/* Checks the description and makes an operator with g = mu. `*op` is null after an error, and `message` (may
+ * be null) holds at most `message_size` - 1 characters that name the field, node or element at fault. */
+KACANOV_API int kacanov_create(const kacanov_description* description, kacanov_operator** op, char* message,
+                               size_t message_size);
+
+/* Frees the handle; null is allowed. */
+KACANOV_API void kacanov_destroy(kacanov_operator* op);
+
+/* What the last call that failed on this handle said; "" if none did. Valid until the next call. */
+KACANOV_API const char* kacanov_message(const kacanov_operator* op);
+
+/* Replaces all laws; g starts again as mu. Costs as much as creating the operator. After an error the handle
+ * is as before. `law_of_element` null: all elements follow law 0. */
+KACANOV_API int kacanov_set_laws(kacanov_operator* op, size_t laws, const kacanov_law* law, size_t elements,
+                                 const uint16_t* law_of_element);
+
+/* ---- In the following `n` is the length of the vectors, nodes * dimension; vectors must not overlap. ----
+ */
+
+/* Freezes g at the displacement u. */
+KACANOV_API int kacanov_update(kacanov_operator* op, size_t n, const double* u);
+
+/* The frozen g: elements * points entries, the points of an element together. */
+KACANOV_API int kacanov_secant(kacanov_operator* op, size_t count, double* g);
+KACANOV_API int kacanov_set_secant(kacanov_operator* op, size_t count, const double* g);
+
+/* y = B(g) x. Entries of x are not checked: what is not finite there is not finite in y. */
+KACANOV_API int kacanov_apply(kacanov_operator* op, size_t n, const double* x, double* y);
+
+/* The same, and dot = x . y */
+KACANOV_API int kacanov_apply_dot(kacanov_operator* op, size_t n, const double* x, double* y, double* dot);
+
+/* Several input vectors, one after another in x and in y (vectors * n entries each); quicker than one at a
+ * time. */
+KACANOV_API int kacanov_apply_many(kacanov_operator* op, size_t n, int32_t vectors, const double* x,
+                                   double* y);
+
+/* Freezes g and the consistent tangent at u; then y = B_T x, whatever becomes of g. The direction of the
+ * strain in the tangent's rank-one term is kept in single precision (relative error 1e-7 of that term). */
+KACANOV_API int kacanov_update_tangent(kacanov_operator* op, size_t n, const double* u);
+KACANOV_API int kacanov_apply_tangent(kacanov_operator* op, size_t n, const double* x, double* y);
+
+/* Diagonal of B(g), n entries; diagonal blocks, n * dimension entries: a row-major dimension * dimension
+ * block a node. */
+KACANOV_API int kacanov_diagonal(kacanov_operator* op, size_t n, double* diagonal);
+KACANOV_API int kacanov_block_diagonal(kacanov_operator* op, size_t count, double* blocks);
+
+/* The same of the tangent frozen last. */
+KACANOV_API int kacanov_diagonal_tangent(kacanov_operator* op, size_t n, double* diagonal);
+KACANOV_API int kacanov_block_diagonal_tangent(kacanov_operator* op, size_t count, double* blocks);
+
+/* Internal force f and stored energy of the true nonlinear law at u; the frozen g plays no part. */
+KACANOV_API int kacanov_residual(kacanov_operator* op, size_t n, const double* u, double* f);
+KACANOV_API int kacanov_energy(kacanov_operator* op, size_t n, const double* u, double* energy);
+
+/* Both in one pass, which also freezes g at u. */
+KACANOV_API int kacanov_residual_energy_update(kacanov_operator* op, size_t n, const double* u, double* f,
+                                               double* energy);
+
+/* The frozen operator on vectors of floats, for preconditioners and mixed-precision solvers: about 1e-6
+ * relative on well-shaped elements. Needs `single` in the description; g is always that of the operator in
+ * double precision. */
+KACANOV_API int kacanov_apply_float(kacanov_operator* op, size_t n, const float* x, float* y);
+KACANOV_API int kacanov_apply_dot_float(kacanov_operator* op, size_t n, const float* x, float* y,
+                                        double* dot);
+KACANOV_API int kacanov_apply_many_float(kacanov_operator* op, size_t n, int32_t vectors, const float* x,
+                                         float* y);
+KACANOV_API int kacanov_diagonal_float(kacanov_operator* op, size_t n, float* diagonal);
+
+/* Means over each element at a displacement; arrays that are null are left out. */
+typedef struct kacanov_fields {
+  size_t struct_size; /* sizeof(kacanov_fields) */
+  size_t elements;    /* length of the arrays, to be checked */
+  double* stress;     /* 6 an element: xx yy zz xy yz zx (zz also in plane strain) */
+  double* von_mises;  /* 1 an element */
+  double* dev_strain; /* |dev eps| */
+  double* secant;     /* g */
+  uint8_t* plastic;   /* 1 if any point is beyond yield */
+} kacanov_fields;
+KACANOV_API int kacanov_stress(kacanov_operator* op, size_t n, const double* u, const kacanov_fields* fields);
+
+typedef struct kacanov_information {
+  size_t struct_size; /* set by the caller before the call: sizeof(kacanov_information) */
+  size_t unknowns;    /* nodes * dimension: the `n` above */
+  size_t nodes;
+  size_t elements;
+  int32_t dimension;
+  int32_t nodes_per_element;
+  int32_t points_per_element;  /* values of g an element */
+  int32_t threads;             /* that are used: at most those asked for */
+  uint64_t applications;       /* of B and B_T since the operator was made */
+  size_t bytes;                /* held by the handle */
+  const char* instruction_set; /* valid as long as the handle */
+} kacanov_information;
+KACANOV_API int kacanov_inspect(kacanov_operator* op, kacanov_information* information);
+
+/* The numbering the operator likes best, for callers who are free to choose theirs: entry i is the present
+ * number, from 0, of what should be node (element) i. Arrays that are null are left out. */
+KACANOV_API int kacanov_locality_order(kacanov_operator* op, size_t nodes, int32_t* node_order,
+                                       size_t elements, int32_t* element_order);
+
+/* The linear law of Young's modulus > 0 and Poisson's ratio in (-1, 1/2). law->struct_size has to be set. */
+KACANOV_API int kacanov_elastic_law(double young, double poisson, kacanov_law* law);
+
+/* What a kacanov_code means, in a few words; never null. */
+KACANOV_API const char* kacanov_code_text(int code);
+
+/* "major.minor.patch" */
+KACANOV_API const char* kacanov_version(void);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

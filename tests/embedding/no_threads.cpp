@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A host that may not start threads: making an operator for two of them is an error there, not the end of the
+// host.
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <string>
+
+#include <kacanov/kacanov.h>
+#include "small_meshes.hpp"
+
+int main() {
+  const SmallMesh mesh = small_mesh(KACANOV_TET4, 14);
+  kacanov_law law{};
+  law.struct_size = sizeof law;
+  if (kacanov_elastic_law(1.0, 0.3, &law) != KACANOV_OK) return 1;
+  kacanov_description body{};
+  body.struct_size = sizeof body;
+  body.element = KACANOV_TET4;
+  body.threads = 2;
+  body.nodes = mesh.nodes();
+  body.coordinates = mesh.coordinates.data();
+  body.elements = mesh.elements();
+  body.connectivity = mesh.connectivity.data();
+  body.laws = 1;
+  body.law = &law;
+
+  const rlimit none{1, 1};
+  constexpr uid_t nobody = 65534;  // to root the limit means nothing
+  if (setrlimit(RLIMIT_NPROC, &none) != 0 || (getuid() == 0 && setuid(nobody) != 0)) {
+    std::perror("the limit could not be set");
+    return 77;
+  }
+  kacanov_operator* op = nullptr;
+  char message[256];
+  const int code = kacanov_create(&body, &op, message, sizeof message);
+  std::printf("%s: %s\n", kacanov_code_text(code), message);
+  if (code != KACANOV_ERROR_MEMORY || std::string(message).find("threads: only 1 of 2") == std::string::npos)
+    return 1;
+  body.threads = 1;
+  if (kacanov_create(&body, &op, message, sizeof message) != KACANOV_OK) return 1;
+  kacanov_destroy(op);
+  return 0;
+}
