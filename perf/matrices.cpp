@@ -3,6 +3,9 @@
 #include "matrices.hpp"
 
 #include <algorithm>
+#include <utility>
+
+#include "reference/matrix.hpp"
 
 namespace kacanov::perf {
 namespace {
@@ -50,21 +53,9 @@ Matrices assemble(const Body& body, std::span<const double> g) {
   const std::size_t points = points_per_element(body.mesh.type);
   const std::size_t rows = body.mesh.node_count(), count = body.mesh.element_count();
   const auto connectivity = body.mesh.connectivity;
-  std::vector<std::vector<std::int32_t>> neighbours(rows);
-  for (std::size_t e = 0; e < count; ++e)
-    for (std::size_t a = 0; a < nodes; ++a)
-      for (std::size_t b = 0; b < nodes; ++b) {
-        auto& list = neighbours[connectivity[e * nodes + a]];
-        const std::int32_t other = connectivity[e * nodes + b];
-        const auto place = std::lower_bound(list.begin(), list.end(), other);
-        if (place == list.end() || *place != other) list.insert(place, other);
-      }
-  m.block_first.push_back(0);
-  for (auto& list : neighbours) {
-    m.block_column.insert(m.block_column.end(), list.begin(), list.end());
-    m.block_first.push_back(static_cast<std::int32_t>(m.block_column.size()));
-    list = {};
-  }
+  reference::NodeGraph graph = reference::node_graph(body.mesh);
+  m.block_first.assign(graph.first.begin(), graph.first.end());
+  m.block_column = std::move(graph.neighbour);
   m.block.assign(m.block_column.size() * dim * dim, 0.0);
   const std::size_t n = nodes * dim;
   std::vector<double> matrix(n * n);

@@ -3,13 +3,14 @@
 #include <kacanov/kacanov.h>
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 #include <string>
 
 #include <kacanov/locality.hpp>
 #include "c/handle.hpp"
 #include "c/sized.hpp"
+#include "c/unit_rows.hpp"
+#include "c/vectors.hpp"
 
 #define KACANOV_TEXT_OF(number) #number
 #define KACANOV_TEXT(number) KACANOV_TEXT_OF(number)
@@ -18,20 +19,6 @@ namespace k = kacanov;
 using namespace kacanov::c_api;
 
 namespace {
-
-void require_finite(std::span<const double> values, const char* name) {
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if (!std::isfinite(values[i]))
-      throw Fault(KACANOV_ERROR_VALUE, std::string(name) + "[" + std::to_string(i) + "] is not finite");
-}
-
-/// A displacement: of the right length and finite.
-std::span<const double> state(const kacanov_operator& op, std::size_t n, const double* u) {
-  require_size(n, op.unknowns(), "n");
-  const auto span = input(u, n, "u");
-  require_finite(span, "u");
-  return span;
-}
 
 void require_tangent(const kacanov_operator& op) {
   if (!op.has_tangent)
@@ -77,6 +64,7 @@ int kacanov_apply(kacanov_operator* op, size_t n, const double* x, double* y) {
     const auto out = output(y, n, "y");
     require_disjoint(in, out, "x and y");
     fast.apply(in, out);
+    add_unit_rows(*op, in, out);
   });
 }
 
@@ -87,7 +75,20 @@ int kacanov_apply_dot(kacanov_operator* op, size_t n, const double* x, double* y
     const auto out = output(y, n, "y");
     require(dot, "dot");
     require_disjoint(in, out, "x and y");
-    *dot = fast.apply_dot(in, out);
+    *dot = fast.apply_dot(in, out) + add_unit_rows(*op, in, out);
+  });
+}
+
+int kacanov_apply_add(kacanov_operator* op, size_t n, double alpha, const double* x, double beta, double* y) {
+  return on(op, [&](k::Operator& fast) {
+    require_size(n, op->unknowns(), "n");
+    const auto in = input(x, n, "x");
+    const auto out = output(y, n, "y");
+    require_disjoint(in, out, "x and y");
+    std::vector<double> image(n);
+    fast.apply(in, image);
+    add_unit_rows(*op, in, std::span(image));
+    for (std::size_t i = 0; i < n; ++i) out[i] = alpha * image[i] + (beta == 0.0 ? 0.0 : beta * out[i]);
   });
 }
 
@@ -99,6 +100,7 @@ int kacanov_apply_many(kacanov_operator* op, size_t n, int32_t vectors, const do
     const auto out = output(y, in.size(), "y");
     require_disjoint(in, out, "x and y");
     fast.apply_many(in, out, vectors);
+    for (std::size_t v = 0; v < in.size(); v += n) add_unit_rows(*op, in.subspan(v, n), out.subspan(v, n));
   });
 }
 
@@ -118,20 +120,37 @@ int kacanov_apply_tangent(kacanov_operator* op, size_t n, const double* x, doubl
     const auto out = output(y, n, "y");
     require_disjoint(in, out, "x and y");
     fast.apply_tangent(in, out);
+    add_unit_rows(*op, in, out);
+  });
+}
+
+int kacanov_apply_tangent_dot(kacanov_operator* op, size_t n, const double* x, double* y, double* dot) {
+  return on(op, [&](k::Operator& fast) {
+    require_tangent(*op);
+    require_size(n, op->unknowns(), "n");
+    const auto in = input(x, n, "x");
+    const auto out = output(y, n, "y");
+    require(dot, "dot");
+    require_disjoint(in, out, "x and y");
+    *dot = fast.apply_tangent_dot(in, out) + add_unit_rows(*op, in, out);
   });
 }
 
 int kacanov_diagonal(kacanov_operator* op, size_t n, double* diagonal) {
   return on(op, [&](k::Operator& fast) {
     require_size(n, op->unknowns(), "n");
-    fast.diagonal(output(diagonal, n, "diagonal"));
+    const auto out = output(diagonal, n, "diagonal");
+    fast.diagonal(out);
+    unit_diagonal(*op, out);
   });
 }
 
 int kacanov_block_diagonal(kacanov_operator* op, size_t count, double* blocks) {
   return on(op, [&](k::Operator& fast) {
     require_size(count, op->unknowns() * k::dimension(op->mesh.type), "count");
-    fast.block_diagonal(output(blocks, count, "blocks"));
+    const auto out = output(blocks, count, "blocks");
+    fast.block_diagonal(out);
+    unit_blocks(*op, out);
   });
 }
 
@@ -139,7 +158,9 @@ int kacanov_diagonal_tangent(kacanov_operator* op, size_t n, double* diagonal) {
   return on(op, [&](k::Operator& fast) {
     require_tangent(*op);
     require_size(n, op->unknowns(), "n");
-    fast.diagonal_tangent(output(diagonal, n, "diagonal"));
+    const auto out = output(diagonal, n, "diagonal");
+    fast.diagonal_tangent(out);
+    unit_diagonal(*op, out);
   });
 }
 
@@ -147,7 +168,9 @@ int kacanov_block_diagonal_tangent(kacanov_operator* op, size_t count, double* b
   return on(op, [&](k::Operator& fast) {
     require_tangent(*op);
     require_size(count, op->unknowns() * k::dimension(op->mesh.type), "count");
-    fast.block_diagonal_tangent(output(blocks, count, "blocks"));
+    const auto out = output(blocks, count, "blocks");
+    fast.block_diagonal_tangent(out);
+    unit_blocks(*op, out);
   });
 }
 

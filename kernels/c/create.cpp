@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "c/handle.hpp"
+#include "c/mesh_input.hpp"
 #include "c/sized.hpp"
 #include "operator/mesh_check.hpp"
 
@@ -32,6 +33,10 @@ void check_description(const kacanov_description& d) {
   if (d.index_base != 0 && d.index_base != 1) throw Fault(KACANOV_ERROR_VALUE, "index_base: expected 0 or 1");
   if (d.borrow != 0 && d.borrow != 1) throw Fault(KACANOV_ERROR_VALUE, "borrow: expected 0 or 1");
   if (d.single != 0 && d.single != 1) throw Fault(KACANOV_ERROR_VALUE, "single: expected 0 or 1");
+  if (d.turn_inverted != 0 && d.turn_inverted != 1)
+    throw Fault(KACANOV_ERROR_VALUE, "turn_inverted: expected 0 or 1");
+  if (d.orphans < KACANOV_ORPHANS_ZERO || d.orphans > KACANOV_ORPHANS_UNIT)
+    throw Fault(KACANOV_ERROR_VALUE, "orphans: expected a kacanov_orphans, got " + std::to_string(d.orphans));
   require(d.coordinates, "coordinates");
   require(d.connectivity, "connectivity");
   if (d.laws > 0) require(d.law, "law");
@@ -52,9 +57,12 @@ void take_mesh(const kacanov_description& d, kacanov_operator& op) {
   const std::size_t element_stride = d.element_stride == 0 ? per_element : d.element_stride;
   if (element_stride < per_element)
     throw Fault(KACANOV_ERROR_SIZE, "element_stride: expected at least " + std::to_string(per_element));
+  const auto order = node_order(d.node_order, type);
   if (d.borrow != 0) {
-    if (node_stride != dim || component_stride != 1 || element_stride != per_element || d.index_base != 0)
-      throw Fault(KACANOV_ERROR_VALUE, "borrow: needs default strides and index_base 0");
+    if (node_stride != dim || component_stride != 1 || element_stride != per_element || d.index_base != 0 ||
+        !order.empty() || d.turn_inverted != 0)
+      throw Fault(KACANOV_ERROR_VALUE,
+                  "borrow: needs default strides, index_base 0, Gmsh's node order and no turning");
     op.mesh = {type, {d.coordinates, d.nodes * dim}, {d.connectivity, d.elements * per_element}};
     return;
   }
@@ -66,9 +74,21 @@ void take_mesh(const kacanov_description& d, kacanov_operator& op) {
   for (std::size_t e = 0; e < d.elements; ++e)
     for (std::size_t a = 0; a < per_element; ++a) {
       const std::int32_t node = d.connectivity[e * element_stride + a];
-      op.connectivity[e * per_element + a] = node < 0 ? node : node - d.index_base;
+      const std::size_t to = order.empty() ? a : order[a];
+      op.connectivity[e * per_element + to] = node < 0 ? node : node - d.index_base;
     }
   op.mesh = {type, op.coordinates, op.connectivity};
+  if (d.turn_inverted != 0 && k::arrays_fault(op.mesh).empty()) turn_inverted(op.mesh, op.connectivity);
+}
+
+/// What the caller wants of nodes of no element.
+void take_orphans(std::int32_t wanted, kacanov_operator& op) {
+  if (wanted == KACANOV_ORPHANS_ZERO) return;
+  op.unit_nodes = orphans(op.mesh);
+  if (wanted == KACANOV_ORPHANS_REFUSED && !op.unit_nodes.empty())
+    throw Fault(KACANOV_ERROR_MESH, "node " + std::to_string(op.unit_nodes[0]) +
+                                        " belongs to no element, as do " +
+                                        std::to_string(op.unit_nodes.size() - 1) + " others");
 }
 
 /// Gives the handle its laws and makes the operator; the handle changes only if all goes well.
@@ -119,6 +139,7 @@ int kacanov_create(const kacanov_description* description, kacanov_operator** op
     take_mesh(d, *made);
     if (const std::string fault = k::mesh_fault(made->mesh); !fault.empty())
       throw Fault(KACANOV_ERROR_MESH, fault);
+    take_orphans(d.orphans, *made);
     const std::size_t worth = std::max<std::size_t>(made->unknowns() / unknowns_a_thread, 1);
     made->options.threads = static_cast<int>(std::clamp<std::size_t>(d.threads, 1, worth));
     if (d.instruction_set != nullptr) made->instruction_set = d.instruction_set;

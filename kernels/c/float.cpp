@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "c/handle.hpp"
+#include "c/unit_rows.hpp"
 
 namespace k = kacanov;
 using namespace kacanov::c_api;
@@ -37,6 +38,7 @@ int kacanov_apply_float(kacanov_operator* op, size_t n, const float* x, float* y
     const auto out = output(y, n, "y");
     require_disjoint(in, out, "x and y");
     single.apply(in, out);
+    add_unit_rows(*op, in, out);
   });
 }
 
@@ -46,7 +48,7 @@ int kacanov_apply_dot_float(kacanov_operator* op, size_t n, const float* x, floa
     const auto out = output(y, n, "y");
     require(dot, "dot");
     require_disjoint(in, out, "x and y");
-    *dot = single.apply_dot(in, out);
+    *dot = single.apply_dot(in, out) + add_unit_rows(*op, in, out);
   });
 }
 
@@ -57,10 +59,14 @@ int kacanov_apply_many_float(kacanov_operator* op, size_t n, int32_t vectors, co
     const auto out = output(y, in.size(), "y");
     require_disjoint(in, out, "x and y");
     single.apply_many(in, out, vectors);
+    for (std::size_t v = 0; v < in.size(); v += n) add_unit_rows(*op, in.subspan(v, n), out.subspan(v, n));
   });
 }
 
 int kacanov_diagonal_float(kacanov_operator* op, size_t n, float* diagonal) {
-  return on_single(op, n,
-                   [&](k::FloatOperator& single) { single.diagonal(output(diagonal, n, "diagonal")); });
+  return on_single(op, n, [&](k::FloatOperator& single) {
+    const auto out = output(diagonal, n, "diagonal");
+    single.diagonal(out);
+    unit_diagonal(*op, out);
+  });
 }

@@ -20,6 +20,7 @@
 #include <kacanov/operator.hpp>
 #include <kacanov/reference.hpp>
 #include "c/laws.hpp"
+#include "reference/matrix.hpp"
 
 /// Everything a handle holds. The mesh stays for the recovery of stress and for new laws.
 struct kacanov_operator {
@@ -36,7 +37,9 @@ struct kacanov_operator {
   bool wants_single = false;
   bool single_is_current = false;  ///< its g is that of `fast`
   bool has_tangent = false;
-  std::atomic<bool> busy = false;  ///< a call is at work
+  std::vector<std::int32_t> unit_nodes;  ///< nodes of no element whose rows are those of the identity
+  kacanov::reference::NodeGraph graph;   ///< of the matrix; empty until it is asked for
+  std::atomic<bool> busy = false;        ///< a call is at work
   char message[512] = "";
 
   std::size_t unknowns() const noexcept { return mesh.coordinates.size(); }

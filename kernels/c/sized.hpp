@@ -59,8 +59,7 @@ void write_sized(const Struct& from, Struct* to, std::size_t least, const std::s
 // What the structs of version 0.2 had, the first with struct_size: fields that come later are not counted
 // here.
 constexpr std::size_t law_bytes = offsetof(kacanov_law, reserved) + sizeof(std::int32_t),
-                      description_bytes =
-                          offsetof(kacanov_description, instruction_set) + sizeof(const char*),
+                      description_bytes = offsetof(kacanov_description, orphans) + sizeof(std::int32_t),
                       fields_bytes = offsetof(kacanov_fields, plastic) + sizeof(std::uint8_t*),
                       information_bytes =
                           offsetof(kacanov_information, instruction_set) + sizeof(const char*);

@@ -29,7 +29,8 @@ class Description(ct.Structure):  # kacanov_description
         ("elements", ct.c_size_t), ("connectivity", ct.POINTER(ct.c_int32)),
         ("element_stride", ct.c_size_t), ("index_base", ct.c_int32), ("borrow", ct.c_int32), ("single", ct.c_int32),
         ("laws", ct.c_size_t), ("law", ct.POINTER(Law)), ("law_of_element", ct.POINTER(ct.c_uint16)),
-        ("instruction_set", ct.c_char_p)]
+        ("instruction_set", ct.c_char_p), ("node_order", ct.c_char_p), ("turn_inverted", ct.c_int32),
+        ("orphans", ct.c_int32)]
 
 
 class Operator:

@@ -2,6 +2,7 @@
 // Tests arrays that come from outside before a kernel trusts them.
 #include "operator/mesh_check.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -47,7 +48,7 @@ std::string element_fault(const MeshView& mesh) {
 
 }  // namespace
 
-std::string mesh_fault(const MeshView& mesh) {
+std::string arrays_fault(const MeshView& mesh) {
   const std::size_t dim = dimension(mesh.type);
   const std::size_t nodes = nodes_per_element(mesh.type);
   if (mesh.coordinates.empty() || mesh.coordinates.size() % dim != 0)
@@ -63,7 +64,19 @@ std::string mesh_fault(const MeshView& mesh) {
       return "connectivity: element " + std::to_string(i / nodes) + " refers to node " +
              std::to_string(node) + ", counted from 0; the body has " + std::to_string(mesh.node_count());
   }
+  return {};
+}
+
+std::string mesh_fault(const MeshView& mesh) {
+  if (std::string fault = arrays_fault(mesh); !fault.empty()) return fault;
   return elements::dispatch(mesh.type, [&]<class E>(E) { return element_fault<E>(mesh); });
+}
+
+bool is_inverted(const MeshView& mesh, std::size_t element) {
+  return elements::dispatch(mesh.type, [&]<class E>(E) {
+    return std::all_of(E::point.begin(), E::point.end(),
+                       [&](const auto& xi) { return shape_of_map<E>(mesh, element, xi.data()) < 0.0; });
+  });
 }
 
 }  // namespace kacanov

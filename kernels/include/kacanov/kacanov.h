@@ -132,7 +132,20 @@ typedef struct kacanov_description {
 
   const char* instruction_set; /* "avx512", "avx2", "plain"; null: what the environment variable
                                   KACANOV_INSTRUCTION_SET says, or else the best the machine has */
+
+  const char* node_order; /* in which an element's nodes come: "gmsh" (null: the same), "vtk", "basix", or
+                             "dealii" (its cells of degree 1) */
+  int32_t turn_inverted; /* 1: elements with their nodes the wrong way round are turned and not refused; where
+                            an array has several points an element, they are those of the element as turned */
+  int32_t orphans;       /* kacanov_orphans: nodes of no element */
 } kacanov_description;
+
+/* What is to become of nodes of no element. */
+typedef enum kacanov_orphans {
+  KACANOV_ORPHANS_ZERO = 0,    /* rows and diagonals of zeros */
+  KACANOV_ORPHANS_REFUSED = 1, /* kacanov_create says which node it is */
+  KACANOV_ORPHANS_UNIT = 2     /* rows of the identity, diagonals of ones: the operator can be inverted */
+} kacanov_orphans;
 
 typedef struct kacanov_operator kacanov_operator;
 
@@ -168,6 +181,10 @@ KACANOV_API int kacanov_apply(kacanov_operator* op, size_t n, const double* x, d
 /* The same, and dot = x . y */
 KACANOV_API int kacanov_apply_dot(kacanov_operator* op, size_t n, const double* x, double* y, double* dot);
 
+/* y = alpha B(g) x + beta y; with beta = 0 the old y is not read. */
+KACANOV_API int kacanov_apply_add(kacanov_operator* op, size_t n, double alpha, const double* x, double beta,
+                                  double* y);
+
 /* Several input vectors, one after another in x and in y (vectors * n entries each); quicker than one at a
  * time. */
 KACANOV_API int kacanov_apply_many(kacanov_operator* op, size_t n, int32_t vectors, const double* x,
@@ -177,6 +194,10 @@ KACANOV_API int kacanov_apply_many(kacanov_operator* op, size_t n, int32_t vecto
  * strain in the tangent's rank-one term is kept in single precision (relative error 1e-7 of that term). */
 KACANOV_API int kacanov_update_tangent(kacanov_operator* op, size_t n, const double* u);
 KACANOV_API int kacanov_apply_tangent(kacanov_operator* op, size_t n, const double* x, double* y);
+
+/* The same, and dot = x . y */
+KACANOV_API int kacanov_apply_tangent_dot(kacanov_operator* op, size_t n, const double* x, double* y,
+                                          double* dot);
 
 /* Diagonal of B(g), n entries; diagonal blocks, n * dimension entries: a row-major dimension * dimension
  * block a node. */
@@ -204,6 +225,14 @@ KACANOV_API int kacanov_apply_dot_float(kacanov_operator* op, size_t n, const fl
 KACANOV_API int kacanov_apply_many_float(kacanov_operator* op, size_t n, int32_t vectors, const float* x,
                                          float* y);
 KACANOV_API int kacanov_diagonal_float(kacanov_operator* op, size_t n, float* diagonal);
+
+/* The operator as a matrix in compressed rows, for those who want one: B(g), or, with `u` not null, the
+ * consistent tangent at u. First its number of entries (stored symmetrically, zeros included); then the
+ * entries of row i from first[i] (n + 1 of these) on, columns ascending. Null arrays are left out: the
+ * structure never changes. Assembled plainly; costs some hundred times as much as kacanov_apply. */
+KACANOV_API int kacanov_matrix_entries(kacanov_operator* op, size_t n, size_t* entries);
+KACANOV_API int kacanov_matrix(kacanov_operator* op, size_t n, const double* u, size_t entries,
+                               int64_t* first, int32_t* column, double* value);
 
 /* Means over each element at a displacement; arrays that are null are left out. */
 typedef struct kacanov_fields {

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The operator as a matrix in compressed rows, for those who want one: assembled plainly, element by element.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <kacanov/reference.hpp>
+
+namespace kacanov::reference {
+
+/// Which nodes share an element with a node, itself included: those of node i from first[i] on, ascending.
+struct NodeGraph {
+  std::vector<std::int64_t> first;  ///< nodes + 1
+  std::vector<std::int32_t> neighbour;
+};
+NodeGraph node_graph(const MeshView& mesh);
+
+/// Compressed rows of an unknown each, columns ascending. What is empty is left out.
+struct MatrixRows {
+  std::span<std::int64_t> first;   ///< unknowns + 1
+  std::span<std::int32_t> column;  ///< entries(graph, dim)
+  std::span<double> value;         ///< likewise
+};
+std::int64_t entries(const NodeGraph& graph, int dim);
+
+/// Fills `rows` with B(g), or, where `u` is not empty, with the consistent tangent at u.
+void assemble(const Body& body, const NodeGraph& graph, std::span<const double> g, std::span<const double> u,
+              const MatrixRows& rows);
+
+}  // namespace kacanov::reference
