@@ -111,6 +111,31 @@ TEST_CASE("what has been changed in the files is found") {
   CHECK(outcome.error.find("cannot be read") != std::string::npos);
 }
 
+TEST_CASE("files of fields that are damaged are refused by name, whatever is wrong") {
+  const Workplace place;
+  place.put_json("beam.json", small_beam());
+  REQUIRE(place.run("run beam.json --output out").exit_code == 0);
+  for (const std::string file : {"out/body.vtu", "out/contact.vtu"}) {
+    const std::string whole = contents(place.path(file));
+    const auto refused = [&](const std::string& what, const std::string& instead) {
+      INFO(file, ": ", what, " ", instead);
+      std::string text = whole;
+      text.replace(text.find(what), what.size(), instead);
+      place.put(file, text);
+      const Outcome outcome = place.run("verify beam.json --output out");
+      CHECK(outcome.exit_code == 2);
+      CHECK(outcome.error.find(file) != std::string::npos);
+    };
+    for (const char* offset : {"x", "", "-1", "18446744073709551612", "99999999999999999999999", "1e9"})
+      refused("offset=\"0\"", std::string("offset=\"") + offset + "\"");
+    refused("NumberOfComponents=\"3\"", "NumberOfComponents=\"\xff\"");
+    refused("NumberOfComponents=\"3\"", "NumberOfComponents=\"0\"");
+    refused("<AppendedData", "<AppendedDatum");
+    refused("node_id", "mode_id");
+    place.put(file, whole);
+  }
+}
+
 TEST_CASE("an answer that has not converged is not verified, and its certificate is right all the same") {
   const Workplace place;
   place.put_json("beam.json", small_beam());

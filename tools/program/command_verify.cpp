@@ -18,6 +18,9 @@ int verify_command(const Command& command, const Case& input) {
     return verdict.fulfilled ? exit_converged : exit_not_converged;
   } catch (const verify::Failure& failure) {
     throw InputError(failure.what());
+  } catch (const std::logic_error& failure) {  // something is not where it belongs
+    throw InputError("the mesh or the files of the run are not what the verifier expects: " +
+                     std::string(failure.what()));
   } catch (const nlohmann::json::exception& failure) {
     throw InputError(std::string("the case or result.json has not what the verifier expects: ") +
                      failure.what());

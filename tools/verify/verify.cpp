@@ -32,6 +32,15 @@ const Array& array_of(const std::map<std::string, Array>& arrays, const std::str
   return found->second;
 }
 
+/// Of as many entries as there are numbers of nodes.
+const Array& array_of(const std::map<std::string, Array>& arrays, const std::string& name, std::size_t width,
+                      const std::string& file, const Array& ids) {
+  const Array& array = array_of(arrays, name, width, file);
+  if (array.values.size() != width * ids.values.size())
+    throw Failure(file + ": the array " + name + " has not as many entries as there are nodes");
+  return array;
+}
+
 Vec triple(const Array& array, std::size_t i) {
   return {array.values.at(3 * i), array.values.at(3 * i + 1), array.values.at(3 * i + 2)};
 }
@@ -45,8 +54,8 @@ std::vector<Vec> read_displacement(const std::filesystem::path& folder, const Me
   std::vector<bool> known(u.size(), false);
   const Real slack = 1e-14L * mesh.size();
   for (const auto& piece : read_body(folder)) {
-    const Array &ids = array_of(piece, "node_id", 1, file), &points = array_of(piece, "Points", 3, file),
-                &values = array_of(piece, "displacement", 3, file);
+    const Array &ids = array_of(piece, "node_id", 1, file), &points = array_of(piece, "Points", 3, file, ids),
+                &values = array_of(piece, "displacement", 3, file, ids);
     for (std::size_t i = 0; i < ids.values.size(); ++i) {
       const auto found = index.find(static_cast<std::int64_t>(ids.values[i]));
       const std::string name = file + ": node " + std::to_string(static_cast<std::int64_t>(ids.values[i]));
@@ -70,9 +79,10 @@ void read_multipliers(const std::filesystem::path& folder, Problem& problem, Ans
   if (problem.rows.empty()) return;
   const std::string file = (folder / "contact.vtu").string();
   const auto arrays = read_point_data(file);
-  const Array &ids = array_of(arrays, "node_id", 1, file), &pressure = array_of(arrays, "pressure", 1, file),
-              &traction = array_of(arrays, "tangential_traction", 3, file),
-              &status = array_of(arrays, "status", 1, file);
+  const Array &ids = array_of(arrays, "node_id", 1, file),
+              &pressure = array_of(arrays, "pressure", 1, file, ids),
+              &traction = array_of(arrays, "tangential_traction", 3, file, ids),
+              &status = array_of(arrays, "status", 1, file, ids);
   if (ids.values.size() != problem.surface_tags.size())
     throw Failure(file + ": has " + std::to_string(ids.values.size()) + " nodes, expected " +
                   std::to_string(problem.surface_tags.size()) + ", as the contact entries select");

@@ -2,6 +2,7 @@
 // The fields of a .vtu file with raw appended arrays, and of the pieces of a .pvtu.
 #include "verify/vtu.hpp"
 
+#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -41,6 +42,15 @@ std::string between(const std::string& text, const std::string& from, const std:
   return text.substr(begin, text.find(to, begin) - begin);
 }
 
+/// A whole number that an attribute has.
+std::size_t number(const std::string& text, const std::filesystem::path& file) {
+  std::size_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size())
+    throw Failure(file.string() + ": expected a number in an attribute of an array, got \"" + text + "\"");
+  return value;
+}
+
 template <class T>
 void append(const char* data, std::size_t bytes, std::vector<double>& out) {
   for (std::size_t i = 0; i + sizeof(T) <= bytes; i += sizeof(T)) {
@@ -64,10 +74,11 @@ std::map<std::string, Array> read_point_data(const std::filesystem::path& file) 
   const auto take = [&](const std::string& tag) {
     Array array;
     const std::string count = attribute(tag, "NumberOfComponents"), type = attribute(tag, "type");
-    if (!count.empty()) array.components = std::stoul(count);
-    const std::size_t at = data + std::stoul(attribute(tag, "offset"));
+    if (!count.empty()) array.components = number(count, file);
+    const std::size_t offset = number(attribute(tag, "offset"), file), at = data + offset;
     std::uint64_t bytes = 0;
-    if (at + sizeof bytes > text.size()) throw Failure(file.string() + ": is cut short");
+    if (offset > text.size() || at + sizeof bytes > text.size())
+      throw Failure(file.string() + ": is cut short");
     std::memcpy(&bytes, text.data() + at, sizeof bytes);
     if (bytes > text.size() - at - sizeof bytes) throw Failure(file.string() + ": is cut short");
     const char* from = text.data() + at + sizeof bytes;
