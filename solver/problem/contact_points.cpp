@@ -15,122 +15,86 @@
 namespace kacanov {
 namespace {
 
+/// In sizes of the body: the gap of a node that misses an obstacle which may come its way.
+constexpr double far_away = 10.0;
+
 /// Below this length a trace row cannot carry a contact force: its node is held in that direction.
 constexpr double negligible_trace = 1e-8;
 
-struct Facing {
-  Vector3 normal{};  ///< unit, towards the obstacle
-  double gap = 0.0;
-};
-
-Vector3 unit(const Vector3& v, const std::string& path) {
-  const double length = norm(v);
-  if (!(length > 0.0)) throw InputError(path + ": expected a vector that is not zero");
-  return (1.0 / length) * v;
-}
-
-/// How an obstacle faces a node at x whose outer normal (of any length) is given; nothing where it is missed.
+/// How an obstacle faces the nodes of a mesh.
 class Faces {
  public:
-  Faces(const Mesh& mesh, const Obstacle& obstacle, std::string path)
-      : mesh_(mesh), obstacle_(obstacle), path_(std::move(path) + ".obstacle") {
-    if (const auto* plane = std::get_if<Plane>(&obstacle_))
-      direction_ = -1.0 * unit(plane->normal, path_ + ".plane.normal");
-    if (const auto* sphere = std::get_if<Sphere>(&obstacle_)) {
-      if (!(sphere->radius > 0.0)) throw InputError(path_ + ".sphere.radius: expected a number > 0");
-      if (sphere->direction) direction_ = unit(*sphere->direction, path_ + ".sphere.direction");
+  Faces(const Mesh& mesh, const Obstacle& obstacle, const std::string& path)
+      : mesh_(mesh), obstacle_(obstacle), path_(path + ".obstacle.") {
+    std::visit([&](const auto& kind) { path_ += kind.key; }, obstacle_);
+    const auto* surface = std::get_if<SurfaceObstacle>(&obstacle);
+    const auto* heights = std::get_if<HeightMap>(&obstacle);
+    if ((surface != nullptr && !surface->surface) || (heights != nullptr && !heights->field))
+      throw InputError(path_ + ": expected the obstacle's data, which are not read yet");
+    if (mesh.dim() == 2) {
+      if (surface != nullptr || heights != nullptr)
+        throw InputError(path_ + ": expected a mesh in 3D, the only ones that this obstacle faces");
+      return;
     }
+    const auto* block = std::get_if<Block>(&obstacle);
+    if (block != nullptr && block->lower[2] == block->upper[2])
+      throw InputError(path_ + ": expected corners of three entries that differ in all of them");
   }
 
+  /// Of a node whose outer normal (of any length) is given; nothing where the obstacle is missed.
   std::optional<Facing> at(std::int32_t node, const Vector3& outer) const {
-    const Vector3 x = position(mesh_, node);
-    if (const auto* plane = std::get_if<Plane>(&obstacle_)) {
-      return Facing{direction_, dot(plane->point - x, direction_)};
-    }
-    if (const auto* sphere = std::get_if<Sphere>(&obstacle_)) return at_sphere(*sphere, x, node);
-    const double length = norm(outer);
-    if (!(length > 0.0)) {
-      throw InputError(path_ + ".gap: the outer normal at node " + std::to_string(mesh_.node_tag(node)) +
-                       " is zero");
-    }
-    return Facing{(1.0 / length) * outer, std::get<ConstantGap>(obstacle_).gap};
+    const SurfacePoint point{position(mesh_, node), outer};
+    return std::visit(
+        [&](const auto& kind) -> std::optional<Facing> {
+          const Facing facing = kind.project(point);
+          if (facing.kind == Facing::Kind::met) return facing;
+          if (facing.kind == Facing::Kind::missed) return std::nullopt;
+          throw InputError(path_ + ": node " + std::to_string(mesh_.node_tag(node)) + " lies " +
+                           kind.undecided + ", where no direction leads out; " +
+                           (has_direction(kind) ? "give a \"direction\"" : "move the obstacle or the node"));
+        },
+        obstacle_);
   }
 
  private:
-  std::optional<Facing> at_sphere(const Sphere& sphere, const Vector3& x, std::int32_t node) const {
-    const Vector3 to_centre = sphere.centre - x;
-    if (sphere.direction) {
-      const double along = dot(to_centre, direction_);
-      const double inside = sphere.radius * sphere.radius - (dot(to_centre, to_centre) - along * along);
-      if (inside < 0.0) return std::nullopt;
-      return Facing{direction_, along - std::sqrt(inside)};
-    }
-    const double distance = norm(to_centre);
-    if (!(distance > 0.0)) {
-      throw InputError(path_ + ".sphere: node " + std::to_string(mesh_.node_tag(node)) +
-                       " lies at the centre, where no direction leads out; give a \"direction\"");
-    }
-    return Facing{(1.0 / distance) * to_centre, distance - sphere.radius};
+  template <class Kind>
+  static constexpr bool has_direction(const Kind&) {
+    return requires(const Kind& kind) { kind.direction; };
   }
 
   const Mesh& mesh_;
   const Obstacle& obstacle_;
   std::string path_;
-  Vector3 direction_{};
 };
 
-/// ν without what is held of it.
-Vector3 free_components(const ContactPoint& point, const Problem& problem) {
+/// Which components of a node are not held.
+std::array<bool, 3> free_components(const Problem& problem, std::int32_t node) {
   const std::size_t dim = problem.mesh.dim();
-  Vector3 trace{};
-  for (std::size_t c = 0; c < dim; ++c)
-    if (problem.held[point.node * dim + c] == 0) trace[c] = point.normal[c];
-  return trace;
+  std::array<bool, 3> free{};
+  for (std::size_t c = 0; c < dim; ++c) free[c] = problem.held[node * dim + c] == 0;
+  return free;
 }
 
-/// Fills tangents from the normal and the free components, and takes from the gap what the prescribed ones
-/// close. False where the node cannot move along the normal.
-bool restrict_to_free(ContactPoint& point, const Problem& problem, bool friction) {
+/// What the prescribed components of a point's node close of its gap.
+double closed_by_prescription(const ContactPoint& point, const Problem& problem) {
   const std::size_t dim = problem.mesh.dim();
-  const std::size_t base = point.node * dim;
-  std::array<bool, 3> free{};
-  for (std::size_t c = 0; c < dim; ++c) {
-    free[c] = problem.held[base + c] == 0;
-    if (!free[c]) point.gap -= point.normal[c] * problem.prescribed[base + c];
-  }
-  const Vector3 trace = free_components(point, problem);
-  const double length = norm(trace);
-  if (length < negligible_trace) return false;
-  if (!friction) return true;
-  // Gram–Schmidt of the free axes against the trace and each other, the least aligned axis first.
-  std::array<std::size_t, 3> axes{0, 1, 2};
-  std::sort(axes.begin(), axes.end(),
-            [&](std::size_t a, std::size_t b) { return std::abs(trace[a]) < std::abs(trace[b]); });
-  const Vector3 along = (1.0 / length) * trace;
-  for (const std::size_t axis : axes) {
-    if (!free[axis]) continue;
-    Vector3 t{};
-    t[axis] = 1.0;
-    t = t - dot(t, along) * along;
-    for (int k = 0; k < point.tangents; ++k) {
-      const Vector3& other = point.tangent[k];
-      t = t - dot(t, other) * other;
-    }
-    // The last free axis is spanned by the trace and the tangents so far.
-    if (norm(t) < negligible_trace || point.tangents == 2) continue;
-    point.tangent[point.tangents++] = (1.0 / norm(t)) * t;
-  }
-  return true;
+  double closed = 0.0;
+  for (std::size_t c = 0; c < dim; ++c)
+    if (problem.held[point.node * dim + c] != 0)
+      closed += point.normal[c] * problem.prescribed[point.node * dim + c];
+  return closed;
 }
 
 /// Joins points of one node that face the same way at the same gap: masses add up, bounds are averaged by
-/// mass. What was joined is in `shares`.
-std::vector<ContactPoint> merge_equal(const std::vector<ContactPoint>& points, double size,
-                                      std::vector<PointShare>& shares) {
+/// mass. What was joined is in `shares`. Obstacles that move stay alone.
+std::vector<ContactPoint> merge_equal(const std::vector<ContactPoint>& points, const Model& model,
+                                      double size, std::vector<PointShare>& shares) {
   std::vector<ContactPoint> merged;
   for (const ContactPoint& point : points) {
     ContactPoint* twin = nullptr;
+    const auto moves = [&](const ContactPoint& p) { return model.contact[p.entry].moves(); };
     for (std::size_t k = merged.size(); k-- > 0 && merged[k].node == point.node;) {
+      if (moves(point) || moves(merged[k])) continue;
       if (norm(merged[k].normal - point.normal) < 1e-9 && std::abs(merged[k].gap - point.gap) < 1e-9 * size) {
         twin = &merged[k];
       }
@@ -226,7 +190,10 @@ std::vector<ContactPoint> points_of_entry(const Problem& problem, const ContactE
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     if (!(mass[k] > 0.0)) continue;  // corners of quadratic facets bear nothing
     ++candidates;
-    const std::optional<Facing> facing = faces.at(nodes[k], outer[k]);
+    std::optional<Facing> facing = faces.at(nodes[k], outer[k]);
+    // What is missed now may be met later.
+    if (!facing && entry.relinearise && norm(outer[k]) > 0.0)
+      facing = Facing{(1.0 / norm(outer[k])) * outer[k], far_away * extent(mesh).size};
     if (!facing) continue;
     ContactPoint point;
     point.node = nodes[k];
@@ -239,7 +206,9 @@ std::vector<ContactPoint> points_of_entry(const Problem& problem, const ContactE
       point.coulomb = entry.friction->coulomb;
       point.since_step = entry.friction->reference == Friction::Reference::step;
     }
-    if (restrict_to_free(point, problem, friction)) points.push_back(point);
+    if (!narrow_row(point, free_components(problem, point.node), friction)) continue;
+    point.gap -= closed_by_prescription(point, problem);
+    points.push_back(point);
   }
   if (points.empty()) {
     throw InputError(path + ": none of the " + std::to_string(candidates) +
@@ -249,6 +218,35 @@ std::vector<ContactPoint> points_of_entry(const Problem& problem, const ContactE
 }
 
 }  // namespace
+
+std::optional<RowEntry> narrow_row(ContactPoint& point, const std::array<bool, 3>& free, bool friction) {
+  Vector3 trace{};
+  for (std::size_t c = 0; c < 3; ++c)
+    if (free[c]) trace[c] = point.normal[c];
+  const double length = norm(trace);
+  if (length < negligible_trace) return std::nullopt;
+  point.tangents = 0;
+  point.tangent = {};
+  // Gram–Schmidt of the free axes against the trace and each other, the least aligned axis first.
+  std::array<std::size_t, 3> axes{0, 1, 2};
+  std::sort(axes.begin(), axes.end(),
+            [&](std::size_t a, std::size_t b) { return std::abs(trace[a]) < std::abs(trace[b]); });
+  const Vector3 along = (1.0 / length) * trace;
+  for (const std::size_t axis : axes) {
+    if (!friction || !free[axis]) continue;
+    Vector3 t{};
+    t[axis] = 1.0;
+    t = t - dot(t, along) * along;
+    for (int k = 0; k < point.tangents; ++k) {
+      const Vector3& other = point.tangent[k];
+      t = t - dot(t, other) * other;
+    }
+    // The last free axis is spanned by the trace and the tangents so far.
+    if (norm(t) < negligible_trace || point.tangents == 2) continue;
+    point.tangent[point.tangents++] = (1.0 / norm(t)) * t;
+  }
+  return RowEntry{point.node, point.normal, trace, point.tangent};
+}
 
 void find_contact_points(Problem& problem, const Model& model, const Selection& selection) {
   std::vector<std::int32_t> entry_of_facet(problem.mesh.facet_count(), -1);
@@ -272,8 +270,11 @@ void find_contact_points(Problem& problem, const Model& model, const Selection& 
   }
   std::stable_sort(points.begin(), points.end(),
                    [](const ContactPoint& a, const ContactPoint& b) { return a.node < b.node; });
-  for (const ContactPoint& point : merge_equal(points, extent(problem.mesh).size, problem.contact_shares)) {
-    const RowEntry entry{point.node, point.normal, free_components(point, problem), point.tangent};
+  for (const ContactPoint& point :
+       merge_equal(points, model, extent(problem.mesh).size, problem.contact_shares)) {
+    ContactPoint row_of = point;
+    const auto row = narrow_row(row_of, free_components(problem, point.node), point.tangents > 0);
+    const RowEntry entry{row->node, row->normal, row->trace, point.tangent};
     problem.contact.push_back(point, {&entry, 1});
   }
 }

@@ -2,6 +2,9 @@
 // Nodes against obstacles: one producer of constraint rows.
 #pragma once
 
+#include <array>
+#include <optional>
+
 #include <kacanov/problem.hpp>
 #include "problem/selection.hpp"
 
@@ -11,5 +14,9 @@ namespace kacanov {
 /// the undeformed node less what its prescribed components close, so that N·u ≤ ρ holds with the free
 /// components in N alone.
 void find_contact_points(Problem& problem, const Model& model, const Selection& selection);
+
+/// The row of a node against an obstacle, by the point's normal and the components that are free; fills the
+/// point's tangents where there is friction. Nothing where the node can hardly move along the normal.
+std::optional<RowEntry> narrow_row(ContactPoint& point, const std::array<bool, 3>& free, bool friction);
 
 }  // namespace kacanov

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Whether a model and its options make sense before there is a mesh, said in the words of the case file.
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <string>
@@ -12,46 +9,10 @@
 #include <kacanov/model.hpp>
 #include <kacanov/rules.hpp>
 #include "problem/load_curves.hpp"
+#include "problem/model_checks.hpp"
 
 namespace kacanov {
 namespace {
-
-/// The shortest text that is the same number.
-std::string shown(double value) {
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  return {text.data(), end};
-}
-
-template <class Range>
-std::string shown_list(const Range& values) {
-  std::string text;
-  for (const double v : values) text += (text.empty() ? "" : ",") + shown(v);
-  return "[" + text + "]";
-}
-
-std::string at(const std::string& list, std::size_t index) {
-  return list + "[" + std::to_string(index) + "]";
-}
-
-[[noreturn]] void refuse(const std::string& path, const std::string& expected, const std::string& got) {
-  throw InputError(path + ": expected " + expected + ", got " + got);
-}
-
-void check(const std::string& path, double value, const NumberRule& rule = any_number) {
-  if (!(std::abs(value) <= largest_number))
-    refuse(path, std::string(rule.words) + " of a magnitude below 1e100", shown(value));
-  if (!rule.holds(value)) refuse(path, rule.words, shown(value));
-}
-
-void check(const std::string& path, const Vector3& v) {
-  for (std::size_t c = 0; c < 3; ++c) check(at(path, c), v[c]);
-}
-
-void check_direction(const std::string& path, const Vector3& v) {
-  check(path, v);
-  if (v == Vector3{}) refuse(path, "a vector that is not zero", shown_list(v));
-}
 
 void check_count(const std::string& path, int value) {
   if (value < 1) refuse(path, "a whole number ≥ 1", std::to_string(value));
@@ -97,25 +58,45 @@ void check_boundary(const std::string& path, const BoundaryEntry& entry) {
   if (entry.body_force) check(path + ".body_force", *entry.body_force);
 }
 
-void check_obstacle(const std::string& path, const Obstacle& obstacle) {
-  if (const auto* plane = std::get_if<Plane>(&obstacle)) {
-    check(path + ".plane.point", plane->point);
-    check_direction(path + ".plane.normal", plane->normal);
-  } else if (const auto* sphere = std::get_if<Sphere>(&obstacle)) {
-    check(path + ".sphere.centre", sphere->centre);
-    check(path + ".sphere.radius", sphere->radius, positive);
-    if (sphere->direction) check_direction(path + ".sphere.direction", *sphere->direction);
-  } else {
-    check(path + ".gap", std::get<ConstantGap>(obstacle).gap);
-  }
-}
-
 void check_contact(const std::string& path, const ContactEntry& entry) {
   check_selector(path + ".on", entry.on);
-  check_obstacle(path + ".obstacle", entry.obstacle);
+  std::visit([&](const auto& obstacle) { obstacle.check(path + ".obstacle." + obstacle.key); },
+             entry.obstacle);
   if (!entry.friction) return;
   check(path + ".friction.tresca", entry.friction->tresca, not_negative);
   check(path + ".friction.coulomb", entry.friction->coulomb, not_negative);
+}
+
+/// What of a contact entry moves.
+void check_moves(const std::string& path, const Model& model, const ContactEntry& entry) {
+  if (!entry.moves()) return;
+  const char* key = entry.motion ? "motion" : entry.force_controlled ? "force_controlled" : "relinearise";
+  if (std::holds_alternative<ConstantGap>(entry.obstacle))
+    throw InputError(path + "." + key + ": expected an obstacle that has a place, got a gap");
+  if (entry.motion) {
+    check(path + ".motion.centre", entry.motion->centre);
+    double before = 0.0;
+    for (std::size_t i = 0; i < entry.motion->path.size(); ++i) {
+      const Motion::Pose& pose = entry.motion->path[i];
+      const std::string place = at(path + ".motion.path", i);
+      check(place + ".time", pose.time);
+      if (!(pose.time > before)) refuse(place + ".time", "a time after " + shown(before), shown(pose.time));
+      check(place + ".translation", pose.translation);
+      check(place + ".rotation", pose.rotation);
+      before = pose.time;
+    }
+    if (entry.motion->path.empty()) refuse(path + ".motion.path", "at least one place", "[]");
+  }
+  if (!entry.force_controlled) return;
+  if (entry.motion) throw InputError(path + ".force_controlled: expected no motion beside it");
+  check(path + ".force_controlled.force", entry.force_controlled->force, positive);
+  check_direction(path + ".force_controlled.direction", entry.force_controlled->direction);
+  const auto pushed =
+      std::count_if(model.contact.begin(), model.contact.end(),
+                    [](const ContactEntry& other) { return other.force_controlled.has_value(); });
+  if (pushed > 1)
+    throw InputError(path + ".force_controlled: expected one contact entry that is pushed, got " +
+                     std::to_string(pushed));
 }
 
 /// Results and load curves know entries by their names.
@@ -165,7 +146,19 @@ void check_steps(const Model& model) {
     check(path + ".time", step.time);
     if (!(step.time > before)) refuse(path + ".time", "a time after " + shown(before), shown(step.time));
     before = step.time;
-    for (const auto& [name, factor] : step.factors) check(path + ".factors[\"" + name + "\"]", factor);
+    for (const auto& [name, factor] : step.factors) {
+      check(path + ".factors[\"" + name + "\"]", factor);
+      for (std::size_t e = 0; e < model.contact.size(); ++e) {
+        const ContactEntry& entry = model.contact[e];
+        if (name != entry_name(entry, e) && name != at("contact", e)) continue;
+        if (entry.motion || (entry.relinearise && !entry.force_controlled))
+          throw InputError(
+              path + ".factors[\"" + name +
+              "\"]: expected no factor of an obstacle that is faced anew or has a motion, which says "
+              "where it is");
+        if (entry.force_controlled) check(path + ".factors[\"" + name + "\"]", factor, not_negative);
+      }
+    }
   }
   load_curves(model);
 }
@@ -203,7 +196,10 @@ void validate(const Model& model) {
     check_material(at("material", i), model.materials[i]);
   for (std::size_t i = 0; i < model.boundary.size(); ++i)
     check_boundary(at("boundary", i), model.boundary[i]);
-  for (std::size_t i = 0; i < model.contact.size(); ++i) check_contact(at("contact", i), model.contact[i]);
+  for (std::size_t i = 0; i < model.contact.size(); ++i) {
+    check_contact(at("contact", i), model.contact[i]);
+    check_moves(at("contact", i), model, model.contact[i]);
+  }
   check_names(model);
   for (std::size_t i = 0; i < model.probes.size(); ++i) check(at("probe", i), model.probes[i]);
   validate(model.solver);

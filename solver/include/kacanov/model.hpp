@@ -6,14 +6,12 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include <kacanov/law.hpp>
+#include <kacanov/obstacle.hpp>
 
 namespace kacanov {
-
-using Vector3 = std::array<double, 3>;  ///< in 2D the third entry is 0
 
 /// The `on` of an entry: facets (elements for a material or a body force).
 struct Selector {
@@ -42,19 +40,6 @@ struct BoundaryEntry {
   std::string name = {};                                             ///< see entry_name()
 };
 
-struct Plane {
-  Vector3 point{}, normal{};  ///< normal to the body's side, any length
-};
-struct Sphere {
-  Vector3 centre{};
-  double radius = 1.0;
-  std::optional<Vector3> direction;  ///< from the body towards the obstacle
-};
-struct ConstantGap {
-  double gap = 0.0;  ///< along the body's outer normal
-};
-using Obstacle = std::variant<Plane, Sphere, ConstantGap>;
-
 struct Friction {
   /// What slip is counted from: the undeformed body, or the end of the load step before (theory:
   /// slip-history).
@@ -64,11 +49,36 @@ struct Friction {
   Reference reference = Reference::start;
 };
 
+/// A rigid motion of an obstacle along the load steps (theory: moving-obstacles): where it has been taken to
+/// from where the case has it. Linear in between, from rest at the time 0 on; it stays in the last place.
+struct Motion {
+  struct Pose {
+    double time = 0.0;  ///< > 0, ascending: of load curves, or the factor of load steps
+    Vector3 translation{};
+    Vector3 rotation{};  ///< axis times angle in radians, counterclockwise, about `centre`
+  };
+  Vector3 centre{};
+  std::vector<Pose> path;
+};
+
+/// An obstacle that is pushed, and moves along `direction` as far as it takes (theory: force-control).
+struct ForceControl {
+  double force = 0.0;   ///< > 0, that it does to the body along `direction`
+  Vector3 direction{};  ///< towards the body, any length
+};
+
 struct ContactEntry {
   Selector on;
   Obstacle obstacle;
   std::optional<Friction> friction;
   std::string name = {};  ///< see entry_name()
+  std::optional<Motion> motion = {};
+  /// Whether nodes face the obstacle anew at each load step, from where the step before has left them.
+  bool relinearise = false;
+  std::optional<ForceControl> force_controlled = {};
+
+  /// Whether how the nodes face it differs from load step to load step.
+  bool moves() const noexcept { return motion || relinearise || force_controlled; }
 };
 
 /// What results and messages call an entry: its own name, or its place, "boundary[1]", "contact[0]".

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Heights on a grid, bilinear in between.
+#include <kacanov/height_field.hpp>
+
+#include <algorithm>
+
+namespace kacanov {
+
+std::optional<double> HeightField::at(double x, double y) const {
+  const std::array<double, 2> place{x, y};
+  const std::array<std::size_t, 2> points{columns, rows};
+  std::array<std::size_t, 2> cell{};
+  std::array<double, 2> share{};
+  for (std::size_t c = 0; c < 2; ++c) {
+    const double run = (place[c] - lower[c]) / (upper[c] - lower[c]);
+    if (!(run >= -1e-9 && run <= 1.0 + 1e-9)) return std::nullopt;
+    const double index = std::clamp(run, 0.0, 1.0) * static_cast<double>(points[c] - 1);
+    cell[c] = std::min(static_cast<std::size_t>(index), points[c] - 2);
+    share[c] = index - static_cast<double>(cell[c]);
+  }
+  const auto value = [&](std::size_t i, std::size_t j) { return height[columns * (rows - 1 - j) + i]; };
+  const auto [i, j] = cell;
+  return (1 - share[1]) * ((1 - share[0]) * value(i, j) + share[0] * value(i + 1, j)) +
+         share[1] * ((1 - share[0]) * value(i, j + 1) + share[0] * value(i + 1, j + 1));
+}
+
+}  // namespace kacanov

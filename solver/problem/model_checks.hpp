@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is wrong with a value of the model, said in the words of the case file.
+#pragma once
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string>
+
+#include <kacanov/error.hpp>
+#include <kacanov/obstacle.hpp>
+#include <kacanov/rules.hpp>
+
+namespace kacanov {
+
+/// The shortest text that is the same number.
+inline std::string shown(double value) {
+  std::array<char, 32> text{};
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  return {text.data(), end};
+}
+
+template <class Range>
+std::string shown_list(const Range& values) {
+  std::string text;
+  for (const double v : values) text += (text.empty() ? "" : ",") + shown(v);
+  return "[" + text + "]";
+}
+
+inline std::string at(const std::string& list, std::size_t index) {
+  return list + "[" + std::to_string(index) + "]";
+}
+
+[[noreturn]] inline void refuse(const std::string& path, const std::string& expected,
+                                const std::string& got) {
+  throw InputError(path + ": expected " + expected + ", got " + got);
+}
+
+inline void check(const std::string& path, double value, const NumberRule& rule = any_number) {
+  if (!(std::abs(value) <= largest_number))
+    refuse(path, std::string(rule.words) + " of a magnitude below 1e100", shown(value));
+  if (!rule.holds(value)) refuse(path, rule.words, shown(value));
+}
+
+inline void check(const std::string& path, const Vector3& v) {
+  for (std::size_t c = 0; c < 3; ++c) check(at(path, c), v[c]);
+}
+
+inline void check_direction(const std::string& path, const Vector3& v) {
+  check(path, v);
+  if (v == Vector3{}) refuse(path, "a vector that is not zero", shown_list(v));
+}
+
+}  // namespace kacanov

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Obstacles seen from random points: signed distances, their normals, rays, the tree of a surface.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+
+#include <kacanov/height_field.hpp>
+#include <kacanov/surface.hpp>
+#include "problem/vector3.hpp"
+#include "problem_models.hpp"
+
+using namespace kacanov;
+using namespace kacanov::testing;
+
+namespace {
+
+Facing look(const Obstacle& obstacle, const Vector3& x) {
+  return std::visit([&](const auto& kind) { return kind.project({x, {0, 0, 1}}); }, obstacle);
+}
+
+class Dice {
+ public:
+  double number(double low = -1.0, double high = 1.0) { return low + (high - low) * uniform_(bits_); }
+  Vector3 vector() { return {number(), number(), number()}; }
+
+ private:
+  std::mt19937 bits_{20261122};
+  std::uniform_real_distribution<double> uniform_{0.0, 1.0};
+};
+
+/// A ball of triangles: an icosahedron refined `times`, corners on the unit sphere, outwards.
+Surface faceted_ball(int times) {
+  const double g = (1 + std::sqrt(5.0)) / 2;
+  std::vector<Vector3> points;
+  for (const double s : {-1.0, 1.0})
+    for (const double t : {-g, g})
+      for (std::size_t c = 0; c < 3; ++c) {
+        Vector3 x{};
+        x[c] = s;
+        x[(c + 1) % 3] = t;
+        points.push_back((1 / norm(x)) * x);
+      }
+  std::vector<Surface::Triangle> faces;
+  const auto near = [&](std::int32_t a, std::int32_t b) { return norm(points[a] - points[b]) < 1.1; };
+  for (std::int32_t a = 0; a < 12; ++a)
+    for (std::int32_t b = a + 1; b < 12; ++b)
+      for (std::int32_t c = b + 1; c < 12; ++c) {
+        if (!near(a, b) || !near(b, c) || !near(a, c)) continue;
+        const bool outwards = dot(cross(points[b] - points[a], points[c] - points[a]), points[a]) > 0;
+        faces.push_back(outwards ? Surface::Triangle{a, b, c} : Surface::Triangle{a, c, b});
+      }
+  for (; times > 0; --times) {
+    std::vector<Surface::Triangle> finer;
+    for (const auto& [a, b, c] : faces) {
+      const auto first = static_cast<std::int32_t>(points.size());
+      for (const auto& [p, q] : {std::pair{a, b}, std::pair{b, c}, std::pair{c, a}}) {
+        const Vector3 sum = points[std::min(p, q)] + points[std::max(p, q)];
+        points.push_back((1 / norm(sum)) * sum);
+      }
+      for (const auto& face : {Surface::Triangle{a, first, first + 2},
+                               {first, b, first + 1},
+                               {first + 2, first + 1, c},
+                               {first, first + 1, first + 2}})
+        finer.push_back(face);
+    }
+    faces.swap(finer);
+  }
+  return Surface(points, faces);
+}
+
+std::shared_ptr<const Surface> shared_ball(int times) {
+  return std::make_shared<const Surface>(faceted_ball(times));
+}
+
+std::string complaint(const Obstacle& obstacle) {
+  try {
+    std::visit([](const auto& kind) { kind.check(std::string("obstacle.") + kind.key); }, obstacle);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("an obstacle without direction is a signed distance: ν is its slope, and leads to the surface") {
+  const std::vector<Obstacle> obstacles{Plane{{0.1, 0.2, -0.3}, {1, 2, 3}},
+                                        Sphere{{0.1, 0, 0.2}, 0.7, {}},
+                                        Sphere{{0.1, 0, 0.2}, 3.0, {}, true},
+                                        Cylinder{{0.2, 0.1, 0}, {1, 1, 2}, 0.6, {}},
+                                        Cylinder{{0.2, 0.1, 0}, {1, 1, 2}, 4.0, {}, true},
+                                        Cone{{0, 0.1, 0.2}, {1, 0, -2}, 35.0, {}},
+                                        Torus{{0.1, 0, 0}, {0, 1, 2}, 0.8, 0.3},
+                                        Block{{-0.5, -0.4, -0.3}, {0.3, 0.6, 0.5}},
+                                        SurfaceObstacle{shared_ball(2)}};
+  Dice dice;
+  for (const Obstacle& obstacle : obstacles)
+    for (int trial = 0; trial < 200; ++trial) {
+      CAPTURE(obstacle.index());
+      const Vector3 x = 1.5 * dice.vector();
+      const Facing here = look(obstacle, x);
+      REQUIRE(here.kind == Facing::Kind::met);
+      CHECK(norm(here.normal) == doctest::Approx(1.0).epsilon(1e-14));
+      CHECK(std::abs(look(obstacle, x + here.gap * here.normal).gap) < 1e-13);
+      // No distance changes faster than the point moves.
+      const Vector3 step = 0.1 * dice.vector();
+      CHECK(std::abs(look(obstacle, x + step).gap - here.gap) <= norm(step) * (1 + 1e-12));
+      // On the way there it falls as the way is long: where x is outside, for within it may bend.
+      if (here.gap > 0)
+        CHECK(look(obstacle, x + 0.3 * here.gap * here.normal).gap ==
+              doctest::Approx(0.7 * here.gap).epsilon(1e-11));
+    }
+}
+
+TEST_CASE("along a direction the gap is the way to the surface, from outside and from within") {
+  Dice dice;
+  for (int trial = 0; trial < 300; ++trial) {
+    const Vector3 way = dice.vector(), unit_way = (1 / norm(way)) * way;
+    for (const bool along : {true, false}) {
+      const std::vector<Obstacle> seen{
+          Sphere{{0.1, 0, 0.2}, 0.7, way}, Cylinder{{0.2, 0.1, 0}, {1, 1, 2}, 0.6, way},
+          Cone{{0, 0.1, 0.2}, {1, 0, -2}, 35.0, along ? Vector3{1, 0, -2} : way}};
+      const std::vector<Obstacle> plain{Sphere{{0.1, 0, 0.2}, 0.7, {}},
+                                        Cylinder{{0.2, 0.1, 0}, {1, 1, 2}, 0.6, {}},
+                                        Cone{{0, 0.1, 0.2}, {1, 0, -2}, 35.0, {}}};
+      const Vector3 x = dice.vector();
+      for (std::size_t k = 0; k < seen.size(); ++k) {
+        CAPTURE(k);
+        const Facing ray = look(seen[k], x);
+        if (ray.kind != Facing::Kind::met) {
+          // A ray that misses is outside all the way.
+          for (int i = -40; i <= 40 && k < 2; ++i) CHECK(look(plain[k], x + (0.1 * i) * unit_way).gap > 0);
+          continue;
+        }
+        const Vector3 foot = x + ray.gap * ray.normal;
+        CHECK(std::abs(look(plain[k], foot).gap) < 1e-11 * (1 + std::abs(ray.gap)));
+        CHECK(look(plain[k], foot - 1e-4 * ray.normal).gap > 0);
+      }
+    }
+  }
+  CHECK(look(Cylinder{{}, {0, 0, 1}, 1.0, Vector3{0, 0, -1}}, {2, 0, 0}).kind == Facing::Kind::missed);
+  CHECK(look(Cone{{}, {0, 0, -1}, 80.0, Vector3{0, 0, -1}}, {0.5, 0, 0}).gap ==
+        doctest::Approx(0.5 / std::tan(80 * M_PI / 180)));
+}
+
+TEST_CASE("a box is a box in the plane too, and 3D wants one of three lengths") {
+  CHECK(look(Block{{-1, -2, 0}, {1, 0, 0}}, {0.3, 0.5, 0}).gap == 0.5);
+  Model model = elastic_model();
+  model.boundary.push_back(displacement(named("top"), {0.0, 0.0, 0.0}));
+  model.contact.push_back({named("bottom"), Block{{-1, -2, 0}, {1, 0, 0}}, {}});
+  CHECK_THROWS_WITH_AS(
+      build_problem(box_mesh(ElementType::tet4), model),
+      "contact[0].obstacle.box: expected corners of three entries that differ in all of them", InputError);
+  model.contact[0].obstacle = SurfaceObstacle{};
+  CHECK_THROWS_WITH_AS(build_problem(box_mesh(ElementType::tet4), model),
+                       "contact[0].obstacle.surface: expected the obstacle's data, which are not read yet",
+                       InputError);
+  model.contact[0].obstacle = Cylinder{{0, 0, 0}, {1, 0, 0}, 0.5, {}};
+  CHECK_THROWS_WITH_AS(
+      build_problem(box_mesh(ElementType::tet4), model),
+      doctest::Contains("lies on the axis, where no direction leads out; give a \"direction\""), InputError);
+}
+
+TEST_CASE("a tree finds what looking at every triangle finds, to the bit; a faceted ball is nearly a ball") {
+  Dice dice;
+  for (const int times : {0, 2, 4}) {
+    const Surface ball = faceted_ball(times);
+    CHECK(ball.size() == static_cast<std::size_t>(20) << (2 * times));
+    double worst = 0.0, edge = 0.0;
+    for (std::size_t f = 0; f < ball.size(); ++f) {
+      const auto corner = ball.corners(f);
+      edge = std::max(edge, norm(ball.points()[corner[0]] - ball.points()[corner[1]]));
+    }
+    for (int trial = 0; trial < 300; ++trial) {
+      const Vector3 x = 2.0 * dice.vector();
+      const Surface::Closest a = ball.closest(x), b = ball.closest_of_all(x);
+      CHECK(a.point == b.point);
+      CHECK(a.normal == b.normal);
+      CHECK_FALSE(a.border);
+      const Facing found = SurfaceObstacle{std::make_shared<const Surface>(ball)}.project({x, {}});
+      worst = std::max(worst, std::abs(found.gap - (norm(x) - 1)));
+      if (trial == 20) break;
+    }
+    // The sagitta of the circle round a triangle.
+    CHECK(worst <= 1.01 * (1 - std::sqrt(1 - edge * edge / 3)));
+  }
+}
+
+TEST_CASE("beyond the border of an open surface there is nothing; folds and bad triangles are said") {
+  const std::vector<Vector3> points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  const auto square =
+      std::make_shared<const Surface>(points, std::vector<Surface::Triangle>{{0, 1, 2}, {0, 2, 3}});
+  const SurfaceObstacle open{square};
+  CHECK(open.project({{0.5, 0.2, 0.3}, {}}).gap == 0.3);
+  CHECK(open.project({{0.5, 0.2, -0.3}, {}}).gap == -0.3);
+  CHECK(open.project({{0.5, 0.2, -0.3}, {}}).normal[2] == doctest::Approx(-1.0));
+  CHECK(open.project({{0.0, 0.2, 0.3}, {}}).kind == Facing::Kind::met);
+  CHECK(open.project({{-0.1, 0.2, 0.3}, {}}).kind == Facing::Kind::missed);
+  const std::vector<Surface::Triangle> folded{{0, 1, 2}, {0, 2, 1}};
+  const SurfaceObstacle leaf{std::make_shared<const Surface>(points, folded)};
+  CHECK(leaf.project({{2, 0.5, 0}, {}}).kind == Facing::Kind::undecided);
+  CHECK_THROWS_WITH_AS(Surface(points, {{0, 1, 7}}), "triangle 0: point 7 is not there", InputError);
+  CHECK_THROWS_WITH_AS(Surface(points, {{0, 1, 1}}), "expected at least one triangle that has an area",
+                       InputError);
+}
+
+TEST_CASE("heights: bilinear, the first row above, nothing beyond") {
+  HeightField field{2, 3, {10, 20, 30, 0, 1, 2}, {0, 0}, {2, 1}};
+  CHECK(field.at(0, 0).value() == 0);
+  CHECK(field.at(2, 1).value() == 30);
+  CHECK(field.at(0.5, 0.5).value() == doctest::Approx((0.5 + 15) / 2));
+  CHECK_FALSE(field.at(2.1, 0.5).has_value());
+  CHECK_FALSE(field.at(1, -0.1).has_value());
+  const auto shared = std::make_shared<const HeightField>(field);
+  CHECK(HeightMap{shared, true}.project({{1, 0, 3}, {}}).gap == 2);
+  CHECK(HeightMap{shared, false}.project({{1, 0, 3}, {}}).gap == -2);
+  CHECK(HeightMap{shared, false}.project({{1, 0, 3}, {}}).normal == Vector3{0, 0, 1});
+}
+
+TEST_CASE("what is wrong with an obstacle is said with its key") {
+  const std::map<std::string, Obstacle> rows{
+      {"obstacle.cylinder.axis: expected a vector that is not zero, got [0,0,0]", Cylinder{}},
+      {"obstacle.cylinder.radius: expected a number > 0, got -1", Cylinder{{}, {1, 0, 0}, -1.0, {}}},
+      {"obstacle.cylinder.direction: expected no direction beside \"inside\": true",
+       Cylinder{{}, {1, 0, 0}, 1.0, Vector3{0, 0, 1}, true}},
+      {"obstacle.cone.half_angle: expected an angle in degrees above 0 and below 90, got 90",
+       Cone{{}, {1, 0, 0}, 90.0, {}}},
+      {"obstacle.torus.tube: expected a radius below that of the torus, 1, got 2",
+       Torus{{}, {0, 0, 1}, 1.0, 2.0}},
+      {"obstacle.box: expected a lower corner that is below the upper one in every direction, got [0,0,0] "
+       "and "
+       "[1,-1,1]",
+       Block{{0, 0, 0}, {1, -1, 1}}},
+      {"obstacle.height_map.upper[1]: expected a number above that of the lower corner, 3, got 2",
+       HeightMap{std::make_shared<const HeightField>(HeightField{2, 2, {0, 0, 0, 0}, {1, 3}, {2, 2}})}}};
+  for (const auto& [message, obstacle] : rows) CHECK(complaint(obstacle) == message);
+}
