@@ -125,6 +125,7 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   const bool restart = part.node_map.any(part.node_map.rank == 0 && run.start != nullptr);
   std::optional<Start> coarse;
   if (!restart && run.coarse != nullptr) coarse = interpolate(*run.coarse, part);
+  if (!restart && run.from != nullptr) coarse = *run.from;
   const InOwnUnits scaled(part);
   if (coarse) to_own_units(*coarse, scaled.units());
   SolverOptions options = users_options;

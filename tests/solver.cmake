@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The rooms of the solver, one program each, and whole solves.
 kacanov_test(problem
-  SOURCES solver/problem_contact_test.cpp solver/problem_loads_test.cpp
+  SOURCES solver/obstacles_test.cpp solver/problem_contact_test.cpp solver/problem_loads_test.cpp
           solver/problem_rigid_modes_test.cpp solver/problem_validate_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
@@ -59,6 +59,15 @@ kacanov_test(random_problems
 kacanov_test(half_space
   MPI SOURCES solver/half_space_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
+
+kacanov_test(pressed_obstacles
+  MPI SOURCES solver/pressed_obstacles_test.cpp
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
+
+kacanov_test(moving
+  MPI SOURCES solver/moving_test.cpp
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal
+  RANKS 1 2)
 
 kacanov_test(quadratic_contact
   MPI SOURCES solver/quadratic_contact_test.cpp

@@ -94,7 +94,7 @@ void put_to_rest(const Part& part, ContactState& state) {
   state.u.resize(part.unknowns(), 0.0);
   state.trace = state.phi = state.lambda = ContactValues(part.contact.size());
   state.bound.assign(part.contact.size(), 0.0);
-  state.origin.clear();
+  state.origin = part.slip_origin;
 }
 
 StepOutcome admm_step(StepContext& c, const Penalty& penalty, const Residuals& before, bool first) {

@@ -41,6 +41,7 @@ void measure(Law& law, const UnitSystem& units) {
 void scale(Part& part, const UnitSystem& factors) {
   scale(part.coordinates, factors.length);
   scale(part.start, factors.displacement);
+  scale(part.slip_origin, factors.displacement);
   for (Part::ComponentValue& entry : part.load) entry.value *= factors.force();
   for (EntryForce& entry : part.forces) entry.value *= factors.force();
   for (Part::ComponentValue& entry : part.prescribed) entry.value *= factors.displacement;

@@ -11,7 +11,7 @@ using Warnings = std::vector<std::string>;
 // Before the solve.
 
 /// No load, no prescribed displacement, no obstacle that presses in.
-void no_load(const Problem& problem, Warnings& warnings);
+void no_load(const Problem& problem, const Model& model, Warnings& warnings);
 /// Young's modulus, yield stress and loads that lie orders apart.
 void mixed_units(const Problem& problem, const Model& model, Warnings& warnings);
 /// Facets of a contact entry whose outer normal points away from where the obstacle is.

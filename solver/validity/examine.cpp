@@ -10,7 +10,7 @@ namespace kacanov {
 
 std::vector<std::string> examine(const Problem& problem, const Model& model) {
   validity::Warnings warnings;
-  validity::no_load(problem, warnings);
+  validity::no_load(problem, model, warnings);
   validity::mixed_units(problem, model, warnings);
   validity::looking_away(problem, model, warnings);
   validity::inner_facets(problem, model, warnings);

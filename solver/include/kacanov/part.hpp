@@ -55,6 +55,8 @@ struct Part {
   std::vector<std::int32_t> probe_index;
   std::int32_t total_probes = 0;
   int loose_modes = 0;
+  /// Points × 2: Tu of an obstacle that has moved, which slip is counted from; empty: none has. Not in files.
+  std::vector<double> slip_origin;
   std::vector<double> start;   ///< nodes × dim: displacement to start from; empty: none
   std::string no_equilibrium;  ///< as in Problem
 

@@ -22,6 +22,7 @@ struct ContactTotals {
   double area = 0.0;          ///< lumped, of the nodes under pressure (a length in 2D)
   double max_pressure = 0.0;  ///< at a node
   double least_gap = 0.0;     ///< open distance that is left; negative by what the tolerance allows
+  double travel = 0.0;        ///< how far an obstacle that is pushed has moved along its direction
   double first_gap = 0.0;     ///< the least open distance at rest
   /// Nodes under pressure that hold on to the obstacle, those that do not (all without friction), and nodes
   /// without pressure. A node of two entries counts in both.

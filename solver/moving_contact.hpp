@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The contact rows of a part whose obstacles move.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <kacanov/part.hpp>
+#include "rigid_pose.hpp"
+
+namespace kacanov {
+
+/// Puts the rows, gaps and slip origins of a part where its obstacles are at a time (theory:
+/// moving-obstacles). Everything is collective.
+class MovingContact {
+ public:
+  /// `part` and `model` have to outlive it.
+  MovingContact(Part& part, const Model& model);
+
+  /// At the end `time` of a load step that began at `before` with the displacement u. Entries that are pushed
+  /// stay where push() left them.
+  void face(double time, double before, std::span<const double> u);
+  /// Where an entry that is pushed has gone along its direction, counted from where the case has it.
+  void push(std::size_t entry, double travel);
+  /// The least travel with which a pushed entry, as it is faced, reaches a node at u = 0; 0 where none is in
+  /// its way.
+  double touch(std::size_t entry) const;
+
+  static Vector3 direction(const ContactEntry& entry);
+
+ private:
+  struct View;
+  View view(const ContactEntry& entry, const Vector3& x, const Vector3& u, const std::array<double, 2>& times,
+            double travel) const;
+  void take(std::size_t i, const View& view, std::span<const double> u);
+
+  Part& part_;
+  const Model& model_;
+  double far_;
+  std::vector<double> travel_, faced_at_;  ///< one an entry of the model: now, and when it was faced
+  std::vector<double> gap_;                ///< one a point: as it was faced
+  std::vector<Vector3> origin_;            ///< displacement that slip is counted from, as it was faced
+};
+
+}  // namespace kacanov

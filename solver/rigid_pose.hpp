@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where a rigid obstacle has been moved to.
+#pragma once
+
+#include <cmath>
+
+#include <kacanov/model.hpp>
+#include "problem/vector3.hpp"
+
+namespace kacanov {
+
+/// x goes to c + R (x − c) + t (theory: moving-obstacles).
+struct RigidPose {
+  Vector3 centre{}, shift{}, rotation{};
+
+  /// Of a motion at a time: linear between the points of its path.
+  static RigidPose at(const Motion& motion, double time) {
+    Motion::Pose before, after;
+    for (const Motion::Pose& next : motion.path) {
+      after = next;
+      if (next.time >= time) break;
+      before = next;
+    }
+    const double whole = after.time - before.time;
+    const double share = whole > 0.0 ? std::min((time - before.time) / whole, 1.0) : 1.0;
+    return {motion.centre, before.translation + share * (after.translation - before.translation),
+            before.rotation + share * (after.rotation - before.rotation)};
+  }
+
+  /// Rodrigues' rotation.
+  Vector3 turned(const Vector3& v, double sign = 1.0) const {
+    const double angle = norm(rotation);
+    if (angle == 0.0) return v;
+    const Vector3 axis = (1.0 / angle) * rotation;
+    return std::cos(angle) * v + (sign * std::sin(angle)) * cross(axis, v) +
+           ((1.0 - std::cos(angle)) * dot(axis, v)) * axis;
+  }
+  Vector3 there(const Vector3& x) const { return centre + turned(x - centre) + shift; }
+  Vector3 back(const Vector3& x) const { return centre + turned(x - shift - centre, -1.0); }
+};
+
+}  // namespace kacanov

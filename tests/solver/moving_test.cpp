@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Obstacles that move, are faced anew, are pushed: against obstacles that stay, and closed solutions.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include <kacanov/moving.hpp>
+#include "half_space.hpp"
+#include "pushed_obstacle.hpp"
+#include "rigid_pose.hpp"
+
+using namespace kacanov;
+using namespace kacanov::testing;
+
+namespace {
+
+Run run_moving(const Mesh& mesh, Model model) {
+  model = with_curves(model);
+  Run run;
+  const bool first = [] {
+    int rank = 0;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    return rank == 0;
+  }();
+  if (first) run.problem = build_problem(mesh, model);
+  run.part = distribute(first ? &run.problem : nullptr, MPI_COMM_WORLD);
+  run.solution = solve_moving(run.part, model, {});
+  return run;
+}
+
+Run run_still(const Mesh& mesh, const Model& model) {
+  Run run;
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  if (rank == 0) run.problem = build_problem(mesh, model);
+  run.part = distribute(rank == 0 ? &run.problem : nullptr, MPI_COMM_WORLD);
+  run.solution = solve(run.part, model.solver, {});
+  return run;
+}
+
+Mesh slab() { return make_box({{2, 1, 0.5}, {10, 5, 3}, ElementType::hex8}); }
+
+/// A slab held at its top, over an obstacle.
+Model over(const Obstacle& obstacle) {
+  Model model;
+  model.materials.push_back({everything(), elastic_law(200.0, 0.3)});
+  model.boundary.push_back(moved(named("top"), 3));
+  model.contact.push_back({named("bottom"), obstacle, std::nullopt});
+  return model;
+}
+
+Sphere ball(double height) { return {{1, 0.5, height - 2}, 2.0, Vector3{0, 0, -1}}; }
+
+Motion lift(double height) {
+  Motion motion;
+  motion.path.push_back({1.0, {0, 0, height}, {}});
+  return motion;
+}
+
+void agree(const Run& a, const Run& b, double accuracy) {
+  REQUIRE(a.result().status == Status::converged);
+  REQUIRE(b.result().status == Status::converged);
+  const double size = length(b.result().contact_force);
+  CHECK(distance(a.result().contact_force, b.result().contact_force) < accuracy * size);
+  CHECK(distance(a.result().friction_force, b.result().friction_force) < accuracy * size);
+  CHECK(a.result().active_nodes == b.result().active_nodes);
+}
+
+}  // namespace
+
+TEST_CASE("an obstacle that has moved presses as one that stands there: at once, in steps, on any ranks") {
+  const Run there = run_still(slab(), over(ball(0.01)));
+  for (const int steps : {1, 4}) {
+    Model model = over(ball(0.0));
+    model.contact[0].motion = lift(0.01);
+    for (int k = 1; k <= steps; ++k) model.solver.load_steps.push_back(static_cast<double>(k) / steps);
+    const Run moved_there = run_moving(slab(), model);
+    agree(moved_there, there, 1e-5);
+    REQUIRE(moved_there.result().load_steps.size() == static_cast<std::size_t>(steps));
+    CHECK(moved_there.result().load_steps.front().active_nodes <= there.result().active_nodes);
+    int sum = 0;
+    for (const LoadStep& step : moved_there.result().load_steps) sum += step.outer_iterations;
+    CHECK(sum == moved_there.result().outer_iterations);
+  }
+}
+
+TEST_CASE("a plane that turns about an axis carries its points along; a path goes from place to place") {
+  const double angle = 0.01;
+  Model model = over(Plane{{}, {0, 0, 1}});
+  model.contact[0].motion = Motion{{1, 0, 0}, {{0.5, {0, 0, 0.002}, {}}, {1.0, {}, {0, -angle, 0}}}};
+  model.solver.load_steps = {0.5, 1.0};
+  const Run turned = run_moving(slab(), model);
+  REQUIRE(turned.result().status == Status::converged);
+  CHECK(turned.result().load_steps.front().contact_force[2] > 0);
+  // Heights of the turned plane's points: (x − 1) sin.
+  for (std::size_t i = 0; i < turned.part.contact.size(); ++i) {
+    const double x = node_of(turned, i)[0];
+    CHECK(turned.part.contact[i].gap == doctest::Approx(-(x - 1) * std::sin(angle)).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("faced anew, a ball rolls along under a slab as if it had been put there") {
+  Model model = over(Sphere{{0.5, 0.5, -1.99}, 2.0, {}});
+  model.contact[0].motion = Motion{{}, {{1.0, {1, 0, 0}, {}}}};
+  model.contact[0].relinearise = true;
+  model.solver.load_steps = {0.5, 1.0};
+  const Run rolled = run_moving(slab(), model);
+  const Run there = run_still(slab(), over(Sphere{{1.5, 0.5, -1.99}, 2.0, {}}));
+  REQUIRE(rolled.result().status == Status::converged);
+  // What differs is where each node faces the ball from: by its displacement, one in a hundred.
+  const Vector3 a = rolled.result().contact_force, b = there.result().contact_force;
+  CHECK(distance(a, b) < 0.03 * length(b));
+  const Vector3 middle = rolled.result().load_steps.front().contact_force;
+  CHECK(std::abs(middle[0]) < 1e-3 * middle[2]);
+}
+
+TEST_CASE("faced anew where it has come to, a node sits on the true obstacle") {
+  // A large indentation: frozen, a node is kept off a tangent plane; faced anew, off the ball itself.
+  std::vector<double> distances;
+  for (const bool anew : {false, true}) {
+    Model model = over(Sphere{{1, 0.5, -0.75}, 0.75, {}});
+    model.contact[0].motion = lift(0.1);
+    model.contact[0].relinearise = anew;
+    for (int k = 1; k <= 8; ++k) model.solver.load_steps.push_back(k / 8.0);
+    const Run run = run_moving(slab(), model);
+    REQUIRE(run.result().status == Status::converged);
+    double off = 0.0;
+    for (std::size_t i = 0; i < run.part.contact.size(); ++i) {
+      if (!(run.solution.pressure[i] > 0.0)) continue;
+      const double* x = node_of(run, i);
+      const double* u = &run.solution.displacement[3 * static_cast<std::size_t>(run.part.contact[i].node)];
+      const double far = std::hypot(x[0] + u[0] - 1, x[1] + u[1] - 0.5, x[2] + u[2] + 0.65);
+      off = std::max(off, std::abs(far - 0.75));
+    }
+    distances.push_back(run.part.node_map.max_all(off));
+  }
+  CAPTURE(distances[0]);
+  CAPTURE(distances[1]);
+  CHECK(distances[1] < 0.1 * distances[0]);
+}
+
+TEST_CASE("an obstacle that drags along by friction: slip counts from where it has gone") {
+  const double drag = 0.004;
+  for (const bool by_step : {false, true}) {
+    Model model = over(Plane{{0, 0, 0.002}, {0, 0, 1}});
+    model.contact[0].friction = Friction{0.0, 10.0};  // all stick
+    if (by_step) model.contact[0].friction->reference = Friction::Reference::step;
+    Model pulled = model;
+    model.contact[0].motion = Motion{{}, {{1.0, {drag, 0, 0}, {}}}};
+    model.solver.load_steps = by_step ? std::vector{0.25, 1.0} : std::vector{1.0};
+    // The same seen from the obstacle: it stays, and the top goes the other way.
+    pulled.boundary[0] = moved(named("top"), 3, {-drag, 0, 0});
+    pulled.contact[0].friction->reference = Friction::Reference::start;
+    agree(run_moving(slab(), model), run_still(slab(), pulled), 1e-4);
+  }
+}
+
+TEST_CASE("a ball that is pushed goes as deep as Hertz says of its force, and bears it") {
+  const HalfSpace space{4};
+  const Law law = elastic_law(1.0, 0.3);
+  const double radius = 50.0, depth = 1.0 / radius,
+               force = 4.0 / 3.0 * plane_modulus(law) * std::sqrt(radius) * std::pow(depth, 1.5);
+  Model model = pressed_ball(law, radius, 0.0);
+  model.contact[0].force_controlled = ForceControl{force / 4, {0, 0, 2}};
+  const Run pushed = run_moving(space.quarter(), model);
+  REQUIRE(pushed.result().status == Status::converged);
+  CHECK(pushed.result().contact_force[2] == doctest::Approx(force / 4).epsilon(1.1e-5));
+  const double travel = pushed.result().contact[0].travel;
+  // The far sides are held and no half-space, which makes it stiffer by what the point force does there.
+  CHECK(travel == doctest::Approx(depth).epsilon(0.12));
+  CHECK(travel < depth);
+  agree(pushed, run_still(space.quarter(), pressed_ball(law, radius, travel)), 1e-5);
+}
+
+TEST_CASE("pushed in steps, by a force that grows; in the plane, with a load beside it") {
+  Model model;
+  model.materials.push_back({everything(), elastic_law(200.0, 0.3)});
+  model.boundary.push_back(moved(named("left"), 2));
+  model.boundary.push_back(traction(named("top"), {0, 0.05, 0}));
+  model.contact.push_back({named("bottom"), Sphere{{3.5, -1.1, 0}, 1.0, {}}, std::nullopt});
+  model.contact[0].force_controlled = ForceControl{0.3, {0, 1, 0}};
+  model.solver.load_steps = {0.5, 1.0};
+  const Run run = run_moving(make_box({{4, 1, 0}, {24, 6, 1}, ElementType::tri3}), model);
+  REQUIRE(run.result().status == Status::converged);
+  CHECK(run.result().load_steps[0].contact_force[1] == doctest::Approx(0.15).epsilon(1.1e-5));
+  CHECK(run.result().load_steps[1].contact_force[1] == doctest::Approx(0.3).epsilon(1.1e-5));
+  CHECK(run.result().contact[0].travel > 0.1);
+}
+
+TEST_CASE("the search for a travel: few solves for smooth forces, and an honest end") {
+  PushedObstacle pushed{.force = 2.0, .tolerance = 1e-9, .touch = 1.0, .scale = 0.1};
+  for (const double power : {1.0, 1.5, 2.0, 0.5}) {
+    const PushOutcome found =
+        find_travel(pushed, [&](double d) { return std::pow(std::max(d - 1.0, 0.0), power); });
+    CAPTURE(power);
+    CHECK(found.reached);
+    CHECK(found.travel == doctest::Approx(1.0 + std::pow(2.0, 1 / power)).epsilon(1e-8));
+    CHECK(found.solves < 16);
+  }
+  pushed.travel = 9.0;  // from beyond
+  CHECK(find_travel(pushed, [](double d) { return std::max(d - 1.0, 0.0); }).reached);
+  // A body that bears no more, and a solve that fails.
+  CHECK_FALSE(find_travel(pushed, [](double d) { return std::min(std::max(d - 1.0, 0.0), 1.5); }).reached);
+  CHECK_FALSE(find_travel(pushed, [](double) { return std::nullopt; }).reached);
+}
+
+TEST_CASE("a pose and its inverse; halfway along a path") {
+  const Motion motion{{1, 2, 3}, {{1.0, {1, 0, 0}, {0, 0, 1}}, {3.0, {1, 2, 0}, {0, 0, 1}}}};
+  const RigidPose pose = RigidPose::at(motion, 2.0);
+  CHECK(pose.shift == Vector3{1, 1, 0});
+  const Vector3 x{0.3, -0.2, 5};
+  CHECK(distance(pose.back(pose.there(x)), x) < 1e-14);
+  CHECK(distance(pose.there({2, 2, 3}), {2 + std::cos(1.0), 3 + std::sin(1.0), 3}) < 1e-14);
+  CHECK(RigidPose::at(motion, 0.5).rotation == Vector3{0, 0, 0.5});
+  CHECK(RigidPose::at(motion, 9.0).shift == Vector3{1, 2, 0});
+}
