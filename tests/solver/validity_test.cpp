@@ -40,7 +40,7 @@ TEST_CASE("a sound problem and its result are not complained of") {
 
 TEST_CASE("nothing acts") {
   Model model = sound_model();
-  const auto found = [&] { return said(validity::no_load, build_problem(block(), model)); };
+  const auto found = [&] { return said(validity::no_load, build_problem(block(), model), model); };
   CHECK(found().empty());
   model.boundary[1].traction = Vector3{};
   CHECK(mentions(found(), "nothing acts on the body"));

@@ -136,7 +136,9 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
       {"contact[0].friction.coulomb=0.3",
        "contact[0].friction: expected only one of the keys tresca, coulomb"},
       {"contact[0].obstacle.gap=0",
-       "contact[0].obstacle: expected only one of the keys plane, sphere, gap, got plane and gap"},
+       "contact[0].obstacle: expected only one of the keys plane, sphere, cylinder, cone, torus, box, "
+       "surface, "
+       "height_map, gap, got plane and gap"},
       {"boundary[1].name=", "boundary[1].name: expected a string, got \"\""},
       {"boundary[1].name=boundary[2]",
        "boundary[2].name: expected another name than that of boundary[1], got \"boundary[2]\""},

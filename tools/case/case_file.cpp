@@ -9,6 +9,7 @@
 #include <kacanov/error.hpp>
 #include <kacanov/rules.hpp>
 #include "case/case_material.hpp"
+#include "case/case_obstacle.hpp"
 #include "case/json_node.hpp"
 
 namespace kacanov {
@@ -66,6 +67,12 @@ class CaseParser {
     return v;
   }
 
+  /// A path, relative ones taken from the case file's folder.
+  std::string in_folder(const std::string& name) const {
+    const std::filesystem::path file = name;
+    return file.is_absolute() ? file.string() : (std::filesystem::path(folder_) / file).string();
+  }
+
   Selector selector(const Node& node) {
     Selector on;
     if (node.value().is_string()) {
@@ -93,9 +100,7 @@ class CaseParser {
         times->expected("at most " + std::to_string(most_refinements) + ": each makes eight elements of one");
     }
     if (object.only_one_of({"file", "box"}) == "file") {
-      const std::filesystem::path file = object.required("file").text();
-      result_.mesh.file =
-          file.is_absolute() ? file.string() : (std::filesystem::path(folder_) / file).string();
+      result_.mesh.file = in_folder(object.required("file").text());
       return;
     }
     const Object box(object.required("box"), {"size", "cells", "element"});
@@ -179,29 +184,25 @@ class CaseParser {
     result_.model.boundary.push_back(entry);
   }
 
-  Obstacle obstacle(const Node& node) {
-    const Object object(node, {"plane", "sphere", "gap"});
-    const std::string kind = object.only_one_of({"plane", "sphere", "gap"});
-    const Node value = object.required(kind);
-    if (kind == "gap") return ConstantGap{value.number()};
-    if (kind == "plane") {
-      const Object plane(value, {"point", "normal"});
-      return Plane{vector(plane.required("point")), vector(plane.required("normal"))};
-    }
-    const Object parts(value, {"centre", "radius", "direction"});
-    Sphere sphere;
-    sphere.centre = vector(parts.required("centre"));
-    sphere.radius = parts.required("radius").number(positive);
-    if (const auto way = parts.optional("direction")) sphere.direction = vector(*way);
-    return sphere;
-  }
-
   void parse_contact(const Node& node) {
-    const Object object(node, {"on", "name", "obstacle", "friction"});
+    const Object object(node,
+                        {"on", "name", "obstacle", "friction", "motion", "relinearise", "force_controlled"});
     ContactEntry entry;
     entry.on = selector(object.required("on"));
     if (const auto name = object.optional("name")) entry.name = name->text();
-    entry.obstacle = obstacle(object.required("obstacle"));
+    std::optional<ObstacleFile> file;
+    entry.obstacle = parse_obstacle(
+        object.required("obstacle"), [this](const Node& v) { return vector(v); }, file);
+    if (file) {
+      file->contact = result_.model.contact.size();
+      file->name = in_folder(file->name);
+      result_.obstacle_files.push_back(*file);
+    }
+    const ReadVector read = [this](const Node& v) { return vector(v); };
+    if (const auto motion = object.optional("motion")) entry.motion = parse_motion(*motion, read);
+    if (const auto anew = object.optional("relinearise")) entry.relinearise = anew->boolean();
+    if (const auto force = object.optional("force_controlled"))
+      entry.force_controlled = parse_force_control(*force, read);
     if (const auto friction = object.optional("friction")) {
       const Object parts(*friction, {"tresca", "coulomb", "reference"});
       const std::string kind = parts.only_one_of({"tresca", "coulomb"});

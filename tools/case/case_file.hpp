@@ -26,6 +26,17 @@ struct OutputOptions {
   bool checkpoint = true;
 };
 
+/// Where an obstacle is that the case file only names.
+struct ObstacleFile {
+  std::size_t contact = 0;  ///< index into Model::contact
+  std::string path;         ///< of its key, for messages
+  std::string name;         ///< relative ones taken from the case file's folder
+  std::string group;        ///< of a surface: the physical group; empty: all facets
+  /// Of a height map: where its corners lie, and z = offset + scale · value.
+  std::array<double, 2> lower{}, upper{};
+  double scale = 1.0, offset = 0.0;
+};
+
 /// A vector of the case file, whose number of entries can be checked only once the mesh is known.
 struct VectorEntry {
   std::string path;
@@ -38,6 +49,7 @@ struct Case {
   MeshSource mesh;
   Model model;
   OutputOptions output;
+  std::vector<ObstacleFile> obstacle_files;
   std::vector<VectorEntry> vectors;
   std::vector<std::string> warnings;
   nlohmann::json document;  ///< what it was read from, --set included

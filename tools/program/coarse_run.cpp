@@ -9,8 +9,10 @@
 #include <string>
 
 #include <kacanov/error.hpp>
+#include <kacanov/moving.hpp>
 #include <kacanov/solve.hpp>
 #include "program/loaded_case.hpp"
+#include "program/obstacle_files.hpp"
 #include "program/report.hpp"
 
 namespace kacanov {
@@ -67,7 +69,7 @@ std::vector<MakeMesh> coarser_meshes(const MeshSource& source) {
 /// The case on this mesh; nothing where it does not fit.
 std::optional<Problem> coarse_problem(const Case& input, const MakeMesh& mesh) {
   try {
-    Model model = input.model;
+    Model model = model_with_files(input);
     model.probes.clear();
     return build_problem(mesh(), model);
   } catch (const InputError&) {
@@ -114,7 +116,8 @@ void solve_level(const Case& input, const MakeMesh& mesh, const MpiSession& mpi,
 CoarseRun solve_coarser(const Case& input, const MpiSession& mpi, const RunOptions& options) {
   CoarseRun run;
   const Model& model = input.model;
-  if (!model.solver.nested || !model.solver.load_steps.empty() || !model.steps.empty()) return run;
+  if (!model.solver.nested || !model.solver.load_steps.empty() || !model.steps.empty() || any_moves(model))
+    return run;
   RunOptions coarse = options;
   coarse.progress = nullptr;
   coarse.checkpoint = nullptr;

@@ -7,6 +7,8 @@
 #include <string_view>
 
 #include <kacanov/element_fields.hpp>
+#include <kacanov/error.hpp>
+#include <kacanov/moving.hpp>
 #include <kacanov/nodal_stress.hpp>
 #include <kacanov/solve.hpp>
 #include <kacanov/validity.hpp>
@@ -20,6 +22,7 @@
 #include "program/interrupt.hpp"
 #include "program/loaded_case.hpp"
 #include "program/memory_model.hpp"
+#include "program/obstacle_files.hpp"
 #include "program/output_folder.hpp"
 #include "program/part_files.hpp"
 #include "program/report.hpp"
@@ -71,7 +74,7 @@ std::string picture(const Case& input, const Mesh& mesh, std::span<const double>
   picture.von_mises = von_mises;
   picture.largest_von_mises = largest_von_mises;
   for (const ContactEntry& entry : input.model.contact) {
-    if (const auto* plane = std::get_if<Plane>(&entry.obstacle))
+    if (const auto* plane = std::get_if<Plane>(&entry.obstacle); plane != nullptr && !entry.moves())
       picture.planes.push_back({plane->point, plane->normal});
   }
   return deformed_svg(picture);
@@ -130,6 +133,17 @@ std::string checkpoint_line(const CheckpointFile& file) {
                         : "";
 }
 
+/// Obstacles that move are known to the first rank.
+Solution solve_case(const Case& input, Part& part, const MpiSession& mpi, const RunOptions& options,
+                    const std::string& checkpoint) {
+  if (!any_moves(input.model)) return solve_from(part, input.model.solver, options, checkpoint);
+  Model model = with_curves(input.model);
+  together(mpi, [&] {
+    if (mpi.first()) model = with_curves(model_with_files(input));
+  });
+  return solve_moving(part, model, options);
+}
+
 /// What failed after the solve does not take its numbers away: they stay beside the status and the message.
 void note_failure(const std::filesystem::path& folder, const std::string& text) {
   const std::filesystem::path file = folder / "result.json";
@@ -166,6 +180,9 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
   std::optional<CheckpointFile> file;
   std::optional<Checkpoint> left;
   together(mpi, [&] {
+    if (command.restart && any_moves(input.model))
+      throw InputError(
+          "--restart: expected a case whose obstacles stay, as runs with others leave no checkpoint");
     if (!mpi.first()) return;
     file.emplace(folder, input, loaded.print);
     if (command.restart) left = file->read();
@@ -181,7 +198,7 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
   listen_for_interrupts();
   RunOptions options;
   options.stop_requested = interrupt_came;
-  if (mpi.first() && input.output.checkpoint) {
+  if (mpi.first() && input.output.checkpoint && !any_moves(input.model)) {
     options.checkpoint_due = [&] { return file->due(); };
     options.checkpoint = [&](const Checkpoint& checkpoint) { file->write(checkpoint); };
   }
@@ -191,7 +208,7 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
   CoarseRun coarse;
   if (!command.restart) coarse = solve_coarser(input, mpi, options);
   if (coarse.solution) options.coarse = &*coarse.solution;
-  Solution solution = solve_from(loaded.part, input.model.solver, options, left ? file->path().string() : "");
+  Solution solution = solve_case(input, loaded.part, mpi, options, left ? file->path().string() : "");
 
   const double solved = MPI_Wtime();
   coarse.solution.reset();

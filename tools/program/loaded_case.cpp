@@ -7,11 +7,13 @@
 #include <cstdlib>
 #include <iostream>
 
+#include <kacanov/moving.hpp>
 #include <kacanov/refine.hpp>
 #include <kacanov/validity.hpp>
 #include "formats/gmsh_reader.hpp"
 #include "formats/printable.hpp"
 #include "program/memory_model.hpp"
+#include "program/obstacle_files.hpp"
 
 namespace kacanov {
 
@@ -32,10 +34,11 @@ Problem load_problem(const Case& input, RankCount ranks) {
   Mesh mesh = load_mesh(input.mesh);
   check_memory(size_of(mesh, input.model));
   check_dimension(input, mesh.dim());
-  Problem problem = build_problem(std::move(mesh), input.model);
+  const Model model = with_curves(model_with_files(input));
+  Problem problem = build_problem(std::move(mesh), model);
   problem.warnings.insert(problem.warnings.begin(), problem.mesh.warnings.begin(),
                           problem.mesh.warnings.end());
-  const std::vector<std::string> found = examine(problem, input.model);
+  const std::vector<std::string> found = examine(problem, model);
   problem.warnings.insert(problem.warnings.end(), found.begin(), found.end());
   print_warnings(input, problem);
   return problem;

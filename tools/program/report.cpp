@@ -55,6 +55,7 @@ std::string contact_line(const ContactTotals& contact, const Model& model, int d
   std::string text = entry_name(entry, static_cast<std::size_t>(contact.entry)) + ": force " +
                      vector_text(contact.total.force, dim);
   if (entry.friction) text += ", of it friction " + vector_text(contact.friction_force, dim);
+  if (entry.force_controlled) text += format(", pushed by %.6g", contact.travel);
   const std::int64_t touching = contact.sticking + contact.slipping;
   if (touching == 0) return text + format(", touches nowhere, least gap %.4g", contact.least_gap);
   text += ", " + count(touching) + " of " + count(touching + contact.open) + " nodes touch";

@@ -27,17 +27,19 @@ ordered_json extreme_json(const Extreme& extreme, const char* what, int dim) {
   return {{"value", extreme.value}, {"at", entries(extreme.at, dim)}, {what, extreme.tag}};
 }
 
-ordered_json contact_json(const ContactTotals& contact, int dim) {
-  return {{"force", entries(contact.total.force, dim)},
-          {"normal_force", entries(contact.normal_force, dim)},
-          {"friction_force", entries(contact.friction_force, dim)},
-          {"moment", contact.total.moment},
-          {"area", contact.area},
-          {"max_pressure", contact.max_pressure},
-          {"sticking", contact.sticking},
-          {"slipping", contact.slipping},
-          {"open", contact.open},
-          {"least_gap", contact.least_gap}};
+ordered_json contact_json(const ContactTotals& contact, const Model& model, int dim) {
+  ordered_json json{{"force", entries(contact.total.force, dim)},
+                    {"normal_force", entries(contact.normal_force, dim)},
+                    {"friction_force", entries(contact.friction_force, dim)},
+                    {"moment", contact.total.moment},
+                    {"area", contact.area},
+                    {"max_pressure", contact.max_pressure},
+                    {"sticking", contact.sticking},
+                    {"slipping", contact.slipping},
+                    {"open", contact.open},
+                    {"least_gap", contact.least_gap}};
+  if (model.contact[contact.entry].force_controlled) json["travel"] = contact.travel;
+  return json;
 }
 
 ordered_json boundary_json(std::span<const BoundaryTotals> totals, const Model& model, int dim) {
@@ -136,7 +138,7 @@ ordered_json result_json(const Result& result, const RunFigures& figures, const 
   json["contact"] = ordered_json::object();
   for (const ContactTotals& contact : result.contact)
     json["contact"][entry_name(input.model.contact[contact.entry], contact.entry)] =
-        contact_json(contact, dim);
+        contact_json(contact, input.model, dim);
   json["reaction"] = boundary_json(result.reaction, input.model, dim);
   json["load"] = boundary_json(result.load, input.model, dim);
   json["probe"] = ordered_json::array();

@@ -8,6 +8,7 @@
 
 #include "verify/file.hpp"
 #include "verify/mesh.hpp"
+#include "verify/obstacle.hpp"
 
 namespace kacanov::verify {
 namespace {
@@ -93,6 +94,34 @@ class Reader {
   explicit Reader(const std::filesystem::path& file) : in_(file) {}
 
   Mesh read() {
+    sections();
+    return mesh();
+  }
+
+  std::vector<Triangle> facets(const std::string& group) {
+    sections();
+    static const std::map<int, std::vector<std::array<int, 3>>> cut{
+        {2, {{0, 1, 2}}}, {3, {{0, 1, 2}, {0, 2, 3}}}, {9, {{0, 3, 5}, {3, 1, 4}, {3, 4, 5}, {5, 4, 2}}}};
+    std::vector<Triangle> triangles;
+    for (const GmshElement& e : elements_) {
+      if (types().at(e.type).dimension != 2) continue;
+      bool wanted = group.empty();
+      for (const int physical : e.physicals) {
+        const auto named = names_.find({2, physical});
+        const bool has_name = named != names_.end() && !named->second.empty();
+        wanted = wanted || (has_name ? named->second : std::to_string(physical)) == group;
+      }
+      if (!wanted) continue;
+      for (const auto& part : cut.at(e.type)) {
+        triangles.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k) triangles.back()[k] = mesh_.nodes[index_.at(e.nodes[part[k]])];
+      }
+    }
+    return triangles;
+  }
+
+ private:
+  void sections() {
     for (std::string name; in_.section(name);) {
       if (name == "$MeshFormat") {
         new_ = in_.text<double>() > 3;
@@ -114,10 +143,8 @@ class Reader {
         in_.skip(name);
       }
     }
-    return mesh();
   }
 
- private:
   /// Numbers at the head of a section stand on a line of their own, whatever the format.
   void start_bytes() {
     if (in_.binary()) in_.end_of_line();
@@ -271,5 +298,9 @@ class Reader {
 }  // namespace
 
 Mesh read_gmsh(const std::filesystem::path& file) { return Reader(file).read(); }
+
+std::vector<Triangle> read_gmsh_facets(const std::filesystem::path& file, const std::string& group) {
+  return Reader(file).facets(group);
+}
 
 }  // namespace kacanov::verify

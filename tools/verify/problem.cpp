@@ -116,8 +116,10 @@ FacetIntegrals consistent(const Mesh& mesh, const Indices& facet) {
   return out;
 }
 
-Problem read_problem(const nlohmann::json& document, const std::filesystem::path& folder, Real load) {
+Problem read_problem(const nlohmann::json& document, const std::filesystem::path& folder,
+                     const nlohmann::json& result) {
   Problem problem;
+  problem.time = result.at("load_factor").get<double>();
   problem.mesh = load_mesh(document.at("mesh"), folder);
   const std::size_t nodes = problem.mesh.nodes.size();
   problem.law_of_element.assign(problem.mesh.elements.size(), 0);
@@ -133,16 +135,25 @@ Problem read_problem(const nlohmann::json& document, const std::filesystem::path
   const auto boundary = document.value("boundary", nlohmann::json::array());
   for (std::size_t i = 0; i < boundary.size(); ++i) {
     const nlohmann::json& entry = boundary.at(i);
-    const Real factor = factor_at(load, document, "boundary", i);
+    const Real factor = factor_at(problem.time, document, "boundary", i);
     if (entry.contains("displacement")) hold(problem, entry, factor);
     if (entry.contains("traction") || entry.contains("total_force") || entry.contains("pressure"))
       add_surface_load(problem, entry, factor);
     if (entry.contains("body_force") || entry.contains("density")) add_body_force(problem, entry, factor);
   }
   const auto contact = document.value("contact", nlohmann::json::array());
-  for (std::size_t i = 0; i < contact.size(); ++i)
-    problem.contact_factor.push_back(factor_at(load, document, "contact", i));
-  find_rows(contact, problem);
+  for (std::size_t i = 0; i < contact.size(); ++i) {
+    const nlohmann::json& entry = contact.at(i);
+    problem.contact_factor.push_back(factor_at(problem.time, document, "contact", i));
+    Vec pushed{};
+    if (entry.contains("force_controlled")) {
+      const std::string name = entry.value("name", "contact[" + std::to_string(i) + "]");
+      const Vec way = read_vector(entry.at("force_controlled").at("direction"));
+      pushed = Real(result.at("contact").at(name).at("travel").get<double>()) / norm(way) * way;
+    }
+    problem.pushed.push_back(pushed);
+  }
+  find_rows(contact, folder, problem);
   if (document.contains("solver")) problem.tolerance = document.at("solver").value("tolerance", 1e-6);
   for (const auto& point : document.value("probe", nlohmann::json::array()))
     problem.probes.push_back(read_vector(point));

@@ -21,8 +21,10 @@ struct ContactRow {
   Real gap = 0, mass = 0, tresca = 0, coulomb = 0;
   Real closed = 0;  ///< by prescribed components, and off the gap
   Real gap_from =
-      0;  ///< lengths that the gap is a difference of, which in double leaves some of them unknown
+      0;          ///< lengths that the gap is a difference of, which in double leaves some of them unknown
+  Vec carried{};  ///< how far the obstacle has moved where the node faces it
   bool friction = false;
+  bool alone = false;    ///< an obstacle that moves is joined to none
   bool grazing = false;  ///< whether it meets the sphere is a matter of rounding
 };
 
@@ -34,6 +36,8 @@ struct Problem {
   std::vector<std::array<bool, 3>> held;  ///< components with a prescribed displacement
   std::vector<Vec> prescribed;
   std::vector<Real> contact_factor;  ///< of each contact entry
+  std::vector<Vec> pushed;           ///< the travel of each contact entry that is pushed by a force
+  Real time = 1;                     ///< that the result has reached: of the load curves, or the load factor
   std::vector<ContactRow> rows;
   std::vector<std::int64_t> surface_tags;  ///< numbers of the nodes in contact.vtu, in its order
   std::vector<Vec> probes;
@@ -41,11 +45,13 @@ struct Problem {
 };
 
 /// Of a case that the program has accepted; throws Failure for what the verifier does not know. `folder`:
-/// where relative paths start; load: the factor of the whole load, or with load curves the time.
-Problem read_problem(const nlohmann::json& document, const std::filesystem::path& folder, Real load);
+/// where relative paths start; result: what the run says, for the load it has reached
+/// and the travel of obstacles that are pushed.
+Problem read_problem(const nlohmann::json& document, const std::filesystem::path& folder,
+                     const nlohmann::json& result);
 
 /// Finds the contact rows of a problem whose supports are known.
-void find_rows(const nlohmann::json& contact, Problem& problem);
+void find_rows(const nlohmann::json& contact, const std::filesystem::path& folder, Problem& problem);
 
 /// ∫ Nᵢ dS and ∫ Nᵢ n dS of a facet, one a node (theory: loads).
 struct FacetIntegrals {

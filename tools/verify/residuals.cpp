@@ -9,12 +9,13 @@ namespace {
 
 constexpr Real tiny = 1e-300L, least_force = 3e-9L, delta = 1e-15L, delta_of_traces = 3e-16L;
 
-/// u in the directions that are free and orthogonal to the row's normal.
+/// Slip: u, less what the obstacle has moved by, in the directions that are free and orthogonal to the row's
+/// normal.
 Vec tangential(const Problem& problem, const ContactRow& row, const std::vector<Vec>& u) {
   Vec sum{};
   for (const ContactRow::Share& share : row.shares) {
     const auto node = static_cast<std::size_t>(share.node);
-    Vec free = u[node];
+    Vec free = u[node] - row.carried;
     for (std::size_t c = 0; c < 3; ++c)
       if (problem.held[node][c]) free[c] = 0;
     const Vec along = 1 / norm(share.normal) * share.normal;

@@ -4,38 +4,11 @@
 #include <algorithm>
 #include <map>
 
+#include "verify/obstacle.hpp"
 #include "verify/problem.hpp"
 
 namespace kacanov::verify {
 namespace {
-
-struct Facing {
-  Vec normal{};
-  Real gap = 0;
-  Real from = 0;  ///< lengths that the gap is a difference of
-  bool missed = false, grazing = false;
-};
-
-Facing face(const nlohmann::json& obstacle, const Vec& x, const Vec& outer) {
-  if (obstacle.contains("gap")) return {1 / norm(outer) * outer, obstacle.at("gap").get<double>(), 0};
-  if (obstacle.contains("plane")) {
-    const Vec normal = read_vector(obstacle.at("plane").at("normal")),
-              point = read_vector(obstacle.at("plane").at("point"));
-    const Vec direction = -1 / norm(normal) * normal;
-    return {direction, dot(point - x, direction), norm(point - x)};
-  }
-  const nlohmann::json& sphere = obstacle.at("sphere");
-  const Vec to_centre = read_vector(sphere.at("centre")) - x;
-  const Real radius = sphere.at("radius").get<double>();
-  const Real from = norm(to_centre) + radius;
-  if (!sphere.contains("direction")) return {1 / norm(to_centre) * to_centre, norm(to_centre) - radius, from};
-  const Vec way = read_vector(sphere.at("direction")), direction = 1 / norm(way) * way;
-  const Real along = dot(to_centre, direction);
-  const Real inside = radius * radius - dot(to_centre, to_centre) + along * along;
-  const Real unsure = 1e-13L * (radius * radius + dot(to_centre, to_centre));
-  return {direction, along - std::sqrt(std::max(inside, Real(0))), from, inside < -unsure,
-          std::abs(inside) <= unsure};
-}
 
 /// The lumped mass of a facet's nodes and their share of its normal: the rule that turns a facet's
 /// multipliers into forces. Six-node facets have the rule of their mid-sides, and corners bear nothing.
@@ -51,10 +24,39 @@ FacetIntegrals contact_weights(const Mesh& mesh, const Indices& facet) {
   return out;
 }
 
+/// How far a point of an obstacle has come by a time (theory: moving-obstacles).
+Vec carried(const nlohmann::json& entry, Real time, const Vec& point) {
+  if (!entry.contains("motion")) return {};
+  const nlohmann::json& motion = entry.at("motion");
+  Real from = 0;
+  Vec shift{}, turn{};
+  for (const auto& pose : motion.at("path")) {
+    const Real to = pose.at("time").get<double>();
+    const Vec next = pose.contains("translation") ? read_vector(pose.at("translation")) : Vec{};
+    Vec angle{};
+    if (pose.contains("rotation")) {
+      const nlohmann::json& rotation = pose.at("rotation");
+      angle = rotation.is_number() ? Vec{0, 0, rotation.get<double>()} : read_vector(rotation);
+    }
+    const Real share = std::min((time - from) / (to - from), Real(1));
+    if (share < 0) break;
+    shift = shift + share * (next - shift);
+    turn = turn + share * (angle - turn);
+    from = to;
+  }
+  const Vec centre = motion.contains("centre") ? read_vector(motion.at("centre")) : Vec{};
+  const Vec arm = point - centre;
+  const Real angle = norm(turn);
+  if (!(angle > 0)) return shift;
+  const Vec axis = 1 / angle * turn, across = cross(axis, arm);
+  return shift + std::sin(angle) * across + (1 - std::cos(angle)) * cross(axis, across);
+}
+
 /// Joins a row to one of the same node that faces the same way at the same gap.
 bool joined(std::vector<ContactRow>& rows, const ContactRow& row, Real size) {
   for (ContactRow& twin : rows) {
-    if (norm(twin.normal - row.normal) >= 1e-9L || std::abs(twin.gap - row.gap) >= 1e-9L * size) continue;
+    if (twin.alone || norm(twin.normal - row.normal) >= 1e-9L || std::abs(twin.gap - row.gap) >= 1e-9L * size)
+      continue;
     const Real mass = twin.mass + row.mass;
     twin.tresca = (twin.mass * twin.tresca + row.mass * row.tresca) / mass;
     twin.coulomb = (twin.mass * twin.coulomb + row.mass * row.coulomb) / mass;
@@ -82,7 +84,7 @@ bool restrict_to_free(const Problem& problem, ContactRow& row) {
 
 }  // namespace
 
-void find_rows(const nlohmann::json& contact, Problem& problem) {
+void find_rows(const nlohmann::json& contact, const std::filesystem::path& folder, Problem& problem) {
   const Mesh& mesh = problem.mesh;
   const Real size = mesh.size();
   std::map<Index, std::vector<ContactRow>> rows;
@@ -106,6 +108,12 @@ void find_rows(const nlohmann::json& contact, Problem& problem) {
       throw Failure("contact[" + std::to_string(number) +
                     "].friction.reference: slip counts from the end of a load "
                     "step that no file holds, so that the verifier cannot tell it");
+    const Face face = read_obstacle(entry.at("obstacle"), folder);
+    if (entry.value("relinearise", false))
+      throw Failure("contact[" + std::to_string(number) +
+                    "].relinearise: nodes face the obstacle from where the load step before has left them, "
+                    "which no file holds");
+    const bool moves = entry.contains("motion") || entry.contains("force_controlled");
     for (const auto& [node, sum] : sums) {
       ContactRow row;
       row.node = node;
@@ -113,24 +121,30 @@ void find_rows(const nlohmann::json& contact, Problem& problem) {
       row.written = {problem.surface_tags.size()};
       problem.surface_tags.push_back(mesh.tags[node]);
       if (!(sum.mass > 0)) continue;
-      const Facing facing = face(entry.at("obstacle"), mesh.nodes[node], sum.outer);
+      const Facing facing = face(mesh.nodes[node], sum.outer);
       if (facing.missed) continue;
       row.normal = facing.normal;
       row.gap = facing.gap;
-      row.gap_from = facing.from;
+      row.carried = carried(entry, problem.time, mesh.nodes[node] + facing.gap * facing.normal) +
+                    problem.pushed[number];
+      row.gap += dot(row.normal, row.carried);
+      row.gap_from = facing.from + norm(row.carried);
       row.grazing = facing.grazing;
       row.mass = sum.mass;
       row.tresca = friction.value("tresca", 0.0);
       row.coulomb = friction.value("coulomb", 0.0);
       row.friction = row.tresca > 0 || row.coulomb > 0;
-      if (restrict_to_free(problem, row) && !joined(rows[node], row, size)) rows[node].push_back(row);
+      if (!restrict_to_free(problem, row)) continue;
+      row.alone = moves;
+      if (moves || !joined(rows[node], row, size)) rows[node].push_back(row);
     }
   }
   // Where an obstacle presses in, the share of its deepest indentation that is lacking.
   std::vector<Real> depth(problem.contact_factor.size());
   for (auto& [node, of_node] : rows)
     for (ContactRow& row : of_node) {
-      depth[row.entry] = larger(depth[row.entry], -row.gap);
+      if (!contact.at(row.entry).contains("motion") && !contact.at(row.entry).contains("force_controlled"))
+        depth[row.entry] = larger(depth[row.entry], -row.gap);
       problem.rows.push_back(std::move(row));
     }
   for (ContactRow& row : problem.rows)

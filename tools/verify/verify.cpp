@@ -106,6 +106,19 @@ void read_multipliers(const std::filesystem::path& folder, Problem& problem, Ans
   }
 }
 
+/// What an entry that is pushed by a force does to the body along its way, over what it ought to do.
+Real share_of_force(const Problem& problem, const Answer& answer, const json& entry, std::size_t index) {
+  const Vec way = read_vector(entry.at("force_controlled").at("direction"));
+  Vec force{};
+  for (std::size_t i = 0; i < problem.rows.size(); ++i) {
+    const ContactRow& row = problem.rows[i];
+    if (row.entry == index)
+      force = force + row.mass * (answer.traction[i] - answer.pressure[i] * row.shares[0].normal);
+  }
+  return dot(force, way) / norm(way) /
+         (problem.contact_factor[index] * Real(entry.at("force_controlled").at("force").get<double>()));
+}
+
 /// The table, and whether what the result says is what is found.
 class Comparison {
  public:
@@ -178,7 +191,7 @@ std::string scientific(Real value) {
 Verdict verify(const json& document, const std::filesystem::path& folder,
                const std::filesystem::path& output) {
   const json result = read_result(output / "result.json");
-  Problem problem = read_problem(document, folder, result.at("load_factor").get<double>());
+  Problem problem = read_problem(document, folder, result);
   Answer answer;
   answer.u = read_displacement(output, problem.mesh);
   read_multipliers(output, problem, answer);
@@ -196,6 +209,11 @@ Verdict verify(const json& document, const std::filesystem::path& folder,
     comparison.vector("friction_force", found.friction_force, found.force);
     comparison.number("max_contact_pressure", found.pressure, 0);
   }
+  Real pushed = 0;
+  const json contact = document.value("contact", json::array());
+  for (std::size_t i = 0; i < contact.size(); ++i)
+    if (contact[i].contains("force_controlled") && problem.contact_factor[i] > 0)
+      pushed = larger(pushed, std::abs(share_of_force(problem, answer, contact[i], i) - 1));
   comparison.number("max_von_mises", found.von_mises, found.unknown_stress);
   comparison.count("unknowns", problem.mesh.nodes.size() * problem.mesh.dim());
   comparison.count("elements", problem.mesh.elements.size());
@@ -205,13 +223,14 @@ Verdict verify(const json& document, const std::filesystem::path& folder,
   verdict.table = comparison.text();
   const std::string status = result.value("status", ""), limit = scientific(problem.tolerance);
   const bool held = found.supports <= 1e-14L, small = worst <= problem.tolerance,
-             known = unknown <= problem.tolerance;
-  verdict.fulfilled = status == "converged" && small && known && held && comparison.agrees();
+             borne = pushed <= 11 * problem.tolerance, known = unknown <= problem.tolerance;
+  verdict.fulfilled = status == "converged" && small && borne && known && held && comparison.agrees();
   verdict.sentence =
       !held ? "the supports are not where they are prescribed, by " + scientific(found.supports) +
                   " of the displacement"
       : !small
           ? "the answer does not meet its tolerance " + limit + ": the worst residual is " + scientific(worst)
+      : !borne ? "the force of an obstacle that is pushed is off by " + scientific(pushed)
       : !known ? "rounding hides more than the tolerance " + limit + ": " + scientific(unknown)
       : !comparison.agrees()
           ? "the answer meets its tolerance " + limit + ", but the result says something else than is found"

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Surfaces of obstacles: STL, ASCII and binary, and the facets of Gmsh files.
+#include "formats/surface_reader.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cctype>
+#include <charconv>
+#include <cstring>
+
+#include <kacanov/error.hpp>
+#include "formats/gmsh_cursor.hpp"
+#include "formats/gmsh_parser.hpp"
+#include "formats/mapped_file.hpp"
+
+namespace kacanov {
+namespace {
+
+constexpr std::size_t stl_header = 84, stl_record = 50;
+
+/// The words of an ASCII file, line by line.
+class StlText {
+ public:
+  StlText(const std::string& path, std::string_view bytes) : path_(path), rest_(bytes) {}
+
+  /// Words of the next line that has some; empty at the end.
+  std::vector<std::string_view> line() {
+    std::vector<std::string_view> words;
+    while (words.empty() && !rest_.empty()) {
+      ++number_;
+      const std::size_t end = std::min(rest_.find('\n'), rest_.size());
+      std::string_view text = rest_.substr(0, end);
+      rest_.remove_prefix(std::min(end + 1, rest_.size()));
+      while (!text.empty()) {
+        const std::size_t blank = std::min(text.find_first_of(" \t\r"), text.size());
+        if (blank > 0) words.push_back(text.substr(0, blank));
+        text.remove_prefix(std::min(blank + 1, text.size()));
+      }
+    }
+    return words;
+  }
+  [[noreturn]] void fail(const std::string& expected, const std::vector<std::string_view>& got) const {
+    throw InputError(path_ + ":" + std::to_string(number_) + ": expected " + expected + ", got " +
+                     (got.empty() ? "the end of the file" : quoted(got[0])));
+  }
+  void expect(std::initializer_list<std::string_view> words) {
+    const auto got = line();
+    std::string text;
+    bool fits = got.size() == words.size();
+    std::size_t k = 0;
+    for (const std::string_view word : words) {
+      fits = fits && same(got[k++], word);
+      text += (text.empty() ? "" : " ") + std::string(word);
+    }
+    if (!fits) fail("\"" + text + "\"", got);
+  }
+  Vector3 vertex() {
+    const auto words = line();
+    if (words.size() != 4 || !same(words[0], "vertex")) fail("\"vertex\" and three numbers", words);
+    Vector3 x{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const char* end = words[c + 1].data() + words[c + 1].size();
+      const char* begin = words[c + 1].data() + (words[c + 1][0] == '+' ? 1 : 0);
+      const auto read = std::from_chars(begin, end, x[c]);
+      if (read.ec != std::errc() || read.ptr != end) fail("a number", {words[c + 1]});
+    }
+    return x;
+  }
+  static bool same(std::string_view word, std::string_view lower) {
+    return std::equal(word.begin(), word.end(), lower.begin(), lower.end(), [](char a, char b) {
+      return std::tolower(static_cast<unsigned char>(a)) == static_cast<unsigned char>(b);
+    });
+  }
+
+ private:
+  const std::string& path_;
+  std::string_view rest_;
+  int number_ = 0;
+};
+
+void add_triangle(TriangleList& list, const std::array<Vector3, 3>& corners) {
+  const auto first = static_cast<std::int32_t>(list.points.size());
+  list.points.insert(list.points.end(), corners.begin(), corners.end());
+  list.triangles.push_back({first, first + 1, first + 2});
+}
+
+TriangleList parse_ascii_stl(const std::string& path, std::string_view bytes) {
+  StlText in(path, bytes);
+  TriangleList list;
+  for (auto words = in.line(); !words.empty(); words = in.line()) {
+    if (!StlText::same(words[0], "solid")) in.fail("\"solid\"", words);
+    for (words = in.line(); words.empty() || !StlText::same(words[0], "endsolid"); words = in.line()) {
+      if (words.empty() || !StlText::same(words[0], "facet")) in.fail("\"facet\" or \"endsolid\"", words);
+      in.expect({"outer", "loop"});
+      const Vector3 a = in.vertex(), b = in.vertex(), c = in.vertex();
+      in.expect({"endloop"});
+      in.expect({"endfacet"});
+      add_triangle(list, {a, b, c});
+    }
+  }
+  return list;
+}
+
+TriangleList parse_binary_stl(std::string_view bytes, std::size_t count) {
+  static_assert(std::endian::native == std::endian::little);
+  TriangleList list;
+  for (std::size_t t = 0; t < count; ++t) {
+    std::array<float, 9> values{};
+    std::memcpy(values.data(), bytes.data() + stl_header + t * stl_record + 12, sizeof values);
+    std::array<Vector3, 3> corners{};
+    for (std::size_t k = 0; k < 9; ++k) corners[k / 3][k % 3] = values[k];
+    add_triangle(list, corners);
+  }
+  return list;
+}
+
+/// The number that a file gives to a group of facets.
+int number_of_group(const std::string& path, const GmshContent& content, const std::string& group) {
+  std::string known;
+  for (const auto& [key, name] : content.names) {
+    if (key.first != 2) continue;
+    if (name == group || (name.empty() && std::to_string(key.second) == group)) return key.second;
+    known += (known.empty() ? "" : ", ") + quoted(name);
+  }
+  throw InputError(path + ": expected a physical surface of the name " + quoted(group) + ", the file has " +
+                   (known.empty() ? "none with a name" : known));
+}
+
+TriangleList facets_of_gmsh(const std::string& path, GmshContent content, const std::string& group) {
+  TriangleList list;
+  const int wanted = group.empty() ? 0 : number_of_group(path, content, group);
+  for (std::size_t n = 0; n < content.coordinates.size(); n += 3)
+    list.points.push_back({content.coordinates[n], content.coordinates[n + 1], content.coordinates[n + 2]});
+  for (std::size_t c = 0; c < cells().size(); ++c) {
+    if (cells()[c].dim != 2) continue;
+    const GmshElements& elements = content.elements[c];
+    const auto nodes = static_cast<std::size_t>(cells()[c].nodes);
+    std::size_t run = 0;
+    for (std::size_t e = 0; e < elements.count(); ++e) {
+      while (run + 1 < elements.runs.size() && elements.runs[run + 1].first <= e) ++run;
+      const bool grouped = run < elements.runs.size() && elements.runs[run].first <= e;
+      const std::vector<int>& tags = content.physicals[grouped ? elements.runs[run].set : 0];
+      if (!group.empty() && std::find(tags.begin(), tags.end(), wanted) == tags.end()) continue;
+      for (const auto& part : cells()[c].triangles) {
+        Surface::Triangle triangle{};
+        for (std::size_t k = 0; k < 3; ++k) triangle[k] = elements.nodes[e * nodes + part[k]];
+        list.triangles.push_back(triangle);
+      }
+    }
+  }
+  if (list.triangles.empty())
+    throw InputError(path + ": expected facets of an obstacle, the file has " +
+                     (group.empty() ? "none" : "none in the group " + quoted(group)));
+  return list;
+}
+
+}  // namespace
+
+TriangleList parse_stl(const std::string& path, std::string_view bytes) {
+  // Binary files may begin with "solid" too; their length is what tells.
+  std::uint32_t count = 0;
+  if (bytes.size() >= stl_header) std::memcpy(&count, bytes.data() + stl_header - sizeof count, sizeof count);
+  const std::size_t expected = stl_header + std::size_t{count} * stl_record;
+  TriangleList list;
+  if (bytes.size() >= stl_header && bytes.size() == expected) {
+    list = parse_binary_stl(bytes, count);
+  } else if (bytes.starts_with("solid") || bytes.starts_with("SOLID")) {
+    list = parse_ascii_stl(path, bytes);
+  } else {
+    throw InputError(
+        path + ": expected an STL or Gmsh file: it begins neither with \"solid\" nor with \"$MeshFormat\"" +
+        (bytes.size() < stl_header
+             ? ""
+             : ", and a binary STL of " + std::to_string(count) + " triangles has " +
+                   std::to_string(expected) + " bytes where this one has " + std::to_string(bytes.size())));
+  }
+  if (list.triangles.empty()) throw InputError(path + ": expected at least one triangle");
+  return list;
+}
+
+Surface read_surface(const std::string& path, const std::string& group) {
+  const MappedFile file(path);
+  const std::string_view bytes = file.bytes();
+  const auto read = [&] {
+    if (bytes.starts_with("$")) return facets_of_gmsh(path, parse_gmsh(path, bytes), group);
+    if (!group.empty())
+      throw InputError(path + ": expected a Gmsh file, the only one that has a group " + quoted(group));
+    return parse_stl(path, bytes);
+  };
+  const TriangleList list = read();
+  file.check_unchanged();
+  try {
+    return Surface(list.points, list.triangles);
+  } catch (const InputError& error) {
+    throw InputError(path + ": " + error.what());
+  }
+}
+
+}  // namespace kacanov

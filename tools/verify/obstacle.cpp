@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How a node faces an obstacle (theory: traces, surface-distance).
+#include "verify/obstacle.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "verify/height_map.hpp"
+#include "verify/problem.hpp"
+
+namespace kacanov::verify {
+namespace {
+
+using nlohmann::json;
+
+constexpr Real unsure = 1e-13L;
+
+Vec unit(const Vec& v) { return 1 / norm(v) * v; }
+Real number(const json& object, const char* key) { return object.at(key).get<double>(); }
+
+Facing point_like(const Vec& to_middle, Real radius, bool inside) {
+  const Real far = norm(to_middle), side = inside ? -1 : 1;
+  return {side / far * to_middle, side * (far - radius)};
+}
+
+/// The way along `direction` to where a t² + 2 b t + c falls to zero.
+Facing along_ray(const Vec& direction, Real a, Real b, Real c, Real scale) {
+  const Real inside = b * b - a * c;
+  Facing facing{direction, 0, inside < -unsure * scale, std::abs(inside) <= unsure * scale};
+  const Real root = std::sqrt(std::max(inside, Real(0)));
+  facing.gap = b > 0 ? -(b + root) / a : c / (root - b);
+  return facing;
+}
+
+Face plane(const json& given) {
+  const Vec nu = -1 * unit(read_vector(given.at("normal"))), point = read_vector(given.at("point"));
+  return [=](const Vec& x, const Vec&) { return Facing{nu, dot(point - x, nu)}; };
+}
+
+/// A sphere, or a cylinder about its axis.
+Face round_thing(const json& given, const char* middle, const Vec& axis) {
+  const Vec centre = read_vector(given.at(middle));
+  const Real radius = number(given, "radius");
+  const bool inside = given.value("inside", false), ray = given.contains("direction");
+  const Vec direction = ray ? unit(read_vector(given.at("direction"))) : Vec{};
+  return [=](const Vec& x, const Vec&) {
+    const auto across = [&](const Vec& v) { return v - dot(v, axis) * axis; };
+    const Vec to_middle = across(centre - x), flat = across(direction);
+    if (!ray) return point_like(to_middle, radius, inside);
+    const Real a = dot(flat, flat), far = dot(to_middle, to_middle);
+    if (!(a > 0)) return Facing{{}, 0, true};
+    return along_ray(direction, a, -dot(to_middle, flat), far - radius * radius, a * (radius * radius + far));
+  };
+}
+
+Face cone(const json& given) {
+  const Vec apex = read_vector(given.at("apex")), axis = unit(read_vector(given.at("axis")));
+  const Real angle = number(given, "half_angle") * std::acos(Real(-1)) / 180;
+  const Real s = std::sin(angle), c = std::cos(angle);
+  const bool ray = given.contains("direction");
+  const Vec direction = ray ? unit(read_vector(given.at("direction"))) : Vec{};
+  return [=](const Vec& x, const Vec&) {
+    const Vec v = x - apex;
+    const Real up = dot(v, axis);
+    const Vec out = v - up * axis;
+    const Real radius = norm(out);
+    if (ray) {
+      const Real steep = dot(direction, axis), size = dot(v, v);
+      Facing facing = along_ray(direction, c * c - steep * steep, c * c * dot(v, direction) - up * steep,
+                                c * c * radius * radius - s * s * up * up, size);
+      const Real height = up + facing.gap * steep;
+      if (!std::isfinite(facing.gap) || height < 0) facing.missed = true;
+      facing.grazing = facing.grazing || std::abs(height) <= unsure * std::sqrt(size);
+      return facing;
+    }
+    // The nearest point of the mantle's generator in the half-plane of the axis and x.
+    const Real generator = std::max(up * c + radius * s, Real(0));
+    const Vec outwards = radius > 0 ? 1 / radius * out : Vec{};
+    const Vec mantle = generator * (c * axis + s * outwards);
+    if (generator > 0) return Facing{s * axis - c * outwards, radius * c - up * s};
+    return norm(v) > 0 ? Facing{unit(mantle - v), norm(mantle - v)} : Facing{axis, 0};
+  };
+}
+
+Face torus(const json& given) {
+  const Vec centre = read_vector(given.at("centre")), axis = unit(read_vector(given.at("axis")));
+  const Real radius = number(given, "radius"), tube = number(given, "tube");
+  return [=](const Vec& x, const Vec&) {
+    const Vec v = x - centre, out = v - dot(v, axis) * axis;
+    return point_like(centre + radius * unit(out) - x, tube, false);
+  };
+}
+
+Face block(const json& given) {
+  const Vec lower = read_vector(given.at("lower")), upper = read_vector(given.at("upper"));
+  return [=](const Vec& x, const Vec& outer) {
+    const std::size_t dim = lower[2] < upper[2] ? 3 : 2;
+    Vec way{};
+    std::vector<std::pair<Real, Vec>> faces;  // how deep below, and inwards
+    for (std::size_t c = 0; c < dim; ++c) {
+      way[c] = std::max(lower[c] - x[c], Real(0)) - std::max(x[c] - upper[c], Real(0));
+      Vec inwards{};
+      inwards[c] = 1;
+      faces.emplace_back(x[c] - lower[c], inwards);
+      faces.emplace_back(upper[c] - x[c], -1 * inwards);
+    }
+    if (norm(way) > 0) return Facing{unit(way), norm(way)};
+    Real depth = HUGE_VALL, looked = -HUGE_VALL;
+    for (const auto& [below, inwards] : faces) depth = std::min(depth, below);
+    Facing facing{{}, -depth};
+    for (const auto& [below, inwards] : faces) {
+      if (below > depth + 1e-9L * norm(upper - lower) || dot(inwards, outer) <= looked) continue;
+      looked = dot(inwards, outer);
+      facing.normal = inwards;
+    }
+    return facing;
+  };
+}
+
+/// Triangles looked at one by one, those far away by a ball round them only.
+class Facets {
+ public:
+  explicit Facets(std::vector<Triangle> triangles) {
+    join(triangles);
+    for (const Triangle& t : triangles) {
+      const Vec normal = cross(t[1] - t[0], t[2] - t[0]);
+      if (!(norm(normal) > 0)) continue;
+      Facet facet{t, unit(normal), Real(1) / 3 * (t[0] + t[1] + t[2]), 0};
+      for (std::size_t k = 0; k < 3; ++k) {
+        facet.radius = std::max(facet.radius, norm(t[k] - facet.middle));
+        const Vec a = unit(t[(k + 1) % 3] - t[k]), b = unit(t[(k + 2) % 3] - t[k]);
+        Vec& corner = corners_[t[k]];
+        corner = corner + std::atan2(norm(cross(a, b)), dot(a, b)) * facet.normal;
+        Edge& edge = edges_[key(t[k], t[(k + 1) % 3])];
+        edge.normal = edge.normal + facet.normal;
+        ++edge.facets;
+      }
+      facets_.push_back(facet);
+    }
+    for (const auto& [ends, edge] : edges_)
+      if (edge.facets == 1) border_[ends.first] = border_[ends.second] = true;
+  }
+
+  Facing face(const Vec& x) const {
+    Nearest best;
+    for (const Facet& facet : facets_)
+      if (norm(x - facet.middle) - facet.radius <= best.distance) look_at(facet, x, best);
+    const Vec normal = unit(best.normal), way = best.point - x;
+    const Real side = -dot(way, normal);
+    if (best.distance <= 1e-9L * norm(high_ - low_)) return {-1 * normal, side};
+    const Real beside = norm(way + side * normal);
+    Facing facing{side < 0 ? -1 / best.distance * way : 1 / best.distance * way,
+                  side < 0 ? -best.distance : best.distance, best.border && beside > 1e-6L * best.distance};
+    facing.grazing = best.border && std::abs(beside - 1e-6L * best.distance) <= 1e-9L * best.distance;
+    return facing;
+  }
+
+ private:
+  struct Facet {
+    Triangle corner;
+    Vec normal, middle;
+    Real radius;
+  };
+  struct Edge {
+    Vec normal{};
+    int facets = 0;
+  };
+  struct Nearest {
+    Real distance = HUGE_VALL;
+    Vec point{}, normal{};
+    bool border = false;
+  };
+  /// Gives corners that are nearer than 1e-7 of the extent the coordinates of the first of them.
+  void join(std::vector<Triangle>& triangles) {
+    std::vector<Vec*> corners;
+    for (Triangle& t : triangles)
+      for (Vec& x : t) {
+        corners.push_back(&x);
+        for (std::size_t c = 0; c < 3; ++c) {
+          low_[c] = std::min(low_[c], x[c]);
+          high_[c] = std::max(high_[c], x[c]);
+        }
+      }
+    const Real reach = 1e-7L * norm(high_ - low_);
+    std::stable_sort(corners.begin(), corners.end(), [](const Vec* a, const Vec* b) { return *a < *b; });
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      for (std::size_t j = i; j-- > 0 && (*corners[i])[0] - (*corners[j])[0] <= reach;)
+        if (norm(*corners[i] - *corners[j]) <= reach) {
+          *corners[i] = *corners[j];
+          break;
+        }
+  }
+  static std::pair<Vec, Vec> key(const Vec& a, const Vec& b) { return {std::min(a, b), std::max(a, b)}; }
+
+  /// The foot of the perpendicular where it is within, else the nearest of the edges, else of the corners.
+  void look_at(const Facet& facet, const Vec& x, Nearest& best) const {
+    const Triangle& t = facet.corner;
+    const Vec foot = x - dot(x - t[0], facet.normal) * facet.normal;
+    bool within = true;
+    for (std::size_t k = 0; k < 3; ++k)
+      within = within && dot(cross(t[(k + 1) % 3] - t[k], foot - t[k]), facet.normal) > 0;
+    if (within) return take(x, {0, foot, facet.normal, false}, best);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec &a = t[k], &b = t[(k + 1) % 3];
+      const Real share = dot(x - a, b - a) / dot(b - a, b - a);
+      if (share > 0 && share < 1) {
+        const Edge& edge = edges_.at(key(a, b));
+        take(x, {0, a + share * (b - a), edge.normal, edge.facets == 1}, best);
+      }
+      take(x, {0, a, corners_.at(a), border_.contains(a)}, best);
+    }
+  }
+  static void take(const Vec& x, Nearest candidate, Nearest& best) {
+    candidate.distance = norm(x - candidate.point);
+    if (candidate.distance < best.distance) best = candidate;
+  }
+
+  std::vector<Facet> facets_;
+  std::map<Vec, Vec> corners_;
+  std::map<std::pair<Vec, Vec>, Edge> edges_;
+  std::map<Vec, bool> border_;
+  Vec low_{HUGE_VALL, HUGE_VALL, HUGE_VALL}, high_{-HUGE_VALL, -HUGE_VALL, -HUGE_VALL};
+};
+
+Face surface(const json& given, const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / given.at("file").get<std::string>();
+  const bool stl = !starts_with_dollar(file);
+  const Facets facets(stl ? read_stl(file) : read_gmsh_facets(file, given.value("group", "")));
+  return [facets](const Vec& x, const Vec&) { return facets.face(x); };
+}
+
+}  // namespace
+
+Face read_obstacle(const json& obstacle, const std::filesystem::path& folder) {
+  const std::string kind = obstacle.items().begin().key();
+  const json& given = obstacle.at(kind);
+  // The gap is a difference of the way to some point of the obstacle and some size of it.
+  const auto measured = [](Face face, const Vec& about, Real size) -> Face {
+    return [=](const Vec& x, const Vec& outer) {
+      Facing facing = face(x, outer);
+      facing.from = norm(x - about) + size;
+      return facing;
+    };
+  };
+  const auto at = [&](const char* key) { return read_vector(given.at(key)); };
+  if (kind == "plane") return measured(plane(given), at("point"), 0);
+  if (kind == "sphere")
+    return measured(round_thing(given, "centre", {}), at("centre"), number(given, "radius"));
+  if (kind == "cylinder")
+    return measured(round_thing(given, "point", unit(at("axis"))), at("point"), number(given, "radius"));
+  if (kind == "cone") return measured(cone(given), at("apex"), 0);
+  if (kind == "torus")
+    return measured(torus(given), at("centre"), number(given, "radius") + number(given, "tube"));
+  if (kind == "box") return measured(block(given), at("lower"), norm(at("upper") - at("lower")));
+  if (kind == "surface") return measured(surface(given, folder), {}, 0);
+  if (kind == "height_map") return measured(read_height_map(given, folder), {}, 0);
+  if (kind != "gap") throw Failure("obstacle: the verifier does not know \"" + kind + "\"");
+  const Real gap = given.get<double>();
+  return [gap](const Vec&, const Vec& outer) { return Facing{unit(outer), gap}; };
+}
+
+}  // namespace kacanov::verify
