@@ -42,7 +42,8 @@ struct RunOptions {
   const Checkpoint* start = nullptr;
   /// The same body solved on a coarser mesh, to start from; the same on every rank. `start` goes before it.
   const CoarseSolution* coarse = nullptr;
-  /// Begins from these values of this rank's part, in the user's units (null: from rest); on all ranks or none.
+  /// Begins from these values of this rank's part, in the user's units (null: from rest); on all ranks or
+  /// none.
   const Start* from = nullptr;
 };
 
