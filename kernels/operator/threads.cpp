@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// Threads as a guest in somebody's process: whether they can be had, and what becomes of them after fork().
 #include "operator/threads.hpp"
 
 #include <omp.h>
