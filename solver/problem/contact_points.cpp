@@ -21,6 +21,12 @@ constexpr double far_away = 10.0;
 /// Below this length a trace row cannot carry a contact force: its node is held in that direction.
 constexpr double negligible_trace = 1e-8;
 
+/// Whether obstacles of this kind can be told from where they are met.
+template <class Kind>
+constexpr bool has_direction(const Kind&) {
+  return requires(const Kind& kind) { kind.direction; };
+}
+
 /// How an obstacle faces the nodes of a mesh.
 class Faces {
  public:
@@ -57,11 +63,6 @@ class Faces {
   }
 
  private:
-  template <class Kind>
-  static constexpr bool has_direction(const Kind&) {
-    return requires(const Kind& kind) { kind.direction; };
-  }
-
   const Mesh& mesh_;
   const Obstacle& obstacle_;
   std::string path_;

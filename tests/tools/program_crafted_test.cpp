@@ -116,7 +116,7 @@ TEST_CASE("a boundary whose arrays do not fit each other is refused by the name 
   const Problem right = small_boundary(nodes, part);
   CHECK_NOTHROW(check_boundary(right, nodes, part));
   using Change = std::pair<const char*, std::function<void(Problem&)>>;
-  for (const auto& [words, change] : {
+  for (const Change& each : {
            Change{"element type", [](Problem& p) { p.mesh.type = ElementType::quad4; }},
            Change{"coordinates", [](Problem& p) { p.mesh.coordinates.pop_back(); }},
            Change{"coordinates", [](Problem& p) { p.mesh.coordinates[1] = NAN; }},
@@ -138,10 +138,10 @@ TEST_CASE("a boundary whose arrays do not fit each other is refused by the name 
                     p.mesh.groups.clear();
                   }},
        }) {
-    INFO(words);
+    INFO(each.first);
     Problem problem = right;
-    change(problem);
-    CHECK_THROWS_WITH_AS(check_boundary(problem, nodes, part), doctest::Contains(words), InputError);
+    each.second(problem);
+    CHECK_THROWS_WITH_AS(check_boundary(problem, nodes, part), doctest::Contains(each.first), InputError);
   }
   part.total_contact += 1;
   CHECK_THROWS_WITH_AS(check_boundary(right, nodes, part), doctest::Contains("contact points"), InputError);
