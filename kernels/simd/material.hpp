@@ -159,7 +159,8 @@ struct NonlinearMaterial {
       : law(block.laws[group.law]),
         out(nonlinear),
         secant(block.secant + group.first_slot),
-        tangent(block.tangent + tangent_floats * std::size_t{group.first_slot}),
+        tangent(block.tangent == nullptr ? nullptr
+                                         : block.tangent + tangent_floats * std::size_t{group.first_slot}),
         k0(law.bulk) {}
 
   V bulk() const { return Real(k0) - V{}; }

@@ -100,8 +100,8 @@ struct Tuning {
   /// After so many steps without a residual below this share of the lowest the load is cut.
   int most_idle = 40;
   double gain = 0.7;
-  /// A step of a retreat whose linear problem has no solution counts for so many of those: the next starts from
-  /// the same state.
+  /// A step of a retreat whose linear problem has no solution counts for so many of those: the next starts
+  /// from the same state.
   int unsolved_worth = 8;
   /// The smallest part of a load step that is tried.
   double smallest_part = 1.0 / 64;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* kacanov.h as version 0.2 released it, never to be changed: what a client built against it does has to work. */
+/* kacanov.h as version 0.2 released it, never to be changed: what a client built against it does has to work.
+ */
 /* The C interface: matrix-free operators of small-strain elastoplasticity for other finite element codes.
  *
  * A body is meshed with one element type; each element follows a Hencky law
