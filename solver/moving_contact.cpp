@@ -15,9 +15,8 @@ namespace kacanov {
 struct MovingContact::View {
   Vector3 normal{};
   double gap = 0.0;
-  Vector3 carried{},
-      step{};         ///< how far the touched point of the obstacle has come: in all, in this load step
-  double kind = 0.0;  ///< 0 faced, 1 out of its way, 2 undecided
+  Vector3 carried{}, step{};  ///< how far the touched point of the obstacle has come: in all, in this step
+  double kind = 0.0;          ///< 0 faced, 1 out of its way, 2 undecided
   static constexpr int numbers = 11;
 };
 
@@ -98,12 +97,8 @@ void MovingContact::face(double time, double before, std::span<const double> u) 
   }
   views = scatter_contact(part_, views, View::numbers);
   double lost = 0.0;  // a contact entry, from 1, one of whose nodes is lost
-  for (std::size_t i = 0; i < points; ++i) {
-    const double* p = &views[View::numbers * i];
-    if (p[10] == 2.0) lost = static_cast<double>(part_.contact[i].entry) + 1.0;
-    const View v{{p[0], p[1], p[2]}, p[9], {p[3], p[4], p[5]}, {p[6], p[7], p[8]}, p[10]};
-    if (model_.contact[part_.contact[i].entry].moves()) take(i, v, u);
-  }
+  for (std::size_t i = 0; i < points; ++i)
+    if (views[View::numbers * i + 10] == 2.0) lost = static_cast<double>(part_.contact[i].entry) + 1.0;
   lost = part_.node_map.max_all(lost);
   if (lost > 0.0)
     throw InputError("contact[" + std::to_string(static_cast<int>(lost) - 1) +
@@ -113,40 +108,38 @@ void MovingContact::face(double time, double before, std::span<const double> u) 
   ConstraintRows rows;
   part_.slip_origin.assign(2 * points, 0.0);
   for (std::size_t i = 0; i < points; ++i) {
+    const double* p = &views[View::numbers * i];
+    const View v{{p[0], p[1], p[2]}, p[9], {p[3], p[4], p[5]}, {p[6], p[7], p[8]}, p[10]};
     ContactPoint point = part_.contact[i];
-    const auto entries = part_.contact.entries(i);
-    if (!model_.contact[point.entry].moves()) {
-      rows.push_back(point, entries);
-      continue;
-    }
-    std::array<bool, 3> free{};
-    for (std::size_t c = 0; c < dim; ++c) free[c] = part_.held[point.node * dim + c] == 0;
-    const auto row = narrow_row(point, free, point.tresca > 0.0 || point.coulomb > 0.0);
-    const RowEntry entry = row ? *row : entries[0];
-    rows.push_back(point, {&entry, 1});
+    const auto row = model_.contact[point.entry].moves() ? take(i, v, u, point) : std::nullopt;
+    if (row)
+      rows.push_back(point, {&*row, 1});
+    else
+      rows.push_back(part_.contact[i], part_.contact.entries(i));
   }
   part_.contact = std::move(rows);
   for (std::size_t e = 0; e < model_.contact.size(); ++e)
     if (model_.contact[e].moves()) push(e, travel_[e]);
 }
 
-void MovingContact::take(std::size_t i, const View& view, std::span<const double> u) {
-  ContactPoint& point = part_.contact[i];
+std::optional<RowEntry> MovingContact::take(std::size_t i, const View& view, std::span<const double> u,
+                                            ContactPoint& point) {
   const std::size_t dim = part_.dim(), base = point.node * dim;
   gap_[i] = far_;
   origin_[i] = {};
-  if (view.kind != 0.0) return;
-  // A node that can hardly move along the new direction keeps the old one, out of reach.
-  double length = 0.0;
-  for (std::size_t c = 0; c < dim; ++c)
-    if (part_.held[base + c] == 0) length = std::max(length, std::abs(view.normal[c]));
-  if (length < 1e-8) return;
+  if (view.kind != 0.0) return std::nullopt;
+  std::array<bool, 3> free{};
+  for (std::size_t c = 0; c < dim; ++c) free[c] = part_.held[base + c] == 0;
   point.normal = view.normal;
+  const auto row = narrow_row(point, free, point.tresca > 0.0 || point.coulomb > 0.0);
+  if (!row) return std::nullopt;
   gap_[i] = view.gap;
   origin_[i] = view.carried;
-  if (!point.since_step) return;
-  origin_[i] = view.step;
-  for (std::size_t c = 0; c < dim; ++c) origin_[i][c] += u[base + c];
+  if (point.since_step) {
+    origin_[i] = view.step;
+    for (std::size_t c = 0; c < dim; ++c) origin_[i][c] += u[base + c];
+  }
+  return row;
 }
 
 void MovingContact::push(std::size_t entry, double travel) {

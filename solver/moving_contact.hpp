@@ -2,6 +2,7 @@
 // The contact rows of a part whose obstacles move.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -32,7 +33,10 @@ class MovingContact {
   struct View;
   View view(const ContactEntry& entry, const Vector3& x, const Vector3& u, const std::array<double, 2>& times,
             double travel) const;
-  void take(std::size_t i, const View& view, std::span<const double> u);
+  /// Turns a point to the obstacle and gives its row; nothing, and a gap out of reach, where the obstacle is
+  /// out of its way or the node can hardly move towards it: what there was stays then.
+  std::optional<RowEntry> take(std::size_t i, const View& view, std::span<const double> u,
+                               ContactPoint& point);
 
   Part& part_;
   const Model& model_;

@@ -76,6 +76,14 @@ std::array<bool, 3> free_components(const Problem& problem, std::int32_t node) {
   return free;
 }
 
+/// The normal where the node can move.
+Vector3 trace_of(const Vector3& normal, const std::array<bool, 3>& free) {
+  Vector3 trace{};
+  for (std::size_t c = 0; c < 3; ++c)
+    if (free[c]) trace[c] = normal[c];
+  return trace;
+}
+
 /// What the prescribed components of a point's node close of its gap.
 double closed_by_prescription(const ContactPoint& point, const Problem& problem) {
   const std::size_t dim = problem.mesh.dim();
@@ -221,9 +229,7 @@ std::vector<ContactPoint> points_of_entry(const Problem& problem, const ContactE
 }  // namespace
 
 std::optional<RowEntry> narrow_row(ContactPoint& point, const std::array<bool, 3>& free, bool friction) {
-  Vector3 trace{};
-  for (std::size_t c = 0; c < 3; ++c)
-    if (free[c]) trace[c] = point.normal[c];
+  const Vector3 trace = trace_of(point.normal, free);
   const double length = norm(trace);
   if (length < negligible_trace) return std::nullopt;
   point.tangents = 0;
@@ -273,9 +279,8 @@ void find_contact_points(Problem& problem, const Model& model, const Selection& 
                    [](const ContactPoint& a, const ContactPoint& b) { return a.node < b.node; });
   for (const ContactPoint& point :
        merge_equal(points, model, extent(problem.mesh).size, problem.contact_shares)) {
-    ContactPoint row_of = point;
-    const auto row = narrow_row(row_of, free_components(problem, point.node), point.tangents > 0);
-    const RowEntry entry{row->node, row->normal, row->trace, point.tangent};
+    const Vector3 trace = trace_of(point.normal, free_components(problem, point.node));
+    const RowEntry entry{point.node, point.normal, trace, point.tangent};
     problem.contact.push_back(point, {&entry, 1});
   }
 }

@@ -173,6 +173,11 @@ std::string entry_name(const ContactEntry& entry, std::size_t index) {
   return entry.name.empty() ? at("contact", index) : entry.name;
 }
 
+bool any_moves(const Model& model) {
+  return std::any_of(model.contact.begin(), model.contact.end(),
+                     [](const ContactEntry& entry) { return entry.moves(); });
+}
+
 void validate(const SolverOptions& options) {
   check("solver.tolerance", options.tolerance, below_one);
   check("solver.spectrum_tolerance", options.spectrum_tolerance, below_one);

@@ -7,9 +7,7 @@
 namespace kacanov::validity {
 
 void no_load(const Problem& problem, const Model& model, Warnings& warnings) {
-  if (std::any_of(model.contact.begin(), model.contact.end(),
-                  [](const auto& entry) { return entry.moves(); }))
-    return;
+  if (any_moves(model)) return;
   const auto is_zero = [](double value) { return value == 0.0; };
   if (!std::all_of(problem.load.begin(), problem.load.end(), is_zero)) return;
   if (!std::all_of(problem.forces.begin(), problem.forces.end(),

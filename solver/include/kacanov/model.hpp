@@ -139,6 +139,9 @@ struct Model {
   SolverOptions solver;
 };
 
+/// Whether an obstacle differs from load step to load step, so that solve_moving() is what the model needs.
+bool any_moves(const Model& model);
+
 /// Throw InputError about the first thing that makes no sense, in the words and with the paths of the case
 /// file: "solver.tolerance: expected a number above 0 and below 1, got 0". What only a mesh can tell,
 /// build_problem() says. The options of a model are validated with it.

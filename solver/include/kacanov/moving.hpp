@@ -8,9 +8,6 @@
 
 namespace kacanov {
 
-/// Whether solve_moving() is what a model needs.
-bool any_moves(const Model& model);
-
 /// The model with its load steps as load curves, which is what obstacles that move are solved along; as it
 /// was where none moves.
 Model with_curves(Model model);
@@ -18,8 +15,7 @@ Model with_curves(Model model);
 /// Solves load step by load step, each by solve() from the end of the one before, with obstacles where they
 /// are by then (theory: moving-obstacles, force-control).
 /// - part: of the problem that build_problem() makes of with_curves(model). Its contact rows and load curves
-/// are left
-///   as the last load step had them.
+///   are left as the last load step had them.
 /// - model: with_curves() of it; its obstacles' data are needed on rank 0 alone.
 /// - run: without checkpoint and start, which are not looked at.
 /// Returns what solve() does, with counts over all steps. Throws InputError where an obstacle leaves a node
