@@ -15,13 +15,9 @@ constexpr int to_and_fro = 4;
 
 const char* largest_residual(const Certificate& c) {
   const double worst = c.worst();
-  return c.equilibrium >= worst       ? "equilibrium"
-         : c.penetration >= worst     ? "penetration"
-         : c.tension >= worst         ? "tension"
-         : c.complementarity >= worst ? "complementarity"
-         : c.friction_cone >= worst   ? "friction_cone"
-         : c.force_balance >= worst   ? "force_balance"
-                                      : "duality_gap";
+  for (const auto& [name, entry] : residual_names)
+    if (c.*entry >= worst) return name;
+  return residual_names.back().name;
 }
 
 }  // namespace

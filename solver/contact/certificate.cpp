@@ -3,17 +3,11 @@
 #include "contact/certificate.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace kacanov {
 
 namespace {
-
-constexpr std::array residual_entries{&KktResiduals::equilibrium,   &KktResiduals::penetration,
-                                      &KktResiduals::tension,       &KktResiduals::complementarity,
-                                      &KktResiduals::friction_cone, &KktResiduals::force_balance,
-                                      &KktResiduals::duality_gap};
 
 /// The larger of the two; infinite where one is no number (std::max may lose it).
 double larger(double a, double b) { return std::isnan(a) || std::isnan(b) ? HUGE_VAL : std::max(a, b); }
@@ -22,18 +16,19 @@ double larger(double a, double b) { return std::isnan(a) || std::isnan(b) ? HUGE
 
 double KktResiduals::worst() const noexcept {
   double w = 0.0;
-  for (const auto entry : residual_entries) w = larger(w, this->*entry);
+  for (const auto& [name, entry] : residual_names) w = larger(w, this->*entry);
   return w;
 }
 
 bool Certificate::meets(double tolerance) const noexcept {
-  return std::all_of(residual_entries.begin(), residual_entries.end(),
-                     [&](const auto entry) { return this->*entry + rounding.*entry <= tolerance; });
+  return std::all_of(residual_names.begin(), residual_names.end(), [&](const NamedResidual& one) {
+    return this->*one.member + rounding.*one.member <= tolerance;
+  });
 }
 
 bool Certificate::exhausted(double tolerance) const noexcept {
-  return std::all_of(residual_entries.begin(), residual_entries.end(), [&](const auto entry) {
-    const double residual = this->*entry, unknown = rounding.*entry;
+  return std::all_of(residual_names.begin(), residual_names.end(), [&](const NamedResidual& one) {
+    const double residual = this->*one.member, unknown = rounding.*one.member;
     return residual <= unknown || residual + unknown <= tolerance;
   });
 }

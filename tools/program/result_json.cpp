@@ -14,13 +14,9 @@ ordered_json entries(const Vector3& v, int dim) {
 }
 
 ordered_json residuals_json(const KktResiduals& residuals) {
-  return {{"equilibrium", residuals.equilibrium},
-          {"penetration", residuals.penetration},
-          {"tension", residuals.tension},
-          {"complementarity", residuals.complementarity},
-          {"friction_cone", residuals.friction_cone},
-          {"force_balance", residuals.force_balance},
-          {"duality_gap", residuals.duality_gap}};
+  ordered_json json;
+  for (const auto& [name, entry] : residual_names) json[name] = residuals.*entry;
+  return json;
 }
 
 ordered_json extreme_json(const Extreme& extreme, const char* what, int dim) {

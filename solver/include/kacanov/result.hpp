@@ -2,6 +2,7 @@
 // What a run reports: the numbers of result.json, and the fields of its output files.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -30,6 +31,19 @@ struct KktResiduals {
   /// The largest; infinite where one is no number.
   double worst() const noexcept;
 };
+
+/// A residual and what result.json and messages call it.
+struct NamedResidual {
+  const char* name;
+  double KktResiduals::*member;
+};
+inline constexpr std::array residual_names{NamedResidual{"equilibrium", &KktResiduals::equilibrium},
+                                           NamedResidual{"penetration", &KktResiduals::penetration},
+                                           NamedResidual{"tension", &KktResiduals::tension},
+                                           NamedResidual{"complementarity", &KktResiduals::complementarity},
+                                           NamedResidual{"friction_cone", &KktResiduals::friction_cone},
+                                           NamedResidual{"force_balance", &KktResiduals::force_balance},
+                                           NamedResidual{"duality_gap", &KktResiduals::duality_gap}};
 
 /// Small numbers in both, and nothing else, mean that the problem is solved (theory: kkt, rounding).
 struct Certificate : KktResiduals {
