@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One primal–dual active set (semismooth Newton) step for contact and friction.
+// Which contact points touch, stick and slip in a primal–dual active set (semismooth Newton) step.
 #include "contact/active_set.hpp"
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <array>
 #include <cmath>
-
-#include "contact/held_nodes.hpp"
-#include "linear/gcr.hpp"
 
 namespace kacanov {
 namespace {
@@ -16,54 +12,10 @@ namespace {
 /// A point just at its bound would turn with a stiffness beyond any: k is at most this times c (1e8 takes as
 /// many steps, and more CG iterations each).
 constexpr double stiffest = 1e3;
-/// Where friction follows the pressure, solves begin with so many iterations that take a multigrid cycle each
-/// (200 random cases: 75 applications in the mean case; inner solves from the start take 97), ...
-constexpr int direct_iterations = 15;
-/// ... and go on with so many that solve the symmetric part to this share each: bodies that yield all over
-/// want hundreds of CG iterations a solve.
-constexpr int nested_iterations = 12;
-constexpr double nested_reduction = 0.3;
 /// Held normals leave free what is less than this of them.
 constexpr double free_direction = 1e-8;
 /// Motion along an obstacle, relative to the displacement about, that is more than rounding.
 constexpr double imposed_slip = 1e-10;
-/// What is left of the residual in a step that is taken all the same.
-constexpr double worth_taking = 0.5;
-
-/// k (I − ŝŝᵀ) w of a slipping point: what its friction resists turning with.
-std::array<double, 2> turning_force(const ActiveSet& set, std::size_t i, const double* w) {
-  const double* s = &set.slip_direction[2 * i];
-  const double along = w[0] * s[0] + w[1] * s[1];
-  return {set.slip_stiffness[i] * (w[0] - along * s[0]), set.slip_stiffness[i] * (w[1] - along * s[1])};
-}
-
-/// Force of the slipping points at the traces w: y −= Tᵀ M (ψŝ + k (I − ŝŝᵀ) w).
-void subtract_slip_force(const Traces& traces, const ActiveSet& set, const Vector& tangential,
-                         std::span<double> y) {
-  ContactValues force(traces.size());
-  for (std::size_t i = 0; i < traces.size(); ++i) {
-    const auto turning = turning_force(set, i, &tangential[2 * i]);
-    for (std::size_t k = 0; k < 2; ++k) force.tangential[2 * i + k] = set.slip_force[2 * i + k] + turning[k];
-  }
-  traces.add_force(force, -1.0, y);
-}
-
-/// y += Tᵀ M k (I − ŝŝᵀ) T x. Returns this rank's share of what xᵀ y grows by.
-double add_slip_stiffness(const Traces& traces, const ActiveSet& set, std::span<const double> x,
-                          std::span<double> y) {
-  ContactValues trace(traces.size());
-  traces.evaluate(x, trace);
-  double share = 0.0;
-  for (std::size_t i = 0; i < traces.size(); ++i) {
-    double* w = &trace.tangential[2 * i];
-    const auto turning = turning_force(set, i, w);
-    if (i < traces.owned()) share += traces.points()[i].mass * (w[0] * turning[0] + w[1] * turning[1]);
-    trace.normal[i] = 0.0;
-    std::copy(turning.begin(), turning.end(), w);
-  }
-  traces.add_force(trace, 1.0, y);
-  return share;
-}
 
 /// What the held normals of a node with several points leave of a tangential motion.
 struct Edge {
@@ -207,86 +159,6 @@ void decide_friction(const Traces& traces, const ContactState& state, double c, 
   }
 }
 
-/// The smallest nodal displacement that closes the gaps and undoes the slip of held rows; the largest of
-/// either.
-double close_rows(const TraceRows& rows, const ActiveSet& set, const Traces& traces,
-                  const ContactState& state, std::span<double> delta) {
-  Vector closing(rows.local());
-  std::size_t at = 0;
-  double furthest = 0.0;
-  for (std::size_t i = 0; i < traces.size(); ++i) {
-    const ContactPoint& point = traces.points()[i];
-    const double root = std::sqrt(point.mass);
-    if (set.held[i].normal) closing[at++] = root * (state.gap[i] - state.trace.normal[i]);
-    if (set.held[i].tangential)
-      for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k)
-        closing[at++] = -root * state.trace.tangential[2 * i + k];
-  }
-  for (const double v : closing) furthest = std::max(furthest, std::abs(v));
-  rows.lift(closing, delta);
-  return traces.ranks().max_all(furthest);
-}
-
-/// Multipliers of held rows for nodal forces.
-void least_reactions(const TraceRows& rows, const ActiveSet& set, const Traces& traces,
-                     std::span<const double> residual, ContactValues& lambda) {
-  Vector force(rows.local());
-  rows.lift_transpose(residual, force);
-  std::size_t at = 0;
-  for (std::size_t i = 0; i < traces.size(); ++i) {
-    const ContactPoint& point = traces.points()[i];
-    const double root = std::sqrt(point.mass);
-    if (set.held[i].normal) lambda.normal[i] = force[at++] / root;
-    if (set.held[i].tangential)
-      for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k)
-        lambda.tangential[2 * i + k] = force[at++] / root;
-  }
-}
-
-/// What a step solves where reactions are normal to what they hold.
-struct SymmetricPart {
-  const Space& space;
-  std::function<double(std::span<const double>, std::span<double>)> apply;
-  const std::function<void(std::span<const double>, std::span<double>)>& precondition;
-};
-
-/// conjugate_gradients for a step whose reactions are oblique (theory: coulomb-newton): GCR, first with a
-/// multigrid cycle an iteration, then with solves of the symmetric part.
-CgResult solve_oblique(const SymmetricPart& part, const HeldNodes& nodes, std::span<double> delta,
-                       CgWork& work, const CgOptions& options) {
-  const Space& space = part.space;
-  nodes.subtract_sliding(work.residual);
-  space.project(work.residual);
-  Vector residual = work.residual;
-  CgResult result;
-  result.first_residual = space.norm(residual);
-  const double target =
-      std::max(options.absolute, std::min(options.relative * result.first_residual, options.most));
-  const auto oblique = [&](std::span<const double> p, std::span<double> q) {
-    part.apply(p, q);
-    nodes.subtract_sliding(q);
-    space.project(q);
-  };
-  const auto cycle = [&](std::span<const double> r, std::span<double> z) {
-    part.precondition(r, z);
-    space.project(z);
-    ++result.iterations;
-    return true;
-  };
-  const auto symmetric = [&](std::span<const double> r, std::span<double> z) {
-    std::copy(r.begin(), r.end(), work.residual.begin());
-    const CgOptions inner{0.3 * target, nested_reduction, options.max_iterations};
-    const CgResult found = conjugate_gradients(space, part.apply, part.precondition, z, work, inner);
-    result.iterations += found.iterations;
-    return found.converged;
-  };
-  GcrResult found = gcr(space, oblique, cycle, delta, residual, {target, direct_iterations});
-  if (!found.converged) found = gcr(space, oblique, symmetric, delta, residual, {target, nested_iterations});
-  result.residual = found.residual;
-  result.converged = found.converged || found.residual < worth_taking * result.first_residual;
-  return result;
-}
-
 }  // namespace
 
 ActiveSet decide(const Traces& traces, const ContactState& state, double c) {
@@ -303,105 +175,6 @@ ActiveSet decide(const Traces& traces, const ContactState& state, double c) {
     decide_friction(traces, state, c, pushed, first, last, set);
   }
   return set;
-}
-
-std::vector<NodeBlock> slip_blocks(const Part& part, const ActiveSet& set) {
-  const std::size_t dim = part.dim();
-  const WideNodes nodes(part);
-  std::vector<NodeBlock> blocks;
-  Vector wide = nodes.zeros(dim * dim);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_contact); ++i) {
-    if (set.slip_stiffness[i] == 0.0) continue;
-    const double* s = &set.slip_direction[2 * i];
-    const auto entries = part.contact.entries(i);
-    for (const RowEntry& entry : entries) {
-      NodeBlock block{entry.node, {}};
-      Vector3 across{};  // the tangent orthogonal to the slip
-      for (std::size_t c = 0; c < dim; ++c)
-        across[c] = s[0] * entry.tangent[1][c] - s[1] * entry.tangent[0][c];
-      for (std::size_t c = 0; c < dim; ++c)
-        for (std::size_t d = 0; d < dim; ++d)
-          block.value[c * dim + d] = part.contact[i].mass * set.slip_stiffness[i] * across[c] * across[d];
-      if (entries.size() == 1) {
-        blocks.push_back(block);
-        continue;
-      }
-      double* sum = &wide[nodes.position(entry.node) * dim * dim];
-      for (std::size_t k = 0; k < dim * dim; ++k) sum[k] += block.value[k];
-    }
-  }
-  const auto summed = nodes.summed(std::move(wide));
-  blocks.insert(blocks.end(), summed.begin(), summed.end());
-  return blocks;
-}
-
-ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, const ActiveSet& set,
-                              const ContactState& state, const CgOptions& options, CgWork& work) {
-  const Traces& traces = *problem.traces;
-  const TraceRows rows(part, set.held);
-  Space space(part);
-  rows.hold_in(space);
-  const HeldNodes nodes(part, set, state);
-  ActiveSetStep step;
-  Vector& delta = step.delta = Vector(part.unknowns());
-
-  const auto apply = [&](std::span<const double> p, std::span<double> q) {
-    const double share = problem.apply(p, q);
-    return share + add_slip_stiffness(traces, set, p, q);
-  };
-  subtract_slip_force(traces, set, state.trace.tangential, work.residual);
-  // The held rows first.
-  const double wide = part.wide_contact ? close_rows(rows, set, traces, state, delta) : 0.0;
-  step.closing = std::max(wide, nodes.close(delta));
-  if (step.closing > 0.0) {
-    apply(delta, work.image);
-    for (std::size_t i = 0; i < delta.size(); ++i) work.residual[i] -= work.image[i];
-  }
-  const SymmetricPart symmetric{space, apply, problem.precondition};
-  const CgResult solve = nodes.oblique()
-                             ? solve_oblique(symmetric, nodes, delta, work, options)
-                             : conjugate_gradients(space, apply, problem.precondition, delta, work, options);
-  step.cg_iterations = solve.iterations;
-  step.solved = solve.converged;
-  if (solve.iterations > 0 && solve.residual > 0.0)
-    step.cg_digits = std::log10(solve.first_residual / solve.residual);
-  step.turning = space.sum_all(add_slip_stiffness(traces, set, delta, work.image));
-  step.curvature = space.sum_all(apply(delta, work.image));
-  nodes.subtract_sliding(work.image);
-  step.slope = nodes.oblique() ? space.dot(delta, work.image) : step.curvature;
-  return step;
-}
-
-void recover_multipliers(const Part& part, const Traces& traces, const ActiveSet& set,
-                         std::span<double> residual, ContactState& state) {
-  const HeldNodes nodes(part, set, state);
-  // Forces at held rows are what is left once the slipping points have taken theirs.
-  subtract_slip_force(traces, set, state.trace.tangential, residual);
-  std::fill(state.lambda.normal.begin(), state.lambda.normal.end(), 0.0);
-  std::fill(state.lambda.tangential.begin(), state.lambda.tangential.end(), 0.0);
-  if (part.wide_contact) least_reactions(TraceRows(part, set.held), set, traces, residual, state.lambda);
-  nodes.reactions(residual, state.lambda);
-  for (std::size_t i = 0; i < traces.size(); ++i) {
-    const auto& point = traces.points()[i];
-    state.phi.normal[i] = std::min(state.trace.normal[i], state.gap[i]);
-    double* friction = &state.lambda.tangential[2 * i];
-    const double* w = &state.trace.tangential[2 * i];
-    const double* s = &set.slip_direction[2 * i];
-    if (!set.held[i].tangential && point.tangents > 0) {
-      const double along = w[0] * s[0] + w[1] * s[1];
-      const double pressure = std::max(state.lambda.normal[i], 0.0);
-      for (std::size_t k = 0; k < 2; ++k)
-        friction[k] = set.slip_force[2 * i + k] + set.coulomb[i] * pressure * s[k] +
-                      set.slip_stiffness[i] * (w[k] - along * s[k]);
-      const double length = std::hypot(friction[0], friction[1]);
-      const double bound = set.coulomb[i] > 0.0
-                               ? point.tresca + set.coulomb[i] * pressure
-                               : std::hypot(set.slip_force[2 * i], set.slip_force[2 * i + 1]);
-      if (length > bound)
-        for (std::size_t k = 0; k < 2; ++k) friction[k] *= bound / length;
-    }
-    for (std::size_t k = 0; k < 2; ++k) state.phi.tangential[2 * i + k] = set.held[i].tangential ? 0.0 : w[k];
-  }
 }
 
 }  // namespace kacanov

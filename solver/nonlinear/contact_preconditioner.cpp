@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "contact/active_set_step.hpp"
 #include "nonlinear/friction_bounds.hpp"
 
 namespace kacanov {

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "amg/make_preconditioner.hpp"
+#include "contact/active_set_step.hpp"
 #include "contact/dual_admm.hpp"
 #include "contact/held_nodes.hpp"
 #include "nonlinear/accuracy.hpp"
