@@ -83,9 +83,9 @@ bool reach(OuterLoop& loop, const std::optional<OuterLoop::Place>& before, doubl
   if (result.cg_iterations == 0) {
     result.message =
         "no linear problem could be solved: elements that are next to flat, parts far stiffer than others, "
-        "or a "
-        "Poisson's ratio next to 0.5, leave no definite operator in this arithmetic; kacanov check names the "
-        "worst element";
+        "or a Poisson's ratio next to 0.5, leave no definite operator in this arithmetic; kacanov check "
+        "names "
+        "the worst element";
     return true;
   }
   const OuterLoop::Place start = before ? *before : loop.rest(), whole = loop.place();

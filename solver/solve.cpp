@@ -121,13 +121,13 @@ std::string softening_message(std::int64_t elements) {
 
 Solution solve(Part& part, const SolverOptions& users_options, const RunOptions& run) {
   validate(users_options);
-  const double start = MPI_Wtime();
+  const double began = MPI_Wtime();
   const bool restart = part.node_map.any(part.node_map.rank == 0 && run.start != nullptr);
-  std::optional<Start> coarse;
-  if (!restart && run.coarse != nullptr) coarse = interpolate(*run.coarse, part);
-  if (!restart && run.from != nullptr) coarse = *run.from;
+  std::optional<Start> start;
+  if (!restart && run.coarse != nullptr) start = interpolate(*run.coarse, part);
+  if (!restart && run.from != nullptr) start = *run.from;
   const InOwnUnits scaled(part);
-  if (coarse) to_own_units(*coarse, scaled.units());
+  if (start) to_own_units(*start, scaled.units());
   SolverOptions options = users_options;
   options.r /= scaled.units().penalty();
   Solution solution;
@@ -137,7 +137,7 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   OuterLoop loop(part, options, run, shares[steps_over(part, run, shares.size())]);
   loop.work_in(scaled.units());
   const StepContext& context = loop.context();
-  if (coarse) loop.adopt(*coarse);
+  if (start) loop.adopt(*start);
   const double prepared = MPI_Wtime();
   if (restart) loop.restore(run.start, result);
   result.message = part.no_equilibrium;
@@ -184,8 +184,8 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   result.instruction_set = context.body.op().local().instruction_set();
   PhaseSeconds& seconds = result.seconds;
   const double end = MPI_Wtime();
-  seconds.total = end - start;
-  seconds.prepare = prepared - start;
+  seconds.total = end - began;
+  seconds.prepare = prepared - began;
   seconds.spectrum = loop.spectrum_seconds();
   seconds.preconditioner_setup = context.preconditioner.setup_seconds();
   seconds.checkpoint = loop.checkpoint_seconds();
