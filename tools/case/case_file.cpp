@@ -191,14 +191,13 @@ class CaseParser {
     entry.on = selector(object.required("on"));
     if (const auto name = object.optional("name")) entry.name = name->text();
     std::optional<ObstacleFile> file;
-    entry.obstacle = parse_obstacle(
-        object.required("obstacle"), [this](const Node& v) { return vector(v); }, file);
+    const ReadVector read = [this](const Node& v) { return vector(v); };
+    entry.obstacle = parse_obstacle(object.required("obstacle"), read, file);
     if (file) {
       file->contact = result_.model.contact.size();
       file->name = in_folder(file->name);
       result_.obstacle_files.push_back(*file);
     }
-    const ReadVector read = [this](const Node& v) { return vector(v); };
     if (const auto motion = object.optional("motion")) entry.motion = parse_motion(*motion, read);
     if (const auto anew = object.optional("relinearise")) entry.relinearise = anew->boolean();
     if (const auto force = object.optional("force_controlled"))

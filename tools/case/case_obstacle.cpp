@@ -20,9 +20,7 @@ class ObstacleParser {
     const Object parts(node, {"centre", "radius", "direction", "inside"});
     Sphere result;
     result.centre = vector_(parts.required("centre"));
-    result.radius = parts.required("radius").number(positive);
-    result.direction = direction(parts);
-    result.inside = inside(parts);
+    take_round(parts, result);
     return result;
   }
   Cylinder cylinder(const Node& node) const {
@@ -30,9 +28,7 @@ class ObstacleParser {
     Cylinder result;
     result.point = vector_(parts.required("point"));
     result.axis = vector_(parts.required("axis"));
-    result.radius = parts.required("radius").number(positive);
-    result.direction = direction(parts);
-    result.inside = inside(parts);
+    take_round(parts, result);
     return result;
   }
   Cone cone(const Node& node) const {
@@ -51,23 +47,17 @@ class ObstacleParser {
   }
   SurfaceObstacle surface(const Node& node) const {
     const Object parts(node, {"file", "group"});
-    ObstacleFile file;
-    file.path = node.path();
-    file.name = parts.required("file").text();
+    ObstacleFile& file = new_file(node, parts);
     if (const auto group = parts.optional("group")) file.group = group->text();
-    file_ = file;
     return {};
   }
   HeightMap height_map(const Node& node) const {
     const Object parts(node, {"file", "lower", "upper", "scale", "offset", "body"});
-    ObstacleFile file;
-    file.path = node.path();
-    file.name = parts.required("file").text();
+    ObstacleFile& file = new_file(node, parts);
     file.lower = corner(parts.required("lower"));
     file.upper = corner(parts.required("upper"));
     if (const auto scale = parts.optional("scale")) file.scale = scale->number();
     if (const auto offset = parts.optional("offset")) file.offset = offset->number();
-    file_ = file;
     HeightMap result;
     if (const auto side = parts.optional("body")) result.body_above = side->choice({"above", "below"}) == 0;
     return result;
@@ -78,9 +68,20 @@ class ObstacleParser {
     const auto way = parts.optional("direction");
     return way ? std::optional(vector_(*way)) : std::nullopt;
   }
-  static bool inside(const Object& parts) {
-    const auto given = parts.optional("inside");
-    return given && given->boolean();
+  /// Of what a body may touch from outside or inside.
+  template <class Round>
+  void take_round(const Object& parts, Round& round) const {
+    round.radius = parts.required("radius").number(positive);
+    round.direction = direction(parts);
+    const auto inside = parts.optional("inside");
+    round.inside = inside && inside->boolean();
+  }
+  /// The file that an obstacle's data come from.
+  ObstacleFile& new_file(const Node& node, const Object& parts) const {
+    ObstacleFile& file = file_.emplace();
+    file.path = node.path();
+    file.name = parts.required("file").text();
+    return file;
   }
   static std::array<double, 2> corner(const Node& node) {
     const std::vector<Node> entries = node.list("a list of two numbers, x and y");

@@ -3,11 +3,11 @@
 #include "formats/height_reader.hpp"
 
 #include <charconv>
-#include <cmath>
 
 #include <kacanov/error.hpp>
 #include "formats/gmsh_cursor.hpp"
 #include "formats/mapped_file.hpp"
+#include "formats/words.hpp"
 
 namespace kacanov {
 namespace {
@@ -20,9 +20,7 @@ class CsvText {
 
   NumberGrid parse() {
     for (int line = 1; !rest_.empty(); ++line) {
-      const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-      const std::string_view text = rest_.substr(0, end);
-      rest_.remove_prefix(std::min(end + 1, rest_.size()));
+      const std::string_view text = take_line(rest_);
       if (!text.starts_with('#')) take(text, line);
     }
     return std::move(grid_);
@@ -36,17 +34,10 @@ class CsvText {
   void take(std::string_view text, int line) {
     constexpr std::string_view between = ",; \t\r";
     std::size_t found = 0;
-    while (true) {
-      text.remove_prefix(std::min(text.find_first_not_of(between), text.size()));
-      if (text.empty()) break;
-      const std::string_view word = text.substr(0, std::min(text.find_first_of(between), text.size()));
-      text.remove_prefix(word.size());
-      double value = 0.0;
-      const char* end = word.data() + word.size();
-      const auto read = std::from_chars(word.data() + (word[0] == '+' ? 1 : 0), end, value);
-      if (read.ec != std::errc() || read.ptr != end || !std::isfinite(value))
-        fail(line, "expected a number, got " + quoted(word));
-      grid_.values.push_back(value);
+    for (auto word = take_word(text, between); !word.empty(); word = take_word(text, between)) {
+      const auto value = to_number(word);
+      if (!value) fail(line, "expected a number, got " + quoted(word));
+      grid_.values.push_back(*value);
       ++found;
     }
     if (found == 0) return;

@@ -6,13 +6,13 @@
 #include <array>
 #include <bit>
 #include <cctype>
-#include <charconv>
 #include <cstring>
 
 #include <kacanov/error.hpp>
 #include "formats/gmsh_cursor.hpp"
 #include "formats/gmsh_parser.hpp"
 #include "formats/mapped_file.hpp"
+#include "formats/words.hpp"
 
 namespace kacanov {
 namespace {
@@ -29,14 +29,9 @@ class StlText {
     std::vector<std::string_view> words;
     while (words.empty() && !rest_.empty()) {
       ++number_;
-      const std::size_t end = std::min(rest_.find('\n'), rest_.size());
-      std::string_view text = rest_.substr(0, end);
-      rest_.remove_prefix(std::min(end + 1, rest_.size()));
-      while (!text.empty()) {
-        const std::size_t blank = std::min(text.find_first_of(" \t\r"), text.size());
-        if (blank > 0) words.push_back(text.substr(0, blank));
-        text.remove_prefix(std::min(blank + 1, text.size()));
-      }
+      std::string_view text = take_line(rest_);
+      for (auto word = take_word(text, blanks); !word.empty(); word = take_word(text, blanks))
+        words.push_back(word);
     }
     return words;
   }
@@ -60,10 +55,9 @@ class StlText {
     if (words.size() != 4 || !same(words[0], "vertex")) fail("\"vertex\" and three numbers", words);
     Vector3 x{};
     for (std::size_t c = 0; c < 3; ++c) {
-      const char* end = words[c + 1].data() + words[c + 1].size();
-      const char* begin = words[c + 1].data() + (words[c + 1][0] == '+' ? 1 : 0);
-      const auto read = std::from_chars(begin, end, x[c]);
-      if (read.ec != std::errc() || read.ptr != end) fail("a number", {words[c + 1]});
+      const auto value = to_number(words[c + 1]);
+      if (!value) fail("a number", {words[c + 1]});
+      x[c] = *value;
     }
     return x;
   }
@@ -74,6 +68,7 @@ class StlText {
   }
 
  private:
+  static constexpr std::string_view blanks = " \t\r";
   const std::string& path_;
   std::string_view rest_;
   int number_ = 0;
