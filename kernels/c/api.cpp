@@ -85,7 +85,8 @@ int kacanov_apply_add(kacanov_operator* op, size_t n, double alpha, const double
     const auto in = input(x, n, "x");
     const auto out = output(y, n, "y");
     require_disjoint(in, out, "x and y");
-    std::vector<double> image(n);
+    std::vector<double>& image = op->image;
+    image.resize(n);
     fast.apply(in, image);
     add_unit_rows(*op, in, std::span(image));
     for (std::size_t i = 0; i < n; ++i) out[i] = alpha * image[i] + (beta == 0.0 ? 0.0 : beta * out[i]);
@@ -236,7 +237,7 @@ int kacanov_inspect(kacanov_operator* op, kacanov_information* information) {
                                     .threads = op->options.threads,
                                     .applications = fast.applications(),
                                     .bytes = fast.bytes() + (op->single ? op->single->bytes() : 0) +
-                                             op->coordinates.size() * sizeof(double) +
+                                             (op->coordinates.size() + op->image.size()) * sizeof(double) +
                                              op->connectivity.size() * sizeof(std::int32_t) +
                                              op->own_law_of_element.size() * sizeof(std::uint16_t),
                                     .instruction_set = op->instruction_set.c_str()};

@@ -39,6 +39,7 @@ struct kacanov_operator {
   bool has_tangent = false;
   std::vector<std::int32_t> unit_nodes;  ///< nodes of no element whose rows are those of the identity
   kacanov::reference::NodeGraph graph;   ///< of the matrix; empty until it is asked for
+  std::vector<double> image;             ///< of kacanov_apply_add; empty until it is called
   std::atomic<bool> busy = false;        ///< a call is at work
   char message[512] = "";
 
