@@ -2,6 +2,7 @@
 // Bodies that stand for elastic half-spaces: blocks whose meshes are fine near the contact and grow outwards.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -86,6 +87,17 @@ inline Vector3 boussinesq(const Law& law, double force, const Vector3& x) {
   const double r = std::hypot(x[0], x[1]), rho = std::hypot(r, x[2]), factor = force / (4 * M_PI * law.shear);
   const double along = factor * (x[2] / std::pow(rho, 3) - (1 - 2 * nu) / (rho * (rho + x[2])));
   return {along * x[0], along * x[1], factor * (x[2] * x[2] / std::pow(rho, 3) + 2 * (1 - nu) / rho)};
+}
+
+/// Far from where it is pressed a body feels a point force: far sides move as under that.
+inline void prescribe_far_field(const HalfSpace& space, const Law& law, double force, Problem& problem) {
+  for (std::size_t i = 0; i < problem.mesh.node_count(); ++i) {
+    const double* x = &problem.mesh.coordinates[3 * i];
+    if (std::max({x[0], x[1], x[2]}) < space.extent * (1 - 1e-9)) continue;
+    const Vector3 u = boussinesq(law, force, {x[0], x[1], x[2]});
+    for (std::size_t c = 0; c < 3; ++c)
+      if (problem.held[3 * i + c]) problem.prescribed[3 * i + c] = u[c];
+  }
 }
 
 /// E / (1 − ν²).

@@ -29,16 +29,8 @@ Hertz ball(int n) {
   const double force = 4.0 / 3.0 * modulus * std::sqrt(radius) * std::pow(depth, 1.5),
                peak = 2 * modulus / (M_PI * radius);
   const Model model = pressed_ball(law, radius, depth);
-  const Run run = run_changed(space.quarter(), model, [&](Problem& problem) {
-    // Far away the ball is a point force.
-    for (std::size_t i = 0; i < problem.mesh.node_count(); ++i) {
-      const double* x = &problem.mesh.coordinates[3 * i];
-      if (std::max({x[0], x[1], x[2]}) < space.extent * (1 - 1e-9)) continue;
-      const Vector3 u = boussinesq(law, force, {x[0], x[1], x[2]});
-      for (std::size_t c = 0; c < 3; ++c)
-        if (problem.held[3 * i + c]) problem.prescribed[3 * i + c] = u[c];
-    }
-  });
+  const Run run = run_changed(space.quarter(), model,
+                              [&](Problem& problem) { prescribe_far_field(space, law, force, problem); });
   REQUIRE(run.result().status == Status::converged);
   double area = 0.0, error = 0.0, size = 0.0;
   for (std::size_t i = 0; i < run.part.contact.size(); ++i) {

@@ -20,15 +20,8 @@ double cone(int n) {
   Model model = pressed_ball(law, 50.0, depth);
   model.contact[0].obstacle =
       Cone{{0, 0, depth}, {0, 0, -1}, std::atan(tangent) * 180 / M_PI, Vector3{0, 0, -1}};
-  const Run run = run_changed(space.quarter(), model, [&](Problem& problem) {
-    for (std::size_t i = 0; i < problem.mesh.node_count(); ++i) {
-      const double* x = &problem.mesh.coordinates[3 * i];
-      if (std::max({x[0], x[1], x[2]}) < space.extent * (1 - 1e-9)) continue;
-      const Vector3 u = boussinesq(law, force, {x[0], x[1], x[2]});
-      for (std::size_t c = 0; c < 3; ++c)
-        if (problem.held[3 * i + c]) problem.prescribed[3 * i + c] = u[c];
-    }
-  });
+  const Run run = run_changed(space.quarter(), model,
+                              [&](Problem& problem) { prescribe_far_field(space, law, force, problem); });
   REQUIRE(run.result().status == Status::converged);
   return 4 * run.result().contact_force[2] / force;
 }
