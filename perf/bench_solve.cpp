@@ -14,8 +14,8 @@
 #include "amg/make_preconditioner.hpp"
 #include "contact/traces.hpp"
 #include "formats/gmsh_reader.hpp"
-#include "linear/cg.hpp"
 #include "linear/distributed_operator.hpp"
+#include "multigrid/cg.hpp"
 #include "problem/selection.hpp"
 #include "program/launch.hpp"
 #include "program/parallel.hpp"
@@ -138,7 +138,7 @@ Json measure(const Part& part, DistributedOperator& op, const std::string& kind,
   reset_peak();
   const std::int64_t heap = heap_bytes(), resident = status_bytes("VmRSS:");
   const auto amg = make_preconditioner(preconditioner(kind), part, options.threads, "");
-  MPI_Barrier(part.node_map.comm);
+  MPI_Barrier(mpi_of(part.node_map));
   const double start = MPI_Wtime();
   amg->setup(g, blocks, space);
   const double ready = MPI_Wtime();

@@ -7,6 +7,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <exception>
 #include <mutex>
 #include <string>
 #include <system_error>
@@ -60,5 +61,26 @@ void start_team(int threads) {
 }
 
 bool is_forked_child() noexcept { return forked; }
+
+void in_team(int threads, const std::function<void(int)>& run) {
+  if (threads == 1 || is_forked_child()) {
+    for (int t = 0; t < threads; ++t) run(t);
+    return;
+  }
+  std::mutex mutex;
+  std::exception_ptr thrown;
+#pragma omp parallel num_threads(threads)
+  {
+    for (int t = omp_get_thread_num(); t < threads; t += omp_get_num_threads()) {
+      try {
+        run(t);
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        if (!thrown) thrown = std::current_exception();
+      }
+    }
+  }
+  if (thrown) std::rethrow_exception(thrown);
+}
 
 }  // namespace kacanov

@@ -2,6 +2,10 @@
 // Threads as a guest in somebody's process: whether they can be had, and what becomes of them after fork().
 #pragma once
 
+#include <cstddef>
+#include <functional>
+#include <vector>
+
 namespace kacanov {
 
 /// Starts the calling thread's team of `threads` threads, which the passes then find waiting. Throws
@@ -12,5 +16,35 @@ void start_team(int threads);
 /// Whether this process is a child made by fork() after an operator: the threads of its parent's teams are
 /// not there, and the runtime would wait for them for ever.
 bool is_forked_child() noexcept;
+
+/// Calls run(t) for every t < threads, each by one thread where the runtime grants that many. What one of
+/// them throws is thrown once all are done.
+void in_team(int threads, const std::function<void(int)>& run);
+
+/// Calls work(begin, end) for the shares of the threads in 0 … n − 1; at once where these are not worth
+/// waking anybody.
+template <class Work>
+void in_shares(int threads, std::size_t n, const Work& work) {
+  constexpr std::size_t worth = 2048;
+  if (threads == 1 || n < worth) return work(std::size_t{0}, n);
+  in_team(threads, [&](int t) {
+    const std::size_t share = t, team = threads;
+    work(n * share / team, n * (share + 1) / team);
+  });
+}
+
+/// Σ part(begin, end) over the shares, in their order.
+template <class Part>
+double sum_shares(int threads, std::size_t n, const Part& part) {
+  std::vector<double> sums(threads, 0.0);
+  const std::size_t team = threads;
+  in_team(threads, [&](int t) {
+    const std::size_t share = t;
+    sums[share] = part(n * share / team, n * (share + 1) / team);
+  });
+  double sum = 0.0;
+  for (const double s : sums) sum += s;
+  return sum;
+}
 
 }  // namespace kacanov

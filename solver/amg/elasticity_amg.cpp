@@ -6,7 +6,7 @@ namespace kacanov {
 
 ElasticityAmg::ElasticityAmg(const Part& part)
     : part_(part),
-      amg_(part.node_map.comm, part.node_map.first() * part.dim(),
+      amg_(mpi_of(part.node_map), part.node_map.first() * part.dim(),
            static_cast<std::int64_t>(part.owned_unknowns()), part.total_nodes() * part.dim()) {}
 
 void ElasticityAmg::build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space&) {

@@ -3,7 +3,7 @@
 #include "amg/make_preconditioner.hpp"
 
 #include "amg/elasticity_amg.hpp"
-#include "amg/rigid_multigrid.hpp"
+#include "amg/part_multigrid.hpp"
 
 namespace kacanov {
 
@@ -13,7 +13,7 @@ std::unique_ptr<Preconditioner> make_preconditioner(SolverOptions::Preconditione
   MultigridOptions options;
   options.threads = threads;
   options.instruction_set = instruction_set;
-  return std::make_unique<RigidMultigrid>(part, options);
+  return std::make_unique<PartMultigrid>(part, options);
 }
 
 }  // namespace kacanov

@@ -9,7 +9,7 @@
 
 #include "contact/balance.hpp"
 #include "contact/contact_state.hpp"
-#include "linear/cg.hpp"
+#include "multigrid/cg.hpp"
 
 namespace kacanov {
 

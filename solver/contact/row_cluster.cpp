@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include <kacanov/error.hpp>
-#include "parallel/exchange.hpp"
+#include "distributed/exchange.hpp"
 
 namespace kacanov {
 namespace {

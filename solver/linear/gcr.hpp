@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "linear/cg.hpp"
+#include "linear/space.hpp"
 
 namespace kacanov {
 

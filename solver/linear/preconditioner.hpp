@@ -2,20 +2,12 @@
 // What the loops ask of a preconditioner for B + r CᵀMC.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <span>
 
 #include "linear/space.hpp"
+#include "multigrid/node_block.hpp"
 
 namespace kacanov {
-
-/// A dim × dim block added to the diagonal of a node: a contact penalty, a slip stiffness, or a direction
-/// held.
-struct NodeBlock {
-  std::int32_t node = 0;
-  std::array<double, 9> value{};  ///< dim × dim, row-major
-};
 
 /// z ≈ (B(g) + blocks)⁻¹ r: symmetric positive definite and fixed between two setups. Vectors have the part's
 /// unknowns and are consistent (Part). Calls are collective.

@@ -9,8 +9,9 @@ namespace kacanov {
 
 void Space::hold(std::int32_t node, const Vector3& direction) {
   // Points of one node follow each other in Part::contact, so looking at the last entry is enough.
-  if (held_.empty() || held_.back().node != node) held_.push_back({node, 0, {}});
-  auto& entry = held_.back();
+  auto& held = held_.directions;
+  if (held.empty() || held.back().node != node) held.push_back({node, 0, {}});
+  auto& entry = held.back();
   const std::size_t dim = part_->dim();
   Vector3 d = direction;
   for (std::size_t c = 0; c < dim; ++c)
@@ -32,36 +33,9 @@ void Space::hold(std::int32_t node, const Vector3& direction) {
   entry.basis[entry.count++] = d;
 }
 
-namespace {
-
-template <class S>
-void project_out(const Part& part, std::span<const Space::HeldDirections> held, std::span<S> x) {
-  for (const auto& entry : part.prescribed) x[entry.component] = S{0};
-  const std::size_t dim = part.dim();
-  for (const auto& entry : held) {
-    S* u = x.data() + static_cast<std::size_t>(entry.node) * dim;
-    for (int k = 0; k < entry.count; ++k) {
-      const auto& b = entry.basis[k];
-      double s = 0.0;
-      for (std::size_t c = 0; c < dim; ++c) s += b[c] * static_cast<double>(u[c]);
-      for (std::size_t c = 0; c < dim; ++c) u[c] = static_cast<S>(static_cast<double>(u[c]) - s * b[c]);
-    }
-  }
-}
-
-}  // namespace
-
 void Space::project(std::span<double> x) const {
-  project_out(*part_, held_, x);
-  if (rows_) rows_->project(x);
-}
-
-void Space::project(std::span<float> x) const {
-  project_out(*part_, held_, x);
-  if (!rows_) return;
-  Vector exact(x.begin(), x.end());
-  rows_->project(exact);
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<float>(exact[i]);
+  for (const auto& entry : part_->prescribed) x[entry.component] = 0.0;
+  held_.project(part_->dim(), x);
 }
 
 double Space::local_dot(std::span<const double> x, std::span<const double> y) const {
@@ -91,6 +65,10 @@ double Space::advance(double alpha, std::span<const double> p, std::span<const d
   const double square = eight_sums(part_->owned_unknowns(), step);
   for (std::size_t i = part_->owned_unknowns(); i < x.size(); ++i) step(i);
   return std::sqrt(sum_all(square));
+}
+
+void Space::turn(double beta, std::span<const double> z, std::span<double> p) const {
+  for (std::size_t i = 0; i < p.size(); ++i) p[i] = beta == 0.0 ? z[i] : z[i] + beta * p[i];
 }
 
 double Space::max_abs(std::span<const double> x) const {

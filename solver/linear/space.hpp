@@ -10,29 +10,10 @@
 #include <vector>
 
 #include <kacanov/part.hpp>
+#include "multigrid/held_space.hpp"
+#include "multigrid/sums.hpp"
 
 namespace kacanov {
-
-using Vector = std::vector<double>;
-
-/// Σ term(i) over i < n, as eight sums: the compiler may not reorder one.
-template <class Term>
-double eight_sums(std::size_t n, const Term& term) {
-  std::array<double, 8> s{};
-  const std::size_t whole = n - n % 8;
-  for (std::size_t i = 0; i < whole; i += 8)
-    for (std::size_t k = 0; k < 8; ++k) s[k] += term(i + k);
-  for (std::size_t i = whole; i < n; ++i) s[0] += term(i);
-  return ((s[0] + s[1]) + (s[2] + s[3])) + ((s[4] + s[5]) + (s[6] + s[7]));
-}
-
-/// Rows over several nodes that a space holds at zero.
-class HeldRows {
- public:
-  virtual ~HeldRows() = default;
-  /// Orthogonal projection of a consistent vector (unknowns of the part). Collective.
-  virtual void project(std::span<double> x) const = 0;
-};
 
 /// Displacements of a part that vanish in held components and, optionally, in some directions of some nodes
 /// and in rows over several nodes (contact rows held during a spectrum or active-set solve).
@@ -45,22 +26,16 @@ class Space {
   /// that has a copy of the node.
   void hold(std::int32_t node, const Vector3& direction);
   /// Holds rows that share no node with these directions. Call on every rank.
-  void hold(std::shared_ptr<const HeldRows> rows) { rows_ = std::move(rows); }
+  void hold(std::shared_ptr<const HeldRows> rows) { held_.rows = std::move(rows); }
 
-  /// Directions held at one local node besides its held components.
-  struct HeldDirections {
-    std::int32_t node = 0;
-    int count = 0;
-    std::array<Vector3, 3> basis{};  ///< orthonormal, in free components only
-  };
-  std::span<const HeldDirections> held_directions() const noexcept { return held_; }
+  /// What is held besides held components.
+  const HeldSpace& held() const noexcept { return held_; }
 
   std::size_t size() const noexcept { return part_->unknowns(); }
   const Part& part() const noexcept { return *part_; }
 
   /// Orthogonal projection onto the space, node by node; collective where rows over several nodes are held.
   void project(std::span<double> x) const;
-  void project(std::span<float> x) const;
   /// Inner product and 2-norm of consistent vectors over all ranks, each unknown once. Collective.
   double dot(std::span<const double> x, std::span<const double> y) const;
   double norm(std::span<const double> x) const;
@@ -74,13 +49,14 @@ class Space {
   /// A step of conjugate gradients in one pass: x += α p, r −= α q. Returns ‖r‖. Collective.
   double advance(double alpha, std::span<const double> p, std::span<const double> q, std::span<double> x,
                  std::span<double> r) const;
+  /// p = z + β p; with β = 0 the old p is not read.
+  void turn(double beta, std::span<const double> z, std::span<double> p) const;
 
  private:
   double local_dot(std::span<const double> x, std::span<const double> y) const;
 
   const Part* part_;
-  std::vector<HeldDirections> held_;
-  std::shared_ptr<const HeldRows> rows_;
+  HeldSpace held_;
 };
 
 }  // namespace kacanov

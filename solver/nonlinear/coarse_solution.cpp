@@ -18,12 +18,12 @@ template <class T>
 void broadcast(std::vector<T>& values, const Communicator& ranks) {
   if (ranks.ranks == 1) return;
   std::uint64_t count = values.size();
-  MPI_Bcast(&count, sizeof count, MPI_BYTE, 0, ranks.comm);
+  MPI_Bcast(&count, sizeof count, MPI_BYTE, 0, mpi_of(ranks));
   values.resize(count);
   char* at = reinterpret_cast<char*>(values.data());
   for (std::size_t left = count * sizeof(T); left > 0;) {
     const std::size_t piece = std::min(left, longest_message);
-    MPI_Bcast(at, static_cast<int>(piece), MPI_BYTE, 0, ranks.comm);
+    MPI_Bcast(at, static_cast<int>(piece), MPI_BYTE, 0, mpi_of(ranks));
     at += piece;
     left -= piece;
   }

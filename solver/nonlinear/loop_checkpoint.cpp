@@ -160,14 +160,14 @@ void OuterLoop::restore(const Checkpoint* users, Result& result) {
     double number = 0.0;
     if (here)
       number = std::is_integral_v<Value> ? static_cast<double>(from->count(name, most)) : from->number(name);
-    if (part.node_map.ranks > 1) MPI_Bcast(&number, 1, MPI_DOUBLE, 0, part.node_map.comm);
+    if (part.node_map.ranks > 1) MPI_Bcast(&number, 1, MPI_DOUBLE, 0, mpi_of(part.node_map));
     value = static_cast<Value>(number);
   };
   const auto values = [&](const char* name, std::size_t entries) {
     Vector all(entries);
     if (here) all = from->field(name, entries);
     if (part.node_map.ranks > 1)
-      MPI_Bcast(all.data(), static_cast<int>(entries), MPI_DOUBLE, 0, part.node_map.comm);
+      MPI_Bcast(all.data(), static_cast<int>(entries), MPI_DOUBLE, 0, mpi_of(part.node_map));
     return all;
   };
   visit_counts(result, get);

@@ -365,7 +365,7 @@ void split(const Problem& problem, int ranks, const std::function<void(int rank,
   take(0, splitter.part(0));
 }
 
-void join(Part& part, MPI_Comm comm) { static_cast<Communicator&>(part.node_map) = Communicator(comm); }
+void join(Part& part, MPI_Comm comm) { static_cast<Communicator&>(part.node_map) = mpi_communicator(comm); }
 
 Part distribute(const Problem* problem, MPI_Comm comm) {
   int rank = 0, ranks = 1;

@@ -29,8 +29,8 @@ void send_list(std::span<const Index> list, MPI_Comm comm) {
 std::vector<double> gather(std::span<const Index> index, std::span<const double> local, std::size_t width,
                            std::size_t total, const Communicator& ranks) {
   if (ranks.rank > 0) {
-    send_list(index, ranks.comm);
-    send_bytes(local.data(), index.size() * width * sizeof(double), 0, ranks.comm);
+    send_list(index, mpi_of(ranks));
+    send_bytes(local.data(), index.size() * width * sizeof(double), 0, mpi_of(ranks));
     return {};
   }
   std::vector<double> all(total * width);
@@ -40,9 +40,9 @@ std::vector<double> gather(std::span<const Index> index, std::span<const double>
   };
   place(index, local);
   for (int other = 1; other < ranks.ranks; ++other) {
-    const std::vector<Index> where = receive_list(other, ranks.comm);
+    const std::vector<Index> where = receive_list(other, mpi_of(ranks));
     std::vector<double> what(where.size() * width);
-    receive_bytes(what.data(), what.size() * sizeof(double), other, ranks.comm);
+    receive_bytes(what.data(), what.size() * sizeof(double), other, mpi_of(ranks));
     place(where, what);
   }
   return all;
@@ -52,8 +52,8 @@ std::vector<double> scatter(std::span<const Index> index, std::span<const double
                             const Communicator& ranks) {
   std::vector<double> mine(index.size() * width);
   if (ranks.rank > 0) {
-    send_list(index, ranks.comm);
-    receive_bytes(mine.data(), mine.size() * sizeof(double), 0, ranks.comm);
+    send_list(index, mpi_of(ranks));
+    receive_bytes(mine.data(), mine.size() * sizeof(double), 0, mpi_of(ranks));
     return mine;
   }
   const auto pick = [&](std::span<const Index> where, std::vector<double>& values) {
@@ -61,10 +61,10 @@ std::vector<double> scatter(std::span<const Index> index, std::span<const double
       std::copy_n(&all[static_cast<std::size_t>(where[i]) * width], width, &values[i * width]);
   };
   for (int other = 1; other < ranks.ranks; ++other) {
-    const std::vector<Index> where = receive_list(other, ranks.comm);
+    const std::vector<Index> where = receive_list(other, mpi_of(ranks));
     std::vector<double> values(where.size() * width);
     pick(where, values);
-    send_bytes(values.data(), values.size() * sizeof(double), other, ranks.comm);
+    send_bytes(values.data(), values.size() * sizeof(double), other, mpi_of(ranks));
   }
   pick(index, mine);
   return mine;

@@ -62,7 +62,7 @@ Eigenvalue Spectrum::largest(const TraceRows& rows, const TraceRows& held, doubl
   // The largest compliance is well separated: four products give it to 1e-6.
   if (options_.tolerance >= 1e-3) options.basis = 3;
   if (!loose) {
-    const auto found = largest_eigenvalues(product, rows.index(), part_->node_map.comm, options);
+    const auto found = largest_eigenvalues(product, rows.index(), mpi_of(part_->node_map), options);
     cost_.products += found.products;
     cost_.converged = cost_.converged && found.converged;
     if (found.values.empty()) return {};
@@ -70,7 +70,7 @@ Eigenvalue Spectrum::largest(const TraceRows& rows, const TraceRows& held, doubl
   }
   options.wanted = static_cast<int>(std::min<std::int64_t>(1 + part_->loose_modes, rows.total() - 1));
   if (options.wanted < 1) return {};
-  const auto found = largest_eigenvalues(product, rows.index(), part_->node_map.comm, options);
+  const auto found = largest_eigenvalues(product, rows.index(), mpi_of(part_->node_map), options);
   cost_.products += found.products;
   cost_.converged = cost_.converged && found.converged;
   for (std::size_t i = 0; i < found.values.size(); ++i) {
@@ -102,7 +102,7 @@ Eigenvalue Spectrum::smallest(const TraceRows& rows) {
   };
   LanczosOptions options;
   options.tolerance = options_.tolerance;
-  const auto found = largest_eigenvalues(product, rows.index(), part_->node_map.comm, options);
+  const auto found = largest_eigenvalues(product, rows.index(), mpi_of(part_->node_map), options);
   cost_.products += found.products;
   cost_.converged = cost_.converged && found.converged;
   if (found.values.empty() || !(found.values[0] > 0.0)) return {};

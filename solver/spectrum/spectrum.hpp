@@ -7,9 +7,9 @@
 
 #include <kacanov/result.hpp>
 #include "contact/trace_rows.hpp"
-#include "linear/cg.hpp"
 #include "linear/distributed_operator.hpp"
 #include "linear/preconditioner.hpp"
+#include "multigrid/cg.hpp"
 #include "spectrum/lanczos.hpp"
 
 namespace kacanov {

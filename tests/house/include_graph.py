@@ -19,7 +19,7 @@ import sys
 LEVELS = [
     ["kernels/cells", "tools/verify"],  # which may know nothing of what it verifies
     ["kernels/law"],
-    ["kernels/reference", "kernels/simd"],
+    ["kernels/reference", "kernels/simd", "kernels/distributed"],
     ["kernels/operator"],
     ["kernels/multigrid"],
     ["kernels/c"],
@@ -47,7 +47,9 @@ INCLUDE_FOLDERS = ["kernels", "solver", "tools", "tests/solver"]
 HEADER_ROOMS = {
     "kacanov.h": "kernels/c",
     "mesh_view.hpp": "kernels/cells",
-    "error.hpp": "solver/mesh",
+    "error.hpp": "kernels/cells",
+    "transport.hpp": "kernels/distributed",
+    "vector3.hpp": "kernels/cells",
     "model.hpp": "solver/problem",
     "constraint_rows.hpp": "solver/problem",
     "result.hpp": "solver/problem",

@@ -6,7 +6,7 @@ include("${CMAKE_CURRENT_LIST_DIR}/consuming.cmake")
 set(absolute "${WORK}/absolute")
 file(REMOVE_RECURSE "${WORK}/host" "${absolute}")
 set(arguments "-DKACANOV=${SOURCE}" -DKACANOV_INSTALL=ON -DBUILD_SHARED_LIBS=ON "-DCMAKE_INSTALL_PREFIX=${absolute}/else"
-  "-DCMAKE_INSTALL_LIBDIR=${absolute}/libraries" "-DCMAKE_INSTALL_INCLUDEDIR=${absolute}/headers" ${forbidden})
+  "-DCMAKE_INSTALL_LIBDIR=${absolute}/libraries" "-DCMAKE_INSTALL_INCLUDEDIR=${absolute}/headers" ${forbidden_to_build})
 configure(host "${HOST}" ${arguments})
 run("${CMAKE_COMMAND}" --build "${WORK}/host")
 run("${WORK}/host/use_c")

@@ -40,6 +40,10 @@ function(consume_by_pkg_config package libraries compiler source)
   run("${CMAKE_COMMAND}" -E env "LD_LIBRARY_PATH=${libraries}" "${WORK}/by_pkg_config")
 endfunction()
 
-# Neither building nor using the kernels may even look for what only the solver needs.
-set(forbidden MPI HYPRE PARPACK Eigen3)
-list(TRANSFORM forbidden REPLACE "(.+)" "-DCMAKE_DISABLE_FIND_PACKAGE_\\1=ON")
+# Neither building nor using the kernels may even look for what only the solver needs; using them, not for Eigen, whose
+# headers they are built with.
+set(forbidden_to_build MPI HYPRE PARPACK)
+set(forbidden ${forbidden_to_build} Eigen3)
+foreach(list forbidden forbidden_to_build)
+  list(TRANSFORM ${list} REPLACE "(.+)" "-DCMAKE_DISABLE_FIND_PACKAGE_\\1=ON")
+endforeach()

@@ -10,7 +10,7 @@
 #include "contact/projections.hpp"
 #include "contact/traces.hpp"
 #include "dense.hpp"
-#include "linear/cg.hpp"
+#include "multigrid/cg.hpp"
 #include "support.hpp"
 
 using namespace kacanov;

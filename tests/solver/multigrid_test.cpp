@@ -7,11 +7,12 @@
 #include <numeric>
 
 #include <kacanov/operator.hpp>
-#include "amg/aggregate_motions.hpp"
-#include "amg/aggregation.hpp"
 #include "amg/make_preconditioner.hpp"
-#include "amg/rigid_level.hpp"
-#include "linear/cg.hpp"
+#include "amg/part_multigrid.hpp"
+#include "multigrid/aggregate_motions.hpp"
+#include "multigrid/aggregation.hpp"
+#include "multigrid/cg.hpp"
+#include "multigrid/rigid_level.hpp"
 #include "support.hpp"
 
 using namespace kacanov;
@@ -38,7 +39,7 @@ RigidLevel<6> chain(std::int32_t rows) {
     }
     if (i + 1 < total) sums.at(i, i + 1)[1] = 0.125;
   }
-  return {std::move(centres), std::move(sums), Communicator(MPI_COMM_WORLD)};
+  return {std::move(centres), std::move(sums), mpi_communicator(MPI_COMM_WORLD)};
 }
 
 double sum_all(double v) {
@@ -150,10 +151,10 @@ TEST_CASE("the first coarse matrix is Galerkin's, summed once or again") {
     const std::size_t dim = part.dim();
     Vector g(part.body().secant_count(), 1.0);
     const auto check = [&]<int M>(std::integral_constant<int, M>) {
-      AggregateMotions<M> motions(part, g, 8.0, set);
+      AggregateMotions<M> motions(multigrid_body(part), g, {.instruction_set = set, .fine_size = 8.0});
       RigidLevel<M> level = motions.make_level();
       const Space free(part);
-      motions.sum(g, {{}, free}, level);
+      motions.sum(g, {{}, free.held()}, level);
       check_galerkin<M>(part, g, {}, free, motions, level);
       // Other moduli, a direction held at some nodes, and blocks.
       for (std::size_t e = 0; e < g.size(); ++e) g[e] = 0.2 + static_cast<double>(e % 5);
@@ -166,7 +167,7 @@ TEST_CASE("the first coarse matrix is Galerkin's, summed once or again") {
         for (std::size_t c = 0; c < dim; ++c) block.value[c * dim + c] = 1.0 + static_cast<double>(c);
         blocks.push_back(block);
       }
-      motions.sum(g, {blocks, space}, level);
+      motions.sum(g, {blocks, space.held()}, level);
       check_galerkin<M>(part, g, blocks, space, motions, level);
       // Some of these let go, others held: the same matrix as summed anew.
       Space later(part);
@@ -178,11 +179,11 @@ TEST_CASE("the first coarse matrix is Galerkin's, summed once or again") {
       }
       const std::vector<NodeBlock> fewer(blocks.begin(),
                                          blocks.begin() + static_cast<std::ptrdiff_t>(blocks.size() / 2));
-      motions.change(g, {blocks, space}, {fewer, later}, level);
+      motions.change(g, {blocks, space.held()}, {fewer, later.held()}, level);
       auto x = wave(level, 0.7);
       Vector changed(level.owned_size()), summed(changed);
       level.multiply(x, changed);
-      motions.sum(g, {fewer, later}, level);
+      motions.sum(g, {fewer, later.held()}, level);
       level.multiply(x, summed);
       for (std::size_t i = 0; i < summed.size(); ++i)
         CHECK(changed[i] == doctest::Approx(summed[i]).epsilon(1e-10).scale(10.0));
@@ -204,7 +205,7 @@ TEST_CASE("aggregates follow the strong couplings and leave nobody out") {
   std::int32_t section = nodes;
   SUBCASE("all at once") {}
   SUBCASE("in sections of the numbering") { section = 1000; }
-  const auto group = aggregate_nodes({mesh.view(), laws, law}, g, nodes, 12.0, section);
+  const auto group = aggregate_nodes({mesh.view(), laws, law}, g, nodes, {12.0, section});
   REQUIRE(group.size() == mesh.node_count());
   const std::int32_t groups = 1 + *std::max_element(group.begin(), group.end());
   std::vector<int> members(groups, 0);

@@ -89,7 +89,7 @@ TEST_CASE("owned nodes are numbered on through the ranks, and ghosts know their 
 }
 
 TEST_CASE("a map made from ghosts' numbers finds their owners, numbers beyond 2^53 included") {
-  const Communicator world(MPI_COMM_WORLD);
+  const Communicator world = mpi_communicator(MPI_COMM_WORLD);
   // Each rank owns three more than the one before, and wants the first and last of every other rank.
   const std::int32_t owned = 3 * world.rank + 2;
   const std::vector<std::int64_t> starts = number_owned(owned, world);

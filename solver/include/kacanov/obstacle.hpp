@@ -8,12 +8,12 @@
 #include <string>
 #include <variant>
 
+#include <kacanov/vector3.hpp>
+
 namespace kacanov {
 
 class Surface;
 struct HeightField;
-
-using Vector3 = std::array<double, 3>;  ///< in 2D the third entry is 0
 
 /// A node that may touch.
 struct SurfacePoint {

@@ -10,6 +10,7 @@
 
 #include <kacanov/index_map.hpp>
 #include <kacanov/index_runs.hpp>
+#include <kacanov/mpi_communicator.hpp>
 #include <kacanov/problem.hpp>
 #include <kacanov/reference.hpp>
 

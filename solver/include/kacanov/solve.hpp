@@ -18,7 +18,7 @@ namespace kacanov {
 /// Not converging is a status there, not an error: converged are solutions whose KKT residuals, by the
 /// reference operator, are all within the tolerance (theory: kkt).
 /// Throws InputError for options that validate() refuses, on all ranks alike, and InternalError where a
-/// library beneath fails. Collective over part.node_map.comm.
+/// library beneath fails. Collective over the ranks of part.node_map.
 Solution solve(Part& part, const SolverOptions& options, const RunOptions& run);
 Solution solve(const Part& part, const SolverOptions& options, const RunOptions& run);
 

@@ -2,21 +2,19 @@
 // The ranks that work together, and reductions over them.
 #pragma once
 
-#include <mpi.h>
-
 #include <cstdint>
 #include <initializer_list>
+#include <memory>
 #include <span>
+
+#include <kacanov/transport.hpp>
 
 namespace kacanov {
 
 /// Every function is collective and gives every rank the same bits. With one rank they return at once.
 struct Communicator {
-  MPI_Comm comm = MPI_COMM_SELF;
+  std::shared_ptr<const Transport> transport;  ///< null: this process is alone
   int rank = 0, ranks = 1;
-
-  Communicator() = default;
-  explicit Communicator(MPI_Comm of);
 
   double sum_all(double value) const;
   std::int64_t sum_all(std::int64_t value) const;

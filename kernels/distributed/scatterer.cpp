@@ -8,11 +8,6 @@
 namespace kacanov {
 namespace {
 
-MPI_Datatype type_of(double) { return MPI_DOUBLE; }
-MPI_Datatype type_of(float) { return MPI_FLOAT; }
-MPI_Datatype type_of(std::int32_t) { return MPI_INT32_T; }
-MPI_Datatype type_of(std::int64_t) { return MPI_INT64_T; }
-
 /// Copies x at `indices` to `to` and returns where that ends.
 template <class S>
 S* pack(std::span<const std::int32_t> indices, std::size_t width, std::span<const S> x, S* to) {
@@ -24,7 +19,9 @@ S* pack(std::span<const std::int32_t> indices, std::size_t width, std::span<cons
 }  // namespace
 
 template <class S>
-Scatterer<S>::Scatterer(const IndexMap& map, int components) : map_(&map), width_(components) {}
+Scatterer<S>::Scatterer(const IndexMap& map, int components) : map_(&map), width_(components) {
+  if (!map.neighbours.empty()) messages_ = map.transport->messages();
+}
 
 /// Starts a receive for each neighbour's `incoming` indices and a send of x at its `outgoing` ones.
 template <class S>
@@ -38,21 +35,13 @@ void Scatterer<S>::start(List outgoing, List incoming, std::span<const S> x) {
   receive_.resize(in);
   S *to = send_.data(), *from = receive_.data();
   for (const auto& n : map_->neighbours) {
-    const auto count = static_cast<int>((n.*incoming).size() * width_);
-    if (count > 0) MPI_Irecv(from, count, type_of(S{}), n.rank, 0, map_->comm, &requests_.emplace_back());
+    const std::size_t count = (n.*incoming).size() * width_;
+    if (count > 0) messages_->receive(from, count, sizeof(S), n.rank);
     from += count;
     S* const end = pack<S>(n.*outgoing, width_, x, to);
-    if (end != to)
-      MPI_Isend(to, static_cast<int>(end - to), type_of(S{}), n.rank, 0, map_->comm,
-                &requests_.emplace_back());
+    if (end != to) messages_->send(to, end - to, sizeof(S), n.rank);
     to = end;
   }
-}
-
-template <class S>
-void Scatterer<S>::wait() {
-  MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
-  requests_.clear();
 }
 
 template <class S>
@@ -62,7 +51,7 @@ void Scatterer<S>::start_forward(std::span<const S> x) {
 
 template <class S>
 void Scatterer<S>::finish_forward(std::span<S> x) {
-  wait();
+  if (messages_) messages_->wait();
   const S* from = receive_.data();
   for (const auto& n : map_->neighbours)
     for (const std::int32_t i : n.receive)
@@ -81,7 +70,7 @@ void Scatterer<S>::finish_sum(std::span<S> x) {
   own_.resize(shared.size() * width_);
   pack<S>(shared, width_, x, own_.data());
   for (const std::int32_t i : shared) std::fill_n(&x[static_cast<std::size_t>(i) * width_], width_, S{0});
-  wait();
+  messages_->wait();
   const auto add = [&](std::span<const std::int32_t> indices, const S* from) {
     for (const std::int32_t i : indices)
       for (std::size_t c = 0; c < width_; ++c) x[static_cast<std::size_t>(i) * width_ + c] += *from++;

@@ -7,7 +7,7 @@
 #include <limits>
 #include <span>
 
-#include "linear/space.hpp"
+#include "multigrid/sums.hpp"
 
 namespace kacanov {
 
@@ -37,14 +37,14 @@ struct CgWork {
 /// exit the residual of the new x. `apply(p, q)`: q = A p, consistent, not projected; it returns this rank's
 /// share of pᵀq, which it has at hand. `precondition(r, z)`: z ≈ A⁻¹ r, symmetric positive definite,
 /// consistent. A breakdown (pᵀAp not positive: the operator has lost its definiteness) ends the loop
-/// unconverged. All vectors have the part's unknowns. Collective.
-template <class Apply, class Precondition>
-CgResult conjugate_gradients(const Space& space, const Apply& apply, const Precondition& precondition,
+/// unconverged. All vectors have the unknowns of the space, which is anything that does what the solver's
+/// Space does: project, dot, norm, sum_all, advance, turn. Collective where these are.
+template <class InnerSpace, class Apply, class Precondition>
+CgResult conjugate_gradients(const InnerSpace& space, const Apply& apply, const Precondition& precondition,
                              std::span<double> x, CgWork& work, const CgOptions& options) {
   CgResult result;
   auto& [r, p, q] = work;
   auto& z = q;  // wanted one after the other
-  const std::size_t n = x.size();
   space.project(r);
   result.first_residual = result.residual = space.norm(r);
   const double target =
@@ -57,12 +57,7 @@ CgResult conjugate_gradients(const Space& space, const Apply& apply, const Preco
     const double rz_new =
         space.dot(r, z);  // not before: of a residual of rounding errors, nothing is left in the space
     if (!(rz_new > 0.0) || !std::isfinite(rz_new)) return result;
-    if (result.iterations == 0) {
-      for (std::size_t i = 0; i < n; ++i) p[i] = z[i];
-    } else {
-      const double beta = rz_new / rz;
-      for (std::size_t i = 0; i < n; ++i) p[i] = z[i] + beta * p[i];
-    }
+    space.turn(result.iterations == 0 ? 0.0 : rz_new / rz, z, p);
     rz = rz_new;
     const double pq = space.sum_all(apply(p, q));
     space.project(q);

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-#include <kacanov/model.hpp>
+#include <kacanov/vector3.hpp>
 
 namespace kacanov {
 

@@ -2,6 +2,7 @@
 // Scatters between owners and ghosts in two halves, for what can be computed while messages travel.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -30,12 +31,11 @@ class Scatterer {
  private:
   using List = std::vector<std::int32_t> IndexMap::Neighbour::*;
   void start(List outgoing, List incoming, std::span<const S> x);
-  void wait();
 
   const IndexMap* map_;
   std::size_t width_;
   std::vector<S> send_, receive_, own_;
-  std::vector<MPI_Request> requests_;
+  std::unique_ptr<Messages> messages_;  ///< null where there is nobody to send to
 };
 
 extern template class Scatterer<double>;

@@ -3,11 +3,10 @@
 #include <kacanov/index_map.hpp>
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include <kacanov/scatterer.hpp>
-#include "parallel/exchange.hpp"
+#include "distributed/exchange.hpp"
 
 namespace kacanov {
 
@@ -41,9 +40,9 @@ template void IndexMap::sum(std::span<std::int32_t>, int) const;
 template void IndexMap::sum(std::span<std::int64_t>, int) const;
 
 std::vector<std::int64_t> number_owned(std::int64_t owned, const Communicator& comm) {
-  std::vector<std::int64_t> starts(static_cast<std::size_t>(comm.ranks) + 1, 0);
-  MPI_Allgather(&owned, 1, MPI_INT64_T, starts.data() + 1, 1, MPI_INT64_T, comm.comm);
-  std::partial_sum(starts.begin(), starts.end(), starts.begin());
+  if (comm.ranks == 1) return {0, owned};
+  std::vector<std::int64_t> starts{0};
+  for (const std::int64_t count : comm.transport->all(owned)) starts.push_back(starts.back() + count);
   return starts;
 }
 

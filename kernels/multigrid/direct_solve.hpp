@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <kacanov/error.hpp>
-#include "amg/rigid_level.hpp"
+#include "multigrid/rigid_level.hpp"
 
 namespace kacanov {
 
@@ -41,6 +41,10 @@ class DirectSolve {
       if (factor_.info() == Eigen::Success) return;
     }
     throw InternalError("the coarsest matrix of the preconditioner is not definite");
+  }
+  std::size_t bytes() const noexcept {
+    return static_cast<std::size_t>(factor_.matrixL().nestedExpression().nonZeros()) *
+           (sizeof(double) + sizeof(int));
   }
   /// x = A⁻¹ b on owned rows, M entries each. Collective.
   void solve(std::span<const double> b, std::span<double> x) const {

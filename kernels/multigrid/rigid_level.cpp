@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One level of the hierarchy: a symmetric block matrix over the rigid motions of aggregates, its rows spread
 // over the ranks.
-#include "amg/rigid_level.hpp"
+#include "multigrid/rigid_level.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -9,15 +9,17 @@
 #include <numeric>
 #include <utility>
 
-#include "amg/largest_eigenvalue.hpp"
-#include "amg/rigid_blocks.hpp"
-#include "parallel/exchange.hpp"
+#include "distributed/exchange.hpp"
+#include "multigrid/largest_eigenvalue.hpp"
+#include "multigrid/rigid_blocks.hpp"
+#include "operator/threads.hpp"
 
 namespace kacanov {
 
 template <int M>
-RigidLevel<M>::RigidLevel(std::vector<Vector3> centres, BlockSums<M> sums, const Communicator& comm)
-    : centres_(std::move(centres)) {
+RigidLevel<M>::RigidLevel(std::vector<Vector3> centres, BlockSums<M> sums, const Communicator& comm,
+                          int threads)
+    : centres_(std::move(centres)), threads_(threads) {
   IndexMap owned;  // without ghosts yet: whose rows are whose
   static_cast<Communicator&>(owned) = comm;
   owned.owned = rows();
@@ -27,7 +29,37 @@ RigidLevel<M>::RigidLevel(std::vector<Vector3> centres, BlockSums<M> sums, const
   map_ = std::make_unique<IndexMap>(make_index_map(comm, rows(), ghosts_of(sums)));
   fill_.emplace(*map_, M);
   build_rows(sums);
+  share_out();
   invert_diagonal();
+}
+
+/// Each thread rows with as many blocks as the others have.
+template <int M>
+void RigidLevel<M>::share_out() {
+  constexpr std::size_t worth = 4096;  // blocks
+  const std::size_t team = column_.size() < worth ? 1 : threads_, owned = centres_.size();
+  std::size_t row = 0;
+  for (std::size_t t = 0; t < team; ++t) {
+    Share share;
+    share.begin = row;
+    const std::size_t until = column_.size() * (t + 1) / team;
+    while (row < owned && (t + 1 == team || static_cast<std::size_t>(start_[row]) < until)) ++row;
+    share.end = share.reach = row;
+    for (std::size_t i = share.begin; i < share.end; ++i)
+      for (std::size_t k = start_[i]; k < static_cast<std::size_t>(start_[i + 1]); ++k)
+        if (const std::size_t j = column_[k]; j < owned) share.reach = std::max(share.reach, j + 1);
+    share.beyond.resize((share.reach - share.end) * M);
+    shares_.push_back(std::move(share));
+  }
+}
+
+template <int M>
+std::size_t RigidLevel<M>::bytes() const noexcept {
+  std::size_t sum = centres_.size() * sizeof(Vector3) +
+                    (start_.size() + column_.size()) * sizeof(std::int32_t) +
+                    (block_.size() + inverse_diagonal_.size()) * sizeof(Block);
+  for (const Share& share : shares_) sum += share.beyond.size() * sizeof(double);
+  return sum;
 }
 
 template <int M>
@@ -150,21 +182,23 @@ void RigidLevel<M>::build_rows(const BlockSums<M>& sums) {
 template <int M>
 void RigidLevel<M>::invert_diagonal() {
   inverse_diagonal_.resize(centres_.size());
-  for (std::size_t i = 0; i < centres_.size(); ++i) {
-    Dense<M> d = Dense<M>::Zero();
-    for (auto k = start_[i]; k < start_[i + 1]; ++k)
-      if (column_[k] == static_cast<std::int32_t>(i)) d = dense<M>(block_[k]);
-    // Motions that boundary conditions leave no node for have no stiffness: they stay where they are.
-    const double largest = d.diagonal().maxCoeff();
-    Eigen::SelfAdjointEigenSolver<Dense<M>> solver(d);
-    Dense<M> inverse = Dense<M>::Zero();
-    for (int k = 0; k < M; ++k) {
-      const double value = solver.eigenvalues()[k];
-      if (value > 1e-6 * largest)
-        inverse += solver.eigenvectors().col(k) * solver.eigenvectors().col(k).transpose() / value;
+  in_shares(shares_.size() > 1 ? threads_ : 1, centres_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Dense<M> d = Dense<M>::Zero();
+      for (auto k = start_[i]; k < start_[i + 1]; ++k)
+        if (column_[k] == static_cast<std::int32_t>(i)) d = dense<M>(block_[k]);
+      // Motions that boundary conditions leave no node for have no stiffness: they stay where they are.
+      const double largest = d.diagonal().maxCoeff();
+      Eigen::SelfAdjointEigenSolver<Dense<M>> solver(d);
+      Dense<M> inverse = Dense<M>::Zero();
+      for (int k = 0; k < M; ++k) {
+        const double value = solver.eigenvalues()[k];
+        if (value > 1e-6 * largest)
+          inverse += solver.eigenvectors().col(k) * solver.eigenvectors().col(k).transpose() / value;
+      }
+      for (int k = 0; k < M * M; ++k) inverse_diagonal_[i][k] = inverse.data()[k];
     }
-    for (int k = 0; k < M * M; ++k) inverse_diagonal_[i][k] = inverse.data()[k];
-  }
+  });
 }
 
 namespace {
@@ -188,23 +222,35 @@ inline void add_transposed(const double* block, const double* x, double* y) {
 
 }  // namespace
 
+/// y of the thread's rows, but for what the threads before it and the ghosts add.
 template <int M>
-void RigidLevel<M>::multiply(std::span<double> x, std::span<double> y) {
-  fill_->start_forward(x);
-  const auto mine = y.first(owned_size());
-  std::fill(mine.begin(), mine.end(), 0.0);
+void RigidLevel<M>::multiply_share(int t, std::span<const double> x, std::span<double> y) {
+  Share& mine = shares_[t];
+  std::fill(y.begin() + static_cast<std::ptrdiff_t>(mine.begin * M),
+            y.begin() + static_cast<std::ptrdiff_t>(mine.end * M), 0.0);
+  std::fill(mine.beyond.begin(), mine.beyond.end(), 0.0);
   const std::size_t owned = centres_.size();
-  for (std::size_t i = 0; i < owned; ++i) {
+  for (std::size_t i = mine.begin; i < mine.end; ++i) {
     std::array<double, M> sum{};
     const double* here = x.data() + i * M;
     for (std::size_t k = start_[i]; k < static_cast<std::size_t>(start_[i + 1]); ++k) {
       const std::size_t j = column_[k];
       if (j >= owned) break;
       add_product<M>(block_[k].data(), x.data() + j * M, sum.data());
-      if (j != i) add_transposed<M>(block_[k].data(), here, y.data() + j * M);
+      double* to = j < mine.end ? y.data() + j * M : mine.beyond.data() + (j - mine.end) * M;
+      if (j != i) add_transposed<M>(block_[k].data(), here, to);
     }
     for (std::size_t m = 0; m < M; ++m) y[i * M + m] += sum[m];
   }
+}
+
+template <int M>
+void RigidLevel<M>::multiply(std::span<double> x, std::span<double> y) {
+  fill_->start_forward(x);
+  const auto team = static_cast<int>(shares_.size());
+  in_team(team, [&](int t) { multiply_share(t, x, y); });
+  for (const Share& share : shares_)
+    for (std::size_t i = 0; i < share.beyond.size(); ++i) y[share.end * M + i] += share.beyond[i];
   fill_->finish_forward(x);
   for (const Edge& edge : edge_) {
     const std::size_t i = edge.row;
@@ -217,12 +263,16 @@ template <int M>
 void RigidLevel<M>::relax(const ChebyshevStep<double>& weights, std::span<const double> b,
                           std::span<const double> image, std::span<double> step, std::span<double> x) const {
   weights.visit([&]<bool zero, bool first>() {
-    for (std::size_t i = 0; i < centres_.size(); ++i) {
-      std::array<double, M> residual, scaled{};
-      for (std::size_t m = 0; m < M; ++m) residual[m] = zero ? b[i * M + m] : b[i * M + m] - image[i * M + m];
-      add_product<M>(inverse_diagonal_[i].data(), residual.data(), scaled.data());
-      for (std::size_t m = 0; m < M; ++m) weights.take<zero, first>(scaled[m], step[i * M + m], x[i * M + m]);
-    }
+    in_shares(shares_.size() > 1 ? threads_ : 1, centres_.size(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        std::array<double, M> residual, scaled{};
+        for (std::size_t m = 0; m < M; ++m)
+          residual[m] = zero ? b[i * M + m] : b[i * M + m] - image[i * M + m];
+        add_product<M>(inverse_diagonal_[i].data(), residual.data(), scaled.data());
+        for (std::size_t m = 0; m < M; ++m)
+          weights.template take<zero, first>(scaled[m], step[i * M + m], x[i * M + m]);
+      }
+    });
   });
 }
 

@@ -25,9 +25,15 @@ struct WeightedGraph {
 std::vector<std::int32_t> aggregate(WeightedGraph graph, double size);
 
 /// The same for the first `nodes` nodes of a body (those a rank owns) by their couplings; g: elements ×
-/// points, a stress. Some `section` nodes at a time, neighbours in the numbering: a graph of all would be the
-/// largest array of a run.
+/// points, a stress.
+struct NodeAggregation {
+  double size = 48.0;
+  /// Nodes that are grouped at a time, neighbours in the numbering: a graph of all would be the largest array
+  /// of a run.
+  std::int32_t section = 1 << 16;
+  int threads = 1;  ///< which change nothing but the time
+};
 std::vector<std::int32_t> aggregate_nodes(const Body& body, std::span<const double> g, std::int32_t nodes,
-                                          double size, std::int32_t section = 1 << 16);
+                                          const NodeAggregation& options);
 
 }  // namespace kacanov

@@ -8,8 +8,10 @@
 
 #include <kacanov/operator.hpp>
 #include <kacanov/scatterer.hpp>
-#include "amg/chebyshev.hpp"
-#include "linear/preconditioner.hpp"
+#include "multigrid/chebyshev.hpp"
+#include "multigrid/held_space.hpp"
+#include "multigrid/multigrid_body.hpp"
+#include "multigrid/node_block.hpp"
 
 namespace kacanov {
 
@@ -17,20 +19,20 @@ struct MultigridOptions;
 
 /// A = B(g) + blocks on free components, in single precision, never stored. Directions that the space of the
 /// setup holds are held by stiff blocks here, so that the smoother stays definite in the spaces of later
-/// solves; corrections from below are projected. Vectors have the part's unknowns and are consistent (Part);
+/// solves; corrections from below are projected. Vectors have the body's unknowns and are consistent;
 /// blocks are of owned nodes, g has elements × points, stresses. build, rebuild, multiply, project and
 /// choose_smoother are collective.
 class FineLevel {
  public:
-  /// g = μ and no blocks until build(). The part has to outlive it.
-  FineLevel(const Part& part, const MultigridOptions& options);
+  /// g = μ and no blocks until build(). What the body points to has to outlive it.
+  FineLevel(const MultigridBody& body, const MultigridOptions& options);
   /// Freezes g and takes the blocks and the space over; D follows.
-  void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space);
+  void build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space);
   /// With the g of the last build.
-  void rebuild(std::span<const NodeBlock> blocks, const Space& space);
+  void rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space);
   /// What it was built with.
   std::span<const NodeBlock> blocks() const noexcept { return blocks_; }
-  const Space& space() const noexcept { return space_; }
+  const HeldSpace& space() const noexcept { return space_; }
   /// g as it is held: in single precision.
   void secant(std::span<double> g) const { op_.secant(g); }
   /// y = A x for x that is zero in held components.
@@ -46,14 +48,20 @@ class FineLevel {
   /// chebyshev).
   void choose_smoother(int degree, double range);
   const Chebyshev& smoother() const noexcept { return smoother_; }
+  std::size_t bytes() const noexcept {
+    return op_.bytes() + held_.size() * sizeof(std::int32_t) + blocks_.size() * sizeof(NodeBlock) +
+           inverse_.size() * sizeof(float);
+  }
 
  private:
   void add_blocks(std::span<const NodeBlock> blocks, std::span<const float> x, std::span<float> y) const;
 
-  const Part& part_;
+  MultigridBody body_;
+  int threads_;
   FloatOperator op_;
   Scatterer<float> sum_;
-  Space space_;
+  std::vector<std::int32_t> held_;  ///< components
+  HeldSpace space_;
   std::vector<NodeBlock> blocks_;
   std::size_t shared_blocks_ = 0;  ///< the first of them belong to nodes that other ranks have too
   std::vector<float> inverse_;  ///< nodes × 6 (3 in 2D): the upper triangles of the inverse blocks, by rows

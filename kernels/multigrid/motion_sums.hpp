@@ -4,12 +4,14 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <limits>
 #include <unordered_map>
 
-#include "amg/aggregates.hpp"
 #include "cells/dispatch.hpp"
 #include "cells/point.hpp"
-#include "linear/preconditioner.hpp"
+#include "multigrid/aggregates.hpp"
+#include "multigrid/held_space.hpp"
+#include "multigrid/node_block.hpp"
 #include "simd/motion_products.hpp"
 
 namespace kacanov {
@@ -28,18 +30,25 @@ class MotionSums {
   MotionSums(const Aggregates<M>& aggregates, simd::AddMotionProducts<M> add_products,
              std::span<const double> g, RigidLevel<M>* level)
       : aggregates_(aggregates),
-        part_(aggregates.part()),
+        held_(aggregates.body().held),
         add_products_(add_products),
-        body_(part_.body()),
+        body_(aggregates.body().body),
         g_(g),
         level_(level) {}
 
+  /// Only the rows of this share of all; all of them unless this is called.
+  void take_share(int share, int shares) {
+    const std::int64_t rows = aggregates_.size();
+    first_row_ = static_cast<std::int32_t>(rows * share / shares);
+    last_row_ = static_cast<std::int32_t>(rows * (share + 1) / shares);
+  }
+
   /// Whose directions the next sums respect, and by what they are multiplied.
-  void choose(const Space& space, double sign) {
+  void choose(const HeldSpace& space, double sign) {
     sign_ = sign;
     projector_.clear();
-    bound_.assign(part_.nodes(), 0);
-    for (const auto& entry : space.held_directions()) {
+    bound_.assign(body_.mesh.node_count(), 0);
+    for (const auto& entry : space.directions) {
       Eigen::Matrix3d p = Eigen::Matrix3d::Identity();
       for (int k = 0; k < entry.count; ++k) {
         const Eigen::Map<const Eigen::Vector3d> b(entry.basis[k].data());
@@ -48,12 +57,13 @@ class MotionSums {
       projector_.emplace(entry.node, p);
       bound_[entry.node] = 1;
     }
-    for (const auto& entry : part_.prescribed) bound_[static_cast<std::size_t>(entry.component) / dim] = 1;
+    for (std::size_t i = 0; i < held_.size(); ++i)
+      if (held_[i] != 0) bound_[i / dim] = 1;
   }
 
   /// Adds number(0), …, number(count − 1).
   void add_elements(std::size_t count, const auto& number) {
-    elements::dispatch(part_.type, [&]<class E>(E) {
+    elements::dispatch(body_.mesh.type, [&]<class E>(E) {
       if constexpr (static_cast<std::size_t>(E::dim) == dim) {
         for (std::size_t i = 0; i < count; ++i) add_element<E>(number(i));
       }
@@ -63,6 +73,7 @@ class MotionSums {
   void add_block(const NodeBlock& block) {
     const Rows z = rows(block.node);
     const std::int32_t a = aggregates_.of(block.node);
+    if (!is_mine(a)) return;
     Block& sum = at(a, a);
     for (std::size_t i = 0; i < M; ++i)
       for (std::size_t j = 0; j < M; ++j) {
@@ -86,7 +97,7 @@ class MotionSums {
       for (std::size_t m = 0; m < M; ++m) z.row[c][m] = motion[c][m];
     if (bound_[n] == 0) return z;
     for (std::size_t c = 0; c < dim; ++c)
-      if (part_.held[n * dim + c]) std::fill_n(z.row[c], M, 0.0);
+      if (held_[n * dim + c] != 0) std::fill_n(z.row[c], M, 0.0);
     if (const auto held = projector_.find(node); held != projector_.end()) {
       const Rows free = z;
       for (std::size_t c = 0; c < dim; ++c)
@@ -100,6 +111,7 @@ class MotionSums {
     return z;
   }
 
+  bool is_mine(std::int32_t row) const { return row >= first_row_ && row < last_row_; }
   bool is_in_level(std::int32_t a, std::int32_t b) const {
     return level_ != nullptr && (aggregates_.is_owned(a) || aggregates_.is_owned(b));
   }
@@ -132,6 +144,17 @@ class MotionSums {
     }
     if (rigid && count == 1) return;
 
+    std::array<simd::MotionPair, npe*(npe + 1) / 2> pairs;
+    std::size_t pair_count = 0;
+    for (std::size_t a = 0; a < count; ++a)
+      for (std::size_t b = a; b < count; ++b) {
+        const bool ordered = in_order(which[a], which[b]);
+        const std::size_t row = ordered ? a : b, column = ordered ? b : a;
+        if (!is_mine(which[row])) continue;
+        pairs[pair_count++] = {row, column, at(which[row], which[column]).data()};
+      }
+    if (pair_count == 0) return;
+
     elements::Nodal<E> x;
     std::array<Rows, npe> z;
     for (std::size_t a = 0; a < npe; ++a) {
@@ -139,15 +162,6 @@ class MotionSums {
       for (std::size_t c = 0; c < dim; ++c)
         x[a * dim + c] = body_.mesh.coordinates[static_cast<std::size_t>(node[a]) * dim + c];
     }
-    std::array<simd::MotionPair, npe*(npe + 1) / 2> pairs;
-    std::size_t pair_count = 0;
-    for (std::size_t a = 0; a < count; ++a)
-      for (std::size_t b = a; b < count; ++b) {
-        const bool ordered = in_order(which[a], which[b]);
-        const std::size_t row = ordered ? a : b, column = ordered ? b : a;
-        pairs[pair_count++] = {row, column, at(which[row], which[column]).data()};
-      }
-
     const Law& law = body_.law(e);
     const auto points = elements::points_of<E>(x, law.mean_dilatation);
     for (std::size_t q = 0; q < E::points; ++q) {
@@ -160,13 +174,14 @@ class MotionSums {
   }
 
   const Aggregates<M>& aggregates_;
-  const Part& part_;
+  std::span<const std::uint8_t> held_;
   simd::AddMotionProducts<M> add_products_;
   Body body_;
   std::span<const double> g_;
   RigidLevel<M>* level_;
   BlockSums<M> others_;
   double sign_ = 1.0;
+  std::int32_t first_row_ = 0, last_row_ = std::numeric_limits<std::int32_t>::max();
   std::vector<std::uint8_t> bound_;
   std::unordered_map<std::int32_t, Eigen::Matrix3d> projector_;
 };

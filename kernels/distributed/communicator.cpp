@@ -6,19 +6,13 @@
 
 namespace kacanov {
 
-Communicator::Communicator(MPI_Comm of) : comm(of) {
-  MPI_Comm_rank(of, &rank);
-  MPI_Comm_size(of, &ranks);
-}
-
 double Communicator::sum_all(double value) const {
-  if (ranks > 1) MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_SUM, comm);
+  if (ranks > 1) transport->sum(std::span(&value, 1));
   return value;
 }
 
 void Communicator::sum_all(std::span<double> values) const {
-  if (ranks > 1)
-    MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_SUM, comm);
+  if (ranks > 1) transport->sum(values);
 }
 
 void Communicator::sum_each(std::initializer_list<double*> numbers) const {
@@ -31,24 +25,21 @@ void Communicator::sum_each(std::initializer_list<double*> numbers) const {
 }
 
 double Communicator::max_all(double value) const {
-  if (ranks > 1) MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_DOUBLE, MPI_MAX, comm);
+  if (ranks > 1) transport->max(std::span(&value, 1));
   return value;
 }
 
 void Communicator::max_all(std::span<double> values) const {
-  if (ranks > 1)
-    MPI_Allreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_DOUBLE, MPI_MAX, comm);
+  if (ranks > 1) transport->max(values);
 }
 
 std::int64_t Communicator::sum_all(std::int64_t value) const {
-  if (ranks > 1) MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_INT64_T, MPI_SUM, comm);
+  if (ranks > 1) transport->sum(std::span(&value, 1));
   return value;
 }
 
 std::int64_t Communicator::sum_below(std::int64_t value) const {
-  std::int64_t below = 0;
-  if (ranks > 1) MPI_Exscan(&value, &below, 1, MPI_INT64_T, MPI_SUM, comm);
-  return rank == 0 ? 0 : below;
+  return ranks > 1 ? transport->sum_below(value) : 0;
 }
 
 }  // namespace kacanov

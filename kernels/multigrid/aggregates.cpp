@@ -1,26 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Centres and numbers of aggregates, and the level of the motions they can make.
-#include "amg/aggregates.hpp"
+#include "multigrid/aggregates.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
 #include <utility>
 
-#include "amg/aggregation.hpp"
+#include "multigrid/aggregation.hpp"
+#include "operator/threads.hpp"
 
 namespace kacanov {
 
 template <int M>
-Aggregates<M>::Aggregates(const Part& part, std::span<const double> g, double size) : part_(part) {
-  group_ = aggregate_nodes(part.body(), g, part.owned_nodes(), size);
+Aggregates<M>::Aggregates(const MultigridBody& body, std::span<const double> g,
+                          const MultigridOptions& options)
+    : body_(body), threads_(options.threads) {
+  const std::span<const double> coordinates = body.body.mesh.coordinates;
+  group_ = aggregate_nodes(body.body, g, body.node_map->owned,
+                           {.size = options.fine_size, .threads = options.threads});
   owned_ = group_.empty() ? 0 : 1 + *std::max_element(group_.begin(), group_.end());
   centre_.assign(owned_, Vector3{});
   std::vector<double> members(centre_.size(), 0.0);
   for (std::size_t n = 0; n < group_.size(); ++n) {
     const std::size_t a = group_[n];
     members[a] += 1.0;
-    for (std::size_t c = 0; c < dim; ++c) centre_[a][c] += part_.coordinates[n * dim + c];
+    for (std::size_t c = 0; c < dim; ++c) centre_[a][c] += coordinates[n * dim + c];
   }
   for (std::size_t a = 0; a < centre_.size(); ++a)
     for (double& c : centre_[a]) c /= members[a];
@@ -29,19 +34,20 @@ Aggregates<M>::Aggregates(const Part& part, std::span<const double> g, double si
     const Vector3 d = offset(n);
     spread += d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
   }
-  length_ = std::sqrt(part_.node_map.sum_all(spread) / static_cast<double>(part_.total_nodes()));
+  length_ = std::sqrt(body.node_map->sum_all(spread) / static_cast<double>(body.node_map->total()));
   if (!(length_ > 0.0)) length_ = 1.0;
 }
 
 template <int M>
 RigidLevel<M> Aggregates<M>::make_level() {
-  const IndexMap& nodes = part_.node_map;
+  const IndexMap& nodes = *body_.node_map;
+  const MeshView& mesh = body_.body.mesh;
   first_ = nodes.sum_below(owned_);
 
   // Centre and number of the aggregate of every local node, ghosts from their owners.
   const std::size_t owned_nodes = group_.size();
-  std::vector<std::int64_t> number(part_.nodes());
-  std::vector<double> centre(dim * part_.nodes());
+  std::vector<std::int64_t> number(body_.nodes());
+  std::vector<double> centre(dim * body_.nodes());
   for (std::size_t n = 0; n < owned_nodes; ++n) {
     const std::size_t a = group_[n];
     number[n] = first_ + group_[n];
@@ -50,22 +56,31 @@ RigidLevel<M> Aggregates<M>::make_level() {
   nodes.forward(number, 1);
   nodes.forward(centre, static_cast<int>(dim));
 
-  BlockSums<M> couplings;
-  const std::size_t npe = nodes_per_element(part_.type);
-  std::vector<std::int64_t> distinct;
-  for (std::size_t e = 0; e < part_.element_count(); ++e) {
-    distinct.clear();
-    for (std::size_t a = 0; a < npe; ++a) {
-      const std::int64_t id = number[part_.elements[e * npe + a]];
-      if (std::find(distinct.begin(), distinct.end(), id) == distinct.end()) distinct.push_back(id);
+  // A thread's elements follow those of the thread before it, and so do the blocks they are the first to
+  // name.
+  const std::size_t npe = nodes_per_element(mesh.type), elements = mesh.element_count(), team = threads_;
+  std::vector<BlockSums<M>> couplings(team);
+  in_team(threads_, [&](int t) {
+    const std::size_t share = t;
+    std::vector<std::int64_t> distinct, before;
+    for (std::size_t e = elements * share / team; e < elements * (share + 1) / team; ++e) {
+      distinct.clear();
+      for (std::size_t a = 0; a < npe; ++a) {
+        const std::int64_t id = number[mesh.connectivity[e * npe + a]];
+        if (std::find(distinct.begin(), distinct.end(), id) == distinct.end()) distinct.push_back(id);
+      }
+      if (distinct == before) continue;
+      for (const std::int64_t row : distinct)
+        for (const std::int64_t column : distinct)
+          if (row <= column) couplings[share].at(row, column);
+      distinct.swap(before);
     }
-    for (const std::int64_t row : distinct)
-      for (const std::int64_t column : distinct)
-        if (row <= column) couplings.at(row, column);
-  }
-  RigidLevel<M> level(centre_, std::move(couplings), nodes);
+  });
+  for (std::size_t t = 1; t < team; ++t)
+    for (const auto& entry : couplings[t].entries()) couplings[0].at(entry.row, entry.column);
+  RigidLevel<M> level(centre_, std::move(couplings[0]), nodes, threads_);
 
-  group_.resize(part_.nodes());
+  group_.resize(body_.nodes());
   std::unordered_map<std::int64_t, std::int32_t>
       unknown;  // to the level: no element here ties them to an owned one
   number_ = level.map().ghosts;

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include <kacanov/scatterer.hpp>
-#include "amg/chebyshev.hpp"
-#include "amg/rigid_motion.hpp"
+#include "multigrid/chebyshev.hpp"
+#include "multigrid/rigid_motion.hpp"
 
 namespace kacanov {
 
@@ -52,7 +52,7 @@ class RigidLevel {
 
   /// This rank owns rows first … first + rows − 1, the motions of aggregates with these centres. `sums` are
   /// its contributions to any rows; they are sent to their owners. Collective.
-  RigidLevel(std::vector<Vector3> centres, BlockSums<M> sums, const Communicator& comm);
+  RigidLevel(std::vector<Vector3> centres, BlockSums<M> sums, const Communicator& comm, int threads = 1);
 
   std::int32_t rows() const noexcept { return static_cast<std::int32_t>(centres_.size()); }
   /// Of the rows; ghosts are the other ranks' rows that owned ones couple to, ascending.
@@ -62,6 +62,7 @@ class RigidLevel {
   std::span<const Vector3> centres() const noexcept { return centres_; }
   std::size_t size() const noexcept { return map_->size() * M; }  ///< of a vector
   std::size_t owned_size() const noexcept { return centres_.size() * M; }
+  std::size_t bytes() const noexcept;
 
   /// y = A x on owned rows; fills x's ghosts. Collective.
   void multiply(std::span<double> x, std::span<double> y);
@@ -108,6 +109,8 @@ class RigidLevel {
   std::vector<std::int64_t> ghosts_of(const BlockSums<M>& sums) const;
   void build_rows(const BlockSums<M>& sums);
   void invert_diagonal();
+  void share_out();
+  void multiply_share(int t, std::span<const double> x, std::span<double> y);
 
   std::unique_ptr<const IndexMap> map_;  ///< stays where it is when the level moves
   std::vector<Vector3> centres_;
@@ -118,7 +121,14 @@ class RigidLevel {
   struct Edge {
     std::int32_t row = 0, first = 0;  ///< where its ghosts' entries begin
   };
-  std::vector<Edge> edge_;                 ///< rows with ghosts
+  std::vector<Edge> edge_;  ///< rows with ghosts
+  int threads_ = 1;
+  /// A thread's rows, and its sums for rows of the threads behind it, as far as its columns reach.
+  struct Share {
+    std::size_t begin = 0, end = 0, reach = 0;
+    std::vector<double> beyond;
+  };
+  std::vector<Share> shares_;
   std::optional<Scatterer<double>> fill_;  ///< of the ghosts of a vector
 };
 

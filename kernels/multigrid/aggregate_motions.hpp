@@ -3,11 +3,10 @@
 #pragma once
 
 #include <span>
-#include <string_view>
 
-#include "amg/aggregates.hpp"
-#include "linear/preconditioner.hpp"
-#include "linear/space.hpp"
+#include "multigrid/aggregates.hpp"
+#include "multigrid/held_space.hpp"
+#include "multigrid/node_block.hpp"
 #include "simd/motion_products.hpp"
 
 namespace kacanov {
@@ -17,18 +16,20 @@ namespace kacanov {
 template <int M>
 class AggregateMotions {
  public:
-  /// Some `size` nodes each. g: elements × points, a stress; the instruction set is OperatorOptions'. The
-  /// part has to outlive it. Collective.
-  AggregateMotions(const Part& part, std::span<const double> g, double size, std::string_view instruction_set)
-      : aggregates_(part, g, size), add_products_(simd::motion_products<M>(instruction_set)) {}
+  /// g: elements × points, a stress. What the body points to has to outlive it. Collective.
+  AggregateMotions(const MultigridBody& body, std::span<const double> g, const MultigridOptions& options)
+      : aggregates_(body, g, options), add_products_(simd::motion_products<M>(options.instruction_set)) {
+    share_out();
+  }
 
+  std::size_t bytes() const noexcept { return aggregates_.bytes(); }
   /// Aggregates'.
   double length() const noexcept { return aggregates_.length(); }
   RigidLevel<M> make_level() { return aggregates_.make_level(); }
   /// What a setup holds and adds: the motions of the nodes are projected onto the space.
   struct Held {
     std::span<const NodeBlock> blocks;
-    const Space& space;
+    const HeldSpace& space;
   };
   /// Galerkin's matrix of B(g) + blocks on the motions, into the level that make_level gave; g is rounded to
   /// single precision. Collective.
@@ -44,10 +45,17 @@ class AggregateMotions {
 
  private:
   static constexpr std::size_t dim = Aggregates<M>::dim;
-  const Part& part() const noexcept { return aggregates_.part(); }
+  const MultigridBody& body() const noexcept { return aggregates_.body(); }
+  void share_out();
 
+  /// The aggregates of a thread in restrict_forces, and the nodes among which they all are.
+  struct Share {
+    std::int32_t begin = 0, end = 0;
+    std::size_t first_node = 0, last_node = 0;
+  };
   Aggregates<M> aggregates_;
   simd::AddMotionProducts<M> add_products_;
+  std::vector<Share> shares_;
 };
 
 extern template class AggregateMotions<3>;

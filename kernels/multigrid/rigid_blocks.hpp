@@ -4,7 +4,7 @@
 
 #include <Eigen/Dense>
 
-#include "amg/rigid_level.hpp"
+#include "multigrid/rigid_level.hpp"
 
 namespace kacanov {
 

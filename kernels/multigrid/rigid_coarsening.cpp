@@ -6,9 +6,9 @@
 #include <numeric>
 #include <utility>
 
-#include "amg/aggregation.hpp"
-#include "amg/rigid_blocks.hpp"
-#include "amg/rigid_level.hpp"
+#include "multigrid/aggregation.hpp"
+#include "multigrid/rigid_blocks.hpp"
+#include "multigrid/rigid_level.hpp"
 
 namespace kacanov {
 namespace {
@@ -72,7 +72,7 @@ RigidLevel<M> RigidLevel<M>::coarsened(std::span<const std::int32_t> group, doub
       }
     }
   }
-  return RigidLevel(std::move(centre), std::move(sums), *map_);
+  return RigidLevel(std::move(centre), std::move(sums), *map_, threads_);
 }
 
 template <int M>

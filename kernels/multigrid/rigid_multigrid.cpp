@@ -1,26 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Multigrid without a matrix on the fine level: Chebyshev on the operator, rigid motions of aggregates below.
-#include "amg/rigid_multigrid.hpp"
+#include "multigrid/rigid_multigrid.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "amg/aggregate_motions.hpp"
-#include "amg/aggregation.hpp"
-#include "amg/chebyshev.hpp"
-#include "amg/direct_solve.hpp"
-#include "amg/fine_level.hpp"
+#include "multigrid/aggregate_motions.hpp"
+#include "multigrid/aggregation.hpp"
+#include "multigrid/chebyshev.hpp"
+#include "multigrid/direct_solve.hpp"
+#include "multigrid/fine_level.hpp"
+#include "multigrid/sums.hpp"
+#include "operator/threads.hpp"
 
 namespace kacanov {
 
 /// What the number of modes does not change.
 struct RigidMultigrid::Hierarchy {
   virtual ~Hierarchy() = default;
-  virtual void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) = 0;
-  virtual void rebuild(std::span<const NodeBlock> blocks, const Space& space) = 0;
+  virtual void build(std::span<const double> g, std::span<const NodeBlock> blocks,
+                     const HeldSpace& space) = 0;
+  virtual void rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space) = 0;
   virtual void apply(std::span<const double> r, std::span<double> z) = 0;
   virtual void secant(std::span<double> g) const = 0;
+  virtual int levels() const noexcept = 0;
+  virtual std::size_t bytes() const noexcept = 0;
 };
 
 namespace {
@@ -44,14 +49,14 @@ constexpr std::int64_t direct_rows = 400;
 template <int M>
 class ModesHierarchy final : public RigidMultigrid::Hierarchy {
  public:
-  ModesHierarchy(const Part& part, const MultigridOptions& options)
-      : part_(part), options_(options), fine_(part, options) {}
+  ModesHierarchy(const MultigridBody& body, const MultigridOptions& options)
+      : body_(body), options_(options), fine_(body, options) {}
 
-  void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) override {
+  void build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space) override {
     direct_.reset();
     fine_.build(g, blocks, space);
     if (!motions_) {
-      motions_.emplace(part_, g, options_.fine_size, options_.instruction_set);
+      motions_.emplace(body_, g, options_);
       stages_.emplace_back(motions_->make_level());
     }
     stages_.erase(stages_.begin() + 1, stages_.end());
@@ -59,10 +64,10 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
     complete();
   }
 
-  void rebuild(std::span<const NodeBlock> blocks, const Space& space) override {
+  void rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space) override {
     direct_.reset();
     stages_.erase(stages_.begin() + 1, stages_.end());
-    Vector g(part_.body().secant_count());
+    Vector g(body_.body.secant_count());
     fine_.secant(g);
     motions_->change(g, {fine_.blocks(), fine_.space()}, {blocks, space}, stages_.front().level);
     fine_.rebuild(blocks, space);
@@ -72,7 +77,7 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
   void secant(std::span<double> g) const override { fine_.secant(g); }
 
   void apply(std::span<const double> r, std::span<double> z) override {
-    for (std::size_t i = 0; i < r.size(); ++i) b_[i] = static_cast<float>(r[i]);
+    each(r.size(), [&](std::size_t i) { b_[i] = static_cast<float>(r[i]); });
     fine_.hold(b_);
     const auto multiply = [this](std::span<const float> x, std::span<float> y) { fine_.multiply(x, y); };
     const auto relax = [this](const auto& weights, std::span<const float> b, std::span<const float> image,
@@ -80,20 +85,39 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
                               std::span<float> x) { fine_.relax(weights, b, image, step, x); };
     fine_.smoother().template smooth<float>(true, {b_, x_, step_, image_}, multiply, relax);
     fine_.multiply(x_, image_);
-    for (std::size_t i = 0; i < b_.size(); ++i) image_[i] = b_[i] - image_[i];
+    each(b_.size(), [&](std::size_t i) { image_[i] = b_[i] - image_[i]; });
     fine_.project(image_);
     auto& first = stages_.front();
     motions_->restrict_forces(image_, first.b);
     cycle(0);
     motions_->prolong(first.x, options_.fine_gain, image_);
-    part_.node_map.forward(std::span<float>(image_), part_.dim());
+    body_.node_map->forward(std::span<float>(image_), static_cast<int>(body_.dim()));
     fine_.project(image_);
-    for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += image_[i];
+    each(x_.size(), [&](std::size_t i) { x_[i] += image_[i]; });
     fine_.smoother().template smooth<float>(false, {b_, x_, step_, image_}, multiply, relax);
-    for (std::size_t i = 0; i < z.size(); ++i) z[i] = static_cast<double>(x_[i]);
+    each(z.size(), [&](std::size_t i) { z[i] = static_cast<double>(x_[i]); });
+  }
+
+  int levels() const noexcept override { return 1 + static_cast<int>(stages_.size()); }
+
+  std::size_t bytes() const noexcept override {
+    std::size_t sum = fine_.bytes() + (b_.size() + x_.size() + step_.size() + image_.size()) * sizeof(float);
+    if (motions_) sum += motions_->bytes();
+    for (const auto& stage : stages_)
+      sum += stage.level.bytes() + 4 * stage.level.size() * sizeof(double) +
+             stage.group.size() * sizeof(std::int32_t) + stage.offset.size() * sizeof(Vector3);
+    return sum + (direct_ ? direct_->bytes() : 0);
   }
 
  private:
+  /// Calls work(i) for all i < n, on the threads.
+  template <class Work>
+  void each(std::size_t n, const Work& work) const {
+    in_shares(options_.threads, n, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) work(i);
+    });
+  }
+
   /// Everything below the first coarse level, and the smoothers.
   void complete() {
     while (stages_.back().level.total() > direct_rows) {
@@ -119,7 +143,7 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
       stage.smoother = {options_.coarse_degree, largest / options_.coarse_range, largest};
     }
     fine_.choose_smoother(options_.fine_degree, options_.fine_range);
-    for (auto* v : {&b_, &x_, &step_, &image_}) v->resize(part_.unknowns());
+    for (auto* v : {&b_, &x_, &step_, &image_}) v->resize(body_.unknowns());
   }
 
   /// stages_[k].x = a cycle from zero on stages_[k].b.
@@ -166,7 +190,7 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
     smooth(false);
   }
 
-  const Part& part_;
+  MultigridBody body_;
   MultigridOptions options_;
   FineLevel fine_;
   std::optional<AggregateMotions<M>> motions_;
@@ -177,25 +201,31 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
 
 }  // namespace
 
-RigidMultigrid::RigidMultigrid(const Part& part, const MultigridOptions& options) {
-  if (part.dim() == 3)
-    hierarchy_ = std::make_unique<ModesHierarchy<6>>(part, options);
+RigidMultigrid::RigidMultigrid(const MultigridBody& body, const MultigridOptions& options) {
+  if (body.dim() == 3)
+    hierarchy_ = std::make_unique<ModesHierarchy<6>>(body, options);
   else
-    hierarchy_ = std::make_unique<ModesHierarchy<3>>(part, options);
+    hierarchy_ = std::make_unique<ModesHierarchy<3>>(body, options);
 }
 
 RigidMultigrid::~RigidMultigrid() = default;
+RigidMultigrid::RigidMultigrid(RigidMultigrid&&) noexcept = default;
 
-void RigidMultigrid::build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) {
+void RigidMultigrid::build(std::span<const double> g, std::span<const NodeBlock> blocks,
+                           const HeldSpace& space) {
   hierarchy_->build(g, blocks, space);
 }
 
-void RigidMultigrid::rebuild(std::span<const NodeBlock> blocks, const Space& space) {
+void RigidMultigrid::rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space) {
   hierarchy_->rebuild(blocks, space);
 }
 
 void RigidMultigrid::secant(std::span<double> g) const { hierarchy_->secant(g); }
 
 void RigidMultigrid::apply(std::span<const double> r, std::span<double> z) { hierarchy_->apply(r, z); }
+
+int RigidMultigrid::levels() const noexcept { return hierarchy_->levels(); }
+
+std::size_t RigidMultigrid::bytes() const noexcept { return hierarchy_->bytes(); }
 
 }  // namespace kacanov

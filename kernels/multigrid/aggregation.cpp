@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Groups of strongly coupled nodes, by pairwise matching.
-#include "amg/aggregation.hpp"
+#include "multigrid/aggregation.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <utility>
+
+#include "operator/threads.hpp"
 
 namespace kacanov {
 namespace {
@@ -225,19 +228,25 @@ WeightedGraph coupling_graph(const Body& body, std::span<const double> g, std::i
 }  // namespace
 
 std::vector<std::int32_t> aggregate_nodes(const Body& body, std::span<const double> g, std::int32_t nodes,
-                                          double size, std::int32_t section) {
-  const std::int32_t sections = std::max(1, (nodes + section - 1) / section);
+                                          const NodeAggregation& options) {
+  const std::int32_t sections = std::max(1, (nodes + options.section - 1) / options.section);
   std::vector<std::int32_t> first;
   for (std::int32_t c = 0; c <= sections; ++c)
     first.push_back(static_cast<std::int32_t>(std::int64_t{nodes} * c / sections));
   const ElementsOfSections elements(body.mesh, first);
+  std::vector<std::vector<std::int32_t>> found(sections);
+  std::atomic<std::size_t> next = 0;
+  in_team(std::min(options.threads, sections), [&](int) {
+    for (std::size_t c = next++; c < found.size(); c = next++) {
+      const auto mine =
+          std::span(elements.element).subspan(elements.start[c], elements.start[c + 1] - elements.start[c]);
+      found[c] = aggregate(coupling_graph(body, g, first[c], first[c + 1], mine), options.size);
+    }
+  });
   std::vector<std::int32_t> group;
   group.reserve(nodes);
   std::int32_t groups = 0;
-  for (std::size_t c = 0; c + 1 < first.size(); ++c) {
-    const auto mine =
-        std::span(elements.element).subspan(elements.start[c], elements.start[c + 1] - elements.start[c]);
-    const auto local = aggregate(coupling_graph(body, g, first[c], first[c + 1], mine), size);
+  for (const auto& local : found) {
     const std::int32_t before = groups;
     for (const std::int32_t a : local) {
       group.push_back(before + a);

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Entries from every rank to every rank.
+#pragma once
+
+#include <cstddef>
+#include <numeric>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include <kacanov/communicator.hpp>
+
+namespace kacanov {
+
+/// What came, in the order of the ranks.
+template <class T>
+struct Received {
+  std::vector<T> entries;
+  std::vector<int> starts;  ///< ranks + 1
+  std::span<const T> from(std::size_t rank) const {
+    return std::span(entries).subspan(starts[rank], starts[rank + 1] - starts[rank]);
+  }
+};
+
+/// Sends to[r] to rank r: plain structs and numbers. Collective.
+template <class T>
+Received<T> exchange_all(const std::vector<std::vector<T>>& to, const Communicator& comm) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  if (comm.ranks == 1) return {to[0], {0, static_cast<int>(to[0].size())}};
+  std::vector<int> out;
+  std::vector<T> sent;
+  for (const std::vector<T>& entries : to) {
+    out.push_back(static_cast<int>(entries.size()));
+    sent.insert(sent.end(), entries.begin(), entries.end());
+  }
+  const std::vector<int> in = comm.transport->exchange(out);
+  Received<T> received;
+  received.starts.assign(in.size() + 1, 0);
+  std::partial_sum(in.begin(), in.end(), received.starts.begin() + 1);
+  received.entries.resize(received.starts.back());
+  comm.transport->exchange(sent.data(), {out, sizeof(T)}, received.entries.data(), {in, sizeof(T)});
+  return received;
+}
+
+/// The entries of all ranks on every rank, in the order of the ranks. Collective.
+template <class T>
+std::vector<T> gathered(const std::vector<T>& mine, const Communicator& comm) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  if (comm.ranks == 1) return mine;
+  std::vector<int> count;
+  std::size_t total = 0;
+  for (const std::int64_t entries : comm.transport->all(static_cast<std::int64_t>(mine.size()))) {
+    count.push_back(static_cast<int>(entries));
+    total += entries;
+  }
+  std::vector<T> all(total);
+  comm.transport->gather(mine.data(), all.data(), {count, sizeof(T)});
+  return all;
+}
+
+}  // namespace kacanov

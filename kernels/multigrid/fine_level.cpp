@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The fine level of the multigrid: B(g) and node blocks in single precision, with its block diagonal.
+#include "multigrid/fine_level.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+
+#include "multigrid/largest_eigenvalue.hpp"
+#include "multigrid/rigid_multigrid.hpp"
+#include "operator/threads.hpp"
+#include "simd/node_blocks.hpp"
+
+namespace kacanov {
+
+FineLevel::FineLevel(const MultigridBody& body, const MultigridOptions& options)
+    : body_(body),
+      threads_(options.threads),
+      op_(body.body, OperatorOptions{options.threads, options.instruction_set, body.node_map->shared}),
+      sum_(*body.node_map, static_cast<int>(body.dim())) {}
+
+void FineLevel::build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space) {
+  op_.set_secant(g);
+  rebuild(blocks, space);
+}
+
+void FineLevel::rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space) {
+  space_ = space;
+  held_.clear();
+  for (std::size_t i = 0; i < body_.held.size(); ++i)
+    if (body_.held[i] != 0) held_.push_back(static_cast<std::int32_t>(i));
+  blocks_.assign(blocks.begin(), blocks.end());
+  std::vector<char> is_shared(body_.nodes(), 0);
+  for (const std::int32_t node : body_.node_map->shared) is_shared[node] = 1;
+  const auto rest = std::stable_partition(blocks_.begin(), blocks_.end(),
+                                          [&](const NodeBlock& b) { return is_shared[b.node] != 0; });
+  shared_blocks_ = static_cast<std::size_t>(rest - blocks_.begin());
+  const std::size_t dim = body_.dim();
+  const std::size_t packed = dim * (dim + 1) / 2;
+  std::vector<float> diagonal(body_.nodes() * dim * dim);
+  op_.block_diagonal(diagonal);
+  for (const auto& b : blocks_)
+    for (std::size_t k = 0; k < dim * dim; ++k)
+      diagonal[static_cast<std::size_t>(b.node) * dim * dim + k] += static_cast<float>(b.value[k]);
+  body_.node_map->sum(std::span<float>(diagonal), static_cast<int>(dim * dim));
+  inverse_.resize(body_.nodes() * packed);
+  in_shares(threads_, body_.nodes(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) {
+      Eigen::Matrix3d d = Eigen::Matrix3d::Identity();
+      for (std::size_t i = 0; i < dim; ++i)
+        for (std::size_t j = 0; j < dim; ++j)
+          if (body_.held[n * dim + i] == 0 && body_.held[n * dim + j] == 0)
+            d(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+                static_cast<double>(diagonal[(n * dim + i) * dim + j]);
+      const Eigen::Matrix3d inverse = d.inverse();
+      float* to = &inverse_[n * packed];
+      for (std::size_t i = 0; i < dim; ++i)
+        for (std::size_t j = i; j < dim; ++j)
+          *to++ = static_cast<float>(inverse(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
+    }
+  });
+}
+
+void FineLevel::add_blocks(std::span<const NodeBlock> blocks, std::span<const float> x,
+                           std::span<float> y) const {
+  const std::size_t dim = body_.dim();
+  for (const auto& b : blocks) {
+    const auto at = static_cast<std::size_t>(b.node) * dim;
+    for (std::size_t i = 0; i < dim; ++i)
+      for (std::size_t j = 0; j < dim; ++j) y[at + i] += static_cast<float>(b.value[i * dim + j]) * x[at + j];
+  }
+}
+
+void FineLevel::multiply(std::span<const float> x, std::span<float> y) {
+  const auto blocks = std::span(blocks_);
+  if (body_.node_map->ranks > 1) {
+    op_.apply(x, y, [&, this] {
+      add_blocks(blocks.first(shared_blocks_), x, y);
+      sum_.start_sum(y);
+    });
+    add_blocks(blocks.subspan(shared_blocks_), x, y);
+    sum_.finish_sum(y);
+  } else {
+    op_.apply(x, y);
+    add_blocks(blocks, x, y);
+  }
+  hold(y);
+}
+
+void FineLevel::relax(const ChebyshevStep<float>& weights, std::span<const float> b,
+                      std::span<const float> image, std::span<float> step, std::span<float> x) const {
+  // In pieces that stay in the first-level cache between the three loops.
+  constexpr std::size_t piece = 128;
+  const std::size_t dim = body_.dim();
+  weights.visit([&]<bool zero, bool first>() {
+    in_shares(threads_, body_.nodes(), [&](std::size_t begin, std::size_t end) {
+      std::array<float, 3 * piece> residual;
+      std::array<float, 3 * piece + 1> scaled;
+      for (std::size_t node = begin; node < end; node += piece) {
+        const std::size_t nodes = std::min(piece, end - node), at = node * dim, count = nodes * dim;
+        for (std::size_t i = 0; i < count; ++i) residual[i] = zero ? b[at + i] : b[at + i] - image[at + i];
+        simd::scale_by_blocks(static_cast<int>(dim), &inverse_[node * dim * (dim + 1) / 2], residual.data(),
+                              nodes, scaled.data());
+        for (std::size_t i = 0; i < count; ++i)
+          weights.template take<zero, first>(scaled[i], step[at + i], x[at + i]);
+      }
+    });
+  });
+}
+
+void FineLevel::hold(std::span<float> x) const {
+  for (const std::int32_t component : held_) x[component] = 0.0F;
+}
+
+void FineLevel::project(std::span<float> x) const {
+  hold(x);
+  space_.project(body_.dim(), x);
+}
+
+void FineLevel::choose_smoother(int degree, double range) {
+  std::vector<float> x(body_.unknowns());
+  const std::size_t dim = body_.dim();
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const auto id =
+        body_.node_map->number(i / dim) * static_cast<std::int64_t>(dim) + static_cast<std::int64_t>(i % dim);
+    x[i] = scatter(static_cast<std::uint64_t>(id));
+  }
+  hold(x);
+  const auto owned = body_.owned_unknowns();
+  const double largest = largest_eigenvalue(
+      x, [this](std::span<const float> p, std::span<float> q) { multiply(p, q); },
+      [&](std::span<const float> p, std::span<float> q) {
+        relax({0.0F, 1.0F, true, true}, p, p, q, q);
+      },
+      [&](const std::vector<float>& p, const std::vector<float>& q) {
+        const double sum = sum_shares(threads_, owned, [&](std::size_t begin, std::size_t end) {
+          double s = 0.0;
+          for (std::size_t i = begin; i < end; ++i)
+            s += static_cast<double>(p[i]) * static_cast<double>(q[i]);
+          return s;
+        });
+        return body_.node_map->sum_all(sum);
+      });
+  smoother_ = {degree, largest / range, largest};
+}
+
+}  // namespace kacanov

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Multigrid without a matrix on the fine level: Chebyshev on the operator, rigid motions of aggregates below.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "multigrid/held_space.hpp"
+#include "multigrid/multigrid_body.hpp"
+#include "multigrid/node_block.hpp"
+
+namespace kacanov {
+
+/// Options of the hierarchy. The defaults were measured with perf/bench_solve; iterations below are those of
+/// a beam of 811,923 unknowns to 1e-8.
+struct MultigridOptions {
+  int threads = 1;
+  std::string instruction_set;
+  double fine_size =
+      48.0;  ///< nodes an aggregate of the first coarse level; 32: 41 its instead of 45, a third more memory
+  double coarse_size =
+      4.0;  ///< aggregates an aggregate of the levels below; 8: 80 its instead of 56, both without gain
+  int fine_degree = 3, coarse_degree = 2;        ///< of the smoothing polynomials, before and after
+  double fine_range = 15.0, coarse_range = 6.0;  ///< largest eigenvalue over the smallest that is smoothed
+  /// Corrections are taken this much longer than Galerkin's: motions that are rigid by pieces are stiffer
+  /// than what they stand for. 56 its with 1 and 1. Below 2 the cycle stays definite.
+  double fine_gain = 1.5, coarse_gain = 1.3;
+  int cycles = 2;  ///< 1: V, 2: W; 99 and 80 its
+};
+
+/// z = one symmetric cycle on r: z ≈ (B(g) + blocks)⁻¹ r, symmetric positive definite and fixed between two
+/// setups. Level 0 is B(g) + blocks in single precision, never stored, smoothed by Chebyshev's iteration on
+/// D⁻¹A with 3 × 3 blocks. The levels below are Galerkin matrices over the rigid motions of aggregates, which
+/// pairwise matching along strong couplings makes; the last is factorised on every rank (theory: multigrid,
+/// aggregation, over-correction). Vectors have the body's unknowns and are consistent. Calls are collective.
+class RigidMultigrid {
+ public:
+  /// Nothing is set up yet. What the body points to has to outlive it.
+  RigidMultigrid(const MultigridBody& body, const MultigridOptions& options);
+  ~RigidMultigrid();
+  RigidMultigrid(RigidMultigrid&&) noexcept;
+
+  /// For frozen g (elements × points), the blocks of *owned* nodes (several may name one), and what the space
+  /// of the solves holds. The aggregates of the first time are kept. Throws InternalError where the coarsest
+  /// matrix is not definite.
+  void build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space);
+  /// The same with the g of the last build, at a fraction of the cost where few nodes see a change.
+  void rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space);
+  /// z ≈ A⁻¹ r (overwrites z). To be called after a build.
+  void apply(std::span<const double> r, std::span<double> z);
+  /// The g of the last build, in single precision; mu before the first.
+  void secant(std::span<double> g) const;
+
+  /// The fine level included.
+  int levels() const noexcept;
+  std::size_t bytes() const noexcept;
+
+  struct Hierarchy;  ///< for three or six rigid motions
+
+ private:
+  std::unique_ptr<Hierarchy> hierarchy_;
+};
+
+}  // namespace kacanov

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The kernels' multigrid as the preconditioner of a part.
+#pragma once
+
+#include <kacanov/part.hpp>
+#include "linear/preconditioner.hpp"
+#include "multigrid/rigid_multigrid.hpp"
+
+namespace kacanov {
+
+/// The part as the multigrid sees it; it has to outlive that.
+inline MultigridBody multigrid_body(const Part& part) { return {part.body(), &part.node_map, part.held}; }
+
+class PartMultigrid final : public Preconditioner {
+ public:
+  /// Nothing is set up yet. The part has to outlive it. A setup throws InternalError where the coarsest
+  /// matrix is not definite.
+  PartMultigrid(const Part& part, const MultigridOptions& options)
+      : multigrid_(multigrid_body(part), options) {}
+  void apply(std::span<const double> r, std::span<double> z) override { multigrid_.apply(r, z); }
+  void secant(std::span<double> g) const override { multigrid_.secant(g); }
+
+ private:
+  void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) override {
+    multigrid_.build(g, blocks, space.held());
+  }
+  void rebuild(std::span<const NodeBlock> blocks, const Space& space) override {
+    multigrid_.rebuild(blocks, space.held());
+  }
+
+  RigidMultigrid multigrid_;
+};
+
+}  // namespace kacanov
