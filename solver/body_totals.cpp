@@ -51,7 +51,7 @@ void collect_body_totals(const Part& part, std::span<const double> u, Result& re
   std::int64_t plastic = 0, softening = 0;
   double von_mises = 0.0;
   std::array<double, 2> volumes{};  // all, beyond yield
-  Largest strain, rotation;
+  Largest strain, rotation, flow;
   const Body body = part.body();
   visit_element_fields(part, u, [&](const ElementRun& run) {
     for (std::size_t e = 0; e < run.plastic.size(); ++e) {
@@ -60,17 +60,21 @@ void collect_body_totals(const Part& part, std::span<const double> u, Result& re
       volumes[0] += run.volume[e];
       volumes[1] += run.plastic[e] != 0 ? run.volume[e] : 0.0;
       von_mises = std::max(von_mises, run.von_mises[e]);
+      if (const double proof = body.law(run.first + e).proof_strain(); std::isfinite(proof))
+        flow.take(run.dev_strain[e] / proof, run.first + e, index);
       softening += body.law(run.first + e).softens(run.dev_strain[e]) ? 1 : 0;
       strain.take(run.strain[e], run.first + e, index);
       rotation.take(run.rotation[e], run.first + e, index);
     }
   });
   part.node_map.sum_all(volumes);
+  result.element = part.type;
   result.plastic_elements = part.node_map.sum_all(plastic);
   result.softening_elements = part.node_map.sum_all(softening);
   result.max_von_mises = part.node_map.max_all(von_mises);
   result.plastic_share = volumes[1] / volumes[0];
   result.max_strain = agree_on_element(part, strain);
+  result.max_flow = agree_on_element(part, flow);
   result.max_rotation = agree_on_element(part, rotation);
   result.max_displacement = largest_displacement(part, u);
   result.body = size_of_body(part, volumes[0]);

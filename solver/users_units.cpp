@@ -46,6 +46,7 @@ void to_users_units(Result& result, const UnitSystem& units) {
   for (BoundaryTotals& reaction : result.reaction) scale(reaction.total, units);
   scale(result.max_displacement, units.displacement, units.length);
   scale(result.max_strain, units.strain(), units.length);
+  scale(result.max_flow, 1.0, units.length);
   scale(result.max_rotation, units.strain(), units.length);
   scale(result.body, units.length);
   scale(result.r, units.penalty());

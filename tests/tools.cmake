@@ -11,7 +11,8 @@ target_compile_definitions(kacanov_program_runner PRIVATE KACANOV_PROGRAM="$<TAR
 foreach(area program_errors program_failures program_files program_memory program_obstacles program_partition program_restart program_runs)
   kacanov_test(${area} SOURCES tools/${area}_test.cpp LIBRARIES kacanov_program_runner)
   target_compile_definitions(test_${area} PRIVATE
-    KACANOV_PROGRAM="$<TARGET_FILE:kacanov>" KACANOV_MPIEXEC="${MPIEXEC_EXECUTABLE}")
+    KACANOV_PROGRAM="$<TARGET_FILE:kacanov>" KACANOV_MPIEXEC="${MPIEXEC_EXECUTABLE}"
+    KACANOV_HARD_CASES="${PROJECT_SOURCE_DIR}/tests/cases/hard")
   add_dependencies(test_${area} kacanov)
   set_tests_properties(${area} PROPERTIES PROCESSORS 2)
 endforeach()

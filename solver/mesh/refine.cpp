@@ -6,11 +6,13 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include <kacanov/error.hpp>
+#include "mesh/node_keys.hpp"
 
 namespace kacanov {
 namespace {
@@ -57,23 +59,6 @@ std::vector<Corners> children_of(const Cell& type, std::size_t diagonal) {
 }
 
 std::size_t children_count(const Cell& type) { return std::size_t{1} << type.dim; }
-
-/// Of a facet, whatever its order: the way to find it again.
-using FacetKey = std::array<std::int32_t, 4>;
-struct FacetHash {
-  std::size_t operator()(const FacetKey& key) const noexcept {
-    std::uint64_t h = 0;
-    for (const std::int32_t n : key) h = (h ^ static_cast<std::uint32_t>(n)) * 0x9e3779b97f4a7c15U;
-    return h ^ (h >> 29);
-  }
-};
-
-/// Of two nodes, whatever their order: the lower one in the upper half.
-std::uint64_t pair_key(std::int32_t a, std::int32_t b) {
-  const std::uint64_t low = static_cast<std::uint32_t>(std::min(a, b)),
-                      high = static_cast<std::uint32_t>(std::max(a, b));
-  return low << 32 | high;
-}
 
 class Refinement {
  public:
@@ -241,28 +226,18 @@ class Refinement {
       for (std::int32_t c = 0; c < children; ++c) members.push_back(e * children + c);
   }
 
-  FacetKey key(std::span<const std::int32_t> corners) const {
-    FacetKey k;
-    k.fill(-1);
-    std::copy(corners.begin(), corners.end(), k.begin());
-    std::sort(k.begin(), k.end());
-    return k;
-  }
-
   /// Fine facets inside the facets of a group.
   void facets_of(const Group& group, std::vector<std::int32_t>& members) {
     const Cell& type = type_.facet();
     const std::size_t corners = type.corners;
-    if (facet_.empty())
-      for (std::size_t f = 0; f < fine_.facet_count(); ++f)
-        facet_.emplace(key(fine_.facet(f).first(corners)), static_cast<std::int32_t>(f));
+    if (!facet_) facet_.emplace(fine_);
     std::vector<std::array<std::int32_t, 4>> children;
     for (const std::int32_t f : group.members) {
       children.clear();
       split_facet(coarse_.facet(f), children);
       for (const auto& child : children)
-        if (const auto found = facet_.find(key(std::span(child).first(corners))); found != facet_.end())
-          members.push_back(found->second);
+        if (const std::int32_t found = facet_->find(std::span(child).first(corners)); found >= 0)
+          members.push_back(found);
     }
   }
 
@@ -313,7 +288,7 @@ class Refinement {
   Mesh fine_;
   std::array<std::vector<Corners>, 4> patterns_;  ///< by the diagonal, from 1
   std::unordered_map<std::uint64_t, std::int32_t> between_;
-  std::unordered_map<FacetKey, std::int32_t, FacetHash> facet_;
+  std::optional<FacetIndex> facet_;
   std::int32_t inner_ = -1;  ///< node in the middle of the element at hand
 };
 

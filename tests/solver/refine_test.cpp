@@ -8,6 +8,8 @@
 #include <random>
 #include <set>
 
+#include <kacanov/error.hpp>
+#include <kacanov/raise_order.hpp>
 #include <kacanov/refine.hpp>
 #include "problem/vector3.hpp"
 
@@ -134,4 +136,46 @@ TEST_CASE("named points and lines, tags and materials are taken over") {
   solid.groups.push_back({"edge", 1, {0, 1}});
   const Group edge = refine(solid).groups.back();
   CHECK(edge.members.size() == 3);  // its ends and what is between
+}
+
+TEST_CASE("a raised box has the nodes, the elements and the sides of a quadratic one") {
+  Mesh linear = make_box(box_of(ElementType::tet4, {3, 2, 1}));
+  for (std::size_t e = 0; e < linear.element_count(); ++e)
+    linear.element_tags.push_back(7 + 2 * static_cast<std::int64_t>(e));
+  for (std::size_t n = 0; n < linear.node_count(); ++n)
+    linear.node_tags.push_back(1000 - static_cast<std::int64_t>(n));
+  linear.groups.push_back({"edge", 1, {0, 1, 2, 3}});  // the first nodes along x
+  const Mesh quadratic = raise_order(linear), box = make_box(box_of(ElementType::tet10, {3, 2, 1}));
+  CHECK_NOTHROW(check_mesh(quadratic));
+  CHECK(quadratic.type == ElementType::tet10);
+  CHECK(quadratic.element_count() == box.element_count());
+  CHECK(quadratic.facet_count() == box.facet_count());
+  CHECK(points(quadratic) == points(box));
+  CHECK(quadratic.element_tags == linear.element_tags);
+  CHECK(std::equal(linear.node_tags.begin(), linear.node_tags.end(), quadratic.node_tags.begin()));
+  CHECK(quadratic.node_tags.size() == quadratic.node_count());
+  CHECK(quadratic.node_tags.back() ==
+        1000 + static_cast<std::int64_t>(quadratic.node_count() - linear.node_count()));
+  for (std::size_t g = 0; g + 1 < linear.groups.size(); ++g) {
+    CAPTURE(linear.groups[g].name);
+    CHECK(quadratic.groups[g].members.size() == linear.groups[g].members.size());
+    if (linear.groups[g].dimension == 2)
+      CHECK(measure(quadratic, quadratic.groups[g]) == doctest::Approx(measure(linear, linear.groups[g])));
+  }
+  const Group& edge = quadratic.groups.back();
+  CHECK(edge.members.size() == 7);
+  for (const std::int32_t n : edge.members) {
+    const Vector3 x = position(quadratic, n);
+    CHECK(std::abs(x[1]) + std::abs(x[2]) == 0.0);
+  }
+}
+
+TEST_CASE("only linear tetrahedra are raised") {
+  for (const ElementType type : element_types()) {
+    CAPTURE(cell(type).name);
+    if (type == ElementType::tet4)
+      CHECK(raised(type) == ElementType::tet10);
+    else
+      CHECK_THROWS_AS(raise_order(make_box(box_of(type, {1, 1, 1}))), InputError);
+  }
 }

@@ -44,7 +44,7 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
       {"material[0].law.gamma=0.1", "material[0].law.gamma: unknown key"},
       {"output.colour=1", "output.colour: unknown key"},
       // Wrong types.
-      {"mesh=3", "mesh: expected an object with the keys file, box, refine, got 3"},
+      {"mesh=3", "mesh: expected an object with the keys file, box, refine, order, got 3"},
       {"material={}", "material: expected a list of materials, got {}"},
       {"material[0].bbar=yes", "material[0].bbar: expected true or false, got \"yes\""},
       {"material[0].young=[1]", "material[0].young: expected a number > 0, got [1]"},

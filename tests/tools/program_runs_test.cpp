@@ -91,6 +91,37 @@ TEST_CASE("a refined box is the box with twice the cells") {
   CHECK(refused.error.find("mesh.refine: expected at most 10") != std::string::npos);
 }
 
+TEST_CASE("quadratic elements are made of a file's linear ones, and of a box's") {
+  const Workplace place;
+  nlohmann::json bar = {
+      {"mesh", {{"box", {{"size", {2, 1, 1}}, {"cells", {4, 2, 2}}, {"element", "tet10"}}}}},
+      {"material", {{{"on", "all"}, {"young", 1.0}, {"poisson", 0.3}, {"law", {{"type", "linear"}}}}}},
+      {"boundary",
+       {{{"on", "left"}, {"displacement", {0, 0, 0}}}, {{"on", "right"}, {"traction", {0, 0, 1e-3}}}}},
+      {"probe", {{2, 1, 1}}}};
+  place.put_json("box10.json", bar);
+  bar["mesh"]["box"].erase("element");
+  bar["mesh"]["order"] = 2;
+  place.put_json("box4.json", bar);
+  for (const char* run : {"run box10.json", "run box4.json"}) CHECK(place.run(run).exit_code == 0);
+  CHECK(place.json("results/box4/result.json")["mesh"]["element"] == "tet10");
+  CHECK(place.json("results/box4/result.json")["probe"] == place.json("results/box10/result.json")["probe"]);
+  bar["mesh"] = {{"file", KACANOV_HARD_CASES "/hook.msh"}, {"order", 2}};
+  bar["boundary"][0]["on"] = "top";
+  bar["boundary"][1]["on"] = "side";
+  bar.erase("probe");
+  place.put_json("hook.json", bar);
+  const Outcome hook = place.run("run hook.json");
+  INFO("error: ", hook.error);
+  CHECK(hook.exit_code == 0);
+  CHECK(place.json("results/hook/result.json")["mesh"]["element"] == "tet10");
+  CHECK(place.run("verify hook.json --output results/hook").error.find("mesh.order: ") != std::string::npos);
+  CHECK(place.run("check hook.json --set mesh.order=3").error.find("mesh.order: expected 1 or 2") !=
+        std::string::npos);
+  CHECK(place.run("check box4.json --set mesh.box.element=hex8").error.find("mesh.order: 2 makes tet10") !=
+        std::string::npos);
+}
+
 TEST_CASE("a run converges, says so, and writes every file and key") {
   const Workplace place;
   place.put_json("beam.json", small_beam());

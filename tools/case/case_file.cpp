@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include <kacanov/error.hpp>
+#include <kacanov/raise_order.hpp>
 #include <kacanov/rules.hpp>
 #include "case/case_material.hpp"
 #include "case/case_obstacle.hpp"
@@ -93,7 +94,10 @@ class CaseParser {
   }
 
   void parse_mesh(const Node& node) {
-    const Object object(node, {"file", "box", "refine"});
+    const Object object(node, {"file", "box", "refine", "order"});
+    const auto order = object.optional("order");
+    if (order) result_.mesh.order = order->integer(1);
+    if (result_.mesh.order > 2) order->expected("1 or 2");
     if (const auto times = object.optional("refine")) {
       result_.mesh.refine = times->integer(0);
       if (result_.mesh.refine > most_refinements)
@@ -113,6 +117,7 @@ class CaseParser {
       for (const ElementType type : element_types()) names.push_back(cell(type).name);
       spec.type = element_types()[element->choice(names)];
     }
+    if (result_.mesh.order > cell(spec.type).order) spec.type = raised(spec.type);
     const std::size_t dim = dimension(spec.type);
     const std::string count = std::to_string(dim) + " entries (one a dimension)";
     if (size.size() != dim) box.required("size").expected(count);

@@ -17,6 +17,7 @@ namespace kacanov {
 struct MeshSource {
   std::optional<std::string> file;  ///< path, relative ones taken from the case file's folder
   std::optional<BoxSpec> box;
+  int order = 1;   ///< 2: quadratic elements are made of the file's linear ones; a box has them already
   int refine = 0;  ///< times that the mesh of the file is refined; a box has its cells cut already
 };
 

@@ -62,7 +62,7 @@ std::vector<MakeMesh> coarser_meshes(const MeshSource& source) {
   if (source.box)
     for (const BoxSpec& box : coarser_boxes(*source.box)) meshes.push_back([box] { return make_box(box); });
   for (int times = 0; source.file && times < source.refine; ++times)
-    meshes.push_back([source, times] { return load_mesh({source.file, {}, times}); });
+    meshes.push_back([source, times] { return load_mesh({source.file, {}, source.order, times}); });
   return meshes;
 }
 

@@ -8,6 +8,7 @@
 #include <iostream>
 
 #include <kacanov/moving.hpp>
+#include <kacanov/raise_order.hpp>
 #include <kacanov/refine.hpp>
 #include <kacanov/validity.hpp>
 #include "formats/gmsh_reader.hpp"
@@ -22,6 +23,7 @@ Mesh load_mesh(const MeshSource& source) {
   Mesh mesh = read_gmsh(*source.file);
   const std::vector<std::string> warnings = mesh.warnings;
   for (int times = 0; times < source.refine; ++times) mesh = refine(mesh);
+  if (source.order > cell(mesh.type).order) mesh = raise_order(mesh);
   mesh.warnings = warnings;
   return mesh;
 }

@@ -130,6 +130,7 @@ ordered_json result_json(const Result& result, const RunFigures& figures, const 
   json["max_displacement"] = extreme_json(result.max_displacement, "node", dim);
   json["max_displacement"]["relative"] = result.max_displacement.value / result.body.size;
   json["max_strain"] = extreme_json(result.max_strain, "element", dim);
+  json["max_flow"] = extreme_json(result.max_flow, "element", dim);
   json["max_rotation"] = extreme_json(result.max_rotation, "element", dim);
   json["contact"] = ordered_json::object();
   for (const ContactTotals& contact : result.contact)

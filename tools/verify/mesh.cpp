@@ -68,14 +68,15 @@ Real Mesh::size() const {
 
 Mesh load_mesh(const nlohmann::json& source, const std::filesystem::path& folder) {
   Mesh mesh;
-  const int refine = source.value("refine", 0);
-  if (source.contains("file") && refine > 0)
+  const int refine = source.value("refine", 0), order = source.value("order", 1);
+  if (source.contains("file") && (refine > 0 || order > 1))
     throw Failure(
-        "mesh.refine: the nodes of a refined file have numbers that no file holds; the verifier knows "
-        "refined boxes only");
+        std::string(refine > 0 ? "mesh.refine" : "mesh.order") +
+        ": new nodes of a file's mesh have numbers that no file holds; the verifier knows boxes only");
   if (source.contains("box")) {
     nlohmann::json box = source.at("box");
     for (auto& cells : box.at("cells")) cells = cells.get<int>() << refine;
+    if (order > 1) box["element"] = "tet10";
     mesh = make_box(box);
   } else if (source.contains("file")) {
     mesh = read_gmsh(folder / source.at("file").get<std::string>());

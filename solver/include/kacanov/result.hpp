@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include <kacanov/cells.hpp>
 #include <kacanov/model.hpp>
 #include <kacanov/totals.hpp>
 
@@ -99,6 +100,7 @@ struct Result {
   std::string message;
   std::vector<std::string> warnings;  ///< what may make the numbers less than they seem; one sentence each
   std::int64_t unknowns = 0, elements = 0;
+  ElementType element = ElementType::tri3;
   std::int64_t contact_nodes = 0, active_nodes = 0, slip_nodes = 0;
   int outer_iterations = 0;
   int unsolved_steps = 0;    ///< of these, since a restart: a linear solve did not converge
@@ -123,6 +125,7 @@ struct Result {
   std::vector<BoundaryTotals> load;      ///< one an entry of another kind, times its factor at the end
   Extreme max_displacement;              ///< |u| at a node
   Extreme max_strain;                    ///< largest principal strain, or its opposite, at a quadrature point
+  Extreme max_flow;             ///< norm of the strain deviator over that at yield; 0 where nothing yields
   Extreme max_rotation;         ///< angle of the infinitesimal rotation at a quadrature point, in radians
   Extreme max_von_mises_nodal;  ///< of recovered stress; for whoever calls recover_stress() to fill in
   BodySize body;
