@@ -8,8 +8,8 @@
 
 #include <kacanov/locality.hpp>
 #include "c/handle.hpp"
+#include "c/rows.hpp"
 #include "c/sized.hpp"
-#include "c/unit_rows.hpp"
 #include "c/vectors.hpp"
 
 #define KACANOV_TEXT_OF(number) #number
@@ -17,15 +17,6 @@
 
 namespace k = kacanov;
 using namespace kacanov::c_api;
-
-namespace {
-
-void require_tangent(const kacanov_operator& op) {
-  if (!op.has_tangent)
-    throw Fault(KACANOV_ERROR_STATE, "no tangent is frozen yet: kacanov_update_tangent first");
-}
-
-}  // namespace
 
 const char* kacanov_message(const kacanov_operator* op) {
   return op == nullptr ? "op: null pointer" : op->message;
@@ -63,8 +54,7 @@ int kacanov_apply(kacanov_operator* op, size_t n, const double* x, double* y) {
     const auto in = input(x, n, "x");
     const auto out = output(y, n, "y");
     require_disjoint(in, out, "x and y");
-    fast.apply(in, out);
-    add_unit_rows(*op, in, out);
+    apply_rows(*op, in, out, [&](auto from, auto to) { return fast.apply(from, to), 0.0; });
   });
 }
 
@@ -75,7 +65,7 @@ int kacanov_apply_dot(kacanov_operator* op, size_t n, const double* x, double* y
     const auto out = output(y, n, "y");
     require(dot, "dot");
     require_disjoint(in, out, "x and y");
-    *dot = fast.apply_dot(in, out) + add_unit_rows(*op, in, out);
+    *dot = apply_rows(*op, in, out, [&](auto from, auto to) { return fast.apply_dot(from, to); });
   });
 }
 
@@ -87,8 +77,7 @@ int kacanov_apply_add(kacanov_operator* op, size_t n, double alpha, const double
     require_disjoint(in, out, "x and y");
     std::vector<double>& image = op->image;
     image.resize(n);
-    fast.apply(in, image);
-    add_unit_rows(*op, in, std::span(image));
+    apply_rows(*op, in, std::span(image), [&](auto from, auto to) { return fast.apply(from, to), 0.0; });
     for (std::size_t i = 0; i < n; ++i) out[i] = alpha * image[i] + (beta == 0.0 ? 0.0 : beta * out[i]);
   });
 }
@@ -100,8 +89,7 @@ int kacanov_apply_many(kacanov_operator* op, size_t n, int32_t vectors, const do
     const auto in = input(x, n * vectors, "x");
     const auto out = output(y, in.size(), "y");
     require_disjoint(in, out, "x and y");
-    fast.apply_many(in, out, vectors);
-    for (std::size_t v = 0; v < in.size(); v += n) add_unit_rows(*op, in.subspan(v, n), out.subspan(v, n));
+    apply_rows(*op, in, out, [&](auto from, auto to) { return fast.apply_many(from, to, vectors), 0.0; });
   });
 }
 
@@ -120,8 +108,7 @@ int kacanov_apply_tangent(kacanov_operator* op, size_t n, const double* x, doubl
     const auto in = input(x, n, "x");
     const auto out = output(y, n, "y");
     require_disjoint(in, out, "x and y");
-    fast.apply_tangent(in, out);
-    add_unit_rows(*op, in, out);
+    apply_rows(*op, in, out, [&](auto from, auto to) { return fast.apply_tangent(from, to), 0.0; });
   });
 }
 
@@ -133,7 +120,7 @@ int kacanov_apply_tangent_dot(kacanov_operator* op, size_t n, const double* x, d
     const auto out = output(y, n, "y");
     require(dot, "dot");
     require_disjoint(in, out, "x and y");
-    *dot = fast.apply_tangent_dot(in, out) + add_unit_rows(*op, in, out);
+    *dot = apply_rows(*op, in, out, [&](auto from, auto to) { return fast.apply_tangent_dot(from, to); });
   });
 }
 
@@ -142,7 +129,7 @@ int kacanov_diagonal(kacanov_operator* op, size_t n, double* diagonal) {
     require_size(n, op->unknowns(), "n");
     const auto out = output(diagonal, n, "diagonal");
     fast.diagonal(out);
-    unit_diagonal(*op, out);
+    diagonal_rows(*op, out);
   });
 }
 
@@ -151,7 +138,7 @@ int kacanov_block_diagonal(kacanov_operator* op, size_t count, double* blocks) {
     require_size(count, op->unknowns() * k::dimension(op->mesh.type), "count");
     const auto out = output(blocks, count, "blocks");
     fast.block_diagonal(out);
-    unit_blocks(*op, out);
+    block_rows(*op, out);
   });
 }
 
@@ -161,7 +148,7 @@ int kacanov_diagonal_tangent(kacanov_operator* op, size_t n, double* diagonal) {
     require_size(n, op->unknowns(), "n");
     const auto out = output(diagonal, n, "diagonal");
     fast.diagonal_tangent(out);
-    unit_diagonal(*op, out);
+    diagonal_rows(*op, out);
   });
 }
 
@@ -171,7 +158,7 @@ int kacanov_block_diagonal_tangent(kacanov_operator* op, size_t count, double* b
     require_size(count, op->unknowns() * k::dimension(op->mesh.type), "count");
     const auto out = output(blocks, count, "blocks");
     fast.block_diagonal_tangent(out);
-    unit_blocks(*op, out);
+    block_rows(*op, out);
   });
 }
 
@@ -239,7 +226,9 @@ int kacanov_inspect(kacanov_operator* op, kacanov_information* information) {
                                     .bytes = fast.bytes() + (op->single ? op->single->bytes() : 0) +
                                              (op->coordinates.size() + op->image.size()) * sizeof(double) +
                                              op->connectivity.size() * sizeof(std::int32_t) +
-                                             op->own_law_of_element.size() * sizeof(std::uint16_t),
+                                             op->own_law_of_element.size() * sizeof(std::uint16_t) +
+                                             op->constrained.size() * sizeof(std::int32_t) +
+                                             op->blocks.size() * sizeof(k::NodeBlock),
                                     .instruction_set = op->instruction_set.c_str()};
     write_sized(found, information, information_bytes, "information.", "kacanov_information");
   });

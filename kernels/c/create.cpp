@@ -122,6 +122,7 @@ void take_laws(kacanov_operator& op, std::vector<k::Law> checked, const std::uin
   op.single = std::move(single);
   op.single_is_current = true;  // both start with g = mu
   op.has_tangent = false;
+  ++op.laws_set;
 }
 
 }  // namespace
@@ -150,7 +151,7 @@ int kacanov_create(const kacanov_description* description, kacanov_operator** op
   });
 }
 
-void kacanov_destroy(kacanov_operator* op) { delete op; }
+void kacanov_destroy(kacanov_operator* op) { let_go(op); }
 
 int kacanov_set_laws(kacanov_operator* op, size_t laws, const kacanov_law* law, size_t elements,
                      const uint16_t* law_of_element) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "c/handle.hpp"
-#include "c/unit_rows.hpp"
+#include "c/rows.hpp"
 
 namespace k = kacanov;
 using namespace kacanov::c_api;
@@ -37,8 +37,7 @@ int kacanov_apply_float(kacanov_operator* op, size_t n, const float* x, float* y
     const auto in = input(x, n, "x");
     const auto out = output(y, n, "y");
     require_disjoint(in, out, "x and y");
-    single.apply(in, out);
-    add_unit_rows(*op, in, out);
+    apply_rows(*op, in, out, [&](auto from, auto to) { return single.apply(from, to), 0.0; });
   });
 }
 
@@ -48,7 +47,7 @@ int kacanov_apply_dot_float(kacanov_operator* op, size_t n, const float* x, floa
     const auto out = output(y, n, "y");
     require(dot, "dot");
     require_disjoint(in, out, "x and y");
-    *dot = single.apply_dot(in, out) + add_unit_rows(*op, in, out);
+    *dot = apply_rows(*op, in, out, [&](auto from, auto to) { return single.apply_dot(from, to); });
   });
 }
 
@@ -58,8 +57,7 @@ int kacanov_apply_many_float(kacanov_operator* op, size_t n, int32_t vectors, co
     const auto in = input(x, n * vectors, "x");
     const auto out = output(y, in.size(), "y");
     require_disjoint(in, out, "x and y");
-    single.apply_many(in, out, vectors);
-    for (std::size_t v = 0; v < in.size(); v += n) add_unit_rows(*op, in.subspan(v, n), out.subspan(v, n));
+    apply_rows(*op, in, out, [&](auto from, auto to) { return single.apply_many(from, to, vectors), 0.0; });
   });
 }
 
@@ -67,6 +65,6 @@ int kacanov_diagonal_float(kacanov_operator* op, size_t n, float* diagonal) {
   return on_single(op, n, [&](k::FloatOperator& single) {
     const auto out = output(diagonal, n, "diagonal");
     single.diagonal(out);
-    unit_diagonal(*op, out);
+    diagonal_rows(*op, out);
   });
 }

@@ -20,6 +20,7 @@
 #include <kacanov/operator.hpp>
 #include <kacanov/reference.hpp>
 #include "c/laws.hpp"
+#include "multigrid/node_block.hpp"
 #include "reference/matrix.hpp"
 
 /// Everything a handle holds. The mesh stays for the recovery of stress and for new laws.
@@ -37,10 +38,14 @@ struct kacanov_operator {
   bool wants_single = false;
   bool single_is_current = false;  ///< its g is that of `fast`
   bool has_tangent = false;
-  std::vector<std::int32_t> unit_nodes;  ///< nodes of no element whose rows are those of the identity
-  kacanov::reference::NodeGraph graph;   ///< of the matrix; empty until it is asked for
-  std::vector<double> image;             ///< of kacanov_apply_add; empty until it is called
-  std::atomic<bool> busy = false;        ///< a call is at work
+  std::vector<std::int32_t> unit_nodes;    ///< nodes of no element whose rows are those of the identity
+  std::vector<std::int32_t> constrained;   ///< unknowns, ascending
+  std::vector<kacanov::NodeBlock> blocks;  ///< added to B and B_T
+  std::uint64_t laws_set = 0;              ///< how often
+  std::atomic<int> owners = 1;             ///< the caller and the multigrids
+  kacanov::reference::NodeGraph graph;     ///< of the matrix; empty until it is asked for
+  std::vector<double> image;               ///< of kacanov_apply_add; empty until it is called
+  std::atomic<bool> busy = false;          ///< a call is at work
   char message[512] = "";
 
   std::size_t unknowns() const noexcept { return mesh.coordinates.size(); }
@@ -51,6 +56,11 @@ namespace kacanov::c_api {
 
 inline void copy_message(const char* text, char* to, std::size_t size) noexcept {
   if (to != nullptr && size > 0) std::snprintf(to, size, "%s", text);
+}
+
+/// Frees the handle once nobody has it any more: it lives as long as its multigrids.
+inline void let_go(kacanov_operator* op) noexcept {
+  if (op != nullptr && op->owners.fetch_sub(1, std::memory_order_acq_rel) == 1) delete op;
 }
 
 /// Runs `work`; what it throws becomes a code and a message.
@@ -94,8 +104,8 @@ inline void require_size(std::size_t got, std::size_t expected, const char* name
 }
 
 /// Runs `work` unless a call is at work on the handle; see guarded(). The message is left to that call.
-template <class Work>
-int alone(kacanov_operator* op, Work&& work) noexcept {
+template <class Handle, class Work>
+int alone(Handle* op, Work&& work) noexcept {
   if (op == nullptr) return KACANOV_ERROR_NULL;
   if (op->busy.exchange(true, std::memory_order_acquire)) return KACANOV_ERROR_STATE;
   const int code = guarded(op->message, sizeof op->message, work);
@@ -103,11 +113,20 @@ int alone(kacanov_operator* op, Work&& work) noexcept {
   return code;
 }
 
+inline void require_laws(const kacanov_operator& op) {
+  if (!op.fast) throw Fault(KACANOV_ERROR_STATE, "the operator has no laws yet: kacanov_set_laws first");
+}
+
+inline void require_tangent(const kacanov_operator& op) {
+  if (!op.has_tangent)
+    throw Fault(KACANOV_ERROR_STATE, "no tangent is frozen yet: kacanov_update_tangent first");
+}
+
 /// The same on a handle that has laws.
 template <class Work>
 int on(kacanov_operator* op, Work&& work) noexcept {
   return alone(op, [&] {
-    if (!op->fast) throw Fault(KACANOV_ERROR_STATE, "the operator has no laws yet: kacanov_set_laws first");
+    require_laws(*op);
     work(*op->fast);
   });
 }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The C interface's matrix: the plain assembly, with rows of the identity where they are asked for.
+// The C interface's matrix: the plain assembly, with blocks and rows of the identity where they are asked
+// for.
 #include <kacanov/kacanov.h>
 
 #include <algorithm>
+#include <vector>
 
-#include "c/unit_rows.hpp"
+#include "c/rows.hpp"
 #include "c/vectors.hpp"
 
 namespace k = kacanov;
@@ -15,6 +17,27 @@ namespace {
 std::size_t entries(kacanov_operator& op) {
   if (op.graph.first.empty()) op.graph = k::reference::node_graph(op.mesh);
   return static_cast<std::size_t>(k::reference::entries(op.graph, k::dimension(op.mesh.type)));
+}
+
+/// Adds the blocks to the values, and makes rows and columns of the identity.
+void matrix_rows(const kacanov_operator& op, std::span<double> value) {
+  const std::size_t dim = k::dimension(op.mesh.type);
+  const auto& [first, neighbour] = op.graph;
+  std::vector<double> diagonal(op.unknowns() * dim, 0.0);
+  block_rows(op, diagonal);  // what is added, and ones
+  std::vector<char> unit(op.unknowns(), 0);
+  each_unit_row(op, [&](std::size_t i) { unit[i] = 1; });
+  for (std::size_t node = 0; node + 1 < first.size(); ++node) {
+    const std::size_t begin = first[node], count = static_cast<std::size_t>(first[node + 1]) - begin;
+    for (std::size_t c = 0; c < dim; ++c)
+      for (std::size_t k = 0; k < count; ++k)
+        for (std::size_t d = 0; d < dim; ++d) {
+          const std::size_t other = neighbour[begin + k], row = node * dim + c, column = other * dim + d;
+          double& entry = value[begin * dim * dim + (c * count + k) * dim + d];
+          if (unit[row] != 0 || unit[column] != 0) entry = 0.0;
+          if (node == other) entry += diagonal[row * dim + d];
+        }
+  }
 }
 
 }  // namespace
@@ -41,9 +64,6 @@ int kacanov_matrix(kacanov_operator* op, size_t n, const double* u, size_t count
     const k::reference::MatrixRows rows{span(first, n + 1), span(column, count), span(value, count)};
     k::reference::assemble(op->body(), op->graph, g, at, rows);
     if (value == nullptr) return;
-    const std::size_t dim = k::dimension(op->mesh.type);
-    for (const std::int32_t node : op->unit_nodes)  // their rows have their own block and nothing else
-      for (std::size_t c = 0; c < dim; ++c)
-        value[static_cast<std::size_t>(op->graph.first[node]) * dim * dim + c * dim + c] = 1.0;
+    matrix_rows(*op, rows.value);
   });
 }

@@ -64,4 +64,12 @@ constexpr std::size_t law_bytes = offsetof(kacanov_law, reserved) + sizeof(std::
                       information_bytes =
                           offsetof(kacanov_information, instruction_set) + sizeof(const char*);
 
+// Likewise of those that came later.
+constexpr std::size_t multigrid_options_bytes =
+                          offsetof(kacanov_multigrid_options, aggregate) + sizeof(double),
+                      multigrid_information_bytes =
+                          offsetof(kacanov_multigrid_information, reserved) + sizeof(std::int32_t),
+                      cg_options_bytes = offsetof(kacanov_cg_options, tangent) + sizeof(std::int32_t),
+                      cg_result_bytes = offsetof(kacanov_cg_result, residual) + sizeof(double);
+
 }  // namespace kacanov::c_api

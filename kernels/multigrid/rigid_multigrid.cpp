@@ -22,7 +22,7 @@ struct RigidMultigrid::Hierarchy {
   virtual void build(std::span<const double> g, std::span<const NodeBlock> blocks,
                      const HeldSpace& space) = 0;
   virtual void rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space) = 0;
-  virtual void apply(std::span<const double> r, std::span<double> z) = 0;
+  virtual void apply(std::span<const double> r, std::span<double> z, const Factors& factors) = 0;
   virtual void secant(std::span<double> g) const = 0;
   virtual int levels() const noexcept = 0;
   virtual std::size_t bytes() const noexcept = 0;
@@ -76,8 +76,9 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
 
   void secant(std::span<double> g) const override { fine_.secant(g); }
 
-  void apply(std::span<const double> r, std::span<double> z) override {
-    each(r.size(), [&](std::size_t i) { b_[i] = static_cast<float>(r[i]); });
+  void apply(std::span<const double> r, std::span<double> z,
+             const RigidMultigrid::Factors& factors) override {
+    each(r.size(), [&](std::size_t i) { b_[i] = static_cast<float>(factors.in * r[i]); });
     fine_.hold(b_);
     const auto multiply = [this](std::span<const float> x, std::span<float> y) { fine_.multiply(x, y); };
     const auto relax = [this](const auto& weights, std::span<const float> b, std::span<const float> image,
@@ -95,7 +96,7 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
     fine_.project(image_);
     each(x_.size(), [&](std::size_t i) { x_[i] += image_[i]; });
     fine_.smoother().template smooth<float>(false, {b_, x_, step_, image_}, multiply, relax);
-    each(z.size(), [&](std::size_t i) { z[i] = static_cast<double>(x_[i]); });
+    each(z.size(), [&](std::size_t i) { z[i] = factors.out * static_cast<double>(x_[i]); });
   }
 
   int levels() const noexcept override { return 1 + static_cast<int>(stages_.size()); }
@@ -222,7 +223,9 @@ void RigidMultigrid::rebuild(std::span<const NodeBlock> blocks, const HeldSpace&
 
 void RigidMultigrid::secant(std::span<double> g) const { hierarchy_->secant(g); }
 
-void RigidMultigrid::apply(std::span<const double> r, std::span<double> z) { hierarchy_->apply(r, z); }
+void RigidMultigrid::apply(std::span<const double> r, std::span<double> z, const Factors& factors) {
+  hierarchy_->apply(r, z, factors);
+}
 
 int RigidMultigrid::levels() const noexcept { return hierarchy_->levels(); }
 

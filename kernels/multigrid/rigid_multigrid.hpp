@@ -48,8 +48,12 @@ class RigidMultigrid {
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space);
   /// The same with the g of the last build, at a fraction of the cost where few nodes see a change.
   void rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space);
-  /// z ≈ A⁻¹ r (overwrites z). To be called after a build.
-  void apply(std::span<const double> r, std::span<double> z);
+  /// What r and z are multiplied by on their way in and out of single precision.
+  struct Factors {
+    double in = 1.0, out = 1.0;
+  };
+  /// z ≈ A⁻¹ r (overwrites z) times the factors. To be called after a build.
+  void apply(std::span<const double> r, std::span<double> z, const Factors& factors = {1.0, 1.0});
   /// The g of the last build, in single precision; mu before the first.
   void secant(std::span<double> g) const;
 

@@ -107,6 +107,31 @@ TEST_CASE("small bodies use fewer threads than they may") {
   CHECK(about.threads == 2);
 }
 
+TEST_CASE("a child made by fork solves with its parent's multigrid") {
+  const Guest guest;
+  const Handle op = guest.create();
+  std::vector<std::int32_t> held;
+  for (std::int32_t i = 0; i < 300; ++i) held.push_back(i);
+  REQUIRE(kacanov_constrain(op.get(), held.size(), held.data()) == KACANOV_OK);
+  kacanov_multigrid* multigrid = nullptr;
+  REQUIRE(kacanov_multigrid_create(op.get(), nullptr, &multigrid) == KACANOV_OK);
+  const Vector b = random_vector(guest.n(), 3);
+  const auto solved = [&] {
+    Vector x(b.size(), 0.0);
+    auto result = sized<kacanov_cg_result>();
+    const int code = kacanov_cg(op.get(), multigrid, nullptr, b.size(), b.data(), x.data(), &result);
+    return code == KACANOV_OK && result.converged == 1 ? x : Vector();
+  };
+  const Vector want = solved();
+  CHECK(want.size() == b.size());
+  CHECK(in_child([&] { return solved() == want ? 0 : 1; }) == 0);
+  CHECK(in_child([&] {
+          return kacanov_multigrid_update(multigrid) == KACANOV_OK && solved() == want ? 0 : 1;
+        }) == 0);
+  CHECK(solved() == want);
+  kacanov_multigrid_destroy(multigrid);
+}
+
 TEST_CASE("a child made by fork applies its parent's operators, and makes its own") {
   const Guest guest;
   const Vector x = random_vector(guest.n(), 3);

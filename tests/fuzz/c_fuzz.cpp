@@ -45,6 +45,41 @@ std::vector<double> some_vector(Bytes& in, std::size_t n) {
   return v;
 }
 
+int constrain(kacanov_operator* op, Bytes& in, std::size_t n) {
+  std::vector<std::int32_t> list;
+  for (std::size_t k = in.below(12); k > 0; --k) list.push_back(static_cast<std::int32_t>(in.below(n + 1)));
+  return kacanov_constrain(op, list.size(), list.data());
+}
+
+int add_springs(kacanov_operator* op, Bytes& in, const kacanov_information& about) {
+  const std::size_t dim = about.dimension;
+  const auto node = static_cast<std::int32_t>(in.below(about.nodes + 1));
+  std::vector<double> block(dim * dim, in.below(2) == 0 ? 0.0 : in.number());
+  for (std::size_t c = 0; c < dim; ++c) block[c * dim + c] = in.number();
+  return kacanov_set_blocks(op, 1, &node, block.data());
+}
+
+int solve(kacanov_operator* op, Bytes& in, const std::vector<double>& b, std::vector<double>& x) {
+  kacanov_multigrid* multigrid = nullptr;
+  kacanov_multigrid_options options{};
+  options.struct_size = sizeof options;
+  if (in.below(4) == 0) options.aggregate = in.number();
+  int code = in.below(4) == 0 ? KACANOV_OK : kacanov_multigrid_create(op, &options, &multigrid);
+  kacanov_cg_options cg{};
+  cg.struct_size = sizeof cg;
+  cg.relative = in.below(4) == 0 ? in.number() : 0.0;
+  cg.most_iterations = 20;
+  cg.tangent = static_cast<std::int32_t>(in.below(2));
+  kacanov_cg_result result{};
+  result.struct_size = sizeof result;
+  if (code == KACANOV_OK) code = kacanov_cg(op, multigrid, &cg, b.size(), b.data(), x.data(), &result);
+  if (multigrid != nullptr && in.below(2) == 0) kacanov_multigrid_update(multigrid);
+  if (multigrid != nullptr && code < KACANOV_ERROR_INTERNAL)
+    code = kacanov_multigrid_apply(multigrid, b.size(), b.data(), x.data());
+  kacanov_multigrid_destroy(multigrid);
+  return code;
+}
+
 void call(kacanov_operator* op, Bytes& in, const kacanov_information& about) {
   const std::size_t n = about.unknowns, dim = about.dimension;
   const std::size_t points = about.elements * static_cast<std::size_t>(about.points_per_element);
@@ -59,7 +94,7 @@ void call(kacanov_operator* op, Bytes& in, const kacanov_information& about) {
   fields.stress = stress.data();
   double number = 0.0;
   int code = KACANOV_OK;
-  switch (in.below(20)) {
+  switch (in.below(24)) {
     case 0: code = kacanov_update(op, n, x.data()); break;
     case 1: code = kacanov_apply(op, n, x.data(), y.data()); break;
     case 2: code = kacanov_apply_dot(op, n, x.data(), y.data(), &number); break;
@@ -85,6 +120,10 @@ void call(kacanov_operator* op, Bytes& in, const kacanov_information& about) {
     case 18:
       code = kacanov_locality_order(op, nodes.size(), nodes.data(), elements.size(), elements.data());
       break;
+    case 19: code = constrain(op, in, n); break;
+    case 20: code = add_springs(op, in, about); break;
+    case 21:
+    case 22: code = solve(op, in, x, y); break;
     default: code = kacanov_apply(op, in.below(n + 2), x.data(), many.data()); break;
   }
   if (code == KACANOV_ERROR_INTERNAL) std::fprintf(stderr, "%s\n", kacanov_message(op));

@@ -226,6 +226,84 @@ KACANOV_API int kacanov_apply_many_float(kacanov_operator* op, size_t n, int32_t
                                          float* y);
 KACANOV_API int kacanov_diagonal_float(kacanov_operator* op, size_t n, float* diagonal);
 
+/* ---- Constraints and penalties: part of B and B_T from then on, wherever these are applied, in diagonals,
+ * blocks and matrices, in double and in float. Residual, energy and stress do not know of them. Both calls
+ * replace what the last one gave (count 0: nothing). Unknowns and nodes are counted from 0. ---- */
+
+/* Makes the rows and the columns of these unknowns (node * dimension + component, any order) those of the
+ * identity. For displacements prescribed there, put them in u and solve for the correction. */
+KACANOV_API int kacanov_constrain(kacanov_operator* op, size_t count, const int32_t* unknown);
+
+/* Adds to the diagonal block of node[i] the row-major dimension * dimension block that begins at
+ * block[i * dimension * dimension]: symmetric, and positive semidefinite where anything is to be solved. */
+KACANOV_API int kacanov_set_blocks(kacanov_operator* op, size_t count, const int32_t* node,
+                                   const double* block);
+
+/* ---- Multigrid: z = M r with M near the inverse of B(g), constraints and blocks included; symmetric and
+ * positive definite, the same from update to update. For tangents too, with the g of the same displacement.
+ * It is that of kacanov's solver: aggregates of nodes and their rigid-body motions, without a matrix of the
+ * body, in single precision within. Good for any units. The operator has to be definite once it is
+ * constrained. It has the operator's threads, and may be destroyed before or after it. ---- */
+typedef struct kacanov_multigrid kacanov_multigrid;
+
+typedef struct kacanov_multigrid_options {
+  size_t struct_size; /* sizeof(kacanov_multigrid_options) */
+  double aggregate;   /* nodes of an aggregate of the first coarse level, 4 to 1000; 0: 48. Fewer: somewhat
+                         fewer   iterations, more memory */
+} kacanov_multigrid_options;
+
+/* For what the operator is now; `options` may be null. Costs some ten applications of it, and ten times as
+ * many bytes an unknown as a vector. `*multigrid` is null after an error, and kacanov_message(op) has the
+ * words. */
+KACANOV_API int kacanov_multigrid_create(kacanov_operator* op, const kacanov_multigrid_options* options,
+                                         kacanov_multigrid** multigrid);
+
+/* After g, constraints or blocks have changed: aggregates are kept, unless there are other laws. M stays as
+ * it was until then. After an error there is none until an update succeeds. */
+KACANOV_API int kacanov_multigrid_update(kacanov_multigrid* multigrid);
+
+/* z = M r */
+KACANOV_API int kacanov_multigrid_apply(kacanov_multigrid* multigrid, size_t n, const double* r, double* z);
+
+/* Frees the handle; null is allowed. */
+KACANOV_API void kacanov_multigrid_destroy(kacanov_multigrid* multigrid);
+
+/* As kacanov_message. */
+KACANOV_API const char* kacanov_multigrid_message(const kacanov_multigrid* multigrid);
+
+typedef struct kacanov_multigrid_information {
+  size_t struct_size; /* set by the caller before the call: sizeof(kacanov_multigrid_information) */
+  size_t bytes;       /* held by the handle, the operator's not counted */
+  int32_t levels;     /* the body itself included */
+  int32_t reserved;
+} kacanov_multigrid_information;
+KACANOV_API int kacanov_multigrid_inspect(kacanov_multigrid* multigrid,
+                                          kacanov_multigrid_information* information);
+
+typedef struct kacanov_cg_options {
+  size_t struct_size;      /* sizeof(kacanov_cg_options) */
+  double relative;         /* done at |r| <= relative |r0| ...; 0 with `absolute` 0: 1e-8 */
+  double absolute;         /* ... or at |r| <= absolute */
+  int32_t most_iterations; /* 0: 2000 */
+  int32_t tangent;         /* 1: solves with B_T, 0: with B(g) */
+} kacanov_cg_options;
+
+typedef struct kacanov_cg_result {
+  size_t struct_size; /* set by the caller before the call: sizeof(kacanov_cg_result) */
+  int32_t iterations;
+  int32_t converged;     /* 0: too many iterations, or the operator is not positive definite */
+  double first_residual; /* 2-norms over the unknowns that are not constrained */
+  double residual;
+} kacanov_cg_result;
+
+/* Solves A x = b by conjugate gradients from the x given, A = B(g) or B_T with constraints and blocks;
+ * constrained unknowns become those of b. Preconditioned by `multigrid`, which has to be of this operator,
+ * or, where that is null, by the diagonal. `options` may be null. That it has not converged is no error: see
+ * result->converged. */
+KACANOV_API int kacanov_cg(kacanov_operator* op, kacanov_multigrid* multigrid,
+                           const kacanov_cg_options* options, size_t n, const double* b, double* x,
+                           kacanov_cg_result* result);
+
 /* The operator as a matrix in compressed rows, for those who want one: B(g), or, with `u` not null, the
  * consistent tangent at u. First its number of entries (stored symmetrically, zeros included); then the
  * entries of row i from first[i] (n + 1 of these) on, columns ascending. Null arrays are left out: the
