@@ -33,6 +33,11 @@ class Description(ct.Structure):  # kacanov_description
         ("orphans", ct.c_int32)]
 
 
+class CgResult(ct.Structure):  # kacanov_cg_result
+    _fields_ = [("struct_size", ct.c_size_t), ("iterations", ct.c_int32), ("converged", ct.c_int32),
+                ("first_residual", ct.c_double), ("residual", ct.c_double)]
+
+
 class Operator:
     """Vectors are float64 arrays of nodes * 3 entries, interleaved."""
 
@@ -76,6 +81,40 @@ class Operator:
         self.call("energy", u, value)
         return value[0]
 
+    def constrain(self, unknowns):
+        unknowns = np.ascontiguousarray(unknowns, dtype=np.int32)
+        if self.library.kacanov_constrain(self.handle, ct.c_size_t(len(unknowns)),
+                                          unknowns.ctypes.data_as(ct.POINTER(ct.c_int32))):
+            raise ValueError(self.library.kacanov_message(self.handle).decode())
+
+
+class Multigrid:
+    """z = M r for the operator as it is now: `apply` is what scipy's LinearOperator or PETSc's PCSHELL want."""
+
+    def __init__(self, op):
+        self.op, self.library, self.handle = op, op.library, ct.c_void_p()
+        if self.library.kacanov_multigrid_create(op.handle, None, ct.byref(self.handle)):
+            raise ValueError(self.library.kacanov_message(op.handle).decode())
+
+    def __del__(self):
+        self.library.kacanov_multigrid_destroy(self.handle)
+
+    def apply(self, r):
+        r = np.ascontiguousarray(r, dtype=np.float64)
+        z = np.empty_like(r)
+        if self.library.kacanov_multigrid_apply(self.handle, ct.c_size_t(r.size), r.ctypes.data_as(Doubles),
+                                                z.ctypes.data_as(Doubles)):
+            raise ValueError(self.library.kacanov_multigrid_message(self.handle).decode())
+        return z
+
+    def solve(self, b):
+        """The library's own conjugate gradients: x and the iterations."""
+        x, result = np.zeros_like(b), CgResult(struct_size=ct.sizeof(CgResult))
+        if self.library.kacanov_cg(self.op.handle, self.handle, None, ct.c_size_t(b.size), b.ctypes.data_as(Doubles),
+                                   x.ctypes.data_as(Doubles), ct.byref(result)):
+            raise ValueError(self.library.kacanov_message(self.op.handle).decode())
+        return x, result.iterations
+
 
 def load(path):
     library = ct.CDLL(path)
@@ -83,6 +122,10 @@ def load(path):
     library.kacanov_message.argtypes = [ct.c_void_p]
     library.kacanov_destroy.restype = None
     library.kacanov_destroy.argtypes = [ct.c_void_p]
+    library.kacanov_multigrid_message.restype = ct.c_char_p
+    library.kacanov_multigrid_message.argtypes = [ct.c_void_p]
+    library.kacanov_multigrid_destroy.restype = None
+    library.kacanov_multigrid_destroy.argtypes = [ct.c_void_p]
     return library
 
 
@@ -122,6 +165,24 @@ def main():
     assert abs(a @ op.apply(b) - b @ op.apply(a)) < 1e-10 * abs(a @ op.apply(a))
     rotation = np.cross([0.3, -0.2, 0.5], points).ravel()
     assert np.abs(op.apply(rotation)).max() < 1e-13
+
+    # Held at the bottom, pulled at the top: with multigrid, in the library and, where it is there, in scipy.
+    op.constrain(np.flatnonzero(np.repeat(points[:, 2] == 0, 3)))
+    pull = np.zeros_like(points)
+    pull[points[:, 2] == 1, 2] = 1e-4
+    multigrid = Multigrid(op)
+    x, iterations = multigrid.solve(pull.ravel())
+    assert np.linalg.norm(pull.ravel() - op.apply(x)) < 1e-7 * np.linalg.norm(pull)
+    print(f"multigrid: {iterations} iterations")
+    try:
+        from scipy.sparse.linalg import LinearOperator, cg
+    except ImportError:
+        print("without scipy")
+    else:
+        shape = (op.size, op.size)
+        by_scipy, code = cg(LinearOperator(shape, matvec=op.apply), pull.ravel(), atol=1e-10 * np.linalg.norm(pull),
+                            M=LinearOperator(shape, matvec=multigrid.apply))
+        assert code == 0 and np.abs(by_scipy - x).max() < 1e-4 * np.abs(x).max()
 
     # Errors come as exceptions with the library's own words.
     try:

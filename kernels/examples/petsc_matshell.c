@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A PETSc program: the operator as a MatShell, solved by KSP's conjugate gradients with Jacobi. A bar of
+/* A PETSc program: the operator as a MatShell, solved by KSP's conjugate gradients with the
+ * library's multigrid as a shell preconditioner. A bar of
  * trilinear hexahedra on rollers is pulled along x, for which the exact displacement is known and linear. */
 #include <petscksp.h>
 
 #include <kacanov/kacanov.h>
 
-/* What the shell needs: the operator, and which unknowns are held (their rows and columns are those of 1). */
 typedef struct Shell {
   kacanov_operator* op;
+  kacanov_multigrid* multigrid;
   size_t n;
-  const char* held;
-  double* masked; /* work vector */
 } Shell;
 
 #define KACANOV(op, call)                                                                                  \
@@ -26,10 +25,7 @@ static PetscErrorCode multiply(Mat matrix, Vec in, Vec out) {
   PetscCall(MatShellGetContext(matrix, &shell));
   PetscCall(VecGetArrayRead(in, &x));
   PetscCall(VecGetArrayWrite(out, &y));
-  for (size_t i = 0; i < shell->n; ++i) shell->masked[i] = shell->held[i] ? 0.0 : x[i];
-  KACANOV(shell->op, kacanov_apply(shell->op, shell->n, shell->masked, y));
-  for (size_t i = 0; i < shell->n; ++i)
-    if (shell->held[i]) y[i] = x[i];
+  KACANOV(shell->op, kacanov_apply(shell->op, shell->n, x, y));
   PetscCall(VecRestoreArrayWrite(out, &y));
   PetscCall(VecRestoreArrayRead(in, &x));
   PetscFunctionReturn(0);
@@ -42,9 +38,22 @@ static PetscErrorCode get_diagonal(Mat matrix, Vec diagonal) {
   PetscCall(MatShellGetContext(matrix, &shell));
   PetscCall(VecGetArrayWrite(diagonal, &d));
   KACANOV(shell->op, kacanov_diagonal(shell->op, shell->n, d));
-  for (size_t i = 0; i < shell->n; ++i)
-    if (shell->held[i]) d[i] = 1.0;
   PetscCall(VecRestoreArrayWrite(diagonal, &d));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode precondition(PC pc, Vec in, Vec out) {
+  Shell* shell;
+  const PetscScalar* r;
+  PetscScalar* z;
+  PetscFunctionBeginUser;
+  PetscCall(PCShellGetContext(pc, &shell));
+  PetscCall(VecGetArrayRead(in, &r));
+  PetscCall(VecGetArrayWrite(out, &z));
+  if (kacanov_multigrid_apply(shell->multigrid, shell->n, r, z) != KACANOV_OK)
+    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_LIB, "kacanov: %s", kacanov_multigrid_message(shell->multigrid));
+  PetscCall(VecRestoreArrayWrite(out, &z));
+  PetscCall(VecRestoreArrayRead(in, &r));
   PetscFunctionReturn(0);
 }
 
@@ -54,10 +63,10 @@ int main(int argc, char** argv) {
   const size_t nodes = (nx + 1) * (n + 1) * (n + 1), elements = nx * n * n, unknowns = 3 * nodes;
   PetscCall(PetscInitialize(&argc, &argv, NULL, NULL));
 
-  double *coordinates, *load, *masked;
-  int32_t* connectivity;
-  char* held;
-  PetscCall(PetscCalloc3(unknowns, &coordinates, unknowns, &load, unknowns, &masked));
+  double *coordinates, *load;
+  int32_t *connectivity, *held;
+  size_t held_count = 0;
+  PetscCall(PetscCalloc2(unknowns, &coordinates, unknowns, &load));
   PetscCall(PetscCalloc2(8 * elements, &connectivity, unknowns, &held));
   for (int k = 0, node = 0; k <= n; ++k)
     for (int j = 0; j <= n; ++j)
@@ -66,9 +75,9 @@ int main(int argc, char** argv) {
         coordinates[3 * node] = length * i / nx;
         coordinates[3 * node + 1] = (double)j / n;
         coordinates[3 * node + 2] = (double)k / n;
-        held[3 * node] = i == 0;
-        held[3 * node + 1] = j == 0;
-        held[3 * node + 2] = k == 0;
+        if (i == 0) held[held_count++] = 3 * node;
+        if (j == 0) held[held_count++] = 3 * node + 1;
+        if (k == 0) held[held_count++] = 3 * node + 2;
         if (i == nx) load[3 * node] = stress * share_y * share_z / (n * n);
       }
   for (int k = 0, at = 0; k < n; ++k)
@@ -96,10 +105,12 @@ int main(int argc, char** argv) {
   body.laws = 1;
   body.law = &law;
   body.borrow = 1; /* the arrays live as long as the operator */
-  Shell shell = {NULL, unknowns, held, masked};
+  Shell shell = {NULL, NULL, unknowns};
   char message[256];
   if (kacanov_create(&body, &shell.op, message, sizeof message) != KACANOV_OK)
     SETERRQ(PETSC_COMM_SELF, PETSC_ERR_LIB, "kacanov: %s", message);
+  KACANOV(shell.op, kacanov_constrain(shell.op, held_count, held));
+  KACANOV(shell.op, kacanov_multigrid_create(shell.op, NULL, &shell.multigrid));
 
   Mat matrix;
   Vec f, u;
@@ -116,7 +127,9 @@ int main(int argc, char** argv) {
   PetscCall(KSPSetOperators(ksp, matrix, matrix));
   PetscCall(KSPSetType(ksp, KSPCG));
   PetscCall(KSPGetPC(ksp, &preconditioner));
-  PetscCall(PCSetType(preconditioner, PCJACOBI));
+  PetscCall(PCSetType(preconditioner, PCSHELL));
+  PetscCall(PCShellSetContext(preconditioner, &shell));
+  PetscCall(PCShellSetApply(preconditioner, precondition));
   PetscCall(KSPSetTolerances(ksp, 1e-12, PETSC_DEFAULT, PETSC_DEFAULT, 5000));
   PetscCall(KSPSetFromOptions(ksp));
   PetscCall(KSPSolve(ksp, f, u));
@@ -140,9 +153,10 @@ int main(int argc, char** argv) {
   PetscCall(VecDestroy(&u));
   PetscCall(VecDestroy(&f));
   PetscCall(MatDestroy(&matrix));
+  kacanov_multigrid_destroy(shell.multigrid);
   kacanov_destroy(shell.op);
   PetscCall(PetscFree2(connectivity, held));
-  PetscCall(PetscFree3(coordinates, load, masked));
+  PetscCall(PetscFree2(coordinates, load));
   PetscCall(PetscFinalize());
   return reason > 0 && error < 1e-9 ? 0 : 1;
 }

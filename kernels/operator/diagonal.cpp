@@ -9,6 +9,7 @@
 #include "cells/point.hpp"
 #include "operator/checks.hpp"
 #include "operator/passes.hpp"
+#include "operator/threads.hpp"
 
 namespace kacanov {
 
@@ -51,22 +52,39 @@ void BasicOperator<Real>::Data::visit_points(const BlockRange& range, const simd
     }
 }
 
-/// Sums blocks: add(point, a, law, slot, block) adds that of node a of an element.
+/// Sums blocks: add(point, a, law, slot, block) adds that of node a of an element. Threads have sums of their
+/// own for nodes where they meet, which are added in their order.
 template <class Real>
 template <class Add>
 void BasicOperator<Real>::Data::sum_blocks(std::span<Real> blocks, const Add& add) const {
   expect_size(blocks.size(), unknowns * dim(), "blocks");
+  const std::size_t size = dim() * dim(), interface_size = layout.interface_node.size();
+  std::vector<std::int32_t> place(unknowns / dim(), -1);
+  for (std::size_t i = 0; i < interface_size; ++i)
+    place[layout.interface_node[i]] = static_cast<std::int32_t>(i);
   std::fill(blocks.begin(), blocks.end(), Real(0));
-  for (const BlockRange& range : layout.blocks)
-    for (std::size_t i = 0; i < range.group_count; ++i)
-      elements::dispatch(type, [&]<class E>(E) {
-        visit_points<E>(
-            range, layout.groups[range.first_group + i],
-            [&](const elements::Point<E>& point, const auto& node, const Law& law, std::size_t slot) {
-              for (int a = 0; a < E::nodes; ++a)
-                add(point, a, law, slot, blocks.data() + elements::Point<E>::at(node[a], 0) * E::dim);
-            });
-      });
+  std::vector<std::vector<Real>> sums(threads);
+  in_team(threads, [&](int t) {
+    std::vector<Real>& mine = sums[t];
+    mine.assign(interface_size * size, Real(0));
+    const auto block_of = [&](std::int32_t node) {
+      const std::int32_t at = place[node];
+      return at < 0 ? blocks.data() + node * size : mine.data() + at * size;
+    };
+    for (std::size_t b = layout.share[t]; b < layout.share[static_cast<std::size_t>(t) + 1]; ++b)
+      for (std::size_t i = 0; i < layout.blocks[b].group_count; ++i)
+        elements::dispatch(type, [&]<class E>(E) {
+          visit_points<E>(
+              layout.blocks[b], layout.groups[layout.blocks[b].first_group + i],
+              [&](const elements::Point<E>& point, const auto& node, const Law& law, std::size_t slot) {
+                for (int a = 0; a < E::nodes; ++a) add(point, a, law, slot, block_of(node[a]));
+              });
+        });
+  });
+  for (const auto& mine : sums)
+    for (std::size_t i = 0; i < interface_size; ++i)
+      for (std::size_t k = 0; k < size; ++k)
+        blocks[layout.interface_node[i] * size + k] += mine[i * size + k];
 }
 
 namespace {

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The body of the benchmarks of solves.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <kacanov/part.hpp>
+#include <kacanov/problem.hpp>
+
+/// A beam held at one end and pressed down on the far half of its top; its bottom may carry a penalty.
+struct PressedBeam {
+  int cells = 40;  ///< across a beam of 4 x 1 x 1 (40: 811,923 unknowns with tet4)
+  std::string element = "tet4";
+  std::string mesh;  ///< a Gmsh file instead of the beam; held at its lowest x, pressed from above
+  double poisson = 0.3;
+  double aspect = 1.0;  ///< length of a cell over its width
+};
+
+kacanov::Problem make_pressed_beam(const PressedBeam& options);
+
+/// Secant moduli, elements × points, that vary smoothly by a factor `jump` over the body.
+std::vector<double> varied_secant(const kacanov::Part& part, double jump);
