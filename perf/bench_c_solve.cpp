@@ -8,9 +8,11 @@
 #include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "csr_solve.hpp"
 #include "pressed_beam.hpp"
 
 namespace {
@@ -21,7 +23,8 @@ struct Options {
   PressedBeam beam;
   double jump = 1.0, tolerance = 1e-8;
   int threads = 1, repeat = 1;
-  bool diagonal = false, json = false;
+  std::string preconditioner = "multigrid";  ///< csr: an assembled matrix, and its diagonal
+  bool json = false;
 };
 
 double seconds_of(const std::function<void()>& work) {
@@ -56,6 +59,45 @@ kacanov_operator* create(const kacanov::Part& part, const Options& options) {
   return op;
 }
 
+Json entry_of(const Options& options, std::size_t n, const kacanov_cg_result& result) {
+  return {{"preconditioner", options.preconditioner + " in C"},
+          {"unknowns", n},
+          {"threads", options.threads},
+          {"element", options.beam.element},
+          {"iterations", result.iterations},
+          {"converged", result.converged != 0}};
+}
+
+/// The same solve with the operator as a matrix.
+Json measure_csr(kacanov_operator* op, const kacanov::Part& part, const Options& options) {
+  const std::size_t n = part.unknowns();
+  std::vector<double> b(n, 0.0), x(n, 0.0);
+  part.add_load(b);
+  for (const auto& held : part.prescribed) b[held.component] = 0.0;
+  CsrMatrix matrix;
+  const double setup = seconds_of([&] {
+    std::size_t entries = 0;
+    check(kacanov_matrix_entries(op, n, &entries), kacanov_message(op));
+    matrix.first.resize(n + 1);
+    matrix.column.resize(entries);
+    matrix.value.resize(entries);
+    check(kacanov_matrix(op, n, nullptr, entries, matrix.first.data(), matrix.column.data(),
+                         matrix.value.data()),
+          kacanov_message(op));
+  });
+  kacanov_cg_result result{};
+  result.converged = 1;
+  const double solve = seconds_of(
+      [&] { result.iterations = solve_by_diagonal(matrix, b, x, options.tolerance, options.threads); });
+  Json entry = entry_of(options, n, result);
+  entry["setup_seconds"] = setup;
+  entry["update_seconds"] = setup;
+  entry["solve_seconds"] = solve;
+  entry["total_seconds"] = setup + solve;
+  entry["bytes_per_unknown"] = 12.0 * static_cast<double>(matrix.value.size()) / static_cast<double>(n);
+  return entry;
+}
+
 Json measure(kacanov_operator* op, const kacanov::Part& part, const Options& options) {
   const std::size_t n = part.unknowns();
   std::vector<double> b(n, 0.0), x(n, 0.0);
@@ -63,7 +105,8 @@ Json measure(kacanov_operator* op, const kacanov::Part& part, const Options& opt
   for (const auto& held : part.prescribed) b[held.component] = 0.0;
   kacanov_multigrid* multigrid = nullptr;
   const double setup = seconds_of([&] {
-    if (!options.diagonal) check(kacanov_multigrid_create(op, nullptr, &multigrid), kacanov_message(op));
+    if (options.preconditioner == "multigrid")
+      check(kacanov_multigrid_create(op, nullptr, &multigrid), kacanov_message(op));
   });
   kacanov_multigrid_information about{};
   about.struct_size = sizeof about;
@@ -81,17 +124,13 @@ Json measure(kacanov_operator* op, const kacanov::Part& part, const Options& opt
   const double solve = seconds_of(
       [&] { check(kacanov_cg(op, multigrid, &cg, n, b.data(), x.data(), &result), kacanov_message(op)); });
   kacanov_multigrid_destroy(multigrid);
-  return {{"preconditioner", options.diagonal ? "diagonal in C" : "multigrid in C"},
-          {"unknowns", n},
-          {"threads", options.threads},
-          {"iterations", result.iterations},
-          {"converged", result.converged != 0},
-          {"setup_seconds", setup},
-          {"update_seconds", update},
-          {"solve_seconds", solve},
-          {"total_seconds", setup + solve},
-          {"bytes_per_unknown", static_cast<double>(about.bytes) / static_cast<double>(n)},
-          {"element", options.beam.element}};
+  Json entry = entry_of(options, n, result);
+  entry["setup_seconds"] = setup;
+  entry["update_seconds"] = update;
+  entry["solve_seconds"] = solve;
+  entry["total_seconds"] = setup + solve;
+  entry["bytes_per_unknown"] = static_cast<double>(about.bytes) / static_cast<double>(n);
+  return entry;
 }
 
 void run(const Options& options) {
@@ -106,7 +145,8 @@ void run(const Options& options) {
   check(kacanov_set_secant(op, g.size(), g.data()), kacanov_message(op));
   Json entries = Json::array();
   for (int turn = 0; turn < options.repeat; ++turn) {
-    entries.push_back(measure(op, part, options));
+    entries.push_back(options.preconditioner == "csr" ? measure_csr(op, part, options)
+                                                      : measure(op, part, options));
     const Json& entry = entries.back();
     if (!options.json)
       std::printf(
@@ -137,7 +177,8 @@ int main(int argc, char** argv) {
   app.add_option("--tolerance", options.tolerance);
   app.add_option("--threads", options.threads);
   app.add_option("--repeat", options.repeat, "turns");
-  app.add_flag("--diagonal", options.diagonal, "the diagonal instead of the multigrid");
+  app.add_option("--preconditioner", options.preconditioner, "csr: an assembled matrix, and its diagonal")
+      ->check(CLI::IsMember({"multigrid", "diagonal", "csr"}));
   app.add_flag("--json", options.json);
   CLI11_PARSE(app, argc, argv);
   try {
