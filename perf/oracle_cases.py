@@ -179,6 +179,18 @@ def straining_cases():
             for bbar in ((False, True) if element in ("quad4", "hex8") else (False,)):
                 material = {"on": "all", "young": 1.0, "poisson": poisson, **({"bbar": True} if bbar else {})}
                 yield f"poisson {poisson} {element}{' bbar' if bbar else ''}", beam(element, material=[material]), None
+    for power in range(2, 32, 2):
+        size = 10.0 ** power
+        below = [2.0, 0.5, -size - 0.01]
+        for name, obstacle in (("sphere", {"sphere": {"centre": below, "radius": size}}),
+                               ("bore", {"sphere": {"centre": [2.0, 0.5, size - 0.01], "radius": size, "inside": True}}),
+                               ("met sphere", {"sphere": {"centre": below, "radius": size, "direction": [0, 0, -1]}}),
+                               ("cylinder", {"cylinder": {"point": below, "axis": [0, 1, 0], "radius": size}}),
+                               ("torus", {"torus": {"centre": below, "axis": [0, 1, 0], "radius": 0.75 * size, "tube": 0.25 * size}}),
+                               ("cone", {"cone": {"apex": [-size, 0.3, -size - 0.01], "axis": [1, 0, 0], "half_angle": 45}}),
+                               ("plane", {"plane": {"point": [size, -3 * size, -0.01], "normal": [0, 0, 1]}}),
+                               ("box", {"box": {"lower": [-size] * 3, "upper": [size, size, -0.01]}})):
+            yield (f"size 1e{power} {name}", beam("hex8", contact=[{"on": "bottom", "obstacle": obstacle}]), None)
     for element in ("tri3", "tet4", "tet10", "hex8"):
         for ratio in (1e2, 1e3, 1e4):
             yield f"graded {ratio:g} {element}", beam(element, mesh={"file": "body.msh"}), graded(element, ratio)

@@ -11,13 +11,17 @@
 
 namespace kacanov {
 
+/// What double precision leaves of a sum of lengths.
+constexpr double some_roundings = 1e-15;
+
 /// How a node faces an obstacle that has moved.
 struct MovingContact::View {
   Vector3 normal{};
   double gap = 0.0;
   Vector3 carried{}, step{};  ///< how far the touched point of the obstacle has come: in all, in this step
+  double unknown = 0.0;       ///< of the gap
   double kind = 0.0;          ///< 0 faced, 1 out of its way, 2 undecided
-  static constexpr int numbers = 11;
+  static constexpr int numbers = 12;
 };
 
 MovingContact::MovingContact(Part& part, const Model& model)
@@ -51,13 +55,16 @@ MovingContact::View MovingContact::view(const ContactEntry& entry, const Vector3
         return kind.project({seen, Vector3{}});
       },
       entry.obstacle);
-  if (facing.kind == Facing::Kind::missed) return {{}, far_, {}, {}, 1.0};
-  if (facing.kind == Facing::Kind::undecided) return {{}, 0.0, {}, {}, 2.0};
+  if (facing.kind == Facing::Kind::missed) return {{}, far_, {}, {}, 0.0, 1.0};
+  if (facing.kind == Facing::Kind::undecided) return {{}, 0.0, {}, {}, 0.0, 2.0};
   const Vector3 foot = seen + facing.gap * facing.normal;
   View view;
-  view.carried = now.there(foot) - foot;
-  view.step = now.there(foot) - start.there(foot);
+  view.carried = now.carried(foot);
+  view.step = view.carried - start.carried(foot);
+  const double turned = std::min(norm(now.rotation), 2.0) * norm(foot - now.centre);
+  view.unknown = facing.unknown + some_roundings * (norm(now.shift) + turned);
   if (entry.relinearise) {
+    view.unknown += some_roundings * (norm(x) + norm(u) + norm(now.centre));
     view.normal = now.turned(facing.normal);
     view.gap = facing.gap + dot(view.normal, u);
   } else {
@@ -92,13 +99,12 @@ void MovingContact::face(double time, double before, std::span<const double> u) 
       v = view(entry, {p[1], p[2], p[3]}, {p[4], p[5], p[6]}, {before, time}, travel_[index]);
     for (const Vector3* vector : {&v.normal, &v.carried, &v.step})
       views.insert(views.end(), vector->begin(), vector->end());
-    views.push_back(v.gap);
-    views.push_back(v.kind);
+    views.insert(views.end(), {v.gap, v.unknown, v.kind});
   }
   views = scatter_contact(part_, views, View::numbers);
   double lost = 0.0;  // a contact entry, from 1, one of whose nodes is lost
   for (std::size_t i = 0; i < points; ++i)
-    if (views[View::numbers * i + 10] == 2.0) lost = static_cast<double>(part_.contact[i].entry) + 1.0;
+    if (views[View::numbers * i + 11] == 2.0) lost = static_cast<double>(part_.contact[i].entry) + 1.0;
   lost = part_.node_map.max_all(lost);
   if (lost > 0.0)
     throw InputError("contact[" + std::to_string(static_cast<int>(lost) - 1) +
@@ -109,7 +115,7 @@ void MovingContact::face(double time, double before, std::span<const double> u) 
   part_.slip_origin.assign(2 * points, 0.0);
   for (std::size_t i = 0; i < points; ++i) {
     const double* p = &views[View::numbers * i];
-    const View v{{p[0], p[1], p[2]}, p[9], {p[3], p[4], p[5]}, {p[6], p[7], p[8]}, p[10]};
+    const View v{{p[0], p[1], p[2]}, p[9], {p[3], p[4], p[5]}, {p[6], p[7], p[8]}, p[10], p[11]};
     ContactPoint point = part_.contact[i];
     const auto row = model_.contact[point.entry].moves() ? take(i, v, u, point) : std::nullopt;
     if (row)
@@ -134,6 +140,7 @@ std::optional<RowEntry> MovingContact::take(std::size_t i, const View& view, std
   const auto row = narrow_row(point, free, point.tresca > 0.0 || point.coulomb > 0.0);
   if (!row) return std::nullopt;
   gap_[i] = view.gap;
+  point.unknown_gap = view.unknown;
   origin_[i] = view.carried;
   if (point.since_step) {
     origin_[i] = view.step;

@@ -35,7 +35,14 @@ struct RigidPose {
     return std::cos(angle) * v + (sign * std::sin(angle)) * cross(axis, v) +
            ((1.0 - std::cos(angle)) * dot(axis, v)) * axis;
   }
-  Vector3 there(const Vector3& x) const { return centre + turned(x - centre) + shift; }
+  /// By how much x moves, with digits where that is little.
+  Vector3 carried(const Vector3& x) const {
+    const double angle = norm(rotation);
+    if (angle == 0.0) return shift;
+    const Vector3 axis = (1.0 / angle) * rotation, across = cross(axis, x - centre);
+    const double half = std::sin(0.5 * angle);
+    return std::sin(angle) * across + (2.0 * half * half) * cross(axis, across) + shift;
+  }
   Vector3 back(const Vector3& x) const { return centre + turned(x - shift - centre, -1.0); }
 };
 

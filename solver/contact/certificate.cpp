@@ -67,7 +67,8 @@ ContactSums contact_sums(const Traces& traces, const ContactState& state) {
     s.tension = larger(s.tension, -lambda);
     s.pressure = larger(s.pressure, std::abs(lambda));
     // A point that is open by more than that is open, and not its own residual.
-    const double unknown = rounding_of_traces * (std::abs(state.trace.normal[i]) + std::abs(state.gap[i]));
+    const double unknown =
+        rounding_of_traces * (std::abs(state.trace.normal[i]) + std::abs(state.gap[i])) + point.unknown_gap;
     if (open <= unknown) s.unknown_trace = larger(s.unknown_trace, unknown);
     s.unknown_product += point.mass * std::abs(lambda) * unknown;
     if (point.tangents == 0) continue;
@@ -177,7 +178,7 @@ Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactS
   // what is left is the work of the equilibrium residual and the contact products.
   const double all_energy = std::max({forces.energy, 0.5 * std::abs(body.internal_work), no_energy, tiny});
   c.duality_gap = std::abs(sums.dual_work - body.residual_work) / all_energy;
-  c.rounding.duality_gap = unknown_energy / all_energy;
+  c.rounding.duality_gap = (unknown_energy + moved * sums.unknown_product) / all_energy;
   return out;
 }
 

@@ -47,6 +47,7 @@ void scale(Part& part, const UnitSystem& factors) {
   for (Part::ComponentValue& entry : part.prescribed) entry.value *= factors.displacement;
   for (ContactPoint& point : part.contact) {
     point.gap *= factors.displacement;
+    point.unknown_gap *= factors.displacement;
     point.mass *= factors.area();
     point.tresca *= factors.stress();
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <sstream>
 #include <tuple>
 
 #include <kacanov/error.hpp>
@@ -47,6 +48,7 @@ class Faces {
       throw InputError(path_ + ": expected corners of three entries that differ in all of them");
   }
 
+  const std::string& path() const noexcept { return path_; }
   /// Of a node whose outer normal (of any length) is given; nothing where the obstacle is missed.
   std::optional<Facing> at(std::int32_t node, const Vector3& outer) const {
     const SurfacePoint point{position(mesh_, node), outer};
@@ -67,6 +69,38 @@ class Faces {
   const Obstacle& obstacle_;
   std::string path_;
 };
+
+/// To three digits.
+std::string rough(double value) {
+  std::ostringstream text;
+  text.precision(3);
+  text << value;
+  return text.str();
+}
+
+/// Where a gap is unknown by as much as the body is large, there is nothing to solve.
+void refuse_unknown(const Facing& facing, const Mesh& mesh, std::int32_t node, const std::string& path) {
+  const double size = extent(mesh).size;
+  if (facing.unknown < size) return;
+  throw InputError(path + ": expected an obstacle not so large or so far away that the gap of node " +
+                   std::to_string(mesh.node_tag(node)) + " is known to ±" + rough(facing.unknown) +
+                   " only, where the size of the body is " + rough(size));
+}
+
+/// Of the body's size: by how much more the reading of an obstacle's numbers may move it without a warning.
+constexpr double read_to = 1e-9;
+
+/// Lengths of a case are read to double precision; where that is coarse beside the body, it is said.
+void warn_of_reading(Problem& problem, double lengths, const std::string& path) {
+  const double moved = 0x1p-53 * lengths, size = extent(problem.mesh).size;
+  if (!(moved > read_to * size)) return;
+  problem.warnings.push_back(
+      path +
+      ": the obstacle is so large or so far away that its numbers, as double precision reads them, "
+      "place it to " +
+      rough(moved) + " only, where the size of the body is " + rough(size) +
+      ": gaps are those of the numbers as they are read");
+}
 
 /// Which components of a node are not held.
 std::array<bool, 3> free_components(const Problem& problem, std::int32_t node) {
@@ -95,7 +129,8 @@ double closed_by_prescription(const ContactPoint& point, const Problem& problem)
 }
 
 /// Joins points of one node that face the same way at the same gap: masses add up, bounds are averaged by
-/// mass. What was joined is in `shares`. Obstacles that move stay alone.
+/// mass; the smaller gap counts, and by what they differ it is unknown. What was joined is in `shares`.
+/// Obstacles that move stay alone.
 std::vector<ContactPoint> merge_equal(const std::vector<ContactPoint>& points, const Model& model,
                                       double size, std::vector<PointShare>& shares) {
   std::vector<ContactPoint> merged;
@@ -121,6 +156,8 @@ std::vector<ContactPoint> merge_equal(const std::vector<ContactPoint>& points, c
     const double mass = twin->mass + point.mass;
     twin->tresca = (twin->mass * twin->tresca + point.mass * point.tresca) / mass;
     twin->coulomb = (twin->mass * twin->coulomb + point.mass * point.coulomb) / mass;
+    twin->unknown_gap = std::max(twin->unknown_gap, point.unknown_gap) + std::abs(twin->gap - point.gap);
+    twin->gap = std::min(twin->gap, point.gap);
     if (twin->tangents == 0) {
       twin->tangents = point.tangents;
       twin->tangent = point.tangent;
@@ -175,9 +212,8 @@ void warn_of_corners(Problem& problem, const Faces& faces, std::span<const std::
   }
 }
 
-std::vector<ContactPoint> points_of_entry(const Problem& problem, const ContactEntry& entry,
-                                          std::size_t index, std::span<const std::int32_t> facets,
-                                          const std::string& path) {
+std::vector<ContactPoint> points_of_entry(Problem& problem, const ContactEntry& entry, std::size_t index,
+                                          std::span<const std::int32_t> facets, const std::string& path) {
   const Mesh& mesh = problem.mesh;
   const Faces faces(mesh, entry.obstacle, path);
   const bool friction = entry.friction && (entry.friction->tresca > 0.0 || entry.friction->coulomb > 0.0);
@@ -196,6 +232,7 @@ std::vector<ContactPoint> points_of_entry(const Problem& problem, const ContactE
   }
   std::vector<ContactPoint> points;
   std::size_t candidates = 0;
+  double lengths = 0.0;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     if (!(mass[k] > 0.0)) continue;  // corners of quadratic facets bear nothing
     ++candidates;
@@ -204,11 +241,14 @@ std::vector<ContactPoint> points_of_entry(const Problem& problem, const ContactE
     if (!facing && entry.relinearise && norm(outer[k]) > 0.0)
       facing = Facing{(1.0 / norm(outer[k])) * outer[k], far_away * extent(mesh).size};
     if (!facing) continue;
+    refuse_unknown(*facing, mesh, nodes[k], faces.path());
+    lengths = std::max(lengths, facing->lengths);
     ContactPoint point;
     point.node = nodes[k];
     point.entry = static_cast<std::int32_t>(index);
     point.normal = facing->normal;
     point.gap = facing->gap;
+    point.unknown_gap = facing->unknown;
     point.mass = mass[k];
     if (friction) {
       point.tresca = entry.friction->tresca;
@@ -223,6 +263,7 @@ std::vector<ContactPoint> points_of_entry(const Problem& problem, const ContactE
     throw InputError(path + ": none of the " + std::to_string(candidates) +
                      " nodes can touch the obstacle: each is held by a displacement or misses it");
   }
+  warn_of_reading(problem, lengths, faces.path());
   return points;
 }
 

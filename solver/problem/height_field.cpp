@@ -3,10 +3,11 @@
 #include <kacanov/height_field.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace kacanov {
 
-std::optional<double> HeightField::at(double x, double y) const {
+std::optional<HeightField::Height> HeightField::at(double x, double y) const {
   const std::array<double, 2> place{x, y};
   const std::array<std::size_t, 2> points{columns, rows};
   std::array<std::size_t, 2> cell{};
@@ -20,8 +21,14 @@ std::optional<double> HeightField::at(double x, double y) const {
   }
   const auto value = [&](std::size_t i, std::size_t j) { return height[columns * (rows - 1 - j) + i]; };
   const auto [i, j] = cell;
-  return (1 - share[1]) * ((1 - share[0]) * value(i, j) + share[0] * value(i + 1, j)) +
-         share[1] * ((1 - share[0]) * value(i, j + 1) + share[0] * value(i + 1, j + 1));
+  const double low = (1 - share[0]) * value(i, j) + share[0] * value(i + 1, j);
+  const double high = (1 - share[0]) * value(i, j + 1) + share[0] * value(i + 1, j + 1);
+  const auto [least, most] =
+      std::minmax({value(i, j), value(i + 1, j), value(i, j + 1), value(i + 1, j + 1)});
+  // A place among n points is known to some n units of rounding.
+  const auto widest = static_cast<double>(std::max(rows, columns));
+  return Height{(1 - share[1]) * low + share[1] * high,
+                1e-15 * (std::max(std::abs(least), std::abs(most)) + widest * (most - least))};
 }
 
 }  // namespace kacanov

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <kacanov/height_field.hpp>
 #include <kacanov/surface.hpp>
 #include "problem/model_checks.hpp"
+#include "problem/tracked.hpp"
 #include "problem/vector3.hpp"
 
 namespace kacanov {
@@ -16,17 +18,31 @@ namespace {
 constexpr NumberRule half_angle{"an angle in degrees above 0 and below 90",
                                 [](double v) { return v > 0.0 && v < 90.0; }};
 
-Vector3 unit(const Vector3& v) { return (1.0 / norm(v)) * v; }
+/// What double precision leaves of a length that was computed from lengths as long as this, in some steps.
+constexpr double some_roundings = 1e-15;
 
-/// The closest point lies `offset` away; `distance` is what of that is outside.
-Facing towards(const Vector3& offset, double distance) { return {(1.0 / norm(offset)) * offset, distance}; }
+TrackedVector unit(const TrackedVector& v) { return Tracked(1.0) / norm(v) * v; }
+TrackedVector unit(const Vector3& v) { return unit(tracked(v)); }
+
+/// `lengths`: those of the case that the gap is a difference of.
+Facing facing(const TrackedVector& normal, const Tracked& gap, double lengths) {
+  return {values(normal), gap.value(), gap.error(), lengths};
+}
+
+/// Whether a vector of this length leads anywhere that can be told.
+bool leads_somewhere(const Tracked& length) { return length.value() > 1e12 * length.error(); }
 
 /// Of a round thing whose middle is `to_middle` away.
-Facing round(const Vector3& to_middle, double radius, bool inside) {
-  const double distance = norm(to_middle);
-  if (!(distance > 0.0)) return Facing::from_everywhere();
-  if (inside) return towards(-1.0 * to_middle, radius - distance);
-  return towards(to_middle, distance - radius);
+Facing round(const TrackedVector& to_middle, double radius, bool inside) {
+  const Tracked distance = norm(to_middle);
+  if (!leads_somewhere(distance)) return Facing::from_everywhere();
+  const Tracked side = inside ? -1.0 : 1.0;
+  return facing(side / distance * to_middle, side * (distance - radius), distance.value() + radius);
+}
+
+/// The closest point lies `offset` away; `distance` is what of that is outside.
+Facing towards(const Vector3& offset, double distance, double unknown) {
+  return {(1.0 / norm(offset)) * offset, distance, unknown};
 }
 
 void check_sides(const std::string& path, const std::optional<Vector3>& direction, bool inside) {
@@ -36,10 +52,10 @@ void check_sides(const std::string& path, const std::optional<Vector3>& directio
 }
 
 /// Where a t² + 2 b t + c falls through zero, being negative within; nothing where it does not.
-std::optional<double> first_root(double a, double b, double c) {
-  const double inside = b * b - a * c;
-  if (!(a > 0.0) || inside < 0.0) return std::nullopt;
-  return (-b - std::sqrt(inside)) / a;
+std::optional<Tracked> first_root(const Tracked& a, const Tracked& b, const Tracked& c) {
+  const Tracked inside = b * b - a * c;
+  if (!(a.value() > 0.0) || inside.value() < 0.0) return std::nullopt;
+  return (-b - sqrt(inside)) / a;
 }
 
 }  // namespace
@@ -50,8 +66,10 @@ void Plane::check(const std::string& path) const {
 }
 
 Facing Plane::project(const SurfacePoint& from) const {
-  const Vector3 direction = -1.0 * unit(normal);
-  return {direction, dot(point - from.x, direction)};
+  const TrackedVector direction = Tracked(-1.0) * unit(normal);
+  const Vector3 way = point - from.x, nu = values(direction);
+  const double lengths = std::abs(way[0] * nu[0]) + std::abs(way[1] * nu[1]) + std::abs(way[2] * nu[2]);
+  return facing(direction, dot(tracked(point) - tracked(from.x), direction), lengths);
 }
 
 void Sphere::check(const std::string& path) const {
@@ -61,13 +79,13 @@ void Sphere::check(const std::string& path) const {
 }
 
 Facing Sphere::project(const SurfacePoint& from) const {
-  const Vector3 to_centre = centre - from.x;
+  const TrackedVector to_centre = tracked(centre) - tracked(from.x);
   if (!direction) return round(to_centre, radius, inside);
-  const Vector3 way = unit(*direction);
-  const double along = dot(to_centre, way);
-  const double within = radius * radius - (dot(to_centre, to_centre) - along * along);
-  if (within < 0.0) return Facing::nothing();
-  return {way, along - std::sqrt(within)};
+  const TrackedVector way = unit(*direction);
+  const Tracked along = dot(to_centre, way);
+  const Tracked within = Tracked(radius) * radius - (dot(to_centre, to_centre) - along * along);
+  if (within.value() < 0.0) return Facing::nothing();
+  return facing(way, along - sqrt(within), std::abs(along.value()) + radius);
 }
 
 void Cylinder::check(const std::string& path) const {
@@ -78,13 +96,14 @@ void Cylinder::check(const std::string& path) const {
 }
 
 Facing Cylinder::project(const SurfacePoint& from) const {
-  const Vector3 along = unit(axis);
-  const auto across = [&](const Vector3& v) { return v - dot(v, along) * along; };
-  const Vector3 to_axis = across(point - from.x);
+  const TrackedVector along = unit(axis);
+  const auto across = [&](const TrackedVector& v) { return v - dot(v, along) * along; };
+  const TrackedVector to_axis = across(tracked(point) - tracked(from.x));
   if (!direction) return round(to_axis, radius, inside);
-  const Vector3 way = unit(*direction), flat = across(way);
-  const auto met = first_root(dot(flat, flat), -dot(to_axis, flat), dot(to_axis, to_axis) - radius * radius);
-  return met ? Facing{way, *met} : Facing::nothing();
+  const TrackedVector way = unit(*direction), flat = across(way);
+  const auto met =
+      first_root(dot(flat, flat), -dot(to_axis, flat), dot(to_axis, to_axis) - Tracked(radius) * radius);
+  return met ? facing(way, *met, norm(to_axis).value() + radius) : Facing::nothing();
 }
 
 void Cone::check(const std::string& path) const {
@@ -95,31 +114,38 @@ void Cone::check(const std::string& path) const {
 }
 
 Facing Cone::project(const SurfacePoint& from) const {
-  const Vector3 along = unit(axis), x = from.x - apex;
-  const double angle = half_angle * M_PI / 180.0, sine = std::sin(angle), cosine = std::cos(angle);
-  const double height = dot(x, along);
-  const Vector3 out = x - height * along;
-  const double radius = norm(out);
+  // Sine and cosine are known to long double.
+  constexpr long double pi = 3.141592653589793238462643383279502884L;
+  constexpr long double known = 4 * std::numeric_limits<long double>::epsilon();
+  const long double angle = static_cast<long double>(half_angle) * pi / 180;
+  const Tracked sine = Tracked::known_to(std::sin(angle), known);
+  const Tracked cosine = Tracked::known_to(std::cos(angle), known);
+  const TrackedVector along = unit(axis), x = tracked(from.x) - tracked(apex);
+  const Tracked height = dot(x, along);
+  const TrackedVector out = x - height * along;
+  const Tracked radius = norm(out);
   if (direction) {
     // Within, cos²|y|² − (y·a)² is negative for y from the apex; so it is in the cone's mirror image.
-    const Vector3 way = unit(*direction);
-    const double steep = dot(way, along);
-    const double a = cosine * cosine - steep * steep, b = cosine * cosine * dot(x, way) - height * steep,
-                 c = cosine * cosine * radius * radius - sine * sine * height * height;
-    const double within = b * b - a * c;
-    if (within < 0.0) return Facing::nothing();
+    const TrackedVector way = unit(*direction);
+    const Tracked steep = dot(way, along), cosine2 = cosine * cosine;
+    const Tracked a = cosine2 - steep * steep, b = cosine2 * dot(x, way) - height * steep,
+                  c = cosine2 * radius * radius - sine * sine * height * height;
+    const Tracked within = b * b - a * c;
+    if (within.value() < 0.0) return Facing::nothing();
     // The root where it falls is where the ray enters, written so that nothing cancels and a may be 0.
-    const double root = std::sqrt(within);
-    const double way_in = b > 0.0 ? -(b + root) / a : c / (root - b);
-    if (!std::isfinite(way_in) || height + way_in * steep < 0.0) return Facing::nothing();
-    return {way, way_in};
+    const Tracked root = sqrt(within);
+    const Tracked way_in = b.value() > 0.0 ? -(b + root) / a : c / (root - b);
+    if (!std::isfinite(way_in.value()) || (height + way_in * steep).value() < 0.0) return Facing::nothing();
+    return facing(way, way_in, norm(x).value());
   }
-  if (height * cosine + radius * sine <= 0.0) {  // nothing is nearer than the apex
-    if (!(norm(x) > 0.0)) return {along, 0.0};
-    return towards(-1.0 * x, norm(x));
+  if ((height * cosine + radius * sine).value() <= 0.0) {  // nothing is nearer than the apex
+    const Tracked distance = norm(x);
+    if (!(distance.value() > 0.0)) return facing(along, 0.0, 0.0);
+    return facing(Tracked(-1.0) / distance * x, distance, 0.0);
   }
-  if (!(radius > 0.0)) return Facing::from_everywhere();
-  return {sine * along - (cosine / radius) * out, radius * cosine - height * sine};
+  if (!leads_somewhere(radius)) return Facing::from_everywhere();
+  return facing(sine * along - cosine / radius * out, radius * cosine - height * sine,
+                radius.value() + std::abs(height.value()));
 }
 
 void Torus::check(const std::string& path) const {
@@ -132,11 +158,13 @@ void Torus::check(const std::string& path) const {
 }
 
 Facing Torus::project(const SurfacePoint& from) const {
-  const Vector3 along = unit(axis), x = from.x - centre;
-  const Vector3 out = x - dot(x, along) * along;
-  const double distance = norm(out);
-  if (!(distance > 0.0)) return Facing::from_everywhere();
-  return round((radius / distance) * out - x, tube, false);
+  const TrackedVector along = unit(axis), x = tracked(from.x) - tracked(centre);
+  const TrackedVector out = x - dot(x, along) * along;
+  const Tracked distance = norm(out);
+  if (!leads_somewhere(distance)) return Facing::from_everywhere();
+  Facing found = round(Tracked(radius) / distance * out - x, tube, false);
+  found.lengths += distance.value() + radius;
+  return found;
 }
 
 void Block::check(const std::string& path) const {
@@ -157,7 +185,7 @@ Facing Block::project(const SurfacePoint& from) const {
     depth = std::min({depth, from.x[c] - lower[c], upper[c] - from.x[c]});
   }
   const double distance = norm(offset);
-  if (distance > 0.0) return towards(offset, distance);
+  if (distance > 0.0) return towards(offset, distance, some_roundings * distance);
   // Of faces that are as near, as on an edge, the one that the body looks at.
   const double equal = 1e-9 * norm(upper - lower);
   Vector3 face{};
@@ -170,7 +198,7 @@ Facing Block::project(const SurfacePoint& from) const {
       face = {};
       face[c] = inwards;
     }
-  return {face, -depth};
+  return {face, -depth, some_roundings * std::abs(depth)};
 }
 
 void SurfaceObstacle::check(const std::string&) const {}
@@ -179,12 +207,14 @@ Facing SurfaceObstacle::project(const SurfacePoint& from) const {
   const Surface::Closest closest = surface->closest(from.x);
   const Vector3 offset = closest.point - from.x;
   const double distance = norm(offset), along = -dot(offset, closest.normal);
+  // The closest point is computed from corners that may be as far off as the surface is large.
+  const double unknown = some_roundings * (norm(from.x) + norm(closest.point) + surface->extent());
   if (closest.normal == Vector3{}) return Facing::from_everywhere();
   // So close by, the offset has no digits to tell a direction with.
-  if (distance <= 1e-9 * surface->extent()) return {-1.0 * closest.normal, along};
+  if (distance <= 1e-9 * surface->extent()) return {-1.0 * closest.normal, along, unknown};
   // Beyond the border of a surface that is open there is nothing to touch.
   if (closest.border && norm(offset + along * closest.normal) > 1e-6 * distance) return Facing::nothing();
-  return along >= 0.0 ? towards(offset, distance) : towards(-1.0 * offset, -distance);
+  return along >= 0.0 ? towards(offset, distance, unknown) : towards(-1.0 * offset, -distance, unknown);
 }
 
 void HeightMap::check(const std::string& path) const {
@@ -204,17 +234,18 @@ void HeightMap::check(const std::string& path) const {
 }
 
 Facing HeightMap::project(const SurfacePoint& from) const {
-  const std::optional<double> height = field->at(from.x[0], from.x[1]);
+  const auto height = field->at(from.x[0], from.x[1]);
   if (!height) return Facing::nothing();
-  return body_above ? Facing{{0.0, 0.0, -1.0}, from.x[2] - *height}
-                    : Facing{{0.0, 0.0, 1.0}, *height - from.x[2]};
+  const double above = from.x[2] - height->value;
+  const double unknown = height->unknown + some_roundings * std::abs(above);
+  return body_above ? Facing{{0.0, 0.0, -1.0}, above, unknown} : Facing{{0.0, 0.0, 1.0}, -above, unknown};
 }
 
 void ConstantGap::check(const std::string& path) const { kacanov::check(path, gap); }
 
 Facing ConstantGap::project(const SurfacePoint& from) const {
   if (!(norm(from.outer) > 0.0)) return Facing::from_everywhere();
-  return {(1.0 / norm(from.outer)) * from.outer, gap};
+  return {(1.0 / norm(from.outer)) * from.outer, gap, 0.0};
 }
 
 }  // namespace kacanov

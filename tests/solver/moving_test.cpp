@@ -209,8 +209,8 @@ TEST_CASE("a pose and its inverse; halfway along a path") {
   const RigidPose pose = RigidPose::at(motion, 2.0);
   CHECK(pose.shift == Vector3{1, 1, 0});
   const Vector3 x{0.3, -0.2, 5};
-  CHECK(distance(pose.back(pose.there(x)), x) < 1e-14);
-  CHECK(distance(pose.there({2, 2, 3}), {2 + std::cos(1.0), 3 + std::sin(1.0), 3}) < 1e-14);
+  CHECK(distance(pose.back(x + pose.carried(x)), x) < 1e-14);
+  CHECK(distance(pose.carried({2, 2, 3}), {std::cos(1.0), 1 + std::sin(1.0), 0}) < 1e-14);
   CHECK(RigidPose::at(motion, 0.5).rotation == Vector3{0, 0, 0.5});
   CHECK(RigidPose::at(motion, 9.0).shift == Vector3{1, 2, 0});
 }

@@ -8,6 +8,7 @@
 
 #include <kacanov/height_field.hpp>
 #include <kacanov/surface.hpp>
+#include "problem/tracked.hpp"
 #include "problem/vector3.hpp"
 #include "problem_models.hpp"
 
@@ -208,9 +209,9 @@ TEST_CASE("beyond the border of an open surface there is nothing; folds and bad 
 
 TEST_CASE("heights: bilinear, the first row above, nothing beyond") {
   HeightField field{2, 3, {10, 20, 30, 0, 1, 2}, {0, 0}, {2, 1}};
-  CHECK(field.at(0, 0).value() == 0);
-  CHECK(field.at(2, 1).value() == 30);
-  CHECK(field.at(0.5, 0.5).value() == doctest::Approx((0.5 + 15) / 2));
+  CHECK(field.at(0, 0).value().value == 0);
+  CHECK(field.at(2, 1).value().value == 30);
+  CHECK(field.at(0.5, 0.5).value().value == doctest::Approx((0.5 + 15) / 2));
   CHECK_FALSE(field.at(2.1, 0.5).has_value());
   CHECK_FALSE(field.at(1, -0.1).has_value());
   const auto shared = std::make_shared<const HeightField>(field);
@@ -236,4 +237,60 @@ TEST_CASE("what is wrong with an obstacle is said with its key") {
       {"obstacle.height_map.upper[1]: expected a number above that of the lower corner, 3, got 2",
        HeightMap{std::make_shared<const HeightField>(HeightField{2, 2, {0, 0, 0, 0}, {1, 3}, {2, 2}})}}};
   for (const auto& [message, obstacle] : rows) CHECK(complaint(obstacle) == message);
+}
+
+TEST_CASE(
+    "gaps of obstacles that are far larger than the body keep their digits, or say which they have lost") {
+  Dice dice;
+  for (double size = 1.0; size < 1e31; size *= 8.0) {
+    // All touch the plane z = 0 at the origin, and are as flat as it but for terms of 1/size.
+    const std::vector<std::pair<Obstacle, double>> obstacles{
+        {Plane{{size, -3 * size, 0}, {0, 0, 1}}, 0.0},
+        {Sphere{{0, 0, -size}, size, {}}, 1.0},
+        {Sphere{{0, 0, size}, size, {}, true}, -1.0},
+        {Sphere{{0, 0, -size}, size, Vector3{0, 0, -1}}, 1.0},
+        {Cylinder{{3, 0, -size}, {5, 0, 0}, size, {}}, 1.0},
+        {Cylinder{{3, 0, -size}, {5, 0, 0}, size, Vector3{0, 0, -2}}, 1.0},
+        {Torus{{0, 0, -size}, {1, 0, 0}, 0.75 * size, 0.25 * size}, 4.0},
+        {Block{{-size, -size, -size}, {size, size, 0}}, 0.0}};
+    for (const auto& [obstacle, bend] : obstacles) {
+      CAPTURE(size);
+      CAPTURE(obstacle.index());
+      const Vector3 x{dice.number() / 4, dice.number() / 4, dice.number() / 4};
+      const Facing found = look(obstacle, x);
+      REQUIRE(found.kind == Facing::Kind::met);
+      CHECK(found.unknown >= 0.0);
+      CHECK(found.unknown < 1e-29 * size + 1e-15);
+      // Beside z there are terms of the order of (x² + y²)/size.
+      CHECK(std::abs(found.gap - x[2]) <= std::abs(bend) / size + found.unknown + 1e-16);
+    }
+  }
+  // 45 degrees are known to long double only.
+  for (double size = 1.0; size < 1e31; size *= 8.0) {
+    const Facing found = look(Cone{{-size, 0, -size}, {1, 0, 0}, 45.0, {}}, {0, 0.1, 0.2});
+    CHECK(found.unknown >= 1e-20 * size);
+    CHECK(std::abs(found.gap - 0.2 / std::sqrt(2.0)) <= 0.01 / size + found.unknown + 1e-16);
+  }
+}
+
+TEST_CASE("numbers of twice the precision hold their bounds") {
+  Dice dice;
+  for (int trial = 0; trial < 1000; ++trial) {
+    // (a + b)² − a² − b² = 2ab, and a root squared, by numbers of any size.
+    const double a = std::ldexp(dice.number(), static_cast<int>(dice.number(-60, 60)));
+    const double b = std::ldexp(dice.number(), static_cast<int>(dice.number(-60, 60)));
+    const Tracked sum = Tracked(a) + b, square = sum * sum - Tracked(a) * a - Tracked(b) * b;
+    const Tracked wanted = Tracked(2.0 * a) * b, off = square - wanted;
+    CHECK(std::abs(off.value()) <= square.error() + wanted.error());
+    CHECK(square.error() <= 0x1p-99 * (a * a + b * b + std::abs(a * b)));
+    const Tracked root = sqrt(Tracked(std::abs(a)) + b * b),
+                  back = root * root - (Tracked(std::abs(a)) + b * b);
+    CHECK(std::abs(back.value()) <= back.error());
+    const Tracked share = Tracked(a) / b, whole = share * b - a;
+    CHECK(std::abs(whole.value()) <= whole.error());
+    CHECK(whole.error() <= 0x1p-99 * std::abs(a));
+  }
+  // Nothing is known of a number that is divided by what may be zero.
+  const Tracked nothing = sqrt(Tracked(2.0)) * sqrt(Tracked(2.0)) - 2.0;
+  CHECK_FALSE((Tracked(1.0) / nothing).error() < 1e300);
 }

@@ -77,7 +77,7 @@ TEST_CASE("options: the path of the key, what was expected, what was there") {
       {[](Options& o) {
          o.load_steps = {0.5, -0.25, 1.0};
        },
-       "solver.load_steps[1]: expected a factor > 0, got -0.25"},
+       "solver.load_steps[1]: expected a factor ≥ 1e-15, got -0.25"},
       {[](Options& o) {
          o.load_steps = {0.25, 0.5};
        },

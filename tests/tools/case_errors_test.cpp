@@ -85,7 +85,7 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
       {"solver.load_steps=0", "solver.load_steps: expected a whole number ≥ 1, got 0"},
       {"solver.load_steps=\"many\"",
        "solver.load_steps: expected a whole number ≥ 1 or a list of factors, got \"many\""},
-      {"solver.load_steps=[0,1]", "solver.load_steps[0]: expected a factor > 0, got 0"},
+      {"solver.load_steps=[0,1]", "solver.load_steps[0]: expected a factor ≥ 1e-15, got 0"},
       {"solver.load_steps=[0.5]",
        "solver.load_steps: expected factors on the load of which the last is 1, got [0.5]"},
       {"contact[0].friction.reference=end",

@@ -302,3 +302,40 @@ TEST_CASE("a bad file of an obstacle is refused by its key, name and line") {
   refused(parsed(R"({"cone": {"apex": [0, 0, 0], "axis": [0, 0, 1], "half_angle": 91}})"),
           "cone.half_angle: ", "expected an angle in degrees above 0 and below 90, got 91");
 }
+
+TEST_CASE("spheres that touch at the same place press as a plane does, or say what they cannot know") {
+  const Workplace place;
+  nlohmann::json block = parsed(R"({
+    "mesh": {"box": {"size": [1, 1, 1], "cells": [3, 3, 3], "element": "hex8"}},
+    "material": [{"on": "all", "young": 1.0, "poisson": 0.3}],
+    "boundary": [{"on": "top", "displacement": [0, 0, -0.001]}],
+    "contact": [{"on": "bottom", "obstacle": {"plane": {"point": [0, 0, 0], "normal": [0, 0, 1]}}}],
+    "output": {"report": false, "checkpoint": false}
+  })");
+  const auto force = [&] { return place.json("out/result.json")["contact_force"][2].get<double>(); };
+  place.put_json("case.json", block);
+  REQUIRE(place.run("run case.json --output out").exit_code == 0);
+  const double of_plane = force();
+  std::string statuses;
+  for (int power = 6; power <= 38; power += 4) {
+    CAPTURE(power);
+    const double radius = std::pow(10.0, power);
+    block["contact"][0]["obstacle"] = {{"sphere", {{"centre", {0.5, 0.5, -radius}}, {"radius", radius}}}};
+    place.put_json("case.json", block);
+    const Outcome outcome = place.run("run case.json --output out");
+    if (outcome.exit_code == 2) {
+      CHECK(outcome.error.find("contact[0].obstacle.sphere: expected an obstacle not so large") !=
+            std::string::npos);
+      statuses += 'r';
+      continue;
+    }
+    const nlohmann::json result = place.json("out/result.json");
+    CHECK(force() == doctest::Approx(of_plane).epsilon(std::max(1e3 / radius, 1e-6)));
+    CHECK((result["status"] == "converged") == (outcome.exit_code == 0));
+    CHECK((place.run("verify case.json --output out").exit_code == 0) == (outcome.exit_code == 0));
+    CHECK(result["warnings"].dump().find("so large or so far away") < std::string::npos == (power > 7));
+    if (outcome.exit_code == 1) CHECK(result["status"] == "limited_by_rounding");
+    statuses += outcome.exit_code == 0 ? 'c' : 'l';
+  }
+  CHECK(statuses == "cccclllrr");
+}

@@ -7,6 +7,7 @@
 
 #include "verify/height_map.hpp"
 #include "verify/problem.hpp"
+#include "verify/wide.hpp"
 
 namespace kacanov::verify {
 namespace {
@@ -14,80 +15,91 @@ namespace {
 using nlohmann::json;
 
 constexpr Real unsure = 1e-13L;
+/// What is left of a gap by the arithmetic that it is computed in, here and by the program, in shares of the
+/// lengths it is a difference of: closed forms, sines in long double, the program's double.
+constexpr Real closed = some_wide_roundings, with_sines = 1e-18L, in_double = 1e-15L;
 
 Vec unit(const Vec& v) { return 1 / norm(v) * v; }
 Real number(const json& object, const char* key) { return object.at(key).get<double>(); }
+WideVec wide_vector(const json& list) { return wide(read_vector(list)); }
 
-Facing point_like(const Vec& to_middle, Real radius, bool inside) {
-  const Real far = norm(to_middle), side = inside ? -1 : 1;
-  return {side / far * to_middle, side * (far - radius)};
+Facing facing(const WideVec& normal, Wide gap) { return {narrow(normal), static_cast<Real>(gap)}; }
+
+Facing point_like(const WideVec& to_middle, Real radius, bool inside) {
+  const Wide far = length(to_middle), side = inside ? -1 : 1;
+  return facing(scaled(side / far, to_middle), side * (far - radius));
 }
 
 /// The way along `direction` to where a t² + 2 b t + c falls to zero.
-Facing along_ray(const Vec& direction, Real a, Real b, Real c, Real scale) {
-  const Real inside = b * b - a * c;
-  Facing facing{direction, 0, inside < -unsure * scale, std::abs(inside) <= unsure * scale};
-  const Real root = std::sqrt(std::max(inside, Real(0)));
-  facing.gap = b > 0 ? -(b + root) / a : c / (root - b);
-  return facing;
+Facing along_ray(const WideVec& direction, Wide a, Wide b, Wide c, Wide scale) {
+  const Wide inside = b * b - a * c, least = unsure * scale, base = root(inside);
+  Facing found = facing(direction, b > 0 ? -(b + base) / a : c / (base - b));
+  found.missed = inside < -least;
+  found.grazing = inside <= least && inside >= -least;
+  return found;
 }
 
 Face plane(const json& given) {
-  const Vec nu = -1 * unit(read_vector(given.at("normal"))), point = read_vector(given.at("point"));
-  return [=](const Vec& x, const Vec&) { return Facing{nu, dot(point - x, nu)}; };
+  const WideVec nu = scaled(-1, unit(wide_vector(given.at("normal")))),
+                point = wide_vector(given.at("point"));
+  return [=](const Vec& x, const Vec&) {
+    const WideVec way = point - wide(x);
+    Facing found = facing(nu, inner(way, nu));
+    for (std::size_t c = 0; c < 3; ++c) found.unknown += closed * std::abs(static_cast<Real>(way[c] * nu[c]));
+    return found;
+  };
 }
 
 /// A sphere, or a cylinder about its axis.
-Face round_thing(const json& given, const char* middle, const Vec& axis) {
-  const Vec centre = read_vector(given.at(middle));
+Face round_thing(const json& given, const char* middle, const WideVec& axis) {
+  const WideVec centre = wide_vector(given.at(middle));
   const Real radius = number(given, "radius");
   const bool inside = given.value("inside", false), ray = given.contains("direction");
-  const Vec direction = ray ? unit(read_vector(given.at("direction"))) : Vec{};
+  const WideVec direction = ray ? unit(wide_vector(given.at("direction"))) : WideVec{};
   return [=](const Vec& x, const Vec&) {
-    const auto across = [&](const Vec& v) { return v - dot(v, axis) * axis; };
-    const Vec to_middle = across(centre - x), flat = across(direction);
+    const auto across = [&](const WideVec& v) { return v - scaled(inner(v, axis), axis); };
+    const WideVec to_middle = across(centre - wide(x)), flat = across(direction);
     if (!ray) return point_like(to_middle, radius, inside);
-    const Real a = dot(flat, flat), far = dot(to_middle, to_middle);
+    const Wide a = inner(flat, flat), far = inner(to_middle, to_middle), square = Wide(radius) * radius;
     if (!(a > 0)) return Facing{{}, 0, true};
-    return along_ray(direction, a, -dot(to_middle, flat), far - radius * radius, a * (radius * radius + far));
+    return along_ray(direction, a, -inner(to_middle, flat), far - square, a * (square + far));
   };
 }
 
 Face cone(const json& given) {
-  const Vec apex = read_vector(given.at("apex")), axis = unit(read_vector(given.at("axis")));
+  const WideVec apex = wide_vector(given.at("apex")), axis = unit(wide_vector(given.at("axis")));
   const Real angle = number(given, "half_angle") * std::acos(Real(-1)) / 180;
-  const Real s = std::sin(angle), c = std::cos(angle);
+  const Wide s = std::sin(angle), c = std::cos(angle);
   const bool ray = given.contains("direction");
-  const Vec direction = ray ? unit(read_vector(given.at("direction"))) : Vec{};
+  const WideVec direction = ray ? unit(wide_vector(given.at("direction"))) : WideVec{};
   return [=](const Vec& x, const Vec&) {
-    const Vec v = x - apex;
-    const Real up = dot(v, axis);
-    const Vec out = v - up * axis;
-    const Real radius = norm(out);
+    const WideVec v = wide(x) - apex;
+    const Wide up = inner(v, axis);
+    const WideVec out = v - scaled(up, axis);
+    const Wide radius = length(out);
     if (ray) {
-      const Real steep = dot(direction, axis), size = dot(v, v);
-      Facing facing = along_ray(direction, c * c - steep * steep, c * c * dot(v, direction) - up * steep,
-                                c * c * radius * radius - s * s * up * up, size);
-      const Real height = up + facing.gap * steep;
-      if (!std::isfinite(facing.gap) || height < 0) facing.missed = true;
-      facing.grazing = facing.grazing || std::abs(height) <= unsure * std::sqrt(size);
-      return facing;
+      const Wide steep = inner(direction, axis), size = inner(v, v);
+      Facing found = along_ray(direction, c * c - steep * steep, c * c * inner(v, direction) - up * steep,
+                               c * c * radius * radius - s * s * up * up, size);
+      const Real height = static_cast<Real>(up + found.gap * steep);
+      if (!std::isfinite(found.gap) || height < 0) found.missed = true;
+      found.grazing = found.grazing || std::abs(height) <= unsure * static_cast<Real>(root(size));
+      return found;
     }
-    // The nearest point of the mantle's generator in the half-plane of the axis and x.
-    const Real generator = std::max(up * c + radius * s, Real(0));
-    const Vec outwards = radius > 0 ? 1 / radius * out : Vec{};
-    const Vec mantle = generator * (c * axis + s * outwards);
-    if (generator > 0) return Facing{s * axis - c * outwards, radius * c - up * s};
-    return norm(v) > 0 ? Facing{unit(mantle - v), norm(mantle - v)} : Facing{axis, 0};
+    // The nearest point of the mantle's generator in the half-plane of the axis and x is the apex, or within.
+    if (up * c + radius * s > 0)
+      return facing(scaled(s, axis) - scaled(c / radius, out), radius * c - up * s);
+    const Wide away = length(v);
+    return away > 0 ? facing(scaled(-1 / away, v), away) : facing(axis, 0);
   };
 }
 
 Face torus(const json& given) {
-  const Vec centre = read_vector(given.at("centre")), axis = unit(read_vector(given.at("axis")));
+  const WideVec centre = wide_vector(given.at("centre")), axis = unit(wide_vector(given.at("axis")));
   const Real radius = number(given, "radius"), tube = number(given, "tube");
   return [=](const Vec& x, const Vec&) {
-    const Vec v = x - centre, out = v - dot(v, axis) * axis;
-    return point_like(centre + radius * unit(out) - x, tube, false);
+    const WideVec v = wide(x) - centre, out = v - scaled(inner(v, axis), axis);
+    return point_like(scaled(radius, unit(out)) - v, tube, false);
   };
 }
 
@@ -235,25 +247,26 @@ Face read_obstacle(const json& obstacle, const std::filesystem::path& folder) {
   const std::string kind = obstacle.items().begin().key();
   const json& given = obstacle.at(kind);
   // The gap is a difference of the way to some point of the obstacle and some size of it.
-  const auto measured = [](Face face, const Vec& about, Real size) -> Face {
+  const auto measured = [](Face face, const Vec& about, Real size, Real share) -> Face {
     return [=](const Vec& x, const Vec& outer) {
-      Facing facing = face(x, outer);
-      facing.from = norm(x - about) + size;
-      return facing;
+      Facing found = face(x, outer);
+      found.unknown = share * (norm(x - about) + size);
+      return found;
     };
   };
   const auto at = [&](const char* key) { return read_vector(given.at(key)); };
-  if (kind == "plane") return measured(plane(given), at("point"), 0);
+  if (kind == "plane") return plane(given);
   if (kind == "sphere")
-    return measured(round_thing(given, "centre", {}), at("centre"), number(given, "radius"));
+    return measured(round_thing(given, "centre", {}), at("centre"), number(given, "radius"), closed);
   if (kind == "cylinder")
-    return measured(round_thing(given, "point", unit(at("axis"))), at("point"), number(given, "radius"));
-  if (kind == "cone") return measured(cone(given), at("apex"), 0);
+    return measured(round_thing(given, "point", unit(wide_vector(given.at("axis")))), at("point"),
+                    number(given, "radius"), closed);
+  if (kind == "cone") return measured(cone(given), at("apex"), 0, with_sines);
   if (kind == "torus")
-    return measured(torus(given), at("centre"), number(given, "radius") + number(given, "tube"));
-  if (kind == "box") return measured(block(given), at("lower"), norm(at("upper") - at("lower")));
-  if (kind == "surface") return measured(surface(given, folder), {}, 0);
-  if (kind == "height_map") return measured(read_height_map(given, folder), {}, 0);
+    return measured(torus(given), at("centre"), number(given, "radius") + number(given, "tube"), closed);
+  if (kind == "box") return block(given);
+  if (kind == "surface") return measured(surface(given, folder), {}, 0, in_double);
+  if (kind == "height_map") return measured(read_height_map(given, folder), {}, 0, in_double);
   if (kind != "gap") throw Failure("obstacle: the verifier does not know \"" + kind + "\"");
   const Real gap = given.get<double>();
   return [gap](const Vec&, const Vec& outer) { return Facing{unit(outer), gap}; };

@@ -15,7 +15,7 @@ struct Facing {
   Real gap = 0;
   bool missed = false;
   bool grazing = false;  ///< whether it is met is a matter of rounding
-  Real from = 0;         ///< lengths that the gap is a difference of
+  Real unknown = 0;      ///< what arithmetic leaves of the gap
 };
 
 /// Of a node at x with the body's outer normal (of any length) there.

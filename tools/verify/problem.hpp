@@ -19,10 +19,9 @@ struct ContactRow {
   Vec normal{};                      ///< ν
   std::size_t entry = 0;             ///< of `contact`
   Real gap = 0, mass = 0, tresca = 0, coulomb = 0;
-  Real closed = 0;  ///< by prescribed components, and off the gap
-  Real gap_from =
-      0;          ///< lengths that the gap is a difference of, which in double leaves some of them unknown
-  Vec carried{};  ///< how far the obstacle has moved where the node faces it
+  Real closed = 0;       ///< by prescribed components, and off the gap
+  Real unknown_gap = 0;  ///< what arithmetic leaves of it
+  Vec carried{};         ///< how far the obstacle has moved where the node faces it
   bool friction = false;
   bool alone = false;    ///< an obstacle that moves is joined to none
   bool grazing = false;  ///< whether it meets the sphere is a matter of rounding

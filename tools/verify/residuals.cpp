@@ -28,7 +28,7 @@ Vec tangential(const Problem& problem, const ContactRow& row, const std::vector<
 
 struct ContactSums {
   Real products = 0, work = 0, area = 0, pressure = 0, unknown_trace = 0, unknown_product = 0;
-  Real penetration = 0, tension = 0, cone = 0, gap_from = 0;
+  Real penetration = 0, tension = 0, cone = 0;
   std::vector<Vec> force;  ///< CᵀMλ, one a node
 };
 
@@ -57,8 +57,7 @@ ContactSums sum_contact(const Problem& problem, const Answer& answer, Findings& 
     sums.penetration = larger(sums.penetration, -open);
     sums.tension = larger(sums.tension, -lambda);
     sums.pressure = larger(sums.pressure, std::abs(lambda));
-    sums.gap_from = larger(sums.gap_from, row.gap_from);
-    const Real unknown = delta_of_traces * (std::abs(trace) + std::abs(row.gap));
+    const Real unknown = delta_of_traces * (std::abs(trace) + std::abs(row.gap)) + row.unknown_gap;
     if (open <= unknown) sums.unknown_trace = larger(sums.unknown_trace, unknown);
     sums.unknown_product += row.mass * std::abs(lambda) * unknown;
     if (!row.friction) continue;
@@ -135,16 +134,15 @@ Findings examine(const Problem& problem, const Answer& answer) {
       larger(larger(response.energy, std::abs(body.internal_work) / 2), larger(no_energy, tiny));
   const Real unknown_force = delta * std::sqrt(body.stiff);
   const Real at_all = body.displacement > 0 ? 1 : 0;
-  findings.unknown_gap = delta_of_traces * sums.gap_from / moved;
   findings.supports = body.supports / moved;
-  findings.entries = {
-      {"equilibrium", std::sqrt(body.residual) / force, unknown_force / force},
-      {"penetration", sums.penetration / moved, at_all * sums.unknown_trace / moved},
-      {"tension", sums.tension / pressure, 0},
-      {"complementarity", sums.products / product, at_all * sums.unknown_product / product},
-      {"friction_cone", sums.cone / pressure, 0},
-      {"force_balance", norm(body.balance) / all, delta * body.stiff_all / all},
-      {"duality_gap", std::abs(sums.work - body.residual_work) / energy, delta * body.stiff_work / energy}};
+  findings.entries = {{"equilibrium", std::sqrt(body.residual) / force, unknown_force / force},
+                      {"penetration", sums.penetration / moved, at_all * sums.unknown_trace / moved},
+                      {"tension", sums.tension / pressure, 0},
+                      {"complementarity", sums.products / product, at_all * sums.unknown_product / product},
+                      {"friction_cone", sums.cone / pressure, 0},
+                      {"force_balance", norm(body.balance) / all, delta * body.stiff_all / all},
+                      {"duality_gap", std::abs(sums.work - body.residual_work) / energy,
+                       (delta * body.stiff_work + at_all * sums.unknown_product) / energy}};
   return findings;
 }
 

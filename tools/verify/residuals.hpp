@@ -23,7 +23,6 @@ struct Findings {
   Vec contact_force{}, friction_force{};
   Real force = 0;                          ///< Σ M (|λ_n| + |λ_t|): by which these are measured
   Real pressure = 0;                       ///< largest λ_n
-  Real unknown_gap = 0;                    ///< what double leaves of a gap, over the largest |u|
   Real supports = 0;                       ///< largest |u − prescribed| over the largest |u|
   Real von_mises = 0, unknown_stress = 0;  ///< the largest, and what rounding leaves of one
 };

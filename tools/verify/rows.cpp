@@ -58,6 +58,8 @@ bool joined(std::vector<ContactRow>& rows, const ContactRow& row, Real size) {
     if (twin.alone || norm(twin.normal - row.normal) >= 1e-9L || std::abs(twin.gap - row.gap) >= 1e-9L * size)
       continue;
     const Real mass = twin.mass + row.mass;
+    twin.unknown_gap = larger(twin.unknown_gap, row.unknown_gap) + std::abs(twin.gap - row.gap);
+    twin.gap = std::min(twin.gap, row.gap);
     twin.tresca = (twin.mass * twin.tresca + row.mass * row.tresca) / mass;
     twin.coulomb = (twin.mass * twin.coulomb + row.mass * row.coulomb) / mass;
     twin.friction = twin.friction || row.friction;
@@ -128,7 +130,7 @@ void find_rows(const nlohmann::json& contact, const std::filesystem::path& folde
       row.carried = carried(entry, problem.time, mesh.nodes[node] + facing.gap * facing.normal) +
                     problem.pushed[number];
       row.gap += dot(row.normal, row.carried);
-      row.gap_from = facing.from + norm(row.carried);
+      row.unknown_gap = facing.unknown + 1e-15L * norm(row.carried);
       row.grazing = facing.grazing;
       row.mass = sum.mass;
       row.tresca = friction.value("tresca", 0.0);

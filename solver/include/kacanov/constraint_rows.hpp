@@ -29,6 +29,7 @@ struct ContactPoint {
   std::array<Vector3, 2> tangent{};  ///< directions of a traction's components, orthonormal
   int tangents = 0;                  ///< rows of T; 0 without friction
   double gap = 0.0;                  ///< ρ
+  double unknown_gap = 0.0;          ///< what arithmetic may have left of it (theory: gap-rounding)
   double mass = 0.0;                 ///< lumped contact mass M, an area (a length in 2D)
   double tresca = 0.0;               ///< ψ
   double coulomb = 0.0;              ///< μ_f

@@ -16,8 +16,12 @@ struct HeightField {
   std::vector<double> height;
   std::array<double, 2> lower{}, upper{};
 
+  struct Height {
+    double value = 0.0;
+    double unknown = 0.0;  ///< what arithmetic may have left of it
+  };
   /// Nothing beyond the grid, which 1e-9 of its size still belongs to.
-  std::optional<double> at(double x, double y) const;
+  std::optional<Height> at(double x, double y) const;
 };
 
 }  // namespace kacanov

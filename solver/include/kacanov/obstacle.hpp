@@ -24,13 +24,15 @@ struct SurfacePoint {
 /// How an obstacle is seen from a point (theory: traces).
 struct Facing {
   enum class Kind { met, missed, undecided };
-  Vector3 normal{};  ///< ν: unit, from the body towards the obstacle
-  double gap = 0.0;  ///< negative within the obstacle
+  Vector3 normal{};      ///< ν: unit, from the body towards the obstacle
+  double gap = 0.0;      ///< negative within the obstacle
+  double unknown = 0.0;  ///< what arithmetic may have left of the gap (theory: gap-rounding)
+  double lengths = 0.0;  ///< of the case that the gap is a difference of, each read to double precision
   Kind kind = Kind::met;
 
-  static Facing nothing() { return {{}, 0.0, Kind::missed}; }
+  static Facing nothing() { return {{}, 0.0, 0.0, 0.0, Kind::missed}; }
   /// The obstacle is as near in several directions: an error of the input.
-  static Facing from_everywhere() { return {{}, 0.0, Kind::undecided}; }
+  static Facing from_everywhere() { return {{}, 0.0, 0.0, 0.0, Kind::undecided}; }
 };
 
 // Every obstacle has its key in the case file, what its undecided points are called in messages, `check`,
