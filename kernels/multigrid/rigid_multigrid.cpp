@@ -46,11 +46,29 @@ struct Stage {
 
 constexpr std::int64_t direct_rows = 400;
 
+/// Bulk over shear modulus: of an entry's seven digits in single precision, shear keeps two (theory:
+/// softened-bulk).
+constexpr double stiffest_bulk = 1e5;
+
+std::vector<Law> softened(std::span<const Law> laws) {
+  std::vector<Law> soft(laws.begin(), laws.end());
+  for (Law& law : soft) law.bulk = std::min(law.bulk, stiffest_bulk * law.secant(0.0));
+  return soft;
+}
+
+MultigridBody with_laws(MultigridBody body, std::span<const Law> laws) {
+  body.body.laws = laws;
+  return body;
+}
+
 template <int M>
 class ModesHierarchy final : public RigidMultigrid::Hierarchy {
  public:
   ModesHierarchy(const MultigridBody& body, const MultigridOptions& options)
-      : body_(body), options_(options), fine_(body, options) {}
+      : laws_(softened(body.body.laws)),
+        body_(with_laws(body, laws_)),
+        options_(options),
+        fine_(body_, options) {}
 
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space) override {
     direct_.reset();
@@ -191,6 +209,7 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
     smooth(false);
   }
 
+  std::vector<Law> laws_;  ///< softened; body_ points to them
   MultigridBody body_;
   MultigridOptions options_;
   FineLevel fine_;
