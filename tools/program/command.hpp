@@ -19,6 +19,7 @@ struct Command {
   std::optional<double> tolerance;     ///< spectrum: relative, on λ_min and λ_max
   bool restart = false;                ///< run: go on from the checkpoint in the folder
   bool memory_check = true;            ///< run: refuse what does not fit
+  double stop_within = 30.0;           ///< run: seconds from a signal until it is ended all the same
   bool json = false;                   ///< spectrum: print JSON
   std::optional<double> r_min, r_max;  ///< sweep
   int points = 21;                     ///< sweep

@@ -195,7 +195,7 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
   // held until then.
   mpi.when_failing([folder, held](const std::string& text) { note_failure(folder, text); });
 
-  listen_for_interrupts();
+  listen_for_interrupts(command.stop_within);
   RunOptions options;
   options.stop_requested = interrupt_came;
   if (mpi.first() && input.output.checkpoint && !any_moves(input.model)) {
@@ -211,6 +211,7 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
   Solution solution = solve_case(input, loaded.part, mpi, options, left ? file->path().string() : "");
 
   const double solved = MPI_Wtime();
+  stop_came_in_time();
   coarse.solution.reset();
   RunFigures figures;
   figures.nested = coarse.levels;

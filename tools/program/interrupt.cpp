@@ -2,6 +2,7 @@
 // Signals that ask a run to stop.
 #include "program/interrupt.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <ctime>
 #include <thread>
@@ -9,7 +10,8 @@
 namespace kacanov {
 namespace {
 
-std::atomic<bool> listening = false, came = false;
+std::atomic<bool> listening = false, came = false, in_time = false;
+std::atomic<double> seconds_to_stop = 0.0;
 
 /// As if nobody had ever taken the signal.
 void die_of(int signal) {
@@ -21,26 +23,43 @@ void die_of(int signal) {
   std::raise(signal);
 }
 
+double seconds_since(const timespec& then) noexcept {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return static_cast<double>(now.tv_sec - then.tv_sec) +
+         1e-9 * static_cast<double>(now.tv_nsec - then.tv_nsec);
+}
+
+/// The next signal of the set; 0 where none comes for a while.
+int next_signal(const sigset_t& set) {
+  constexpr timespec a_while{0, 200'000'000};
+  return std::max(sigtimedwait(&set, nullptr, &a_while), 0);
+}
+
 void wait_for_signals(const sigset_t& set) {
-  timespec first{};
-  for (int signal = 0; sigwait(&set, &signal) == 0;) {
-    if (!listening || (signal != stop_signal && asks_again(first))) die_of(signal);
-    came = true;
+  timespec first{}, asked{};
+  for (int last = 0;;) {
+    int signal = 0;
+    if (last == 0)
+      sigwait(&set, &signal);
+    else
+      signal = next_signal(set);
+    if (signal != 0 && (!listening || (signal != stop_signal && asks_again(first)))) die_of(signal);
+    if (signal != 0 && last == 0) {
+      last = signal;
+      clock_gettime(CLOCK_MONOTONIC, &asked);
+      came = true;
+    }
+    if (!in_time && seconds_since(asked) > seconds_to_stop) die_of(last);
   }
 }
 
 }  // namespace
 
 bool asks_again(timespec& first) noexcept {
-  timespec now{};
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  if (first.tv_sec == 0 && first.tv_nsec == 0) {
-    first = now;
-    return false;
-  }
-  return static_cast<double>(now.tv_sec - first.tv_sec) +
-             1e-9 * static_cast<double>(now.tv_nsec - first.tv_nsec) >
-         1.0;
+  if (first.tv_sec != 0 || first.tv_nsec != 0) return seconds_since(first) > 1.0;
+  clock_gettime(CLOCK_MONOTONIC, &first);
+  return false;
 }
 
 void take_signals() {
@@ -56,7 +75,12 @@ void take_signals() {
   std::thread(wait_for_signals, set).detach();
 }
 
-void listen_for_interrupts() { listening = true; }
+void listen_for_interrupts(double patience) {
+  seconds_to_stop = patience;
+  listening = true;
+}
+
+void stop_came_in_time() noexcept { in_time = true; }
 
 bool interrupt_came() noexcept { return came; }
 

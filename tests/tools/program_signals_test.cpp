@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Signals to a run on several ranks: a stop that is not obeyed is enforced, a pause is one of all ranks.
+#include <doctest/doctest.h>
+
+#include <chrono>
+#include <string>
+
+#include "program_runner.hpp"
+
+using namespace kacanov::testing;
+
+namespace {
+
+/// Where a run hangs, the test ends it and sees another exit code.
+const std::string patience = "timeout -s KILL 120";
+
+/// Goes on until it is asked to stop, with a checkpoint after every step.
+const std::string endless =
+    "run beam.json --output out --ranks 2 --set solver.contact=admm --set solver.r=1e-6 "
+    "--set solver.max_contact=2 --set solver.max_outer=100000000";
+
+/// Starts a program of several ranks in $program, and finds them in $ranks once there is a checkpoint.
+const std::string start_ranks = R"("$@" & program=$!
+exec 2>/dev/null
+while [ ! -e out/checkpoint.kacanov ] && kill -0 $program; do sleep 0.02; done
+for child in $(cat /proc/$program/task/*/children); do launcher=$child; done
+ranks=$(cat /proc/$launcher/task/*/children)
+for rank in $ranks; do last=$rank; done
+)";
+
+}  // namespace
+
+TEST_CASE("a run that does not stop when asked to is ended after some seconds, by itself") {
+  const Workplace place;
+  place.put_json("beam.json", small_beam());
+  // The last rank hangs: the first one cannot come to where it would stop.
+  place.put("hang.sh", start_ranks + "kill -s STOP $last\nkill -s TERM $program\nwait $program\n");
+  const auto before = std::chrono::steady_clock::now();
+  const Outcome outcome = place.run(endless + " --stop-within 1", patience + " sh hang.sh");
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
+  INFO("error: ", outcome.error);
+  CHECK(outcome.exit_code == 128 + 15);
+  CHECK(seconds < 30.0);
+  for (const auto& entry : std::filesystem::directory_iterator(place.path("out")))
+    CHECK(entry.path().string().find(".part") == std::string::npos);
+  CHECK_FALSE(place.has("out/result.json"));
+  CHECK(place.run("run beam.json --output out --restart").exit_code == 0);
+  CHECK(place.json("out/result.json")["restarted_after"].get<int>() >= 1);
+}
+
+TEST_CASE("a run that stops in time is not ended, however soon that had to be") {
+  const Workplace place;
+  place.put_json("beam.json", small_beam());
+  place.put("stop.sh", start_ranks + "kill -s TERM $program\nwait $program\n");
+  CHECK(place.run(endless + " --stop-within 20", patience + " sh stop.sh").exit_code == 1);
+  CHECK(place.json("out/result.json")["status"] == "interrupted");
+}
+
+TEST_CASE("Ctrl-Z stops the ranks, and they go on when the program does") {
+  const Workplace place;
+  place.put_json("beam.json", small_beam());
+  // T is the state of what is stopped: of the program and both ranks, then of none of them.
+  place.put("pause.sh", start_ranks + R"sh(states() { for p in $program $ranks; do
+  sed 's/.*) \(.\).*/\1/' /proc/$p/stat; done | tr -d '\n' | tr -c T x; }
+kill -s TSTP $program
+for k in $(seq 200); do [ "$(states)" = TTT ] && break; sleep 0.05; done
+states > paused
+kill -s CONT $program
+for k in $(seq 200); do [ "$(states)" = xxx ] && break; sleep 0.05; done
+states > going
+kill -s TERM $program
+wait $program
+)sh");
+  CHECK(place.run(endless, patience + " sh pause.sh").exit_code == 1);
+  CHECK(contents(place.path("paused")) == "TTT");
+  CHECK(contents(place.path("going")) == "xxx");
+  CHECK(place.json("out/result.json")["status"] == "interrupted");
+}
