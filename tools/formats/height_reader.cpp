@@ -14,6 +14,11 @@ namespace {
 
 constexpr std::int64_t most_values = std::int64_t{1} << 28;
 
+[[noreturn]] void too_few(const std::string& path, const NumberGrid& grid) {
+  throw InputError(path + ": expected at least 2 × 2 heights, got " + std::to_string(grid.rows) + " × " +
+                   std::to_string(grid.columns));
+}
+
 class CsvText {
  public:
   CsvText(const std::string& path, std::string_view bytes) : path_(path), rest_(bytes) {}
@@ -66,6 +71,8 @@ class NetPicture {
     grid.columns = number("the width");
     grid.rows = number("the height");
     const auto values = static_cast<std::int64_t>(grid.columns) * static_cast<std::int64_t>(grid.rows);
+    // Said of rows without columns before any is looked for: there may be two thousand million.
+    if (grid.rows < 2 || grid.columns < 2) too_few(path_, grid);
     if (values > most_values) fail("expected at most 2^28 values, got " + std::to_string(values));
     const int most = bits ? 1 : number("the largest value");
     if (most < 1 || most > 65535)
@@ -151,9 +158,7 @@ NumberGrid parse_heights(const std::string& path, std::string_view bytes) {
   if (!picture && bytes.starts_with("\x89PNG"))
     throw InputError(path + ": expected a PGM, PBM or CSV file, got a PNG: pngtopnm makes a PGM of it");
   const NumberGrid grid = picture ? NetPicture(path, bytes).parse() : CsvText(path, bytes).parse();
-  if (grid.rows < 2 || grid.columns < 2)
-    throw InputError(path + ": expected at least 2 × 2 heights, got " + std::to_string(grid.rows) + " × " +
-                     std::to_string(grid.columns));
+  if (grid.rows < 2 || grid.columns < 2) too_few(path, grid);
   return grid;
 }
 
