@@ -278,17 +278,15 @@ void find_boundary(Mesh& mesh) {
   }
 }
 
-FlatElement check_mesh(const Mesh& mesh) {
+void check_mesh(const Mesh& mesh) {
   if (mesh.element_count() == 0) throw InputError("the mesh has no elements");
   check_nodes(mesh);
   const Geometry geometry(mesh);
-  FlatElement flattest;
   for (std::size_t e = 0; e < mesh.element_count(); ++e) {
     const auto shape = geometry.shape(e);
     const double least = smallest_volume * shape.scale;
     // Written so that an overflow is refused as well.
     if (!(shape.volume > least && shape.smallest > least)) refuse_element(mesh, geometry, e);
-    if (shape.volume < flattest.share * shape.scale) flattest = {e, shape.volume / shape.scale};
   }
   const FacetSets sets(mesh);
   sets.visit([&](std::span<const FacetKey> keys) {
@@ -297,7 +295,6 @@ FlatElement check_mesh(const Mesh& mesh) {
         !same_midsides(sets, keys[0].id, keys[1].id))
       refuse_side(mesh, sets, keys);
   });
-  return flattest;
 }
 
 }  // namespace kacanov

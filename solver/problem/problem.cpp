@@ -28,19 +28,6 @@ void refuse_out_of_range(const std::string& what, double value) {
   throw InputError(text.str());
 }
 
-/// Flatter elements leave single precision, in which the preconditioner works, nothing to hold on to.
-constexpr double sliver = 1e-7;
-
-void warn_of_shape(Problem& problem, const FlatElement& flattest) {
-  if (flattest.share >= sliver) return;
-  std::ostringstream text;
-  text.precision(2);
-  text << "element " << problem.mesh.element_tag(flattest.element) << " is next to flat: its volume is "
-       << flattest.share
-       << " of its longest edge cubed; linear solves may fail on such elements, mesh them anew";
-  problem.warnings.push_back(text.str());
-}
-
 }  // namespace
 
 Problem build_problem(Mesh mesh, const Model& model) {
@@ -51,10 +38,9 @@ Problem build_problem(Mesh mesh, const Model& model) {
     for (const double modulus : {law.bulk, law.secant(0.0)})
       refuse_out_of_range("material[" + std::to_string(i) + "]: a modulus", modulus);
   }
-  const FlatElement flattest = check_mesh(mesh);
+  check_mesh(mesh);
   Problem problem;
   problem.mesh = std::move(mesh);
-  warn_of_shape(problem, flattest);
   const std::size_t unknowns = problem.mesh.coordinates.size();
   problem.load.assign(unknowns, 0.0);
   problem.held.assign(unknowns, 0);

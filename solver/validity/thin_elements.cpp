@@ -56,7 +56,7 @@ void thin_elements(const Problem& problem, Warnings& warnings) {
   warnings.push_back(std::to_string(thin) + (thin == 1 ? " element is" : " elements are") +
                      " thinner than a millionth of their size, down to " + rounded(worst) +
                      ", the first element " + std::to_string(mesh.element_tag(first)) +
-                     ": slow linear solves and lost digits come of that");
+                     ": linear solves are slow on them or fail, and digits are lost; mesh them anew");
 }
 
 }  // namespace kacanov::validity

@@ -57,15 +57,9 @@ struct Mesh {
 /// Fills `facets` and `facet_element` from the elements: the facets that belong to one element only.
 void find_boundary(Mesh& mesh);
 
-/// The element of the smallest volume beside its longest edge cubed (squared in 2D), and that share.
-struct FlatElement {
-  std::size_t element = 0;
-  double share = 1e300;
-};
-
 /// Throws InputError naming the first inverted, degenerate (volume ≤ 1e-14 of its longest edge cubed,
 /// squared in 2D) or non-finite element, a facet shared by three elements, or an unreferenced node.
-FlatElement check_mesh(const Mesh& mesh);
+void check_mesh(const Mesh& mesh);
 
 /// Generated box [0, size]. Triangles cut squares by the diagonal from lower left to upper right, tetrahedra
 /// cut cubes into six round the diagonal from the lowest to the highest corner. Sides are named left, right,
