@@ -119,3 +119,18 @@ TEST_CASE("spectrum and sweep need contact") {
   check_refused(place, place.run("spectrum beam.json"), "contact: the spectrum is that of the contact nodes");
   check_refused(place, place.run("sweep beam.json"), "contact: a sweep over r needs contact");
 }
+
+TEST_CASE("what is quoted from the command line is printed without what a terminal would obey") {
+  const Workplace place;
+  for (const std::string& words :
+       {std::string("run c.json '--\x1b[31mopt'"), std::string("'\x1b]0;owned\x07'"),
+        std::string("run '\xe2\x80\xaegnp.json'"), std::string("check '\xff.json'")}) {
+    const Outcome outcome = place.run(words);
+    CHECK(outcome.exit_code == 2);
+    CHECK(outcome.error.find('\x1b') == std::string::npos);
+    CHECK(outcome.error.find('\x07') == std::string::npos);
+    CHECK(outcome.error.find("\xe2\x80\xae") == std::string::npos);
+    CHECK(outcome.error.find('\xff') == std::string::npos);
+    CHECK(outcome.error.find("\\x") != std::string::npos);
+  }
+}

@@ -27,7 +27,16 @@ inline std::size_t utf8_length(std::string_view text) {
   return length;
 }
 
-/// The text with control characters other than line ends, and bytes that are no UTF-8, as \x1b.
+/// Whether a character of three bytes turns the direction of what follows: embeddings, overrides, isolates.
+inline bool turns_direction(std::string_view text) {
+  if (text[0] != '\xe2') return false;
+  const auto last = static_cast<unsigned char>(text[2]);
+  return (text[1] == '\x80' && last >= 0xaa && last <= 0xae) ||
+         (text[1] == '\x81' && last >= 0xa6 && last <= 0xa9);
+}
+
+/// The text with control characters other than line ends, what turns the direction of writing, and bytes that
+/// are no UTF-8, as \x1b.
 inline std::string printable(std::string_view text) {
   std::string result;
   while (!text.empty()) {
@@ -35,7 +44,8 @@ inline std::string printable(std::string_view text) {
     const auto first = static_cast<unsigned char>(text[0]);
     // C1 controls, which some terminals obey, are two bytes in UTF-8: 0xc2 0x80 to 0xc2 0x9f.
     const bool control = (first < 0x20 && first != '\n') || first == 0x7f ||
-                         (length == 2 && first == 0xc2 && static_cast<unsigned char>(text[1]) < 0xa0);
+                         (length == 2 && first == 0xc2 && static_cast<unsigned char>(text[1]) < 0xa0) ||
+                         (length == 3 && turns_direction(text));
     if (length > 0 && !control) {
       result += text.substr(0, length);
       text.remove_prefix(length);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "formats/printable.hpp"
 #include "problem/closest_word.hpp"
 
 namespace kacanov {
@@ -41,7 +42,7 @@ void add_output(CLI::App& app, Command& command) {
 }
 
 std::string usage_error(const std::string& what) {
-  return "kacanov: error: " + what + "; kacanov --help says more\n";
+  return "kacanov: error: " + printable(what) + "; kacanov --help says more\n";
 }
 
 }  // namespace
@@ -63,6 +64,10 @@ ParsedCommand parse_command(int argc, const char* const* argv) {
                 "go on from the checkpoint that an unfinished run left in the folder");
   run->add_option("--parts", command.parts, "folder that kacanov partition has written; the mesh is not read")
       ->type_name("DIR");
+  run->add_option("--stop-within", command.stop_within,
+                  "seconds that a run which was asked to stop may take to begin its output (default: 30)")
+      ->check(CLI::Range(0.1, 1e6).description(""))
+      ->type_name("SECONDS");
   add_parallel(*run, command);
 
   CLI::App* spectrum =
