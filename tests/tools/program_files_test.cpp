@@ -196,3 +196,17 @@ TEST_CASE("a run of several ranks pauses and goes on with its terminal") {
   CHECK(outcome.output.empty());
   CHECK(place.json("out/result.json")["status"] == "interrupted");
 }
+
+TEST_CASE("a folder under the name of a result is no result, and stays") {
+  const Workplace place;
+  place.put_json("beam.json", small_beam());
+  for (const char* name : {"summary.txt", "deformed.svg"}) {
+    std::filesystem::create_directories(place.path(std::string("out/") + name));
+    const Outcome outcome = place.run("run beam.json --output out");
+    CHECK(outcome.exit_code == 2);
+    CHECK(outcome.error == std::string("kacanov: error: --output: out/") + name +
+                               " stands where a file of the run belongs, and is a folder: move it away\n");
+    CHECK(place.has(std::string("out/") + name));
+    std::filesystem::remove(place.path(std::string("out/") + name));
+  }
+}

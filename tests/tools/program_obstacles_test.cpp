@@ -333,7 +333,8 @@ TEST_CASE("spheres that touch at the same place press as a plane does, or say wh
     CHECK(force() == doctest::Approx(of_plane).epsilon(std::max(1e3 / radius, 1e-6)));
     CHECK((result["status"] == "converged") == (outcome.exit_code == 0));
     CHECK((place.run("verify case.json --output out").exit_code == 0) == (outcome.exit_code == 0));
-    CHECK(result["warnings"].dump().find("so large or so far away") < std::string::npos == (power > 7));
+    const bool warned = result["warnings"].dump().find("so large or so far away") != std::string::npos;
+    CHECK(warned == (power > 7));
     if (outcome.exit_code == 1) CHECK(result["status"] == "limited_by_rounding");
     statuses += outcome.exit_code == 0 ? 'c' : 'l';
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Signals to a run on several ranks: a stop that is not obeyed is enforced, a pause is one of all ranks.
+// Signals to a run on several ranks: a stop that is not obeyed is enforced.
 #include <doctest/doctest.h>
 
 #include <chrono>
@@ -53,26 +53,5 @@ TEST_CASE("a run that stops in time is not ended, however soon that had to be") 
   place.put_json("beam.json", small_beam());
   place.put("stop.sh", start_ranks + "kill -s TERM $program\nwait $program\n");
   CHECK(place.run(endless + " --stop-within 20", patience + " sh stop.sh").exit_code == 1);
-  CHECK(place.json("out/result.json")["status"] == "interrupted");
-}
-
-TEST_CASE("Ctrl-Z stops the ranks, and they go on when the program does") {
-  const Workplace place;
-  place.put_json("beam.json", small_beam());
-  // T is the state of what is stopped: of the program and both ranks, then of none of them.
-  place.put("pause.sh", start_ranks + R"sh(states() { for p in $program $ranks; do
-  sed 's/.*) \(.\).*/\1/' /proc/$p/stat; done | tr -d '\n' | tr -c T x; }
-kill -s TSTP $program
-for k in $(seq 200); do [ "$(states)" = TTT ] && break; sleep 0.05; done
-states > paused
-kill -s CONT $program
-for k in $(seq 200); do [ "$(states)" = xxx ] && break; sleep 0.05; done
-states > going
-kill -s TERM $program
-wait $program
-)sh");
-  CHECK(place.run(endless, patience + " sh pause.sh").exit_code == 1);
-  CHECK(contents(place.path("paused")) == "TTT");
-  CHECK(contents(place.path("going")) == "xxx");
   CHECK(place.json("out/result.json")["status"] == "interrupted");
 }

@@ -54,8 +54,13 @@ bool is_output(std::string_view name) {
 /// when it was killed.
 void clear_folder(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> old;
-  for (const auto& entry : std::filesystem::directory_iterator(folder))
-    if (is_output(entry.path().filename().string())) old.push_back(entry.path());
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (!is_output(entry.path().filename().string())) continue;
+    if (std::filesystem::is_directory(entry.symlink_status()))
+      throw InputError("--output: " + entry.path().string() +
+                       " stands where a file of the run belongs, and is a folder: move it away");
+    old.push_back(entry.path());
+  }
   for (const std::filesystem::path& file : old) std::filesystem::remove(file);
 }
 
