@@ -151,7 +151,8 @@ TEST_CASE("numbers come first, and no picture takes them away") {
   // A folder where the picture is to be: it cannot be written.
   std::filesystem::create_directories(place.path("out/deformed.svg/in the way"));
   Outcome outcome = place.run("run beam.json --output out");
-  CHECK(outcome.exit_code == 3);  // clearing an old picture away is not to take what is no picture
+  CHECK(outcome.exit_code == 2);  // clearing an old picture away is not to take what is no picture
+  CHECK(place.has("out/deformed.svg/in the way"));
   std::filesystem::remove_all(place.path("out"));
   // Fields that do not fit: the run has failed, and its numbers are there.
   place.put("limited.sh", "ulimit -f $1\nshift\nexec \"$@\"\n");
