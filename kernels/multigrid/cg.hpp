@@ -17,6 +17,13 @@ struct CgOptions {
   double relative = 1e-8;  ///< ... or at ‖r‖ ≤ relative · ‖r₀‖
   int max_iterations = 2000;
   double most = std::numeric_limits<double>::infinity();  ///< ‖r‖ that `relative` alone may not leave
+  double reach = 1.0;  ///< a solve that would stop within this factor of `absolute` goes on to there
+
+  /// ‖r‖ at which a solve stops that starts with `first`.
+  double target(double first) const {
+    const double wanted = std::min(relative * first, most);
+    return wanted <= reach * absolute ? absolute : wanted;
+  }
 };
 
 struct CgResult {
@@ -47,8 +54,7 @@ CgResult conjugate_gradients(const InnerSpace& space, const Apply& apply, const 
   auto& z = q;  // wanted one after the other
   space.project(r);
   result.first_residual = result.residual = space.norm(r);
-  const double target =
-      std::max(options.absolute, std::min(options.relative * result.first_residual, options.most));
+  const double target = options.target(result.first_residual);
   result.converged = result.residual <= target;
   double rz = 0.0;
   while (!result.converged && result.iterations < options.max_iterations) {

@@ -110,8 +110,7 @@ CgResult solve_oblique(const SymmetricPart& part, const HeldNodes& nodes, std::s
   Vector residual = work.residual;
   CgResult result;
   result.first_residual = space.norm(residual);
-  const double target =
-      std::max(options.absolute, std::min(options.relative * result.first_residual, options.most));
+  const double target = options.target(result.first_residual);
   const auto oblique = [&](std::span<const double> p, std::span<double> q) {
     part.apply(p, q);
     nodes.subtract_sliding(q);

@@ -45,9 +45,9 @@ CgOptions newton_accuracy(const SolverOptions& options, const Residuals& before,
   const double worst = before.certificate.worst();
   CgOptions out;
   out.absolute = tuning.last_share * options.tolerance * gap_share(before.certificate) * before.scales.force;
-  const bool last = worst <= tuning.last_reach * options.tolerance;
-  out.relative = last ? tuning.last_reduction : tuning.solve_reduction;
+  out.relative = tuning.solve_reduction;
   out.max_iterations = options.max_cg;
+  out.reach = tuning.last_reach;
   // The first residual alone says little: points moved onto the obstacle strain the elements beside them.
   out.most = std::min(worst, 1.0) * before.scales.force;
   return out;

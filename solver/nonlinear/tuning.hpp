@@ -17,10 +17,11 @@ struct Tuning {
   /// ADMM iterations of the first step where Newton steps follow: it is to guess who touches. A slender
   /// cantilever that just reaches its obstacle took 10,000 for the same answer.
   int opening_iterations = 20;
-  /// Of the first residual of a semismooth Newton step. One that starts within `last_reach` of the tolerance
-  /// may be the last: it is solved to `last_reduction`, or to `last_share` of the tolerance.
+  /// Of the first residual of a semismooth Newton step. One that would end within `last_reach` of
+  /// `last_share` of the tolerance goes on to there: it may be the last then, and digits cost more in a step
+  /// of their own (87 cases: 8,071 applications and 554 steps in place of 8,448 and 606).
   double solve_reduction = 0.03;
-  double last_reach = 100.0, last_reduction = 1e-3, last_share = 0.2;
+  double last_reach = 100.0, last_share = 0.5;
 
   // Linearisation (theory: newton, damping).
 
