@@ -183,6 +183,10 @@ void check_part(const Part& part, int rank, int ranks) {
   expect(!part.laws.empty(), "laws", "are none");
   for (const Law& law : part.laws)
     if (const std::string fault = validate(law); !fault.empty()) refuse("laws", "are wrong: " + fault);
+  for (const Law& law : part.laws) {
+    const double stiffness = law.secant(0.0);
+    expect(std::isfinite(stiffness) && stiffness > 0.0, "laws", "have no stiffness that is a number > 0");
+  }
   if (!part.law_of_element.empty()) expect_length("laws of elements", part.law_of_element.size(), elements);
   expect_indices("laws of elements", part.law_of_element, part.laws.size());
 
