@@ -253,7 +253,9 @@ TEST_CASE(
         {Cylinder{{3, 0, -size}, {5, 0, 0}, size, Vector3{0, 0, -2}}, 1.0},
         {Torus{{0, 0, -size}, {1, 0, 0}, 0.75 * size, 0.25 * size}, 4.0},
         {Block{{-size, -size, -size}, {size, size, 0}}, 0.0}};
-    for (const auto& [obstacle, bend] : obstacles) {
+    for (const auto& one : obstacles) {
+      const auto& obstacle = one.first;
+      const auto& bend = one.second;
       CAPTURE(size);
       CAPTURE(obstacle.index());
       const Vector3 x{dice.number() / 4, dice.number() / 4, dice.number() / 4};

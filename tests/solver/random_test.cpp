@@ -7,6 +7,7 @@
 #include <iostream>
 #include <random>
 
+#include "../sanitized.hpp"
 #include "dense_solver.hpp"
 #include "support.hpp"
 
@@ -190,7 +191,7 @@ int environment(const char* name, int otherwise) {
   return value != nullptr ? std::atoi(value) : otherwise;
 }
 
-#if defined(__SANITIZE_ADDRESS__)
+#ifdef KACANOV_TESTS_SANITIZED
 constexpr int usual_count = 40;
 #else
 constexpr int usual_count = 500;

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "../sanitized.hpp"
 #include "program_runner.hpp"
 
 using namespace kacanov::testing;
@@ -90,7 +91,7 @@ TEST_CASE("a rank that is killed ends the run, which can go on from its checkpoi
   CHECK(place.json("out/result.json")["restarted_after"].get<int>() >= 1);
 }
 
-#if !defined(__SANITIZE_ADDRESS__)  // whose shadow memory knows no limit
+#ifndef KACANOV_TESTS_SANITIZED  // whose shadow memory knows no limit
 TEST_CASE("where memory runs out the run says so, on one rank and when only the last of two has none") {
   const Workplace place;
   place.put_json("beam.json", small_beam());
