@@ -116,13 +116,15 @@ bool reach(OuterLoop& loop, const std::optional<OuterLoop::Place>& before, doubl
 
 }  // namespace
 
-bool run_load_steps(OuterLoop& loop, std::span<const double> shares, Result& result) {
+bool run_load_steps(OuterLoop& loop, std::span<const double> shares, Result& result,
+                    const std::function<void()>& step_over) {
   std::optional<OuterLoop::Place> start;  // none: from rest
   for (;;) {
     const std::size_t over = result.load_steps.size();
     const bool finished = reach(loop, start, shares[over], result);
     if (!finished || over + 1 == shares.size() || !worth_going_on(loop, result)) return finished;
     result.load_steps.push_back(line_now(loop, shares[over], result));
+    step_over();
     start = loop.next_start();
     loop.go_from(*start, shares[over + 1], result);
   }

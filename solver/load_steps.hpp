@@ -2,6 +2,7 @@
 // From one share of the load to the next, and the history of what each came to.
 #pragma once
 
+#include <functional>
 #include <span>
 
 #include "nonlinear/outer_loop.hpp"
@@ -9,9 +10,10 @@
 namespace kacanov {
 
 /// Runs the loop at the shares that result.load_steps does not have yet, each from the end of the one before,
-/// as long as each converges; adds the line of every share but the one it ends with. False: the run was
-/// asked to stop. Collective.
-bool run_load_steps(OuterLoop& loop, std::span<const double> shares, Result& result);
+/// as long as each converges; adds the line of every share but the one it ends with, and calls `over` then.
+/// False: the run was asked to stop. Collective.
+bool run_load_steps(OuterLoop& loop, std::span<const double> shares, Result& result,
+                    const std::function<void()>& over);
 
 /// The line of the history for a share whose totals `result` has, with the lines of those before.
 LoadStep load_step_line(const Result& result, double share);

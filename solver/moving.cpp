@@ -47,6 +47,8 @@ class Chain {
         curves_(part.steps),
         extent_(body_extent(part)) {
     run_.checkpoint = nullptr;
+    over_ = std::move(run_.load_step_over);
+    run_.load_step_over = nullptr;
     run_.start = nullptr;
     if (run_.coarse != nullptr) start_ = interpolate(*run_.coarse, part);
     run_.coarse = nullptr;
@@ -84,8 +86,14 @@ class Chain {
         end_early(k, time);
         break;
       }
+      if (over_ && k + 1 < curves_.size()) {
+        last_.result.load_steps = lines;
+        last_.result.by_time = !model_.steps_are_factors;
+        over_(part_, last_);
+      }
     }
     last_.result.load_steps = std::move(lines);
+    last_.result.by_time = !model_.steps_are_factors;
     last_.result.load_reached = reached;
     return std::move(last_);
   }
@@ -149,7 +157,8 @@ class Chain {
   void end_early(std::size_t step, double time) {
     if (curves_.size() == 2) return;
     std::ostringstream place;
-    place << "load step " << step << " of " << curves_.size() - 1 << " (time " << time << "): ";
+    place << "load step " << step << " of " << curves_.size() - 1
+          << (model_.steps_are_factors ? " (factor " : " (time ") << time << "): ";
     last_.result.message = place.str() + last_.result.message;
   }
 
@@ -163,6 +172,7 @@ class Chain {
   double travel_ = HUGE_VAL;           ///< of that, as the last step ended; none yet
   std::vector<double> u_;              ///< at the end of the load step before
   Start start_;
+  decltype(RunOptions::load_step_over) over_;
   Solution last_;  ///< its counts, times and warnings are those of all solves so far
 };
 
@@ -173,6 +183,7 @@ Model with_curves(Model model) {
   std::vector<double> shares = std::move(model.solver.load_steps);
   if (shares.empty()) shares = {1.0};
   model.solver.load_steps.clear();
+  model.steps_are_factors = true;
   for (const double share : shares) {
     LoadStage stage{share, {}};
     for (std::size_t i = 0; i < model.boundary.size(); ++i)

@@ -104,6 +104,20 @@ void end_load_steps(const std::vector<double>& shares, bool finished, Result& re
   result.message = place.str() + result.message;
 }
 
+/// Shows the caller where the loop stands at the end of a load step.
+void hand_out_step(const StepContext& context, const Result& result, const RunOptions& run,
+                   InOwnUnits& scaled) {
+  Solution now;
+  now.displacement = context.state.u;
+  collect_contact(context.part, context.state, context.options.tolerance, now);
+  to_users_units(now, scaled.units());
+  now.result.load_steps = result.load_steps;
+  now.result.by_time = result.by_time;
+  now.result.load_factor = context.path.share();
+  const InUsersUnits back(scaled);
+  run.load_step_over(context.part, now);
+}
+
 std::string unsolved_message(const Result& result, const SolverOptions& options) {
   return "the linear solves of " + std::to_string(result.unsolved_steps) + " of " +
          std::to_string(result.outer_iterations) +
@@ -126,7 +140,7 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   std::optional<Start> start;
   if (!restart && run.coarse != nullptr) start = interpolate(*run.coarse, part);
   if (!restart && run.from != nullptr) start = *run.from;
-  const InOwnUnits scaled(part);
+  InOwnUnits scaled(part);
   if (start) to_own_units(*start, scaled.units());
   SolverOptions options = users_options;
   options.r /= scaled.units().penalty();
@@ -141,7 +155,10 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   const double prepared = MPI_Wtime();
   if (restart) loop.restore(run.start, result);
   result.message = part.no_equilibrium;
-  const bool finished = !part.no_equilibrium.empty() || run_load_steps(loop, shares, result);
+  const auto step_over = [&] {
+    if (run.load_step_over) hand_out_step(context, result, run, scaled);
+  };
+  const bool finished = !part.no_equilibrium.empty() || run_load_steps(loop, shares, result, step_over);
   const double looped = MPI_Wtime();
 
   const Vector internal = internal_force(part, context.state.u);

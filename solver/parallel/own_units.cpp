@@ -79,11 +79,18 @@ UnitSystem units_of(const Part& part) {
 }
 
 InOwnUnits::InOwnUnits(Part& part) : part_(part), units_(units_of(part)), laws_(part.laws) {
-  scale(part, units_.inverse());
-  for (Law& law : part.laws) measure(law, units_);
+  for (Law& law : laws_) measure(law, units_);
+  enter();
 }
 
-InOwnUnits::~InOwnUnits() {
+InOwnUnits::~InOwnUnits() { leave(); }
+
+void InOwnUnits::enter() {
+  scale(part_, units_.inverse());
+  part_.laws.swap(laws_);
+}
+
+void InOwnUnits::leave() {
   scale(part_, units_);
   part_.laws.swap(laws_);
 }

@@ -25,9 +25,26 @@ class InOwnUnits {
   const UnitSystem& units() const noexcept { return units_; }
 
  private:
+  friend class InUsersUnits;
+  /// There and back; each swaps the laws.
+  void enter();
+  void leave();
+
   Part& part_;
   UnitSystem units_;
-  std::vector<Law> laws_;  ///< in the user's units
+  std::vector<Law> laws_;  ///< in the units that the part is not in
+};
+
+/// In between, the same part in its user's units.
+class InUsersUnits {
+ public:
+  explicit InUsersUnits(InOwnUnits& own) : own_(own) { own_.leave(); }
+  ~InUsersUnits() { own_.enter(); }
+  InUsersUnits(const InUsersUnits&) = delete;
+  InUsersUnits& operator=(const InUsersUnits&) = delete;
+
+ private:
+  InOwnUnits& own_;
 };
 
 }  // namespace kacanov

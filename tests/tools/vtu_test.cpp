@@ -152,11 +152,12 @@ TEST_CASE("pieces and collections name their files and fields") {
   CHECK(text.find("<Piece Source=\"p_0.vtu\"/>") < text.find("<Piece Source=\"p_1.vtu\"/>"));
   CHECK(text.find("Name=\"traction\" NumberOfComponents=\"3\"") != std::string::npos);
   CHECK(text.find("Name=\"a&lt;b\"") != std::string::npos);
-  const std::vector<PvdPart> parts{{"body", "p.pvtu"}, {"contact", "c.vtu"}};
+  const std::vector<PvdPart> parts{{"body", "p.pvtu", 0.1, 0}, {"contact", "c.vtu", 0.1, 1}};
   write_pvd(folder.file("all.pvd"), parts);
   const std::string collection = read_bytes(folder.file("all.pvd"));
   CHECK(collection.find("name=\"body\" file=\"p.pvtu\"") <
         collection.find("name=\"contact\" file=\"c.vtu\""));
+  CHECK(collection.find("timestep=\"0.10000000000000001\" part=\"1\"") != std::string::npos);
 }
 
 TEST_CASE("what cannot be written is reported with its name, and leaves nothing behind") {

@@ -299,8 +299,9 @@ class CaseParser {
   }
 
   void parse_output(const Node& node) {
-    const Object object(node, {"fields", "report", "checkpoint"});
+    const Object object(node, {"fields", "steps", "report", "checkpoint"});
     if (const auto v = object.optional("fields")) result_.output.fields = v->choice({"vtu", "none"}) == 0;
+    if (const auto v = object.optional("steps")) result_.output.steps = v->boolean();
     if (const auto v = object.optional("report")) result_.output.report = v->boolean();
     if (const auto v = object.optional("checkpoint")) result_.output.checkpoint = v->boolean();
   }

@@ -23,6 +23,7 @@ struct MeshSource {
 
 struct OutputOptions {
   bool fields = true;  ///< `fields`: "vtu" or "none"
+  bool steps = true;   ///< fields of the load steps before the last, too
   bool report = true;  ///< pictures
   bool checkpoint = true;
 };

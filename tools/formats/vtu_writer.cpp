@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <sstream>
 
 #include <kacanov/error.hpp>
 #include "formats/atomic_file.hpp"
@@ -193,9 +194,13 @@ void write_pvtu(const std::string& path, const Grid& like, std::span<const std::
 
 void write_pvd(const std::string& path, std::span<const PvdPart> parts) {
   std::string text = header("Collection") + "<Collection>\n";
-  for (std::size_t i = 0; i < parts.size(); ++i)
-    text += "<DataSet timestep=\"0\" part=\"" + std::to_string(i) + "\" name=\"" + xml_escape(parts[i].name) +
-            "\" file=\"" + xml_escape(parts[i].file) + "\"/>\n";
+  for (const PvdPart& part : parts) {
+    std::ostringstream time;
+    time.precision(17);
+    time << part.time;
+    text += "<DataSet timestep=\"" + time.str() + "\" part=\"" + std::to_string(part.part) + "\" name=\"" +
+            xml_escape(part.name) + "\" file=\"" + xml_escape(part.file) + "\"/>\n";
+  }
   write_file(path, text + "</Collection>\n</VTKFile>\n");
 }
 

@@ -82,6 +82,8 @@ void write_pvtu(const std::string& path, const Grid& like, std::span<const std::
 struct PvdPart {
   std::string name;  ///< shown by ParaView's extract block
   std::string file;  ///< relative to the folder of the .pvd
+  double time = 0.0;
+  int part = 0;  ///< number of the block among those of its time
 };
 void write_pvd(const std::string& path, std::span<const PvdPart> parts);
 

@@ -31,31 +31,22 @@
 namespace kacanov {
 namespace {
 
-/// `name` without a number at its end that follows `mark`; the same where it does not end so.
-std::string_view without_number(std::string_view name, std::string_view mark) {
-  const std::size_t last = name.find_last_not_of("0123456789");
-  if (last == std::string_view::npos || last + 1 == name.size() || !name.substr(0, last + 1).ends_with(mark))
-    return name;
-  return name.substr(0, last + 1 - mark.size());
-}
-
 /// Whether a run writes files of this name, or has left it unfinished. A whole checkpoint is none: it stays.
 bool is_output(std::string_view name) {
   const std::string_view whole = without_number(name, ".part");
   if (whole == "checkpoint.kacanov") return whole != name;
-  for (const std::string_view file :
-       {"result.json", "summary.txt", "result.pvd", "body.pvtu", "contact.vtu", "deformed.svg"})
+  for (const std::string_view file : {"result.json", "summary.txt", "deformed.svg"})
     if (whole == file) return true;
-  constexpr std::string_view vtu = ".vtu";
-  return whole.ends_with(vtu) && without_number(whole.substr(0, whole.size() - vtu.size()), "_") == "body";
+  return is_field_file(whole);
 }
 
 /// Takes away what an earlier run left under names that this one may not write again, and what it was writing
-/// when it was killed.
-void clear_folder(const std::filesystem::path& folder) {
+/// when it was killed. A run that goes on keeps the fields of the load steps behind it.
+void clear_folder(const std::filesystem::path& folder, bool goes_on) {
   std::vector<std::filesystem::path> old;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (!is_output(entry.path().filename().string())) continue;
+    const std::string name = entry.path().filename().string();
+    if (!is_output(name) || (goes_on && is_step_file(name))) continue;
     if (std::filesystem::is_directory(entry.symlink_status()))
       throw InputError("--output: " + entry.path().string() +
                        " stands where a file of the run belongs, and is a folder: move it away");
@@ -149,6 +140,17 @@ Solution solve_case(const Case& input, Part& part, const MpiSession& mpi, const 
   return solve_moving(part, model, options);
 }
 
+/// Writes the fields of a load step that is over. Collective.
+void write_step(const FieldPlace& place, const LoadedCase& loaded, const Model& model, const MpiSession& mpi,
+                const Solution& solution) {
+  const ContactFields contact = gather_contact_fields(loaded.part, solution);
+  const NodalStress nodal = recover_stress(loaded.part, solution.displacement);
+  together(mpi, [&] {
+    write_body(place, loaded.part, solution, nodal);
+    if (mpi.first()) write_surroundings(place, *loaded.problem, model, contact, mpi.ranks());
+  });
+}
+
 /// What failed after the solve does not take its numbers away: they stay beside the status and the message.
 void note_failure(const std::filesystem::path& folder, const std::string& text) {
   const std::filesystem::path file = folder / "result.json";
@@ -192,7 +194,7 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
     file.emplace(folder, input, loaded.print);
     if (command.restart) left = file->read();
     held = std::make_shared<OutputFolder>(folder);
-    clear_folder(folder);
+    clear_folder(folder, command.restart);
     if (!command.restart) file->remove();
   });
 
@@ -213,6 +215,10 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
   CoarseRun coarse;
   if (!command.restart) coarse = solve_coarser(input, mpi, options);
   if (coarse.solution) options.coarse = &*coarse.solution;
+  if (input.output.fields && input.output.steps)
+    options.load_step_over = [&](const Part&, const Solution& now) {
+      write_step({folder, now.result.load_steps.size()}, loaded, input.model, mpi, now);
+    };
   Solution solution = solve_case(input, loaded.part, mpi, options, left ? file->path().string() : "");
 
   const double solved = MPI_Wtime();
@@ -253,13 +259,16 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
                                                  std::filesystem::exists(file->path()));
   if (input.output.fields) {
     together(mpi, [&] {
-      write_body(folder, loaded.part, solution, nodal);
+      write_body({folder}, loaded.part, solution, nodal);
       if (replaced) sync_file((folder / body_file(mpi.rank(), mpi.ranks())).string());
     });
   }
   together(mpi, [&] {
     if (!mpi.first()) return;
-    if (input.output.fields) write_collection(folder, *loaded.problem, input.model, contact, mpi.ranks());
+    if (input.output.fields) {
+      write_surroundings({folder}, *loaded.problem, input.model, contact, mpi.ranks());
+      write_series(folder, *loaded.problem, result, mpi.ranks());
+    }
     if (input.output.report) {
       try_to_show([&] {
         write_file((folder / "deformed.svg").string(),

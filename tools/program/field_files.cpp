@@ -12,8 +12,46 @@
 
 namespace kacanov {
 
-std::string body_file(int rank, int ranks) {
-  return ranks == 1 ? "body.vtu" : "body_" + std::to_string(rank) + ".vtu";
+namespace {
+
+std::string step_mark(std::size_t step) { return step == 0 ? "" : "_step_" + std::to_string(step); }
+std::string whole_body(int ranks, std::size_t step) {
+  return ranks == 1 ? body_file(0, 1, step) : "body" + step_mark(step) + ".pvtu";
+}
+std::string surface_file(std::size_t step) { return "contact" + step_mark(step) + ".vtu"; }
+
+/// Without the ending of a file of fields; empty where it has none.
+std::string_view stem(std::string_view name) {
+  for (const std::string_view ending : {".vtu", ".pvtu"})
+    if (name.ends_with(ending)) return name.substr(0, name.size() - ending.size());
+  return {};
+}
+
+}  // namespace
+
+std::string_view without_number(std::string_view name, std::string_view mark) {
+  const std::size_t last = name.find_last_not_of("0123456789");
+  if (last == std::string_view::npos || last + 1 == name.size() || !name.substr(0, last + 1).ends_with(mark))
+    return name;
+  return name.substr(0, last + 1 - mark.size());
+}
+
+std::string body_file(int rank, int ranks, std::size_t step) {
+  return "body" + step_mark(step) + (ranks == 1 ? "" : "_" + std::to_string(rank)) + ".vtu";
+}
+
+bool is_step_file(std::string_view name) {
+  const std::string_view whole = stem(name);
+  for (const std::string_view field : {"body", "contact"})
+    for (const std::string_view one : {whole, without_number(whole, "_")})
+      if (const std::string_view step = without_number(one, "_step_"); step != one && step == field)
+        return true;
+  return false;
+}
+
+bool is_field_file(std::string_view name) {
+  return name == "result.pvd" || name == "body.pvtu" || name == "contact.vtu" || is_step_file(name) ||
+         (name.ends_with(".vtu") && without_number(stem(name), "_") == "body");
 }
 
 namespace {
@@ -178,7 +216,7 @@ ContactFields gather_contact_fields(const Part& part, const Solution& solution) 
           gather_contact(part, status, 1), gather_contact(part, traction, 3)};
 }
 
-void write_body(const std::filesystem::path& folder, const Part& part, const Solution& solution,
+void write_body(const FieldPlace& place, const Part& part, const Solution& solution,
                 const NodalStress& nodal) {
   Grid grid = body_grid(part.type);
   grid.points = part.coordinates;
@@ -209,22 +247,35 @@ void write_body(const std::filesystem::path& folder, const Part& part, const Sol
       });
   grid.cell_fields[5].values =
       tags(part.element_count(), [&part](std::size_t e) { return part.element_tag(e); });
-  write_vtu((folder / body_file(part.node_map.rank, part.node_map.ranks)).string(), grid);
+  write_vtu((place.folder / body_file(part.node_map.rank, part.node_map.ranks, place.step)).string(), grid);
 }
 
-void write_collection(const std::filesystem::path& folder, const Problem& problem, const Model& model,
-                      const ContactFields& contact, int ranks) {
-  std::vector<PvdPart> parts{{"body", body_file(0, ranks)}};
+void write_surroundings(const FieldPlace& place, const Problem& problem, const Model& model,
+                        const ContactFields& contact, int ranks) {
   if (ranks > 1) {
     std::vector<std::string> pieces;
-    for (int rank = 0; rank < ranks; ++rank) pieces.push_back(body_file(rank, ranks));
-    write_pvtu((folder / "body.pvtu").string(), body_grid(problem.mesh.type), pieces);
-    parts[0].file = "body.pvtu";
+    for (int rank = 0; rank < ranks; ++rank) pieces.push_back(body_file(rank, ranks, place.step));
+    write_pvtu((place.folder / whole_body(ranks, place.step)).string(), body_grid(problem.mesh.type), pieces);
   }
-  if (!problem.contact.empty()) {
-    write_surface(folder / "contact.vtu", contact_surface(problem, model, contact), problem.mesh);
-    parts.push_back({"contact", "contact.vtu"});
+  if (!problem.contact.empty())
+    write_surface(place.folder / surface_file(place.step), contact_surface(problem, model, contact),
+                  problem.mesh);
+}
+
+void write_series(const std::filesystem::path& folder, const Problem& problem, const Result& result,
+                  int ranks) {
+  std::vector<PvdPart> parts;
+  const auto add = [&](std::size_t step, double time) {
+    parts.push_back({"body", whole_body(ranks, step), time, 0});
+    if (!problem.contact.empty()) parts.push_back({"contact", surface_file(step), time, 1});
+  };
+  for (std::size_t k = 0; k < result.load_steps.size(); ++k) {
+    const double time = result.load_steps[k].factor;
+    // A run with another number of ranks, from a checkpoint of which this one goes on, has other names.
+    if (time < result.load_factor && std::filesystem::exists(folder / whole_body(ranks, k + 1)))
+      add(k + 1, time);
   }
+  add(0, result.load_steps.empty() && !result.by_time ? 0.0 : result.load_factor);
   write_pvd((folder / "result.pvd").string(), parts);
 }
 

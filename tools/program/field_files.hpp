@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 #include <kacanov/nodal_stress.hpp>
 #include <kacanov/part.hpp>
@@ -21,15 +22,32 @@ struct ContactFields {
 /// Collective; empty on other ranks.
 ContactFields gather_contact_fields(const Part& part, const Solution& solution);
 
-/// Name of a rank's piece of the body: body.vtu, or body_<rank>.vtu where there are several.
-std::string body_file(int rank, int ranks);
+/// Where fields are written: the folder, and the load step they are the end of; 0: the end of the run.
+struct FieldPlace {
+  std::filesystem::path folder;
+  std::size_t step = 0;
+};
+
+/// Name of a rank's piece of the body: body.vtu, or body_<rank>.vtu where there are several;
+/// body_step_<step>... of a load step.
+std::string body_file(int rank, int ranks, std::size_t step = 0);
+/// `name` without a number at its end that follows `mark`; the same where it does not end so.
+std::string_view without_number(std::string_view name, std::string_view mark);
+/// Whether a run writes fields under this name.
+bool is_field_file(std::string_view name);
+/// Whether it does so for a load step before the last.
+bool is_step_file(std::string_view name);
 
 /// Writes this rank's piece. `nodal`: recover_stress() of the solution.
-void write_body(const std::filesystem::path& folder, const Part& part, const Solution& solution,
+void write_body(const FieldPlace& place, const Part& part, const Solution& solution,
                 const NodalStress& nodal);
 
 /// What ties the pieces together, and the contact surface; on the first rank.
-void write_collection(const std::filesystem::path& folder, const Problem& problem, const Model& model,
-                      const ContactFields& contact, int ranks);
+void write_surroundings(const FieldPlace& place, const Problem& problem, const Model& model,
+                        const ContactFields& contact, int ranks);
+
+/// The series for ParaView: the load steps that fields are there of, and the end of the run.
+void write_series(const std::filesystem::path& folder, const Problem& problem, const Result& result,
+                  int ranks);
 
 }  // namespace kacanov

@@ -135,6 +135,7 @@ struct Model {
   /// One load step each. Entries that none names have the factor 1, others 0 until they are named. Empty: all
   /// loads go together, by SolverOptions::load_steps.
   std::vector<LoadStage> steps;
+  bool steps_are_factors = false;  ///< with_curves() has made `steps` of SolverOptions::load_steps
   std::vector<Vector3> probes;
   SolverOptions solver;
 };

@@ -42,6 +42,9 @@ struct RunOptions {
   const Checkpoint* start = nullptr;
   /// The same body solved on a coarser mesh, to start from; the same on every rank. `start` goes before it.
   const CoarseSolution* coarse = nullptr;
+  /// Called on all ranks with the end of every load step that has converged but the last one; the part is
+  /// in the user's units then, the result has the lines of the load steps so far. Empty: never.
+  std::function<void(const Part&, const Solution&)> load_step_over;
   /// Begins from these values of this rank's part, in the user's units (null: from rest); on all ranks or
   /// none.
   const Start* from = nullptr;
