@@ -66,11 +66,18 @@ CoarseSolution whole_solution(const Part& part, const Problem* problem, const So
     std::stable_sort(coarse.contact.begin(), coarse.contact.end(),
                      [](const auto& a, const auto& b) { return a.node < b.node; });
   }
-  for (std::vector<double>* values : {&coarse.coordinates, &coarse.displacement})
-    broadcast(*values, part.node_map);
-  broadcast(coarse.elements, part.node_map);
-  broadcast(coarse.contact, part.node_map);
+  share(coarse, part.node_map);
   return coarse;
+}
+
+void share(CoarseSolution& coarse, const Communicator& ranks) {
+  std::vector<double> numbers{static_cast<double>(coarse.type), coarse.lambda_max};
+  for (std::vector<double>* values : {&numbers, &coarse.coordinates, &coarse.displacement})
+    broadcast(*values, ranks);
+  broadcast(coarse.elements, ranks);
+  broadcast(coarse.contact, ranks);
+  coarse.type = static_cast<ElementType>(numbers[0]);
+  coarse.lambda_max = numbers[1];
 }
 
 Start interpolate(const CoarseSolution& coarse, const Part& part) {

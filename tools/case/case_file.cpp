@@ -140,15 +140,7 @@ class CaseParser {
         node, {"on", "young", "poisson", "law", "plastic", "yield_stress", "tangent_modulus", "bbar"});
     MaterialEntry entry;
     entry.on = selector(object.required("on"));
-    const double young = object.required("young").number(positive);
-    const double poisson = object.required("poisson").number(poisson_ratio);
-    entry.law = elastic_law(young, poisson);
-    const std::string kind = object.at_most_one_of({"law", "plastic", "tangent_modulus"});
-    if (kind == "law") entry.law = parse_law(young, poisson, object.required("law"), result_.warnings);
-    if (kind == "plastic") entry.law = parse_plastic(young, poisson, object.required("plastic"));
-    if (kind == "tangent_modulus") entry.law = parse_bilinear(young, poisson, object);
-    if (const auto yield_stress = object.optional("yield_stress"); yield_stress && kind != "tangent_modulus")
-      yield_stress->expected("this key beside tangent_modulus alone");
+    entry.law = parse_material_law(object, result_.warnings);
     if (const auto bbar = object.optional("bbar")) entry.bbar = bbar->boolean();
     result_.model.materials.push_back(entry);
   }

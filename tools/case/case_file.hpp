@@ -2,6 +2,7 @@
 // The case file: one JSON object that says what to solve.
 #pragma once
 
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -19,6 +20,8 @@ struct MeshSource {
   std::optional<BoxSpec> box;
   int order = 1;   ///< 2: quadratic elements are made of the file's linear ones; a box has them already
   int refine = 0;  ///< times that the mesh of the file is refined; a box has its cells cut already
+  /// What is in the file, where a caller has it in memory: then the file is not opened.
+  std::shared_ptr<const std::string> content = {};
 };
 
 struct OutputOptions {

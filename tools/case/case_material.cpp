@@ -150,4 +150,16 @@ Law parse_law(double young, double poisson, const Node& node, std::vector<std::s
   return law;
 }
 
+Law parse_material_law(const Object& material, std::vector<std::string>& warnings) {
+  const double young = material.required("young").number(positive);
+  const double poisson = material.required("poisson").number(poisson_ratio);
+  const std::string kind = material.at_most_one_of({"law", "plastic", "tangent_modulus"});
+  if (const auto yield_stress = material.optional("yield_stress"); yield_stress && kind != "tangent_modulus")
+    yield_stress->expected("this key beside tangent_modulus alone");
+  if (kind == "law") return parse_law(young, poisson, material.required("law"), warnings);
+  if (kind == "plastic") return parse_plastic(young, poisson, material.required("plastic"));
+  if (kind == "tangent_modulus") return parse_bilinear(young, poisson, material);
+  return elastic_law(young, poisson);
+}
+
 }  // namespace kacanov

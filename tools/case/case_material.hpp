@@ -20,4 +20,8 @@ Law parse_plastic(double young, double poisson, const Node& node);
 /// The law of a material's `yield_stress` and `tangent_modulus`.
 Law parse_bilinear(double young, double poisson, const Object& material);
 
+/// The law of a whole material, by its elastic constants and those of the keys above that it has. Adds to
+/// `warnings` likewise.
+Law parse_material_law(const Object& material, std::vector<std::string>& warnings);
+
 }  // namespace kacanov

@@ -57,12 +57,13 @@ std::vector<BoxSpec> coarser_boxes(const BoxSpec& fine) {
 }
 
 /// Coarsest first.
-std::vector<MakeMesh> coarser_meshes(const MeshSource& source) {
+std::vector<MakeMesh> coarser_meshes(const MeshSource& mesh) {
   std::vector<MakeMesh> meshes;
-  if (source.box)
-    for (const BoxSpec& box : coarser_boxes(*source.box)) meshes.push_back([box] { return make_box(box); });
-  for (int times = 0; source.file && times < source.refine; ++times)
-    meshes.push_back([source, times] { return load_mesh({source.file, {}, source.order, times}); });
+  if (mesh.box)
+    for (const BoxSpec& box : coarser_boxes(*mesh.box)) meshes.push_back([box] { return make_box(box); });
+  MeshSource coarse = mesh;
+  for (coarse.refine = 0; mesh.file && coarse.refine < mesh.refine; ++coarse.refine)
+    meshes.push_back([coarse] { return load_mesh(coarse); });
   return meshes;
 }
 
@@ -108,7 +109,7 @@ void solve_level(const Case& input, const MakeMesh& mesh, const MpiSession& mpi,
   const Result& result = solution.result;
   run.levels.push_back({result.unknowns, result.outer_iterations, result.cg_iterations,
                         result.operator_applications, MPI_Wtime() - start});
-  if (mpi.first()) std::cout << level_line(run.levels.back()) << std::flush;
+  if (mpi.first() && !mpi.hosted()) std::cout << level_line(run.levels.back()) << std::flush;
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ struct CoarseRun {
 /// The coarser meshes of a case, one after the other, to a thousandth: of a large enough box those with half
 /// the cells, of a file that is refined those before. One that the case does not fit, or that does not
 /// converge, is passed over: it is only to start from. None with load steps, or where solver.nested says so.
-/// Prints a line a mesh. Collective.
+/// Prints a line a mesh, but in a host's process. Collective.
 CoarseRun solve_coarser(const Case& input, const MpiSession& mpi, const RunOptions& options);
 
 }  // namespace kacanov

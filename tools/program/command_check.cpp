@@ -107,6 +107,7 @@ void print_estimate(const Problem& problem, const Case& input, int ranks) {
 
 int check_command(const Case& input, int ranks) {
   const Problem problem = load_problem(input, {ranks, ranks});
+  print_warnings(input, problem);
   const Mesh& mesh = problem.mesh;
   const int dim = mesh.dim();
   const Extent box = extent(mesh);

@@ -10,6 +10,7 @@ namespace kacanov {
 
 int partition_command(const Command& command, const Case& input) {
   Problem problem = load_problem(input, {*command.ranks, 0});
+  print_warnings(input, problem);
   const std::size_t elements = problem.mesh.element_count(), nodes = problem.mesh.node_count();
   write_parts(command.output, input, std::move(problem), *command.ranks);
   std::cout << std::to_string(elements) + " elements, " + std::to_string(nodes) + " nodes in " +

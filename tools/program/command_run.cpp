@@ -8,13 +8,9 @@
 
 #include <kacanov/element_fields.hpp>
 #include <kacanov/error.hpp>
-#include <kacanov/moving.hpp>
 #include <kacanov/nodal_stress.hpp>
-#include <kacanov/solve.hpp>
-#include <kacanov/validity.hpp>
 #include "formats/atomic_file.hpp"
 #include "formats/printable.hpp"
-#include "pictures/picture.hpp"
 #include "program/checkpoint_file.hpp"
 #include "program/coarse_run.hpp"
 #include "program/commands.hpp"
@@ -22,11 +18,11 @@
 #include "program/interrupt.hpp"
 #include "program/loaded_case.hpp"
 #include "program/memory_model.hpp"
-#include "program/obstacle_files.hpp"
 #include "program/output_folder.hpp"
 #include "program/part_files.hpp"
 #include "program/report.hpp"
 #include "program/result_json.hpp"
+#include "program/solve_case.hpp"
 
 namespace kacanov {
 namespace {
@@ -61,21 +57,6 @@ void write_json(const std::filesystem::path& file, const nlohmann::ordered_json&
   write_file(file.string(), json.dump(2, ' ', false, Handler::replace) + "\n");
 }
 
-std::string picture(const Case& input, const Mesh& mesh, std::span<const double> displacement,
-                    std::span<const double> von_mises, double largest_von_mises) {
-  DeformedPicture picture;
-  picture.title = input.name;
-  picture.mesh = &mesh;
-  picture.displacement = displacement;
-  picture.von_mises = von_mises;
-  picture.largest_von_mises = largest_von_mises;
-  for (const ContactEntry& entry : input.model.contact) {
-    if (const auto* plane = std::get_if<Plane>(&entry.obstacle); plane != nullptr && !entry.moves())
-      picture.planes.push_back({plane->point, plane->normal});
-  }
-  return deformed_svg(picture);
-}
-
 /// Values of some nodes; of none where there are no values.
 std::vector<double> picked(std::span<const double> all, std::span<const std::int32_t> nodes, int components) {
   const std::size_t width = components;
@@ -95,28 +76,12 @@ LoadedCase load(const Command& command, const Case& input, const MpiSession& mpi
   return loaded;
 }
 
-/// A run that has failed says what may be behind it, where something is known.
-void name_cause(const Problem& problem, Result& result) {
-  const std::string cause = likely_cause(problem.warnings);
-  if (result.status == Status::not_converged && !cause.empty()) result.message += "; " + cause;
-}
-
-/// What was said of the case and of its problem stands before what the run says.
-void gather_warnings(const Case& input, const Problem& problem, Result& result) {
-  std::vector<std::string> all = input.warnings;
-  all.insert(all.end(), problem.warnings.begin(), problem.warnings.end());
-  const std::vector<std::string> found = examine(result, input.model);
-  all.insert(all.end(), result.warnings.begin(), result.warnings.end());
-  all.insert(all.end(), found.begin(), found.end());
-  result.warnings = std::move(all);
-}
-
 /// The solve; what is wrong with the checkpoint it starts from, in the file of this name, is said of that
 /// file.
-Solution solve_from(Part& part, const SolverOptions& solver, const RunOptions& options,
+Solution solve_from(const Case& input, Part& part, const MpiSession& mpi, const RunOptions& options,
                     const std::string& checkpoint) {
   try {
-    return solve(part, solver, options);
+    return solve_part(input, part, mpi, options);
   } catch (const InputError& error) {
     if (checkpoint.empty()) throw;
     throw InputError("--restart: " + checkpoint + ": " + error.what());
@@ -127,17 +92,6 @@ std::string checkpoint_line(const CheckpointFile& file) {
   return file.written() ? "  checkpoint    " + printable(file.path().string()) +
                               "; the option --restart goes on from there\n"
                         : "";
-}
-
-/// Obstacles that move are known to the first rank.
-Solution solve_case(const Case& input, Part& part, const MpiSession& mpi, const RunOptions& options,
-                    const std::string& checkpoint) {
-  if (!any_moves(input.model)) return solve_from(part, input.model.solver, options, checkpoint);
-  Model model = with_curves(input.model);
-  together(mpi, [&] {
-    if (mpi.first()) model = with_curves(model_with_files(input));
-  });
-  return solve_moving(part, model, options);
 }
 
 /// Writes the fields of a load step that is over. Collective.
@@ -219,7 +173,7 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
     options.load_step_over = [&](const Part&, const Solution& now) {
       write_step({folder, now.result.load_steps.size()}, loaded, input.model, mpi, now);
     };
-  Solution solution = solve_case(input, loaded.part, mpi, options, left ? file->path().string() : "");
+  Solution solution = solve_from(input, loaded.part, mpi, options, left ? file->path().string() : "");
 
   const double solved = MPI_Wtime();
   stop_came_in_time();
@@ -231,10 +185,7 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
   left.reset();
   Result& result = solution.result;
   const int dim = loaded.part.dim();
-  if (mpi.first()) {
-    name_cause(*loaded.problem, result);
-    gather_warnings(input, *loaded.problem, result);
-  }
+  if (mpi.first()) complete_messages(input, *loaded.problem, result);
   const ContactFields contact = gather_contact_fields(loaded.part, solution);
   const NodalStress nodal = recover_stress(loaded.part, solution.displacement);
   result.max_von_mises_nodal = nodal.max_von_mises;
@@ -271,8 +222,9 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
     }
     if (input.output.report) {
       try_to_show([&] {
-        write_file((folder / "deformed.svg").string(),
-                   picture(input, loaded.problem->mesh, displacement, von_mises, result.max_von_mises));
+        write_file(
+            (folder / "deformed.svg").string(),
+            deformed_picture(input, loaded.problem->mesh, displacement, von_mises, result.max_von_mises));
       });
     }
     const double end = MPI_Wtime();

@@ -178,7 +178,7 @@ std::int64_t estimate_unknowns(const MeshSource& mesh) {
   // unknowns.
   constexpr std::int64_t bytes_per_unknown = 80;
   std::error_code error;
-  const auto bytes = std::filesystem::file_size(*mesh.file, error);
+  const auto bytes = mesh.content ? mesh.content->size() : std::filesystem::file_size(*mesh.file, error);
   if (error) return 0;
   // Every refinement has eight times as many unknowns, quadratic tetrahedra some seven times those of linear
   // ones.

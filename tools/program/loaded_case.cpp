@@ -20,7 +20,7 @@ namespace kacanov {
 
 Mesh load_mesh(const MeshSource& source) {
   if (source.box) return make_box(*source.box);
-  Mesh mesh = read_gmsh(*source.file);
+  Mesh mesh = source.content ? read_gmsh(*source.file, *source.content) : read_gmsh(*source.file);
   const std::vector<std::string> warnings = mesh.warnings;
   for (int times = 0; times < source.refine; ++times) mesh = refine(mesh);
   if (source.order > cell(mesh.type).order) mesh = raise_order(mesh);
@@ -42,7 +42,6 @@ Problem load_problem(const Case& input, RankCount ranks) {
                           problem.mesh.warnings.end());
   const std::vector<std::string> found = examine(problem, model);
   problem.warnings.insert(problem.warnings.end(), found.begin(), found.end());
-  print_warnings(input, problem);
   return problem;
 }
 
@@ -64,6 +63,7 @@ LoadedCase load_case(const Case& input, const MpiSession& mpi, bool memory_check
   const double start = MPI_Wtime();
   together(mpi, [&] {
     if (mpi.first()) loaded.problem = load_problem(input, ranks);
+    if (mpi.first() && !mpi.hosted()) print_warnings(input, *loaded.problem);
   });
   const double read = MPI_Wtime();
   loaded.part = distribute(loaded.problem ? &*loaded.problem : nullptr, mpi.comm());

@@ -22,7 +22,7 @@ struct RankCount {
 };
 
 /// Reads the mesh and puts the model on it, after checking that the one fits the other, and the run the
-/// memory. Prints warnings.
+/// memory.
 Problem load_problem(const Case& input, RankCount ranks);
 
 /// Those of the case and of its problem, on standard error.
@@ -42,7 +42,7 @@ struct LoadedCase {
 /// keep_boundary(Problem&).
 void keep_boundary(LoadedCase& loaded);
 
-/// Collective; what is wrong with the input is printed and ends as ReportedFailure on all ranks.
+/// Collective; prints warnings. What is wrong with the input ends as together() says, on all ranks.
 LoadedCase load_case(const Case& input, const MpiSession& mpi, bool memory_check = true);
 
 /// Threads a rank: as the command says, else OMP_NUM_THREADS, else 1.

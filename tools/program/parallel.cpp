@@ -3,6 +3,7 @@
 #include "program/parallel.hpp"
 
 #include <chrono>
+#include <cstdint>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -22,7 +23,13 @@ MpiSession::MpiSession() {
   MPI_Comm_size(MPI_COMM_WORLD, &ranks_);
 }
 
+MpiSession::MpiSession(MPI_Comm comm) : comm_(comm), hosted_(true) {
+  MPI_Comm_rank(comm, &rank_);
+  MPI_Comm_size(comm, &ranks_);
+}
+
 MpiSession::~MpiSession() {
+  if (hosted_) return;
   // mpiexec may end this process as soon as another one has left.
   std::cout.flush();
   std::cerr.flush();
@@ -41,17 +48,31 @@ Failure current_failure() {
   try {
     throw;
   } catch (const InputError& error) {
-    return {exit_bad_input, std::string("error: ") + error.what()};
+    return {exit_bad_input, std::string("error: ") + error.what(), error.what()};
   } catch (const std::bad_alloc&) {
-    return {exit_failure, "internal failure: out of memory"};
+    return {exit_failure, "internal failure: out of memory", "out of memory"};
   } catch (const std::exception& error) {
-    return {exit_failure, std::string("internal failure: ") + error.what()};
+    return {exit_failure, std::string("internal failure: ") + error.what(), error.what()};
   }
 }
 
 void print_failure(const Failure& failure) {
   std::cerr << "kacanov: " + printable(failure.text) + "\n" << std::flush;
 }
+
+namespace {
+
+/// The failure of rank `speaker`, thrown on all.
+[[noreturn]] void throw_everywhere(const MpiSession& mpi, int speaker, int exit_code, std::string cause) {
+  auto size = static_cast<int>(cause.size());
+  MPI_Bcast(&size, 1, MPI_INT, speaker, mpi.comm());
+  cause.resize(size);
+  MPI_Bcast(cause.data(), size, MPI_CHAR, speaker, mpi.comm());
+  if (exit_code == exit_bad_input) throw InputError(cause);
+  throw InternalError(cause);
+}
+
+}  // namespace
 
 void together(const MpiSession& mpi, const std::function<void()>& work) {
   Failure failure;
@@ -66,8 +87,16 @@ void together(const MpiSession& mpi, const std::function<void()>& work) {
   const int candidate = failure.exit_code == worst ? mpi.rank() : mpi.ranks();
   int speaker = 0;
   MPI_Allreduce(&candidate, &speaker, 1, MPI_INT, MPI_MIN, mpi.comm());
+  if (mpi.hosted()) throw_everywhere(mpi, speaker, worst, failure.cause);
   if (speaker == mpi.rank()) mpi.report(failure);
   throw ReportedFailure{worst};
+}
+
+void broadcast(const MpiSession& mpi, std::string& text) {
+  std::uint64_t size = text.size();
+  MPI_Bcast(&size, 1, MPI_UINT64_T, 0, mpi.comm());
+  text.resize(size);
+  MPI_Bcast(text.data(), static_cast<int>(size), MPI_CHAR, 0, mpi.comm());
 }
 
 void collectively(const MpiSession& mpi, const std::function<void()>& work) {

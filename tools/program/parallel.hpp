@@ -14,21 +14,26 @@ namespace kacanov {
 struct Failure {
   int exit_code = 0;
   std::string text;
+  std::string cause = {};  ///< the same without "error: " and the like
 };
 Failure current_failure();
 
 /// "kacanov: error: ..." on standard error.
 void print_failure(const Failure& failure);
 
-/// MPI_Init to MPI_Finalize.
+/// MPI_Init to MPI_Finalize; or, within a host that sees to these itself, some ranks of its own.
 class MpiSession {
  public:
   MpiSession();
+  /// Of a host's process: whoever is handed the session prints nothing, and together() throws on every rank
+  /// what went wrong on one.
+  explicit MpiSession(MPI_Comm comm);
   ~MpiSession();
   MpiSession(const MpiSession&) = delete;
   MpiSession& operator=(const MpiSession&) = delete;
 
-  MPI_Comm comm() const noexcept { return MPI_COMM_WORLD; }
+  MPI_Comm comm() const noexcept { return comm_; }
+  bool hosted() const noexcept { return hosted_; }
   int rank() const noexcept { return rank_; }
   int ranks() const noexcept { return ranks_; }
   bool first() const noexcept { return rank_ == 0; }
@@ -40,6 +45,8 @@ class MpiSession {
   void report(const Failure& failure) const;
 
  private:
+  MPI_Comm comm_ = MPI_COMM_WORLD;
+  bool hosted_ = false;
   int rank_ = 0, ranks_ = 1;
   std::function<void(const std::string&)> when_failing_;
 };
@@ -50,8 +57,11 @@ struct ReportedFailure {
 };
 
 /// Does `work`, which must not communicate, on every rank; where it throws on any, one message is printed and
-/// every rank throws ReportedFailure. Collective.
+/// every rank throws ReportedFailure; in a host's process InputError or InternalError instead. Collective.
 void together(const MpiSession& mpi, const std::function<void()>& work);
+
+/// Hands the first rank's text to all. Collective.
+void broadcast(const MpiSession& mpi, std::string& text);
 
 /// Does `work`, which communicates. Where it throws, the message is printed; with several ranks the rest
 /// cannot be waited for, and the whole job ends there with its exit code.

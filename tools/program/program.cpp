@@ -53,14 +53,6 @@ int dispatch(const Command& command, const Case& input, MpiSession& mpi) {
   return code;
 }
 
-/// Hands the first rank's text to all. Collective.
-void broadcast(const MpiSession& mpi, std::string& text) {
-  std::uint64_t size = text.size();
-  MPI_Bcast(&size, 1, MPI_UINT64_T, 0, mpi.comm());
-  text.resize(size);
-  MPI_Bcast(text.data(), static_cast<int>(size), MPI_CHAR, 0, mpi.comm());
-}
-
 /// Within MPI, with the ranks there are.
 int run_here(const Command& command, const std::optional<Case>& known) {
   take_signals();

@@ -32,6 +32,9 @@ struct CoarseSolution {
 /// keep_boundary()). Collective.
 CoarseSolution whole_solution(const Part& part, const Problem* problem, const Solution& solution);
 
+/// Hands the one that rank 0 has to all others. Collective.
+void share(CoarseSolution& coarse, const Communicator& ranks);
+
 /// What a run starts from instead of rest: values at the nodes and contact points of one part, every copy of
 /// a shared entry with the same bits.
 struct Start {

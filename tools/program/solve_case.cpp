@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A case from its file to its numbers, for commands and for programs that have the solver within them.
+#include "program/solve_case.hpp"
+
+#include <kacanov/element_fields.hpp>
+#include <kacanov/error.hpp>
+#include <kacanov/moving.hpp>
+#include <kacanov/nodal_stress.hpp>
+#include <kacanov/solve.hpp>
+#include <kacanov/validity.hpp>
+#include "pictures/picture.hpp"
+#include "program/coarse_run.hpp"
+#include "program/loaded_case.hpp"
+#include "program/memory_model.hpp"
+#include "program/obstacle_files.hpp"
+#include "program/result_json.hpp"
+
+namespace kacanov {
+namespace {
+
+/// The solution of another run as one to start from; the same on every rank. Collective.
+CoarseSolution start_of(const SolvedCase& from, int dim, const MpiSession& mpi) {
+  CoarseSolution start;
+  together(mpi, [&] {
+    if (!mpi.first()) return;
+    const Mesh& mesh = from.problem.mesh;
+    if (mesh.dim() != dim)
+      throw InputError("start: expected a solution in " + std::to_string(dim) + " dimensions, got one in " +
+                       std::to_string(mesh.dim()));
+    start = {mesh.type, mesh.coordinates, mesh.elements, from.displacement, {}, from.result.lambda_max};
+    for (std::size_t i = 0; i < from.problem.contact.size(); ++i) {
+      const ContactPoint& point = from.problem.contact[i];
+      const double* friction = &from.contact.traction[3 * i];
+      start.contact.push_back(
+          {point.node, point.entry, from.contact.pressure[i], {friction[0], friction[1], friction[2]}});
+    }
+  });
+  share(start, mpi_communicator(mpi.comm()));
+  return start;
+}
+
+}  // namespace
+
+Solution solve_part(const Case& input, Part& part, const MpiSession& mpi, const RunOptions& options) {
+  if (!any_moves(input.model)) return solve(part, input.model.solver, options);
+  Model model = with_curves(input.model);
+  together(mpi, [&] {  // obstacles are known to the first rank
+    if (mpi.first()) model = with_curves(model_with_files(input));
+  });
+  return solve_moving(part, model, options);
+}
+
+void complete_messages(const Case& input, const Problem& problem, Result& result) {
+  const std::string cause = likely_cause(problem.warnings);
+  if (result.status == Status::not_converged && !cause.empty()) result.message += "; " + cause;
+  std::vector<std::string> all = input.warnings;
+  all.insert(all.end(), problem.warnings.begin(), problem.warnings.end());
+  const std::vector<std::string> found = examine(result, input.model);
+  all.insert(all.end(), result.warnings.begin(), result.warnings.end());
+  all.insert(all.end(), found.begin(), found.end());
+  result.warnings = std::move(all);
+}
+
+std::string deformed_picture(const Case& input, const Mesh& mesh, std::span<const double> displacement,
+                             std::span<const double> von_mises, double largest_von_mises) {
+  DeformedPicture picture;
+  picture.title = input.name;
+  picture.mesh = &mesh;
+  picture.displacement = displacement;
+  picture.von_mises = von_mises;
+  picture.largest_von_mises = largest_von_mises;
+  for (const ContactEntry& entry : input.model.contact) {
+    if (const auto* plane = std::get_if<Plane>(&entry.obstacle); plane != nullptr && !entry.moves())
+      picture.planes.push_back({plane->point, plane->normal});
+  }
+  return deformed_svg(picture);
+}
+
+SolvedCase solve_case(const Case& input, const MpiSession& mpi, const CaseRun& run) {
+  const double begin = MPI_Wtime();
+  LoadedCase loaded = load_case(input, mpi, run.memory_check);
+  RunOptions options = run.options;
+  CoarseRun coarse;
+  if (run.start != nullptr)
+    coarse.solution = start_of(*run.start, loaded.part.dim(), mpi);
+  else
+    coarse = solve_coarser(input, mpi, options);
+  if (coarse.solution) options.coarse = &*coarse.solution;
+  Solution solution = solve_part(input, loaded.part, mpi, options);
+  const double solved = MPI_Wtime();
+  coarse.solution.reset();
+
+  SolvedCase out;
+  out.input = input;
+  const Part& part = loaded.part;
+  const NodalStress nodal = recover_stress(part, solution.displacement);
+  out.displacement = gather_nodal(part, solution.displacement, part.dim());
+  out.nodal_stress = gather_nodal(part, nodal.stress, 6);
+  out.recovered_von_mises = gather_nodal(part, nodal.von_mises, 1);
+  out.averaged_von_mises = gather_nodal(part, nodal_von_mises(part, solution.displacement), 1);
+  out.contact = gather_contact_fields(part, solution);
+  out.result = std::move(solution.result);
+  out.result.max_von_mises_nodal = nodal.max_von_mises;
+  RunFigures figures;
+  figures.nested = std::move(coarse.levels);
+  figures.peak_memory_bytes =
+      static_cast<std::uint64_t>(part.node_map.sum_all(static_cast<std::int64_t>(peak_memory())));
+  figures.read = loaded.read_seconds;
+  figures.distribute = loaded.distribute_seconds;
+  figures.output = MPI_Wtime() - solved;
+  figures.total = MPI_Wtime() - begin;
+  if (mpi.first()) {
+    out.problem = std::move(*loaded.problem);
+    complete_messages(input, out.problem, out.result);
+    out.json = result_json(out.result, figures, input, out.problem.mesh);
+  }
+  std::string text = mpi.first() && mpi.ranks() > 1 ? out.json.dump() : std::string();
+  broadcast(mpi, text);
+  if (!mpi.first()) out.json = nlohmann::ordered_json::parse(text);
+  return out;
+}
+
+}  // namespace kacanov
