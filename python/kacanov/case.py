@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A case: the case file as a dict, words to put it together, and the solver in this process."""
+from __future__ import annotations
+
+import copy
+import json
+import os
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TextIO
+
+from . import _kacanov
+from .errors import InputError, Interrupted
+from .mesh import BoxMesh, Mesh, MeshFile
+from .solution import Solution
+from .words import Law, Obstacle, Word, plain
+
+On = str | Word | Mapping[str, Any]
+Vector = Sequence[float]
+
+
+class Case:
+    """What a case file says: `document` is it, as a dict, and may be changed by hand.
+
+    Every key, and what was expected where one is wrong, is that of the case file (docs/user-guide/case-file.md).
+    Relative file names start at `folder`. A mesh that is arrays stands in `arrays`; the document then names the
+    file that `to_json` writes it to.
+    """
+
+    def __init__(self, mesh: BoxMesh | MeshFile | Mesh | Mapping[str, Any] | None = None, *, order: int | None = None,
+                 refine: int | None = None, name: str = "case", folder: str | os.PathLike[str] = ".") -> None:
+        self.name = name
+        self.folder = os.path.abspath(folder)
+        self.document: dict[str, Any] = {}
+        self.arrays: Mesh | None = None
+        self.solution: Solution | None = None
+        if mesh is not None:
+            self._take_mesh(mesh)
+            more = {"order": order, "refine": refine}
+            self.document["mesh"].update({key: value for key, value in more.items() if value is not None})
+
+    def _take_mesh(self, mesh: BoxMesh | MeshFile | Mesh | Mapping[str, Any]) -> None:
+        if isinstance(mesh, Mesh):
+            self.arrays = mesh
+            self.document["mesh"] = {"file": f"{self.name}.msh"}
+        elif isinstance(mesh, Word | Mapping):
+            self.document["mesh"] = plain(mesh, "mesh")
+        else:
+            raise TypeError(f"mesh: expected kacanov.box, read or Mesh, or a dict as in a case file, got {type(mesh).__name__}")
+
+    # ---- from and to case files
+
+    @classmethod
+    def from_json(cls, path: str | os.PathLike[str]) -> Case:
+        """The case in a file."""
+        try:
+            with open(path, encoding="utf-8") as file:
+                text = file.read()
+        except (OSError, UnicodeDecodeError) as error:
+            raise InputError(f"{os.fspath(path)}: cannot be read: {error}") from error
+        folder, name = os.path.split(os.path.abspath(path))
+        case = cls(name=os.path.splitext(name)[0], folder=folder)
+        # Not by json.loads: repeated keys and the like are refused as the program does.
+        case.document = json.loads(_kacanov.normal(text, os.fspath(path)))
+        return case
+
+    @classmethod
+    def from_dict(cls, document: Mapping[str, Any], *, name: str = "case", folder: str | os.PathLike[str] = ".") -> Case:
+        """The case of a dict with the keys of a case file."""
+        case = cls(name=name, folder=folder)
+        case.document = plain(document)
+        return case
+
+    def to_json(self, path: str | os.PathLike[str] | None = None) -> str:
+        """The case file, as text; written to `path` where given, with a mesh of arrays beside it as a .msh.
+
+        Relative file names are made absolute where the file goes to another folder than the case's.
+        """
+        case = self.copy()
+        if path is not None:
+            folder, name = os.path.split(os.path.abspath(path))
+            if folder != self.folder:
+                case._make_absolute()
+            if self.arrays is not None:
+                mesh = os.path.splitext(name)[0] + ".msh"
+                case.document["mesh"]["file"] = mesh
+                with open(os.path.join(folder, mesh), "wb") as binary:
+                    binary.write(self.arrays.msh())
+        text = json.dumps(plain(case.document), indent=2) + "\n"
+        if path is not None:
+            with open(path, "w", encoding="utf-8") as file:
+                file.write(text)
+        return text
+
+    def _make_absolute(self) -> None:
+        holders = [self.document.get("mesh")] + [
+            shape for entry in self.document.get("contact", []) if isinstance(entry, dict)
+            for shape in (entry.get("obstacle") or {}).values()]
+        for holder in holders:
+            if isinstance(holder, dict) and isinstance(holder.get("file"), str):
+                holder["file"] = os.path.join(self.folder, holder["file"])
+
+    def copy(self) -> Case:
+        """Another case with a document of its own."""
+        other = copy.copy(self)
+        other.document = copy.deepcopy(self.document)
+        return other
+
+    def __repr__(self) -> str:
+        return f"<kacanov.Case {self.name}: {', '.join(self.document)}>"
+
+    # ---- words
+
+    def _add(self, list_: str, **entry: Any) -> Case:
+        entries = self.document.setdefault(list_, [])
+        given = {key: value for key, value in entry.items() if value is not None}
+        entries.append(plain(given, f"{list_}[{len(entries)}]"))
+        return self
+
+    def material(self, young: float, poisson: float, law: Law | Mapping[str, Any] | None = None, *, on: On = "all",
+                 plastic: Sequence[Vector] | None = None, yield_stress: float | None = None,
+                 tangent_modulus: float | None = None, bbar: bool | None = None) -> Case:
+        """Adds a material. As all words that add, returns the case."""
+        return self._add("material", on=on, young=young, poisson=poisson, law=law, plastic=plastic,
+                         yield_stress=yield_stress, tangent_modulus=tangent_modulus, bbar=bbar)
+
+    def fix(self, on: On, displacement: Sequence[float | None] = (0.0, 0.0, 0.0), *, name: str | None = None) -> Case:
+        """Prescribes displacements; None leaves a component free."""
+        return self._add("boundary", on=on, displacement=displacement, name=name)
+
+    def traction(self, traction: Vector, on: On, *, name: str | None = None) -> Case:
+        """A force an area."""
+        return self._add("boundary", on=on, traction=traction, name=name)
+
+    def total_force(self, force: Vector, on: On, *, name: str | None = None) -> Case:
+        """A force, spread evenly over the facets."""
+        return self._add("boundary", on=on, total_force=force, name=name)
+
+    def pressure(self, pressure: float, on: On, *, name: str | None = None) -> Case:
+        """Against the outer normal."""
+        return self._add("boundary", on=on, pressure=pressure, name=name)
+
+    def body_force(self, force: Vector, on: On = "all", *, name: str | None = None) -> Case:
+        """A force a volume."""
+        return self._add("boundary", on=on, body_force=force, name=name)
+
+    def gravity(self, density: float, acceleration: Vector, on: On = "all", *, name: str | None = None) -> Case:
+        """A mass a volume and an acceleration."""
+        return self._add("boundary", on=on, density=density, acceleration=acceleration, name=name)
+
+    def contact(self, on: On, obstacle: Obstacle | Mapping[str, Any], *, coulomb: float | None = None,
+                tresca: float | None = None, reference: str | None = None, name: str | None = None,
+                motion: Mapping[str, Any] | None = None, relinearise: bool | None = None,
+                force_controlled: Mapping[str, Any] | None = None) -> Case:
+        """Contact with an obstacle, without friction unless `coulomb` or `tresca` is given."""
+        words = {"coulomb": coulomb, "tresca": tresca, "reference": reference}
+        friction = {key: value for key, value in words.items() if value is not None}
+        return self._add("contact", on=on, obstacle=obstacle, friction=friction or None, name=name, motion=motion,
+                         relinearise=relinearise, force_controlled=force_controlled)
+
+    def step(self, time: float, factors: Mapping[str, float]) -> Case:
+        """Adds a load step of load curves."""
+        return self._add("steps", time=time, factors=factors)
+
+    def probe(self, *points: Vector) -> Case:
+        """Points whose displacement is reported."""
+        self.document.setdefault("probe", []).extend(plain(points, "probe"))
+        return self
+
+    def solver(self, **options: Any) -> Case:
+        """Sets options of the solver: tolerance=1e-8, load_steps=4."""
+        self.document.setdefault("solver", {}).update(plain(options, "solver"))
+        return self
+
+    def set(self, path: str, value: Any) -> Case:
+        """Sets what stands at a path of the document: set("contact[0].friction.coulomb", 0.2)."""
+        assignment = f"{path}={json.dumps(plain(value, path))}"
+        text = json.dumps(plain(self.document))
+        self.document = json.loads(_kacanov.with_override(text, self.name, assignment))
+        return self
+
+    # ---- the solver
+
+    def _text(self) -> tuple[str, str, bytes | None]:
+        mesh = None if self.arrays is None else self.arrays.msh()
+        return json.dumps(plain(self.document)), os.path.join(self.folder, self.name + ".json"), mesh
+
+    def check(self) -> dict[str, Any]:
+        """Validates the case on its mesh, without solving: sizes, warnings, and the memory that a solve will take."""
+        return _kacanov.check(*self._text())
+
+    def solve(self, *, progress: bool | Callable[[dict[str, Any]], object] = False, start: Solution | None = None,
+              stop: Callable[[], bool] | None = None, threads: int | None = None, comm: Any = None,
+              memory_check: bool = True) -> Solution:
+        """Solves the case in this process. Not converging is no error: look at the solution's `status`.
+
+        progress: True prints a line a step, a function is called with a dict of each.
+        start: a solution of the same body to start from, on any mesh; it saves work and changes nothing else.
+        stop: asked some fifty times a second; where it says True the solve ends as `interrupted`.
+        threads: None: one for small bodies, else as many as there are cores.
+        comm: of mpi4py: the solve is one of all its ranks, and the fields are those of the first.
+        memory_check: refuse what does not fit into memory.
+        Ctrl-C ends the solve with the state after its last whole outer step, in Interrupted.solution and in
+        `self.solution`. What a callback raises ends it likewise, and is raised.
+        """
+        text, path, mesh = self._text()
+        tell = ProgressTable() if progress is True else progress or None
+        address = 0
+        if comm is not None:
+            from mpi4py import MPI  # what it has is what MPI is in this process
+            address = MPI._addressof(comm)
+        solved, raised = _kacanov.solve({
+            "text": text, "path": path, "mesh": mesh, "progress": tell, "stop": stop, "threads": threads,
+            "start": None if start is None else start._solved, "comm": address, "memory_check": memory_check})
+        if solved is not None:
+            self.solution = Solution(solved)
+        if isinstance(raised, KeyboardInterrupt):
+            raise Interrupted(self.solution if solved is not None else None) from raised
+        if raised is not None:
+            raise raised
+        assert self.solution is not None
+        return self.solution
+
+
+class ProgressTable:
+    """Prints a line an outer step, with headings before the first."""
+
+    def __init__(self, file: TextIO | None = None) -> None:
+        self._headed = False
+        self._file = file
+
+    def __call__(self, step: Mapping[str, Any]) -> None:
+        file = self._file or sys.stdout
+        if not self._headed:
+            print(f"{'step':>5}  {'phase':<12}{'contact':>8}{'CG':>8}{'residual':>12}{'seconds':>9}", file=file)
+            self._headed = True
+        print(f"{step['outer']:>5}  {step['phase']:<12}{step['contact_iterations']:>8}{step['cg_iterations']:>8}"
+              f"{step['worst_residual']:>12.2e}{step['seconds']:>9.2f}", file=file, flush=True)

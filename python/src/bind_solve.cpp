@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Cases that are solved in this process, and what comes out.
+#include <pybind11/stl.h>
+
+#include <chrono>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include <kacanov/error.hpp>
+#include "arrays.hpp"
+#include "case/json_node.hpp"
+#include "errors.hpp"
+#include "host_mpi.hpp"
+#include "module.hpp"
+#include "program/launch.hpp"
+#include "program/loaded_case.hpp"
+#include "program/memory_model.hpp"
+#include "program/solve_case.hpp"
+
+namespace py = pybind11;
+
+namespace kacanov::python {
+namespace {
+
+using Solved = std::shared_ptr<const SolvedCase>;
+
+/// Asks and tells Python on a run's way. What is raised there, by callbacks or a signal, is kept, and stops
+/// the run at its next question.
+class Host {
+ public:
+  Host(py::object progress, py::object stop) : progress_(std::move(progress)), stop_(std::move(stop)) {}
+
+  void tell(const ProgressStep& step) {
+    if (progress_.is_none()) return;
+    const py::gil_scoped_acquire acquire;
+    guard([&] {
+      py::dict line;
+      line["phase"] = step.phase;
+      line["outer"] = step.outer;
+      line["contact_iterations"] = step.contact_iterations;
+      line["cg_iterations"] = step.cg_iterations;
+      line["r"] = step.r;
+      line["energy"] = step.energy;
+      line["worst_residual"] = step.certificate.worst();
+      line["seconds"] = step.seconds;
+      progress_(line);
+    });
+  }
+
+  /// Python's lock has to be waited for, so that it is asked no more than fifty times a second.
+  bool wants_stop() {
+    if (raised_ || stopped_) return true;
+    const auto now = std::chrono::steady_clock::now();
+    if (now - asked_ < std::chrono::milliseconds(20)) return false;
+    asked_ = now;
+    const py::gil_scoped_acquire acquire;
+    guard([&] {
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      if (!stop_.is_none()) stopped_ = py::bool_(stop_());
+    });
+    return raised_ || stopped_;
+  }
+
+  /// A signal that came after the run's last question is one of the run still. With Python's lock.
+  void look_once_more() {
+    if (!raised_)
+      guard([] {
+        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      });
+  }
+
+  /// What was raised, as an exception object, or None. With Python's lock.
+  py::object raised() const {
+    if (!raised_) return py::none();
+    try {
+      std::rethrow_exception(raised_);
+    } catch (py::error_already_set& error) {
+      py::object value = error.value();
+      if (error.trace()) PyException_SetTraceback(value.ptr(), error.trace().ptr());
+      return value;
+    }
+  }
+
+ private:
+  template <class Work>
+  void guard(const Work& work) {
+    try {
+      work();
+    } catch (py::error_already_set&) {
+      raised_ = std::current_exception();
+    }
+  }
+
+  py::object progress_, stop_;
+  std::exception_ptr raised_;
+  bool stopped_ = false;
+  std::chrono::steady_clock::time_point asked_{};
+};
+
+/// The libraries beneath know one run a process: others wait, and may be interrupted meanwhile. With Python's
+/// lock, which is let go while waiting.
+class OneAtATime {
+ public:
+  OneAtATime() {
+    if (holder_ == std::this_thread::get_id())
+      throw CodeError(KACANOV_ERROR_STATE, "solve: called from a callback of a solve");
+    while (!try_for_a_moment())
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    holder_ = std::this_thread::get_id();
+  }
+  ~OneAtATime() {
+    holder_ = std::thread::id();
+    mutex_.unlock();
+  }
+  OneAtATime(const OneAtATime&) = delete;
+  OneAtATime& operator=(const OneAtATime&) = delete;
+
+ private:
+  static bool try_for_a_moment() {
+    const py::gil_scoped_release release;
+    return mutex_.try_lock_for(std::chrono::milliseconds(50));
+  }
+  static inline std::timed_mutex mutex_;
+  static inline std::atomic<std::thread::id> holder_;
+};
+
+/// A case and, where it is not in a file, the content of its mesh's.
+Case read_case(const std::string& text, const std::string& path, const std::optional<std::string>& mesh) {
+  Case input = parse_case(CaseText{path, text}, {});
+  if (mesh && input.mesh.file) input.mesh.content = std::make_shared<const std::string>(*mesh);
+  return input;
+}
+
+int threads_for(const Case& input, const std::optional<int>& asked) {
+  if (asked && (*asked < 1 || *asked > 4096))
+    throw InputError("threads: expected a whole number from 1 to 4096, got " + std::to_string(*asked));
+  return asked ? *asked : estimate_unknowns(input.mesh) < small_problem ? 1 : usable_cores();
+}
+
+/// mpi4py tells where it keeps a communicator's handle; 0: this process alone.
+MPI_Comm communicator_at(std::uintptr_t address) {
+  return address == 0 ? MPI_COMM_SELF : *reinterpret_cast<const MPI_Comm*>(address);
+}
+
+py::tuple solve(const py::dict& given) {
+  const auto start = given["start"].cast<Solved>();
+  Host host(given["progress"], given["stop"]);
+  const auto address = given["comm"].cast<std::uintptr_t>();
+  const Case input = read_case(given["text"].cast<std::string>(), given["path"].cast<std::string>(),
+                               given["mesh"].cast<std::optional<std::string>>());
+  CaseRun run;
+  run.start = start.get();
+  run.memory_check = given["memory_check"].cast<bool>();
+  run.options.threads = threads_for(input, given["threads"].cast<std::optional<int>>());
+  run.options.progress = [&host](const ProgressStep& step) { host.tell(step); };
+  run.options.stop_requested = [&host] { return host.wants_stop(); };
+  const OneAtATime alone;
+  ensure_mpi();
+  const MpiSession mpi(communicator_at(address));
+  std::shared_ptr<SolvedCase> solved;
+  try {
+    const py::gil_scoped_release release;
+    solved = std::make_shared<SolvedCase>(solve_case(input, mpi, run));
+  } catch (...) {
+    if (host.raised().is_none()) throw;
+  }
+  host.look_once_more();
+  return py::make_tuple(py::cast(Solved(std::move(solved))), host.raised());
+}
+
+/// What `kacanov check` finds, without MPI.
+py::dict check_case(const std::string& text, const std::string& path,
+                    const std::optional<std::string>& mesh) {
+  std::vector<std::string> warnings;
+  py::dict found;
+  double memory = 0.0;
+  std::optional<Problem> problem;
+  {
+    const py::gil_scoped_release release;
+    const Case input = read_case(text, path, mesh);
+    problem = load_problem(input, {1, 0});
+    warnings = input.warnings;
+    warnings.insert(warnings.end(), problem->warnings.begin(), problem->warnings.end());
+    ProblemSize size = size_of(problem->mesh, input.model);
+    size.contact_points = static_cast<double>(problem->contact.size());
+    memory = estimated_memory(size, 1);
+  }
+  found["element"] = std::string(cell(problem->mesh.type).name);
+  found["nodes"] = problem->mesh.node_count();
+  found["elements"] = problem->mesh.element_count();
+  found["unknowns"] = problem->mesh.coordinates.size();
+  found["contact_nodes"] = problem->contact.size();
+  found["estimated_memory_bytes"] = memory;
+  found["warnings"] = warnings;
+  return found;
+}
+
+/// The document as JSON without what only a reader of files takes, such as comments and repeated keys.
+std::string normal(const std::string& text, const std::string& path) { return parse_json(text, path).dump(); }
+
+std::string with_override(const std::string& text, const std::string& path, const std::string& assignment) {
+  nlohmann::json document = parse_json(text, path);
+  apply_override(document, assignment);
+  return document.dump();
+}
+
+/// A view of an array that `owner` keeps, read-only.
+template <class T>
+py::array view(const py::object& owner, std::span<const T> values, std::ptrdiff_t width = 1) {
+  const auto count = static_cast<std::ptrdiff_t>(values.size());
+  std::vector<std::ptrdiff_t> shape{count / width};
+  if (width > 1) shape.push_back(width);
+  py::array array(py::dtype::of<T>(), shape, values.data(), owner);
+  array.attr("flags").attr("writeable") = false;
+  return array;
+}
+
+/// The user's numbers of nodes or elements.
+py::array numbers(const py::object& owner, const std::vector<std::int64_t>& tags, std::size_t count) {
+  if (!tags.empty()) return view<std::int64_t>(owner, tags);
+  return py::module_::import("numpy").attr("arange")(1, count + 1, py::arg("dtype") = "int64");
+}
+
+py::dict mesh_of(const py::object& self) {
+  const Mesh& mesh = self.cast<const SolvedCase&>().problem.mesh;
+  py::dict all;
+  all["element"] = std::string(cell(mesh.type).name);
+  all["vtk_type"] = cell(mesh.type).vtk;
+  all["vtk_order"] = std::vector<int>(cell(mesh.type).vtk_order.begin(), cell(mesh.type).vtk_order.end());
+  all["points"] = view<double>(self, mesh.coordinates, mesh.dim());
+  all["cells"] = view<std::int32_t>(self, mesh.elements, nodes_per_element(mesh.type));
+  all["facets"] = view<std::int32_t>(self, mesh.facets, nodes_per_facet(mesh.type));
+  all["node_id"] = numbers(self, mesh.node_tags, mesh.node_count());
+  all["element_id"] = numbers(self, mesh.element_tags, mesh.element_count());
+  return all;
+}
+
+py::dict nodal_fields(const py::object& self) {
+  const auto& solved = self.cast<const SolvedCase&>();
+  py::dict all;
+  all["u"] = view<double>(self, solved.displacement, solved.problem.mesh.dim());
+  all["nodal_stress"] = view<double>(self, solved.nodal_stress, 6);
+  all["nodal_von_mises"] = view<double>(self, solved.recovered_von_mises);
+  return all;
+}
+
+py::dict element_fields_of(const SolvedCase& solved) {
+  const auto count = static_cast<std::ptrdiff_t>(solved.problem.mesh.element_count());
+  py::array stress = new_array<double>({count, 6}), von_mises = new_array<double>({count}),
+            strain = new_array<double>({count}), secant = new_array<double>({count}),
+            plastic(py::dtype("bool"), std::vector<std::ptrdiff_t>{count});
+  auto* flags = static_cast<std::uint8_t*>(plastic.mutable_data());
+  const reference::ElementFields wanted{entries<double>(stress), entries<double>(von_mises),
+                                        entries<double>(strain), entries<double>(secant),
+                                        std::span(flags, static_cast<std::size_t>(count))};
+  {
+    const py::gil_scoped_release release;
+    reference::fields(solved.body(), solved.displacement, wanted);
+  }
+  py::dict all;
+  all["stress"] = stress;
+  all["von_mises"] = von_mises;
+  all["dev_strain"] = strain;
+  all["g"] = secant;
+  all["plastic"] = plastic;
+  return all;
+}
+
+py::dict contact_fields(const py::object& self) {
+  const auto& solved = self.cast<const SolvedCase&>();
+  const auto count = static_cast<std::ptrdiff_t>(solved.problem.contact.size());
+  py::array node = new_array<std::int32_t>({count}), entry = new_array<std::int32_t>({count}),
+            status = new_array<std::int32_t>({count}), normal = new_array<double>({count, 3});
+  const std::span<std::int32_t> nodes = entries<std::int32_t>(node), of = entries<std::int32_t>(entry),
+                                states = entries<std::int32_t>(status);
+  const std::span<double> normals = entries<double>(normal);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const ContactPoint& point = solved.problem.contact[i];
+    nodes[i] = point.node;
+    of[i] = point.entry;
+    states[i] = static_cast<std::int32_t>(solved.contact.status[i]);
+    for (std::size_t c = 0; c < 3; ++c) normals[3 * i + c] = point.normal[c];
+  }
+  py::dict all;
+  all["node"] = node;
+  all["entry"] = entry;
+  all["status"] = status;
+  all["normal"] = normal;
+  all["gap"] = view<double>(self, solved.contact.gap);
+  all["pressure"] = view<double>(self, solved.contact.pressure);
+  all["traction"] = view<double>(self, solved.contact.traction, 3);
+  return all;
+}
+
+std::string svg(const SolvedCase& solved) {
+  const py::gil_scoped_release release;
+  return deformed_picture(solved.input, solved.problem.mesh, solved.displacement, solved.averaged_von_mises,
+                          solved.result.max_von_mises);
+}
+
+}  // namespace
+
+void bind_solve(py::module_& module) {
+  py::class_<SolvedCase, std::shared_ptr<SolvedCase>>(module, "Solved")
+      .def_property_readonly("json", [](const SolvedCase& solved) { return solved.json.dump(); })
+      .def("mesh", &mesh_of)
+      .def("nodal_fields", &nodal_fields)
+      .def("element_fields", &element_fields_of)
+      .def("contact_fields", &contact_fields)
+      .def("svg", &svg);
+  module.def("solve", &solve);
+  module.def("check", &check_case);
+  module.def("normal", &normal);
+  module.def("with_override", &with_override);
+}
+
+}  // namespace kacanov::python

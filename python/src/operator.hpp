@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The C interface's handles as objects that take numpy arrays.
+#pragma once
+
+#include "arrays.hpp"
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <kacanov/kacanov.h>
+#include "errors.hpp"
+
+namespace kacanov::python {
+
+/// Everything of a kacanov_description in Python's terms.
+struct Description {
+  pybind11::object points, cells;
+  std::string element;
+  std::string order = "gmsh";
+  std::string laws;  ///< JSON, see CLaws
+  pybind11::object law_of_element = pybind11::none();
+  int threads = 1;
+  bool single = false, turn_inverted = false;
+  std::string orphans = "zero";
+  std::optional<std::string> instruction_set;
+};
+
+/// Whether a handle is at work; the second thread that comes is refused in words.
+class InUse {
+ public:
+  explicit InUse(std::atomic<bool>& flag) : flag_(flag) {
+    if (flag_.exchange(true)) throw CodeError(KACANOV_ERROR_STATE, "in use by another thread");
+  }
+  ~InUse() { flag_ = false; }
+  InUse(const InUse&) = delete;
+  InUse& operator=(const InUse&) = delete;
+
+ private:
+  std::atomic<bool>& flag_;
+};
+
+/// A kacanov_operator. Vectors are C-contiguous arrays of shape (n,), (n, 1) or (nodes, dim), with n = nodes
+/// × dim; what comes out has the shape of what went in. Python's lock is let go while a call is at work.
+class Operator {
+ public:
+  explicit Operator(const Description& description);
+  ~Operator() { kacanov_destroy(handle_); }
+  Operator(const Operator&) = delete;
+  Operator& operator=(const Operator&) = delete;
+
+  kacanov_operator* handle() const noexcept { return handle_; }
+  std::atomic<bool>& busy() noexcept { return busy_; }
+  const kacanov_information& size() const noexcept { return size_; }
+  /// As it is now: with `applications` and `bytes`.
+  kacanov_information information();
+
+  Wanted vector(const char* name) const;
+  Wanted output() const;
+
+  using Call = int (*)(kacanov_operator*, std::size_t, const double*, double*);
+  /// y = call(x), into `out` where that is not None.
+  pybind11::array map(Call call, const pybind11::object& x, const pybind11::object& out);
+  pybind11::array map_float(const pybind11::object& x, const pybind11::object& out);
+  /// (k, n) arrays: an input vector a row.
+  pybind11::array map_many(const pybind11::object& x);
+  /// Calls that take a vector and give a number, or nothing.
+  double measure(int (*call)(kacanov_operator*, std::size_t, const double*, double*),
+                 const pybind11::object& u);
+  void freeze(int (*call)(kacanov_operator*, std::size_t, const double*), const pybind11::object& u);
+  /// Calls that fill an array of this shape.
+  pybind11::array read(int (*call)(kacanov_operator*, std::size_t, double*),
+                       const std::vector<std::ptrdiff_t>& shape);
+  void set_secant(const pybind11::object& g);
+  void constrain(const pybind11::object& unknowns);
+  void set_blocks(const pybind11::object& nodes, const pybind11::object& blocks);
+  pybind11::dict stress(const pybind11::object& u);
+  pybind11::tuple matrix(const pybind11::object& u);
+  pybind11::tuple locality_order();
+
+ private:
+  /// One call without Python's lock.
+  template <class Work>
+  void run(const Work& work) {
+    int code = KACANOV_OK;
+    const InUse use(busy_);
+    {
+      const pybind11::gil_scoped_release release;
+      code = work();
+    }
+    check(code, kacanov_message(handle_));
+  }
+
+  kacanov_operator* handle_ = nullptr;
+  kacanov_information size_{};
+  std::atomic<bool> busy_ = false;
+};
+
+/// A kacanov_multigrid, which keeps its operator.
+class Multigrid {
+ public:
+  Multigrid(std::shared_ptr<Operator> op, double aggregate);
+  ~Multigrid() { kacanov_multigrid_destroy(handle_); }
+  Multigrid(const Multigrid&) = delete;
+  Multigrid& operator=(const Multigrid&) = delete;
+
+  kacanov_multigrid* handle() const noexcept { return handle_; }
+  Operator& op() noexcept { return *op_; }
+  pybind11::array apply(const pybind11::object& r, const pybind11::object& out);
+  void update();
+  kacanov_multigrid_information information();
+
+ private:
+  std::shared_ptr<Operator> op_;
+  kacanov_multigrid* handle_ = nullptr;
+  std::atomic<bool> busy_ = false;
+};
+
+struct CgOptions {
+  double relative = 0.0, absolute = 0.0;
+  int most_iterations = 0;
+  bool tangent = false;
+};
+/// Solves into `x`, which is overwritten; returns what kacanov_cg says.
+kacanov_cg_result solve_cg(Operator& op, Multigrid* multigrid, const CgOptions& options,
+                           const pybind11::object& b, const pybind11::object& x);
+
+}  // namespace kacanov::python

@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# The Python package's own tests, on the package in the build's folder: ctest -L python. The gate runs them on a wheel.
+file(GLOB petsc4py "/usr/lib/petscdir/*/*-real/lib/python3/dist-packages")  # where Debian has it without its -dev package
+if(petsc4py)
+  list(GET petsc4py 0 petsc4py)
+endif()
+foreach(area case operator)
+  add_test(NAME python_${area} COMMAND "${PYTHON_EXECUTABLE}" -B -m unittest test_${area}
+    WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}/python/tests")
+  kacanov_test_properties(python_${area} 2)
+  get_test_property(python_${area} ENVIRONMENT environment)
+  set_tests_properties(python_${area} PROPERTIES LABELS python
+    ENVIRONMENT "${environment};PYTHONPATH=${PROJECT_BINARY_DIR}/python:${petsc4py};KACANOV_PROGRAM=$<TARGET_FILE:kacanov>")
+endforeach()
