@@ -111,7 +111,26 @@ def guided(d):
     return boundary, 0.0
 
 
-def oracle_case(seed, index):
+def add_conditions(case, d, rng):
+    """Springs and temperature besides, by dice of their own: the rest of the case stays what it is without."""
+    stiffness = d.young / d.size[-1]
+    kinds = rng.sample(("bed", "normal bed", "node springs", "warmth", "warm part"), rng.randint(1, 3))
+    for kind in kinds:
+        if kind == "bed":
+            case["boundary"].append({"on": rng.choice(("right", "top")), "spring": [
+                stiffness * rng.choice((0.0, 0.01, 1.0, 30.0)) for _ in d.size[1:]] + [stiffness * 0.1]})
+        elif kind == "normal bed":
+            case["boundary"].append({"on": rng.choice(("right", "top", "all")), "spring": stiffness * 10 ** rng.uniform(-2, 2)})
+        elif kind == "node springs":
+            case["boundary"].append({"on": "right", "node_spring": [stiffness * d.size[0] * rng.uniform(0, 1) for _ in d.size]})
+        else:
+            case["material"][0]["expansion"] = rng.choice((-1e-5, 1e-5))
+            on = "all" if kind == "warmth" else {"box": [[-d.length] * d.dim, [0.6 * d.size[0]] + [2 * s for s in d.size[1:]]]}
+            case["boundary"].append({"on": on, "temperature": rng.uniform(-2, 2) * d.strain * 1e5})
+    return " ".join(kinds)
+
+
+def oracle_case(seed, index, conditions=False):
     """Name, case, and a body to be written as a mesh file or None; the same for the same seed and index."""
     d = Draw(seed, index)
     kind = d.rng.choice((clamped, clamped, pressed, guided) if d.obstacle in ("plane", "gap") else (clamped, pressed)
@@ -136,6 +155,8 @@ def oracle_case(seed, index):
             case["contact"].append({"on": "right", "obstacle": {"plane": {
                 "point": d.vector(d.size[0] * (1 + 0.3 * d.strain), 0.0), "normal": d.vector(-1.0, 0.0)}}})
     name = f"{index} {kind.__name__} {d.element} {d.law} {d.obstacle} {d.friction}"
+    if conditions:
+        name += " " + add_conditions(case, d, random.Random(f"{seed} {index} conditions"))
     return name, case, body
 
 

@@ -17,14 +17,23 @@ Body elements_of(const Part& part, std::size_t first, std::size_t count) {
   return body;
 }
 
-}  // namespace
-
-void element_fields(const Part& part, std::span<const double> u, std::size_t first, std::size_t count,
-                    const reference::ElementFields& out) {
-  reference::fields(elements_of(part, first, count), u, out);
+/// Six numbers a point of each element from `first` on.
+void take_off_thermal(const BodyState& state, std::size_t first, std::size_t points,
+                      std::span<double> stress) {
+  if (state.thermal.empty()) return;
+  for (std::size_t k = 0; k < stress.size() / 6; ++k)
+    for (std::size_t c = 0; c < 3; ++c) stress[6 * k + c] -= state.thermal[first + k / points];
 }
 
-void visit_element_fields(const Part& part, std::span<const double> u,
+}  // namespace
+
+void element_fields(const Part& part, const BodyState& state, std::size_t first, std::size_t count,
+                    const reference::ElementFields& out) {
+  reference::fields(elements_of(part, first, count), state.u, out);
+  if (!out.stress.empty()) take_off_thermal(state, first, 1, out.stress);
+}
+
+void visit_element_fields(const Part& part, const BodyState& state,
                           const std::function<void(const ElementRun&)>& visit) {
   const std::size_t elements = part.element_count();
   ElementRun run;
@@ -36,14 +45,14 @@ void visit_element_fields(const Part& part, std::span<const double> u,
       field->resize(count);
     run.plastic.resize(count);
     element_fields(
-        part, u, run.first, count,
+        part, state, run.first, count,
         {run.stress, run.von_mises, run.dev_strain, run.secant, run.plastic, run.strain, run.rotation});
     reference::volumes(elements_of(part, run.first, count), run.volume);
     visit(run);
   }
 }
 
-void visit_point_stress(const Part& part, std::span<const double> u,
+void visit_point_stress(const Part& part, const BodyState& state,
                         const std::function<void(const PointRun&)>& visit) {
   const std::size_t elements = part.element_count();
   const std::size_t points = points_per_element(part.type);
@@ -52,7 +61,8 @@ void visit_point_stress(const Part& part, std::span<const double> u,
     const std::size_t count = std::min(elements_a_run, elements - run.first);
     run.position.resize(count * points);
     run.stress.resize(6 * count * points);
-    reference::point_fields(elements_of(part, run.first, count), u, {run.position, run.stress});
+    reference::point_fields(elements_of(part, run.first, count), state.u, {run.position, run.stress});
+    take_off_thermal(state, run.first, points, run.stress);
     visit(run);
   }
 }

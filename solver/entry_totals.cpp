@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "largest.hpp"
+#include "linear/springs.hpp"
 #include "problem/vector3.hpp"
 
 namespace kacanov {
@@ -131,8 +132,9 @@ class Reactions {
   std::span<const double> internal_;
 };
 
-void collect_reactions(const Part& part, Reactions reactions, Result& result) {
+void collect_reactions(const Part& part, std::span<const double> u, Reactions reactions, Result& result) {
   std::int32_t count = 0;
+  for (const NodeSpring& spring : part.springs) count = std::max(count, spring.entry + 1);
   for (const Support& support : part.supports) count = std::max(count, support.entry + 1);
   std::vector<Resultant> sums(static_cast<std::size_t>(part.node_map.max_all(count)));
   std::vector<double> there(sums.size(), 0.0);  // whether the entry holds anything
@@ -151,6 +153,14 @@ void collect_reactions(const Part& part, Reactions reactions, Result& result) {
       there[first->entry] = 1.0;
     }
   }
+  for (const NodeSpring& spring : part.springs) {
+    if (spring.node >= part.owned_nodes()) break;
+    const Vector3 force = spring_force(spring, part, u);
+    Resultant& sum = sums[spring.entry];
+    sum.force = sum.force + force;
+    sum.moment = sum.moment + cross(node_position(part, spring.node), force);
+    there[spring.entry] = 1.0;
+  }
   part.node_map.sum_all(numbers(sums));
   part.node_map.max_all(there);
   result.reaction.clear();
@@ -163,7 +173,7 @@ void collect_reactions(const Part& part, Reactions reactions, Result& result) {
 void collect_entries(const Part& part, const ContactState& state, const LoadPath& path,
                      std::span<const double> internal, Solution& solution) {
   collect_contact(part, state, solution);
-  collect_reactions(part, Reactions(path.load(), internal), solution.result);
+  collect_reactions(part, state.u, Reactions(path.load(), internal), solution.result);
   solution.result.load.clear();
   for (const AppliedLoad& load : part.applied) {
     const double factor = path.factor_of(load.entry);

@@ -187,7 +187,7 @@ Model with_curves(Model model) {
   for (const double share : shares) {
     LoadStage stage{share, {}};
     for (std::size_t i = 0; i < model.boundary.size(); ++i)
-      stage.factors[entry_name(model.boundary[i], i)] = share;
+      if (!model.boundary[i].is_spring()) stage.factors[entry_name(model.boundary[i], i)] = share;
     for (std::size_t i = 0; i < model.contact.size(); ++i)
       if (!model.contact[i].motion && !model.contact[i].relinearise)
         stage.factors[entry_name(model.contact[i], i)] = share;

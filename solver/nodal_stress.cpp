@@ -47,9 +47,9 @@ class Corners {
 /// Recovers one material after the other.
 class Recovery {
  public:
-  Recovery(const Part& part, std::span<const double> u)
+  Recovery(const Part& part, const BodyState& state)
       : part_(part),
-        u_(u),
+        state_(state),
         type_(cell(part.type)),
         nodes_(type_.nodes),
         corner_(part),
@@ -88,7 +88,7 @@ class Recovery {
 
   void recover(std::size_t law) {
     PatchFits fits(corner_.count(), Monomials(part_.dim(), type_.order));
-    visit_point_stress(part_, u_, [&](const PointRun& run) {
+    visit_point_stress(part_, state_, [&](const PointRun& run) {
       for (std::size_t k = 0; k < run.position.size(); ++k) {
         const std::size_t e = run.first + k / type_.points.size();
         if (!follows(e, law)) continue;
@@ -161,7 +161,7 @@ class Recovery {
   }
 
   const Part& part_;
-  std::span<const double> u_;
+  BodyState state_;
   const Cell& type_;
   std::size_t nodes_;
   Corners corner_;
@@ -172,6 +172,6 @@ class Recovery {
 
 }  // namespace
 
-NodalStress recover_stress(const Part& part, std::span<const double> u) { return Recovery(part, u).run(); }
+NodalStress recover_stress(const Part& part, const BodyState& state) { return Recovery(part, state).run(); }
 
 }  // namespace kacanov

@@ -10,6 +10,7 @@
 #include "amg/make_preconditioner.hpp"
 #include "collect.hpp"
 #include "entry_totals.hpp"
+#include "linear/springs.hpp"
 #include "load_steps.hpp"
 #include "nonlinear/friction_bounds.hpp"
 #include "parallel/own_units.hpp"
@@ -41,7 +42,19 @@ Vector internal_force(const Part& part, std::span<const double> u) {
   Vector internal(part.unknowns());
   reference::residual(part.body(), u, internal);
   part.node_map.sum(internal, part.dim());
+  add_spring_response(part, u, internal);
   return internal;
+}
+
+/// Of each element as the load has it, in the user's units; empty where nothing is warmer.
+std::vector<double> thermal_pressure(const Part& part, const LoadPath& path) {
+  std::vector<double> sum;
+  for (const ThermalPressure& thermal : part.thermal) {
+    sum.resize(part.element_count(), 0.0);
+    const double factor = path.factor_of(thermal.entry);
+    for (std::size_t e = 0; e < sum.size(); ++e) sum[e] += factor * thermal.of_element[e];
+  }
+  return sum;
 }
 
 /// KKT residuals by the reference operator: the certificate does not trust the one the loop ran on.
@@ -49,7 +62,8 @@ Certificate certify_independently(const StepContext& context, std::span<const do
   const Part& part = context.part;
   BodyForces forces = context.body.forces(context.path);
   forces.internal = internal;
-  forces.energy = part.node_map.sum_all(reference::energy(part.body(), context.state.u));
+  forces.energy = part.node_map.sum_all(reference::energy(part.body(), context.state.u) +
+                                        spring_energy(part, context.state.u));
   return kkt_residuals(context.space, context.traces, context.state, forces).certificate;
 }
 
@@ -109,6 +123,7 @@ void hand_out_step(const StepContext& context, const Result& result, const RunOp
                    InOwnUnits& scaled) {
   Solution now;
   now.displacement = context.state.u;
+  now.thermal = thermal_pressure(context.part, context.path);
   collect_contact(context.part, context.state, context.options.tolerance, now);
   to_users_units(now, scaled.units());
   now.result.load_steps = result.load_steps;
@@ -180,6 +195,7 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   }
 
   solution.displacement = context.state.u;
+  solution.thermal = thermal_pressure(part, context.path);
   collect_contact(part, context.state, options.tolerance, solution);
   collect_totals(part, context.state, solution);
   collect_entries(part, context.state, context.path, internal, solution);

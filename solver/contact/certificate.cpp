@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "linear/springs.hpp"
+#include "problem/vector3.hpp"
+
 namespace kacanov {
 
 namespace {
@@ -127,6 +130,19 @@ BodySums body_sums(const Part& part, std::span<const double> u, std::span<const 
     s.stiff_all += std::abs(stiff);
     s.stiff_work += stiff * u[i];
     s.softness += 1.0 / diagonal;
+  }
+  // Springs are supports as the balance sees them; those of a node are one.
+  for (auto spring = part.springs.begin(); spring != part.springs.end();) {
+    const std::int32_t node = spring->node;
+    if (node >= part.owned_nodes()) break;
+    Vector3 force{};
+    for (; spring != part.springs.end() && spring->node == node; ++spring)
+      force = force + spring_force(*spring, part, u);
+    for (std::size_t c = 0; c < dim; ++c) {
+      s.balance[c] += force[c];
+      s.all += std::abs(force[c]);
+      s.reaction += force[c] * force[c];
+    }
   }
   part.node_map.sum_each({&s.balance[0], &s.balance[1], &s.balance[2], &s.all, &s.residual_work,
                           &s.internal_work, &s.residual, &s.reaction, &s.contact, &s.load, &s.moved, &s.stiff,

@@ -23,7 +23,7 @@ void Traces::evaluate(std::span<const double> u, ContactValues& values) const {
     double normal = 0.0, tangential[2] = {0.0, 0.0};
     for (const RowEntry& entry : entries(i)) {
       const double* at = u.data() + static_cast<std::size_t>(entry.node) * dim;
-      normal += inner(entry.normal, at, dim);
+      normal += inner(entry.trace, at, dim);
       for (std::size_t k = 0; k < tangents; ++k) tangential[k] += inner(entry.tangent[k], at, dim);
     }
     values.normal[i] = normal;

@@ -37,7 +37,7 @@ class Traces {
   const Communicator& ranks() const noexcept { return part_->node_map; }
   const Part& part() const noexcept { return *part_; }
 
-  /// values = (Nu, Tu); N takes prescribed components along.
+  /// values = (Nu, Tu) of the free components: what prescribed ones close is off the gap.
   void evaluate(std::span<const double> u, ContactValues& values) const;
   /// y += factor · (Nᵀ M λ_n + Tᵀ M λ_t), in free components. Collective.
   void add_force(const ContactValues& lambda, double factor, std::span<double> y) const;

@@ -11,12 +11,13 @@
 #include <kacanov/operator.hpp>
 #include <kacanov/part.hpp>
 #include <kacanov/scatterer.hpp>
+#include "linear/springs.hpp"
 
 namespace kacanov {
 
-/// The operators of all ranks' elements as one. Vectors have the part's unknowns and are consistent (Part) on
-/// the way in and out; g has elements × points of the part. Units are the problem's. Members that are not
-/// const are collective, and so is diagonal().
+/// The operators of all ranks' elements, and the springs, as one. Vectors have the part's unknowns and are
+/// consistent (Part) on the way in and out; g has elements × points of the part. Units are the problem's.
+/// Members that are not const are collective, and so is diagonal().
 class DistributedOperator {
  public:
   /// The elastic operator. `part` has to outlive it; threads and instruction set are OperatorOptions'.
@@ -28,11 +29,11 @@ class DistributedOperator {
   /// y = B(g) x. What the ranks share travels while the rest is worked out. Returns this rank's share of xᵀ
   /// y.
   double apply(std::span<const double> x, std::span<double> y) {
-    return apply_and_sum(y, [&](const WhenEarly& send) { return local_.apply_dot(x, y, send); });
+    return apply_and_sum(x, y, [&](const WhenEarly& send) { return local_.apply_dot(x, y, send); });
   }
   /// y = B_T x with the tangent frozen last, likewise.
   double apply_tangent(std::span<const double> x, std::span<double> y) {
-    return apply_and_sum(y, [&](const WhenEarly& send) { return local_.apply_tangent_dot(x, y, send); });
+    return apply_and_sum(x, y, [&](const WhenEarly& send) { return local_.apply_tangent_dot(x, y, send); });
   }
   /// Called after every application, on all ranks alike. It may throw to leave whatever loops go on.
   void watch(std::function<void()> watcher) { watcher_ = std::move(watcher); }
@@ -48,22 +49,27 @@ class DistributedOperator {
   void residual(std::span<const double> u, std::span<double> f) {
     local_.residual(u, f);
     part_->node_map.sum(f, part_->dim());
+    add_spring_response(*part_, u, f);
     ++applications_;
   }
   /// The same with the stored energy, which is returned, and g frozen at u, in one pass.
   double residual_energy_update(std::span<const double> u, std::span<double> f) {
-    const double energy = local_.residual_energy_update(u, f);
+    const double energy = local_.residual_energy_update(u, f) + spring_energy(*part_, u);
     part_->node_map.sum(f, part_->dim());
+    add_spring_response(*part_, u, f);
     ++applications_;
     return part_->node_map.sum_all(energy);
   }
-  double energy(std::span<const double> u) { return part_->node_map.sum_all(local_.energy(u)); }
+  double energy(std::span<const double> u) {
+    return part_->node_map.sum_all(local_.energy(u) + spring_energy(*part_, u));
+  }
 
   /// Diagonal of B(g), consistent: a measure of stiffness, so single precision does.
   std::vector<float> diagonal() const {
     std::vector<double> exact(local_.unknowns());
     local_.diagonal(exact);
     part_->node_map.sum(exact, part_->dim());
+    add_spring_diagonal(*part_, exact);
     return {exact.begin(), exact.end()};
   }
 
@@ -73,11 +79,12 @@ class DistributedOperator {
  private:
   /// Calls work(send), which calls `send` once what the ranks share is there, and adds that up in y.
   template <class Work>
-  double apply_and_sum(std::span<double> y, const Work& work) {
+  double apply_and_sum(std::span<const double> x, std::span<double> y, const Work& work) {
     WhenEarly send;
     if (part_->node_map.ranks > 1) send = [&, this] { sum_.start_sum(y); };
-    const double share = work(send);
+    double share = work(send);
     sum_.finish_sum(y);
+    share += add_spring_response(*part_, x, y);
     ++applications_;
     if (watcher_) watcher_();
     return share;

@@ -14,8 +14,8 @@ namespace kacanov {
 class Preconditioner {
  public:
   virtual ~Preconditioner() = default;
-  /// For frozen g (elements × points of this part), the blocks of *owned* nodes (several may name one), and
-  /// the space the solves live in.
+  /// For frozen g (elements × points of this part), the blocks of *owned* nodes (several may name one) beside
+  /// the part's springs, and the space the solves live in.
   void setup(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space);
   /// The same with the g of the last setup, at a fraction of the cost where few nodes see a change.
   void setup_again(std::span<const NodeBlock> blocks, const Space& space);

@@ -157,6 +157,19 @@ void check_entries(const Part& part) {
     expect(share.point >= point, "shares of contact points", "are out of order");
     point = share.point;
   }
+  std::int32_t node = 0;
+  for (const NodeSpring& spring : part.springs) {
+    expect_indices("springs", std::array{spring.node}, part.nodes());
+    expect_indices("springs", std::array{spring.entry}, entries);
+    expect(spring.node >= node, "springs", "are out of order");
+    node = spring.node;
+    for (const Vector3& row : spring.stiffness)
+      for (const double value : row) expect(std::isfinite(value), "springs", "are not finite");
+  }
+  for (const ThermalPressure& thermal : part.thermal) {
+    expect_indices("temperatures", std::array{thermal.entry}, entries);
+    expect_length("temperatures", thermal.of_element.size(), part.element_count());
+  }
   for (const AppliedLoad& load : part.applied)
     expect_indices("loads of entries", std::array{load.entry}, entries);
 }

@@ -95,7 +95,15 @@ Fingerprint fingerprint(const Problem& problem) {
     std::visit([&](const auto& form) { form.parameters(form, append); }, law.form);
   }
   print.sections["material"] = (Hash() << laws << problem.law_of_element).value();
-  print.sections["boundary"] = (Hash() << problem.load << problem.held << problem.prescribed).value();
+  Hash boundary;
+  boundary << problem.load << problem.held << problem.prescribed;
+  std::vector<double> springs;
+  for (const NodeSpring& spring : problem.springs) {
+    springs.push_back(static_cast<double>(spring.node));
+    for (const Vector3& row : spring.stiffness) springs.insert(springs.end(), row.begin(), row.end());
+  }
+  if (!springs.empty()) boundary << springs;
+  print.sections["boundary"] = boundary.value();
   if (!problem.steps.empty()) {
     std::vector<double> curves;
     for (const LoadFactors& step : problem.steps) {

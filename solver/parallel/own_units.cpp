@@ -45,6 +45,9 @@ void scale(Part& part, const UnitSystem& factors) {
   for (Part::ComponentValue& entry : part.load) entry.value *= factors.force();
   for (EntryForce& entry : part.forces) entry.value *= factors.force();
   for (Part::ComponentValue& entry : part.prescribed) entry.value *= factors.displacement;
+  for (NodeSpring& spring : part.springs)
+    for (Vector3& row : spring.stiffness)
+      for (double& value : row) value *= factors.force() / factors.displacement;
   for (ContactPoint& point : part.contact) {
     point.gap *= factors.displacement;
     point.unknown_gap *= factors.displacement;

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <map>
 #include <numeric>
-#include <set>
 #include <tuple>
 #include <utility>
 
@@ -13,6 +11,7 @@
 #include <kacanov/locality.hpp>
 #include "parallel/long_messages.hpp"
 #include "parallel/part_fields.hpp"
+#include "parallel/sharers.hpp"
 #include "problem/rigid_modes.hpp"
 
 namespace kacanov {
@@ -55,84 +54,6 @@ std::vector<std::uint16_t> partition_elements(const Mesh& mesh, std::span<const 
   return part;
 }
 
-/// Which ranks have each node, ascending: by its elements (compressed rows), and a few by wide contact
-/// points.
-struct Sharers {
-  std::vector<std::size_t> start;
-  std::vector<int> rank;
-  std::map<std::size_t, std::set<int>> more;  ///< ranks without an element there
-  std::span<const int> by_elements(std::size_t node) const {
-    return std::span(rank).subspan(start[node], start[node + 1] - start[node]);
-  }
-  std::vector<int> of(std::size_t node) const {
-    const auto s = by_elements(node);
-    std::vector<int> all(s.begin(), s.end());
-    if (const auto found = more.find(node); found != more.end()) {
-      all.insert(all.end(), found->second.begin(), found->second.end());
-      std::sort(all.begin(), all.end());
-    }
-    return all;
-  }
-  bool is_shared(std::size_t node) const { return by_elements(node).size() > 1 || more.contains(node); }
-  bool has(std::size_t node, int who) const {
-    const auto s = by_elements(node);
-    if (std::binary_search(s.begin(), s.end(), who)) return true;
-    if (more.empty()) return false;
-    const auto found = more.find(node);
-    return found != more.end() && found->second.contains(who);
-  }
-  /// Shared nodes are dealt out in turn, so that no rank owns a whole interface.
-  int owner(std::size_t node) const {
-    const auto s = by_elements(node);
-    return s[node % s.size()];
-  }
-  /// Every rank gets the nodes of the wide points it owns.
-  void widen(const ConstraintRows& contact) {
-    for (std::size_t i = 0; i < contact.size(); ++i) {
-      if (!contact.is_wide(i)) continue;
-      const int rank_of_point = owner(contact[i].node);
-      for (const RowEntry& entry : contact.entries(i)) {
-        const std::size_t node = entry.node;
-        if (!has(node, rank_of_point)) more[node].insert(rank_of_point);
-      }
-    }
-  }
-};
-
-Sharers find_sharers(const Mesh& mesh, std::span<const std::uint16_t> part, int ranks) {
-  Sharers sharers;
-  const std::size_t nodes = mesh.node_count();
-  const std::size_t npe = nodes_per_element(mesh.type);
-  sharers.start.assign(nodes + 1, 0);
-  if (ranks == 1) {
-    std::iota(sharers.start.begin(), sharers.start.end(), std::size_t{0});
-    sharers.rank.assign(nodes, 0);
-    return sharers;
-  }
-  // A first pass tells the inner nodes, which are most, by their only rank; the few others have lists.
-  constexpr int none = -1, several = -2;
-  std::vector<int> only(nodes, none);
-  for (std::size_t k = 0; k < mesh.elements.size(); ++k) {
-    int& rank = only[mesh.elements[k]];
-    const int here = part[k / npe];
-    if (rank == none) rank = here;
-    if (rank != here) rank = several;
-  }
-  std::map<std::size_t, std::set<int>> lists;
-  for (std::size_t k = 0; k < mesh.elements.size(); ++k) {
-    const std::size_t n = mesh.elements[k];
-    if (only[n] == several) lists[n].insert(part[k / npe]);
-  }
-  for (std::size_t n = 0; n < nodes; ++n) {
-    if (only[n] == several)
-      sharers.rank.insert(sharers.rank.end(), lists[n].begin(), lists[n].end());
-    else
-      sharers.rank.push_back(only[n]);
-    sharers.start[n + 1] = sharers.rank.size();
-  }
-  return sharers;
-}
-
 class Splitter {
  public:
   Splitter(const Problem& problem, int ranks)
@@ -164,6 +85,8 @@ class Splitter {
     take_contact(part, rank);
     take_probes(part, rank);
     part.laws = problem_.laws;
+    take_springs(part);
+    take_thermal(part, rank);
     part.steps = problem_.steps;
     part.applied = problem_.applied;
     part.loose_modes = problem_.loose_modes;
@@ -233,6 +156,24 @@ class Splitter {
     }
     std::stable_sort(part.forces.begin(), part.forces.end(),
                      [](const EntryForce& a, const EntryForce& b) { return a.component < b.component; });
+  }
+
+  void take_springs(Part& part) const {
+    for (NodeSpring spring : problem_.springs) {
+      spring.node = local_[spring.node];
+      if (spring.node >= 0) part.springs.push_back(spring);
+    }
+    std::stable_sort(part.springs.begin(), part.springs.end(),
+                     [](const NodeSpring& a, const NodeSpring& b) { return a.node < b.node; });
+  }
+
+  void take_thermal(Part& part, int rank) const {
+    for (const ThermalPressure& thermal : problem_.thermal) {
+      ThermalPressure mine{thermal.entry, {}};
+      for (std::size_t e = 0; e < part_of_.size(); ++e)
+        if (part_of_[e] == rank) mine.of_element.push_back(thermal.of_element[e]);
+      part.thermal.push_back(std::move(mine));
+    }
   }
 
   void take_supports(Part& part, int rank) const {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <optional>
 #include <sstream>
 
@@ -78,6 +79,22 @@ void add_body_force(const Mesh& mesh, const Vector3& force, std::span<const std:
   }
 }
 
+/// What the elements would push their nodes with if they could not expand.
+void add_temperature(Problem& problem, const Model& model, double rise,
+                     std::span<const std::int32_t> elements, LoadOfEntry& load) {
+  const Mesh& mesh = problem.mesh;
+  const std::size_t n = nodes_per_element(mesh.type);
+  ThermalPressure& thermal = problem.thermal.back();
+  thermal.of_element.assign(mesh.element_count(), 0.0);
+  for (const std::int32_t e : elements) {
+    const std::size_t law = problem.law_of_element[e];
+    const double pressure = 3.0 * problem.laws[law].bulk * model.materials[law].expansion * rise;
+    thermal.of_element[e] = pressure;
+    const auto weights = gradient_weights(mesh, e);
+    for (std::size_t k = 0; k < n; ++k) load.add(mesh.elements[e * n + k], pressure * weights[k]);
+  }
+}
+
 }  // namespace
 
 bool locks_without_bbar(const Law& law, ElementType type) {
@@ -142,12 +159,20 @@ void assemble_load(Problem& problem, const Model& model, const Selection& select
   problem.steps = load_curves(model);
   for (std::size_t i = 0; i < model.boundary.size(); ++i) {
     const BoundaryEntry& entry = model.boundary[i];
-    if (entry.displacement) continue;
+    if (entry.displacement || entry.is_spring()) continue;
     const std::string path = path_of("boundary", i);
     const Mesh& mesh = problem.mesh;
     LoadOfEntry load(problem, i);
     if (entry.body_force) {
       add_body_force(mesh, *entry.body_force, selection.elements(entry.on, path), load);
+    } else if (entry.temperature) {
+      const std::vector<std::int32_t> elements = selection.elements(entry.on, path);
+      if (std::none_of(elements.begin(), elements.end(), [&](std::int32_t e) {
+            return model.materials[problem.law_of_element[e]].expansion != 0.0;
+          }))
+        throw InputError(path + ".temperature: expected elements whose material has an expansion");
+      problem.thermal.push_back({static_cast<std::int32_t>(i), {}});
+      add_temperature(problem, model, *entry.temperature, elements, load);
     } else {
       const std::vector<std::int32_t> facets = selection.facets(entry.on, path);
       if (entry.traction) add_traction(mesh, *entry.traction, facets, load);
@@ -207,6 +232,43 @@ void hold_displacements(Problem& problem, const Model& model, const Selection& s
     }
   }
   if (!problem.steps.empty()) problem.holder = std::move(holder);
+}
+
+void add_springs(Problem& problem, const Model& model, const Selection& selection) {
+  const Mesh& mesh = problem.mesh;
+  const std::size_t dim = mesh.dim();
+  for (std::size_t i = 0; i < model.boundary.size(); ++i) {
+    const BoundaryEntry& entry = model.boundary[i];
+    if (!entry.is_spring()) continue;
+    const std::string path = path_of("boundary", i);
+    std::map<std::int32_t, std::array<Vector3, 3>> nodes;
+    const auto add_axes = [&](std::int32_t node, double weight, const Vector3& stiffness) {
+      auto& block = nodes[node];
+      for (std::size_t c = 0; c < dim; ++c) block[c][c] += weight * stiffness[c];
+    };
+    if (entry.node_spring)
+      for (const std::int32_t node : selection.nodes(entry.on, path)) add_axes(node, 1.0, *entry.node_spring);
+    else
+      for (const std::int32_t f : selection.facets(entry.on, path)) {
+        const FacetWeights weights = lumped_weights(mesh, f);
+        const auto facet = mesh.facet(f);
+        for (std::size_t k = 0; k < facet.size(); ++k) {
+          if (weights.area[k] == 0.0) continue;
+          if (entry.spring) {
+            add_axes(facet[k], weights.area[k], *entry.spring);
+            continue;
+          }
+          auto& block = nodes[facet[k]];
+          const Vector3& n = weights.normal[k];
+          const double scale = *entry.normal_spring * weights.area[k] / dot(n, n);
+          for (std::size_t r = 0; r < 3; ++r) block[r] = block[r] + (scale * n[r]) * n;
+        }
+      }
+    for (const auto& [node, stiffness] : nodes)
+      problem.springs.push_back({node, static_cast<std::int32_t>(i), stiffness});
+  }
+  std::stable_sort(problem.springs.begin(), problem.springs.end(),
+                   [](const NodeSpring& a, const NodeSpring& b) { return a.node < b.node; });
 }
 
 }  // namespace kacanov

@@ -17,6 +17,9 @@ void assign_materials(Problem& problem, const Model& model, const Selection& sel
 /// fills steps and forces, and the load is that of the first step.
 void assemble_load(Problem& problem, const Model& model, const Selection& selection);
 
+/// Fills springs, those of facets lumped as contact is (theory: springs).
+void add_springs(Problem& problem, const Model& model, const Selection& selection);
+
 /// F of a point of the load curves.
 std::vector<double> load_at(const Problem& problem, std::size_t step);
 

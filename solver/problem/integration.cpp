@@ -149,4 +149,27 @@ std::array<double, most_nodes> volume_weights(const Mesh& mesh, std::size_t elem
   return weights;
 }
 
+std::array<Vector3, most_nodes> gradient_weights(const Mesh& mesh, std::size_t element) {
+  const Cell& type = cell(mesh.type);
+  std::array<Vector3, most_nodes> weights{};
+  const std::size_t n = type.nodes;
+  const auto nodes = std::span(mesh.elements).subspan(element * n, n);
+  for (const auto& at : type.points) {
+    const Shapes shapes = shapes_at(type, at);
+    std::array<Vector3, 3> jacobian{};
+    for (std::size_t k = 0; k < n; ++k) {
+      const Vector3 x = position(mesh, nodes[k]);
+      for (std::size_t c = 0; c < 3; ++c) jacobian[c] = jacobian[c] + shapes.gradient[k][c] * x;
+    }
+    if (mesh.dim() == 2) jacobian[2] = {0.0, 0.0, 1.0};
+    // Gradients in space times the determinant.
+    const std::array<Vector3, 3> dual{cross(jacobian[1], jacobian[2]), cross(jacobian[2], jacobian[0]),
+                                      cross(jacobian[0], jacobian[1])};
+    for (std::size_t k = 0; k < n; ++k)
+      for (std::size_t c = 0; c < static_cast<std::size_t>(type.dim); ++c)
+        weights[k] = weights[k] + type.weight * shapes.gradient[k][c] * dual[c];
+  }
+  return weights;
+}
+
 }  // namespace kacanov

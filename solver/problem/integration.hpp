@@ -22,6 +22,9 @@ FacetWeights consistent_weights(const Mesh& mesh, std::size_t facet);
 /// of the six-node triangle the mid-sides have a third each, as in the consistent load, and the corners none.
 FacetWeights lumped_weights(const Mesh& mesh, std::size_t facet);
 
+/// ∫ ∇Nᵢ dV by the points of the stiffness, one entry a node of the element.
+std::array<Vector3, most_nodes> gradient_weights(const Mesh& mesh, std::size_t element);
+
 /// ∫ Nᵢ dV (an area in 2D), one entry a node of the element.
 std::array<double, most_nodes> volume_weights(const Mesh& mesh, std::size_t element);
 

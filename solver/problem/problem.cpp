@@ -50,6 +50,7 @@ Problem build_problem(Mesh mesh, const Model& model) {
   assign_materials(problem, model, selection);
   assemble_load(problem, model, selection);
   hold_displacements(problem, model, selection);
+  add_springs(problem, model, selection);
   find_contact_points(problem, model, selection);
   check_rigid_modes(problem);
   problem.probes = locate_probes(problem.mesh, model);
@@ -65,6 +66,8 @@ std::vector<std::int32_t> keep_boundary(Problem& problem) {
   free(problem.forces);
   free(problem.holder);
   free(problem.supports);
+  free(problem.springs);
+  free(problem.thermal);
   Mesh& mesh = problem.mesh;
   std::vector<std::int32_t> left;
   if (mesh.dim() == 2) {

@@ -123,6 +123,14 @@ void collect_rows(const Problem& problem, std::vector<Piece>& pieces,
     axis[k % dim] = 1.0;
     add_row(piece.by_displacement, row(piece, position(mesh, static_cast<std::int32_t>(node)), axis));
   }
+  for (const NodeSpring& spring : problem.springs) {
+    Piece& piece = pieces[piece_of_node[spring.node]];
+    double size = 0.0;
+    for (const Vector3& r : spring.stiffness) size = std::max(size, norm(r));
+    if (size == 0.0) continue;
+    for (const Vector3& r : spring.stiffness)
+      add_row(piece.by_displacement, row(piece, position(mesh, spring.node), (1.0 / size) * r));
+  }
   for (std::size_t i = 0; i < problem.contact.size(); ++i) {
     const ContactPoint& point = problem.contact[i];
     Piece& piece = pieces[piece_of_node[point.node]];

@@ -32,17 +32,26 @@ void check_selector(const std::string& path, const Selector& on) {
 void check_material(const std::string& path, const MaterialEntry& entry) {
   check_selector(path + ".on", entry.on);
   if (const std::string fault = validate(entry.law); !fault.empty()) throw InputError(path + ".law." + fault);
+  check(path + ".expansion", entry.expansion);
+}
+
+void check_stiffness(const std::string& path, const Vector3& stiffness) {
+  for (std::size_t c = 0; c < 3; ++c) check(at(path, c), stiffness[c], not_negative);
+  if (stiffness == Vector3{}) refuse(path, "a stiffness > 0 in some direction", shown_list(stiffness));
 }
 
 void check_boundary(const std::string& path, const BoundaryEntry& entry) {
   check_selector(path + ".on", entry.on);
   const int kinds = (entry.displacement ? 1 : 0) + (entry.traction ? 1 : 0) + (entry.total_force ? 1 : 0) +
-                    (entry.pressure ? 1 : 0) + (entry.body_force ? 1 : 0);
+                    (entry.pressure ? 1 : 0) + (entry.body_force ? 1 : 0) + (entry.temperature ? 1 : 0) +
+                    (entry.spring ? 1 : 0) + (entry.normal_spring ? 1 : 0) + (entry.node_spring ? 1 : 0);
   if (kinds != 1)
-    refuse(path,
-           std::string(kinds == 0 ? "" : "only ") +
-               "one of the keys displacement, traction, pressure, body_force, total_force",
-           std::to_string(kinds));
+    refuse(
+        path,
+        std::string(kinds == 0 ? "" : "only ") +
+            "one of the keys displacement, traction, pressure, body_force, total_force, spring, node_spring, "
+            "temperature",
+        std::to_string(kinds));
   if (entry.displacement) {
     bool any = false;
     for (std::size_t c = 0; c < 3; ++c) {
@@ -56,6 +65,10 @@ void check_boundary(const std::string& path, const BoundaryEntry& entry) {
   if (entry.total_force) check(path + ".total_force", *entry.total_force);
   if (entry.pressure) check(path + ".pressure", *entry.pressure);
   if (entry.body_force) check(path + ".body_force", *entry.body_force);
+  if (entry.temperature) check(path + ".temperature", *entry.temperature);
+  if (entry.normal_spring) check(path + ".spring", *entry.normal_spring, positive);
+  if (entry.spring) check_stiffness(path + ".spring", *entry.spring);
+  if (entry.node_spring) check_stiffness(path + ".node_spring", *entry.node_spring);
 }
 
 void check_contact(const std::string& path, const ContactEntry& entry) {
@@ -148,6 +161,11 @@ void check_steps(const Model& model) {
     before = step.time;
     for (const auto& [name, factor] : step.factors) {
       check(path + ".factors[\"" + name + "\"]", factor);
+      for (std::size_t e = 0; e < model.boundary.size(); ++e)
+        if (model.boundary[e].is_spring() &&
+            (name == entry_name(model.boundary[e], e) || name == at("boundary", e)))
+          throw InputError(path + ".factors[\"" + name +
+                           "\"]: expected a load or a displacement, got a spring");
       for (std::size_t e = 0; e < model.contact.size(); ++e) {
         const ContactEntry& entry = model.contact[e];
         if (name != entry_name(entry, e) && name != at("contact", e)) continue;

@@ -136,23 +136,26 @@ class CaseParser {
   }
 
   void parse_material(const Node& node) {
-    const Object object(
-        node, {"on", "young", "poisson", "law", "plastic", "yield_stress", "tangent_modulus", "bbar"});
+    const Object object(node, {"on", "young", "poisson", "law", "plastic", "yield_stress", "tangent_modulus",
+                               "bbar", "expansion"});
     MaterialEntry entry;
     entry.on = selector(object.required("on"));
     entry.law = parse_material_law(object, result_.warnings);
     if (const auto bbar = object.optional("bbar")) entry.bbar = bbar->boolean();
+    if (const auto expansion = object.optional("expansion")) entry.expansion = expansion->number();
     result_.model.materials.push_back(entry);
   }
 
   void parse_boundary(const Node& node) {
-    const Object object(node, {"on", "name", "displacement", "traction", "pressure", "body_force",
-                               "total_force", "density", "acceleration"});
+    const Object object(
+        node, {"on", "name", "displacement", "traction", "pressure", "body_force", "total_force", "density",
+               "acceleration", "spring", "node_spring", "temperature"});
     BoundaryEntry entry;
     entry.on = selector(object.required("on"));
     if (const auto name = object.optional("name")) entry.name = name->text();
     const std::string kind =
-        object.only_one_of({"displacement", "traction", "pressure", "body_force", "total_force", "density"});
+        object.only_one_of({"displacement", "traction", "pressure", "body_force", "total_force", "density",
+                            "spring", "node_spring", "temperature"});
     const Node value = object.required(kind);
     const auto acceleration = object.optional("acceleration");
     if (acceleration && kind != "density") acceleration->expected("this key beside density alone");
@@ -170,6 +173,14 @@ class CaseParser {
       entry.total_force = vector(value);
     } else if (kind == "pressure") {
       entry.pressure = value.number();
+    } else if (kind == "spring" && value.value().is_number()) {
+      entry.normal_spring = value.number(positive);
+    } else if (kind == "spring") {
+      entry.spring = vector(value);
+    } else if (kind == "node_spring") {
+      entry.node_spring = vector(value);
+    } else if (kind == "temperature") {
+      entry.temperature = value.number();
     } else if (kind == "density") {
       const double density = value.number(positive);
       Vector3 force = vector(object.required("acceleration"));

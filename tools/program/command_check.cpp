@@ -56,12 +56,17 @@ void print_selections(const Problem& problem, const Model& model) {
     if (entry.displacement) {
       print_entry(path, "displacement", on,
                   std::to_string(selection.nodes(entry.on, path).size()) + " nodes");
-    } else if (entry.body_force) {
-      print_entry(path, "body_force", on,
+    } else if (entry.node_spring) {
+      print_entry(path, "node_spring", on, std::to_string(selection.nodes(entry.on, path).size()) + " nodes");
+    } else if (entry.body_force || entry.temperature) {
+      print_entry(path, entry.temperature ? "temperature" : "body_force", on,
                   std::to_string(selection.elements(entry.on, path).size()) + " elements");
     } else {
-      print_entry(path, entry.traction ? "traction" : "pressure", on,
-                  facets_text(mesh, selection.facets(entry.on, path)));
+      const char* kind = entry.is_spring()   ? "spring"
+                         : entry.traction    ? "traction"
+                         : entry.total_force ? "total_force"
+                                             : "pressure";
+      print_entry(path, kind, on, facets_text(mesh, selection.facets(entry.on, path)));
     }
   }
   for (std::size_t i = 0; i < model.contact.size(); ++i) {

@@ -98,7 +98,7 @@ std::string checkpoint_line(const CheckpointFile& file) {
 void write_step(const FieldPlace& place, const LoadedCase& loaded, const Model& model, const MpiSession& mpi,
                 const Solution& solution) {
   const ContactFields contact = gather_contact_fields(loaded.part, solution);
-  const NodalStress nodal = recover_stress(loaded.part, solution.displacement);
+  const NodalStress nodal = recover_stress(loaded.part, solution);
   together(mpi, [&] {
     write_body(place, loaded.part, solution, nodal);
     if (mpi.first()) write_surroundings(place, *loaded.problem, model, contact, mpi.ranks());
@@ -187,7 +187,7 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
   const int dim = loaded.part.dim();
   if (mpi.first()) complete_messages(input, *loaded.problem, result);
   const ContactFields contact = gather_contact_fields(loaded.part, solution);
-  const NodalStress nodal = recover_stress(loaded.part, solution.displacement);
+  const NodalStress nodal = recover_stress(loaded.part, solution);
   result.max_von_mises_nodal = nodal.max_von_mises;
   std::vector<double> displacement, von_mises;
   if (input.output.report) {

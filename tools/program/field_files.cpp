@@ -227,12 +227,12 @@ void write_body(const FieldPlace& place, const Part& part, const Solution& solut
   grid.point_fields[3].values = Values<double>(nodal.von_mises);
   const auto element_field = [&](int components, std::span<double> reference::ElementFields::*which) {
     const std::size_t width = components;
-    return Values<double>(part.element_count() * width, [&part, &solution, which, width](
-                                                            std::size_t first, std::span<double> out) {
-      reference::ElementFields wanted;
-      wanted.*which = out;
-      element_fields(part, solution.displacement, first / width, out.size() / width, wanted);
-    });
+    return Values<double>(part.element_count() * width,
+                          [&part, &solution, which, width](std::size_t first, std::span<double> out) {
+                            reference::ElementFields wanted;
+                            wanted.*which = out;
+                            element_fields(part, solution, first / width, out.size() / width, wanted);
+                          });
   };
   using Fields = reference::ElementFields;
   grid.cell_fields[0].values = element_field(6, &Fields::stress);
@@ -243,7 +243,7 @@ void write_body(const FieldPlace& place, const Part& part, const Solution& solut
       Values<std::uint8_t>(part.element_count(), [&](std::size_t first, std::span<std::uint8_t> out) {
         reference::ElementFields wanted;
         wanted.plastic = out;
-        element_fields(part, solution.displacement, first, out.size(), wanted);
+        element_fields(part, solution, first, out.size(), wanted);
       });
   grid.cell_fields[5].values =
       tags(part.element_count(), [&part](std::size_t e) { return part.element_tag(e); });

@@ -98,6 +98,13 @@ BodyResponse respond(const Problem& problem, const std::vector<Vec>& u) {
   const std::size_t nodes = problem.mesh.nodes.size();
   BodyResponse out{std::vector<Vec>(nodes), std::vector<Vec>(nodes), 0, 0, 0};
   for (std::size_t e = 0; e < problem.mesh.elements.size(); ++e) add_element(problem, e, u, out);
+  for (std::size_t n = 0; n < problem.springs.size(); ++n)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Real force = dot(problem.springs[n][c], u[n]);
+      out.internal[n][c] += force;
+      out.diagonal[n][c] += problem.springs[n][c][c];
+      out.energy += force * u[n][c] / 2;
+    }
   return out;
 }
 

@@ -52,6 +52,64 @@ void add_body_force(Problem& problem, const nlohmann::json& entry, Real factor) 
     }
 }
 
+/// Springs, those of a bed by the weights of contact (theory: springs).
+void add_spring(Problem& problem, const nlohmann::json& entry) {
+  problem.springs.resize(problem.mesh.nodes.size());
+  const auto dim = static_cast<std::size_t>(problem.mesh.dim());
+  const auto put = [&](Index node, Real weight, const nlohmann::json& stiffness) {
+    for (std::size_t c = 0; c < dim; ++c)
+      problem.springs[node][c][c] += weight * Real(stiffness.at(c).get<double>());
+  };
+  if (entry.contains("node_spring")) {
+    for (const Index node : select_nodes(problem.mesh, entry.at("on"))) put(node, 1, entry.at("node_spring"));
+    return;
+  }
+  const nlohmann::json& stiffness = entry.at("spring");
+  for (const std::size_t f : select_facets(problem.mesh, entry.at("on"))) {
+    const Indices& facet = problem.mesh.facets[f];
+    const FacetIntegrals weights = contact_weights(problem.mesh, facet);
+    for (std::size_t k = 0; k < facet.size(); ++k) {
+      if (stiffness.is_array()) {
+        put(facet[k], weights.area[k], stiffness);
+        continue;
+      }
+      const Vec& normal = weights.normal[k];
+      if (norm(normal) == 0) continue;
+      const Real each = Real(stiffness.get<double>()) * weights.area[k] / dot(normal, normal);
+      for (std::size_t r = 0; r < dim; ++r)
+        for (std::size_t c = 0; c < dim; ++c) problem.springs[facet[k]][r][c] += each * normal[r] * normal[c];
+    }
+  }
+}
+
+/// −3 k₀ α ΔT div v, put on as a load (theory: expansion).
+void add_temperature(Problem& problem, const nlohmann::json& document, const nlohmann::json& entry,
+                     Real factor) {
+  const Mesh& mesh = problem.mesh;
+  const auto dim = static_cast<std::size_t>(mesh.dim());
+  for (const std::size_t e : select_elements(mesh, entry.at("on"))) {
+    const std::size_t law = problem.law_of_element[e];
+    const Real expansion = document.at("material").at(law).value("expansion", 0.0);
+    const Real pressure =
+        3 * problem.laws[law].bulk * expansion * factor * Real(entry.at("temperature").get<double>());
+    for (const QuadraturePoint& point : stiffness_rule(mesh.shape)) {
+      const Functions f = functions(mesh.shape, point.at);
+      std::array<Vec, 3> along{};
+      if (dim == 2) along[2] = {0, 0, 1};
+      for (std::size_t a = 0; a < f.value.size(); ++a)
+        for (std::size_t k = 0; k < dim; ++k)
+          along[k] = along[k] + f.gradient[a][k] * place(mesh, mesh.elements[e][a]);
+      const std::array<Vec, 3> dual{cross(along[1], along[2]), cross(along[2], along[0]),
+                                    cross(along[0], along[1])};
+      for (std::size_t a = 0; a < f.value.size(); ++a) {
+        Vec& load = problem.load[mesh.elements[e][a]];
+        for (std::size_t k = 0; k < dim; ++k)
+          load = load + point.weight * pressure * f.gradient[a][k] * dual[k];
+      }
+    }
+  }
+}
+
 void hold(Problem& problem, const nlohmann::json& entry, Real factor) {
   const nlohmann::json& values = entry.at("displacement");
   const std::size_t dim = problem.mesh.dim();
@@ -137,6 +195,8 @@ Problem read_problem(const nlohmann::json& document, const std::filesystem::path
     const nlohmann::json& entry = boundary.at(i);
     const Real factor = factor_at(problem.time, document, "boundary", i);
     if (entry.contains("displacement")) hold(problem, entry, factor);
+    if (entry.contains("spring") || entry.contains("node_spring")) add_spring(problem, entry);
+    if (entry.contains("temperature")) add_temperature(problem, document, entry, factor);
     if (entry.contains("traction") || entry.contains("total_force") || entry.contains("pressure"))
       add_surface_load(problem, entry, factor);
     if (entry.contains("body_force") || entry.contains("density")) add_body_force(problem, entry, factor);

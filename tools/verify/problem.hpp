@@ -34,9 +34,10 @@ struct Problem {
   std::vector<Vec> load;                  ///< F, one a node
   std::vector<std::array<bool, 3>> held;  ///< components with a prescribed displacement
   std::vector<Vec> prescribed;
-  std::vector<Real> contact_factor;  ///< of each contact entry
-  std::vector<Vec> pushed;           ///< the travel of each contact entry that is pushed by a force
-  Real time = 1;                     ///< that the result has reached: of the load curves, or the load factor
+  std::vector<std::array<Vec, 3>> springs;  ///< stiffness between each node and the ground; empty: none
+  std::vector<Real> contact_factor;         ///< of each contact entry
+  std::vector<Vec> pushed;                  ///< the travel of each contact entry that is pushed by a force
+  Real time = 1;  ///< that the result has reached: of the load curves, or the load factor
   std::vector<ContactRow> rows;
   std::vector<std::int64_t> surface_tags;  ///< numbers of the nodes in contact.vtu, in its order
   std::vector<Vec> probes;
@@ -58,6 +59,10 @@ struct FacetIntegrals {
   std::vector<Vec> normal;
 };
 FacetIntegrals consistent(const Mesh& mesh, const Indices& facet);
+/// The lumped mass of a facet's nodes and their share of its normal: the rule that turns a facet's
+/// multipliers, and beds of springs, into forces. Six-node facets have the rule of their mid-sides, and
+/// corners bear nothing.
+FacetIntegrals contact_weights(const Mesh& mesh, const Indices& facet);
 /// Outer normal times the area over that of the reference cell, at a point with these functions.
 Vec normal_at(const Mesh& mesh, const Indices& facet, const Functions& at);
 

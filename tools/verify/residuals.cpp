@@ -107,6 +107,14 @@ BodySums sum_body(const Problem& problem, const Answer& answer, const BodyRespon
       s.displacement = larger(s.displacement, std::abs(u));
       if (held) s.supports = larger(s.supports, std::abs(u - problem.prescribed[n][c]));
     }
+  // What holds a spring at its other end.
+  for (std::size_t n = 0; n < problem.springs.size(); ++n)
+    for (std::size_t c = 0; c < dim; ++c) {
+      const Real force = -dot(problem.springs[n][c], answer.u[n]);
+      s.balance[c] += force;
+      s.all += std::abs(force);
+      s.reaction += force * force;
+    }
   s.softness /= static_cast<Real>(problem.mesh.nodes.size() * dim);
   return s;
 }

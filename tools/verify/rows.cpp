@@ -8,10 +8,7 @@
 #include "verify/problem.hpp"
 
 namespace kacanov::verify {
-namespace {
 
-/// The lumped mass of a facet's nodes and their share of its normal: the rule that turns a facet's
-/// multipliers into forces. Six-node facets have the rule of their mid-sides, and corners bear nothing.
 FacetIntegrals contact_weights(const Mesh& mesh, const Indices& facet) {
   if (facet_shape(mesh.shape) != Shape::tri6) return consistent(mesh, facet);
   FacetIntegrals out{std::vector<Real>(6), std::vector<Vec>(6)};
@@ -23,6 +20,8 @@ FacetIntegrals contact_weights(const Mesh& mesh, const Indices& facet) {
   }
   return out;
 }
+
+namespace {
 
 /// How far a point of an obstacle has come by a time (theory: moving-obstacles).
 Vec carried(const nlohmann::json& entry, Real time, const Vec& point) {

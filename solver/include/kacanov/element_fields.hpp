@@ -9,12 +9,23 @@
 #include <vector>
 
 #include <kacanov/part.hpp>
+#include <kacanov/result.hpp>
 
 namespace kacanov {
 
-/// Fields of elements `first` … `first` + `count` − 1 of the part at u (its nodes × dim). Spans of `out` have
+/// What stress and strain follow from. Nothing is owned.
+struct BodyState {
+  std::span<const double> u;        ///< nodes × dim
+  std::span<const double> thermal;  ///< Solution::thermal
+
+  BodyState(std::span<const double> displacement) : u(displacement) {}
+  BodyState(const std::vector<double>& displacement) : u(displacement) {}
+  BodyState(const Solution& solution) : u(solution.displacement), thermal(solution.thermal) {}
+};
+
+/// Fields of elements `first` … `first` + `count` − 1 of the part. Spans of `out` have
 /// `count` entries (stress 6 each, xx yy zz xy yz zx), or none where not wanted.
-void element_fields(const Part& part, std::span<const double> u, std::size_t first, std::size_t count,
+void element_fields(const Part& part, const BodyState& state, std::size_t first, std::size_t count,
                     const reference::ElementFields& out);
 
 /// All fields of some elements in a row.
@@ -24,7 +35,7 @@ struct ElementRun {
   std::vector<std::uint8_t> plastic;
 };
 /// Calls visit(run) for the whole part, some thousand elements at a time.
-void visit_element_fields(const Part& part, std::span<const double> u,
+void visit_element_fields(const Part& part, const BodyState& state,
                           const std::function<void(const ElementRun&)>& visit);
 
 /// What the quadrature points of some elements in a row have, an element's together.
@@ -34,7 +45,7 @@ struct PointRun {
   std::vector<double> stress;  ///< × 6, as of elements
 };
 /// Calls visit(run) for the whole part, some thousand elements at a time.
-void visit_point_stress(const Part& part, std::span<const double> u,
+void visit_point_stress(const Part& part, const BodyState& state,
                         const std::function<void(const PointRun&)>& visit);
 
 /// von Mises stress at the part's nodes: the mean of the elements round a node over all ranks, weighted by

@@ -27,6 +27,7 @@ struct MaterialEntry {
   /// B-bar (theory: b-bar). Unset: as the law has it, and wherever its elements have that form and lock
   /// without: in plastic and in nearly incompressible bodies.
   std::optional<bool> bbar = {};
+  double expansion = 0.0;  ///< linear thermal expansion: a strain over a temperature
 };
 
 /// Exactly one of the optionals is set.
@@ -38,6 +39,12 @@ struct BoundaryEntry {
   std::optional<double> pressure;                                    ///< against the outer normal
   std::optional<Vector3> body_force;                                 ///< force a volume
   std::string name = {};                                             ///< see entry_name()
+  std::optional<Vector3> spring = {};        ///< elastic bed: stiffness an area, of each component
+  std::optional<double> normal_spring = {};  ///< the same along the facets' normals alone
+  std::optional<Vector3> node_spring = {};   ///< stiffness of each node
+  std::optional<double> temperature = {};    ///< by how much elements are warmer than without strain
+
+  bool is_spring() const noexcept { return spring || normal_spring || node_spring; }
 };
 
 struct Friction {

@@ -2,9 +2,9 @@
 // Stress at nodes, recovered from the quadrature points round them: where it peaks, on edges and at notches.
 #pragma once
 
-#include <span>
 #include <vector>
 
+#include <kacanov/element_fields.hpp>
 #include <kacanov/part.hpp>
 #include <kacanov/totals.hpp>
 
@@ -20,8 +20,8 @@ struct NodalStress {
 /// Superconvergent patch recovery (theory: nodal-stress): at a corner the value of a polynomial of the
 /// element's order fitted to the stresses of the elements round it, at a middle of an edge the mean of its
 /// ends' polynomials. Each material has polynomials of its own; where several meet, the larger von Mises
-/// stress is taken. `u`: nodes × dim. Memory: some 115 numbers a corner of tet10, 40 of others, while it
+/// stress is taken. Memory: some 115 numbers a corner of tet10, 40 of others, while it
 /// works. Collective.
-NodalStress recover_stress(const Part& part, std::span<const double> u);
+NodalStress recover_stress(const Part& part, const BodyState& state);
 
 }  // namespace kacanov

@@ -45,6 +45,18 @@ struct Support {
   bool operator==(const Support&) const = default;
 };
 
+/// What a spring entry puts between a node and the ground (theory: springs).
+struct NodeSpring {
+  std::int32_t node = 0, entry = 0;    ///< index into Model::boundary
+  std::array<Vector3, 3> stiffness{};  ///< symmetric, positive semidefinite
+};
+
+/// A temperature entry: the pressure 3 k₀ α ΔT of each element, which no strain means (theory: expansion).
+struct ThermalPressure {
+  std::int32_t entry = 0;          ///< index into Model::boundary
+  std::vector<double> of_element;  ///< at the factor 1
+};
+
 /// A contact point that several entries were joined in: what of it belongs to one of them, by its mass.
 struct PointShare {
   std::int32_t point = 0;
@@ -71,6 +83,8 @@ struct Problem {
   std::vector<std::int32_t> holder;  ///< nodes × dim: boundary entry that gives the displacement, else −1
   std::vector<Support> supports;     ///< by node and axis
   std::vector<AppliedLoad> applied;  ///< at the factor 1
+  std::vector<NodeSpring> springs;   ///< by node
+  std::vector<ThermalPressure> thermal;
   ConstraintRows contact;
   std::vector<PointShare> contact_shares;  ///< of points of several entries, by point
   std::vector<Probe> probes;

@@ -147,11 +147,12 @@ enum class ContactStatus : std::uint8_t { open, stick, slip };  ///< frictionles
 /// This rank's fields, in the numbering of its Part. Those of elements follow from the displacement:
 /// element_fields.hpp.
 struct Solution {
-  Result result;                              ///< the same on every rank
-  std::vector<double> displacement;           ///< nodes × dim
-  std::vector<double> gap;                    ///< contact points: ρ − Nu, the open distance
-  std::vector<double> pressure;               ///< contact points: λ_n
-  std::vector<Vector3> traction;              ///< contact points: −λ_t, what the obstacle does to the body
+  Result result;                     ///< the same on every rank
+  std::vector<double> displacement;  ///< nodes × dim
+  std::vector<double> thermal;       ///< elements: the pressure that temperature takes off; empty: none
+  std::vector<double> gap;           ///< contact points: ρ − Nu, the open distance
+  std::vector<double> pressure;      ///< contact points: λ_n
+  std::vector<Vector3> traction;     ///< contact points: −λ_t, what the obstacle does to the body
   std::vector<ContactStatus> contact_status;  ///< contact points
 };
 

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Springs and temperature in cases: closed solutions, on any ranks, each verified from its files; bad input.
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "program_runner.hpp"
+
+using namespace kacanov::testing;
+using nlohmann::json;
+
+namespace {
+
+/// 1 × 1 × 2 with rollers on three sides, a probe in the corner that is free; no load.
+json bar(const std::string& element, double poisson) {
+  json bar = parsed(R"({
+    "mesh": {"box": {"size": [1, 1, 2], "cells": [2, 2, 4]}},
+    "material": [{"on": "all", "young": 200}],
+    "boundary": [{"on": "left", "displacement": [0, null, null]}, {"on": "front", "displacement": [null, 0, null]}],
+    "probe": [[1, 1, 2], [0.5, 0.5, 0]], "solver": {"tolerance": 1e-9}, "output": {"report": false}})");
+  bar["mesh"]["box"]["element"] = element;
+  bar["material"][0]["poisson"] = poisson;
+  return bar;
+}
+
+void add(json& bar, const char* entry) { bar["boundary"].push_back(parsed(entry)); }
+
+/// The result, once it has converged and is verified.
+json solved(const json& input, const std::string& ranks = "1") {
+  const Workplace place;
+  place.put_json("case.json", input);
+  const Outcome run = place.run("run case.json --output out --ranks " + ranks);
+  INFO(run.error);
+  REQUIRE(run.exit_code == 0);
+  const Outcome verified = place.run("verify case.json --output out");
+  INFO(verified.error, verified.output);
+  CHECK(verified.exit_code == 0);
+  return place.json("out/result.json");
+}
+
+std::array<double, 3> vector(const json& list) {
+  return {list.at(0).get<double>(), list.at(1).get<double>(), list.at(2).get<double>()};
+}
+
+void check_vector(const json& list, const std::array<double, 3>& expected, double accuracy) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    CAPTURE(c);
+    CHECK(std::abs(vector(list)[c] - expected[c]) < accuracy);
+  }
+}
+
+std::string refused(const json& input) {
+  const Workplace place;
+  place.put_json("case.json", input);
+  const Outcome outcome = place.run("check case.json");
+  CHECK(outcome.exit_code == 2);
+  return outcome.error;
+}
+
+}  // namespace
+
+TEST_CASE("a bar on springs: every element, a stiffness by component and along the normal, on any ranks") {
+  const double p = 3, k = 40, height = 2;
+  for (const char* element : {"tet4", "tet10", "hex8"})
+    for (const char* spring : {"40", "[0, 0, 40]"})
+      for (const char* ranks : {"1", "2", "3"}) {
+        CAPTURE(element);
+        CAPTURE(spring);
+        if (ranks[0] != '1' && element[0] == 'h') continue;
+        json input = bar(element, 0.0);
+        add(input, R"({"on": "top", "pressure": 3})");
+        add(input, (R"({"on": "bottom", "name": "bed", "spring": )" + std::string(spring) + "}").c_str());
+        const json result = solved(input, ranks);
+        check_vector(result["probe"][1], {0, 0, -p / k}, 1e-9);
+        check_vector(result["probe"][0], {0, 0, -p / k - p * height / 200}, 1e-9);
+        check_vector(result["reaction"]["bed"]["force"], {0, 0, p}, 1e-7);
+        check_vector(result["reaction"]["bed"]["moment"], {p / 2, -p / 2, 0}, 1e-7);
+      }
+}
+
+TEST_CASE("a body that springs alone hold moves as a whole where its load acts on their bed") {
+  for (const char* element : {"tet4", "tet10", "hex8"}) {
+    CAPTURE(element);
+    json input = bar(element, 0.3);
+    input["boundary"] = json::array();
+    add(input, R"({"on": "bottom", "spring": [10, 20, 40]})");
+    add(input, R"({"on": "bottom", "traction": [1, 1, 1]})");
+    const json result = solved(input);
+    for (const json& probe : result["probe"]) check_vector(probe, {0.1, 0.05, 0.025}, 1e-9);
+    CHECK(result["max_von_mises"] < 1e-6);
+    CHECK(result["warnings"].dump().find("only the contact holds") == std::string::npos);
+  }
+}
+
+TEST_CASE("a clamped strip on Winkler's bed") {
+  // EI w'''' + k w = q; quadratic tetrahedra, slender enough for the theory of beams.
+  const double l = 10, h = 0.5, young = 200, k = 0.05, q = 0.001;
+  json input = bar("tet10", 0.0);
+  input["mesh"]["box"] = parsed(R"({"size": [20, 0.5, 0.5], "cells": [40, 1, 1], "element": "tet10"})");
+  input["boundary"] = json::array();
+  for (const char* side : {"left", "right"})
+    input["boundary"].push_back({{"on", side}, {"displacement", {0, 0, 0}}});
+  add(input, R"({"on": "bottom", "spring": 0.05})");
+  add(input, R"({"on": "top", "pressure": 0.001})");
+  input["probe"] = parsed("[[10, 0.25, 0.25], [5, 0.25, 0.25]]");
+  const double beta = std::pow(k / (4 * young * h * h * h / 12), 0.25), b = beta * l;
+  // w = q/k (1 − A cosh cos − B sinh sin) about the middle, w = w' = 0 at the ends.
+  const double cc = std::cosh(b) * std::cos(b), ss = std::sinh(b) * std::sin(b),
+               dc = std::sinh(b) * std::cos(b) - std::cosh(b) * std::sin(b),
+               ds = std::cosh(b) * std::sin(b) + std::sinh(b) * std::cos(b), det = cc * ds - ss * dc;
+  const auto exact = [&](double x) {
+    const double s = beta * x, a = ds / det, c = -dc / det;
+    return -q / k * (1 - a * std::cosh(s) * std::cos(s) - c * std::sinh(s) * std::sin(s));
+  };
+  const json result = solved(input);
+  CHECK(result["probe"][0][2].get<double>() == doctest::Approx(exact(0)).epsilon(0.02));
+  CHECK(result["probe"][1][2].get<double>() == doctest::Approx(exact(5)).epsilon(0.02));
+}
+
+TEST_CASE("springs share the load with an obstacle and a plastic body, and with friction") {
+  json input = bar("hex8", 0.3);
+  input["material"][0]["yield_stress"] = 1.0;
+  input["material"][0]["tangent_modulus"] = 20.0;
+  input["boundary"] = json::array();
+  add(input, R"({"on": "left", "name": "bed", "spring": [5, 3, 2]})");
+  add(input, R"({"on": "top", "traction": [0.2, 0, -2]})");
+  add(input, R"({"on": {"box": [[0, 0, 2], [0, 1, 2]]}, "node_spring": [1, 0, 0]})");
+  input["boundary"][2]["on"] = "right";
+  input["contact"] = parsed(R"([{"on": "bottom", "name": "floor", "obstacle": {"plane": {"point": [0, 0, 0],
+                                 "normal": [0.1, 0, 1]}}, "friction": {"coulomb": 0.3}}])");
+  for (const char* ranks : {"1", "3"}) {
+    const json result = solved(input, ranks);
+    CHECK(result["plastic_elements"] > 0);
+    std::array<double, 3> sum{};
+    for (const char* list : {"contact", "reaction", "load"})
+      for (const auto& [name, entry] : result[list].items())
+        for (std::size_t c = 0; c < 3; ++c) sum[c] += vector(entry["force"])[c];
+    for (const double s : sum) CHECK(std::abs(s) < 1e-7);
+  }
+}
+
+TEST_CASE("warmth without hindrance is strain without stress; held at both ends it is stress") {
+  const double rise = 100, alpha = 1e-5, young = 200;
+  for (const char* element : {"tet4", "tet10", "hex8"})
+    for (const char* ranks : {"1", "2"}) {
+      CAPTURE(element);
+      json input = bar(element, 0.3);
+      input["material"][0]["expansion"] = alpha;
+      add(input, R"({"on": "bottom", "name": "floor", "displacement": [null, null, 0]})");
+      add(input, R"({"on": "all", "temperature": 100})");
+      json result = solved(input, ranks);
+      check_vector(result["probe"][0], {alpha * rise, alpha * rise, 2 * alpha * rise}, 1e-11);
+      CHECK(result["max_von_mises"] < 1e-8 * young * alpha * rise);
+      CHECK(result["max_von_mises_nodal"] < 1e-8 * young * alpha * rise);
+      add(input, R"({"on": "top", "displacement": [null, null, 0]})");
+      result = solved(input, ranks);
+      check_vector(result["reaction"]["floor"]["force"], {0, 0, young * alpha * rise}, 1e-8);
+      CHECK(result["max_von_mises"].get<double>() == doctest::Approx(young * alpha * rise).epsilon(1e-7));
+      check_vector(result["probe"][0], {1.3 * alpha * rise, 1.3 * alpha * rise, 0}, 1e-11);
+    }
+}
+
+TEST_CASE("a bar held at both ends yields by warmth; load curves cool it again") {
+  json input = bar("hex8", 0.3);
+  input["material"][0].update(parsed(R"({"expansion": 2e-5, "yield_stress": 0.3, "tangent_modulus": 20})"));
+  add(input, R"({"on": "bottom", "name": "floor", "displacement": [null, null, 0]})");
+  add(input, R"({"on": "top", "displacement": [null, null, 0]})");
+  add(input, R"({"on": "all", "name": "warmth", "temperature": 100})");
+  const double stress = 0.3 + 20 * (2e-5 * 100 - 0.3 / 200);
+  json result = solved(input);
+  CHECK(vector(result["reaction"]["floor"]["force"])[2] == doctest::Approx(stress).epsilon(1e-6));
+  input["steps"] =
+      parsed(R"([{"time": 1, "factors": {"warmth": 1}}, {"time": 2, "factors": {"warmth": 0.5}}])");
+  result = solved(input);
+  CHECK(vector(result["reaction"]["floor"]["force"])[2] == doctest::Approx(200 * 1e-3).epsilon(1e-6));
+}
+
+TEST_CASE("plane strain: warmth stretches by 1 + ν, and presses across") {
+  json input = parsed(R"({
+    "mesh": {"box": {"size": [2, 1], "cells": [4, 2], "element": "quad4"}},
+    "material": [{"on": "all", "young": 200, "poisson": 0.25, "expansion": 1e-5}],
+    "boundary": [{"on": "left", "displacement": [0, null]}, {"on": "bottom", "displacement": [null, 0]},
+                 {"on": "all", "temperature": 100}],
+    "probe": [[2, 1]], "solver": {"tolerance": 1e-9}})");
+  for (const char* element : {"quad4", "tri3"}) {
+    input["mesh"]["box"]["element"] = element;
+    const json result = solved(input);
+    CHECK(result["probe"][0][0].get<double>() == doctest::Approx(2 * 1.25e-3).epsilon(1e-8));
+    CHECK(result["probe"][0][1].get<double>() == doctest::Approx(1.25e-3).epsilon(1e-8));
+    CHECK(result["max_von_mises"].get<double>() == doctest::Approx(0.2).epsilon(1e-7));
+  }
+}
+
+TEST_CASE("a prescribed displacement closes a slanting gap once") {
+  json input = bar("hex8", 0.3);
+  input["boundary"] = json::array();
+  input["solver"]["tolerance"] = 1e-6;
+  input["material"][0]["young"] = 1;
+  add(input, R"({"on": "bottom", "displacement": [0.02, 0, null]})");
+  add(input, R"({"on": "top", "traction": [0, 0, -0.01]})");
+  input["contact"] = parsed(R"([{"on": "bottom", "obstacle": {"plane": {"point": [0, 0, -0.1],
+                                 "normal": [-0.3, 0, 1]}}}])");
+  const json result = solved(input);
+  CHECK(result["probe"][1][2].get<double>() == doctest::Approx(-0.1 + 0.3 * 0.52).epsilon(1e-3));
+}
+
+TEST_CASE("parts hold springs and temperatures, to the same bits") {
+  const Workplace place;
+  json input = bar("tet4", 0.3);
+  input["material"][0]["expansion"] = 1e-5;
+  add(input, R"({"on": "bottom", "spring": 5})");
+  add(input, R"({"on": "all", "temperature": 100})");
+  place.put_json("case.json", input);
+  REQUIRE(place.run("partition case.json --ranks 2 --output parts").exit_code == 0);
+  REQUIRE(place.run("run case.json --parts parts --output a").exit_code == 0);
+  REQUIRE(place.run("run case.json --ranks 2 --output b").exit_code == 0);
+  CHECK(contents(place.path("a/body_0.vtu")) == contents(place.path("b/body_0.vtu")));
+  CHECK(place.json("a/result.json")["reaction"] == place.json("b/result.json")["reaction"]);
+}
+
+TEST_CASE("what is no spring and no temperature is refused") {
+  const auto with = [](const char* entry) {
+    json input = bar("tet4", 0.3);
+    add(input, entry);
+    return refused(input);
+  };
+  const auto has = [](const std::string& text, const char* part) {
+    CAPTURE(text);
+    CHECK(text.find(part) != std::string::npos);
+  };
+  has(with(R"({"on": "bottom", "spring": -1})"), "boundary[2].spring: expected a number > 0, got -1");
+  has(with(R"({"on": "bottom", "spring": [0, 0, 0]})"),
+      "boundary[2].spring: expected a stiffness > 0 in some direction, got [0,0,0]");
+  has(with(R"({"on": "bottom", "node_spring": [0, -2, 0]})"),
+      "boundary[2].node_spring[1]: expected a number ≥ 0, got -2");
+  has(with(R"({"on": "bottom", "node_spring": 3})"),
+      "boundary[2].node_spring: expected a list of 2 or 3 numbers");
+  has(with(R"({"on": "bottom", "spring": 1, "pressure": 2})"), "boundary[2]");
+  has(with(R"({"on": "all", "temperature": 20})"),
+      "boundary[2].temperature: expected elements whose material has an expansion");
+  has(with(R"({"on": "all", "temperature": "warm"})"),
+      "boundary[2].temperature: expected a number, got \"warm\"");
+  has(with(R"({"on": "nowhere", "spring": 1})"), "boundary[2].on");
+  json input = bar("tet4", 0.3);
+  input["material"][0]["expansion"] = "big";
+  has(refused(input), "material[0].expansion: expected a number, got \"big\"");
+  input = bar("tet4", 0.3);
+  add(input, R"({"on": "bottom", "name": "bed", "spring": 5})");
+  input["steps"] = parsed(R"([{"time": 1, "factors": {"bed": 1}}])");
+  has(refused(input), "steps[0].factors[\"bed\"]: expected a load or a displacement, got a spring");
+}
