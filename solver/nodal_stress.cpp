@@ -7,6 +7,7 @@
 
 #include <kacanov/element_fields.hpp>
 #include "largest.hpp"
+#include "law_batches.hpp"
 #include "patch_fit.hpp"
 #include "problem/vector3.hpp"
 
@@ -44,7 +45,7 @@ class Corners {
   std::int32_t count_ = 0;
 };
 
-/// Recovers one material after the other.
+/// Recovers one batch of materials after the other: those of a batch meet at no node.
 class Recovery {
  public:
   Recovery(const Part& part, const BodyState& state)
@@ -54,13 +55,15 @@ class Recovery {
         nodes_(type_.nodes),
         corner_(part),
         size_(patch_sizes()),
+        batch_of_law_(law_batches(part)),
         seen_(part.nodes(), 0.0) {
     out_.stress.assign(6 * part.nodes(), 0.0);
     out_.von_mises.assign(part.nodes(), -1.0);
   }
 
   NodalStress run() {
-    for (std::size_t law = 0; law < part_.laws.size(); ++law) recover(law);
+    const std::int32_t last = *std::max_element(batch_of_law_.begin(), batch_of_law_.end());
+    for (std::int32_t batch = 0; batch <= last; ++batch) recover(batch);
     Largest here;
     for (std::size_t n = 0; n < static_cast<std::size_t>(part_.owned_nodes()); ++n)
       here.take(out_.von_mises[n], n, part_.node_index[n]);
@@ -82,16 +85,16 @@ class Recovery {
   Vector3 from_corner(const Vector3& x, std::size_t node) const {
     return (1.0 / size_[node]) * (x - node_position(part_, node));
   }
-  bool follows(std::size_t element, std::size_t law) const {
-    return part_.laws.size() == 1 || part_.law_of_element[element] == law;
+  bool is_in(std::size_t element, std::int32_t batch) const {
+    return part_.law_of_element.empty() || batch_of_law_[part_.law_of_element[element]] == batch;
   }
 
-  void recover(std::size_t law) {
+  void recover(std::int32_t batch) {
     PatchFits fits(corner_.count(), Monomials(part_.dim(), type_.order));
     visit_point_stress(part_, state_, [&](const PointRun& run) {
       for (std::size_t k = 0; k < run.position.size(); ++k) {
         const std::size_t e = run.first + k / type_.points.size();
-        if (!follows(e, law)) continue;
+        if (!is_in(e, batch)) continue;
         for (std::size_t a = 0; a < static_cast<std::size_t>(type_.corners); ++a) {
           const std::size_t node = part_.elements[e * nodes_ + a];
           fits.add(corner_.of_node(node), from_corner(run.position[k], node), &run.stress[6 * k]);
@@ -101,7 +104,7 @@ class Recovery {
     add_up(fits);
     fits.solve();
     take_corners(fits);
-    take_middles(fits, law);
+    take_middles(fits, batch);
   }
 
   /// Over the ranks that share a corner.
@@ -132,12 +135,12 @@ class Recovery {
   }
 
   /// Ranks that have a middle but no element of this material there hear of it from the others.
-  void take_middles(const PatchFits& fits, std::size_t law) {
+  void take_middles(const PatchFits& fits, std::int32_t batch) {
     if (type_.order == 1) return;
     std::vector<double> mean(6 * part_.nodes(), 0.0);
     std::fill(seen_.begin(), seen_.end(), 0.0);
     for (std::size_t e = 0; e < part_.element_count(); ++e) {
-      if (!follows(e, law)) continue;
+      if (!is_in(e, batch)) continue;
       for (const CellEdge& edge : type_.edges) {
         const std::size_t middle = part_.elements[e * nodes_ + edge.middle];
         if (seen_[middle] > 0.0) continue;
@@ -166,6 +169,7 @@ class Recovery {
   std::size_t nodes_;
   Corners corner_;
   std::vector<double> size_;
+  std::vector<std::int32_t> batch_of_law_;
   std::vector<double> seen_;
   NodalStress out_;
 };

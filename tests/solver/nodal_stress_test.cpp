@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "law_batches.hpp"
 #include "support.hpp"
 
 using namespace kacanov;
@@ -104,6 +105,29 @@ TEST_CASE("materials are kept apart; where they meet the larger stress is shown"
     for (std::size_t n = 0; n < part.nodes(); ++n)
       CHECK(found.stress[6 * n] == doctest::Approx(part.coordinates[3 * n] <= 1.0 + 1e-9 ? 1.0 : 0.1));
     CHECK(found.max_von_mises.value == doctest::Approx(1.0));
+  }
+}
+
+TEST_CASE("laws of a batch share no node, on any rank, and are few batches") {
+  const Mesh mesh = make_box({{12.0, 4.0, 4.0}, {12, 4, 4}, ElementType::hex8});
+  Model model;
+  for (double x = 0.0; x < 12.0; ++x)
+    for (double y = 0.0; y < 4.0; ++y)
+      for (double z = 0.0; z < 4.0; ++z)
+        model.materials.push_back({box({x, y, z}, {x + 1.0, y + 1.0, z + 1.0}), elastic_law(1.0 + x, 0.3)});
+  model.boundary.push_back(moved(named("left"), mesh.dim()));
+  const Part part = over_all_ranks(build_problem(mesh, model));
+  const std::vector<std::int32_t> batch = law_batches(part);
+  const std::int32_t last = *std::max_element(batch.begin(), batch.end());
+  CHECK(last < 27);  // an element has 26 neighbours
+  std::vector<std::int64_t> elements(part.nodes());
+  for (std::int32_t b = 0; b <= last; ++b) {
+    std::fill(elements.begin(), elements.end(), 0);
+    for (std::size_t e = 0; e < part.element_count(); ++e)
+      for (std::size_t a = 0; a < 8; ++a)
+        elements[part.elements[8 * e + a]] += batch[part.law_of_element[e]] == b ? 1 : 0;
+    part.node_map.sum(elements, 1);
+    CHECK(*std::max_element(elements.begin(), elements.end()) <= 1);  // and an element has a law of its own
   }
 }
 
