@@ -3,8 +3,10 @@
 #include "problem/load_curves.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <kacanov/error.hpp>
+#include "problem/model_checks.hpp"
 
 namespace kacanov {
 namespace {
@@ -18,6 +20,21 @@ double* factor_of(const Model& model, LoadFactors& factors, const std::string& n
   };
   if (double* found = in(model.boundary, BoundaryEntry(), factors.boundary)) return found;
   return in(model.contact, ContactEntry(), factors.contact);
+}
+
+/// Of an entry's factors over all steps those that rounding alone leaves, as of sin π, are made 0.
+template <class Entries>
+void clear_rounding(std::vector<LoadFactors>& curves, std::vector<double> LoadFactors::*values,
+                    const Entries& entries) {
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    double largest = 0.0;
+    for (const LoadFactors& factors : curves) largest = std::max(largest, std::abs((factors.*values)[i]));
+    if (largest > 0.0 && largest < smallest_factor)
+      throw InputError("steps: expected factors of \"" + entry_name(entries[i], i) +
+                       "\" of which one has a magnitude ≥ 1e-15, got at most " + shown(largest));
+    for (LoadFactors& factors : curves)
+      if (std::abs((factors.*values)[i]) < smallest_factor * largest) (factors.*values)[i] = 0.0;
+  }
 }
 
 }  // namespace
@@ -42,6 +59,8 @@ std::vector<LoadFactors> load_curves(const Model& model) {
     for (const auto& [name, factor] : step.factors) *factor_of(model, now, name) = factor;
     curves.push_back(now);
   }
+  clear_rounding(curves, &LoadFactors::boundary, model.boundary);
+  clear_rounding(curves, &LoadFactors::contact, model.contact);
   return curves;
 }
 

@@ -10,7 +10,7 @@
 namespace kacanov {
 
 /// The curves from the time 0, where the entries that some step names have the factor 0; empty without steps.
-/// Throws InputError for a name that no entry has.
+/// Throws InputError for a name that no entry has, and where all factors of an entry are next to nothing.
 std::vector<LoadFactors> load_curves(const Model& model);
 
 /// Factors between the points of the curves; before the first and behind the last, theirs.

@@ -3,8 +3,10 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "problem/integration.hpp"
+#include "problem/load_curves.hpp"
 #include "problem/vector3.hpp"
 #include "problem_models.hpp"
 
@@ -147,6 +149,23 @@ TEST_CASE("displacements that contradict each other at a shared edge are refused
   const std::string message = refusal(mesh, model);
   CHECK(mentions(message, "boundary[1].displacement: node "));
   CHECK(mentions(message, "z = -0.1 here and 0 by boundary[0]"));
+}
+
+TEST_CASE("what rounding leaves of a factor beside its entry's largest is 0") {
+  Model model;
+  model.boundary.resize(2);
+  model.boundary[0].name = "wave";
+  model.boundary[1].name = "small";
+  for (int k = 1; k <= 4; ++k)
+    model.steps.push_back(
+        {static_cast<double>(k), {{"wave", std::sin(0.5 * std::numbers::pi * k)}, {"small", 1e-14 * k}}});
+  const std::vector<LoadFactors> curves = load_curves(model);
+  REQUIRE(curves.size() == 5);
+  const double wave[] = {0.0, 1.0, 0.0, -1.0, 0.0};
+  for (std::size_t k = 0; k < 5; ++k) {
+    CHECK(curves[k].boundary[0] == wave[k]);
+    CHECK(curves[k].boundary[1] == 1e-14 * static_cast<double>(k));
+  }
 }
 
 TEST_CASE("a displacement may be given on a part that is made of nodes") {

@@ -100,6 +100,8 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
        "steps[0].factors: expected names of entries, or places such as \"boundary[0]\""},
       {"steps=[{\"time\":1,\"factors\":{\"boundary[1]\":\"on\"}}]",
        "steps[0].factors[\"boundary[1]\"]: expected a number, got \"on\""},
+      {"steps=[{\"time\":1,\"factors\":{\"boundary[1]\":1e-100}}]",
+       "steps: expected factors of \"boundary[1]\" of which one has a magnitude ≥ 1e-15, got at most 1e-100"},
       {"steps=[{\"time\":1,\"factors\":[1]}]",
        "steps[0].factors: expected an object of entries and their factors"},
       {"output.checkpoint=1", "output.checkpoint: expected true or false, got 1"},

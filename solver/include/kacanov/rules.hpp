@@ -22,7 +22,8 @@ inline constexpr NumberRule below_one{"a number above 0 and below 1",
 inline constexpr NumberRule poisson_ratio{"a number above -1 and below 0.5",
                                           [](double v) { return v > -1.0 && v < 0.5; }};
 /// Below it the squares of forces and their digits leave single precision, which the preconditioner works in.
-inline constexpr NumberRule load_factor{"a factor ≥ 1e-15", [](double v) { return v >= 1e-15; }};
+inline constexpr double smallest_factor = 1e-15;
+inline constexpr NumberRule load_factor{"a factor ≥ 1e-15", [](double v) { return v >= smallest_factor; }};
 inline constexpr NumberRule over_relaxation{"a number ≥ 1 and below 2",
                                             [](double v) { return v >= 1.0 && v < 2.0; }};
 inline constexpr NumberRule penalty_number{"\"auto\", \"paper\" or a number > 0",
