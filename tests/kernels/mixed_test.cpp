@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The displacement–pressure form against matrices by hand, the displacement form and its inf-sup condition.
+#include "reference/mixed.hpp"
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <stdexcept>
+
+#include "bodies.hpp"
+
+using namespace kacanov;
+using test::difference;
+using test::dot;
+
+namespace {
+
+struct Fields {
+  std::vector<double> u, p;
+};
+
+Fields fields(const Body& body, unsigned seed) {
+  return {test::random_vector(body.unknowns(), seed), test::random_vector(body.mesh.node_count(), seed + 1)};
+}
+
+Fields product(const Body& body, std::span<const double> g, const Fields& x) {
+  Fields y{std::vector<double>(x.u.size(), 7.0), std::vector<double>(x.p.size(), 7.0)};
+  reference::apply_mixed(body, g, {x.u, x.p}, {y.u, y.p});
+  return y;
+}
+
+std::vector<double> some_secant(const Body& body, unsigned seed) {
+  std::vector<double> g = test::random_vector(body.secant_count(), seed, 0.15);
+  for (double& value : g) value += 0.25;
+  return g;
+}
+
+/// u = H x and p = k0 tr H, k0 that of the first law.
+Fields linear(const Body& body, const double (&h)[3][3]) {
+  const std::size_t dim = dimension(body.mesh.type);
+  Fields x{std::vector<double>(body.unknowns(), 0.0), {}};
+  double trace = 0.0;
+  for (std::size_t i = 0; i < dim; ++i) trace += h[i][i];
+  for (std::size_t i = 0; i < x.u.size(); ++i)
+    for (std::size_t k = 0; k < dim; ++k) x.u[i] += h[i % dim][k] * body.mesh.coordinates[i - i % dim + k];
+  x.p.assign(body.mesh.node_count(), body.laws[0].bulk * trace);
+  return x;
+}
+
+constexpr ElementType simplices[] = {ElementType::tri3, ElementType::tet4, ElementType::tet10};
+
+/// The smallest eigenvalue of (B A⁻¹ Bᵀ + stabilisation) q = λ (mass / 2g) q, B and mass without a bulk
+/// modulus, of a jittered cube held on one side; without the stabilisation first.
+std::array<double, 2> inf_sup(ElementType type, int cells) {
+  auto mesh = meshes::box(type, {cells, cells, cells}, {1.0, 1.0, 1.0});
+  meshes::jitter(mesh, type == ElementType::tet4 ? 0.15 : 0.05, 3);
+  Law law = elastic_law(1.0, 0.3);
+  law.bulk = 1e30;
+  const test::OwnedBody owned = test::with_one_law(std::move(mesh), law);
+  const Body body = owned.body();
+  const std::vector<double> g(body.secant_count(), law.shear);
+  std::vector<char> corner(body.mesh.node_count(), 0);
+  const std::size_t nodes = nodes_per_element(type);
+  for (std::size_t e = 0; e < body.mesh.element_count(); ++e)
+    for (std::size_t c = 0; c < 4; ++c) corner[body.mesh.connectivity[e * nodes + c]] = 1;
+  std::vector<std::size_t> free, corners;
+  for (std::size_t i = 0; i < body.mesh.node_count(); ++i) {
+    if (corner[i]) corners.push_back(i);
+    for (std::size_t k = 0; k < 3 && body.mesh.coordinates[3 * i] > 0.3 / cells; ++k)
+      free.push_back(3 * i + k);
+  }
+  Eigen::MatrixXd a(free.size(), free.size()), b(corners.size(), free.size());
+  Eigen::MatrixXd s(corners.size(), corners.size());
+  Fields x{std::vector<double>(body.unknowns(), 0.0), std::vector<double>(body.mesh.node_count(), 0.0)};
+  for (std::size_t j = 0; j < free.size(); ++j) {
+    x.u[free[j]] = 1.0;
+    const Fields y = product(body, g, x);
+    x.u[free[j]] = 0.0;
+    for (std::size_t i = 0; i < free.size(); ++i) a(i, j) = y.u[free[i]];
+    for (std::size_t i = 0; i < corners.size(); ++i) b(i, j) = y.p[corners[i]];
+  }
+  for (std::size_t j = 0; j < corners.size(); ++j) {
+    x.p[corners[j]] = 1.0;
+    const Fields y = product(body, g, x);
+    x.p[corners[j]] = 0.0;
+    for (std::size_t i = 0; i < corners.size(); ++i) s(i, j) = -y.p[corners[i]];
+  }
+  Fields grow = linear(body, {{1.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}});
+  grow.p.assign(grow.p.size(), 0.0);
+  const Fields volume = product(body, g, grow);  // tr ε = 1: the corners' shares of the volume
+  Eigen::VectorXd scale(corners.size());
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    scale[i] = std::sqrt(2.0 * law.shear / volume.p[corners[i]]);
+  const Eigen::MatrixXd schur = b * a.ldlt().solve(b.transpose());
+  const auto smallest = [&](const Eigen::MatrixXd& m) {
+    const Eigen::MatrixXd scaled = scale.asDiagonal() * m * scale.asDiagonal();
+    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (scaled + scaled.transpose()))
+        .eigenvalues()[0];
+  };
+  return {smallest(schur), smallest(schur + s)};
+}
+
+}  // namespace
+
+TEST_CASE("the displacement-pressure form of one tetrahedron is that by hand") {
+  meshes::OwnedMesh mesh{ElementType::tet4, {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 1, 2, 3}};
+  Law law = elastic_law(1.0, 0.3);
+  law.bulk = 5.0;
+  const test::OwnedBody owned = test::with_one_law(std::move(mesh), law);
+  const std::vector<double> g{0.25};
+  Fields x{std::vector<double>(12, 0.0), {1.0, 0.0, 0.0, 0.0}};
+  Fields y = product(owned.body(), g, x);
+  const double gradient[12] = {-1, -1, -1, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  for (std::size_t i = 0; i < 12; ++i) CHECK(y.u[i] * 24.0 == doctest::Approx(gradient[i]));  // V/4
+  // V = 1/6: V/(4 k0) = 1/120, V/(2g) (1/10 − 1/16) = 1/80, V/(2g) (1/20 − 1/16) = −1/240
+  CHECK(y.p[0] == doctest::Approx(-1.0 / 120.0 - 1.0 / 80.0));
+  for (std::size_t c = 1; c < 4; ++c) CHECK(y.p[c] == doctest::Approx(1.0 / 240.0));
+  x = {std::vector<double>(12, 0.0), std::vector<double>(4, 0.0)};
+  x.u[3] = 1.0;  // ε = xx, dev ε = (2, −1, −1)/3, τ = (2, −1, −1)/6
+  y = product(owned.body(), g, x);
+  const double force[12] = {-2, 1, 1, 2, 0, 0, 0, -1, 0, 0, 0, -1};
+  for (std::size_t i = 0; i < 12; ++i) CHECK(y.u[i] * 36.0 == doctest::Approx(force[i]));
+  for (const double q : y.p) CHECK(q == doctest::Approx(1.0 / 24.0));
+}
+
+TEST_CASE("the displacement-pressure form is symmetric, and blind to rigid motions") {
+  for (const ElementType type : simplices) {
+    const test::OwnedBody owned = test::small_body(type, 3);
+    const Body body = owned.body();
+    const std::vector<double> g = some_secant(body, 5);
+    const Fields x = fields(body, 7), y = fields(body, 11);
+    const Fields kx = product(body, g, x), ky = product(body, g, y);
+    const double xy = dot(y.u, kx.u) + dot(y.p, kx.p), yx = dot(x.u, ky.u) + dot(x.p, ky.p);
+    CHECK(std::abs(xy - yx) < 1e-13 * std::sqrt(dot(kx.u, kx.u) * dot(y.u, y.u)));
+    Fields turn = linear(body, {{0.0, -1.0, 0.4}, {1.0, 0.0, -0.3}, {-0.4, 0.3, 0.0}});
+    for (double& u : turn.u) u += 0.7;
+    const Fields still = product(body, g, turn);
+    CHECK(difference(still.u, std::vector<double>(still.u.size(), 0.0)) < 1e-14);
+    CHECK(difference(still.p, std::vector<double>(still.p.size(), 0.0)) < 1e-14);
+  }
+}
+
+TEST_CASE("constant strain with p = k0 tr has the forces of the displacement form and no residual") {
+  for (const ElementType type : simplices) {
+    auto mesh = meshes::box(type, {3, 2, 2}, {1.5, 1.0, 1.0});
+    meshes::jitter(mesh, 0.04, 5);  // curves the edges of tet10
+    const test::OwnedBody owned = test::with_one_law(std::move(mesh), elastic_law(1.0, 0.4));
+    const Body body = owned.body();
+    const std::vector<double> g = some_secant(body, 5);
+    const Fields x = linear(body, {{0.3, 0.1, -0.2}, {0.4, -0.1, 0.5}, {0.2, 0.1, 0.6}});
+    const Fields y = product(body, g, x);
+    std::vector<double> plain(x.u.size());
+    reference::apply(body, g, x.u, plain);
+    CHECK(difference(y.u, plain) < 1e-13);
+    CHECK(difference(y.p, std::vector<double>(y.p.size(), 0.0)) < 1e-14);
+  }
+}
+
+TEST_CASE("the inf-sup constant does not fall with the mesh, and would without the stabilisation") {
+  const auto linear_coarse = inf_sup(ElementType::tet4, 2), linear_fine = inf_sup(ElementType::tet4, 4);
+  CAPTURE(linear_coarse[0]);
+  CAPTURE(linear_coarse[1]);
+  CAPTURE(linear_fine[0]);
+  CAPTURE(linear_fine[1]);
+  CHECK(linear_fine[1] > 0.8 * linear_coarse[1]);
+  CHECK(linear_fine[1] > 0.05);
+  CHECK(linear_fine[0] < 0.1 * linear_fine[1]);
+  const auto quadratic_coarse = inf_sup(ElementType::tet10, 1),
+             quadratic_fine = inf_sup(ElementType::tet10, 2);
+  CAPTURE(quadratic_coarse[0]);
+  CAPTURE(quadratic_fine[0]);
+  CHECK(quadratic_fine[0] > 0.05);
+  CHECK(quadratic_fine[0] > 0.5 * quadratic_coarse[0]);
+}
+
+TEST_CASE("the displacement-pressure form of hexahedra is refused") {
+  const test::OwnedBody owned = test::small_body(ElementType::hex8, 3);
+  const Body body = owned.body();
+  CHECK_THROWS_WITH_AS(product(body, some_secant(body, 5), fields(body, 7)), doctest::Contains("not of hex8"),
+                       std::invalid_argument);
+}
