@@ -4,7 +4,7 @@ file(GLOB petsc4py "/usr/lib/petscdir/*/*-real/lib/python3/dist-packages")  # wh
 if(petsc4py)
   list(GET petsc4py 0 petsc4py)
 endif()
-foreach(area case operator)
+foreach(area case notebooks operator plot)
   add_test(NAME python_${area} COMMAND "${PYTHON_EXECUTABLE}" -B -m unittest test_${area}
     WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}/python/tests")
   kacanov_test_properties(python_${area} 2)
@@ -12,3 +12,14 @@ foreach(area case operator)
   set_tests_properties(python_${area} PROPERTIES LABELS python
     ENVIRONMENT "${environment};PYTHONPATH=${PROJECT_BINARY_DIR}/python:${petsc4py};KACANOV_PROGRAM=$<TARGET_FILE:kacanov>")
 endforeach()
+
+execute_process(COMMAND "${PYTHON_EXECUTABLE}" -c "import mpi4py" RESULT_VARIABLE without_mpi4py ERROR_QUIET)
+if(NOT without_mpi4py)
+  add_test(NAME python_mpi_2
+    COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} 2 "${PYTHON_EXECUTABLE}" -B mpi_solve.py
+    WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}/python/tests")
+  kacanov_test_properties(python_mpi_2 2)
+  get_test_property(python_mpi_2 ENVIRONMENT environment)
+  set_tests_properties(python_mpi_2 PROPERTIES LABELS python
+    ENVIRONMENT "${environment};PYTHONPATH=${PROJECT_BINARY_DIR}/python")
+endif()

@@ -2,6 +2,8 @@
 """The matrix-free operator, its tangent and its multigrid as linear operators on numpy arrays."""
 from __future__ import annotations
 
+import atexit
+import functools
 import json
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
@@ -55,6 +57,7 @@ class Symmetric:
     def petsc_mat(self, comm: Any = None) -> Any:
         """A PETSc.Mat of type python that applies this operator; needs petsc4py. On one process."""
         from petsc4py import PETSc
+        _end_petsc_before_python()
         mat = PETSc.Mat().createPython((self.shape, self.shape), _PetscMat(self), comm=comm or PETSc.COMM_SELF)
         mat.setOption(PETSc.Mat.Option.SYMMETRIC, True)
         mat.setUp()
@@ -259,6 +262,14 @@ class Multigrid(Symmetric):
         pc.setOperators(self.operator.petsc_mat(comm))
         pc.setUp()
         return pc
+
+
+@functools.cache
+def _end_petsc_before_python() -> None:
+    """petsc4py 3.18 ends PETSc after Python, and then crashes where objects of type python are left: end it before."""
+    from petsc4py import PETSc
+    if hasattr(PETSc, "_finalize"):
+        atexit.register(PETSc._finalize)
 
 
 class _PetscMat:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import os
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -47,18 +48,22 @@ def plot(solution: Solution, field: str = "nodal_von_mises", *, scale: float | N
     """The deformed body coloured by a field: nodal_von_mises, von_mises, dev_strain, g, plastic or u.
 
     scale: of the displacement, None: chosen. backend: None for the best there is of "matplotlib" (2D; draws into
-    `ax`, returns the axes), "vtk" (3D; returns an image as an array, drawn off screen) and "svg" (the program's
-    picture, with a field and a scale of its own).
+    `ax`, returns the axes), "vtk" (3D, where there is a display; returns an image as an array, drawn off screen) and
+    "svg" (the program's picture, with a field and a scale of its own).
     """
     dim = solution.points.shape[1]
     best = "matplotlib" if dim == 2 else "vtk"
+    # Debian's vtk ends the process where it finds no display, also for what is drawn off screen.
+    display = best != "vtk" or bool(os.environ.get("DISPLAY"))
     if backend is None:
         module = "vtkmodules" if best == "vtk" else best
-        backend = best if importlib.util.find_spec(module) else "svg"
+        backend = best if display and importlib.util.find_spec(module) else "svg"
     if backend == "svg":
         return Svg(solution.svg())
     if backend != best:
         raise InputError(f"backend: expected {best} or svg for a body in {dim} dimensions, got \"{backend}\"")
+    if not display:
+        raise InputError("backend: vtk needs a display (DISPLAY is not set; xvfb-run gives one)")
     values = _values(solution, field)
     scale = _scale(solution) if scale is None else scale
     return _matplotlib(solution, field, values, scale, ax) if dim == 2 else _vtk(solution, field, values, scale)
@@ -109,6 +114,7 @@ def vtk_grid(solution: Solution) -> Any:
 def _vtk(solution: Solution, field: str, values: np.ndarray, scale: float) -> np.ndarray:
     import vtkmodules.vtkRenderingOpenGL2  # noqa: F401, the renderer behind the classes below
     from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+    from vtkmodules.vtkCommonCore import vtkLookupTable
     from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
     from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
     from vtkmodules.vtkRenderingCore import vtkActor, vtkDataSetMapper, vtkRenderer, vtkRenderWindow, vtkWindowToImageFilter
@@ -121,11 +127,17 @@ def _vtk(solution: Solution, field: str, values: np.ndarray, scale: float) -> np
     surface, mapper, actor = vtkDataSetSurfaceFilter(), vtkDataSetMapper(), vtkActor()
     surface.SetInputData(grid)
     mapper.SetInputConnection(surface.GetOutputPort())
+    colours = vtkLookupTable()
+    colours.SetHueRange(2 / 3, 0.0)  # from blue, low, to red
+    mapper.SetLookupTable(colours)
     mapper.SetScalarRange(float(values.min()), float(values.max()))
     actor.SetMapper(mapper)
     bar, renderer, window, image = vtkScalarBarActor(), vtkRenderer(), vtkRenderWindow(), vtkWindowToImageFilter()
     bar.SetLookupTable(mapper.GetLookupTable())
-    bar.SetTitle(field)
+    bar.SetTitle(f"{field}, displacement x {scale:.3g}")
+    for text in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
+        text.SetColor(0.0, 0.0, 0.0)
+        text.SetShadow(0)
     renderer.AddActor(actor)
     renderer.AddActor2D(bar)
     renderer.SetBackground(1.0, 1.0, 1.0)

@@ -2,7 +2,7 @@
 // MPI within a process that others have started: Python's.
 #include "host_mpi.hpp"
 
-#include <pybind11/pybind11.h>
+#include <Python.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -11,8 +11,6 @@
 
 #include <kacanov/error.hpp>
 #include "program/launch.hpp"
-
-namespace py = pybind11;
 
 namespace kacanov::python {
 namespace {
@@ -47,7 +45,8 @@ void ensure_mpi() {
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided);
   for (const std::string& name : variables())
     if (!before.contains(name)) unsetenv(name.c_str());
-  py::module_::import("atexit").attr("register")(py::cpp_function(&finalize));
+  // Not by atexit, which comes before what PETSc, started later, does at its end.
+  Py_AtExit(&finalize);
 }
 
 }  // namespace kacanov::python

@@ -2,6 +2,9 @@
 """The operator from numpy: against its own matrix and differences, with scipy and petsc4py where they are, and what is
 refused."""
 import importlib.util
+import pathlib
+import subprocess
+import sys
 import threading
 import unittest
 
@@ -154,6 +157,17 @@ class Solves(unittest.TestCase):
         self.assertGreater(ksp.getConvergedReason(), 0)
         self.assertLess(self.solved(x.getArray()), 1e-7)
         self.assertLess(ksp.getIterationNumber(), 25)
+
+
+    @unittest.skipUnless(have("petsc4py"), "no petsc4py")
+    def test_a_program_ends_well_that_keeps_petscs_objects_to_its_end(self):
+        program = "from support import *; from petsc4py import PETSc; points, cells = hexahedra(2); " \
+                  "op = kc.Operator(points, cells, 'hex8', young=1.0, poisson=0.3); op.constrain(np.arange(9)); " \
+                  "mat = op.petsc_mat(); pc = op.petsc_pc(); ksp = PETSc.KSP().create(PETSc.COMM_SELF); ksp.setPC(pc); " \
+                  "pressed_beam().solve()"
+        run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False,
+                             cwd=pathlib.Path(__file__).parent)
+        self.assertEqual((run.returncode, run.stderr), (0, ""))
 
 
 class Refusals(unittest.TestCase):
