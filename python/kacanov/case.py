@@ -119,10 +119,11 @@ class Case:
 
     def material(self, young: float, poisson: float, law: Law | Mapping[str, Any] | None = None, *, on: On = "all",
                  plastic: Sequence[Vector] | None = None, yield_stress: float | None = None,
-                 tangent_modulus: float | None = None, bbar: bool | None = None) -> Case:
+                 tangent_modulus: float | None = None, bbar: bool | None = None,
+                 expansion: float | None = None) -> Case:
         """Adds a material. As all words that add, returns the case."""
         return self._add("material", on=on, young=young, poisson=poisson, law=law, plastic=plastic,
-                         yield_stress=yield_stress, tangent_modulus=tangent_modulus, bbar=bbar)
+                         yield_stress=yield_stress, tangent_modulus=tangent_modulus, bbar=bbar, expansion=expansion)
 
     def fix(self, on: On, displacement: Sequence[float | None] = (0.0, 0.0, 0.0), *, name: str | None = None) -> Case:
         """Prescribes displacements; None leaves a component free."""
@@ -147,6 +148,18 @@ class Case:
     def gravity(self, density: float, acceleration: Vector, on: On = "all", *, name: str | None = None) -> Case:
         """A mass a volume and an acceleration."""
         return self._add("boundary", on=on, density=density, acceleration=acceleration, name=name)
+
+    def spring(self, stiffness: float | Vector, on: On, *, name: str | None = None) -> Case:
+        """An elastic bed under facets: a number along the normal, or one a component; stiffness an area."""
+        return self._add("boundary", on=on, spring=stiffness, name=name)
+
+    def node_spring(self, stiffness: Vector, on: On, *, name: str | None = None) -> Case:
+        """A spring at each node, one stiffness a component."""
+        return self._add("boundary", on=on, node_spring=stiffness, name=name)
+
+    def temperature(self, difference: float, on: On = "all", *, name: str | None = None) -> Case:
+        """By how much elements are warmer than where they are free of strain."""
+        return self._add("boundary", on=on, temperature=difference, name=name)
 
     def contact(self, on: On, obstacle: Obstacle | Mapping[str, Any], *, coulomb: float | None = None,
                 tresca: float | None = None, reference: str | None = None, name: str | None = None,

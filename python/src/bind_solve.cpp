@@ -256,7 +256,7 @@ py::dict element_fields_of(const SolvedCase& solved) {
                                         std::span(flags, static_cast<std::size_t>(count))};
   {
     const py::gil_scoped_release release;
-    reference::fields(solved.body(), solved.displacement, wanted);
+    element_fields(solved, wanted);
   }
   py::dict all;
   all["stress"] = stress;

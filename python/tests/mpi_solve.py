@@ -25,6 +25,12 @@ class Together(unittest.TestCase):
         else:
             self.assertEqual(len(sol.u), 0)
 
+    def test_warmth_of_all_ranks_is_taken_off(self):
+        case = kc.Case(kc.box((2, 1, 1), (4, 2, 2), "hex8")).material(210e3, 0.3, expansion=1e-5).temperature(100)
+        sol = case.fix("all").solve(comm=WORLD)
+        if WORLD.rank == 0:
+            np.testing.assert_allclose(sol.stress[:, :3], -210e3 * 1e-3 / 0.4, rtol=1e-12)
+
     def test_what_is_wrong_is_raised_on_all(self):
         with self.assertRaisesRegex(kc.InputError, r"boundary\[2\].on: .*lid"):
             pressed_beam().pressure(1.0, "lid").solve(comm=WORLD)

@@ -140,6 +140,22 @@ class Solutions(unittest.TestCase):
         found = self.case.check()
         self.assertEqual((found["unknowns"], found["element"]), (243, "hex8"))
 
+    def test_warmth_that_nothing_hinders_strains_without_stress(self):
+        case = kc.Case(kc.box((2, 1, 1), (4, 2, 2), "hex8")).material(210e3, 0.3, expansion=1e-5).temperature(100)
+        for side, held in (("left", (0, None, None)), ("front", (None, 0, None)), ("bottom", (None, None, 0))):
+            case.fix(side, held)
+        sol = case.solve()
+        np.testing.assert_allclose(sol.u, 1e-3 * sol.points, rtol=0, atol=1e-8)
+        for stress in (sol.stress, sol.nodal_stress):
+            self.assertLess(np.abs(stress).max(), 1e-3)
+
+    def test_warmth_between_walls_presses(self):
+        case = kc.Case(kc.box((2, 1, 1), (4, 2, 2), "hex8")).material(210e3, 0.3, expansion=1e-5).temperature(100)
+        sol = case.fix("all").solve()
+        pressure = 210e3 * 1e-3 / (1 - 2 * 0.3)
+        np.testing.assert_allclose(sol.stress, np.tile([-pressure] * 3 + [0.0] * 3, (16, 1)), rtol=0, atol=1e-9)
+        np.testing.assert_allclose(sol.nodal_stress[:, :3], -pressure, rtol=1e-9)
+
     def test_in_the_plane(self):
         case = kc.Case(kc.box((4, 1), (16, 4))).material(1.0, 0.3, kc.LinearHardening(x0=0.01, gamma=0.2))
         case.fix("left").traction((0, -0.02), "top").contact("bottom", kc.Gap(0.01), tresca=0.01)

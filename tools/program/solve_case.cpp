@@ -39,6 +39,15 @@ CoarseSolution start_of(const SolvedCase& from, int dim, const MpiSession& mpi) 
   return start;
 }
 
+/// Solution::thermal of all ranks, in the numbering of the whole mesh; empty where there is none. Collective.
+std::vector<double> gather_thermal(const Part& part, const std::vector<double>& local) {
+  if (!part.node_map.any(!local.empty())) return {};
+  std::vector<double> all(static_cast<std::size_t>(part.total_elements), 0.0);
+  for (std::size_t e = 0; e < local.size(); ++e) all[part.element_index[e]] = local[e];
+  part.node_map.sum_all(all);
+  return all;
+}
+
 }  // namespace
 
 Solution solve_part(const Case& input, Part& part, const MpiSession& mpi, const RunOptions& options) {
@@ -76,6 +85,14 @@ std::string deformed_picture(const Case& input, const Mesh& mesh, std::span<cons
   return deformed_svg(picture);
 }
 
+void element_fields(const SolvedCase& solved, const reference::ElementFields& out) {
+  const Mesh& mesh = solved.problem.mesh;
+  const Body body{mesh.view(), solved.problem.laws, solved.problem.law_of_element};
+  reference::fields(body, solved.displacement, out);
+  for (std::size_t e = 0; e < solved.thermal.size() && !out.stress.empty(); ++e)
+    for (std::size_t c = 0; c < 3; ++c) out.stress[6 * e + c] -= solved.thermal[e];
+}
+
 SolvedCase solve_case(const Case& input, const MpiSession& mpi, const CaseRun& run) {
   const double begin = MPI_Wtime();
   LoadedCase loaded = load_case(input, mpi, run.memory_check);
@@ -93,12 +110,13 @@ SolvedCase solve_case(const Case& input, const MpiSession& mpi, const CaseRun& r
   SolvedCase out;
   out.input = input;
   const Part& part = loaded.part;
-  const NodalStress nodal = recover_stress(part, solution.displacement);
+  const NodalStress nodal = recover_stress(part, solution);
   out.displacement = gather_nodal(part, solution.displacement, part.dim());
   out.nodal_stress = gather_nodal(part, nodal.stress, 6);
   out.recovered_von_mises = gather_nodal(part, nodal.von_mises, 1);
   out.averaged_von_mises = gather_nodal(part, nodal_von_mises(part, solution.displacement), 1);
   out.contact = gather_contact_fields(part, solution);
+  out.thermal = gather_thermal(part, solution.thermal);
   out.result = std::move(solution.result);
   out.result.max_von_mises_nodal = nodal.max_von_mises;
   RunFigures figures;

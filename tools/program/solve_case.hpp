@@ -9,6 +9,7 @@
 
 #include <kacanov/coarse_solution.hpp>
 #include <kacanov/part.hpp>
+#include <kacanov/reference.hpp>
 #include <kacanov/run_options.hpp>
 #include "case/case_file.hpp"
 #include "program/field_files.hpp"
@@ -40,10 +41,11 @@ struct SolvedCase {
   std::vector<double> recovered_von_mises;  ///< nodes: of that stress
   std::vector<double> averaged_von_mises;   ///< nodes: means of the elements round them, as in pictures
   ContactFields contact;
-
-  /// For reference::fields() and the like.
-  Body body() const noexcept { return {problem.mesh.view(), problem.laws, problem.law_of_element}; }
+  std::vector<double> thermal;  ///< elements: the pressure that temperature takes off; empty: none
 };
+
+/// Means over the elements of problem.mesh, as in the program's files; on the first rank.
+void element_fields(const SolvedCase& solved, const reference::ElementFields& out);
 
 struct CaseRun {
   RunOptions options;                 ///< without checkpoint and start
