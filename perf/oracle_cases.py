@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The small cases of verify_answers: every law, element, obstacle and friction, in all units, and what strains the arithmetic."""
+import math
 import random
 
 from random_bodies import TET_EDGES, block
@@ -114,13 +115,20 @@ def guided(d):
 def add_conditions(case, d, rng):
     """Springs and temperature besides, by dice of their own: the rest of the case stays what it is without."""
     stiffness = d.young / d.size[-1]
-    kinds = rng.sample(("bed", "normal bed", "node springs", "warmth", "warm part"), rng.randint(1, 3))
+    kinds = rng.sample(("bed", "normal bed", "node springs", "warmth", "warm part", "slant"), rng.randint(1, 3))
     for kind in kinds:
         if kind == "bed":
             case["boundary"].append({"on": rng.choice(("right", "top")), "spring": [
                 stiffness * rng.choice((0.0, 0.01, 1.0, 30.0)) for _ in d.size[1:]] + [stiffness * 0.1]})
         elif kind == "normal bed":
             case["boundary"].append({"on": rng.choice(("right", "top", "all")), "spring": stiffness * 10 ** rng.uniform(-2, 2)})
+        elif kind == "slant":  # of what holds nothing else there
+            turn = rng.uniform(0.1, 1.4)
+            c, s = math.cos(turn), math.sin(turn)
+            frame = [[c, s], [-s, c]] if d.dim == 2 else [[c, 0.6 * s, 0.8 * s], [-s, 0.6 * c, 0.8 * c], [0.0, -0.8, 0.6]]
+            if not any(entry["on"] == "top" and "displacement" in entry for entry in case["boundary"]):
+                case["boundary"].append({"on": "right", "frame": frame, "displacement": [
+                    d.size[0] * d.strain * rng.choice((0.0, -0.5, 0.5))] + [None] * (d.dim - 1)})
         elif kind == "node springs":
             case["boundary"].append({"on": "right", "node_spring": [stiffness * d.size[0] * rng.uniform(0, 1) for _ in d.size]})
         else:

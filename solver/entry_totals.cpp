@@ -132,12 +132,35 @@ class Reactions {
   std::span<const double> internal_;
 };
 
+/// Calls put(entry, node, force) for what supports along directions do to owned nodes.
+template <class Put>
+void visit_slanting(const Part& part, Reactions reactions, const Put& put) {
+  const std::size_t dim = part.dim();
+  std::int32_t node = -1;
+  Vector3 all{};
+  for (const HeldDirection& held : part.directions) {
+    if (held.node >= part.owned_nodes()) break;
+    for (std::size_t c = 0; c < dim && held.node != node; ++c)
+      all[c] = reactions.at(static_cast<std::int32_t>(held.node * dim + c));
+    node = held.node;
+    put(held.entry, node, dot(held.direction, all) * held.direction);
+  }
+}
+
 void collect_reactions(const Part& part, std::span<const double> u, Reactions reactions, Result& result) {
   std::int32_t count = 0;
+  for (const HeldDirection& held : part.directions) count = std::max(count, held.entry + 1);
   for (const NodeSpring& spring : part.springs) count = std::max(count, spring.entry + 1);
   for (const Support& support : part.supports) count = std::max(count, support.entry + 1);
   std::vector<Resultant> sums(static_cast<std::size_t>(part.node_map.max_all(count)));
   std::vector<double> there(sums.size(), 0.0);  // whether the entry holds anything
+  const auto put = [&](std::int32_t entry, std::int32_t node, const Vector3& force) {
+    Resultant& sum = sums[entry];
+    sum.force = sum.force + force;
+    sum.moment = sum.moment + cross(node_position(part, node), force);
+    there[entry] = 1.0;
+  };
+  visit_slanting(part, reactions, put);
   for (auto first = part.supports.begin(); first != part.supports.end();) {
     const auto last = std::find_if(first, part.supports.end(), [&](const Support& s) {
       return s.node != first->node || s.axis != first->axis;
@@ -145,21 +168,11 @@ void collect_reactions(const Part& part, std::span<const double> u, Reactions re
     const double all = reactions.at(first->node * part.dim() + first->axis);
     Vector3 force{};
     force[first->axis] = all / static_cast<double>(last - first);
-    const Vector3 moment = cross(node_position(part, first->node), force);
-    for (; first != last; ++first) {
-      Resultant& sum = sums[first->entry];
-      sum.force = sum.force + force;
-      sum.moment = sum.moment + moment;
-      there[first->entry] = 1.0;
-    }
+    for (; first != last; ++first) put(first->entry, first->node, force);
   }
   for (const NodeSpring& spring : part.springs) {
     if (spring.node >= part.owned_nodes()) break;
-    const Vector3 force = spring_force(spring, part, u);
-    Resultant& sum = sums[spring.entry];
-    sum.force = sum.force + force;
-    sum.moment = sum.moment + cross(node_position(part, spring.node), force);
-    there[spring.entry] = 1.0;
+    put(spring.entry, spring.node, spring_force(spring, part, u));
   }
   part.node_map.sum_all(numbers(sums));
   part.node_map.max_all(there);

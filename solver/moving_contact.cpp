@@ -134,10 +134,11 @@ std::optional<RowEntry> MovingContact::take(std::size_t i, const View& view, std
   gap_[i] = far_;
   origin_[i] = {};
   if (view.kind != 0.0) return std::nullopt;
-  std::array<bool, 3> free{};
-  for (std::size_t c = 0; c < dim; ++c) free[c] = part_.held[base + c] == 0;
+  NodeFreedom freedom;
+  for (std::size_t c = 0; c < dim; ++c) freedom.free[c] = part_.held[base + c] == 0;
+  freedom.held = directions_of(part_.directions, point.node);
   point.normal = view.normal;
-  const auto row = narrow_row(point, free, point.tresca > 0.0 || point.coulomb > 0.0);
+  const auto row = narrow_row(point, freedom, point.tresca > 0.0 || point.coulomb > 0.0);
   if (!row) return std::nullopt;
   gap_[i] = view.gap;
   point.unknown_gap = view.unknown;
@@ -164,6 +165,8 @@ void MovingContact::push(std::size_t entry, double travel) {
       if (part_.held[k] != 0)
         point.gap -= point.normal[c] * part_.prescribed[part_.prescribed_place(k)].value;
     }
+    for (const HeldDirection& held : directions_of(part_.directions, point.node))
+      point.gap -= dot(point.normal, held.direction) * held.value;
     for (int k = 0; k < point.tangents; ++k)
       part_.slip_origin[2 * i + static_cast<std::size_t>(k)] = dot(point.tangent[k], origin_[i] + way);
   }

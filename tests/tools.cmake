@@ -28,12 +28,22 @@ kacanov_test(program_verify
 add_dependencies(test_program_verify kacanov)
 set_tests_properties(program_verify PROPERTIES PROCESSORS 2)
 
+kacanov_test(program_supports
+  SOURCES tools/program_supports_test.cpp tools/mesh_writer.cpp
+  LIBRARIES kacanov_program_runner kacanov_formats)
+add_dependencies(test_program_supports kacanov)
+set_tests_properties(program_supports PROPERTIES PROCESSORS 2)
+
 # Small random cases, each verified from its files; perf/verify_answers draws 500 by itself.
 find_package(Python3 COMPONENTS Interpreter)
 if(Python3_FOUND)
   add_test(NAME verified_answers
     COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/perf/verify_answers" $<TARGET_FILE:kacanov> --count 60)
   kacanov_test_properties(verified_answers 1)
+  add_test(NAME verified_conditions
+    COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/perf/verify_answers" $<TARGET_FILE:kacanov>
+      --count 30 --conditions)
+  kacanov_test_properties(verified_conditions 1)
 endif()
 
 # What a small run does where files, memory or the power fail, and when it is killed: places far apart here,

@@ -125,9 +125,14 @@ class Case:
         return self._add("material", on=on, young=young, poisson=poisson, law=law, plastic=plastic,
                          yield_stress=yield_stress, tangent_modulus=tangent_modulus, bbar=bbar, expansion=expansion)
 
-    def fix(self, on: On, displacement: Sequence[float | None] = (0.0, 0.0, 0.0), *, name: str | None = None) -> Case:
-        """Prescribes displacements; None leaves a component free."""
-        return self._add("boundary", on=on, displacement=displacement, name=name)
+    def fix(self, on: On, displacement: Sequence[float | None] = (0.0, 0.0, 0.0), *,
+            frame: Sequence[Vector] | None = None, name: str | None = None) -> Case:
+        """Prescribes displacements, along the axes or those of `frame`; None leaves a component free."""
+        return self._add("boundary", on=on, displacement=displacement, frame=frame, name=name)
+
+    def symmetry(self, on: On, normal: float = 0.0, *, name: str | None = None) -> Case:
+        """Prescribes the displacement along the outer normal of flat facets: 0 is a plane of symmetry."""
+        return self._add("boundary", on=on, normal=normal, name=name)
 
     def traction(self, traction: Vector, on: On, *, name: str | None = None) -> Case:
         """A force an area."""

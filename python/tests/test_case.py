@@ -156,6 +156,16 @@ class Solutions(unittest.TestCase):
         np.testing.assert_allclose(sol.stress, np.tile([-pressure] * 3 + [0.0] * 3, (16, 1)), rtol=0, atol=1e-9)
         np.testing.assert_allclose(sol.nodal_stress[:, :3], -pressure, rtol=1e-9)
 
+    def test_springs_warmth_and_symmetry(self):
+        case = kc.Case(kc.box((1, 1, 1), (2, 2, 2), "hex8"))
+        case.material(young=200, poisson=0.3, expansion=1e-5).temperature(100)
+        case.symmetry("left").symmetry("front").spring((0, 0, 1e3), "bottom").node_spring((0, 0, 0.5), "bottom")
+        sol = case.solve()
+        self.assertTrue(sol.converged)
+        np.testing.assert_allclose(sol.u, 1e-3 * np.array(sol.points), atol=1e-9)
+        for stress in (sol.nodal_stress, sol.stress):
+            np.testing.assert_allclose(stress, 0, atol=1e-6)
+
     def test_in_the_plane(self):
         case = kc.Case(kc.box((4, 1), (16, 4))).material(1.0, 0.3, kc.LinearHardening(x0=0.01, gamma=0.2))
         case.fix("left").traction((0, -0.02), "top").contact("bottom", kc.Gap(0.01), tresca=0.01)

@@ -105,17 +105,38 @@ struct BodySums {
   double softness = 0.0;                                             // mean of 1/D
 };
 
+/// What supports along directions do to the body, one an unknown: the share of F − R − CᵀMλ along them, with
+/// its sign changed. Empty where there are none.
+Vector slanting_reactions(const Part& part, std::span<const double> contact, const BodyForces& forces) {
+  Vector reaction;
+  if (part.directions.empty()) return reaction;
+  const std::size_t dim = part.dim();
+  reaction.assign(part.unknowns(), 0.0);
+  Vector unbalanced(part.unknowns());
+  for (std::size_t i = 0; i < unbalanced.size(); ++i) unbalanced[i] = -forces.internal[i] - contact[i];
+  for (const Part::ComponentValue& load : forces.load) unbalanced[load.component] += load.value;
+  for (const HeldDirection& held : part.directions) {
+    double along = 0.0;
+    for (std::size_t c = 0; c < dim; ++c) along += held.direction[c] * unbalanced[held.node * dim + c];
+    for (std::size_t c = 0; c < dim; ++c) reaction[held.node * dim + c] -= along * held.direction[c];
+  }
+  return reaction;
+}
+
 /// Over all ranks; `contact` is CᵀMλ.
 BodySums body_sums(const Part& part, std::span<const double> u, std::span<const double> contact,
                    const BodyForces& forces) {
   const std::size_t dim = part.dim();
   BodySums s;
+  const Vector slanting = slanting_reactions(part, contact, forces);
   auto loaded = forces.load.begin();
   for (std::size_t i = 0; i < part.owned_unknowns(); ++i) {
     const bool here = loaded != forces.load.end() && static_cast<std::size_t>(loaded->component) == i;
     const double load = here ? (loaded++)->value : 0.0, diagonal = static_cast<double>(forces.diagonal[i]);
     const double unbalanced = load - forces.internal[i] - contact[i], stiff = diagonal * u[i];
-    const double reaction = part.held[i] ? -unbalanced : 0.0, residual = part.held[i] ? 0.0 : unbalanced;
+    const double along = slanting.empty() ? 0.0 : slanting[i];
+    const double reaction = part.held[i] ? -unbalanced : along,
+                 residual = part.held[i] ? 0.0 : unbalanced + along;
     s.balance[i % dim] += load - contact[i] + reaction;
     s.all += std::abs(load) + std::abs(contact[i]) + std::abs(reaction);
     s.residual_work += residual * u[i];

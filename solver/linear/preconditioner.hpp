@@ -31,6 +31,11 @@ class Preconditioner {
  private:
   virtual void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) = 0;
   virtual void rebuild(std::span<const NodeBlock> blocks, const Space& space) = 0;
+  /// `blocks`, those of springs, and stiff ones along the part's held directions (theory: pinning).
+  std::vector<NodeBlock> with_standing(const Part& part, std::span<const NodeBlock> blocks);
+
+  std::vector<NodeBlock> pins_;
+  bool pinned_ = false;
   double seconds_ = 0.0;
 };
 

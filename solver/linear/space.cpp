@@ -7,11 +7,28 @@
 
 namespace kacanov {
 
-void Space::hold(std::int32_t node, const Vector3& direction) {
-  // Points of one node follow each other in Part::contact, so looking at the last entry is enough.
+Space::Space(const Part& part) : part_(&part) {
+  for (const HeldDirection& direction : part.directions) {
+    auto& held = held_.directions;
+    if (held.empty() || held.back().node != direction.node) held.push_back({direction.node, 0, {}});
+    held.back().basis[held.back().count++] = direction.direction;
+  }
+  prescribed_ = held_.directions.size();
+}
+
+HeldDirections& Space::directions_at(std::int32_t node) {
   auto& held = held_.directions;
-  if (held.empty() || held.back().node != node) held.push_back({node, 0, {}});
-  auto& entry = held.back();
+  const auto end = held.begin() + static_cast<std::ptrdiff_t>(prescribed_);
+  const auto there = std::lower_bound(held.begin(), end, node,
+                                      [](const HeldDirections& d, std::int32_t n) { return d.node < n; });
+  if (there != end && there->node == node) return *there;
+  // Points of one node follow each other in Part::contact, so looking at the last entry is enough.
+  if (held.size() == prescribed_ || held.back().node != node) held.push_back({node, 0, {}});
+  return held.back();
+}
+
+void Space::hold(std::int32_t node, const Vector3& direction) {
+  HeldDirections& entry = directions_at(node);
   const std::size_t dim = part_->dim();
   Vector3 d = direction;
   for (std::size_t c = 0; c < dim; ++c)

@@ -19,8 +19,8 @@ namespace kacanov {
 /// and in rows over several nodes (contact rows held during a spectrum or active-set solve).
 class Space {
  public:
-  /// Held are the prescribed components alone. The part has to outlive it.
-  explicit Space(const Part& part) : part_(&part) {}
+  /// Held are the prescribed components and directions alone. The part has to outlive it.
+  explicit Space(const Part& part);
 
   /// Holds `direction` at a local node as well; directions of one node may be dependent. Call on every rank
   /// that has a copy of the node.
@@ -53,10 +53,12 @@ class Space {
   void turn(double beta, std::span<const double> z, std::span<double> p) const;
 
  private:
+  HeldDirections& directions_at(std::int32_t node);
   double local_dot(std::span<const double> x, std::span<const double> y) const;
 
   const Part* part_;
   HeldSpace held_;
+  std::size_t prescribed_ = 0;  ///< directions that the part holds come first, by node
 };
 
 }  // namespace kacanov

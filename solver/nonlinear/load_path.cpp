@@ -10,11 +10,17 @@
 namespace kacanov {
 namespace {
 
-/// How much of a point's gap the prescribed components of its nodes close with these values (one each).
+/// How much of a point's gap the prescribed components of its nodes close with these values (one each), and
+/// held directions with those that `along` gives.
+template <class Along>
 double closed_by_prescription(const Part& part, std::span<const RowEntry> entries,
-                              std::span<const Part::ComponentValue> prescribed) {
+                              std::span<const Part::ComponentValue> prescribed, const Along& along) {
   const std::size_t dim = part.dim();
   double closed = 0.0;
+  if (!part.directions.empty())
+    for (const RowEntry& entry : entries)
+      for (const HeldDirection& held : directions_of(part.directions, entry.node))
+        for (std::size_t c = 0; c < dim; ++c) closed += entry.normal[c] * held.direction[c] * along(held);
   for (const RowEntry& entry : entries)
     for (std::size_t c = 0; c < dim; ++c) {
       const std::size_t i = static_cast<std::size_t>(entry.node) * dim + c;
@@ -35,7 +41,8 @@ LoadPath::LoadPath(const Part& part) : part_(&part) {
   std::int32_t entries = 0;
   for (std::size_t i = 0; i < part.contact.size(); ++i) {
     gap_.push_back(part.contact[i].gap);
-    closed_.push_back(closed_by_prescription(part, part.contact.entries(i), part.prescribed));
+    closed_.push_back(closed_by_prescription(part, part.contact.entries(i), part.prescribed,
+                                             [](const HeldDirection& held) { return held.value; }));
     entries = std::max(entries, part.contact[i].entry + 1);
   }
   // Largest indentation, one a contact entry.
@@ -58,6 +65,8 @@ void LoadPath::find_acting(const std::vector<double>& depth) {
     if (force.value != 0.0) acts_[force.entry] = 1;
   for (std::size_t k = 0; k < part_->prescribed.size(); ++k)
     if (part_->prescribed[k].value != 0.0) acts_[part_->prescribed_by[k]] = 1;
+  for (const HeldDirection& held : part_->directions)
+    if (held.value != 0.0) acts_[held.entry] = 1;
   for (std::size_t e = 0; e < depth.size(); ++e)
     if (depth[e] > 0.0) acts_[factors.boundary.size() + e] = 1;
   for (std::uint8_t& acts : acts_) acts = part_->node_map.any(acts != 0) ? 1 : 0;
@@ -93,6 +102,17 @@ double LoadPath::growth_to(double share) const {
   return in_proportion ? growth : 1.0;
 }
 
+void LoadPath::prescribe(std::span<double> u) const {
+  for (const auto& entry : prescribed()) u[entry.component] = entry.value;
+  const std::size_t dim = part_->dim();
+  for (const HeldDirection& held : part_->directions) {
+    double* at = &u[held.node * dim];
+    double missing = value_of(held);
+    for (std::size_t c = 0; c < dim; ++c) missing -= held.direction[c] * at[c];
+    for (std::size_t c = 0; c < dim; ++c) at[c] += missing * held.direction[c];
+  }
+}
+
 void LoadPath::go_to(double share) {
   share_ = share;
   if (!part_->steps.empty()) return go_along_curves(share);
@@ -117,7 +137,8 @@ void LoadPath::go_along_curves(double time) {
   for (std::size_t i = 0; i < gap_.size(); ++i) {
     const ContactPoint& point = part_->contact[i];
     gap_[i] = point.gap + closed_[i] -
-              closed_by_prescription(*part_, part_->contact.entries(i), prescribed_) +
+              closed_by_prescription(*part_, part_->contact.entries(i), prescribed_,
+                                     [&](const HeldDirection& held) { return value_of(held); }) +
               (1.0 - factors.contact[point.entry]) * depth_[i];
   }
 }

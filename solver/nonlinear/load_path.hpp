@@ -42,12 +42,11 @@ class LoadPath {
   void add_load(std::span<double> f) const noexcept {
     for (const auto& entry : load()) f[entry.component] += entry.value;
   }
-  /// Sets the constrained components of u.
-  void prescribe(std::span<double> u) const noexcept {
-    for (const auto& entry : prescribed()) u[entry.component] = entry.value;
-  }
+  /// Sets the constrained components of u, and u along held directions.
+  void prescribe(std::span<double> u) const;
 
  private:
+  double value_of(const HeldDirection& held) const { return factor_of(held.entry) * held.value; }
   void go_along_curves(double time);
   void find_acting(const std::vector<double>& depth);
 

@@ -158,6 +158,17 @@ void check_entries(const Part& part) {
     point = share.point;
   }
   std::int32_t node = 0;
+  for (const HeldDirection& held : part.directions) {
+    expect_indices("held directions", std::array{held.node}, part.nodes());
+    expect_indices("held directions", std::array{held.entry}, entries);
+    expect(held.node >= node, "held directions", "are out of order");
+    node = held.node;
+    expect(directions_of(part.directions, node).size() <= axes, "held directions", "are too many");
+    for (const double value : held.direction)
+      expect(std::abs(value) <= 1.0 + 1e-9, "held directions", "are not of unit length");
+    expect(std::isfinite(held.value), "held directions", "are not finite");
+  }
+  node = 0;
   for (const NodeSpring& spring : part.springs) {
     expect_indices("springs", std::array{spring.node}, part.nodes());
     expect_indices("springs", std::array{spring.entry}, entries);

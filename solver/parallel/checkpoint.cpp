@@ -97,10 +97,14 @@ Fingerprint fingerprint(const Problem& problem) {
   print.sections["material"] = (Hash() << laws << problem.law_of_element).value();
   Hash boundary;
   boundary << problem.load << problem.held << problem.prescribed;
-  std::vector<double> springs;
+  std::vector<double> springs;  // and what is held along directions
   for (const NodeSpring& spring : problem.springs) {
     springs.push_back(static_cast<double>(spring.node));
     for (const Vector3& row : spring.stiffness) springs.insert(springs.end(), row.begin(), row.end());
+  }
+  for (const HeldDirection& held : problem.directions) {
+    springs.insert(springs.end(), {static_cast<double>(held.node), held.value});
+    springs.insert(springs.end(), held.direction.begin(), held.direction.end());
   }
   if (!springs.empty()) boundary << springs;
   print.sections["boundary"] = boundary.value();

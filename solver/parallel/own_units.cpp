@@ -45,6 +45,7 @@ void scale(Part& part, const UnitSystem& factors) {
   for (Part::ComponentValue& entry : part.load) entry.value *= factors.force();
   for (EntryForce& entry : part.forces) entry.value *= factors.force();
   for (Part::ComponentValue& entry : part.prescribed) entry.value *= factors.displacement;
+  for (HeldDirection& held : part.directions) held.value *= factors.displacement;
   for (NodeSpring& spring : part.springs)
     for (Vector3& row : spring.stiffness)
       for (double& value : row) value *= factors.force() / factors.displacement;
@@ -72,6 +73,7 @@ UnitSystem units_of(const Part& part) {
   units.modulus = std::ldexp(1.0, softest + (stiffest - softest) / 2);
   double moved = 0.0, load = 0.0;
   for (const auto& entry : part.prescribed) moved = std::max(moved, std::abs(entry.value));
+  for (const HeldDirection& held : part.directions) moved = std::max(moved, std::abs(held.value));
   for (const ContactPoint& point : part.contact) moved = std::max(moved, -point.gap);
   for (const auto& entry : part.load) load = std::max(load, std::abs(entry.value));
   for (const auto& entry : part.forces) load = std::max(load, std::abs(entry.value));

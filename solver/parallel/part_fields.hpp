@@ -158,6 +158,10 @@ void exchange_fields(Either<AppliedLoad> auto& load, const auto& stream) {
   stream(load.entry, load.total.force, load.total.moment);
 }
 
+void exchange_fields(Either<HeldDirection> auto& held, const auto& stream) {
+  stream(held.node, held.entry, held.direction, held.value);
+}
+
 void exchange_fields(Either<NodeSpring> auto& spring, const auto& stream) {
   stream(spring.node, spring.entry, spring.stiffness);
 }
@@ -174,9 +178,9 @@ void exchange_fields(Either<Part> auto& part, const auto& stream) {
   stream(part.type, part.coordinates, part.elements, part.node_index, part.element_index, part.node_tags,
          part.element_tags, part.node_map, part.total_elements, part.laws, part.law_of_element, part.load,
          part.prescribed, part.steps, part.forces, part.prescribed_by, part.held, part.supports, part.applied,
-         part.springs, part.thermal, part.contact, part.owned_contact, part.contact_shares, part.wide_contact,
-         part.contact_index, part.total_contact, part.probes, part.probe_index, part.total_probes,
-         part.loose_modes, part.start, part.no_equilibrium);
+         part.directions, part.springs, part.thermal, part.contact, part.owned_contact, part.contact_shares,
+         part.wide_contact, part.contact_index, part.total_contact, part.probes, part.probe_index,
+         part.total_probes, part.loose_modes, part.start, part.no_equilibrium);
 }
 
 }  // namespace kacanov

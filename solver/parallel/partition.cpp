@@ -85,7 +85,8 @@ class Splitter {
     take_contact(part, rank);
     take_probes(part, rank);
     part.laws = problem_.laws;
-    take_springs(part);
+    part.directions = of_local_nodes(problem_.directions);
+    part.springs = of_local_nodes(problem_.springs);
     take_thermal(part, rank);
     part.steps = problem_.steps;
     part.applied = problem_.applied;
@@ -158,13 +159,17 @@ class Splitter {
                      [](const EntryForce& a, const EntryForce& b) { return a.component < b.component; });
   }
 
-  void take_springs(Part& part) const {
-    for (NodeSpring spring : problem_.springs) {
-      spring.node = local_[spring.node];
-      if (spring.node >= 0) part.springs.push_back(spring);
+  /// What nodes have, by local node.
+  template <class OfNode>
+  std::vector<OfNode> of_local_nodes(const std::vector<OfNode>& all) const {
+    std::vector<OfNode> mine;
+    for (OfNode one : all) {
+      one.node = local_[one.node];
+      if (one.node >= 0) mine.push_back(one);
     }
-    std::stable_sort(part.springs.begin(), part.springs.end(),
-                     [](const NodeSpring& a, const NodeSpring& b) { return a.node < b.node; });
+    std::stable_sort(mine.begin(), mine.end(),
+                     [](const OfNode& a, const OfNode& b) { return a.node < b.node; });
+    return mine;
   }
 
   void take_thermal(Part& part, int rank) const {

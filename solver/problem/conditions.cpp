@@ -159,7 +159,7 @@ void assemble_load(Problem& problem, const Model& model, const Selection& select
   problem.steps = load_curves(model);
   for (std::size_t i = 0; i < model.boundary.size(); ++i) {
     const BoundaryEntry& entry = model.boundary[i];
-    if (entry.displacement || entry.is_spring()) continue;
+    if (entry.is_support() || entry.is_spring()) continue;
     const std::string path = path_of("boundary", i);
     const Mesh& mesh = problem.mesh;
     LoadOfEntry load(problem, i);
@@ -194,44 +194,6 @@ std::vector<double> load_at(const Problem& problem, std::size_t step) {
   for (const EntryForce& force : problem.forces)
     load[force.component] += problem.steps[step].boundary[force.entry] * force.value;
   return load;
-}
-
-void hold_displacements(Problem& problem, const Model& model, const Selection& selection) {
-  const Mesh& mesh = problem.mesh;
-  const std::size_t dim = mesh.dim();
-  std::vector<std::int32_t> holder(problem.held.size(), -1);
-  const auto refuse = [&](std::size_t entry, std::size_t k, const std::string& why) {
-    const std::size_t node = k / dim;
-    throw InputError(path_of("boundary", entry) + ".displacement: node " +
-                     std::to_string(mesh.node_tag(node)) + " at " +
-                     to_text(position(mesh, static_cast<std::int32_t>(node)), mesh.dim()) + " is given " +
-                     why + path_of("boundary", static_cast<std::size_t>(holder[k])));
-  };
-  for (std::size_t i = 0; i < model.boundary.size(); ++i) {
-    const BoundaryEntry& entry = model.boundary[i];
-    if (!entry.displacement) continue;
-    const std::string path = path_of("boundary", i);
-    for (const std::int32_t node : selection.nodes(entry.on, path)) {
-      for (std::size_t c = 0; c < dim; ++c) {
-        const std::optional<double>& value = (*entry.displacement)[c];
-        if (!value) continue;
-        const std::size_t k = node * dim + c;
-        if (problem.held[k] != 0 && problem.prescribed[k] != *value) {
-          std::ostringstream text;
-          text << "xyz"[c] << " = " << *value << " here and " << problem.prescribed[k] << " by ";
-          refuse(i, k, text.str());
-        }
-        if (problem.held[k] != 0 && *value != 0.0 && !problem.steps.empty() &&
-            !same_course(problem.steps, i, static_cast<std::size_t>(holder[k])))
-          refuse(i, k, std::string(1, "xyz"[c]) + " here with other factors in steps than by ");
-        problem.held[k] = 1;
-        problem.prescribed[k] = *value;
-        holder[k] = static_cast<std::int32_t>(i);
-        problem.supports.push_back({node, static_cast<std::int32_t>(c), static_cast<std::int32_t>(i)});
-      }
-    }
-  }
-  if (!problem.steps.empty()) problem.holder = std::move(holder);
 }
 
 void add_springs(Problem& problem, const Model& model, const Selection& selection) {

@@ -102,20 +102,12 @@ void warn_of_reading(Problem& problem, double lengths, const std::string& path) 
       ": gaps are those of the numbers as they are read");
 }
 
-/// Which components of a node are not held.
-std::array<bool, 3> free_components(const Problem& problem, std::int32_t node) {
+NodeFreedom freedom_of(const Problem& problem, std::int32_t node) {
   const std::size_t dim = problem.mesh.dim();
-  std::array<bool, 3> free{};
-  for (std::size_t c = 0; c < dim; ++c) free[c] = problem.held[node * dim + c] == 0;
-  return free;
-}
-
-/// The normal where the node can move.
-Vector3 trace_of(const Vector3& normal, const std::array<bool, 3>& free) {
-  Vector3 trace{};
-  for (std::size_t c = 0; c < 3; ++c)
-    if (free[c]) trace[c] = normal[c];
-  return trace;
+  NodeFreedom freedom;
+  for (std::size_t c = 0; c < dim; ++c) freedom.free[c] = problem.held[node * dim + c] == 0;
+  freedom.held = directions_of(problem.directions, node);
+  return freedom;
 }
 
 /// What the prescribed components of a point's node close of its gap.
@@ -125,6 +117,8 @@ double closed_by_prescription(const ContactPoint& point, const Problem& problem)
   for (std::size_t c = 0; c < dim; ++c)
     if (problem.held[point.node * dim + c] != 0)
       closed += point.normal[c] * problem.prescribed[point.node * dim + c];
+  for (const HeldDirection& held : directions_of(problem.directions, point.node))
+    closed += dot(point.normal, held.direction) * held.value;
   return closed;
 }
 
@@ -255,7 +249,7 @@ std::vector<ContactPoint> points_of_entry(Problem& problem, const ContactEntry& 
       point.coulomb = entry.friction->coulomb;
       point.since_step = entry.friction->reference == Friction::Reference::step;
     }
-    if (!narrow_row(point, free_components(problem, point.node), friction)) continue;
+    if (!narrow_row(point, freedom_of(problem, point.node), friction)) continue;
     point.gap -= closed_by_prescription(point, problem);
     points.push_back(point);
   }
@@ -269,8 +263,8 @@ std::vector<ContactPoint> points_of_entry(Problem& problem, const ContactEntry& 
 
 }  // namespace
 
-std::optional<RowEntry> narrow_row(ContactPoint& point, const std::array<bool, 3>& free, bool friction) {
-  const Vector3 trace = trace_of(point.normal, free);
+std::optional<RowEntry> narrow_row(ContactPoint& point, const NodeFreedom& freedom, bool friction) {
+  const Vector3 trace = freedom.project(point.normal);
   const double length = norm(trace);
   if (length < negligible_trace) return std::nullopt;
   point.tangents = 0;
@@ -281,9 +275,10 @@ std::optional<RowEntry> narrow_row(ContactPoint& point, const std::array<bool, 3
             [&](std::size_t a, std::size_t b) { return std::abs(trace[a]) < std::abs(trace[b]); });
   const Vector3 along = (1.0 / length) * trace;
   for (const std::size_t axis : axes) {
-    if (!friction || !free[axis]) continue;
+    if (!friction || !freedom.free[axis]) continue;
     Vector3 t{};
     t[axis] = 1.0;
+    t = freedom.project(t);
     t = t - dot(t, along) * along;
     for (int k = 0; k < point.tangents; ++k) {
       const Vector3& other = point.tangent[k];
@@ -320,7 +315,7 @@ void find_contact_points(Problem& problem, const Model& model, const Selection& 
                    [](const ContactPoint& a, const ContactPoint& b) { return a.node < b.node; });
   for (const ContactPoint& point :
        merge_equal(points, model, extent(problem.mesh).size, problem.contact_shares)) {
-    const Vector3 trace = trace_of(point.normal, free_components(problem, point.node));
+    const Vector3 trace = freedom_of(problem, point.node).project(point.normal);
     const RowEntry entry{point.node, point.normal, trace, point.tangent};
     problem.contact.push_back(point, {&entry, 1});
   }

@@ -15,8 +15,20 @@ namespace kacanov {
 /// components in N alone.
 void find_contact_points(Problem& problem, const Model& model, const Selection& selection);
 
-/// The row of a node against an obstacle, by the point's normal and the components that are free; fills the
+/// Where a node can move.
+struct NodeFreedom {
+  std::array<bool, 3> free{};                ///< components
+  std::span<const HeldDirection> held = {};  ///< directions besides
+
+  Vector3 project(Vector3 v) const {
+    for (std::size_t c = 0; c < 3; ++c)
+      if (!free[c]) v[c] = 0.0;
+    return project_out(held, v);
+  }
+};
+
+/// The row of a node against an obstacle, by the point's normal and where the node can move; fills the
 /// point's tangents where there is friction. Nothing where the node can hardly move along the normal.
-std::optional<RowEntry> narrow_row(ContactPoint& point, const std::array<bool, 3>& free, bool friction);
+std::optional<RowEntry> narrow_row(ContactPoint& point, const NodeFreedom& freedom, bool friction);
 
 }  // namespace kacanov

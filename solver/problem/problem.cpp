@@ -14,6 +14,7 @@
 #include "problem/probes.hpp"
 #include "problem/rigid_modes.hpp"
 #include "problem/selection.hpp"
+#include "problem/vector3.hpp"
 
 namespace kacanov {
 namespace {
@@ -57,6 +58,19 @@ Problem build_problem(Mesh mesh, const Model& model) {
   return problem;
 }
 
+std::span<const HeldDirection> directions_of(std::span<const HeldDirection> all, std::int32_t node) {
+  const auto first = std::lower_bound(all.begin(), all.end(), node,
+                                      [](const HeldDirection& d, std::int32_t n) { return d.node < n; });
+  auto last = first;
+  while (last != all.end() && last->node == node) ++last;
+  return {first, last};
+}
+
+Vector3 project_out(std::span<const HeldDirection> directions, Vector3 v) {
+  for (const HeldDirection& held : directions) v = v - dot(held.direction, v) * held.direction;
+  return v;
+}
+
 std::vector<std::int32_t> keep_boundary(Problem& problem) {
   const auto free = [](auto& array) { std::remove_reference_t<decltype(array)>().swap(array); };
   free(problem.law_of_element);
@@ -66,6 +80,7 @@ std::vector<std::int32_t> keep_boundary(Problem& problem) {
   free(problem.forces);
   free(problem.holder);
   free(problem.supports);
+  free(problem.directions);
   free(problem.springs);
   free(problem.thermal);
   Mesh& mesh = problem.mesh;

@@ -123,6 +123,10 @@ void collect_rows(const Problem& problem, std::vector<Piece>& pieces,
     axis[k % dim] = 1.0;
     add_row(piece.by_displacement, row(piece, position(mesh, static_cast<std::int32_t>(node)), axis));
   }
+  for (const HeldDirection& held : problem.directions) {
+    Piece& piece = pieces[piece_of_node[held.node]];
+    add_row(piece.by_displacement, row(piece, position(mesh, held.node), held.direction));
+  }
   for (const NodeSpring& spring : problem.springs) {
     Piece& piece = pieces[piece_of_node[spring.node]];
     double size = 0.0;

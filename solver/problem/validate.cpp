@@ -10,6 +10,7 @@
 #include <kacanov/rules.hpp>
 #include "problem/load_curves.hpp"
 #include "problem/model_checks.hpp"
+#include "problem/vector3.hpp"
 
 namespace kacanov {
 namespace {
@@ -35,6 +36,17 @@ void check_material(const std::string& path, const MaterialEntry& entry) {
   check(path + ".expansion", entry.expansion);
 }
 
+void check_frame(const std::string& path, const BoundaryEntry& entry) {
+  if (!entry.displacement) throw InputError(path + ".frame: expected this key beside displacement alone");
+  const auto& axes = *entry.frame;
+  for (std::size_t a = 0; a < 3; ++a) {
+    check_direction(at(path + ".frame", a), axes[a]);
+    for (std::size_t b = 0; b < a; ++b)
+      if (std::abs(dot(axes[a], axes[b])) > 1e-9 * norm(axes[a]) * norm(axes[b]))
+        refuse(at(path + ".frame", a), "an axis orthogonal to those before", shown_list(axes[a]));
+  }
+}
+
 void check_stiffness(const std::string& path, const Vector3& stiffness) {
   for (std::size_t c = 0; c < 3; ++c) check(at(path, c), stiffness[c], not_negative);
   if (stiffness == Vector3{}) refuse(path, "a stiffness > 0 in some direction", shown_list(stiffness));
@@ -42,16 +54,17 @@ void check_stiffness(const std::string& path, const Vector3& stiffness) {
 
 void check_boundary(const std::string& path, const BoundaryEntry& entry) {
   check_selector(path + ".on", entry.on);
-  const int kinds = (entry.displacement ? 1 : 0) + (entry.traction ? 1 : 0) + (entry.total_force ? 1 : 0) +
-                    (entry.pressure ? 1 : 0) + (entry.body_force ? 1 : 0) + (entry.temperature ? 1 : 0) +
-                    (entry.spring ? 1 : 0) + (entry.normal_spring ? 1 : 0) + (entry.node_spring ? 1 : 0);
+  const int kinds = (entry.displacement ? 1 : 0) + (entry.normal ? 1 : 0) + (entry.traction ? 1 : 0) +
+                    (entry.total_force ? 1 : 0) + (entry.pressure ? 1 : 0) + (entry.body_force ? 1 : 0) +
+                    (entry.temperature ? 1 : 0) + (entry.spring ? 1 : 0) + (entry.normal_spring ? 1 : 0) +
+                    (entry.node_spring ? 1 : 0);
   if (kinds != 1)
-    refuse(
-        path,
-        std::string(kinds == 0 ? "" : "only ") +
-            "one of the keys displacement, traction, pressure, body_force, total_force, spring, node_spring, "
-            "temperature",
-        std::to_string(kinds));
+    refuse(path,
+           std::string(kinds == 0 ? "" : "only ") +
+               "one of the keys displacement, traction, pressure, body_force, total_force, normal, spring, "
+               "node_spring, "
+               "temperature",
+           std::to_string(kinds));
   if (entry.displacement) {
     bool any = false;
     for (std::size_t c = 0; c < 3; ++c) {
@@ -61,6 +74,8 @@ void check_boundary(const std::string& path, const BoundaryEntry& entry) {
     }
     if (!any) refuse(path + ".displacement", "at least one component that is not null", "[null,null,null]");
   }
+  if (entry.normal) check(path + ".normal", *entry.normal);
+  if (entry.frame) check_frame(path, entry);
   if (entry.traction) check(path + ".traction", *entry.traction);
   if (entry.total_force) check(path + ".total_force", *entry.total_force);
   if (entry.pressure) check(path + ".pressure", *entry.pressure);

@@ -14,6 +14,9 @@ void no_load(const Problem& problem, const Model& model, Warnings& warnings) {
                    [&](const EntryForce& force) { return is_zero(force.value); }))
     return;
   if (!std::all_of(problem.prescribed.begin(), problem.prescribed.end(), is_zero)) return;
+  if (std::any_of(problem.directions.begin(), problem.directions.end(),
+                  [](const HeldDirection& held) { return held.value != 0.0; }))
+    return;
   if (std::any_of(problem.contact.begin(), problem.contact.end(),
                   [](const ContactPoint& point) { return point.gap < 0.0; }))
     return;

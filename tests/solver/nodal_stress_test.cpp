@@ -161,3 +161,28 @@ TEST_CASE("a hole in a plate in tension: three times the stress, within 3 %") {
   part.node_map.forward(copies, 1);
   CHECK(copies == found.von_mises);
 }
+
+TEST_CASE(
+    "warmth that nothing gives way to is a pressure in every stress that is told, and in none of von Mises") {
+  for (const ElementType type : {ElementType::tri3, ElementType::tet10, ElementType::hex8}) {
+    const int dim = dimension(type);
+    Model model = elastic_model();
+    model.materials[0].expansion = 1e-3;
+    model.boundary.push_back(moved(everything(), dim));
+    BoundaryEntry warm;
+    warm.on = everything();
+    warm.temperature = 10.0;
+    model.boundary.push_back(warm);
+    const Run run = run_alone(make_box({{1, 1, 1}, {2, 2, 2}, type}), model);
+    REQUIRE(run.result().status == Status::converged);
+    const double pressure = 1e-2 / (1 - 2 * 0.3);  // E α ΔT / (1 − 2ν)
+    const auto check = [&](const std::vector<double>& stress) {
+      for (std::size_t k = 0; k < stress.size(); ++k)
+        CHECK(std::abs(stress[k] - (k % 6 < 3 ? -pressure : 0.0)) < 1e-6 * pressure);
+    };
+    const NodalStress nodal = recover_stress(run.part, run.solution);
+    check(nodal.stress);
+    CHECK(nodal.max_von_mises.value < 1e-6 * pressure);
+    visit_element_fields(run.part, run.solution, [&](const ElementRun& fields) { check(fields.stress); });
+  }
+}

@@ -68,6 +68,15 @@ class CaseParser {
     return v;
   }
 
+  /// As many axes as the mesh has dimensions; the third of a plane is across it.
+  std::array<Vector3, 3> axes(const Node& node) {
+    const std::vector<Node> list = node.list("a list of 2 or 3 axes");
+    if (list.size() != 2 && list.size() != 3) node.expected("a list of 2 or 3 axes");
+    std::array<Vector3, 3> all{Vector3{1, 0, 0}, Vector3{0, 1, 0}, Vector3{0, 0, 1}};
+    for (std::size_t a = 0; a < list.size(); ++a) all[a] = vector(list[a]);
+    return all;
+  }
+
   /// A path, relative ones taken from the case file's folder.
   std::string in_folder(const std::string& name) const {
     const std::filesystem::path file = name;
@@ -149,13 +158,13 @@ class CaseParser {
   void parse_boundary(const Node& node) {
     const Object object(
         node, {"on", "name", "displacement", "traction", "pressure", "body_force", "total_force", "density",
-               "acceleration", "spring", "node_spring", "temperature"});
+               "acceleration", "spring", "node_spring", "temperature", "normal", "frame"});
     BoundaryEntry entry;
     entry.on = selector(object.required("on"));
     if (const auto name = object.optional("name")) entry.name = name->text();
     const std::string kind =
         object.only_one_of({"displacement", "traction", "pressure", "body_force", "total_force", "density",
-                            "spring", "node_spring", "temperature"});
+                            "spring", "node_spring", "temperature", "normal"});
     const Node value = object.required(kind);
     const auto acceleration = object.optional("acceleration");
     if (acceleration && kind != "density") acceleration->expected("this key beside density alone");
@@ -177,6 +186,8 @@ class CaseParser {
       entry.normal_spring = value.number(positive);
     } else if (kind == "spring") {
       entry.spring = vector(value);
+    } else if (kind == "normal") {
+      entry.normal = value.number();
     } else if (kind == "node_spring") {
       entry.node_spring = vector(value);
     } else if (kind == "temperature") {
@@ -189,6 +200,7 @@ class CaseParser {
     } else {
       entry.body_force = vector(value);
     }
+    if (const auto frame = object.optional("frame")) entry.frame = axes(*frame);
     result_.model.boundary.push_back(entry);
   }
 

@@ -53,8 +53,8 @@ void print_selections(const Problem& problem, const Model& model) {
   for (std::size_t i = 0; i < model.boundary.size(); ++i) {
     const BoundaryEntry& entry = model.boundary[i];
     const std::string path = path_of("boundary", i), on = on_text(entry.on, mesh.dim());
-    if (entry.displacement) {
-      print_entry(path, "displacement", on,
+    if (entry.is_support()) {
+      print_entry(path, entry.normal ? "normal" : "displacement", on,
                   std::to_string(selection.nodes(entry.on, path).size()) + " nodes");
     } else if (entry.node_spring) {
       print_entry(path, "node_spring", on, std::to_string(selection.nodes(entry.on, path).size()) + " nodes");

@@ -31,7 +31,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::string_view part_magic = "kacanov part 10\n", boundary_magic = "kacanov boundary 5\n";
+constexpr std::string_view part_magic = "kacanov part 11\n", boundary_magic = "kacanov boundary 5\n";
 /// The sections of a case that parts are made of.
 constexpr const char* sections[] = {"mesh", "material", "boundary", "contact", "steps", "probe"};
 

@@ -110,17 +110,6 @@ void add_temperature(Problem& problem, const nlohmann::json& document, const nlo
   }
 }
 
-void hold(Problem& problem, const nlohmann::json& entry, Real factor) {
-  const nlohmann::json& values = entry.at("displacement");
-  const std::size_t dim = problem.mesh.dim();
-  for (const Index node : select_nodes(problem.mesh, entry.at("on")))
-    for (std::size_t c = 0; c < dim; ++c) {
-      if (values.at(c).is_null()) continue;
-      problem.held[node][c] = true;
-      problem.prescribed[node][c] = factor * Real(values.at(c).get<double>());
-    }
-}
-
 /// What an entry is multiplied by: the load factor, or what the load curves have for it at that time, linear
 /// between their steps, 0 before the first that names it and 1 where none does (user guide: steps).
 Real factor_at(Real load, const nlohmann::json& document, const std::string& list, std::size_t index) {
@@ -194,13 +183,14 @@ Problem read_problem(const nlohmann::json& document, const std::filesystem::path
   for (std::size_t i = 0; i < boundary.size(); ++i) {
     const nlohmann::json& entry = boundary.at(i);
     const Real factor = factor_at(problem.time, document, "boundary", i);
-    if (entry.contains("displacement")) hold(problem, entry, factor);
+    if (entry.contains("displacement") || entry.contains("normal")) hold(problem, entry, factor);
     if (entry.contains("spring") || entry.contains("node_spring")) add_spring(problem, entry);
     if (entry.contains("temperature")) add_temperature(problem, document, entry, factor);
     if (entry.contains("traction") || entry.contains("total_force") || entry.contains("pressure"))
       add_surface_load(problem, entry, factor);
     if (entry.contains("body_force") || entry.contains("density")) add_body_force(problem, entry, factor);
   }
+  find_directions(problem);
   const auto contact = document.value("contact", nlohmann::json::array());
   for (std::size_t i = 0; i < contact.size(); ++i) {
     const nlohmann::json& entry = contact.at(i);

@@ -2,6 +2,8 @@
 // What a case asks for on its mesh: loads, supports, laws, contact rows.
 #pragma once
 
+#include <map>
+
 #include "verify/law.hpp"
 #include "verify/mesh.hpp"
 
@@ -27,6 +29,12 @@ struct ContactRow {
   bool grazing = false;  ///< whether it meets the sphere is a matter of rounding
 };
 
+/// u along a unit vector, as it is given.
+struct GivenDirection {
+  Vec direction{};
+  Real value = 0;
+};
+
 struct Problem {
   Mesh mesh;
   std::vector<Law> laws;
@@ -34,6 +42,8 @@ struct Problem {
   std::vector<Vec> load;                  ///< F, one a node
   std::vector<std::array<bool, 3>> held;  ///< components with a prescribed displacement
   std::vector<Vec> prescribed;
+  /// Off the axes, by node: orthonormal, in free components (theory: held-directions).
+  std::map<Index, std::vector<GivenDirection>> directions;
   std::vector<std::array<Vec, 3>> springs;  ///< stiffness between each node and the ground; empty: none
   std::vector<Real> contact_factor;         ///< of each contact entry
   std::vector<Vec> pushed;                  ///< the travel of each contact entry that is pushed by a force
@@ -49,6 +59,13 @@ struct Problem {
 /// and the travel of obstacles that are pushed.
 Problem read_problem(const nlohmann::json& document, const std::filesystem::path& folder,
                      const nlohmann::json& result);
+
+/// Puts an entry with a displacement, of components or along directions, on its nodes.
+void hold(Problem& problem, const nlohmann::json& entry, Real factor);
+/// Once all entries are held: leaves of each direction what others of its node do not give.
+void find_directions(Problem& problem);
+/// `v` of a node without what is given there.
+Vec free_part(const Problem& problem, Index node, Vec v);
 
 /// Finds the contact rows of a problem whose supports are known.
 void find_rows(const nlohmann::json& contact, const std::filesystem::path& folder, Problem& problem);

@@ -15,9 +15,7 @@ Vec tangential(const Problem& problem, const ContactRow& row, const std::vector<
   Vec sum{};
   for (const ContactRow::Share& share : row.shares) {
     const auto node = static_cast<std::size_t>(share.node);
-    Vec free = u[node] - row.carried;
-    for (std::size_t c = 0; c < 3; ++c)
-      if (problem.held[node][c]) free[c] = 0;
+    const Vec free = free_part(problem, share.node, u[node] - row.carried);
     const Vec along = 1 / norm(share.normal) * share.normal;
     // The weight of a node in a row of several is the length of its normal among theirs.
     const Real weight = row.shares.size() == 1 ? Real(1) : norm(share.normal);
@@ -84,12 +82,12 @@ BodySums sum_body(const Problem& problem, const Answer& answer, const BodyRespon
                   const std::vector<Vec>& contact) {
   BodySums s;
   const auto dim = static_cast<std::size_t>(problem.mesh.dim());
-  for (std::size_t n = 0; n < problem.mesh.nodes.size(); ++n)
+  for (std::size_t n = 0; n < problem.mesh.nodes.size(); ++n) {
+    const Vec all = problem.load[n] - body.internal[n] - contact[n];
+    const Vec left = free_part(problem, static_cast<Index>(n), all);
     for (std::size_t c = 0; c < dim; ++c) {
       const Real u = answer.u[n][c], load = problem.load[n][c], d = body.diagonal[n][c];
-      const Real unbalanced = load - body.internal[n][c] - contact[n][c];
-      const bool held = problem.held[n][c];
-      const Real reaction = held ? -unbalanced : 0, residual = held ? 0 : unbalanced;
+      const Real reaction = left[c] - all[c], residual = left[c];
       s.balance[c] += load - contact[n][c] + reaction;
       s.all += std::abs(load) + std::abs(contact[n][c]) + std::abs(reaction);
       s.residual_work += residual * u;
@@ -105,8 +103,12 @@ BodySums sum_body(const Problem& problem, const Answer& answer, const BodyRespon
       s.stiff_all += std::abs(d * u);
       s.softness += 1 / d;
       s.displacement = larger(s.displacement, std::abs(u));
-      if (held) s.supports = larger(s.supports, std::abs(u - problem.prescribed[n][c]));
+      if (problem.held[n][c]) s.supports = larger(s.supports, std::abs(u - problem.prescribed[n][c]));
     }
+  }
+  for (const auto& [node, given] : problem.directions)
+    for (const GivenDirection& one : given)
+      s.supports = larger(s.supports, std::abs(dot(one.direction, answer.u[node]) - one.value));
   // What holds a spring at its other end.
   for (std::size_t n = 0; n < problem.springs.size(); ++n)
     for (std::size_t c = 0; c < dim; ++c) {

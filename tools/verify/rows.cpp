@@ -72,13 +72,12 @@ bool joined(std::vector<ContactRow>& rows, const ContactRow& row, Real size) {
 /// Leaves the free components in the row and takes from the gap what prescribed ones close; false where none
 /// are left.
 bool restrict_to_free(const Problem& problem, ContactRow& row) {
-  Vec free = row.normal;
   const auto node = static_cast<std::size_t>(row.node);
-  for (std::size_t c = 0; c < 3; ++c) {
-    if (!problem.held[node][c]) continue;
-    row.closed += free[c] * problem.prescribed[node][c];
-    free[c] = 0;
-  }
+  for (std::size_t c = 0; c < 3; ++c)
+    if (problem.held[node][c]) row.closed += row.normal[c] * problem.prescribed[node][c];
+  if (const auto there = problem.directions.find(row.node); there != problem.directions.end())
+    for (const GivenDirection& one : there->second) row.closed += dot(row.normal, one.direction) * one.value;
+  const Vec free = free_part(problem, row.node, row.normal);
   row.shares = {{row.node, free}};
   return norm(free) >= 1e-8L;
 }

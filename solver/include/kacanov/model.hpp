@@ -42,8 +42,12 @@ struct BoundaryEntry {
   std::optional<Vector3> spring = {};        ///< elastic bed: stiffness an area, of each component
   std::optional<double> normal_spring = {};  ///< the same along the facets' normals alone
   std::optional<Vector3> node_spring = {};   ///< stiffness of each node
-  std::optional<double> temperature = {};    ///< by how much elements are warmer than without strain
+  std::optional<double> normal = {};  ///< displacement along the outer normal of a flat group of facets
+  /// Axes, orthogonal, of any length, that `displacement` is told along; unset: those of the coordinates.
+  std::optional<std::array<Vector3, 3>> frame = {};
+  std::optional<double> temperature = {};  ///< by how much elements are warmer than without strain
 
+  bool is_support() const noexcept { return displacement || normal; }
   bool is_spring() const noexcept { return spring || normal_spring || node_spring; }
 };
 

@@ -44,6 +44,7 @@ struct Part {
   std::vector<std::int32_t> prescribed_by;    ///< boundary entry of each of `prescribed`; with steps only
   std::vector<Support> supports;              ///< of owned nodes, by node and axis
   std::vector<AppliedLoad> applied;           ///< of the whole problem
+  std::vector<HeldDirection> directions;      ///< of local nodes, owned ones first
   std::vector<NodeSpring> springs;            ///< of local nodes, owned ones first
   std::vector<ThermalPressure> thermal;       ///< of local elements; always in the user's units
   /// The points of owned nodes first, narrow ones of ghosts behind them. All nodes of an owned point are

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,18 @@ struct Support {
   bool operator==(const Support&) const = default;
 };
 
+/// A direction off the axes that a node's displacement is given along (theory: held-directions).
+struct HeldDirection {
+  std::int32_t node = 0, entry = 0;  ///< index into Model::boundary
+  Vector3 direction{};               ///< unit, in free components, orthogonal to the others of its node
+  double value = 0.0;                ///< of u along it
+};
+
+/// Those of a node, in a list by node.
+std::span<const HeldDirection> directions_of(std::span<const HeldDirection> all, std::int32_t node);
+/// `v` without its part along them.
+Vector3 project_out(std::span<const HeldDirection> directions, Vector3 v);
+
 /// What a spring entry puts between a node and the ground (theory: springs).
 struct NodeSpring {
   std::int32_t node = 0, entry = 0;    ///< index into Model::boundary
@@ -83,7 +96,8 @@ struct Problem {
   std::vector<std::int32_t> holder;  ///< nodes × dim: boundary entry that gives the displacement, else −1
   std::vector<Support> supports;     ///< by node and axis
   std::vector<AppliedLoad> applied;  ///< at the factor 1
-  std::vector<NodeSpring> springs;   ///< by node
+  std::vector<HeldDirection> directions;  ///< by node
+  std::vector<NodeSpring> springs;        ///< by node
   std::vector<ThermalPressure> thermal;
   ConstraintRows contact;
   std::vector<PointShare> contact_shares;  ///< of points of several entries, by point

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Given displacements: the entries of a model carried over to a mesh, by component and along directions.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <sstream>
+
+#include <kacanov/error.hpp>
+#include "problem/conditions.hpp"
+#include "problem/integration.hpp"
+#include "problem/load_curves.hpp"
+#include "problem/vector3.hpp"
+
+namespace kacanov {
+namespace {
+
+std::string path_of(std::size_t index) { return "boundary[" + std::to_string(index) + "]"; }
+
+/// Facets whose normals differ by more are not flat; directions nearer to an axis are that axis.
+constexpr double flat_to = 1e-6, axis_to = 1e-12;
+/// What is left of a direction, where others hold its node, below which it is one of theirs.
+constexpr double dependent = 1e-8;
+
+/// What an entry gives: u along a unit vector.
+struct Given {
+  Vector3 direction{};
+  double value = 0.0;
+};
+
+/// The one outer normal of a group of facets.
+Vector3 normal_of(const Mesh& mesh, const std::vector<std::int32_t>& facets, const std::string& path) {
+  Vector3 sum{};
+  std::vector<Vector3> normals;
+  for (const std::int32_t f : facets) {
+    const FacetWeights weights = lumped_weights(mesh, f);  // of quadratic facets, those of the mid-sides
+    for (std::size_t k = 0; k < mesh.facet(f).size(); ++k) {
+      const double length = norm(weights.normal[k]);
+      if (length == 0.0) continue;
+      sum = sum + weights.normal[k];
+      normals.push_back((1.0 / length) * weights.normal[k]);
+    }
+  }
+  const double length = norm(sum);
+  for (const Vector3& n : normals)
+    if (length == 0.0 || norm(n - (1.0 / length) * sum) > flat_to)
+      throw InputError(path +
+                       ".normal: expected flat facets, whose outer normals are one; take an entry for each "
+                       "plane");
+  return (1.0 / length) * sum;
+}
+
+std::vector<Given> given_by(const BoundaryEntry& entry, const Mesh& mesh, const Selection& selection,
+                            const std::string& path) {
+  const std::size_t dim = mesh.dim();
+  std::vector<Given> given;
+  if (entry.normal) {
+    given.push_back({normal_of(mesh, selection.facets(entry.on, path), path), *entry.normal});
+  } else {
+    for (std::size_t c = 0; c < dim; ++c) {
+      if (!(*entry.displacement)[c]) continue;
+      Vector3 axis{};
+      axis[c] = 1.0;
+      if (entry.frame) axis = (1.0 / norm((*entry.frame)[c])) * (*entry.frame)[c];
+      given.push_back({axis, *(*entry.displacement)[c]});
+    }
+  }
+  return given;
+}
+
+/// The axis that a direction is, of either sign; none where it is off them.
+std::optional<std::size_t> axis_of(const Vector3& direction) {
+  for (std::size_t c = 0; c < 3; ++c)
+    if (std::abs(direction[c]) >= 1.0 - axis_to) return c;
+  return std::nullopt;
+}
+
+class Holder {
+ public:
+  Holder(Problem& problem) : problem_(problem), dim_(problem.mesh.dim()), holder_(problem.held.size(), -1) {}
+
+  void hold(std::size_t entry, std::int32_t node, std::size_t c, double value) {
+    const std::size_t k = node * dim_ + c;
+    if (problem_.held[k] != 0 && problem_.prescribed[k] != value) {
+      std::ostringstream text;
+      text << "xyz"[c] << " = " << value << " here and " << problem_.prescribed[k] << " by ";
+      refuse(entry, node, text.str() + path_of(static_cast<std::size_t>(holder_[k])));
+    }
+    if (problem_.held[k] != 0 && value != 0.0 && !problem_.steps.empty() &&
+        !same_course(problem_.steps, entry, static_cast<std::size_t>(holder_[k])))
+      refuse(entry, node,
+             std::string(1, "xyz"[c]) + " here with other factors in steps than by " +
+                 path_of(static_cast<std::size_t>(holder_[k])));
+    problem_.held[k] = 1;
+    problem_.prescribed[k] = value;
+    holder_[k] = static_cast<std::int32_t>(entry);
+    problem_.supports.push_back({node, static_cast<std::int32_t>(c), static_cast<std::int32_t>(entry)});
+  }
+
+  void take(std::size_t entry, std::int32_t node, const Given& given) {
+    slanting_.push_back({node, static_cast<std::int32_t>(entry), given.direction, given.value});
+  }
+
+  /// What slants, once all components are held: what is left of it in the free ones (theory:
+  /// held-directions).
+  void finish() {
+    std::stable_sort(slanting_.begin(), slanting_.end(),
+                     [](const HeldDirection& a, const HeldDirection& b) { return a.node < b.node; });
+    for (const HeldDirection& raw : slanting_) add(raw);
+    if (!problem_.steps.empty()) problem_.holder = std::move(holder_);
+  }
+
+ private:
+  void add(HeldDirection d) {
+    const auto take_off = [&](double share, double value, std::int32_t by) {
+      if (share * value != 0.0 && !problem_.steps.empty() &&
+          !same_course(problem_.steps, static_cast<std::size_t>(d.entry), static_cast<std::size_t>(by)))
+        refuse(
+            static_cast<std::size_t>(d.entry), d.node,
+            "along a direction with other factors in steps than by " + path_of(static_cast<std::size_t>(by)));
+      d.value -= share * value;
+    };
+    const double whole = std::abs(d.value);
+    double size = whole;
+    for (std::size_t c = 0; c < dim_; ++c) {
+      const std::size_t k = d.node * dim_ + c;
+      if (problem_.held[k] == 0) continue;
+      size += std::abs(d.direction[c] * problem_.prescribed[k]);
+      take_off(d.direction[c], problem_.prescribed[k], holder_[k]);
+      d.direction[c] = 0.0;
+    }
+    for (int pass = 0; pass < 2; ++pass)  // twice: orthogonal to the last digit
+      for (const HeldDirection& other : directions_of(problem_.directions, d.node)) {
+        const double share = dot(d.direction, other.direction);
+        size += std::abs(share * other.value);
+        take_off(share, other.value, other.entry);
+        d.direction = d.direction - share * other.direction;
+      }
+    const double rest = norm(d.direction);
+    if (rest < dependent) {
+      if (std::abs(d.value) > 1e-6 * size)
+        refuse(static_cast<std::size_t>(d.entry), d.node,
+               "a displacement that other entries do not let it have");
+      return;
+    }
+    d.direction = (1.0 / rest) * d.direction;
+    d.value /= rest;
+    problem_.directions.push_back(d);
+  }
+
+  [[noreturn]] void refuse(std::size_t entry, std::int32_t node, const std::string& what) const {
+    const Mesh& mesh = problem_.mesh;
+    throw InputError(path_of(entry) + ".displacement: node " + std::to_string(mesh.node_tag(node)) + " at " +
+                     to_text(position(mesh, node), mesh.dim()) + " is given " + what);
+  }
+
+  Problem& problem_;
+  std::size_t dim_;
+  std::vector<std::int32_t> holder_;
+  std::vector<HeldDirection> slanting_;
+};
+
+}  // namespace
+
+void hold_displacements(Problem& problem, const Model& model, const Selection& selection) {
+  Holder holder(problem);
+  for (std::size_t i = 0; i < model.boundary.size(); ++i) {
+    const BoundaryEntry& entry = model.boundary[i];
+    if (!entry.is_support()) continue;
+    const std::string path = path_of(i);
+    const std::vector<Given> all = given_by(entry, problem.mesh, selection, path);
+    for (const std::int32_t node : selection.nodes(entry.on, path))
+      for (const Given& given : all)
+        if (const auto axis = axis_of(given.direction))
+          holder.hold(i, node, *axis, given.direction[*axis] > 0.0 ? given.value : -given.value);
+        else
+          holder.take(i, node, given);
+  }
+  holder.finish();
+}
+
+}  // namespace kacanov
