@@ -60,6 +60,34 @@ TEST_CASE("a part that was split is accepted, and each field that does not fit i
            [](Part& p) {
              p.prescribed.push_back({1 << 29, 1.0});
            }},
+          {"held directions",
+           [](Part& p) {
+             p.directions.push_back({1 << 29, 0, {0, 1, 0}, 0.0});
+           }},
+          {"held directions",
+           [](Part& p) {
+             p.directions.assign(4, {1, 0, {0, 1, 0}, 0.0});
+           }},
+          {"held directions",
+           [](Part& p) {
+             p.directions.push_back({1, 0, {3, 1, 0}, 0.0});
+           }},
+          {"springs",
+           [](Part& p) {
+             p.springs.push_back({-1, 0, {}});
+           }},
+          {"springs",
+           [](Part& p) {
+             p.springs.push_back({0, 1 << 29, {}});
+           }},
+          {"springs",
+           [](Part& p) {
+             p.springs = {{2, 0, {}}, {1, 0, {}}};
+           }},
+          {"temperatures",
+           [](Part& p) {
+             p.thermal.push_back({0, {1.0}});
+           }},
           {"start", [](Part& p) { p.start.assign(3, 0.0); }},
           {"numbers of probes", [](Part& p) { p.probe_index.push_back(0); }},
           {"numbers of contact points", [](Part& p) { p.contact_index.push_back(0); }},
