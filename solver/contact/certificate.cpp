@@ -55,7 +55,9 @@ struct ContactSums {
   double unknown_trace = 0.0, unknown_product = 0.0;  // what rounding leaves of a gap, and of Σ M λ times it
 };
 
-ContactSums contact_sums(const Traces& traces, const ContactState& state) {
+/// `displacement`: max |u|. A trace is known to the rounding of the displacements that it is taken of, however
+/// small it is beside them.
+ContactSums contact_sums(const Traces& traces, const ContactState& state, double displacement) {
   ContactSums s;
   const auto points = traces.points().first(traces.owned());
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -71,15 +73,15 @@ ContactSums contact_sums(const Traces& traces, const ContactState& state) {
     s.pressure = larger(s.pressure, std::abs(lambda));
     // A point that is open by more than that is open, and not its own residual.
     const double unknown =
-        rounding_of_traces * (std::abs(state.trace.normal[i]) + std::abs(state.gap[i])) + point.unknown_gap;
+        rounding_of_traces * (displacement + std::abs(state.gap[i])) + point.unknown_gap;
     if (open <= unknown) s.unknown_trace = larger(s.unknown_trace, unknown);
     s.unknown_product += point.mass * std::abs(lambda) * unknown;
     if (point.tangents == 0) continue;
     const double bound = state.bound[i], length = std::hypot(friction[0], friction[1]);
-    const double product =
-        bound * std::hypot(slip[0], slip[1]) - friction[0] * slip[0] - friction[1] * slip[1];
+    const double slid = std::hypot(slip[0], slip[1]);
+    const double product = bound * slid - friction[0] * slip[0] - friction[1] * slip[1];
     s.friction_product += point.mass * std::abs(product);
-    s.unknown_product += point.mass * (bound + length) * rounding_of_traces * std::hypot(slip[0], slip[1]);
+    s.unknown_product += point.mass * (bound + length) * rounding_of_traces * (displacement + slid);
     s.dual_work += point.mass * product;
     s.cone = larger(s.cone, length - bound);
     s.pressure = larger(s.pressure, length);
@@ -179,17 +181,16 @@ Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactS
   const Part& part = space.part();
   Vector contact(part.unknowns(), 0.0);
   traces.add_force(state.lambda, 1.0, contact);
-  const ContactSums sums = contact_sums(traces, state);
-
   Residuals out;
   out.energy = forces.energy;
   Scales& scales = out.scales;
+  scales.displacement = space.max_abs(state.u);
+  const ContactSums sums = contact_sums(traces, state, scales.displacement);
   // Sums of forces: the load, the obstacles, the supports; what they work; squares of their norms.
   const BodySums body = body_sums(part, state.u, contact, forces);
   const double no_force = least_force / body.softness * std::sqrt(body.moved),
                no_energy = least_force / body.softness * body.moved;
   scales.force = std::max(std::sqrt(std::max({body.reaction, body.contact, body.load})), no_force);
-  scales.displacement = space.max_abs(state.u);
 
   const double tiny = 1e-300;
   scales.pressure = std::max(sums.pressure, sums.area > 0.0 ? 0.5 * body.all / sums.area * 1e-3 : 0.0);

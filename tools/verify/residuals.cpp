@@ -32,6 +32,9 @@ struct ContactSums {
 
 ContactSums sum_contact(const Problem& problem, const Answer& answer, Findings& findings) {
   ContactSums sums;
+  Real most = 0;
+  for (const Vec& u : answer.u)
+    for (const Real component : u) most = larger(most, std::abs(component));
   sums.force.assign(problem.mesh.nodes.size(), {});
   for (std::size_t i = 0; i < problem.rows.size(); ++i) {
     const ContactRow& row = problem.rows[i];
@@ -55,7 +58,7 @@ ContactSums sum_contact(const Problem& problem, const Answer& answer, Findings& 
     sums.penetration = larger(sums.penetration, -open);
     sums.tension = larger(sums.tension, -lambda);
     sums.pressure = larger(sums.pressure, std::abs(lambda));
-    const Real unknown = delta_of_traces * (std::abs(trace) + std::abs(row.gap)) + row.unknown_gap;
+    const Real unknown = delta_of_traces * (most + std::abs(row.gap)) + row.unknown_gap;
     if (open <= unknown) sums.unknown_trace = larger(sums.unknown_trace, unknown);
     sums.unknown_product += row.mass * std::abs(lambda) * unknown;
     if (!row.friction) continue;
@@ -63,7 +66,7 @@ ContactSums sum_contact(const Problem& problem, const Answer& answer, Findings& 
     const Real bound = row.tresca + row.coulomb * lambda, length = norm(traction);
     const Real product = bound * norm(slip) + dot(traction, slip);
     sums.products += row.mass * std::abs(product);
-    sums.unknown_product += row.mass * (bound + length) * delta_of_traces * norm(slip);
+    sums.unknown_product += row.mass * (bound + length) * delta_of_traces * (most + norm(slip));
     sums.work += row.mass * product;
     sums.cone = larger(sums.cone, length - bound);
     sums.pressure = larger(sums.pressure, length);
