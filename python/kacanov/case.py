@@ -46,7 +46,8 @@ class Case:
         elif isinstance(mesh, Word | Mapping):
             self.document["mesh"] = plain(mesh, "mesh")
         else:
-            raise TypeError(f"mesh: expected kacanov.box, read or Mesh, or a dict as in a case file, got {type(mesh).__name__}")
+            raise TypeError("mesh: expected kacanov.box, read or Mesh, or a dict as in a case file, "
+                            f"got {type(mesh).__name__}")
 
     # ---- from and to case files
 
@@ -65,7 +66,8 @@ class Case:
         return case
 
     @classmethod
-    def from_dict(cls, document: Mapping[str, Any], *, name: str = "case", folder: str | os.PathLike[str] = ".") -> Case:
+    def from_dict(cls, document: Mapping[str, Any], *, name: str = "case",
+                  folder: str | os.PathLike[str] = ".") -> Case:
         """The case of a dict with the keys of a case file."""
         case = cls(name=name, folder=folder)
         case.document = plain(document)

@@ -119,7 +119,8 @@ class Mesh:
         blocks = [(own, group_of, self.cells)]
         blocks += [(facet_types[group.shape[1]], np.full(len(group), i + 1), group)
                    for i, group in enumerate(self.facets.values())]
-        blocks += [(15, np.full(len(group), tag + 1 + i), group[:, None]) for i, group in enumerate(self.nodes.values())]
+        blocks += [(15, np.full(len(group), tag + 1 + i), group[:, None])
+                   for i, group in enumerate(self.nodes.values())]
         blocks = [block for block in blocks if len(block[2])]
         out.append(f"{sum(len(block[2]) for block in blocks)}\n".encode())
         first = 1
@@ -146,7 +147,7 @@ def read(path: str | os.PathLike[str]) -> MeshFile:
 
 
 def from_meshio(mesh: Any) -> Mesh:
-    """A meshio.Mesh: its cells of the highest dimension are the body, its cell sets (and Gmsh's physical groups) names."""
+    """A meshio.Mesh: its cells of the highest dimension are the body; its cell sets, or Gmsh's physical groups, names."""
     dims = {kind: ELEMENTS[element][0] for kind, element in MESHIO.items()}
     bodies = [block for block in mesh.cells if block.type in dims]
     top = max((dims[block.type] for block in bodies), default=0)
@@ -171,7 +172,8 @@ def from_meshio(mesh: Any) -> Mesh:
                 first += len(block.data)
             elif chosen is not None and len(chosen) and block.data.shape[1] in facet_types:
                 facets.setdefault(name, []).append(block.data[chosen])
-    return Mesh(mesh.points, cells, element, order="vtk", facets={name: np.concatenate(all_) for name, all_ in facets.items()},
+    return Mesh(mesh.points, cells, element, order="vtk",
+                facets={name: np.concatenate(all_) for name, all_ in facets.items()},
                 parts={name: np.concatenate(all_) for name, all_ in parts.items()},
                 nodes={name: np.asarray(group) for name, group in (mesh.point_sets or {}).items()})
 

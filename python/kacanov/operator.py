@@ -139,7 +139,8 @@ class Operator(Symmetric):
         if array.size and array.dtype.kind not in "iu":
             raise TypeError(f"unknowns: expected whole numbers or a mask, got {array.dtype}")
         if array.size and (array.min() < 0 or array.max() >= self.shape[0]):
-            raise InputError(f"unknowns: expected numbers from 0 to {self.shape[0] - 1}, got {array.min()} to {array.max()}")
+            raise InputError(f"unknowns: expected numbers from 0 to {self.shape[0] - 1}, "
+                             f"got {array.min()} to {array.max()}")
         self._op.constrain(np.ascontiguousarray(array.ravel(), dtype=np.int32))
 
     def set_blocks(self, nodes: Array, blocks: Array) -> None:

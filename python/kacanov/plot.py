@@ -117,7 +117,8 @@ def _vtk(solution: Solution, field: str, values: np.ndarray, scale: float) -> np
     from vtkmodules.vtkCommonCore import vtkLookupTable
     from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
     from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
-    from vtkmodules.vtkRenderingCore import vtkActor, vtkDataSetMapper, vtkRenderer, vtkRenderWindow, vtkWindowToImageFilter
+    from vtkmodules.vtkRenderingCore import (vtkActor, vtkDataSetMapper, vtkRenderer, vtkRenderWindow,
+                                             vtkWindowToImageFilter)
     grid = vtk_grid(solution)
     data = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
     data.SetName(field)
