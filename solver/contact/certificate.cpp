@@ -55,8 +55,8 @@ struct ContactSums {
   double unknown_trace = 0.0, unknown_product = 0.0;  // what rounding leaves of a gap, and of Σ M λ times it
 };
 
-/// `displacement`: max |u|. A trace is known to the rounding of the displacements that it is taken of, however
-/// small it is beside them.
+/// `displacement`: max |u|. A trace is known to the rounding of the displacements that it is taken of,
+/// however small it is beside them.
 ContactSums contact_sums(const Traces& traces, const ContactState& state, double displacement) {
   ContactSums s;
   const auto points = traces.points().first(traces.owned());
@@ -72,8 +72,7 @@ ContactSums contact_sums(const Traces& traces, const ContactState& state, double
     s.tension = larger(s.tension, -lambda);
     s.pressure = larger(s.pressure, std::abs(lambda));
     // A point that is open by more than that is open, and not its own residual.
-    const double unknown =
-        rounding_of_traces * (displacement + std::abs(state.gap[i])) + point.unknown_gap;
+    const double unknown = rounding_of_traces * (displacement + std::abs(state.gap[i])) + point.unknown_gap;
     if (open <= unknown) s.unknown_trace = larger(s.unknown_trace, unknown);
     s.unknown_product += point.mass * std::abs(lambda) * unknown;
     if (point.tangents == 0) continue;
