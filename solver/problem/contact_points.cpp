@@ -79,11 +79,10 @@ std::string rough(double value) {
 }
 
 /// Where a gap is unknown by as much as the body is large, there is nothing to solve.
-void refuse_unknown(const Facing& facing, const Mesh& mesh, std::int32_t node, const std::string& path) {
-  const double size = extent(mesh).size;
+void refuse_unknown(const Facing& facing, double size, std::int64_t node_tag, const std::string& path) {
   if (facing.unknown < size) return;
   throw InputError(path + ": expected an obstacle not so large or so far away that the gap of node " +
-                   std::to_string(mesh.node_tag(node)) + " is known to ±" + rough(facing.unknown) +
+                   std::to_string(node_tag) + " is known to ±" + rough(facing.unknown) +
                    " only, where the size of the body is " + rough(size));
 }
 
@@ -227,15 +226,16 @@ std::vector<ContactPoint> points_of_entry(Problem& problem, const ContactEntry& 
   std::vector<ContactPoint> points;
   std::size_t candidates = 0;
   double lengths = 0.0;
+  const double size = extent(mesh).size;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     if (!(mass[k] > 0.0)) continue;  // corners of quadratic facets bear nothing
     ++candidates;
     std::optional<Facing> facing = faces.at(nodes[k], outer[k]);
     // What is missed now may be met later.
     if (!facing && entry.relinearise && norm(outer[k]) > 0.0)
-      facing = Facing{(1.0 / norm(outer[k])) * outer[k], far_away * extent(mesh).size};
+      facing = Facing{(1.0 / norm(outer[k])) * outer[k], far_away * size};
     if (!facing) continue;
-    refuse_unknown(*facing, mesh, nodes[k], faces.path());
+    refuse_unknown(*facing, size, mesh.node_tag(nodes[k]), faces.path());
     lengths = std::max(lengths, facing->lengths);
     ContactPoint point;
     point.node = nodes[k];
