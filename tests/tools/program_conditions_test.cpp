@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "program_runner.hpp"
+#include "verified_run.hpp"
 
 using namespace kacanov::testing;
 using nlohmann::json;
@@ -27,17 +27,8 @@ json bar(const std::string& element, double poisson) {
 
 void add(json& bar, const char* entry) { bar["boundary"].push_back(parsed(entry)); }
 
-/// The result, once it has converged and is verified.
 json solved(const json& input, const std::string& ranks = "1") {
-  const Workplace place;
-  place.put_json("case.json", input);
-  const Outcome run = place.run("run case.json --output out --ranks " + ranks);
-  INFO(run.error);
-  REQUIRE(run.exit_code == 0);
-  const Outcome verified = place.run("verify case.json --output out");
-  INFO(verified.error, verified.output);
-  CHECK(verified.exit_code == 0);
-  return place.json("out/result.json");
+  return kacanov::testing::solved(Workplace(), input, ranks);
 }
 
 std::array<double, 3> vector(const json& list) {

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "mesh_writer.hpp"
-#include "program_runner.hpp"
+#include "verified_run.hpp"
 
 using namespace kacanov;
 using namespace kacanov::testing;
@@ -42,17 +42,6 @@ json list(const Point& x) { return {x[0], x[1], x[2]}; }
 Point vector(const json& list) { return list.get<Point>(); }
 
 double distance(const Point& a, const Point& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
-
-json solved(const Workplace& place, const json& input, const std::string& ranks = "1") {
-  place.put_json("case.json", input);
-  const Outcome run = place.run("run case.json --output out --ranks " + ranks);
-  INFO(run.error);
-  REQUIRE(run.exit_code == 0);
-  const Outcome verified = place.run("verify case.json --output out");
-  INFO(verified.error, verified.output);
-  CHECK(verified.exit_code == 0);
-  return place.json("out/result.json");
-}
 
 /// A plastic block between three planes of symmetry, on springs beside, with an obstacle before its top.
 json block(const Point& shear, const Point& up, const Point& top) {
