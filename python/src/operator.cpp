@@ -105,22 +105,22 @@ Wanted Operator::output() const {
   return wanted;
 }
 
-py::array Operator::map(Call call, const py::object& x, const py::object& out) {
-  const py::array in = wanted_array<double>(x, vector("x"));
-  py::array result = out.is_none() ? new_array<double>(shape_of(in)) : wanted_array<double>(out, output());
-  const double* from = entries<double>(in).data();
-  double* to = entries<double>(result).data();
+template <class Real>
+py::array Operator::map_in(Mapping<Real> call, const py::object& x, const py::object& out) {
+  const py::array in = wanted_array<Real>(x, vector("x"));
+  py::array result = out.is_none() ? new_array<Real>(shape_of(in)) : wanted_array<Real>(out, output());
+  const Real* from = entries<Real>(in).data();
+  Real* to = entries<Real>(result).data();
   run([&] { return call(handle_, size_.unknowns, from, to); });
   return result;
 }
 
+py::array Operator::map(Call call, const py::object& x, const py::object& out) {
+  return map_in<double>(call, x, out);
+}
+
 py::array Operator::map_float(const py::object& x, const py::object& out) {
-  const py::array in = wanted_array<float>(x, vector("x"));
-  py::array result = out.is_none() ? new_array<float>(shape_of(in)) : wanted_array<float>(out, output());
-  const float* from = entries<float>(in).data();
-  float* to = entries<float>(result).data();
-  run([&] { return kacanov_apply_float(handle_, size_.unknowns, from, to); });
-  return result;
+  return map_in<float>(kacanov_apply_float, x, out);
 }
 
 py::array Operator::map_many(const py::object& x) {

@@ -60,7 +60,9 @@ class Operator {
   Wanted vector(const char* name) const;
   Wanted output() const;
 
-  using Call = int (*)(kacanov_operator*, std::size_t, const double*, double*);
+  template <class Real>
+  using Mapping = int (*)(kacanov_operator*, std::size_t, const Real*, Real*);
+  using Call = Mapping<double>;
   /// y = call(x), into `out` where that is not None.
   pybind11::array map(Call call, const pybind11::object& x, const pybind11::object& out);
   pybind11::array map_float(const pybind11::object& x, const pybind11::object& out);
@@ -81,6 +83,9 @@ class Operator {
   pybind11::tuple locality_order();
 
  private:
+  template <class Real>
+  pybind11::array map_in(Mapping<Real> call, const pybind11::object& x, const pybind11::object& out);
+
   /// One call without Python's lock.
   template <class Work>
   void run(const Work& work) {
