@@ -11,14 +11,11 @@
 #include <kacanov/error.hpp>
 #include "problem/integration.hpp"
 #include "problem/load_curves.hpp"
+#include "problem/model_checks.hpp"
 #include "problem/vector3.hpp"
 
 namespace kacanov {
 namespace {
-
-std::string path_of(const char* list, std::size_t index) {
-  return std::string(list) + "[" + std::to_string(index) + "]";
-}
 
 /// Puts the forces of one entry on the nodes, and adds them up.
 class LoadOfEntry {
@@ -109,7 +106,7 @@ void assign_materials(Problem& problem, const Model& model, const Selection& sel
   const Mesh& mesh = problem.mesh;
   problem.law_of_element.assign(mesh.element_count(), none);
   for (std::size_t i = 0; i < model.materials.size(); ++i) {
-    const std::string path = path_of("material", i);
+    const std::string path = at("material", i);
     const MaterialEntry& entry = model.materials[i];
     Law law = entry.law;
     law.mean_dilatation =
@@ -122,7 +119,7 @@ void assign_materials(Problem& problem, const Model& model, const Selection& sel
       std::uint16_t& there = problem.law_of_element[e];
       if (there != none && model.materials[there].on.kind != Selector::Kind::all) {
         throw InputError(path + ".on: element " + std::to_string(mesh.element_tag(e)) +
-                         " already has the material of " + path_of("material", there) +
+                         " already has the material of " + at("material", there) +
                          " (only an entry on \"all\" may be overridden)");
       }
       there = static_cast<std::uint16_t>(i);
@@ -160,7 +157,7 @@ void assemble_load(Problem& problem, const Model& model, const Selection& select
   for (std::size_t i = 0; i < model.boundary.size(); ++i) {
     const BoundaryEntry& entry = model.boundary[i];
     if (entry.is_support() || entry.is_spring()) continue;
-    const std::string path = path_of("boundary", i);
+    const std::string path = at("boundary", i);
     const Mesh& mesh = problem.mesh;
     LoadOfEntry load(problem, i);
     if (entry.body_force) {
@@ -202,7 +199,7 @@ void add_springs(Problem& problem, const Model& model, const Selection& selectio
   for (std::size_t i = 0; i < model.boundary.size(); ++i) {
     const BoundaryEntry& entry = model.boundary[i];
     if (!entry.is_spring()) continue;
-    const std::string path = path_of("boundary", i);
+    const std::string path = at("boundary", i);
     std::map<std::int32_t, std::array<Vector3, 3>> nodes;
     const auto add_axes = [&](std::int32_t node, double weight, const Vector3& stiffness) {
       auto& block = nodes[node];

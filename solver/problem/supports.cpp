@@ -9,12 +9,11 @@
 #include "problem/conditions.hpp"
 #include "problem/integration.hpp"
 #include "problem/load_curves.hpp"
+#include "problem/model_checks.hpp"
 #include "problem/vector3.hpp"
 
 namespace kacanov {
 namespace {
-
-std::string path_of(std::size_t index) { return "boundary[" + std::to_string(index) + "]"; }
 
 /// Facets whose normals differ by more are not flat; directions nearer to an axis are that axis.
 constexpr double flat_to = 1e-6, axis_to = 1e-12;
@@ -83,13 +82,13 @@ class Holder {
     if (problem_.held[k] != 0 && problem_.prescribed[k] != value) {
       std::ostringstream text;
       text << "xyz"[c] << " = " << value << " here and " << problem_.prescribed[k] << " by ";
-      refuse(entry, node, text.str() + path_of(static_cast<std::size_t>(holder_[k])));
+      refuse(entry, node, text.str() + at("boundary", static_cast<std::size_t>(holder_[k])));
     }
     if (problem_.held[k] != 0 && value != 0.0 && !problem_.steps.empty() &&
         !same_course(problem_.steps, entry, static_cast<std::size_t>(holder_[k])))
       refuse(entry, node,
              std::string(1, "xyz"[c]) + " here with other factors in steps than by " +
-                 path_of(static_cast<std::size_t>(holder_[k])));
+                 at("boundary", static_cast<std::size_t>(holder_[k])));
     problem_.held[k] = 1;
     problem_.prescribed[k] = value;
     holder_[k] = static_cast<std::int32_t>(entry);
@@ -114,9 +113,9 @@ class Holder {
     const auto take_off = [&](double share, double value, std::int32_t by) {
       if (share * value != 0.0 && !problem_.steps.empty() &&
           !same_course(problem_.steps, static_cast<std::size_t>(d.entry), static_cast<std::size_t>(by)))
-        refuse(
-            static_cast<std::size_t>(d.entry), d.node,
-            "along a direction with other factors in steps than by " + path_of(static_cast<std::size_t>(by)));
+        refuse(static_cast<std::size_t>(d.entry), d.node,
+               "along a direction with other factors in steps than by " +
+                   at("boundary", static_cast<std::size_t>(by)));
       d.value -= share * value;
     };
     const double whole = std::abs(d.value);
@@ -149,8 +148,8 @@ class Holder {
 
   [[noreturn]] void refuse(std::size_t entry, std::int32_t node, const std::string& what) const {
     const Mesh& mesh = problem_.mesh;
-    throw InputError(path_of(entry) + ".displacement: node " + std::to_string(mesh.node_tag(node)) + " at " +
-                     to_text(position(mesh, node), mesh.dim()) + " is given " + what);
+    throw InputError(at("boundary", entry) + ".displacement: node " + std::to_string(mesh.node_tag(node)) +
+                     " at " + to_text(position(mesh, node), mesh.dim()) + " is given " + what);
   }
 
   Problem& problem_;
@@ -166,7 +165,7 @@ void hold_displacements(Problem& problem, const Model& model, const Selection& s
   for (std::size_t i = 0; i < model.boundary.size(); ++i) {
     const BoundaryEntry& entry = model.boundary[i];
     if (!entry.is_support()) continue;
-    const std::string path = path_of(i);
+    const std::string path = at("boundary", i);
     const std::vector<Given> all = given_by(entry, problem.mesh, selection, path);
     for (const std::int32_t node : selection.nodes(entry.on, path))
       for (const Given& given : all)
