@@ -164,6 +164,10 @@ class Case:
         """A spring at each node, one stiffness a component."""
         return self._add("boundary", on=on, node_spring=stiffness, name=name)
 
+    def node_force(self, force: Vector, on: On, *, name: str | None = None) -> Case:
+        """A force on each node of a selection."""
+        return self._add("boundary", on=on, node_force=force, name=name)
+
     def temperature(self, difference: float, on: On = "all", *, name: str | None = None) -> Case:
         """By how much elements are warmer than where they are free of strain."""
         return self._add("boundary", on=on, temperature=difference, name=name)

@@ -162,6 +162,8 @@ void assemble_load(Problem& problem, const Model& model, const Selection& select
     LoadOfEntry load(problem, i);
     if (entry.body_force) {
       add_body_force(mesh, *entry.body_force, selection.elements(entry.on, path), load);
+    } else if (entry.node_force) {
+      for (const std::int32_t node : selection.nodes(entry.on, path)) load.add(node, *entry.node_force);
     } else if (entry.temperature) {
       const std::vector<std::int32_t> elements = selection.elements(entry.on, path);
       if (std::none_of(elements.begin(), elements.end(), [&](std::int32_t e) {

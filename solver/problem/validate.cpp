@@ -57,13 +57,12 @@ void check_boundary(const std::string& path, const BoundaryEntry& entry) {
   const int kinds = (entry.displacement ? 1 : 0) + (entry.normal ? 1 : 0) + (entry.traction ? 1 : 0) +
                     (entry.total_force ? 1 : 0) + (entry.pressure ? 1 : 0) + (entry.body_force ? 1 : 0) +
                     (entry.temperature ? 1 : 0) + (entry.spring ? 1 : 0) + (entry.normal_spring ? 1 : 0) +
-                    (entry.node_spring ? 1 : 0);
+                    (entry.node_spring ? 1 : 0) + (entry.node_force ? 1 : 0);
   if (kinds != 1)
     refuse(path,
            std::string(kinds == 0 ? "" : "only ") +
                "one of the keys displacement, traction, pressure, body_force, total_force, normal, spring, "
-               "node_spring, "
-               "temperature",
+               "node_spring, node_force, temperature",
            std::to_string(kinds));
   if (entry.displacement) {
     bool any = false;
@@ -80,6 +79,7 @@ void check_boundary(const std::string& path, const BoundaryEntry& entry) {
   if (entry.total_force) check(path + ".total_force", *entry.total_force);
   if (entry.pressure) check(path + ".pressure", *entry.pressure);
   if (entry.body_force) check(path + ".body_force", *entry.body_force);
+  if (entry.node_force) check(path + ".node_force", *entry.node_force);
   if (entry.temperature) check(path + ".temperature", *entry.temperature);
   if (entry.normal_spring) check(path + ".spring", *entry.normal_spring, positive);
   if (entry.spring) check_stiffness(path + ".spring", *entry.spring);

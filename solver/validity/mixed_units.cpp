@@ -46,6 +46,10 @@ double stress_of(const BoundaryEntry& entry, std::size_t index, const Selection&
   if (entry.traction) return norm(*entry.traction);
   if (entry.pressure) return std::abs(*entry.pressure);
   if (entry.body_force) return norm(*entry.body_force) * size;
+  if (entry.node_force)
+    return norm(*entry.node_force) *
+           static_cast<double>(selection.nodes(entry.on, entry_name(entry, index)).size()) /
+           std::pow(size, mesh.dim() - 1);
   if (entry.total_force)
     return norm(*entry.total_force) / area(mesh, selection.facets(entry.on, entry_name(entry, index)));
   return 0.0;

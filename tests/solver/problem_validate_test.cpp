@@ -117,10 +117,10 @@ TEST_CASE("models: the path of the key, what was expected, what was there") {
       {[](Model& m) { m.boundary[0].on.name.clear(); }, "boundary[0].on: expected a string, got \"\""},
       {[](Model& m) { m.boundary[1].pressure = 1.0; },
        "boundary[1]: expected only one of the keys displacement, traction, pressure, body_force, "
-       "total_force, normal, spring, node_spring, temperature, got 2"},
+       "total_force, normal, spring, node_spring, node_force, temperature, got 2"},
       {[](Model& m) { m.boundary[1].traction.reset(); },
        "boundary[1]: expected one of the keys displacement, traction, pressure, body_force, total_force, "
-       "normal, spring, node_spring, temperature, got "
+       "normal, spring, node_spring, node_force, temperature, got "
        "0"},
       {[](Model& m) { m.boundary[0].displacement->fill(std::nullopt); },
        "boundary[0].displacement: expected at least one component that is not null, got [null,null,null]"},

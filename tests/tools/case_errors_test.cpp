@@ -127,7 +127,7 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
       {"boundary[1].pressure=1",
        "boundary[1]: expected only one of the keys displacement, traction, pressure, body_force, "
        "total_force, "
-       "density, spring, node_spring, temperature, normal, got "
+       "density, spring, node_spring, node_force, temperature, normal, got "
        "traction and pressure"},
       {"mesh.file=a.msh", "mesh: expected only one of the keys file, box, got file and box"},
       {"material[0].law.yield_stress=1",

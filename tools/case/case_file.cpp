@@ -26,8 +26,11 @@ class CaseParser {
   explicit CaseParser(std::string folder) : folder_(std::move(folder)) {}
 
   Case parse(const nlohmann::json& document) {
-    const Object top(Node(document, ""),
-                     {"mesh", "material", "boundary", "contact", "steps", "solver", "probe", "output"});
+    const Object top(Node(document, ""), {"mesh", "material", "boundary", "contact", "steps", "solver",
+                                          "probe", "output", "title", "$schema"});
+    // Editors look for the one, people read the other.
+    for (const char* words : {"$schema", "title"})
+      if (const auto node = top.optional(words)) node->text();
     parse_mesh(top.required("mesh"));
     const Node materials = top.required("material");
     for (const Node& node : materials.list("a list of materials")) parse_material(node);
@@ -158,13 +161,13 @@ class CaseParser {
   void parse_boundary(const Node& node) {
     const Object object(
         node, {"on", "name", "displacement", "traction", "pressure", "body_force", "total_force", "density",
-               "acceleration", "spring", "node_spring", "temperature", "normal", "frame"});
+               "acceleration", "spring", "node_spring", "node_force", "temperature", "normal", "frame"});
     BoundaryEntry entry;
     entry.on = selector(object.required("on"));
     if (const auto name = object.optional("name")) entry.name = name->text();
     const std::string kind =
         object.only_one_of({"displacement", "traction", "pressure", "body_force", "total_force", "density",
-                            "spring", "node_spring", "temperature", "normal"});
+                            "spring", "node_spring", "node_force", "temperature", "normal"});
     const Node value = object.required(kind);
     const auto acceleration = object.optional("acceleration");
     if (acceleration && kind != "density") acceleration->expected("this key beside density alone");
@@ -190,6 +193,8 @@ class CaseParser {
       entry.normal = value.number();
     } else if (kind == "node_spring") {
       entry.node_spring = vector(value);
+    } else if (kind == "node_force") {
+      entry.node_force = vector(value);
     } else if (kind == "temperature") {
       entry.temperature = value.number();
     } else if (kind == "density") {

@@ -126,8 +126,8 @@ json parse_json(const std::string& text, const std::string& label) {
     throw InputError(label + ": the file is empty, expected a JSON object");
   }
   Scanner scanner(text, label);
-  json::sax_parse(text, &scanner);
-  json value = json::parse(text);
+  json::sax_parse(text, &scanner, json::input_format_t::json, true, true);
+  json value = json::parse(text, nullptr, true, true);
   if (!value.is_object()) throw InputError(label + ": expected a JSON object, got " + shown(value));
   return value;
 }

@@ -56,8 +56,9 @@ void print_selections(const Problem& problem, const Model& model) {
     if (entry.is_support()) {
       print_entry(path, entry.normal ? "normal" : "displacement", on,
                   std::to_string(selection.nodes(entry.on, path).size()) + " nodes");
-    } else if (entry.node_spring) {
-      print_entry(path, "node_spring", on, std::to_string(selection.nodes(entry.on, path).size()) + " nodes");
+    } else if (entry.node_spring || entry.node_force) {
+      print_entry(path, entry.node_force ? "node_force" : "node_spring", on,
+                  std::to_string(selection.nodes(entry.on, path).size()) + " nodes");
     } else if (entry.body_force || entry.temperature) {
       print_entry(path, entry.temperature ? "temperature" : "body_force", on,
                   std::to_string(selection.elements(entry.on, path).size()) + " elements");

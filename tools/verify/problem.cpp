@@ -188,6 +188,9 @@ Problem read_problem(const nlohmann::json& document, const std::filesystem::path
     if (entry.contains("temperature")) add_temperature(problem, document, entry, factor);
     if (entry.contains("traction") || entry.contains("total_force") || entry.contains("pressure"))
       add_surface_load(problem, entry, factor);
+    if (entry.contains("node_force"))
+      for (const Index node : select_nodes(problem.mesh, entry.at("on")))
+        problem.load[node] = problem.load[node] + factor * read_vector(entry.at("node_force"));
     if (entry.contains("body_force") || entry.contains("density")) add_body_force(problem, entry, factor);
   }
   find_directions(problem);

@@ -42,6 +42,7 @@ struct BoundaryEntry {
   std::optional<Vector3> spring = {};        ///< elastic bed: stiffness an area, of each component
   std::optional<double> normal_spring = {};  ///< the same along the facets' normals alone
   std::optional<Vector3> node_spring = {};   ///< stiffness of each node
+  std::optional<Vector3> node_force = {};    ///< on each node; in 2D a thickness
   std::optional<double> normal = {};  ///< displacement along the outer normal of a flat group of facets
   /// Axes, orthogonal, of any length, that `displacement` is told along; unset: those of the coordinates.
   std::optional<std::array<Vector3, 3>> frame = {};
