@@ -2,6 +2,8 @@
 // Gmsh's element numbers and their names.
 #include "formats/gmsh_content.hpp"
 
+#include <kacanov/cells.hpp>
+
 namespace kacanov {
 
 std::string_view gmsh_type_name(std::int64_t type) {
@@ -37,12 +39,6 @@ std::optional<std::size_t> gmsh_cell(std::int64_t type) {
   for (std::size_t c = 0; c < cells().size(); ++c)
     if (cells()[c].gmsh == type) return c;
   return std::nullopt;
-}
-
-void GmshElements::assign_last(std::size_t set) {
-  const std::size_t last = count() - 1;
-  if (!runs.empty() && runs.back().first == last) runs.pop_back();
-  if (runs.empty() || runs.back().set != set) runs.push_back({last, set});
 }
 
 }  // namespace kacanov

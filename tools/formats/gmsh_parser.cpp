@@ -8,6 +8,7 @@
 #include <optional>
 
 #include <kacanov/error.hpp>
+#include "formats/gmsh_content.hpp"
 #include "formats/gmsh_cursor.hpp"
 #include "formats/node_index.hpp"
 
@@ -21,7 +22,7 @@ class Parser {
  public:
   Parser(const std::string& path, std::string_view bytes) : in_(path, bytes) {}
 
-  GmshContent parse() {
+  MeshContent parse() {
     format();
     while (in_.skip_blank_lines()) {
       const std::string_view line = in_.line();
@@ -317,7 +318,7 @@ class Parser {
       return;
     }
     // Gmsh writes an element that belongs to several physical groups once for each of them, in a row.
-    GmshElements& list = content_.elements[*shape];
+    ElementList& list = content_.elements[*shape];
     list.nodes.resize(list.nodes.size() - static_cast<std::size_t>(cells()[*shape].nodes));
     std::vector<int> both = content_.physicals[list.runs.back().set];
     if (both.size() >= std::size_t{most_groups}) refuse_groups("element", tag);
@@ -326,7 +327,7 @@ class Parser {
   }
 
   bool repeats_last(std::size_t shape) {
-    const GmshElements& list = content_.elements[shape];
+    const ElementList& list = content_.elements[shape];
     const auto n = static_cast<std::ptrdiff_t>(cells()[shape].nodes);
     return list.count() > 0 && std::equal(list.nodes.end() - n, list.nodes.end(), list.nodes.end() - 2 * n);
   }
@@ -347,7 +348,7 @@ class Parser {
 
   void reserve_elements(std::size_t shape, std::int64_t count) {
     in_.expect_room(count, 4, "elements");
-    GmshElements& list = content_.elements[shape];
+    ElementList& list = content_.elements[shape];
     const std::size_t needed = list.count() + static_cast<std::size_t>(count);
     if (needed <= list.tags.capacity()) return;
     const std::size_t capacity = std::max(needed, list.count() + list.count() / 2);
@@ -369,7 +370,7 @@ class Parser {
   }
 
   void add(std::size_t shape, std::int64_t tag, std::size_t set) {
-    GmshElements& list = content_.elements[shape];
+    ElementList& list = content_.elements[shape];
     if (list.count() >= std::numeric_limits<std::int32_t>::max())
       in_.fail("more elements than 32-bit indices can number");
     list.tags.push_back(tag);
@@ -377,7 +378,7 @@ class Parser {
   }
 
   GmshCursor in_;
-  GmshContent content_;
+  MeshContent content_;
   NodeIndex index_;
   std::map<std::pair<int, int>, std::size_t> entities_;  // set of (dimension, number)
   std::map<std::vector<int>, std::size_t> sets_{{{}, 0}};
@@ -389,7 +390,7 @@ class Parser {
 
 }  // namespace
 
-GmshContent parse_gmsh(const std::string& path, std::string_view bytes) {
+MeshContent parse_gmsh(const std::string& path, std::string_view bytes) {
   return Parser(path, bytes).parse();
 }
 

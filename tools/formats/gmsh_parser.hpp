@@ -5,12 +5,12 @@
 #include <string>
 #include <string_view>
 
-#include "formats/gmsh_content.hpp"
+#include "formats/mesh_content.hpp"
 
 namespace kacanov {
 
 /// `bytes` is the whole file, `path` its name in messages.
 /// Throws InputError naming the line (ASCII) or byte (binary) of what is wrong.
-GmshContent parse_gmsh(const std::string& path, std::string_view bytes);
+MeshContent parse_gmsh(const std::string& path, std::string_view bytes);
 
 }  // namespace kacanov

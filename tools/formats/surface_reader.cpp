@@ -111,7 +111,7 @@ TriangleList parse_binary_stl(std::string_view bytes, std::size_t count) {
 }
 
 /// The number that a file gives to a group of facets.
-int number_of_group(const std::string& path, const GmshContent& content, const std::string& group) {
+int number_of_group(const std::string& path, const MeshContent& content, const std::string& group) {
   std::string known;
   for (const auto& [key, name] : content.names) {
     if (key.first != 2) continue;
@@ -122,14 +122,14 @@ int number_of_group(const std::string& path, const GmshContent& content, const s
                    (known.empty() ? "none with a name" : known));
 }
 
-TriangleList facets_of_gmsh(const std::string& path, GmshContent content, const std::string& group) {
+TriangleList facets_of_gmsh(const std::string& path, MeshContent content, const std::string& group) {
   TriangleList list;
   const int wanted = group.empty() ? 0 : number_of_group(path, content, group);
   for (std::size_t n = 0; n < content.coordinates.size(); n += 3)
     list.points.push_back({content.coordinates[n], content.coordinates[n + 1], content.coordinates[n + 2]});
   for (std::size_t c = 0; c < cells().size(); ++c) {
     if (cells()[c].dim != 2) continue;
-    const GmshElements& elements = content.elements[c];
+    const ElementList& elements = content.elements[c];
     const auto nodes = static_cast<std::size_t>(cells()[c].nodes);
     std::size_t run = 0;
     for (std::size_t e = 0; e < elements.count(); ++e) {

@@ -114,14 +114,30 @@ ParsedCommand parse_command(int argc, const char* const* argv) {
   verify->add_option("--output", command.output, "folder of the run (default: results/<case name>)")
       ->type_name("DIR");
 
+  CLI::App* convert = app.add_subcommand(
+      "convert", "make a case and its mesh of an Abaqus or CalculiX deck, or another format of a mesh");
+  convert->add_option("FROM", command.from, "a deck (.inp) or a mesh")->required();
+  convert->add_option(
+      "TO", command.to,
+      "a case (.json, its mesh beside it) or a mesh (.msh, .inp, .vtu); default: FROM's name .json");
+  convert->add_flag("--leave-out", command.leave_out,
+                    "leave out keywords that change the answer and are not known, and name them");
+  convert->add_flag("--force", command.force, "write over files that are there");
+
+  CLI::App* init = app.add_subcommand("init", "write a case to start from for a mesh, with its groups");
+  init->add_option("MESH", command.from, "the mesh")->required();
+  init->add_option("CASE.json", command.to, "the case (default: the mesh's name .json)");
+  init->add_flag("--force", command.force, "write over a file that is there");
+
   ParsedCommand parsed;
-  const std::vector<std::string> names{"run", "spectrum", "sweep", "check", "partition", "verify"};
+  const std::vector<std::string> names{"run",       "spectrum", "sweep",   "check",
+                                       "partition", "verify",   "convert", "init"};
   const std::string first = argc > 1 ? argv[1] : "";
   if (!first.empty() && first[0] != '-' && std::find(names.begin(), names.end(), first) == names.end()) {
     const std::string guess = closest_word(first, names);
     parsed.error = usage_error("there is no command \"" + first + "\"" +
                                (guess.empty() ? "" : " (did you mean \"" + guess + "\"?)") +
-                               "; there are: run, spectrum, sweep, check, partition, verify");
+                               "; there are: run, spectrum, sweep, check, partition, verify, convert, init");
     parsed.exit_code = exit_bad_input;
     return parsed;
   }
@@ -145,6 +161,8 @@ ParsedCommand parse_command(int argc, const char* const* argv) {
   if (check->parsed()) command.kind = Command::Kind::check;
   if (partition->parsed()) command.kind = Command::Kind::partition;
   if (verify->parsed()) command.kind = Command::Kind::verify;
+  if (convert->parsed()) command.kind = Command::Kind::convert;
+  if (init->parsed()) command.kind = Command::Kind::init;
   parsed.command = command;
   return parsed;
 }

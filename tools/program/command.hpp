@@ -9,7 +9,7 @@
 namespace kacanov {
 
 struct Command {
-  enum class Kind { run, spectrum, sweep, check, partition, verify };
+  enum class Kind { run, spectrum, sweep, check, partition, verify, convert, init };
   Kind kind = Kind::run;
   std::string case_file;
   std::string output;                  ///< folder; empty: results/<case name>
@@ -23,6 +23,12 @@ struct Command {
   bool json = false;                   ///< spectrum: print JSON
   std::optional<double> r_min, r_max;  ///< sweep
   int points = 21;                     ///< sweep
+  std::string from, to;                ///< convert, init: files; `to` may be empty
+  bool leave_out = false;              ///< convert: makes a case without what is not known
+  bool force = false;                  ///< convert, init: writes over files that are there
+
+  /// Whether there is no case to be read.
+  bool without_case() const noexcept { return kind == Kind::convert || kind == Kind::init; }
 };
 
 /// What the command line asks for, or a text to print and the exit code to leave with.

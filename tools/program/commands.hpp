@@ -22,4 +22,8 @@ int partition_command(const Command& command, const Case& input);
 /// Not converged means here that the answer does not fulfil its tolerance, or is not what the result says.
 int verify_command(const Command& command, const Case& input);
 
+/// These two make a case or a mesh, and read none.
+int convert_command(const Command& command);
+int init_command(const Command& command);
+
 }  // namespace kacanov

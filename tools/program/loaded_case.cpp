@@ -11,7 +11,7 @@
 #include <kacanov/raise_order.hpp>
 #include <kacanov/refine.hpp>
 #include <kacanov/validity.hpp>
-#include "formats/gmsh_reader.hpp"
+#include "formats/mesh_file.hpp"
 #include "formats/printable.hpp"
 #include "program/memory_model.hpp"
 #include "program/obstacle_files.hpp"
@@ -20,7 +20,7 @@ namespace kacanov {
 
 Mesh load_mesh(const MeshSource& source) {
   if (source.box) return make_box(*source.box);
-  Mesh mesh = source.content ? read_gmsh(*source.file, *source.content) : read_gmsh(*source.file);
+  Mesh mesh = source.content ? read_mesh(*source.file, *source.content) : read_mesh(*source.file);
   const std::vector<std::string> warnings = mesh.warnings;
   for (int times = 0; times < source.refine; ++times) mesh = refine(mesh);
   if (source.order > cell(mesh.type).order) mesh = raise_order(mesh);

@@ -43,7 +43,9 @@ int dispatch(const Command& command, const Case& input, MpiSession& mpi) {
     case Command::Kind::sweep: return sweep_command(command, input, mpi);
     case Command::Kind::check:
     case Command::Kind::partition:
-    case Command::Kind::verify: break;
+    case Command::Kind::verify:
+    case Command::Kind::convert:
+    case Command::Kind::init: break;
   }
   int code = exit_converged;
   together(mpi, [&] {
@@ -80,6 +82,24 @@ int run_here(const Command& command, const std::optional<Case>& known) {
   }
 }
 
+int command_without_case(const Command& command) {
+  return command.kind == Command::Kind::convert ? convert_command(command) : init_command(command);
+}
+
+/// The same on the first of the ranks there are.
+int first_without_case(const Command& command) {
+  const MpiSession mpi;
+  int code = exit_converged;
+  try {
+    together(mpi, [&] {
+      if (mpi.first()) code = command_without_case(command);
+    });
+  } catch (const ReportedFailure& failure) {
+    return failure.exit_code;
+  }
+  return code;
+}
+
 /// Those of the command line, or as many as there are parts.
 std::optional<int> ranks_asked_for(const Command& command, const Case& input) {
   if (command.parts.empty()) return command.ranks;
@@ -104,6 +124,7 @@ int run_on_ranks(const std::string& mpiexec, Shape shape, const Command& command
 
 /// Started by hand: validates what is quickly validated, then goes on alone or under mpiexec.
 int run_alone(const Command& command, int argc, const char* const* argv) {
+  if (command.without_case()) return command_without_case(command);
   const CaseText text = read_case_text(command.case_file);
   const Case input = parse_case(text, command.overrides);
   Shape shape = choose_shape(input, needs_one(command) ? command.ranks : ranks_asked_for(command, input),
@@ -171,6 +192,7 @@ int main(int argc, char** argv) {
   const ParsedCommand parsed = parse_command(argc, argv);
   try {
     if (started_by_mpi()) {
+      if (parsed.command && parsed.command->without_case()) return first_without_case(*parsed.command);
       if (parsed.command) return coded_exit(run_here(*parsed.command, std::nullopt));
       const MpiSession mpi;
       return mpi.first() ? say(parsed) : parsed.exit_code;

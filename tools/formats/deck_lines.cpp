@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The lines of an Abaqus or CalculiX deck and of the files that it includes, taken apart.
+#include "formats/deck_lines.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <kacanov/error.hpp>
+#include "formats/gmsh_cursor.hpp"
+#include "formats/words.hpp"
+
+namespace kacanov {
+namespace {
+
+constexpr std::size_t deepest_include = 16, most_files = 1000;
+
+constexpr std::string_view blanks = " \t\r";
+
+std::string_view trimmed(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+  return text.substr(0, text.find_last_not_of(blanks) + 1);
+}
+
+std::string without_blanks(std::string_view text) {
+  std::string result(text);
+  std::erase_if(result, [](char c) { return c == ' ' || c == '\t'; });
+  return result;
+}
+
+std::string_view unquoted(std::string_view text) {
+  return text.size() >= 2 && text.front() == '"' && text.back() == '"' ? text.substr(1, text.size() - 2)
+                                                                       : text;
+}
+
+/// What is before the next comma outside of quotes; goes, with the comma.
+std::string_view take_field(std::string_view& text) {
+  bool in_quotes = false;
+  std::size_t end = 0;
+  for (; end < text.size() && (in_quotes || text[end] != ','); ++end) in_quotes ^= text[end] == '"';
+  const std::string_view field = text.substr(0, end);
+  text.remove_prefix(std::min(end + 1, text.size()));
+  return trimmed(field);
+}
+
+}  // namespace
+
+std::string upper_case(std::string_view text) {
+  std::string result(text);
+  for (char& c : result)
+    if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+  return result;
+}
+
+const std::string* DeckKeyword::parameter(std::string_view wanted) const {
+  for (const auto& [key, value] : parameters)
+    if (key == wanted) return &value;
+  return nullptr;
+}
+
+DeckLines::DeckLines(const std::string& path, std::string_view bytes, Open open)
+    : open_(std::move(open)), files_{path}, sources_{{0, 0, bytes}} {}
+
+void DeckLines::fail(DeckPlace place, const std::string& message) const {
+  throw InputError(files_[place.file] + ": line " + std::to_string(place.line) + ": " + message);
+}
+
+bool DeckLines::peek() {
+  while (!have_ && !sources_.empty()) {
+    Source& source = sources_.back();
+    if (source.rest.empty()) {
+      sources_.pop_back();
+      continue;
+    }
+    ++source.line;
+    line_ = trimmed(take_line(source.rest));
+    place_ = {source.file, source.line};
+    have_ = !line_.empty() && !line_.starts_with("**");
+  }
+  return have_;
+}
+
+void DeckLines::take_keyword_line(DeckKeyword& keyword) {
+  keyword = {};
+  keyword.place = place_;
+  std::string_view rest = line_.substr(1);
+  const std::string_view name = take_field(rest);
+  keyword.name = upper_case(without_blanks(name));
+  keyword.shown = "*" + std::string(name);
+  if (name.empty() || name.size() > 60) fail(place_, "expected a keyword, got " + quoted(line_));
+  for (bool more = true; more;) {
+    more = line_.back() == ',';
+    while (!trimmed(rest).empty()) {
+      const std::string_view field = take_field(rest);
+      if (field.empty()) continue;
+      const std::size_t equals = field.find('=');
+      const std::string_view value =
+          equals == std::string_view::npos ? std::string_view() : trimmed(field.substr(equals + 1));
+      keyword.parameters.emplace_back(upper_case(without_blanks(field.substr(0, equals))), unquoted(value));
+    }
+    have_ = false;
+    if (!more || !peek()) break;
+    if (line_.front() == '*') break;
+    rest = line_;
+  }
+}
+
+void DeckLines::include(const DeckKeyword& keyword) {
+  const std::string* input = keyword.parameter("INPUT");
+  if (input == nullptr || input->empty()) fail(keyword.place, keyword.shown + ": expected INPUT=<file>");
+  const auto folder = std::filesystem::path(files_[keyword.place.file]).parent_path();
+  const std::string path = (folder / *input).string();
+  if (sources_.size() >= deepest_include)
+    fail(keyword.place,
+         "files that include each other more than " + std::to_string(deepest_include) + " deep");
+  if (files_.size() >= most_files)
+    fail(keyword.place, "more than " + std::to_string(most_files) + " files are included");
+  std::string_view bytes;
+  try {
+    bytes = open_(path);
+  } catch (const InputError& error) {
+    fail(keyword.place, error.what());
+  }
+  files_.push_back(path);
+  sources_.push_back({static_cast<std::int32_t>(files_.size()) - 1, 0, bytes});
+}
+
+std::optional<DeckKeyword> DeckLines::keyword() {
+  while (peek()) {
+    if (line_.front() != '*') {
+      have_ = false;
+      continue;
+    }
+    DeckKeyword keyword;
+    take_keyword_line(keyword);
+    if (keyword.name != "INCLUDE") return keyword;
+    // The line behind has been looked at already where *INCLUDE goes on over several lines.
+    if (have_) fail(keyword.place, keyword.shown + ": expected on one line");
+    include(keyword);
+  }
+  return std::nullopt;
+}
+
+bool DeckLines::data(DeckRow& row) {
+  while (peek()) {
+    if (line_.front() == '*') {
+      if (!upper_case(without_blanks(line_.substr(0, 30))).starts_with("*INCLUDE")) return false;
+      DeckKeyword keyword;
+      take_keyword_line(keyword);
+      if (have_) fail(keyword.place, keyword.shown + ": expected on one line");
+      include(keyword);
+      continue;
+    }
+    row.place = place_;
+    row.fields.clear();
+    row.goes_on = line_.back() == ',';
+    for (std::string_view rest = line_; !rest.empty();) row.fields.push_back(unquoted(take_field(rest)));
+    have_ = false;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace kacanov

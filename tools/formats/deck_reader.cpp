@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Reads a deck: nodes and elements as they come, sets and surfaces once all of these are there.
+#include <algorithm>
+#include <limits>
+
+#include <kacanov/error.hpp>
+#include "formats/deck.hpp"
+#include "formats/deck_elements.hpp"
+#include "formats/deck_sets.hpp"
+#include "formats/gmsh_cursor.hpp"
+#include "formats/mapped_file.hpp"
+
+namespace kacanov {
+namespace {
+
+/// Keywords that make nodes and elements of others, or move them.
+constexpr std::array generators{"NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "SUBMODEL"};
+/// No element that is known has more nodes, with its number.
+constexpr std::size_t most_fields = most_nodes + 1;
+
+class Reader {
+ public:
+  Reader(const std::string& path, std::string_view bytes, DeckLines::Open open)
+      : in_(path, bytes, std::move(open)) {}
+
+  Deck read() {
+    while (const auto keyword = in_.keyword()) take(*keyword);
+    deck_.files = in_.files();
+    if (deck_.content.node_tags.empty()) throw InputError(in_.files()[0] + ": expected nodes, *NODE");
+    if (deck_.element_tags.empty()) throw InputError(in_.files()[0] + ": expected elements, *ELEMENT");
+    number_nodes();
+    place_elements();
+    resolve_sets(deck_, std::move(sets_));
+    return std::move(deck_);
+  }
+
+ private:
+  struct ElementBlock {
+    std::size_t first;  ///< of the deck's elements
+    std::size_t cell;
+  };
+
+  void take(const DeckKeyword& keyword) {
+    const std::string& name = keyword.name;
+    if (name == "NODE") {
+      take_nodes(keyword);
+    } else if (name == "ELEMENT") {
+      take_elements(keyword);
+    } else if (name == "HEADING") {
+      take_title();
+    } else if (name == "PART" || name == "INSTANCE") {
+      take_part(keyword);
+    } else if (name == "ENDPART") {
+      in_part_ = false;
+    } else if (std::find(generators.begin(), generators.end(), name) != generators.end()) {
+      in_.fail(keyword.place, keyword.shown +
+                                  " makes or moves nodes or elements, which is not read: write them "
+                                  "out, as with a mesh generator or Abaqus/CAE");
+    } else {
+      DeckBlock block{keyword, {}, in_part_};
+      for (DeckRow row; in_.data(row);) block.rows.push_back(row);
+      const bool set = name == "NSET" || name == "ELSET" || name == "SURFACE";
+      if (set)
+        sets_.push_back({std::move(block), 0, 0});
+      else if (!name.starts_with("END") && name != "ASSEMBLY")
+        deck_.blocks.push_back(std::move(block));
+    }
+  }
+
+  void take_title() {
+    for (DeckRow row; in_.data(row);)
+      for (const std::string_view field : row.fields)
+        deck_.title += (deck_.title.empty() ? "" : " ") + std::string(field);
+  }
+
+  /// Abaqus/CAE writes a body as one part of which there is one instance, where it was drawn.
+  void take_part(const DeckKeyword& keyword) {
+    const bool part = keyword.name == "PART";
+    if (std::exchange(part ? have_part_ : have_instance_, true))
+      in_.fail(keyword.place,
+               "a second " + keyword.shown + ": a deck of one body is read, which is one part");
+    in_part_ = part;
+    if (part) return;
+    DeckRow row;
+    if (in_.data(row))
+      in_.fail(row.place, keyword.shown + " moves the part, which is not read: place it where it belongs");
+    if (const std::string* name = keyword.parameter("NAME")) deck_.instance = upper_case(*name);
+  }
+
+  std::int64_t number(const DeckRow& row, std::size_t field, const char* what) {
+    if (deck_.files.size() != in_.files().size()) deck_.files = in_.files();  // one more is included
+    return deck_integer(deck_, row, field, what);
+  }
+
+  void take_nodes(const DeckKeyword& keyword) {
+    for (const char* moves : {"SYSTEM", "INPUT"})
+      if (keyword.parameter(moves) != nullptr)
+        in_.fail(keyword.place,
+                 keyword.shown + ", " + moves + ": expected cartesian coordinates in the deck");
+    MeshContent& content = deck_.content;
+    const std::size_t first = content.node_tags.size();
+    for (DeckRow row; in_.data(row);) {
+      if (row.fields.size() > 7) in_.fail(row.place, "expected the number of a node and three coordinates");
+      if (content.node_tags.size() >= std::numeric_limits<std::int32_t>::max() / 3)
+        in_.fail(row.place, "more nodes than 32-bit indices can number");
+      const std::int64_t tag = number(row, 0, "the number of a node");
+      if (tag <= 0) in_.fail(row.place, "expected a positive number of a node, got " + std::to_string(tag));
+      content.node_tags.push_back(tag);
+      for (std::size_t c = 1; c <= 3; ++c)
+        content.coordinates.push_back(c < row.fields.size() && !row.fields[c].empty()
+                                          ? deck_number(deck_, row, c, "a coordinate")
+                                          : 0.0);
+      node_places_.push_back(row.place);
+    }
+    if (keyword.parameter("NSET") != nullptr)
+      sets_.push_back({{keyword, {}, in_part_}, first, content.node_tags.size()});
+  }
+
+  void take_elements(const DeckKeyword& keyword) {
+    const std::string* type = keyword.parameter("TYPE");
+    if (type == nullptr) in_.fail(keyword.place, keyword.shown + ": expected TYPE=<type of element>");
+    const std::string upper = upper_case(*type);
+    const auto known = deck_element_type(upper);
+    if (!known)
+      in_.fail(keyword.place, "elements of the type " + quoted(*type) +
+                                  " are not supported: " + std::string(why_not_known(upper)));
+    std::size_t cell = 0;
+    while (cells()[cell].name != known->cell) ++cell;
+    const std::size_t first = deck_.element_tags.size(),
+                      count = static_cast<std::size_t>(cells()[cell].nodes) + 1;
+    std::array<std::int64_t, most_fields> values{};
+    for (DeckRow row; in_.data(row);) {
+      const DeckPlace place = row.place;
+      std::size_t there = 0;
+      for (bool more = true; more;) {
+        for (std::size_t f = 0; f < row.fields.size(); ++f) {
+          if (there == count)
+            in_.fail(row.place,
+                     "expected " + std::to_string(count - 1) + " nodes of a " + upper + ", got more");
+          values[there++] = number(row, f, "the number of a node or element");
+        }
+        more = there < count;
+        if (more && !in_.data(row))
+          in_.fail(place, "expected " + std::to_string(count - 1) + " nodes of a " + upper + ", got " +
+                              std::to_string(there - 1));
+      }
+      add_element(place, cell, {values.data(), count});
+    }
+    types_.push_back({known->remark, known->refusal, upper, keyword.place, cell});
+    if (keyword.parameter("ELSET") != nullptr)
+      sets_.push_back({{keyword, {}, in_part_}, first, deck_.element_tags.size()});
+  }
+
+  void add_element(DeckPlace place, std::size_t cell, std::span<const std::int64_t> values) {
+    if (deck_.elements.size() >= std::numeric_limits<std::int32_t>::max())
+      in_.fail(place, "more elements than 32-bit indices can number");
+    if (values[0] <= 0)
+      in_.fail(place, "expected a positive number of an element, got " + std::to_string(values[0]));
+    ElementList& list = deck_.content.elements[cell];
+    deck_.elements.push_back({static_cast<std::int32_t>(cell), static_cast<std::int32_t>(list.count())});
+    deck_.element_tags.push_back(values[0]);
+    list.tags.push_back(values[0]);
+    raw_nodes_.insert(raw_nodes_.end(), values.begin() + 1, values.end());
+    element_places_.push_back(place);
+  }
+
+  /// Where a number that occurs twice does so the second time.
+  static std::size_t second(const std::vector<std::int64_t>& tags, std::int64_t twice) {
+    const auto first = std::find(tags.begin(), tags.end(), twice);
+    return static_cast<std::size_t>(std::find(first + 1, tags.end(), twice) - tags.begin());
+  }
+
+  void number_nodes() {
+    if (const auto twice = deck_.node_index.assign(deck_.content.node_tags))
+      in_.fail(node_places_[second(deck_.content.node_tags, *twice)],
+               "node " + std::to_string(*twice) + " is there twice");
+    if (const auto twice = deck_.element_index.assign(deck_.element_tags))
+      in_.fail(element_places_[second(deck_.element_tags, *twice)],
+               "element " + std::to_string(*twice) + " is there twice");
+  }
+
+  void place_elements() {
+    std::size_t next = 0;
+    for (std::size_t e = 0; e < deck_.elements.size(); ++e) {
+      const Cell& cell = cells()[deck_.elements[e].cell];
+      std::vector<std::int32_t>& nodes = deck_.content.elements[deck_.elements[e].cell].nodes;
+      const std::size_t first = nodes.size(), count = cell.nodes;
+      nodes.resize(first + count);
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::int64_t tag = raw_nodes_[next++];
+        const std::int32_t node = deck_.node_index.find(tag);
+        if (node < 0)
+          in_.fail(element_places_[e], "element " + std::to_string(deck_.element_tags[e]) +
+                                           " refers to node " + std::to_string(tag) +
+                                           ", which no *NODE gives");
+        // Tetrahedra have their mid-sides as in VTK.
+        nodes[first + (cell.vtk_order.empty() ? k : cell.vtk_order[k])] = node;
+      }
+    }
+    check_types();
+  }
+
+  /// What a body is made of has to be known as such, and may want a word.
+  void check_types() {
+    int dim = 0;
+    for (const Type& type : types_) dim = std::max(dim, cells()[type.cell].dim);
+    for (const Type& type : types_) {
+      if (cells()[type.cell].dim < dim) continue;
+      if (!type.refusal.empty())
+        in_.fail(type.place, "a body of " + type.name + ": " + std::string(type.refusal));
+      if (!type.remark.empty())
+        deck_.warnings.push_back(deck_.place_text(type.place) + ": " + type.name + ": " +
+                                 std::string(type.remark));
+    }
+  }
+
+  struct Type {
+    std::string_view remark, refusal;
+    std::string name;
+    DeckPlace place;
+    std::size_t cell;
+  };
+
+  DeckLines in_;
+  Deck deck_;
+  std::vector<DeckSetSource> sets_;
+  std::vector<Type> types_;
+  std::vector<DeckPlace> node_places_, element_places_;
+  std::vector<std::int64_t> raw_nodes_;
+  bool in_part_ = false, have_part_ = false, have_instance_ = false;
+};
+
+}  // namespace
+
+Deck read_deck(const std::string& path) {
+  std::vector<std::shared_ptr<const MappedFile>> mapped;
+  const auto open = [&](const std::string& name) {
+    mapped.push_back(std::make_shared<const MappedFile>(name));
+    return mapped.back()->bytes();
+  };
+  const auto check = [&] {
+    for (const auto& file : mapped) file->check_unchanged();
+  };
+  try {
+    Deck deck = Reader(path, open(path), open).read();
+    check();
+    deck.mapped = std::move(mapped);
+    return deck;
+  } catch (const InputError&) {
+    check();
+    throw;
+  }
+}
+
+Deck read_deck(const std::string& name, std::string_view bytes) {
+  return Reader(name, bytes,
+                [](const std::string&) -> std::string_view {
+                  throw InputError("files cannot be included here");
+                })
+      .read();
+}
+
+}  // namespace kacanov

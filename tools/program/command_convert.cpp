@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// kacanov convert: a case and its mesh of a deck, or another format of a mesh.
+#include <filesystem>
+#include <iostream>
+#include <numeric>
+
+#include <kacanov/error.hpp>
+#include "case/case_file.hpp"
+#include "formats/atomic_file.hpp"
+#include "formats/deck.hpp"
+#include "formats/mapped_file.hpp"
+#include "formats/mesh_file.hpp"
+#include "formats/mesh_writer.hpp"
+#include "formats/printable.hpp"
+#include "formats/vtu_writer.hpp"
+#include "program/case_text.hpp"
+#include "program/commands.hpp"
+#include "program/deck_case.hpp"
+
+namespace kacanov {
+namespace {
+
+void print_remark(const std::string& remark) { std::cerr << "kacanov: warning: " + printable(remark) + "\n"; }
+
+MeshFormat format_of_file(const std::string& path) {
+  const MappedFile file(path);
+  return format_of(path, file.bytes());
+}
+
+void write_mesh_as_vtu(const std::string& path, const Mesh& mesh) {
+  std::vector<std::int64_t> nodes(mesh.node_count()), elements(mesh.element_count());
+  for (std::size_t i = 0; i < nodes.size(); ++i) nodes[i] = mesh.node_tag(i);
+  for (std::size_t e = 0; e < elements.size(); ++e) elements[e] = mesh.element_tag(e);
+  Grid grid{mesh.dim(), &cell(mesh.type), mesh.coordinates, mesh.elements, {}, {}};
+  grid.point_fields.push_back({"node_id", 1, Values<std::int64_t>(nodes)});
+  grid.cell_fields.push_back({"element_id", 1, Values<std::int64_t>(elements)});
+  write_vtu(path, grid);
+}
+
+/// Groups of a mesh, in a sentence.
+std::string groups_text(const Mesh& mesh) {
+  std::string text;
+  for (const Group& group : mesh.groups) text += (text.empty() ? "" : ", ") + group.name;
+  return text.empty() ? "no groups" : "groups " + text;
+}
+
+void say_what_was_written(const std::string& path, const Mesh& mesh) {
+  std::cout << printable(path + ": " + std::to_string(mesh.element_count()) + " " +
+                         std::string(cell(mesh.type).name) + " elements, " +
+                         std::to_string(mesh.node_count()) + " nodes, " + groups_text(mesh)) +
+                   "\n";
+}
+
+void convert_mesh(const Command& command, const std::string& kind) {
+  const Mesh mesh = read_mesh(command.from);
+  check_mesh(mesh);
+  for (const std::string& warning : mesh.warnings) print_remark(warning);
+  if (kind == ".msh")
+    write_gmsh(command.to, mesh);
+  else if (kind == ".inp")
+    write_deck(command.to, mesh);
+  else
+    write_mesh_as_vtu(command.to, mesh);
+  say_what_was_written(command.to, mesh);
+}
+
+void convert_deck(const Command& command, const std::filesystem::path& to) {
+  if (format_of_file(command.from) != MeshFormat::deck)
+    throw InputError(
+        command.from +
+        ": expected an Abaqus or CalculiX deck to make a case of; kacanov init writes one for a mesh");
+  std::filesystem::path mesh_path = to;
+  mesh_path.replace_extension(".msh");
+  for (const std::filesystem::path& path : {to, mesh_path}) refuse_existing(path.string(), command.force);
+  DeckCase made = case_of(read_deck(command.from), command.leave_out);
+  check_mesh(made.mesh);
+  made.document["mesh"] = {{"file", mesh_path.filename().string()}};
+  try {  // what the deck's keywords come to has to be a case
+    parse_case(nlohmann::json(made.document), to.parent_path().string());
+  } catch (const InputError& error) {
+    throw InputError(command.from + ": the case that the deck comes to cannot be: " + error.what());
+  }
+  std::vector<std::string> comments{"Made by kacanov convert of " + command.from + "."};
+  comments.insert(comments.end(), made.remarks.begin(), made.remarks.end());
+  write_gmsh(mesh_path.string(), made.mesh);
+  write_file(to.string(), case_text(made.document, comments));
+  for (const std::string& remark : made.remarks) print_remark(remark);
+  say_what_was_written(mesh_path.string(), made.mesh);
+  std::cout << printable(to.string()) +
+                   ": the case; kacanov check shows what its entries select, kacanov run solves it\n";
+}
+
+}  // namespace
+
+int convert_command(const Command& command) {
+  const std::filesystem::path from = command.from;
+  const std::filesystem::path to = command.to.empty() ? std::filesystem::path(from.stem().string() + ".json")
+                                                      : std::filesystem::path(command.to);
+  const std::string kind = to.extension().string();
+  if (kind == ".json") {
+    convert_deck(command, to);
+  } else if (kind == ".msh" || kind == ".inp" || kind == ".vtu") {
+    refuse_existing(to.string(), command.force);
+    convert_mesh(command, kind);
+  } else {
+    throw InputError(to.string() + ": expected a name that ends with .json, .msh, .inp or .vtu");
+  }
+  return exit_converged;
+}
+
+}  // namespace kacanov

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The materials and sections of a deck as entries of a case.
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "formats/deck.hpp"
+
+namespace kacanov {
+
+struct DeckMaterial {
+  DeckPlace place;
+  std::string shown;                             ///< its name as the deck has it
+  std::optional<std::array<double, 2>> elastic;  ///< Young's modulus and Poisson's ratio
+  std::vector<std::array<double, 2>> plastic;    ///< stress and plastic strain
+  std::optional<double> density;
+};
+
+struct DeckSection {
+  DeckPlace place;
+  std::string elements;  ///< name of the set
+  std::string material;  ///< in upper case
+  double thickness = 1.0;
+  bool in_part = false;
+};
+
+/// Takes *MATERIAL and what follows it, and *SOLID SECTION.
+class DeckMaterials {
+ public:
+  explicit DeckMaterials(const Deck& deck) : deck_(deck) {}
+
+  /// Whether the keyword is one of these; then it is taken.
+  bool take(const DeckBlock& block);
+  /// The material of a section; throws InputError where there is none, or no elastic constants.
+  const DeckMaterial& of(const DeckSection& section) const;
+  const std::vector<DeckSection>& sections() const noexcept { return sections_; }
+  /// The entry of a case without its `on`.
+  nlohmann::ordered_json entry(const DeckSection& section) const;
+
+ private:
+  void take_elastic(const DeckBlock& block, DeckMaterial& material);
+  void take_plastic(const DeckBlock& block, DeckMaterial& material);
+  void take_section(const DeckBlock& block);
+
+  const Deck& deck_;
+  std::map<std::string, DeckMaterial> materials_;  ///< by name in upper case
+  std::string current_;
+  std::vector<DeckSection> sections_;
+};
+
+}  // namespace kacanov
