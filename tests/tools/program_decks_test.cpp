@@ -78,6 +78,17 @@ TEST_CASE("the curve of *PLASTIC is that of a bar in tension") {
         std::string::npos);
 }
 
+TEST_CASE("sets of elements and of nodes that have one name are told apart") {
+  const Workplace place;
+  const std::string deck = bar + held + steel +
+                           "*ELSET, ELSET=Left\n1\n*ELSET, ELSET=Right\n2\n*SOLID SECTION, "
+                           "ELSET=Left, MATERIAL=Steel\n*SOLID SECTION, ELSET=Right, MATERIAL=Steel\n"
+                           "*STEP\n*STATIC\n*CLOAD\nRight, 1, 25.\n*END STEP\n";
+  const nlohmann::json result = solved_deck(place, deck);
+  CHECK(result["probe"][0][0].get<double>() == doctest::Approx(1e-3).epsilon(1e-9));
+  CHECK(result["case"]["material"][0]["on"] == "elements_1");
+}
+
 TEST_CASE(
     "gravity of two materials, by the density of each, and a step's displacement in place of the model's") {
   const Workplace place;

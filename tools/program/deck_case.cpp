@@ -239,8 +239,7 @@ class Converter {
 
   /// The name of a set that has these members and a name that nothing else has; one is made where there is
   /// none.
-  std::string name_of(std::vector<DeckSet>& sets, const std::vector<std::int32_t>& members,
-                      const char* base) {
+  std::string name_of(std::vector<DeckSet>& sets, std::vector<std::int32_t> members, const char* base) {
     for (DeckSet& set : sets)
       if (set.members == members && owners(set.name) == 1) {
         set.internal = false;
@@ -248,7 +247,7 @@ class Converter {
       }
     DeckSet& set = sets.emplace_back();
     set.name = new_name(base);
-    set.members = members;
+    set.members = std::move(members);
     return set.name;
   }
 
