@@ -75,8 +75,8 @@ std::string reason(const OuterLoop& loop, const Result& result) {
 }
 
 /// Brings the loop, which stands at `target`, there; where it gives up, from `before` (none: from rest) in
-/// parts: each is halved until it converges, and what follows is twice as long. False: the run was asked to
-/// stop.
+/// parts: each is halved until it converges, and from the second that does what follows is twice as long.
+/// False: the run was asked to stop.
 bool reach(OuterLoop& loop, const std::optional<OuterLoop::Place>& before, double target, Result& result) {
   bool finished = true;
   if (arrives(loop, finished, result) || !finished || !loop.gave_up()) return finished;
@@ -94,7 +94,7 @@ bool reach(OuterLoop& loop, const std::optional<OuterLoop::Place>& before, doubl
   double over = 0.0;  // of the way from the start
   for (double part = 0.5; part >= loop.context().tuning.smallest_part; part *= 0.5) {
     ++result.load_cuts;
-    while (over < 1.0) {
+    for (bool again = false; over < 1.0; again = true) {
       const double next = std::min(over + part, 1.0);
       part = next - over;  // what fails is halved, not what it was meant to be
       loop.go_from(last, next == 1.0 ? target : start.share + next * (target - start.share), result);
@@ -103,7 +103,7 @@ bool reach(OuterLoop& loop, const std::optional<OuterLoop::Place>& before, doubl
       if (!arrived) break;
       over = next;
       last = loop.place();
-      part *= 2.0;
+      if (again) part *= 2.0;  // what has just been halved would fail once more
     }
     if (over == 1.0) return true;
     why = reason(loop, result);

@@ -185,6 +185,7 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   result.load_factor = context.path.share();
   if (!part.no_equilibrium.empty()) result.status = Status::not_converged;
   if (context.path.share() != shares.back()) result.status = Status::not_converged;
+  if (loop.gave_up() && loop.ran_away()) result.status = Status::not_converged;
   if (!finished) result.status = Status::interrupted;
   // What has not converged can be continued with more steps; what has broken down cannot.
   const bool wanted = part.node_map.any(part.node_map.rank == 0 && run.checkpoint);

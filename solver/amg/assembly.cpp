@@ -67,4 +67,12 @@ std::vector<double> assemble_blocks(const Body& body, std::span<const double> g,
   return value;
 }
 
+void kept_secant(const Part& part, std::span<const double> kept, std::span<double> g) {
+  const Body body = part.body();
+  if (kept.empty())
+    for (std::size_t i = 0; i < g.size(); ++i) g[i] = body.law(i / (g.size() / part.element_count())).shear;
+  else
+    std::copy(kept.begin(), kept.end(), g.begin());
+}
+
 }  // namespace kacanov

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <kacanov/part.hpp>
 #include <kacanov/reference.hpp>
 
 namespace kacanov {
@@ -31,5 +32,8 @@ NodeGraph node_graph(const MeshView& mesh);
 /// entry of the graph, which is node_graph() of this body. Rows of shared nodes hold this rank's
 /// contributions only. Not collective.
 std::vector<double> assemble_blocks(const Body& body, std::span<const double> g, const NodeGraph& graph);
+
+/// g = `kept`, what a preconditioner was set up with; mu where that is none.
+void kept_secant(const Part& part, std::span<const double> kept, std::span<double> g);
 
 }  // namespace kacanov

@@ -61,13 +61,7 @@ void ElasticityAmg::build(std::span<const double> g, std::span<const NodeBlock> 
   amg_.finish({part_.dim(), part_.dim() == 3 ? 0.5 : 0.25, part_.dim() == 3 ? 1 : 0});
 }
 
-void ElasticityAmg::secant(std::span<double> g) const {
-  const Body body = part_.body();
-  if (g_.empty())
-    for (std::size_t i = 0; i < g.size(); ++i) g[i] = body.law(i / (g.size() / part_.element_count())).shear;
-  else
-    std::copy(g_.begin(), g_.end(), g.begin());
-}
+void ElasticityAmg::secant(std::span<double> g) const { kept_secant(part_, g_, g); }
 
 void ElasticityAmg::apply(std::span<const double> r, std::span<double> z) {
   amg_.apply(r.data(), z.data());

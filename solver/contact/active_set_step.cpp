@@ -132,7 +132,7 @@ CgResult solve_oblique(const SymmetricPart& part, const HeldNodes& nodes, std::s
   GcrResult found = gcr(space, oblique, cycle, delta, residual, {target, direct_iterations});
   if (!found.converged) found = gcr(space, oblique, symmetric, delta, residual, {target, nested_iterations});
   result.residual = found.residual;
-  result.converged = found.converged || found.residual < worth_taking * result.first_residual;
+  result.converged = found.converged;
   return result;
 }
 
@@ -195,7 +195,8 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
                              ? solve_oblique(symmetric, nodes, delta, work, options)
                              : conjugate_gradients(space, apply, problem.precondition, delta, work, options);
   step.cg_iterations = solve.iterations;
-  step.solved = solve.converged;
+  step.met = solve.converged;
+  step.solved = solve.converged || (nodes.oblique() && solve.residual < worth_taking * solve.first_residual);
   if (solve.iterations > 0 && solve.residual > 0.0)
     step.cg_digits = std::log10(solve.first_residual / solve.residual);
   step.turning = space.sum_all(add_slip_stiffness(traces, set, delta, work.image));

@@ -16,7 +16,8 @@ struct ActiveSetStep {
   Vector delta;  ///< the step, unknowns of the part
   std::int64_t cg_iterations = 0;
   double cg_digits = 0.0;
-  bool solved = false;     ///< CG met its tolerance
+  bool solved = false;     ///< far enough for the step to be worth taking
+  bool met = false;        ///< its tolerance
   double curvature = 0.0;  ///< δᵀ B δ of the linear model
   /// The same with the force that friction lets through: what the residual falls by along δ. Of it, by what
   /// slips.

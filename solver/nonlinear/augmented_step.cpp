@@ -41,8 +41,14 @@ class Descent {
       const double share = problem.apply(p, q);
       return share + contact_.add_stiffness(set, p, q) + hold_loosely(p, q);
     };
-    const CgResult solve =
-        conjugate_gradients(c_.space, apply, problem.precondition, delta_, c_.work, options);
+    CgResult solve = conjugate_gradients(c_.space, apply, problem.precondition, delta_, c_.work, options);
+    if (!solve.converged && c_.preconditioner.factorise()) {
+      outcome.cg_iterations += solve.iterations;
+      c_.preconditioner.prepare(set, contact_.penalty(), loose());
+      std::fill(delta_.begin(), delta_.end(), 0.0);
+      c_.work.residual = pull;
+      solve = conjugate_gradients(c_.space, apply, problem.precondition, delta_, c_.work, options);
+    }
     c_.body.forget_tangent();
     outcome.cg_iterations += solve.iterations;
     if (solve.iterations > 0 && solve.residual > 0.0)

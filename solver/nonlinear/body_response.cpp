@@ -24,10 +24,21 @@ void BodyResponse::evaluate(std::span<const double> u) {
 void BodyResponse::evaluate_and_freeze(std::span<const double> u) {
   energy_ = op_.residual_energy_update(u, internal_);
   current_ = true;
+  elastic_ = linear_;
+}
+
+bool BodyResponse::freeze_elastic() {
+  if (elastic_) return false;
+  op_.update(Vector(part_->unknowns(), 0.0));
+  elastic_ = true;
+  current_ = false;
+  return true;
 }
 
 void BodyResponse::freeze_secant(std::span<const double> u) {
-  if (!linear_ && !current_) op_.update(u);
+  if (linear_ || current_) return;
+  op_.update(u);
+  elastic_ = false;
 }
 
 void BodyResponse::freeze_tangent(std::span<const double> u) {

@@ -25,6 +25,8 @@ class BodyResponse {
   /// The elastic force in place of R(u): where prescribed displacements put in at once look like huge strains
   /// in the first layer of elements.
   void take_elastic_force(std::span<const double> u) { op_.apply(u, internal_); }
+  /// Freezes the elastic operator; whether it was another.
+  bool freeze_elastic();
   /// Freezes the secant at u, if it is not.
   void freeze_secant(std::span<const double> u);
   /// Freezes the tangent at u, until forget_tangent().
@@ -52,6 +54,7 @@ class BodyResponse {
   Vector internal_;
   double energy_ = 0.0;
   bool linear_;
+  bool elastic_ = true;  ///< the operator is
   bool current_ = true;  ///< the operator's g is that of the u of R(u)
 };
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "amg/factorised.hpp"
 #include "contact/active_set_step.hpp"
 #include "nonlinear/friction_bounds.hpp"
 
@@ -16,6 +17,7 @@ ContactPreconditioner::ContactPreconditioner(const Part& part, const BodyRespons
     : part_(&part),
       body_(&body),
       inner_(std::move(inner)),
+      tuning_(tuning),
       schedule_(tuning),
       friction_(has_friction(part)) {}
 
@@ -59,12 +61,24 @@ void ContactPreconditioner::prepare(const ActiveSet& set, double penalty, double
   schedule_.built_for(set.held, penalty);
 }
 
+void ContactPreconditioner::watch(double digits, std::int64_t iterations) {
+  schedule_.watch(digits, iterations);
+  if (iterations > tuning_.most_iterations) factorise();
+}
+
+bool ContactPreconditioner::factorise() {
+  if (factor_ || part_->total_nodes() * part_->dim() > tuning_.most_factorised) return false;
+  factor_ = std::make_unique<Factorised>(*part_);
+  schedule_.mark_stale();
+  return true;
+}
+
 bool ContactPreconditioner::worn() const {
   if (schedule_.stale()) return true;
   if (body_->linear()) return false;
   const Vector now = body_->secant();
   Vector then(now.size());
-  inner_->secant(then);
+  current().secant(then);
   std::array<double, 2> sums{};
   for (std::size_t i = 0; i < now.size(); ++i) {
     sums[0] += std::abs(now[i] - then[i]);
@@ -75,8 +89,8 @@ bool ContactPreconditioner::worn() const {
 }
 
 void ContactPreconditioner::build(bool worn, std::span<const NodeBlock> blocks, const Space& space) {
-  if (!worn) return inner_->setup_again(blocks, space);
-  inner_->setup(body_->secant(), blocks, space);
+  if (!worn) return current().setup_again(blocks, space);
+  current().setup(body_->secant(), blocks, space);
   schedule_.built();
 }
 

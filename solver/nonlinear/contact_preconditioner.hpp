@@ -18,7 +18,7 @@ class ContactPreconditioner {
                         const Tuning& tuning);
 
   /// z ≈ A⁻¹ r with what it was set up for last.
-  void apply(std::span<const double> r, std::span<double> z) { inner_->apply(r, z); }
+  void apply(std::span<const double> r, std::span<double> z) { current().apply(r, z); }
 
   /// With the g that is frozen in the body, whether it pays or not.
   void set_up(const Penalty& penalty);
@@ -29,7 +29,11 @@ class ContactPreconditioner {
   void prepare(const ActiveSet& set);
   /// Before a step that has penalties on the held rows of this set, where it pays; `loose` on all rows.
   void prepare(const ActiveSet& set, double penalty, double loose);
-  void watch(double digits, std::int64_t iterations) { schedule_.watch(digits, iterations); }
+  /// Learns from a solve: decimal digits gained, CG iterations. One of very many ends in factorise().
+  void watch(double digits, std::int64_t iterations);
+  /// After a solve that has come to nothing: a factor takes over for good where the body is small enough
+  /// (theory: factorised). Whether it has, just now; it is still to be prepared.
+  bool factorise();
   void mark_stale() noexcept { schedule_.mark_stale(); }
 
   /// For what sets it up by itself, such as an estimate of the spectrum: it is stale then.
@@ -39,7 +43,9 @@ class ContactPreconditioner {
   }
   /// As it stands.
   Preconditioner& inner() noexcept { return *inner_; }
-  double setup_seconds() const noexcept { return inner_->setup_seconds(); }
+  double setup_seconds() const noexcept {
+    return inner_->setup_seconds() + (factor_ ? factor_->setup_seconds() : 0.0);
+  }
 
  private:
   /// Whether the g of now pays for a new setup.
@@ -47,10 +53,13 @@ class ContactPreconditioner {
   /// With the g of now if that of the last setup is worn, else with that.
   void build(bool worn, std::span<const NodeBlock> blocks, const Space& space);
   std::vector<NodeBlock> penalty_blocks(const Penalty& penalty) const;
+  Preconditioner& current() const noexcept { return factor_ ? *factor_ : *inner_; }
 
   const Part* part_;
   const BodyResponse* body_;
   std::unique_ptr<Preconditioner> inner_;
+  std::unique_ptr<Preconditioner> factor_;  ///< in its place, once that has failed
+  Tuning tuning_;
   PreconditionerSchedule schedule_;
   bool friction_;
 };

@@ -25,6 +25,15 @@ double own_first_penalty(const StepContext& context) {
                        context.tuning);
 }
 
+/// The largest displacement that is prescribed, or that loose pieces begin with.
+double imposed(const Part& part) {
+  double largest = 0.0;
+  for (const auto& entry : part.prescribed) largest = std::max(largest, std::abs(entry.value));
+  for (const HeldDirection& held : part.directions) largest = std::max(largest, std::abs(held.value));
+  for (const double value : part.start) largest = std::max(largest, std::abs(value));
+  return part.node_map.max_all(largest);
+}
+
 /// From below, without held rows: by the preconditioner as it stands.
 double rough_largest(StepContext& context) {
   const Part& part = context.part;
@@ -47,7 +56,8 @@ OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOp
                AugmentedControl(tuning)},
       friction_(has_friction(part)),
       history_(has_slip_history(part)),
-      extent_(body_extent(part)) {
+      extent_(body_extent(part)),
+      largest_imposed_(imposed(part)) {
   context_.path.go_to(share);
   take_load();
   if (run.stop_requested) {
@@ -154,7 +164,8 @@ void OuterLoop::iterate(Result& result) {
       done = context_.body.linear() ||
              context_.space.norm(previous) <= options_.tolerance * context_.space.norm(state.u);
     } else {
-      done = residuals.certificate.exhausted(options_.tolerance);
+      // Far beyond the body's size reactions outweigh the loads, and anything is in balance beside them.
+      done = residuals.certificate.exhausted(options_.tolerance) && !ran_away(residuals);
       if (!done) residuals = learn(step, newton, before, residuals, result.lambda_min);
       gave_up_ = !done && may_newton && control_.fallback.stuck();
       if (gave_up_) return;
@@ -227,15 +238,16 @@ Residuals OuterLoop::go_back() {
 }
 
 bool OuterLoop::ran_away(const Residuals& residuals) const {
-  return residuals.scales.displacement > context_.tuning.most_displacement * extent_;
+  return residuals.scales.displacement >
+         context_.tuning.most_displacement * std::max(extent_, largest_imposed_);
 }
 
 std::string OuterLoop::hopeless(const Residuals& residuals, bool newton) const {
-  const double worst = residuals.certificate.worst(), moved = residuals.scales.displacement;
+  const double moved = residuals.scales.displacement;
   if (newton) return {};
-  if (!std::isfinite(worst)) return "the iteration broke down: residuals are not finite";
-  if (options_.stop == SolverOptions::Stop::paper || worst <= options_.tolerance || !ran_away(residuals))
-    return {};
+  if (!std::isfinite(residuals.certificate.worst()))
+    return "the iteration broke down: residuals are not finite";
+  if (options_.stop == SolverOptions::Stop::paper || !ran_away(residuals)) return {};
   std::ostringstream text;
   text.precision(3);
   text << "the displacement has grown to " << moved / extent_

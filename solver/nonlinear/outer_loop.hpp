@@ -117,8 +117,9 @@ class OuterLoop {
   bool opening_ = true;             ///< the next step is the first from rest
   bool gave_up_ = false;
   bool friction_;
-  bool history_;   ///< slip of some point is counted from the load step before
-  double extent_;  ///< of the body, in the unit of displacements
+  bool history_;            ///< slip of some point is counted from the load step before
+  double extent_;           ///< of the body, in the unit of displacements
+  double largest_imposed_;  ///< displacement
   UnitSystem units_;
   ContactChanges changes_;
   std::uint64_t earlier_applications_ = 0;

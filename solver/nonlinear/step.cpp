@@ -100,7 +100,10 @@ void put_to_rest(const Part& part, ContactState& state) {
 
 StepOutcome admm_step(StepContext& c, const Penalty& penalty, const Residuals& before, bool first) {
   const bool dual = c.options.contact == SolverOptions::Contact::dual_admm;
-  if (!first) c.body.freeze_secant(c.state.u);
+  if (!first)
+    c.body.freeze_secant(c.state.u);
+  else if (c.body.freeze_elastic())  // this load step has been tried before, as a whole
+    c.preconditioner.mark_stale();
   c.preconditioner.prepare(penalty, first);
   AdmmOptions options = admm_accuracy(c.options, before, first, c.tuning);
   options.r = penalty;
@@ -115,6 +118,7 @@ StepOutcome admm_step(StepContext& c, const Penalty& penalty, const Residuals& b
   StepOutcome outcome;
   outcome.applications = c.body.op().applications() - applied;
   c.preconditioner.watch(step.cg_digits, step.cg_iterations);
+  if (!step.solves_converged) c.preconditioner.factorise();
   c.body.evaluate_and_freeze(c.state.u);
   outcome.method = dual ? "dual_admm" : "admm";
   outcome.contact_iterations = step.iterations;
@@ -131,16 +135,24 @@ StepOutcome newton_step(StepContext& c, double penalty, bool tangent, const Resi
   c.preconditioner.prepare(set);
   // After the setup: the two do not have to fit into memory at once.
   if (tangent) c.body.freeze_tangent(c.state.u);
-  c.body.unbalanced(c.path, c.work.residual);
   const auto applied = c.body.op().applications();
-  const ActiveSetStep step = active_set_step(tangent ? c.tangent : c.secant, c.part, set, c.state,
-                                             newton_accuracy(c.options, before, c.tuning), c.work);
+  const auto attempt = [&] {
+    c.body.unbalanced(c.path, c.work.residual);
+    return active_set_step(tangent ? c.tangent : c.secant, c.part, set, c.state,
+                           newton_accuracy(c.options, before, c.tuning), c.work);
+  };
+  ActiveSetStep step = attempt();
   StepOutcome outcome;
+  if (!step.met && c.preconditioner.factorise()) {
+    outcome.cg_iterations = step.cg_iterations;
+    c.preconditioner.prepare(set);
+    step = attempt();
+  }
   outcome.applications = c.body.op().applications() - applied;
   c.body.forget_tangent();
   outcome.method = tangent ? "newton" : "active_set";
   outcome.contact_iterations = 1;
-  outcome.cg_iterations = step.cg_iterations;
+  outcome.cg_iterations += step.cg_iterations;
   outcome.solved = step.solved;
   outcome.tangent = tangent;
   if (!step.solved) return outcome;

@@ -88,6 +88,11 @@ struct Tuning {
   /// Where a penalty has moved by this factor (elastic beam, ADMM: 144 applications instead of 212).
   double penalty_worth = 3.0;
 
+  /// A solve of so many CG iterations asks for a factor, in a body of at most so many unknowns: that takes as
+  /// long as 250 iterations for 2,160 of them, 3,000 for 9,800.
+  int most_iterations = 500;
+  std::int64_t most_factorised = 10'000;
+
   // From Newton steps back to ADMM (theory: active-set), and giving up.
 
   /// A Newton step below this share of the best residual is a new best; `patience` steps without one are

@@ -190,6 +190,20 @@ TEST_CASE("strains of orders of magnitude beyond the yield strain take few steps
   CHECK(run.result().max_displacement.value > 30.0);
 }
 
+TEST_CASE("a body that flows like a fluid under friction converges: its solves end") {
+  Law flat = elastic_law(1.0, 0.3);
+  flat.form = laws::Power{0.002, 0.1};
+  const double yield = std::sqrt(1.5) * 2.0 * flat.shear * 0.002;
+  Model model;
+  model.materials.push_back({everything(), flat});
+  model.boundary.push_back(traction(named("top"), {0.8 * yield, 0.5 * yield, -4.0 * yield}));
+  model.contact.push_back(on_plane(named("bottom"), {}, {0, 0, 1}, 0.0, 0.6));
+  const Run run = run_alone(make_box({{3, 1.4, 1}, {12, 6, 5}, ElementType::hex8}), model);
+  CHECK(run.result().status == Status::converged);
+  CHECK(run.result().outer_iterations <= 60);
+  CHECK(run.result().cg_iterations <= 10'000);
+}
+
 TEST_CASE("nearly perfect plasticity a little beyond its yield load converges") {
   const Mesh cube = make_box({{1, 1, 1}, {2, 2, 2}, ElementType::hex8});
   Law flat = elastic_law(1.0, 0.3);

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every preconditioner of the solver by a name.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "amg/factorised.hpp"
+#include "amg/make_preconditioner.hpp"
+
+namespace kacanov::testing {
+
+/// `multigrid`, `elasticity` or `factor`. Collective.
+inline std::unique_ptr<Preconditioner> preconditioner_named(const std::string& name, const Part& part) {
+  if (name == "factor") return std::make_unique<Factorised>(part);
+  return make_preconditioner(name == "multigrid" ? SolverOptions::Preconditioner::multigrid
+                                                 : SolverOptions::Preconditioner::elasticity,
+                             part, 1, "");
+}
+
+}  // namespace kacanov::testing
