@@ -73,6 +73,20 @@ kacanov_test(memory_model SOURCES tools/memory_model_test.cpp LIBRARIES kacanov_
 
 kacanov_test(files SOURCES tools/control_group_test.cpp tools/mapped_file_test.cpp LIBRARIES kacanov_program)
 
-kacanov_test(vtu SOURCES tools/vtu_test.cpp LIBRARIES kacanov_formats)
+kacanov_test(vtu SOURCES tools/vtu_test.cpp tools/vtu_reader_test.cpp LIBRARIES kacanov_formats)
 
 kacanov_test(picture SOURCES tools/picture_test.cpp LIBRARIES kacanov_pictures)
+
+# What other people's readers make of our files, where there are any (Debian: python3-meshio, python3-vtk9).
+foreach(library meshio vtk)
+  foreach(python "${Python3_EXECUTABLE}" /usr/bin/python3)
+    if(NOT TEST opened_by_${library} AND EXISTS "${python}")
+      execute_process(COMMAND "${python}" -c "import ${library}" RESULT_VARIABLE without OUTPUT_QUIET ERROR_QUIET)
+      if(NOT without)
+        add_test(NAME opened_by_${library}
+          COMMAND "${python}" -B "${CMAKE_CURRENT_SOURCE_DIR}/tools/foreign_readers.py" $<TARGET_FILE:kacanov> ${library})
+        kacanov_test_properties(opened_by_${library} 1)
+      endif()
+    endif()
+  endforeach()
+endforeach()

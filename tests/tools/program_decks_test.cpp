@@ -176,7 +176,7 @@ TEST_CASE("a deck is a mesh of a case, with sets and surfaces as groups") {
   CHECK(place.json("out/result.json")["probe"][0][0].get<double>() == doctest::Approx(1e-3));
   CHECK(run.error.find("left out what is none: *MATERIAL (line 25), *ELASTIC (line 26)") !=
         std::string::npos);
-  CHECK(place.run("verify case.json --output out").error.find("kacanov convert writes one of a deck") !=
+  CHECK(place.run("verify case.json --output out").error.find("kacanov convert makes one of it") !=
         std::string::npos);
 }
 
@@ -213,4 +213,19 @@ TEST_CASE("comments, $schema and a title are accepted in a case") {
         std::string::npos);
   place.put("open.json", "{ /* never closed");
   CHECK(place.run("check open.json").error.find("open.json:1:") != std::string::npos);
+}
+
+TEST_CASE("the fields of a run are a mesh for another") {
+  const Workplace place;
+  nlohmann::json beam = small_beam();
+  place.put_json("beam.json", beam);
+  REQUIRE(place.run("run beam.json --output out --ranks 1").exit_code == 0);
+  beam["mesh"] = {{"file", "out/body.vtu"}};
+  beam["boundary"][0]["on"] = parsed(R"({"box": [[0, 0], [0, 1]]})");
+  beam["contact"][0]["on"] = parsed(R"({"box": [[0, 0], [4, 0]]})");
+  place.put_json("again.json", beam);
+  const Outcome again = place.run("run again.json --output again");
+  INFO(again.error);
+  REQUIRE(again.exit_code == 0);
+  CHECK(place.json("again/result.json")["probe"] == place.json("out/result.json")["probe"]);
 }

@@ -2,6 +2,7 @@
 // Reads a deck: nodes and elements as they come, sets and surfaces once all of these are there.
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include <kacanov/error.hpp>
 #include "formats/deck.hpp"

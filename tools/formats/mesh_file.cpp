@@ -8,6 +8,7 @@
 #include "formats/deck.hpp"
 #include "formats/gmsh_reader.hpp"
 #include "formats/mapped_file.hpp"
+#include "formats/vtu_reader.hpp"
 
 namespace kacanov {
 
@@ -15,6 +16,7 @@ MeshFormat format_of(const std::string& path, std::string_view bytes) {
   bytes.remove_prefix(std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size()));
   const auto refuse = [&](const char* what) { throw InputError(path + ": " + what); };
   if (bytes.starts_with('*')) return MeshFormat::deck;
+  if (bytes.starts_with('<')) return MeshFormat::vtu;
   // Fluent writes its sections as lists in brackets, Mechanical APDL as commands.
   if (bytes.starts_with('('))
     refuse(
@@ -26,16 +28,28 @@ MeshFormat format_of(const std::string& path, std::string_view bytes) {
 }
 
 Mesh read_mesh(const std::string& path) {
-  const MeshFormat format = [&] {
+  {
     const MappedFile file(path);
-    return format_of(path, file.bytes());
-  }();
-  return format == MeshFormat::deck ? mesh_of(read_deck(path)) : read_gmsh(path);
+    const MeshFormat format = format_of(path, file.bytes());
+    if (format == MeshFormat::vtu) {
+      try {
+        Mesh mesh = read_vtu(path, file.bytes());
+        file.check_unchanged();
+        return mesh;
+      } catch (const InputError&) {
+        file.check_unchanged();  // then that is what is wrong
+        throw;
+      }
+    }
+    if (format == MeshFormat::gmsh) return read_gmsh(path);
+  }
+  return mesh_of(read_deck(path));
 }
 
 Mesh read_mesh(const std::string& name, std::string_view bytes) {
-  return format_of(name, bytes) == MeshFormat::deck ? mesh_of(read_deck(name, bytes))
-                                                    : read_gmsh(name, bytes);
+  const MeshFormat format = format_of(name, bytes);
+  if (format == MeshFormat::vtu) return read_vtu(name, bytes);
+  return format == MeshFormat::deck ? mesh_of(read_deck(name, bytes)) : read_gmsh(name, bytes);
 }
 
 }  // namespace kacanov

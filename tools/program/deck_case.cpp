@@ -8,6 +8,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include <kacanov/error.hpp>
 #include "formats/gmsh_cursor.hpp"

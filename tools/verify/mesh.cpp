@@ -79,8 +79,9 @@ Mesh load_mesh(const nlohmann::json& source, const std::filesystem::path& folder
     if (order > 1) box["element"] = "tet10";
     mesh = make_box(box);
   } else if (source.contains("file")) {
-    if (source.at("file").get<std::string>().ends_with(".inp"))
-      throw Failure("mesh.file: the verifier reads Gmsh files: kacanov convert writes one of a deck");
+    const std::string file = source.at("file").get<std::string>();
+    if (file.ends_with(".inp") || file.ends_with(".vtu"))
+      throw Failure("mesh.file: the verifier reads Gmsh files: kacanov convert makes one of it");
     mesh = read_gmsh(folder / source.at("file").get<std::string>());
   } else {
     throw Failure("mesh: the verifier knows `file` and `box` only");

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The arrays of a VTK file of an unstructured grid (.vtu): ASCII, base64 or raw, plain or compressed by zlib.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kacanov {
+
+/// The words of an XML element: NAME="value".
+using XmlAttributes = std::map<std::string, std::string, std::less<>>;
+
+class VtuFile {
+ public:
+  /// Takes the file apart without decoding arrays. `bytes` have to stay. Throws InputError naming the file
+  /// for what is no such file, and for those that are not read: several pieces, another byte order or
+  /// compression.
+  VtuFile(std::string path, std::string_view bytes);
+
+  std::size_t points() const noexcept { return points_; }
+  std::size_t cells() const noexcept { return cells_; }
+  /// Whether there is an array of that name in a section: "Points", "Cells", "PointData", "CellData".
+  bool has(std::string_view section, std::string_view name) const;
+
+  /// The numbers of an array, of which there have to be `count`. The array of points may have any name.
+  std::vector<double> reals(std::string_view section, std::string_view name, std::size_t count) const;
+  /// The same of whole numbers.
+  std::vector<std::int64_t> integers(std::string_view section, std::string_view name,
+                                     std::size_t count) const;
+
+  [[noreturn]] void fail(const std::string& message) const;
+
+ private:
+  struct Array {
+    std::string section, name;
+    XmlAttributes attributes;
+    std::string_view inline_data;
+  };
+
+  void take_element(const std::string& name, XmlAttributes attributes, std::string_view rest);
+  const Array& find(std::string_view section, std::string_view name) const;
+  template <typename T>
+  std::vector<T> values(const Array& array, std::size_t count) const;
+  std::string decoded(const Array& array, std::size_t bytes) const;
+  std::string unpacked(const Array& array, std::string_view data, std::size_t bytes, bool base64) const;
+
+  std::string path_;
+  std::size_t points_ = 0, cells_ = 0;
+  bool have_piece_ = false, compressed_ = false, long_header_ = false, appended_base64_ = false;
+  std::string section_;
+  std::vector<Array> arrays_;
+  std::string_view appended_;
+};
+
+}  // namespace kacanov
