@@ -9,6 +9,7 @@
 
 #include <kacanov/error.hpp>
 #include "formats/mesh_file.hpp"
+#include "formats/mesh_writer.hpp"
 #include "temporary_folder.hpp"
 
 using namespace kacanov;
@@ -224,4 +225,36 @@ TEST_CASE("elements that are taken for others are named with what differs") {
   const Mesh mesh = read(cube_nodes + "*ELEMENT, TYPE=C3D8R\n1, 1,2,3,4,5,6,7,8\n");
   REQUIRE(mesh.warnings.size() == 1);
   CHECK(mesh.warnings[0].find("a.inp: line 10: C3D8R: all points are integrated here") == 0);
+}
+
+TEST_CASE(
+    "every element is written and read again with its sides, numbers and groups, as a deck and for Gmsh") {
+  const TemporaryFolder folder;
+  for (const ElementType type : element_types()) {
+    BoxSpec spec;
+    spec.type = type;
+    spec.cells = {3, 2, 2};
+    Mesh mesh = make_box(spec);
+    mesh.groups.push_back({"some elements", mesh.dim(), {0, 1, 2}});
+    mesh.groups.push_back({"some nodes", 0, {1, 4}});
+    for (std::size_t i = 0; i < mesh.node_count(); ++i)
+      mesh.node_tags.push_back(static_cast<std::int64_t>(1000 - 3 * i));
+    for (std::size_t e = 0; e < mesh.element_count(); ++e)
+      mesh.element_tags.push_back(static_cast<std::int64_t>(5 * e + 2));
+    write_deck(folder.file("a.inp"), mesh);
+    write_gmsh(folder.file("a.msh"), mesh);
+    for (const std::string name : {"a.inp", "a.msh"}) {
+      INFO(name, " ", cell(type).name);
+      const Mesh back = read_mesh(folder.file(name));
+      CHECK(back.type == type);
+      CHECK(back.coordinates == mesh.coordinates);
+      CHECK(back.elements == mesh.elements);
+      CHECK(back.facets == mesh.facets);
+      CHECK(back.node_tags == mesh.node_tags);
+      CHECK(back.element_tags == mesh.element_tags);
+      CHECK(back.groups.size() == mesh.groups.size());
+      for (const Group& group : mesh.groups)
+        CHECK(members(back, group.name, group.dimension) == group.members);
+    }
+  }
 }

@@ -155,6 +155,10 @@ TEST_CASE("meshes keep their groups and numbers from one format to another") {
     CHECK(outcome.exit_code == 0);
   }
   CHECK(contents(place.path("b.msh")) == contents(place.path("d.msh")));
+  CHECK(place.run("run a.inp").error.find("a.inp: this is a deck, expected a case; kacanov convert") !=
+        std::string::npos);
+  CHECK(place.run("run b.msh").error.find("b.msh: this is a mesh, expected a case; kacanov init") !=
+        std::string::npos);
   CHECK(contents(place.path("c.inp")).find("\"Half way\"") != std::string::npos);
   CHECK(place.has("e.vtu"));
   CHECK(place.run("convert a.inp a.stl")

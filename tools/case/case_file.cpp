@@ -358,6 +358,11 @@ CaseText read_case_text(const std::string& path) {
 }
 
 Case parse_case(const CaseText& text, std::span<const std::string> overrides) {
+  const std::size_t begin = text.text.find_first_not_of(" \t\r\n");
+  if (begin != std::string::npos && text.text[begin] == '*')
+    throw InputError(text.path + ": this is a deck, expected a case; kacanov convert makes one of it");
+  if (begin != std::string::npos && text.text.compare(begin, 11, "$MeshFormat") == 0)
+    throw InputError(text.path + ": this is a mesh, expected a case; kacanov init writes one for it");
   nlohmann::json document = parse_json(text.text, text.path);
   for (const std::string& assignment : overrides) apply_override(document, assignment);
   const std::filesystem::path file(text.path);
