@@ -98,6 +98,8 @@ struct SymmetricPart {
   const Space& space;
   std::function<double(std::span<const double>, std::span<double>)> apply;
   const std::function<void(std::span<const double>, std::span<double>)>& precondition;
+  /// The same with what keeps it definite where all that touches slides and nothing else holds the body.
+  std::function<double(std::span<const double>, std::span<double>)> definite;
 };
 
 /// conjugate_gradients for a step whose reactions are oblique (theory: coulomb-newton): GCR, first with a
@@ -125,7 +127,7 @@ CgResult solve_oblique(const SymmetricPart& part, const HeldNodes& nodes, std::s
   const auto symmetric = [&](std::span<const double> r, std::span<double> z) {
     std::copy(r.begin(), r.end(), work.residual.begin());
     const CgOptions inner{0.3 * target, nested_reduction, options.max_iterations};
-    const CgResult found = conjugate_gradients(space, part.apply, part.precondition, z, work, inner);
+    const CgResult found = conjugate_gradients(space, part.definite, part.precondition, z, work, inner);
     result.iterations += found.iterations;
     return found.converged;
   };
@@ -190,7 +192,11 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
     apply(delta, work.image);
     for (std::size_t i = 0; i < delta.size(); ++i) work.residual[i] -= work.image[i];
   }
-  const SymmetricPart symmetric{space, apply, problem.precondition};
+  const SymmetricPart symmetric{
+      space, apply, problem.precondition, [&](std::span<const double> p, std::span<double> q) {
+        const double share = apply(p, q);
+        return problem.loose > 0.0 ? share + traces.add_penalty({0.0, problem.loose}, p, q) : share;
+      }};
   const CgResult solve = nodes.oblique()
                              ? solve_oblique(symmetric, nodes, delta, work, options)
                              : conjugate_gradients(space, apply, problem.precondition, delta, work, options);

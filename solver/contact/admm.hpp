@@ -20,6 +20,9 @@ struct LinearProblem {
   /// y = B x, consistent; returns this rank's share of xᵀ y.
   std::function<double(std::span<const double>, std::span<double>)> apply;
   std::function<void(std::span<const double>, std::span<double>)> precondition;  ///< z ≈ (B + r CᵀMC)⁻¹ r
+  /// Penalty on slip that preconditions Newton steps with sliding friction, where contact alone holds
+  /// motions.
+  double loose = 0.0;
 };
 
 struct AdmmOptions {

@@ -136,10 +136,12 @@ StepOutcome newton_step(StepContext& c, double penalty, bool tangent, const Resi
   // After the setup: the two do not have to fit into memory at once.
   if (tangent) c.body.freeze_tangent(c.state.u);
   const auto applied = c.body.op().applications();
+  LinearProblem problem = tangent ? c.tangent : c.secant;
+  if (c.part.loose_modes > 0) problem.loose = c.tuning.loose_share * penalty;
   const auto attempt = [&] {
     c.body.unbalanced(c.path, c.work.residual);
-    return active_set_step(tangent ? c.tangent : c.secant, c.part, set, c.state,
-                           newton_accuracy(c.options, before, c.tuning), c.work);
+    return active_set_step(problem, c.part, set, c.state, newton_accuracy(c.options, before, c.tuning),
+                           c.work);
   };
   ActiveSetStep step = attempt();
   StepOutcome outcome;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Coulomb's friction against statics and beam theory: a block on an incline, a wedge between two planes, a
-// ring pressed on its foot; turned, in m and mm, on any number of ranks.
+// ring pressed on its foot or between planes; turned, in m and mm, on any number of ranks.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ Solution solve_everywhere(const Problem& problem, const Model& model, Part& part
 double inner(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /// A ring of mean radius 1 and thickness `thick` of quadrilaterals, with the upper half of its outer side and
-/// its lowest facet as groups.
+/// the lower one and its lowest facet as groups.
 Mesh ring(int round, int across, double thick, const Frame& frame) {
   Mesh mesh;
   mesh.type = ElementType::quad4;
@@ -48,16 +48,16 @@ Mesh ring(int round, int across, double thick, const Frame& frame) {
         mesh.elements.push_back(node);
     }
   find_boundary(mesh);
-  Group upper{"upper", 1, {}}, foot{"foot", 1, {}};
+  Group upper{"upper", 1, {}}, lower{"lower", 1, {}}, foot{"foot", 1, {}};
   for (std::int32_t f = 0; f < static_cast<std::int32_t>(mesh.facet_count()); ++f) {
     const auto facet = mesh.facet(static_cast<std::size_t>(f));
     if (facet[0] < across * round) continue;
     const double mean =
         0.5 * (height[static_cast<std::size_t>(facet[0])] + height[static_cast<std::size_t>(facet[1])]);
-    if (mean > 0.0) upper.members.push_back(f);
+    (mean > 0.0 ? upper : lower).members.push_back(f);
     if (mean < (1 + 0.5 * thick) * -std::cos(1.2 * std::numbers::pi / round)) foot.members.push_back(f);
   }
-  mesh.groups = {upper, foot};
+  mesh.groups = {upper, lower, foot};
   check_mesh(mesh);
   return mesh;
 }
@@ -134,13 +134,37 @@ TEST_CASE("a wedge pressed between two planes: friction that slides on both take
     }
 }
 
+/// Bending, stretch and shear of a thin ring (Timoshenko), change of the diameter over the force.
+double ring_compliance(double thick, double poisson) {
+  const double modulus = 1.0 / (1 - poisson * poisson), inertia = thick * thick * thick / 12,
+               shear = 1.0 / (2 * (1 + poisson)), pi = std::numbers::pi;
+  return (pi / 4 - 2 / pi) / (modulus * inertia) + pi / 4 / (modulus * thick) +
+         1.2 * pi / 4 / (shear * thick);
+}
+
+TEST_CASE("a ring pressed between two planes, which alone hold it, though all that touches slides") {
+  const double thick = 0.1, press = 5e-4, top = 1 + thick / 2 - press;
+  const Frame frame{Rotation(2, 0.4), 1.0};
+  Model model;
+  model.materials.push_back({everything(), elastic_law(1.0, 0.3)});
+  for (const double side : {1.0, -1.0})
+    model.contact.push_back(on_plane(named(side > 0.0 ? "upper" : "lower"), frame.place({0, side * top, 0}),
+                                     frame.turn({0, -side, 0}), 0.0, 0.3));
+  Part part;
+  const Solution solution = solve_everywhere(build_problem(ring(140, 4, thick, frame), model), model, part);
+  CAPTURE(solution.result.message);
+  CHECK(solution.result.status == Status::converged);
+  if (solution.result.ranks == 1) CHECK(solution.result.cg_iterations <= 1000);
+  double force = 0.0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(part.owned_contact); ++i)
+    if (part.contact[i].entry == 0) force += part.contact[i].mass * solution.pressure[i];
+  force = part.node_map.sum_all(force);
+  CHECK(force == doctest::Approx(2 * press / ring_compliance(thick, 0.3)).epsilon(0.03));
+  CHECK(length(solution.result.contact_force) < 1e-5 * force);
+}
+
 TEST_CASE("a ring pressed on its foot by a plane: the force of a curved beam, no friction to speak of") {
-  const double thick = 0.1, press = 1e-3, poisson = 0.3, modulus = 1.0 / (1 - poisson * poisson);
-  // Bending, stretch and shear of a thin ring (Timoshenko), diameter over force.
-  const double inertia = thick * thick * thick / 12, shear = 1.0 / (2 * (1 + poisson));
-  const double pi = std::numbers::pi;
-  const double compliance =
-      (pi / 4 - 2 / pi) / (modulus * inertia) + pi / 4 / (modulus * thick) + 1.2 * pi / 4 / (shear * thick);
+  const double thick = 0.1, press = 1e-3, poisson = 0.3, compliance = ring_compliance(thick, poisson);
   for (const double unit : {1.0, 1e-3, 1e3}) {
     CAPTURE(unit);
     const Frame frame{Rotation(2, 0.4), unit};
