@@ -23,7 +23,8 @@ class CMakeBuild(build_ext):
         configure = ["cmake", "-S", str(ROOT), "-B", str(folder), "-DKACANOV_PYTHON=ON",
                      f"-DPYTHON_EXECUTABLE={sys.executable}"]
         if not (folder / "CMakeCache.txt").exists():
-            configure += ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DKACANOV_TESTS=OFF", "-DKACANOV_INSTALL=OFF"]
+            configure += ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DKACANOV_TESTS=OFF", "-DKACANOV_INSTALL=OFF",
+                          "-DCMAKE_UNITY_BUILD=ON"]
         subprocess.run(configure, check=True)
         subprocess.run(["cmake", "--build", str(folder), "--target", "kacanov_python", "--parallel",
                         str(os.cpu_count() or 1)], check=True)

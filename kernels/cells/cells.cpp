@@ -108,7 +108,7 @@ template <class... E, class... F>
 constexpr auto make_all(std::tuple<E...>, std::tuple<F...>) {
   return std::array{make<E>()..., make<F>()...};
 }
-constexpr auto table = make_all(Bodies{}, Others{});
+constexpr auto all_cells = make_all(Bodies{}, Others{});
 
 template <class... E>
 constexpr auto types_of(std::tuple<E...>) {
@@ -120,8 +120,8 @@ constexpr auto types = types_of(Bodies{});
 
 namespace cell_table {
 
-const Cell* const all = table.data();
-const std::size_t count = table.size(), bodies = types.size();
+const Cell* const all = all_cells.data();
+const std::size_t count = all_cells.size(), bodies = types.size();
 
 void refuse(ElementType type) {
   throw std::invalid_argument("there is no element type " + std::to_string(static_cast<int>(type)));
@@ -132,7 +132,7 @@ void refuse(ElementType type) {
 std::span<const ElementType> element_types() noexcept { return types; }
 
 std::optional<ElementType> element_type(const Cell& cell) noexcept {
-  const std::size_t i = &cell - table.data();
+  const std::size_t i = &cell - all_cells.data();
   return i < types.size() ? std::optional(types[i]) : std::nullopt;
 }
 

@@ -10,7 +10,6 @@ namespace {
 
 using Index = std::int32_t;
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Local edges of a tetrahedron (p, q), and the other two nodes so that (p, q, a, b) is oriented like it.
 constexpr std::array<std::array<std::uint8_t, 4>, 6> edges{

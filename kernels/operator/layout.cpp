@@ -14,7 +14,6 @@ namespace {
 
 using simd::Shape;
 
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 /// 16-bit offsets of records of four values.
 constexpr std::size_t most_records = (std::size_t{1} << 16) / 4;

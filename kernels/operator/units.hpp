@@ -2,6 +2,7 @@
 // What a SIMD lane works on: a fan of tetrahedra round an edge, or one element.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -10,6 +11,9 @@
 #include "simd/block.hpp"
 
 namespace kacanov {
+
+/// A number of the mesh as an index.
+constexpr std::size_t at(std::int32_t i) noexcept { return static_cast<std::size_t>(i); }
 
 struct Unit {
   simd::Shape shape;

@@ -12,10 +12,6 @@
 namespace kacanov {
 namespace {
 
-/// Keeps the factor of dependent rows finite. What it falsifies of independent ones (this over the smallest
-/// eigenvalue of the scaled C Cᵀ) is squared by a step of refinement.
-constexpr double shift = 1e-12;
-
 using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 /// A share of a row as it travels.

@@ -36,6 +36,10 @@ struct ClusterRow {
 /// surface. Rows may depend on each other.
 class RowCluster final : public HeldRows {
  public:
+  /// Keeps the factor of dependent rows finite. What it falsifies of independent ones (this over the smallest
+  /// eigenvalue of the scaled C Cᵀ) is squared by a step of refinement.
+  static constexpr double shift = 1e-12;
+
   /// `rows`: those this rank owns, at wide nodes only. Collective. The part has to outlive it.
   RowCluster(const Part& part, const WideNodes& nodes, std::vector<ClusterRow> rows);
   ~RowCluster() override;

@@ -13,10 +13,7 @@
 namespace kacanov {
 namespace {
 
-/// As that of RowCluster, which it stands beside.
-constexpr double shift = 1e-12;
-
-struct Travelling {
+struct TravellingPair {
   std::int64_t row = 0, node = 0;
   Vector3 held{}, slides{};
 };
@@ -41,7 +38,7 @@ struct WideSliding::Factor {
         held * Eigen::SparseMatrix<double, Eigen::RowMajor>(held + scale.asDiagonal() * slides).transpose();
     Eigen::SparseMatrix<double> unit(matrix.rows(), matrix.rows());
     unit.setIdentity();
-    shifted.compute(matrix + shift * unit);
+    shifted.compute(matrix + RowCluster::shift * unit);
     if (shifted.info() != Eigen::Success)
       throw InternalError("the rows of wide contact points that slide have no factor");
   }
@@ -91,7 +88,7 @@ void WideSliding::add_point(const ActiveSet& set, std::size_t point) {
 }
 
 void WideSliding::factorise() {
-  std::vector<Travelling> all;
+  std::vector<TravellingPair> all;
   for (const Row& row : rows_)
     for (std::size_t k = 0; k < row.held.shares.size(); ++k)
       all.push_back({row.held.number, part_->node_number(row.held.shares[k].node),
@@ -99,7 +96,7 @@ void WideSliding::factorise() {
                      row.slides.shares.empty() ? Vector3{} : row.slides.shares[k].coefficient});
   all = gathered(all, part_->node_map);
   std::vector<std::int64_t> nodes;
-  for (const Travelling& share : all) {
+  for (const TravellingPair& share : all) {
     numbers_.push_back(share.row);
     nodes.push_back(share.node);
   }
@@ -108,7 +105,7 @@ void WideSliding::factorise() {
     list->erase(std::unique(list->begin(), list->end()), list->end());
   }
   std::vector<Eigen::Triplet<double>> held, slides;
-  for (const Travelling& share : all) {
+  for (const TravellingPair& share : all) {
     const auto row = static_cast<Eigen::Index>(position(share.row));
     const auto node = 3 * (std::lower_bound(nodes.begin(), nodes.end(), share.node) - nodes.begin());
     for (std::size_t c = 0; c < 3; ++c) {

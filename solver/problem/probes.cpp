@@ -16,7 +16,7 @@ namespace kacanov {
 namespace {
 
 /// How far outside its element a point may lie, in reference coordinates.
-constexpr double slack = 1e-6;
+constexpr double probe_slack = 1e-6;
 
 std::string outside_message(const Mesh& mesh, std::size_t index, const Vector3& x) {
   std::int32_t nearest = 0;
@@ -40,7 +40,7 @@ std::string outside_message(const Mesh& mesh, std::size_t index, const Vector3& 
 
 std::vector<Probe> locate_probes(const Mesh& mesh, const Model& model) {
   std::vector<Probe> probes(model.probes.size());
-  std::vector<double> best(model.probes.size(), slack);
+  std::vector<double> best(model.probes.size(), probe_slack);
   for (std::size_t p = 0; p < probes.size(); ++p) {
     probes[p].point = model.probes[p];
     probes[p].element = -1;

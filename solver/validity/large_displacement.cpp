@@ -7,13 +7,13 @@ namespace kacanov::validity {
 namespace {
 
 /// Of the body's size.
-constexpr double small_enough = 0.1;
+constexpr double large_share = 0.1;
 
 }  // namespace
 
 void large_displacement(const Result& result, Warnings& warnings) {
   const Extreme& extreme = result.max_displacement;
-  if (!(extreme.value > small_enough * result.body.size)) return;
+  if (!(extreme.value > large_share * result.body.size)) return;
   warnings.push_back("the body moves by " + rounded(extreme.value) + ", " +
                      rounded(extreme.value / result.body.size) + " of its size (node " +
                      std::to_string(extreme.tag) + " at " + to_text(extreme.at, result.body.dim) +

@@ -38,7 +38,7 @@ struct Entry {
   Law::Form (*read)(const Node& node, const Law& law);
 };
 
-constexpr Entry entries[] = {
+constexpr Entry law_entries[] = {
     {laws::Linear::name,
      [](const Node& node, const Law&) -> Law::Form {
        Object(node, {"type", "argument"});
@@ -80,7 +80,7 @@ constexpr Entry entries[] = {
        return ramberg_osgood(law, sigma0, alpha, object.required("n").number(above_one));
      }},
 };
-static_assert(std::size(entries) == std::variant_size_v<Law::Form>);
+static_assert(std::size(law_entries) == std::variant_size_v<Law::Form>);
 
 void compare_slopes(const Node& node, const Law& law, std::vector<std::string>& warnings) {
   const auto* table = std::get_if<laws::Table>(&law.form);
@@ -139,8 +139,8 @@ Law parse_law(double young, double poisson, const Node& node, std::vector<std::s
       node, {"type", "argument", "x0", "yield_stress", "gamma", "n", "q", "points", "sigma0", "alpha"});
   Law law = elastic_law(young, poisson);
   std::vector<std::string_view> names;
-  for (const Entry& entry : entries) names.push_back(entry.name);
-  const Entry& entry = entries[any.required("type").choice(names)];
+  for (const Entry& entry : law_entries) names.push_back(entry.name);
+  const Entry& entry = law_entries[any.required("type").choice(names)];
   if (const auto argument = any.optional("argument")) {
     law.argument = argument->choice({"norm", "squared"}) == 0 ? Law::Argument::norm : Law::Argument::squared;
   }

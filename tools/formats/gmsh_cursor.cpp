@@ -23,7 +23,7 @@ std::string_view without_carriage_return(std::string_view line) {
 
 }  // namespace
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   constexpr std::size_t longest = 40;
   std::string result = "\"";
   for (const char c : text.substr(0, longest)) {
@@ -51,7 +51,7 @@ void GmshCursor::fail_word(const char* expected, const char* what) const {
   const std::string_view rest = data_.substr(last_);
   if (rest[0] == '\n' || rest[0] == '\r') fail(start + "but the line ends");
   const auto end = std::find_if(rest.begin(), rest.end(), is_space);
-  fail(start + "got " + quoted(rest.substr(0, end - rest.begin())));
+  fail(start + "got " + in_quotes(rest.substr(0, end - rest.begin())));
 }
 
 std::string_view GmshCursor::line() {
@@ -100,7 +100,7 @@ double GmshCursor::text_real(const char* what) {
 void GmshCursor::text_end_of_line() {
   skip_blanks();
   const std::string_view rest = line();
-  if (!rest.empty()) fail("expected the end of the line, got " + quoted(rest));
+  if (!rest.empty()) fail("expected the end of the line, got " + in_quotes(rest));
 }
 
 std::string_view GmshCursor::text_rest() {
@@ -111,7 +111,7 @@ std::string_view GmshCursor::text_rest() {
 std::string_view GmshCursor::text_name(const std::string& of) {
   const std::string_view rest = text_rest();
   if (rest.size() < 2 || rest.front() != '"' || rest.back() != '"')
-    fail("expected the name of a physical group in double quotes, got " + quoted(rest));
+    fail("expected the name of a physical group in double quotes, got " + in_quotes(rest));
   const std::string_view name = rest.substr(1, rest.size() - 2);
   if (printable(name) != name) fail(of + ": its name is no UTF-8, or has control characters");
   return name;
@@ -148,7 +148,7 @@ void GmshCursor::end_section(std::string_view section) {
   const std::string expected = "$End" + std::string(section);
   if (!skip_blank_lines()) fail("the file ends where " + expected + " was expected");
   const std::string_view found = line();
-  if (found != expected) fail("expected " + expected + ", got " + quoted(found));
+  if (found != expected) fail("expected " + expected + ", got " + in_quotes(found));
 }
 
 void GmshCursor::skip_section(std::string_view section) {

@@ -81,6 +81,6 @@ class GmshCursor {
 };
 
 /// `text` shortened and freed of control characters, in quotes, for a message.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 }  // namespace kacanov

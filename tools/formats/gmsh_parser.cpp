@@ -26,7 +26,7 @@ class Parser {
     format();
     while (in_.skip_blank_lines()) {
       const std::string_view line = in_.line();
-      if (line.empty() || line[0] != '$') in_.fail("expected a section such as $Nodes, got " + quoted(line));
+      if (line.empty() || line[0] != '$') in_.fail("expected a section such as $Nodes, got " + in_quotes(line));
       section(std::string(line.substr(1)));
     }
     if (!have_nodes_) in_.fail("the file ends without a $Nodes section");
@@ -84,7 +84,7 @@ class Parser {
       if (!have_nodes_) in_.fail("$Elements comes before $Nodes");
       new_format_ ? element_blocks() : element_list();
     } else if (name.starts_with("End")) {
-      in_.fail(quoted("$" + name) + " without its beginning");
+      in_.fail(in_quotes("$" + name) + " without its beginning");
     } else {
       in_.skip_section(name);
       return;

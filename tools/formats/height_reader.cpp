@@ -41,7 +41,7 @@ class CsvText {
     std::size_t found = 0;
     for (auto word = take_word(text, between); !word.empty(); word = take_word(text, between)) {
       const auto value = to_number(word);
-      if (!value) fail(line, "expected a number, got " + quoted(word));
+      if (!value) fail(line, "expected a number, got " + in_quotes(word));
       grid_.values.push_back(*value);
       ++found;
     }

@@ -37,7 +37,7 @@ class StlText {
   }
   [[noreturn]] void fail(const std::string& expected, const std::vector<std::string_view>& got) const {
     throw InputError(path_ + ":" + std::to_string(number_) + ": expected " + expected + ", got " +
-                     (got.empty() ? "the end of the file" : quoted(got[0])));
+                     (got.empty() ? "the end of the file" : in_quotes(got[0])));
   }
   void expect(std::initializer_list<std::string_view> words) {
     const auto got = line();
@@ -116,9 +116,9 @@ int number_of_group(const std::string& path, const MeshContent& content, const s
   for (const auto& [key, name] : content.names) {
     if (key.first != 2) continue;
     if (name == group || (name.empty() && std::to_string(key.second) == group)) return key.second;
-    known += (known.empty() ? "" : ", ") + quoted(name);
+    known += (known.empty() ? "" : ", ") + in_quotes(name);
   }
-  throw InputError(path + ": expected a physical surface of the name " + quoted(group) + ", the file has " +
+  throw InputError(path + ": expected a physical surface of the name " + in_quotes(group) + ", the file has " +
                    (known.empty() ? "none with a name" : known));
 }
 
@@ -146,7 +146,7 @@ TriangleList facets_of_gmsh(const std::string& path, MeshContent content, const 
   }
   if (list.triangles.empty())
     throw InputError(path + ": expected facets of an obstacle, the file has " +
-                     (group.empty() ? "none" : "none in the group " + quoted(group)));
+                     (group.empty() ? "none" : "none in the group " + in_quotes(group)));
   return list;
 }
 
@@ -180,7 +180,7 @@ Surface read_surface(const std::string& path, const std::string& group) {
   const auto read = [&] {
     if (bytes.starts_with("$")) return facets_of_gmsh(path, parse_gmsh(path, bytes), group);
     if (!group.empty())
-      throw InputError(path + ": expected a Gmsh file, the only one that has a group " + quoted(group));
+      throw InputError(path + ": expected a Gmsh file, the only one that has a group " + in_quotes(group));
     return parse_stl(path, bytes);
   };
   const TriangleList list = read();

@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
+#include <string>
 
 #include "verify/real.hpp"
 
@@ -17,6 +19,14 @@ inline std::ifstream open_file(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw Failure(file.string() + ": cannot be read");
   return stream;
+}
+
+/// All that is in it.
+inline std::string whole(const std::filesystem::path& file) {
+  const std::ifstream stream = open_file(file);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
 }
 
 }  // namespace kacanov::verify

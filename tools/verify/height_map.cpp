@@ -7,16 +7,10 @@
 #include <fstream>
 #include <sstream>
 
+#include "verify/file.hpp"
+
 namespace kacanov::verify {
 namespace {
-
-std::string whole(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw Failure(file.string() + ": cannot be read");
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 /// Rows of numbers, the upper one first.
 using Rows = std::vector<std::vector<Real>>;

@@ -13,13 +13,6 @@
 namespace kacanov::verify {
 namespace {
 
-std::string whole(const std::filesystem::path& file) {
-  const std::ifstream stream = open_file(file);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
 /// The value of an attribute of a tag; empty where there is none.
 std::string attribute(const std::string& tag, const std::string& name) {
   const std::size_t at = tag.find(" " + name + "=\"");
