@@ -80,7 +80,7 @@ std::vector<std::int32_t> Deck::nodes_of(std::string_view field, DeckPlace place
                                       : field.substr(instance.size() + 1);
   if (!is_number(number)) {
     if (const DeckSet* set = node_set(field, in_part)) return set->members;
-    fail(place, "there is no set of nodes " + quoted(field) + " above");
+    fail(place, "there is no set of nodes " + in_quotes(field) + " above");
   }
   std::int64_t tag = 0;
   const auto read = std::from_chars(number.data(), number.data() + number.size(), tag);
@@ -95,7 +95,7 @@ std::vector<std::int32_t> Deck::elements_of(std::string_view field, DeckPlace pl
                                       : field.substr(instance.size() + 1);
   if (!is_number(number)) {
     if (const DeckSet* set = element_set(field, in_part)) return set->members;
-    fail(place, "there is no set of elements " + quoted(field) + " above");
+    fail(place, "there is no set of elements " + in_quotes(field) + " above");
   }
   std::int64_t tag = 0;
   const auto read = std::from_chars(number.data(), number.data() + number.size(), tag);
@@ -125,7 +125,7 @@ std::int64_t deck_integer(const Deck& deck, const DeckRow& row, std::size_t fiel
   const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
   if (text.empty() || read.ec != std::errc() || read.ptr != text.data() + text.size())
     deck.fail(row.place,
-              std::string("expected ") + what + ", got " + (text.empty() ? "nothing" : quoted(text)));
+              std::string("expected ") + what + ", got " + (text.empty() ? "nothing" : in_quotes(text)));
   return value;
 }
 
@@ -140,7 +140,7 @@ double deck_number(const Deck& deck, const DeckRow& row, std::size_t field, cons
   }
   if (!value)
     deck.fail(row.place,
-              std::string("expected ") + what + ", got " + (text.empty() ? "nothing" : quoted(text)));
+              std::string("expected ") + what + ", got " + (text.empty() ? "nothing" : in_quotes(text)));
   return *value;
 }
 

@@ -86,7 +86,7 @@ void DeckLines::take_keyword_line(DeckKeyword& keyword) {
   const std::string_view name = take_field(rest);
   keyword.name = upper_case(without_blanks(name));
   keyword.shown = "*" + std::string(name);
-  if (name.empty() || name.size() > 60) fail(place_, "expected a keyword, got " + quoted(line_));
+  if (name.empty() || name.size() > 60) fail(place_, "expected a keyword, got " + in_quotes(line_));
   for (bool more = true; more;) {
     more = line_.back() == ',';
     while (!trimmed(rest).empty()) {

@@ -123,7 +123,7 @@ class Reader {
     const std::string upper = upper_case(*type);
     const auto known = deck_element_type(upper);
     if (!known)
-      in_.fail(keyword.place, "elements of the type " + quoted(*type) +
+      in_.fail(keyword.place, "elements of the type " + in_quotes(*type) +
                                   " are not supported: " + std::string(why_not_known(upper)));
     std::size_t cell = 0;
     while (cells()[cell].name != known->cell) ++cell;

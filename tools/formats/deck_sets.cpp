@@ -52,7 +52,7 @@ class Resolver {
       deck_.fail(block.keyword.place, block.keyword.shown + ": expected " + parameter + "=<name>");
     if (printable(*name) != *name || name->find('\n') != std::string::npos ||
         name->find('"') != std::string::npos)
-      deck_.fail(block.keyword.place, block.keyword.shown + ": the name " + quoted(*name) +
+      deck_.fail(block.keyword.place, block.keyword.shown + ": the name " + in_quotes(*name) +
                                           " has quotes or control characters, or is no UTF-8");
     return *name;
   }
@@ -128,7 +128,7 @@ class Resolver {
     const std::string kind = type == nullptr ? "ELEMENT" : upper_case(*type);
     if (kind != "ELEMENT" && kind != "NODE")
       deck_.fail(block.keyword.place,
-                 block.keyword.shown + ": expected TYPE=ELEMENT or TYPE=NODE, got " + quoted(*type));
+                 block.keyword.shown + ": expected TYPE=ELEMENT or TYPE=NODE, got " + in_quotes(*type));
     DeckSurface& surface = add(deck_.surfaces, name_of(block, "NAME"), block);
     for (const DeckRow& row : block.rows) {
       if (row.fields[0].empty()) deck_.fail(row.place, "expected a set or a number");
@@ -146,7 +146,7 @@ class Resolver {
     const std::string label = row.fields.size() > 1 ? upper_case(row.fields[1]) : std::string();
     if (label.size() != 2 || label[0] != 'S' || label[1] < '1' || label[1] > '6')
       deck_.fail(row.place, "expected a set or element and a side S1 to S6, got " +
-                                (label.empty() ? "none" : quoted(label)) +
+                                (label.empty() ? "none" : in_quotes(label)) +
                                 ": whole sets and sides of shells are not read");
     for (const std::int32_t element : deck_.elements_of(row.fields[0], row.place, in_part)) {
       const DeckSide side{element, label[1] - '1'};

@@ -13,8 +13,6 @@
 namespace kacanov {
 namespace {
 
-using nlohmann::json;
-
 constexpr std::string_view magic = "kacanov checkpoint 4\n";
 constexpr double share_of_time = 0.02;
 /// The sections of a case that have to be the same; solver options may change, but for the path of the load.
@@ -32,7 +30,7 @@ Checkpoint CheckpointFile::read() const {
 
 Checkpoint CheckpointFile::take(HashedReader& reader) const {
   const std::string file = path_.string();
-  const json& header = reader.header();
+  const nlohmann::json& header = reader.header();
   Checkpoint checkpoint;
   for (const auto& [name, bits] : header.at("numbers").items())
     checkpoint.numbers[name] = std::bit_cast<double>(bits.get<std::uint64_t>());
@@ -47,7 +45,7 @@ Checkpoint CheckpointFile::take(HashedReader& reader) const {
 
   std::string text = describe_differences(header.at("case"), input_->document,
                                           print_.differences(parse_fingerprint(header.at("problem"))));
-  const json steps = input_->model.solver.load_steps;
+  const nlohmann::json steps = input_->model.solver.load_steps;
   if (header.at("load_steps") != steps) {
     text += (text.empty() ? "" : "; ") +
             ("solver.load_steps differs (factors " + header.at("load_steps").dump()) + " there, " +
@@ -61,7 +59,7 @@ bool CheckpointFile::due() const { return Clock::now() - last_ > cost_ / share_o
 
 void CheckpointFile::write(const Checkpoint& checkpoint) {
   const auto start = Clock::now();
-  json header = json::object();
+  nlohmann::json header = nlohmann::json::object();
   header["problem"] = fingerprint_json(print_);
   header["load_steps"] = input_->model.solver.load_steps;
   header["case"] = case_sections(input_->document, sections);

@@ -17,7 +17,6 @@
 namespace kacanov {
 namespace {
 
-using json = nlohmann::ordered_json;
 using Triple = std::array<double, 3>;
 
 constexpr double is_free = std::numeric_limits<double>::quiet_NaN();
@@ -38,9 +37,9 @@ class Converter {
     for (const DeckBlock& block : blocks_) take(block);
     if (!have_step_) throw InputError(deck_.files[0] + ": expected a step, *STEP: this deck is a mesh alone");
     if (materials_.sections().empty()) throw InputError(deck_.files[0] + ": expected a *SOLID SECTION");
-    json document;
+    nlohmann::ordered_json document;
     if (!deck_.title.empty()) document["title"] = deck_.title.substr(0, 200);
-    document["mesh"] = json::object();
+    document["mesh"] = nlohmann::ordered_json::object();
     document["material"] = materials();
     document["boundary"] = boundary();
     DeckCase result{std::move(document), {}, std::move(remarks_)};
@@ -189,19 +188,18 @@ class Converter {
       for (double& component : direction) component *= value / length;
       gravity_.push_back({row.place, std::move(elements), direction});
     } else {
-      change(block,
-             "loads of the kind " + kacanov::quoted(label) + " are not known here, but P1 to P6 and GRAV");
+      change(block, "loads of the kind " + in_quotes(label) + " are not known here, but P1 to P6 and GRAV");
     }
   }
 
   void take_surface_load(const DeckBlock& block, Row row) {
     const std::string label = row.fields.size() > 1 ? upper_case(row.fields[1]) : std::string();
     if (label != "P") {
-      change(block, "loads of the kind " + kacanov::quoted(label) + " are not known here, but P");
+      change(block, "loads of the kind " + in_quotes(label) + " are not known here, but P");
       return;
     }
     const DeckSurface* surface = deck_.surface(row.fields[0], block.in_part);
-    if (surface == nullptr) deck_.fail(row.place, "there is no surface " + kacanov::quoted(row.fields[0]));
+    if (surface == nullptr) deck_.fail(row.place, "there is no surface " + in_quotes(row.fields[0]));
     const double value = deck_number(deck_, row, 2, "a pressure");
     for (const DeckSide& side : surface->sides) press(side, row.place, value);
   }
@@ -215,12 +213,12 @@ class Converter {
 
   // What the case says.
 
-  json materials() {
-    json list = json::array();
+  nlohmann::ordered_json materials() {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const DeckSection& section : materials_.sections()) {
       if (section.thickness != materials_.sections()[0].thickness && dim_ == 2)
         deck_.fail(section.place, "another thickness: expected one for the whole body");
-      json entry{{"on", name_of(section)}};
+      nlohmann::ordered_json entry{{"on", name_of(section)}};
       entry.update(materials_.entry(section));
       list.push_back(std::move(entry));
     }
@@ -230,7 +228,7 @@ class Converter {
   std::size_t index_of(const DeckSection& section) const {
     const DeckSet* set = deck_.element_set(section.elements, section.in_part);
     if (set == nullptr)
-      deck_.fail(section.place, "there is no set of elements " + kacanov::quoted(section.elements));
+      deck_.fail(section.place, "there is no set of elements " + in_quotes(section.elements));
     return static_cast<std::size_t>(set - deck_.element_sets.data());
   }
 
@@ -288,16 +286,16 @@ class Converter {
     }
   }
 
-  json vector(const Triple& v) const {
-    json list = json::array();
+  nlohmann::ordered_json vector(const Triple& v) const {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (std::size_t c = 0; c < static_cast<std::size_t>(dim_); ++c)
-      list.push_back(std::isnan(v[c]) ? json() : json(v[c]));
+      list.push_back(std::isnan(v[c]) ? nlohmann::ordered_json() : nlohmann::ordered_json(v[c]));
     return list;
   }
 
   /// One entry for all nodes that have the same values.
   void add_node_entries(const std::vector<Triple>& values, const char* key, const char* base, double scale,
-                        json& list) {
+                        nlohmann::ordered_json& list) {
     std::map<std::array<std::pair<bool, double>, 3>, std::vector<std::int32_t>> groups;
     for (std::size_t n = 0; n < values.size(); ++n) {
       std::array<std::pair<bool, double>, 3> known;
@@ -316,8 +314,8 @@ class Converter {
     }
   }
 
-  json boundary() {
-    json list = json::array();
+  nlohmann::ordered_json boundary() {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
     add_node_entries(held_, "displacement", "held", 1.0, list);
     // A plane case is of thickness 1.
     add_node_entries(forces_, "node_force", "loaded",
@@ -341,7 +339,7 @@ class Converter {
     Triple acceleration;
   };
 
-  void add_gravity(const Gravity& gravity, json& list) {
+  void add_gravity(const Gravity& gravity, nlohmann::ordered_json& list) {
     const std::vector<DeckSection> sections = materials_.sections();
     for (const DeckSection& section : sections) {
       const std::vector<std::int32_t> mine = deck_.element_sets[index_of(section)].members;
@@ -351,8 +349,7 @@ class Converter {
       if (both.empty()) continue;
       const DeckMaterial& material = materials_.of(section);
       if (!material.density || !(*material.density > 0.0))
-        deck_.fail(gravity.place,
-                   "GRAV: the material " + kacanov::quoted(material.shown) + " has no *DENSITY > 0");
+        deck_.fail(gravity.place, "GRAV: the material " + in_quotes(material.shown) + " has no *DENSITY > 0");
       list.push_back({{"on", name_of(deck_.element_sets, both, "elements")},
                       {"density", *material.density},
                       {"acceleration", vector(gravity.acceleration)}});

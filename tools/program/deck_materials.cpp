@@ -18,7 +18,7 @@ bool DeckMaterials::take(const DeckBlock& block) {
       deck_.fail(block.keyword.place, block.keyword.shown + ": expected NAME=<name>");
     current_ = upper_case(*parameter);
     if (!materials_.emplace(current_, DeckMaterial{block.keyword.place, *parameter, {}, {}, {}}).second)
-      deck_.fail(block.keyword.place, "a second material " + kacanov::quoted(*parameter));
+      deck_.fail(block.keyword.place, "a second material " + in_quotes(*parameter));
     return true;
   }
   if (name != "ELASTIC" && name != "PLASTIC" && name != "DENSITY") return false;
@@ -90,10 +90,9 @@ void DeckMaterials::take_section(const DeckBlock& block) {
 const DeckMaterial& DeckMaterials::of(const DeckSection& section) const {
   const auto found = materials_.find(section.material);
   if (found == materials_.end())
-    deck_.fail(section.place, "there is no material " + kacanov::quoted(section.material));
+    deck_.fail(section.place, "there is no material " + in_quotes(section.material));
   if (!found->second.elastic)
-    deck_.fail(found->second.place,
-               "the material " + kacanov::quoted(found->second.shown) + " has no *ELASTIC");
+    deck_.fail(found->second.place, "the material " + in_quotes(found->second.shown) + " has no *ELASTIC");
   return found->second;
 }
 

@@ -83,7 +83,7 @@ Values<std::int64_t> tags(std::size_t count, const Tag& tag) {
 }
 
 /// The facets of one contact entry with values at their nodes.
-struct Surface {
+struct DrawnSurface {
   std::vector<double> points, gap, pressure, traction;
   std::vector<std::int32_t> cells;
   std::vector<std::int64_t> status, node_id;
@@ -97,7 +97,7 @@ constexpr std::int64_t no_contact_point = -1;
 /// the mid-sides beside it have. `entry`: the facets of an entry in places of the surface.
 class CornerValues {
  public:
-  explicit CornerValues(Surface& surface) : surface_(surface) {}
+  explicit CornerValues(DrawnSurface& surface) : surface_(surface) {}
 
   void spread(std::span<const std::int32_t> entry, const Cell& facet) {
     if (facet.order == 1) return;
@@ -146,14 +146,14 @@ class CornerValues {
     for (std::size_t c = 0; c < 3; ++c) surface_.traction[3 * corner + c] = sums.traction[c] / sums.facets;
   }
 
-  Surface& surface_;
+  DrawnSurface& surface_;
   std::map<std::int32_t, Sums> corners_;
 };
 
-Surface contact_surface(const Problem& problem, const Model& model, const ContactFields& fields) {
+DrawnSurface contact_surface(const Problem& problem, const Model& model, const ContactFields& fields) {
   const Mesh& mesh = problem.mesh;
   const std::size_t dim = mesh.dim();
-  Surface surface;
+  DrawnSurface surface;
   const Selection selection(mesh);
   for (std::size_t entry = 0; entry < model.contact.size(); ++entry) {
     const auto facets = selection.facets(model.contact[entry].on, "contact[" + std::to_string(entry) + "]");
@@ -192,7 +192,7 @@ Surface contact_surface(const Problem& problem, const Model& model, const Contac
   return surface;
 }
 
-void write_surface(const std::filesystem::path& file, const Surface& surface, const Mesh& mesh) {
+void write_surface(const std::filesystem::path& file, const DrawnSurface& surface, const Mesh& mesh) {
   Grid grid;
   grid.dim = mesh.dim();
   grid.cell = &cell(mesh.type).facet();

@@ -29,8 +29,6 @@ void exchange_fields(Either<Problem> auto& problem, const auto& stream) {
 
 namespace {
 
-using nlohmann::json;
-
 constexpr std::string_view part_magic = "kacanov part 11\n", boundary_magic = "kacanov boundary 5\n";
 /// The sections of a case that parts are made of.
 constexpr const char* sections[] = {"mesh", "material", "boundary", "contact", "steps", "probe"};
@@ -44,7 +42,7 @@ std::filesystem::path boundary_file(const std::filesystem::path& folder) {
 }
 
 /// Length and hash of the mesh file; null where there is none, as on a machine that has the parts only.
-json mesh_identity(const Case& input) {
+nlohmann::json mesh_identity(const Case& input) {
   std::ifstream file;
   if (input.mesh.file) file.open(*input.mesh.file, std::ios::binary);
   if (!file.is_open()) return nullptr;
@@ -74,8 +72,8 @@ HashedReader open_boundary(const std::filesystem::path& folder) {
 }
 
 /// Throws InputError where the parts were made of a case with another text.
-void check_case(const json& header, const Case& input, const std::string& file) {
-  const json& there = header.at("case");
+void check_case(const nlohmann::json& header, const Case& input, const std::string& file) {
+  const nlohmann::json& there = header.at("case");
   const std::string text =
       describe_differences(there, input.document, differing_sections(there, input.document, sections));
   if (!text.empty()) throw InputError("--parts: " + file + " belongs to another case: " + text);
@@ -83,10 +81,10 @@ void check_case(const json& header, const Case& input, const std::string& file) 
 
 /// Throws InputError where the mesh file is at hand and is not the one that the parts were made of. It is
 /// hashed, not parsed.
-void check_mesh(const json& header, const Case& input, const std::string& file) {
-  const json &there = header.at("mesh_file"), here = mesh_identity(input);
+void check_mesh(const nlohmann::json& header, const Case& input, const std::string& file) {
+  const nlohmann::json &there = header.at("mesh_file"), here = mesh_identity(input);
   if (here.is_null() || here == there) return;
-  const auto text = [](const json& mesh) {
+  const auto text = [](const nlohmann::json& mesh) {
     std::ostringstream words;
     words << mesh.at("bytes") << " bytes with hash " << std::hex << mesh.at("hash").get<std::uint64_t>();
     return words.str();
@@ -109,7 +107,8 @@ void check_entries(const Part& part, const Model& model) {
 }
 
 /// Throws InputError unless this is the header of the part of a rank, for this case and as many ranks.
-void check_part(const json& header, const Case& input, const MpiSession& mpi, const std::string& file) {
+void check_part(const nlohmann::json& header, const Case& input, const MpiSession& mpi,
+                const std::string& file) {
   check_case(header, input, file);
   const int parts = header.at("parts"), part = header.at("part");
   if (parts != mpi.ranks()) {
@@ -158,7 +157,7 @@ class Staging {
 };
 
 /// What all files of one split have in common.
-std::uint64_t split_identity(json header) {
+std::uint64_t split_identity(nlohmann::json header) {
   header.erase("part");
   const std::string text = header.dump();
   return hash_bytes(text.data(), text.size());
@@ -169,12 +168,12 @@ std::uint64_t split_identity(json header) {
 void write_parts(const std::filesystem::path& folder, const Case& input, Problem problem, int parts) {
   const OutputFolder held(folder);
   const Staging staging(folder / "unfinished");
-  const json header{{"parts", parts},
-                    {"case", case_sections(input.document, sections)},
-                    {"mesh_file", mesh_identity(input)},
-                    {"problem", fingerprint_json(fingerprint(problem))}};
+  const nlohmann::json header{{"parts", parts},
+                              {"case", case_sections(input.document, sections)},
+                              {"mesh_file", mesh_identity(input)},
+                              {"problem", fingerprint_json(fingerprint(problem))}};
   split(problem, parts, [&](int rank, Part&& part) {
-    json own = header;
+    nlohmann::json own = header;
     own["part"] = rank;
     HashedWriter file(part_file(staging.folder(), rank).string(), part_magic, own);
     FieldWriter{file}(part);
