@@ -65,7 +65,7 @@ kacanov_test(random_problems
   LIBRARIES kacanov_dense_solver)
 
 kacanov_test(half_space
-  MPI SOURCES solver/half_space_test.cpp
+  MPI NUMBERS SOURCES solver/half_space_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 kacanov_test(pressed_obstacles
@@ -85,12 +85,12 @@ target_compile_definitions(test_quadratic_contact PRIVATE
   KACANOV_UNEVEN_CUBE="${CMAKE_CURRENT_SOURCE_DIR}/cases/patch/uneven_cube.msh")
 
 kacanov_test(friction_history
-  MPI SOURCES solver/friction_history_test.cpp
+  MPI NUMBERS SOURCES solver/friction_history_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal
   RANKS 1 2)
 
 kacanov_test(closed_friction
-  MPI SOURCES solver/closed_friction_test.cpp
+  MPI NUMBERS SOURCES solver/closed_friction_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal
   RANKS 1 2 4)
 
@@ -99,7 +99,7 @@ kacanov_test(mesh
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 kacanov_test(closed_solutions
-  MPI SOURCES solver/closed_test.cpp solver/radial_test.cpp
+  MPI NUMBERS SOURCES solver/closed_test.cpp solver/radial_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 kacanov_test(contact
   MPI SOURCES solver/contact_test.cpp
