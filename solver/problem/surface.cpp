@@ -17,6 +17,12 @@ constexpr std::int32_t leaf_size = 4;
 /// Of the extent: points so near are one. Files in single precision know them no better.
 constexpr double joined = 1e-7;
 
+/// Beyond, products of four lengths overflow.
+constexpr double largest_coordinate = 1e70;
+
+/// 0 where lengths are so small that nothing is left of their products.
+double share(double part, double whole) { return whole > 0.0 ? part / whole : 0.0; }
+
 double angle_between(const Vector3& a, const Vector3& b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
 
 /// Numbers points so that those within `reach` of an earlier one are that one.
@@ -89,7 +95,8 @@ void Surface::join_points(const std::vector<Vector3>& points, const std::vector<
         throw InputError(name + ": point " + std::to_string(from) + " is not there");
       for (std::size_t c = 0; c < 3; ++c) {
         const double x = points[from][c];
-        if (!(std::abs(x) <= 1e100)) throw InputError(name + ": expected finite coordinates");
+        if (!(std::abs(x) <= largest_coordinate))
+          throw InputError(name + ": expected coordinates of at most 1e70");
         low[c] = std::min(low[c], x);
         high[c] = std::max(high[c], x);
       }
@@ -191,15 +198,18 @@ void Surface::look_at(std::int32_t f, const Vector3& x, Candidate& best) const {
   } else if (d6 >= 0.0 && d5 <= d6) {
     feature = 6, point = c;
   } else if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
-    feature = 1, point = a + (d1 / (d1 - d3)) * ab;
+    feature = 1, point = a + share(d1, d1 - d3) * ab;
   } else if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
-    feature = 2, point = b + ((d4 - d3) / ((d4 - d3) + (d5 - d6))) * (c - b);
+    feature = 2, point = b + share(d4 - d3, (d4 - d3) + (d5 - d6)) * (c - b);
   } else if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
-    feature = 3, point = a + (d2 / (d2 - d6)) * ac;
+    feature = 3, point = a + share(d2, d2 - d6) * ac;
   } else {
-    const double share = 1.0 / (va + vb + vc);
-    point = a + (vb * share) * ab + (vc * share) * ac;
+    const double whole = va + vb + vc;
+    point = a + share(vb, whole) * ab + share(vc, whole) * ac;
   }
+  // Rounding takes the point of a sliver out of it, and nearer to x than the tree's boxes say it can be.
+  for (std::size_t k = 0; k < 3; ++k)
+    point[k] = std::clamp(point[k], std::min({a[k], b[k], c[k]}), std::max({a[k], b[k], c[k]}));
   const double squared = dot(x - point, x - point);
   // Of equals the first in the order of the faces, whatever way the tree was searched.
   if (best.face >= 0 && (squared > best.squared || (squared == best.squared && f > best.face))) return;
