@@ -29,6 +29,10 @@ std::size_t steps_over(const Part& part, const RunOptions& run, std::size_t step
       part.node_map.max_all(here ? static_cast<double>(run.start->count("load_steps_over", most)) : 0.0));
 }
 
+void begin(const Part& part, const RunOptions& run, const char* phase) {
+  if (run.phase && part.node_map.rank == 0) run.phase(phase);
+}
+
 /// Shares of the load one after the other; with load curves the times of their points.
 std::vector<double> load_points(const Part& part, const SolverOptions& options) {
   if (part.steps.empty()) return options.load_steps.empty() ? std::vector{1.0} : options.load_steps;
@@ -162,6 +166,7 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   Solution solution;
   Result& result = solution.result;
   const std::vector<double> shares = load_points(part, options);
+  begin(part, run, "setting the solver up");
   result.by_time = !part.steps.empty();
   OuterLoop loop(part, options, run, shares[steps_over(part, run, shares.size())]);
   loop.work_in(scaled.units());
@@ -170,6 +175,7 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   const double prepared = MPI_Wtime();
   if (restart) loop.restore(run.start, result);
   result.message = part.no_equilibrium;
+  begin(part, run, "solving");
   const auto step_over = [&] {
     if (run.load_step_over) hand_out_step(context, result, run, scaled);
   };

@@ -75,6 +75,8 @@ kacanov_test(memory_model SOURCES tools/memory_model_test.cpp LIBRARIES kacanov_
 
 kacanov_test(files SOURCES tools/control_group_test.cpp tools/mapped_file_test.cpp LIBRARIES kacanov_program)
 
+kacanov_test(terminal SOURCES tools/terminal_test.cpp LIBRARIES kacanov_program)
+
 kacanov_test(vtu SOURCES tools/vtu_test.cpp tools/vtu_reader_test.cpp LIBRARIES kacanov_formats)
 
 kacanov_test(picture SOURCES tools/picture_test.cpp LIBRARIES kacanov_pictures)

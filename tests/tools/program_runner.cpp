@@ -22,6 +22,17 @@ std::size_t count_lines(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
+namespace {
+
+std::string unwrapped(std::string text) {
+  const std::string broken = "\n" + std::string(16, ' ');
+  for (std::size_t at = 0; (at = text.find(broken, at)) != std::string::npos;)
+    text.replace(at, broken.size(), " ");
+  return text;
+}
+
+}  // namespace
+
 nlohmann::json parsed(const std::string& text) { return nlohmann::json::parse(text); }
 
 void Workplace::put(const std::string& name, const std::string& text) const {
@@ -42,8 +53,9 @@ Outcome Workplace::run(const std::string& arguments, const std::string& before) 
   const std::string command = "cd '" + path("").string() + "' && " + before + " '" KACANOV_PROGRAM "' " +
                               arguments + " >output.txt 2>error.txt </dev/null";
   const int status = std::system(command.c_str());
-  Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(path("output.txt")),
-                  contents(path("error.txt"))};
+  const std::string printed = contents(path("output.txt"));
+  Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, unwrapped(printed),
+                  contents(path("error.txt")), printed};
   std::filesystem::remove(path("output.txt"));
   std::filesystem::remove(path("error.txt"));
   return outcome;

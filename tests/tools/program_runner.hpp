@@ -12,7 +12,8 @@ namespace kacanov::testing {
 
 struct Outcome {
   int exit_code = -1;
-  std::string output, error;
+  std::string output, error;  ///< lines that were broken to fit are whole again in `output`
+  std::string printed;        ///< as it came
 };
 
 std::string contents(const std::filesystem::path& file);

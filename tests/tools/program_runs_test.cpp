@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <sstream>
 #include <vector>
 
 #include "program_runner.hpp"
@@ -17,8 +18,8 @@ TEST_CASE("a run converges, says so, and writes every file and key") {
   CHECK(outcome.exit_code == 0);
   CHECK(outcome.error.empty());
   CHECK(outcome.output.find("\nconverged: ") != std::string::npos);
-  for (const char* file :
-       {"result.json", "summary.txt", "result.pvd", "body.vtu", "contact.vtu", "deformed.svg"}) {
+  for (const char* file : {"result.json", "summary.txt", "history.csv", "result.pvd", "body.vtu",
+                           "contact.vtu", "deformed.svg"}) {
     CHECK(place.has(std::string("results/beam/") + file));
   }
   const nlohmann::json result = place.json("results/beam/result.json");
@@ -283,6 +284,33 @@ TEST_CASE("help and version") {
   CHECK(place.run("--help").output.find("Exit codes: 0 converged; 1 not converged") != std::string::npos);
   CHECK(place.run("run --help").exit_code == 0);
   CHECK(place.run("--version").output.rfind("kacanov ", 0) == 0);
+}
+
+TEST_CASE("what is printed fits 80 columns, has no colour, and is nothing if so wished") {
+  const Workplace place;
+  place.put_json("beam.json", small_beam());
+  const Outcome usual = place.run("run beam.json -o out --ranks 2 -v");
+  CHECK(usual.exit_code == 0);
+  std::istringstream lines(usual.printed);
+  for (std::string line; std::getline(lines, line);) {
+    CAPTURE(line);
+    CHECK((line.size() <= 80 || line.find(place.path("").string()) != std::string::npos));
+  }
+  CHECK(usual.printed.find('\033') == std::string::npos);
+  for (const char* phase : {" s] making the mesh", " s] splitting into 2 parts", " s] setting the solver up",
+                            " s] solving", " s] writing to out"})
+    CHECK(usual.printed.find(phase) != std::string::npos);
+  CHECK(count_lines(contents(place.path("out/history.csv"))) ==
+        1 + place.json("out/result.json")["outer_iterations"].get<std::size_t>());
+
+  const Outcome quiet = place.run("run beam.json -o out -q");
+  CHECK(quiet.exit_code == 0);
+  CHECK(quiet.printed.empty());
+  CHECK(place.run("run beam.json -q -v").exit_code == 2);
+
+  const Outcome shown = place.run("run beam.json -o out", "KACANOV_TERMINAL='120 1'");
+  CHECK(shown.printed.find("\033[32mconverged: \033[0m") != std::string::npos);
+  CHECK(place.run("run beam.json -o out").printed.find(" s] ") == std::string::npos);
 }
 
 TEST_CASE("a spectrum whose solves are cut short says so and ends with exit code 1") {

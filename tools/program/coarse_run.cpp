@@ -109,7 +109,6 @@ void solve_level(const Case& input, const MakeMesh& mesh, const MpiSession& mpi,
   const Result& result = solution.result;
   run.levels.push_back({result.unknowns, result.outer_iterations, result.cg_iterations,
                         result.operator_applications, MPI_Wtime() - start});
-  if (mpi.first() && !mpi.hosted()) std::cout << level_line(run.levels.back()) << std::flush;
 }
 
 }  // namespace
@@ -121,13 +120,18 @@ CoarseRun solve_coarser(const Case& input, const MpiSession& mpi, const RunOptio
     return run;
   RunOptions coarse = options;
   coarse.progress = nullptr;
+  coarse.phase = nullptr;
   coarse.checkpoint = nullptr;
   coarse.start = nullptr;
   for (const MakeMesh& mesh : coarser_meshes(input.mesh)) {
+    if (mpi.first() && options.phase) options.phase("solving on a coarser mesh");
     int stop = options.stop_requested && options.stop_requested() ? 1 : 0;
     MPI_Allreduce(MPI_IN_PLACE, &stop, 1, MPI_INT, MPI_MAX, mpi.comm());
     if (stop != 0) break;
+    const std::size_t before = run.levels.size();
     solve_level(input, mesh, mpi, coarse, run);
+    if (mpi.first() && !mpi.hosted() && options.progress && run.levels.size() > before)
+      std::cout << level_line(run.levels.back()) << std::flush;
   }
   return run;
 }

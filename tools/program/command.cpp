@@ -37,7 +37,7 @@ void add_parallel(CLI::App& app, Command& command) {
 }
 
 void add_output(CLI::App& app, Command& command) {
-  app.add_option("--output", command.output, "folder for all files (default: results/<case name>)")
+  app.add_option("-o,--output", command.output, "folder for all files (default: results/<case name>)")
       ->type_name("DIR");
 }
 
@@ -68,6 +68,9 @@ ParsedCommand parse_command(int argc, const char* const* argv) {
                   "seconds that a run which was asked to stop may take to begin its output (default: 30)")
       ->check(CLI::Range(0.1, 1e6).description(""))
       ->type_name("SECONDS");
+  CLI::Option* quiet = run->add_flag("-q,--quiet", command.quiet, "print nothing but warnings and errors");
+  run->add_flag("-v,--verbose", command.verbose, "print what the run is at, however small it is")
+      ->excludes(quiet);
   add_parallel(*run, command);
 
   CLI::App* spectrum =
@@ -106,12 +109,12 @@ ParsedCommand parse_command(int argc, const char* const* argv) {
       ->check(CLI::Range(1, 65535).description(""))
       ->type_name("N")
       ->required();
-  partition->add_option("--output", command.output, "folder for the parts")->type_name("DIR")->required();
+  partition->add_option("-o,--output", command.output, "folder for the parts")->type_name("DIR")->required();
 
   CLI::App* verify = app.add_subcommand(
       "verify", "recompute the certificate of a run from its files alone, by an assembly of its own");
   add_common(*verify, command);
-  verify->add_option("--output", command.output, "folder of the run (default: results/<case name>)")
+  verify->add_option("-o,--output", command.output, "folder of the run (default: results/<case name>)")
       ->type_name("DIR");
 
   CLI::App* convert = app.add_subcommand(

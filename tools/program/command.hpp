@@ -12,20 +12,21 @@ struct Command {
   enum class Kind { run, spectrum, sweep, check, partition, verify, convert, init };
   Kind kind = Kind::run;
   std::string case_file;
-  std::string output;                  ///< folder; empty: results/<case name>
-  std::string parts;                   ///< run: folder that `partition` has written; empty: none
-  std::optional<int> ranks, threads;   ///< of partition: `ranks` is the number of parts, and always there
-  std::vector<std::string> overrides;  ///< --set
-  std::optional<double> tolerance;     ///< spectrum: relative, on λ_min and λ_max
-  bool restart = false;                ///< run: go on from the checkpoint in the folder
-  bool memory_check = true;            ///< run: refuse what does not fit
-  double stop_within = 30.0;           ///< run: seconds from a signal until it is ended all the same
-  bool json = false;                   ///< spectrum: print JSON
-  std::optional<double> r_min, r_max;  ///< sweep
-  int points = 21;                     ///< sweep
-  std::string from, to;                ///< convert, init: files; `to` may be empty
-  bool leave_out = false;              ///< convert: makes a case without what is not known
-  bool force = false;                  ///< convert, init: writes over files that are there
+  std::string output;                   ///< folder; empty: results/<case name>
+  std::string parts;                    ///< run: folder that `partition` has written; empty: none
+  std::optional<int> ranks, threads;    ///< of partition: `ranks` is the number of parts, and always there
+  std::vector<std::string> overrides;   ///< --set
+  std::optional<double> tolerance;      ///< spectrum: relative, on λ_min and λ_max
+  bool restart = false;                 ///< run: go on from the checkpoint in the folder
+  bool memory_check = true;             ///< run: refuse what does not fit
+  bool quiet = false, verbose = false;  ///< run: errors and warnings alone; every phase
+  double stop_within = 30.0;            ///< run: seconds from a signal until it is ended all the same
+  bool json = false;                    ///< spectrum: print JSON
+  std::optional<double> r_min, r_max;   ///< sweep
+  int points = 21;                      ///< sweep
+  std::string from, to;                 ///< convert, init: files; `to` may be empty
+  bool leave_out = false;               ///< convert: makes a case without what is not known
+  bool force = false;                   ///< convert, init: writes over files that are there
 
   /// Whether there is no case to be read.
   bool without_case() const noexcept { return kind == Kind::convert || kind == Kind::init; }

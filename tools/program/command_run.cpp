@@ -2,8 +2,10 @@
 // kacanov run: solves a case and writes everything about it.
 #include <fstream>
 #include <functional>
+#include <iomanip>
 #include <iostream>
 #include <memory>
+#include <sstream>
 #include <string_view>
 
 #include <kacanov/element_fields.hpp>
@@ -15,7 +17,9 @@
 #include "program/coarse_run.hpp"
 #include "program/commands.hpp"
 #include "program/field_files.hpp"
+#include "program/history.hpp"
 #include "program/interrupt.hpp"
+#include "program/launch.hpp"
 #include "program/loaded_case.hpp"
 #include "program/memory_model.hpp"
 #include "program/output_folder.hpp"
@@ -23,6 +27,7 @@
 #include "program/report.hpp"
 #include "program/result_json.hpp"
 #include "program/solve_case.hpp"
+#include "program/terminal.hpp"
 
 namespace kacanov {
 namespace {
@@ -31,7 +36,7 @@ namespace {
 bool is_output(std::string_view name) {
   const std::string_view whole = without_number(name, ".part");
   if (whole == "checkpoint.kacanov") return whole != name;
-  for (const std::string_view file : {"result.json", "summary.txt", "deformed.svg"})
+  for (const std::string_view file : {"result.json", "summary.txt", "history.csv", "deformed.svg"})
     if (whole == file) return true;
   return is_field_file(whole);
 }
@@ -69,9 +74,27 @@ std::vector<double> picked(std::span<const double> all, std::span<const std::int
   return some;
 }
 
-LoadedCase load(const Command& command, const Case& input, const MpiSession& mpi) {
-  if (!command.parts.empty()) return load_parts(command.parts, input, mpi);
-  LoadedCase loaded = load_case(input, mpi, command.memory_check);
+/// Tells what a run is at, where that takes long enough to be asked for; on the first rank.
+std::function<void(const std::string&)> tell_phases(const Command& command, const Case& input,
+                                                    const Terminal& terminal, double start) {
+  constexpr std::int64_t soon = 100'000;  // unknowns: all is over within a second or two
+  if (command.quiet || (!command.verbose && command.parts.empty() && estimate_unknowns(input.mesh) < soon))
+    return {};
+  return [terminal, start](const std::string& phase) {
+    std::ostringstream line;
+    line << '[' << std::fixed << std::setprecision(1) << std::setw(7) << MPI_Wtime() - start << " s] "
+         << phase;
+    std::cout << coloured(terminal, Colour::grey, line.str()) << std::endl;
+  };
+}
+
+LoadedCase load(const Command& command, const Case& input, const MpiSession& mpi,
+                const std::function<void(const std::string&)>& phase) {
+  if (!command.parts.empty()) {
+    if (phase && mpi.first()) phase("reading the parts in " + printable(command.parts));
+    return load_parts(command.parts, input, mpi);
+  }
+  LoadedCase loaded = load_case(input, mpi, command.memory_check, phase);
   keep_boundary(loaded);
   return loaded;
 }
@@ -135,7 +158,9 @@ void leave_failure(const Command& command, const Case& input, const std::string&
 
 int run_command(const Command& command, const Case& input, MpiSession& mpi) {
   const double start = MPI_Wtime();
-  LoadedCase loaded = load(command, input, mpi);
+  const Terminal terminal = terminal_of_output();
+  const auto phase = tell_phases(command, input, terminal, start);
+  LoadedCase loaded = load(command, input, mpi, phase);
   const std::filesystem::path folder = output_folder(command, input);
   std::shared_ptr<OutputFolder> held;  // on the first rank, as what follows
   std::optional<CheckpointFile> file;
@@ -165,9 +190,19 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
   }
   if (left) options.start = &*left;
   options.threads = threads_of(command);
-  options.progress = ProgressTable();
+  options.phase = phase;
+  History history;
+  ProgressTable table(terminal, input.model.solver.tolerance);
+  options.progress = [&](const ProgressStep& step) {
+    history.add(step);
+    if (!command.quiet) table(step);
+  };
   CoarseRun coarse;
-  if (!command.restart) coarse = solve_coarser(input, mpi, options);
+  if (!command.restart) {
+    RunOptions before = options;
+    if (command.quiet) before.progress = nullptr;
+    coarse = solve_coarser(input, mpi, before);
+  }
   if (coarse.solution) options.coarse = &*coarse.solution;
   if (input.output.fields && input.output.steps)
     options.load_step_over = [&](const Part&, const Solution& now) {
@@ -197,6 +232,7 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
     displacement = at_boundary(solution.displacement, dim);
     von_mises = at_boundary(nodal_von_mises(loaded.part, solution.displacement), 1);
   }
+  if (phase && mpi.first()) phase("writing to " + printable(folder.string()));
   // The numbers first: whatever fails after them, they are there.
   figures.read = loaded.read_seconds;
   figures.distribute = loaded.distribute_seconds;
@@ -234,14 +270,20 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
     write_json(folder / "result.json", result_json(result, figures, input, loaded.problem->mesh));
     const std::string text = summary(result, figures, input.model, dim) +
                              (result.status == Status::converged ? "" : checkpoint_line(*file));
-    if (input.output.report) try_to_show([&] { write_file((folder / "summary.txt").string(), text); });
+    if (input.output.report)
+      try_to_show([&] {
+        write_file((folder / "summary.txt").string(), shown(Terminal{}, result.status, text));
+        write_file((folder / "history.csv").string(), history.csv());
+      });
     if (replaced) {
       for (const char* name : {"result.json", "contact.vtu", "body.pvtu", "result.pvd"})
         if (std::filesystem::exists(folder / name)) sync_file((folder / name).string());
       sync_file(folder.string());
       file->remove();
     }
-    std::cout << "\n" + text + "  files         " + printable(folder.string()) + "\n";
+    if (command.quiet) return;
+    const std::string files = "  files         " + printable(folder.string()) + "\n";
+    std::cout << "\n" + shown(terminal, result.status, text + files);
   });
   return result.status == Status::converged ? exit_converged : exit_not_converged;
 }

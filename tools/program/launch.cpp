@@ -29,6 +29,7 @@
 #include "program/command.hpp"
 #include "program/control_group.hpp"
 #include "program/interrupt.hpp"
+#include "program/terminal.hpp"
 
 namespace kacanov {
 namespace {
@@ -249,6 +250,7 @@ int run_under_mpiexec(const std::string& mpiexec, Shape shape, const std::string
   for (const char* argument : arguments.subspan(1)) words.emplace_back(argument);
   set_mpi_environment();
   setenv(started_mark, "1", 1);
+  hand_terminal_down();
 
   struct sigaction action {
   }, before{};

@@ -51,7 +51,9 @@ void print_warnings(const Case& input, const Problem& problem) {
       std::cerr << "kacanov: warning: " + printable(warning) + "\n";
 }
 
-LoadedCase load_case(const Case& input, const MpiSession& mpi, bool memory_check) {
+LoadedCase load_case(const Case& input, const MpiSession& mpi, bool memory_check,
+                     const std::function<void(const std::string&)>& phase) {
+  const bool tells = phase && mpi.first();
   LoadedCase loaded;
   RankCount ranks{mpi.ranks(), 0};
   if (memory_check) {
@@ -61,11 +63,13 @@ LoadedCase load_case(const Case& input, const MpiSession& mpi, bool memory_check
     MPI_Comm_free(&machine);
   }
   const double start = MPI_Wtime();
+  if (tells) phase(input.mesh.box ? "making the mesh" : "reading " + printable(*input.mesh.file));
   together(mpi, [&] {
     if (mpi.first()) loaded.problem = load_problem(input, ranks);
     if (mpi.first() && !mpi.hosted()) print_warnings(input, *loaded.problem);
   });
   const double read = MPI_Wtime();
+  if (tells && mpi.ranks() > 1) phase("splitting into " + std::to_string(mpi.ranks()) + " parts");
   loaded.part = distribute(loaded.problem ? &*loaded.problem : nullptr, mpi.comm());
   loaded.read_seconds = read - start;
   loaded.distribute_seconds = MPI_Wtime() - read;

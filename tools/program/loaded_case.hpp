@@ -2,6 +2,7 @@
 // From a case and its mesh to a problem on the first rank and parts on all.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -42,8 +43,10 @@ struct LoadedCase {
 /// keep_boundary(Problem&).
 void keep_boundary(LoadedCase& loaded);
 
-/// Collective; prints warnings. What is wrong with the input ends as together() says, on all ranks.
-LoadedCase load_case(const Case& input, const MpiSession& mpi, bool memory_check = true);
+/// Collective; prints warnings. What is wrong with the input ends as together() says, on all ranks. `phase`
+/// as RunOptions::phase.
+LoadedCase load_case(const Case& input, const MpiSession& mpi, bool memory_check = true,
+                     const std::function<void(const std::string&)>& phase = {});
 
 /// Threads a rank: as the command says, else OMP_NUM_THREADS, else 1.
 int threads_of(const Command& command);

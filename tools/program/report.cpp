@@ -20,10 +20,12 @@ std::string format(const char* pattern, Arguments... arguments) {
   return buffer.data();
 }
 
-/// What rounding leaves of a component is 0.
-std::string vector_text(const Vector3& v, int dim) {
-  constexpr double rounding = 1e-12;
-  const double least = rounding * norm(v);
+/// Of what is large where a number stands: what is smaller is left by rounding.
+constexpr double rounding = 1e-12;
+
+/// What rounding leaves of a component is 0, beside the vector itself and `scale`.
+std::string vector_text(const Vector3& v, int dim, double scale = 0.0) {
+  const double least = rounding * std::max(norm(v), scale);
   std::string text = "(";
   for (int c = 0; c < dim; ++c)
     text += (c > 0 ? ", " : "") + format("%.6g", std::abs(v[c]) > least ? v[c] : 0.0);
@@ -31,8 +33,33 @@ std::string vector_text(const Vector3& v, int dim) {
 }
 
 /// Of a moment: a number in 2D.
-std::string moment_text(const Vector3& v, int dim) {
-  return dim == 2 ? format("%.6g", v[2]) : vector_text(v, dim);
+std::string moment_text(const Vector3& v, int dim, double scale) {
+  if (dim == 2) return format("%.6g", std::abs(v[2]) > rounding * scale ? v[2] : 0.0);
+  return vector_text(v, dim, scale);
+}
+
+/// 0 for what is nothing in any respect, such as 3.6e-228.
+std::string residual_text(double value) {
+  constexpr double nothing = 1e-30;
+  return std::abs(value) < nothing ? "0" : format("%.1e", value);
+}
+
+/// Sizes beside which a component of a force or a moment is 0.
+struct Scales {
+  double force = 0.0, moment = 0.0;
+};
+
+Scales scales_of(const Result& result) {
+  Scales scales;
+  const auto take = [&](const EntryForce& total) {
+    scales.force = std::max(scales.force, norm(total.force));
+    scales.moment = std::max(scales.moment, norm(total.moment));
+  };
+  for (const BoundaryTotals& totals : result.load) take(totals.total);
+  for (const BoundaryTotals& totals : result.reaction) take(totals.total);
+  for (const ContactTotals& totals : result.contact) take(totals.total);
+  scales.moment = std::max(scales.moment, scales.force * result.body.size);
+  return scales;
 }
 
 std::string count(std::int64_t n) { return std::to_string(n); }
@@ -50,11 +77,11 @@ std::string entry_lines(const char* heading, const std::vector<Totals>& totals, 
   return text;
 }
 
-std::string contact_line(const ContactTotals& contact, const Model& model, int dim) {
+std::string contact_line(const ContactTotals& contact, const Model& model, int dim, const Scales& scales) {
   const ContactEntry& entry = model.contact[contact.entry];
   std::string text = entry_name(entry, static_cast<std::size_t>(contact.entry)) + ": force " +
-                     vector_text(contact.total.force, dim);
-  if (entry.friction) text += ", of it friction " + vector_text(contact.friction_force, dim);
+                     vector_text(contact.total.force, dim, scales.force);
+  if (entry.friction) text += ", of it friction " + vector_text(contact.friction_force, dim, scales.force);
   if (entry.force_controlled) text += format(", pushed by %.6g", contact.travel);
   const std::int64_t touching = contact.sticking + contact.slipping;
   if (touching == 0) return text + format(", touches nowhere, least gap %.4g", contact.least_gap);
@@ -63,10 +90,10 @@ std::string contact_line(const ContactTotals& contact, const Model& model, int d
   return text + format(", pressure up to %.6g", contact.max_pressure);
 }
 
-std::string boundary_line(const BoundaryTotals& totals, const Model& model, int dim) {
+std::string boundary_line(const BoundaryTotals& totals, const Model& model, int dim, const Scales& scales) {
   const std::size_t i = totals.entry;
-  return entry_name(model.boundary[i], i) + ": force " + vector_text(totals.total.force, dim) + ", moment " +
-         moment_text(totals.total.moment, dim);
+  return entry_name(model.boundary[i], i) + ": force " + vector_text(totals.total.force, dim, scales.force) +
+         ", moment " + moment_text(totals.total.moment, dim, scales.moment);
 }
 
 std::string place_text(const Extreme& extreme, int dim) {
@@ -76,17 +103,36 @@ std::string place_text(const Extreme& extreme, int dim) {
 }  // namespace
 
 void ProgressTable::operator()(const ProgressStep& step) {
+  const bool wide = terminal_.width >= 90;
   if (!headed_) {
-    std::cout << format("%4s  %-10s %8s %8s %10s %12s %12s %12s %12s %9s\n", "step", "method", "contact",
-                        "CG", "r", "equilibrium", "penetration", "friction", "worst", "seconds");
+    std::cout << coloured(terminal_, Colour::grey,
+                          format("%4s %-10s %7s %6s", "step", "method", "contact", "CG") +
+                              (wide ? format(" %8s", "r") : "") +
+                              format(" %7s %7s %7s %7s %7s %8s", "equil.", "penetr.", "frict.", "worst",
+                                     "seconds", "left"))
+              << "\n";
     headed_ = true;
   }
-  std::cout << format("%4d  %-10s %8lld %8lld %10.3e %12.2e %12.2e %12.2e %12.2e %9.2f\n", step.outer,
-                      step.phase.c_str(), static_cast<long long>(step.contact_iterations),
-                      static_cast<long long>(step.cg_iterations), step.r, step.certificate.equilibrium,
-                      step.certificate.penetration, step.certificate.friction_cone, step.certificate.worst(),
-                      step.seconds)
+  const Certificate& c = step.certificate;
+  const double worst = c.worst();
+  std::cout << format("%4d %-10s %7lld %6lld", step.outer, step.phase.c_str(),
+                      static_cast<long long>(step.contact_iterations),
+                      static_cast<long long>(step.cg_iterations))
+            << (wide ? format(" %8.2g", step.r) : "");
+  for (const double residual : {c.equilibrium, c.penetration, c.friction_cone, worst})
+    std::cout << format(" %7s", residual_text(residual).c_str());
+  std::cout << format(" %7.*f %8s\n", step.seconds < 1000.0 ? 2 : 0, step.seconds, left(step).c_str())
             << std::flush;
+  worst_ = worst;
+  seconds_ = step.seconds;
+}
+
+/// The time to the tolerance if the residual goes on to fall as it did in this step.
+std::string ProgressTable::left(const ProgressStep& step) const {
+  const double worst = step.certificate.worst(), gained = std::log(worst_ / worst);
+  constexpr double least = 0.1;  // of e: a step that gained less tells nothing
+  if (!(worst > tolerance_ && gained > least)) return "";
+  return readable_seconds((step.seconds - seconds_) * std::log(worst / tolerance_) / gained);
 }
 
 std::string readable_bytes(double bytes) {
@@ -108,7 +154,7 @@ std::string readable_seconds(double seconds) {
 
 namespace {
 
-std::string headline(Status status) {
+std::string first_words(Status status) {
   switch (status) {
     case Status::converged: return "converged: ";
     case Status::limited_by_rounding: return "LIMITED BY ROUNDING: ";
@@ -121,7 +167,8 @@ std::string headline(Status status) {
 }  // namespace
 
 std::string summary(const Result& result, const RunFigures& figures, const Model& model, int dim) {
-  std::string text = headline(result.status) + result.message + "\n";
+  const Scales scales = scales_of(result);
+  std::string text = first_words(result.status) + result.message + "\n";
   text +=
       "  size          " + count(result.unknowns) + " unknowns, " + count(result.elements) + " elements\n";
   text += "  iterations    " + count(result.outer_iterations) + " outer, " +
@@ -134,10 +181,11 @@ std::string summary(const Result& result, const RunFigures& figures, const Model
       text += ", " + count(result.slip_nodes) + " slip";
     }
     text += format(", pressure up to %.6g\n", result.max_contact_pressure);
-    text += "  forces        normal " + vector_text(result.contact_force, dim) + ", friction " +
-            vector_text(result.friction_force, dim) + "\n";
-    text += format("  penalty       r* = %.3g, adapted %.3g (rough lambda %.4g to %.4g)\n", result.r_star,
-                   result.r_active, result.lambda_min, result.lambda_max);
+    text += "  forces        normal " + vector_text(result.contact_force, dim, scales.force) + ", friction " +
+            vector_text(result.friction_force, dim, scales.force) + "\n";
+    if (result.r_star > 0.0)
+      text += format("  penalty       r* = %.3g, adapted %.3g (rough lambda %.4g to %.4g)\n", result.r_star,
+                     result.r_active, result.lambda_min, result.lambda_max);
   }
   if (result.load_cuts > 0)
     text += format("  load          reached the factor %.4g, ", result.load_reached) +
@@ -149,28 +197,49 @@ std::string summary(const Result& result, const RunFigures& figures, const Model
           format(", %.3g %% of the volume\n", 100.0 * result.plastic_share);
   text += "  displacement  up to " + place_text(result.max_displacement, dim) +
           format(", %.2g of the body's size\n", result.max_displacement.value / result.body.size);
-  text += "  strain        up to " + place_text(result.max_strain, dim) +
-          format(", rotation up to %.3g\n", result.max_rotation.value);
-  const auto of_boundary = [&](const BoundaryTotals& totals) { return boundary_line(totals, model, dim); };
+  const double still = rounding * result.max_displacement.value / result.body.size;
+  if (result.max_strain.value > still)
+    text += "  strain        up to " + place_text(result.max_strain, dim) +
+            format(", rotation up to %.3g\n", result.max_rotation.value);
+  else
+    text += "  strain        0\n";
+  const auto of_boundary = [&](const BoundaryTotals& totals) {
+    return boundary_line(totals, model, dim, scales);
+  };
   text += entry_lines("load", result.load, of_boundary);
   text += entry_lines("support", result.reaction, of_boundary);
   text += entry_lines("obstacle", result.contact,
-                      [&](const ContactTotals& totals) { return contact_line(totals, model, dim); });
+                      [&](const ContactTotals& totals) { return contact_line(totals, model, dim, scales); });
   for (std::size_t i = 0; i < result.probe.size(); ++i) {
     text += "  probe         " + vector_text(model.probes[i], dim) + " moves by " +
             vector_text(result.probe[i], dim) + "\n";
   }
   for (const std::string& warning : result.warnings) text += "  warning       " + warning + "\n";
   const Certificate& c = result.certificate;
-  text += format("  certificate   equilibrium %.1e, penetration %.1e, tension %.1e, complementarity %.1e,\n",
-                 c.equilibrium, c.penetration, c.tension, c.complementarity);
-  text += format("                friction cone %.1e, force balance %.1e, duality gap %.1e\n",
-                 c.friction_cone, c.force_balance, c.duality_gap);
-  text += format("                rounding alone leaves up to %.1e\n", c.rounding.worst());
+  text += "  certificate   equilibrium " + residual_text(c.equilibrium) + ", penetration " +
+          residual_text(c.penetration) + ", tension " + residual_text(c.tension) + ", complementarity " +
+          residual_text(c.complementarity) + ", friction cone " + residual_text(c.friction_cone) +
+          ", force balance " + residual_text(c.force_balance) + ", duality gap " +
+          residual_text(c.duality_gap) + "\n";
+  text += "                rounding alone leaves up to " + residual_text(c.rounding.worst()) + "\n";
   text += "  cost          " + readable_seconds(figures.total) + ", " +
           readable_bytes(static_cast<double>(figures.peak_memory_bytes)) + ", " + count(result.ranks) +
           (result.ranks == 1 ? " rank x " : " ranks x ") + count(result.threads) +
           (result.threads == 1 ? " thread" : " threads") + " (" + result.instruction_set + ")\n";
+  return text;
+}
+
+std::string shown(const Terminal& terminal, Status status, const std::string& summary) {
+  constexpr int behind_headings = 16;
+  std::string text = wrapped(summary, terminal.width, behind_headings);
+  if (!terminal.colour) return text;
+  const std::string first = first_words(status);
+  const Colour colour = status == Status::converged ? Colour::green : Colour::red;
+  text = coloured(terminal, colour, first) + text.substr(first.size());
+  const std::string warning = "\n  warning ";
+  const std::string yellow = "\n  " + coloured(terminal, Colour::yellow, "warning") + " ";
+  for (std::size_t at = 0; (at = text.find(warning, at)) != std::string::npos; at += yellow.size())
+    text.replace(at, warning.size(), yellow);
   return text;
 }
 

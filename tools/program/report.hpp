@@ -7,15 +7,23 @@
 #include <kacanov/problem.hpp>
 #include <kacanov/solve.hpp>
 #include "program/result_json.hpp"
+#include "program/terminal.hpp"
 
 namespace kacanov {
 
-/// Prints progress as an aligned table on standard output; its headings come with the first step.
+/// Prints progress as an aligned table on standard output; its headings come with the first step. 80 columns
+/// are enough for it, with more it has some more.
 class ProgressTable {
  public:
+  ProgressTable(const Terminal& terminal, double tolerance) : terminal_(terminal), tolerance_(tolerance) {}
   void operator()(const ProgressStep& step);
 
  private:
+  std::string left(const ProgressStep& step) const;
+
+  Terminal terminal_;
+  double tolerance_;
+  double worst_ = 0.0, seconds_ = 0.0;  ///< of the step before
   bool headed_ = false;
 };
 
@@ -24,7 +32,10 @@ std::string readable_bytes(double bytes);
 /// "0.12 s", "12 min" and the like.
 std::string readable_seconds(double seconds);
 
-/// The summary at the end of a run, several lines. Takes names of probes from the model.
+/// The summary at the end of a run, several lines of any length. Takes names of probes from the model.
 std::string summary(const Result& result, const RunFigures& figures, const Model& model, int dim);
+
+/// A summary as a terminal shows it: lines that fit, colours where it has them.
+std::string shown(const Terminal& terminal, Status status, const std::string& summary);
 
 }  // namespace kacanov

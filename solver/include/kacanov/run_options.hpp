@@ -29,6 +29,8 @@ struct RunOptions {
   int threads = 1;              ///< a rank
   std::string instruction_set;  ///< empty: the best there is
   Progress progress;            ///< called on rank 0 after every outer step; may be empty
+  /// Called on rank 0 with what begins now, in a few words: "setting the solver up"; may be empty.
+  std::function<void(const std::string&)> phase;
 
   /// Asked on every rank every few operator applications (it must not communicate); the first rank that says
   /// yes ends the run of all with the state after the last whole outer step and Status::interrupted. Empty:
