@@ -51,7 +51,7 @@ struct Scales {
 
 Scales scales_of(const Result& result) {
   Scales scales;
-  const auto take = [&](const EntryForce& total) {
+  const auto take = [&](const Resultant& total) {
     scales.force = std::max(scales.force, norm(total.force));
     scales.moment = std::max(scales.moment, norm(total.moment));
   };
@@ -132,7 +132,8 @@ std::string ProgressTable::left(const ProgressStep& step) const {
   const double worst = step.certificate.worst(), gained = std::log(worst_ / worst);
   constexpr double least = 0.1;  // of e: a step that gained less tells nothing
   if (!(worst > tolerance_ && gained > least)) return "";
-  return readable_seconds((step.seconds - seconds_) * std::log(worst / tolerance_) / gained);
+  const double seconds = (step.seconds - seconds_) * std::log(worst / tolerance_) / gained;
+  return seconds < 1.0 ? "" : readable_seconds(seconds);
 }
 
 std::string readable_bytes(double bytes) {
@@ -184,8 +185,9 @@ std::string summary(const Result& result, const RunFigures& figures, const Model
     text += "  forces        normal " + vector_text(result.contact_force, dim, scales.force) + ", friction " +
             vector_text(result.friction_force, dim, scales.force) + "\n";
     if (result.r_star > 0.0)
-      text += format("  penalty       r* = %.3g, adapted %.3g (rough lambda %.4g to %.4g)\n", result.r_star,
-                     result.r_active, result.lambda_min, result.lambda_max);
+      text += format("  penalty       r* = %.3g", result.r_star) +
+              (result.r_active > 0.0 ? format(", adapted %.3g", result.r_active) : "") +
+              format(" (rough lambda %.4g to %.4g)\n", result.lambda_min, result.lambda_max);
   }
   if (result.load_cuts > 0)
     text += format("  load          reached the factor %.4g, ", result.load_reached) +
