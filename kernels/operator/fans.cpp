@@ -10,7 +10,6 @@ namespace {
 
 using Index = std::int32_t;
 
-
 /// Local edges of a tetrahedron (p, q), and the other two nodes so that (p, q, a, b) is oriented like it.
 constexpr std::array<std::array<std::uint8_t, 4>, 6> edges{
     {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}}};

@@ -14,7 +14,6 @@ namespace {
 
 using simd::Shape;
 
-
 /// 16-bit offsets of records of four values.
 constexpr std::size_t most_records = (std::size_t{1} << 16) / 4;
 

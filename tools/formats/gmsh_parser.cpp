@@ -26,7 +26,8 @@ class Parser {
     format();
     while (in_.skip_blank_lines()) {
       const std::string_view line = in_.line();
-      if (line.empty() || line[0] != '$') in_.fail("expected a section such as $Nodes, got " + in_quotes(line));
+      if (line.empty() || line[0] != '$')
+        in_.fail("expected a section such as $Nodes, got " + in_quotes(line));
       section(std::string(line.substr(1)));
     }
     if (!have_nodes_) in_.fail("the file ends without a $Nodes section");

@@ -118,8 +118,8 @@ int number_of_group(const std::string& path, const MeshContent& content, const s
     if (name == group || (name.empty() && std::to_string(key.second) == group)) return key.second;
     known += (known.empty() ? "" : ", ") + in_quotes(name);
   }
-  throw InputError(path + ": expected a physical surface of the name " + in_quotes(group) + ", the file has " +
-                   (known.empty() ? "none with a name" : known));
+  throw InputError(path + ": expected a physical surface of the name " + in_quotes(group) +
+                   ", the file has " + (known.empty() ? "none with a name" : known));
 }
 
 TriangleList facets_of_gmsh(const std::string& path, MeshContent content, const std::string& group) {
