@@ -68,9 +68,9 @@ class Buffer {
   std::vector<T> values_;
 };
 
-class VtuFile {
+class VtuWriter {
  public:
-  VtuFile(const std::string& path, const Grid& grid)
+  VtuWriter(const std::string& path, const Grid& grid)
       : path_(path),
         grid_(grid),
         nodes_(grid.cell->nodes),
@@ -176,7 +176,7 @@ class VtuFile {
 
 }  // namespace
 
-void write_vtu(const std::string& path, const Grid& grid) { VtuFile(path, grid).write(); }
+void write_vtu(const std::string& path, const Grid& grid) { VtuWriter(path, grid).write(); }
 
 void write_pvtu(const std::string& path, const Grid& like, std::span<const std::string> pieces) {
   std::string text = header("PUnstructuredGrid") + "<PUnstructuredGrid GhostLevel=\"0\">\n";
