@@ -24,6 +24,7 @@
 #include "machine.hpp"
 #include "matrices.hpp"
 #include "meshes.hpp"
+#include "own_law.hpp"
 
 using namespace kacanov;
 using nlohmann::json;
@@ -162,6 +163,11 @@ json measure(const meshes::OwnedMesh& mesh, const std::string& kind, const Setti
   timed.push_back({[&] { op.apply_many(std::span(x4).first(2 * n), std::span(y4).first(2 * n), 2); }});
   timed.push_back({[&] { op.apply_many(x4, y4, 4); }});
   timed.push_back({[&] { op.residual(x, y); }});
+  perf::PowerLawBody built_in(mesh, false, most), own(mesh, true, most);
+  for (perf::PowerLawBody* law : {&built_in, &own}) {
+    timed.push_back({[&x, &y, law] { law->residual(x, y); }});
+    timed.push_back({[&x, law] { law->update_tangent(x); }});
+  }
   perf::Matrices matrices;
   if (!settings.no_matrix) {
     std::vector<double> g(body.secant_count());
@@ -221,7 +227,9 @@ json measure(const meshes::OwnedMesh& mesh, const std::string& kind, const Setti
     add("apply", "float", teams[i], timed[next++].seconds, traffic(body, floats[i].bytes(), 4), flops);
   // Several right sides count with the time of one of them.
   const std::vector<std::pair<std::string, double>> forms{
-      {"tangent", 1}, {"apply_dot", 1}, {"two_right_sides", 2}, {"four_right_sides", 4}, {"residual", 1}};
+      {"tangent", 1},          {"apply_dot", 1},    {"two_right_sides", 2},
+      {"four_right_sides", 4}, {"residual", 1},     {"residual_power", 1},
+      {"update_power", 1},     {"residual_own", 1}, {"update_own", 1}};
   for (const auto& [form, vectors] : forms)
     add(form, "double", most, timed[next++].seconds / vectors,
         traffic(body, form == "tangent" ? op.bytes() : held.back(), 8), flops);

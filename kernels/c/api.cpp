@@ -8,6 +8,7 @@
 
 #include <kacanov/locality.hpp>
 #include "c/handle.hpp"
+#include "c/own_law.hpp"
 #include "c/rows.hpp"
 #include "c/sized.hpp"
 #include "c/vectors.hpp"
@@ -24,7 +25,12 @@ const char* kacanov_message(const kacanov_operator* op) {
 
 int kacanov_update(kacanov_operator* op, size_t n, const double* u) {
   return on(op, [&](k::Operator& fast) {
-    fast.update(state(*op, n, u));
+    CallVectors call(*op);
+    const auto at = call.state(n, u);
+    if (op->has_own_laws())
+      fast.set_secant(ask_laws(*op, at, {}).secant);
+    else
+      fast.update(at);
     op->single_is_current = false;
   });
 }
@@ -50,9 +56,10 @@ int kacanov_set_secant(kacanov_operator* op, size_t count, const double* g) {
 
 int kacanov_apply(kacanov_operator* op, size_t n, const double* x, double* y) {
   return on(op, [&](k::Operator& fast) {
+    CallVectors call(*op);
     require_size(n, op->unknowns(), "n");
-    const auto in = input(x, n, "x");
-    const auto out = output(y, n, "y");
+    const auto in = call.in(x, n, "x");
+    const auto out = call.out(y, n, "y");
     require_disjoint(in, out, "x and y");
     apply_rows(*op, in, out, [&](auto from, auto to) { return fast.apply(from, to), 0.0; });
   });
@@ -60,9 +67,10 @@ int kacanov_apply(kacanov_operator* op, size_t n, const double* x, double* y) {
 
 int kacanov_apply_dot(kacanov_operator* op, size_t n, const double* x, double* y, double* dot) {
   return on(op, [&](k::Operator& fast) {
+    CallVectors call(*op);
     require_size(n, op->unknowns(), "n");
-    const auto in = input(x, n, "x");
-    const auto out = output(y, n, "y");
+    const auto in = call.in(x, n, "x");
+    const auto out = call.out(y, n, "y");
     require(dot, "dot");
     require_disjoint(in, out, "x and y");
     *dot = apply_rows(*op, in, out, [&](auto from, auto to) { return fast.apply_dot(from, to); });
@@ -71,9 +79,10 @@ int kacanov_apply_dot(kacanov_operator* op, size_t n, const double* x, double* y
 
 int kacanov_apply_add(kacanov_operator* op, size_t n, double alpha, const double* x, double beta, double* y) {
   return on(op, [&](k::Operator& fast) {
+    CallVectors call(*op);
     require_size(n, op->unknowns(), "n");
-    const auto in = input(x, n, "x");
-    const auto out = output(y, n, "y");
+    const auto in = call.in(x, n, "x");
+    const auto out = call.in_out(y, n, "y");
     require_disjoint(in, out, "x and y");
     std::vector<double>& image = op->image;
     image.resize(n);
@@ -84,10 +93,11 @@ int kacanov_apply_add(kacanov_operator* op, size_t n, double alpha, const double
 
 int kacanov_apply_many(kacanov_operator* op, size_t n, int32_t vectors, const double* x, double* y) {
   return on(op, [&](k::Operator& fast) {
+    CallVectors call(*op);
     require_size(n, op->unknowns(), "n");
     if (vectors < 1) throw Fault(KACANOV_ERROR_VALUE, "vectors: expected at least 1");
-    const auto in = input(x, n * vectors, "x");
-    const auto out = output(y, in.size(), "y");
+    const auto in = call.in(x, n * vectors, "x");
+    const auto out = call.out(y, in.size(), "y");
     require_disjoint(in, out, "x and y");
     apply_rows(*op, in, out, [&](auto from, auto to) { return fast.apply_many(from, to, vectors), 0.0; });
   });
@@ -95,18 +105,25 @@ int kacanov_apply_many(kacanov_operator* op, size_t n, int32_t vectors, const do
 
 int kacanov_update_tangent(kacanov_operator* op, size_t n, const double* u) {
   return on(op, [&](k::Operator& fast) {
-    fast.update_tangent(state(*op, n, u));
+    CallVectors call(*op);
+    const auto at = call.state(n, u);
+    if (op->has_own_laws())
+      fast.update_tangent(at, ask_laws(*op, at, {.derivative = true}).moduli());
+    else
+      fast.update_tangent(at);
     op->single_is_current = false;
     op->has_tangent = true;
+    op->single_has_tangent = false;
   });
 }
 
 int kacanov_apply_tangent(kacanov_operator* op, size_t n, const double* x, double* y) {
   return on(op, [&](k::Operator& fast) {
+    CallVectors call(*op);
     require_tangent(*op);
     require_size(n, op->unknowns(), "n");
-    const auto in = input(x, n, "x");
-    const auto out = output(y, n, "y");
+    const auto in = call.in(x, n, "x");
+    const auto out = call.out(y, n, "y");
     require_disjoint(in, out, "x and y");
     apply_rows(*op, in, out, [&](auto from, auto to) { return fast.apply_tangent(from, to), 0.0; });
   });
@@ -114,20 +131,36 @@ int kacanov_apply_tangent(kacanov_operator* op, size_t n, const double* x, doubl
 
 int kacanov_apply_tangent_dot(kacanov_operator* op, size_t n, const double* x, double* y, double* dot) {
   return on(op, [&](k::Operator& fast) {
+    CallVectors call(*op);
     require_tangent(*op);
     require_size(n, op->unknowns(), "n");
-    const auto in = input(x, n, "x");
-    const auto out = output(y, n, "y");
+    const auto in = call.in(x, n, "x");
+    const auto out = call.out(y, n, "y");
     require(dot, "dot");
     require_disjoint(in, out, "x and y");
     *dot = apply_rows(*op, in, out, [&](auto from, auto to) { return fast.apply_tangent_dot(from, to); });
   });
 }
 
+int kacanov_apply_tangent_many(kacanov_operator* op, size_t n, int32_t vectors, const double* x, double* y) {
+  return on(op, [&](k::Operator& fast) {
+    CallVectors call(*op);
+    require_tangent(*op);
+    require_size(n, op->unknowns(), "n");
+    if (vectors < 1) throw Fault(KACANOV_ERROR_VALUE, "vectors: expected at least 1");
+    const auto in = call.in(x, n * vectors, "x");
+    const auto out = call.out(y, in.size(), "y");
+    require_disjoint(in, out, "x and y");
+    apply_rows(*op, in, out,
+               [&](auto from, auto to) { return fast.apply_tangent_many(from, to, vectors), 0.0; });
+  });
+}
+
 int kacanov_diagonal(kacanov_operator* op, size_t n, double* diagonal) {
   return on(op, [&](k::Operator& fast) {
+    CallVectors call(*op);
     require_size(n, op->unknowns(), "n");
-    const auto out = output(diagonal, n, "diagonal");
+    const auto out = call.out(diagonal, n, "diagonal");
     fast.diagonal(out);
     diagonal_rows(*op, out);
   });
@@ -144,9 +177,10 @@ int kacanov_block_diagonal(kacanov_operator* op, size_t count, double* blocks) {
 
 int kacanov_diagonal_tangent(kacanov_operator* op, size_t n, double* diagonal) {
   return on(op, [&](k::Operator& fast) {
+    CallVectors call(*op);
     require_tangent(*op);
     require_size(n, op->unknowns(), "n");
-    const auto out = output(diagonal, n, "diagonal");
+    const auto out = call.out(diagonal, n, "diagonal");
     fast.diagonal_tangent(out);
     diagonal_rows(*op, out);
   });
@@ -164,49 +198,43 @@ int kacanov_block_diagonal_tangent(kacanov_operator* op, size_t count, double* b
 
 int kacanov_residual(kacanov_operator* op, size_t n, const double* u, double* f) {
   return on(op, [&](k::Operator& fast) {
-    const auto at = state(*op, n, u);
-    const auto out = output(f, n, "f");
+    CallVectors call(*op);
+    const auto at = call.state(n, u);
+    const auto out = call.out(f, n, "f");
     require_disjoint(at, out, "u and f");
-    fast.residual(at, out);
+    if (op->has_own_laws())
+      fast.residual_energy(at, ask_laws(*op, at, {}).moduli(), out);
+    else
+      fast.residual(at, out);
   });
 }
 
 int kacanov_energy(kacanov_operator* op, size_t n, const double* u, double* energy) {
   return on(op, [&](k::Operator& fast) {
-    const auto at = state(*op, n, u);
+    CallVectors call(*op);
+    const auto at = call.state(n, u);
     require(energy, "energy");
-    *energy = fast.energy(at);
+    *energy = op->has_own_laws() ? fast.residual_energy(at, ask_laws(*op, at, {.energy = true}).moduli(), {})
+                                 : fast.energy(at);
   });
 }
 
 int kacanov_residual_energy_update(kacanov_operator* op, size_t n, const double* u, double* f,
                                    double* energy) {
   return on(op, [&](k::Operator& fast) {
-    const auto at = state(*op, n, u);
-    const auto out = output(f, n, "f");
+    CallVectors call(*op);
+    const auto at = call.state(n, u);
+    const auto out = call.out(f, n, "f");
     require(energy, "energy");
     require_disjoint(at, out, "u and f");
-    *energy = fast.residual_energy_update(at, out);
+    if (op->has_own_laws()) {
+      const PointValues values = ask_laws(*op, at, {.energy = true});
+      *energy = fast.residual_energy(at, values.moduli(), out);
+      fast.set_secant(values.secant);
+    } else {
+      *energy = fast.residual_energy_update(at, out);
+    }
     op->single_is_current = false;
-  });
-}
-
-int kacanov_stress(kacanov_operator* op, size_t n, const double* u, const kacanov_fields* fields) {
-  return on(op, [&](k::Operator&) {
-    const auto at = state(*op, n, u);
-    require(fields, "fields");
-    const auto wanted = read_sized<kacanov_fields>(fields, fields_bytes, "fields.", "kacanov_fields");
-    const std::size_t elements = op->mesh.element_count();
-    require_size(wanted.elements, elements, "fields.elements");
-    const auto span = [&](auto* data, std::size_t per_element) {
-      return std::span(data, data == nullptr ? 0 : per_element * elements);
-    };
-    k::reference::fields(op->body(), at,
-                         {.stress = span(wanted.stress, 6),
-                          .von_mises = span(wanted.von_mises, 1),
-                          .dev_strain = span(wanted.dev_strain, 1),
-                          .secant = span(wanted.secant, 1),
-                          .plastic = span(wanted.plastic, 1)});
   });
 }
 
@@ -269,6 +297,7 @@ const char* kacanov_code_text(int code) {
       return "another call has to come first, or the handle is in use by another thread";
     case KACANOV_ERROR_MEMORY: return "out of memory";
     case KACANOV_ERROR_INTERNAL: return "a defect of the library";
+    case KACANOV_ERROR_CASE: return "the case, or a file that it names, is wrong";
     default: return "not a code of this library";
   }
 }

@@ -37,14 +37,22 @@ void check_description(const kacanov_description& d) {
     throw Fault(KACANOV_ERROR_VALUE, "turn_inverted: expected 0 or 1");
   if (d.orphans < KACANOV_ORPHANS_ZERO || d.orphans > KACANOV_ORPHANS_UNIT)
     throw Fault(KACANOV_ERROR_VALUE, "orphans: expected a kacanov_orphans, got " + std::to_string(d.orphans));
-  require(d.coordinates, "coordinates");
-  require(d.connectivity, "connectivity");
+  if (d.may_be_empty != 0 && d.may_be_empty != 1)
+    throw Fault(KACANOV_ERROR_VALUE, "may_be_empty: expected 0 or 1");
+  if (d.component_vectors != 0 && d.component_vectors != 1)
+    throw Fault(KACANOV_ERROR_VALUE, "component_vectors: expected 0 or 1");
+  const bool empty = d.may_be_empty != 0 && d.elements == 0;
+  if (!empty || d.nodes > 0) require(d.coordinates, "coordinates");
+  if (!empty) require(d.connectivity, "connectivity");
   if (d.laws > 0) require(d.law, "law");
-  if (d.nodes == 0 || d.nodes > most / 3)
-    throw Fault(KACANOV_ERROR_SIZE, "nodes: expected 1 to " + std::to_string(most / 3) + " (32-bit indices)");
-  if (d.elements == 0 || d.elements > most / 10)
-    throw Fault(KACANOV_ERROR_SIZE,
-                "elements: expected 1 to " + std::to_string(most / 10) + " (32-bit indices)");
+  if (d.early_count > 0) require(d.early, "early");
+  const auto check_count = [](std::size_t count, bool least, std::size_t largest, const char* name) {
+    if (count < static_cast<std::size_t>(least) || count > largest)
+      throw Fault(KACANOV_ERROR_SIZE, std::string(name) + ": expected " + (least ? "1" : "0") + " to " +
+                                          std::to_string(largest) + " (32-bit indices)");
+  };
+  check_count(d.nodes, !empty, most / 3, "nodes");
+  check_count(d.elements, !empty, most / 10, "elements");
 }
 
 /// Fills the mesh of the handle with copies, or with the caller's arrays where they are borrowed.
@@ -91,9 +99,11 @@ void take_orphans(std::int32_t wanted, kacanov_operator& op) {
                                         std::to_string(op.unit_nodes.size() - 1) + " others");
 }
 
-/// Gives the handle its laws and makes the operator; the handle changes only if all goes well.
-void take_laws(kacanov_operator& op, std::vector<k::Law> checked, const std::uint16_t* law_of_element,
-               bool borrow) {
+/// Gives the handle `count` laws and makes the operator; the handle changes only if all goes well.
+void take_laws(kacanov_operator& op, std::size_t count, const kacanov_law* laws,
+               const std::uint16_t* law_of_element, bool borrow) {
+  std::vector<k::Law> checked = checked_laws(count, laws);
+  std::vector<OwnLaw> own_laws = k::c_api::own_laws(count, laws);
   for (std::size_t i = 0; i < checked.size(); ++i)
     if (checked[i].mean_dilatation && !k::cell(op.mesh.type).mean_dilatation)
       throw Fault(KACANOV_ERROR_LAW,
@@ -117,11 +127,12 @@ void take_laws(kacanov_operator& op, std::vector<k::Law> checked, const std::uin
   op.instruction_set.swap(got);
   op.options.instruction_set = op.instruction_set;
   op.laws.swap(checked);
+  op.own_laws.swap(own_laws);
   op.own_law_of_element.swap(own);  // keeps the address `of_element` may point to
   op.law_of_element = of_element;
   op.single = std::move(single);
   op.single_is_current = true;  // both start with g = mu
-  op.has_tangent = false;
+  op.has_tangent = op.single_has_tangent = false;
   ++op.laws_set;
 }
 
@@ -143,10 +154,13 @@ int kacanov_create(const kacanov_description* description, kacanov_operator** op
     take_orphans(d.orphans, *made);
     const std::size_t worth = std::max<std::size_t>(made->unknowns() / unknowns_a_thread, 1);
     made->options.threads = static_cast<int>(std::clamp<std::size_t>(d.threads, 1, worth));
+    made->early.assign(d.early, d.early + d.early_count);
+    made->options.early = made->early;
     if (d.instruction_set != nullptr) made->instruction_set = d.instruction_set;
     made->options.instruction_set = made->instruction_set;
+    made->split_vectors = d.component_vectors != 0;
     made->wants_single = d.single != 0;
-    if (d.laws > 0) take_laws(*made, checked_laws(d.laws, d.law), d.law_of_element, d.borrow != 0);
+    if (d.laws > 0) take_laws(*made, d.laws, d.law, d.law_of_element, d.borrow != 0);
     *op = made.release();
   });
 }
@@ -159,6 +173,6 @@ int kacanov_set_laws(kacanov_operator* op, size_t laws, const kacanov_law* law, 
     require(law, "law");
     if (laws == 0) throw Fault(KACANOV_ERROR_SIZE, "laws: expected at least 1");
     require_size(elements, op->mesh.element_count(), "elements");
-    take_laws(*op, checked_laws(laws, law), law_of_element, false);
+    take_laws(*op, laws, law, law_of_element, false);
   });
 }

@@ -6,20 +6,25 @@
 
 #include "c/handle.hpp"
 #include "c/rows.hpp"
+#include "c/vectors.hpp"
 
 namespace k = kacanov;
 using namespace kacanov::c_api;
 
 namespace {
 
+void require_single(const kacanov_operator& op, std::size_t n) {
+  if (!op.single)
+    throw Fault(KACANOV_ERROR_STATE,
+                "the operator was made without single precision: see kacanov_description.single");
+  require_size(n, op.unknowns(), "n");
+}
+
 /// Runs `work` on the operator in single precision, whose g it first brings up to date.
 template <class Work>
 int on_single(kacanov_operator* op, std::size_t n, Work&& work) noexcept {
   return on(op, [&](k::Operator& fast) {
-    if (!op->single)
-      throw Fault(KACANOV_ERROR_STATE,
-                  "the operator was made without single precision: see kacanov_description.single");
-    require_size(n, op->unknowns(), "n");
+    require_single(*op, n);
     if (!op->single_is_current) {
       std::vector<double> g(op->body().secant_count());
       fast.secant(g);
@@ -30,12 +35,29 @@ int on_single(kacanov_operator* op, std::size_t n, Work&& work) noexcept {
   });
 }
 
+/// The same with the tangent.
+template <class Work>
+int on_single_tangent(kacanov_operator* op, std::size_t n, Work&& work) noexcept {
+  return on(op, [&](k::Operator& fast) {
+    require_single(*op, n);
+    require_tangent(*op);
+    if (!op->single_has_tangent) op->single->take_tangent(fast);
+    op->single_has_tangent = true;
+    work(*op->single);
+  });
+}
+
+void require_vectors(std::int32_t vectors) {
+  if (vectors < 1) throw Fault(KACANOV_ERROR_VALUE, "vectors: expected at least 1");
+}
+
 }  // namespace
 
 int kacanov_apply_float(kacanov_operator* op, size_t n, const float* x, float* y) {
   return on_single(op, n, [&](k::FloatOperator& single) {
-    const auto in = input(x, n, "x");
-    const auto out = output(y, n, "y");
+    CallVectors call(*op);
+    const auto in = call.in(x, n, "x");
+    const auto out = call.out(y, n, "y");
     require_disjoint(in, out, "x and y");
     apply_rows(*op, in, out, [&](auto from, auto to) { return single.apply(from, to), 0.0; });
   });
@@ -43,8 +65,9 @@ int kacanov_apply_float(kacanov_operator* op, size_t n, const float* x, float* y
 
 int kacanov_apply_dot_float(kacanov_operator* op, size_t n, const float* x, float* y, double* dot) {
   return on_single(op, n, [&](k::FloatOperator& single) {
-    const auto in = input(x, n, "x");
-    const auto out = output(y, n, "y");
+    CallVectors call(*op);
+    const auto in = call.in(x, n, "x");
+    const auto out = call.out(y, n, "y");
     require(dot, "dot");
     require_disjoint(in, out, "x and y");
     *dot = apply_rows(*op, in, out, [&](auto from, auto to) { return single.apply_dot(from, to); });
@@ -53,9 +76,10 @@ int kacanov_apply_dot_float(kacanov_operator* op, size_t n, const float* x, floa
 
 int kacanov_apply_many_float(kacanov_operator* op, size_t n, int32_t vectors, const float* x, float* y) {
   return on_single(op, n, [&](k::FloatOperator& single) {
-    if (vectors < 1) throw Fault(KACANOV_ERROR_VALUE, "vectors: expected at least 1");
-    const auto in = input(x, n * vectors, "x");
-    const auto out = output(y, in.size(), "y");
+    CallVectors call(*op);
+    require_vectors(vectors);
+    const auto in = call.in(x, n * vectors, "x");
+    const auto out = call.out(y, in.size(), "y");
     require_disjoint(in, out, "x and y");
     apply_rows(*op, in, out, [&](auto from, auto to) { return single.apply_many(from, to, vectors), 0.0; });
   });
@@ -63,8 +87,52 @@ int kacanov_apply_many_float(kacanov_operator* op, size_t n, int32_t vectors, co
 
 int kacanov_diagonal_float(kacanov_operator* op, size_t n, float* diagonal) {
   return on_single(op, n, [&](k::FloatOperator& single) {
-    const auto out = output(diagonal, n, "diagonal");
+    CallVectors call(*op);
+    const auto out = call.out(diagonal, n, "diagonal");
     single.diagonal(out);
+    diagonal_rows(*op, out);
+  });
+}
+
+int kacanov_apply_tangent_float(kacanov_operator* op, size_t n, const float* x, float* y) {
+  return on_single_tangent(op, n, [&](k::FloatOperator& single) {
+    CallVectors call(*op);
+    const auto in = call.in(x, n, "x");
+    const auto out = call.out(y, n, "y");
+    require_disjoint(in, out, "x and y");
+    apply_rows(*op, in, out, [&](auto from, auto to) { return single.apply_tangent(from, to), 0.0; });
+  });
+}
+
+int kacanov_apply_tangent_dot_float(kacanov_operator* op, size_t n, const float* x, float* y, double* dot) {
+  return on_single_tangent(op, n, [&](k::FloatOperator& single) {
+    CallVectors call(*op);
+    const auto in = call.in(x, n, "x");
+    const auto out = call.out(y, n, "y");
+    require(dot, "dot");
+    require_disjoint(in, out, "x and y");
+    *dot = apply_rows(*op, in, out, [&](auto from, auto to) { return single.apply_tangent_dot(from, to); });
+  });
+}
+
+int kacanov_apply_tangent_many_float(kacanov_operator* op, size_t n, int32_t vectors, const float* x,
+                                     float* y) {
+  return on_single_tangent(op, n, [&](k::FloatOperator& single) {
+    CallVectors call(*op);
+    require_vectors(vectors);
+    const auto in = call.in(x, n * vectors, "x");
+    const auto out = call.out(y, in.size(), "y");
+    require_disjoint(in, out, "x and y");
+    apply_rows(*op, in, out,
+               [&](auto from, auto to) { return single.apply_tangent_many(from, to, vectors), 0.0; });
+  });
+}
+
+int kacanov_diagonal_tangent_float(kacanov_operator* op, size_t n, float* diagonal) {
+  return on_single_tangent(op, n, [&](k::FloatOperator& single) {
+    CallVectors call(*op);
+    const auto out = call.out(diagonal, n, "diagonal");
+    single.diagonal_tangent(out);
     diagonal_rows(*op, out);
   });
 }

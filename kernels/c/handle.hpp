@@ -29,15 +29,19 @@ struct kacanov_operator {
   std::vector<double> coordinates;
   std::vector<std::int32_t> connectivity;
   std::vector<kacanov::Law> laws;
+  std::vector<kacanov::c_api::OwnLaw> own_laws;  ///< one a law
   std::vector<std::uint16_t> own_law_of_element;
   std::span<const std::uint16_t> law_of_element;
+  std::vector<std::int32_t> early;  ///< nodes whose values are wanted first
   kacanov::OperatorOptions options;
   std::string instruction_set;            ///< what options.instruction_set points to: as asked, then as got
   std::optional<kacanov::Operator> fast;  ///< empty until there are laws
   std::optional<kacanov::FloatOperator> single;  ///< where asked for, as soon as there are laws
   bool wants_single = false;
+  bool split_vectors = false;      ///< the caller's vectors have one array a component
   bool single_is_current = false;  ///< its g is that of `fast`
   bool has_tangent = false;
+  bool single_has_tangent = false;         ///< that of `fast`
   std::vector<std::int32_t> unit_nodes;    ///< nodes of no element whose rows are those of the identity
   std::vector<std::int32_t> constrained;   ///< unknowns, ascending
   std::vector<kacanov::NodeBlock> blocks;  ///< added to B and B_T
@@ -50,6 +54,12 @@ struct kacanov_operator {
 
   std::size_t unknowns() const noexcept { return mesh.coordinates.size(); }
   kacanov::Body body() const noexcept { return {mesh, laws, law_of_element}; }
+  /// Whether the operator's own members know all laws.
+  bool has_own_laws() const noexcept {
+    for (const auto& own : own_laws)
+      if (own.evaluate != nullptr) return true;
+    return false;
+  }
 };
 
 namespace kacanov::c_api {
@@ -133,13 +143,13 @@ int on(kacanov_operator* op, Work&& work) noexcept {
 
 template <class Real>
 std::span<const Real> input(const Real* data, std::size_t n, const char* name) {
-  require(data, name);
+  if (n > 0) require(data, name);
   return {data, n};
 }
 
 template <class Real>
 std::span<Real> output(Real* data, std::size_t n, const char* name) {
-  require(data, name);
+  if (n > 0) require(data, name);
   return {data, n};
 }
 

@@ -24,8 +24,22 @@ Law::Form form_of(const kacanov_law& from, const std::string& where) {
     case KACANOV_SATURATING: return laws::Saturating{from.x0, from.q};
     case KACANOV_TABLE: return table_of(from, where);
     case KACANOV_RAMBERG_OSGOOD: return laws::RambergOsgood{from.x0, from.q, from.n};
+    case KACANOV_USER: return laws::Linear{};  // what it is until the callback is asked
   }
   throw Fault(KACANOV_ERROR_LAW, where + "kind: there is no law " + std::to_string(from.kind));
+}
+
+void check_own(const kacanov_law& from, const std::string& where) {
+  if (from.kind != KACANOV_USER) {
+    if (from.evaluate != nullptr) throw Fault(KACANOV_ERROR_LAW, where + "evaluate: is for KACANOV_USER");
+    return;
+  }
+  if (from.evaluate == nullptr) throw Fault(KACANOV_ERROR_NULL, where + "evaluate: null pointer");
+  if (from.squared != 0) throw Fault(KACANOV_ERROR_LAW, where + "squared: expected 0 for KACANOV_USER");
+  if (from.reserved_user != 0) throw Fault(KACANOV_ERROR_LAW, where + "reserved_user: expected 0");
+  if (from.parallel != 0 && from.parallel != 1)
+    throw Fault(KACANOV_ERROR_LAW, where + "parallel: expected 0 or 1");
+  if (!(from.x0 >= 0.0)) throw Fault(KACANOV_ERROR_LAW, where + "x0: expected a number >= 0");
 }
 
 Law checked_law(const kacanov_law& from, const std::string& where) {
@@ -33,6 +47,7 @@ Law checked_law(const kacanov_law& from, const std::string& where) {
     throw Fault(KACANOV_ERROR_LAW, where + "squared: expected 0 or 1");
   if (from.mean_dilatation != 0 && from.mean_dilatation != 1)
     throw Fault(KACANOV_ERROR_LAW, where + "mean_dilatation: expected 0 or 1");
+  check_own(from, where);
   if (from.reserved != 0) throw Fault(KACANOV_ERROR_LAW, where + "reserved: expected 0");
   Law law;
   law.form = form_of(from, where);
@@ -58,6 +73,16 @@ std::vector<Law> checked_laws(std::size_t count, const kacanov_law* laws) {
     if (std::size_t size = 0; std::memcpy(&size, at, sizeof size), size != stride)
       throw Fault(KACANOV_ERROR_SIZE, where + "struct_size: differs from that of law[0]");
     out.push_back(checked_law(law, where));
+  }
+  return out;
+}
+
+std::vector<OwnLaw> own_laws(std::size_t count, const kacanov_law* laws) {
+  const auto* at = reinterpret_cast<const unsigned char*>(laws);
+  std::vector<OwnLaw> out;
+  for (std::size_t i = 0; i < count; ++i, at += laws->struct_size) {
+    const auto law = read_sized<kacanov_law>(at, law_bytes, "", "kacanov_law");
+    out.push_back({law.evaluate, law.data, law.parallel != 0, law.x0});
   }
   return out;
 }

@@ -28,6 +28,17 @@ class Fault : public std::runtime_error {
 /// its index and the parameter at fault.
 std::vector<Law> checked_laws(std::size_t count, const kacanov_law* laws);
 
+/// What a law of the caller's own is besides k0 and μ; of the others `evaluate` is null.
+struct OwnLaw {
+  kacanov_law_callback evaluate = nullptr;
+  void* data = nullptr;
+  bool parallel = false;
+  double yield = 0.0;  ///< strain beyond which it is plastic; 0: never
+};
+
+/// One a law of an array that checked_laws() has passed.
+std::vector<OwnLaw> own_laws(std::size_t count, const kacanov_law* laws);
+
 /// Throws Fault for the first element whose law does not exist.
 void check_law_of_element(std::span<const std::uint16_t> law_of_element, std::size_t laws);
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "c/own_law.hpp"
 #include "c/rows.hpp"
 #include "c/vectors.hpp"
 
@@ -53,16 +54,25 @@ int kacanov_matrix_entries(kacanov_operator* op, size_t n, size_t* count) {
 int kacanov_matrix(kacanov_operator* op, size_t n, const double* u, size_t count, int64_t* first,
                    int32_t* column, double* value) {
   return on(op, [&](k::Operator& fast) {
+    CallVectors call(*op);
     require_size(n, op->unknowns(), "n");
     require_size(count, entries(*op), "entries");
-    const auto at = u == nullptr ? std::span<const double>() : state(*op, n, u);
+    const auto at = u == nullptr ? std::span<const double>() : call.state(n, u);
     std::vector<double> g(u == nullptr && value != nullptr ? op->body().secant_count() : 0);
     if (!g.empty()) fast.secant(g);
     const auto span = [](auto* data, std::size_t size) {
       return std::span(data, data == nullptr ? 0 : size);
     };
     const k::reference::MatrixRows rows{span(first, n + 1), span(column, count), span(value, count)};
-    k::reference::assemble(op->body(), op->graph, g, at, rows);
+    k::Body body = op->body();
+    PointValues values;
+    k::PointModuli moduli;
+    if (!at.empty() && value != nullptr && op->has_own_laws()) {
+      values = ask_laws(*op, at, {.derivative = true});
+      moduli = values.moduli();
+      body.moduli = &moduli;
+    }
+    k::reference::assemble(body, op->graph, g, at, rows);
     if (value == nullptr) return;
     matrix_rows(*op, rows.value);
   });

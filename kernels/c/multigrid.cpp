@@ -12,6 +12,7 @@
 #include <kacanov/error.hpp>
 #include "c/rows.hpp"
 #include "c/sized.hpp"
+#include "c/vectors.hpp"
 #include "operator/threads.hpp"
 
 namespace k = kacanov;
@@ -156,6 +157,8 @@ int kacanov_multigrid_create(kacanov_operator* op, const kacanov_multigrid_optio
                                                      "kacanov_multigrid_options");
     if (wanted.aggregate != 0.0 && !(wanted.aggregate >= 4.0 && wanted.aggregate <= 1000.0))
       throw Fault(KACANOV_ERROR_VALUE, "options.aggregate: expected 4 to 1000, or 0");
+    if (op->mesh.connectivity.empty())
+      throw Fault(KACANOV_ERROR_STATE, "a body without elements has no multigrid");
     auto made = std::make_unique<kacanov_multigrid>();
     made->op = op;
     made->options.threads = op->options.threads;
@@ -179,9 +182,10 @@ int kacanov_multigrid_update(kacanov_multigrid* multigrid) {
 
 int kacanov_multigrid_apply(kacanov_multigrid* multigrid, size_t n, const double* r, double* z) {
   return alone(multigrid, [&] {
+    CallVectors call(*multigrid->op);
     require_size(n, multigrid->op->unknowns(), "n");
-    const auto in = input(r, n, "r");
-    const auto out = output(z, n, "z");
+    const auto in = call.in(r, n, "r");
+    const auto out = call.out(z, n, "z");
     require_disjoint(in, out, "r and z");
     apply_multigrid(*multigrid, in, out);
   });

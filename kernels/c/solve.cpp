@@ -134,13 +134,14 @@ void solve(kacanov_operator& op, kacanov_multigrid* multigrid, std::span<const d
 int kacanov_cg(kacanov_operator* op, kacanov_multigrid* multigrid, const kacanov_cg_options* options,
                size_t n, const double* b, double* x, kacanov_cg_result* result) {
   return on(op, [&](k::Operator&) {
+    CallVectors call(*op);
     require(result, "result");
     require_struct_size(result->struct_size, cg_result_bytes, "result.", "kacanov_cg_result");
     const Wanted wanted = wanted_of(options);
     if (wanted.tangent) require_tangent(*op);
     require_size(n, op->unknowns(), "n");
-    const auto in = input(b, n, "b");
-    const auto out = output(x, n, "x");
+    const auto in = call.in(b, n, "b");
+    const auto out = call.in_out(x, n, "x");
     require_disjoint(in, out, "b and x");
     require_finite(in, "b");
     require_finite(out, "x");

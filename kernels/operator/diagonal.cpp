@@ -116,7 +116,7 @@ void BasicOperator<Real>::diagonal(std::span<Real> d) const {
 template <class Real>
 void BasicOperator<Real>::block_diagonal_tangent(std::span<Real> blocks) const {
   const Data& data = *data_;
-  if (data.tangent.empty()) throw std::logic_error("block_diagonal_tangent before update_tangent");
+  if (!data.has_tangent) throw std::logic_error("block_diagonal_tangent before update_tangent");
   const Aligned<Real>& g = data.tangent_secant.empty() ? data.secant : data.tangent_secant;
   const std::size_t lanes = data.layout.lanes;
   data.sum_blocks(blocks, [&](const auto& point, int a, const Law& law, std::size_t slot, Real* block) {

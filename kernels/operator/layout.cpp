@@ -341,10 +341,11 @@ Layout make_layout(const Body& body, int lanes, int threads, std::size_t record_
   builder.rank.resize(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) builder.rank[order[i]] = static_cast<std::int32_t>(i);
   const std::size_t per_block = cache_bytes / (3 * record_bytes);
-  const std::size_t wanted = (body.mesh.node_count() + per_block - 1) / per_block;
+  const std::size_t nodes = body.mesh.connectivity.empty() ? 0 : body.mesh.node_count();
+  const std::size_t wanted = (nodes + per_block - 1) / per_block;
   // A multiple of the threads, and each block worth its surface, but a block for every thread where possible.
   const std::size_t team = threads;
-  const int parts = static_cast<int>((std::max<std::size_t>(wanted, 1) + team - 1) / team * team);
+  const int parts = wanted == 0 ? 1 : static_cast<int>((wanted + team - 1) / team * team);
   auto blocks = assign_units(builder, parts, partition_nodes(body.mesh, order, parts));
   layout.share = share_blocks(builder.units, blocks, threads);
   std::vector<char> is_early(body.mesh.node_count(), 0);

@@ -51,10 +51,10 @@ std::string element_fault(const MeshView& mesh) {
 std::string arrays_fault(const MeshView& mesh) {
   const std::size_t dim = dimension(mesh.type);
   const std::size_t nodes = nodes_per_element(mesh.type);
-  if (mesh.coordinates.empty() || mesh.coordinates.size() % dim != 0)
-    return "coordinates: expected a positive multiple of " + std::to_string(dim) + " values";
-  if (mesh.connectivity.empty() || mesh.connectivity.size() % nodes != 0)
-    return "connectivity: expected a positive multiple of " + std::to_string(nodes) + " indices";
+  if (mesh.coordinates.size() % dim != 0)
+    return "coordinates: expected a multiple of " + std::to_string(dim) + " values";
+  if (mesh.connectivity.size() % nodes != 0)
+    return "connectivity: expected a multiple of " + std::to_string(nodes) + " indices";
   for (std::size_t i = 0; i < mesh.coordinates.size(); ++i)
     if (!std::isfinite(mesh.coordinates[i]))
       return "coordinates: those of node " + std::to_string(i / dim) + " are not finite";

@@ -3,11 +3,25 @@
 #include <kacanov/operator.hpp>
 
 #include <stdexcept>
+#include <vector>
 
 #include "operator/checks.hpp"
 #include "operator/passes.hpp"
 
 namespace kacanov {
+namespace {
+
+/// Calls some(done, step) for steps of 4, 2 or 1 of the vectors, the numbers that the loops take at once.
+template <class Some>
+void in_steps(int vectors, const Some& some) {
+  for (int done = 0; done < vectors;) {
+    const int left = vectors - done, step = left >= 4 ? 4 : left >= 2 ? 2 : 1;
+    some(done, step);
+    done += step;
+  }
+}
+
+}  // namespace
 
 template <class Real>
 BasicOperator<Real>::BasicOperator(const Body& body, const OperatorOptions& options)
@@ -72,12 +86,24 @@ void BasicOperator<Real>::apply_many(std::span<const Real> x, std::span<Real> y,
   const std::size_t count = vectors;
   expect_size(x.size(), unknowns() * count, "x");
   expect_size(y.size(), unknowns() * count, "y");
-  for (int done = 0; done < vectors;) {
-    const int left = vectors - done, step = left >= 4 ? 4 : left >= 2 ? 2 : 1;
+  in_steps(vectors, [&](int done, int step) {
     const std::size_t offset = unknowns() * done;
     data_->apply(x.data() + offset, y.data() + offset, step, false);
-    done += step;
-  }
+  });
+  data_->applications += count;
+}
+
+template <class Real>
+void BasicOperator<Real>::apply_tangent_many(std::span<const Real> x, std::span<Real> y, int vectors) {
+  if (!data_->has_tangent) throw std::logic_error("apply_tangent_many before update_tangent");
+  if (vectors < 1) throw std::invalid_argument("vectors: expected at least 1");
+  const std::size_t count = vectors;
+  expect_size(x.size(), unknowns() * count, "x");
+  expect_size(y.size(), unknowns() * count, "y");
+  in_steps(vectors, [&](int done, int step) {
+    const std::size_t offset = unknowns() * done;
+    data_->apply_tangent(x.data() + offset, y.data() + offset, step, false);
+  });
   data_->applications += count;
 }
 
@@ -90,25 +116,54 @@ void BasicOperator<Real>::update_tangent(std::span<const Real> u) {
 template <class Real>
 void BasicOperator<Real>::apply_tangent(std::span<const Real> x, std::span<Real> y,
                                         const WhenEarly& when_early) {
-  if (data_->tangent.empty()) throw std::logic_error("apply_tangent before update_tangent");
+  if (!data_->has_tangent) throw std::logic_error("apply_tangent before update_tangent");
   expect_size(x.size(), unknowns(), "x");
   expect_size(y.size(), unknowns(), "y");
   ++data_->applications;
-  data_->apply_tangent(x.data(), y.data(), false, when_early);
+  data_->apply_tangent(x.data(), y.data(), 1, false, when_early);
 }
 
 template <class Real>
 double BasicOperator<Real>::apply_tangent_dot(std::span<const Real> x, std::span<Real> y,
                                               const WhenEarly& when_early) {
-  if (data_->tangent.empty()) throw std::logic_error("apply_tangent_dot before update_tangent");
+  if (!data_->has_tangent) throw std::logic_error("apply_tangent_dot before update_tangent");
   expect_size(x.size(), unknowns(), "x");
   expect_size(y.size(), unknowns(), "y");
   ++data_->applications;
-  return data_->apply_tangent(x.data(), y.data(), true, when_early);
+  return data_->apply_tangent(x.data(), y.data(), 1, true, when_early);
+}
+
+template <class Real>
+void BasicOperator<Real>::take_tangent(const BasicOperator<double>& from) {
+  const auto& other = *from.data_;
+  Data& data = *data_;
+  if (!other.has_tangent) throw std::logic_error("take_tangent before update_tangent");
+  expect_size(other.points, data.points, "from");
+  std::vector<std::size_t> there(data.points);
+  for (std::size_t slot = 0; slot < other.secant.size(); ++slot)
+    if (const std::int32_t point = other.layout.element_point[slot]; point >= 0) there[point] = slot;
+  const auto& g = other.tangent_secant.empty() ? other.secant : other.tangent_secant;
+  data.has_tangent = true;
+  data.tangent.assign(simd::tangent_floats * data.secant.size(), 0.0F);
+  data.tangent_secant.assign(data.secant.size(), Real(0));
+  // Of a vector of points; the lanes of an instruction set differ between the precisions.
+  const auto place = [](std::size_t slot, std::size_t lanes) {
+    return simd::tangent_floats * (slot - slot % lanes) + slot % lanes;
+  };
+  const std::size_t mine = data.layout.lanes, its = other.layout.lanes;
+  for (std::size_t slot = 0; slot < data.secant.size(); ++slot) {
+    const std::int32_t point = data.layout.element_point[slot];
+    if (point < 0) continue;
+    const std::size_t source = there[point];
+    data.tangent_secant[slot] = static_cast<Real>(g[source]);
+    for (std::size_t k = 0; k < simd::tangent_floats; ++k)
+      data.tangent[place(slot, mine) + k * mine] = other.tangent[place(source, its) + k * its];
+  }
 }
 
 template <class Real>
 void BasicOperator<Real>::forget_tangent() noexcept {
+  data_->has_tangent = false;
   Aligned<float>().swap(data_->tangent);  // assigning {} would keep the memory
   Aligned<Real>().swap(data_->tangent_secant);
 }
@@ -134,6 +189,43 @@ double BasicOperator<Real>::residual_energy_update(std::span<const Real> u, std:
 }
 
 template <class Real>
+void BasicOperator<Real>::strain(std::span<const Real> u, std::span<double> x) {
+  Data& data = *data_;
+  expect_size(u.size(), unknowns(), "u");
+  expect_size(x.size(), data.points, "x");
+  data.strain.resize(data.secant.size());
+  data.nonlinear(u.data(), nullptr, {}, {.strain = data.strain.data()});
+  for (std::size_t slot = 0; slot < data.strain.size(); ++slot)
+    if (const std::int32_t point = data.layout.element_point[slot]; point >= 0)
+      x[point] = static_cast<double>(data.strain[slot]);
+}
+
+template <class Real>
+void BasicOperator<Real>::update_tangent(std::span<const Real> u, const PointModuli& moduli) {
+  Data& data = *data_;
+  expect_size(u.size(), unknowns(), "u");
+  expect_size(moduli.secant.size(), data.points, "moduli.secant");
+  expect_size(moduli.derivative.size(), data.points, "moduli.derivative");
+  const simd::Outside<Real> outside{.secant = data.by_slot(moduli.secant, data.outside_secant),
+                                    .slope = data.by_slot(moduli.derivative, data.outside_slope)};
+  data.nonlinear(u.data(), nullptr, {.keep_secant = true, .keep_tangent = true}, outside);
+}
+
+template <class Real>
+double BasicOperator<Real>::residual_energy(std::span<const Real> u, const PointModuli& moduli,
+                                            std::span<Real> f) {
+  Data& data = *data_;
+  expect_size(u.size(), unknowns(), "u");
+  if (!f.empty()) expect_size(f.size(), unknowns(), "f");
+  expect_size(moduli.secant.size(), data.points, "moduli.secant");
+  if (!moduli.energy.empty()) expect_size(moduli.energy.size(), data.points, "moduli.energy");
+  const simd::Outside<Real> outside{.secant = data.by_slot(moduli.secant, data.outside_secant),
+                                    .energy = data.by_slot(moduli.energy, data.outside_energy)};
+  const double energy = data.nonlinear(u.data(), f.empty() ? nullptr : f.data(), {}, outside);
+  return moduli.energy.empty() ? 0.0 : energy;
+}
+
+template <class Real>
 std::string_view BasicOperator<Real>::instruction_set() const noexcept {
   return simd::name(data_->set);
 }
@@ -143,7 +235,9 @@ std::size_t BasicOperator<Real>::bytes() const noexcept {
   const Data& data = *data_;
   std::size_t sum =
       data.layout.bytes() +
-      (data.coordinates.size() + data.secant.size() + data.tangent_secant.size()) * sizeof(Real) +
+      (data.coordinates.size() + data.secant.size() + data.tangent_secant.size() + data.strain.size() +
+       data.outside_secant.size() + data.outside_slope.size() + data.outside_energy.size()) *
+          sizeof(Real) +
       data.tangent.size() * sizeof(float);
   for (const auto& scratch : data.scratch)
     sum += (scratch.u.size() + scratch.f.size() + scratch.sums.size()) * sizeof(Real);

@@ -103,7 +103,7 @@ simd::Block<Real> BasicOperator<Real>::Data::block(std::size_t b) {
 
 template <class Real>
 void BasicOperator<Real>::Data::detach_tangent() {
-  if (!tangent.empty() && tangent_secant.empty()) tangent_secant = secant;
+  if (has_tangent && tangent_secant.empty()) tangent_secant = secant;
 }
 
 template <class Real>
@@ -179,38 +179,58 @@ double BasicOperator<Real>::Data::pass(const Real* x, Real* y, int vectors, cons
 }
 
 template <class Real>
+double BasicOperator<Real>::Data::dots(const simd::Block<Real>& at, const simd::Vectors<Real>& vectors) {
+  double sum = 0.0;
+  for (std::size_t v = 0; v < static_cast<std::size_t>(vectors.count); ++v)
+    sum += kernels.dot(at, vectors.u + v * vectors.stride, vectors.f + v * vectors.stride);
+  return sum;
+}
+
+template <class Real>
 double BasicOperator<Real>::Data::apply(const Real* x, Real* y, int vectors, bool with_dot,
                                         const WhenEarly& when_early) {
   return pass(x, y, vectors, when_early,
               [&](const simd::Block<Real>& at, const Real* u, Real* f, std::size_t stride) {
                 kernels.apply(at, {u, f, vectors, stride});
-                double sum = 0.0;
-                for (std::size_t v = 0; with_dot && v < static_cast<std::size_t>(vectors); ++v)
-                  sum += kernels.dot(at, u + v * stride, f + v * stride);
-                return sum;
+                return with_dot ? dots(at, {u, f, vectors, stride}) : 0.0;
               });
 }
 
 template <class Real>
-double BasicOperator<Real>::Data::apply_tangent(const Real* x, Real* y, bool with_dot,
+double BasicOperator<Real>::Data::apply_tangent(const Real* x, Real* y, int vectors, bool with_dot,
                                                 const WhenEarly& when_early) {
-  return pass(x, y, 1, when_early, [&](simd::Block<Real> at, const Real* u, Real* f, std::size_t) {
-    if (!tangent_secant.empty()) at.secant = tangent_secant.data() + (at.secant - secant.data());
-    kernels.apply_tangent(at, u, f);
-    return with_dot ? kernels.dot(at, u, f) : 0.0;
-  });
+  return pass(x, y, vectors, when_early,
+              [&](simd::Block<Real> at, const Real* u, Real* f, std::size_t stride) {
+                if (!tangent_secant.empty()) at.secant = tangent_secant.data() + (at.secant - secant.data());
+                kernels.apply_tangent(at, {u, f, vectors, stride});
+                return with_dot ? dots(at, {u, f, vectors, stride}) : 0.0;
+              });
 }
 
 template <class Real>
-double BasicOperator<Real>::Data::nonlinear(const Real* u, Real* f, simd::Nonlinear keep) {
+const Real* BasicOperator<Real>::Data::by_slot(std::span<const double> values, Aligned<Real>& slots) const {
+  if (values.empty()) return nullptr;
+  slots.resize(secant.size());
+  for (std::size_t slot = 0; slot < slots.size(); ++slot) {
+    const std::int32_t point = layout.element_point[slot];
+    slots[slot] = point < 0 ? Real(0) : static_cast<Real>(values[point]);
+  }
+  return slots.data();
+}
+
+template <class Real>
+double BasicOperator<Real>::Data::nonlinear(const Real* u, Real* f, simd::Nonlinear keep,
+                                            const simd::Outside<Real>& outside) {
   if (keep.keep_tangent) {
+    has_tangent = true;
     tangent.resize(simd::tangent_floats * secant.size());
     Aligned<Real>().swap(tangent_secant);
   } else if (keep.keep_secant) {
     detach_tangent();
   }
-  return pass(u, f, 1, {}, [&](const simd::Block<Real>& at, const Real* local, Real* forces, std::size_t) {
+  return pass(u, f, 1, {}, [&](simd::Block<Real> at, const Real* local, Real* forces, std::size_t) {
     simd::Nonlinear out = keep;
+    at.outside = outside.from(static_cast<std::size_t>(at.secant - secant.data()));
     kernels.nonlinear(at, local, forces, &out);
     return out.energy;
   });

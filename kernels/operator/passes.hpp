@@ -38,9 +38,13 @@ struct BasicOperator<Real>::Data {
   /// y_v = B x_v for `count` vectors (1, 2 or 4), one after another in x and y. Returns Σ x_vᵀ y_v if
   /// `with_dot`, else 0.
   double apply(const Real* x, Real* y, int count, bool with_dot, const WhenEarly& when_early = {});
-  double apply_tangent(const Real* x, Real* y, bool with_dot, const WhenEarly& when_early);
+  double apply_tangent(const Real* x, Real* y, int count, bool with_dot, const WhenEarly& when_early = {});
+  /// Σ x_vᵀ y_v over the block.
+  double dots(const simd::Block<Real>& at, const simd::Vectors<Real>& vectors);
   /// Internal force at u into f, unless that is null; what to keep. Returns the energy if that is summed.
-  double nonlinear(const Real* u, Real* f, simd::Nonlinear keep);
+  double nonlinear(const Real* u, Real* f, simd::Nonlinear keep, const simd::Outside<Real>& outside = {});
+  /// Of the caller's elements × points: as the slots have them, 0 in idle lanes; null where there are none.
+  const Real* by_slot(std::span<const double> values, Aligned<Real>& slots) const;
 
   /// Calls loops(block, u, f, stride) between gathering x and scattering y, and adds up what it returns.
   template <class LoopsOnBlock>
@@ -62,8 +66,10 @@ struct BasicOperator<Real>::Data {
   Layout layout;
   Aligned<Real> coordinates;
   Aligned<Real> secant;  ///< by slot
+  bool has_tangent = false;
   Aligned<float> tangent;
   Aligned<Real> tangent_secant;  ///< g of the tangent, where it is no longer `secant`
+  Aligned<Real> strain, outside_secant, outside_slope, outside_energy;  ///< empty until they are asked for
   std::vector<Scratch> scratch;
   int scratch_vectors = 0;
   std::uint64_t applications = 0;

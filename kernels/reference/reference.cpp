@@ -45,13 +45,20 @@ Sym stress(const Law& law, double g, const Strain& strain) {
   return tau;
 }
 
+/// What the law says at point q of element e, or who speaks in its place.
+template <class E>
+Moduli moduli_at(const Body& body, std::size_t e, std::size_t q, double x) {
+  if (body.moduli == nullptr) return body.law(e).moduli(x);
+  const std::size_t k = e * E::points + q;
+  return {body.moduli->secant[k], body.moduli->derivative.empty() ? 0.0 : body.moduli->derivative[k]};
+}
+
 /// Tangent stress of the increment `strain` at the state `at`.
-Sym tangent_stress(const Law& law, const Strain& at, const Strain& strain) {
-  const double x = at.norm();
-  Sym tau = stress(law, law.secant(x), strain);
-  const double slope = law.secant_derivative(x);
+Sym tangent_stress(const Law& law, const Moduli& moduli, const Strain& at, const Strain& strain) {
+  Sym tau = stress(law, moduli.secant, strain);
+  const double slope = moduli.derivative;
   if (slope == 0.0) return tau;  // also the limit x → 0 of every law
-  const double factor = 2.0 * slope / x * inner(at.dev, strain.dev);
+  const double factor = 2.0 * slope / at.norm() * inner(at.dev, strain.dev);
   for (std::size_t i = 0; i < 6; ++i) tau[i] += factor * at.dev[i];
   return tau;
 }
@@ -177,10 +184,10 @@ void fill_matrix(const Body& body, std::size_t element, std::span<double> matrix
 
 void secant(const Body& body, std::span<const double> u, std::span<double> g) {
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
-    for_each_point<E>(
-        body, u, [&](std::size_t e, const Law& law, std::size_t q, const Point<E>&, const Strain& strain) {
-          g[e * E::points + q] = law.secant(strain.norm());
-        });
+    for_each_point<E>(body, u,
+                      [&](std::size_t e, const Law&, std::size_t q, const Point<E>&, const Strain& strain) {
+                        g[e * E::points + q] = moduli_at<E>(body, e, q, strain.norm()).secant;
+                      });
   });
 }
 
@@ -196,10 +203,12 @@ void apply(const Body& body, std::span<const double> g, std::span<const double> 
 void apply_tangent(const Body& body, std::span<const double> u, std::span<const double> x,
                    std::span<double> y) {
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
-    assemble<E>(body, x, y,
-                [&](std::size_t e, const Law& law, std::size_t, const Point<E>& point, const Strain& strain) {
-                  return tangent_stress(law, strain_at<E>(point, gather<E>(body, e, u)), strain);
-                });
+    assemble<E>(
+        body, x, y,
+        [&](std::size_t e, const Law& law, std::size_t q, const Point<E>& point, const Strain& strain) {
+          const Strain at = strain_at<E>(point, gather<E>(body, e, u));
+          return tangent_stress(law, moduli_at<E>(body, e, q, at.norm()), at, strain);
+        });
   });
 }
 
@@ -232,12 +241,13 @@ void block_diagonal_tangent(const Body& body, std::span<const double> u, std::sp
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     for_each_point<E>(
         body, u,
-        [&](std::size_t e, const Law& law, std::size_t, const Point<E>& point, const Strain& strain) {
+        [&](std::size_t e, const Law& law, std::size_t q, const Point<E>& point, const Strain& strain) {
           const std::int32_t* node = nodes_of(body, e);
-          const double x = strain.norm(), slope = law.secant_derivative(x);
+          const double x = strain.norm();
+          const auto [g, slope] = moduli_at<E>(body, e, q, x);
           for (int a = 0; a < E::nodes; ++a) {
             double* block = blocks.data() + Point<E>::at(node[a], 0) * E::dim;
-            point.add_diagonal_block(a, law.bulk, law.secant(x), block);
+            point.add_diagonal_block(a, law.bulk, g, block);
             if (slope != 0.0) point.add_rank_one_block(a, 2.0 * slope / x, strain.dev, block);
           }
         });
@@ -247,8 +257,8 @@ void block_diagonal_tangent(const Body& body, std::span<const double> u, std::sp
 void residual(const Body& body, std::span<const double> u, std::span<double> f) {
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     assemble<E>(body, u, f,
-                [](std::size_t, const Law& law, std::size_t, const Point<E>&, const Strain& strain) {
-                  return stress(law, law.secant(strain.norm()), strain);
+                [&](std::size_t e, const Law& law, std::size_t q, const Point<E>&, const Strain& strain) {
+                  return stress(law, moduli_at<E>(body, e, q, strain.norm()).secant, strain);
                 });
   });
 }
@@ -257,9 +267,11 @@ double energy(const Body& body, std::span<const double> u) {
   double sum = 0.0;
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     for_each_point<E>(
-        body, u, [&](std::size_t, const Law& law, std::size_t, const Point<E>& point, const Strain& strain) {
-          sum +=
-              point.volume * (0.5 * law.bulk * strain.trace * strain.trace + 2.0 * law.energy(strain.norm()));
+        body, u,
+        [&](std::size_t e, const Law& law, std::size_t q, const Point<E>& point, const Strain& strain) {
+          const double shear =
+              body.moduli == nullptr ? law.energy(strain.norm()) : body.moduli->energy[e * E::points + q];
+          sum += point.volume * (0.5 * law.bulk * strain.trace * strain.trace + 2.0 * shear);
         });
   });
   return sum;
@@ -280,8 +292,9 @@ void element_tangent(const Body& body, std::size_t element, std::span<const doub
   const Law& law = body.law(element);
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     const Nodal<E> local = gather<E>(body, element, u);
-    fill_matrix<E>(body, element, matrix, [&](std::size_t, const Point<E>& point, const Strain& strain) {
-      return tangent_stress(law, strain_at<E>(point, local), strain);
+    fill_matrix<E>(body, element, matrix, [&](std::size_t q, const Point<E>& point, const Strain& strain) {
+      const Strain at = strain_at<E>(point, local);
+      return tangent_stress(law, moduli_at<E>(body, element, q, at.norm()), at, strain);
     });
   });
 }
@@ -309,7 +322,7 @@ void fields(const Body& body, std::span<const double> u, const ElementFields& ou
       for (std::size_t q = 0; q < E::points; ++q) {
         const Point<E>& point = points[q];
         const Strain strain = strain_at<E>(point, local);
-        const double norm = strain.norm(), g = law.secant(norm);
+        const double norm = strain.norm(), g = moduli_at<E>(body, e, q, norm).secant;
         const Sym point_tau = stress(law, g, strain);
         for (std::size_t i = 0; i < 6; ++i) tau[i] += point.volume * point_tau[i];
         volume += point.volume;
@@ -334,13 +347,42 @@ void fields(const Body& body, std::span<const double> u, const ElementFields& ou
   });
 }
 
+void strains(const Body& body, std::span<const double> u, std::span<double> out) {
+  elements::dispatch(body.mesh.type, [&]<class E>(E) {
+    for_each_point<E>(
+        body, u, [&](std::size_t e, const Law&, std::size_t q, const Point<E>&, const Strain& strain) {
+          for (std::size_t i = 0; i < 6; ++i)
+            out[6 * (e * E::points + q) + i] = strain.dev[i] + (i < 3 ? strain.trace / 3.0 : 0.0);
+        });
+  });
+}
+
+void points(const Body& body, std::span<double> position, std::span<double> weight) {
+  elements::dispatch(body.mesh.type, [&]<class E>(E) {
+    for (std::size_t k = 0; k < body.mesh.element_count() * E::points; ++k) {
+      const std::size_t q = k % E::points;
+      const Nodal<E> x = gather<E>(body, k / E::points, body.mesh.coordinates);
+      if (!weight.empty()) weight[k] = Point<E>(x, q).volume;
+      const auto shape = E::values(E::point[q].data());
+      for (std::size_t i = 0; i < E::dim && !position.empty(); ++i) {
+        position[k * E::dim + i] = 0.0;
+        for (int a = 0; a < E::nodes; ++a) position[k * E::dim + i] += shape[a] * x[a * E::dim + i];
+      }
+    }
+  });
+}
+
 void point_fields(const Body& body, std::span<const double> u, const PointFields& out) {
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     for_each_point<E>(
-        body, u, [&](std::size_t e, const Law& law, std::size_t q, const Point<E>&, const Strain& strain) {
+        body, u,
+        [&](std::size_t e, const Law& law, std::size_t q, const Point<E>& point, const Strain& strain) {
           const std::size_t k = e * E::points + q;
-          const Sym tau = stress(law, law.secant(strain.norm()), strain);
+          const Sym tau = stress(law, moduli_at<E>(body, e, q, strain.norm()).secant, strain);
           std::copy(tau.begin(), tau.end(), &out.stress[6 * k]);
+          for (std::size_t i = 0; i < 6; ++i)
+            out.strain[6 * k + i] = strain.dev[i] + (i < 3 ? strain.trace / 3.0 : 0.0);
+          out.volume[k] = point.volume;
           const auto shape = E::values(E::point[q].data());
           const std::int32_t* node = nodes_of(body, e);
           out.position[k] = {};

@@ -39,6 +39,22 @@ struct Group {
 /// What the tangent keeps of a point besides g.
 inline constexpr int tangent_floats = 5;
 
+/// What the nonlinear pass leaves to others, all as `secant` below: where `strain` is not null it leaves
+/// ‖dev ε‖ there and no stress; where `secant` is not null g, dg/dx and G are these and no law is asked.
+template <class Real>
+struct Outside {
+  Real* strain = nullptr;
+  const Real* secant = nullptr;
+  const Real* slope = nullptr;   ///< null: 0
+  const Real* energy = nullptr;  ///< null: 0
+
+  /// The same from a later place in the arrays on.
+  Outside from(std::size_t offset) const {
+    const auto later = [offset](auto* array) { return array == nullptr ? nullptr : array + offset; };
+    return {later(strain), later(secant), later(slope), later(energy)};
+  }
+};
+
 /// Local nodes are records of four values, the last one unused. `index` holds, batch by batch, node by
 /// node, lane by lane, the offset of a record (four times the local node). `secant` holds, batch by batch,
 /// point by point, lane by lane, g; `tangent` as many vectors (xx yy xy yz zx, see material.hpp) as
@@ -58,6 +74,7 @@ struct Block {
   std::uint32_t again;         ///< [first, again) were met before, [again, count) are other threads' too
   std::uint32_t count;
   std::uint32_t padding;  ///< records behind `count` that lanes without a unit work on
+  Outside<Real> outside = {};
 };
 
 /// How far the copies between vectors and records fetch ahead.
@@ -97,7 +114,7 @@ struct Kernels {
   /// f += B u.
   void (*apply)(const Block<Real>&, const Vectors<Real>&);
   /// f += B_T u.
-  void (*apply_tangent)(const Block<Real>&, const Real* u, Real* f);
+  void (*apply_tangent)(const Block<Real>&, const Vectors<Real>&);
   /// f += internal force of the true law at u.
   void (*nonlinear)(const Block<Real>&, const Real* u, Real* f, Nonlinear*);
 };

@@ -124,11 +124,16 @@ struct Loops {
   static void apply(const Block<Real>& block, const Vectors<Real>& vectors) {
     sweep(block, vectors, [&](const Group& group) { return SecantMaterial<L, Real>(block, group); });
   }
-  static void apply_tangent(const Block<Real>& block, const Real* u, Real* f) {
-    sweep(block, {u, f}, [&](const Group& group) { return TangentMaterial<L, Real>(block, group); });
+  static void apply_tangent(const Block<Real>& block, const Vectors<Real>& vectors) {
+    sweep(block, vectors, [&](const Group& group) { return TangentMaterial<L, Real>(block, group); });
   }
   static void nonlinear(const Block<Real>& block, const Real* u, Real* f, Nonlinear* out) {
-    sweep(block, {u, f}, [&](const Group& group) { return NonlinearMaterial<L, Real>(block, group, *out); });
+    if (block.outside.strain != nullptr || block.outside.secant != nullptr)
+      sweep(block, {u, f},
+            [&](const Group& group) { return NonlinearMaterial<L, Real, true>(block, group, *out); });
+    else
+      sweep(block, {u, f},
+            [&](const Group& group) { return NonlinearMaterial<L, Real, false>(block, group, *out); });
   }
 
   static constexpr Kernels<Real> table{L::width, gather, scatter, dot, apply, apply_tangent, nonlinear};

@@ -15,6 +15,7 @@ using kacanov::simd::Group;
 using kacanov::simd::LawView;
 using kacanov::simd::longest_fan;
 using kacanov::simd::Nonlinear;
+using kacanov::simd::Outside;
 using kacanov::simd::tangent_floats;
 using kacanov::simd::Vectors;
 
@@ -145,7 +146,9 @@ struct TangentMaterial {
   }
 };
 
-template <class L, class Real>
+/// With `by_others` the law is asked elsewhere (Block::outside): built apart, as the mere question whether it
+/// is costs the others a fifth of a hex8's residual.
+template <class L, class Real, bool by_others>
 struct NonlinearMaterial {
   static constexpr bool frozen = false;
   using V = typename L::V;
@@ -154,6 +157,7 @@ struct NonlinearMaterial {
   Real* secant;
   float* tangent;
   double k0;
+  Outside<Real> outside;
 
   NonlinearMaterial(const Block<Real>& block, const Group& group, Nonlinear& nonlinear)
       : law(block.laws[group.law]),
@@ -161,7 +165,8 @@ struct NonlinearMaterial {
         secant(block.secant + group.first_slot),
         tangent(block.tangent == nullptr ? nullptr
                                          : block.tangent + tangent_floats * std::size_t{group.first_slot}),
-        k0(law.bulk) {}
+        k0(law.bulk),
+        outside(block.outside.from(group.first_slot)) {}
 
   V bulk() const { return Real(k0) - V{}; }
   NonlinearMaterial without_bulk() const {
@@ -180,17 +185,28 @@ struct NonlinearMaterial {
     const V xx = e.xx * inverse - mean, yy = e.yy * inverse - mean, zz = e.zz * inverse - mean;
     const V xy = e.xy * half, yz = e.yz * half, zx = e.zx * half;
     const V x = L::sqrt(xx * xx + yy * yy + zz * zz + Real(2) * (xy * xy + yz * yz + zx * zx));
-    V g = Real(law.shear) - V{}, slope = V{}, energy = Real(0.5 * law.shear) * x * x;
-    for (int l = 0; l < L::width; ++l)
-      if (double(x[l]) > law.elastic) {
-        double lane_g, lane_slope, lane_energy = 0.0;
-        law.evaluate(law.law, double(x[l]), &lane_g, &lane_slope, out.sum_energy ? &lane_energy : nullptr);
-        g[l] = Real(lane_g), slope[l] = Real(lane_slope), energy[l] = Real(lane_energy);
+    const std::size_t slot = point * L::width;
+    if constexpr (by_others)
+      if (outside.strain != nullptr) {
+        L::store(outside.strain + slot, x);
+        return Sym<V>{};
       }
+    V g = Real(law.shear) - V{}, slope = V{}, energy = Real(0.5 * law.shear) * x * x;
+    if constexpr (by_others) {
+      g = L::load(outside.secant + slot);
+      slope = outside.slope == nullptr ? V{} : L::load(outside.slope + slot);
+      energy = outside.energy == nullptr ? V{} : L::load(outside.energy + slot);
+    } else {
+      for (int l = 0; l < L::width; ++l)
+        if (double(x[l]) > law.elastic) {
+          double lane_g, lane_slope, lane_energy = 0.0;
+          law.evaluate(law.law, double(x[l]), &lane_g, &lane_slope, out.sum_energy ? &lane_energy : nullptr);
+          g[l] = Real(lane_g), slope[l] = Real(lane_slope), energy[l] = Real(lane_energy);
+        }
+    }
     add_energy(det * weight * (Real(0.5 * k0) * trace * trace + Real(2) * energy));
-    if (out.keep_secant) L::store(secant + point * L::width, g);
-    if (out.keep_tangent)
-      keep(Sym<V>{xx, yy, zz, xy, yz, zx}, x, slope, tangent + tangent_floats * point * L::width);
+    if (out.keep_secant) L::store(secant + slot, g);
+    if (out.keep_tangent) keep(Sym<V>{xx, yy, zz, xy, yz, zx}, x, slope, tangent + tangent_floats * slot);
     return frozen_stress<L, Real>(e, g, bulk(), w);
   }
 

@@ -161,3 +161,47 @@ TEST_CASE("the matrix is the operator's and the tangent's, and sums are what the
     CHECK(kacanov_matrix(op.get(), n, nullptr, entries - 1, nullptr, nullptr, nullptr) == KACANOV_ERROR_SIZE);
   }
 }
+
+TEST_CASE("the tangent on several vectors and in single precision is the tangent") {
+  for (const std::int32_t element : all_elements) {
+    CAPTURE(element);
+    Example example(element, 3);
+    example.description.single = 1;
+    const Handle op = example.create();
+    const std::size_t n = example.n();
+    const Vector u = random_vector(n, 3, 0.03), x = random_vector(7 * n, 4);
+    const std::vector<float> small(x.begin(), x.end());
+    Vector y(n), many(7 * n), diagonal(n);
+    std::vector<float> image(7 * n);
+    CHECK(kacanov_apply_tangent_many(op.get(), n, 7, x.data(), many.data()) == KACANOV_ERROR_STATE);
+    CHECK(kacanov_apply_tangent_float(op.get(), n, small.data(), image.data()) == KACANOV_ERROR_STATE);
+    const std::int32_t held[] = {0, 4};
+    REQUIRE(kacanov_constrain(op.get(), 2, held) == KACANOV_OK);
+    for (const double size : {1.0, 0.5}) {
+      Vector at = u;
+      for (double& v : at) v *= size;
+      REQUIRE(kacanov_update_tangent(op.get(), n, at.data()) == KACANOV_OK);
+      // Another g afterwards is none of the tangent's business.
+      REQUIRE(kacanov_update(op.get(), n, Vector(n, 0.0).data()) == KACANOV_OK);
+      REQUIRE(kacanov_apply_tangent_many(op.get(), n, 7, x.data(), many.data()) == KACANOV_OK);
+      REQUIRE(kacanov_apply_tangent_many_float(op.get(), n, 7, small.data(), image.data()) == KACANOV_OK);
+      for (std::size_t v = 0; v < 7; ++v) {
+        REQUIRE(kacanov_apply_tangent(op.get(), n, &x[v * n], y.data()) == KACANOV_OK);
+        const auto begin = static_cast<std::ptrdiff_t>(v * n), end = begin + static_cast<std::ptrdiff_t>(n);
+        CHECK(distance(Vector(many.begin() + begin, many.begin() + end), y) < 1e-13);
+        CHECK(distance(Vector(image.begin() + begin, image.begin() + end), y) < 5e-6);
+      }
+      double dot = 0.0, single_dot = 0.0;
+      REQUIRE(kacanov_apply_tangent_dot(op.get(), n, x.data(), y.data(), &dot) == KACANOV_OK);
+      REQUIRE(kacanov_apply_tangent_dot_float(op.get(), n, small.data(), image.data(), &single_dot) ==
+              KACANOV_OK);
+      CHECK(single_dot == doctest::Approx(dot).epsilon(5e-6));
+      REQUIRE(kacanov_diagonal_tangent(op.get(), n, diagonal.data()) == KACANOV_OK);
+      REQUIRE(kacanov_diagonal_tangent_float(op.get(), n, image.data()) == KACANOV_OK);
+      CHECK(distance(Vector(image.begin(), image.begin() + static_cast<std::ptrdiff_t>(n)), diagonal) < 5e-6);
+      REQUIRE(kacanov_apply_float(op.get(), n, small.data(), image.data()) == KACANOV_OK);
+      CHECK(distance(Vector(image.begin(), image.begin() + static_cast<std::ptrdiff_t>(n)),
+                     applied(op, Vector(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n)))) < 5e-6);
+    }
+  }
+}

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whether the C library shows the functions of its header and nothing else, and those of the released one still.
+"""Whether a C library shows the functions of its header and nothing else, and those of the released one still.
 
-usage: symbols.py LIBRARY HEADER RELEASED_HEADER
+usage: symbols.py LIBRARY HEADER [RELEASED_HEADER]
 """
 import pathlib
 import re
 import subprocess
 import sys
 
-library, header, released = sys.argv[1:]
+library, header, *released = sys.argv[1:]
 
 
 def declared(path):
@@ -20,8 +20,9 @@ table = subprocess.run(["nm", "-D", "--defined-only", library], check=True, capt
 shown = {line.split()[-1].split("@")[0] for line in table.splitlines()}
 faults = [f"shown and not declared: {name}" for name in sorted(shown - declared(header))]
 faults += [f"declared and not shown: {name}" for name in sorted(declared(header) - shown)]
-faults += [f"released and gone: {name}" for name in sorted(declared(released) - shown)]
-if not declared(released):
-    faults.append(f"{released} declares nothing")
+for path in [header, *released]:
+    faults += [f"released and gone: {name}" for name in sorted(declared(path) - shown) if path != header]
+    if not declared(path):
+        faults.append(f"{path} declares nothing")
 print("\n".join(faults) if faults else f"{len(shown)} functions")
 sys.exit(bool(faults))

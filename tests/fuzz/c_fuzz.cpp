@@ -3,6 +3,7 @@
 // defect.
 #include <kacanov/kacanov.h>
 
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -21,16 +22,35 @@ void damage(SmallMesh& mesh, Bytes& in) {
     mesh.connectivity[in.below(mesh.connectivity.size())] = in.take<std::int32_t>();
 }
 
+/// A law of the host's own: g = 1/(1 + x), or what `data` points to, at every seventh point.
+int own_law(void* data, const kacanov_law_points* points) {
+  const double odd = *static_cast<const double*>(data);
+  for (std::size_t i = 0; i < points->count; ++i) {
+    const double x = points->x[i];
+    points->g[i] = i % 7 == 6 ? odd : 1.0 / (1.0 + x);
+    if (points->slope != nullptr) points->slope[i] = i % 7 == 6 ? odd : -1.0 / ((1.0 + x) * (1.0 + x));
+    if (points->energy != nullptr) points->energy[i] = x - std::log1p(x);
+  }
+  return odd == 3.0 ? 1 : 0;
+}
+
 kacanov_law some_law(Bytes& in, const std::vector<double>& x, const std::vector<double>& s) {
   kacanov_law law{};
   law.struct_size = sizeof law;
   if (kacanov_elastic_law(1.0, 0.3, &law) != KACANOV_OK) std::abort();
-  law.kind = static_cast<std::int32_t>(in.below(7));
+  law.kind = static_cast<std::int32_t>(in.below(8));
   law.squared = static_cast<std::int32_t>(in.below(3));
   law.mean_dilatation = static_cast<std::int32_t>(in.below(2));
   law.x0 = 0.01, law.gamma = 0.2, law.n = 0.5, law.q = 0.9;
   for (double* field : {&law.bulk, &law.shear, &law.x0, &law.gamma, &law.n, &law.q})
     if (in.below(4) == 0) *field = in.number();
+  if (law.kind == KACANOV_USER) {
+    static double odd = 0.0;
+    odd = in.below(2) == 0 ? 1.0 : in.number();
+    if (in.below(8) != 0) law.evaluate = own_law;
+    law.data = &odd;
+    law.parallel = static_cast<std::int32_t>(in.below(2));
+  }
   law.table_size = in.below(x.size() + 1);
   law.table_x = in.below(8) == 0 ? nullptr : x.data();
   law.table_s = in.below(8) == 0 ? nullptr : s.data();
@@ -84,7 +104,8 @@ void call(kacanov_operator* op, Bytes& in, const kacanov_information& about) {
   const std::size_t n = about.unknowns, dim = about.dimension;
   const std::size_t points = about.elements * static_cast<std::size_t>(about.points_per_element);
   const std::vector<double> x = some_vector(in, n);
-  std::vector<double> y(n), many(3 * n, 0.5), images(3 * n), blocks(n * dim), g(points);
+  std::vector<double> y(n), many(3 * n, 0.5), images(3 * n), blocks(n * dim), g(points),
+      many_points(6 * points);
   std::vector<float> single(x.begin(), x.end()), image(n);
   std::vector<double> stress(6 * about.elements);
   std::vector<std::int32_t> nodes(about.nodes), elements(about.elements);
@@ -94,7 +115,7 @@ void call(kacanov_operator* op, Bytes& in, const kacanov_information& about) {
   fields.stress = stress.data();
   double number = 0.0;
   int code = KACANOV_OK;
-  switch (in.below(24)) {
+  switch (in.below(26)) {
     case 0: code = kacanov_update(op, n, x.data()); break;
     case 1: code = kacanov_apply(op, n, x.data(), y.data()); break;
     case 2: code = kacanov_apply_dot(op, n, x.data(), y.data(), &number); break;
@@ -124,6 +145,8 @@ void call(kacanov_operator* op, Bytes& in, const kacanov_information& about) {
     case 20: code = add_springs(op, in, about); break;
     case 21:
     case 22: code = solve(op, in, x, y); break;
+    case 23: code = kacanov_points(op, points, many_points.data(), g.data()); break;
+    case 24: code = kacanov_strain(op, n, x.data(), points, many_points.data(), g.data()); break;
     default: code = kacanov_apply(op, in.below(n + 2), x.data(), many.data()); break;
   }
   if (code == KACANOV_ERROR_INTERNAL) std::fprintf(stderr, "%s\n", kacanov_message(op));
@@ -155,6 +178,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   description.index_base = static_cast<std::int32_t>(in.below(8) == 0);
   description.borrow = static_cast<std::int32_t>(in.below(2));
   description.single = static_cast<std::int32_t>(in.below(2));
+  description.component_vectors = static_cast<std::int32_t>(in.below(4) == 0);
+  description.may_be_empty = static_cast<std::int32_t>(in.below(8) == 0);
   description.laws = laws.size();
   description.law = laws.empty() ? nullptr : laws.data();
   description.law_of_element = in.below(2) == 0 ? law_of_element.data() : nullptr;

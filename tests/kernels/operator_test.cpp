@@ -106,7 +106,7 @@ void for_every_body(Check&& check) {
 
 /// How many cells thick the meshes of many blocks are: where each takes ten times as long, fewer blocks do.
 #ifdef KACANOV_TESTS_SANITIZED
-constexpr int thick = 18;
+constexpr int thick = 12;
 #else
 constexpr int thick = 24;
 #endif

@@ -7,8 +7,8 @@
  * a displacement by kacanov_update, and then applies the linear operator B(g) to vectors.
  *
  * Vectors are of double, or of float in the calls that end in _float. They have nodes * dimension entries,
- * interleaved (all components of node 0, then of node 1, ...), in the caller's node order. Units are the
- * caller's; in 2D (plane strain) everything is for unit thickness.
+ * interleaved (all components of node 0, then of node 1, ...; or see component_vectors), in the caller's node
+ * order. Units are the caller's; in 2D (plane strain) everything is for unit thickness.
  *
  * Every function that returns int returns a kacanov_code: KACANOV_OK, or what went wrong; the handle then has
  * a message that says so in words. Output arrays have undefined content after an error. Nothing is printed,
@@ -57,14 +57,15 @@ extern "C" {
 
 typedef enum kacanov_code {
   KACANOV_OK = 0,
-  KACANOV_ERROR_NULL = 1,    /* a required pointer is null */
-  KACANOV_ERROR_SIZE = 2,    /* a vector or array has another size than expected, or two of them overlap */
-  KACANOV_ERROR_MESH = 3,    /* index out of range, inverted or degenerate element, coordinate not finite */
-  KACANOV_ERROR_LAW = 4,     /* a law's parameter is missing or out of range, or a law does not exist */
-  KACANOV_ERROR_VALUE = 5,   /* an option or an entry of a vector is out of range or not finite */
-  KACANOV_ERROR_STATE = 6,   /* a call is missing that has to come first, or the handle is in use */
-  KACANOV_ERROR_MEMORY = 7,  /* out of memory */
-  KACANOV_ERROR_INTERNAL = 8 /* a defect of the library */
+  KACANOV_ERROR_NULL = 1,     /* a required pointer is null */
+  KACANOV_ERROR_SIZE = 2,     /* a vector or array has another size than expected, or two of them overlap */
+  KACANOV_ERROR_MESH = 3,     /* index out of range, inverted or degenerate element, coordinate not finite */
+  KACANOV_ERROR_LAW = 4,      /* a law's parameter is missing or out of range, or a law does not exist */
+  KACANOV_ERROR_VALUE = 5,    /* an option or an entry of a vector is out of range or not finite */
+  KACANOV_ERROR_STATE = 6,    /* a call is missing that has to come first, or the handle is in use */
+  KACANOV_ERROR_MEMORY = 7,   /* out of memory */
+  KACANOV_ERROR_INTERNAL = 8, /* a defect of the library */
+  KACANOV_ERROR_CASE = 9 /* of kacanov_solve: the case or a file of it is wrong; the message says where */
 } kacanov_code;
 
 /* Node order is that of Gmsh; tet10 has its mid-side nodes on the edges 01 12 20 30 32 31. */
@@ -84,8 +85,26 @@ typedef enum kacanov_law_kind {
   KACANOV_POWER = 3,            /* mu (a/x0)^(n-1), 0 < n <= 1 */
   KACANOV_SATURATING = 4,       /* mu (x0/a) (1 + q (1 - exp(-(a-x0)/(q x0)))), q > 0 */
   KACANOV_TABLE = 5,            /* 2 g a piecewise linear through given points */
-  KACANOV_RAMBERG_OSGOOD = 6 /* mu t x0/a with a/x0 = t + q t^n, from a = 0 on; q > 0, n > 1, not squared */
+  KACANOV_RAMBERG_OSGOOD = 6, /* mu t x0/a with a/x0 = t + q t^n, from a = 0 on; q > 0, n > 1, not squared */
+  KACANOV_USER = 7            /* what kacanov_law.evaluate says; not squared */
 } kacanov_law_kind;
+
+/* Points at which a law of the caller's own is asked. The arrays are the library's and gone afterwards. */
+typedef struct kacanov_law_points {
+  size_t struct_size; /* the library's: look at no field beyond it */
+  size_t count;
+  const double* x;        /* |dev eps| */
+  const int32_t* element; /* from 0, in the caller's order: for what differs from place to place */
+  const int32_t* point;   /* of that element, from 0; see kacanov_points */
+  double* g;              /* to be filled: the secant shear modulus, > 0 */
+  double* slope;          /* to be filled unless null: dg/dx */
+  double* energy;         /* to be filled unless null: G(x), the integral of g(s) s ds from 0 to x */
+} kacanov_law_points;
+
+/* A law of the caller's own: fills what is asked for and returns 0, or another number to make the call that
+ * asked fail with KACANOV_ERROR_LAW. Given some thousand points at once, those of an element in a row. It may
+ * not throw, jump, or call the handle that asks. */
+typedef int (*kacanov_law_callback)(void* data, const kacanov_law_points* points);
 
 typedef struct kacanov_law {
   size_t struct_size; /* sizeof(kacanov_law); the same for all laws of an array */
@@ -103,6 +122,15 @@ typedef struct kacanov_law {
   int32_t mean_dilatation; /* 1: k0 acts on the mean of tr(eps) over the element (B-bar), against locking of
                               nearly incompressible and of plastic bodies; hex8 and quad4 */
   int32_t reserved;        /* 0 */
+
+  /* KACANOV_USER only. bulk and shear are as for the others; g is mu until the first update. x0 is the strain
+   * beyond which kacanov_stress says plastic, 0 for never. */
+  kacanov_law_callback evaluate; /* asked by update, update_tangent, residual, energy, stress and the matrix
+                                    of a tangent, never by apply, and as long as the operator has the law */
+  void* data;                    /* handed to it */
+  int32_t parallel;              /* 1: the operator's threads may ask at once, each for points of its own;
+                                    0: only the calling thread asks */
+  int32_t reserved_user;         /* 0 */
 } kacanov_law;
 
 /* The body. Zeros and struct_size are a valid start: what may be zero may stay so. */
@@ -138,6 +166,14 @@ typedef struct kacanov_description {
   int32_t turn_inverted; /* 1: elements with their nodes the wrong way round are turned and not refused; where
                             an array has several points an element, they are those of the element as turned */
   int32_t orphans;       /* kacanov_orphans: nodes of no element */
+
+  int32_t may_be_empty; /* 1: there may be no elements, or no nodes, as on some process of many */
+  int32_t
+      component_vectors; /* 1: vectors have one array a component, all of component 0, then of component 1,
+                            ...; they are copied on the way in and out. Blocks stay as they are, and
+                            unknowns are named node * dimension + component all the same */
+  size_t early_count;    /* nodes that kacanov_apply_early has ready first, as those that other processes */
+  const int32_t* early;  /* have too; counted from 0, any order */
 } kacanov_description;
 
 /* What is to become of nodes of no element. */
@@ -185,6 +221,17 @@ KACANOV_API int kacanov_apply_dot(kacanov_operator* op, size_t n, const double* 
 KACANOV_API int kacanov_apply_add(kacanov_operator* op, size_t n, double alpha, const double* x, double beta,
                                   double* y);
 
+/* Called once y has its final values at the early nodes of the description, before the rest of it is worked
+ * out: they can be on their way to other processes meanwhile. On the calling thread; y may be changed there.
+ * It may not throw, jump, or call the handle. */
+typedef void (*kacanov_early_callback)(void* data, double* y);
+
+/* y = B(g) x or, with `tangent` 1, B_T x, as kacanov_apply; `dot` may be null, and is x . y without what the
+ * callback changes. For operators without constraints, blocks and unit rows, which are the caller's where a
+ * node belongs to several processes. */
+KACANOV_API int kacanov_apply_early(kacanov_operator* op, size_t n, int32_t tangent, const double* x,
+                                    double* y, double* dot, kacanov_early_callback callback, void* data);
+
 /* Several input vectors, one after another in x and in y (vectors * n entries each); quicker than one at a
  * time. */
 KACANOV_API int kacanov_apply_many(kacanov_operator* op, size_t n, int32_t vectors, const double* x,
@@ -198,6 +245,10 @@ KACANOV_API int kacanov_apply_tangent(kacanov_operator* op, size_t n, const doub
 /* The same, and dot = x . y */
 KACANOV_API int kacanov_apply_tangent_dot(kacanov_operator* op, size_t n, const double* x, double* y,
                                           double* dot);
+
+/* As kacanov_apply_many. */
+KACANOV_API int kacanov_apply_tangent_many(kacanov_operator* op, size_t n, int32_t vectors, const double* x,
+                                           double* y);
 
 /* Diagonal of B(g), n entries; diagonal blocks, n * dimension entries: a row-major dimension * dimension
  * block a node. */
@@ -225,6 +276,14 @@ KACANOV_API int kacanov_apply_dot_float(kacanov_operator* op, size_t n, const fl
 KACANOV_API int kacanov_apply_many_float(kacanov_operator* op, size_t n, int32_t vectors, const float* x,
                                          float* y);
 KACANOV_API int kacanov_diagonal_float(kacanov_operator* op, size_t n, float* diagonal);
+
+/* Likewise with the tangent frozen last. */
+KACANOV_API int kacanov_apply_tangent_float(kacanov_operator* op, size_t n, const float* x, float* y);
+KACANOV_API int kacanov_apply_tangent_dot_float(kacanov_operator* op, size_t n, const float* x, float* y,
+                                                double* dot);
+KACANOV_API int kacanov_apply_tangent_many_float(kacanov_operator* op, size_t n, int32_t vectors,
+                                                 const float* x, float* y);
+KACANOV_API int kacanov_diagonal_tangent_float(kacanov_operator* op, size_t n, float* diagonal);
 
 /* ---- Constraints and penalties: part of B and B_T from then on, wherever these are applied, in diagonals,
  * blocks and matrices, in double and in float. Residual, energy and stress do not know of them. Both calls
@@ -311,6 +370,18 @@ KACANOV_API int kacanov_cg(kacanov_operator* op, kacanov_multigrid* multigrid,
 KACANOV_API int kacanov_matrix_entries(kacanov_operator* op, size_t n, size_t* entries);
 KACANOV_API int kacanov_matrix(kacanov_operator* op, size_t n, const double* u, size_t entries,
                                int64_t* first, int32_t* column, double* value);
+
+/* The quadrature points, `count` = elements * points_per_element, those of an element in a row: positions
+ * (count * dimension) and weights (count; of an element they add up to its volume, or area in 2D). For tet10
+ * point i lies next to corner i; for hex8 and quad4, too, in Gmsh's order of the corners. Null arrays are
+ * left out. */
+KACANOV_API int kacanov_points(kacanov_operator* op, size_t count, double* position, double* weight);
+
+/* Strain there at the displacement u: 6 a point, xx yy zz xy yz zx, components and not engineering shears,
+ * the trace the element's mean with mean_dilatation; and x = |dev eps|. Null arrays are left out. The tensor
+ * is worked out plainly, x as fast as kacanov_energy. */
+KACANOV_API int kacanov_strain(kacanov_operator* op, size_t n, const double* u, size_t count, double* strain,
+                               double* x);
 
 /* Means over each element at a displacement; arrays that are null are left out. */
 typedef struct kacanov_fields {

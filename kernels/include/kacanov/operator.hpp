@@ -75,9 +75,14 @@ class BasicOperator {
   void apply_tangent(std::span<const Real> x, std::span<Real> y, const WhenEarly& when_early = {});
   /// y = B_T x and returns xᵀ y, as apply_dot.
   double apply_tangent_dot(std::span<const Real> x, std::span<Real> y, const WhenEarly& when_early = {});
+  /// As apply_many.
+  void apply_tangent_many(std::span<const Real> x, std::span<Real> y, int vectors);
   /// Diagonal and diagonal blocks of B_T, as those of B(g). Throw std::logic_error before update_tangent.
   void diagonal_tangent(std::span<Real> d) const;
   void block_diagonal_tangent(std::span<Real> blocks) const;
+  /// Takes over the tangent that `from` froze last, of the same body; this g stays. Throws std::logic_error
+  /// where it has none.
+  void take_tangent(const BasicOperator<double>& from);
   /// Gives the tangent's memory back, 20 bytes an element point. What needs the tangent throws until the next
   /// update_tangent.
   void forget_tangent() noexcept;
@@ -89,6 +94,17 @@ class BasicOperator {
   /// Residual, energy and new g in one pass; returns the energy.
   double residual_energy_update(std::span<const Real> u, std::span<Real> f);
 
+  // A law of the caller's own: he works out what it says from strain(), and the following take that in place
+  // of what the body's laws say, which leave their k0; g goes to set_secant().
+
+  /// ‖dev ε‖ at every point, elements × points, into `x`; g plays no part.
+  void strain(std::span<const Real> u, std::span<double> x);
+  /// Freezes the tangent, and g, of these moduli at u. Needs `derivative`.
+  void update_tangent(std::span<const Real> u, const PointModuli& moduli);
+  /// Internal force at u into f, unless that is empty; the frozen g plays no part. Returns the energy, 0
+  /// where there is no `energy`.
+  double residual_energy(std::span<const Real> u, const PointModuli& moduli, std::span<Real> f);
+
   /// "avx512", "avx2" or "plain": what the loops in use are built for.
   std::string_view instruction_set() const noexcept;
   /// Bytes this operator holds, index data included.
@@ -97,6 +113,8 @@ class BasicOperator {
   std::uint64_t applications() const noexcept;
 
  private:
+  template <class>
+  friend class BasicOperator;
   struct Data;
   std::unique_ptr<Data> data_;
 };

@@ -11,12 +11,23 @@
 
 namespace kacanov {
 
+/// What laws say at the points at some displacement, worked out by the caller: elements × points, the points
+/// of an element together. What is not asked for may be empty.
+struct PointModuli {
+  std::span<const double> secant;           ///< g
+  std::span<const double> derivative = {};  ///< dg/dx
+  std::span<const double> energy = {};      ///< G(x) = ∫₀ˣ g(s) s ds
+};
+
 /// A meshed body and its material. Nothing is owned: the arrays must outlive it. Nothing is checked either:
 /// the operators' constructors do that.
 struct Body {
   MeshView mesh;
   std::span<const Law> laws;                      ///< at least one
   std::span<const std::uint16_t> law_of_element;  ///< one entry an element; empty: laws[0] everywhere
+  /// In place of what the laws say at the displacement asked for; they leave their k0. The reference's
+  /// functions of a displacement know of it, operators do not. Null: the laws.
+  const PointModuli* moduli = nullptr;
 
   std::size_t unknowns() const noexcept { return mesh.coordinates.size(); }
   std::uint16_t law_index(std::size_t element) const noexcept {
@@ -77,9 +88,18 @@ void fields(const Body& body, std::span<const double> u, const ElementFields& ou
 struct PointFields {
   std::span<std::array<double, 3>> position;  ///< undeformed; the third entry is 0 in 2D
   std::span<double> stress;                   ///< × 6, as in ElementFields
+  std::span<double> strain;  ///< × 6, tensor components in the same order, with B-bar's trace
+  std::span<double> volume;  ///< quadrature weight, of the undeformed body
 };
-/// Fills both.
+/// Fills all four.
 void point_fields(const Body& body, std::span<const double> u, const PointFields& out);
+
+/// Small strain at the points: × 6, components (not engineering shears) xx yy zz xy yz zx; the trace is the
+/// element's mean where its law says so.
+void strains(const Body& body, std::span<const double> u, std::span<double> strain);
+/// Positions of the points, × dim, and their weights: what of the element's volume (area in 2D) belongs to
+/// each. Spans that are empty are left out.
+void points(const Body& body, std::span<double> position, std::span<double> weight);
 
 }  // namespace reference
 }  // namespace kacanov
