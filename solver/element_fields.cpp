@@ -52,8 +52,8 @@ void visit_element_fields(const Part& part, const BodyState& state,
   }
 }
 
-void visit_point_stress(const Part& part, const BodyState& state,
-                        const std::function<void(const PointRun&)>& visit) {
+void visit_points(const Part& part, const BodyState& state,
+                  const std::function<void(const PointRun&)>& visit) {
   const std::size_t elements = part.element_count();
   const std::size_t points = points_per_element(part.type);
   PointRun run;
@@ -61,7 +61,10 @@ void visit_point_stress(const Part& part, const BodyState& state,
     const std::size_t count = std::min(elements_a_run, elements - run.first);
     run.position.resize(count * points);
     run.stress.resize(6 * count * points);
-    reference::point_fields(elements_of(part, run.first, count), state.u, {run.position, run.stress});
+    run.strain.resize(6 * count * points);
+    run.volume.resize(count * points);
+    reference::point_fields(elements_of(part, run.first, count), state.u,
+                            {run.position, run.stress, run.strain, run.volume});
     take_off_thermal(state, run.first, points, run.stress);
     visit(run);
   }

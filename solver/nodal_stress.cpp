@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <kacanov/element_fields.hpp>
 #include "largest.hpp"
-#include "law_batches.hpp"
-#include "patch_fit.hpp"
-#include "problem/vector3.hpp"
+#include "patches.hpp"
 
 namespace kacanov {
 namespace {
@@ -21,30 +20,6 @@ double von_mises(const Stress& s) {
   return std::sqrt(0.5 * (a * a + b * b + c * c) + 3.0 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
 }
 
-/// Corners of the part's elements, numbered on their own: middles of edges have no patch.
-class Corners {
- public:
-  explicit Corners(const Part& part) : of_node_(part.nodes(), -1) {
-    const std::size_t nodes = nodes_per_element(part.type);
-    const std::size_t corners = cell(part.type).corners;
-    for (std::size_t k = 0; k < part.elements.size(); ++k) {
-      if (k % nodes >= corners) continue;
-      std::int32_t& corner = of_node_[part.elements[k]];
-      if (corner < 0) corner = count_++;
-    }
-    for (std::size_t n = 0; n < of_node_.size(); ++n)
-      if (of_node_[n] >= 0) node_.resize(static_cast<std::size_t>(count_)), node_[of_node_[n]] = n;
-  }
-  std::size_t count() const noexcept { return static_cast<std::size_t>(count_); }
-  std::ptrdiff_t of_node(std::size_t node) const noexcept { return of_node_[node]; }
-  std::size_t node(std::size_t corner) const noexcept { return node_[corner]; }
-
- private:
-  std::vector<std::int32_t> of_node_;
-  std::vector<std::size_t> node_;
-  std::int32_t count_ = 0;
-};
-
 /// Recovers one batch of materials after the other: those of a batch meet at no node.
 class Recovery {
  public:
@@ -53,17 +28,14 @@ class Recovery {
         state_(state),
         type_(cell(part.type)),
         nodes_(type_.nodes),
-        corner_(part),
-        size_(patch_sizes()),
-        batch_of_law_(law_batches(part)),
+        patches_(part),
         seen_(part.nodes(), 0.0) {
     out_.stress.assign(6 * part.nodes(), 0.0);
     out_.von_mises.assign(part.nodes(), -1.0);
   }
 
   NodalStress run() {
-    const std::int32_t last = *std::max_element(batch_of_law_.begin(), batch_of_law_.end());
-    for (std::int32_t batch = 0; batch <= last; ++batch) recover(batch);
+    for (std::int32_t batch = 0; batch < patches_.batches(); ++batch) recover(batch);
     Largest here;
     for (std::size_t n = 0; n < static_cast<std::size_t>(part_.owned_nodes()); ++n)
       here.take(out_.von_mises[n], n, part_.node_index[n]);
@@ -72,54 +44,17 @@ class Recovery {
   }
 
  private:
-  /// The third root of the volume round each corner, or the square root of an area.
-  std::vector<double> patch_sizes() const {
-    std::vector<double> of_element(part_.element_count()), size(part_.nodes(), 0.0);
-    reference::volumes(part_.body(), of_element);
-    for (std::size_t k = 0; k < part_.elements.size(); ++k) size[part_.elements[k]] += of_element[k / nodes_];
-    part_.node_map.sum(size, 1);
-    for (double& v : size) v = part_.dim() == 3 ? std::cbrt(v) : std::sqrt(v);
-    return size;
-  }
-
-  Vector3 from_corner(const Vector3& x, std::size_t node) const {
-    return (1.0 / size_[node]) * (x - node_position(part_, node));
-  }
-  bool is_in(std::size_t element, std::int32_t batch) const {
-    return part_.law_of_element.empty() || batch_of_law_[part_.law_of_element[element]] == batch;
-  }
-
   void recover(std::int32_t batch) {
-    PatchFits fits(corner_.count(), Monomials(part_.dim(), type_.order));
-    visit_point_stress(part_, state_, [&](const PointRun& run) {
+    PatchFits fits = patches_.fits();
+    visit_points(part_, state_, [&](const PointRun& run) {
       for (std::size_t k = 0; k < run.position.size(); ++k) {
         const std::size_t e = run.first + k / type_.points.size();
-        if (!is_in(e, batch)) continue;
-        for (std::size_t a = 0; a < static_cast<std::size_t>(type_.corners); ++a) {
-          const std::size_t node = part_.elements[e * nodes_ + a];
-          fits.add(corner_.of_node(node), from_corner(run.position[k], node), &run.stress[6 * k]);
-        }
+        if (patches_.is_in(e, batch)) patches_.add(fits, e, run.position[k], &run.stress[6 * k]);
       }
     });
-    add_up(fits);
-    fits.solve();
+    patches_.solve(fits);
     take_corners(fits);
     take_middles(fits, batch);
-  }
-
-  /// Over the ranks that share a corner.
-  void add_up(PatchFits& fits) const {
-    if (part_.node_map.ranks == 1) return;
-    std::vector<double> one(part_.nodes(), 0.0);
-    for (std::size_t k = 0; k < fits.width(); ++k) {
-      for (const std::int32_t n : part_.node_map.shared) {
-        const std::ptrdiff_t corner = corner_.of_node(n);
-        one[n] = corner < 0 ? 0.0 : fits.sums(corner)[k];
-      }
-      part_.node_map.sum(one, 1);
-      for (const std::int32_t n : part_.node_map.shared)
-        if (const std::ptrdiff_t corner = corner_.of_node(n); corner >= 0) fits.sums(corner)[k] = one[n];
-    }
   }
 
   void take(std::size_t node, const Stress& stress) {
@@ -130,8 +65,8 @@ class Recovery {
   }
 
   void take_corners(const PatchFits& fits) {
-    for (std::size_t corner = 0; corner < corner_.count(); ++corner)
-      if (fits.has(corner)) take(corner_.node(corner), fits.evaluate(corner, {}));
+    for (const std::int32_t node : patches_.corners())
+      if (patches_.has(fits, node)) take(node, patches_.evaluate(fits, node, node_position(part_, node)));
   }
 
   /// Ranks that have a middle but no element of this material there hear of it from the others.
@@ -140,15 +75,14 @@ class Recovery {
     std::vector<double> mean(6 * part_.nodes(), 0.0);
     std::fill(seen_.begin(), seen_.end(), 0.0);
     for (std::size_t e = 0; e < part_.element_count(); ++e) {
-      if (!is_in(e, batch)) continue;
+      if (!patches_.is_in(e, batch)) continue;
       for (const CellEdge& edge : type_.edges) {
         const std::size_t middle = part_.elements[e * nodes_ + edge.middle];
         if (seen_[middle] > 0.0) continue;
         seen_[middle] = 1.0;
         for (const std::int8_t end : {edge.a, edge.b}) {
           const std::size_t node = part_.elements[e * nodes_ + end];
-          const Stress value =
-              fits.evaluate(corner_.of_node(node), from_corner(node_position(part_, middle), node));
+          const Stress value = patches_.evaluate(fits, node, node_position(part_, middle));
           for (std::size_t c = 0; c < 6; ++c) mean[6 * middle + c] += 0.5 * value[c];
         }
       }
@@ -167,9 +101,7 @@ class Recovery {
   BodyState state_;
   const Cell& type_;
   std::size_t nodes_;
-  Corners corner_;
-  std::vector<double> size_;
-  std::vector<std::int32_t> batch_of_law_;
+  Patches patches_;
   std::vector<double> seen_;
   NodalStress out_;
 };

@@ -14,7 +14,7 @@ kacanov_test(multigrid
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal Eigen3::Eigen
   RANKS 1 2 3)
 kacanov_test(spectrum
-  MPI SOURCES solver/spectrum_test.cpp
+  MPI NUMBERS SOURCES solver/spectrum_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal Eigen3::Eigen)
 kacanov_test(lanczos
   MPI SOURCES solver/lanczos_test.cpp
@@ -31,7 +31,7 @@ kacanov_test(checkpoint
   RANKS 1 2)
 
 kacanov_test(coarse_start
-  MPI SOURCES solver/coarse_start_test.cpp
+  MPI NUMBERS SOURCES solver/coarse_start_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 kacanov_test(load_steps
@@ -48,7 +48,7 @@ kacanov_test(validity
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 kacanov_test(nodal_stress
-  MPI SOURCES solver/nodal_stress_test.cpp
+  MPI SOURCES solver/nodal_stress_test.cpp solver/discretisation_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal
   RANKS 1 2 3)
 
@@ -95,11 +95,11 @@ kacanov_test(closed_friction
   RANKS 1 2 4)
 
 kacanov_test(mesh
-  SOURCES solver/mesh_test.cpp solver/refine_test.cpp
+  SOURCES solver/mesh_test.cpp solver/refine_test.cpp solver/bisect_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 kacanov_test(closed_solutions
-  MPI NUMBERS SOURCES solver/closed_test.cpp solver/radial_test.cpp
+  MPI NUMBERS SOURCES solver/closed_test.cpp solver/radial_test.cpp solver/effectivity_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 kacanov_test(contact
   MPI SOURCES solver/contact_test.cpp
@@ -112,7 +112,7 @@ kacanov_test(wide_contact
   LIBRARIES kacanov_dense_solver
   RANKS 1 2 3)
 kacanov_test(dual
-  MPI SOURCES solver/dual_test.cpp
+  MPI NUMBERS SOURCES solver/dual_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 kacanov_test(units
   MPI SOURCES solver/units_test.cpp
@@ -121,7 +121,7 @@ kacanov_test(certificate
   MPI SOURCES solver/certificate_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 kacanov_test(outer
-  MPI SOURCES solver/outer_test.cpp
+  MPI NUMBERS SOURCES solver/outer_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 kacanov_test(nonlinear
   MPI SOURCES solver/nonlinear_test.cpp solver/augmented_test.cpp

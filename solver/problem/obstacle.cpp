@@ -15,9 +15,6 @@
 namespace kacanov {
 namespace {
 
-constexpr NumberRule half_angle{"an angle in degrees above 0 and below 90",
-                                [](double v) { return v > 0.0 && v < 90.0; }};
-
 /// What double precision leaves of a length that was computed from lengths as long as this, in some steps.
 constexpr double some_roundings = 1e-15;
 
@@ -109,7 +106,7 @@ Facing Cylinder::project(const SurfacePoint& from) const {
 void Cone::check(const std::string& path) const {
   kacanov::check(path + ".apex", apex);
   check_direction(path + ".axis", axis);
-  kacanov::check(path + ".half_angle", half_angle, kacanov::half_angle);
+  kacanov::check(path + ".half_angle", half_angle, cone_angle);
   if (direction) check_direction(path + ".direction", *direction);
 }
 

@@ -16,26 +16,6 @@ using namespace kacanov::testing;
 
 namespace {
 
-Part over_all_ranks(const Problem& problem) {
-  int rank = 0;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  return distribute(rank == 0 ? &problem : nullptr, MPI_COMM_WORLD);
-}
-
-/// Displacements of the part's nodes by their positions.
-template <class Field>
-std::vector<double> nodal(const Part& part, const Field& field) {
-  const std::size_t dim = part.dim();
-  std::vector<double> u(part.unknowns());
-  for (std::size_t n = 0; n < part.nodes(); ++n) {
-    Vector3 x{};
-    for (std::size_t c = 0; c < dim; ++c) x[c] = part.coordinates[n * dim + c];
-    const Vector3 value = field(x);
-    for (std::size_t c = 0; c < dim; ++c) u[n * dim + c] = value[c];
-  }
-  return u;
-}
-
 Problem block(ElementType type, const std::vector<MaterialEntry>& materials, int cells = 2) {
   Mesh mesh = box_mesh(type, {2.0, 1.0, 1.0}, cells);
   Model model;
@@ -66,7 +46,7 @@ TEST_CASE("even stress is met at every node of every element") {
     const Part part = over_all_ranks(problem);
     const int dim = part.dim();
     const NodalStress found =
-        recover_stress(part, nodal(part, [](const Vector3& x) {
+        recover_stress(part, nodal_field(part, [](const Vector3& x) {
                          return Vector3{0.3 * x[0] + 0.1 * x[1], -0.2 * x[1], 0.1 * x[2]};
                        }));
     const double trace = dim == 3 ? 0.2 : 0.1, bulk = 1.0 / 1.5, mu = 0.4;
@@ -83,7 +63,7 @@ TEST_CASE("even stress is met at every node of every element") {
 TEST_CASE("quadratic displacements of tet10 give their linear stress, at middles of edges too") {
   const Problem problem = block(ElementType::tet10, {{everything(), elastic_law(1.0, 0.0)}});
   const Part part = over_all_ranks(problem);
-  const NodalStress found = recover_stress(part, nodal(part, [](const Vector3& x) {
+  const NodalStress found = recover_stress(part, nodal_field(part, [](const Vector3& x) {
                                              return Vector3{x[0] * x[1], 0, 0};
                                            }));
   for (std::size_t n = 0; n < part.nodes(); ++n) {
@@ -99,7 +79,7 @@ TEST_CASE("materials are kept apart; where they meet the larger stress is shown"
     const Problem problem = block(
         type, {{everything(), elastic_law(1.0, 0.0)}, {box({0, 0, 0}, {1, 1, 1}), elastic_law(10.0, 0.0)}});
     const Part part = over_all_ranks(problem);
-    const NodalStress found = recover_stress(part, nodal(part, [](const Vector3& x) {
+    const NodalStress found = recover_stress(part, nodal_field(part, [](const Vector3& x) {
                                                return Vector3{0.1 * x[0], 0, 0};
                                              }));
     for (std::size_t n = 0; n < part.nodes(); ++n)

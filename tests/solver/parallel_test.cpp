@@ -17,16 +17,6 @@ using namespace kacanov::testing;
 
 namespace {
 
-int this_rank() {
-  int rank = 0;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  return rank;
-}
-
-Part over_all_ranks(const Problem& problem) {
-  return distribute(this_rank() == 0 ? &problem : nullptr, MPI_COMM_WORLD);
-}
-
 Problem beam_problem(int dim, int n, double tresca = 0.0) {
   return build_problem(beam_mesh(dim, n), beam(dim, logarithmic_law(0.01), 0.05, tresca));
 }

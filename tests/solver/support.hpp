@@ -35,6 +35,26 @@ inline Run run_alone(Mesh mesh, const Model& model, const RunOptions& options = 
   return run;
 }
 
+inline Part over_all_ranks(const Problem& problem) {
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  return distribute(rank == 0 ? &problem : nullptr, MPI_COMM_WORLD);
+}
+
+/// Displacements of the part's nodes by their positions.
+template <class Field>
+std::vector<double> nodal_field(const Part& part, const Field& field) {
+  const std::size_t dim = part.dim();
+  std::vector<double> u(part.unknowns());
+  for (std::size_t n = 0; n < part.nodes(); ++n) {
+    Vector3 x{};
+    for (std::size_t c = 0; c < dim; ++c) x[c] = part.coordinates[n * dim + c];
+    const Vector3 value = field(x);
+    for (std::size_t c = 0; c < dim; ++c) u[n * dim + c] = value[c];
+  }
+  return u;
+}
+
 inline Law logarithmic_law(double x0, double young = 1.0, double poisson = 0.3) {
   Law law = elastic_law(young, poisson);
   law.form = laws::Logarithmic{x0};

@@ -43,10 +43,12 @@ struct PointRun {
   std::size_t first = 0;  ///< element
   std::vector<Vector3> position;
   std::vector<double> stress;  ///< × 6, as of elements
+  std::vector<double> strain;  ///< × 6, tensor components; what temperature does is in it
+  std::vector<double> volume;
 };
 /// Calls visit(run) for the whole part, some thousand elements at a time.
-void visit_point_stress(const Part& part, const BodyState& state,
-                        const std::function<void(const PointRun&)>& visit);
+void visit_points(const Part& part, const BodyState& state,
+                  const std::function<void(const PointRun&)>& visit);
 
 /// von Mises stress at the part's nodes: the mean of the elements round a node over all ranks, weighted by
 /// volume. Collective.

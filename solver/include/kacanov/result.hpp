@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -84,6 +85,14 @@ struct LoadStep {
   std::vector<Vector3> probe;
 };
 
+/// How far the numbers are, by estimates, from those of a mesh without end (theory: error-estimate).
+struct Discretisation {
+  double energy = 0.0;  ///< of the strains, in the energy norm, relative
+  int meshes = 1;       ///< of so many, each twice as fine as the one before, the numbers below are known
+  std::vector<Vector3> probe;            ///< of the displacement there; empty of one mesh
+  std::optional<Vector3> contact_force;  ///< nothing of one mesh, and without contact
+};
+
 /// Wall time of the phases of solve(), on this rank.
 struct PhaseSeconds {
   double total = 0.0;
@@ -129,6 +138,7 @@ struct Result {
   Extreme max_rotation;         ///< angle of the infinitesimal rotation at a quadrature point, in radians
   Extreme max_von_mises_nodal;  ///< of recovered stress; for whoever calls recover_stress() to fill in
   BodySize body;
+  Discretisation discretisation;  ///< for whoever calls estimate_error() to fill in
   std::vector<Vector3> probe;
   bool by_time = false;       ///< the factors of the load steps are times of the load curves
   double load_reached = 0.0;  ///< factor of the last state that converged; 0: none has

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Refinement of some elements by bisection at their longest edges; groups and curved edges are kept.
+#include <kacanov/bisect.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include <kacanov/error.hpp>
+#include "mesh/node_keys.hpp"
+
+namespace kacanov {
+namespace {
+
+using Point = std::array<double, 3>;
+
+/// A simplex on its way to become elements, or a facet of one: its corners, and where they lie in the
+/// reference cell of the element that it is cut from.
+struct Piece {
+  std::array<std::int32_t, 4> node{};
+  std::array<Point, 4> xi{};
+};
+
+struct Edge {
+  std::size_t a = 0, b = 0;  ///< corners
+};
+
+class Bisection {
+ public:
+  explicit Bisection(const Mesh& coarse)
+      : coarse_(coarse), type_(cell(coarse.type)), corners_(static_cast<std::size_t>(type_.corners)) {}
+
+  Mesh done(std::span<const std::int32_t> marked) {
+    fine_.type = coarse_.type;
+    fine_.coordinates = coarse_.coordinates;
+    fine_.node_tags = coarse_.node_tags;
+    keep_middles();
+    std::vector<std::uint8_t> generations(coarse_.element_count(), 0);
+    for (const std::int32_t e : marked) generations[e] = static_cast<std::uint8_t>(type_.dim);
+    // A cut may ask for one in a neighbour, whose longest edge is another.
+    for (std::size_t before = 1; halved_.size() != before;) {
+      before = halved_.size();
+      for (std::size_t e = 0; e < coarse_.element_count(); ++e)
+        cut(
+            whole(e), generations[e], [&](const Piece& piece, Edge edge) { halve(nodes(e), piece, edge); },
+            [](const Piece&) {});
+    }
+    first_child_.reserve(coarse_.element_count() + 1);
+    for (std::size_t e = 0; e < coarse_.element_count(); ++e) {
+      first_child_.push_back(static_cast<std::int32_t>(fine_.element_count()));
+      cut(
+          whole(e), generations[e], [](const Piece&, Edge) {},
+          [&](const Piece& piece) { emit(nodes(e), piece); });
+    }
+    first_child_.push_back(static_cast<std::int32_t>(fine_.element_count()));
+    number_new_nodes();
+    find_boundary(fine_);
+    for (const Group& group : coarse_.groups) take_over(group);
+    return std::move(fine_);
+  }
+
+ private:
+  std::size_t dim() const { return static_cast<std::size_t>(type_.dim); }
+
+  std::span<const std::int32_t> nodes(std::size_t e) const {
+    const std::size_t n = type_.nodes;
+    return std::span(coarse_.elements).subspan(e * n, n);
+  }
+
+  Piece whole(std::size_t e) const {
+    Piece piece;
+    for (std::size_t a = 0; a < corners_; ++a) {
+      piece.node[a] = nodes(e)[a];
+      piece.xi[a] = type_.reference[a];
+    }
+    return piece;
+  }
+
+  /// Square of the straight line between two nodes; the same bits whichever is first.
+  double length(std::int32_t a, std::int32_t b) const {
+    const auto low = static_cast<std::size_t>(std::min(a, b)),
+               high = static_cast<std::size_t>(std::max(a, b));
+    double square = 0.0;
+    for (std::size_t c = 0; c < dim(); ++c) {
+      const double d = fine_.coordinates[low * dim() + c] - fine_.coordinates[high * dim() + c];
+      square += d * d;
+    }
+    return square;
+  }
+
+  /// By an order of edges that all elements agree on.
+  Edge longest_edge(const Piece& piece, std::size_t corners) const {
+    Edge longest{1, 0};
+    double most = -1.0;
+    for (std::size_t a = 0; a < corners; ++a)
+      for (std::size_t b = 0; b < a; ++b) {
+        const double here = length(piece.node[a], piece.node[b]);
+        // Lengths that differ by rounding are equal.
+        const bool equal = std::abs(here - most) <= 1e-12 * most;
+        const bool first =
+            pair_key(piece.node[a], piece.node[b]) < pair_key(piece.node[longest.a], piece.node[longest.b]);
+        if (equal ? first : here > most) {
+          longest = {a, b};
+          most = here;
+        }
+      }
+    return longest;
+  }
+
+  bool is_halved(const Piece& piece, Edge edge) const {
+    return halved_.contains(pair_key(piece.node[edge.a], piece.node[edge.b]));
+  }
+  bool any_halved(const Piece& piece) const {
+    for (std::size_t a = 0; a < corners_; ++a)
+      for (std::size_t b = 0; b < a; ++b)
+        if (is_halved(piece, {a, b})) return true;
+    return false;
+  }
+
+  std::int32_t add(const Point& at) {
+    const std::size_t node = fine_.node_count();
+    if ((node + 1) * dim() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
+      throw InputError("mesh.adapt: so fine a mesh has more unknowns than 32-bit indices can number");
+    fine_.coordinates.insert(fine_.coordinates.end(), at.begin(), at.begin() + type_.dim);
+    return static_cast<std::int32_t>(node);
+  }
+
+  /// Where the element's map takes a point of the reference cell.
+  Point position(std::span<const std::int32_t> of, const Point& xi) const {
+    std::array<double, most_nodes> shape{};
+    type_.values(xi.data(), shape.data());
+    Point x{};
+    for (std::size_t a = 0; a < of.size(); ++a)
+      for (std::size_t c = 0; c < dim(); ++c)
+        x[c] += shape[a] * coarse_.coordinates[static_cast<std::size_t>(of[a]) * dim() + c];
+    return x;
+  }
+
+  static Point middle(const Point& a, const Point& b) {
+    return {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
+  }
+
+  void keep_middles() {
+    if (type_.order == 1) return;
+    for (std::size_t e = 0; e < coarse_.element_count(); ++e)
+      for (const CellEdge& edge : type_.edges)
+        between_.try_emplace(pair_key(nodes(e)[edge.a], nodes(e)[edge.b]), nodes(e)[edge.middle]);
+  }
+
+  /// Makes the node in the middle of an edge of a piece of the element with nodes `of`.
+  void halve(std::span<const std::int32_t> of, const Piece& piece, Edge edge) {
+    const std::uint64_t key = pair_key(piece.node[edge.a], piece.node[edge.b]);
+    const auto there = between_.find(key);
+    halved_.emplace(key, there != between_.end()
+                             ? there->second
+                             : add(position(of, middle(piece.xi[edge.a], piece.xi[edge.b]))));
+  }
+
+  /// Cuts a piece of an element at its longest edge, so many times over and further where an edge is halved,
+  /// and calls emit(piece) for what is left. Calls halve(piece, edge) for edges that are not halved yet.
+  template <class Halve, class Emit>
+  void cut(const Piece& piece, int generations, const Halve& halve, const Emit& emit) const {
+    if (generations <= 0 && !any_halved(piece)) return emit(piece);
+    const Edge edge = longest_edge(piece, corners_);
+    if (!is_halved(piece, edge)) halve(piece, edge);
+    for (const Piece& half : halves(piece, edge)) cut(half, generations - 1, halve, emit);
+  }
+
+  std::array<Piece, 2> halves(const Piece& piece, Edge edge) const {
+    const std::int32_t node = halved_.at(pair_key(piece.node[edge.a], piece.node[edge.b]));
+    std::array<Piece, 2> both{piece, piece};
+    both[0].node[edge.a] = both[1].node[edge.b] = node;
+    both[0].xi[edge.a] = both[1].xi[edge.b] = middle(piece.xi[edge.a], piece.xi[edge.b]);
+    return both;
+  }
+
+  void emit(std::span<const std::int32_t> of, const Piece& piece) {
+    fine_.elements.insert(fine_.elements.end(), piece.node.begin(),
+                          piece.node.begin() + static_cast<std::ptrdiff_t>(corners_));
+    for (const CellEdge& edge : type_.edges) {
+      if (edge.middle < 0) continue;
+      const auto [place, fresh] = between_.try_emplace(pair_key(piece.node[edge.a], piece.node[edge.b]), 0);
+      if (fresh) {
+        place->second = add(position(of, middle(piece.xi[edge.a], piece.xi[edge.b])));
+        new_middles_.push_back({piece.node[edge.a], piece.node[edge.b], place->second});
+      }
+      fine_.elements.push_back(place->second);
+    }
+  }
+
+  /// Numbers after the largest that the file has.
+  void number_new_nodes() {
+    if (fine_.node_tags.empty()) return;
+    std::int64_t next = *std::max_element(fine_.node_tags.begin(), fine_.node_tags.end());
+    fine_.node_tags.reserve(fine_.node_count());
+    while (fine_.node_tags.size() < fine_.node_count()) fine_.node_tags.push_back(++next);
+  }
+
+  void take_over(const Group& group) {
+    Group to{group.name, group.dimension, {}, group.inner};
+    if (group.dimension == type_.dim) {
+      for (const std::int32_t e : group.members)
+        for (std::int32_t c = first_child_[e]; c < first_child_[e + 1]; ++c) to.members.push_back(c);
+    } else if (group.dimension == type_.dim - 1) {
+      facets_of(group, to.members);
+    } else {
+      nodes_of(group, to.members);
+    }
+    std::sort(to.members.begin(), to.members.end());
+    fine_.groups.push_back(std::move(to));
+  }
+
+  /// Fine facets inside the facets of a group. A facet is cut where an element is that has it, which is at
+  /// its own longest edge.
+  void facets_of(const Group& group, std::vector<std::int32_t>& members) {
+    const std::size_t corners = type_.facet().corners;
+    if (!facet_) facet_.emplace(fine_);
+    for (const std::int32_t f : group.members) {
+      Piece facet;
+      std::copy_n(coarse_.facet(f).begin(), corners, facet.node.begin());
+      find_pieces(facet, corners, members);
+    }
+  }
+
+  void find_pieces(const Piece& facet, std::size_t corners, std::vector<std::int32_t>& members) const {
+    const Edge edge = longest_edge(facet, corners);
+    if (is_halved(facet, edge)) {
+      for (const Piece& half : halves(facet, edge)) find_pieces(half, corners, members);
+    } else if (const std::int32_t found = facet_->find(std::span(facet.node).first(corners)); found >= 0) {
+      members.push_back(found);
+    }
+  }
+
+  /// Of a point its node; of a line also those in the middle of edges whose ends it has.
+  void nodes_of(const Group& group, std::vector<std::int32_t>& members) const {
+    members = group.members;
+    if (group.dimension == 0) return;
+    std::vector<char> in(fine_.node_count(), 0);
+    for (const std::int32_t n : group.members) in[n] = 1;
+    const auto take = [&](std::int32_t a, std::int32_t b, std::int32_t node) {
+      if (in[a] == 0 || in[b] == 0 || in[node] != 0) return;
+      in[node] = 1;
+      members.push_back(node);
+    };
+    // Halves of edges are halved in their turn.
+    for (std::size_t before = 0; members.size() != before;) {
+      before = members.size();
+      for (const auto& [pair, node] : halved_)
+        take(static_cast<std::int32_t>(pair >> 32), static_cast<std::int32_t>(pair & 0xffffffffU), node);
+    }
+    for (const auto& [a, b, node] : new_middles_) take(a, b, node);
+  }
+
+  const Mesh& coarse_;
+  const Cell& type_;
+  std::size_t corners_;
+  Mesh fine_;
+  std::unordered_map<std::uint64_t, std::int32_t> halved_;   ///< edges: their middles
+  std::unordered_map<std::uint64_t, std::int32_t> between_;  ///< nodes in the middle of edges, old and new
+  std::vector<std::array<std::int32_t, 3>> new_middles_;     ///< ends and node
+  std::vector<std::int32_t> first_child_;                    ///< of each element, and one more
+  std::optional<FacetIndex> facet_;
+};
+
+}  // namespace
+
+bool can_bisect(ElementType type) { return cell(type).simplex; }
+
+void refuse_to_bisect(ElementType type) {
+  if (can_bisect(type)) return;
+  throw InputError("mesh.adapt: expected " + element_names([](const Cell& c) { return c.simplex; }) +
+                   ", got " + std::string(cell(type).name));
+}
+
+Mesh bisect(const Mesh& mesh, std::span<const std::int32_t> marked) {
+  refuse_to_bisect(mesh.type);
+  return Bisection(mesh).done(marked);
+}
+
+std::vector<std::int32_t> worst_elements(std::span<const double> energy, double share) {
+  std::vector<std::int32_t> order(energy.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+    return energy[a] > energy[b] || (energy[a] == energy[b] && a < b);
+  });
+  const double all = std::accumulate(energy.begin(), energy.end(), 0.0);
+  double sum = 0.0;
+  std::size_t count = 0;
+  while (count < order.size() && sum < share * all) sum += energy[order[count++]];
+  order.resize(count);
+  return order;
+}
+
+}  // namespace kacanov

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Polynomials round the corners of a part, fitted to what the quadrature points of the elements there have.
+#include "patches.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "largest.hpp"
+#include "law_batches.hpp"
+#include "problem/vector3.hpp"
+
+namespace kacanov {
+namespace {
+
+std::vector<double> patch_sizes(const Part& part) {
+  std::vector<double> of_element(part.element_count()), size(part.nodes(), 0.0);
+  reference::volumes(part.body(), of_element);
+  const std::size_t nodes = nodes_per_element(part.type);
+  for (std::size_t k = 0; k < part.elements.size(); ++k) size[part.elements[k]] += of_element[k / nodes];
+  part.node_map.sum(size, 1);
+  for (double& v : size) v = part.dim() == 3 ? std::cbrt(v) : std::sqrt(v);
+  return size;
+}
+
+}  // namespace
+
+Patches::Patches(const Part& part)
+    : part_(part),
+      place_of_node_(part.nodes(), -1),
+      size_(patch_sizes(part)),
+      batch_of_law_(law_batches(part)),
+      batches_(1 + *std::max_element(batch_of_law_.begin(), batch_of_law_.end())) {
+  const std::size_t nodes = nodes_per_element(part.type);
+  const std::size_t corners = cell(part.type).corners;
+  for (std::size_t k = 0; k < part.elements.size(); ++k) {
+    if (k % nodes >= corners || place_of_node_[part.elements[k]] >= 0) continue;
+    place_of_node_[part.elements[k]] = static_cast<std::int32_t>(corners_.size());
+    corners_.push_back(part.elements[k]);
+  }
+}
+
+PatchFits Patches::fits() const {
+  return PatchFits(corners_.size(), Monomials(static_cast<int>(part_.dim()), cell(part_.type).order));
+}
+
+Vector3 Patches::from_corner(const Vector3& position, std::size_t node) const {
+  return (1.0 / size_[node]) * (position - node_position(part_, node));
+}
+
+void Patches::add(PatchFits& fits, std::size_t element, const Vector3& position, const double* sample) const {
+  const Cell& type = cell(part_.type);
+  for (std::size_t a = 0; a < static_cast<std::size_t>(type.corners); ++a) {
+    const std::size_t node = part_.elements[element * static_cast<std::size_t>(type.nodes) + a];
+    fits.add(place(node), from_corner(position, node), sample);
+  }
+}
+
+void Patches::solve(PatchFits& fits) const {
+  if (part_.node_map.ranks > 1) {
+    std::vector<double> one(part_.nodes(), 0.0);
+    for (std::size_t k = 0; k < fits.width(); ++k) {
+      for (const std::int32_t n : part_.node_map.shared)
+        one[n] = place_of_node_[n] < 0 ? 0.0 : fits.sums(place(n))[k];
+      part_.node_map.sum(one, 1);
+      for (const std::int32_t n : part_.node_map.shared)
+        if (place_of_node_[n] >= 0) fits.sums(place(n))[k] = one[n];
+    }
+  }
+  fits.solve();
+}
+
+}  // namespace kacanov
