@@ -4,9 +4,13 @@ include(CMakePackageConfigHelpers)
 
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/kacanov")
 
+# All that is installed and nothing else, as tools/quickstart run builds it.
+add_custom_target(kacanov_installed)
+
 # One export set a target, so that a consumer meets the dependencies of what it asks for and no others; what belongs
-# together is installed together: `cmake --install BUILD --component kernels|solver|program`.
+# together is installed together: `cmake --install BUILD --component kernels|solve|solver|program`.
 function(kacanov_install_target name target component)
+  add_dependencies(kacanov_installed ${target})
   install(TARGETS ${target} EXPORT kacanov-${name}
     ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT ${component}
     LIBRARY DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT ${component})
@@ -20,10 +24,21 @@ kacanov_install_target(c kacanov_c kernels)
 if(KACANOV_SOLVER)
   kacanov_install_target(solver kacanov_solver solver)
   install(DIRECTORY solver/include/ DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT solver)
+  # One library that brings the whole solver, for consumers that need none of what it is made of.
+  kacanov_install_target(solve kacanov_solve solve)
+  install(DIRECTORY tools/include/ DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT solve)
   install(FILES cmake/FindHYPRE.cmake cmake/FindPARPACK.cmake DESTINATION "${package_dir}" COMPONENT solver)
 endif()
 if(TARGET kacanov)
+  add_dependencies(kacanov_installed kacanov kacanov_said)
   install(TARGETS kacanov RUNTIME DESTINATION "${CMAKE_INSTALL_BINDIR}" COMPONENT program)
+  install(FILES "${KACANOV_SAID}/case.schema.json" DESTINATION "${CMAKE_INSTALL_DATADIR}/kacanov" COMPONENT program)
+  install(FILES "${KACANOV_SAID}/kacanov.1" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT program)
+  install(FILES "${KACANOV_SAID}/kacanov.bash" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions"
+    RENAME kacanov COMPONENT program)
+  install(DIRECTORY tools/examples DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
+  install(DIRECTORY docs/ DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program PATTERN examples EXCLUDE)
+  install(FILES LICENSE CHANGELOG.md CITATION.cff DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
 endif()
 
 configure_package_config_file(cmake/kacanovConfig.cmake.in kacanovConfig.cmake
@@ -50,8 +65,13 @@ set(pc_includedir "${CMAKE_INSTALL_INCLUDEDIR}")
 if(NOT IS_ABSOLUTE "${CMAKE_INSTALL_INCLUDEDIR}")
   set(pc_includedir "\${prefix}/${CMAKE_INSTALL_INCLUDEDIR}")
 endif()
-foreach(package kacanov kacanov-kernels)
+function(kacanov_install_pkg_config package component)
   configure_file(cmake/${package}.pc.in ${package}.pc @ONLY)
   install(FILES "${CMAKE_CURRENT_BINARY_DIR}/${package}.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig"
-    COMPONENT kernels)
-endforeach()
+    COMPONENT ${component})
+endfunction()
+kacanov_install_pkg_config(kacanov kernels)
+kacanov_install_pkg_config(kacanov-kernels kernels)
+if(KACANOV_SOLVER)
+  kacanov_install_pkg_config(kacanov-solve solve)
+endif()

@@ -125,6 +125,12 @@ class Solution:
         return self._nodal["nodal_von_mises"]
 
     @property
+    def error(self) -> Array:
+        """Each element's part of the estimated error of the mesh, (elements,); squares add up to that of
+        result["discretisation"]["energy"]."""
+        return self._solved.error()
+
+    @property
     def stress(self) -> Array:
         """Means over the elements, (elements, 6): xx yy zz xy yz zx."""
         return self._elements["stress"]

@@ -11,8 +11,8 @@
 #include "arrays.hpp"
 #include "case/json_node.hpp"
 #include "errors.hpp"
-#include "host_mpi.hpp"
 #include "module.hpp"
+#include "program/host_mpi.hpp"
 #include "program/launch.hpp"
 #include "program/loaded_case.hpp"
 #include "program/memory_model.hpp"
@@ -156,7 +156,8 @@ py::tuple solve(const py::dict& given) {
   run.options.progress = [&host](const ProgressStep& step) { host.tell(step); };
   run.options.stop_requested = [&host] { return host.wants_stop(); };
   const OneAtATime alone;
-  ensure_mpi();
+  // Not ended by atexit, which comes before what PETSc, started later, does at its end.
+  if (start_host_mpi()) Py_AtExit(&end_host_mpi);
   const MpiSession mpi(communicator_at(address));
   std::shared_ptr<SolvedCase> solved;
   try {
@@ -306,6 +307,8 @@ void bind_solve(py::module_& module) {
       .def_property_readonly("json", [](const SolvedCase& solved) { return solved.json.dump(); })
       .def("mesh", &mesh_of)
       .def("nodal_fields", &nodal_fields)
+      .def("error",
+           [](const py::object& self) { return view<double>(self, self.cast<const SolvedCase&>().error); })
       .def("element_fields", &element_fields_of)
       .def("contact_fields", &contact_fields)
       .def("svg", &svg);

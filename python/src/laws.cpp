@@ -7,14 +7,16 @@
 #include <variant>
 
 #include "case/case_material.hpp"
+#include "case/case_schema.hpp"
 #include "case/json_node.hpp"
 
 namespace kacanov::python {
 namespace {
 
 Law parse(const Node& node) {
-  const Object material(node,
-                        {"young", "poisson", "law", "plastic", "yield_stress", "tangent_modulus", "bbar"});
+  static const Schema schema = material_law_keys();
+  check(node, schema);
+  const Object material(node);
   std::vector<std::string> warnings;  // of tables whose first slope is not that of the elastic constants
   Law law = parse_material_law(material, warnings);
   if (const auto bbar = material.optional("bbar")) law.mean_dilatation = bbar->boolean();

@@ -84,6 +84,7 @@ class Solutions(unittest.TestCase):
         self.assertEqual(sol.von_mises.max(), sol.result["max_von_mises"])
         self.assertEqual(sol.nodal_von_mises.max(), sol.result["max_von_mises_nodal"])
         self.assertEqual(int(sol.plastic.sum()), sol.result["plastic_elements"])
+        self.assertAlmostEqual(np.linalg.norm(sol.error), sol.result["discretisation"]["energy"], delta=1e-12)
         self.assertEqual(sol.contact["pressure"].max(), sol.result["max_contact_pressure"])
         self.assertEqual(np.linalg.norm(sol.u, axis=1).max(), sol.result["max_displacement"]["value"])
         at = np.flatnonzero(np.all(sol.points == (4, 0.5, 1), axis=1))[0]

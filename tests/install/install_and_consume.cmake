@@ -29,4 +29,6 @@ consume_by_pkg_config(kacanov-kernels "${libraries}" "${CXX_COMPILER}" "${CONSUM
 if(SOLVER)
   run("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${prefix}")
   consume(all c,kernels,solver)
+  consume(front_door solve ${forbidden})
+  consume_by_pkg_config(kacanov-solve "${libraries}" "${C_COMPILER}" "${CONSUMER}/use_solve.c" -std=c99 -lm)
 endif()

@@ -44,7 +44,7 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
       {"material[0].law.gamma=0.1", "material[0].law.gamma: unknown key"},
       {"output.colour=1", "output.colour: unknown key"},
       // Wrong types.
-      {"mesh=3", "mesh: expected an object with the keys file, box, refine, order, got 3"},
+      {"mesh=3", "mesh: expected an object with the keys file, box, refine, order, adapt, got 3"},
       {"material={}", "material: expected a list of materials, got {}"},
       {"material[0].bbar=yes", "material[0].bbar: expected true or false, got \"yes\""},
       {"material[0].young=[1]", "material[0].young: expected a number > 0, got [1]"},
@@ -59,6 +59,7 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
        "boundary[1].on: expected a name, \"all\" or {\"box\": [lower corner, upper corner]}, got 7"},
       {"boundary[1].on.box=[[0,0,0]]", "boundary[1].on.box: expected two corners"},
       {"boundary[1].on=", "boundary[1].on: expected a string, got \"\""},
+      {"output.scale=0", "output.scale: expected a number > 0, got 0"},
       {"output.report=yes", "output.report: expected true or false, got \"yes\""},
       {"output.fields=vtk",
        "output.fields: expected \"vtu\" or \"none\", got \"vtk\" (did you mean \"vtu\"?)"},

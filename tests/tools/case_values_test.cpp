@@ -96,6 +96,7 @@ TEST_CASE("a short case has the defaults of the structs") {
   CHECK(input.model.solver.penalty == SolverOptions::Penalty::automatic);
   CHECK(input.output.fields);
   CHECK(input.output.report);
+  CHECK(input.output.scale == 0.0);
 }
 
 TEST_CASE("absolute mesh paths stay, relative ones are taken from the case's folder") {

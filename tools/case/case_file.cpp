@@ -2,49 +2,42 @@
 // The case file: one JSON object that says what to solve.
 #include "case/case_file.hpp"
 
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 
 #include <kacanov/error.hpp>
 #include <kacanov/raise_order.hpp>
-#include <kacanov/rules.hpp>
 #include "case/case_material.hpp"
 #include "case/case_obstacle.hpp"
+#include "case/case_schema.hpp"
+#include "case/case_words.hpp"
 #include "case/json_node.hpp"
 
 namespace kacanov {
 namespace {
 
-constexpr int most_refinements = 10, most_cells = 1 << 30;
-constexpr int most_load_steps = 10000;
+constexpr int most_cells = 1 << 30;
 constexpr std::size_t largest_case = std::size_t{64} << 20;
 
-/// Reads the parts of a case, noting every vector on the way.
+/// Reads the parts of a case that is as described in case_schema.cpp, noting every vector on the way.
 class CaseParser {
  public:
   explicit CaseParser(std::string folder) : folder_(std::move(folder)) {}
 
   Case parse(const nlohmann::json& document) {
-    const Object top(Node(document, ""), {"mesh", "material", "boundary", "contact", "steps", "solver",
-                                          "probe", "output", "title", "$schema"});
-    // Editors look for the one, people read the other.
-    for (const char* words : {"$schema", "title"})
-      if (const auto node = top.optional(words)) node->text();
+    const Node whole(document, "");
+    check(whole, case_schema());
+    const Object top(whole);
     parse_mesh(top.required("mesh"));
-    const Node materials = top.required("material");
-    for (const Node& node : materials.list("a list of materials")) parse_material(node);
-    if (const auto list = top.optional("boundary")) {
-      for (const Node& node : list->list("a list of boundary conditions")) parse_boundary(node);
-    }
-    if (const auto list = top.optional("contact")) {
-      for (const Node& node : list->list("a list of contact entries")) parse_contact(node);
-    }
+    for (const Node& node : top.required("material").entries()) parse_material(node);
+    if (const auto list = top.optional("boundary"))
+      for (const Node& node : list->entries()) parse_boundary(node);
+    if (const auto list = top.optional("contact"))
+      for (const Node& node : list->entries()) parse_contact(node);
     if (const auto list = top.optional("steps")) parse_steps(*list);
     if (const auto node = top.optional("solver")) parse_solver(*node);
-    if (const auto list = top.optional("probe")) {
-      for (const Node& node : list->list("a list of points")) result_.model.probes.push_back(vector(node));
-    }
+    if (const auto list = top.optional("probe"))
+      for (const Node& node : list->entries()) result_.model.probes.push_back(vector(node));
     if (const auto node = top.optional("output")) parse_output(*node);
     validate(result_.model);
     return std::move(result_);
@@ -53,9 +46,7 @@ class CaseParser {
  private:
   /// Entries of a vector of 2 or 3, the third set to null or 0 where it is not there.
   std::vector<Node> vector_entries(const Node& node) {
-    const char* wanted = "a list of 2 or 3 numbers";
-    std::vector<Node> entries = node.list(wanted);
-    if (entries.size() != 2 && entries.size() != 3) node.expected(wanted);
+    std::vector<Node> entries = node.entries();
     const auto is_zero = [](const nlohmann::json& v) {
       return v.is_null() || (v.is_number() && v.get<double>() == 0.0);
     };
@@ -73,8 +64,7 @@ class CaseParser {
 
   /// As many axes as the mesh has dimensions; the third of a plane is across it.
   std::array<Vector3, 3> axes(const Node& node) {
-    const std::vector<Node> list = node.list("a list of 2 or 3 axes");
-    if (list.size() != 2 && list.size() != 3) node.expected("a list of 2 or 3 axes");
+    const std::vector<Node> list = node.entries();
     std::array<Vector3, 3> all{Vector3{1, 0, 0}, Vector3{0, 1, 0}, Vector3{0, 0, 1}};
     for (std::size_t a = 0; a < list.size(); ++a) all[a] = vector(list[a]);
     return all;
@@ -93,11 +83,8 @@ class CaseParser {
       on.kind = on.name == "all" ? Selector::Kind::all : Selector::Kind::name;
       return on;
     }
-    if (!node.value().is_object())
-      node.expected("a name, \"all\" or {\"box\": [lower corner, upper corner]}");
-    const Node box = Object(node, {"box"}).required("box");
-    const std::vector<Node> corners = box.list("two corners");
-    if (corners.size() != 2) box.expected("two corners, the lower and the upper one");
+    const Node box = Object(node).required("box");
+    const std::vector<Node> corners = box.entries();
     on.kind = Selector::Kind::box;
     on.lower = vector(corners[0]);
     on.upper = vector(corners[1]);
@@ -105,37 +92,36 @@ class CaseParser {
     return on;
   }
 
+  void parse_adapt(const Node& node) {
+    const Object object(node);
+    Adaptivity& adapt = result_.mesh.adapt.emplace();
+    adapt.error = object.required("error").number();
+    if (const auto most = object.optional("most_unknowns")) adapt.most_unknowns = most->integer(1);
+    if (const auto most = object.optional("most_meshes")) adapt.most_meshes = most->integer(1);
+  }
+
   void parse_mesh(const Node& node) {
-    const Object object(node, {"file", "box", "refine", "order"});
-    const auto order = object.optional("order");
-    if (order) result_.mesh.order = order->integer(1);
-    if (result_.mesh.order > 2) order->expected("1 or 2");
-    if (const auto times = object.optional("refine")) {
-      result_.mesh.refine = times->integer(0);
-      if (result_.mesh.refine > most_refinements)
-        times->expected("at most " + std::to_string(most_refinements) + ": each makes eight elements of one");
-    }
-    if (object.only_one_of({"file", "box"}) == "file") {
-      result_.mesh.file = in_folder(object.required("file").text());
+    const Object object(node);
+    if (const auto adapt = object.optional("adapt")) parse_adapt(*adapt);
+    if (const auto order = object.optional("order")) result_.mesh.order = order->integer(1);
+    if (const auto times = object.optional("refine")) result_.mesh.refine = times->integer(0);
+    if (const auto file = object.optional("file")) {
+      result_.mesh.file = in_folder(file->text());
       return;
     }
-    const Object box(object.required("box"), {"size", "cells", "element"});
-    const std::vector<Node> size = box.required("size").list("a list of 2 or 3 lengths");
-    const std::vector<Node> cells = box.required("cells").list("a list of 2 or 3 whole numbers");
+    const Object box(object.required("box"));
+    const std::vector<Node> size = box.required("size").entries();
+    const std::vector<Node> cells = box.required("cells").entries();
     BoxSpec spec;
     spec.type = size.size() == 2 ? ElementType::tri3 : ElementType::tet4;
-    if (const auto element = box.optional("element")) {
-      std::vector<std::string_view> names;
-      for (const ElementType type : element_types()) names.push_back(cell(type).name);
-      spec.type = element_types()[element->choice(names)];
-    }
+    if (const auto element = box.optional("element")) spec.type = *element_type(element->text());
     if (result_.mesh.order > cell(spec.type).order) spec.type = raised(spec.type);
     const std::size_t dim = dimension(spec.type);
     const std::string count = std::to_string(dim) + " entries (one a dimension)";
     if (size.size() != dim) box.required("size").expected(count);
     if (cells.size() != dim) box.required("cells").expected(count);
     for (std::size_t c = 0; c < dim; ++c) {
-      spec.size[c] = size[c].number(positive);
+      spec.size[c] = size[c].number();
       spec.cells[c] = cells[c].integer(1);
     }
     for (; result_.mesh.refine > 0; --result_.mesh.refine)
@@ -148,8 +134,7 @@ class CaseParser {
   }
 
   void parse_material(const Node& node) {
-    const Object object(node, {"on", "young", "poisson", "law", "plastic", "yield_stress", "tangent_modulus",
-                               "bbar", "expansion"});
+    const Object object(node);
     MaterialEntry entry;
     entry.on = selector(object.required("on"));
     entry.law = parse_material_law(object, result_.warnings);
@@ -159,59 +144,45 @@ class CaseParser {
   }
 
   void parse_boundary(const Node& node) {
-    const Object object(
-        node, {"on", "name", "displacement", "traction", "pressure", "body_force", "total_force", "density",
-               "acceleration", "spring", "node_spring", "node_force", "temperature", "normal", "frame"});
+    const Object object(node);
     BoundaryEntry entry;
     entry.on = selector(object.required("on"));
     if (const auto name = object.optional("name")) entry.name = name->text();
-    const std::string kind =
-        object.only_one_of({"displacement", "traction", "pressure", "body_force", "total_force", "density",
-                            "spring", "node_spring", "node_force", "temperature", "normal"});
-    const Node value = object.required(kind);
-    const auto acceleration = object.optional("acceleration");
-    if (acceleration && kind != "density") acceleration->expected("this key beside density alone");
-    if (kind == "displacement") {
+    const auto take_vector = [&](const char* key, std::optional<Vector3>& into) {
+      if (const auto value = object.optional(key)) into = vector(*value);
+    };
+    const auto take_number = [&](const char* key, std::optional<double>& into) {
+      if (const auto value = object.optional(key)) into = value->number();
+    };
+    take_vector("traction", entry.traction);
+    take_vector("total_force", entry.total_force);
+    take_vector("body_force", entry.body_force);
+    take_vector("node_spring", entry.node_spring);
+    take_vector("node_force", entry.node_force);
+    take_number("pressure", entry.pressure);
+    take_number("normal", entry.normal);
+    take_number("temperature", entry.temperature);
+    if (const auto value = object.optional("displacement")) {
       entry.displacement.emplace();
-      const std::vector<Node> entries = vector_entries(value);
-      for (std::size_t c = 0; c < entries.size(); ++c) {
-        if (entries[c].value().is_null()) continue;
-        if (!entries[c].value().is_number()) entries[c].expected("a number, or null for a free component");
-        (*entry.displacement)[c] = entries[c].number();
-      }
-    } else if (kind == "traction") {
-      entry.traction = vector(value);
-    } else if (kind == "total_force") {
-      entry.total_force = vector(value);
-    } else if (kind == "pressure") {
-      entry.pressure = value.number();
-    } else if (kind == "spring" && value.value().is_number()) {
-      entry.normal_spring = value.number(positive);
-    } else if (kind == "spring") {
-      entry.spring = vector(value);
-    } else if (kind == "normal") {
-      entry.normal = value.number();
-    } else if (kind == "node_spring") {
-      entry.node_spring = vector(value);
-    } else if (kind == "node_force") {
-      entry.node_force = vector(value);
-    } else if (kind == "temperature") {
-      entry.temperature = value.number();
-    } else if (kind == "density") {
-      const double density = value.number(positive);
+      const std::vector<Node> entries = vector_entries(*value);
+      for (std::size_t c = 0; c < entries.size(); ++c)
+        if (!entries[c].value().is_null()) (*entry.displacement)[c] = entries[c].number();
+    }
+    if (const auto spring = object.optional("spring"); spring && spring->value().is_number())
+      entry.normal_spring = spring->number();
+    else
+      take_vector("spring", entry.spring);
+    if (const auto density = object.optional("density")) {
       Vector3 force = vector(object.required("acceleration"));
-      for (double& component : force) component *= density;
+      for (double& component : force) component *= density->number();
       entry.body_force = force;
-    } else {
-      entry.body_force = vector(value);
     }
     if (const auto frame = object.optional("frame")) entry.frame = axes(*frame);
     result_.model.boundary.push_back(entry);
   }
 
   void parse_contact(const Node& node) {
-    const Object object(node,
-                        {"on", "name", "obstacle", "friction", "motion", "relinearise", "force_controlled"});
+    const Object object(node);
     ContactEntry entry;
     entry.on = selector(object.required("on"));
     if (const auto name = object.optional("name")) entry.name = name->text();
@@ -228,27 +199,22 @@ class CaseParser {
     if (const auto force = object.optional("force_controlled"))
       entry.force_controlled = parse_force_control(*force, read);
     if (const auto friction = object.optional("friction")) {
-      const Object parts(*friction, {"tresca", "coulomb", "reference"});
-      const std::string kind = parts.only_one_of({"tresca", "coulomb"});
-      const double bound = parts.required(kind).number(not_negative);
-      entry.friction = kind == "tresca" ? Friction{bound, 0.0} : Friction{0.0, bound};
-      if (const auto from = parts.optional("reference"); from && from->choice({"start", "step"}) == 1)
-        entry.friction->reference = Friction::Reference::step;
+      const Object parts(*friction);
+      entry.friction.emplace();
+      if (const auto bound = parts.optional("tresca")) entry.friction->tresca = bound->number();
+      if (const auto bound = parts.optional("coulomb")) entry.friction->coulomb = bound->number();
+      if (const auto from = parts.optional("reference"))
+        entry.friction->reference = value_of(*from, words::reference);
     }
     result_.model.contact.push_back(entry);
   }
 
   void parse_steps(const Node& node) {
-    const std::vector<Node> steps = node.list("a list of load steps");
-    if (steps.size() > most_load_steps)
-      node.expected("at most " + std::to_string(most_load_steps) + " load steps");
-    if (steps.empty()) node.expected("at least one load step");
-    for (const Node& step : steps) {
-      const Object object(step, {"time", "factors"});
+    for (const Node& step : node.entries()) {
+      const Object object(step);
       LoadStage stage;
       stage.time = object.required("time").number();
       const Node factors = object.required("factors");
-      if (!factors.value().is_object()) factors.expected("an object of entries and their factors");
       for (const auto& [name, value] : factors.value().items())
         stage.factors[name] = Node(value, factors.path() + "[\"" + name + "\"]").number();
       result_.model.steps.push_back(std::move(stage));
@@ -256,73 +222,50 @@ class CaseParser {
   }
 
   void parse_solver(const Node& node) {
-    using Options = SolverOptions;
-    const Object object(node,
-                        {"tolerance", "outer", "contact", "r", "stop", "max_outer", "max_contact", "max_cg",
-                         "spectrum_tolerance", "relaxation", "preconditioner", "load_steps", "nested"});
-    Options& options = result_.model.solver;
-    if (const auto v = object.optional("tolerance")) options.tolerance = v->number(below_one);
-    if (const auto v = object.optional("spectrum_tolerance")) {
-      options.spectrum_tolerance = v->number(below_one);
-    }
-    if (const auto v = object.optional("outer")) {
-      constexpr std::array values{Options::Outer::automatic, Options::Outer::kacanov, Options::Outer::newton};
-      options.outer = values[v->choice({"auto", "kacanov", "newton"})];
-    }
-    if (const auto v = object.optional("contact")) {
-      constexpr std::array values{Options::Contact::automatic, Options::Contact::admm,
-                                  Options::Contact::dual_admm, Options::Contact::active_set};
-      options.contact = values[v->choice({"auto", "admm", "dual_admm", "active_set"})];
-    }
-    if (const auto v = object.optional("stop")) {
-      options.stop = v->choice({"kkt", "paper"}) == 0 ? Options::Stop::kkt : Options::Stop::paper;
-    }
+    const Object object(node);
+    SolverOptions& options = result_.model.solver;
+    if (const auto v = object.optional("tolerance")) options.tolerance = v->number();
+    if (const auto v = object.optional("spectrum_tolerance")) options.spectrum_tolerance = v->number();
+    if (const auto v = object.optional("outer")) options.outer = value_of(*v, words::outer);
+    if (const auto v = object.optional("contact")) options.contact = value_of(*v, words::contact);
+    if (const auto v = object.optional("stop")) options.stop = value_of(*v, words::stop);
     if (const auto v = object.optional("r")) parse_penalty(*v);
-    if (const auto v = object.optional("preconditioner")) {
-      constexpr std::array values{Options::Preconditioner::multigrid, Options::Preconditioner::elasticity};
-      options.preconditioner = values[v->choice({"multigrid", "elasticity"})];
-    }
+    if (const auto v = object.optional("preconditioner"))
+      options.preconditioner = value_of(*v, words::preconditioner);
     if (const auto v = object.optional("max_outer")) options.max_outer = v->integer(1);
     if (const auto v = object.optional("max_contact")) options.max_contact = v->integer(1);
     if (const auto v = object.optional("max_cg")) options.max_cg = v->integer(1);
     if (const auto v = object.optional("load_steps")) parse_load_steps(*v);
     if (const auto v = object.optional("nested")) options.nested = v->boolean();
-    if (const auto v = object.optional("relaxation")) {
-      options.relaxation = v->number(over_relaxation);
-    }
+    if (const auto v = object.optional("relaxation")) options.relaxation = v->number();
   }
 
   void parse_load_steps(const Node& node) {
     std::vector<double>& factors = result_.model.solver.load_steps;
-    if (node.value().is_number()) {
-      const int steps = node.integer(1);
-      if (steps > most_load_steps)
-        node.expected("at most " + std::to_string(most_load_steps) + " load steps");
-      for (int i = 1; i <= steps; ++i) factors.push_back(static_cast<double>(i) / steps);
+    if (node.value().is_array()) {
+      for (const Node& factor : node.entries()) factors.push_back(factor.number());
       return;
     }
-    for (const Node& factor : node.list("a whole number ≥ 1 or a list of factors"))
-      factors.push_back(factor.number(load_factor));
-    if (factors.empty()) node.expected(last_factor);
+    const int steps = node.integer(1);
+    for (int i = 1; i <= steps; ++i) factors.push_back(static_cast<double>(i) / steps);
   }
 
   void parse_penalty(const Node& node) {
     SolverOptions& options = result_.model.solver;
     if (node.value().is_number()) {
       options.penalty = SolverOptions::Penalty::fixed;
-      options.r = node.number(penalty_number);
-      return;
+      options.r = node.number();
+    } else {
+      options.penalty = value_of(node, words::penalty);
     }
-    if (node.value() == "auto") return;
-    if (node.value() != "paper") node.expected(penalty_number.words);
-    options.penalty = SolverOptions::Penalty::paper;
   }
 
   void parse_output(const Node& node) {
-    const Object object(node, {"fields", "steps", "report", "checkpoint"});
-    if (const auto v = object.optional("fields")) result_.output.fields = v->choice({"vtu", "none"}) == 0;
+    const Object object(node);
+    if (const auto v = object.optional("fields")) result_.output.fields = value_of(*v, words::fields);
     if (const auto v = object.optional("steps")) result_.output.steps = v->boolean();
     if (const auto v = object.optional("report")) result_.output.report = v->boolean();
+    if (const auto v = object.optional("scale")) result_.output.scale = v->number();
     if (const auto v = object.optional("checkpoint")) result_.output.checkpoint = v->boolean();
   }
 

@@ -15,6 +15,13 @@
 namespace kacanov {
 
 /// Where the mesh comes from: exactly one is set.
+/// `mesh.adapt`: where the mesh is refined by what its solution says (theory: bisection).
+struct Adaptivity {
+  double error = 0.0;  ///< aim: Discretisation::energy
+  std::int64_t most_unknowns = 2'000'000;
+  int most_meshes = 12;
+};
+
 struct MeshSource {
   std::optional<std::string> file;  ///< path, relative ones taken from the case file's folder
   std::optional<BoxSpec> box;
@@ -22,12 +29,16 @@ struct MeshSource {
   int refine = 0;  ///< times that the mesh of the file is refined; a box has its cells cut already
   /// What is in the file, where a caller has it in memory: then the file is not opened.
   std::shared_ptr<const std::string> content = {};
+  std::optional<Adaptivity> adapt = {};
+  /// On the first rank, once it is adapted: the mesh itself.
+  std::shared_ptr<const Mesh> adapted = {};
 };
 
 struct OutputOptions {
   bool fields = true;  ///< `fields`: "vtu" or "none"
   bool steps = true;   ///< fields of the load steps before the last, too
   bool report = true;  ///< pictures
+  double scale = 0.0;  ///< of displacements in pictures; 0: chosen so that they can be seen
   bool checkpoint = true;
 };
 

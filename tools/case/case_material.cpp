@@ -9,78 +9,103 @@
 
 #include <kacanov/error.hpp>
 #include <kacanov/rules.hpp>
+#include "case/case_schema.hpp"
+#include "case/case_words.hpp"
 
 namespace kacanov {
 namespace {
 
 /// x0, or the yield stress it follows from: 2 mu x0 = sqrt(2/3) sigma_y for the norm.
 double yield_strain(const Object& object, const Law& law) {
-  if (object.only_one_of({"x0", "yield_stress"}) == "x0") return object.required("x0").number();
-  const double stress = object.required("yield_stress").number(positive);
+  if (const auto x0 = object.optional("x0")) return x0->number();
+  const double stress = object.required("yield_stress").number();
   const double norm = std::sqrt(2.0 / 3.0) * stress / (2.0 * law.shear);
   return law.argument == Law::Argument::squared ? norm * norm : norm;
 }
 
-laws::Table parse_table(const Node& node) {
+laws::Table parse_table(const Object& object) {
   laws::Table table;
-  for (const Node& point : node.list("a list of pairs [x, s] from [0, 0] on")) {
-    const std::vector<Node> pair = point.list("a pair [x, s]");
-    if (pair.size() != 2) point.expected("a pair [x, s]");
+  for (const Node& point : object.required("points").entries()) {
+    const std::vector<Node> pair = point.entries();
     table.x.push_back(pair[0].number());
     table.s.push_back(pair[1].number());
   }
   return table;
 }
 
-/// The keys of each form beside `type` and `argument`, and how it is read.
-struct Entry {
+/// The keys of each form beside `type`, and how it is read.
+struct LawEntry {
   std::string_view name;
-  Law::Form (*read)(const Node& node, const Law& law);
+  KeySet (*keys)();
+  Law::Form (*read)(const Object& object, const Law& law);
 };
 
-constexpr Entry law_entries[] = {
-    {laws::Linear::name,
-     [](const Node& node, const Law&) -> Law::Form {
-       Object(node, {"type", "argument"});
-       return laws::Linear{};
-     }},
-    {laws::Logarithmic::name,
-     [](const Node& node, const Law& law) -> Law::Form {
-       const Object object(node, {"type", "argument", "x0", "yield_stress"});
+Key argument_key() {
+  return may("argument", one_of(words::argument), "whether formulas take x = ‖dev ε‖ or x²",
+             word_of(Law().argument, words::argument));
+}
+
+/// Of a form that starts at x0.
+KeySet from_x0(std::vector<Key> more = {}) {
+  KeySet set{{argument_key(), may("x0", Number{positive}, "‖dev ε‖ up to which the body is elastic"),
+              may("yield_stress", Number{positive}, "the yield stress in tension, in place of x0")},
+             {{{"x0", "yield_stress"}}}};
+  set.keys.insert(set.keys.end(), more.begin(), more.end());
+  return set;
+}
+
+KeySet of_table() {
+  const char* expected = "a list of pairs [x, s] from [0, 0] on";
+  const Schema points =
+      ListOf{Tuple{{Number{}, Number{}}, "a pair [x, s]"}, expected, 2, ListOf::any_number, expected};
+  return {{argument_key(), must("points", points, "pairs of x = ‖dev ε‖ and s = ‖dev τ‖, from [0, 0] on")}};
+}
+
+constexpr LawEntry law_entries[] = {
+    {laws::Linear::name, [] { return KeySet{{argument_key()}}; },
+     [](const Object&, const Law&) -> Law::Form { return laws::Linear{}; }},
+    {laws::Logarithmic::name, [] { return from_x0(); },
+     [](const Object& object, const Law& law) -> Law::Form {
        return laws::Logarithmic{yield_strain(object, law)};
      }},
     {laws::LinearHardening::name,
-     [](const Node& node, const Law& law) -> Law::Form {
-       const Object object(node, {"type", "argument", "x0", "yield_stress", "gamma"});
-       const double x0 = yield_strain(object, law);
-       return laws::LinearHardening{x0, object.required("gamma").number()};
+     [] { return from_x0({must("gamma", Number{up_to_one}, "tangent over elastic modulus")}); },
+     [](const Object& object, const Law& law) -> Law::Form {
+       return laws::LinearHardening{yield_strain(object, law), object.required("gamma").number()};
      }},
-    {laws::Power::name,
-     [](const Node& node, const Law& law) -> Law::Form {
-       const Object object(node, {"type", "argument", "x0", "yield_stress", "n"});
-       const double x0 = yield_strain(object, law);
-       return laws::Power{x0, object.required("n").number()};
+    {laws::Power::name, [] { return from_x0({must("n", Number{up_to_one}, "the exponent")}); },
+     [](const Object& object, const Law& law) -> Law::Form {
+       return laws::Power{yield_strain(object, law), object.required("n").number()};
      }},
     {laws::Saturating::name,
-     [](const Node& node, const Law& law) -> Law::Form {
-       const Object object(node, {"type", "argument", "x0", "yield_stress", "q"});
-       const double x0 = yield_strain(object, law);
-       return laws::Saturating{x0, object.required("q").number()};
+     [] { return from_x0({must("q", Number{positive}, "what stress may gain beyond x0, over that at x0")}); },
+     [](const Object& object, const Law& law) -> Law::Form {
+       return laws::Saturating{yield_strain(object, law), object.required("q").number()};
      }},
-    {laws::Table::name,
-     [](const Node& node, const Law&) -> Law::Form {
-       const Object object(node, {"type", "argument", "points"});
-       return parse_table(object.required("points"));
-     }},
+    {laws::Table::name, of_table,
+     [](const Object& object, const Law&) -> Law::Form { return parse_table(object); }},
     {laws::RambergOsgood::name,
-     [](const Node& node, const Law& law) -> Law::Form {
-       const Object object(node, {"type", "sigma0", "alpha", "n"});
-       const double sigma0 = object.required("sigma0").number(positive);
-       const double alpha = object.required("alpha").number(positive);
-       return ramberg_osgood(law, sigma0, alpha, object.required("n").number(above_one));
+     [] {
+       return KeySet{{must("sigma0", Number{positive}, "σ₀, a stress"),
+                      must("alpha", Number{positive}, "α, what at σ₀ the plastic is to the elastic strain"),
+                      must("n", Number{above_one}, "the exponent")}};
+     },
+     [](const Object& object, const Law& law) -> Law::Form {
+       return ramberg_osgood(law, object.required("sigma0").number(), object.required("alpha").number(),
+                             object.required("n").number());
      }},
 };
 static_assert(std::size(law_entries) == std::variant_size_v<Law::Form>);
+
+Schema law_schema() {
+  Kinds kinds{"type", {}};
+  for (const LawEntry& entry : law_entries) {
+    KeySet set = entry.keys();
+    set.keys.insert(set.keys.begin(), must("type", Word{{std::string(entry.name)}}, "the form of the law"));
+    kinds.kinds.emplace_back(entry.name, std::move(set));
+  }
+  return kinds;
+}
 
 void compare_slopes(const Node& node, const Law& law, std::vector<std::string>& warnings) {
   const auto* table = std::get_if<laws::Table>(&law.form);
@@ -93,19 +118,29 @@ void compare_slopes(const Node& node, const Law& law, std::vector<std::string>& 
   warnings.push_back(text.str());
 }
 
-std::array<double, 2> parse_row(const Node& node) {
-  const char* wanted = "a pair [stress, plastic strain]";
-  const std::vector<Node> pair = node.list(wanted);
-  if (pair.size() != 2) node.expected(wanted);
-  return {pair[0].number(positive), pair[1].number(not_negative)};
-}
-
 }  // namespace
+
+KeySet material_law_keys() {
+  const Schema row = Tuple{{Number{positive}, Number{not_negative}}, "a pair [stress, plastic strain]"};
+  const Schema rows = ListOf{row, "a list of pairs [stress, plastic strain]", 1, ListOf::any_number,
+                             "at least one pair [stress, plastic strain]"};
+  return {{must("young", Number{positive}, "Young's modulus, a stress"),
+           must("poisson", Number{poisson_ratio}, "Poisson's ratio"),
+           may("law", law_schema(), "another law than linear elasticity"),
+           may("plastic", rows, "rows of true stress and plastic strain in tension, the first strain 0"),
+           may("yield_stress", Number{positive}, "in tension, beside tangent_modulus"),
+           may("tangent_modulus", Number{positive}, "beyond the yield stress, a stress below young"),
+           may("bbar", Flag{},
+               "hex8 and quad4: the bulk modulus acts on the mean volumetric strain of each element")},
+          {{{"law", "plastic", "tangent_modulus"}, false}},
+          {{"yield_stress", "tangent_modulus", true}}};
+}
 
 Law parse_plastic(double young, double poisson, const Node& node) {
   std::vector<std::array<double, 2>> rows;
-  for (const Node& row : node.list("a list of pairs [stress, plastic strain]")) {
-    const auto [stress, strain] = parse_row(row);
+  for (const Node& row : node.entries()) {
+    const std::vector<Node> pair = row.entries();
+    const double stress = pair[0].number(), strain = pair[1].number();
     if (rows.empty() && strain != 0.0) row.expected("a first plastic strain of 0");
     if (!rows.empty()) {
       const auto [last_stress, last_strain] = rows.back();
@@ -117,16 +152,15 @@ Law parse_plastic(double young, double poisson, const Node& node) {
     }
     rows.push_back({stress, strain});
   }
-  if (rows.empty()) node.expected("at least one pair [stress, plastic strain]");
   Law law = elastic_law(young, poisson);
   law.form = plastic_table(law, rows);
   return law;
 }
 
 Law parse_bilinear(double young, double poisson, const Object& material) {
-  const double yield_stress = material.required("yield_stress").number(positive);
+  const double yield_stress = material.required("yield_stress").number();
   const Node tangent = material.required("tangent_modulus");
-  const double modulus = tangent.number(positive);
+  const double modulus = tangent.number();
   if (!(modulus < young)) tangent.expected("a number below young");
   Law law = elastic_law(young, poisson);
   law.form = bilinear(law, yield_stress, modulus);
@@ -134,31 +168,23 @@ Law parse_bilinear(double young, double poisson, const Object& material) {
 }
 
 Law parse_law(double young, double poisson, const Node& node, std::vector<std::string>& warnings) {
-  // Any law's key passes here, so that a wrong type is reported before keys that do not go with it.
-  const Object any(
-      node, {"type", "argument", "x0", "yield_stress", "gamma", "n", "q", "points", "sigma0", "alpha"});
+  const Object object(node);
   Law law = elastic_law(young, poisson);
-  std::vector<std::string_view> names;
-  for (const Entry& entry : law_entries) names.push_back(entry.name);
-  const Entry& entry = law_entries[any.required("type").choice(names)];
-  if (const auto argument = any.optional("argument")) {
-    law.argument = argument->choice({"norm", "squared"}) == 0 ? Law::Argument::norm : Law::Argument::squared;
-  }
-  law.form = entry.read(node, law);
+  if (const auto argument = object.optional("argument")) law.argument = value_of(*argument, words::argument);
+  const std::string type = object.required("type").text();
+  for (const LawEntry& entry : law_entries)
+    if (entry.name == type) law.form = entry.read(object, law);
   if (const std::string fault = validate(law); !fault.empty()) throw InputError(node.path() + "." + fault);
   compare_slopes(node, law, warnings);
   return law;
 }
 
 Law parse_material_law(const Object& material, std::vector<std::string>& warnings) {
-  const double young = material.required("young").number(positive);
-  const double poisson = material.required("poisson").number(poisson_ratio);
-  const std::string kind = material.at_most_one_of({"law", "plastic", "tangent_modulus"});
-  if (const auto yield_stress = material.optional("yield_stress"); yield_stress && kind != "tangent_modulus")
-    yield_stress->expected("this key beside tangent_modulus alone");
-  if (kind == "law") return parse_law(young, poisson, material.required("law"), warnings);
-  if (kind == "plastic") return parse_plastic(young, poisson, material.required("plastic"));
-  if (kind == "tangent_modulus") return parse_bilinear(young, poisson, material);
+  const double young = material.required("young").number();
+  const double poisson = material.required("poisson").number();
+  if (const auto law = material.optional("law")) return parse_law(young, poisson, *law, warnings);
+  if (const auto plastic = material.optional("plastic")) return parse_plastic(young, poisson, *plastic);
+  if (material.optional("tangent_modulus")) return parse_bilinear(young, poisson, material);
   return elastic_law(young, poisson);
 }
 

@@ -2,124 +2,212 @@
 // The obstacle of a contact entry.
 #include "case/case_obstacle.hpp"
 
+#include <array>
+#include <variant>
+
 #include <kacanov/rules.hpp>
+#include "case/case_schema.hpp"
+#include "case/case_words.hpp"
 
 namespace kacanov {
 namespace {
 
-class ObstacleParser {
- public:
-  ObstacleParser(const ReadVector& vector, std::optional<ObstacleFile>& file)
-      : vector_(vector), file_(file) {}
+/// What reads obstacles is handed.
+struct Source {
+  const ReadVector& vector;
+  std::optional<ObstacleFile>& file;
+  std::string path;  ///< of the obstacle
 
-  Plane plane(const Node& node) const {
-    const Object parts(node, {"point", "normal"});
-    return {vector_(parts.required("point")), vector_(parts.required("normal"))};
-  }
-  Sphere sphere(const Node& node) const {
-    const Object parts(node, {"centre", "radius", "direction", "inside"});
-    Sphere result;
-    result.centre = vector_(parts.required("centre"));
-    take_round(parts, result);
-    return result;
-  }
-  Cylinder cylinder(const Node& node) const {
-    const Object parts(node, {"point", "axis", "radius", "direction", "inside"});
-    Cylinder result;
-    result.point = vector_(parts.required("point"));
-    result.axis = vector_(parts.required("axis"));
-    take_round(parts, result);
-    return result;
-  }
-  Cone cone(const Node& node) const {
-    const Object parts(node, {"apex", "axis", "half_angle", "direction"});
-    return {vector_(parts.required("apex")), vector_(parts.required("axis")),
-            parts.required("half_angle").number(), direction(parts)};
-  }
-  Torus torus(const Node& node) const {
-    const Object parts(node, {"centre", "axis", "radius", "tube"});
-    return {vector_(parts.required("centre")), vector_(parts.required("axis")),
-            parts.required("radius").number(positive), parts.required("tube").number(positive)};
-  }
-  Block box(const Node& node) const {
-    const Object parts(node, {"lower", "upper"});
-    return {vector_(parts.required("lower")), vector_(parts.required("upper"))};
-  }
-  SurfaceObstacle surface(const Node& node) const {
-    const Object parts(node, {"file", "group"});
-    ObstacleFile& file = new_file(node, parts);
-    if (const auto group = parts.optional("group")) file.group = group->text();
-    return {};
-  }
-  HeightMap height_map(const Node& node) const {
-    const Object parts(node, {"file", "lower", "upper", "scale", "offset", "body"});
-    ObstacleFile& file = new_file(node, parts);
-    file.lower = corner(parts.required("lower"));
-    file.upper = corner(parts.required("upper"));
-    if (const auto scale = parts.optional("scale")) file.scale = scale->number();
-    if (const auto offset = parts.optional("offset")) file.offset = offset->number();
-    HeightMap result;
-    if (const auto side = parts.optional("body")) result.body_above = side->choice({"above", "below"}) == 0;
-    return result;
-  }
-
- private:
+  Vector3 required(const Object& parts, const char* key) const { return vector(parts.required(key)); }
   std::optional<Vector3> direction(const Object& parts) const {
     const auto way = parts.optional("direction");
-    return way ? std::optional(vector_(*way)) : std::nullopt;
+    return way ? std::optional(vector(*way)) : std::nullopt;
   }
   /// Of what a body may touch from outside or inside.
   template <class Round>
   void take_round(const Object& parts, Round& round) const {
-    round.radius = parts.required("radius").number(positive);
+    round.radius = parts.required("radius").number();
     round.direction = direction(parts);
     const auto inside = parts.optional("inside");
     round.inside = inside && inside->boolean();
   }
   /// The file that an obstacle's data come from.
-  ObstacleFile& new_file(const Node& node, const Object& parts) const {
-    ObstacleFile& file = file_.emplace();
-    file.path = node.path();
-    file.name = parts.required("file").text();
-    return file;
+  ObstacleFile& new_file(const Object& parts) const {
+    ObstacleFile& made = file.emplace();
+    made.path = path;
+    made.name = parts.required("file").text();
+    return made;
   }
-  static std::array<double, 2> corner(const Node& node) {
-    const std::vector<Node> entries = node.list("a list of two numbers, x and y");
-    if (entries.size() != 2) node.expected("a list of two numbers, x and y");
-    return {entries[0].number(), entries[1].number()};
-  }
-
-  const ReadVector& vector_;
-  std::optional<ObstacleFile>& file_;
 };
+
+Obstacle read_plane(const Object& parts, const Source& from) {
+  return Plane{from.required(parts, "point"), from.required(parts, "normal")};
+}
+
+Obstacle read_sphere(const Object& parts, const Source& from) {
+  Sphere result;
+  result.centre = from.required(parts, "centre");
+  from.take_round(parts, result);
+  return result;
+}
+
+Obstacle read_cylinder(const Object& parts, const Source& from) {
+  Cylinder result;
+  result.point = from.required(parts, "point");
+  result.axis = from.required(parts, "axis");
+  from.take_round(parts, result);
+  return result;
+}
+
+Obstacle read_cone(const Object& parts, const Source& from) {
+  return Cone{from.required(parts, "apex"), from.required(parts, "axis"),
+              parts.required("half_angle").number(), from.direction(parts)};
+}
+
+Obstacle read_torus(const Object& parts, const Source& from) {
+  return Torus{from.required(parts, "centre"), from.required(parts, "axis"),
+               parts.required("radius").number(), parts.required("tube").number()};
+}
+
+Obstacle read_box(const Object& parts, const Source& from) {
+  return Block{from.required(parts, "lower"), from.required(parts, "upper")};
+}
+
+Obstacle read_surface(const Object& parts, const Source& from) {
+  ObstacleFile& file = from.new_file(parts);
+  if (const auto group = parts.optional("group")) file.group = group->text();
+  return SurfaceObstacle{};
+}
+
+Obstacle read_height_map(const Object& parts, const Source& from) {
+  const auto corner = [&parts](const char* key) -> std::array<double, 2> {
+    const std::vector<Node> entries = parts.required(key).entries();
+    return {entries[0].number(), entries[1].number()};
+  };
+  ObstacleFile& file = from.new_file(parts);
+  file.lower = corner("lower");
+  file.upper = corner("upper");
+  if (const auto scale = parts.optional("scale")) file.scale = scale->number();
+  if (const auto offset = parts.optional("offset")) file.offset = offset->number();
+  HeightMap result;
+  if (const auto side = parts.optional("body")) result.body_above = value_of(*side, words::body_above);
+  return result;
+}
+
+Key direction_key() {
+  return may("direction", vector_schema(),
+             "from the body towards the obstacle; left out, to its closest point");
+}
+
+Key axis_key(const char* help) { return must("axis", vector_schema(), help); }
+
+Key radius_key() { return must("radius", Number{positive}, "a length"); }
+
+Key inside_key(bool fallback) { return may("inside", Flag{}, "whether the body is within", fallback); }
+
+/// Lower and upper corner in the plane of x and y.
+Schema plane_corner() {
+  const char* expected = "a list of two numbers, x and y";
+  return ListOf{Number{}, expected, 2, 2};
+}
+
+struct ObstacleEntry {
+  const char* name;
+  const char* help;
+  KeySet (*keys)();
+  Obstacle (*read)(const Object& parts, const Source& from);
+};
+
+constexpr ObstacleEntry obstacle_entries[] = {
+    {"plane", "a half-space",
+     [] {
+       return KeySet{{must("point", vector_schema(), "of the plane"),
+                      must("normal", vector_schema(), "to the side of the body")}};
+     },
+     read_plane},
+    {"sphere", "a ball, or a socket",
+     [] {
+       return KeySet{{must("centre", vector_schema(), "its middle"), radius_key(), direction_key(),
+                      inside_key(Sphere().inside)}};
+     },
+     read_sphere},
+    {"cylinder", "a cylinder without ends, or a bore; in 2D a strip",
+     [] {
+       return KeySet{{must("point", vector_schema(), "of the axis"), axis_key("along the cylinder"),
+                      radius_key(), direction_key(), inside_key(Cylinder().inside)}};
+     },
+     read_cylinder},
+    {"cone", "a cone without base; in 2D a wedge",
+     [] {
+       return KeySet{{must("apex", vector_schema(), "its tip"), axis_key("from the apex into the cone"),
+                      must("half_angle", Number{cone_angle}, "degrees between axis and mantle"),
+                      direction_key()}};
+     },
+     read_cone},
+    {"torus", "a ring",
+     [] {
+       return KeySet{{must("centre", vector_schema(), "its middle"), axis_key("across the ring"),
+                      must("radius", Number{positive}, "of the circle in the middle of the tube"),
+                      must("tube", Number{positive}, "radius of the tube")}};
+     },
+     read_torus},
+    {"box", "a block along the axes",
+     [] {
+       return KeySet{{must("lower", vector_schema(), "its lower corner"),
+                      must("upper", vector_schema(), "its upper corner")}};
+     },
+     read_box},
+    {"surface", "the triangles of a file; 3D only",
+     [] {
+       return KeySet{{must("file", Text{}, "STL or Gmsh .msh"),
+                      may("group", Text{}, "of a .msh: the physical group of facets; left out, all")}};
+     },
+     read_surface},
+    {"height_map", "heights over a rectangle; 3D only",
+     [] {
+       const ObstacleFile standard;
+       return KeySet{{must("file", Text{}, "CSV, PGM or PBM"),
+                      must("lower", plane_corner(), "x and y of the corner"),
+                      must("upper", plane_corner(), "x and y of the opposite corner"),
+                      may("scale", Number{}, "height of the value 1", standard.scale),
+                      may("offset", Number{}, "height of the value 0", standard.offset),
+                      may("body", one_of(words::body_above), "on which side of the heights the body is",
+                          word_of(HeightMap().body_above, words::body_above))}};
+     },
+     read_height_map},
+};
+constexpr const char* gap_key = "gap";
+static_assert(std::size(obstacle_entries) + 1 == std::variant_size_v<Obstacle>, "and the gap");
 
 }  // namespace
 
+Schema obstacle_schema() {
+  KeySet set;
+  OneOf kinds;
+  for (const ObstacleEntry& entry : obstacle_entries)
+    set.keys.push_back(may(entry.name, entry.keys(), entry.help));
+  set.keys.push_back(may(gap_key, Number{}, "a constant gap along the body's outer normal, a length"));
+  for (const Key& key : set.keys) kinds.keys.push_back(key.name);
+  set.one_of.push_back(std::move(kinds));
+  return set;
+}
+
 Obstacle parse_obstacle(const Node& node, const ReadVector& vector, std::optional<ObstacleFile>& file) {
-  const auto keys = {"plane", "sphere", "cylinder", "cone", "torus", "box", "surface", "height_map", "gap"};
-  const Object object(node, keys);
-  const std::string kind = object.only_one_of(keys);
-  const Node value = object.required(kind);
-  const ObstacleParser parser(vector, file);
-  if (kind == "plane") return parser.plane(value);
-  if (kind == "sphere") return parser.sphere(value);
-  if (kind == "cylinder") return parser.cylinder(value);
-  if (kind == "cone") return parser.cone(value);
-  if (kind == "torus") return parser.torus(value);
-  if (kind == "box") return parser.box(value);
-  if (kind == "surface") return parser.surface(value);
-  if (kind == "height_map") return parser.height_map(value);
-  return ConstantGap{value.number()};
+  const Object object(node);
+  for (const ObstacleEntry& entry : obstacle_entries)
+    if (const auto parts = object.optional(entry.name))
+      return entry.read(Object(*parts), Source{vector, file, parts->path()});
+  return ConstantGap{object.required(gap_key).number()};
 }
 
 Motion parse_motion(const Node& node, const ReadVector& vector) {
-  const Object parts(node, {"path", "centre"});
+  const Object parts(node);
   Motion motion;
   if (const auto centre = parts.optional("centre")) motion.centre = vector(*centre);
-  for (const Node& point : parts.required("path").list("a list of places and their times")) {
-    const Object place(point, {"time", "translation", "rotation"});
+  for (const Node& point : parts.required("path").entries()) {
+    const Object place(point);
     Motion::Pose pose;
-    pose.time = place.required("time").number(positive);
+    pose.time = place.required("time").number();
     if (const auto translation = place.optional("translation")) pose.translation = vector(*translation);
     if (const auto rotation = place.optional("rotation")) {
       // In the plane a turn is a number: its axis is z.
@@ -134,8 +222,8 @@ Motion parse_motion(const Node& node, const ReadVector& vector) {
 }
 
 ForceControl parse_force_control(const Node& node, const ReadVector& vector) {
-  const Object parts(node, {"force", "direction"});
-  return {parts.required("force").number(positive), vector(parts.required("direction"))};
+  const Object parts(node);
+  return {parts.required("force").number(), vector(parts.required("direction"))};
 }
 
 }  // namespace kacanov

@@ -196,28 +196,6 @@ std::size_t Node::choice(const std::vector<std::string_view>& words) const {
   expected(list);
 }
 
-namespace {
-
-std::string list_of(std::initializer_list<const char*> keys) {
-  std::string list;
-  for (const char* key : keys) list += (list.empty() ? "" : ", ") + std::string(key);
-  return list;
-}
-
-}  // namespace
-
-Object::Object(const Node& node, std::initializer_list<const char*> keys) : node_(node) {
-  const std::string list = list_of(keys);
-  if (!node.value().is_object()) node.expected("an object with the keys " + list);
-  const std::vector<std::string> known(keys.begin(), keys.end());
-  for (const auto& [key, value] : node.value().items()) {
-    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-    const std::string guess = closest_word(key, known);
-    throw InputError(path_of(key) + ": unknown key" +
-                     (guess.empty() ? "" : " (did you mean \"" + guess + "\"?)") + "; known here: " + list);
-  }
-}
-
 std::string Object::path_of(const std::string& key) const {
   return node_.path().empty() ? key : node_.path() + "." + key;
 }
@@ -233,25 +211,5 @@ std::optional<Node> Object::optional(const std::string& key) const {
   if (found == node_.value().end()) return std::nullopt;
   return Node(*found, path_of(key));
 }
-
-std::string Object::only_one_of(std::initializer_list<const char*> keys) const {
-  const std::string present = at_most_one_of(keys);
-  if (!present.empty()) return present;
-  throw InputError(place() + ": expected one of the keys " + list_of(keys));
-}
-
-std::string Object::at_most_one_of(std::initializer_list<const char*> keys) const {
-  std::string present;
-  for (const char* key : keys) {
-    if (!node_.value().contains(key)) continue;
-    if (!present.empty())
-      throw InputError(place() + ": expected only one of the keys " + list_of(keys) + ", got " + present +
-                       " and " + key);
-    present = key;
-  }
-  return present;
-}
-
-std::string Object::place() const { return node_.path().empty() ? "the case" : node_.path(); }
 
 }  // namespace kacanov

@@ -2,7 +2,6 @@
 // A JSON value that knows its path, so that whatever is wrong with it can be said in the user's terms.
 #pragma once
 
-#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -31,6 +30,7 @@ class Node {
   bool boolean() const;
   std::string text() const;                                   ///< a string that is not empty
   std::vector<Node> list(const std::string& expected) const;  ///< the entries of an array
+  std::vector<Node> entries() const { return list("a list"); }
   /// A string out of a few; returns its place among them.
   std::size_t choice(const std::vector<std::string_view>& words) const;
 
@@ -41,20 +41,15 @@ class Node {
   std::string path_;
 };
 
-/// An object with a closed set of keys: the constructor refuses any other.
+/// An object, whose keys have been checked or are about to be (schema.hpp).
 class Object {
  public:
-  Object(const Node& node, std::initializer_list<const char*> keys);
+  explicit Object(Node node) : node_(std::move(node)) {}
   Node required(const std::string& key) const;
   std::optional<Node> optional(const std::string& key) const;
-  /// The one of several keys that is there; none or several are errors.
-  std::string only_one_of(std::initializer_list<const char*> keys) const;
-  /// The same; empty where none is there.
-  std::string at_most_one_of(std::initializer_list<const char*> keys) const;
+  std::string path_of(const std::string& key) const;
 
  private:
-  std::string path_of(const std::string& key) const;
-  std::string place() const;
   Node node_;
 };
 

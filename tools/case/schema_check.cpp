@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whether a value is as described, and in words what is not.
+#include <algorithm>
+#include <string_view>
+
+#include <kacanov/error.hpp>
+#include "case/schema.hpp"
+#include "problem/closest_word.hpp"
+
+namespace kacanov {
+namespace {
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string list;
+  for (const std::string& word : words) list += (list.empty() ? "" : ", ") + word;
+  return list;
+}
+
+std::vector<std::string> names(const KeySet& set) {
+  std::vector<std::string> list;
+  for (const Key& key : set.keys) list.push_back(key.name);
+  return list;
+}
+
+/// Whether the JSON type of a value is one that a form is made of.
+struct HasType {
+  const nlohmann::json& value;
+  bool operator()(const Text&) const { return value.is_string(); }
+  bool operator()(const Word&) const { return value.is_string(); }
+  bool operator()(const Flag&) const { return value.is_boolean(); }
+  bool operator()(const Null&) const { return value.is_null(); }
+  bool operator()(const Number&) const { return value.is_number(); }
+  bool operator()(const Whole&) const { return value.is_number(); }
+  bool operator()(const ListOf&) const { return value.is_array(); }
+  bool operator()(const Tuple&) const { return value.is_array(); }
+  bool operator()(const KeySet&) const { return value.is_object(); }
+  bool operator()(const MapOf&) const { return value.is_object(); }
+  bool operator()(const Kinds&) const { return value.is_object(); }
+  bool operator()(const Either&) const { return false; }
+};
+
+struct Check {
+  const Node& node;
+
+  void operator()(const Text&) const { node.text(); }
+  void operator()(const Flag&) const { node.boolean(); }
+  void operator()(const Null&) const {
+    if (!node.value().is_null()) node.expected("null");
+  }
+  void operator()(const Number& form) const { node.number(form.rule); }
+  void operator()(const Whole& form) const {
+    if (node.integer(form.least) > form.most) node.expected(form.words_above);
+  }
+  void operator()(const Word& form) const {
+    if (form.expected.empty()) {
+      node.choice({form.words.begin(), form.words.end()});
+    } else if (std::find(form.words.begin(), form.words.end(), node.value()) == form.words.end()) {
+      node.expected(form.expected);
+    }
+  }
+  void operator()(const ListOf& form) const {
+    const std::vector<Node> entries = node.list(form.expected);
+    const auto refuse = [&](const std::string& words) {
+      node.expected(words.empty() ? form.expected : words);
+    };
+    if (entries.size() < form.least) refuse(form.words_below);
+    if (entries.size() > form.most) refuse(form.words_above);
+    for (const Node& entry : entries) check(entry, form.entry);
+  }
+  void operator()(const Tuple& form) const {
+    const std::vector<Node> entries = node.list(form.expected);
+    if (entries.size() != form.entries.size()) node.expected(form.expected);
+    for (std::size_t i = 0; i < entries.size(); ++i) check(entries[i], form.entries[i]);
+  }
+  void operator()(const MapOf& form) const {
+    if (!node.value().is_object()) node.expected(form.expected);
+    for (const auto& [name, value] : node.value().items())
+      check(Node(value, node.path() + "[\"" + name + "\"]"), form.entry);
+  }
+  void operator()(const Kinds& form) const {
+    if (!node.value().is_object()) node.expected("an object with the keys " + joined(all_keys(form)));
+    // The kind first: a wrong one is not to be told by keys that do not go with it.
+    std::vector<std::string_view> kinds;
+    for (const auto& kind : form.kinds) kinds.push_back(kind.first);
+    (*this)(form.kinds[Object(node).required(form.tag).choice(kinds)].second);
+  }
+  void operator()(const Either& form) const {
+    for (const Schema& schema : form.choices)
+      if (std::visit(HasType{node.value()}, schema.form().form)) return check(node, schema);
+    node.expected(form.expected);
+  }
+  void operator()(const KeySet& set) const {
+    if (!node.value().is_object()) node.expected("an object with the keys " + joined(names(set)));
+    refuse_unknown(set);
+    const Object object(node);
+    for (const Key& key : set.keys)
+      if (key.required) object.required(key.name);
+    for (const OneOf& group : set.one_of) check_one_of(group);
+    for (const Beside& pair : set.beside) {
+      const auto key = object.optional(pair.key);
+      const bool main = node.value().contains(pair.main);
+      if (key && !main) key->expected("this key beside " + pair.main + " alone");
+      if (pair.both && main) object.required(pair.key);
+    }
+    for (const Key& key : set.keys)
+      if (const auto value = object.optional(key.name)) check(*value, key.value);
+  }
+
+ private:
+  static std::vector<std::string> all_keys(const Kinds& form) {
+    std::vector<std::string> list;
+    for (const auto& kind : form.kinds)
+      for (const Key& key : kind.second.keys)
+        if (std::find(list.begin(), list.end(), key.name) == list.end()) list.push_back(key.name);
+    return list;
+  }
+  void refuse_unknown(const KeySet& set) const {
+    const std::vector<std::string> known = names(set);
+    for (const auto& [key, value] : node.value().items()) {
+      if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+      const std::string guess = closest_word(key, known);
+      throw InputError(Object(node).path_of(key) + ": unknown key" +
+                       (guess.empty() ? "" : " (did you mean \"" + guess + "\"?)") +
+                       "; known here: " + joined(known));
+    }
+  }
+  void check_one_of(const OneOf& group) const {
+    const std::string place = node.path().empty() ? "the case" : node.path();
+    std::string present;
+    for (const std::string& key : group.keys) {
+      if (!node.value().contains(key)) continue;
+      if (!present.empty())
+        throw InputError(place + ": expected only one of the keys " + joined(group.keys) + ", got " +
+                         present + " and " + key);
+      present = key;
+    }
+    if (present.empty() && group.required)
+      throw InputError(place + ": expected one of the keys " + joined(group.keys));
+  }
+};
+
+}  // namespace
+
+void check(const Node& node, const Schema& schema) { std::visit(Check{node}, schema.form().form); }
+
+}  // namespace kacanov

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a solve takes care of in a process that is not its own: one run at a time, the thread's locale, MPI.
+#include "embedding/host_guards.hpp"
+
+#include <mpi.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <mutex>
+#include <new>
+#include <thread>
+
+#include <kacanov/error.hpp>
+#include "c/laws.hpp"
+#include "program/host_mpi.hpp"
+
+namespace kacanov::embedding {
+namespace {
+
+std::mutex one_run;
+std::atomic<std::thread::id> runner;
+
+/// At the process's end; a run that another thread is still at would lose MPI beneath its feet.
+void end_mpi() {
+  if (!one_run.try_lock()) return;
+  end_host_mpi();
+  one_run.unlock();
+}
+
+}  // namespace
+
+OneAtATime::OneAtATime() {
+  if (runner == std::this_thread::get_id())
+    throw c_api::Fault(KACANOV_ERROR_STATE, "kacanov_solve: called from a callback of a solve");
+  one_run.lock();
+  runner = std::this_thread::get_id();
+}
+
+OneAtATime::~OneAtATime() {
+  runner = std::thread::id();
+  one_run.unlock();
+}
+
+PlainLocale::PlainLocale() : plain_(newlocale(LC_ALL_MASK, "C", nullptr)) {
+  if (plain_ == locale_t{}) throw std::bad_alloc();
+  hosts_ = uselocale(plain_);
+}
+
+PlainLocale::~PlainLocale() {
+  uselocale(hosts_);
+  freelocale(plain_);
+}
+
+void require_mpi() {
+  try {
+    if (start_host_mpi()) std::atexit(&end_mpi);
+  } catch (const InternalError& error) {
+    throw c_api::Fault(KACANOV_ERROR_STATE, error.what());
+  }
+  int level = MPI_THREAD_SINGLE, is_main = 0;
+  MPI_Query_thread(&level);
+  MPI_Is_thread_main(&is_main);
+  if (level < MPI_THREAD_SERIALIZED && is_main == 0)
+    throw c_api::Fault(KACANOV_ERROR_STATE,
+                       "the host has started MPI without MPI_THREAD_SERIALIZED: solve on its main thread");
+}
+
+}  // namespace kacanov::embedding

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The handle of a solved case, and its arrays.
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include <kacanov/kacanov_solve.h>
+#include "program/solve_case.hpp"
+
+namespace kacanov::embedding {
+
+/// Means over the elements, made when they are first asked for.
+struct ElementArrays {
+  std::vector<double> stress, von_mises, dev_strain, secant;
+  std::vector<std::int32_t> plastic;
+};
+
+/// Of the contact points, as C has them.
+struct ContactArrays {
+  std::vector<std::int32_t> node, entry, status;
+  std::vector<double> normal;
+};
+
+}  // namespace kacanov::embedding
+
+/// Everything belongs to the first process; others have the result and its text.
+struct kacanov_solution {
+  kacanov::SolvedCase solved;
+  std::string json;
+  kacanov::embedding::ContactArrays contact;
+  std::vector<std::int64_t> node_numbers, element_numbers;
+  mutable std::once_flag elements_made;
+  mutable kacanov::embedding::ElementArrays elements;
+
+  explicit kacanov_solution(kacanov::SolvedCase of);
+};
