@@ -59,6 +59,26 @@ if(Python3_FOUND AND NOT KACANOV_SANITIZE)
   kacanov_test_properties(endured_faults 1)
 endif()
 
+# The front door in C; its C client, as it is, is what consumes an installation, too.
+kacanov_test(solve_c SOURCES tools/solve_c_test.cpp LIBRARIES kacanov_program_runner kacanov_solve)
+add_dependencies(test_solve_c kacanov)
+kacanov_test(solve_c_mpi MPI SOURCES tools/solve_c_mpi_test.cpp
+  LIBRARIES kacanov_solve MPI::MPI_CXX RANKS 1 2)
+add_executable(solve_client install/consumer/use_solve.c)
+set_target_properties(solve_client PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
+target_link_libraries(solve_client PRIVATE kacanov_solve kacanov_warnings m)
+if(KACANOV_SANITIZE)
+  set_target_properties(solve_client PROPERTIES LINKER_LANGUAGE CXX)
+endif()
+add_test(NAME solve_c_client COMMAND solve_client)
+kacanov_test_properties(solve_c_client 1)
+set_tests_properties(solve_c_client PROPERTIES FAIL_REGULAR_EXPRESSION ".")  # nothing is printed
+if(Python3_FOUND AND CMAKE_NM AND NOT KACANOV_SANITIZE)
+  add_test(NAME solve_c_symbols COMMAND "${Python3_EXECUTABLE}" "${CMAKE_CURRENT_SOURCE_DIR}/embedding/symbols.py"
+    $<TARGET_FILE:kacanov_solve> "${PROJECT_SOURCE_DIR}/tools/include/kacanov/kacanov_solve.h")
+  kacanov_test_properties(solve_c_symbols 1)
+endif()
+
 kacanov_test(program_hard SOURCES tools/program_hard_test.cpp LIBRARIES kacanov_program_runner)
 target_compile_definitions(test_program_hard PRIVATE KACANOV_HARD_CASES="${PROJECT_SOURCE_DIR}/tests/cases/hard")
 add_dependencies(test_program_hard kacanov)
@@ -79,6 +99,42 @@ kacanov_test(terminal SOURCES tools/terminal_test.cpp LIBRARIES kacanov_program)
 kacanov_test(vtu SOURCES tools/vtu_test.cpp tools/vtu_reader_test.cpp LIBRARIES kacanov_formats)
 
 kacanov_test(picture SOURCES tools/picture_test.cpp LIBRARIES kacanov_pictures)
+
+# The schema of case files, wherever a validator is (Debian: python3-jsonschema), else what can be said without.
+if(Python3_FOUND)
+  set(python "${Python3_EXECUTABLE}")
+  execute_process(COMMAND /usr/bin/python3 -c "import jsonschema" RESULT_VARIABLE without OUTPUT_QUIET ERROR_QUIET)
+  if(NOT without)
+    set(python /usr/bin/python3)
+  endif()
+  add_test(NAME case_schema
+    COMMAND "${python}" -B "${CMAKE_CURRENT_SOURCE_DIR}/tools/schema_test.py" $<TARGET_FILE:kacanov> "${PROJECT_SOURCE_DIR}")
+  kacanov_test_properties(case_schema 1)
+  add_test(NAME shell
+    COMMAND "${python}" -B "${CMAKE_CURRENT_SOURCE_DIR}/tools/shell_test.py" $<TARGET_FILE:kacanov>)
+  kacanov_test_properties(shell 1)
+endif()
+
+# report.html as HTML, and in a browser wherever there is one (Debian: chromium).
+if(Python3_FOUND)
+  find_program(KACANOV_CHROMIUM chromium)
+  mark_as_advanced(KACANOV_CHROMIUM)
+  add_test(NAME report_page
+    COMMAND "${Python3_EXECUTABLE}" -B "${CMAKE_CURRENT_SOURCE_DIR}/tools/report_test.py" $<TARGET_FILE:kacanov>)
+  kacanov_test_properties(report_page 2)
+  if(KACANOV_CHROMIUM)
+    add_test(NAME report_in_browser
+      COMMAND "${Python3_EXECUTABLE}" -B "${CMAKE_CURRENT_SOURCE_DIR}/tools/report_test.py" $<TARGET_FILE:kacanov>
+        "${KACANOV_CHROMIUM}")
+    kacanov_test_properties(report_in_browser 2)
+  endif()
+endif()
+if(Python3_FOUND AND NOT KACANOV_SANITIZE)  # what it tests is how good the numbers are
+  add_test(NAME first_part
+    COMMAND "${Python3_EXECUTABLE}" -B "${CMAKE_CURRENT_SOURCE_DIR}/tools/first_part_test.py" $<TARGET_FILE:kacanov>
+      "${PROJECT_SOURCE_DIR}")
+  kacanov_test_properties(first_part 1)
+endif()
 
 # What other people's readers make of our files, where there are any (Debian: python3-meshio, python3-vtk9).
 foreach(library meshio vtk)

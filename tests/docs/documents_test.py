@@ -63,6 +63,52 @@ class Links(unittest.TestCase):
         self.assertEqual(lost, [])
 
 
+STRING = re.compile(r'"((?:\\.|[^"\\])*)"')
+
+
+class Warnings(unittest.TestCase):
+    """Every warning has a row of its own words in the user guide."""
+
+    def setUp(self):
+        guide = (DOCS / "user-guide" / "results.md").read_text(encoding="utf-8")
+        section = guide[guide.index("{#warnings}"):guide.index("## The certificate")]
+        rows = [row.split(" | ")[0].replace("\\*", "@") for row in section.splitlines() if row.startswith("| *")]
+        found = [phrase.replace("@", "*") for row in rows for phrase in re.findall(r"\*([^*]+)\*", row)]
+        self.phrases = [[part.strip() for part in phrase.split("…") if part.strip()] for phrase in found]
+        self.sources = {path: path.read_text(encoding="utf-8") for room in ("solver", "tools")
+                        for path in (ROOT / room).rglob("*.[ch]pp") if "verify" not in path.parts}
+
+    @staticmethod
+    def words(code):
+        return "".join(STRING.findall(code)).replace('\\"', '"')
+
+    def warnings(self):
+        """The words of each warning, by the place that makes it."""
+        made = re.compile(r'(?:warnings|remarks_)\.push_back\((.*?)\);\n|"kacanov: (?:warning|note): .*?;\n', re.DOTALL)
+        passed_on = re.compile(r"[\w:.+ ()]*\b(?:warning|what\(\)|remark)\b\)*", re.DOTALL)
+        for path, text in self.sources.items():
+            for match in made.finditer(text):
+                code = match[0]
+                if function := re.search(r"\b(\w+_message)\(", code):
+                    body = text[re.search(rf"std::string {function[1]}\([^)]*\) {{", text).end():]
+                    code = body[:body.index("\n}\n")]
+                elif "text.str()" in code:
+                    code = text[text.rindex("std::ostringstream", 0, match.start()):match.end()]
+                elif not re.search("[a-z]{3}", self.words(code.replace("kacanov: warning: ", ""))) and passed_on.search(code):
+                    continue
+                yield f"{path.relative_to(ROOT)}: {code[:60]}", self.words(code)
+
+    def test_every_warning_is_explained(self):
+        made = dict(self.warnings())
+        self.assertGreater(len(made), 25)
+        self.assertEqual([place for place, words in made.items()
+                          if not any(all(part in words for part in phrase) for phrase in self.phrases)], [])
+
+    def test_every_explanation_is_of_words_that_are_said(self):
+        said = "".join(self.words(text) for text in self.sources.values())
+        self.assertEqual([phrase for phrase in self.phrases if not all(part in said for part in phrase)], [])
+
+
 class Labels(unittest.TestCase):
     def setUp(self):
         text = (DOCS / "theory.md").read_text(encoding="utf-8")

@@ -36,16 +36,18 @@ LEVELS = [
     ["tools/case", "tools/formats"],
     ["tools/pictures"],
     ["tools/program"],
+    ["tools/embedding"],
     ["perf", "python"],
     ["tests"],
 ]
-PUBLIC = ["kernels/include/kacanov", "solver/include/kacanov"]
+PUBLIC = ["kernels/include/kacanov", "solver/include/kacanov", "tools/include/kacanov"]
 # Where "room/file.hpp" is looked for, after the folder of the file itself.
 INCLUDE_FOLDERS = ["kernels", "solver", "tools", "tests/solver"]
 
 # Public headers live with the source file of their name; these have none, or one of another name.
 HEADER_ROOMS = {
     "kacanov.h": "kernels/c",
+    "kacanov_solve.h": "tools/embedding",
     "mesh_view.hpp": "kernels/cells",
     "error.hpp": "kernels/cells",
     "transport.hpp": "kernels/distributed",
@@ -63,7 +65,7 @@ HEADER_ROOMS = {
 
 MOST_LINES = 400
 # Files that are longer, and why. An entry that is not needed any more is an error.
-LONGER = {}
+LONGER = {"kernels/include/kacanov/kacanov.h": "hosts in C include one header, most of it words"}
 # Arrows that still run back: (room, included room). An entry that is not needed any more is an error.
 KNOWN_BACKWARD = set()
 
@@ -123,7 +125,7 @@ def included_files(path, text, files):
     """What the file includes of the project's own: pairs of the words in the #include and the file, or None."""
     for bracket, name in re.findall(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', text, re.MULTILINE):
         if bracket == "<":
-            candidates = [f"{top}/include/{name}" for top in ("kernels", "solver")]
+            candidates = [f"{top}/include/{name}" for top in ("kernels", "solver", "tools")]
             if not name.startswith("kacanov"):
                 continue
         else:

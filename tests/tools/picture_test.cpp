@@ -210,7 +210,7 @@ TEST_CASE("a large mesh becomes an image, and the file stays small") {
 TEST_CASE("bands of colour cover the body exactly once") {
   const Bent bent = bent_box({{4, 1, 0}, {32, 8, 0}, ElementType::tri3}, 0.5);  // shearing keeps the area
   const View view = View::of(bent.mesh);
-  const Surface surface = visible_surface(bent.mesh, view, bent.displacement, 1, bent.stress);
+  const VisibleSurface surface = visible_surface(bent.mesh, view, bent.displacement, 1, bent.stress);
   const ColourScale colours(bent.stress);
   const Frame frame{10, 20, 400, 150, 0, 1, 100};
   CHECK(surface.faces.size() == bent.mesh.element_count());
@@ -223,7 +223,7 @@ TEST_CASE("of a convex body, the visible faces project onto its shadow once") {
   for (const ElementType type : {ElementType::tet4, ElementType::tet10, ElementType::hex8}) {
     const Bent bent = bent_box({{3, 2, 1}, {3, 2, 2}, type}, 0.0);
     const View view = View::of(bent.mesh);
-    const Surface surface = visible_surface(bent.mesh, view, bent.displacement, 1, bent.stress);
+    const VisibleSurface surface = visible_surface(bent.mesh, view, bent.displacement, 1, bent.stress);
     double area = 0;
     for (const Face& f : surface.faces) {
       const auto& c = f.corners;

@@ -201,7 +201,7 @@ TEST_CASE("a run of several ranks pauses and goes on with its terminal") {
 TEST_CASE("a folder under the name of a result is no result, and stays") {
   const Workplace place;
   place.put_json("beam.json", small_beam());
-  for (const char* name : {"summary.txt", "deformed.svg"}) {
+  for (const char* name : {"summary.txt", "deformed.svg", "report.html"}) {
     std::filesystem::create_directories(place.path(std::string("out/") + name));
     const Outcome outcome = place.run("run beam.json --output out");
     CHECK(outcome.exit_code == 2);

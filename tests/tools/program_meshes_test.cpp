@@ -118,3 +118,62 @@ TEST_CASE("quadratic elements are made of a file's linear ones, and of a box's")
   CHECK(place.run("check box4.json --set mesh.box.element=hex8").error.find("mesh.order: 2 makes tet10") !=
         std::string::npos);
 }
+
+TEST_CASE("an adapted mesh meets the error asked for, with fewer unknowns than an even one") {
+  const Workplace place;
+  nlohmann::json press = nlohmann::json::parse(R"({
+    "mesh": {"box": {"size": [1, 1, 1], "cells": [3, 3, 3], "element": "tet10"}, "adapt": {"error": 0.12}},
+    "material": [{"on": "all", "young": 210000, "poisson": 0.3, "law": {"type": "logarithmic", "yield_stress": 250}}],
+    "boundary": [{"on": "bottom", "displacement": [0, 0, 0]}],
+    "contact": [{"on": "top", "obstacle": {"sphere": {"centre": [0.5, 0.5, 2.995], "radius": 2}}}],
+    "probe": [[0.5, 0.5, 1]]})");
+  place.put_json("press.json", press);
+  press["mesh"].erase("adapt");
+  press["mesh"]["box"]["cells"] = {10, 10, 10};
+  press["solver"]["nested"] = false;
+  place.put_json("even.json", press);
+  for (const char* run : {"run press.json --output one --ranks 1", "run press.json --output two --ranks 2",
+                          "run even.json --output even", "verify press.json --output two"}) {
+    const Outcome outcome = place.run(run);
+    INFO("error: ", outcome.error);
+    CHECK(outcome.exit_code == 0);
+  }
+  const nlohmann::json one = place.json("one/result.json"), two = place.json("two/result.json"),
+                       even = place.json("even/result.json");
+  CHECK(one["discretisation"]["energy"] <= 0.12);
+  CHECK(even["discretisation"]["energy"] > one["discretisation"]["energy"]);
+  CHECK(2 * one["unknowns"].get<int>() < even["unknowns"].get<int>());
+  REQUIRE(one["nested"].size() > 2);
+  CHECK(one["nested"][0]["error"] > one["nested"].back()["error"]);
+  CHECK(one["nested"].back()["error"].get<double>() ==
+        doctest::Approx(one["discretisation"]["energy"].get<double>()).epsilon(0.01));
+  CHECK(two["unknowns"] == one["unknowns"]);
+  CHECK(two["contact_force"][2].get<double>() ==
+        doctest::Approx(one["contact_force"][2].get<double>()).epsilon(1e-5));
+  CHECK(even["contact_force"][2].get<double>() ==
+        doctest::Approx(one["contact_force"][2].get<double>()).epsilon(0.1));
+
+  const Outcome limited = place.run("run press.json --output less --set mesh.adapt.most_unknowns=4000");
+  CHECK(limited.exit_code == 0);
+  CHECK(place.json("less/result.json")["unknowns"] <= 4000);
+  CHECK(place.json("less/result.json")["warnings"].dump().find("mesh.adapt.most_unknowns = 4000: ") !=
+        std::string::npos);
+  // A run that is stopped goes on with the mesh that it had.
+  CHECK(place.run("run press.json --output less --set solver.max_outer=1 --set mesh.adapt.most_unknowns=4000")
+            .exit_code == 1);
+  CHECK(place
+            .run("run press.json --output less --restart --set solver.max_outer=1 "
+                 "--set mesh.adapt.most_unknowns=4000")
+            .error.find("--restart") == std::string::npos);
+  for (const auto& [options, message] : {std::pair{"run press.json --set mesh.adapt.error=1",
+                                                   "mesh.adapt.error: expected a number above 0 and below 1"},
+                                         std::pair{"run press.json --set mesh.box.element=hex8",
+                                                   "mesh.adapt: expected tri3, tet4 or tet10, got hex8"},
+                                         std::pair{"partition press.json --ranks 2 --output parts",
+                                                   "mesh.adapt: expected a mesh that stays"}}) {
+    const Outcome refused = place.run(options);
+    CHECK(refused.exit_code == 2);
+    INFO(refused.error);
+    CHECK(refused.error.find(message) != std::string::npos);
+  }
+}

@@ -19,7 +19,7 @@ TEST_CASE("a run converges, says so, and writes every file and key") {
   CHECK(outcome.error.empty());
   CHECK(outcome.output.find("\nconverged: ") != std::string::npos);
   for (const char* file : {"result.json", "summary.txt", "history.csv", "result.pvd", "body.vtu",
-                           "contact.vtu", "deformed.svg"}) {
+                           "contact.vtu", "deformed.svg", "report.html"}) {
     CHECK(place.has(std::string("results/beam/") + file));
   }
   const nlohmann::json result = place.json("results/beam/result.json");

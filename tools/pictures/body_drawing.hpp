@@ -26,8 +26,9 @@ struct Frame {
 constexpr std::size_t most_faces = 10000;
 
 /// SVG content. `flat`: nothing can hide anything (2D).
-std::string draw_as_paths(const Surface& surface, const ColourScale& colours, const Frame& frame, bool flat);
+std::string draw_as_paths(const VisibleSurface& surface, const ColourScale& colours, const Frame& frame,
+                          bool flat);
 /// SVG content: one image, two pixels of it to one of the picture.
-std::string draw_as_image(const Surface& surface, const ColourScale& colours, const Frame& frame);
+std::string draw_as_image(const VisibleSurface& surface, const ColourScale& colours, const Frame& frame);
 
 }  // namespace kacanov

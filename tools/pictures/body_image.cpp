@@ -100,7 +100,7 @@ class Image {
 
 }  // namespace
 
-std::string draw_as_image(const Surface& surface, const ColourScale& colours, const Frame& frame) {
+std::string draw_as_image(const VisibleSurface& surface, const ColourScale& colours, const Frame& frame) {
   Image image(colours, frame);
   for (const Face& face : surface.faces) image.paint(face);
   for (const Segment& segment : surface.outline) image.paint(segment);

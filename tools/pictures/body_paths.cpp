@@ -42,7 +42,7 @@ void append_point(std::string& path, char command, double x, double y) {
 
 class Painter {
  public:
-  Painter(const Surface& surface, const ColourScale& colours, const Frame& frame)
+  Painter(const VisibleSurface& surface, const ColourScale& colours, const Frame& frame)
       : surface_(surface), colours_(colours), frame_(frame) {}
 
   /// All polygons of a band as one path.
@@ -181,7 +181,7 @@ class Painter {
       if ((face.edges >> k & 1) != 0) append_segment(path, {face.corners[k], face.corners[(k + 1) % 3]});
   }
 
-  const Surface& surface_;
+  const VisibleSurface& surface_;
   const ColourScale& colours_;
   const Frame& frame_;
   std::vector<Corner> whole_, rest_, part_;
@@ -190,7 +190,8 @@ class Painter {
 
 }  // namespace
 
-std::string draw_as_paths(const Surface& surface, const ColourScale& colours, const Frame& frame, bool flat) {
+std::string draw_as_paths(const VisibleSurface& surface, const ColourScale& colours, const Frame& frame,
+                          bool flat) {
   Painter painter(surface, colours, frame);
   return flat ? painter.flat() : painter.layered();
 }

@@ -264,7 +264,7 @@ class Drawing {
   Box box_;
   View view_;
   double largest_, scale_;
-  Surface surface_;
+  VisibleSurface surface_;
   ColourScale colours_;
   std::vector<std::vector<Vector>> patches_;
   Frame frame_;

@@ -165,11 +165,17 @@ std::array<double, 3> View::project(std::span<const double> position) const {
   return result;
 }
 
-Surface visible_surface(const Mesh& mesh, const View& view, std::span<const double> displacement,
-                        double scale, std::span<const double> values) {
+std::vector<std::array<std::int32_t, 3>> surface_triangles(const Mesh& mesh) {
+  std::vector<std::array<std::int32_t, 3>> result;
+  for (const Triangle& triangle : triangles(mesh)) result.push_back(triangle.nodes);
+  return result;
+}
+
+VisibleSurface visible_surface(const Mesh& mesh, const View& view, std::span<const double> displacement,
+                               double scale, std::span<const double> values) {
   const std::vector<Triangle> all = triangles(mesh);
   const std::vector<Side> sides = sorted_sides(all);
-  Surface surface;
+  VisibleSurface surface;
   {
     const Shape undeformed(mesh, view, displacement, 0);
     surface.original = outline(all, sides, undeformed);

@@ -33,14 +33,17 @@ struct Segment {
   std::array<double, 3> from{}, to{};
 };
 
-struct Surface {
+struct VisibleSurface {
   std::vector<Face> faces;        ///< visible ones of the deformed body
   std::vector<Segment> outline;   ///< sharp edges and silhouette of the deformed body
   std::vector<Segment> original;  ///< the same of the undeformed one
 };
 
+/// Nodes of the triangles that make the surface, corner by corner: the whole body in 2D, its boundary in 3D.
+std::vector<std::array<std::int32_t, 3>> surface_triangles(const Mesh& mesh);
+
 /// Positions are x + scale·u; `values` are at the nodes.
-Surface visible_surface(const Mesh& mesh, const View& view, std::span<const double> displacement,
-                        double scale, std::span<const double> values);
+VisibleSurface visible_surface(const Mesh& mesh, const View& view, std::span<const double> displacement,
+                               double scale, std::span<const double> values);
 
 }  // namespace kacanov

@@ -8,6 +8,7 @@
 #include <iostream>
 #include <string>
 
+#include <kacanov/discretisation.hpp>
 #include <kacanov/error.hpp>
 #include <kacanov/moving.hpp>
 #include <kacanov/solve.hpp>
@@ -29,12 +30,6 @@ std::int64_t unknowns_of(const BoxSpec& box) {
   for (std::int64_t c = 0; c < dim; ++c)
     nodes *= static_cast<std::int64_t>(box.cells[c]) * cell(box.type).order + 1;
   return nodes * dim;
-}
-
-std::string level_line(const CoarseLevel& level) {
-  return "from a mesh of " + std::to_string(level.unknowns) +
-         " unknowns: " + std::to_string(level.outer_iterations) + " steps, " +
-         std::to_string(level.cg_iterations) + " CG, " + readable_seconds(level.seconds) + "\n";
 }
 
 /// What makes a coarser mesh, on the first rank.
@@ -67,12 +62,18 @@ std::vector<MakeMesh> coarser_meshes(const MeshSource& mesh) {
   return meshes;
 }
 
-/// The case on this mesh; nothing where it does not fit.
+/// The case on this mesh, without probes where one lies outside; nothing where it does not fit.
 std::optional<Problem> coarse_problem(const Case& input, const MakeMesh& mesh) {
   try {
     Model model = model_with_files(input);
+    const Mesh coarse = mesh();
+    try {
+      return build_problem(coarse, model);
+    } catch (const InputError&) {
+      if (model.probes.empty()) throw;
+    }
     model.probes.clear();
-    return build_problem(mesh(), model);
+    return build_problem(coarse, model);
   } catch (const InputError&) {
     return std::nullopt;
   }
@@ -87,7 +88,7 @@ void extrapolate(const CoarseSolution& before, const Part& part, std::span<doubl
 }
 
 /// Solves on one mesh, from `run.solution` where there is one, and puts what comes out there.
-void solve_level(const Case& input, const MakeMesh& mesh, const MpiSession& mpi, RunOptions options,
+void solve_level(const Case& input, const MakeMesh& mesh, const MpiSession& mpi, const RunOptions& options,
                  CoarseRun& run) {
   const double start = MPI_Wtime();
   std::optional<Problem> problem;
@@ -98,36 +99,96 @@ void solve_level(const Case& input, const MakeMesh& mesh, const MpiSession& mpi,
   });
   MPI_Bcast(&fits, 1, MPI_INT, 0, mpi.comm());
   if (fits == 0) return;
-  const Part part = distribute(problem ? &*problem : nullptr, mpi.comm());
-  SolverOptions solver = input.model.solver;
-  solver.tolerance = std::max(solver.tolerance, coarse_tolerance);
-  options.coarse = run.solution ? &*run.solution : nullptr;
-  Solution solution = solve(part, solver, options);
+  Part part = distribute(problem ? &*problem : nullptr, mpi.comm());
+  Solution solution = solve_roughly(input, part, options, run);
   if (run.solution) extrapolate(*run.solution, part, solution.displacement);
-  if (solution.result.status == Status::converged)
-    run.solution = whole_solution(part, problem ? &*problem : nullptr, solution);
-  const Result& result = solution.result;
-  run.levels.push_back({result.unknowns, result.outer_iterations, result.cg_iterations,
-                        result.operator_applications, MPI_Wtime() - start});
+  run.take(solution, part, problem ? &*problem : nullptr, start);
 }
 
 }  // namespace
+
+std::string level_line(const CoarseLevel& level) {
+  std::string text = "from a mesh of " + std::to_string(level.unknowns) +
+                     " unknowns: " + std::to_string(level.outer_iterations) + " steps, " +
+                     std::to_string(level.cg_iterations) + " CG, " + readable_seconds(level.seconds);
+  if (level.error > 0.0) text += ", mesh error " + readable_share(level.error);
+  return text + "\n";
+}
+
+RunOptions silent(const RunOptions& options) {
+  RunOptions coarse = options;
+  coarse.progress = nullptr;
+  coarse.phase = nullptr;
+  coarse.checkpoint = nullptr;
+  coarse.start = nullptr;
+  coarse.load_step_over = nullptr;
+  return coarse;
+}
+
+bool stop_wanted(const MpiSession& mpi, const RunOptions& options) {
+  int stop = options.stop_requested && options.stop_requested() ? 1 : 0;
+  MPI_Allreduce(MPI_IN_PLACE, &stop, 1, MPI_INT, MPI_MAX, mpi.comm());
+  return stop != 0;
+}
+
+Solution solve_roughly(const Case& input, Part& part, RunOptions options, const CoarseRun& before) {
+  SolverOptions solver = input.model.solver;
+  solver.tolerance = std::max(solver.tolerance, coarse_tolerance);
+  options.coarse = before.solution ? &*before.solution : nullptr;
+  return solve(part, solver, options);
+}
+
+void CoarseRun::take(const Solution& of, const Part& part, const Problem* problem, double began) {
+  const Result& result = of.result;
+  const bool converged = result.status == Status::converged;
+  if (converged) solution = whole_solution(part, problem, of);
+  levels.push_back({result.unknowns, result.outer_iterations, result.cg_iterations,
+                    result.operator_applications, MPI_Wtime() - began, converged, 0.0, result.probe,
+                    result.contact_force});
+}
+
+std::vector<double> note_discretisation(const Part& part, const CoarseRun& coarse, Solution& solution) {
+  const DiscretisationError error = estimate_error(part, solution);
+  Result& result = solution.result;
+  Discretisation& out = result.discretisation;
+  out.energy = error.relative;
+  // Of the meshes in a row that end with this one.
+  std::vector<const CoarseLevel*> levels;
+  for (const CoarseLevel& level : coarse.levels) {
+    const bool knows = level.converged && level.error == 0.0 && level.probe.size() == result.probe.size();
+    if (!knows) levels.clear();
+    if (knows) levels.push_back(&level);
+  }
+  out.meshes = 1 + static_cast<int>(levels.size());
+  if (out.meshes > 1) {
+    const auto errors = [&](const Vector3& here, const auto& there) {
+      Vector3 of{};
+      for (std::size_t c = 0; c < 3; ++c) {
+        std::vector<double> values;
+        for (const CoarseLevel* level : levels) values.push_back(there(*level)[c]);
+        values.push_back(here[c]);
+        of[c] = *error_of_last(values);
+      }
+      return of;
+    };
+    for (std::size_t i = 0; i < result.probe.size(); ++i)
+      out.probe.push_back(errors(result.probe[i], [i](const CoarseLevel& level) { return level.probe[i]; }));
+    if (result.contact_nodes > 0)
+      out.contact_force =
+          errors(result.contact_force, [](const CoarseLevel& level) { return level.contact_force; });
+  }
+  return error.shares();
+}
 
 CoarseRun solve_coarser(const Case& input, const MpiSession& mpi, const RunOptions& options) {
   CoarseRun run;
   const Model& model = input.model;
   if (!model.solver.nested || !model.solver.load_steps.empty() || !model.steps.empty() || any_moves(model))
     return run;
-  RunOptions coarse = options;
-  coarse.progress = nullptr;
-  coarse.phase = nullptr;
-  coarse.checkpoint = nullptr;
-  coarse.start = nullptr;
+  const RunOptions coarse = silent(options);
   for (const MakeMesh& mesh : coarser_meshes(input.mesh)) {
     if (mpi.first() && options.phase) options.phase("solving on a coarser mesh");
-    int stop = options.stop_requested && options.stop_requested() ? 1 : 0;
-    MPI_Allreduce(MPI_IN_PLACE, &stop, 1, MPI_INT, MPI_MAX, mpi.comm());
-    if (stop != 0) break;
+    if (stop_wanted(mpi, options)) break;
     const std::size_t before = run.levels.size();
     solve_level(input, mesh, mpi, coarse, run);
     if (mpi.first() && !mpi.hosted() && options.progress && run.levels.size() > before)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <kacanov/coarse_solution.hpp>
@@ -16,12 +17,29 @@ namespace kacanov {
 struct CoarseRun {
   std::vector<CoarseLevel> levels;         ///< coarsest first
   std::optional<CoarseSolution> solution;  ///< of the finest of them that has converged
+
+  /// Takes up what has come out on one more mesh. `problem`: on the first rank. Collective.
+  void take(const Solution& of, const Part& part, const Problem* problem, double began);
 };
+
+/// One line for people.
+std::string level_line(const CoarseLevel& level);
+/// For runs before the run: nothing is reported or saved.
+RunOptions silent(const RunOptions& options);
+/// Whether any rank has been asked to stop. Collective.
+bool stop_wanted(const MpiSession& mpi, const RunOptions& options);
+/// To a thousandth, from the solution before. Collective.
+Solution solve_roughly(const Case& input, Part& part, RunOptions options, const CoarseRun& before);
 
 /// The coarser meshes of a case, one after the other, to a thousandth: of a large enough box those with half
 /// the cells, of a file that is refined those before. One that the case does not fit, or that does not
 /// converge, is passed over: it is only to start from. None with load steps, or where solver.nested says so.
 /// Prints a line a mesh, but in a host's process. Collective.
 CoarseRun solve_coarser(const Case& input, const MpiSession& mpi, const RunOptions& options);
+
+/// Fills in result.discretisation: the estimate of the strains, and what the coarser meshes tell of probes
+/// and the contact force. Returns each element's part of its energy; their squares add up to its square.
+/// Collective.
+std::vector<double> note_discretisation(const Part& part, const CoarseRun& coarse, Solution& solution);
 
 }  // namespace kacanov

@@ -1,157 +1,78 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The command line of the program.
+// What a command line asks for.
 #include "program/command.hpp"
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <sstream>
 
+#include "case/case_schema.hpp"
 #include "formats/printable.hpp"
 #include "problem/closest_word.hpp"
+#include "program/command_line.hpp"
 
 namespace kacanov {
 namespace {
 
-constexpr const char* footer =
-    "Exit codes: 0 converged; 1 not converged (all output is written); 2 bad input; 3 internal failure.\n"
-    "Without --ranks a case of more than some 30,000 unknowns runs on all cores, a smaller one on one;\n"
-    "under mpiexec or srun the program uses the processes it is given.\n";
-
-void add_common(CLI::App& app, Command& command) {
-  app.add_option("CASE.json", command.case_file, "the case file")->required();
-  app.add_option("--set", command.overrides, "change a value of the case: solver.tolerance=1e-8 (repeatable)")
-      ->type_name("KEY=VALUE")
-      ->expected(1)
-      ->take_all();
-}
-
-void add_parallel(CLI::App& app, Command& command) {
-  app.add_option("--ranks", command.ranks, "MPI processes (default: all cores for large cases)")
-      ->check(CLI::Range(1, 100000).description(""))
-      ->type_name("N");
-  app.add_option("--threads", command.threads, "threads a process (default: 1)")
-      ->check(CLI::Range(1, 4096).description(""))
-      ->type_name("N");
-}
-
-void add_output(CLI::App& app, Command& command) {
-  app.add_option("-o,--output", command.output, "folder for all files (default: results/<case name>)")
-      ->type_name("DIR");
-}
-
 std::string usage_error(const std::string& what) {
   return "kacanov: error: " + printable(what) + "; kacanov --help says more\n";
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : commands_of(app)) names.push_back(command->get_name());
+  return names;
+}
+
+/// What is wrong with a first word that is no command.
+std::string no_command(const std::string& word, const std::vector<std::string>& names) {
+  const std::string guess = closest_word(word, names);
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return usage_error("there is no command \"" + word + "\"" +
+                     (guess.empty() ? "" : " (did you mean \"" + guess + "\"?)") + "; there are: " + list);
+}
+
+/// Of the commands that print a text and are done; empty for others.
+std::string printed(const CLI::App& app) {
+  if (app.got_subcommand("schema")) return case_json_schema().dump(2) + "\n";
+  if (app.got_subcommand("man")) return manual_page(app);
+  if (app.got_subcommand("completion")) return bash_completion(app);
+  return {};
+}
+
+Command::Kind kind_of(const CLI::App& app) {
+  using Kind = Command::Kind;
+  constexpr std::pair<const char*, Kind> kinds[] = {
+      {"spectrum", Kind::spectrum}, {"sweep", Kind::sweep},
+      {"check", Kind::check},       {"partition", Kind::partition},
+      {"verify", Kind::verify},     {"convert", Kind::convert},
+      {"init", Kind::init}};
+  for (const auto& [name, kind] : kinds)
+    if (app.got_subcommand(name)) return kind;
+  return Kind::run;
 }
 
 }  // namespace
 
 ParsedCommand parse_command(int argc, const char* const* argv) {
   Command command;
-  CLI::App app("kacanov: elastoplastic bodies in contact with rigid obstacles", "kacanov");
-  app.set_version_flag("--version", "kacanov " KACANOV_VERSION);
-  app.footer(footer);
-  app.require_subcommand(1);
-  const auto number = CLI::PositiveNumber;
-
-  CLI::App* run = app.add_subcommand("run", "solve a case; writes result.json, fields and pictures");
-  add_common(*run, command);
-  add_output(*run, command);
-  run->add_flag("!--no-memory-check", command.memory_check,
-                "run even where the memory does not seem to be enough");
-  run->add_flag("--restart", command.restart,
-                "go on from the checkpoint that an unfinished run left in the folder");
-  run->add_option("--parts", command.parts, "folder that kacanov partition has written; the mesh is not read")
-      ->type_name("DIR");
-  run->add_option("--stop-within", command.stop_within,
-                  "seconds that a run which was asked to stop may take to begin its output (default: 30)")
-      ->check(CLI::Range(0.1, 1e6).description(""))
-      ->type_name("SECONDS");
-  CLI::Option* quiet = run->add_flag("-q,--quiet", command.quiet, "print nothing but warnings and errors");
-  run->add_flag("-v,--verbose", command.verbose, "print what the run is at, however small it is")
-      ->excludes(quiet);
-  add_parallel(*run, command);
-
-  CLI::App* spectrum =
-      app.add_subcommand("spectrum", "lambda_min, lambda_max and r* of the elastic body; no contact solve");
-  add_common(*spectrum, command);
-  spectrum->add_option("--tolerance", command.tolerance, "relative, on both eigenvalues (default: 1e-2)")
-      ->check(CLI::Range(1e-14, 0.5).description(""))
-      ->type_name("TOL");
-  spectrum->add_flag("--json", command.json, "print JSON instead of a table");
-  add_parallel(*spectrum, command);
-
-  CLI::App* sweep = app.add_subcommand(
-      "sweep", "iterations and time against fixed penalties r; writes a table and a picture");
-  add_common(*sweep, command);
-  sweep->add_option("--r-min", command.r_min, "smallest r (default: r*/10)")->check(number)->type_name("R");
-  sweep->add_option("--r-max", command.r_max, "largest r (default: 100 r*)")->check(number)->type_name("R");
-  sweep->add_option("--points", command.points, "values of r, evenly spaced in log r (default: 21)")
-      ->check(CLI::Range(2, 10000).description(""))
-      ->type_name("N");
-  add_output(*sweep, command);
-  add_parallel(*sweep, command);
-
-  CLI::App* check =
-      app.add_subcommand("check", "validate a case, show what it selects, estimate memory and time");
-  add_common(*check, command);
-  check
-      ->add_option("--ranks", command.ranks,
-                   "estimate for this many processes (default: what run would take)")
-      ->check(CLI::Range(1, 100000).description(""))
-      ->type_name("N");
-
-  CLI::App* partition = app.add_subcommand(
-      "partition", "split a case once into parts that the ranks of later runs read on their own");
-  add_common(*partition, command);
-  partition->add_option("--ranks", command.ranks, "number of parts, one for each MPI process of the runs")
-      ->check(CLI::Range(1, 65535).description(""))
-      ->type_name("N")
-      ->required();
-  partition->add_option("-o,--output", command.output, "folder for the parts")->type_name("DIR")->required();
-
-  CLI::App* verify = app.add_subcommand(
-      "verify", "recompute the certificate of a run from its files alone, by an assembly of its own");
-  add_common(*verify, command);
-  verify->add_option("-o,--output", command.output, "folder of the run (default: results/<case name>)")
-      ->type_name("DIR");
-
-  CLI::App* convert = app.add_subcommand(
-      "convert", "make a case and its mesh of an Abaqus or CalculiX deck, or another format of a mesh");
-  convert->add_option("FROM", command.from, "a deck (.inp) or a mesh")->required();
-  convert->add_option(
-      "TO", command.to,
-      "a case (.json, its mesh beside it) or a mesh (.msh, .inp, .vtu); default: FROM's name .json");
-  convert->add_flag("--leave-out", command.leave_out,
-                    "leave out keywords that change the answer and are not known, and name them");
-  convert->add_flag("--force", command.force, "write over files that are there");
-
-  CLI::App* init = app.add_subcommand("init", "write a case to start from for a mesh, with its groups");
-  init->add_option("MESH", command.from, "the mesh")->required();
-  init->add_option("CASE.json", command.to, "the case (default: the mesh's name .json)");
-  init->add_flag("--force", command.force, "write over a file that is there");
-
+  const std::unique_ptr<CLI::App> app = make_command_line(command);
   ParsedCommand parsed;
-  const std::vector<std::string> names{"run",       "spectrum", "sweep",   "check",
-                                       "partition", "verify",   "convert", "init"};
+  const std::vector<std::string> names = command_names(*app);
   const std::string first = argc > 1 ? argv[1] : "";
   if (!first.empty() && first[0] != '-' && std::find(names.begin(), names.end(), first) == names.end()) {
-    const std::string guess = closest_word(first, names);
-    parsed.error = usage_error("there is no command \"" + first + "\"" +
-                               (guess.empty() ? "" : " (did you mean \"" + guess + "\"?)") +
-                               "; there are: run, spectrum, sweep, check, partition, verify, convert, init");
+    parsed.error = no_command(first, names);
     parsed.exit_code = exit_bad_input;
     return parsed;
   }
   try {
-    app.parse(argc, argv);
+    app->parse(argc, argv);
     if (command.r_min && command.r_max && *command.r_min >= *command.r_max) {
       throw CLI::ValidationError("--r-min", "must be below --r-max");
     }
   } catch (const CLI::ParseError& error) {
     std::ostringstream output, message;
-    if (app.exit(error, output, message) == 0) {  // --help and --version end the parsing, too
+    if (app->exit(error, output, message) == 0) {  // --help and --version end the parsing, too
       parsed.output = output.str();
       return parsed;
     }
@@ -159,13 +80,9 @@ ParsedCommand parse_command(int argc, const char* const* argv) {
     parsed.exit_code = exit_bad_input;
     return parsed;
   }
-  if (spectrum->parsed()) command.kind = Command::Kind::spectrum;
-  if (sweep->parsed()) command.kind = Command::Kind::sweep;
-  if (check->parsed()) command.kind = Command::Kind::check;
-  if (partition->parsed()) command.kind = Command::Kind::partition;
-  if (verify->parsed()) command.kind = Command::Kind::verify;
-  if (convert->parsed()) command.kind = Command::Kind::convert;
-  if (init->parsed()) command.kind = Command::Kind::init;
+  parsed.output = printed(*app);
+  if (!parsed.output.empty()) return parsed;
+  command.kind = kind_of(*app);
   parsed.command = command;
   return parsed;
 }

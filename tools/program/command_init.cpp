@@ -61,7 +61,10 @@ std::string case_for(const Mesh& mesh, const std::string& file, const std::strin
   std::string text =
       "// A case to start from, by kacanov init. What stands behind // is left out; every key is in the\n"
       "// user guide, docs/user-guide/case-file.md. kacanov check FILE shows what each entry selects.\n";
-  text += "{\n  \"title\": " + shown(title) + ",\n";
+  text +=
+      "{\n  // \"$schema\": \"case.schema.json\",  // for editors: kacanov schema > case.schema.json\n"
+      "  \"title\": " +
+      shown(title) + ",\n";
   text += "  // " + std::to_string(mesh.element_count()) + " " + std::string(cell(mesh.type).name) +
           " elements, " + std::to_string(mesh.node_count()) + " nodes, from " + to_text(lower, mesh.dim()) +
           " to " + to_text(upper, mesh.dim()) + "\n";

@@ -2,6 +2,7 @@
 // kacanov partition: splits a case once into files that the ranks of later runs read on their own.
 #include <iostream>
 
+#include <kacanov/error.hpp>
 #include "formats/printable.hpp"
 #include "program/commands.hpp"
 #include "program/part_files.hpp"
@@ -9,6 +10,8 @@
 namespace kacanov {
 
 int partition_command(const Command& command, const Case& input) {
+  if (input.mesh.adapt)
+    throw InputError("mesh.adapt: expected a mesh that stays as it is, to be split before it is solved");
   Problem problem = load_problem(input, {*command.ranks, 0});
   print_warnings(input, problem);
   const std::size_t elements = problem.mesh.element_count(), nodes = problem.mesh.node_count();

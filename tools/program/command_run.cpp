@@ -8,11 +8,15 @@
 #include <sstream>
 #include <string_view>
 
+#include <kacanov/discretisation.hpp>
 #include <kacanov/element_fields.hpp>
 #include <kacanov/error.hpp>
 #include <kacanov/nodal_stress.hpp>
 #include "formats/atomic_file.hpp"
+#include "formats/mesh_file.hpp"
+#include "formats/mesh_writer.hpp"
 #include "formats/printable.hpp"
+#include "program/adaptive_run.hpp"
 #include "program/checkpoint_file.hpp"
 #include "program/coarse_run.hpp"
 #include "program/commands.hpp"
@@ -25,6 +29,7 @@
 #include "program/output_folder.hpp"
 #include "program/part_files.hpp"
 #include "program/report.hpp"
+#include "program/report_page.hpp"
 #include "program/result_json.hpp"
 #include "program/solve_case.hpp"
 #include "program/terminal.hpp"
@@ -32,11 +37,15 @@
 namespace kacanov {
 namespace {
 
+/// In the output folder: the mesh that mesh.adapt has made.
+constexpr const char* adapted_mesh_file = "mesh.msh";
+
 /// Whether a run writes files of this name, or has left it unfinished. A whole checkpoint is none: it stays.
 bool is_output(std::string_view name) {
   const std::string_view whole = without_number(name, ".part");
   if (whole == "checkpoint.kacanov") return whole != name;
-  for (const std::string_view file : {"result.json", "summary.txt", "history.csv", "deformed.svg"})
+  for (const std::string_view file :
+       {"result.json", "summary.txt", "history.csv", "deformed.svg", "report.html", adapted_mesh_file})
     if (whole == file) return true;
   return is_field_file(whole);
 }
@@ -47,7 +56,7 @@ void clear_folder(const std::filesystem::path& folder, bool goes_on) {
   std::vector<std::filesystem::path> old;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
-    if (!is_output(name) || (goes_on && is_step_file(name))) continue;
+    if (!is_output(name) || (goes_on && (is_step_file(name) || name == adapted_mesh_file))) continue;
     if (std::filesystem::is_directory(entry.symlink_status()))
       throw InputError("--output: " + entry.path().string() +
                        " stands where a file of the run belongs, and is a folder: move it away");
@@ -121,9 +130,10 @@ std::string checkpoint_line(const CheckpointFile& file) {
 void write_step(const FieldPlace& place, const LoadedCase& loaded, const Model& model, const MpiSession& mpi,
                 const Solution& solution) {
   const ContactFields contact = gather_contact_fields(loaded.part, solution);
-  const NodalStress nodal = recover_stress(loaded.part, solution);
+  const BodyFields fields{recover_stress(loaded.part, solution),
+                          estimate_error(loaded.part, solution).shares()};
   together(mpi, [&] {
-    write_body(place, loaded.part, solution, nodal);
+    write_body(place, loaded.part, solution, fields);
     if (mpi.first()) write_surroundings(place, *loaded.problem, model, contact, mpi.ranks());
   });
 }
@@ -148,6 +158,26 @@ void try_to_show(const std::function<void()>& work) {
   }
 }
 
+/// The mesh that mesh.adapt makes, or that the run to go on from has made. Collective.
+CoarseRun adapt_or_read(const Command& command, Case& input, const MpiSession& mpi,
+                        const std::function<void(const std::string&)>& phase) {
+  if (!command.parts.empty()) throw InputError("--parts: a mesh that is adapted has none yet (mesh.adapt)");
+  if (command.restart) {
+    together(mpi, [&] {
+      if (!mpi.first()) return;
+      const std::string file = (output_folder(command, input) / adapted_mesh_file).string();
+      input.mesh.adapted = std::make_shared<const Mesh>(read_mesh(file));
+    });
+    return {};
+  }
+  RunOptions options;
+  options.stop_requested = interrupt_came;
+  options.threads = threads_of(command);
+  options.phase = phase;
+  if (!command.quiet) options.progress = [](const ProgressStep&) {};
+  return adapt(input, mpi, options);
+}
+
 }  // namespace
 
 void leave_failure(const Command& command, const Case& input, const std::string& text) {
@@ -156,12 +186,16 @@ void leave_failure(const Command& command, const Case& input, const std::string&
     write_json(file, failure_json(text));
 }
 
-int run_command(const Command& command, const Case& input, MpiSession& mpi) {
+int run_command(const Command& command, const Case& given, MpiSession& mpi) {
   const double start = MPI_Wtime();
   const Terminal terminal = terminal_of_output();
-  const auto phase = tell_phases(command, input, terminal, start);
+  const auto phase = tell_phases(command, given, terminal, start);
+  const std::filesystem::path folder = output_folder(command, given);
+  listen_for_interrupts(command.stop_within);
+  Case input = given;
+  CoarseRun coarse;
+  if (given.mesh.adapt) coarse = adapt_or_read(command, input, mpi, phase);
   LoadedCase loaded = load(command, input, mpi, phase);
-  const std::filesystem::path folder = output_folder(command, input);
   std::shared_ptr<OutputFolder> held;  // on the first rank, as what follows
   std::optional<CheckpointFile> file;
   std::optional<Checkpoint> left;
@@ -175,13 +209,15 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
     held = std::make_shared<OutputFolder>(folder);
     clear_folder(folder, command.restart);
     if (!command.restart) file->remove();
+    if (input.mesh.adapted && !command.restart)
+      write_gmsh((folder / adapted_mesh_file).string(), *input.mesh.adapted);
+    input.mesh.adapted.reset();
   });
 
   // The folder is that of all ranks, and whichever fails first can say so there. The session keeps the folder
   // held until then.
   mpi.when_failing([folder, held](const std::string& text) { note_failure(folder, text); });
 
-  listen_for_interrupts(command.stop_within);
   RunOptions options;
   options.stop_requested = interrupt_came;
   if (mpi.first() && input.output.checkpoint && !any_moves(input.model)) {
@@ -197,8 +233,7 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
     history.add(step);
     if (!command.quiet) table(step);
   };
-  CoarseRun coarse;
-  if (!command.restart) {
+  if (!command.restart && !given.mesh.adapt) {
     RunOptions before = options;
     if (command.quiet) before.progress = nullptr;
     coarse = solve_coarser(input, mpi, before);
@@ -222,8 +257,9 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
   const int dim = loaded.part.dim();
   if (mpi.first()) complete_messages(input, *loaded.problem, result);
   const ContactFields contact = gather_contact_fields(loaded.part, solution);
-  const NodalStress nodal = recover_stress(loaded.part, solution);
-  result.max_von_mises_nodal = nodal.max_von_mises;
+  BodyFields fields{recover_stress(loaded.part, solution), {}};
+  result.max_von_mises_nodal = fields.nodal.max_von_mises;
+  fields.error = note_discretisation(loaded.part, coarse, solution);
   std::vector<double> displacement, von_mises;
   if (input.output.report) {
     const auto at_boundary = [&](std::span<const double> local, int components) {
@@ -246,7 +282,7 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
                                                  std::filesystem::exists(file->path()));
   if (input.output.fields) {
     together(mpi, [&] {
-      write_body({folder}, loaded.part, solution, nodal);
+      write_body({folder}, loaded.part, solution, fields);
       if (replaced) sync_file((folder / body_file(mpi.rank(), mpi.ranks())).string());
     });
   }
@@ -256,24 +292,34 @@ int run_command(const Command& command, const Case& input, MpiSession& mpi) {
       write_surroundings({folder}, *loaded.problem, input.model, contact, mpi.ranks());
       write_series(folder, *loaded.problem, result, mpi.ranks());
     }
+    std::string picture;
     if (input.output.report) {
       try_to_show([&] {
-        write_file(
-            (folder / "deformed.svg").string(),
-            deformed_picture(input, loaded.problem->mesh, displacement, von_mises, result.max_von_mises));
+        picture =
+            deformed_picture(input, loaded.problem->mesh, displacement, von_mises, result.max_von_mises);
+        write_file((folder / "deformed.svg").string(), picture);
       });
     }
     const double end = MPI_Wtime();
     figures.total = end - start;
     figures.output = end - solved;
     // Once more, now that it is known what the output took.
-    write_json(folder / "result.json", result_json(result, figures, input, loaded.problem->mesh));
+    const nlohmann::ordered_json json = result_json(result, figures, input, loaded.problem->mesh);
+    write_json(folder / "result.json", json);
     const std::string text = summary(result, figures, input.model, dim) +
                              (result.status == Status::converged ? "" : checkpoint_line(*file));
     if (input.output.report)
       try_to_show([&] {
         write_file((folder / "summary.txt").string(), shown(Terminal{}, result.status, text));
         write_file((folder / "history.csv").string(), history.csv());
+      });
+    if (input.output.report)
+      try_to_show([&] {
+        ReportPage page{&input, &json, history.csv(), picture, &loaded.problem->mesh, displacement, {}};
+        const std::vector<double> pressure = nodal_pressure(*loaded.problem, input.model, contact);
+        page.fields = {{"von Mises stress", von_mises}};
+        if (!input.model.contact.empty()) page.fields.push_back({"contact pressure", pressure});
+        write_file((folder / "report.html").string(), report_html(page));
       });
     if (replaced) {
       for (const char* name : {"result.json", "contact.vtu", "body.pvtu", "result.pvd"})

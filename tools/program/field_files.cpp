@@ -70,7 +70,8 @@ Grid body_grid(ElementType type) {
                        {"nodal_stress", 6, Real()},
                        {"nodal_von_mises", 1, Real()}};
   grid.cell_fields = {{"stress", 6, Real()}, {"von_mises", 1, Real()}, {"dev_strain", 1, Real()},
-                      {"g", 1, Real()},      {"plastic", 1, Flag()},   {"element_id", 1, Number()}};
+                      {"g", 1, Real()},      {"plastic", 1, Flag()},   {"element_id", 1, Number()},
+                      {"error", 1, Real()}};
   return grid;
 }
 
@@ -85,7 +86,7 @@ Values<std::int64_t> tags(std::size_t count, const Tag& tag) {
 /// The facets of one contact entry with values at their nodes.
 struct DrawnSurface {
   std::vector<double> points, gap, pressure, traction;
-  std::vector<std::int32_t> cells;
+  std::vector<std::int32_t> cells, nodes;  ///< `nodes` of the mesh, in the order of the points
   std::vector<std::int64_t> status, node_id;
 };
 
@@ -164,6 +165,7 @@ DrawnSurface contact_surface(const Problem& problem, const Model& model, const C
       for (std::size_t c = 0; c < dim; ++c) {
         surface.points.push_back(mesh.coordinates[node * dim + c]);
       }
+      surface.nodes.push_back(node);
       surface.node_id.push_back(mesh.node_tag(node));
       while (point != problem.contact.end() && point->node < node) ++point;
       // The entry's own point, or the one it was merged with.
@@ -217,14 +219,14 @@ ContactFields gather_contact_fields(const Part& part, const Solution& solution) 
 }
 
 void write_body(const FieldPlace& place, const Part& part, const Solution& solution,
-                const NodalStress& nodal) {
+                const BodyFields& fields) {
   Grid grid = body_grid(part.type);
   grid.points = part.coordinates;
   grid.cells = part.elements;
   grid.point_fields[0].values = Values<double>(solution.displacement);
   grid.point_fields[1].values = tags(part.nodes(), [&part](std::size_t i) { return part.node_tag(i); });
-  grid.point_fields[2].values = Values<double>(nodal.stress);
-  grid.point_fields[3].values = Values<double>(nodal.von_mises);
+  grid.point_fields[2].values = Values<double>(fields.nodal.stress);
+  grid.point_fields[3].values = Values<double>(fields.nodal.von_mises);
   const auto element_field = [&](int components, std::span<double> reference::ElementFields::*which) {
     const std::size_t width = components;
     return Values<double>(part.element_count() * width,
@@ -247,6 +249,7 @@ void write_body(const FieldPlace& place, const Part& part, const Solution& solut
       });
   grid.cell_fields[5].values =
       tags(part.element_count(), [&part](std::size_t e) { return part.element_tag(e); });
+  grid.cell_fields[6].values = Values<double>(fields.error);
   write_vtu((place.folder / body_file(part.node_map.rank, part.node_map.ranks, place.step)).string(), grid);
 }
 
@@ -260,6 +263,14 @@ void write_surroundings(const FieldPlace& place, const Problem& problem, const M
   if (!problem.contact.empty())
     write_surface(place.folder / surface_file(place.step), contact_surface(problem, model, contact),
                   problem.mesh);
+}
+
+std::vector<double> nodal_pressure(const Problem& problem, const Model& model, const ContactFields& contact) {
+  std::vector<double> pressure(problem.mesh.node_count(), 0.0);
+  if (problem.contact.empty()) return pressure;
+  const DrawnSurface surface = contact_surface(problem, model, contact);
+  for (std::size_t i = 0; i < surface.nodes.size(); ++i) pressure[surface.nodes[i]] = surface.pressure[i];
+  return pressure;
 }
 
 void write_series(const std::filesystem::path& folder, const Problem& problem, const Result& result,

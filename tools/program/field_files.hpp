@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <kacanov/nodal_stress.hpp>
 #include <kacanov/part.hpp>
@@ -38,13 +39,23 @@ bool is_field_file(std::string_view name);
 /// Whether it does so for a load step before the last.
 bool is_step_file(std::string_view name);
 
-/// Writes this rank's piece. `nodal`: recover_stress() of the solution.
+/// What its fields are besides those of a Solution.
+struct BodyFields {
+  NodalStress nodal;          ///< recover_stress()
+  std::vector<double> error;  ///< elements: shares() of estimate_error()
+};
+
+/// Writes this rank's piece.
 void write_body(const FieldPlace& place, const Part& part, const Solution& solution,
-                const NodalStress& nodal);
+                const BodyFields& fields);
 
 /// What ties the pieces together, and the contact surface; on the first rank.
 void write_surroundings(const FieldPlace& place, const Problem& problem, const Model& model,
                         const ContactFields& contact, int ranks);
+
+/// Contact pressure at the nodes of the mesh, 0 where there is no contact; as in contact.vtu. Of nodes of
+/// several entries it is the last one's. On the first rank.
+std::vector<double> nodal_pressure(const Problem& problem, const Model& model, const ContactFields& contact);
 
 /// The series for ParaView: the load steps that fields are there of, and the end of the run.
 void write_series(const std::filesystem::path& folder, const Problem& problem, const Result& result,

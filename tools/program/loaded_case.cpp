@@ -19,6 +19,7 @@
 namespace kacanov {
 
 Mesh load_mesh(const MeshSource& source) {
+  if (source.adapted) return *source.adapted;
   if (source.box) return make_box(*source.box);
   Mesh mesh = source.content ? read_mesh(*source.file, *source.content) : read_mesh(*source.file);
   const std::vector<std::string> warnings = mesh.warnings;
@@ -32,7 +33,7 @@ Problem load_problem(const Case& input, RankCount ranks) {
   const auto check_memory = [&](const ProblemSize& size) {
     if (ranks.here > 0) refuse_what_cannot_fit(size, ranks.all, ranks.here);
   };
-  if (input.mesh.box) check_memory(size_of(*input.mesh.box, input.model));
+  if (input.mesh.box && !input.mesh.adapted) check_memory(size_of(*input.mesh.box, input.model));
   Mesh mesh = load_mesh(input.mesh);
   check_memory(size_of(mesh, input.model));
   check_dimension(input, mesh.dim());

@@ -78,6 +78,9 @@ void together(const MpiSession& mpi, const std::function<void()>& work) {
   Failure failure;
   try {
     work();
+  } catch (const std::bad_alloc&) {
+    if (mpi.hosted() && mpi.ranks() == 1) throw;  // hosts have a word of their own for it
+    failure = current_failure();
   } catch (...) {
     failure = current_failure();
   }

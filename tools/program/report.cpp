@@ -100,6 +100,19 @@ std::string place_text(const Extreme& extreme, int dim) {
   return format("%.4g at ", extreme.value) + vector_text(extreme.at, dim);
 }
 
+/// Estimates, as shares of what they are errors of.
+std::string discretisation_line(const Result& result) {
+  const Discretisation& error = result.discretisation;
+  std::string text = format("  mesh error    about %.2g %% in the energy norm", 100.0 * error.energy);
+  const auto add = [&](const Vector3& of, const Vector3& value, const std::string& what) {
+    if (norm(value) > 0.0) text += format(", %.2g %% of ", 100.0 * norm(of) / norm(value)) + what;
+  };
+  if (error.contact_force) add(*error.contact_force, result.contact_force, "the contact force");
+  for (std::size_t i = 0; i < std::min<std::size_t>(error.probe.size(), 3); ++i)
+    add(error.probe[i], result.probe[i], "probe " + std::to_string(i));
+  return text + "\n";
+}
+
 }  // namespace
 
 void ProgressTable::operator()(const ProgressStep& step) {
@@ -145,6 +158,8 @@ std::string readable_bytes(double bytes) {
   }
   return format(bytes < 10.0 && unit > 0 ? "%.1f %s" : "%.0f %s", bytes, units[unit]);
 }
+
+std::string readable_share(double share) { return format("%.2g %%", 100.0 * share); }
 
 std::string readable_seconds(double seconds) {
   if (seconds < 10.0) return format("%.2g s", seconds);
@@ -216,6 +231,7 @@ std::string summary(const Result& result, const RunFigures& figures, const Model
     text += "  probe         " + vector_text(model.probes[i], dim) + " moves by " +
             vector_text(result.probe[i], dim) + "\n";
   }
+  text += discretisation_line(result);
   for (const std::string& warning : result.warnings) text += "  warning       " + warning + "\n";
   const Certificate& c = result.certificate;
   text += "  certificate   equilibrium " + residual_text(c.equilibrium) + ", penetration " +

@@ -29,6 +29,8 @@ class ProgressTable {
 
 /// "12.3 MB" and the like.
 std::string readable_bytes(double bytes);
+/// "3.4 %" and the like.
+std::string readable_share(double share);
 /// "0.12 s", "12 min" and the like.
 std::string readable_seconds(double seconds);
 

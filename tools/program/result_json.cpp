@@ -76,6 +76,14 @@ ordered_json estimate_json(const SpectrumResult& result) {
           {"seconds", result.seconds}};
 }
 
+/// Nothing of what one mesh alone does not tell.
+ordered_json discretisation_json(const Discretisation& error, int dim) {
+  ordered_json json{{"energy", error.energy}, {"meshes", error.meshes}};
+  for (const Vector3& probe : error.probe) json["probe"].push_back(entries(probe, dim));
+  if (error.contact_force) json["contact_force"] = entries(*error.contact_force, dim);
+  return json;
+}
+
 }  // namespace
 
 const char* status_name(Status status) {
@@ -140,6 +148,7 @@ ordered_json result_json(const Result& result, const RunFigures& figures, const 
   json["load"] = boundary_json(result.load, input.model, dim);
   json["probe"] = ordered_json::array();
   for (const Vector3& u : result.probe) json["probe"].push_back(entries(u, dim));
+  json["discretisation"] = discretisation_json(result.discretisation, dim);
   for (const LoadStep& step : result.load_steps) {
     ordered_json line{{result.by_time ? "time" : "factor", step.factor},
                       {"outer_iterations", step.outer_iterations},
@@ -170,12 +179,14 @@ ordered_json result_json(const Result& result, const RunFigures& figures, const 
                      {"checkpoint", seconds.checkpoint},
                      {"certificate", seconds.certificate},
                      {"output", figures.output}};
-  for (const CoarseLevel& level : figures.nested)
+  for (const CoarseLevel& level : figures.nested) {
     json["nested"].push_back({{"unknowns", level.unknowns},
                               {"outer_iterations", level.outer_iterations},
                               {"cg_iterations", level.cg_iterations},
                               {"operator_applications", level.operator_applications},
                               {"seconds", level.seconds}});
+    if (level.error > 0.0) json["nested"].back()["error"] = level.error;
+  }
   json["peak_memory_bytes"] = figures.peak_memory_bytes;
   json["ranks"] = result.ranks;
   json["threads"] = result.threads;

@@ -23,6 +23,10 @@ struct CoarseLevel {
   std::int64_t cg_iterations = 0;
   std::uint64_t operator_applications = 0;
   double seconds = 0.0;  ///< everything from the mesh to the solution
+  bool converged = false;
+  double error = 0.0;          ///< estimated, where the next mesh is refined by it
+  std::vector<Vector3> probe;  ///< as in Result; empty where a probe lies outside this mesh
+  Vector3 contact_force{};
 };
 
 /// What the program measures of a run besides what solve() says.

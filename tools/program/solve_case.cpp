@@ -9,6 +9,7 @@
 #include <kacanov/solve.hpp>
 #include <kacanov/validity.hpp>
 #include "pictures/picture.hpp"
+#include "program/adaptive_run.hpp"
 #include "program/coarse_run.hpp"
 #include "program/loaded_case.hpp"
 #include "program/memory_model.hpp"
@@ -39,8 +40,9 @@ CoarseSolution start_of(const SolvedCase& from, int dim, const MpiSession& mpi) 
   return start;
 }
 
-/// Solution::thermal of all ranks, in the numbering of the whole mesh; empty where there is none. Collective.
-std::vector<double> gather_thermal(const Part& part, const std::vector<double>& local) {
+/// A number an element of all ranks, in the numbering of the whole mesh; empty where there are none.
+/// Collective.
+std::vector<double> gather_elements(const Part& part, const std::vector<double>& local) {
   if (!part.node_map.any(!local.empty())) return {};
   std::vector<double> all(static_cast<std::size_t>(part.total_elements), 0.0);
   for (std::size_t e = 0; e < local.size(); ++e) all[part.element_index[e]] = local[e];
@@ -77,6 +79,7 @@ std::string deformed_picture(const Case& input, const Mesh& mesh, std::span<cons
   picture.mesh = &mesh;
   picture.displacement = displacement;
   picture.von_mises = von_mises;
+  picture.scale = input.output.scale;
   picture.largest_von_mises = largest_von_mises;
   for (const ContactEntry& entry : input.model.contact) {
     if (const auto* plane = std::get_if<Plane>(&entry.obstacle); plane != nullptr && !entry.moves())
@@ -93,14 +96,17 @@ void element_fields(const SolvedCase& solved, const reference::ElementFields& ou
     for (std::size_t c = 0; c < 3; ++c) out.stress[6 * e + c] -= solved.thermal[e];
 }
 
-SolvedCase solve_case(const Case& input, const MpiSession& mpi, const CaseRun& run) {
+SolvedCase solve_case(const Case& given, const MpiSession& mpi, const CaseRun& run) {
   const double begin = MPI_Wtime();
-  LoadedCase loaded = load_case(input, mpi, run.memory_check);
   RunOptions options = run.options;
+  Case input = given;
   CoarseRun coarse;
+  if (given.mesh.adapt) coarse = adapt(input, mpi, options);
+  LoadedCase loaded = load_case(input, mpi, run.memory_check);
+  input.mesh.adapted.reset();
   if (run.start != nullptr)
     coarse.solution = start_of(*run.start, loaded.part.dim(), mpi);
-  else
+  else if (!given.mesh.adapt)
     coarse = solve_coarser(input, mpi, options);
   if (coarse.solution) options.coarse = &*coarse.solution;
   Solution solution = solve_part(input, loaded.part, mpi, options);
@@ -111,12 +117,13 @@ SolvedCase solve_case(const Case& input, const MpiSession& mpi, const CaseRun& r
   out.input = input;
   const Part& part = loaded.part;
   const NodalStress nodal = recover_stress(part, solution);
+  out.error = gather_elements(part, note_discretisation(part, coarse, solution));
   out.displacement = gather_nodal(part, solution.displacement, part.dim());
   out.nodal_stress = gather_nodal(part, nodal.stress, 6);
   out.recovered_von_mises = gather_nodal(part, nodal.von_mises, 1);
   out.averaged_von_mises = gather_nodal(part, nodal_von_mises(part, solution.displacement), 1);
   out.contact = gather_contact_fields(part, solution);
-  out.thermal = gather_thermal(part, solution.thermal);
+  out.thermal = gather_elements(part, solution.thermal);
   out.result = std::move(solution.result);
   out.result.max_von_mises_nodal = nodal.max_von_mises;
   RunFigures figures;

@@ -40,6 +40,7 @@ struct SolvedCase {
   std::vector<double> nodal_stress;  ///< nodes × 6: xx yy zz xy yz zx, recovered (theory: nodal-stress)
   std::vector<double> recovered_von_mises;  ///< nodes: of that stress
   std::vector<double> averaged_von_mises;   ///< nodes: means of the elements round them, as in pictures
+  std::vector<double> error;                ///< elements: note_discretisation()
   ContactFields contact;
   std::vector<double> thermal;  ///< elements: the pressure that temperature takes off; empty: none
 };

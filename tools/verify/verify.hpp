@@ -21,7 +21,7 @@ struct Verdict {
 /// - output: the folder of the run, with result.json, body.vtu or body.pvtu and, with contact, contact.vtu.
 /// Throws Failure where a file is missing, damaged or of another mesh, or the case has what the verifier does
 /// not know.
-Verdict verify(const nlohmann::json& document, const std::filesystem::path& folder,
+Verdict verify(nlohmann::json document, const std::filesystem::path& folder,
                const std::filesystem::path& output);
 
 }  // namespace kacanov::verify

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Refines the mesh of a case where its solution asks for it.
+#include "program/adaptive_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <kacanov/bisect.hpp>
+#include <kacanov/discretisation.hpp>
+#include <kacanov/error.hpp>
+#include <kacanov/moving.hpp>
+#include "program/loaded_case.hpp"
+#include "program/report.hpp"
+#include "program/solve_case.hpp"
+
+namespace kacanov {
+namespace {
+
+/// Elements with so much of the error's energy are refined, or with less where that is enough for the aim:
+/// half as wide they keep a 4⁻ᵖ of theirs.
+constexpr double most_refined = 0.5, least_refined = 0.1;
+
+double share_to_refine(double error, double aim, int order) {
+  const double to_lose = 1.0 - aim * aim / (error * error);
+  return std::clamp(to_lose / (1.0 - std::ldexp(1.0, -2 * order)), least_refined, most_refined);
+}
+
+/// Whether a run may start from the solution of another mesh; with load steps each goes through all of them.
+bool starts_from_another(const Model& model) {
+  return model.solver.load_steps.empty() && model.steps.empty() && !any_moves(model);
+}
+
+class Adaptation {
+ public:
+  Adaptation(Case& input, const MpiSession& mpi, const RunOptions& options)
+      : input_(input), mpi_(mpi), options_(options), aim_(*input.mesh.adapt) {}
+
+  CoarseRun run() {
+    for (int number = 1; !stop_wanted(mpi_, options_); ++number) {
+      if (mpi_.first() && options_.phase)
+        options_.phase("solving on mesh " + std::to_string(number) + " to refine it");
+      const std::vector<double> error = solve_on_it();
+      const CoarseLevel& level = run_.levels.back();
+      if (mpi_.first() && !mpi_.hosted() && options_.progress) std::cout << level_line(level) << std::flush;
+      if (level.converged && level.error == 0.0)
+        input_.warnings.push_back(
+            "mesh.adapt: nothing strains the body on this mesh, so that nothing says where to refine it");
+      if (!level.converged || level.error <= aim_.error) break;
+      if (number == aim_.most_meshes) {
+        limit_met("mesh.adapt.most_meshes = " + std::to_string(number));
+        break;
+      }
+      if (!refine(error)) {
+        limit_met("mesh.adapt.most_unknowns = " + std::to_string(aim_.most_unknowns));
+        break;
+      }
+    }
+    if (!starts_from_another(input_.model)) run_.solution.reset();
+    return std::move(run_);
+  }
+
+ private:
+  /// Solves on the mesh as it stands; the energy of each element's error.
+  std::vector<double> solve_on_it() {
+    const double began = MPI_Wtime();
+    std::optional<Problem> problem;
+    together(mpi_, [&] {
+      if (!mpi_.first()) return;
+      if (!input_.mesh.adapted) {
+        input_.mesh.adapted = std::make_shared<const Mesh>(load_mesh(input_.mesh));
+        refuse_to_bisect(input_.mesh.adapted->type);
+      }
+      problem = load_problem(input_, {mpi_.ranks(), 0});
+    });
+    Part part = distribute(problem ? &*problem : nullptr, mpi_.comm());
+    Solution solution;
+    if (starts_from_another(input_.model)) {
+      solution = solve_roughly(input_, part, silent(options_), run_);
+    } else {
+      solution = solve_part(input_, part, mpi_, silent(options_));
+    }
+    DiscretisationError error = estimate_error(part, solution);
+    run_.take(solution, part, problem ? &*problem : nullptr, began);
+    run_.levels.back().error = error.relative;
+    std::vector<double> all(static_cast<std::size_t>(part.total_elements), 0.0);
+    for (std::size_t e = 0; e < error.element.size(); ++e) all[part.element_index[e]] = error.element[e];
+    part.node_map.sum_all(all);
+    return all;
+  }
+
+  /// Whether the next mesh is within the limit.
+  bool refine(const std::vector<double>& error) {
+    int fits = 0;
+    together(mpi_, [&] {
+      if (!mpi_.first()) return;
+      const Mesh& mesh = *input_.mesh.adapted;
+      const double share = share_to_refine(run_.levels.back().error, aim_.error, cell(mesh.type).order);
+      Mesh finer = bisect(mesh, worst_elements(error, share));
+      const auto unknowns = static_cast<std::int64_t>(finer.coordinates.size());
+      fits = unknowns <= aim_.most_unknowns ? 1 : 0;
+      if (fits == 0) return;
+      finer.warnings = mesh.warnings;
+      input_.mesh.adapted = std::make_shared<const Mesh>(std::move(finer));
+    });
+    MPI_Bcast(&fits, 1, MPI_INT, 0, mpi_.comm());
+    return fits == 1;
+  }
+
+  void limit_met(const std::string& limit) {
+    input_.warnings.push_back(limit + ": the mesh is refined no further, with an estimated error of " +
+                              readable_share(run_.levels.back().error) + " in place of " +
+                              readable_share(aim_.error));
+  }
+
+  Case& input_;
+  const MpiSession& mpi_;
+  const RunOptions& options_;
+  const Adaptivity aim_;
+  CoarseRun run_;
+};
+
+}  // namespace
+
+CoarseRun adapt(Case& input, const MpiSession& mpi, const RunOptions& options) {
+  return Adaptation(input, mpi, options).run();
+}
+
+}  // namespace kacanov

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The data of report.html, and the frame they stand in.
+#include "program/report_page.hpp"
+
+#include <cmath>
+#include <limits>
+#include <variant>
+
+#include <kacanov/error.hpp>
+#include "formats/xml.hpp"
+#include "pictures/png.hpp"
+#include "pictures/surface.hpp"
+#include "problem/selection.hpp"
+
+namespace kacanov {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// JSON that no "</script>" in a name can end.
+std::string embedded(const ordered_json& json) {
+  std::string text;
+  for (const char c : json.dump(-1, ' ', false, ordered_json::error_handler_t::replace))
+    if (c == '<')
+      text += "\\u003c";
+    else
+      text += c;
+  return text;
+}
+
+template <typename T>
+std::string packed(const std::vector<T>& values) {
+  return base64({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)});
+}
+
+/// Single precision; what is not finite becomes 0, as in the picture.
+float shown_value(double value) { return std::isfinite(value) ? static_cast<float>(value) : 0.0F; }
+
+std::string packed_values(std::span<const double> values) {
+  std::vector<float> single;
+  single.reserve(values.size());
+  for (const double v : values) single.push_back(shown_value(v));
+  return packed(single);
+}
+
+/// Three entries a node, about `centre`.
+std::string packed_vectors(std::span<const double> values, std::size_t dim, const Vector3& centre) {
+  std::vector<float> single;
+  for (std::size_t i = 0; i < values.size(); i += dim)
+    for (std::size_t k = 0; k < 3; ++k)
+      single.push_back(k < dim ? shown_value(values[i + k] - centre[k]) : 0.0F);
+  return packed(single);
+}
+
+const char* kind_of(const BoundaryEntry& entry) {
+  return entry.is_support() ? "support" : entry.is_spring() ? "spring" : "load";
+}
+
+/// Nodes of the entries, to be marked; what acts in the volume or is not on the boundary has none.
+ordered_json marks_json(const ReportPage& page) {
+  const Selection selection(*page.mesh);
+  const Model& model = page.input->model;
+  ordered_json marks = ordered_json::array();
+  const auto add = [&](const std::string& name, const char* kind, const Selector& on) {
+    ordered_json mark{{"name", name}, {"kind", kind}, {"nodes", nullptr}};
+    try {
+      mark["nodes"] = packed(selection.nodes(on, name));
+    } catch (const InputError&) {  // made of inner nodes, of which there are none here: the page says so
+    }
+    marks.push_back(mark);
+  };
+  for (std::size_t i = 0; i < model.boundary.size(); ++i) {
+    const BoundaryEntry& entry = model.boundary[i];
+    if (!entry.body_force && !entry.temperature)
+      add(entry_name(entry, static_cast<std::int32_t>(i)), kind_of(entry), entry.on);
+  }
+  for (std::size_t i = 0; i < model.contact.size(); ++i)
+    add(entry_name(model.contact[i], static_cast<std::int32_t>(i)), "contact", model.contact[i].on);
+  return marks;
+}
+
+ordered_json vector_json(const Vector3& v, const Vector3& origin) {
+  return {v[0] - origin[0], v[1] - origin[1], v[2] - origin[2]};
+}
+
+/// Planes that stay; `undrawn` counts the other obstacles.
+ordered_json planes_json(const Model& model, const Vector3& centre, int& undrawn) {
+  ordered_json planes = ordered_json::array();
+  for (const ContactEntry& entry : model.contact) {
+    const auto* plane = std::get_if<Plane>(&entry.obstacle);
+    if (plane != nullptr && !entry.moves())
+      planes.push_back(
+          {{"point", vector_json(plane->point, centre)}, {"normal", vector_json(plane->normal, {})}});
+    else
+      ++undrawn;
+  }
+  return planes;
+}
+
+ordered_json scene_json(const ReportPage& page) {
+  const Mesh& mesh = *page.mesh;
+  const std::size_t dim = mesh.dim();
+  const auto triangles = surface_triangles(mesh);
+  ordered_json scene{{"dim", dim}, {"nodes", mesh.node_count()}, {"triangles", triangles.size()}};
+  scene["most"] = most_report_triangles;
+  if (triangles.size() > most_report_triangles) return scene;
+  const Extent box = extent(mesh);
+  Vector3 centre{};
+  for (std::size_t k = 0; k < dim; ++k) centre[k] = (box.lower[k] + box.upper[k]) / 2;
+  scene["size"] = box.size;
+  scene["scale"] = page.input->output.scale;
+  scene["corners"] = packed(triangles);
+  scene["points"] = packed_vectors(mesh.coordinates, dim, centre);
+  scene["displacement"] = packed_vectors(page.displacement, dim, {});
+  scene["fields"] = ordered_json::array();
+  for (const ReportPage::Field& field : page.fields)
+    scene["fields"].push_back({{"name", field.name}, {"values", packed_values(field.values)}});
+  scene["marks"] = marks_json(page);
+  int undrawn = 0;
+  scene["planes"] = planes_json(page.input->model, centre, undrawn);
+  scene["undrawn_obstacles"] = undrawn;
+  return scene;
+}
+
+std::string data_block(const char* id, const ordered_json& json) {
+  return std::string("<script type=\"application/json\" id=\"") + id + "\">" + embedded(json) + "</script>\n";
+}
+
+}  // namespace
+
+std::string report_html(const ReportPage& page) {
+  const std::size_t nodes = page.mesh->node_count();
+  bool fits = page.displacement.size() == page.mesh->coordinates.size();
+  for (const ReportPage::Field& field : page.fields) fits = fits && field.values.size() == nodes;
+  if (!fits) throw InternalError("report: a field does not fit the mesh");
+  const std::string title = xml_escape(page.input->name);
+  std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
+  html +=
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
+      "style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n";
+  html += "<title>" + title + "</title>\n<style>" + report_style + "</style>\n</head>\n<body>\n";
+  html += "<h1>" + title + "</h1>\n<noscript><p>This page needs JavaScript.</p></noscript>\n";
+  html += "<div id=\"verdict\"></div>\n<div id=\"view\"></div>\n";
+  if (!page.picture.empty())
+    html += "<h2>Deformed body</h2>\n<img alt=\"The deformed body\" src=\"data:image/svg+xml;base64," +
+            base64(page.picture) + "\">\n";
+  html += "<div id=\"convergence\"></div>\n<div id=\"numbers\"></div>\n";
+  html += data_block("result", *page.result) + data_block("scene", scene_json(page)) +
+          data_block("history", page.history);
+  html += std::string("<script>") + report_script + "</script>\n</body>\n</html>\n";
+  return html;
+}
+
+}  // namespace kacanov
