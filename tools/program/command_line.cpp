@@ -9,9 +9,9 @@ namespace kacanov {
 namespace {
 
 std::string footer() {
-  std::string text = "Exit codes: ";
+  std::string text;
   for (const auto& [code, meaning] : exit_codes)
-    text += (code == exit_codes[0].first ? "" : "; ") + std::string(code) + " " + meaning;
+    text += (text.empty() ? "Exit codes: " : "; ") + std::string(code) + " " + meaning;
   return text + ".\n" + about_processes + "\n";
 }
 
