@@ -222,6 +222,9 @@ void set_mpi_environment() {
       {"OMPI_MCA_mpi_yield_when_idle", "1"},
       // mpiexec passes SIGTSTP and SIGCONT on to the ranks.
       {"OMPI_MCA_orte_forward_job_control", "1"},
+      // Where a rank ends with a code, what is left of the others has nothing to do: no second is waited for
+      // them.
+      {"OMPI_MCA_odls_base_sigkill_timeout", "0"},
       {"HWLOC_HIDE_ERRORS", "2"},
   };
   for (const auto& [name, value] : settings) setenv(name, value, 0);
