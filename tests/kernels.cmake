@@ -1,7 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The kernels against their plain references.
+add_library(kacanov_dense_algebra STATIC dense_algebra.cpp)
+target_link_libraries(kacanov_dense_algebra PUBLIC Eigen3::Eigen PRIVATE kacanov_warnings)
+target_compile_features(kacanov_dense_algebra PUBLIC cxx_std_20)
+target_compile_options(kacanov_dense_algebra PRIVATE ${KACANOV_MEASURE_OPTIONS})
+
 kacanov_test(kernels
   SOURCES kernels/cells_test.cpp kernels/law_test.cpp kernels/reference_test.cpp kernels/operator_test.cpp
     kernels/operator_input_test.cpp kernels/point_moduli_test.cpp kernels/locking_test.cpp
     kernels/mixed_test.cpp kernels/uniaxial_test.cpp ../perf/meshes.cpp
-  LIBRARIES kacanov_kernels_internal Eigen3::Eigen)
+  LIBRARIES kacanov_kernels_internal kacanov_dense_algebra)

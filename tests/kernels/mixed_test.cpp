@@ -4,10 +4,11 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <stdexcept>
 
+#include "../dense_algebra.hpp"
 #include "bodies.hpp"
 
 using namespace kacanov;
@@ -92,11 +93,9 @@ std::array<double, 2> inf_sup(ElementType type, int cells) {
   Eigen::VectorXd scale(corners.size());
   for (std::size_t i = 0; i < corners.size(); ++i)
     scale[i] = std::sqrt(2.0 * law.shear / volume.p[corners[i]]);
-  const Eigen::MatrixXd schur = b * a.ldlt().solve(b.transpose());
+  const Eigen::MatrixXd schur = testing::schur_complement(a, b);
   const auto smallest = [&](const Eigen::MatrixXd& m) {
-    const Eigen::MatrixXd scaled = scale.asDiagonal() * m * scale.asDiagonal();
-    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (scaled + scaled.transpose()))
-        .eigenvalues()[0];
+    return testing::symmetric_eigenvalues(scale.asDiagonal() * m * scale.asDiagonal())[0];
   };
   return {smallest(schur), smallest(schur + s)};
 }

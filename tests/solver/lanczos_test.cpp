@@ -4,22 +4,15 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <random>
 
+#include "../dense_algebra.hpp"
+
 using namespace kacanov;
+using testing::with_eigenvalues;
 
 namespace {
-
-/// A symmetric matrix with given eigenvalues; the same on every rank.
-Eigen::MatrixXd with_eigenvalues(const Eigen::VectorXd& values) {
-  std::mt19937 engine(3);
-  std::normal_distribution<double> normal;
-  const Eigen::Index n = values.size();
-  const Eigen::MatrixXd random = Eigen::MatrixXd::NullaryExpr(n, n, [&] { return normal(engine); });
-  const Eigen::MatrixXd q = Eigen::HouseholderQR<Eigen::MatrixXd>(random).householderQ();
-  return q * values.asDiagonal() * q.transpose();
-}
 
 /// Rows first_own … of the matrix are this rank's; ranks named in `idle` have none.
 LanczosResult largest(const Eigen::MatrixXd& k, const LanczosOptions& options, bool first_rank_idle) {

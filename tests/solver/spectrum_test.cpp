@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include "../dense_algebra.hpp"
 #include "dense.hpp"
 #include "support.hpp"
 
@@ -169,9 +170,8 @@ TEST_CASE("rigid modes that only the contact holds have no eigenvalue") {
     const Eigen::MatrixXd c = dense_traces(part, false)(Eigen::all, free);
     // With the penalty r CᵀC the eigenvalues are λ/(1 + rλ), and 1/r for the rigid mode.
     const double r = 1e-2;
-    const Eigen::MatrixXd k = c * (b + r * c.transpose() * c).ldlt().solve(c.transpose());
-    const Eigen::VectorXd theta =
-        r * Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(k, Eigen::EigenvaluesOnly).eigenvalues();
+    const Eigen::MatrixXd k = schur_complement(b + r * product(c.transpose(), c), c);
+    const Eigen::VectorXd theta = r * symmetric_eigenvalues(k);
     const Eigen::Index m = theta.size();
     CHECK(theta(m - 1) == doctest::Approx(1.0).epsilon(1e-9));
     CHECK(found[0].lambda_max == doctest::Approx(theta(m - 2) / (1 - theta(m - 2)) / r).epsilon(1e-6));
@@ -190,7 +190,7 @@ TEST_CASE("rows of traces: transpose and pseudo-inverse") {
   const TraceRows rows(part, all);
   const Eigen::MatrixXd c = dense_traces(part, true);
   REQUIRE(rows.owned() == static_cast<std::size_t>(c.rows()));
-  const Eigen::MatrixXd inverse = c.completeOrthogonalDecomposition().pseudoInverse();
+  const Eigen::MatrixXd inverse = pseudo_inverse(c);
   Eigen::VectorXd x = Eigen::VectorXd::Random(c.rows()), y = Eigen::VectorXd::Random(c.cols());
   Eigen::VectorXd out_x(c.rows()), out_y(c.cols());
   const auto view = [](Eigen::VectorXd& v) { return std::span<double>(v.data(), v.size()); };
@@ -202,7 +202,7 @@ TEST_CASE("rows of traces: transpose and pseudo-inverse") {
   CHECK((out_y - inverse * x).norm() < 1e-8 * inverse.norm());
   rows.lift_transpose(view(y), view(out_x));
   CHECK((out_x - inverse.transpose() * y).norm() < 1e-8 * inverse.norm());
-  Eigen::MatrixXd penalty = 2.0 * c.transpose() * c;
+  Eigen::MatrixXd penalty = 2.0 * product(c.transpose(), c);
   for (const NodeBlock& block : rows.penalty_blocks(2.0))
     for (Eigen::Index i = 0; i < 3; ++i)
       for (Eigen::Index j = 0; j < 3; ++j)
@@ -220,14 +220,14 @@ TEST_CASE("r_A of a solution is that of its contact set") {
   const auto components = free_components(run.part);
   const Eigen::MatrixXd b = dense_stiffness(run.part, g)(components, components);
   const Eigen::MatrixXd c = dense_traces(run.part, false)(Eigen::all, components);
-  const Eigen::MatrixXd k = c * b.ldlt().solve(c.transpose());
+  const Eigen::MatrixXd k = schur_complement(b, c);
   std::vector<int> active, open;
   for (std::size_t i = 0; i < run.part.contact.size(); ++i)
     (run.solution.pressure[i] > 0.0 ? active : open).push_back(static_cast<int>(i));
   const Eigen::MatrixXd held = k(active, active);
-  const Eigen::MatrixXd rest = k(open, open) - k(open, active) * held.ldlt().solve(k(active, open));
-  const double low = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(held).eigenvalues().minCoeff();
-  const double high = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(rest).eigenvalues().maxCoeff();
+  const Eigen::MatrixXd rest = k(open, open) - schur_complement(held, k(open, active));
+  const double low = symmetric_eigenvalues(held).minCoeff();
+  const double high = symmetric_eigenvalues(rest).maxCoeff();
   CHECK(active_penalty(run.part, run.solution, model.solver, {}).r ==
         doctest::Approx(1.0 / std::sqrt(low * high)).epsilon(0.02));
 }
