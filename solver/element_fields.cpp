@@ -3,6 +3,7 @@
 #include <kacanov/element_fields.hpp>
 
 #include <algorithm>
+#include <array>
 
 namespace kacanov {
 namespace {
@@ -31,6 +32,23 @@ void element_fields(const Part& part, const BodyState& state, std::size_t first,
                     const reference::ElementFields& out) {
   reference::fields(elements_of(part, first, count), state.u, out);
   if (!out.stress.empty()) take_off_thermal(state, first, 1, out.stress);
+}
+
+void element_strains(const Part& part, const BodyState& state, std::size_t first, std::size_t count,
+                     std::span<double> out) {
+  const std::size_t points = points_per_element(part.type);
+  std::vector<Vector3> position(count * points);
+  std::vector<double> stress(6 * count * points), strain(stress.size()), volume(count * points);
+  reference::point_fields(elements_of(part, first, count), state.u, {position, stress, strain, volume});
+  for (std::size_t e = 0; e < count; ++e) {
+    double whole = 0.0;
+    std::array<double, 6> sum{};
+    for (std::size_t q = e * points; q < (e + 1) * points; ++q) {
+      whole += volume[q];
+      for (std::size_t c = 0; c < 6; ++c) sum[c] += volume[q] * strain[6 * q + c];
+    }
+    for (std::size_t c = 0; c < 6; ++c) out[6 * e + c] = sum[c] / whole;
+  }
 }
 
 void visit_element_fields(const Part& part, const BodyState& state,

@@ -4,15 +4,19 @@
 
 usage: foreign_readers.py PROGRAM meshio|vtk
 
-Runs a small block on a plane; opens body.vtu and contact.vtu; compares points, cells and displacements with what
-result.json says. With meshio the body comes back as a mesh, in every format that the program reads.
+Runs a small block on a plane, on one rank and on two; opens body.vtu and contact.vtu; compares points, cells and
+displacements with what result.json says. With meshio the body comes back as a mesh, in every format that the program
+reads, and every number is read from files of small bodies, where offsets of arrays may be taken for each other.
 """
 import json
 import os
 import pathlib
+import re
+import struct
 import subprocess
 import sys
 import tempfile
+import zlib
 
 CASE = {
     "mesh": {"box": {"size": [2, 1, 1], "cells": [4, 2, 2], "element": "tet10"}},
@@ -22,13 +26,17 @@ CASE = {
     "probe": [[2, 1, 1]],
 }
 BODY = {"displacement": 3, "node_id": 1, "nodal_stress": 6, "nodal_von_mises": 1}
-CONTACT = {"gap": 1, "pressure": 1, "tangential_traction": 3, "status": 1, "node_id": 1}
+CELLS = {"stress": 6, "von_mises": 1, "strain": 6, "dev_strain": 1, "g": 1, "plastic": 1, "material": 1,
+         "element_id": 1, "error": 1}
+CONTACT = {"gap": 1, "pressure": 1, "tangential_traction": 3, "normal": 3, "displacement": 3, "status": 1, "entry": 1,
+           "node_id": 1}
 
 
 def by_meshio(path):
     import meshio  # here, because only one of the two may be installed
     grid = meshio.read(path)
-    return grid.points, sum(len(block.data) for block in grid.cells), grid.point_data
+    return (grid.points, sum(len(block.data) for block in grid.cells), grid.point_data,
+            {name: values[0] for name, values in grid.cell_data.items()})
 
 
 def by_vtk(path):
@@ -38,9 +46,29 @@ def by_vtk(path):
     reader.SetFileName(str(path))
     reader.Update()
     grid = reader.GetOutput()
-    data = grid.GetPointData()
-    arrays = {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
-    return vtk_to_numpy(grid.GetPoints().GetData()), grid.GetNumberOfCells(), arrays
+    point_data, cell_data = ({data.GetArrayName(i): vtk_to_numpy(data.GetArray(i))
+                              for i in range(data.GetNumberOfArrays())}
+                             for data in (grid.GetPointData(), grid.GetCellData()))
+    return vtk_to_numpy(grid.GetPoints().GetData()), grid.GetNumberOfCells(), point_data, cell_data
+
+
+def plainly(path):
+    """Bytes of every array by its name, found by their offsets."""
+    raw = path.read_bytes()
+    head = raw[:raw.index(b"<AppendedData")]
+    data = raw.index(b"_", len(head)) + 1
+    arrays = {}
+    for tag in re.findall(rb"<DataArray [^>]*>", head):
+        at = data + int(re.search(rb'offset="(\d+)"', tag)[1])
+        blocks = struct.unpack_from("<Q", raw, at)[0]
+        lengths = struct.unpack_from(f"<{blocks}Q", raw, at + 24)
+        at += 8 * (3 + blocks)
+        found = b""
+        for length in lengths:
+            found += zlib.decompress(raw[at:at + length])
+            at += length
+        arrays[re.search(rb'Name="([^"]*)"', tag)[1].decode()] = found
+    return arrays
 
 
 def run(program, folder, *words):
@@ -52,6 +80,29 @@ def run(program, folder, *words):
 def same(what, found, expected):
     if found != expected:
         raise SystemExit(f"{what}: expected {expected}, got {found}")
+
+
+def check_fields(reader, folder, result):
+    for file, at_points, in_cells in (("body.vtu", BODY, CELLS), ("contact.vtu", CONTACT, {})):
+        points, cells, point_data, cell_data = reader(folder / file)
+        same(f"arrays of {file}", (sorted(point_data), sorted(cell_data)), (sorted(at_points), sorted(in_cells)))
+        for data, arrays, count in ((point_data, at_points, len(points)), (cell_data, in_cells, cells)):
+            for array, components in arrays.items():
+                same(f"{file}: shape of {array}", data[array].reshape(count, -1).shape, (count, components))
+        if file == "body.vtu":
+            body = point_data
+            same("points", len(points), result["mesh"]["nodes"])
+            same("cells", cells, result["mesh"]["elements"])
+            corner = next(i for i, x in enumerate(points) if tuple(x) == (2.0, 1.0, 1.0))
+            same("probe", [float(x) for x in point_data["displacement"][corner]], result["probe"][0])
+        else:
+            most = float(point_data["pressure"].max())
+            same("pressure", abs(most - result["max_contact_pressure"]) <= 1e-12, True)
+            known = point_data["status"].reshape(-1) >= 0
+            same("normals", abs(point_data["normal"][known] - [0, 0, -1]).max() <= 1e-12, True)
+            of_node = {int(n): tuple(u) for n, u in zip(body["node_id"].reshape(-1), body["displacement"])}
+            same("displacement", [of_node[int(n)] for n in point_data["node_id"].reshape(-1)],
+                 [tuple(u) for u in point_data["displacement"]])
 
 
 def read_back(program, folder, result):
@@ -70,27 +121,32 @@ def read_back(program, folder, result):
             same(f"{name}: {key}", mesh[key], result["mesh"][key])
 
 
+def read_small(program, folder):
+    """Bodies of which meshio would take one array for another if they came in the order of the XML."""
+    for cells in ([1, 1], [1, 2], [2, 3], [3, 5], [7, 2]):
+        case = {"mesh": {"box": {"size": [2, 1], "cells": cells, "element": "tri3"}}, "material": CASE["material"],
+                "boundary": [{"on": "left", "displacement": [0, 0]}, {"on": "top", "traction": [0.01, -0.1]}]}
+        (folder / "small.json").write_text(json.dumps(case))
+        run(program, folder, "run", "small.json", "--output", "small")
+        _, _, point_data, cell_data = by_meshio(folder / "small" / "body.vtu")
+        expected = plainly(folder / "small" / "body.vtu")
+        for name, values in {**point_data, **cell_data}.items():
+            same(f"{cells}: {name}", values.tobytes() == expected[name], True)
+
+
 def main():
     program, library = os.path.abspath(sys.argv[1]), sys.argv[2]
     reader = {"meshio": by_meshio, "vtk": by_vtk}[library]
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         (folder / "case.json").write_text(json.dumps(CASE))
-        run(program, folder, "run", "case.json", "--output", "out", "--ranks", "1")
-        result = json.loads((folder / "out" / "result.json").read_text())
-        for file, arrays in (("body.vtu", BODY), ("contact.vtu", CONTACT)):
-            points, cells, data = reader(folder / "out" / file)
-            for array, components in arrays.items():
-                same(f"{file}: shape of {array}", data[array].reshape(len(points), -1).shape, (len(points), components))
-            if file == "body.vtu":
-                same("points", len(points), result["mesh"]["nodes"])
-                same("cells", cells, result["mesh"]["elements"])
-                corner = next(i for i, x in enumerate(points) if tuple(x) == (2.0, 1.0, 1.0))
-                same("probe", [float(x) for x in data["displacement"][corner]], result["probe"][0])
-            else:
-                same("pressure", abs(float(data["pressure"].max()) - result["max_contact_pressure"]) <= 1e-12, True)
+        for ranks in ("2", "1"):
+            run(program, folder, "run", "case.json", "--output", "out", "--ranks", ranks)
+            result = json.loads((folder / "out" / "result.json").read_text())
+            check_fields(reader, folder / "out", result)
         if library == "meshio":
             read_back(program, folder, result)
+            read_small(program, folder)
     return 0
 
 

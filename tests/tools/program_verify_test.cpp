@@ -4,6 +4,7 @@
 
 #include <cstring>
 
+#include "formats/inflate.hpp"
 #include "mesh_writer.hpp"
 #include "program_runner.hpp"
 
@@ -26,10 +27,44 @@ nlohmann::json cube(const std::string& element) {
   return cube;
 }
 
+/// A file of packed arrays as one of plain ones, as older versions wrote them.
+std::string with_plain_arrays(std::string text) {
+  const std::string compressor = " compressor=\"vtkZLibDataCompressor\"";
+  REQUIRE(text.find(compressor) != std::string::npos);
+  text.erase(text.find(compressor), compressor.size());
+  const std::size_t appended = text.find("<AppendedData"), data = text.find('_', appended) + 1;
+  std::string head, arrays;
+  std::size_t done = 0;
+  for (std::size_t at = 0; (at = text.find("offset=\"", at)) < appended;) {
+    at += 8;
+    const std::size_t front = data + std::stoul(text.substr(at));
+    const auto number = [&](std::size_t i) {
+      std::uint64_t value = 0;
+      std::memcpy(&value, text.data() + front + 8 * i, sizeof value);
+      return static_cast<std::size_t>(value);
+    };
+    const std::size_t blocks = number(0), length = number(1), last = number(2);
+    const std::uint64_t bytes = last > 0 ? (blocks - 1) * length + last : blocks * length;
+    std::string array(bytes, '\0');
+    std::size_t from = front + 8 * (3 + blocks), to = 0;
+    for (std::size_t b = 0; b < blocks; ++b) {
+      const std::size_t size = b + 1 == blocks && last > 0 ? last : length;
+      REQUIRE(inflate_zlib(std::string_view(text).substr(from, number(3 + b)),
+                           {reinterpret_cast<unsigned char*>(array.data()) + to, size}));
+      from += number(3 + b);
+      to += size;
+    }
+    head += text.substr(done, at - done) + std::to_string(arrays.size());
+    done = text.find('"', at);
+    arrays.append(reinterpret_cast<const char*>(&bytes), sizeof bytes).append(array);
+  }
+  return head + text.substr(done, data - done) + arrays + "\n</AppendedData>\n</VTKFile>\n";
+}
+
 /// Adds to what a VTU file says of its third node, along x, in an array of doubles; each begins with its
 /// length.
 void change_array(const Workplace& place, const std::string& file, const std::string& name, double by) {
-  std::string text = contents(place.path(file));
+  std::string text = with_plain_arrays(contents(place.path(file)));
   const std::size_t at = text.find("Name=\"" + name + "\"");
   REQUIRE(at != std::string::npos);
   const std::size_t offset = text.find("offset=\"", at) + 8;
@@ -111,23 +146,53 @@ TEST_CASE("what has been changed in the files is found") {
   CHECK(outcome.error.find("cannot be read") != std::string::npos);
 }
 
+TEST_CASE("what older versions wrote is verified: plain arrays, the body in a piece a rank") {
+  const Workplace place;
+  place.put_json("beam.json", small_beam());
+  REQUIRE(place.run("run beam.json --output out").exit_code == 0);
+  for (const char* file : {"out/body.vtu", "out/contact.vtu"})
+    place.put(file, with_plain_arrays(contents(place.path(file))));
+  CHECK(place.run("verify beam.json --output out").exit_code == 0);
+  std::filesystem::rename(place.path("out/body.vtu"), place.path("out/body_0.vtu"));
+  place.put("out/body.pvtu", "<VTKFile>\n<Piece Source=\"body_0.vtu\"/>\n</VTKFile>\n");
+  CHECK(place.run("verify beam.json --output out").exit_code == 0);
+  // A run on top of them takes them away.
+  REQUIRE(place.run("run beam.json --output out").exit_code == 0);
+  CHECK_FALSE(place.has("out/body.pvtu"));
+  CHECK_FALSE(place.has("out/body_0.vtu"));
+}
+
 TEST_CASE("files of fields that are damaged are refused by name, whatever is wrong") {
   const Workplace place;
   place.put_json("beam.json", small_beam());
   REQUIRE(place.run("run beam.json --output out").exit_code == 0);
   for (const std::string file : {"out/body.vtu", "out/contact.vtu"}) {
     const std::string whole = contents(place.path(file));
-    const auto refused = [&](const std::string& what, const std::string& instead) {
-      INFO(file, ": ", what, " ", instead);
-      std::string text = whole;
-      text.replace(text.find(what), what.size(), instead);
+    const auto refuse = [&](const std::string& text) {
       place.put(file, text);
       const Outcome outcome = place.run("verify beam.json --output out");
       CHECK(outcome.exit_code == 2);
       CHECK(outcome.error.find(file) != std::string::npos);
     };
+    const auto refused = [&](const std::string& what, const std::string& instead) {
+      INFO(file, ": ", what, " ", instead);
+      std::string text = whole;
+      text.replace(text.find(what), what.size(), instead);
+      refuse(text);
+    };
+    const std::size_t first = whole.find("offset=\"") + 8;
+    const std::string offset_of_first = whole.substr(first, whole.find('"', first) - first);
     for (const char* offset : {"x", "", "-1", "18446744073709551612", "99999999999999999999999", "1e9"})
-      refused("offset=\"0\"", std::string("offset=\"") + offset + "\"");
+      refused("offset=\"" + offset_of_first + "\"", std::string("offset=\"") + offset + "\"");
+    // Numbers of blocks, their length, that of the last one, their packed lengths; and what is packed.
+    const std::size_t front = whole.find('_', whole.find("<AppendedData")) + 1 + std::stoul(offset_of_first);
+    for (const std::size_t number : {0, 2, 3, 5}) {
+      for (const char* instead : {"\xff\xff\xff\xff\xff\xff\xff\xff", "\x07\x01\x02\x00\x00\x00\x00\x00"}) {
+        std::string text = whole;
+        text.replace(front + 8 * number, 8, std::string(instead, 8));
+        refuse(text);
+      }
+    }
     refused("NumberOfComponents=\"3\"", "NumberOfComponents=\"\xff\"");
     refused("NumberOfComponents=\"3\"", "NumberOfComponents=\"0\"");
     refused("<AppendedData", "<AppendedDatum");

@@ -4,15 +4,19 @@
 #include <signal.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <numeric>
+#include <random>
 #include <string>
 #include <vector>
 
 #include <kacanov/error.hpp>
 #include <kacanov/mesh.hpp>
+#include "formats/inflate.hpp"
 #include "formats/vtu_writer.hpp"
 #include "temporary_folder.hpp"
 
@@ -25,6 +29,7 @@ namespace {
 struct Array {
   std::map<std::string, std::string> attributes;
   std::string bytes;
+  std::size_t offset = 0, end = 0;  ///< of its packed form, from the first array on
 
   template <typename T>
   std::vector<T> values() const {
@@ -44,28 +49,80 @@ std::map<std::string, std::string> attributes(const std::string& element) {
   return result;
 }
 
-/// Every array of a .vtu by name.
-std::map<std::string, Array> arrays(const std::string& file) {
+/// An array's bytes, unpacked block by block; `next` becomes the place behind it.
+std::string unpacked(const std::string& file, std::size_t& next) {
+  const auto number = [&](std::size_t i) {
+    std::uint64_t value = 0;
+    REQUIRE(next + 8 * i + 8 <= file.size());
+    std::memcpy(&value, file.data() + next + 8 * i, 8);
+    return static_cast<std::size_t>(value);
+  };
+  const std::size_t blocks = number(0), length = number(1), last = number(2);
+  std::string all;
+  std::size_t from = next + 8 * (3 + blocks);
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const std::size_t packed = number(3 + b), size = b + 1 == blocks && last > 0 ? last : length;
+    REQUIRE(from + packed <= file.size());
+    std::string block(size, '\0');
+    REQUIRE(inflate_zlib(std::string_view(file).substr(from, packed),
+                         {reinterpret_cast<unsigned char*>(block.data()), block.size()}));
+    all += block;
+    from += packed;
+  }
+  next = from;
+  return all;
+}
+
+/// Arrays in the order of the XML.
+std::vector<Array> arrays_in_order(const std::string& file) {
   const std::size_t appended = file.find("<AppendedData");
   REQUIRE(appended != std::string::npos);
   const std::size_t data = file.find("_", file.find('>', appended)) + 1;
-  std::map<std::string, Array> result;
-  std::size_t expected = 0;
+  std::vector<Array> result;
   for (std::size_t at = 0; (at = file.find("<DataArray", at)) < appended; ++at) {
     Array array;
     array.attributes = attributes(file.substr(at, file.find("/>", at) - at));
-    const std::size_t offset = std::stoul(array.attributes["offset"]);
-    CHECK(offset == expected);
-    std::uint64_t size = 0;
-    REQUIRE(data + offset + 8 <= file.size());
-    std::memcpy(&size, file.data() + data + offset, 8);
-    REQUIRE(data + offset + 8 + size <= file.size());
-    array.bytes = file.substr(data + offset + 8, size);
-    expected = offset + 8 + size;
-    result[array.attributes["Name"]] = array;
+    array.offset = std::stoul(array.attributes["offset"]);
+    std::size_t next = data + array.offset;
+    array.bytes = unpacked(file, next);
+    array.end = next - data;
+    result.push_back(array);
+  }
+  // The arrays follow each other from the last to the first, without a byte between them.
+  std::size_t expected = 0;
+  for (auto array = result.rbegin(); array != result.rend(); ++array) {
+    CHECK(array->offset == expected);
+    expected = array->end;
   }
   CHECK(file.substr(data + expected) == "\n</AppendedData>\n</VTKFile>\n");
   return result;
+}
+
+/// Every array of a .vtu by name.
+std::map<std::string, Array> arrays(const std::string& file) {
+  std::map<std::string, Array> result;
+  for (const Array& array : arrays_in_order(file)) result[array.attributes.at("Name")] = array;
+  return result;
+}
+
+/// What meshio 5 does with a file of raw arrays: from front to back, it looks for the array of each offset,
+/// and puts in place of the offset the one that the array has in base64. Whether it finds the right ones.
+bool meshio_finds(std::vector<Array> in_order) {
+  std::vector<std::size_t> by_offset(in_order.size());
+  std::iota(by_offset.begin(), by_offset.end(), std::size_t{0});
+  std::sort(by_offset.begin(), by_offset.end(),
+            [&](std::size_t a, std::size_t b) { return in_order[a].offset < in_order[b].offset; });
+  std::size_t rewritten = 0, at = 0;
+  for (const std::size_t right : by_offset) {
+    const auto found = std::find_if(in_order.begin(), in_order.end(),
+                                    [&](const Array& array) { return array.offset == at; });
+    if (found == in_order.end() || found - in_order.begin() != static_cast<std::ptrdiff_t>(right))
+      return false;
+    found->offset = rewritten;
+    rewritten += (8 + found->bytes.size() + 2) / 3 * 4;
+    at = found->end;
+  }
+  return true;
 }
 
 }  // namespace
@@ -142,22 +199,97 @@ TEST_CASE("an empty piece is a whole file") {
   CHECK(found["gap"].bytes.empty());
 }
 
-TEST_CASE("pieces and collections name their files and fields") {
+TEST_CASE("collections name their files") {
   const TemporaryFolder folder;
-  const std::vector<double> none;
-  const Grid grid{2, &cell(ElementType::tri3).facet(), {}, {}, {{"traction", 2, none}}, {{"a<b", 1, none}}};
-  const std::vector<std::string> pieces{"p_0.vtu", "p_1.vtu"};
-  write_pvtu(folder.file("p.pvtu"), grid, pieces);
-  const std::string text = read_bytes(folder.file("p.pvtu"));
-  CHECK(text.find("<Piece Source=\"p_0.vtu\"/>") < text.find("<Piece Source=\"p_1.vtu\"/>"));
-  CHECK(text.find("Name=\"traction\" NumberOfComponents=\"3\"") != std::string::npos);
-  CHECK(text.find("Name=\"a&lt;b\"") != std::string::npos);
-  const std::vector<PvdPart> parts{{"body", "p.pvtu", 0.1, 0}, {"contact", "c.vtu", 0.1, 1}};
+  const std::vector<PvdPart> parts{{"body", "b<1>.vtu", 0.1, 0}, {"contact", "c.vtu", 0.1, 1}};
   write_pvd(folder.file("all.pvd"), parts);
   const std::string collection = read_bytes(folder.file("all.pvd"));
-  CHECK(collection.find("name=\"body\" file=\"p.pvtu\"") <
+  CHECK(collection.find("name=\"body\" file=\"b&lt;1&gt;.vtu\"") <
         collection.find("name=\"contact\" file=\"c.vtu\""));
   CHECK(collection.find("timestep=\"0.10000000000000001\" part=\"1\"") != std::string::npos);
+}
+
+TEST_CASE("meshio finds every array, also where its offsets in base64 are those of others") {
+  const TemporaryFolder folder;
+  std::mt19937_64 random(7);
+  int collisions = 0;
+  for (std::size_t cells = 150; cells <= 250; ++cells) {
+    const std::vector<double> points(6 * cells);
+    std::vector<std::int32_t> corners(3 * cells);
+    std::iota(corners.begin(), corners.end(), 0);
+    std::vector<std::uint8_t> noise(12 * cells);
+    for (std::uint8_t& byte : noise) byte = static_cast<std::uint8_t>(random());
+    Grid grid{2, &cell(ElementType::tri3), points, corners, {}, {}};
+    for (std::size_t k = 0; k < 12; ++k)
+      grid.cell_fields.push_back({"f" + std::to_string(k), 1, std::span(noise).subspan(k * cells, cells)});
+    write_vtu(folder.file("a.vtu"), grid);
+    std::vector<Array> in_order = arrays_in_order(read_bytes(folder.file("a.vtu")));
+    CHECK(meshio_finds(in_order));
+    // The same arrays as others order them, from the first to the last.
+    std::size_t at = 0;
+    for (Array& array : in_order) {
+      const std::size_t length = array.end - array.offset;
+      array.offset = at;
+      array.end = at += length;
+    }
+    if (!meshio_finds(in_order)) ++collisions;
+  }
+  CHECK(collisions > 0);  // else this shows nothing
+}
+
+TEST_CASE("shares of any size make the file that one writer makes") {
+  const TemporaryFolder folder;
+  std::mt19937_64 random(3);
+  for (const std::size_t count : {std::size_t{5}, std::size_t{8192}, std::size_t{40001}}) {
+    // A strip of lines: point i and i + 1.
+    const Cell& line = cell(ElementType::tri3).facet();
+    std::vector<double> points(2 * (count + 1)), noise(count);
+    for (std::size_t i = 0; i < points.size(); ++i) points[i] = static_cast<double>(i / 7);
+    for (double& x : noise) x = static_cast<double>(random());
+    std::vector<std::int32_t> cells;
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t k = 0; k < 2; ++k) cells.push_back(static_cast<std::int32_t>(i + k));
+    write_vtu(folder.file("one.vtu"), {2, &line, points, cells, {}, {{"noise", 1, noise}}});
+
+    std::vector<std::size_t> cuts{0, 0, count};
+    for (int k = 0; k < 5; ++k) cuts.push_back(random() % (count + 1));
+    std::sort(cuts.begin(), cuts.end());
+    std::vector<Grid> grids;
+    std::vector<VtuShare> shares;
+    for (std::size_t k = 0; k + 1 < cuts.size(); ++k) {
+      const std::size_t first = cuts[k], here = cuts[k + 1] - first,
+                        own = here + (cuts[k + 1] == count ? 1 : 0);
+      Grid grid{2,
+                &line,
+                std::span(points).subspan(2 * first, 2 * own),
+                std::span(cells).subspan(2 * first, 2 * here),
+                {},
+                {{"noise", 1, std::span(noise).subspan(first, here)}}};
+      grid.number_of_point = [](std::int32_t node) { return std::int64_t{node}; };
+      grids.push_back(grid);
+    }
+    // Where two shares end with the last cell, the first of them has the last point.
+    bool given = false;
+    for (Grid& grid : grids)
+      if (grid.points.size() > grid.cells.size()) {
+        if (given) grid.points = {};
+        given = true;
+      }
+    GridPlace place{count + 1, count, 0, 0};
+    for (const Grid& grid : grids) {
+      shares.emplace_back("many.vtu", grid, place);
+      place.points_before += grid.points.size() / 2;
+      place.cells_before += grid.cells.size() / 2;
+    }
+    VtuFileWriter file(folder.file("many.vtu"), shares[0]);
+    for (std::size_t array = shares[0].arrays(); array-- > 0;) {
+      file.begin(array);
+      for (const VtuShare& share : shares) share.pack(array, file);
+      file.end();
+    }
+    file.commit();
+    CHECK(read_bytes(folder.file("many.vtu")) == read_bytes(folder.file("one.vtu")));
+  }
 }
 
 TEST_CASE("what cannot be written is reported with its name, and leaves nothing behind") {
@@ -171,7 +303,10 @@ TEST_CASE("what cannot be written is reported with its name, and leaves nothing 
     }
     return false;
   };
-  const std::vector<double> points(3 * 10000, 1.0), few(5, 0.0);
+  std::vector<double> points(3 * 10000);
+  std::mt19937_64 random(1);
+  for (double& x : points) x = static_cast<double>(random());
+  const std::vector<double> few(5, 0.0);
   CHECK(refused(folder.file("missing/a.vtu"), {3, &cell(ElementType::tri3), points, {}, {}, {}},
                 "No such file"));
   CHECK(refused(folder.file("a.vtu"), {3, &cell(ElementType::tri3), points, {}, {{"gap", 1, few}}, {}},

@@ -43,6 +43,12 @@ void AtomicFile::write(const void* data, std::size_t bytes) {
   if (bytes > 0 && std::fwrite(data, 1, bytes, file_) != bytes) fail(errno);
 }
 
+void AtomicFile::write_over(std::uint64_t place, const void* data, std::size_t bytes) {
+  if (::fseeko(file_, static_cast<off_t>(place), SEEK_SET) != 0) fail(errno);
+  write(data, bytes);
+  if (::fseeko(file_, 0, SEEK_END) != 0) fail(errno);
+}
+
 void AtomicFile::commit(Durable durable) {
   // What is still buffered meets a full disk here.
   if (std::fflush(file_) != 0) fail(errno);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <string>
 #include <string_view>
@@ -20,6 +21,8 @@ class AtomicFile {
 
   void write(const void* data, std::size_t bytes);
   void write(std::string_view text) { write(text.data(), text.size()); }
+  /// Puts other bytes in place of some that are written; goes on at the end.
+  void write_over(std::uint64_t place, const void* data, std::size_t bytes);
   /// Closes the file and renames it; to be called last. A durable one is on the disk before it takes the
   /// place of the one before it, and survives a power cut.
   enum class Durable { no, yes };

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The XML around the arrays, and the arrays themselves as raw bytes at the end.
+// The XML around the arrays, and the arrays themselves, packed, at the end.
 #include "formats/vtu_writer.hpp"
 
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <limits>
 #include <sstream>
 
 #include <kacanov/error.hpp>
-#include "formats/atomic_file.hpp"
 #include "formats/xml.hpp"
 
 namespace kacanov {
@@ -16,9 +16,9 @@ namespace {
 
 constexpr const char* byte_order = std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian";
 
-std::string header(const char* type) {
+std::string header(const char* type, const char* more = "") {
   return std::string("<?xml version=\"1.0\"?>\n<VTKFile type=\"") + type +
-         "\" version=\"1.0\" byte_order=\"" + byte_order + "\" header_type=\"UInt64\">\n";
+         "\" version=\"1.0\" byte_order=\"" + byte_order + "\" header_type=\"UInt64\"" + more + ">\n";
 }
 
 /// Components as written: two become three in 2D.
@@ -36,7 +36,6 @@ FieldType field_type(const Field& field) {
   return types[field.values.index()];
 }
 
-/// The attributes of a data array that .vtu and .pvtu share.
 std::string array_attributes(const Grid& grid, const Field& field) {
   std::string text = std::string("type=\"") + field_type(field).name + "\" Name=\"" + xml_escape(field.name) +
                      "\" NumberOfComponents=\"" + std::to_string(written_components(grid, field)) + "\"";
@@ -48,148 +47,213 @@ std::string array_attributes(const Grid& grid, const Field& field) {
   return text;
 }
 
-/// Writes converted values in large blocks.
+/// Converted values, handed over some thousand at a time.
 template <typename T>
 class Buffer {
  public:
-  explicit Buffer(AtomicFile& file) : file_(file) { values_.reserve(capacity); }
+  explicit Buffer(const std::function<void(const void*, std::size_t)>& take) : take_(take) {
+    values_.reserve(capacity);
+  }
   void push(T value) {
     values_.push_back(value);
     if (values_.size() == capacity) flush();
   }
   void flush() {
-    file_.write(values_.data(), values_.size() * sizeof(T));
+    take_(values_.data(), values_.size() * sizeof(T));
     values_.clear();
   }
 
  private:
-  static constexpr std::size_t capacity = 1 << 14;
-  AtomicFile& file_;
+  static constexpr std::size_t capacity = 1 << 13;
+  const std::function<void(const void*, std::size_t)>& take_;
   std::vector<T> values_;
 };
 
-class VtuWriter {
- public:
-  VtuWriter(const std::string& path, const Grid& grid)
-      : path_(path),
-        grid_(grid),
-        nodes_(grid.cell->nodes),
-        dim_(grid.dim),
-        points_(grid.points.size() / dim_),
-        cells_(grid.cells.size() / nodes_),
-        file_(path) {}
+constexpr std::size_t entries_at_a_time = 4096;
 
-  void write() {
-    file_.write(header("UnstructuredGrid"));
-    file_.write("<UnstructuredGrid>\n<Piece NumberOfPoints=\"" + std::to_string(points_) +
-                "\" NumberOfCells=\"" + std::to_string(cells_) + "\">\n");
-    declare_fields("PointData", grid_.point_fields, points_);
-    declare_fields("CellData", grid_.cell_fields, cells_);
-    file_.write("<Points>\n");
-    declare("type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"", points_ * 3 * 8);
-    file_.write("</Points>\n<Cells>\n");
-    declare("type=\"Int32\" Name=\"connectivity\"", cells_ * nodes_ * 4);
-    declare("type=\"Int64\" Name=\"offsets\"", cells_ * 8);
-    declare("type=\"UInt8\" Name=\"types\"", cells_);
-    file_.write("</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");
-    for (const Field& field : grid_.point_fields) append(field);
-    for (const Field& field : grid_.cell_fields) append(field);
-    append_points();
-    append_cells();
-    file_.write("\n</AppendedData>\n</VTKFile>\n");
-    file_.commit();
-  }
-
- private:
-  void declare(const std::string& attributes, std::size_t bytes) {
-    file_.write("<DataArray " + attributes + " format=\"appended\" offset=\"" + std::to_string(offset_) +
-                "\"/>\n");
-    offset_ += sizeof(std::uint64_t) + bytes;
-  }
-
-  void declare_fields(const std::string& element, const std::vector<Field>& fields, std::size_t count) {
-    file_.write("<" + element + ">\n");
-    for (const Field& field : fields) {
-      const std::size_t size = std::visit([](const auto& values) { return values.size(); }, field.values);
-      if (size != count * static_cast<std::size_t>(field.components))
-        throw InternalError(path_ + ": the field " + field.name + " has " + std::to_string(size) +
-                            " values for " + std::to_string(count) + " times " +
-                            std::to_string(field.components));
-      declare(array_attributes(grid_, field),
-              count * written_components(grid_, field) * field_type(field).bytes);
+/// Entries of `from` components, written with `to`.
+template <typename T, typename Take>
+void visit_padded(const Values<T>& values, std::size_t from, std::size_t to, const Take& take) {
+  Buffer<T> buffer(take);
+  values.visit(entries_at_a_time * from, [&](std::span<const T> some) {
+    if (from == to) {
+      take(some.data(), some.size_bytes());
+      return;
     }
-    file_.write("</" + element + ">\n");
-  }
+    for (std::size_t i = 0; i < some.size(); i += from)
+      for (std::size_t k = 0; k < to; ++k) buffer.push(k < from ? some[i + k] : T{0});
+  });
+  buffer.flush();
+}
 
-  void append_size(std::uint64_t bytes) { file_.write(&bytes, sizeof bytes); }
+constexpr const char* point_data = "PointData";
+constexpr const char* cell_data = "CellData";
+constexpr std::array<const char*, 4> sections{point_data, cell_data, "Points", "Cells"};
 
-  template <typename T>
-  void append_padded(const Values<T>& values, std::size_t from, std::size_t to) {
-    append_size(values.size() / from * to * sizeof(T));
-    Buffer<T> buffer(file_);
-    values.visit(entries_at_a_time * from, [&](std::span<const T> some) {
-      if (from == to) {
-        file_.write(some.data(), some.size_bytes());
-        return;
-      }
-      for (std::size_t i = 0; i < some.size(); i += from)
-        for (std::size_t k = 0; k < to; ++k) buffer.push(k < from ? some[i + k] : T{0});
-    });
-    buffer.flush();
-  }
-
-  void append(const Field& field) {
-    std::visit(
-        [&](const auto& values) {
-          append_padded(values, field.components, written_components(grid_, field));
-        },
-        field.values);
-  }
-
-  void append_points() { append_padded(Values<double>(grid_.points.first(points_ * dim_)), dim_, 3); }
-
-  void append_cells() {
-    append_size(cells_ * nodes_ * 4);
-    Buffer<std::int32_t> nodes(file_);
-    for (std::size_t c = 0; c < cells_; ++c)
-      for (const std::int8_t from : grid_.cell->vtk_order)
-        nodes.push(grid_.cells[c * nodes_ + static_cast<std::size_t>(from)]);
-    nodes.flush();
-    append_size(cells_ * 8);
-    Buffer<std::int64_t> offsets(file_);
-    for (std::size_t c = 0; c < cells_; ++c) offsets.push(static_cast<std::int64_t>((c + 1) * nodes_));
-    offsets.flush();
-    append_size(cells_);
-    Buffer<std::uint8_t> types(file_);
-    for (std::size_t c = 0; c < cells_; ++c) types.push(static_cast<std::uint8_t>(grid_.cell->vtk));
-    types.flush();
-  }
-
-  static constexpr std::size_t entries_at_a_time = 4096;
-
-  const std::string& path_;
-  const Grid& grid_;
-  std::size_t nodes_, dim_, points_, cells_;
-  AtomicFile file_;
-  std::uint64_t offset_ = 0;
-};
+/// As long as an offset can be.
+constexpr std::uint64_t longest_offset = std::numeric_limits<std::uint64_t>::max();
 
 }  // namespace
 
-void write_vtu(const std::string& path, const Grid& grid) { VtuWriter(path, grid).write(); }
-
-void write_pvtu(const std::string& path, const Grid& like, std::span<const std::string> pieces) {
-  std::string text = header("PUnstructuredGrid") + "<PUnstructuredGrid GhostLevel=\"0\">\n";
-  const auto fields = [&](const std::string& element, const std::vector<Field>& list) {
-    text += "<" + element + ">\n";
-    for (const Field& field : list) text += "<PDataArray " + array_attributes(like, field) + "/>\n";
-    text += "</" + element + ">\n";
+VtuShare::VtuShare(const std::string& path, const Grid& grid, const GridPlace& place) : place_(place) {
+  const std::size_t dim = grid.dim, points = grid.points.size() / dim,
+                    cells = grid.cells.size() / static_cast<std::size_t>(grid.cell->nodes);
+  const auto add = [&](const char* section, const std::vector<Field>& fields, std::size_t count) {
+    for (const Field& field : fields) {
+      const std::size_t size = std::visit([](const auto& values) { return values.size(); }, field.values);
+      if (size != count * static_cast<std::size_t>(field.components))
+        throw InternalError(path + ": the field " + field.name + " has " + std::to_string(size) +
+                            " values for " + std::to_string(count) + " times " +
+                            std::to_string(field.components));
+      add_field(section, grid, field);
+    }
   };
-  fields("PPointData", like.point_fields);
-  fields("PCellData", like.cell_fields);
-  text += "<PPoints>\n<PDataArray type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n";
-  for (const std::string& piece : pieces) text += "<Piece Source=\"" + xml_escape(piece) + "\"/>\n";
-  write_file(path, text + "</PUnstructuredGrid>\n</VTKFile>\n");
+  add(point_data, grid.point_fields, points);
+  add(cell_data, grid.cell_fields, cells);
+  arrays_.push_back({"Points", "type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"",
+                     place.points * 3 * 8, place.points_before * 3 * 8,
+                     [values = Values<double>(grid.points.first(points * dim)), dim](const TakeBytes& take) {
+                       visit_padded(values, dim, 3, take);
+                     }});
+  add_cells(grid);
+}
+
+void VtuShare::add_field(const char* section, const Grid& grid, const Field& field) {
+  const std::size_t to = written_components(grid, field), bytes = to * field_type(field).bytes,
+                    from = field.components;
+  const bool of_points = section == point_data;
+  arrays_.push_back({section, array_attributes(grid, field),
+                     (of_points ? place_.points : place_.cells) * bytes,
+                     (of_points ? place_.points_before : place_.cells_before) * bytes,
+                     [&values = field.values, from, to](const TakeBytes& take) {
+                       std::visit([&](const auto& some) { visit_padded(some, from, to, take); }, values);
+                     }});
+}
+
+void VtuShare::add_cells(const Grid& grid) {
+  const std::size_t nodes = grid.cell->nodes, cells = grid.cells.size() / nodes;
+  const auto connectivity = [&grid, nodes, cells](const TakeBytes& take) {
+    Buffer<std::int32_t> buffer(take);
+    for (std::size_t c = 0; c < cells; ++c)
+      for (const std::int8_t from : grid.cell->vtk_order) {
+        const std::int32_t node = grid.cells[c * nodes + static_cast<std::size_t>(from)];
+        buffer.push(grid.number_of_point ? static_cast<std::int32_t>(grid.number_of_point(node)) : node);
+      }
+    buffer.flush();
+  };
+  const auto offsets = [nodes, cells, before = place_.cells_before](const TakeBytes& take) {
+    Buffer<std::int64_t> buffer(take);
+    for (std::size_t c = 0; c < cells; ++c) buffer.push(static_cast<std::int64_t>((before + c + 1) * nodes));
+    buffer.flush();
+  };
+  const auto types = [cells, type = static_cast<std::uint8_t>(grid.cell->vtk)](const TakeBytes& take) {
+    Buffer<std::uint8_t> buffer(take);
+    for (std::size_t c = 0; c < cells; ++c) buffer.push(type);
+    buffer.flush();
+  };
+  const auto add = [&](const char* attributes, std::size_t bytes, const auto& visit) {
+    arrays_.push_back({"Cells", attributes, place_.cells * bytes, place_.cells_before * bytes, visit});
+  };
+  add("type=\"Int32\" Name=\"connectivity\"", nodes * 4, connectivity);
+  add("type=\"Int64\" Name=\"offsets\"", 8, offsets);
+  add("type=\"UInt8\" Name=\"types\"", 1, types);
+}
+
+void VtuShare::pack(std::size_t array, BlockSink& sink) const {
+  BlockPacker packer(arrays_[array].before, sink);
+  arrays_[array].visit([&](const void* data, std::size_t bytes) { packer.write(data, bytes); });
+  packer.finish();
+}
+
+VtuFileWriter::VtuFileWriter(const std::string& path, const VtuShare& share)
+    : share_(share), file_(path), offsets_(share.arrays(), longest_offset) {
+  const std::string longest = head();
+  room_ = longest.size();
+  file_.write(longest);
+}
+
+std::string VtuFileWriter::head() const {
+  std::string text = header("UnstructuredGrid", " compressor=\"vtkZLibDataCompressor\"") +
+                     "<UnstructuredGrid>\n<Piece NumberOfPoints=\"" + std::to_string(share_.place_.points) +
+                     "\" NumberOfCells=\"" + std::to_string(share_.place_.cells) + "\">\n";
+  for (const std::string section : sections) {
+    text += "<" + section + ">\n";
+    for (std::size_t a = 0; a < offsets_.size(); ++a)
+      if (section == share_.arrays_[a].section)
+        text += "<DataArray " + share_.arrays_[a].attributes + " format=\"appended\" offset=\"" +
+                std::to_string(offsets_[a]) + "\"/>\n";
+    text += "</" + section + ">\n";
+  }
+  text += "</Piece>\n</UnstructuredGrid>\n";
+  const std::string last = "<AppendedData encoding=\"raw\">\n_";
+  // Readers take an offset by its letters: what is left of the room stands between elements.
+  if (room_ > text.size() + last.size()) text.append(room_ - text.size() - last.size(), ' ');
+  return text + last;
+}
+
+void VtuFileWriter::put(std::span<const unsigned char> bytes) {
+  file_.write(bytes.data(), bytes.size());
+  written_ += bytes.size();
+}
+
+void VtuFileWriter::begin(std::size_t array) {
+  array_ = array;
+  offsets_[array] = written_;
+  block_.clear();
+  lengths_.clear();
+  const std::uint64_t blocks = (share_.arrays_[array].bytes + block_bytes - 1) / block_bytes;
+  put(std::vector<unsigned char>((3 + blocks) * sizeof(std::uint64_t)));
+}
+
+void VtuFileWriter::loose(std::span<const unsigned char> bytes) {
+  while (!bytes.empty()) {
+    const std::size_t some = std::min(bytes.size(), block_bytes - block_.size());
+    block_.insert(block_.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(some));
+    bytes = bytes.subspan(some);
+    if (block_.size() < block_bytes) continue;
+    std::vector<unsigned char> out;
+    lengths_.push_back(pack_block(block_, out));
+    put(out);
+    block_.clear();
+  }
+}
+
+void VtuFileWriter::packed(std::span<const unsigned char> bytes, std::span<const std::uint64_t> lengths) {
+  put(bytes);
+  lengths_.insert(lengths_.end(), lengths.begin(), lengths.end());
+}
+
+void VtuFileWriter::end() {
+  const std::uint64_t last = block_.size();
+  if (last > 0) {
+    std::vector<unsigned char> out;
+    lengths_.push_back(pack_block(block_, out));
+    put(out);
+    block_.clear();
+  }
+  std::vector<std::uint64_t> front{lengths_.size(), block_bytes, last};
+  front.insert(front.end(), lengths_.begin(), lengths_.end());
+  file_.write_over(room_ + offsets_[array_], front.data(), front.size() * sizeof(std::uint64_t));
+}
+
+void VtuFileWriter::commit() {
+  const std::string whole = head();
+  file_.write_over(0, whole.data(), whole.size());
+  file_.write("\n</AppendedData>\n</VTKFile>\n");
+  file_.commit();
+}
+
+void write_vtu(const std::string& path, const Grid& grid) {
+  const std::size_t points = grid.points.size() / static_cast<std::size_t>(grid.dim),
+                    cells = grid.cells.size() / static_cast<std::size_t>(grid.cell->nodes);
+  const VtuShare share(path, grid, {points, cells, 0, 0});
+  VtuFileWriter file(path, share);
+  for (std::size_t array = share.arrays(); array-- > 0;) {
+    file.begin(array);
+    share.pack(array, file);
+    file.end();
+  }
+  file.commit();
 }
 
 void write_pvd(const std::string& path, std::span<const PvdPart> parts) {

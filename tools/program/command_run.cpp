@@ -126,15 +126,21 @@ std::string checkpoint_line(const CheckpointFile& file) {
                         : "";
 }
 
+/// A nodal field at the nodes of the boundary, on the first rank. Collective.
+std::vector<double> at_boundary(const LoadedCase& loaded, std::span<const double> local, int components) {
+  return picked(gather_nodal(loaded.part, local, components), loaded.boundary_nodes, components);
+}
+
 /// Writes the fields of a load step that is over. Collective.
 void write_step(const FieldPlace& place, const LoadedCase& loaded, const Model& model, const MpiSession& mpi,
                 const Solution& solution) {
-  const ContactFields contact = gather_contact_fields(loaded.part, solution);
+  ContactFields contact = gather_contact_fields(loaded.part, solution);
+  contact.displacement = at_boundary(loaded, solution.displacement, loaded.part.dim());
   const BodyFields fields{recover_stress(loaded.part, solution),
                           estimate_error(loaded.part, solution).shares()};
+  write_body(place, loaded.part, solution, fields, mpi);
   together(mpi, [&] {
-    write_body(place, loaded.part, solution, fields);
-    if (mpi.first()) write_surroundings(place, *loaded.problem, model, contact, mpi.ranks());
+    if (mpi.first()) write_surface(place, *loaded.problem, model, contact);
   });
 }
 
@@ -256,18 +262,15 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
   Result& result = solution.result;
   const int dim = loaded.part.dim();
   if (mpi.first()) complete_messages(input, *loaded.problem, result);
-  const ContactFields contact = gather_contact_fields(loaded.part, solution);
+  ContactFields contact = gather_contact_fields(loaded.part, solution);
+  contact.displacement = at_boundary(loaded, solution.displacement, dim);
   BodyFields fields{recover_stress(loaded.part, solution), {}};
   result.max_von_mises_nodal = fields.nodal.max_von_mises;
   fields.error = note_discretisation(loaded.part, coarse, solution);
-  std::vector<double> displacement, von_mises;
-  if (input.output.report) {
-    const auto at_boundary = [&](std::span<const double> local, int components) {
-      return picked(gather_nodal(loaded.part, local, components), loaded.boundary_nodes, components);
-    };
-    displacement = at_boundary(solution.displacement, dim);
-    von_mises = at_boundary(nodal_von_mises(loaded.part, solution.displacement), 1);
-  }
+  const std::vector<double>& displacement = contact.displacement;
+  std::vector<double> von_mises;
+  if (input.output.report)
+    von_mises = at_boundary(loaded, nodal_von_mises(loaded.part, solution.displacement), 1);
   if (phase && mpi.first()) phase("writing to " + printable(folder.string()));
   // The numbers first: whatever fails after them, they are there.
   figures.read = loaded.read_seconds;
@@ -280,17 +283,12 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
   // Where a checkpoint goes, what takes its place is on the disk first.
   const bool replaced = loaded.part.node_map.any(mpi.first() && result.status == Status::converged &&
                                                  std::filesystem::exists(file->path()));
-  if (input.output.fields) {
-    together(mpi, [&] {
-      write_body({folder}, loaded.part, solution, fields);
-      if (replaced) sync_file((folder / body_file(mpi.rank(), mpi.ranks())).string());
-    });
-  }
+  if (input.output.fields) write_body({folder}, loaded.part, solution, fields, mpi);
   together(mpi, [&] {
     if (!mpi.first()) return;
     if (input.output.fields) {
-      write_surroundings({folder}, *loaded.problem, input.model, contact, mpi.ranks());
-      write_series(folder, *loaded.problem, result, mpi.ranks());
+      write_surface({folder}, *loaded.problem, input.model, contact);
+      write_series(folder, *loaded.problem, result);
     }
     std::string picture;
     if (input.output.report) {
@@ -322,7 +320,7 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
         write_file((folder / "report.html").string(), report_html(page));
       });
     if (replaced) {
-      for (const char* name : {"result.json", "contact.vtu", "body.pvtu", "result.pvd"})
+      for (const char* name : {"result.json", "body.vtu", "contact.vtu", "result.pvd"})
         if (std::filesystem::exists(folder / name)) sync_file((folder / name).string());
       sync_file(folder.string());
       file->remove();

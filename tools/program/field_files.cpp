@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fields of a solution as files for ParaView: the body in one piece a rank, the contact surface in one.
+// The fields of a solution as files for ParaView: the body, and the contact surface.
 #include "program/field_files.hpp"
 
 #include <algorithm>
@@ -9,15 +9,14 @@
 #include <kacanov/element_fields.hpp>
 #include "formats/vtu_writer.hpp"
 #include "problem/selection.hpp"
+#include "problem/vector3.hpp"
+#include "program/shared_grid.hpp"
 
 namespace kacanov {
 
 namespace {
 
 std::string step_mark(std::size_t step) { return step == 0 ? "" : "_step_" + std::to_string(step); }
-std::string whole_body(int ranks, std::size_t step) {
-  return ranks == 1 ? body_file(0, 1, step) : "body" + step_mark(step) + ".pvtu";
-}
 std::string surface_file(std::size_t step) { return "contact" + step_mark(step) + ".vtu"; }
 
 /// Without the ending of a file of fields; empty where it has none.
@@ -36,9 +35,7 @@ std::string_view without_number(std::string_view name, std::string_view mark) {
   return name.substr(0, last + 1 - mark.size());
 }
 
-std::string body_file(int rank, int ranks, std::size_t step) {
-  return "body" + step_mark(step) + (ranks == 1 ? "" : "_" + std::to_string(rank)) + ".vtu";
-}
+std::string body_file(std::size_t step) { return "body" + step_mark(step) + ".vtu"; }
 
 bool is_step_file(std::string_view name) {
   const std::string_view whole = stem(name);
@@ -56,25 +53,6 @@ bool is_field_file(std::string_view name) {
 
 namespace {
 
-/// Names and types of the body's fields; the values are filled in by the caller.
-Grid body_grid(ElementType type) {
-  using Real = Values<double>;
-  using Number = Values<std::int64_t>;
-  using Flag = Values<std::uint8_t>;
-  const int dim = dimension(type);
-  Grid grid;
-  grid.dim = dim;
-  grid.cell = &cell(type);
-  grid.point_fields = {{"displacement", dim, Real()},
-                       {"node_id", 1, Number()},
-                       {"nodal_stress", 6, Real()},
-                       {"nodal_von_mises", 1, Real()}};
-  grid.cell_fields = {{"stress", 6, Real()}, {"von_mises", 1, Real()}, {"dev_strain", 1, Real()},
-                      {"g", 1, Real()},      {"plastic", 1, Flag()},   {"element_id", 1, Number()},
-                      {"error", 1, Real()}};
-  return grid;
-}
-
 /// The user's numbers, worked out while they are written.
 template <typename Tag>
 Values<std::int64_t> tags(std::size_t count, const Tag& tag) {
@@ -85,9 +63,9 @@ Values<std::int64_t> tags(std::size_t count, const Tag& tag) {
 
 /// The facets of one contact entry with values at their nodes.
 struct DrawnSurface {
-  std::vector<double> points, gap, pressure, traction;
+  std::vector<double> points, gap, pressure, traction, normal, displacement;
   std::vector<std::int32_t> cells, nodes;  ///< `nodes` of the mesh, in the order of the points
-  std::vector<std::int64_t> status, node_id;
+  std::vector<std::int64_t> status, entry, node_id;
 };
 
 /// Nodes that are no contact points (held, or missing the obstacle) have this status and zero fields.
@@ -113,7 +91,7 @@ class CornerValues {
   struct Sums {
     int facets = 0;
     double gap = 0.0, pressure = 0.0;
-    Vector3 traction{};
+    Vector3 traction{}, normal{};
     std::array<int, 3> status{};  ///< how many mid-sides beside it are open, stick, slip
   };
 
@@ -128,6 +106,7 @@ class CornerValues {
       const std::int64_t status = surface_.status[middle];
       const bool beside = edge.a == corner || edge.b == corner;
       if (beside && status != no_contact_point) ++sums.status[status];
+      for (std::size_t c = 0; c < 3 && beside; ++c) sums.normal[c] += surface_.normal[3 * middle + c];
       if (!whole) continue;
       const double share = beside ? 1.0 : -1.0;
       sums.gap += share * surface_.gap[middle];
@@ -144,7 +123,11 @@ class CornerValues {
     surface_.status[corner] = most - sums.status.begin();
     surface_.gap[corner] = sums.gap / sums.facets;
     surface_.pressure[corner] = std::max(0.0, sums.pressure / sums.facets);
-    for (std::size_t c = 0; c < 3; ++c) surface_.traction[3 * corner + c] = sums.traction[c] / sums.facets;
+    const double length = norm(sums.normal);
+    for (std::size_t c = 0; c < 3; ++c) {
+      surface_.traction[3 * corner + c] = sums.traction[c] / sums.facets;
+      surface_.normal[3 * corner + c] = length > 0.0 ? sums.normal[c] / length : 0.0;
+    }
   }
 
   DrawnSurface& surface_;
@@ -178,8 +161,13 @@ DrawnSurface contact_surface(const Problem& problem, const Model& model, const C
       surface.gap.push_back(there ? fields.gap[i] : 0.0);
       surface.pressure.push_back(there ? fields.pressure[i] : 0.0);
       surface.status.push_back(there ? static_cast<std::int64_t>(fields.status[i]) : no_contact_point);
-      for (std::size_t c = 0; c < 3; ++c)
+      surface.entry.push_back(static_cast<std::int64_t>(entry));
+      for (std::size_t c = 0; c < 3; ++c) {
         surface.traction.push_back(there ? fields.traction[3 * i + c] : 0.0);
+        surface.normal.push_back(there ? problem.contact[i].normal[c] : 0.0);
+        surface.displacement.push_back(
+            c < dim && !fields.displacement.empty() ? fields.displacement[node * dim + c] : 0.0);
+      }
     }
     const std::size_t cells_before = surface.cells.size();
     for (const std::int32_t f : facets) {
@@ -194,75 +182,90 @@ DrawnSurface contact_surface(const Problem& problem, const Model& model, const C
   return surface;
 }
 
-void write_surface(const std::filesystem::path& file, const DrawnSurface& surface, const Mesh& mesh) {
-  Grid grid;
-  grid.dim = mesh.dim();
-  grid.cell = &cell(mesh.type).facet();
-  grid.points = surface.points;
-  grid.cells = surface.cells;
-  grid.point_fields = {{"gap", 1, surface.gap},
-                       {"pressure", 1, surface.pressure},
-                       {"tangential_traction", 3, surface.traction},
-                       {"status", 1, surface.status},
-                       {"node_id", 1, surface.node_id}};
-  write_vtu(file.string(), grid);
-}
-
 }  // namespace
 
 ContactFields gather_contact_fields(const Part& part, const Solution& solution) {
   std::vector<double> traction, status;
   for (const Vector3& t : solution.traction) traction.insert(traction.end(), t.begin(), t.end());
   for (const ContactStatus s : solution.contact_status) status.push_back(static_cast<double>(s));
-  return {gather_contact(part, solution.gap, 1), gather_contact(part, solution.pressure, 1),
-          gather_contact(part, status, 1), gather_contact(part, traction, 3)};
+  return {gather_contact(part, solution.gap, 1),
+          gather_contact(part, solution.pressure, 1),
+          gather_contact(part, status, 1),
+          gather_contact(part, traction, 3),
+          {}};
 }
 
-void write_body(const FieldPlace& place, const Part& part, const Solution& solution,
-                const BodyFields& fields) {
-  Grid grid = body_grid(part.type);
-  grid.points = part.coordinates;
-  grid.cells = part.elements;
-  grid.point_fields[0].values = Values<double>(solution.displacement);
-  grid.point_fields[1].values = tags(part.nodes(), [&part](std::size_t i) { return part.node_tag(i); });
-  grid.point_fields[2].values = Values<double>(fields.nodal.stress);
-  grid.point_fields[3].values = Values<double>(fields.nodal.von_mises);
-  const auto element_field = [&](int components, std::span<double> reference::ElementFields::*which) {
+void write_body(const FieldPlace& place, const Part& part, const Solution& solution, const BodyFields& fields,
+                const MpiSession& mpi) {
+  using Fields = reference::ElementFields;
+  const int dim = part.dim();
+  const std::size_t owned = part.owned_nodes(), elements = part.element_count();
+  const auto nodal = [owned](const std::vector<double>& all, int components) {
+    return Values<double>(std::span(all).first(owned * static_cast<std::size_t>(components)));
+  };
+  const auto of_elements = [&](int components, std::span<double> Fields::*which) {
     const std::size_t width = components;
-    return Values<double>(part.element_count() * width,
+    return Values<double>(elements * width,
                           [&part, &solution, which, width](std::size_t first, std::span<double> out) {
-                            reference::ElementFields wanted;
+                            Fields wanted;
                             wanted.*which = out;
                             element_fields(part, solution, first / width, out.size() / width, wanted);
                           });
   };
-  using Fields = reference::ElementFields;
-  grid.cell_fields[0].values = element_field(6, &Fields::stress);
-  grid.cell_fields[1].values = element_field(1, &Fields::von_mises);
-  grid.cell_fields[2].values = element_field(1, &Fields::dev_strain);
-  grid.cell_fields[3].values = element_field(1, &Fields::secant);
-  grid.cell_fields[4].values =
-      Values<std::uint8_t>(part.element_count(), [&](std::size_t first, std::span<std::uint8_t> out) {
-        reference::ElementFields wanted;
-        wanted.plastic = out;
-        element_fields(part, solution, first, out.size(), wanted);
-      });
-  grid.cell_fields[5].values =
-      tags(part.element_count(), [&part](std::size_t e) { return part.element_tag(e); });
-  grid.cell_fields[6].values = Values<double>(fields.error);
-  write_vtu((place.folder / body_file(part.node_map.rank, part.node_map.ranks, place.step)).string(), grid);
+  const Values<std::uint8_t> plastic(elements, [&](std::size_t first, std::span<std::uint8_t> out) {
+    Fields wanted;
+    wanted.plastic = out;
+    element_fields(part, solution, first, out.size(), wanted);
+  });
+  const Values<double> strain(6 * elements, [&](std::size_t first, std::span<double> out) {
+    element_strains(part, solution, first / 6, out.size() / 6, out);
+  });
+  const auto material = [&part](std::size_t e) {
+    return std::int64_t{part.law_of_element.empty() ? std::uint16_t{0} : part.law_of_element[e]};
+  };
+  Grid grid;
+  grid.dim = dim;
+  grid.cell = &cell(part.type);
+  grid.points = std::span(part.coordinates).first(part.owned_unknowns());
+  grid.cells = part.elements;
+  grid.number_of_point = [&part](std::int32_t node) {
+    return part.node_number(static_cast<std::size_t>(node));
+  };
+  grid.point_fields = {{"displacement", dim, nodal(solution.displacement, dim)},
+                       {"node_id", 1, tags(owned, [&part](std::size_t i) { return part.node_tag(i); })},
+                       {"nodal_stress", 6, nodal(fields.nodal.stress, 6)},
+                       {"nodal_von_mises", 1, nodal(fields.nodal.von_mises, 1)}};
+  grid.cell_fields = {
+      {"stress", 6, of_elements(6, &Fields::stress)},
+      {"von_mises", 1, of_elements(1, &Fields::von_mises)},
+      {"strain", 6, strain},
+      {"dev_strain", 1, of_elements(1, &Fields::dev_strain)},
+      {"g", 1, of_elements(1, &Fields::secant)},
+      {"plastic", 1, plastic},
+      {"material", 1, tags(elements, material)},
+      {"element_id", 1, tags(elements, [&part](std::size_t e) { return part.element_tag(e); })},
+      {"error", 1, Values<double>(fields.error)}};
+  write_shared_vtu((place.folder / body_file(place.step)).string(), grid, mpi);
 }
 
-void write_surroundings(const FieldPlace& place, const Problem& problem, const Model& model,
-                        const ContactFields& contact, int ranks) {
-  if (ranks > 1) {
-    std::vector<std::string> pieces;
-    for (int rank = 0; rank < ranks; ++rank) pieces.push_back(body_file(rank, ranks, place.step));
-    write_pvtu((place.folder / whole_body(ranks, place.step)).string(), body_grid(problem.mesh.type), pieces);
-  }
-  if (!problem.contact.empty())
-    write_surface(place.folder / surface_file(place.step), contact_surface(problem, model, contact),
-                  problem.mesh);
+void write_surface(const FieldPlace& place, const Problem& problem, const Model& model,
+                   const ContactFields& contact) {
+  if (problem.contact.empty()) return;
+  const DrawnSurface surface = contact_surface(problem, model, contact);
+  Grid grid;
+  grid.dim = problem.mesh.dim();
+  grid.cell = &cell(problem.mesh.type).facet();
+  grid.points = surface.points;
+  grid.cells = surface.cells;
+  grid.point_fields = {{"gap", 1, surface.gap},
+                       {"pressure", 1, surface.pressure},
+                       {"tangential_traction", 3, surface.traction},
+                       {"normal", 3, surface.normal},
+                       {"displacement", 3, surface.displacement},
+                       {"status", 1, surface.status},
+                       {"entry", 1, surface.entry},
+                       {"node_id", 1, surface.node_id}};
+  write_vtu((place.folder / surface_file(place.step)).string(), grid);
 }
 
 std::vector<double> nodal_pressure(const Problem& problem, const Model& model, const ContactFields& contact) {
@@ -273,18 +276,15 @@ std::vector<double> nodal_pressure(const Problem& problem, const Model& model, c
   return pressure;
 }
 
-void write_series(const std::filesystem::path& folder, const Problem& problem, const Result& result,
-                  int ranks) {
+void write_series(const std::filesystem::path& folder, const Problem& problem, const Result& result) {
   std::vector<PvdPart> parts;
   const auto add = [&](std::size_t step, double time) {
-    parts.push_back({"body", whole_body(ranks, step), time, 0});
+    parts.push_back({"body", body_file(step), time, 0});
     if (!problem.contact.empty()) parts.push_back({"contact", surface_file(step), time, 1});
   };
   for (std::size_t k = 0; k < result.load_steps.size(); ++k) {
     const double time = result.load_steps[k].factor;
-    // A run with another number of ranks, from a checkpoint of which this one goes on, has other names.
-    if (time < result.load_factor && std::filesystem::exists(folder / whole_body(ranks, k + 1)))
-      add(k + 1, time);
+    if (time < result.load_factor && std::filesystem::exists(folder / body_file(k + 1))) add(k + 1, time);
   }
   add(0, result.load_steps.empty() && !result.by_time ? 0.0 : result.load_factor);
   write_pvd((folder / "result.pvd").string(), parts);

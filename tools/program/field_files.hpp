@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fields of a solution as files for ParaView: the body in one piece a rank, the contact surface in one.
+// The fields of a solution as files for ParaView: the body, and the contact surface.
 #pragma once
 
 #include <filesystem>
@@ -18,9 +18,10 @@ namespace kacanov {
 /// Contact fields gathered on the first rank, in the numbering of Problem::contact.
 struct ContactFields {
   std::vector<double> gap, pressure, status;
-  std::vector<double> traction;  ///< × 3
+  std::vector<double> traction;      ///< × 3
+  std::vector<double> displacement;  ///< nodes × dim, of the boundary's nodes; by the caller
 };
-/// Collective; empty on other ranks.
+/// Collective; empty on other ranks. Without displacement.
 ContactFields gather_contact_fields(const Part& part, const Solution& solution);
 
 /// Where fields are written: the folder, and the load step they are the end of; 0: the end of the run.
@@ -29,12 +30,11 @@ struct FieldPlace {
   std::size_t step = 0;
 };
 
-/// Name of a rank's piece of the body: body.vtu, or body_<rank>.vtu where there are several;
-/// body_step_<step>... of a load step.
-std::string body_file(int rank, int ranks, std::size_t step = 0);
+/// Name of the body's file: body.vtu; body_step_<step>.vtu of a load step.
+std::string body_file(std::size_t step = 0);
 /// `name` without a number at its end that follows `mark`; the same where it does not end so.
 std::string_view without_number(std::string_view name, std::string_view mark);
-/// Whether a run writes fields under this name.
+/// Whether a run writes fields under this name, or one of a version did that wrote a piece a rank.
 bool is_field_file(std::string_view name);
 /// Whether it does so for a load step before the last.
 bool is_step_file(std::string_view name);
@@ -45,20 +45,19 @@ struct BodyFields {
   std::vector<double> error;  ///< elements: shares() of estimate_error()
 };
 
-/// Writes this rank's piece.
-void write_body(const FieldPlace& place, const Part& part, const Solution& solution,
-                const BodyFields& fields);
+/// Writes the body, whole whatever the ranks. Collective; what fails ends as together() says.
+void write_body(const FieldPlace& place, const Part& part, const Solution& solution, const BodyFields& fields,
+                const MpiSession& mpi);
 
-/// What ties the pieces together, and the contact surface; on the first rank.
-void write_surroundings(const FieldPlace& place, const Problem& problem, const Model& model,
-                        const ContactFields& contact, int ranks);
+/// Writes the contact surface where there is one; on the first rank.
+void write_surface(const FieldPlace& place, const Problem& problem, const Model& model,
+                   const ContactFields& contact);
 
 /// Contact pressure at the nodes of the mesh, 0 where there is no contact; as in contact.vtu. Of nodes of
 /// several entries it is the last one's. On the first rank.
 std::vector<double> nodal_pressure(const Problem& problem, const Model& model, const ContactFields& contact);
 
 /// The series for ParaView: the load steps that fields are there of, and the end of the run.
-void write_series(const std::filesystem::path& folder, const Problem& problem, const Result& result,
-                  int ranks);
+void write_series(const std::filesystem::path& folder, const Problem& problem, const Result& result);
 
 }  // namespace kacanov

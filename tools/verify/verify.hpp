@@ -18,9 +18,9 @@ struct Verdict {
 
 /// Recomputes the certificate of a run from its case and its files alone, in long double.
 /// - document: the case, which the program has accepted; folder: where its relative paths start.
-/// - output: the folder of the run, with result.json, body.vtu or body.pvtu and, with contact, contact.vtu.
-/// Throws Failure where a file is missing, damaged or of another mesh, or the case has what the verifier does
-/// not know.
+/// - output: the folder of the run, with result.json, body.vtu (or body.pvtu of an older version) and, with
+/// contact, contact.vtu. Throws Failure where a file is missing, damaged or of another mesh, or the case has
+/// what the verifier does not know.
 Verdict verify(nlohmann::json document, const std::filesystem::path& folder,
                const std::filesystem::path& output);
 

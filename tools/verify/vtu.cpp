@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fields of a .vtu file with raw appended arrays, and of the pieces of a .pvtu.
+// The fields of a .vtu file with raw appended arrays, packed by zlib or not, and of the pieces of a .pvtu.
 #include "verify/vtu.hpp"
+
+#include <zlib.h>
 
 #include <charconv>
 #include <cstdint>
@@ -53,6 +55,46 @@ void append(const char* data, std::size_t bytes, std::vector<double>& out) {
   }
 }
 
+/// A number of the front of an array.
+std::uint64_t front_number(const std::string& text, std::size_t at, const std::filesystem::path& file) {
+  std::uint64_t value = 0;
+  if (at > text.size() || text.size() - at < sizeof value) throw Failure(file.string() + ": is cut short");
+  std::memcpy(&value, text.data() + at, sizeof value);
+  return value;
+}
+
+/// The bytes of an array that begins at `at` with its length.
+std::string plain_array(const std::string& text, std::size_t at, const std::filesystem::path& file) {
+  const std::uint64_t bytes = front_number(text, at, file);
+  if (bytes > text.size() - at - sizeof bytes) throw Failure(file.string() + ": is cut short");
+  return text.substr(at + sizeof bytes, bytes);
+}
+
+/// The bytes of an array that begins at `at` with how many blocks it has, their length, that of the last one
+/// if it is shorter, and their packed lengths.
+std::string packed_array(const std::string& text, std::size_t at, const std::filesystem::path& file) {
+  const std::uint64_t blocks = front_number(text, at, file), length = front_number(text, at + 8, file),
+                      last = front_number(text, at + 16, file);
+  if (blocks > text.size() / 8 || (blocks > 0 && (length > (1U << 24) || last >= length)))
+    throw Failure(file.string() + ": is damaged");
+  std::string all;
+  std::size_t from = at + (3 + blocks) * 8;
+  for (std::uint64_t b = 0; b < blocks; ++b) {
+    const std::uint64_t packed = front_number(text, at + (3 + b) * 8, file);
+    if (from > text.size() || packed > text.size() - from) throw Failure(file.string() + ": is cut short");
+    const std::uint64_t size = b + 1 == blocks && last > 0 ? last : length;
+    const std::size_t before = all.size();
+    all.resize(before + size);
+    uLongf got = size;
+    if (uncompress(reinterpret_cast<Bytef*>(all.data() + before), &got,
+                   reinterpret_cast<const Bytef*>(text.data() + from), packed) != Z_OK ||
+        got != size)
+      throw Failure(file.string() + ": is damaged");
+    from += packed;
+  }
+  return all;
+}
+
 }  // namespace
 
 std::map<std::string, Array> read_point_data(const std::filesystem::path& file) {
@@ -63,22 +105,26 @@ std::map<std::string, Array> read_point_data(const std::filesystem::path& file) 
     throw Failure(file.string() + ": expected a VTU file with raw appended arrays");
   const std::string head = text.substr(0, appended);
   const std::size_t data = text.find('_', appended) + 1;
+  bool packed = false;
+  for_tags(head, "VTKFile", [&](const std::string& tag) {
+    const std::string by = attribute(tag, "compressor");
+    if (!by.empty() && by != "vtkZLibDataCompressor")
+      throw Failure(file.string() + ": expected arrays packed by vtkZLibDataCompressor or not at all, got " +
+                    by);
+    packed = !by.empty();
+  });
   std::map<std::string, Array> arrays;
   const auto take = [&](const std::string& tag) {
     Array array;
     const std::string count = attribute(tag, "NumberOfComponents"), type = attribute(tag, "type");
     if (!count.empty()) array.components = number(count, file);
     const std::size_t offset = number(attribute(tag, "offset"), file), at = data + offset;
-    std::uint64_t bytes = 0;
-    if (offset > text.size() || at + sizeof bytes > text.size())
-      throw Failure(file.string() + ": is cut short");
-    std::memcpy(&bytes, text.data() + at, sizeof bytes);
-    if (bytes > text.size() - at - sizeof bytes) throw Failure(file.string() + ": is cut short");
-    const char* from = text.data() + at + sizeof bytes;
+    if (offset > text.size()) throw Failure(file.string() + ": is cut short");
+    const std::string bytes = packed ? packed_array(text, at, file) : plain_array(text, at, file);
     if (type == "Float64")
-      append<double>(from, bytes, array.values);
+      append<double>(bytes.data(), bytes.size(), array.values);
     else if (type == "Int64")
-      append<std::int64_t>(from, bytes, array.values);
+      append<std::int64_t>(bytes.data(), bytes.size(), array.values);
     else
       throw Failure(file.string() + ": expected double precision, got arrays of type " + type);
     arrays[attribute(tag, "Name")] = std::move(array);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fields of a .vtu file with raw appended arrays, and of the pieces of a .pvtu.
+// The fields of a .vtu file with raw appended arrays, packed by zlib or not, and of the pieces of a .pvtu.
 #pragma once
 
 #include <filesystem>
@@ -17,7 +17,7 @@ struct Array {
 /// Point data by name, and the points themselves as "Points". Throws Failure for a file that is none.
 std::map<std::string, Array> read_point_data(const std::filesystem::path& file);
 
-/// Those of body.vtu, or of all pieces that body.pvtu names.
+/// Those of body.vtu, or of all pieces that body.pvtu names, which older versions left.
 std::vector<std::map<std::string, Array>> read_body(const std::filesystem::path& folder);
 
 }  // namespace kacanov::verify

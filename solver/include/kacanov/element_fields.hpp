@@ -28,6 +28,10 @@ struct BodyState {
 void element_fields(const Part& part, const BodyState& state, std::size_t first, std::size_t count,
                     const reference::ElementFields& out);
 
+/// Their mean strain: elements × 6, tensor components xx yy zz xy yz zx; what temperature does is in it.
+void element_strains(const Part& part, const BodyState& state, std::size_t first, std::size_t count,
+                     std::span<double> out);
+
 /// All fields of some elements in a row.
 struct ElementRun {
   std::size_t first = 0;

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One file of a grid of which every rank has a share.
+#include "program/shared_grid.hpp"
+
+#include <array>
+#include <cstring>
+#include <exception>
+#include <optional>
+
+#include "parallel/long_messages.hpp"
+
+namespace kacanov {
+namespace {
+
+GridPlace place_of(const Grid& share, const MpiSession& mpi) {
+  const std::array<std::uint64_t, 2> here{share.points.size() / static_cast<std::size_t>(share.dim),
+                                          share.cells.size() / static_cast<std::size_t>(share.cell->nodes)};
+  std::array<std::uint64_t, 2> all{}, before{};
+  MPI_Allreduce(here.data(), all.data(), 2, MPI_UINT64_T, MPI_SUM, mpi.comm());
+  MPI_Exscan(here.data(), before.data(), 2, MPI_UINT64_T, MPI_SUM, mpi.comm());
+  if (mpi.first()) before = {};  // MPI leaves it open there
+  return {all[0], all[1], before[0], before[1]};
+}
+
+enum class Kind : std::uint64_t { loose, packed, end, failed };
+
+/// What goes ahead of the lengths and the bytes of a message.
+struct Front {
+  Kind kind = Kind::end;
+  std::uint64_t bytes = 0, lengths = 0;
+};
+
+/// Sends blocks to the first rank.
+class Sender : public BlockSink {
+ public:
+  explicit Sender(MPI_Comm comm) : comm_(comm) {}
+  void loose(std::span<const unsigned char> bytes) override { send(Kind::loose, bytes, {}); }
+  void packed(std::span<const unsigned char> bytes, std::span<const std::uint64_t> lengths) override {
+    send(Kind::packed, bytes, lengths);
+  }
+  void send(Kind kind, std::span<const unsigned char> bytes = {},
+            std::span<const std::uint64_t> lengths = {}) {
+    const Front front{kind, bytes.size(), lengths.size()};
+    send_bytes(&front, sizeof front, 0, comm_);
+    send_bytes(lengths.data(), lengths.size_bytes(), 0, comm_);
+    send_bytes(bytes.data(), bytes.size(), 0, comm_);
+  }
+
+ private:
+  MPI_Comm comm_;
+};
+
+/// Sends all arrays; where that fails, says so and sends no more.
+void send_share(const VtuShare& share, MPI_Comm comm) {
+  Sender sender(comm);
+  try {
+    for (std::size_t array = share.arrays(); array-- > 0;) {
+      share.pack(array, sender);
+      sender.send(Kind::end);
+    }
+  } catch (...) {
+    sender.send(Kind::failed);
+    throw;
+  }
+}
+
+/// Writes on the first rank. Messages are taken whatever fails, so that nobody waits.
+class Collector {
+ public:
+  Collector(const std::string& path, const VtuShare& share, const MpiSession& mpi)
+      : share_(share), comm_(mpi.comm()), failed_(static_cast<std::size_t>(mpi.ranks()), false) {
+    bytes_.resize(BlockPacker::most);
+    lengths_.resize(BlockPacker::most / 16);  // the packed length of a whole block is far above 16
+    attempt([&] { file_.emplace(path, share); });
+  }
+
+  void write() {
+    const auto ranks = static_cast<int>(failed_.size());
+    bool whole = true;
+    for (std::size_t array = share_.arrays(); array-- > 0;) {
+      attempt([&] { file_->begin(array); });
+      attempt([&] { share_.pack(array, *file_); });
+      for (int rank = 1; rank < ranks; ++rank) {
+        const auto r = static_cast<std::size_t>(rank);
+        if (!failed_[r]) failed_[r] = !take_share(rank);
+        whole = whole && !failed_[r];
+      }
+      attempt([&] { file_->end(); });
+    }
+    if (whole) attempt([&] { file_->commit(); });
+    file_.reset();
+    if (error_) std::rethrow_exception(error_);
+  }
+
+ private:
+  template <typename Work>
+  void attempt(const Work& work) {
+    if (error_) return;
+    try {
+      work();
+    } catch (...) {
+      error_ = std::current_exception();
+    }
+  }
+
+  /// A rank's share of an array; false: the rank has failed.
+  bool take_share(int rank) {
+    while (true) {
+      Front front;
+      receive_bytes(&front, sizeof front, rank, comm_);
+      if (front.kind == Kind::end) return true;
+      if (front.kind == Kind::failed) return false;
+      const auto lengths = std::span(lengths_).first(front.lengths);
+      const auto bytes = std::span(bytes_).first(front.bytes);
+      receive_bytes(lengths.data(), lengths.size_bytes(), rank, comm_);
+      receive_bytes(bytes.data(), bytes.size(), rank, comm_);
+      attempt([&] {
+        if (front.kind == Kind::loose)
+          file_->loose(bytes);
+        else
+          file_->packed(bytes, lengths);
+      });
+    }
+  }
+
+  const VtuShare& share_;
+  MPI_Comm comm_;
+  std::optional<VtuFileWriter> file_;
+  std::vector<bool> failed_;  ///< ranks that send no more
+  std::vector<unsigned char> bytes_;
+  std::vector<std::uint64_t> lengths_;
+  std::exception_ptr error_;
+};
+
+}  // namespace
+
+void write_shared_vtu(const std::string& path, const Grid& share, const MpiSession& mpi) {
+  const GridPlace place = place_of(share, mpi);
+  std::optional<VtuShare> arrays;
+  std::optional<Collector> collector;
+  together(mpi, [&] {
+    arrays.emplace(path, share, place);
+    if (mpi.first()) collector.emplace(path, *arrays, mpi);
+  });
+  std::exception_ptr error;
+  try {
+    if (mpi.first())
+      collector->write();
+    else
+      send_share(*arrays, mpi.comm());
+  } catch (...) {
+    error = std::current_exception();
+  }
+  together(mpi, [&] {
+    if (error) std::rethrow_exception(error);
+  });
+}
+
+}  // namespace kacanov
