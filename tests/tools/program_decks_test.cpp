@@ -65,6 +65,33 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a deck is run at once, to the numbers of the case that convert makes of it") {
+  const Workplace place;
+  const std::string deck =
+      bar + held + steel + section + "*STEP\n*STATIC\n*CLOAD\nRight, 1, 25.\n*NODE FILE\nU\n*END STEP\n";
+  const nlohmann::json expected = solved_deck(place, deck);
+  for (const char* ranks : {"", " --ranks 2"}) {
+    const Outcome run = place.run("run deck.inp --set solver.tolerance=1e-10" + std::string(ranks));
+    INFO(run.error);
+    REQUIRE(run.exit_code == 0);
+    CHECK(run.error.find("warning: deck.inp: line 28: *NODE FILE is left out") != std::string::npos);
+    const nlohmann::json result = place.json("results/deck/result.json");
+    CHECK(result["max_displacement"]["value"].get<double>() ==
+          doctest::Approx(expected["max_displacement"]["value"].get<double>()).epsilon(1e-9));
+    CHECK(place.run("verify results/deck/deck.json --output results/deck").exit_code == 0);
+  }
+  REQUIRE(place.run("run deck.inp --output elsewhere --quiet").exit_code == 0);
+  CHECK(place.has("elsewhere/deck.msh"));
+  place.put("deck.inp", deck + "*STEP\n*STATIC\n*END STEP\n");
+  const Outcome refused = place.run("run deck.inp --output elsewhere");
+  CHECK(refused.exit_code == 2);
+  CHECK(refused.error.find("deck.inp: line 31: a second step") != std::string::npos);
+  place.put("deck.inp", deck + "*STEP\n*HEAT TRANSFER\n");
+  CHECK(place.run("run deck.inp --leave-out").exit_code == 2);  // two steps, whatever is left out
+  place.put("result.inp", deck);
+  CHECK(place.run("run result.inp").error.find("expected another name") != std::string::npos);
+}
+
 TEST_CASE("the curve of *PLASTIC is that of a bar in tension") {
   const Workplace place;
   const double stress = 300.0, strain = stress / 200000.0 + 0.005;  // half way from 250 to 350

@@ -25,7 +25,7 @@ struct Command {
   std::optional<double> r_min, r_max;   ///< sweep
   int points = 21;                      ///< sweep
   std::string from, to;                 ///< convert, init: files; `to` may be empty
-  bool leave_out = false;               ///< convert: makes a case without what is not known
+  bool leave_out = false;               ///< convert, run of a deck: makes a case without what is not known
   bool force = false;                   ///< convert, init: writes over files that are there
 
   /// Whether there is no case to be read.

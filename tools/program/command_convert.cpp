@@ -64,7 +64,8 @@ void convert_mesh(const Command& command, const std::string& kind) {
   say_what_was_written(command.to, mesh);
 }
 
-void convert_deck(const Command& command, const std::filesystem::path& to) {
+/// Writes the case and its mesh; returns the path of the latter.
+std::filesystem::path convert_deck(const Command& command, const std::filesystem::path& to) {
   if (format_of_file(command.from) != MeshFormat::deck)
     throw InputError(
         command.from +
@@ -85,12 +86,36 @@ void convert_deck(const Command& command, const std::filesystem::path& to) {
   write_gmsh(mesh_path.string(), made.mesh);
   write_file(to.string(), case_text(made.document, comments));
   for (const std::string& remark : made.remarks) print_remark(remark);
-  say_what_was_written(mesh_path.string(), made.mesh);
-  std::cout << printable(to.string()) +
-                   ": the case; kacanov check shows what its entries select, kacanov run solves it\n";
+  if (!command.quiet) say_what_was_written(mesh_path.string(), made.mesh);
+  return mesh_path;
 }
 
 }  // namespace
+
+bool names_deck(const std::string& path) {
+  const std::string kind = std::filesystem::path(path).extension().string();
+  return kind == ".inp" || kind == ".INP";
+}
+
+Command with_case_of_deck(Command command) {
+  const std::filesystem::path deck = command.case_file, name = deck.stem();
+  if (command.output.empty()) command.output = (std::filesystem::path("results") / name).string();
+  const std::filesystem::path folder = command.output, to = folder / (name.string() + ".json");
+  if (name == "result" || name == "mesh")
+    throw InputError(command.case_file + ": its case would have the name of another file of the run: " +
+                     "expected another name, or a case that kacanov convert makes");
+  Command convert = command;
+  convert.from = command.case_file;
+  convert.force = true;  // what an earlier run made of the deck
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error)
+    throw InputError("--output: the folder " + folder.string() + " cannot be made: " + error.message());
+  convert_deck(convert, to);
+  if (!command.quiet) std::cout << printable(to.string()) + ": the case that the deck comes to\n";
+  command.case_file = to.string();
+  return command;
+}
 
 int convert_command(const Command& command) {
   const std::filesystem::path from = command.from;
@@ -99,6 +124,8 @@ int convert_command(const Command& command) {
   const std::string kind = to.extension().string();
   if (kind == ".json") {
     convert_deck(command, to);
+    std::cout << printable(to.string()) +
+                     ": the case; kacanov check shows what its entries select, kacanov run solves it\n";
   } else if (kind == ".msh" || kind == ".inp" || kind == ".vtu") {
     refuse_existing(to.string(), command.force);
     convert_mesh(command, kind);

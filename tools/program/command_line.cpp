@@ -57,6 +57,8 @@ std::unique_ptr<CLI::App> make_command_line(Command& command) {
 
   CLI::App* run = app->add_subcommand("run", "solve a case; writes result.json, fields and pictures");
   add_common(*run, command);
+  run->get_option("CASE.json")
+      ->description("the case file; or a deck (.inp), whose case is made in the folder");
   add_output(*run, command);
   run->add_flag("!--no-memory-check", command.memory_check,
                 "run even where the memory does not seem to be enough");
@@ -68,6 +70,7 @@ std::unique_ptr<CLI::App> make_command_line(Command& command) {
                   "seconds that a run which was asked to stop may take to begin its output (default: 30)")
       ->check(CLI::Range(0.1, 1e6).description(""))
       ->type_name("SECONDS");
+  run->add_flag("--leave-out", command.leave_out, "of a deck: as of convert");
   CLI::Option* quiet = run->add_flag("-q,--quiet", command.quiet, "print nothing but warnings and errors");
   run->add_flag("-v,--verbose", command.verbose, "print what the run is at, however small it is")
       ->excludes(quiet);

@@ -26,4 +26,10 @@ int verify_command(const Command& command, const Case& input);
 int convert_command(const Command& command);
 int init_command(const Command& command);
 
+/// Whether the name is that of a deck, and not of a case.
+bool names_deck(const std::string& path);
+/// For a run of a deck: makes its case and mesh in the folder of the run, as convert_command does, and
+/// returns the command for that case.
+Command with_case_of_deck(Command command);
+
 }  // namespace kacanov

@@ -2,6 +2,7 @@
 // The program kacanov: reads the command line, sees to its processes and hands over to a subcommand.
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -10,6 +11,7 @@
 #include <iostream>
 #include <new>
 #include <optional>
+#include <vector>
 
 #include <kacanov/error.hpp>
 #include "program/command.hpp"
@@ -123,8 +125,17 @@ int run_on_ranks(const std::string& mpiexec, Shape shape, const Command& command
 }
 
 /// Started by hand: validates what is quickly validated, then goes on alone or under mpiexec.
-int run_alone(const Command& command, int argc, const char* const* argv) {
-  if (command.without_case()) return command_without_case(command);
+int run_alone(const Command& given, int argc, const char* const* argv) {
+  if (given.without_case()) return command_without_case(given);
+  Command command = given;
+  std::vector<const char*> words(argv, argv + argc);
+  if (command.kind == Command::Kind::run && names_deck(given.case_file)) {
+    command = with_case_of_deck(given);
+    std::replace_if(
+        words.begin() + 1, words.end(), [&](const char* word) { return word == given.case_file; },
+        command.case_file.c_str());
+    if (given.output.empty()) words.insert(words.end(), {"--output", command.output.c_str()});
+  }
   const CaseText text = read_case_text(command.case_file);
   const Case input = parse_case(text, command.overrides);
   Shape shape = choose_shape(input, needs_one(command) ? command.ranks : ranks_asked_for(command, input),
@@ -135,8 +146,7 @@ int run_alone(const Command& command, int argc, const char* const* argv) {
   }
   if (shape.ranks > 1) {
     const std::string mpiexec = find_mpiexec();
-    if (!mpiexec.empty())
-      return run_on_ranks(mpiexec, shape, command, input, text, {argv, static_cast<std::size_t>(argc)});
+    if (!mpiexec.empty()) return run_on_ranks(mpiexec, shape, command, input, text, words);
     if (command.ranks)
       throw InputError("--ranks: mpiexec is not on the PATH; without it there is only one rank");
     std::cerr << "kacanov: note: mpiexec is not on the PATH; running on one rank\n";
