@@ -88,14 +88,18 @@ void visit_points(const Part& part, const BodyState& state,
   }
 }
 
-std::vector<double> nodal_von_mises(const Part& part, std::span<const double> u) {
+namespace {
+
+/// Mean of what pick(run, k) says of the k-th element of a run, over those round a node, weighted by volume.
+template <typename Pick>
+std::vector<double> nodal_mean(const Part& part, std::span<const double> u, const Pick& pick) {
   const std::size_t npe = nodes_per_element(part.type);
   std::vector<double> mean(part.nodes(), 0.0), weight(part.nodes(), 0.0);
   visit_element_fields(part, u, [&](const ElementRun& run) {
-    const std::size_t count = run.von_mises.size();
+    const std::size_t count = run.volume.size();
     for (std::size_t k = 0; k < count * npe; ++k) {
       const std::size_t node = part.elements[run.first * npe + k];
-      mean[node] += run.volume[k / npe] * run.von_mises[k / npe];
+      mean[node] += run.volume[k / npe] * pick(run, k / npe);
       weight[node] += run.volume[k / npe];
     }
   });
@@ -103,6 +107,16 @@ std::vector<double> nodal_von_mises(const Part& part, std::span<const double> u)
   part.node_map.sum(weight, 1);
   for (std::size_t n = 0; n < mean.size(); ++n) mean[n] /= weight[n];
   return mean;
+}
+
+}  // namespace
+
+std::vector<double> nodal_von_mises(const Part& part, std::span<const double> u) {
+  return nodal_mean(part, u, [](const ElementRun& run, std::size_t k) { return run.von_mises[k]; });
+}
+
+std::vector<double> nodal_plastic_share(const Part& part, std::span<const double> u) {
+  return nodal_mean(part, u, [](const ElementRun& run, std::size_t k) { return run.plastic[k] ? 1.0 : 0.0; });
 }
 
 }  // namespace kacanov

@@ -115,6 +115,8 @@ if(Python3_FOUND)
   kacanov_test_properties(shell 1)
 endif()
 
+kacanov_test(report_data SOURCES tools/report_page_test.cpp LIBRARIES kacanov_program)
+
 # report.html as HTML, and in a browser wherever there is one (Debian: chromium).
 if(Python3_FOUND)
   find_program(KACANOV_CHROMIUM chromium)

@@ -296,7 +296,7 @@ py::dict contact_fields(const py::object& self) {
 
 std::string svg(const SolvedCase& solved) {
   const py::gil_scoped_release release;
-  return deformed_picture(solved.input, solved.problem.mesh, solved.displacement, solved.averaged_von_mises,
+  return deformed_picture(solved.input, solved.problem.mesh, solved.displacement, {solved.averaged_von_mises},
                           solved.result.max_von_mises);
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <random>
 #include <string>
@@ -144,7 +145,15 @@ std::size_t big_endian(const std::string& bytes, std::size_t at) {
 struct Bent {
   Mesh mesh;
   std::vector<double> displacement, stress;  // at the nodes
-  DeformedPicture picture() const { return {"a <beam> & \"more\"", &mesh, displacement, stress, 7.0, {}, 0}; }
+  DeformedPicture picture() const {
+    DeformedPicture picture;
+    picture.title = "a <beam> & \"more\"";
+    picture.mesh = &mesh;
+    picture.displacement = displacement;
+    picture.values = stress;
+    picture.largest_von_mises = 7.0;
+    return picture;
+  }
 };
 
 /// A box bent down, with a stress that grows along it.
@@ -180,6 +189,38 @@ TEST_CASE("the picture of a deformed body is well formed for every element type"
 TEST_CASE("a small displacement is enlarged by a round factor, and said so") {
   const std::string svg = deformed_svg(bent_box({{4, 1, 0}, {8, 3, 0}, ElementType::tri3}, 1e-4).picture());
   CHECK(svg.find("Displacement × 2000,") != std::string::npos);
+}
+
+TEST_CASE("supports, loads and obstacles are drawn where they are seen, and told") {
+  using Mark = DeformedPicture::Mark;
+  const Bent plane = bent_box({{4, 1, 0}, {8, 2, 0}, ElementType::tri3}, 0.5);
+  DeformedPicture picture = plane.picture();
+  CHECK(deformed_svg(picture).find("blue: held") == std::string::npos);
+  // Nodes 0 and 1 are half a unit apart, and the same node twice is drawn once.
+  for (const std::int32_t node : {0, 1, 1}) picture.marks.push_back({Mark::Kind::support, node, {}});
+  picture.marks.push_back({Mark::Kind::load, 8, {0, -1, 0}});
+  picture.obstacles.push_back({{{{0, -1, 0}, {4, -1, 0}, {4, -1, 0}}}, {0, 1, 0}});
+  std::string svg = deformed_svg(picture);
+  CHECK(well_formed(svg));
+  CHECK(count(svg, "l-4.5 8h9Z") == 2);
+  CHECK(svg.find("blue: held; red: loads") != std::string::npos);
+  CHECK(svg.find("springs") == std::string::npos);
+  // The arrow points down: it begins above its tip.
+  const std::size_t fill = svg.find("fill=\"#d91a1a\""), path = svg.rfind("d=\"M", fill);
+  double x = 0, y = 0, to_x = 0, to_y = 0;
+  REQUIRE(std::sscanf(svg.c_str() + path, "d=\"M%lf %lfL%lf %lf", &x, &y, &to_x, &to_y) == 4);
+  CHECK(x == doctest::Approx(to_x));
+  CHECK(y < to_y);
+
+  const Bent block = bent_box({{4, 2, 1}, {4, 2, 1}, ElementType::hex8}, 0.0);
+  picture = block.picture();
+  for (std::int32_t node = 0; node < 15; ++node) picture.marks.push_back({Mark::Kind::support, node, {}});
+  picture.view = {0, 0, 2};
+  CHECK(count(deformed_svg(picture), "l-4.5 8h9Z") == 0);  // all below
+  picture.view = {0, 0, -2};
+  CHECK(count(deformed_svg(picture), "l-4.5 8h9Z") == 15);
+  picture.view = {1, -1, -1};
+  CHECK(well_formed(deformed_svg(picture)));
 }
 
 TEST_CASE("fields that are zero, uniform or broken still have a picture") {

@@ -74,7 +74,7 @@ TEST_CASE("a deck is run at once, to the numbers of the case that convert makes 
     const Outcome run = place.run("run deck.inp --set solver.tolerance=1e-10" + std::string(ranks));
     INFO(run.error);
     REQUIRE(run.exit_code == 0);
-    CHECK(run.error.find("warning: deck.inp: line 28: *NODE FILE is left out") != std::string::npos);
+    CHECK(run.error.find("warning: deck.inp: line 36: *NODE FILE is left out") != std::string::npos);
     const nlohmann::json result = place.json("results/deck/result.json");
     CHECK(result["max_displacement"]["value"].get<double>() ==
           doctest::Approx(expected["max_displacement"]["value"].get<double>()).epsilon(1e-9));
@@ -85,7 +85,7 @@ TEST_CASE("a deck is run at once, to the numbers of the case that convert makes 
   place.put("deck.inp", deck + "*STEP\n*STATIC\n*END STEP\n");
   const Outcome refused = place.run("run deck.inp --output elsewhere");
   CHECK(refused.exit_code == 2);
-  CHECK(refused.error.find("deck.inp: line 31: a second step") != std::string::npos);
+  CHECK(refused.error.find("deck.inp: line 39: a second step") != std::string::npos);
   place.put("deck.inp", deck + "*STEP\n*HEAT TRANSFER\n");
   CHECK(place.run("run deck.inp --leave-out").exit_code == 2);  // two steps, whatever is left out
   place.put("result.inp", deck);
@@ -182,7 +182,7 @@ TEST_CASE("meshes keep their groups and numbers from one format to another") {
     CHECK(outcome.exit_code == 0);
   }
   CHECK(contents(place.path("b.msh")) == contents(place.path("d.msh")));
-  CHECK(place.run("run a.inp").error.find("a.inp: this is a deck, expected a case; kacanov convert") !=
+  CHECK(place.run("check a.inp").error.find("a.inp: this is a deck, expected a case; kacanov convert") !=
         std::string::npos);
   CHECK(place.run("run b.msh").error.find("b.msh: this is a mesh, expected a case; kacanov init") !=
         std::string::npos);

@@ -52,7 +52,8 @@ SAMPLE = {
                "max_contact": 100, "max_cg": 100, "spectrum_tolerance": 0.01, "relaxation": 1.5,
                "preconditioner": "multigrid", "nested": True},
     "probe": [[1, 0.5, 1]],
-    "output": {"fields": "none", "steps": True, "report": False, "checkpoint": True}}
+    "output": {"fields": "none", "steps": True, "report": False, "view": VECTOR, "quantity": "plastic",
+               "checkpoint": True}}
 LAWS = [{"type": "linear"}, {"type": "logarithmic", "yield_stress": 1}, {"type": "power", "x0": 0.1, "n": 0.5},
         {"type": "saturating", "x0": 0.1, "q": 2}, {"type": "table", "points": [[0, 0], [0.1, 15], [1, 20]]},
         {"type": "ramberg_osgood", "sigma0": 1, "alpha": 1, "n": 5}]

@@ -266,6 +266,11 @@ class CaseParser {
     if (const auto v = object.optional("steps")) result_.output.steps = v->boolean();
     if (const auto v = object.optional("report")) result_.output.report = v->boolean();
     if (const auto v = object.optional("scale")) result_.output.scale = v->number();
+    if (const auto v = object.optional("view")) {
+      result_.output.view = vector(*v);
+      if (result_.output.view == Vector3{}) v->expected("a direction that is not zero");
+    }
+    if (const auto v = object.optional("quantity")) result_.output.quantity = value_of(*v, words::quantity);
     if (const auto v = object.optional("checkpoint")) result_.output.checkpoint = v->boolean();
   }
 

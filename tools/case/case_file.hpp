@@ -34,11 +34,16 @@ struct MeshSource {
   std::shared_ptr<const Mesh> adapted = {};
 };
 
+/// What colours the picture, and the page to begin with.
+enum class Quantity { von_mises, displacement, contact_pressure, plastic };
+
 struct OutputOptions {
   bool fields = true;  ///< `fields`: "vtu" or "none"
   bool steps = true;   ///< fields of the load steps before the last, too
   bool report = true;  ///< pictures
   double scale = 0.0;  ///< of displacements in pictures; 0: chosen so that they can be seen
+  Vector3 view{};      ///< from the body to the eye, any length; zero: chosen. 3D only
+  Quantity quantity = Quantity::von_mises;
   bool checkpoint = true;
 };
 

@@ -182,6 +182,9 @@ KeySet output() {
        may("steps", Flag{}, "fields of the load steps before the last, too", standard.steps),
        may("report", Flag{}, "pictures and summary", standard.report),
        may("scale", Number{positive}, "of displacements in pictures; else chosen"),
+       may("view", ListOf{Number{}, "a list of 3 numbers", 3, 3}, "direction from the body to the eye; 3D"),
+       may("quantity", one_of(words::quantity), "what colours picture and page",
+           word_of(standard.quantity, words::quantity)),
        may("checkpoint", Flag{}, "files that an unfinished run goes on from", standard.checkpoint)}};
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <kacanov/model.hpp>
+#include "case/case_file.hpp"
 #include "case/schema.hpp"
 
 namespace kacanov {
@@ -59,6 +60,10 @@ inline constexpr Words<Law::Argument, 2> argument{
     {{"norm", Law::Argument::norm}, {"squared", Law::Argument::squared}}};
 inline constexpr Words<bool, 2> body_above{{{"above", true}, {"below", false}}};
 inline constexpr Words<bool, 2> fields{{{"vtu", true}, {"none", false}}};
+inline constexpr Words<Quantity, 4> quantity{{{"von_mises", Quantity::von_mises},
+                                              {"displacement", Quantity::displacement},
+                                              {"contact_pressure", Quantity::contact_pressure},
+                                              {"plastic", Quantity::plastic}}};
 
 }  // namespace words
 }  // namespace kacanov

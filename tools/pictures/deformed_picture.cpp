@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <tuple>
+#include <utility>
 
 #include <kacanov/error.hpp>
 #include "pictures/body_drawing.hpp"
@@ -119,9 +122,9 @@ class Drawing {
         mesh_(*picture.mesh),
         dim_(mesh_.dim()),
         displacement_(finite_or_zero(picture.displacement)),
-        nodal_values_(finite_or_zero(picture.von_mises)),
+        nodal_values_(finite_or_zero(picture.values)),
         box_(body_box(mesh_)),
-        view_(View::of(mesh_)),
+        view_(View::of(mesh_, picture.view)),
         largest_(largest_norm(displacement_, dim_)),
         scale_(picture.scale > 0 ? picture.scale : fitting_scale(largest_, box_.diagonal())),
         surface_(visible_surface(mesh_, view_, displacement_, scale_, nodal_values_)),
@@ -134,9 +137,11 @@ class Drawing {
     SvgCanvas canvas(width, top + frame_.height + bottom);
     canvas.text(margin, 34, picture_.title, "font-size=\"17\" font-weight=\"bold\"");
     for (const auto& patch : patches_) obstacle(canvas, patch);
+    obstacle_facets(canvas);
     original(canvas);
     canvas.raw(surface_.faces.size() <= most_faces ? draw_as_paths(surface_, colours_, frame_, dim_ == 2)
                                                    : draw_as_image(surface_, colours_, frame_));
+    marks(canvas);
     colour_bar(canvas);
     axes(canvas);
     canvas.text(margin, top + frame_.height + 40, caption(), "fill=\"#444\"");
@@ -155,6 +160,8 @@ class Drawing {
     }
     for (const auto& patch : patches_)
       for (const Vector& at : patch) seen.add(project(at));
+    for (const auto& facet : picture_.obstacles)
+      for (std::size_t k = 0; k < corners_of_facet(); ++k) seen.add(project(facet.corners[k]));
     const double w = seen.high[0] - seen.low[0], h = seen.high[1] - seen.low[1];
     frame_.left = margin;
     frame_.top = top;
@@ -178,6 +185,87 @@ class Drawing {
     } else if (p.size() == 2) {
       hatched(canvas, p[0], p[1]);
     }
+  }
+
+  std::size_t corners_of_facet() const { return static_cast<std::size_t>(dim_); }
+
+  /// What of obstacles that are no flat ones faces the body.
+  void obstacle_facets(SvgCanvas& canvas) const {
+    std::string data;
+    for (const auto& facet : picture_.obstacles) {
+      if (dim_ == 2) {
+        auto a = frame_.pixel(project(facet.corners[0])), b = frame_.pixel(project(facet.corners[1]));
+        // hatched() has the body to the left of a → b, in pixels.
+        if ((b[1] - a[1]) * facet.normal[0] + (b[0] - a[0]) * facet.normal[1] < 0) std::swap(a, b);
+        hatched(canvas, a, b);
+        continue;
+      }
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto at = frame_.pixel(project(facet.corners[k]));
+        data += (k == 0 ? "M" : "L") + svg_number(at[0]) + " " + svg_number(at[1]);
+      }
+      data += "Z";
+    }
+    if (!data.empty() && data.size() <= most_outline)
+      canvas.path(data, "fill=\"#dfe5e8\" stroke=\"#b0b8bd\" stroke-width=\"0.4\"");
+  }
+
+  /// Nodes that a side turned towards the eye has; in 2D all of them.
+  std::vector<bool> seen_nodes() const {
+    std::vector<bool> seen(mesh_.node_count(), dim_ == 2);
+    if (dim_ == 2) return seen;
+    for (const auto& t : surface_triangles(mesh_)) {
+      const Vector a = drawn(t[0]), b = drawn(t[1]), c = drawn(t[2]);
+      if ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0)
+        for (const std::int32_t node : t) seen[static_cast<std::size_t>(node)] = true;
+    }
+    return seen;
+  }
+
+  /// A node of the deformed body in the plane of the picture.
+  Vector drawn(std::int32_t node) const {
+    Vector at{};
+    const std::size_t n = static_cast<std::size_t>(node), dim = static_cast<std::size_t>(dim_);
+    for (std::size_t k = 0; k < dim; ++k)
+      at[k] = mesh_.coordinates[n * dim + k] + scale_ * displacement_[n * dim + k];
+    return project(at);
+  }
+
+  /// Triangles at what is held, arrows at what is loaded; one in each square of some pixels.
+  void marks(SvgCanvas& canvas) const {
+    if (picture_.marks.empty()) return;
+    const std::vector<bool> seen = seen_nodes();
+    std::set<std::tuple<int, long, long>> taken;
+    std::array<std::string, 3> paths;
+    constexpr double apart = 24;
+    for (const auto& mark : picture_.marks) {
+      if (!seen[static_cast<std::size_t>(mark.node)]) continue;
+      const auto kind = static_cast<int>(mark.kind);
+      const auto at = frame_.pixel(drawn(mark.node));
+      if (!taken.insert({kind, std::lround(at[0] / apart), std::lround(at[1] / apart)}).second) continue;
+      paths[static_cast<std::size_t>(kind)] +=
+          mark.kind == DeformedPicture::Mark::Kind::load
+              ? arrow(at, project(mark.direction))
+              : "M" + svg_number(at[0]) + " " + svg_number(at[1]) + "l-4.5 8h9Z";
+    }
+    constexpr std::array<const char*, 3> colours{"#1a4de6", "#9933b3", "#d91a1a"};
+    for (std::size_t kind = 0; kind < 3; ++kind) {
+      const std::string colour = colours[kind];
+      if (!paths[kind].empty())
+        canvas.path(paths[kind], "fill=\"" + colour + "\" fill-opacity=\"0.75\" stroke=\"" + colour + "\"");
+    }
+  }
+
+  /// Ends at `at`; where it would point into the picture or out of it, or nowhere, a square.
+  static std::string arrow(const std::array<double, 2>& at, const Vector& along) {
+    const double length = std::hypot(along[0], along[1]), whole = std::hypot(length, along[2]);
+    const auto point = [](double x, double y) { return svg_number(x) + " " + svg_number(y); };
+    if (!(length > 0.2 * whole)) return "M" + point(at[0] - 3, at[1] - 3) + "h6v6h-6Z";
+    const double x = along[0] / length, y = -along[1] / length;
+    const double neck_x = at[0] - 7 * x, neck_y = at[1] - 7 * y;
+    return "M" + point(at[0] - 22 * x, at[1] - 22 * y) + "L" + point(neck_x, neck_y) + "L" +
+           point(neck_x - 3 * y, neck_y + 3 * x) + "L" + point(at[0], at[1]) + "L" +
+           point(neck_x + 3 * y, neck_y - 3 * x) + "L" + point(neck_x, neck_y) + "Z";
   }
 
   /// A line with short strokes on the side away from the body.
@@ -209,8 +297,8 @@ class Drawing {
   void colour_bar(SvgCanvas& canvas) const {
     const double x = width - margin - bar_space + 34, height = std::min(frame_.height - 40, 360.0), wide = 18;
     const double y = top + (frame_.height - height) / 2 + 14, step = height / colours_.bands();
-    canvas.text(x, y - 30, "von Mises", "");
-    canvas.text(x, y - 15, "stress", "");
+    canvas.text(x, y - 30, picture_.quantity[0], "");
+    canvas.text(x, y - 15, picture_.quantity[1], "");
     for (int b = 0; b < colours_.bands(); ++b) {
       const std::string colour = hex(colours_.colour(b, 1));
       canvas.rectangle(x, y + height - (b + 1) * step, wide, step,
@@ -252,6 +340,11 @@ class Drawing {
     std::string text = scale_ == 1 ? "Displacement to scale" : "Displacement × " + short_number(scale_);
     text += ", largest " + short_number(largest_) + "; largest von Mises stress of an element " +
             short_number(picture_.largest_von_mises) + "; grey: undeformed";
+    constexpr std::array<const char*, 3> words{"; blue: held", "; violet: on springs", "; red: loads"};
+    for (std::size_t kind = 0; kind < words.size(); ++kind)
+      if (std::any_of(picture_.marks.begin(), picture_.marks.end(),
+                      [kind](const auto& mark) { return static_cast<std::size_t>(mark.kind) == kind; }))
+        text += words[kind];
     return text;
   }
 
@@ -274,8 +367,8 @@ class Drawing {
 
 std::string deformed_svg(const DeformedPicture& picture) {
   if (!picture.mesh || picture.displacement.size() != picture.mesh->coordinates.size() ||
-      picture.von_mises.size() != picture.mesh->node_count() || picture.mesh->facet_count() == 0)
-    throw InternalError("picture: the displacement or the stress does not fit the mesh");
+      picture.values.size() != picture.mesh->node_count() || picture.mesh->facet_count() == 0)
+    throw InternalError("picture: the displacement or the values do not fit the mesh");
   return Drawing(picture).draw();
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,7 +18,7 @@ struct DeformedPicture {
   std::string title;
   const Mesh* mesh = nullptr;
   std::span<const double> displacement;  ///< nodes × dim
-  std::span<const double> von_mises;     ///< nodes
+  std::span<const double> values;        ///< nodes: what colours it
   double largest_von_mises = 0.0;        ///< of an element, for the caption
   /// A flat obstacle: a point on it and its normal to the body's side (in 2D the third entries are 0).
   struct Plane {
@@ -25,6 +26,22 @@ struct DeformedPicture {
   };
   std::vector<Plane> planes;
   double scale = 0.0;  ///< of the displacement; 0: chosen, and stated in the caption
+  std::array<std::string, 2> quantity{"von Mises", "stress"};  ///< what the values are, in two short lines
+  /// What of another obstacle faces the body: triangles in 3D, in 2D lines from the first corner to the
+  /// second, with their normal to the body's side.
+  struct ObstacleFacet {
+    std::array<std::array<double, 3>, 3> corners{};
+    std::array<double, 3> normal{};
+  };
+  std::vector<ObstacleFacet> obstacles;
+  /// A node that is held or loaded. Where many are close to each other, some of them are drawn.
+  struct Mark {
+    enum class Kind { support, spring, load } kind = Kind::support;
+    std::int32_t node = 0;
+    std::array<double, 3> direction{};  ///< of a load, any length; zero: not known
+  };
+  std::vector<Mark> marks;
+  std::array<double, 3> view{};  ///< in 3D, from the body to the eye; zero: chosen
 };
 
 /// The deformed body over the outline of the undeformed one, with a colour bar: all triangles in 2D, the

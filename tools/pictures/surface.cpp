@@ -132,9 +132,17 @@ std::uint8_t shade_of(const Vector& normal) {
 
 }  // namespace
 
-View View::of(const Mesh& mesh) {
+View View::of(const Mesh& mesh, const std::array<double, 3>& towards) {
   View view;
   if (mesh.dim() == 2) return view;
+  const auto look_from = [&view](const Vector& eye) {
+    view.eye = unit(eye);
+    const Vector across = cross({0, 0, 1}, view.eye);
+    view.right = dot(across, across) > 1e-12 ? unit(across) : Vector{1, 0, 0};
+    view.up = cross(view.eye, view.right);
+    return view;
+  };
+  if (dot(towards, towards) > 0) return look_from(towards);
   Vector low{}, high{};
   for (std::size_t k = 0; k < 3; ++k) {
     low[k] = std::numeric_limits<double>::infinity();
@@ -146,13 +154,8 @@ View View::of(const Mesh& mesh) {
   }
   // The eye turned 30° from the normal of the longer side, and 25° above it.
   constexpr double s = 0.5, c = 0.8660254037844386, below = 0.42261826174069944, level = 0.9063077870366499;
-  if (high[0] - low[0] >= high[1] - low[1])
-    view.eye = {level * s, -level * c, below};
-  else
-    view.eye = {level * c, level * s, below};
-  view.right = unit(cross({0, 0, 1}, view.eye));
-  view.up = cross(view.eye, view.right);
-  return view;
+  if (high[0] - low[0] >= high[1] - low[1]) return look_from({level * s, -level * c, below});
+  return look_from({level * c, level * s, below});
 }
 
 std::array<double, 3> View::project(std::span<const double> position) const {

@@ -15,8 +15,9 @@ namespace kacanov {
 struct View {
   std::array<double, 3> right{1, 0, 0}, up{0, 1, 0}, eye{0, 0, 1};
 
-  /// Flat in 2D; in 3D from above, so turned that the body's longer horizontal side lies across the picture.
-  static View of(const Mesh& mesh);
+  /// Flat in 2D; in 3D from above, so turned that the body's longer horizontal side lies across the picture,
+  /// or with the eye in the direction `towards`, where that is not zero, and z upwards.
+  static View of(const Mesh& mesh, const std::array<double, 3>& towards = {});
   std::array<double, 3> project(std::span<const double> position) const;
 };
 

@@ -31,6 +31,7 @@
 #include "program/report.hpp"
 #include "program/report_page.hpp"
 #include "program/result_json.hpp"
+#include "program/show_run.hpp"
 #include "program/solve_case.hpp"
 #include "program/terminal.hpp"
 
@@ -268,7 +269,9 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
   result.max_von_mises_nodal = fields.nodal.max_von_mises;
   fields.error = note_discretisation(loaded.part, coarse, solution);
   const std::vector<double>& displacement = contact.displacement;
-  std::vector<double> von_mises;
+  std::vector<double> von_mises, plastic;
+  if (input.output.report && result.plastic_elements > 0)
+    plastic = at_boundary(loaded, nodal_plastic_share(loaded.part, solution.displacement), 1);
   if (input.output.report)
     von_mises = at_boundary(loaded, nodal_von_mises(loaded.part, solution.displacement), 1);
   if (phase && mpi.first()) phase("writing to " + printable(folder.string()));
@@ -290,12 +293,11 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
       write_surface({folder}, *loaded.problem, input.model, contact);
       write_series(folder, *loaded.problem, result);
     }
-    std::string picture;
+    ShownRun shown_run;
     if (input.output.report) {
       try_to_show([&] {
-        picture =
-            deformed_picture(input, loaded.problem->mesh, displacement, von_mises, result.max_von_mises);
-        write_file((folder / "deformed.svg").string(), picture);
+        shown_run = show_run(input, *loaded.problem, contact, von_mises, plastic, result.max_von_mises);
+        write_file((folder / "deformed.svg").string(), shown_run.picture);
       });
     }
     const double end = MPI_Wtime();
@@ -313,10 +315,7 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
       });
     if (input.output.report)
       try_to_show([&] {
-        ReportPage page{&input, &json, history.csv(), picture, &loaded.problem->mesh, displacement, {}};
-        const std::vector<double> pressure = nodal_pressure(*loaded.problem, input.model, contact);
-        page.fields = {{"von Mises stress", von_mises}};
-        if (!input.model.contact.empty()) page.fields.push_back({"contact pressure", pressure});
+        const ReportPage page{&input, &json, history.csv(), &loaded.problem->mesh, displacement, &shown_run};
         write_file((folder / "report.html").string(), report_html(page));
       });
     if (replaced) {

@@ -276,6 +276,47 @@ std::vector<double> nodal_pressure(const Problem& problem, const Model& model, c
   return pressure;
 }
 
+std::vector<DeformedPicture::ObstacleFacet> obstacle_facets(const Problem& problem, const Model& model,
+                                                            const ContactFields& contact, int& missing) {
+  missing = 0;
+  std::vector<DeformedPicture::ObstacleFacet> facets;
+  if (problem.contact.empty()) return facets;
+  const DrawnSurface surface = contact_surface(problem, model, contact);
+  const Cell& facet = cell(problem.mesh.type).facet();
+  const std::size_t dim = problem.mesh.dim();
+  std::vector<std::array<std::int8_t, 3>> pattern(facet.triangles.begin(), facet.triangles.end());
+  if (dim == 2) pattern = {{0, 1, 1}};
+  std::vector<bool> drawn(model.contact.size(), false);
+  for (std::size_t first = 0; first < surface.cells.size(); first += facet.nodes) {
+    const auto entry = static_cast<std::size_t>(surface.entry[surface.cells[first]]);
+    const ContactEntry& of = model.contact[entry];
+    if (std::holds_alternative<Plane>(of.obstacle) && !of.moves()) {
+      drawn[entry] = true;
+      continue;
+    }
+    for (const auto& corners : pattern) {
+      DeformedPicture::ObstacleFacet out;
+      bool faces = true;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t i = surface.cells[first + static_cast<std::size_t>(corners[k])];
+        faces = faces && surface.status[i] != no_contact_point;
+        double along = surface.gap[i];
+        for (std::size_t c = 0; c < dim; ++c)
+          along += surface.normal[3 * i + c] * surface.displacement[3 * i + c];
+        for (std::size_t c = 0; c < dim; ++c) {
+          out.corners[k][c] = surface.points[i * dim + c] + along * surface.normal[3 * i + c];
+          out.normal[c] -= surface.normal[3 * i + c] / 3.0;
+        }
+      }
+      if (!faces) continue;
+      drawn[entry] = true;
+      facets.push_back(out);
+    }
+  }
+  missing = static_cast<int>(std::count(drawn.begin(), drawn.end(), false));
+  return facets;
+}
+
 void write_series(const std::filesystem::path& folder, const Problem& problem, const Result& result) {
   std::vector<PvdPart> parts;
   const auto add = [&](std::size_t step, double time) {

@@ -11,6 +11,7 @@
 #include <kacanov/part.hpp>
 #include <kacanov/problem.hpp>
 #include <kacanov/result.hpp>
+#include "pictures/picture.hpp"
 #include "program/parallel.hpp"
 
 namespace kacanov {
@@ -56,6 +57,12 @@ void write_surface(const FieldPlace& place, const Problem& problem, const Model&
 /// Contact pressure at the nodes of the mesh, 0 where there is no contact; as in contact.vtu. Of nodes of
 /// several entries it is the last one's. On the first rank.
 std::vector<double> nodal_pressure(const Problem& problem, const Model& model, const ContactFields& contact);
+
+/// What of the obstacles that no Plane at rest stands for faces the body: its contact facets, moved along ν
+/// by the gap. `missing`: entries of which no facet faces the obstacle. On the first rank; `contact` with
+/// displacement.
+std::vector<DeformedPicture::ObstacleFacet> obstacle_facets(const Problem& problem, const Model& model,
+                                                            const ContactFields& contact, int& missing);
 
 /// The series for ParaView: the load steps that fields are there of, and the end of the run.
 void write_series(const std::filesystem::path& folder, const Problem& problem, const Result& result);

@@ -83,18 +83,32 @@ ordered_json vector_json(const Vector3& v, const Vector3& origin) {
   return {v[0] - origin[0], v[1] - origin[1], v[2] - origin[2]};
 }
 
-/// Planes that stay; `undrawn` counts the other obstacles.
-ordered_json planes_json(const Model& model, const Vector3& centre, int& undrawn) {
+/// Planes that stay.
+ordered_json planes_json(const Model& model, const Vector3& centre) {
   ordered_json planes = ordered_json::array();
   for (const ContactEntry& entry : model.contact) {
     const auto* plane = std::get_if<Plane>(&entry.obstacle);
     if (plane != nullptr && !entry.moves())
       planes.push_back(
           {{"point", vector_json(plane->point, centre)}, {"normal", vector_json(plane->normal, {})}});
-    else
-      ++undrawn;
   }
   return planes;
+}
+
+/// Corners of triangles, in 2D ends of lines.
+std::string packed_obstacles(const std::vector<DeformedPicture::ObstacleFacet>& facets, std::size_t dim,
+                             const Vector3& centre) {
+  std::vector<float> all;
+  for (const DeformedPicture::ObstacleFacet& facet : facets)
+    for (std::size_t corner = 0; corner < dim; ++corner)
+      for (std::size_t c = 0; c < 3; ++c) all.push_back(shown_value(facet.corners[corner][c] - centre[c]));
+  return packed(all);
+}
+
+std::string image(const char* title, const char* alt, const std::string& svg) {
+  if (svg.empty()) return {};
+  return std::string("<h2>") + title + "</h2>\n<img alt=\"" + alt + "\" src=\"data:image/svg+xml;base64," +
+         base64(svg) + "\">\n";
 }
 
 ordered_json scene_json(const ReportPage& page) {
@@ -102,8 +116,9 @@ ordered_json scene_json(const ReportPage& page) {
   const std::size_t dim = mesh.dim();
   const auto triangles = surface_triangles(mesh);
   ordered_json scene{{"dim", dim}, {"nodes", mesh.node_count()}, {"triangles", triangles.size()}};
-  scene["most"] = most_report_triangles;
-  if (triangles.size() > most_report_triangles) return scene;
+  scene["most"] = page.most_triangles;
+  scene["not_shown"] = page.shown->not_shown;
+  if (triangles.size() > page.most_triangles) return scene;
   const Extent box = extent(mesh);
   Vector3 centre{};
   for (std::size_t k = 0; k < dim; ++k) centre[k] = (box.lower[k] + box.upper[k]) / 2;
@@ -113,12 +128,14 @@ ordered_json scene_json(const ReportPage& page) {
   scene["points"] = packed_vectors(mesh.coordinates, dim, centre);
   scene["displacement"] = packed_vectors(page.displacement, dim, {});
   scene["fields"] = ordered_json::array();
-  for (const ReportPage::Field& field : page.fields)
+  for (const ShownRun::Field& field : page.shown->fields)
     scene["fields"].push_back({{"name", field.name}, {"values", packed_values(field.values)}});
   scene["marks"] = marks_json(page);
-  int undrawn = 0;
-  scene["planes"] = planes_json(page.input->model, centre, undrawn);
-  scene["undrawn_obstacles"] = undrawn;
+  scene["first"] = page.shown->first;
+  const Vector3& view = page.input->output.view;
+  if (view != Vector3{}) scene["view"] = view;
+  scene["planes"] = planes_json(page.input->model, centre);
+  scene["obstacles"] = packed_obstacles(page.shown->obstacles, dim, centre);
   return scene;
 }
 
@@ -131,7 +148,7 @@ std::string data_block(const char* id, const ordered_json& json) {
 std::string report_html(const ReportPage& page) {
   const std::size_t nodes = page.mesh->node_count();
   bool fits = page.displacement.size() == page.mesh->coordinates.size();
-  for (const ReportPage::Field& field : page.fields) fits = fits && field.values.size() == nodes;
+  for (const ShownRun::Field& field : page.shown->fields) fits = fits && field.values.size() == nodes;
   if (!fits) throw InternalError("report: a field does not fit the mesh");
   const std::string title = xml_escape(page.input->name);
   std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
@@ -141,13 +158,13 @@ std::string report_html(const ReportPage& page) {
   html += "<title>" + title + "</title>\n<style>" + report_style + "</style>\n</head>\n<body>\n";
   html += "<h1>" + title + "</h1>\n<noscript><p>This page needs JavaScript.</p></noscript>\n";
   html += "<div id=\"verdict\"></div>\n<div id=\"view\"></div>\n";
-  if (!page.picture.empty())
-    html += "<h2>Deformed body</h2>\n<img alt=\"The deformed body\" src=\"data:image/svg+xml;base64," +
-            base64(page.picture) + "\">\n";
+  html += image("Deformed body", "The deformed body", page.shown->picture);
+  html += image("Contact pressure", "The contact pressure, seen from the obstacles",
+                page.shown->pressure_picture);
   html += "<div id=\"convergence\"></div>\n<div id=\"numbers\"></div>\n";
   html += data_block("result", *page.result) + data_block("scene", scene_json(page)) +
           data_block("history", page.history);
-  html += std::string("<script>") + report_script + "</script>\n</body>\n</html>\n";
+  html += std::string("<script>") + report_script + report_view + "</script>\n</body>\n</html>\n";
   return html;
 }
 

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "case/case_file.hpp"
+#include "program/show_run.hpp"
 
 namespace kacanov {
 
@@ -22,14 +23,10 @@ struct ReportPage {
   const Case* input = nullptr;
   const nlohmann::ordered_json* result = nullptr;  ///< what is in result.json
   std::string history;                             ///< what is in history.csv
-  std::string picture;                             ///< SVG; may be empty
   const Mesh* mesh = nullptr;                      ///< of which 3D needs the boundary only
   std::span<const double> displacement;            ///< nodes × dim
-  struct Field {
-    std::string name;
-    std::span<const double> values;  ///< nodes
-  };
-  std::vector<Field> fields;
+  const ShownRun* shown = nullptr;
+  std::size_t most_triangles = most_report_triangles;
 };
 
 /// The page. Names and texts of the case may hold any character. Throws InternalError if an array does not
@@ -39,5 +36,6 @@ std::string report_html(const ReportPage& page);
 /// What is fixed of it: the style, and the script that builds the rest from the data in the page.
 extern const char* const report_style;
 extern const char* const report_script;
+extern const char* const report_view;  ///< the part of the script that draws the body
 
 }  // namespace kacanov

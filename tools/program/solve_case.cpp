@@ -14,6 +14,7 @@
 #include "program/loaded_case.hpp"
 #include "program/memory_model.hpp"
 #include "program/obstacle_files.hpp"
+#include "program/picture_marks.hpp"
 #include "program/result_json.hpp"
 
 namespace kacanov {
@@ -73,14 +74,19 @@ void complete_messages(const Case& input, const Problem& problem, Result& result
 }
 
 std::string deformed_picture(const Case& input, const Mesh& mesh, std::span<const double> displacement,
-                             std::span<const double> von_mises, double largest_von_mises) {
+                             const PictureContent& content, double largest_von_mises) {
   DeformedPicture picture;
   picture.title = input.name;
   picture.mesh = &mesh;
   picture.displacement = displacement;
-  picture.von_mises = von_mises;
+  picture.values = content.values;
+  picture.quantity = content.quantity;
   picture.scale = input.output.scale;
   picture.largest_von_mises = largest_von_mises;
+  picture.view = content.view == Vector3{} ? input.output.view : content.view;
+  if (!content.surroundings) return deformed_svg(picture);
+  picture.obstacles = content.obstacles;
+  picture.marks = picture_marks(input, mesh);
   for (const ContactEntry& entry : input.model.contact) {
     if (const auto* plane = std::get_if<Plane>(&entry.obstacle); plane != nullptr && !entry.moves())
       picture.planes.push_back({plane->point, plane->normal});

@@ -12,6 +12,7 @@
 #include <kacanov/reference.hpp>
 #include <kacanov/run_options.hpp>
 #include "case/case_file.hpp"
+#include "pictures/picture.hpp"
 #include "program/field_files.hpp"
 #include "program/parallel.hpp"
 
@@ -24,10 +25,19 @@ Solution solve_part(const Case& input, Part& part, const MpiSession& mpi, const 
 /// in its message what may be behind it, where something is known. On the first rank.
 void complete_messages(const Case& input, const Problem& problem, Result& result);
 
-/// The deformed body as SVG. `displacement` (nodes × dim) and `von_mises` (nodes) in the numbering of the
-/// mesh, of which 3D needs the boundary only.
+/// What colours a picture, and what is drawn round the body.
+struct PictureContent {
+  std::span<const double> values;  ///< nodes
+  std::array<std::string, 2> quantity{"von Mises", "stress"};
+  std::vector<DeformedPicture::ObstacleFacet> obstacles = {};  ///< but planes at rest
+  Vector3 view = {};                                           ///< zero: as the case says
+  bool surroundings = true;                                    ///< planes, supports and loads
+};
+
+/// The deformed body as SVG. `displacement` (nodes × dim) and values in the numbering of the mesh, of which
+/// 3D needs the boundary only.
 std::string deformed_picture(const Case& input, const Mesh& mesh, std::span<const double> displacement,
-                             std::span<const double> von_mises, double largest_von_mises);
+                             const PictureContent& content, double largest_von_mises);
 
 /// Everything that a run has to say, on the first rank and in the numbering of problem.mesh and
 /// problem.contact; other ranks have `result` and `json` alone.

@@ -57,5 +57,7 @@ void visit_points(const Part& part, const BodyState& state,
 /// von Mises stress at the part's nodes: the mean of the elements round a node over all ranks, weighted by
 /// volume. Collective.
 std::vector<double> nodal_von_mises(const Part& part, std::span<const double> u);
+/// Share of the volume of the elements round a node that belongs to plastic ones. Collective.
+std::vector<double> nodal_plastic_share(const Part& part, std::span<const double> u);
 
 }  // namespace kacanov
