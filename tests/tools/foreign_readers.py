@@ -26,7 +26,7 @@ CASE = {
     "probe": [[2, 1, 1]],
 }
 BODY = {"displacement": 3, "node_id": 1, "nodal_stress": 6, "nodal_von_mises": 1}
-CELLS = {"stress": 6, "von_mises": 1, "strain": 6, "dev_strain": 1, "g": 1, "plastic": 1, "material": 1,
+CELLS = {"stress": 6, "von_mises": 1, "strain": 6, "dev_strain": 1, "g": 1, "plastic": 1, "material": 1, "set": 1,
          "element_id": 1, "error": 1}
 CONTACT = {"gap": 1, "pressure": 1, "tangential_traction": 3, "normal": 3, "displacement": 3, "status": 1, "entry": 1,
            "node_id": 1}

@@ -2,9 +2,11 @@
 // kacanov verify: right answers pass, whoever changed them; what was tampered with does not.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "formats/inflate.hpp"
+#include "formats/vtu_arrays.hpp"
 #include "mesh_writer.hpp"
 #include "program_runner.hpp"
 
@@ -144,6 +146,64 @@ TEST_CASE("what has been changed in the files is found") {
   outcome = verified();
   CHECK(outcome.exit_code == 2);
   CHECK(outcome.error.find("cannot be read") != std::string::npos);
+}
+
+TEST_CASE("elements have the numbers of their material and set, on one rank, on two, and from parts") {
+  const Workplace place;
+  // Two rows of cubes along x: the upper one of another material; the last column in a set that begins no
+  // cube.
+  std::string mesh = "*NODE\n";
+  int node = 0;
+  for (int z = 0; z < 3; ++z)
+    for (int y = 0; y < 2; ++y)
+      for (int x = 0; x < 5; ++x)
+        mesh += std::to_string(++node) + "," + std::to_string(x) + "," + std::to_string(y) + "," +
+                std::to_string(z) + "\n";
+  for (int z = 0; z < 2; ++z) {
+    mesh += std::string("*ELEMENT, TYPE=C3D8, ELSET=") + (z == 0 ? "Lower" : "Upper") + "\n";
+    for (int x = 0; x < 4; ++x) {
+      mesh += std::to_string(4 * z + x + 1);
+      for (const int up : {0, 10})
+        for (const int corner : {1, 2, 7, 6}) mesh += "," + std::to_string(10 * z + x + up + corner);
+      mesh += "\n";
+    }
+  }
+  place.put("two.inp", mesh + "*ELSET, ELSET=Column\n4, 8\n");
+  place.put_json("two.json", parsed(R"({
+    "mesh": {"file": "two.inp"},
+    "material": [{"on": "all", "young": 200, "poisson": 0.3}, {"on": "Upper", "young": 100, "poisson": 0.3}],
+    "boundary": [{"on": {"box": [[0, 0, 0], [0, 1, 2]]}, "displacement": [0, 0, 0]},
+                 {"on": {"box": [[0, 0, 2], [4, 1, 2]]}, "pressure": 0.1}]})"));
+  REQUIRE(place.run("partition two.json --ranks 2 --output parts").exit_code == 0);
+  for (const char* how : {"--ranks 1", "--ranks 2", "--parts parts"}) {
+    INFO(how);
+    REQUIRE(place.run(std::string("run two.json --output out ") + how).exit_code == 0);
+    const nlohmann::json names = place.json("out/result.json")["mesh"]["sets"];
+    REQUIRE(names.size() == 3);
+    const std::string bytes = contents(place.path("out/body.vtu"));
+    const VtuFile file("body.vtu", bytes);
+    const auto elements = file.integers("CellData", "element_id", 8),
+               sets = file.integers("CellData", "set", 8),
+               materials = file.integers("CellData", "material", 8);
+    std::vector<bool> seen(8, false);
+    for (std::size_t e = 0; e < 8; ++e) {
+      const bool upper = elements[e] > 4, column = elements[e] % 4 == 0;
+      const std::string name = names[static_cast<std::size_t>(sets[e]) - 1];
+      CHECK(materials[e] == (upper ? 1 : 0));
+      // Of two sets it is the first.
+      CHECK((name == (upper ? "Upper" : "Lower") || (column && name == "Column")));
+      seen[static_cast<std::size_t>(elements[e]) - 1] = true;
+    }
+    CHECK(std::count(seen.begin(), seen.end(), true) == 8);
+    // Strain and stress are those of the same law.
+    const auto stress = file.reals("CellData", "stress", 48), strain = file.reals("CellData", "strain", 48);
+    for (std::size_t e = 0; e < 8; ++e) {
+      const double shear = (materials[e] == 0 ? 200.0 : 100.0) / (2 * 1.3);
+      CHECK(stress[6 * e + 3] == doctest::Approx(2 * shear * strain[6 * e + 3]).epsilon(1e-9).scale(0.01));
+      CHECK(stress[6 * e] - stress[6 * e + 1] ==
+            doctest::Approx(2 * shear * (strain[6 * e] - strain[6 * e + 1])).epsilon(1e-9).scale(0.01));
+    }
+  }
 }
 
 TEST_CASE("what older versions wrote is verified: plain arrays, the body in a piece a rank") {

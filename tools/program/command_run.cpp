@@ -138,7 +138,7 @@ void write_step(const FieldPlace& place, const LoadedCase& loaded, const Model& 
   ContactFields contact = gather_contact_fields(loaded.part, solution);
   contact.displacement = at_boundary(loaded, solution.displacement, loaded.part.dim());
   const BodyFields fields{recover_stress(loaded.part, solution),
-                          estimate_error(loaded.part, solution).shares()};
+                          estimate_error(loaded.part, solution).shares(), loaded.sets};
   write_body(place, loaded.part, solution, fields, mpi);
   together(mpi, [&] {
     if (mpi.first()) write_surface(place, *loaded.problem, model, contact);
@@ -257,6 +257,7 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
   coarse.solution.reset();
   RunFigures figures;
   figures.nested = coarse.levels;
+  figures.sets = loaded.set_names;
   figures.peak_memory_bytes =
       static_cast<std::uint64_t>(loaded.part.node_map.sum_all(static_cast<std::int64_t>(peak_memory())));
   left.reset();
@@ -265,7 +266,7 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
   if (mpi.first()) complete_messages(input, *loaded.problem, result);
   ContactFields contact = gather_contact_fields(loaded.part, solution);
   contact.displacement = at_boundary(loaded, solution.displacement, dim);
-  BodyFields fields{recover_stress(loaded.part, solution), {}};
+  BodyFields fields{recover_stress(loaded.part, solution), {}, loaded.sets};
   result.max_von_mises_nodal = fields.nodal.max_von_mises;
   fields.error = note_discretisation(loaded.part, coarse, solution);
   const std::vector<double>& displacement = contact.displacement;

@@ -223,6 +223,9 @@ void write_body(const FieldPlace& place, const Part& part, const Solution& solut
   const auto material = [&part](std::size_t e) {
     return std::int64_t{part.law_of_element.empty() ? std::uint16_t{0} : part.law_of_element[e]};
   };
+  const auto set = [&fields](std::size_t e) {
+    return fields.sets.empty() ? std::int64_t{0} : std::int64_t{fields.sets[fields.sets.size() == 1 ? 0 : e]};
+  };
   Grid grid;
   grid.dim = dim;
   grid.cell = &cell(part.type);
@@ -243,6 +246,7 @@ void write_body(const FieldPlace& place, const Part& part, const Solution& solut
       {"g", 1, of_elements(1, &Fields::secant)},
       {"plastic", 1, plastic},
       {"material", 1, tags(elements, material)},
+      {"set", 1, tags(elements, set)},
       {"element_id", 1, tags(elements, [&part](std::size_t e) { return part.element_tag(e); })},
       {"error", 1, Values<double>(fields.error)}};
   write_shared_vtu((place.folder / body_file(place.step)).string(), grid, mpi);

@@ -42,8 +42,9 @@ bool is_step_file(std::string_view name);
 
 /// What its fields are besides those of a Solution.
 struct BodyFields {
-  NodalStress nodal;          ///< recover_stress()
-  std::vector<double> error;  ///< elements: shares() of estimate_error()
+  NodalStress nodal;                         ///< recover_stress()
+  std::vector<double> error;                 ///< elements: shares() of estimate_error()
+  std::span<const std::uint16_t> sets = {};  ///< elements: SetNumbers
 };
 
 /// Writes the body, whole whatever the ranks. Collective; what fails ends as together() says.

@@ -72,6 +72,11 @@ LoadedCase load_case(const Case& input, const MpiSession& mpi, bool memory_check
   const double read = MPI_Wtime();
   if (tells && mpi.ranks() > 1) phase("splitting into " + std::to_string(mpi.ranks()) + " parts");
   loaded.part = distribute(loaded.problem ? &*loaded.problem : nullptr, mpi.comm());
+  {
+    const ElementSets sets = loaded.problem ? element_sets(loaded.problem->mesh) : ElementSets();
+    loaded.sets = distribute_sets(sets, loaded.part, mpi);
+    loaded.set_names = sets.names;
+  }
   loaded.read_seconds = read - start;
   loaded.distribute_seconds = MPI_Wtime() - read;
   return loaded;

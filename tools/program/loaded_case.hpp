@@ -10,6 +10,7 @@
 #include <kacanov/part.hpp>
 #include "case/case_file.hpp"
 #include "program/command.hpp"
+#include "program/element_sets.hpp"
 #include "program/parallel.hpp"
 
 namespace kacanov {
@@ -36,6 +37,8 @@ struct LoadedCase {
       boundary_nodes;  ///< there, after keep_boundary: their numbers in the whole problem
   Fingerprint print;   ///< likewise: of the whole problem
   Part part;
+  std::vector<std::string> set_names;  ///< of ElementSets, on the first rank
+  SetNumbers sets;                     ///< of the part's elements
   double read_seconds = 0.0, distribute_seconds = 0.0;
 };
 

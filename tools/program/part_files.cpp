@@ -29,7 +29,7 @@ void exchange_fields(Either<Problem> auto& problem, const auto& stream) {
 
 namespace {
 
-constexpr std::string_view part_magic = "kacanov part 11\n", boundary_magic = "kacanov boundary 5\n";
+constexpr std::string_view part_magic = "kacanov part 12\n", boundary_magic = "kacanov boundary 6\n";
 /// The sections of a case that parts are made of.
 constexpr const char* sections[] = {"mesh", "material", "boundary", "contact", "steps", "probe"};
 
@@ -172,11 +172,14 @@ void write_parts(const std::filesystem::path& folder, const Case& input, Problem
                               {"case", case_sections(input.document, sections)},
                               {"mesh_file", mesh_identity(input)},
                               {"problem", fingerprint_json(fingerprint(problem))}};
+  const ElementSets sets = element_sets(problem.mesh);
   split(problem, parts, [&](int rank, Part&& part) {
     nlohmann::json own = header;
     own["part"] = rank;
     HashedWriter file(part_file(staging.folder(), rank).string(), part_magic, own);
-    FieldWriter{file}(part);
+    const FieldWriter write{file};
+    write(part);
+    write(sets_of_part(sets, part));
     file.commit();
   });
   const std::vector<std::int32_t> boundary_nodes = keep_boundary(problem);
@@ -185,6 +188,7 @@ void write_parts(const std::filesystem::path& folder, const Case& input, Problem
     const FieldWriter write{file};
     write(problem);
     write(boundary_nodes);
+    write(sets.names);
     file.commit();
   }
   std::filesystem::remove(boundary_file(folder));
@@ -220,16 +224,22 @@ LoadedCase load_parts(const std::filesystem::path& folder, const Case& input, co
       const FieldReader read{reader};
       read(loaded.problem.emplace());
       read(loaded.boundary_nodes);
+      read(loaded.set_names);
       reader.finish();
       first_identity = split_identity(reader.header());
     }
     HashedReader reader = open_part(folder, mpi.rank());
     const std::string file = part_file(folder, mpi.rank()).string();
     reading_header(file, [&] { check_part(reader.header(), input, mpi, file); });
-    FieldReader{reader}(loaded.part);
+    const FieldReader read{reader};
+    read(loaded.part);
+    read(loaded.sets);
     reader.finish();
     try {
       check_part(loaded.part, mpi.rank(), mpi.ranks());
+      if (loaded.sets.size() > 1 && loaded.sets.size() != loaded.part.element_count())
+        throw InputError("sets of elements: expected " + std::to_string(loaded.part.element_count()) +
+                         ", got " + std::to_string(loaded.sets.size()));
       check_entries(loaded.part, input.model);
     } catch (const InputError& error) {
       throw InputError("--parts: " + file + ": " + error.what());

@@ -165,6 +165,7 @@ ordered_json result_json(const Result& result, const RunFigures& figures, const 
     json["load_steps"].push_back(line);
   }
   json["mesh"] = mesh_json(result, input.mesh, mesh);
+  if (!figures.sets.empty()) json["mesh"]["sets"] = figures.sets;
   json["certificate"] = residuals_json(result.certificate);
   json["certificate"]["rounding"] = residuals_json(result.certificate.rounding);
   const PhaseSeconds& seconds = result.seconds;

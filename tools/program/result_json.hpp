@@ -34,6 +34,7 @@ struct RunFigures {
   double total = 0.0, read = 0.0, distribute = 0.0, output = 0.0;  ///< seconds
   std::uint64_t peak_memory_bytes = 0;                             ///< of all ranks together
   std::vector<CoarseLevel> nested;                                 ///< coarsest first
+  std::vector<std::string> sets;                                   ///< of elements of the mesh, by number
 };
 
 /// Every key of the file. `mesh` needs its type and facets only. Vectors have as many entries as the mesh has

@@ -134,6 +134,7 @@ SolvedCase solve_case(const Case& given, const MpiSession& mpi, const CaseRun& r
   out.result.max_von_mises_nodal = nodal.max_von_mises;
   RunFigures figures;
   figures.nested = std::move(coarse.levels);
+  figures.sets = loaded.set_names;
   figures.peak_memory_bytes =
       static_cast<std::uint64_t>(part.node_map.sum_all(static_cast<std::int64_t>(peak_memory())));
   figures.read = loaded.read_seconds;
