@@ -23,14 +23,14 @@ std::size_t deflate_block(std::span<const unsigned char> block, int level, unsig
 
 std::size_t pack_block(std::span<const unsigned char> block, std::vector<unsigned char>& out) {
   // A part from its middle tells what the whole would come to.
-  constexpr std::size_t sample = 4096;
+  constexpr std::size_t sample = 2048;
   const std::size_t before = out.size(), room = compressBound(block.size());
   out.resize(before + room);
   int level = Z_BEST_SPEED;
-  if (block.size() >= 4 * sample) {
+  if (block.size() >= 8 * sample) {
     const std::size_t tried =
         deflate_block(block.subspan(block.size() / 2, sample), level, out.data() + before, room);
-    if (tried * 10 > sample * 9) level = Z_NO_COMPRESSION;
+    if (tried * 10 > sample * 7) level = Z_NO_COMPRESSION;
   }
   const std::size_t length = deflate_block(block, level, out.data() + before, room);
   out.resize(before + length);
