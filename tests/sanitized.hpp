@@ -9,3 +9,15 @@
 #define KACANOV_TESTS_SANITIZED
 #endif
 #endif
+
+namespace kacanov::testing {
+
+/// For `* doctest::skip(sanitized)` behind the name of a case that is about numbers or times of larger
+/// bodies: others go through the same code. The test program runs it all the same with --no-skip.
+#ifdef KACANOV_TESTS_SANITIZED
+inline constexpr bool sanitized = true;
+#else
+inline constexpr bool sanitized = false;
+#endif
+
+}  // namespace kacanov::testing

@@ -191,11 +191,7 @@ int environment(const char* name, int otherwise) {
   return value != nullptr ? std::atoi(value) : otherwise;
 }
 
-#ifdef KACANOV_TESTS_SANITIZED
-constexpr int usual_count = 40;
-#else
-constexpr int usual_count = 500;
-#endif
+constexpr int usual_count = sanitized ? 40 : 500;
 
 /// The program's state in the order of the problem and of the dense solver's rows.
 struct State {

@@ -7,6 +7,7 @@
 #include <random>
 
 #include <kacanov/error.hpp>
+#include "../sanitized.hpp"
 #include "formats/gmsh_reader.hpp"
 #include "mesh_writer.hpp"
 #include "temporary_folder.hpp"
@@ -161,8 +162,9 @@ TEST_CASE("a file with a wrong byte is refused or gives a mesh that holds togeth
   const Mesh mesh = grouped_box(ElementType::tet4);
   for (const GmshForm& form : all_forms) {
     const std::string good = gmsh_file(mesh, form);
+    const std::size_t stride = sanitized ? 5 : 1;
     std::size_t refused = 0, inconsistent = 0;
-    for (std::size_t at = 0; at < good.size(); ++at) {
+    for (std::size_t at = 0; at < good.size(); at += stride) {
       std::string bad = good;
       bad[at] = static_cast<char>(bad[at] ^ (at % 2 == 0 ? 0x01 : 0x80));
       const auto read_mesh = read(bad);
@@ -175,7 +177,7 @@ TEST_CASE("a file with a wrong byte is refused or gives a mesh that holds togeth
       }
     }
     CHECK(inconsistent == 0);
-    CHECK(refused > good.size() / 4);
+    CHECK(refused > good.size() / stride / 4);
   }
 }
 
