@@ -135,8 +135,8 @@ std::uint8_t shade_of(const Vector& normal) {
 View View::of(const Mesh& mesh, const std::array<double, 3>& towards) {
   View view;
   if (mesh.dim() == 2) return view;
-  const auto look_from = [&view](const Vector& eye) {
-    view.eye = unit(eye);
+  const auto look_from = [&view](const Vector& from) {
+    view.eye = unit(from);
     const Vector across = cross({0, 0, 1}, view.eye);
     view.right = dot(across, across) > 1e-12 ? unit(across) : Vector{1, 0, 0};
     view.up = cross(view.eye, view.right);
