@@ -4,6 +4,9 @@
 
 #include <array>
 #include <cstddef>
+#include <numbers>
+
+#include <kacanov/mesh_view.hpp>
 
 namespace kacanov::elements {
 
@@ -14,11 +17,13 @@ using Nodal = std::array<double, E::nodes * E::dim>;
 template <class E>
 struct Point {
   double gradient[E::nodes][E::dim];
-  double dilatation[E::nodes][E::dim];  ///< gradients for k0 and tr ε: the same, or their means (B-bar)
+  double dilatation[E::nodes][E::dim];  ///< of k0 and tr ε: their derivatives, or the means of these (B-bar)
+  double hoop[E::nodes];                ///< N/r in an axisymmetric body: ε_zz of u_x; 0 in others
   double volume;  ///< that belongs to the point; not positive where the element is inverted
 
   Point() = default;
-  Point(const Nodal<E>& x, std::size_t q) {
+  /// theory: axisymmetry
+  explicit Point(const Nodal<E>& x, std::size_t q, PlaneState plane = PlaneState::strain) {
     constexpr bool simplex = E::nodes == E::dim + 1;  // node 0 at ξ = 0, node k + 1 at ξ_k = 1
     [[maybe_unused]] const auto d = E::gradients(E::point[q].data());
     double j[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // j[i][k] = ∂x_i/∂ξ_k
@@ -56,9 +61,16 @@ struct Point {
       }
       for (int a = 0; a < E::nodes; ++a) dilatation[a][i] = gradient[a][i];
     }
+    for (double& value : hoop) value = 0.0;
+    if constexpr (E::dim == 2)
+      if (plane == PlaneState::axisymmetric) turn_round(x, q);
   }
 
-  /// Adds the block (dim × dim) node a has on the diagonal of B: volume [k0 ∇ᵢ∇ⱼ + g (∇ᵢ∇ⱼ/3 + |∇|² δᵢⱼ)].
+  /// tr ε of a unit displacement of node a along i, at the point.
+  double trace(int a, int i) const { return gradient[a][i] + (i == 0 ? hoop[a] : 0.0); }
+
+  /// Adds the block (dim × dim) node a has on the diagonal of B: volume [k0 ∇ᵢ∇ⱼ + g (∇ᵢ∇ⱼ/3 + |∇|² δᵢⱼ)],
+  /// and what its hoop strain adds.
   template <class Real>
   void add_diagonal_block(int a, double bulk, double g, Real* block) const {
     const double *d = gradient[a], *mean = dilatation[a], k = volume * bulk, s = volume * g,
@@ -69,6 +81,12 @@ struct Point {
       for (int j = 0; j < E::dim; ++j)
         block[i * E::dim + j] +=
             static_cast<Real>(k * mean[i] * mean[j] + third * d[i] * d[j] + (i == j ? s * square : 0.0));
+    if constexpr (E::dim == 2) {  // 2 g ε:ε − 2/3 g (tr ε)² of the strains with h = N/r besides
+      const double h = hoop[a];
+      block[0] += static_cast<Real>(s * h * (4.0 / 3.0 * h - 4.0 / 3.0 * d[0]));
+      block[1] -= static_cast<Real>(2.0 * third * h * d[1]);
+      block[2] -= static_cast<Real>(2.0 * third * h * d[1]);
+    }
   }
 
   /// Adds what the tangent's rank-one term `factor` d ⊗ d gives node a on the diagonal: volume factor
@@ -79,27 +97,41 @@ struct Point {
     double along[E::dim] = {};
     for (int i = 0; i < E::dim; ++i)
       for (int k = 0; k < E::dim; ++k) along[i] += d[entry[i][k]] * gradient[a][k];
+    along[0] += d[2] * hoop[a];
     for (int i = 0; i < E::dim; ++i)
       for (int j = 0; j < E::dim; ++j)
         block[i * E::dim + j] += static_cast<Real>(volume * factor * along[i] * along[j]);
   }
 
   static constexpr std::size_t at(int a, int i) { return a * E::dim + i; }
+
+ private:
+  void turn_round(const Nodal<E>& x, std::size_t q) {
+    const auto shape = E::values(E::point[q].data());
+    double r = 0.0;
+    for (int a = 0; a < E::nodes; ++a) r += shape[a] * x[at(a, 0)];
+    volume *= 2.0 * std::numbers::pi * r;
+    for (int a = 0; a < E::nodes; ++a) {
+      hoop[a] = shape[a] / r;
+      dilatation[a][0] += hoop[a];
+    }
+  }
 };
 
 /// All points of an element. With `mean_dilatation` (the selective B-bar method of Hughes, 1980) tr ε is its
 /// mean over the element, so that k0 puts one condition on it instead of one a point.
 template <class E>
-std::array<Point<E>, E::points> points_of(const Nodal<E>& x, bool mean_dilatation) {
+std::array<Point<E>, E::points> points_of(const Nodal<E>& x, bool mean_dilatation,
+                                          PlaneState plane = PlaneState::strain) {
   std::array<Point<E>, E::points> points;
-  for (std::size_t q = 0; q < E::points; ++q) points[q] = Point<E>(x, q);
+  for (std::size_t q = 0; q < E::points; ++q) points[q] = Point<E>(x, q, plane);
   if (!mean_dilatation) return points;
   double volume = 0.0;
   for (const Point<E>& point : points) volume += point.volume;
   for (int a = 0; a < E::nodes; ++a)
     for (int i = 0; i < E::dim; ++i) {
       double sum = 0.0;
-      for (const Point<E>& point : points) sum += point.volume * point.gradient[a][i];
+      for (const Point<E>& point : points) sum += point.volume * point.trace(a, i);
       for (Point<E>& point : points) point.dilatation[a][i] = sum / volume;
     }
   return points;

@@ -9,6 +9,7 @@
 
 #include "cells/dispatch.hpp"
 #include "cells/point.hpp"
+#include "law/plane_stress.hpp"
 #include "multigrid/aggregates.hpp"
 #include "multigrid/held_space.hpp"
 #include "multigrid/node_block.hpp"
@@ -123,9 +124,9 @@ class MotionSums {
     return is_in_level(a, b) ? level_->block(a, b) : others_.at(aggregates_.number(a), aggregates_.number(b));
   }
 
-  /// One within a single aggregate strains nothing, unless some node is bound. (To take the diagonal blocks
-  /// from the others, as a motion of the whole strains nothing, saves half of the products and loses too many
-  /// digits on stretched meshes.)
+  /// One within a single aggregate strains nothing, unless some node is bound or the body is axisymmetric.
+  /// (To take the diagonal blocks from the others, as a motion of the whole strains nothing, saves half of
+  /// the products and loses too many digits on stretched meshes.)
   template <class E>
   void add_element(std::size_t e) {
     constexpr std::size_t npe = E::nodes;
@@ -133,7 +134,7 @@ class MotionSums {
     std::array<std::int32_t, npe> which{};  // the aggregates it touches
     std::array<std::size_t, npe> local{};   // that of each node
     std::size_t count = 0;
-    bool rigid = true;
+    bool rigid = body_.mesh.plane != PlaneState::axisymmetric;
     for (std::size_t a = 0; a < npe; ++a) {
       rigid = rigid && bound_[node[a]] == 0;
       const std::int32_t group = aggregates_.of(node[a]);
@@ -163,12 +164,17 @@ class MotionSums {
         x[a * dim + c] = body_.mesh.coordinates[static_cast<std::size_t>(node[a]) * dim + c];
     }
     const Law& law = body_.law(e);
-    const auto points = elements::points_of<E>(x, law.mean_dilatation);
+    const auto points = elements::points_of<E>(x, law.mean_dilatation, body_.mesh.plane);
     for (std::size_t q = 0; q < E::points; ++q) {
       const auto& point = points[q];
       const auto g = static_cast<double>(static_cast<float>(g_[e * static_cast<std::size_t>(E::points) + q]));
-      const double volume = sign_ * point.volume, shear = 2.0 * g * volume, bulk = law.bulk * volume;
-      add_products_({npe, count, point.gradient[0], point.dilatation[0], z.data(), local.data(), shear, bulk},
+      const double volume = sign_ * point.volume, shear = 2.0 * g * volume,
+                   modulus =
+                       body_.mesh.plane == PlaneState::stress ? plane_stress_bulk(law.bulk, g) : law.bulk,
+                   bulk = modulus * volume;
+      add_products_({npe, count, point.gradient[0], point.dilatation[0],
+                     body_.mesh.plane == PlaneState::axisymmetric ? point.hoop : nullptr, z.data(),
+                     local.data(), shear, bulk},
                     pairs.data(), pair_count);
     }
   }

@@ -30,6 +30,9 @@ const Body& checked(const Body& body, const OperatorOptions& options) {
   for (const Law& law : body.laws)
     if (law.mean_dilatation && !cell(body.mesh.type).mean_dilatation)
       throw std::invalid_argument("laws: mean dilatation (B-bar) is for " + bbar_names() + " only");
+  for (const Law& law : body.laws)
+    if (law.mean_dilatation && body.mesh.plane == PlaneState::stress)
+      throw std::invalid_argument("laws: mean dilatation (B-bar) is not for plane stress");
   return body;
 }
 

@@ -7,6 +7,7 @@
 
 #include "cells/dispatch.hpp"
 #include "cells/point.hpp"
+#include "law/plane_stress.hpp"
 #include "operator/checks.hpp"
 #include "operator/passes.hpp"
 #include "operator/threads.hpp"
@@ -44,8 +45,11 @@ void BasicOperator<Real>::Data::visit_points(const BlockRange& range, const simd
             const std::size_t record = index[(batch * nodes + node) * lanes + lane];
             id[k] = layout.nodes[range.first_node + record / 4];
             for (int c = 0; c < E::dim; ++c) x[Point<E>::at(a, c)] = static_cast<double>(records[record + c]);
+            // Radii count as they are, not from the middle of the block.
+            if (plane == PlaneState::axisymmetric)
+              x[Point<E>::at(a, 0)] = static_cast<double>(records[record + 2]);
           }
-          at = elements::points_of<E>(x, law.mean_dilatation);
+          at = elements::points_of<E>(x, law.mean_dilatation, plane);
         }
         visit(at[fan ? 0 : p], id, law, slot);
       }
@@ -101,7 +105,8 @@ template <class Real>
 void BasicOperator<Real>::block_diagonal(std::span<Real> blocks) const {
   const Data& data = *data_;
   data.sum_blocks(blocks, [&](const auto& point, int a, const Law& law, std::size_t slot, Real* block) {
-    point.add_diagonal_block(a, law.bulk, static_cast<double>(data.secant[slot]), block);
+    const auto secant = static_cast<double>(data.secant[slot]);
+    point.add_diagonal_block(a, data.bulk_at(law, secant), secant, block);
   });
 }
 
@@ -120,7 +125,8 @@ void BasicOperator<Real>::block_diagonal_tangent(std::span<Real> blocks) const {
   const Aligned<Real>& g = data.tangent_secant.empty() ? data.secant : data.tangent_secant;
   const std::size_t lanes = data.layout.lanes;
   data.sum_blocks(blocks, [&](const auto& point, int a, const Law& law, std::size_t slot, Real* block) {
-    point.add_diagonal_block(a, law.bulk, static_cast<double>(g[slot]), block);
+    const auto secant = static_cast<double>(g[slot]);
+    point.add_diagonal_block(a, data.bulk_at(law, secant), secant, block);
     // √|2 g'/x| dev ε, component by component over the lanes; see material.hpp.
     const std::size_t lane = slot % lanes;
     const float* t = data.tangent.data() + simd::tangent_floats * (slot - lane) + lane;

@@ -380,9 +380,14 @@ void fill_coordinates(const Layout& layout, const MeshView& mesh, std::span<Real
       for (std::size_t k = 0; k < 3; ++k)
         coordinates[4 * (block.first_record + i) + k] =
             k < dim ? static_cast<Real>(mesh.coordinates[at(nodes[i]) * dim + k] - middle[k]) : Real(0);
+    // The place that 2D leaves has the radius, which does not count from the middle.
+    for (std::size_t i = 0; i < block.count && mesh.plane == PlaneState::axisymmetric; ++i)
+      coordinates[4 * (block.first_record + i) + 2] = static_cast<Real>(mesh.coordinates[at(nodes[i]) * dim]);
     for (std::size_t i = 0; i < idle.size(); ++i)
       for (std::size_t k = 0; k < 3; ++k)
         coordinates[4 * (block.first_record + block.count + i) + k] = static_cast<Real>(idle[i][k]);
+    for (std::size_t i = 0; i < idle.size() && mesh.plane == PlaneState::axisymmetric; ++i)
+      coordinates[4 * (block.first_record + block.count + i) + 2] = Real(1);
   }
 }
 

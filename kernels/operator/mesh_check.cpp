@@ -64,6 +64,11 @@ std::string arrays_fault(const MeshView& mesh) {
       return "connectivity: element " + std::to_string(i / nodes) + " refers to node " +
              std::to_string(node) + ", counted from 0; the body has " + std::to_string(mesh.node_count());
   }
+  if (mesh.plane != PlaneState::strain && dim != 2)
+    return "plane: expected plane strain, as the mesh is not flat";
+  for (std::size_t i = 0; i < mesh.node_count() && mesh.plane == PlaneState::axisymmetric; ++i)
+    if (mesh.coordinates[2 * i] < 0.0)
+      return "coordinates: node " + std::to_string(i) + " of an axisymmetric mesh has a radius below 0";
   return {};
 }
 

@@ -21,6 +21,13 @@ void in_steps(int vectors, const Some& some) {
   }
 }
 
+/// Their answers at the points are not asked for while the strain across the plane is sought, and outside of
+/// plane strain the loops do not ask for them at all.
+void expect_plane_strain(PlaneState plane) {
+  if (plane != PlaneState::strain)
+    throw std::logic_error("laws of the caller's own are for plane strain and 3D");
+}
+
 }  // namespace
 
 template <class Real>
@@ -190,6 +197,7 @@ double BasicOperator<Real>::residual_energy_update(std::span<const Real> u, std:
 
 template <class Real>
 void BasicOperator<Real>::strain(std::span<const Real> u, std::span<double> x) {
+  expect_plane_strain(data_->plane);
   Data& data = *data_;
   expect_size(u.size(), unknowns(), "u");
   expect_size(x.size(), data.points, "x");
@@ -202,6 +210,7 @@ void BasicOperator<Real>::strain(std::span<const Real> u, std::span<double> x) {
 
 template <class Real>
 void BasicOperator<Real>::update_tangent(std::span<const Real> u, const PointModuli& moduli) {
+  expect_plane_strain(data_->plane);
   Data& data = *data_;
   expect_size(u.size(), unknowns(), "u");
   expect_size(moduli.secant.size(), data.points, "moduli.secant");
@@ -214,6 +223,7 @@ void BasicOperator<Real>::update_tangent(std::span<const Real> u, const PointMod
 template <class Real>
 double BasicOperator<Real>::residual_energy(std::span<const Real> u, const PointModuli& moduli,
                                             std::span<Real> f) {
+  expect_plane_strain(data_->plane);
   Data& data = *data_;
   expect_size(u.size(), unknowns(), "u");
   if (!f.empty()) expect_size(f.size(), unknowns(), "f");

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "law/plane_stress.hpp"
 #include "operator/checks.hpp"
 #include "operator/threads.hpp"
 
@@ -18,6 +19,10 @@ void evaluate(const void* opaque, double x, double* g, double* slope, double* en
   *g = moduli.secant;
   *slope = moduli.derivative;
   if (energy != nullptr) *energy = law.energy(x);
+}
+
+double across(const void* law, double xx, double yy, double xy) {
+  return transverse_strain(*static_cast<const Law*>(law), xx, yy, xy);
 }
 
 /// Calls run(t) for every t < threads, each by one thread where the runtime grants that many, and then, all
@@ -44,13 +49,15 @@ BasicOperator<Real>::Data::Data(const Body& body, const OperatorOptions& options
     : set(simd::choose_instruction_set(options.instruction_set)),
       kernels(simd::kernels<Real>(set)),
       type(body.mesh.type),
+      plane(body.mesh.plane),
       threads(options.threads),
       unknowns(body.unknowns()),
       points(body.secant_count()),
       laws(body.laws.begin(), body.laws.end()),
       layout(make_layout(body, kernels.lanes, threads, 4 * sizeof(Real), options.early)) {
   for (const Law& law : laws)
-    views.push_back({law.bulk, law.secant(0.0), law.yield_strain(), law.mean_dilatation, &law, evaluate});
+    views.push_back(
+        {law.bulk, law.secant(0.0), law.yield_strain(), law.mean_dilatation, &law, evaluate, across});
   coordinates.resize(4 * layout.records());
   fill_coordinates<Real>(layout, body.mesh, coordinates);
   secant.resize(layout.element_point.size());
@@ -69,6 +76,11 @@ BasicOperator<Real>::Data::Data(const Body& body, const OperatorOptions& options
   scratch.resize(threads);
   reserve_scratch(1);
   start_team(threads);
+}
+
+template <class Real>
+double BasicOperator<Real>::Data::bulk_at(const Law& law, double g) const {
+  return plane == PlaneState::stress ? plane_stress_bulk(law.bulk, g) : law.bulk;
 }
 
 template <class Real>
@@ -98,7 +110,8 @@ simd::Block<Real> BasicOperator<Real>::Data::block(std::size_t b) {
           range.first,
           range.again,
           range.count,
-          layout.padding};
+          layout.padding,
+          plane};
 }
 
 template <class Real>

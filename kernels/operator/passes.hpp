@@ -30,6 +30,8 @@ struct BasicOperator<Real>::Data {
   Data& operator=(const Data&) = delete;
 
   std::size_t dim() const { return dimension(type); }
+  /// The bulk modulus that strains within the plane meet.
+  double bulk_at(const Law& law, double g) const;
   simd::Block<Real> block(std::size_t b);
   void reserve_scratch(int count);
   /// To be called before g changes: the tangent frozen last keeps the g it was frozen with.
@@ -59,6 +61,7 @@ struct BasicOperator<Real>::Data {
   simd::InstructionSet set;
   const simd::Kernels<Real>& kernels;
   ElementType type;
+  PlaneState plane;
   int threads;
   std::size_t unknowns, points;
   std::vector<Law> laws;

@@ -6,6 +6,7 @@
 
 #include "cells/dispatch.hpp"
 #include "cells/point.hpp"
+#include "law/plane_stress.hpp"
 
 namespace kacanov {
 
@@ -20,10 +21,13 @@ void element_stiffness(const Body& body, std::size_t element, std::span<const do
     for (int a = 0; a < E::nodes; ++a)
       for (int i = 0; i < E::dim; ++i) x[Point::at(a, i)] = body.mesh.coordinates[Point::at(node[a], i)];
     std::fill_n(matrix.begin(), width * width, 0.0);
-    const auto points = elements::points_of<E>(x, law.mean_dilatation);
+    const auto points = elements::points_of<E>(x, law.mean_dilatation, body.mesh.plane);
     for (std::size_t q = 0; q < E::points; ++q) {
       const Point& point = points[q];
-      const double shear = point.volume * g[q], bulk = point.volume * law.bulk;
+      const double shear = point.volume * g[q],
+                   modulus =
+                       body.mesh.plane == PlaneState::stress ? plane_stress_bulk(law.bulk, g[q]) : law.bulk,
+                   bulk = point.volume * modulus;
       for (int a = 0; a < E::nodes; ++a)
         for (int b = a; b < E::nodes; ++b) {  // the rest by symmetry
           const double* p = point.gradient[a];
@@ -32,11 +36,13 @@ void element_stiffness(const Body& body, std::size_t element, std::span<const do
           const double* mean_r = point.dilatation[b];
           double product = 0.0;
           for (int k = 0; k < E::dim; ++k) product += p[k] * r[k];
+          const double hoop = 2.0 * point.hoop[a] * point.hoop[b];
           for (int i = 0; i < E::dim; ++i)
             for (int j = 0; j < E::dim; ++j)
               matrix[Point::at(a, i) * width + Point::at(b, j)] +=
                   bulk * mean_p[i] * mean_r[j] +
-                  shear * (p[j] * r[i] - 2.0 / 3.0 * p[i] * r[j] + (i == j ? product : 0.0));
+                  shear * (p[j] * r[i] - 2.0 / 3.0 * point.trace(a, i) * point.trace(b, j) +
+                           (i == j ? product + (i == 0 ? hoop : 0.0) : 0.0));
         }
     }
     for (std::size_t row = 0; row < width; ++row)

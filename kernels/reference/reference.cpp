@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "cells/dispatch.hpp"
 #include "cells/point.hpp"
+#include "law/plane_stress.hpp"
+#include "reference/point_strain.hpp"
 
 namespace kacanov::reference {
 namespace {
@@ -17,33 +18,6 @@ namespace {
 using elements::Nodal;
 using elements::Point;
 using elements::points_of;
-
-/// Symmetric 3×3 tensor, components (not engineering shears) xx yy zz xy yz zx.
-using Sym = std::array<double, 6>;
-
-/// A 3×3 view of it; plane strain uses the upper left 2×2.
-double component(const Sym& s, int i, int j) {
-  constexpr int index[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
-  return s[index[i][j]];
-}
-
-double inner(const Sym& a, const Sym& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2.0 * (a[3] * b[3] + a[4] * b[4] + a[5] * b[5]);
-}
-
-struct Strain {
-  double trace = 0.0;
-  Sym dev{};
-  double norm() const { return std::sqrt(inner(dev, dev)); }
-};
-
-/// τ = k0 tr ε I + 2 g dev ε.
-Sym stress(const Law& law, double g, const Strain& strain) {
-  Sym tau;
-  for (std::size_t i = 0; i < 6; ++i)
-    tau[i] = 2.0 * g * strain.dev[i] + (i < 3 ? law.bulk * strain.trace : 0.0);
-  return tau;
-}
 
 /// What the law says at point q of element e, or who speaks in its place.
 template <class E>
@@ -53,46 +27,17 @@ Moduli moduli_at(const Body& body, std::size_t e, std::size_t q, double x) {
   return {body.moduli->secant[k], body.moduli->derivative.empty() ? 0.0 : body.moduli->derivative[k]};
 }
 
-/// Tangent stress of the increment `strain` at the state `at`.
-Sym tangent_stress(const Law& law, const Moduli& moduli, const Strain& at, const Strain& strain) {
-  Sym tau = stress(law, moduli.secant, strain);
-  const double slope = moduli.derivative;
-  if (slope == 0.0) return tau;  // also the limit x → 0 of every law
-  const double factor = 2.0 * slope / at.norm() * inner(at.dev, strain.dev);
-  for (std::size_t i = 0; i < 6; ++i) tau[i] += factor * at.dev[i];
-  return tau;
-}
-
-/// ∂u_i/∂x_k.
-using Gradient = std::array<std::array<double, 3>, 3>;
-
 template <class E>
 Gradient gradient_at(const Point<E>& point, const Nodal<E>& u) {
   Gradient h{};
   for (int a = 0; a < E::nodes; ++a)
     for (int i = 0; i < E::dim; ++i)
       for (int k = 0; k < E::dim; ++k) h[i][k] += u[point.at(a, i)] * point.gradient[a][k];
+  for (int a = 0; a < E::nodes; ++a) h[2][2] += u[point.at(a, 0)] * point.hoop[a];
   return h;
 }
 
-/// The largest magnitude of an eigenvalue of the symmetric part, by Cardano's formulas.
-double largest_principal(const Gradient& h) {
-  const double mean = (h[0][0] + h[1][1] + h[2][2]) / 3.0;
-  const double a = h[0][0] - mean, b = h[1][1] - mean, c = h[2][2] - mean;
-  const double d = 0.5 * (h[0][1] + h[1][0]), e = 0.5 * (h[1][2] + h[2][1]), f = 0.5 * (h[2][0] + h[0][2]);
-  const double p = std::sqrt((a * a + b * b + c * c + 2.0 * (d * d + e * e + f * f)) / 6.0);
-  if (!(p > 0.0)) return std::abs(mean);
-  const double det = a * (b * c - e * e) - d * (d * c - e * f) + f * (d * e - b * f);
-  const double angle = std::acos(std::clamp(0.5 * det / (p * p * p), -1.0, 1.0)) / 3.0;
-  const double third = 2.0 * std::numbers::pi / 3.0;
-  return std::max(std::abs(mean + 2.0 * p * std::cos(angle)),
-                  std::abs(mean + 2.0 * p * std::cos(angle + third)));
-}
-
-double rotation_angle(const Gradient& h) {
-  return 0.5 * std::hypot(h[2][1] - h[1][2], h[0][2] - h[2][0], h[1][0] - h[0][1]);
-}
-
+/// In plane stress without the strain across the plane: across() has it.
 template <class E>
 Strain strain_at(const Point<E>& point, const Nodal<E>& u) {
   const Gradient h = gradient_at<E>(point, u);
@@ -105,13 +50,40 @@ Strain strain_at(const Point<E>& point, const Nodal<E>& u) {
   return s;
 }
 
+/// As strain_at, whole in plane stress too, where it is that of the frozen g.
+Strain across(const Body& body, const Law& law, double g, const Strain& strain) {
+  if (body.mesh.plane != PlaneState::stress) return strain;
+  return stretched(strain, -transverse_ratio(law.bulk, g) * strain.trace);
+}
+
+/// The same for the true law, or for what is said in its place.
+template <class E>
+Strain across(const Body& body, std::size_t e, std::size_t q, const Strain& strain) {
+  if (body.mesh.plane != PlaneState::stress) return strain;
+  if (body.moduli != nullptr)
+    return across(body, body.law(e), body.moduli->secant[e * E::points + q], strain);
+  const double third = strain.trace / 3.0;
+  return stretched(
+      strain, transverse_strain(body.law(e), strain.dev[0] + third, strain.dev[1] + third, strain.dev[3]));
+}
+
+/// The same of an increment as strain_at has it; in plane stress nothing acts across the plane.
+Sym tangent_stress(const Body& body, const Law& law, const Moduli& moduli, const Strain& at,
+                   const Strain& strain) {
+  const Sym tau = tangent_stress(law, moduli, at, strain);
+  if (body.mesh.plane != PlaneState::stress) return tau;
+  const Sym of_unit = tangent_stress(law, moduli, at, stretched({}, 1.0));
+  return tangent_stress(law, moduli, at, stretched(strain, -tau[2] / of_unit[2]));
+}
+
 /// f += the forces of the stress τ at this point.
 template <class E>
 void add_force(const Point<E>& point, const Sym& tau, Nodal<E>& f) {
   const double mean = (tau[0] + tau[1] + tau[2]) / 3.0;
   for (int a = 0; a < E::nodes; ++a)
     for (int i = 0; i < E::dim; ++i) {
-      f[point.at(a, i)] += point.volume * mean * (point.dilatation[a][i] - point.gradient[a][i]);
+      f[point.at(a, i)] += point.volume * mean * (point.dilatation[a][i] - point.trace(a, i));
+      if (i == 0) f[point.at(a, i)] += point.volume * tau[2] * point.hoop[a];
       for (int k = 0; k < E::dim; ++k)
         f[point.at(a, i)] += point.volume * component(tau, i, k) * point.gradient[a][k];
     }
@@ -137,13 +109,18 @@ void scatter_add(const Body& body, std::size_t element, const Nodal<E>& local, s
     for (int i = 0; i < E::dim; ++i) values[Point<E>::at(node[a], i)] += local[Point<E>::at(a, i)];
 }
 
-/// Calls visit(element, law, point index, point, strain of `u`) for every quadrature point.
+/// The bulk modulus that strains within the plane meet.
+double bulk_at(const Body& body, const Law& law, double g) {
+  return body.mesh.plane == PlaneState::stress ? plane_stress_bulk(law.bulk, g) : law.bulk;
+}
+
+/// Calls visit(element, law, point index, point, strain of `u` as strain_at has it) for every point.
 template <class E, class Visit>
 void for_each_point(const Body& body, std::span<const double> u, Visit&& visit) {
   for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
     const Nodal<E> x = gather<E>(body, e, body.mesh.coordinates);
     const Nodal<E> local = gather<E>(body, e, u);
-    const auto points = points_of<E>(x, body.law(e).mean_dilatation);
+    const auto points = points_of<E>(x, body.law(e).mean_dilatation, body.mesh.plane);
     for (std::size_t q = 0; q < E::points; ++q)
       visit(e, body.law(e), q, points[q], strain_at<E>(points[q], local));
   }
@@ -168,7 +145,7 @@ void fill_matrix(const Body& body, std::size_t element, std::span<double> matrix
   const Nodal<E> x = gather<E>(body, element, body.mesh.coordinates);
   constexpr std::size_t n = std::tuple_size_v<Nodal<E>>;
   std::fill(matrix.begin(), matrix.end(), 0.0);
-  const auto points = points_of<E>(x, body.law(element).mean_dilatation);
+  const auto points = points_of<E>(x, body.law(element).mean_dilatation, body.mesh.plane);
   for (std::size_t q = 0; q < E::points; ++q) {
     const Point<E>& point = points[q];
     for (std::size_t column = 0; column < n; ++column) {
@@ -185,8 +162,9 @@ void fill_matrix(const Body& body, std::size_t element, std::span<double> matrix
 void secant(const Body& body, std::span<const double> u, std::span<double> g) {
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     for_each_point<E>(body, u,
-                      [&](std::size_t e, const Law&, std::size_t q, const Point<E>&, const Strain& strain) {
-                        g[e * E::points + q] = moduli_at<E>(body, e, q, strain.norm()).secant;
+                      [&](std::size_t e, const Law&, std::size_t q, const Point<E>&, const Strain& plane) {
+                        const double x = across<E>(body, e, q, plane).norm();
+                        g[e * E::points + q] = moduli_at<E>(body, e, q, x).secant;
                       });
   });
 }
@@ -195,7 +173,8 @@ void apply(const Body& body, std::span<const double> g, std::span<const double> 
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     assemble<E>(body, x, y,
                 [&](std::size_t e, const Law& law, std::size_t q, const Point<E>&, const Strain& strain) {
-                  return stress(law, g[e * E::points + q], strain);
+                  const double at = g[e * E::points + q];
+                  return stress(law, at, across(body, law, at, strain));
                 });
   });
 }
@@ -206,8 +185,8 @@ void apply_tangent(const Body& body, std::span<const double> u, std::span<const 
     assemble<E>(
         body, x, y,
         [&](std::size_t e, const Law& law, std::size_t q, const Point<E>& point, const Strain& strain) {
-          const Strain at = strain_at<E>(point, gather<E>(body, e, u));
-          return tangent_stress(law, moduli_at<E>(body, e, q, at.norm()), at, strain);
+          const Strain at = across<E>(body, e, q, strain_at<E>(point, gather<E>(body, e, u)));
+          return tangent_stress(body, law, moduli_at<E>(body, e, q, at.norm()), at, strain);
         });
   });
 }
@@ -225,11 +204,12 @@ void block_diagonal(const Body& body, std::span<const double> g, std::span<doubl
     for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
       const Nodal<E> x = gather<E>(body, e, body.mesh.coordinates);
       const std::int32_t* node = nodes_of(body, e);
-      const auto points = points_of<E>(x, body.law(e).mean_dilatation);
+      const auto points = points_of<E>(x, body.law(e).mean_dilatation, body.mesh.plane);
       for (std::size_t q = 0; q < E::points; ++q) {
         const Point<E>& point = points[q];
+        const double secant = g[e * E::points + q];
         for (int a = 0; a < E::nodes; ++a)
-          point.add_diagonal_block(a, body.law(e).bulk, g[e * E::points + q],
+          point.add_diagonal_block(a, bulk_at(body, body.law(e), secant), secant,
                                    blocks.data() + Point<E>::at(node[a], 0) * E::dim);
       }
     }
@@ -241,14 +221,22 @@ void block_diagonal_tangent(const Body& body, std::span<const double> u, std::sp
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     for_each_point<E>(
         body, u,
-        [&](std::size_t e, const Law& law, std::size_t q, const Point<E>& point, const Strain& strain) {
+        [&](std::size_t e, const Law& law, std::size_t q, const Point<E>& point, const Strain& plane) {
           const std::int32_t* node = nodes_of(body, e);
+          const Strain strain = across<E>(body, e, q, plane);
           const double x = strain.norm();
           const auto [g, slope] = moduli_at<E>(body, e, q, x);
+          double factor = slope != 0.0 ? 2.0 * slope / x : 0.0;
+          Sym d = strain.dev;
+          if (body.mesh.plane == PlaneState::stress) {
+            const PlaneTerm term = condensed(law.bulk, g, factor, {d[0], d[1], d[2], d[3]});
+            factor = term.factor;
+            d = {term.xx, term.yy, 0.0, term.xy, 0.0, 0.0};
+          }
           for (int a = 0; a < E::nodes; ++a) {
             double* block = blocks.data() + Point<E>::at(node[a], 0) * E::dim;
-            point.add_diagonal_block(a, law.bulk, g, block);
-            if (slope != 0.0) point.add_rank_one_block(a, 2.0 * slope / x, strain.dev, block);
+            point.add_diagonal_block(a, bulk_at(body, law, g), g, block);
+            if (slope != 0.0) point.add_rank_one_block(a, factor, d, block);
           }
         });
   });
@@ -257,7 +245,8 @@ void block_diagonal_tangent(const Body& body, std::span<const double> u, std::sp
 void residual(const Body& body, std::span<const double> u, std::span<double> f) {
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     assemble<E>(body, u, f,
-                [&](std::size_t e, const Law& law, std::size_t q, const Point<E>&, const Strain& strain) {
+                [&](std::size_t e, const Law& law, std::size_t q, const Point<E>&, const Strain& plane) {
+                  const Strain strain = across<E>(body, e, q, plane);
                   return stress(law, moduli_at<E>(body, e, q, strain.norm()).secant, strain);
                 });
   });
@@ -268,7 +257,8 @@ double energy(const Body& body, std::span<const double> u) {
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     for_each_point<E>(
         body, u,
-        [&](std::size_t e, const Law& law, std::size_t q, const Point<E>& point, const Strain& strain) {
+        [&](std::size_t e, const Law& law, std::size_t q, const Point<E>& point, const Strain& plane) {
+          const Strain strain = across<E>(body, e, q, plane);
           const double shear =
               body.moduli == nullptr ? law.energy(strain.norm()) : body.moduli->energy[e * E::points + q];
           sum += point.volume * (0.5 * law.bulk * strain.trace * strain.trace + 2.0 * shear);
@@ -282,7 +272,7 @@ void element_matrix(const Body& body, std::size_t element, std::span<const doubl
   const Law& law = body.law(element);
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     fill_matrix<E>(body, element, matrix, [&](std::size_t q, const Point<E>&, const Strain& strain) {
-      return stress(law, g[q], strain);
+      return stress(law, g[q], across(body, law, g[q], strain));
     });
   });
 }
@@ -293,8 +283,8 @@ void element_tangent(const Body& body, std::size_t element, std::span<const doub
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     const Nodal<E> local = gather<E>(body, element, u);
     fill_matrix<E>(body, element, matrix, [&](std::size_t q, const Point<E>& point, const Strain& strain) {
-      const Strain at = strain_at<E>(point, local);
-      return tangent_stress(law, moduli_at<E>(body, element, q, at.norm()), at, strain);
+      const Strain at = across<E>(body, element, q, strain_at<E>(point, local));
+      return tangent_stress(body, law, moduli_at<E>(body, element, q, at.norm()), at, strain);
     });
   });
 }
@@ -304,7 +294,7 @@ void volumes(const Body& body, std::span<double> volume) {
     for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
       const Nodal<E> x = gather<E>(body, e, body.mesh.coordinates);
       volume[e] = 0.0;
-      for (std::size_t q = 0; q < E::points; ++q) volume[e] += Point<E>(x, q).volume;
+      for (std::size_t q = 0; q < E::points; ++q) volume[e] += Point<E>(x, q, body.mesh.plane).volume;
     }
   });
 }
@@ -318,10 +308,10 @@ void fields(const Body& body, std::span<const double> u, const ElementFields& ou
       Sym tau{};
       double volume = 0.0, dev_strain = 0.0, g_mean = 0.0, von_mises = 0.0, largest = 0.0, rotation = 0.0;
       bool plastic = false;
-      const auto points = points_of<E>(x, law.mean_dilatation);
+      const auto points = points_of<E>(x, law.mean_dilatation, body.mesh.plane);
       for (std::size_t q = 0; q < E::points; ++q) {
         const Point<E>& point = points[q];
-        const Strain strain = strain_at<E>(point, local);
+        const Strain strain = across<E>(body, e, q, strain_at<E>(point, local));
         const double norm = strain.norm(), g = moduli_at<E>(body, e, q, norm).secant;
         const Sym point_tau = stress(law, g, strain);
         for (std::size_t i = 0; i < 6; ++i) tau[i] += point.volume * point_tau[i];
@@ -331,7 +321,8 @@ void fields(const Body& body, std::span<const double> u, const ElementFields& ou
         von_mises += point.volume * std::sqrt(1.5) * 2.0 * g * norm;
         plastic = plastic || law.plastic(norm);
         if (out.strain.empty() && out.rotation.empty()) continue;
-        const Gradient h = gradient_at<E>(point, local);
+        Gradient h = gradient_at<E>(point, local);
+        if (body.mesh.plane == PlaneState::stress) h[2][2] = strain.dev[2] + strain.trace / 3.0;
         largest = std::max(largest, largest_principal(h));
         rotation = std::max(rotation, rotation_angle(h));
       }
@@ -350,7 +341,8 @@ void fields(const Body& body, std::span<const double> u, const ElementFields& ou
 void strains(const Body& body, std::span<const double> u, std::span<double> out) {
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     for_each_point<E>(
-        body, u, [&](std::size_t e, const Law&, std::size_t q, const Point<E>&, const Strain& strain) {
+        body, u, [&](std::size_t e, const Law&, std::size_t q, const Point<E>&, const Strain& plane) {
+          const Strain strain = across<E>(body, e, q, plane);
           for (std::size_t i = 0; i < 6; ++i)
             out[6 * (e * E::points + q) + i] = strain.dev[i] + (i < 3 ? strain.trace / 3.0 : 0.0);
         });
@@ -362,7 +354,7 @@ void points(const Body& body, std::span<double> position, std::span<double> weig
     for (std::size_t k = 0; k < body.mesh.element_count() * E::points; ++k) {
       const std::size_t q = k % E::points;
       const Nodal<E> x = gather<E>(body, k / E::points, body.mesh.coordinates);
-      if (!weight.empty()) weight[k] = Point<E>(x, q).volume;
+      if (!weight.empty()) weight[k] = Point<E>(x, q, body.mesh.plane).volume;
       const auto shape = E::values(E::point[q].data());
       for (std::size_t i = 0; i < E::dim && !position.empty(); ++i) {
         position[k * E::dim + i] = 0.0;
@@ -376,8 +368,9 @@ void point_fields(const Body& body, std::span<const double> u, const PointFields
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     for_each_point<E>(
         body, u,
-        [&](std::size_t e, const Law& law, std::size_t q, const Point<E>& point, const Strain& strain) {
+        [&](std::size_t e, const Law& law, std::size_t q, const Point<E>& point, const Strain& plane) {
           const std::size_t k = e * E::points + q;
+          const Strain strain = across<E>(body, e, q, plane);
           const Sym tau = stress(law, moduli_at<E>(body, e, q, strain.norm()).secant, strain);
           std::copy(tau.begin(), tau.end(), &out.stress[6 * k]);
           for (std::size_t i = 0; i < 6; ++i)

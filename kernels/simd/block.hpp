@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <kacanov/cells.hpp>
+#include <kacanov/mesh_view.hpp>
 
 namespace kacanov::simd {
 
@@ -23,6 +23,8 @@ struct LawView {
   const void* law;       ///< handed back to `evaluate`
   /// g and dg/dx at the strain norm x, and G unless `energy` is null.
   void (*evaluate)(const void* law, double x, double* g, double* slope, double* energy);
+  /// The strain across the plane that leaves no stress there (theory: plane-stress).
+  double (*across)(const void* law, double xx, double yy, double xy);
 };
 
 /// Batches of one shape, length and law, one unit a lane.
@@ -55,7 +57,8 @@ struct Outside {
   }
 };
 
-/// Local nodes are records of four values, the last one unused. `index` holds, batch by batch, node by
+/// Local nodes are records of four values, the last one unused; of axisymmetric coordinates the third is the
+/// radius. `index` holds, batch by batch, node by
 /// node, lane by lane, the offset of a record (four times the local node). `secant` holds, batch by batch,
 /// point by point, lane by lane, g; `tangent` as many vectors (xx yy xy yz zx, see material.hpp) as
 /// tangent_floats for each.
@@ -74,6 +77,7 @@ struct Block {
   std::uint32_t again;         ///< [first, again) were met before, [again, count) are other threads' too
   std::uint32_t count;
   std::uint32_t padding;  ///< records behind `count` that lanes without a unit work on
+  PlaneState plane = PlaneState::strain;
   Outside<Real> outside = {};
 };
 

@@ -25,13 +25,30 @@ constexpr ReferenceGradients<E, Real> reference_gradients() {
   return table;
 }
 
-/// Geometry of all points first, then every input vector, as for fans.
-template <class L, class Real, class E, class Material>
+/// N at a point, points × nodes.
+template <class E, class Real>
+struct ReferenceValues {
+  Real at[E::points][E::nodes];
+};
+
+template <class E, class Real>
+constexpr ReferenceValues<E, Real> reference_values() {
+  ReferenceValues<E, Real> table{};
+  for (int q = 0; q < E::points; ++q) {
+    const auto n = E::values(&E::point[q][0]);
+    for (int a = 0; a < E::nodes; ++a) table.at[q][a] = static_cast<Real>(n[a]);
+  }
+  return table;
+}
+
+/// Geometry of all points first, then every input vector, as for fans. `round`: axisymmetric.
+template <class L, class Real, class E, bool round = false, class Material>
 inline void element_loop(const Block<Real>& block, const Group& group, const Material& material,
                          Vectors<Real> vectors) {
   using V = typename L::V;
   constexpr int width = L::width;
   static constexpr auto gradients = reference_gradients<E, Real>();
+  [[maybe_unused]] static constexpr auto values = reference_values<E, Real>();
   bool mean = false;  // B-bar
   if constexpr (E::mean_dilatation) mean = block.laws[group.law].mean_dilatation;
   const auto choose = [&]() -> decltype(auto) {
@@ -47,6 +64,8 @@ inline void element_loop(const Block<Real>& block, const Group& group, const Mat
     fetch_ahead(at, E::nodes * width);
     material.fetch_ahead(point, E::points * width);
     V c[E::points][3][3], det[E::points], w[E::points];  // c: det ∇ξ_k
+    // The full circle's length, and det/r: the hoop strain is u_x/r.
+    [[maybe_unused]] V circle[E::points], hoop[E::points];
     {
       V x[E::nodes][3];
       for (int a = 0; a < E::nodes; ++a) L::load3(block.coordinates, at + a * width, x[a]);
@@ -59,6 +78,13 @@ inline void element_loop(const Block<Real>& block, const Group& group, const Mat
         for (int k = 0; k < 3; ++k) cross(j[(k + 1) % 3], j[(k + 2) % 3], c[q][k]);
         det[q] = inner(j[0], c[q][0]);
         w[q] = Real(E::weight) / det[q];
+        if constexpr (round) {
+          V r{};
+          for (int a = 0; a < E::nodes; ++a) r += x[a][2] * values.at[q][a];
+          circle[q] = Real(6.28318530717958647693) * r;
+          hoop[q] = det[q] / r;
+          w[q] *= circle[q];
+        }
       }
     }
     for (int v = 0; v < vectors.count; ++v) {
@@ -73,6 +99,11 @@ inline void element_loop(const Block<Real>& block, const Group& group, const Mat
           for (int i = 0; i < E::dim; ++i)
             for (int m = 0; m < E::dim; ++m) h[3 * i + m] += slope[i] * c[q][k][m];
         }
+        if constexpr (round) {
+          V along{};
+          for (int a = 0; a < E::nodes; ++a) along += d[a][0] * values.at[q][a];
+          h[8] = along * hoop[q];
+        }
       };
       [[maybe_unused]] V pressure{};  // weight times that of the mean dilatation
       if constexpr (E::mean_dilatation)
@@ -81,8 +112,10 @@ inline void element_loop(const Block<Real>& block, const Group& group, const Mat
           for (int q = 0; q < E::points; ++q) {
             V h[9] = {};
             displacement_gradient(q, h);
-            change += h[0] + h[4] + h[8];
-            volume += det[q];
+            if constexpr (round)
+              change += circle[q] * (h[0] + h[4] + h[8]), volume += circle[q] * det[q];
+            else
+              change += h[0] + h[4] + h[8], volume += det[q];
           }
           pressure = Real(E::weight) * material.bulk() * change / volume;
           material.add_energy(Real(0.5) * pressure * change);
@@ -90,9 +123,22 @@ inline void element_loop(const Block<Real>& block, const Group& group, const Mat
       for (int q = 0; q < E::points; ++q) {
         V h[9] = {};
         displacement_gradient(q, h);
-        Sym<V> s =
-            at_point.stress(strain_of(h), det[q], w[q], Real(E::weight), point + static_cast<std::size_t>(q));
-        if constexpr (E::mean_dilatation) s.xx += pressure, s.yy += pressure, s.zz += pressure;
+        const std::size_t place = point + static_cast<std::size_t>(q);
+        Sym<V> s;
+        if constexpr (round)
+          s = at_point.stress(strain_of(h), det[q], w[q], Real(E::weight) * circle[q], place);
+        else
+          s = at_point.stress(strain_of(h), det[q], w[q], Real(E::weight), place);
+        if constexpr (E::mean_dilatation && round) {
+          const V here = pressure * circle[q];
+          s.xx += here, s.yy += here, s.zz += here;
+        } else if constexpr (E::mean_dilatation) {
+          s.xx += pressure, s.yy += pressure, s.zz += pressure;
+        }
+        if constexpr (round) {
+          const V t = s.zz * hoop[q];
+          for (int a = 0; a < E::nodes; ++a) force[a][0] += t * values.at[q][a];
+        }
         for (int k = 0; k < E::dim; ++k) {
           V t[3];
           multiply(s, c[q][k], t);

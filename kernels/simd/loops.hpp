@@ -9,6 +9,7 @@
 namespace {
 
 using kacanov::ElementType;
+using kacanov::PlaneState;
 using kacanov::elements::Quad4;
 using kacanov::elements::Tet10;
 using kacanov::elements::Tri3;
@@ -121,13 +122,46 @@ struct Loops {
     }
   }
 
+  /// The same of meshes in 2D that are not of plane strain.
+  template <bool round, class MakeMaterial>
+  static void sweep_plane(const Block<Real>& block, const Vectors<Real>& vectors, MakeMaterial&& make) {
+    for (std::size_t i = 0; i < block.group_count; ++i) {
+      const Group& group = block.groups[i];
+      const auto material = make(group);
+      if (group.type == ElementType::quad4)
+        element_loop<L, Real, Quad4, round>(block, group, material, vectors);
+      else
+        element_loop<L, Real, Tri3, round>(block, group, material, vectors);
+    }
+  }
+
   static void apply(const Block<Real>& block, const Vectors<Real>& vectors) {
+    if (block.plane == PlaneState::stress)
+      return sweep_plane<false>(
+          block, vectors, [&](const Group& group) { return SecantMaterial<L, Real, true>(block, group); });
+    if (block.plane == PlaneState::axisymmetric)
+      return sweep_plane<true>(block, vectors,
+                               [&](const Group& group) { return SecantMaterial<L, Real>(block, group); });
     sweep(block, vectors, [&](const Group& group) { return SecantMaterial<L, Real>(block, group); });
   }
   static void apply_tangent(const Block<Real>& block, const Vectors<Real>& vectors) {
+    if (block.plane == PlaneState::stress)
+      return sweep_plane<false>(
+          block, vectors, [&](const Group& group) { return TangentMaterial<L, Real, true>(block, group); });
+    if (block.plane == PlaneState::axisymmetric)
+      return sweep_plane<true>(block, vectors,
+                               [&](const Group& group) { return TangentMaterial<L, Real>(block, group); });
     sweep(block, vectors, [&](const Group& group) { return TangentMaterial<L, Real>(block, group); });
   }
   static void nonlinear(const Block<Real>& block, const Real* u, Real* f, Nonlinear* out) {
+    if (block.plane == PlaneState::stress)
+      return sweep_plane<false>(block, {u, f}, [&](const Group& group) {
+        return NonlinearMaterial<L, Real, false, true>(block, group, *out);
+      });
+    if (block.plane == PlaneState::axisymmetric)
+      return sweep_plane<true>(block, {u, f}, [&](const Group& group) {
+        return NonlinearMaterial<L, Real, false>(block, group, *out);
+      });
     if (block.outside.strain != nullptr || block.outside.secant != nullptr)
       sweep(block, {u, f},
             [&](const Group& group) { return NonlinearMaterial<L, Real, true>(block, group, *out); });

@@ -84,7 +84,15 @@ KACANOV_INLINE inline Sym<V> frozen_stress(const Sym<V>& e, V g, V bulk, V w) {
   return {gg2 * e.xx + mean, gg2 * e.yy + mean, gg2 * e.zz + mean, gg * e.xy, gg * e.yz, gg * e.zx};
 }
 
-template <class L, class Real>
+/// plane_stress_bulk() of the lanes.
+template <class L, class Real, class V = typename L::V>
+KACANOV_INLINE inline V bulk_in_plane(V bulk, V g) {
+  return g * Real(4.0 / 3.0) * (Real(6) * bulk - g) / (Real(3) * bulk + Real(4) * g);
+}
+
+// With `in_plane` no stress acts across the plane (theory: plane-stress), and strains have no zz.
+
+template <class L, class Real, bool in_plane = false>
 struct SecantMaterial {
   static constexpr bool frozen = true;
   using V = typename L::V;
@@ -100,22 +108,30 @@ struct SecantMaterial {
     other.k0 = V{};
     return other;
   }
+  V bulk_at(V g) const {
+    if constexpr (in_plane)
+      return bulk_in_plane<L, Real>(k0, g);
+    else
+      return k0;
+  }
   /// Energies of the mean dilatation count in the true law only.
   void add_energy(V) const {}
 
   KACANOV_INLINE void fetch_ahead(std::size_t point, int count) const {
     ::fetch_ahead(secant + point * L::width, count);
   }
-  KACANOV_INLINE Sym<V> stress(const Sym<V>& e, V, V w, Real, std::size_t point) const {
-    return frozen_stress<L, Real>(e, L::load(secant + point * L::width), k0, w);
+  template <class Weight>
+  KACANOV_INLINE Sym<V> stress(const Sym<V>& e, V, V w, Weight, std::size_t point) const {
+    const V g = L::load(secant + point * L::width);
+    return frozen_stress<L, Real>(e, g, bulk_at(g), w);
   }
 };
 
-template <class L, class Real>
+template <class L, class Real, bool in_plane = false>
 struct TangentMaterial {
   static constexpr bool frozen = true;
   using V = typename L::V;
-  SecantMaterial<L, Real> base;
+  SecantMaterial<L, Real, in_plane> base;
   const float* tangent;
 
   TangentMaterial(const Block<Real>& block, const Group& group)
@@ -133,8 +149,10 @@ struct TangentMaterial {
     base.fetch_ahead(point, count);
     ::fetch_ahead(tangent + tangent_floats * point * L::width, tangent_floats * count);
   }
-  KACANOV_INLINE Sym<V> stress(const Sym<V>& e, V, V w, Real, std::size_t point) const {
-    Sym<V> s = frozen_stress<L, Real>(e, L::load(base.secant + point * L::width), base.k0, w);
+  template <class Weight>
+  KACANOV_INLINE Sym<V> stress(const Sym<V>& e, V, V w, Weight, std::size_t point) const {
+    const V g = L::load(base.secant + point * L::width);
+    Sym<V> s = frozen_stress<L, Real>(e, g, base.bulk_at(g), w);
     const float* t = tangent + tangent_floats * point * L::width;
     const V xx = L::widen(t), yy = L::widen(t + L::width), xy = L::widen(t + 2 * L::width),
             yz = L::widen(t + 3 * L::width), zx = L::widen(t + 4 * L::width);
@@ -148,7 +166,7 @@ struct TangentMaterial {
 
 /// With `by_others` the law is asked elsewhere (Block::outside): built apart, as the mere question whether it
 /// is costs the others a fifth of a hex8's residual.
-template <class L, class Real, bool by_others>
+template <class L, class Real, bool by_others, bool in_plane = false>
 struct NonlinearMaterial {
   static constexpr bool frozen = false;
   using V = typename L::V;
@@ -179,10 +197,14 @@ struct NonlinearMaterial {
   }
 
   KACANOV_INLINE void fetch_ahead(std::size_t, int) const {}
-  KACANOV_INLINE Sym<V> stress(const Sym<V>& e, V det, V w, Real weight, std::size_t point) const {
+  /// `weight` is a number, or one a lane in axisymmetric bodies.
+  template <class Weight>
+  KACANOV_INLINE Sym<V> stress(const Sym<V>& e, V det, V w, Weight weight, std::size_t point) const {
     const V inverse = w * (Real(1) / weight), half = Real(0.5) * inverse;
-    const V trace = (e.xx + e.yy + e.zz) * inverse, mean = trace * Real(1.0 / 3.0);
-    const V xx = e.xx * inverse - mean, yy = e.yy * inverse - mean, zz = e.zz * inverse - mean;
+    V e_zz = e.zz * inverse;
+    if constexpr (in_plane) e_zz = across(e.xx * inverse, e.yy * inverse, e.xy * half);
+    const V trace = (e.xx + e.yy) * inverse + e_zz, mean = trace * Real(1.0 / 3.0);
+    const V xx = e.xx * inverse - mean, yy = e.yy * inverse - mean, zz = e_zz - mean;
     const V xy = e.xy * half, yz = e.yz * half, zx = e.zx * half;
     const V x = L::sqrt(xx * xx + yy * yy + zz * zz + Real(2) * (xy * xy + yz * yz + zx * zx));
     const std::size_t slot = point * L::width;
@@ -206,8 +228,46 @@ struct NonlinearMaterial {
     }
     add_energy(det * weight * (Real(0.5 * k0) * trace * trace + Real(2) * energy));
     if (out.keep_secant) L::store(secant + slot, g);
-    if (out.keep_tangent) keep(Sym<V>{xx, yy, zz, xy, yz, zx}, x, slope, tangent + tangent_floats * slot);
-    return frozen_stress<L, Real>(e, g, bulk(), w);
+    if constexpr (in_plane) {
+      if (out.keep_tangent)
+        keep_in_plane(Sym<V>{xx, yy, zz, xy, yz, zx}, x, {g, slope}, tangent + tangent_floats * slot);
+      return frozen_stress<L, Real>(e, g, bulk_in_plane<L, Real>(bulk(), g), w);
+    } else {
+      if (out.keep_tangent) keep(Sym<V>{xx, yy, zz, xy, yz, zx}, x, slope, tangent + tangent_floats * slot);
+      return frozen_stress<L, Real>(e, g, bulk(), w);
+    }
+  }
+
+  /// The strain across the plane that leaves no stress there.
+  V across(V xx, V yy, V xy) const {
+    const auto ratio = Real((3.0 * k0 - 2.0 * law.shear) / (3.0 * k0 + 4.0 * law.shear));
+    const V plane = xx + yy, mean = plane * ((Real(1) - ratio) * Real(1.0 / 3.0));
+    V zz = plane * -ratio;
+    const V a = xx - mean, b = yy - mean, c = zz - mean;
+    const V x = L::sqrt(a * a + b * b + c * c + Real(2) * xy * xy);
+    for (int l = 0; l < L::width; ++l)
+      if (double(x[l]) > law.elastic)
+        zz[l] = Real(law.across(law.law, double(xx[l]), double(yy[l]), double(xy[l])));
+    return zz;
+  }
+
+  /// As keep(), of what plane stress leaves of the term within the plane: condensed() of the lanes.
+  struct At {
+    V g, slope;
+  };
+  void keep_in_plane(const Sym<V>& dev, V x, const At& at, float* t) const {
+    for (int l = 0; l < L::width; ++l) {
+      const double g = double(at.g[l]), slope = double(at.slope[l]), zz = double(dev.zz[l]);
+      const double factor = slope != 0.0 ? 2.0 * slope / double(x[l]) : 0.0;
+      const double left = factor / (1.0 + factor * zz * zz / (k0 + 4.0 / 3.0 * g));
+      const double share = (3.0 * k0 - 2.0 * g) / (3.0 * k0 + 4.0 * g) * zz;
+      const double values[tangent_floats] = {double(dev.xx[l]) - share, double(dev.yy[l]) - share,
+                                             double(dev.xy[l]), 0.0, 0.0};
+      const bool turn = std::signbit(values[0]) != (slope > 0.0);
+      const double length = std::sqrt(std::abs(left));
+      for (int k = 0; k < tangent_floats; ++k)
+        t[k * L::width + l] = static_cast<float>(length * (turn ? -values[k] : values[k]));
+    }
   }
 
   /// √|2 g' x| dev ε/x, turned so that its first component has the sign bit of g' < 0; zero where g' is.

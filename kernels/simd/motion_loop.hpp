@@ -23,7 +23,7 @@ void add_products(const MotionPoint<M>& point, const MotionPair* pairs, std::siz
   using Vector = typename Motions<M>::Vector;
   constexpr std::size_t dim = MotionPoint<M>::dim;
   // Strains xx, yy, zz, √2 xy, √2 yz, √2 zx, so that the product of two is that of the tensors (zz is zero in
-  // 2D), and the dilatation that k0 acts on.
+  // 2D unless bodies are axisymmetric), and the dilatation that k0 acts on.
   Vector strain[most_nodes][7], stress[most_nodes][7];
   for (std::size_t k = 0; k < point.groups; ++k)
     for (std::size_t c = 0; c < 7; ++c) strain[k][c] = Vector{};
@@ -37,6 +37,8 @@ void add_products(const MotionPoint<M>& point, const MotionPair* pairs, std::siz
       s[6] += mean[c] * z[c];
     }
     s[3] += d[0] * z[1] + d[1] * z[0];
+    if constexpr (dim == 2)
+      if (point.hoop != nullptr) s[2] += point.hoop[a] * z[0];
     if constexpr (dim == 3) {
       s[4] += d[1] * z[2] + d[2] * z[1];
       s[5] += d[2] * z[0] + d[0] * z[2];

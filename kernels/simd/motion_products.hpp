@@ -24,6 +24,7 @@ struct MotionPoint {
   std::size_t nodes = 0, groups = 0;   ///< at most 10
   const double* gradient = nullptr;    ///< nodes × dim
   const double* dilatation = nullptr;  ///< nodes × dim, of tr ε; `gradient` again unless they differ
+  const double* hoop = nullptr;        ///< nodes; null: not axisymmetric
   const Rows* rows = nullptr;          ///< of every node
   const std::size_t* group = nullptr;  ///< of every node, from 0
   double shear = 0.0, bulk = 0.0;      ///< 2 g and k0, times the volume of the point

@@ -94,7 +94,7 @@ std::string element_names(bool (*wanted)(const Cell&));
 /// Names of those that have a B-bar form.
 std::string bbar_names();
 
-/// Space dimension of an element: 2 (plane strain) or 3.
+/// Space dimension of an element: 2 or 3.
 inline int dimension(ElementType type) { return cell(type).dim; }
 inline int nodes_per_element(ElementType type) { return cell(type).nodes; }
 /// Quadrature points at which the secant modulus g is kept: one value each.

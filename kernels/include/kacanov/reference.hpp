@@ -40,7 +40,8 @@ struct Body {
 /// theory: operator. Vectors (u, x, y, f, d) have nodes × dim entries, interleaved; g has elements × points,
 /// the points of an element together. Lengths, indices and laws are taken as they are: whoever calls has
 /// checked them. Displacements have the caller's unit of length, g that of stress, forces stress times area
-/// (in 2D stress times length, for unit thickness).
+/// (in 2D stress times length, for unit thickness; all
+/// round of axisymmetric meshes).
 namespace reference {
 
 /// g of the law at u.
@@ -73,7 +74,7 @@ void volumes(const Body& body, std::span<double> volume);
 /// What a picture, an output file or a summary wants to know of an element: means over its points, or the
 /// largest value of any point.
 struct ElementFields {
-  std::span<double> stress;         ///< elements × 6: xx yy zz xy yz zx (zz also in plane strain)
+  std::span<double> stress;         ///< elements × 6: xx yy zz xy yz zx (zz also in 2D)
   std::span<double> von_mises;      ///< elements
   std::span<double> dev_strain;     ///< elements: ‖dev ε‖
   std::span<double> secant;         ///< elements: g

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Plane stress and axisymmetric bodies: energy, force and tangent belong together, and the fast operator does
+// what the reference does.
+#include <kacanov/operator.hpp>
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <memory>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "bodies.hpp"
+#include "law/plane_stress.hpp"
+#include "reference/element_stiffness.hpp"
+
+using namespace kacanov;
+using test::difference;
+using test::OwnedBody;
+
+namespace {
+
+constexpr std::array planes{PlaneState::stress, PlaneState::axisymmetric};
+constexpr std::array flat_types{ElementType::tri3, ElementType::quad4};
+
+/// A body in 2D with every law, at the axis or away from it.
+struct PlaneBody {
+  OwnedBody owned;
+  PlaneState plane;
+  std::size_t elements = 0;  ///< the first so many; 0: all
+
+  Body body() const {
+    Body body = owned.body();
+    body.mesh.plane = plane;
+    if (elements > 0) {
+      body.mesh.connectivity = body.mesh.connectivity.first(
+          elements * static_cast<std::size_t>(nodes_per_element(body.mesh.type)));
+      body.law_of_element = body.law_of_element.first(elements);
+    }
+    return body;
+  }
+};
+
+PlaneBody plane_body(ElementType type, PlaneState plane, double inner, std::size_t elements = 0) {
+  meshes::OwnedMesh mesh = meshes::box(type, {7, 5, 1}, {1.5, 1.0, 1.0});
+  if (inner > 0.0) meshes::jitter(mesh, 0.12, 3);
+  for (std::size_t i = 0; i < mesh.coordinates.size(); i += 2) mesh.coordinates[i] += inner;
+  OwnedBody owned{std::move(mesh), test::every_law(), {}};
+  for (std::size_t i = 1; plane != PlaneState::stress && cell(type).mean_dilatation && i < owned.laws.size();
+       i += 2)
+    owned.laws[i].mean_dilatation = true;
+  for (std::size_t e = 0; e < owned.mesh.view().element_count(); ++e)
+    owned.law_of_element.push_back(static_cast<std::uint16_t>((e * 7) % owned.laws.size()));
+  return {std::move(owned), plane, elements};
+}
+
+template <class Check>
+void for_every_plane_body(Check&& check) {
+  for (const ElementType type : flat_types)
+    for (const PlaneState plane : planes)
+      for (const double inner : {0.0, 0.3})
+        for (const std::size_t elements : {0, 3, 17}) {
+          if (inner == 0.0 && elements > 0) continue;
+          const PlaneBody of = plane_body(type, plane, inner, elements);
+          CAPTURE(cell(type).name);
+          CAPTURE(static_cast<int>(plane));
+          CAPTURE(inner);
+          CAPTURE(elements);
+          check(of.body());
+        }
+}
+
+template <class AnyOperator, class Check>
+void for_every_plane_operator(const Body& body, Check&& check) {
+  for (const std::string set : {"plain", "avx2", "avx512"})
+    for (const int threads : {1, 2}) {
+      CAPTURE(set);
+      CAPTURE(threads);
+      std::unique_ptr<AnyOperator> op;
+      try {
+        op = std::make_unique<AnyOperator>(body, OperatorOptions{threads, set});
+      } catch (const std::invalid_argument&) {
+        continue;  // a processor without that
+      }
+      check(*op);
+    }
+}
+
+template <class Real>
+std::vector<Real> as(const std::vector<double>& v) {
+  return {v.begin(), v.end()};
+}
+
+/// All actions of a fast operator beside the reference's, within `tolerance`.
+template <class Real>
+void compare(const Body& body, double tolerance) {
+  const std::size_t n = body.unknowns();
+  const auto u = test::random_vector(n, 5, 0.01), x = test::random_vector(n, 6);
+  std::vector<double> g(body.secant_count()), y(n), t(n), f(n), blocks(2 * n), tangent_blocks(2 * n), d(n);
+  reference::secant(body, u, g);
+  reference::apply(body, g, x, y);
+  reference::apply_tangent(body, u, x, t);
+  reference::residual(body, u, f);
+  reference::block_diagonal(body, g, blocks);
+  reference::block_diagonal_tangent(body, u, tangent_blocks);
+  reference::diagonal(body, g, d);
+  const double energy = reference::energy(body, u);
+  const auto su = as<Real>(u), sx = as<Real>(x);
+  for_every_plane_operator<BasicOperator<Real>>(body, [&](BasicOperator<Real>& op) {
+    std::vector<Real> out(n), out_blocks(2 * n);
+    std::vector<double> out_g(g.size());
+    op.update_tangent(su);
+    op.secant(out_g);
+    CHECK(difference(out_g, g) < tolerance);
+    op.apply(sx, out);
+    CHECK(difference(out, y) < tolerance);
+    op.apply_tangent(sx, out);
+    CHECK(difference(out, t) < std::max(tolerance, 1e-6));  // its rank-one term is in single precision
+    op.residual(su, out);
+    CHECK(difference(out, f) < tolerance);
+    CHECK(op.energy(su) == doctest::Approx(energy).epsilon(tolerance));
+    op.block_diagonal(out_blocks);
+    CHECK(difference(out_blocks, blocks) < tolerance);
+    op.block_diagonal_tangent(out_blocks);
+    CHECK(difference(out_blocks, tangent_blocks) < std::max(tolerance, 1e-6));
+    op.diagonal(out);
+    CHECK(difference(out, d) < tolerance);
+    std::vector<Real> many_x, many(3 * n), expected;
+    for (int v = 0; v < 3; ++v) many_x.insert(many_x.end(), sx.begin(), sx.end());
+    op.apply_many(many_x, many, 3);
+    for (int v = 0; v < 3; ++v)
+      CHECK(difference(std::span(many).subspan(static_cast<std::size_t>(v) * n, n), y) < tolerance);
+  });
+}
+
+/// All nodes moved by the same.
+std::vector<double> translation(const Body& body, std::size_t axis) {
+  std::vector<double> u(body.unknowns(), 0.0);
+  for (std::size_t i = axis; i < u.size(); i += 2) u[i] = 1.0;
+  return u;
+}
+
+}  // namespace
+
+TEST_CASE("in plane stress and round an axis the fast operator does what the reference does") {
+  for_every_plane_body([](const Body& body) {
+    compare<double>(body, 1e-12);
+    if (body.mesh.element_count() > 17) compare<float>(body, 2e-4);
+  });
+}
+
+TEST_CASE("in plane stress and round an axis force is the energy's derivative and the tangent the force's") {
+  for (const ElementType type : flat_types)
+    for (const PlaneState plane : planes) {
+      CAPTURE(cell(type).name);
+      CAPTURE(static_cast<int>(plane));
+      const PlaneBody of = plane_body(type, plane, 0.2);
+      const Body body = of.body();
+      const std::size_t n = body.unknowns();
+      const auto u = test::random_vector(n, 5, 0.01), x = test::random_vector(n, 6, 0.01);
+      const double h = 1e-5;
+      std::vector<double> ahead = u, back = u, f(n), f_ahead(n), f_back(n), t(n), g(body.secant_count()),
+                          y(n);
+      for (std::size_t i = 0; i < n; ++i) ahead[i] += h * x[i], back[i] -= h * x[i];
+      reference::residual(body, u, f);
+      const double slope = (reference::energy(body, ahead) - reference::energy(body, back)) / (2.0 * h);
+      CHECK(slope == doctest::Approx(test::dot(f, x)).epsilon(1e-6));
+      reference::residual(body, ahead, f_ahead);
+      reference::residual(body, back, f_back);
+      for (std::size_t i = 0; i < n; ++i) f_ahead[i] = (f_ahead[i] - f_back[i]) / (2.0 * h);
+      reference::apply_tangent(body, u, x, t);
+      CHECK(difference(t, f_ahead) < 1e-4);  // laws have kinks
+      // The frozen operator at u has the same force there, so that Kačanov's method rests where R(u) = F.
+      reference::secant(body, u, g);
+      reference::apply(body, g, u, y);
+      CHECK(difference(y, f) < 1e-12);
+      // It majorises: 2 (E(v) − E(u)) ≤ vᵀ B v − uᵀ B u, so that every step of it descends.
+      reference::apply(body, g, ahead, y);
+      const double frozen = test::dot(y, ahead) - test::dot(f, u);
+      CHECK(2.0 * (reference::energy(body, ahead) - reference::energy(body, u)) <=
+            frozen + 1e-12 * std::abs(frozen));
+    }
+}
+
+TEST_CASE(
+    "in plane stress and round an axis matrices are symmetric and closed forms those of the reference") {
+  for (const ElementType type : flat_types)
+    for (const PlaneState plane : planes) {
+      const PlaneBody of = plane_body(type, plane, 0.2);
+      const Body body = of.body();
+      const std::size_t points = points_per_element(type), width = nodes_per_element(type) * std::size_t{2};
+      const auto u = test::random_vector(body.unknowns(), 8, 0.02);
+      std::vector<double> g(body.secant_count()), plain(width * width), closed(width * width),
+          transposed(width * width);
+      reference::secant(body, u, g);
+      for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
+        const auto own = std::span(g).subspan(e * points, points);
+        reference::element_matrix(body, e, own, plain);
+        element_stiffness(body, e, own, closed);
+        CHECK(difference(closed, plain) < 1e-13);
+        reference::element_tangent(body, e, u, plain);
+        for (std::size_t i = 0; i < width; ++i)
+          for (std::size_t k = 0; k < width; ++k) transposed[i * width + k] = plain[k * width + i];
+        CHECK(difference(transposed, plain) < 1e-12);
+      }
+    }
+}
+
+TEST_CASE("round an axis only the translation along it strains nothing") {
+  for (const ElementType type : flat_types) {
+    const PlaneBody of = plane_body(type, PlaneState::axisymmetric, 0.2);
+    const Body body = of.body();
+    CHECK(reference::energy(body, translation(body, 1)) < 1e-25);
+    CHECK(reference::energy(body, translation(body, 0)) > 1e-3);
+    std::vector<double> volume(body.mesh.element_count());
+    reference::volumes(body, volume);
+    double all = 0.0;
+    for (const double v : volume) all += v;
+    const PlaneBody straight = plane_body(type, PlaneState::axisymmetric, 0.0);
+    std::vector<double> of_disc(straight.body().mesh.element_count());
+    reference::volumes(straight.body(), of_disc);
+    double disc = 0.0;
+    for (const double v : of_disc) disc += v;
+    CHECK(disc == doctest::Approx(std::numbers::pi * 1.5 * 1.5));
+    CHECK(all > disc);
+  }
+}
+
+TEST_CASE("across plane stress no stress acts, and the uniaxial curve is that of the law") {
+  for (const Law& law : test::every_law())
+    for (const double xx : {-0.3, -0.005, 0.004, 0.02, 0.5})
+      for (const double yy : {-0.01, 0.0, 0.1}) {
+        const double xy = 0.3 * xx, zz = transverse_strain(law, xx, yy, xy), third = (xx + yy + zz) / 3.0;
+        const double a = xx - third, b = yy - third, c = zz - third;
+        const double g = law.secant(std::sqrt(a * a + b * b + c * c + 2.0 * xy * xy));
+        const double mean = law.bulk * (xx + yy + zz), size = law.bulk * std::abs(xx);
+        CHECK(std::abs(mean + 2.0 * g * c) < 1e-14 * size);
+        // The form with a bulk modulus of its own.
+        const double bulk = plane_stress_bulk(law.bulk, g), plane = xx + yy;
+        CHECK(std::abs(bulk * plane + 2.0 * g * (xx - plane / 3.0) - mean - 2.0 * g * a) < 1e-13 * size);
+      }
+}
+
+TEST_CASE("planes that a body cannot have are refused") {
+  PlaneBody of = plane_body(ElementType::quad4, PlaneState::axisymmetric, 0.0);
+  of.owned.mesh.coordinates[0] = -0.1;
+  CHECK_THROWS_WITH_AS(Operator(of.body()),
+                       "coordinates: node 0 of an axisymmetric mesh has a radius below 0",
+                       std::invalid_argument);
+  of = plane_body(ElementType::quad4, PlaneState::stress, 0.0);
+  of.owned.laws[0].mean_dilatation = true;
+  CHECK_THROWS_WITH_AS(Operator(of.body()), "laws: mean dilatation (B-bar) is not for plane stress",
+                       std::invalid_argument);
+  const OwnedBody cube = test::small_body(ElementType::hex8, 1);
+  Body body = cube.body();
+  body.mesh.plane = PlaneState::stress;
+  CHECK_THROWS_WITH_AS(Operator(body, {}), "plane: expected plane strain, as the mesh is not flat",
+                       std::invalid_argument);
+  of = plane_body(ElementType::tri3, PlaneState::stress, 0.0);
+  Operator op(of.body());
+  std::vector<double> u(op.unknowns()), x(of.body().secant_count());
+  CHECK_THROWS_AS(op.strain(u, x), std::logic_error);
+}
