@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 
 #include "finer_rule.hpp"
+#include "law/plane_stress.hpp"
 #include "patches.hpp"
 
 namespace kacanov {
@@ -104,6 +106,13 @@ Sample sample(const Part& part, std::span<const double> u, std::size_t element, 
                 0.5 * (h(1, 2) + h(2, 1)),
                 0.5 * (h(2, 0) + h(0, 2))};
   out.volume = point.weight * jacobian.determinant();
+  if (part.plane == PlaneState::axisymmetric) {
+    double along_radius = 0.0;
+    for (std::size_t a = 0; a < nodes; ++a)
+      along_radius += point.value[a] * u[static_cast<std::size_t>(part.elements[element * nodes + a]) * dim];
+    out.strain[2] = along_radius / out.position[0];
+    out.volume *= 2.0 * std::numbers::pi * out.position[0];
+  }
   return out;
 }
 
@@ -155,6 +164,9 @@ class Comparison {
         const Patches::Values value = patches_.evaluate(fits, static_cast<std::size_t>(node), here.position);
         for (std::size_t c = 0; c < 6; ++c) smooth[c] += point.corner_share[a] * value[c];
       }
+      if (part_.plane == PlaneState::stress)
+        for (Patches::Values* strain : {&here.strain, &smooth})
+          (*strain)[2] = transverse_strain(law, (*strain)[0], (*strain)[1], (*strain)[3]);
       energy += here.volume * energy_between(law, here.strain, smooth);
     }
     return energy;

@@ -192,6 +192,11 @@ void collect_entries(const Part& part, const ContactState& state, const LoadPath
     const double factor = path.factor_of(load.entry);
     solution.result.load.push_back({load.entry, {factor * load.total.force, factor * load.total.moment}});
   }
+  if (part.plane != PlaneState::axisymmetric) return;
+  // Round the axis moments cancel.
+  for (ContactTotals& entry : solution.result.contact) entry.total.moment = {};
+  for (auto* list : {&solution.result.reaction, &solution.result.load})
+    for (BoundaryTotals& entry : *list) entry.total.moment = {};
 }
 
 }  // namespace kacanov

@@ -14,7 +14,9 @@ namespace {
 
 std::vector<double> patch_sizes(const Part& part) {
   std::vector<double> of_element(part.element_count()), size(part.nodes(), 0.0);
-  reference::volumes(part.body(), of_element);
+  Body flat = part.body();
+  flat.mesh.plane = PlaneState::strain;  // sizes within the plane
+  reference::volumes(flat, of_element);
   const std::size_t nodes = nodes_per_element(part.type);
   for (std::size_t k = 0; k < part.elements.size(); ++k) size[part.elements[k]] += of_element[k / nodes];
   part.node_map.sum(size, 1);

@@ -33,11 +33,12 @@ void scale(Extreme& extreme, double factor, double length) {
   scale(extreme.at, length);
 }
 
-void scale(BodySize& body, double length) {
+void scale(BodySize& body, const UnitSystem& units) {
+  const double length = units.length;
   scale(body.lower, length);
   scale(body.upper, length);
   body.size *= length;
-  body.volume *= body.dim == 2 ? length * length : length * length * length;
+  body.volume *= units.dim == 2 ? length * length : length * length * length;
 }
 
 /// What boundary entries load the body with is in the user's units throughout.
@@ -48,7 +49,7 @@ void to_users_units(Result& result, const UnitSystem& units) {
   scale(result.max_strain, units.strain(), units.length);
   scale(result.max_flow, 1.0, units.length);
   scale(result.max_rotation, units.strain(), units.length);
-  scale(result.body, units.length);
+  scale(result.body, units);
   scale(result.r, units.penalty());
   result.lambda_min /= units.penalty();
   result.lambda_max /= units.penalty();

@@ -102,7 +102,7 @@ kacanov_test(mesh
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 kacanov_test(closed_solutions
-  MPI NUMBERS SOURCES solver/closed_test.cpp solver/radial_test.cpp solver/effectivity_test.cpp
+  MPI NUMBERS SOURCES solver/closed_test.cpp solver/plane_state_test.cpp solver/radial_test.cpp solver/effectivity_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 kacanov_test(contact
   MPI SOURCES solver/contact_test.cpp

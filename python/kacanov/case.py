@@ -23,12 +23,13 @@ class Case:
     """What a case file says: `document` is it, as a dict, and may be changed by hand.
 
     Every key, and what was expected where one is wrong, is that of the case file (docs/user-guide/case-file.md).
-    Relative file names start at `folder`. A mesh that is arrays stands in `arrays`; the document then names the
+    `plane` is what a mesh in 2D is of: "strain", "stress" or "axisymmetric". Relative file names start at `folder`. A mesh that is arrays stands in `arrays`; the document then names the
     file that `to_json` writes it to.
     """
 
     def __init__(self, mesh: BoxMesh | MeshFile | Mesh | Mapping[str, Any] | None = None, *, order: int | None = None,
-                 refine: int | None = None, name: str = "case", folder: str | os.PathLike[str] = ".") -> None:
+                 refine: int | None = None, plane: str | None = None, name: str = "case",
+                 folder: str | os.PathLike[str] = ".") -> None:
         self.name = name
         self.folder = os.path.abspath(folder)
         self.document: dict[str, Any] = {}
@@ -38,6 +39,8 @@ class Case:
             self._take_mesh(mesh)
             more = {"order": order, "refine": refine}
             self.document["mesh"].update({key: value for key, value in more.items() if value is not None})
+        if plane is not None:
+            self.document["plane"] = plane
 
     def _take_mesh(self, mesh: BoxMesh | MeshFile | Mesh | Mapping[str, Any]) -> None:
         if isinstance(mesh, Mesh):

@@ -167,6 +167,19 @@ class Solutions(unittest.TestCase):
         for stress in (sol.nodal_stress, sol.stress):
             np.testing.assert_allclose(stress, 0, atol=1e-6)
 
+    def test_plane_stress_and_bodies_of_revolution(self):
+        def pulled(plane):
+            case = kc.Case(kc.box((2, 1), (8, 4), "quad4"), plane=plane).material(young=200, poisson=0.3)
+            return case.fix("bottom", (None, 0)).fix("left", (0, None)).traction((1, 0), "right").solve()
+
+        sol = pulled("stress")
+        np.testing.assert_allclose(sol.u[:, :2], sol.points[:, :2] * [1 / 200, -0.3 / 200], atol=1e-7)
+        # A disc that is pulled at its rim: (1 − ν)/E in the plane, −2ν/E along the axis.
+        sol = pulled("axisymmetric")
+        np.testing.assert_allclose(sol.u[:, :2], sol.points[:, :2] * [0.7 / 200, -0.6 / 200], atol=1e-7)
+        with self.assertRaisesRegex(kc.InputError, "plane: expected"):
+            pulled("flat")
+
     def test_in_the_plane(self):
         case = kc.Case(kc.box((4, 1), (16, 4))).material(1.0, 0.3, kc.LinearHardening(x0=0.01, gamma=0.2))
         case.fix("left").traction((0, -0.02), "top").contact("bottom", kc.Gap(0.01), tresca=0.01)

@@ -133,7 +133,7 @@ void LoadPath::go_along_curves(double time) {
   }
   prescribed_ = part_->prescribed;
   for (std::size_t k = 0; k < prescribed_.size(); ++k)
-    prescribed_[k].value *= factors.boundary[part_->prescribed_by[k]];
+    if (prescribed_[k].value != 0.0) prescribed_[k].value *= factors.boundary[part_->prescribed_by[k]];
   for (std::size_t i = 0; i < gap_.size(); ++i) {
     const ContactPoint& point = part_->contact[i];
     gap_[i] = point.gap + closed_[i] -

@@ -108,7 +108,9 @@ void check_steps(const Part& part, std::size_t unknowns) {
     expect_indices("forces", std::array{force.entry}, boundary);
   }
   expect_length("entries of prescribed components", part.prescribed_by.size(), part.prescribed.size());
-  expect_indices("entries of prescribed components", part.prescribed_by, boundary);
+  for (std::size_t k = 0; k < part.prescribed.size(); ++k)  // nodes on an axis are held by none
+    if (part.prescribed_by[k] != -1 || part.prescribed[k].value != 0.0)
+      expect_indices("entries of prescribed components", std::array{part.prescribed_by[k]}, boundary);
   for (const ContactPoint& point : part.contact)
     expect_indices("contact points", std::array{point.entry}, contact);
 }
@@ -191,6 +193,9 @@ void check_part(const Part& part, int rank, int ranks) {
   expect(std::any_of(cells().begin(), cells().end(),
                      [&](const Cell& c) { return element_type(c) == part.type; }),
          "element type", "does not exist");
+  expect(part.plane == PlaneState::strain || (part.dim() == 2 && (part.plane == PlaneState::stress ||
+                                                                  part.plane == PlaneState::axisymmetric)),
+         "plane", "does not exist in this dimension");
   const std::size_t dim = part.dim(), nodes = part.nodes();
   const std::size_t per_element = nodes_per_element(part.type);
   expect_length("coordinates", part.coordinates.size(), nodes * dim);

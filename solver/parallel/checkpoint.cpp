@@ -79,6 +79,7 @@ std::uint64_t hash_bytes(const void* data, std::size_t bytes, std::uint64_t seed
 Fingerprint fingerprint(const Problem& problem) {
   Fingerprint print;
   const Mesh& mesh = problem.mesh;
+  if (mesh.plane != PlaneState::strain) print.sections["plane"] = static_cast<std::uint64_t>(mesh.plane);
   print.sections["mesh"] =
       (Hash() << std::vector<int>{static_cast<int>(mesh.type)} << mesh.coordinates << mesh.elements).value();
 

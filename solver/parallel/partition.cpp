@@ -79,6 +79,7 @@ class Splitter {
 
   Part part(int rank) {
     Part part;
+    part.plane = problem_.mesh.plane;
     take_nodes(part, rank);
     take_elements(part, rank);
     plan_scatters(part, rank);

@@ -7,7 +7,7 @@ namespace kacanov {
 /// Powers of two, measured in the user's units: numbers change their exponents and keep their digits (theory:
 /// units). All 1: the user's own.
 struct UnitSystem {
-  int dim = 3;
+  int dim = 3;                ///< of volumes: 3 in axisymmetric bodies
   double length = 1.0;        ///< of coordinates
   double displacement = 1.0;  ///< of gaps, too: small strains set nothing of it against lengths
   double modulus = 1.0;

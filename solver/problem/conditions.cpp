@@ -110,7 +110,10 @@ void assign_materials(Problem& problem, const Model& model, const Selection& sel
     const MaterialEntry& entry = model.materials[i];
     Law law = entry.law;
     law.mean_dilatation =
-        entry.bbar.value_or(entry.law.mean_dilatation || locks_without_bbar(entry.law, mesh.type));
+        entry.bbar.value_or(mesh.plane != PlaneState::stress &&
+                            (entry.law.mean_dilatation || locks_without_bbar(entry.law, mesh.type)));
+    if (law.mean_dilatation && mesh.plane == PlaneState::stress)
+      throw InputError(path + ".bbar: expected false with plane stress, which does not lock");
     if (law.mean_dilatation && !cell(mesh.type).mean_dilatation)
       throw InputError(path + ".bbar: expected false, or a mesh of " + bbar_names() +
                        ": other elements have no B-bar here");
@@ -165,6 +168,10 @@ void assemble_load(Problem& problem, const Model& model, const Selection& select
     } else if (entry.node_force) {
       for (const std::int32_t node : selection.nodes(entry.on, path)) load.add(node, *entry.node_force);
     } else if (entry.temperature) {
+      if (mesh.plane == PlaneState::stress)
+        throw InputError(path +
+                         ".temperature: expected plane strain or an axisymmetric mesh: plane stress "
+                         "has no thermal strain here");
       const std::vector<std::int32_t> elements = selection.elements(entry.on, path);
       if (std::none_of(elements.begin(), elements.end(), [&](std::int32_t e) {
             return model.materials[problem.law_of_element[e]].expansion != 0.0;

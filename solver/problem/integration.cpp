@@ -2,6 +2,7 @@
 // Integrals of shape functions over facets and elements: what loads and contact masses are made of.
 #include "problem/integration.hpp"
 
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -63,14 +64,22 @@ std::vector<Point> simplex_rule(int dim) {
 
 /// A rule that is exact for loads of constant density on cells whose faces are flat. Linear simplices do
 /// with one point: there the mean stands for any rule.
-const std::vector<Point>& rule_for(const Cell& cell) {
+const std::vector<Point>& rule_for(const Cell& cell, PlaneState plane) {
   static const std::vector<Point> tensor[] = {tensor_rule(1), tensor_rule(2), tensor_rule(3)};
   static const std::vector<Point> simplex[] = {simplex_rule(2), simplex_rule(3)};
   static const std::vector<Point> mean[] = {{{{1.0 / 3.0, 1.0 / 3.0, 0.0}, 0.5}},
                                             {{{0.25, 0.25, 0.25}, 1.0 / 6.0}}};
   const std::size_t dim = cell.dim;
   if (!cell.simplex) return tensor[dim - 1];
-  return cell.order == 1 ? mean[dim - 2] : simplex[dim - 2];
+  return cell.order == 1 && plane != PlaneState::axisymmetric ? mean[dim - 2] : simplex[dim - 2];
+}
+
+/// What a point of the section stands for: in axisymmetric bodies a circle (theory: axisymmetry).
+double circle(const Mesh& mesh, std::span<const std::int32_t> nodes, const Shapes& shapes) {
+  if (mesh.plane != PlaneState::axisymmetric) return 1.0;
+  double r = 0.0;
+  for (std::size_t k = 0; k < nodes.size(); ++k) r += shapes.value[k] * position(mesh, nodes[k])[0];
+  return 2.0 * std::numbers::pi * r;
 }
 
 /// Outer normal times the area of a flat triangle.
@@ -105,9 +114,9 @@ FacetWeights consistent_weights(const Mesh& mesh, std::size_t facet) {
     }
     return weights;
   }
-  for (const Point& point : rule_for(type)) {
+  for (const Point& point : rule_for(type, mesh.plane)) {
     const Shapes shapes = shapes_at(type, point.at);
-    const Vector3 normal = normal_at(mesh, nodes, shapes);
+    const Vector3 normal = circle(mesh, nodes, shapes) * normal_at(mesh, nodes, shapes);
     for (std::size_t k = 0; k < nodes.size(); ++k) {
       weights.normal[k] = weights.normal[k] + point.weight * shapes.value[k] * normal;
       weights.area[k] += point.weight * shapes.value[k] * norm(normal);
@@ -135,7 +144,7 @@ std::array<double, most_nodes> volume_weights(const Mesh& mesh, std::size_t elem
   std::array<double, most_nodes> weights{};
   const std::size_t n = type.nodes;
   const auto nodes = std::span(mesh.elements).subspan(element * n, n);
-  for (const Point& point : rule_for(type)) {
+  for (const Point& point : rule_for(type, mesh.plane)) {
     const Shapes shapes = shapes_at(type, point.at);
     std::array<Vector3, 3> jacobian{};  // columns: derivatives of the position
     for (std::size_t k = 0; k < n; ++k) {
@@ -143,7 +152,8 @@ std::array<double, most_nodes> volume_weights(const Mesh& mesh, std::size_t elem
       for (std::size_t c = 0; c < 3; ++c) jacobian[c] = jacobian[c] + shapes.gradient[k][c] * x;
     }
     if (mesh.dim() == 2) jacobian[2] = {0.0, 0.0, 1.0};
-    const double volume = point.weight * dot(jacobian[0], cross(jacobian[1], jacobian[2]));
+    const double volume =
+        circle(mesh, nodes, shapes) * point.weight * dot(jacobian[0], cross(jacobian[1], jacobian[2]));
     for (std::size_t k = 0; k < n; ++k) weights[k] += volume * shapes.value[k];
   }
   return weights;
@@ -165,9 +175,14 @@ std::array<Vector3, most_nodes> gradient_weights(const Mesh& mesh, std::size_t e
     // Gradients in space times the determinant.
     const std::array<Vector3, 3> dual{cross(jacobian[1], jacobian[2]), cross(jacobian[2], jacobian[0]),
                                       cross(jacobian[0], jacobian[1])};
+    const double weight = circle(mesh, nodes, shapes) * type.weight;
     for (std::size_t k = 0; k < n; ++k)
       for (std::size_t c = 0; c < static_cast<std::size_t>(type.dim); ++c)
-        weights[k] = weights[k] + type.weight * shapes.gradient[k][c] * dual[c];
+        weights[k] = weights[k] + weight * shapes.gradient[k][c] * dual[c];
+    if (mesh.plane != PlaneState::axisymmetric) continue;
+    // The hoop strain's part: N/r over the volume.
+    const double area = 2.0 * std::numbers::pi * type.weight * dot(jacobian[0], dual[0]);
+    for (std::size_t k = 0; k < n; ++k) weights[k][0] += area * shapes.value[k];
   }
   return weights;
 }

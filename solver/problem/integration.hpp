@@ -9,6 +9,9 @@
 
 namespace kacanov {
 
+// Of axisymmetric meshes integrals go all round the axis (theory: axisymmetry), and those of ∇N are the
+// volume change of unit displacements.
+
 /// One entry a node of a facet, in the facet's order; the rest is unused.
 struct FacetWeights {
   std::array<double, most_facet_nodes> area{};     ///< ∫ Nᵢ dS (a length in 2D)

@@ -29,6 +29,25 @@ void refuse_out_of_range(const std::string& what, double value) {
   throw InputError(text.str());
 }
 
+/// Puts the mesh under the model's plane; nodes next to the axis move onto it.
+void set_plane(Mesh& mesh, PlaneState plane) {
+  mesh.plane = plane;
+  if (plane == PlaneState::strain) return;
+  if (mesh.dim() != 2) throw InputError("plane: expected \"strain\", or a mesh in 2D, got one in 3D");
+  if (plane != PlaneState::axisymmetric) return;
+  constexpr double on_axis = 1e-12;
+  const double reach = on_axis * extent(mesh).size;
+  for (std::size_t n = 0; n < mesh.node_count(); ++n) {
+    double& radius = mesh.coordinates[2 * n];
+    if (std::abs(radius) <= reach) radius = 0.0;
+    if (radius >= 0.0) continue;
+    std::ostringstream text;
+    text << "plane: node " << mesh.node_tag(n) << " lies at x = " << radius
+         << "; an axisymmetric mesh is a section with x ≥ 0, the distance from the axis";
+    throw InputError(text.str());
+  }
+}
+
 }  // namespace
 
 Problem build_problem(Mesh mesh, const Model& model) {
@@ -42,6 +61,7 @@ Problem build_problem(Mesh mesh, const Model& model) {
   check_mesh(mesh);
   Problem problem;
   problem.mesh = std::move(mesh);
+  set_plane(problem.mesh, model.plane);
   const std::size_t unknowns = problem.mesh.coordinates.size();
   problem.load.assign(unknowns, 0.0);
   problem.held.assign(unknowns, 0);

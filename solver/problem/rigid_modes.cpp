@@ -145,13 +145,16 @@ void collect_rows(const Problem& problem, std::vector<Piece>& pieces,
 }
 
 /// Free modes as rows, in reduced echelon form: axis-aligned motions come out as such.
-Eigen::MatrixXd free_modes(const Matrix6& gram, int dim) {
-  // In the plane: rotation about z, translations along x and y.
-  const std::vector<Eigen::Index> kept =
-      dim == 3 ? std::vector<Eigen::Index>{0, 1, 2, 3, 4, 5} : std::vector<Eigen::Index>{2, 3, 4};
+Eigen::MatrixXd free_modes(const Matrix6& gram, const Mesh& mesh) {
+  // In the plane: rotation about z, translations along x and y; round an axis the one along it.
+  const std::vector<Eigen::Index> kept = mesh.dim() == 3 ? std::vector<Eigen::Index>{0, 1, 2, 3, 4, 5}
+                                         : mesh.plane == PlaneState::axisymmetric
+                                             ? std::vector<Eigen::Index>{4}
+                                             : std::vector<Eigen::Index>{2, 3, 4};
   const Eigen::MatrixXd reduced = gram(kept, kept);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(reduced);
-  const double scale = std::max(eigen.eigenvalues().maxCoeff(), 1e-300);
+  const double others = mesh.plane == PlaneState::axisymmetric ? gram(3, 3) : 0.0;
+  const double scale = std::max({eigen.eigenvalues().maxCoeff(), others, 1e-300});
   Eigen::Index count = 0;
   while (count < eigen.eigenvalues().size() && eigen.eigenvalues()[count] <= free_below * scale) ++count;
   Eigen::MatrixXd modes = Eigen::MatrixXd::Zero(count, 6);
@@ -343,13 +346,14 @@ void check_rigid_modes(Problem& problem) {
   std::vector<std::int32_t> piece_of_node;
   std::vector<Piece> pieces = find_pieces(problem.mesh, piece_of_node);
   collect_rows(problem, pieces, piece_of_node);
-  const int dim = problem.mesh.dim();
+  const Mesh& mesh = problem.mesh;
+  const int dim = mesh.dim();
   for (std::int32_t number = 0; number < static_cast<std::int32_t>(pieces.size()); ++number) {
     const Piece& piece = pieces[number];
-    const Eigen::MatrixXd loose = free_modes(piece.by_displacement, dim);
+    const Eigen::MatrixXd loose = free_modes(piece.by_displacement, mesh);
     if (loose.rows() == 0) continue;
     const std::string name = name_piece(piece, problem.mesh, pieces.size());
-    const Eigen::MatrixXd free = free_modes(piece.by_displacement + piece.by_contact, dim);
+    const Eigen::MatrixXd free = free_modes(piece.by_displacement + piece.by_contact, mesh);
     if (free.rows() > 0) {
       throw InputError("boundary: nothing holds " + name + " against " + list_modes(piece, free, dim) +
                        "; add displacements (or contact) that do");

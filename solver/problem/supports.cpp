@@ -95,6 +95,19 @@ class Holder {
     problem_.supports.push_back({node, static_cast<std::int32_t>(c), static_cast<std::int32_t>(entry)});
   }
 
+  /// No displacement away from the axis, by itself.
+  void hold_axis() {
+    const Mesh& mesh = problem_.mesh;
+    for (std::size_t node = 0; node < mesh.node_count(); ++node) {
+      const std::size_t k = 2 * node;
+      if (mesh.coordinates[k] != 0.0) continue;
+      if (problem_.held[k] != 0 && problem_.prescribed[k] != 0.0)
+        refuse(static_cast<std::size_t>(holder_[k]), static_cast<std::int32_t>(node),
+               "a displacement away from the axis that it lies on");
+      problem_.held[k] = 1;
+    }
+  }
+
   void take(std::size_t entry, std::int32_t node, const Given& given) {
     slanting_.push_back({node, static_cast<std::int32_t>(entry), given.direction, given.value});
   }
@@ -174,6 +187,7 @@ void hold_displacements(Problem& problem, const Model& model, const Selection& s
         else
           holder.take(i, node, given);
   }
+  if (problem.mesh.plane == PlaneState::axisymmetric) holder.hold_axis();
   holder.finish();
 }
 

@@ -115,6 +115,17 @@ void check_moves(const std::string& path, const Model& model, const ContactEntry
     }
     if (entry.motion->path.empty()) refuse(path + ".motion.path", "at least one place", "[]");
   }
+  if (model.plane == PlaneState::axisymmetric && entry.motion)
+    for (std::size_t i = 0; i < entry.motion->path.size(); ++i) {
+      const Motion::Pose& pose = entry.motion->path[i];
+      if (pose.translation[0] != 0.0 || pose.rotation != Vector3{})
+        throw InputError(at(path + ".motion.path", i) +
+                         ": expected a translation along y alone, the axis of an axisymmetric mesh");
+    }
+  if (model.plane == PlaneState::axisymmetric && entry.force_controlled &&
+      entry.force_controlled->direction[0] != 0.0)
+    refuse(path + ".force_controlled.direction", "a direction along y, the axis of an axisymmetric mesh",
+           shown_list(entry.force_controlled->direction));
   if (!entry.force_controlled) return;
   if (entry.motion) throw InputError(path + ".force_controlled: expected no motion beside it");
   check(path + ".force_controlled.force", entry.force_controlled->force, positive);

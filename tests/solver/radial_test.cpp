@@ -99,14 +99,18 @@ double displacement_error(const Run& run, const RadialSolution& exact) {
   return std::sqrt(error / size);
 }
 
-void check_order(int dim, const std::vector<int>& cells, double pressure_inside, double finest_error) {
+void check_order(int dim, const std::vector<int>& cells, double pressure_inside, double finest_error,
+                 PlaneState plane = PlaneState::strain) {
   CAPTURE(dim);
   for (const Law& law : {elastic_law(1.0, 0.3), logarithmic_law(0.01)}) {
-    const RadialSolution exact(law, dim - 1, inner, outer, pressure_inside);
+    // A quarter of a disc that goes round an axis is half a sphere.
+    const int m = plane == PlaneState::axisymmetric ? 2 : dim - 1;
+    const RadialSolution exact(law, m, inner, outer, pressure_inside, 500);
     if (!law.linear()) CHECK(exact.largest_dev_strain() > 3 * law.yield_strain());
     std::vector<double> errors;
     for (const int n : cells) {
       Model model;
+      model.plane = plane;
       model.materials.push_back({everything(), law});
       for (int c = 0; c < dim; ++c)
         model.boundary.push_back(roller(named(std::string("plane") + "xyz"[c]), c));
@@ -163,4 +167,39 @@ TEST_CASE("thick cylinder under pressure: second order against the radial equati
 
 TEST_CASE("thick sphere under pressure: second order against the radial equation") {
   check_order(3, {5, 10}, 0.02, 3e-2);
+}
+
+TEST_CASE("thick sphere as a section that goes round an axis: second order against the radial equation") {
+  check_order(2, {16, 32}, 0.02, 3e-3, PlaneState::axisymmetric);
+}
+
+TEST_CASE("thick cylinder as a section that goes round its axis: second order against the radial equation") {
+  for (const Law& law : {elastic_law(1.0, 0.3), logarithmic_law(0.01)}) {
+    const RadialSolution exact(law, 1, inner, outer, 0.02, 500);
+    for (const ElementType type : {ElementType::tri3, ElementType::quad4}) {
+      std::vector<double> errors;
+      for (const int n : {16, 32}) {
+        Mesh mesh = make_box({{outer - inner, 0.25, 0}, {n, n / 4, 1}, type});
+        map_nodes(mesh, [](const Vector3& x) { return Vector3{x[0] + inner, x[1], 0}; });
+        Model model;
+        model.plane = PlaneState::axisymmetric;
+        model.materials.push_back({everything(), law});
+        model.boundary = {roller(named("bottom"), 1), roller(named("top"), 1), pressure(named("left"), 0.02)};
+        model.solver.tolerance = 1e-8;
+        const Run run = run_alone(mesh, model);
+        CHECK(run.result().status == Status::converged);
+        double error = 0.0, size = 0.0;
+        for (std::size_t k = 0; k < run.part.nodes(); ++k) {
+          const double radial = exact(run.part.coordinates[2 * k]);
+          error += std::pow(run.solution.displacement[2 * k] - radial, 2);
+          size += radial * radial;
+        }
+        errors.push_back(std::sqrt(error / size));
+      }
+      CAPTURE(errors[0]);
+      CAPTURE(errors[1]);
+      CHECK(errors[1] < 2e-3);
+      CHECK(std::log2(errors[0] / errors[1]) > 1.7);
+    }
+  }
 }

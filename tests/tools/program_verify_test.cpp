@@ -108,6 +108,50 @@ TEST_CASE("what has converged is verified from its files, of every element, on o
   CHECK(place.run("verify cube.json --output out --set contact[0].friction.coulomb=0.2").exit_code == 1);
 }
 
+TEST_CASE("plane stress and bodies of revolution are verified from their files, on one rank and two") {
+  const Workplace place;
+  nlohmann::json flat = parsed(R"({
+    "mesh": {"box": {"size": [2, 1], "cells": [16, 8]}},
+    "material": [{"on": "all", "young": 200, "poisson": 0.3, "law": {"type": "power", "x0": 0.001, "n": 0.5}}],
+    "boundary": [{"on": "top", "displacement": [0, -0.004], "name": "top"}, {"on": "right", "pressure": 0.1},
+                 {"on": "right", "spring": 2.0}, {"on": "right", "traction": [0, 0.05]},
+                 {"on": "all", "body_force": [0.01, -0.1]}],
+    "contact": [{"on": "bottom", "obstacle": {"sphere": {"centre": [0, -30], "radius": 30}}, "name": "ball",
+                 "friction": {"coulomb": 0.3}}],
+    "output": {"report": false}})");
+  for (const char* plane : {"stress", "axisymmetric"})
+    for (const char* element : {"tri3", "quad4"}) {
+      INFO(plane, " ", element);
+      nlohmann::json input = flat;
+      input["plane"] = plane;
+      input["mesh"]["box"]["element"] = element;
+      if (std::string(plane) == "axisymmetric") {
+        input["material"][0]["expansion"] = 1e-4;
+        input["boundary"].push_back({{"on", "all"}, {"temperature", 5}});
+      }
+      place.put_json("flat.json", input);
+      nlohmann::json first;
+      for (const char* ranks : {"1", "2"}) {
+        const Outcome run = place.run(std::string("run flat.json --output out --ranks ") + ranks);
+        INFO(run.error);
+        REQUIRE(run.exit_code == 0);
+        const Outcome outcome = place.run("verify flat.json --output out");
+        INFO(outcome.error, outcome.output);
+        CHECK(outcome.exit_code == 0);
+        const nlohmann::json result = place.json("out/result.json");
+        CHECK(result["plastic_elements"].get<int>() > 0);
+        CHECK(result["contact"]["ball"]["sticking"].get<int>() +
+                  result["contact"]["ball"]["slipping"].get<int>() >
+              2);
+        if (first.is_null()) first = result;
+        const double force = first["contact_force"][1];
+        CHECK(result["contact_force"][1].get<double>() == doctest::Approx(force).epsilon(1e-5));
+      }
+      // It would see the body as of plane strain.
+      CHECK(place.run("verify flat.json --output out --set plane=strain").exit_code == 1);
+    }
+}
+
 TEST_CASE("what has been changed in the files is found") {
   const Workplace place;
   place.put_json("beam.json", small_beam());

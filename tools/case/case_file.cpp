@@ -29,6 +29,7 @@ class CaseParser {
     check(whole, case_schema());
     const Object top(whole);
     parse_mesh(top.required("mesh"));
+    if (const auto plane = top.optional("plane")) result_.model.plane = value_of(*plane, words::plane);
     for (const Node& node : top.required("material").entries()) parse_material(node);
     if (const auto list = top.optional("boundary"))
       for (const Node& node : list->entries()) parse_boundary(node);

@@ -191,17 +191,21 @@ KeySet output() {
 KeySet top() {
   const Schema materials =
       ListOf{material(), "a list of materials", 1, ListOf::any_number, "at least one material"};
-  return {{must("mesh", mesh(), "where the mesh comes from: a file or a box"),
-           must("material", materials, "elastic constants and laws; every element needs exactly one"),
-           may("boundary", ListOf{boundary(), "a list of boundary conditions"}, "supports and loads"),
-           may("contact", ListOf{contact(), "a list of contact entries"},
-               "facets and the obstacles that they face"),
-           may("steps", steps(), "load curves; not with solver.load_steps"),
-           may("solver", solver(), "how it is solved"),
-           may("probe", ListOf{vector_schema(), "a list of points"},
-               "points of the body whose displacement is reported"),
-           may("output", output(), "what is written"), may("title", Text{}, "for people"),
-           may("$schema", Text{}, "for editors: where the schema is that kacanov schema prints")}};
+  return {
+      {must("mesh", mesh(), "where the mesh comes from: a file or a box"),
+       may("plane", one_of(words::plane),
+           "of meshes in 2D: plane strain, plane stress, or a section x ≥ 0 that goes round the axis x = 0",
+           word_of(Model().plane, words::plane)),
+       must("material", materials, "elastic constants and laws; every element needs exactly one"),
+       may("boundary", ListOf{boundary(), "a list of boundary conditions"}, "supports and loads"),
+       may("contact", ListOf{contact(), "a list of contact entries"},
+           "facets and the obstacles that they face"),
+       may("steps", steps(), "load curves; not with solver.load_steps"),
+       may("solver", solver(), "how it is solved"),
+       may("probe", ListOf{vector_schema(), "a list of points"},
+           "points of the body whose displacement is reported"),
+       may("output", output(), "what is written"), may("title", Text{}, "for people"),
+       may("$schema", Text{}, "for editors: where the schema is that kacanov schema prints")}};
 }
 
 }  // namespace

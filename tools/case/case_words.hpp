@@ -58,6 +58,9 @@ inline constexpr Words<Friction::Reference, 2> reference{
     {{"start", Friction::Reference::start}, {"step", Friction::Reference::step}}};
 inline constexpr Words<Law::Argument, 2> argument{
     {{"norm", Law::Argument::norm}, {"squared", Law::Argument::squared}}};
+inline constexpr Words<PlaneState, 3> plane{{{"strain", PlaneState::strain},
+                                             {"stress", PlaneState::stress},
+                                             {"axisymmetric", PlaneState::axisymmetric}}};
 inline constexpr Words<bool, 2> body_above{{{"above", true}, {"below", false}}};
 inline constexpr Words<bool, 2> fields{{{"vtu", true}, {"none", false}}};
 inline constexpr Words<Quantity, 4> quantity{{{"von_mises", Quantity::von_mises},

@@ -38,7 +38,7 @@ std::string facets_text(const Mesh& mesh, std::span<const std::int32_t> facets) 
   }
   std::array<char, 80> text{};
   std::snprintf(text.data(), text.size(), "%zu facets, %s %.6g", facets.size(),
-                mesh.dim() == 2 ? "length" : "area", area);
+                mesh.dim() == 2 && mesh.plane != PlaneState::axisymmetric ? "length" : "area", area);
   return text.data();
 }
 

@@ -10,6 +10,10 @@ using Tensor = std::array<Vec, 3>;
 struct Point {
   Real volume = 0;
   std::vector<Vec> gradient;  ///< of every shape function, in space
+  std::vector<Real> hoop;     ///< N/r round an axis, else 0: the strain zz that u_x means
+
+  /// tr ε of unit displacements of a node.
+  Vec divergence(std::size_t a) const { return {gradient[a][0] + hoop[a], gradient[a][1], gradient[a][2]}; }
 };
 
 Point point_at(const Mesh& mesh, const Indices& element, const QuadraturePoint& q) {
@@ -21,7 +25,10 @@ Point point_at(const Mesh& mesh, const Indices& element, const QuadraturePoint& 
     for (std::size_t k = 0; k < dim; ++k) along[k] = along[k] + f.gradient[a][k] * mesh.nodes[element[a]];
   const Tensor dual{cross(along[1], along[2]), cross(along[2], along[0]), cross(along[0], along[1])};
   const Real det = dot(along[0], dual[0]);
-  Point point{q.weight * det, {}};
+  const Real circle = mesh.circle(element, f);
+  Point point{q.weight * det * circle, {}, std::vector<Real>(element.size())};
+  for (std::size_t a = 0; a < element.size() && mesh.is_round; ++a)
+    point.hoop[a] = 2 * std::acos(Real(-1)) * f.value[a] / circle;
   for (const Vec& reference : f.gradient) {
     Vec g{};
     for (std::size_t k = 0; k < dim; ++k) g = g + reference[k] / det * dual[k];
@@ -36,7 +43,7 @@ std::vector<Vec> mean_gradients(const std::vector<Point>& points) {
   Real volume = 0;
   for (const Point& point : points) {
     volume += point.volume;
-    for (std::size_t a = 0; a < mean.size(); ++a) mean[a] = mean[a] + point.volume * point.gradient[a];
+    for (std::size_t a = 0; a < mean.size(); ++a) mean[a] = mean[a] + point.volume * point.divergence(a);
   }
   for (Vec& g : mean) g = 1 / volume * g;
   return mean;
@@ -49,7 +56,42 @@ Tensor strain(const Indices& element, const Point& point, const std::vector<Vec>
   Tensor e{};
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j) e[i][j] = (h[i][j] + h[j][i]) / 2;
+  for (std::size_t a = 0; a < element.size(); ++a) e[2][2] += point.hoop[a] * u[element[a]][0];
   return e;
+}
+
+Real trace_of(const Tensor& e) { return e[0][0] + e[1][1] + e[2][2]; }
+
+Tensor deviator_of(Tensor e) {
+  const Real third = trace_of(e) / 3;
+  for (std::size_t i = 0; i < 3; ++i) e[i][i] -= third;
+  return e;
+}
+
+Real norm_of(const Tensor& e) { return std::sqrt(dot(e[0], e[0]) + dot(e[1], e[1]) + dot(e[2], e[2])); }
+
+/// The strain across the plane that leaves no stress there (theory: plane-stress), by halving: it takes back
+/// a part of the trace that grows from that of the elastic answer to all of it.
+Real strain_across(const Law& law, Tensor e) {
+  const Real plane = e[0][0] + e[1][1], lame = law.bulk - 2 * law.secant(0) / 3;
+  Real nearest = -lame / (lame + 2 * law.secant(0)) * plane, farthest = -plane;
+  for (int step = 0; step < 90; ++step) {
+    e[2][2] = (nearest + farthest) / 2;
+    const Tensor deviator = deviator_of(e);
+    const Real stress = law.bulk * trace_of(e) + 2 * law.secant(norm_of(deviator)) * deviator[2][2];
+    ((stress > 0) == (plane > 0) ? nearest : farthest) = e[2][2];
+  }
+  return e[2][2];
+}
+
+/// Of the elastic B, of a node's displacement along i at a point.
+Real elastic_entry(const Mesh& mesh, const Law& law, const Point& point, std::size_t a, std::size_t i,
+                   Real divergence) {
+  const Real mu = law.secant(0), lame = law.bulk - 2 * mu / 3, n = point.gradient[a][i];
+  const Real hoop = i == 0 ? point.hoop[a] : 0;
+  const Real shears = mu * (dot(point.gradient[a], point.gradient[a]) + n * n + 2 * hoop * hoop);
+  if (mesh.is_free_across) return shears + 2 * mu * lame / (lame + 2 * mu) * n * n;
+  return shears - 2 * mu / 3 * (n + hoop) * (n + hoop) + law.bulk * divergence * divergence;
 }
 
 /// Adds what one element does.
@@ -63,16 +105,14 @@ void add_element(const Problem& problem, std::size_t e, const std::vector<Vec>& 
   const std::vector<Vec> mean = mean_gradients(points);
   Real von_mises = 0, volume = 0;
   for (const Point& point : points) {
-    const std::vector<Vec>& divergence = law.bbar ? mean : point.gradient;
-    Tensor deviator = strain(element, point, u);
-    const Real third = (deviator[0][0] + deviator[1][1] + deviator[2][2]) / 3;
-    Real square = 0, trace = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      deviator[i][i] -= third;
-      square += dot(deviator[i], deviator[i]);
-    }
+    std::vector<Vec> divergence = mean;
+    for (std::size_t a = 0; a < element.size() && !law.bbar; ++a) divergence[a] = point.divergence(a);
+    Tensor whole = strain(element, point, u);
+    if (mesh.is_free_across) whole[2][2] = strain_across(law, whole);
+    const Tensor deviator = deviator_of(whole);
+    Real trace = mesh.is_free_across ? whole[2][2] : 0;
     for (std::size_t a = 0; a < element.size(); ++a) trace += dot(divergence[a], u[element[a]]);
-    const Real x = std::sqrt(square), g = law.secant(x), elastic = law.secant(0);
+    const Real x = norm_of(deviator), g = law.secant(x);
     out.energy += point.volume * (law.bulk * trace * trace / 2 + 2 * law.energy(x));
     Real moved = 0;
     for (std::size_t a = 0; a < element.size(); ++a) moved += norm(point.gradient[a]) * norm(u[element[a]]);
@@ -83,9 +123,10 @@ void add_element(const Problem& problem, std::size_t e, const std::vector<Vec>& 
       const Vec &n = point.gradient[a], &d = divergence[a];
       const auto node = static_cast<std::size_t>(element[a]);
       for (std::size_t i = 0; i < dim; ++i) {
-        out.internal[node][i] += point.volume * (law.bulk * trace * d[i] + 2 * g * dot(deviator[i], n));
-        out.diagonal[node][i] +=
-            point.volume * (law.bulk * d[i] * d[i] + elastic * (n[i] * n[i] / 3 + dot(n, n)));
+        const Real round_axis = i == 0 ? deviator[2][2] * point.hoop[a] : 0;
+        out.internal[node][i] +=
+            point.volume * (law.bulk * trace * d[i] + 2 * g * (dot(deviator[i], n) + round_axis));
+        out.diagonal[node][i] += point.volume * elastic_entry(mesh, law, point, a, i, d[i]);
       }
     }
   }

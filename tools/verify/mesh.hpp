@@ -27,7 +27,11 @@ struct Mesh {
   std::vector<Indices> elements;
   std::vector<Indices> facets;  ///< the boundary, outwards
   std::vector<NamedGroup> groups;
+  bool is_round = false;        ///< axisymmetric: x is the distance from the axis
+  bool is_free_across = false;  ///< plane stress
 
+  /// The length of the circle that a point of the section stands for; 1 unless it goes round an axis.
+  Real circle(const Indices& cell, const Functions& at) const;
   int dim() const { return dimension(shape); }
   /// Length of the diagonal of the box round the nodes.
   Real size() const;

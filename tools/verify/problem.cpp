@@ -9,6 +9,24 @@ namespace {
 
 Vec place(const Mesh& mesh, Index node) { return mesh.nodes[node]; }
 
+/// What the case's mesh in 2D is of.
+void read_plane(const nlohmann::json& document, Mesh& mesh) {
+  const std::string plane = document.value("plane", "strain");
+  if (plane != "strain" && plane != "stress" && plane != "axisymmetric")
+    throw Failure("plane: the verifier knows no plane " + plane);
+  mesh.is_round = plane == "axisymmetric";
+  mesh.is_free_across = plane == "stress";
+  const Real reach = 1e-12L * mesh.size();
+  for (Vec& x : mesh.nodes)
+    if (mesh.is_round && std::abs(x[0]) <= reach) x[0] = 0;
+}
+
+/// Nodes on the axis stay there.
+void hold_axis(Problem& problem) {
+  for (std::size_t n = 0; n < problem.mesh.nodes.size() && problem.mesh.is_round; ++n)
+    if (problem.mesh.nodes[n][0] == 0) problem.held[n][0] = true;
+}
+
 void add_surface_load(Problem& problem, const nlohmann::json& entry, Real factor) {
   const std::vector<std::size_t> facets = select_facets(problem.mesh, entry.at("on"));
   Real area = 0;
@@ -37,14 +55,15 @@ void add_body_force(Problem& problem, const nlohmann::json& entry, Real factor) 
              : factor * read_vector(entry.at("body_force"));
   const std::size_t dim = mesh.dim();
   for (const std::size_t e : select_elements(mesh, entry.at("on")))
-    for (const QuadraturePoint& point : load_rule(mesh.shape)) {
+    for (const QuadraturePoint& point : load_rule(mesh.shape, mesh.is_round)) {
       const Functions f = functions(mesh.shape, point.at);
       std::array<Vec, 3> along{};
       if (mesh.dim() == 2) along[2] = {0, 0, 1};
       for (std::size_t a = 0; a < f.value.size(); ++a)
         for (std::size_t k = 0; k < dim; ++k)
           along[k] = along[k] + f.gradient[a][k] * place(mesh, mesh.elements[e][a]);
-      const Real volume = point.weight * dot(along[0], cross(along[1], along[2]));
+      const Real volume =
+          mesh.circle(mesh.elements[e], f) * point.weight * dot(along[0], cross(along[1], along[2]));
       for (std::size_t a = 0; a < f.value.size(); ++a) {
         Vec& load = problem.load[mesh.elements[e][a]];
         load = load + volume * f.value[a] * force;
@@ -104,7 +123,11 @@ void add_temperature(Problem& problem, const nlohmann::json& document, const nlo
       for (std::size_t a = 0; a < f.value.size(); ++a) {
         Vec& load = problem.load[mesh.elements[e][a]];
         for (std::size_t k = 0; k < dim; ++k)
-          load = load + point.weight * pressure * f.gradient[a][k] * dual[k];
+          load =
+              load + mesh.circle(mesh.elements[e], f) * point.weight * pressure * f.gradient[a][k] * dual[k];
+        // u/r goes round with 2π r.
+        if (mesh.is_round)
+          load[0] += 2 * std::acos(Real(-1)) * point.weight * pressure * f.value[a] * dot(along[0], dual[0]);
       }
     }
   }
@@ -154,7 +177,7 @@ FacetIntegrals consistent(const Mesh& mesh, const Indices& facet) {
   const Shape shape = facet_shape(mesh.shape);
   for (const QuadraturePoint& point : load_rule(shape)) {
     const Functions f = functions(shape, point.at);
-    const Vec normal = normal_at(mesh, facet, f);
+    const Vec normal = mesh.circle(facet, f) * normal_at(mesh, facet, f);
     for (std::size_t k = 0; k < facet.size(); ++k) {
       out.area[k] += point.weight * f.value[k] * norm(normal);
       out.normal[k] = out.normal[k] + point.weight * f.value[k] * normal;
@@ -168,6 +191,7 @@ Problem read_problem(const nlohmann::json& document, const std::filesystem::path
   Problem problem;
   problem.time = result.at("load_factor").get<double>();
   problem.mesh = load_mesh(document.at("mesh"), folder);
+  read_plane(document, problem.mesh);
   const std::size_t nodes = problem.mesh.nodes.size();
   problem.law_of_element.assign(problem.mesh.elements.size(), 0);
   problem.load.assign(nodes, {});
@@ -177,7 +201,8 @@ Problem read_problem(const nlohmann::json& document, const std::filesystem::path
     for (const std::size_t e : select_elements(problem.mesh, entry.at("on")))
       problem.law_of_element[e] = problem.laws.size();
     problem.laws.push_back(
-        read_law(entry, problem.mesh.shape == Shape::quad4 || problem.mesh.shape == Shape::hex8));
+        read_law(entry, !problem.mesh.is_free_across &&
+                            (problem.mesh.shape == Shape::quad4 || problem.mesh.shape == Shape::hex8)));
   }
   const auto boundary = document.value("boundary", nlohmann::json::array());
   for (std::size_t i = 0; i < boundary.size(); ++i) {
@@ -193,6 +218,7 @@ Problem read_problem(const nlohmann::json& document, const std::filesystem::path
         problem.load[node] = problem.load[node] + factor * read_vector(entry.at("node_force"));
     if (entry.contains("body_force") || entry.contains("density")) add_body_force(problem, entry, factor);
   }
+  hold_axis(problem);
   find_directions(problem);
   const auto contact = document.value("contact", nlohmann::json::array());
   for (std::size_t i = 0; i < contact.size(); ++i) {

@@ -148,12 +148,14 @@ Findings examine(const Problem& problem, const Answer& answer) {
   const Real unknown_force = delta * std::sqrt(body.stiff);
   const Real at_all = body.displacement > 0 ? 1 : 0;
   findings.supports = body.supports / moved;
+  Vec balance = body.balance;
+  if (problem.mesh.is_round) balance[0] = 0;  // away from an axis all is in balance by itself
   findings.entries = {{"equilibrium", std::sqrt(body.residual) / force, unknown_force / force},
                       {"penetration", sums.penetration / moved, at_all * sums.unknown_trace / moved},
                       {"tension", sums.tension / pressure, 0},
                       {"complementarity", sums.products / product, at_all * sums.unknown_product / product},
                       {"friction_cone", sums.cone / pressure, 0},
-                      {"force_balance", norm(body.balance) / all, delta * body.stiff_all / all},
+                      {"force_balance", norm(balance) / all, delta * body.stiff_all / all},
                       {"duality_gap", std::abs(sums.work - body.residual_work) / energy,
                        (delta * body.stiff_work + at_all * sums.unknown_product) / energy}};
   return findings;

@@ -152,9 +152,9 @@ std::vector<QuadraturePoint> stiffness_rule(Shape shape) {
   return {{{far, far, far}, w}, {{near, far, far}, w}, {{far, near, far}, w}, {{far, far, near}, w}};
 }
 
-std::vector<QuadraturePoint> load_rule(Shape shape) {
+std::vector<QuadraturePoint> load_rule(Shape shape, bool finer) {
   if (is_product(shape)) return product_rule(dimension(shape));
-  return is_quadratic(shape) ? collapsed_rule(dimension(shape)) : mean_rule(dimension(shape));
+  return is_quadratic(shape) || finer ? collapsed_rule(dimension(shape)) : mean_rule(dimension(shape));
 }
 
 Shape facet_shape(Shape body) {

@@ -30,7 +30,8 @@ struct QuadraturePoint {
 /// The rule that stiffness is integrated with (theory: elements).
 std::vector<QuadraturePoint> stiffness_rule(Shape shape);
 /// The rule that loads and areas are integrated with (theory: loads).
-std::vector<QuadraturePoint> load_rule(Shape shape);
+/// `finer`: of products with a linear function.
+std::vector<QuadraturePoint> load_rule(Shape shape, bool finer = false);
 
 /// What the facets of a body's element are, and the places of their nodes in the element; outwards.
 Shape facet_shape(Shape body);

@@ -33,7 +33,8 @@ struct Mesh {
   std::vector<std::int32_t> facets;         ///< the boundary: facets × nodes_per_facet, outwards
   std::vector<std::int32_t> facet_element;  ///< the element each facet belongs to
   std::vector<Group> groups;
-  std::vector<std::string> warnings;  ///< what its reader left out
+  std::vector<std::string> warnings;      ///< what its reader left out
+  PlaneState plane = PlaneState::strain;  ///< that of the model it is put under
 
   int dim() const { return dimension(type); }
   std::size_t node_count() const { return coordinates.size() / static_cast<std::size_t>(dim()); }
@@ -41,7 +42,7 @@ struct Mesh {
     return elements.size() / static_cast<std::size_t>(nodes_per_element(type));
   }
   std::size_t facet_count() const { return facets.size() / static_cast<std::size_t>(nodes_per_facet(type)); }
-  MeshView view() const noexcept { return {type, coordinates, elements}; }
+  MeshView view() const noexcept { return {type, coordinates, elements, plane}; }
   std::span<const std::int32_t> facet(std::size_t f) const {
     const std::size_t n = nodes_per_facet(type);
     return std::span(facets).subspan(f * n, n);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <kacanov/law.hpp>
+#include <kacanov/mesh_view.hpp>
 #include <kacanov/obstacle.hpp>
 
 namespace kacanov {
@@ -141,6 +142,7 @@ struct LoadStage {
 };
 
 struct Model {
+  PlaneState plane = PlaneState::strain;  ///< of meshes in 2D
   std::vector<MaterialEntry> materials;
   std::vector<BoundaryEntry> boundary;
   std::vector<ContactEntry> contact;

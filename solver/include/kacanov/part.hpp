@@ -27,6 +27,7 @@ struct Part {
     bool operator==(const ComponentValue&) const = default;
   };
   ElementType type = ElementType::tet4;
+  PlaneState plane = PlaneState::strain;
   std::vector<double> coordinates;  ///< nodes × dim
   std::vector<std::int32_t> elements;
   std::vector<std::int32_t> node_index;               ///< index in Problem::mesh
@@ -90,7 +91,7 @@ struct Part {
   void prescribe(std::span<double> u) const noexcept {
     for (const auto& p : prescribed) u[p.component] = p.value;
   }
-  Body body() const noexcept { return {{type, coordinates, elements}, laws, law_of_element}; }
+  Body body() const noexcept { return {{type, coordinates, elements, plane}, laws, law_of_element}; }
 };
 
 /// Splits the problem with METIS and hands out the parts one after another, so that only one lies beside the
