@@ -189,6 +189,11 @@ class Solutions(unittest.TestCase):
 
 
 class Stops(unittest.TestCase):
+    def setUp(self):
+        # A shell ignores SIGINT for what it starts in the background, and so would solve().
+        before = signal.signal(signal.SIGINT, signal.default_int_handler)
+        self.addCleanup(signal.signal, signal.SIGINT, before)
+
     def long(self):
         """A minute of work, and many outer steps."""
         return pressed_beam("hex8", (24, 8, 8)).solver(load_steps=1000, tolerance=1e-9)
