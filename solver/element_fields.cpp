@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "problem/shapes.hpp"
+
 namespace kacanov {
 namespace {
 
@@ -18,20 +20,45 @@ Body elements_of(const Part& part, std::size_t first, std::size_t count) {
   return body;
 }
 
-/// Six numbers a point of each element from `first` on.
-void take_off_thermal(const BodyState& state, std::size_t first, std::size_t points,
-                      std::span<double> stress) {
-  if (state.thermal.empty()) return;
-  for (std::size_t k = 0; k < stress.size() / 6; ++k)
-    for (std::size_t c = 0; c < 3; ++c) stress[6 * k + c] -= state.thermal[first + k / points];
-}
+/// Takes the means of elements from `first` on, or what their points have, off their stresses.
+class ThermalStress {
+ public:
+  ThermalStress(const Part& part, std::span<const double> thermal) : thermal_(thermal) {
+    if (thermal.empty()) return;
+    width_ = thermal.size() / part.element_count();
+    const Cell& type = cell(part.type);
+    for (const auto& at : type.points) {
+      shape_.emplace_back();
+      corner_cell(type).values(at.data(), shape_.back().data());
+    }
+  }
+  void take_off_means(std::size_t first, std::span<double> stress) const {
+    if (thermal_.empty()) return;
+    for (std::size_t k = 0; k < stress.size() / 6; ++k)
+      for (std::size_t c = 0; c < 3; ++c) stress[6 * k + c] -= thermal_[(first + k) * width_];
+  }
+  void take_off_points(std::size_t first, std::span<double> stress) const {
+    if (thermal_.empty()) return;
+    for (std::size_t k = 0; k < stress.size() / 6; ++k) {
+      const double* element = &thermal_[(first + k / shape_.size()) * width_];
+      double here = width_ == 1 ? element[0] : 0.0;
+      for (std::size_t a = 1; a < width_; ++a) here += shape_[k % shape_.size()][a - 1] * element[a];
+      for (std::size_t c = 0; c < 3; ++c) stress[6 * k + c] -= here;
+    }
+  }
+
+ private:
+  std::span<const double> thermal_;
+  std::size_t width_ = 1;
+  std::vector<std::array<double, most_nodes>> shape_;  ///< of the corners, at each point
+};
 
 }  // namespace
 
 void element_fields(const Part& part, const BodyState& state, std::size_t first, std::size_t count,
                     const reference::ElementFields& out) {
   reference::fields(elements_of(part, first, count), state.u, out);
-  if (!out.stress.empty()) take_off_thermal(state, first, 1, out.stress);
+  if (!out.stress.empty()) ThermalStress(part, state.thermal).take_off_means(first, out.stress);
 }
 
 void element_strains(const Part& part, const BodyState& state, std::size_t first, std::size_t count,
@@ -74,6 +101,7 @@ void visit_points(const Part& part, const BodyState& state,
                   const std::function<void(const PointRun&)>& visit) {
   const std::size_t elements = part.element_count();
   const std::size_t points = points_per_element(part.type);
+  const ThermalStress thermal(part, state.thermal);
   PointRun run;
   for (run.first = 0; run.first < elements; run.first += elements_a_run) {
     const std::size_t count = std::min(elements_a_run, elements - run.first);
@@ -83,7 +111,7 @@ void visit_points(const Part& part, const BodyState& state,
     run.volume.resize(count * points);
     reference::point_fields(elements_of(part, run.first, count), state.u,
                             {run.position, run.stress, run.strain, run.volume});
-    take_off_thermal(state, run.first, points, run.stress);
+    thermal.take_off_points(run.first, run.stress);
     visit(run);
   }
 }

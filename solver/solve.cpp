@@ -2,6 +2,7 @@
 // The solver's front door: runs the loops, then certifies and collects the result.
 #include <kacanov/solve.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <sstream>
@@ -50,13 +51,16 @@ Vector internal_force(const Part& part, std::span<const double> u) {
   return internal;
 }
 
-/// Of each element as the load has it, in the user's units; empty where nothing is warmer.
+/// As the load has it, in the user's units; empty where nothing is warmer.
 std::vector<double> thermal_pressure(const Part& part, const LoadPath& path) {
-  std::vector<double> sum;
+  std::size_t most = 0;
+  for (const ThermalPressure& thermal : part.thermal) most = std::max(most, thermal.of_element.size());
+  std::vector<double> sum(most, 0.0);
   for (const ThermalPressure& thermal : part.thermal) {
-    sum.resize(part.element_count(), 0.0);
     const double factor = path.factor_of(thermal.entry);
-    for (std::size_t e = 0; e < sum.size(); ++e) sum[e] += factor * thermal.of_element[e];
+    // What is the same all over an element is so at its corners.
+    const std::size_t each = most / std::max(thermal.of_element.size(), std::size_t{1});
+    for (std::size_t k = 0; k < most; ++k) sum[k] += factor * thermal.of_element[k / each];
   }
   return sum;
 }

@@ -98,7 +98,7 @@ kacanov_test(closed_friction
   RANKS 1 2 4)
 
 kacanov_test(mesh
-  SOURCES solver/mesh_test.cpp solver/refine_test.cpp solver/bisect_test.cpp
+  SOURCES solver/mesh_test.cpp solver/node_fields_test.cpp solver/refine_test.cpp solver/bisect_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 kacanov_test(closed_solutions

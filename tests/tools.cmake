@@ -8,7 +8,7 @@ add_library(kacanov_program_runner OBJECT tools/program_runner.cpp)
 target_compile_features(kacanov_program_runner PUBLIC cxx_std_20)
 target_link_libraries(kacanov_program_runner PUBLIC nlohmann_json::nlohmann_json kacanov_warnings)
 target_compile_definitions(kacanov_program_runner PRIVATE KACANOV_PROGRAM="$<TARGET_FILE:kacanov>")
-foreach(area program_conditions program_decks program_errors program_failures program_files program_memory program_meshes program_obstacles program_partition program_restart program_runs program_series program_signals)
+foreach(area program_conditions program_decks program_errors program_failures program_files program_memory program_meshes program_obstacles program_partition program_restart program_runs program_series program_signals program_temperature)
   kacanov_test(${area} SOURCES tools/${area}_test.cpp LIBRARIES kacanov_program_runner)
   target_compile_definitions(test_${area} PRIVATE
     KACANOV_PROGRAM="$<TARGET_FILE:kacanov>" KACANOV_MPIEXEC="${MPIEXEC_EXECUTABLE}"

@@ -171,8 +171,9 @@ class Case:
         """A force on each node of a selection."""
         return self._add("boundary", on=on, node_force=force, name=name)
 
-    def temperature(self, difference: float, on: On = "all", *, name: str | None = None) -> Case:
-        """By how much elements are warmer than where they are free of strain."""
+    def temperature(self, difference: float | Mapping[str, Any], on: On = "all", *, name: str | None = None) -> Case:
+        """By how much elements are warmer than where they are free of strain: a number, or {"gradient", "value", "point"}
+        of a linear field, or {"file", "otherwise"} of a CSV file of nodes."""
         return self._add("boundary", on=on, temperature=difference, name=name)
 
     def contact(self, on: On, obstacle: Obstacle | Mapping[str, Any], *, coulomb: float | None = None,

@@ -150,6 +150,12 @@ class Solutions(unittest.TestCase):
         for stress in (sol.stress, sol.nodal_stress):
             self.assertLess(np.abs(stress).max(), 1e-3)
 
+    def test_warmth_that_grows_along_a_bar(self):
+        case = kc.Case(kc.box((2, 1, 1), (4, 1, 1), "hex8")).material(210e3, 0.3, expansion=1e-5)
+        sol = case.temperature({"gradient": (50, 0, 0), "value": 10}).fix("all").solve()
+        warmer = 10 + 50 * (np.arange(4) + 0.5) / 2  # no node moves
+        np.testing.assert_allclose(sol.stress[:, 0], -210e3 * 1e-5 * warmer / 0.4, rtol=1e-9)
+
     def test_warmth_between_walls_presses(self):
         case = kc.Case(kc.box((2, 1, 1), (4, 2, 2), "hex8")).material(210e3, 0.3, expansion=1e-5).temperature(100)
         sol = case.fix("all").solve()

@@ -41,6 +41,7 @@ class Bisection {
     fine_.type = coarse_.type;
     fine_.coordinates = coarse_.coordinates;
     fine_.node_tags = coarse_.node_tags;
+    fine_.node_fields = coarse_.node_fields;
     keep_middles();
     std::vector<std::uint8_t> generations(coarse_.element_count(), 0);
     for (const std::int32_t e : marked) generations[e] = static_cast<std::uint8_t>(type_.dim);
@@ -124,11 +125,12 @@ class Bisection {
     return false;
   }
 
-  std::int32_t add(const Point& at) {
+  std::int32_t add(const Point& at, std::int32_t a, std::int32_t b) {
     const std::size_t node = fine_.node_count();
     if ((node + 1) * dim() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
       throw InputError("mesh.adapt: so fine a mesh has more unknowns than 32-bit indices can number");
     fine_.coordinates.insert(fine_.coordinates.end(), at.begin(), at.begin() + type_.dim);
+    add_mean_of_fields(fine_, std::array{a, b});
     return static_cast<std::int32_t>(node);
   }
 
@@ -156,11 +158,12 @@ class Bisection {
 
   /// Makes the node in the middle of an edge of a piece of the element with nodes `of`.
   void halve(std::span<const std::int32_t> of, const Piece& piece, Edge edge) {
-    const std::uint64_t key = pair_key(piece.node[edge.a], piece.node[edge.b]);
-    const auto there = between_.find(key);
-    halved_.emplace(key, there != between_.end()
-                             ? there->second
-                             : add(position(of, middle(piece.xi[edge.a], piece.xi[edge.b]))));
+    const std::int32_t a = piece.node[edge.a], b = piece.node[edge.b];
+    const auto there = between_.find(pair_key(a, b));
+    halved_.emplace(pair_key(a, b),
+                    there != between_.end()
+                        ? there->second
+                        : add(position(of, middle(piece.xi[edge.a], piece.xi[edge.b])), a, b));
   }
 
   /// Cuts a piece of an element at its longest edge, so many times over and further where an edge is halved,
@@ -186,10 +189,11 @@ class Bisection {
                           piece.node.begin() + static_cast<std::ptrdiff_t>(corners_));
     for (const CellEdge& edge : type_.edges) {
       if (edge.middle < 0) continue;
-      const auto [place, fresh] = between_.try_emplace(pair_key(piece.node[edge.a], piece.node[edge.b]), 0);
+      const std::int32_t a = piece.node[edge.a], b = piece.node[edge.b];
+      const auto [place, fresh] = between_.try_emplace(pair_key(a, b), 0);
       if (fresh) {
-        place->second = add(position(of, middle(piece.xi[edge.a], piece.xi[edge.b])));
-        new_middles_.push_back({piece.node[edge.a], piece.node[edge.b], place->second});
+        place->second = add(position(of, middle(piece.xi[edge.a], piece.xi[edge.b])), a, b);
+        new_middles_.push_back({a, b, place->second});
       }
       fine_.elements.push_back(place->second);
     }

@@ -19,6 +19,15 @@ inline std::uint64_t pair_key(std::int32_t a, std::int32_t b) {
   return low << 32 | high;
 }
 
+/// What a new node has of the mesh's fields: the mean of those of the corners round it.
+inline void add_mean_of_fields(Mesh& mesh, std::span<const std::int32_t> corners) {
+  for (NodeField& field : mesh.node_fields) {
+    double sum = 0.0;
+    for (const std::int32_t node : corners) sum += field.values[node];
+    field.values.push_back(sum / static_cast<double>(corners.size()));
+  }
+}
+
 /// The boundary facets of a mesh by their corners, whatever their order. The mesh has to outlive it.
 class FacetIndex {
  public:

@@ -2,6 +2,7 @@
 // Quadratic elements from linear ones.
 #include <kacanov/raise_order.hpp>
 
+#include <array>
 #include <limits>
 #include <string>
 
@@ -22,6 +23,7 @@ std::int32_t middle(Mesh& mesh, MiddleNodes& middles, std::int32_t a, std::int32
     throw InputError("mesh.order: so many nodes have more unknowns than 32-bit indices can number");
   for (std::size_t c = 0; c < dim; ++c)
     mesh.coordinates.push_back(0.5 * (mesh.coordinates[a * dim + c] + mesh.coordinates[b * dim + c]));
+  add_mean_of_fields(mesh, std::array{a, b});
   return place->second;
 }
 
@@ -55,6 +57,7 @@ Mesh raise_order(const Mesh& linear) {
   mesh.type = raised(linear.type);
   mesh.coordinates = linear.coordinates;
   mesh.node_tags = linear.node_tags;
+  mesh.node_fields = linear.node_fields;
   mesh.element_tags = linear.element_tags;
   const Cell& type = cell(mesh.type);
   const std::size_t corners = type.corners;

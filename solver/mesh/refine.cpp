@@ -68,6 +68,7 @@ class Refinement {
     fine_.type = coarse_.type;
     fine_.coordinates = coarse_.coordinates;
     fine_.node_tags = coarse_.node_tags;
+    fine_.node_fields = coarse_.node_fields;
     for (std::size_t d = 1; d < patterns_.size(); ++d) patterns_[d] = children_of(type_, d);
     fine_.elements.reserve(coarse_.elements.size() * children_count(type_));
     for (std::size_t e = 0; e < coarse_.element_count(); ++e) split(e);
@@ -85,18 +86,21 @@ class Refinement {
     return std::span(coarse_.elements).subspan(e * n, n);
   }
 
-  /// The node between two that share an edge, or across a quadrilateral: made at `at` where it is new.
-  std::int32_t between(std::int32_t a, std::int32_t b, const std::array<double, 3>& at) {
+  /// The node between two that share an edge, or across a quadrilateral: made at `at`, amid `around`, where
+  /// it is new.
+  std::int32_t between(std::int32_t a, std::int32_t b, const std::array<double, 3>& at,
+                       std::span<const std::int32_t> around) {
     const auto [place, fresh] = between_.try_emplace(pair_key(a, b), 0);
-    if (fresh) place->second = add(at);
+    if (fresh) place->second = add(at, around);
     return place->second;
   }
 
-  std::int32_t add(const std::array<double, 3>& at) {
+  std::int32_t add(const std::array<double, 3>& at, std::span<const std::int32_t> around) {
     const std::size_t node = fine_.node_count();
     if ((node + 1) * dim() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
       throw InputError("mesh.refine: so fine a mesh has more unknowns than 32-bit indices can number");
     fine_.coordinates.insert(fine_.coordinates.end(), at.begin(), at.begin() + type_.dim);
+    add_mean_of_fields(fine_, around);
     return static_cast<std::int32_t>(node);
   }
 
@@ -135,13 +139,14 @@ class Refinement {
       }
     if (count == 1) return around[0];
     const std::array<double, 3> xi = reference(corners);
+    const auto all = std::span(around).first(count);
     if (count == 2) {
       for (const CellEdge& edge : type_.edges)
         if (edge.middle >= 0 && corners == (bit(edge.a) | bit(edge.b))) return of[edge.middle];
-      return between(around[0], around[1], position(of, xi));
+      return between(around[0], around[1], position(of, xi), all);
     }
     if (count == static_cast<std::size_t>(type_.corners)) {  // its own
-      if (inner_ < 0) inner_ = add(position(of, xi));
+      if (inner_ < 0) inner_ = add(position(of, xi), all);
       return inner_;
     }
     // A quadrilateral is known by its lowest node and the one across.
@@ -150,7 +155,7 @@ class Refinement {
     std::size_t across = lowest;
     for (std::size_t b = 0; b < 4; ++b)
       if (distance(local[b], local[lowest]) > distance(local[across], local[lowest])) across = b;
-    return between(around[lowest], around[across], position(of, xi));
+    return between(around[lowest], around[across], position(of, xi), all);
   }
 
   double distance(std::size_t a, std::size_t b) const {
@@ -194,8 +199,8 @@ class Refinement {
         const auto from = reference(pattern[child + edge.a]), to = reference(pattern[child + edge.b]);
         const std::array<double, 3> xi{0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1]),
                                        0.5 * (from[2] + to[2])};
-        fine_.elements.push_back(
-            between(fine_.elements[first + edge.a], fine_.elements[first + edge.b], position(of, xi)));
+        const std::array ends{fine_.elements[first + edge.a], fine_.elements[first + edge.b]};
+        fine_.elements.push_back(between(ends[0], ends[1], position(of, xi), ends));
       }
     }
   }

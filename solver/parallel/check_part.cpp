@@ -181,7 +181,9 @@ void check_entries(const Part& part) {
   }
   for (const ThermalPressure& thermal : part.thermal) {
     expect_indices("temperatures", std::array{thermal.entry}, entries);
-    expect_length("temperatures", thermal.of_element.size(), part.element_count());
+    const std::size_t corners = cell(part.type).corners;
+    if (thermal.of_element.size() != part.element_count())
+      expect_length("temperatures", thermal.of_element.size(), (1 + corners) * part.element_count());
   }
   for (const AppliedLoad& load : part.applied)
     expect_indices("loads of entries", std::array{load.entry}, entries);

@@ -176,8 +176,9 @@ class Splitter {
   void take_thermal(Part& part, int rank) const {
     for (const ThermalPressure& thermal : problem_.thermal) {
       ThermalPressure mine{thermal.entry, {}};
-      for (std::size_t e = 0; e < part_of_.size(); ++e)
-        if (part_of_[e] == rank) mine.of_element.push_back(thermal.of_element[e]);
+      const std::size_t width = thermal.of_element.size() / part_of_.size();
+      for (std::size_t k = 0; k < thermal.of_element.size(); ++k)
+        if (part_of_[k / width] == rank) mine.of_element.push_back(thermal.of_element[k]);
       part.thermal.push_back(std::move(mine));
     }
   }

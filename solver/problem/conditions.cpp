@@ -3,6 +3,8 @@
 #include "problem/conditions.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
@@ -76,19 +78,71 @@ void add_body_force(const Mesh& mesh, const Vector3& force, std::span<const std:
   }
 }
 
+/// By how much each corner of an element is warmer.
+class CornerRise {
+ public:
+  CornerRise(const Mesh& mesh, const Temperature& rise, const std::string& path)
+      : mesh_(mesh), rise_(rise), path_(path) {
+    if (rise.nodes.empty()) return;
+    const auto found = std::find_if(mesh.node_fields.begin(), mesh.node_fields.end(),
+                                    [&](const NodeField& field) { return field.name == rise.nodes; });
+    if (found == mesh.node_fields.end())
+      throw InputError(path + ": the mesh has no numbers at nodes of the name \"" + rise.nodes + "\"");
+    field_ = &*found;
+  }
+
+  std::span<const double> of(std::size_t element) {
+    const Cell& type = cell(mesh_.type);
+    const std::size_t nodes = type.nodes, corners = type.corners;
+    for (std::size_t k = 0; k < corners; ++k) here_[k] = at_node(mesh_.elements[element * nodes + k]);
+    return std::span(here_).first(corners);
+  }
+
+ private:
+  double at_node(std::int32_t node) const {
+    if (field_ == nullptr) return rise_.value + dot(rise_.gradient, position(mesh_, node) - rise_.point);
+    const double value = field_->values[node];
+    if (std::isnan(value))
+      throw InputError(path_ + ": there is no value for node " + std::to_string(mesh_.node_tag(node)) +
+                       ", a corner of elements that the entry selects");
+    return value;
+  }
+
+  const Mesh& mesh_;
+  const Temperature& rise_;
+  const std::string& path_;
+  const NodeField* field_ = nullptr;
+  std::array<double, most_nodes> here_{};
+};
+
 /// What the elements would push their nodes with if they could not expand.
-void add_temperature(Problem& problem, const Model& model, double rise,
-                     std::span<const std::int32_t> elements, LoadOfEntry& load) {
+void add_temperature(Problem& problem, const Model& model, const Temperature& rise,
+                     std::span<const std::int32_t> elements, LoadOfEntry& load, const std::string& path) {
   const Mesh& mesh = problem.mesh;
-  const std::size_t n = nodes_per_element(mesh.type);
+  const std::size_t n = nodes_per_element(mesh.type),
+                    width = rise.uniform() ? 1 : 1 + static_cast<std::size_t>(cell(mesh.type).corners);
+  CornerRise corner_rise(mesh, rise, path);
   ThermalPressure& thermal = problem.thermal.back();
-  thermal.of_element.assign(mesh.element_count(), 0.0);
+  thermal.of_element.assign(width * mesh.element_count(), 0.0);
   for (const std::int32_t e : elements) {
     const std::size_t law = problem.law_of_element[e];
-    const double pressure = 3.0 * problem.laws[law].bulk * model.materials[law].expansion * rise;
-    thermal.of_element[e] = pressure;
-    const auto weights = gradient_weights(mesh, e);
-    for (std::size_t k = 0; k < n; ++k) load.add(mesh.elements[e * n + k], pressure * weights[k]);
+    const double stiffness = 3.0 * problem.laws[law].bulk * model.materials[law].expansion;
+    if (stiffness == 0.0) continue;
+    std::array<double, 1 + most_nodes> pressure{};  // the mean, and at the corners
+    const auto here = std::span(pressure).first(width), corners = here.subspan(1);
+    if (rise.uniform()) {
+      here[0] = stiffness * rise.value;
+    } else {
+      const auto warmer = corner_rise.of(e);
+      for (std::size_t k = 0; k < corners.size(); ++k) corners[k] = stiffness * warmer[k];
+      here[0] = mean_by_points(mesh, e, corners);
+      // With B-bar the trace is a mean, and so is what is taken off it.
+      if (problem.laws[law].mean_dilatation) std::fill(corners.begin(), corners.end(), here[0]);
+    }
+    std::copy(here.begin(), here.end(), thermal.of_element.begin() + static_cast<std::ptrdiff_t>(width * e));
+    const auto weights = gradient_weights(mesh, e, corners);
+    for (std::size_t k = 0; k < n; ++k)
+      load.add(mesh.elements[e * n + k], (corners.empty() ? here[0] : 1.0) * weights[k]);
   }
 }
 
@@ -178,7 +232,7 @@ void assemble_load(Problem& problem, const Model& model, const Selection& select
           }))
         throw InputError(path + ".temperature: expected elements whose material has an expansion");
       problem.thermal.push_back({static_cast<std::int32_t>(i), {}});
-      add_temperature(problem, model, *entry.temperature, elements, load);
+      add_temperature(problem, model, *entry.temperature, elements, load, path + ".temperature");
     } else {
       const std::vector<std::int32_t> facets = selection.facets(entry.on, path);
       if (entry.traction) add_traction(mesh, *entry.traction, facets, load);

@@ -99,6 +99,26 @@ Vector3 normal_at(const Mesh& mesh, std::span<const std::int32_t> nodes, const S
   return mesh.dim() == 2 ? Vector3{along[1], -along[0], 0.0} : cross(along, across);
 }
 
+/// Derivatives of the position along the reference coordinates; across the plane 1.
+std::array<Vector3, 3> jacobian_at(const Mesh& mesh, std::span<const std::int32_t> nodes,
+                                   const Shapes& shapes) {
+  std::array<Vector3, 3> jacobian{};
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    const Vector3 x = position(mesh, nodes[k]);
+    for (std::size_t c = 0; c < 3; ++c) jacobian[c] = jacobian[c] + shapes.gradient[k][c] * x;
+  }
+  if (mesh.dim() == 2) jacobian[2] = {0.0, 0.0, 1.0};
+  return jacobian;
+}
+
+double linear_between(const Cell& type, std::span<const double> at_corners, const Vector3& at) {
+  std::array<double, most_nodes> shape{};
+  corner_cell(type).values(at.data(), shape.data());
+  double sum = 0.0;
+  for (std::size_t k = 0; k < at_corners.size(); ++k) sum += shape[k] * at_corners[k];
+  return sum;
+}
+
 }  // namespace
 
 FacetWeights consistent_weights(const Mesh& mesh, std::size_t facet) {
@@ -146,12 +166,7 @@ std::array<double, most_nodes> volume_weights(const Mesh& mesh, std::size_t elem
   const auto nodes = std::span(mesh.elements).subspan(element * n, n);
   for (const Point& point : rule_for(type, mesh.plane)) {
     const Shapes shapes = shapes_at(type, point.at);
-    std::array<Vector3, 3> jacobian{};  // columns: derivatives of the position
-    for (std::size_t k = 0; k < n; ++k) {
-      const Vector3 x = position(mesh, nodes[k]);
-      for (std::size_t c = 0; c < 3; ++c) jacobian[c] = jacobian[c] + shapes.gradient[k][c] * x;
-    }
-    if (mesh.dim() == 2) jacobian[2] = {0.0, 0.0, 1.0};
+    const std::array<Vector3, 3> jacobian = jacobian_at(mesh, nodes, shapes);
     const double volume =
         circle(mesh, nodes, shapes) * point.weight * dot(jacobian[0], cross(jacobian[1], jacobian[2]));
     for (std::size_t k = 0; k < n; ++k) weights[k] += volume * shapes.value[k];
@@ -159,32 +174,44 @@ std::array<double, most_nodes> volume_weights(const Mesh& mesh, std::size_t elem
   return weights;
 }
 
-std::array<Vector3, most_nodes> gradient_weights(const Mesh& mesh, std::size_t element) {
+std::array<Vector3, most_nodes> gradient_weights(const Mesh& mesh, std::size_t element,
+                                                 std::span<const double> at_corners) {
   const Cell& type = cell(mesh.type);
   std::array<Vector3, most_nodes> weights{};
   const std::size_t n = type.nodes;
   const auto nodes = std::span(mesh.elements).subspan(element * n, n);
   for (const auto& at : type.points) {
     const Shapes shapes = shapes_at(type, at);
-    std::array<Vector3, 3> jacobian{};
-    for (std::size_t k = 0; k < n; ++k) {
-      const Vector3 x = position(mesh, nodes[k]);
-      for (std::size_t c = 0; c < 3; ++c) jacobian[c] = jacobian[c] + shapes.gradient[k][c] * x;
-    }
-    if (mesh.dim() == 2) jacobian[2] = {0.0, 0.0, 1.0};
+    const std::array<Vector3, 3> jacobian = jacobian_at(mesh, nodes, shapes);
+    const double each = type.weight * (at_corners.empty() ? 1.0 : linear_between(type, at_corners, at));
     // Gradients in space times the determinant.
     const std::array<Vector3, 3> dual{cross(jacobian[1], jacobian[2]), cross(jacobian[2], jacobian[0]),
                                       cross(jacobian[0], jacobian[1])};
-    const double weight = circle(mesh, nodes, shapes) * type.weight;
+    const double weight = circle(mesh, nodes, shapes) * each;
     for (std::size_t k = 0; k < n; ++k)
       for (std::size_t c = 0; c < static_cast<std::size_t>(type.dim); ++c)
         weights[k] = weights[k] + weight * shapes.gradient[k][c] * dual[c];
     if (mesh.plane != PlaneState::axisymmetric) continue;
     // The hoop strain's part: N/r over the volume.
-    const double area = 2.0 * std::numbers::pi * type.weight * dot(jacobian[0], dual[0]);
+    const double area = 2.0 * std::numbers::pi * each * dot(jacobian[0], dual[0]);
     for (std::size_t k = 0; k < n; ++k) weights[k][0] += area * shapes.value[k];
   }
   return weights;
+}
+
+double mean_by_points(const Mesh& mesh, std::size_t element, std::span<const double> at_corners) {
+  const Cell& type = cell(mesh.type);
+  const std::size_t n = type.nodes;
+  const auto nodes = std::span(mesh.elements).subspan(element * n, n);
+  double sum = 0.0, whole = 0.0;
+  for (const auto& at : type.points) {
+    const Shapes shapes = shapes_at(type, at);
+    const std::array<Vector3, 3> jacobian = jacobian_at(mesh, nodes, shapes);
+    const double volume = circle(mesh, nodes, shapes) * dot(jacobian[0], cross(jacobian[1], jacobian[2]));
+    sum += volume * linear_between(type, at_corners, at);
+    whole += volume;
+  }
+  return sum / whole;
 }
 
 }  // namespace kacanov

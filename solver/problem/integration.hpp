@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include <kacanov/mesh.hpp>
 #include <kacanov/model.hpp>
@@ -25,8 +26,13 @@ FacetWeights consistent_weights(const Mesh& mesh, std::size_t facet);
 /// of the six-node triangle the mid-sides have a third each, as in the consistent load, and the corners none.
 FacetWeights lumped_weights(const Mesh& mesh, std::size_t facet);
 
-/// ∫ ∇Nᵢ dV by the points of the stiffness, one entry a node of the element.
-std::array<Vector3, most_nodes> gradient_weights(const Mesh& mesh, std::size_t element);
+/// ∫ f ∇Nᵢ dV by the points of the stiffness, one entry a node of the element; f is linear between its values
+/// at the corners, 1 where there are none.
+std::array<Vector3, most_nodes> gradient_weights(const Mesh& mesh, std::size_t element,
+                                                 std::span<const double> at_corners = {});
+
+/// The mean of f over the element by the same points.
+double mean_by_points(const Mesh& mesh, std::size_t element, std::span<const double> at_corners);
 
 /// ∫ Nᵢ dV (an area in 2D), one entry a node of the element.
 std::array<double, most_nodes> volume_weights(const Mesh& mesh, std::size_t element);

@@ -104,6 +104,7 @@ std::vector<std::int32_t> keep_boundary(Problem& problem) {
   free(problem.springs);
   free(problem.thermal);
   Mesh& mesh = problem.mesh;
+  free(mesh.node_fields);
   std::vector<std::int32_t> left;
   if (mesh.dim() == 2) {
     left.resize(mesh.node_count());

@@ -2,7 +2,15 @@
 // Shape functions of a cell at a point as vectors in space, from the table of cells.
 #include "problem/shapes.hpp"
 
+#include <algorithm>
+
 namespace kacanov {
+
+const Cell& corner_cell(const Cell& cell) {
+  return *std::find_if(cells().begin(), cells().end(), [&](const Cell& other) {
+    return other.dim == cell.dim && other.simplex == cell.simplex && other.order == 1;
+  });
+}
 
 Shapes shapes_at(const Cell& cell, const Vector3& at) {
   Shapes shapes;

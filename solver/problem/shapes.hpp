@@ -15,6 +15,9 @@ struct Shapes {
   std::array<Vector3, most_nodes> gradient{};
 };
 
+/// The linear cell of the same corners.
+const Cell& corner_cell(const Cell& cell);
+
 /// Shapes of a cell, of a body or of a facet, at a reference point.
 Shapes shapes_at(const Cell& cell, const Vector3& at);
 

@@ -52,6 +52,12 @@ void check_stiffness(const std::string& path, const Vector3& stiffness) {
   if (stiffness == Vector3{}) refuse(path, "a stiffness > 0 in some direction", shown_list(stiffness));
 }
 
+void check_temperature(const std::string& path, const Temperature& rise) {
+  check(path, rise.value);
+  check(path + ".gradient", rise.gradient);
+  check(path + ".point", rise.point);
+}
+
 void check_boundary(const std::string& path, const BoundaryEntry& entry) {
   check_selector(path + ".on", entry.on);
   const int kinds = (entry.displacement ? 1 : 0) + (entry.normal ? 1 : 0) + (entry.traction ? 1 : 0) +
@@ -80,7 +86,7 @@ void check_boundary(const std::string& path, const BoundaryEntry& entry) {
   if (entry.pressure) check(path + ".pressure", *entry.pressure);
   if (entry.body_force) check(path + ".body_force", *entry.body_force);
   if (entry.node_force) check(path + ".node_force", *entry.node_force);
-  if (entry.temperature) check(path + ".temperature", *entry.temperature);
+  if (entry.temperature) check_temperature(path + ".temperature", *entry.temperature);
   if (entry.normal_spring) check(path + ".spring", *entry.normal_spring, positive);
   if (entry.spring) check_stiffness(path + ".spring", *entry.spring);
   if (entry.node_spring) check_stiffness(path + ".node_spring", *entry.node_spring);

@@ -232,7 +232,7 @@ TEST_CASE("what is no spring and no temperature is refused") {
   has(with(R"({"on": "all", "temperature": 20})"),
       "boundary[2].temperature: expected elements whose material has an expansion");
   has(with(R"({"on": "all", "temperature": "warm"})"),
-      "boundary[2].temperature: expected a number, got \"warm\"");
+      "boundary[2].temperature: expected a number, or an object with the key gradient or file, got \"warm\"");
   has(with(R"({"on": "nowhere", "spring": 1})"), "boundary[2].on");
   json input = bar("tet4", 0.3);
   input["material"][0]["expansion"] = "big";

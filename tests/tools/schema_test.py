@@ -39,7 +39,8 @@ SAMPLE = {
                  {"on": "top", "traction": VECTOR}, {"on": "right", "pressure": 1}, {"on": "all", "body_force": VECTOR},
                  {"on": "top", "total_force": VECTOR}, {"on": "all", "density": 1, "acceleration": VECTOR},
                  {"on": "front", "spring": 1}, {"on": "back", "spring": [0, 1, 0]}, {"on": "left", "node_spring": VECTOR},
-                 {"on": "right", "node_force": VECTOR}, {"on": "all", "temperature": 1}, {"on": "back", "normal": 0}],
+                 {"on": "right", "node_force": VECTOR}, {"on": "all", "temperature": 1},
+                 {"on": "all", "temperature": {"gradient": VECTOR, "value": 1, "point": VECTOR}}, {"on": "back", "normal": 0}],
     "contact": [{"on": "bottom", "name": "floor", "obstacle": {"plane": {"point": [0, 0, 0], "normal": VECTOR}},
                  "friction": {"coulomb": 0.2, "reference": "step"}, "relinearise": True,
                  "force_controlled": {"force": 1, "direction": VECTOR}},
@@ -76,6 +77,10 @@ def without_comments(text):
     return re.sub(r'("(?:\\.|[^"\\])*")|//[^\n]*|/\*.*?\*/', lambda match: match[1] or "", text, flags=re.DOTALL)
 
 
+# Of what the sample has one of several forms.
+OTHERS = [{"on": "all", "temperature": {"file": "warm.csv", "otherwise": 20}}]
+
+
 def samples():
     """The sample, and small ones with what it has no place for."""
     yield SAMPLE
@@ -84,6 +89,8 @@ def samples():
         yield {**small, "material": [{"on": "all", "young": 200, "poisson": 0.3, "law": law}]}
     for obstacle in OBSTACLES:
         yield {**small, "contact": [{"on": "bottom", "obstacle": obstacle}]}
+    for entry in OTHERS:
+        yield {**small, "boundary": [entry]}
     for steps in (3, [0.5, 1]):
         yield {**small, "solver": {"load_steps": steps, "r": "paper"}}
     yield {**small, "mesh": {"file": "a.msh"}}

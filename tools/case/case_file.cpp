@@ -144,6 +144,23 @@ class CaseParser {
     result_.model.materials.push_back(entry);
   }
 
+  Temperature temperature(const Node& node) {
+    if (node.value().is_number()) return node.number();
+    const Object object(node);
+    Temperature rise;
+    if (const auto file = object.optional("file")) {
+      NodeValueFile values{node.path(), in_folder(file->text()), {}};
+      if (const auto rest = object.optional("otherwise")) values.otherwise = rest->number();
+      result_.mesh.node_values.push_back(values);
+      rise.nodes = node.path();
+      return rise;
+    }
+    rise.gradient = vector(object.required("gradient"));
+    if (const auto value = object.optional("value")) rise.value = value->number();
+    if (const auto point = object.optional("point")) rise.point = vector(*point);
+    return rise;
+  }
+
   void parse_boundary(const Node& node) {
     const Object object(node);
     BoundaryEntry entry;
@@ -162,7 +179,7 @@ class CaseParser {
     take_vector("node_force", entry.node_force);
     take_number("pressure", entry.pressure);
     take_number("normal", entry.normal);
-    take_number("temperature", entry.temperature);
+    if (const auto value = object.optional("temperature")) entry.temperature = temperature(*value);
     if (const auto value = object.optional("displacement")) {
       entry.displacement.emplace();
       const std::vector<Node> entries = vector_entries(*value);

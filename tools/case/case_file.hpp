@@ -14,7 +14,6 @@
 
 namespace kacanov {
 
-/// Where the mesh comes from: exactly one is set.
 /// `mesh.adapt`: where the mesh is refined by what its solution says (theory: bisection).
 struct Adaptivity {
   double error = 0.0;  ///< aim: Discretisation::energy
@@ -22,6 +21,14 @@ struct Adaptivity {
   int most_meshes = 12;
 };
 
+/// Numbers at nodes that the case file only names: temperatures.
+struct NodeValueFile {
+  std::string path;                 ///< of its key, for messages; the name among Mesh::node_fields
+  std::string name;                 ///< relative ones taken from the case file's folder
+  std::optional<double> otherwise;  ///< of nodes that are not in it
+};
+
+/// Where the mesh comes from: exactly one of file and box is set.
 struct MeshSource {
   std::optional<std::string> file;  ///< path, relative ones taken from the case file's folder
   std::optional<BoxSpec> box;
@@ -29,6 +36,8 @@ struct MeshSource {
   int refine = 0;  ///< times that the mesh of the file is refined; a box has its cells cut already
   /// What is in the file, where a caller has it in memory: then the file is not opened.
   std::shared_ptr<const std::string> content = {};
+  /// Of nodes as they are numbered before the mesh of a file is refined.
+  std::vector<NodeValueFile> node_values = {};
   std::optional<Adaptivity> adapt = {};
   /// On the first rank, once it is adapted: the mesh itself.
   std::shared_ptr<const Mesh> adapted = {};

@@ -63,6 +63,16 @@ KeySet material() {
   return set;
 }
 
+KeySet temperature() {
+  return {{may("gradient", vector_schema(), "of a linear field: temperature over length"),
+           may("value", Number{}, "of a linear field at `point`", Temperature().value),
+           may("point", vector_schema(), "left out, the origin"),
+           may("file", Text{}, "CSV of nodes or groups and their temperatures"),
+           may("otherwise", Number{}, "of nodes that are not in the file; left out, all have to be")},
+          {{{"gradient", "file"}}},
+          {{"value", "gradient"}, {"point", "gradient"}, {"otherwise", "file"}}};
+}
+
 KeySet boundary() {
   const char* free_or_number = "a number, or null for a free component";
   const Schema held = ListOf{Either{{Number{}, Null{}}, free_or_number}, "a list of 2 or 3 numbers", 2, 3};
@@ -83,7 +93,9 @@ KeySet boundary() {
            "stiffness of an elastic bed, stress over length: along the normal, or by component"),
        may("node_spring", vector_not_negative(), "stiffness of each node, force over length, by component"),
        may("node_force", vector_schema(), "a force on each node"),
-       may("temperature", Number{}, "by how much elements are warmer than where they are free of strain"),
+       may("temperature",
+           Either{{Number{}, temperature()}, "a number, or an object with the key gradient or file"},
+           "by how much elements are warmer than where they are free of strain"),
        may("normal", Number{},
            "displacement of flat facets along their outer normal; 0 is a plane of symmetry"),
        may("frame", axes, "orthogonal axes that the entries of displacement are along")},

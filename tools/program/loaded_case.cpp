@@ -7,11 +7,13 @@
 #include <cstdlib>
 #include <iostream>
 
+#include <kacanov/error.hpp>
 #include <kacanov/moving.hpp>
 #include <kacanov/raise_order.hpp>
 #include <kacanov/refine.hpp>
 #include <kacanov/validity.hpp>
 #include "formats/mesh_file.hpp"
+#include "formats/node_values.hpp"
 #include "formats/printable.hpp"
 #include "program/memory_model.hpp"
 #include "program/obstacle_files.hpp"
@@ -20,8 +22,15 @@ namespace kacanov {
 
 Mesh load_mesh(const MeshSource& source) {
   if (source.adapted) return *source.adapted;
-  if (source.box) return make_box(*source.box);
-  Mesh mesh = source.content ? read_mesh(*source.file, *source.content) : read_mesh(*source.file);
+  Mesh mesh = source.box       ? make_box(*source.box)
+              : source.content ? read_mesh(*source.file, *source.content)
+                               : read_mesh(*source.file);
+  for (const NodeValueFile& file : source.node_values) try {
+      mesh.node_fields.push_back({file.path, read_node_values(file.name, file.otherwise, mesh)});
+    } catch (const InputError& error) {
+      throw InputError(file.path + ".file: " + error.what());
+    }
+  if (source.box) return mesh;
   const std::vector<std::string> warnings = mesh.warnings;
   for (int times = 0; times < source.refine; ++times) mesh = refine(mesh);
   if (source.order > cell(mesh.type).order) mesh = raise_order(mesh);

@@ -41,12 +41,17 @@ CoarseSolution start_of(const SolvedCase& from, int dim, const MpiSession& mpi) 
   return start;
 }
 
-/// A number an element of all ranks, in the numbering of the whole mesh; empty where there are none.
+/// So many numbers an element, of all ranks, in the numbering of the whole mesh; empty where there are none.
 /// Collective.
 std::vector<double> gather_elements(const Part& part, const std::vector<double>& local) {
-  if (!part.node_map.any(!local.empty())) return {};
-  std::vector<double> all(static_cast<std::size_t>(part.total_elements), 0.0);
-  for (std::size_t e = 0; e < local.size(); ++e) all[part.element_index[e]] = local[e];
+  const std::size_t here = local.empty() ? 0 : local.size() / part.element_count();
+  const auto width = static_cast<std::size_t>(part.node_map.max_all(static_cast<double>(here)));
+  std::vector<double> all(width * static_cast<std::size_t>(part.total_elements), 0.0);
+  for (std::size_t k = 0; k < local.size(); ++k) {
+    const auto element = static_cast<std::size_t>(part.element_index[k / width]);
+    all[width * element + k % width] = local[k];
+  }
+  if (all.empty()) return all;
   part.node_map.sum_all(all);
   return all;
 }
@@ -98,8 +103,10 @@ void element_fields(const SolvedCase& solved, const reference::ElementFields& ou
   const Mesh& mesh = solved.problem.mesh;
   const Body body{mesh.view(), solved.problem.laws, solved.problem.law_of_element};
   reference::fields(body, solved.displacement, out);
-  for (std::size_t e = 0; e < solved.thermal.size() && !out.stress.empty(); ++e)
-    for (std::size_t c = 0; c < 3; ++c) out.stress[6 * e + c] -= solved.thermal[e];
+  if (solved.thermal.empty() || out.stress.empty()) return;
+  const std::size_t width = solved.thermal.size() / mesh.element_count();  // the mean comes first
+  for (std::size_t e = 0; e < mesh.element_count(); ++e)
+    for (std::size_t c = 0; c < 3; ++c) out.stress[6 * e + c] -= solved.thermal[width * e];
 }
 
 SolvedCase solve_case(const Case& given, const MpiSession& mpi, const CaseRun& run) {

@@ -52,7 +52,7 @@ struct SolvedCase {
   std::vector<double> averaged_von_mises;   ///< nodes: means of the elements round them, as in pictures
   std::vector<double> error;                ///< elements: note_discretisation()
   ContactFields contact;
-  std::vector<double> thermal;  ///< elements: the pressure that temperature takes off; empty: none
+  std::vector<double> thermal;  ///< Solution::thermal of all elements
 };
 
 /// Means over the elements of problem.mesh, as in the program's files; on the first rank.

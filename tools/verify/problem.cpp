@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "verify/node_values.hpp"
+
 namespace kacanov::verify {
 namespace {
 
@@ -47,21 +49,26 @@ void add_surface_load(Problem& problem, const nlohmann::json& entry, Real factor
   }
 }
 
+/// Derivatives of the position along the reference coordinates; across a plane 1.
+std::array<Vec, 3> along_at(const Mesh& mesh, const Indices& element, const Functions& f) {
+  const auto dim = static_cast<std::size_t>(mesh.dim());
+  std::array<Vec, 3> along{};
+  if (dim == 2) along[2] = {0, 0, 1};
+  for (std::size_t a = 0; a < f.value.size(); ++a)
+    for (std::size_t k = 0; k < dim; ++k) along[k] = along[k] + f.gradient[a][k] * place(mesh, element[a]);
+  return along;
+}
+
 void add_body_force(Problem& problem, const nlohmann::json& entry, Real factor) {
   const Mesh& mesh = problem.mesh;
   const bool weight = entry.contains("density");
   const Vec force =
       weight ? factor * Real(entry.at("density").get<double>()) * read_vector(entry.at("acceleration"))
              : factor * read_vector(entry.at("body_force"));
-  const std::size_t dim = mesh.dim();
   for (const std::size_t e : select_elements(mesh, entry.at("on")))
     for (const QuadraturePoint& point : load_rule(mesh.shape, mesh.is_round)) {
       const Functions f = functions(mesh.shape, point.at);
-      std::array<Vec, 3> along{};
-      if (mesh.dim() == 2) along[2] = {0, 0, 1};
-      for (std::size_t a = 0; a < f.value.size(); ++a)
-        for (std::size_t k = 0; k < dim; ++k)
-          along[k] = along[k] + f.gradient[a][k] * place(mesh, mesh.elements[e][a]);
+      const std::array<Vec, 3> along = along_at(mesh, mesh.elements[e], f);
       const Real volume =
           mesh.circle(mesh.elements[e], f) * point.weight * dot(along[0], cross(along[1], along[2]));
       for (std::size_t a = 0; a < f.value.size(); ++a) {
@@ -101,30 +108,67 @@ void add_spring(Problem& problem, const nlohmann::json& entry) {
   }
 }
 
+/// ΔT at the corners of elements.
+class Warmth {
+ public:
+  Warmth(const Mesh& mesh, const nlohmann::json& given, const std::filesystem::path& folder)
+      : mesh_(mesh), given_(given) {
+    if (given.is_object() && given.contains("file"))
+      nodes_ = read_node_values(folder / given.at("file").get<std::string>(), given, mesh);
+  }
+
+  Real at_node(Index node) const {
+    if (given_.is_number()) return given_.get<double>();
+    if (!nodes_.empty()) return nodes_[node];
+    const Vec from = given_.contains("point") ? read_vector(given_.at("point")) : Vec{};
+    return Real(given_.value("value", 0.0)) +
+           dot(read_vector(given_.at("gradient")), mesh_.nodes[node] - from);
+  }
+  /// Linear between the element's corners.
+  Real at(const Indices& element, const Vec& xi) const {
+    const Functions f = functions(corner_shape(mesh_.shape), xi);
+    Real sum = 0;
+    for (std::size_t a = 0; a < f.value.size(); ++a) sum += f.value[a] * at_node(element[a]);
+    return sum;
+  }
+
+ private:
+  const Mesh& mesh_;
+  const nlohmann::json& given_;
+  std::vector<Real> nodes_;
+};
+
 /// −3 k₀ α ΔT div v, put on as a load (theory: expansion).
 void add_temperature(Problem& problem, const nlohmann::json& document, const nlohmann::json& entry,
-                     Real factor) {
+                     Real factor, const std::filesystem::path& folder) {
   const Mesh& mesh = problem.mesh;
   const auto dim = static_cast<std::size_t>(mesh.dim());
+  const Warmth warmth(mesh, entry.at("temperature"), folder);
   for (const std::size_t e : select_elements(mesh, entry.at("on"))) {
+    const Indices& element = mesh.elements[e];
     const std::size_t law = problem.law_of_element[e];
-    const Real expansion = document.at("material").at(law).value("expansion", 0.0);
-    const Real pressure =
-        3 * problem.laws[law].bulk * expansion * factor * Real(entry.at("temperature").get<double>());
+    const Real stiffness =
+        3 * problem.laws[law].bulk * factor * Real(document.at("material").at(law).value("expansion", 0.0));
+    if (stiffness == 0) continue;
+    Real mean = 0, whole = 0;
     for (const QuadraturePoint& point : stiffness_rule(mesh.shape)) {
       const Functions f = functions(mesh.shape, point.at);
-      std::array<Vec, 3> along{};
-      if (dim == 2) along[2] = {0, 0, 1};
-      for (std::size_t a = 0; a < f.value.size(); ++a)
-        for (std::size_t k = 0; k < dim; ++k)
-          along[k] = along[k] + f.gradient[a][k] * place(mesh, mesh.elements[e][a]);
+      const std::array<Vec, 3> along = along_at(mesh, element, f);
+      const Real volume = point.weight * mesh.circle(element, f) * dot(along[0], cross(along[1], along[2]));
+      mean += volume * warmth.at(element, point.at);
+      whole += volume;
+    }
+    mean /= whole;
+    for (const QuadraturePoint& point : stiffness_rule(mesh.shape)) {
+      const Functions f = functions(mesh.shape, point.at);
+      const std::array<Vec, 3> along = along_at(mesh, element, f);
       const std::array<Vec, 3> dual{cross(along[1], along[2]), cross(along[2], along[0]),
                                     cross(along[0], along[1])};
+      const Real pressure = stiffness * (problem.laws[law].bbar ? mean : warmth.at(element, point.at));
       for (std::size_t a = 0; a < f.value.size(); ++a) {
-        Vec& load = problem.load[mesh.elements[e][a]];
+        Vec& load = problem.load[element[a]];
         for (std::size_t k = 0; k < dim; ++k)
-          load =
-              load + mesh.circle(mesh.elements[e], f) * point.weight * pressure * f.gradient[a][k] * dual[k];
+          load = load + mesh.circle(element, f) * point.weight * pressure * f.gradient[a][k] * dual[k];
         // u/r goes round with 2π r.
         if (mesh.is_round)
           load[0] += 2 * std::acos(Real(-1)) * point.weight * pressure * f.value[a] * dot(along[0], dual[0]);
@@ -210,7 +254,7 @@ Problem read_problem(const nlohmann::json& document, const std::filesystem::path
     const Real factor = factor_at(problem.time, document, "boundary", i);
     if (entry.contains("displacement") || entry.contains("normal")) hold(problem, entry, factor);
     if (entry.contains("spring") || entry.contains("node_spring")) add_spring(problem, entry);
-    if (entry.contains("temperature")) add_temperature(problem, document, entry, factor);
+    if (entry.contains("temperature")) add_temperature(problem, document, entry, factor, folder);
     if (entry.contains("traction") || entry.contains("total_force") || entry.contains("pressure"))
       add_surface_load(problem, entry, factor);
     if (entry.contains("node_force"))

@@ -157,6 +157,10 @@ std::vector<QuadraturePoint> load_rule(Shape shape, bool finer) {
   return is_quadratic(shape) || finer ? collapsed_rule(dimension(shape)) : mean_rule(dimension(shape));
 }
 
+Shape corner_shape(Shape shape) {
+  return shape == Shape::tet10 ? Shape::tet4 : shape == Shape::tri6 ? Shape::tri3 : shape;
+}
+
 Shape facet_shape(Shape body) {
   switch (body) {
     case Shape::tet4: return Shape::tri3;

@@ -33,6 +33,9 @@ std::vector<QuadraturePoint> stiffness_rule(Shape shape);
 /// `finer`: of products with a linear function.
 std::vector<QuadraturePoint> load_rule(Shape shape, bool finer = false);
 
+/// The linear shape of the same corners.
+Shape corner_shape(Shape shape);
+
 /// What the facets of a body's element are, and the places of their nodes in the element; outwards.
 Shape facet_shape(Shape body);
 std::vector<std::vector<int>> facets(Shape body);

@@ -24,6 +24,13 @@ struct Group {
   std::int64_t inner = 0;             ///< facets it had besides, which are not on the boundary
 };
 
+/// A number at each node, which finer meshes take over: new nodes have the mean of the corners they lie
+/// between. NaN: not known.
+struct NodeField {
+  std::string name;
+  std::vector<double> values;
+};
+
 struct Mesh {
   ElementType type = ElementType::tet4;
   std::vector<double> coordinates;          ///< nodes × dim
@@ -33,6 +40,7 @@ struct Mesh {
   std::vector<std::int32_t> facets;         ///< the boundary: facets × nodes_per_facet, outwards
   std::vector<std::int32_t> facet_element;  ///< the element each facet belongs to
   std::vector<Group> groups;
+  std::vector<NodeField> node_fields;
   std::vector<std::string> warnings;      ///< what its reader left out
   PlaneState plane = PlaneState::strain;  ///< that of the model it is put under
 

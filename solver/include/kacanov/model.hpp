@@ -31,6 +31,18 @@ struct MaterialEntry {
   double expansion = 0.0;  ///< linear thermal expansion: a strain over a temperature
 };
 
+/// By how much elements are warmer than where they are free of strain (theory: expansion): `value` at
+/// `point`, changing by `gradient` from there, or numbers at nodes.
+struct Temperature {
+  double value = 0.0;
+  Vector3 gradient{}, point{};
+  std::string nodes = {};  ///< not empty: a name among Mesh::node_fields, and the others say nothing
+
+  Temperature() = default;
+  Temperature(double everywhere) : value(everywhere) {}
+  bool uniform() const { return nodes.empty() && gradient == Vector3{}; }
+};
+
 /// Exactly one of the optionals is set.
 struct BoundaryEntry {
   Selector on;
@@ -47,7 +59,7 @@ struct BoundaryEntry {
   std::optional<double> normal = {};  ///< displacement along the outer normal of a flat group of facets
   /// Axes, orthogonal, of any length, that `displacement` is told along; unset: those of the coordinates.
   std::optional<std::array<Vector3, 3>> frame = {};
-  std::optional<double> temperature = {};  ///< by how much elements are warmer than without strain
+  std::optional<Temperature> temperature = {};
 
   bool is_support() const noexcept { return displacement || normal; }
   bool is_spring() const noexcept { return spring || normal_spring || node_spring; }

@@ -65,9 +65,10 @@ struct NodeSpring {
 };
 
 /// A temperature entry: the pressure 3 k₀ α ΔT of each element, which no strain means (theory: expansion).
+/// Its mean over the element, and where it differs within elements those of the element's corners besides.
 struct ThermalPressure {
   std::int32_t entry = 0;          ///< index into Model::boundary
-  std::vector<double> of_element;  ///< at the factor 1
+  std::vector<double> of_element;  ///< elements × 1, or × (1 + corners); at the factor 1
 };
 
 /// A contact point that several entries were joined in: what of it belongs to one of them, by its mass.

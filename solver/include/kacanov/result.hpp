@@ -159,10 +159,11 @@ enum class ContactStatus : std::uint8_t { open, stick, slip };  ///< frictionles
 struct Solution {
   Result result;                     ///< the same on every rank
   std::vector<double> displacement;  ///< nodes × dim
-  std::vector<double> thermal;       ///< elements: the pressure that temperature takes off; empty: none
-  std::vector<double> gap;           ///< contact points: ρ − Nu, the open distance
-  std::vector<double> pressure;      ///< contact points: λ_n
-  std::vector<Vector3> traction;     ///< contact points: −λ_t, what the obstacle does to the body
+  std::vector<double>
+      thermal;              ///< the pressure that temperature takes off, as in ThermalPressure; empty: none
+  std::vector<double> gap;  ///< contact points: ρ − Nu, the open distance
+  std::vector<double> pressure;               ///< contact points: λ_n
+  std::vector<Vector3> traction;              ///< contact points: −λ_t, what the obstacle does to the body
   std::vector<ContactStatus> contact_status;  ///< contact points
 };
 
