@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <optional>
-#include <sstream>
 #include <string>
 
 #include "collect.hpp"
+#include "mesh/plain_stream.hpp"
 #include "unsettled.hpp"
 #include "users_units.hpp"
 
@@ -35,7 +35,7 @@ double stretched(const OuterLoop& loop, const OuterLoop::Place& place) {
 /// What it means that nothing beyond `last` converges; `failed`: where the last attempt has left off.
 std::string explain_stop(const OuterLoop& loop, const OuterLoop::Place& last, double target,
                          const OuterLoop::Place& failed, const std::string& why) {
-  std::ostringstream text;
+  PlainText text;
   text.precision(4);
   if (last.share == 0.0) {
     text << "no state of balance is found, not even under a small part of the load: " << why;

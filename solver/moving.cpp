@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <sstream>
 
 #include <kacanov/error.hpp>
 #include <kacanov/solve.hpp>
+#include "mesh/plain_stream.hpp"
 #include "moving_contact.hpp"
 #include "parallel/body_extent.hpp"
 #include "problem/vector3.hpp"
@@ -147,7 +147,7 @@ class Chain {
     last_.result.contact[e].travel = travel_;
     if (outcome.reached || last_.result.status != Status::converged) return;
     last_.result.status = Status::not_converged;
-    std::ostringstream text;
+    PlainText text;
     text << "the obstacle of " << entry_name(entry, e) << " is pushed by " << pushed.force
          << ", and no travel is found at which the body bears that; at " << outcome.travel << " it bears "
          << outcome.force;
@@ -156,7 +156,7 @@ class Chain {
 
   void end_early(std::size_t step, double time) {
     if (curves_.size() == 2) return;
-    std::ostringstream place;
+    PlainText place;
     place << "load step " << step << " of " << curves_.size() - 1
           << (model_.steps_are_factors ? " (factor " : " (time ") << time << "): ";
     last_.result.message = place.str() + last_.result.message;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <sstream>
 #include <string>
 
 #include "amg/make_preconditioner.hpp"
@@ -13,6 +12,7 @@
 #include "entry_totals.hpp"
 #include "linear/springs.hpp"
 #include "load_steps.hpp"
+#include "mesh/plain_stream.hpp"
 #include "nonlinear/friction_bounds.hpp"
 #include "parallel/own_units.hpp"
 #include "spectrum/spectrum.hpp"
@@ -86,7 +86,7 @@ Status status_of(const Certificate& certificate, double tolerance, bool gave_up)
 }
 
 std::string verdict(const Result& result, const SolverOptions& options) {
-  std::ostringstream text;
+  PlainText text;
   text.precision(2);
   text << std::scientific;
   const double worst = result.certificate.worst();
@@ -120,7 +120,7 @@ void end_load_steps(const std::vector<double>& shares, bool finished, Result& re
   const std::size_t over = result.load_steps.size();
   if (finished) result.load_steps.push_back(load_step_line(result, shares[over]));
   if (over + 1 == shares.size() && finished) return;
-  std::ostringstream place;
+  PlainText place;
   place << "load step " << over + 1 << " of " << shares.size() << (result.by_time ? " (time " : " (factor ")
         << shares[over] << "): ";
   result.message = place.str() + result.message;

@@ -2,9 +2,8 @@
 // What of a state keeps it from converging, in words.
 #include "unsettled.hpp"
 
-#include <sstream>
-
 #include "largest.hpp"
+#include "mesh/plain_stream.hpp"
 #include "problem/vector3.hpp"
 
 namespace kacanov {
@@ -34,7 +33,7 @@ std::string who_cycles(const Part& part, const ContactChanges& changes, double l
   cycling = part.node_map.sum_all(cycling);
   const Extreme worst = agree_on_node(part, most);
   if (cycling == 0) return {};
-  std::ostringstream text;
+  PlainText text;
   text << "contact does not settle: node " << worst.tag << " at " << to_text(length * worst.at, part.dim())
        << " changed between open, stick and slip in " << worst.value << " of the last "
        << ContactChanges::window << " steps";

@@ -62,6 +62,7 @@ endif()
 # The front door in C; its C client, as it is, is what consumes an installation, too.
 kacanov_test(solve_c SOURCES tools/solve_c_test.cpp LIBRARIES kacanov_program_runner kacanov_solve)
 add_dependencies(test_solve_c kacanov)
+kacanov_test(host_locale SOURCES tools/host_locale_test.cpp LIBRARIES kacanov_program_runner kacanov_solve)
 kacanov_test(solve_c_mpi MPI SOURCES tools/solve_c_mpi_test.cpp
   LIBRARIES kacanov_solve MPI::MPI_CXX RANKS 1 2)
 add_executable(solve_client install/consumer/use_solve.c)

@@ -16,6 +16,7 @@
 #include "program/launch.hpp"
 #include "program/loaded_case.hpp"
 #include "program/memory_model.hpp"
+#include "program/plain_locale.hpp"
 #include "program/solve_case.hpp"
 
 namespace py = pybind11;
@@ -29,7 +30,8 @@ using Solved = std::shared_ptr<const SolvedCase>;
 /// the run at its next question.
 class Host {
  public:
-  Host(py::object progress, py::object stop) : progress_(std::move(progress)), stop_(std::move(stop)) {}
+  Host(py::object progress, py::object stop, const PlainLocale& locale)
+      : progress_(std::move(progress)), stop_(std::move(stop)), locale_(locale) {}
 
   void tell(const ProgressStep& step) {
     if (progress_.is_none()) return;
@@ -86,13 +88,14 @@ class Host {
   template <class Work>
   void guard(const Work& work) {
     try {
-      work();
+      locale_.in_hosts(work);
     } catch (py::error_already_set&) {
       raised_ = std::current_exception();
     }
   }
 
   py::object progress_, stop_;
+  const PlainLocale& locale_;
   std::exception_ptr raised_;
   bool stopped_ = false;
   std::chrono::steady_clock::time_point asked_{};
@@ -145,7 +148,8 @@ MPI_Comm communicator_at(std::uintptr_t address) {
 
 py::tuple solve(const py::dict& given) {
   const auto start = given["start"].cast<Solved>();
-  Host host(given["progress"], given["stop"]);
+  const PlainLocale locale;
+  Host host(given["progress"], given["stop"], locale);
   const auto address = given["comm"].cast<std::uintptr_t>();
   const Case input = read_case(given["text"].cast<std::string>(), given["path"].cast<std::string>(),
                                given["mesh"].cast<std::optional<std::string>>());
@@ -179,6 +183,7 @@ py::dict check_case(const std::string& text, const std::string& path,
   std::optional<Problem> problem;
   {
     const py::gil_scoped_release release;
+    const PlainLocale locale;
     const Case input = read_case(text, path, mesh);
     problem = load_problem(input, {1, 0});
     warnings = input.warnings;
@@ -296,6 +301,7 @@ py::dict contact_fields(const py::object& self) {
 
 std::string svg(const SolvedCase& solved) {
   const py::gil_scoped_release release;
+  const PlainLocale locale;
   return deformed_picture(solved.input, solved.problem.mesh, solved.displacement, {solved.averaged_von_mises},
                           solved.result.max_von_mises);
 }

@@ -2,6 +2,7 @@
 """Small bodies and cases for the tests, and the program to compare with."""
 import itertools
 import json
+import locale
 import os
 import pathlib
 import subprocess
@@ -45,3 +46,21 @@ def temporary_folder(test):
     folder = tempfile.TemporaryDirectory()
     test.addCleanup(folder.cleanup)
     return pathlib.Path(folder.name)
+
+
+def use_german_locale(test):
+    """Sets one until the test ends: that of the system, or one made by localedef; skips the test without either."""
+    name, folder = "de_DE.UTF-8", temporary_folder(test)
+    test.addCleanup(locale.setlocale, locale.LC_ALL, locale.setlocale(locale.LC_ALL))
+    try:
+        locale.setlocale(locale.LC_ALL, name)
+        return
+    except locale.Error:
+        pass
+    try:
+        subprocess.run(["localedef", "-i", "de_DE", "-f", "UTF-8", folder / name], capture_output=True, check=True)
+        test.addCleanup(os.environ.pop, "LOCPATH", None)
+        os.environ["LOCPATH"] = str(folder)
+        locale.setlocale(locale.LC_ALL, name)
+    except (OSError, subprocess.CalledProcessError, locale.Error) as error:
+        test.skipTest(f"there is no {name}, and none can be made: {error}")

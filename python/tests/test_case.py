@@ -2,6 +2,7 @@
 """Cases from Python: what they say, what the solver in this process makes of them beside the program, and what is
 refused."""
 import json
+import locale
 import math
 import os
 import pathlib
@@ -11,7 +12,7 @@ import unittest
 
 import kacanov as kc
 import numpy as np
-from support import PROGRAM, hexahedra, pressed_beam, program_result, temporary_folder
+from support import PROGRAM, hexahedra, pressed_beam, program_result, temporary_folder, use_german_locale
 
 # Of result.json: what is not a number of the solution.
 OF_THE_RUN = {"seconds", "peak_memory_bytes", "case"}
@@ -344,6 +345,28 @@ class AsAGuest(unittest.TestCase):
         run = subprocess.run([sys.executable, "-c", command], capture_output=True, text=True, check=False,
                              cwd=pathlib.Path(__file__).parent)
         self.assertEqual((run.stdout, run.stderr, run.returncode), ("same\n", "", 0))
+
+    def test_a_locale_with_commas_changes_nothing(self):
+        use_german_locale(self)
+        commas = locale.localeconv()["decimal_point"]
+        seen = set()
+
+        def told():
+            case, bad = pressed_beam("tet4", (8, 4, 4)), pressed_beam().set("probe[0]", [4.25, 0.5, 1.5])
+            sol = case.solve(progress=lambda _: seen.add(locale.localeconv()["decimal_point"]))
+            with self.assertRaises(kc.InputError) as refused:
+                bad.check()
+            return [sol.message, sol.warnings, sol.contact_force.tolist(), sol.u.tolist(), sol.svg(), str(refused.exception),
+                    from_file.solve().points.tolist()]
+
+        file = temporary_folder(self) / "tiny.msh"  # a number that no double holds has a way of its own
+        file.write_text("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 1.5e-400 0 0\n2 1.5 0 0\n3 0 1.5 0\n$EndNodes\n"
+                        "$Elements\n1\n1 2 2 1 1 1 2 3\n$EndElements\n", "utf-8")
+        from_file = kc.Case(kc.read(file)).material(young=1.5, poisson=0.3).fix("all")
+        there = told()
+        self.assertEqual((commas, seen), (",", {","}))
+        locale.setlocale(locale.LC_ALL, "C")
+        self.assertEqual(there, told())
 
 
 if __name__ == "__main__":

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <string>
 
 #include <kacanov/error.hpp>
+#include "mesh/plain_stream.hpp"
 
 namespace kacanov {
 
@@ -31,7 +31,7 @@ void refuse_beyond_floats(const Part& part, std::span<const float> diagonal) {
   stiffest = part.node_map.max_all(stiffest);
   softest = -part.node_map.max_all(-softest);
   if (stiffest <= most && softest >= least) return;
-  std::ostringstream text;
+  PlainText text;
   text << "material: the stiffness of nodes (modulus times width) goes from " << softest << " to " << stiffest
        << " of the middle one, expected " << least << " to " << most
        << ", which single precision holds: a part 1e8 times as stiff as another is rigid";

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <string>
 #include <utility>
 
+#include "mesh/plain_stream.hpp"
 #include "nonlinear/augmented_step.hpp"
 #include "nonlinear/body_measures.hpp"
 #include "nonlinear/friction_bounds.hpp"
@@ -248,7 +248,7 @@ std::string OuterLoop::hopeless(const Residuals& residuals, bool newton) const {
   if (!std::isfinite(residuals.certificate.worst()))
     return "the iteration broke down: residuals are not finite";
   if (options_.stop == SolverOptions::Stop::paper || !ran_away(residuals)) return {};
-  std::ostringstream text;
+  PlainText text;
   text.precision(3);
   text << "the displacement has grown to " << moved / extent_
        << " times the body's size: the load is beyond what the material or the supports can carry";

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <sstream>
 #include <tuple>
 
 #include <kacanov/error.hpp>
+#include "mesh/plain_stream.hpp"
 #include "problem/integration.hpp"
 #include "problem/vector3.hpp"
 
@@ -72,7 +72,7 @@ class Faces {
 
 /// To three digits.
 std::string rough(double value) {
-  std::ostringstream text;
+  PlainText text;
   text.precision(3);
   text << value;
   return text.str();

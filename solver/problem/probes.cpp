@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
-#include <sstream>
 
 #include <kacanov/error.hpp>
+#include "mesh/plain_stream.hpp"
 #include "problem/point_location.hpp"
 #include "problem/shapes.hpp"
 #include "problem/vector3.hpp"
@@ -29,7 +29,7 @@ std::string outside_message(const Mesh& mesh, std::size_t index, const Vector3& 
       nearest = node;
     }
   }
-  std::ostringstream text;
+  PlainText text;
   text << "probe[" << index << "]: the point " << to_text(x, mesh.dim())
        << " lies outside the body; the nearest node, " << mesh.node_tag(nearest) << " at "
        << to_text(position(mesh, nearest), mesh.dim()) << ", is " << least << " away";

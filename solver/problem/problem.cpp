@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <sstream>
 #include <type_traits>
 
 #include <kacanov/error.hpp>
+#include "mesh/plain_stream.hpp"
 #include "problem/conditions.hpp"
 #include "problem/contact_points.hpp"
 #include "problem/probes.hpp"
@@ -23,7 +23,7 @@ namespace {
 void refuse_out_of_range(const std::string& what, double value) {
   constexpr double least = 1e-45, most = 1e45;
   if (!std::isfinite(value) || (value >= least && value <= most)) return;
-  std::ostringstream text;
+  PlainText text;
   text << what << " is " << value << ", expected between " << least << " and " << most
        << ", so that double precision holds what follows from it: take other units";
   throw InputError(text.str());
@@ -41,7 +41,7 @@ void set_plane(Mesh& mesh, PlaneState plane) {
     double& radius = mesh.coordinates[2 * n];
     if (std::abs(radius) <= reach) radius = 0.0;
     if (radius >= 0.0) continue;
-    std::ostringstream text;
+    PlainText text;
     text << "plane: node " << mesh.node_tag(n) << " lies at x = " << radius
          << "; an axisymmetric mesh is a section with x ≥ 0, the distance from the axis";
     throw InputError(text.str());

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <sstream>
 
 #include <kacanov/error.hpp>
+#include "mesh/plain_stream.hpp"
 #include "problem/conditions.hpp"
 #include "problem/rigid_balance.hpp"
 #include "problem/vector3.hpp"
@@ -283,7 +283,7 @@ std::string explain(const RigidPiece& rigid, const RigidBalance& failed, const P
     least = std::min(least, point.coulomb);
     most = std::max(most, point.coulomb);
   }
-  std::ostringstream text;
+  PlainText text;
   text.precision(3);
   if (!std::isfinite(needed) || !(coulomb || tresca)) {
     text << "no equilibrium: the load lifts " << name << " off what alone holds it ("
@@ -320,7 +320,7 @@ void settle(Problem& problem, const Piece& piece, std::int32_t number, const Rig
     later.load = load_of(problem, piece, number, piece_of_node, load_at(problem, step), rigid.basis);
     const RigidBalance then = balance(later.points, later.load);
     if (then.exists) continue;
-    std::ostringstream place;
+    PlainText place;
     place << " (load step " << step << ", time " << problem.steps[step].time << ")";
     problem.no_equilibrium = explain(later, then, piece, name, problem.mesh.dim()) + place.str();
   }

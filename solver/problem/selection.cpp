@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
-#include <sstream>
 
 #include <kacanov/error.hpp>
+#include "mesh/plain_stream.hpp"
 #include "problem/closest_word.hpp"
 #include "problem/vector3.hpp"
 
@@ -33,7 +33,7 @@ std::string kind_of(int group_dimension, int dim) {
 }  // namespace
 
 std::string to_text(const Vector3& v, int dim) {
-  std::ostringstream text;
+  PlainText text;
   text << '(' << v[0] << ", " << v[1];
   if (dim == 3) text << ", " << v[2];
   text << ')';

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <sstream>
 
 #include <kacanov/error.hpp>
+#include "mesh/plain_stream.hpp"
 #include "problem/conditions.hpp"
 #include "problem/integration.hpp"
 #include "problem/load_curves.hpp"
@@ -80,7 +80,7 @@ class Holder {
   void hold(std::size_t entry, std::int32_t node, std::size_t c, double value) {
     const std::size_t k = node * dim_ + c;
     if (problem_.held[k] != 0 && problem_.prescribed[k] != value) {
-      std::ostringstream text;
+      PlainText text;
       text << "xyz"[c] << " = " << value << " here and " << problem_.prescribed[k] << " by ";
       refuse(entry, node, text.str() + at("boundary", static_cast<std::size_t>(holder_[k])));
     }

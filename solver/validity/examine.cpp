@@ -2,8 +2,7 @@
 // All checks of a problem, and all of a result.
 #include <kacanov/validity.hpp>
 
-#include <sstream>
-
+#include "mesh/plain_stream.hpp"
 #include "validity/checks.hpp"
 
 namespace kacanov {
@@ -30,7 +29,7 @@ std::vector<std::string> examine(const Result& result, const Model& model) {
 }
 
 std::string validity::rounded(double value) {
-  std::ostringstream text;
+  PlainText text;
   text.precision(3);
   text << value;
   return text.str();

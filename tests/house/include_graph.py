@@ -6,7 +6,7 @@ usage: include_graph.py ROOT [--dot FILE]
 
 A room may include the rooms of the levels before its own, and itself. Also checked, file by file: that public
 headers include public headers only, that what is included exists, the SPDX line, the sentence that says what the
-file is for, and the number of lines.
+file is for, the number of lines, and that streams in what a host loads have no locale of the host's.
 """
 import argparse
 import pathlib
@@ -63,6 +63,7 @@ HEADER_ROOMS = {
     "run_options.hpp": "solver/nonlinear",
 }
 
+PLAIN_STREAMS = "solver/mesh/plain_stream.hpp"
 MOST_LINES = 400
 # Files that are longer, and why. An entry that is not needed any more is an error.
 LONGER = {"kernels/include/kacanov/kacanov.h": "hosts in C include one header, most of it words"}
@@ -192,6 +193,10 @@ def file_complaints(path, text):
         yield f"{path}: {len(lines)} lines, more than {MOST_LINES}: split it, or say in LONGER why not"
     if len(lines) <= MOST_LINES and path in LONGER:
         yield f"LONGER: {path} has {len(lines)} lines: strike it"
+    if path.startswith(("solver/", "tools/")) and not path.startswith("tools/verify/") and path != PLAIN_STREAMS:
+        for number, line in enumerate(lines, 1):
+            if found := re.search(r"std::[io]?(string|f)stream\b", line):
+                yield f"{path}:{number}: {found[0]} writes as the host's locale says: take one of {PLAIN_STREAMS}"
 
 
 def print_drawing(arrows):

@@ -68,6 +68,12 @@ class Files(unittest.TestCase):
         self.check(self.head + "int main() { return 0; }\n// Adds what is there.\n", 1)
         self.check("// Adds what is there.\n", 1)
 
+    def test_streams_of_the_hosts_locale(self):
+        said = self.head + "// Says what is there.\n"
+        self.check(said + "std::ostringstream text;\n", 1)
+        self.check(said + "std::ifstream in(path);\nstd::stringstream both;\n", 2)
+        self.check(said + "PlainText text;\nstd::ostream& out;\n", 0)
+
     def test_length(self):
         self.check(self.head + "// Adds what is there.\n" + "int a;\n" * (graph.MOST_LINES - 2), 0)
         self.check(self.head + "// Adds what is there.\n" + "int a;\n" * (graph.MOST_LINES - 1), 1)

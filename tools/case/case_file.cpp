@@ -3,7 +3,6 @@
 #include "case/case_file.hpp"
 
 #include <filesystem>
-#include <fstream>
 
 #include <kacanov/error.hpp>
 #include <kacanov/raise_order.hpp>
@@ -12,6 +11,7 @@
 #include "case/case_schema.hpp"
 #include "case/case_words.hpp"
 #include "case/json_node.hpp"
+#include "mesh/plain_stream.hpp"
 
 namespace kacanov {
 namespace {
@@ -305,7 +305,7 @@ Case parse_case(const nlohmann::json& document, const std::string& folder) {
 CaseText read_case_text(const std::string& path) {
   if (std::filesystem::is_directory(path))
     throw InputError(path + ": this is a folder, expected a case file");
-  std::ifstream stream(path, std::ios::binary);
+  PlainFile stream(path, std::ios::binary);
   if (!stream) {
     throw InputError(path + ": " +
                      (std::filesystem::exists(path) ? "cannot be read" : "there is no such file"));

@@ -4,13 +4,13 @@
 
 #include <array>
 #include <cmath>
-#include <sstream>
 #include <utility>
 
 #include <kacanov/error.hpp>
 #include <kacanov/rules.hpp>
 #include "case/case_schema.hpp"
 #include "case/case_words.hpp"
+#include "mesh/plain_stream.hpp"
 
 namespace kacanov {
 namespace {
@@ -112,7 +112,7 @@ void compare_slopes(const Node& node, const Law& law, std::vector<std::string>& 
   if (table == nullptr || law.argument != Law::Argument::norm) return;
   const double elastic = 2.0 * law.shear, slope = table->s[1] / table->x[1];
   if (std::abs(slope - elastic) <= 0.01 * elastic) return;
-  std::ostringstream text;
+  PlainText text;
   text << node.path() << ".points: the table starts with the slope " << slope
        << ", young and poisson give 2 mu = " << elastic;
   warnings.push_back(text.str());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a solve takes care of in a process that is not its own: one run at a time, the thread's locale, MPI.
+// What a solve takes care of in a process that is not its own: one run at a time, MPI.
 #include "embedding/host_guards.hpp"
 
 #include <mpi.h>
@@ -7,7 +7,6 @@
 #include <atomic>
 #include <cstdlib>
 #include <mutex>
-#include <new>
 #include <thread>
 
 #include <kacanov/error.hpp>
@@ -39,16 +38,6 @@ OneAtATime::OneAtATime() {
 OneAtATime::~OneAtATime() {
   runner = std::thread::id();
   one_run.unlock();
-}
-
-PlainLocale::PlainLocale() : plain_(newlocale(LC_ALL_MASK, "C", nullptr)) {
-  if (plain_ == locale_t{}) throw std::bad_alloc();
-  hosts_ = uselocale(plain_);
-}
-
-PlainLocale::~PlainLocale() {
-  uselocale(hosts_);
-  freelocale(plain_);
 }
 
 void require_mpi() {

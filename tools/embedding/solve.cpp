@@ -13,6 +13,7 @@
 #include "embedding/host_guards.hpp"
 #include "embedding/solution.hpp"
 #include "program/launch.hpp"
+#include "program/plain_locale.hpp"
 #include "program/solve_case.hpp"
 
 namespace kacanov::embedding {

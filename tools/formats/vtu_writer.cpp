@@ -6,10 +6,10 @@
 #include <array>
 #include <bit>
 #include <limits>
-#include <sstream>
 
 #include <kacanov/error.hpp>
 #include "formats/xml.hpp"
+#include "mesh/plain_stream.hpp"
 
 namespace kacanov {
 namespace {
@@ -259,7 +259,7 @@ void write_vtu(const std::string& path, const Grid& grid) {
 void write_pvd(const std::string& path, std::span<const PvdPart> parts) {
   std::string text = header("Collection") + "<Collection>\n";
   for (const PvdPart& part : parts) {
-    std::ostringstream time;
+    PlainText time;
     time.precision(17);
     time << part.time;
     text += "<DataSet timestep=\"" + time.str() + "\" part=\"" + std::to_string(part.part) + "\" name=\"" +

@@ -2,7 +2,7 @@
 // Compares two case files section by section and names the keys that differ.
 #include "program/case_identity.hpp"
 
-#include <sstream>
+#include "mesh/plain_stream.hpp"
 
 namespace kacanov {
 namespace {
@@ -10,7 +10,7 @@ namespace {
 /// "/material/0/young" as material[0].young.
 std::string key_path(const std::string& pointer) {
   std::string path, word;
-  std::istringstream words(pointer);
+  PlainWords words(pointer);
   std::getline(words, word, '/');
   while (std::getline(words, word, '/')) {
     const bool number = !word.empty() && word.find_first_not_of("0123456789") == std::string::npos;

@@ -3,10 +3,10 @@
 #include "program/command.hpp"
 
 #include <algorithm>
-#include <sstream>
 
 #include "case/case_schema.hpp"
 #include "formats/printable.hpp"
+#include "mesh/plain_stream.hpp"
 #include "problem/closest_word.hpp"
 #include "program/command_line.hpp"
 
@@ -71,7 +71,7 @@ ParsedCommand parse_command(int argc, const char* const* argv) {
       throw CLI::ValidationError("--r-min", "must be below --r-max");
     }
   } catch (const CLI::ParseError& error) {
-    std::ostringstream output, message;
+    PlainText output, message;
     if (app->exit(error, output, message) == 0) {  // --help and --version end the parsing, too
       parsed.output = output.str();
       return parsed;

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // kacanov run: solves a case and writes everything about it.
-#include <fstream>
 #include <functional>
 #include <iomanip>
 #include <iostream>
 #include <memory>
-#include <sstream>
 #include <string_view>
 
 #include <kacanov/discretisation.hpp>
@@ -16,6 +14,7 @@
 #include "formats/mesh_file.hpp"
 #include "formats/mesh_writer.hpp"
 #include "formats/printable.hpp"
+#include "mesh/plain_stream.hpp"
 #include "program/adaptive_run.hpp"
 #include "program/checkpoint_file.hpp"
 #include "program/coarse_run.hpp"
@@ -91,7 +90,7 @@ std::function<void(const std::string&)> tell_phases(const Command& command, cons
   if (command.quiet || (!command.verbose && command.parts.empty() && estimate_unknowns(input.mesh) < soon))
     return {};
   return [terminal, start](const std::string& phase) {
-    std::ostringstream line;
+    PlainText line;
     line << '[' << std::fixed << std::setprecision(1) << std::setw(7) << MPI_Wtime() - start << " s] "
          << phase;
     std::cout << coloured(terminal, Colour::grey, line.str()) << std::endl;
@@ -149,7 +148,7 @@ void write_step(const FieldPlace& place, const LoadedCase& loaded, const Model& 
 void note_failure(const std::filesystem::path& folder, const std::string& text) {
   const std::filesystem::path file = folder / "result.json";
   if (!std::filesystem::exists(file)) return write_json(file, failure_json(text));
-  std::ifstream stream(file);
+  PlainFile stream(file);
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(stream);
   json["status"] = "failed";
   json["message"] = text;

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
-#include <sstream>
 
 #include <kacanov/error.hpp>
 #include <kacanov/solve.hpp>
 #include "formats/atomic_file.hpp"
 #include "formats/printable.hpp"
+#include "mesh/plain_stream.hpp"
 #include "pictures/picture.hpp"
 #include "program/commands.hpp"
 #include "program/loaded_case.hpp"
@@ -31,7 +31,7 @@ std::vector<double> grid(double low, double high, int points) {
 }
 
 std::string csv(std::span<const Result> results, std::span<const double> r) {
-  std::ostringstream text;
+  PlainText text;
   text.precision(10);
   text << "r,iterations,outer,cg,operator_applications,seconds,status\n";
   for (std::size_t i = 0; i < results.size(); ++i) {

@@ -3,10 +3,9 @@
 #include "program/control_group.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <optional>
-#include <sstream>
 #include <string>
+#include "mesh/plain_stream.hpp"
 
 namespace kacanov {
 namespace {
@@ -15,7 +14,7 @@ namespace fs = std::filesystem;
 
 /// The first number in a file; none without one ("max").
 std::optional<double> number_in(const fs::path& file) {
-  std::ifstream stream(file);
+  PlainFile stream(file);
   double value = 0.0;
   if (stream >> value) return value;
   return std::nullopt;
@@ -23,7 +22,7 @@ std::optional<double> number_in(const fs::path& file) {
 
 /// The number behind a word in a file of such pairs, 0 without it.
 double number_behind(const std::string& word, const fs::path& file) {
-  std::ifstream stream(file);
+  PlainFile stream(file);
   std::string key;
   for (double value = 0.0; stream >> key >> value;)
     if (key == word) return value;
@@ -44,7 +43,7 @@ void limit_cores(ControlGroupLimits& limits, std::optional<double> quota, std::o
 
 /// Both of a group of version 2.
 void look_at_unified(ControlGroupLimits& limits, const fs::path& group) {
-  std::ifstream cpu(group / "cpu.max");
+  PlainFile cpu(group / "cpu.max");
   double quota = 0.0, period = 0.0;
   if (cpu >> quota >> period) limit_cores(limits, quota, period);
   limit_memory(limits, number_in(group / "memory.max"), group / "memory.current",
@@ -88,7 +87,7 @@ ControlGroupLimits control_group_limits(std::istream& membership, const fs::path
       climb(limits, mounted / "unified", group, look_at_unified);  // beside version 1
       continue;
     }
-    std::istringstream words(controllers);
+    PlainWords words(controllers);
     for (std::string word; std::getline(words, word, ',');) {
       if (word == "memory") climb(limits, mounted / controllers, group, look_at_memory);
       if (word == "cpu") climb(limits, mounted / controllers, group, look_at_cpu);
@@ -98,7 +97,7 @@ ControlGroupLimits control_group_limits(std::istream& membership, const fs::path
 }
 
 ControlGroupLimits control_group_limits() {
-  std::ifstream membership("/proc/self/cgroup");
+  PlainFile membership("/proc/self/cgroup");
   return control_group_limits(membership, "/sys/fs/cgroup");
 }
 

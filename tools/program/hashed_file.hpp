@@ -5,13 +5,13 @@
 #pragma once
 
 #include <cstdint>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 
 #include <kacanov/error.hpp>
 #include "formats/atomic_file.hpp"
+#include "mesh/plain_stream.hpp"
 
 namespace kacanov {
 
@@ -47,7 +47,7 @@ class HashedReader {
   void check_hash();
 
   std::string path_, kind_;
-  std::ifstream stream_;
+  PlainFile stream_;
   std::uint64_t size_ = 0, left_ = 0, hash_ = 0;
   nlohmann::json header_;
 };

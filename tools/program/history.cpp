@@ -3,12 +3,12 @@
 #include "program/history.hpp"
 
 #include <limits>
-#include <sstream>
+#include "mesh/plain_stream.hpp"
 
 namespace kacanov {
 
 std::string History::csv() const {
-  std::ostringstream out;
+  PlainText out;
   out.precision(std::numeric_limits<double>::max_digits10);
   out << "step,method,contact_iterations,cg_iterations,r,energy,equilibrium,penetration,tension,"
          "complementarity,"

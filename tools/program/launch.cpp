@@ -19,13 +19,12 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <set>
-#include <sstream>
 #include <vector>
 
 #include <kacanov/error.hpp>
+#include "mesh/plain_stream.hpp"
 #include "program/command.hpp"
 #include "program/control_group.hpp"
 #include "program/interrupt.hpp"
@@ -156,8 +155,7 @@ int usable_cores() {
   std::set<std::string> cores;  // hardware threads of one core share their list of siblings
   for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
     if (!CPU_ISSET(cpu, &set)) continue;
-    std::ifstream file("/sys/devices/system/cpu/cpu" + std::to_string(cpu) +
-                       "/topology/thread_siblings_list");
+    PlainFile file("/sys/devices/system/cpu/cpu" + std::to_string(cpu) + "/topology/thread_siblings_list");
     std::string siblings;
     if (!(file >> siblings)) siblings = "cpu" + std::to_string(cpu);
     cores.insert(siblings);
@@ -197,7 +195,7 @@ Shape choose_shape(const Case& input, std::optional<int> ranks, std::optional<in
 
 std::string find_mpiexec() {
   const char* path = std::getenv("PATH");
-  std::istringstream folders(path != nullptr ? path : "/usr/local/bin:/usr/bin:/bin");
+  PlainWords folders(path != nullptr ? path : "/usr/local/bin:/usr/bin:/bin");
   std::string folder;
   while (std::getline(folders, folder, ':')) {
     const std::string file = (folder.empty() ? "." : folder) + "/mpiexec";

@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 #include <string>
 
 #include <kacanov/error.hpp>
+#include "mesh/plain_stream.hpp"
 #include "program/control_group.hpp"
 #include "program/report.hpp"
 
@@ -24,9 +23,9 @@ constexpr double overhead = 1.03;                  // of the allocator
 
 /// The number behind a word at the beginning of a line, 0 where there is none.
 double number_after(const std::string& path, const std::string& word) {
-  std::ifstream file(path);
+  PlainFile file(path);
   for (std::string line; std::getline(file, line);) {
-    std::istringstream words(line);
+    PlainWords words(line);
     std::string key;
     double value = 0.0;
     if (words >> key >> value && key == word) return value;

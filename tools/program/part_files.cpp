@@ -2,11 +2,10 @@
 // The fields of a part and of the boundary as the pieces of a hashed file.
 #include "program/part_files.hpp"
 
-#include <fstream>
-#include <sstream>
 #include <utility>
 
 #include <kacanov/error.hpp>
+#include "mesh/plain_stream.hpp"
 #include "parallel/check_part.hpp"
 #include "parallel/part_fields.hpp"
 #include "program/case_identity.hpp"
@@ -43,7 +42,7 @@ std::filesystem::path boundary_file(const std::filesystem::path& folder) {
 
 /// Length and hash of the mesh file; null where there is none, as on a machine that has the parts only.
 nlohmann::json mesh_identity(const Case& input) {
-  std::ifstream file;
+  PlainFile file;
   if (input.mesh.file) file.open(*input.mesh.file, std::ios::binary);
   if (!file.is_open()) return nullptr;
   std::vector<char> piece(std::size_t{1} << 20);
@@ -85,7 +84,7 @@ void check_mesh(const nlohmann::json& header, const Case& input, const std::stri
   const nlohmann::json &there = header.at("mesh_file"), here = mesh_identity(input);
   if (here.is_null() || here == there) return;
   const auto text = [](const nlohmann::json& mesh) {
-    std::ostringstream words;
+    PlainText words;
     words << mesh.at("bytes") << " bytes with hash " << std::hex << mesh.at("hash").get<std::uint64_t>();
     return words.str();
   };

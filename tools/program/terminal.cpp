@@ -7,7 +7,7 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <sstream>
+#include "mesh/plain_stream.hpp"
 
 namespace kacanov {
 namespace {
@@ -32,7 +32,7 @@ std::size_t columns(std::string_view text) {
 Terminal terminal_of_output() {
   Terminal terminal;
   if (is_set(handed_down)) {
-    std::istringstream words(std::getenv(handed_down));
+    PlainWords words(std::getenv(handed_down));
     words >> terminal.width >> terminal.colour;
   } else if (isatty(STDOUT_FILENO) != 0) {
     winsize size{};
