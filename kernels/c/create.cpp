@@ -20,6 +20,14 @@ namespace {
 /// Below this a thread costs more than it brings: it wakes and waits for some 5 µs.
 constexpr std::size_t unknowns_a_thread = 3000;
 
+k::PlaneState plane_state(std::int32_t plane) {
+  switch (plane) {
+    case KACANOV_PLANE_STRESS: return k::PlaneState::stress;
+    case KACANOV_AXISYMMETRIC: return k::PlaneState::axisymmetric;
+    default: return k::PlaneState::strain;
+  }
+}
+
 k::ElementType element_type(std::int32_t element) {
   if (element < 0 || static_cast<std::size_t>(element) >= k::element_types().size())
     throw Fault(KACANOV_ERROR_VALUE, "element: there is no element type " + std::to_string(element));
@@ -41,6 +49,9 @@ void check_description(const kacanov_description& d) {
     throw Fault(KACANOV_ERROR_VALUE, "may_be_empty: expected 0 or 1");
   if (d.component_vectors != 0 && d.component_vectors != 1)
     throw Fault(KACANOV_ERROR_VALUE, "component_vectors: expected 0 or 1");
+  if (d.plane < KACANOV_PLANE_STRAIN || d.plane > KACANOV_AXISYMMETRIC)
+    throw Fault(KACANOV_ERROR_VALUE, "plane: expected a kacanov_plane, got " + std::to_string(d.plane));
+  if (d.reserved_plane != 0) throw Fault(KACANOV_ERROR_VALUE, "reserved_plane: expected 0");
   const bool empty = d.may_be_empty != 0 && d.elements == 0;
   if (!empty || d.nodes > 0) require(d.coordinates, "coordinates");
   if (!empty) require(d.connectivity, "connectivity");
@@ -71,7 +82,10 @@ void take_mesh(const kacanov_description& d, kacanov_operator& op) {
         !order.empty() || d.turn_inverted != 0)
       throw Fault(KACANOV_ERROR_VALUE,
                   "borrow: needs default strides, index_base 0, Gmsh's node order and no turning");
-    op.mesh = {type, {d.coordinates, d.nodes * dim}, {d.connectivity, d.elements * per_element}};
+    op.mesh = {type,
+               {d.coordinates, d.nodes * dim},
+               {d.connectivity, d.elements * per_element},
+               plane_state(d.plane)};
     return;
   }
   op.coordinates.resize(d.nodes * dim);
@@ -85,7 +99,7 @@ void take_mesh(const kacanov_description& d, kacanov_operator& op) {
       const std::size_t to = order.empty() ? a : order[a];
       op.connectivity[e * per_element + to] = node < 0 ? node : node - d.index_base;
     }
-  op.mesh = {type, op.coordinates, op.connectivity};
+  op.mesh = {type, op.coordinates, op.connectivity, plane_state(d.plane)};
   if (d.turn_inverted != 0 && k::arrays_fault(op.mesh).empty()) turn_inverted(op.mesh, op.connectivity);
 }
 
@@ -104,10 +118,16 @@ void take_laws(kacanov_operator& op, std::size_t count, const kacanov_law* laws,
                const std::uint16_t* law_of_element, bool borrow) {
   std::vector<k::Law> checked = checked_laws(count, laws);
   std::vector<OwnLaw> own_laws = k::c_api::own_laws(count, laws);
-  for (std::size_t i = 0; i < checked.size(); ++i)
-    if (checked[i].mean_dilatation && !k::cell(op.mesh.type).mean_dilatation)
+  for (std::size_t i = 0; i < checked.size(); ++i) {
+    const std::string where = "law[" + std::to_string(i) + "].";
+    if (checked[i].mean_dilatation && op.mesh.plane == k::PlaneState::stress)
+      throw Fault(KACANOV_ERROR_LAW, where + "mean_dilatation: is not for plane stress, which does not lock");
+    if (own_laws[i].evaluate != nullptr && op.mesh.plane != k::PlaneState::strain)
       throw Fault(KACANOV_ERROR_LAW,
-                  "law[" + std::to_string(i) + "].mean_dilatation: is for " + k::bbar_names() + " only");
+                  where + "evaluate: laws of the caller's own are for plane strain and 3D");
+    if (checked[i].mean_dilatation && !k::cell(op.mesh.type).mean_dilatation)
+      throw Fault(KACANOV_ERROR_LAW, where + "mean_dilatation: is for " + k::bbar_names() + " only");
+  }
   std::vector<std::uint16_t> own;
   std::span<const std::uint16_t> of_element;
   if (law_of_element != nullptr) {

@@ -70,6 +70,7 @@ class Operator(Symmetric):
     points: float64 (nodes, dim); cells: int32 (elements, nodes of an element), from 0, in the node order `order`
     ("gmsh", the same as "kacanov", "vtk", "basix", "dealii"). law: a Material, a list of them with `law_of_element`
     (uint16 an element), or a Law beside `young` and `poisson`; left out: linear.
+    plane: what a mesh in 2D is of, "strain", "stress" or "axisymmetric".
     Vectors are float64 and C-contiguous, of shape (n,) or (nodes, dim), with n = nodes × dim; nothing is copied.
     Python's lock is let go in every call; one thread at a time may use an operator.
     """
@@ -78,11 +79,12 @@ class Operator(Symmetric):
                  law: Material | Law | Mapping[str, Any] | Sequence[Material | Mapping[str, Any]] | None = None,
                  young: float | None = None, poisson: float | None = None, law_of_element: Array | None = None,
                  threads: int = 1, single: bool = False, turn_inverted: bool = False, orphans: str = "zero",
-                 instruction_set: str | None = None) -> None:
+                 plane: str = "strain", instruction_set: str | None = None) -> None:
         self._op = _kacanov.Operator({
             "points": points, "cells": cells, "element": element, "order": order,
             "laws": json.dumps(_materials(law, young, poisson)), "law_of_element": law_of_element, "threads": threads,
-            "single": single, "turn_inverted": turn_inverted, "orphans": orphans, "instruction_set": instruction_set})
+            "single": single, "turn_inverted": turn_inverted, "orphans": orphans, "plane": plane,
+            "instruction_set": instruction_set})
         size = self._op.information()
         self.nodes, self.elements, self.dimension = size["nodes"], size["elements"], size["dimension"]
         self.shape = (size["unknowns"], size["unknowns"])

@@ -22,6 +22,7 @@ std::shared_ptr<Operator> make_operator(const py::dict& fields) {
   d.single = fields["single"].cast<bool>();
   d.turn_inverted = fields["turn_inverted"].cast<bool>();
   d.orphans = fields["orphans"].cast<std::string>();
+  d.plane = fields["plane"].cast<std::string>();
   d.instruction_set = fields["instruction_set"].cast<std::optional<std::string>>();
   return std::make_shared<Operator>(d);
 }

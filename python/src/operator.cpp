@@ -32,6 +32,13 @@ kacanov_orphans orphans_of(const std::string& word) {
   throw InputError("orphans: expected \"zero\", \"refused\" or \"unit\", got \"" + word + "\"");
 }
 
+kacanov_plane plane_of(const std::string& word) {
+  if (word == "strain") return KACANOV_PLANE_STRAIN;
+  if (word == "stress") return KACANOV_PLANE_STRESS;
+  if (word == "axisymmetric") return KACANOV_AXISYMMETRIC;
+  throw InputError("plane: expected \"strain\", \"stress\" or \"axisymmetric\", got \"" + word + "\"");
+}
+
 template <class T>
 T sized() {
   T value{};
@@ -75,6 +82,7 @@ Operator::Operator(const Description& from) {
   body.single = from.single ? 1 : 0;
   body.turn_inverted = from.turn_inverted ? 1 : 0;
   body.orphans = orphans_of(from.orphans);
+  body.plane = plane_of(from.plane);
   const bool own_order = from.order == "kacanov";
   body.node_order = own_order ? nullptr : from.order.c_str();
   if (from.instruction_set) body.instruction_set = from.instruction_set->c_str();

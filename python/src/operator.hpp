@@ -24,7 +24,7 @@ struct Description {
   pybind11::object law_of_element = pybind11::none();
   int threads = 1;
   bool single = false, turn_inverted = false;
-  std::string orphans = "zero";
+  std::string orphans = "zero", plane = "strain";
   std::optional<std::string> instruction_set;
 };
 

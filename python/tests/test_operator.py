@@ -32,6 +32,19 @@ class Products(unittest.TestCase):
         self.assertLess(np.abs(self.op @ turned).max(), 1e-13)
         self.assertEqual((self.op @ turned).shape, self.points.shape)
 
+    def test_what_a_square_is_of(self):
+        points, cells = np.array([[1.0, 0], [2, 0], [2, 1], [1, 1]]), np.array([[0, 1, 2, 3]], dtype=np.int32)
+        pulled = np.array([[0.0, 0], [0.01, 0], [0.01, 0], [0, 0]])
+
+        def force(plane):
+            return (kc.Operator(points, cells, "quad4", young=200, poisson=0.3, plane=plane) @ pulled)[1:3, 0].sum()
+
+        self.assertAlmostEqual(force("strain"), 200 * 0.7 / (1.3 * 0.4) * 0.01, places=12)
+        self.assertAlmostEqual(force("stress"), 200 / 0.91 * 0.01, places=12)
+        self.assertGreater(force("axisymmetric"), 2 * np.pi * 1.5 * force("strain"))
+        with self.assertRaisesRegex(kc.InputError, "plane: expected"):
+            force("flat")
+
     def test_symmetry(self):
         self.op.update(self.u)
         self.assertAlmostEqual(self.y @ (self.op @ self.x), self.x @ (self.op @ self.y), places=11)

@@ -8,7 +8,8 @@
  *
  * Vectors are of double, or of float in the calls that end in _float. They have nodes * dimension entries,
  * interleaved (all components of node 0, then of node 1, ...; or see component_vectors), in the caller's node
- * order. Units are the caller's; in 2D (plane strain) everything is for unit thickness.
+ * order. Units are the caller's; in 2D everything is for unit thickness, or goes
+ * all round the axis (kacanov_plane).
  *
  * Every function that returns int returns a kacanov_code: KACANOV_OK, or what went wrong; the handle then has
  * a message that says so in words. Output arrays have undefined content after an error. Nothing is printed,
@@ -70,12 +71,21 @@ typedef enum kacanov_code {
 
 /* Node order is that of Gmsh; tet10 has its mid-side nodes on the edges 01 12 20 30 32 31. */
 typedef enum kacanov_element {
-  KACANOV_TRI3 = 0,  /* 2D, plane strain, 1 quadrature point */
+  KACANOV_TRI3 = 0,  /* 2D, 1 quadrature point */
   KACANOV_TET4 = 1,  /* 1 point */
   KACANOV_TET10 = 2, /* 4 points */
   KACANOV_HEX8 = 3,  /* 8 points */
-  KACANOV_QUAD4 = 4  /* 2D, plane strain, 4 points */
+  KACANOV_QUAD4 = 4  /* 2D, 4 points */
 } kacanov_element;
+
+/* What an element in 2D is of. */
+typedef enum kacanov_plane {
+  KACANOV_PLANE_STRAIN = 0,
+  KACANOV_PLANE_STRESS = 1, /* no stress across the plane; without mean_dilatation and KACANOV_USER */
+  KACANOV_AXISYMMETRIC = 2 /* a section: x >= 0 is the distance from the axis, y runs along it. Integrals, and
+                              so forces and energies, go all round; of strains and stresses zz is the hoop's.
+                              Without KACANOV_USER */
+} kacanov_plane;
 
 /* Secant shear moduli g(a); below a = x0 always g = mu. */
 typedef enum kacanov_law_kind {
@@ -174,6 +184,9 @@ typedef struct kacanov_description {
                             unknowns are named node * dimension + component all the same */
   size_t early_count;    /* nodes that kacanov_apply_early has ready first, as those that other processes */
   const int32_t* early;  /* have too; counted from 0, any order */
+
+  int32_t plane;          /* kacanov_plane; 0 in 3D */
+  int32_t reserved_plane; /* 0 */
 } kacanov_description;
 
 /* What is to become of nodes of no element. */
