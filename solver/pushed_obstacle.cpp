@@ -43,8 +43,15 @@ PushOutcome find_travel(const PushedObstacle& pushed,
       const double growth = bears > 0.0 ? std::clamp(1.02 * pushed.force / bears, 1.05, 4.0) : 4.0;
       next = beyond > 0.0 ? pushed.touch + growth * beyond : pushed.touch + pushed.scale;
     } else {
-      next = high->travel - 0.5 * back;
-      if (next <= pushed.touch) back *= 2.0;
+      // Where the body only touches it strains by rounding alone: not there, but short of it, or well before
+      // it.
+      const double beyond = high->travel - pushed.touch;
+      if (beyond > 0.01 * back) {
+        next = pushed.touch + std::clamp(0.98 * pushed.force / *force, 0.1, 0.9) * beyond;
+      } else {
+        next = std::min(high->travel, pushed.touch) - back;
+        back *= 2.0;
+      }
     }
   }
   return outcome;
