@@ -112,11 +112,33 @@ def guided(d):
     return boundary, 0.0
 
 
+def add_plane(case, d, body, rng):
+    """What a mesh in 2D is of, by dice of its own."""
+    if d.dim == 3:
+        return ""
+    plane = rng.choice(("strain", "stress", "axisymmetric"))
+    if plane == "axisymmetric" and body and min(x[0] for x in body.nodes) < 0:  # it leans over the axis
+        plane = "stress"
+    if plane != "strain":
+        case["plane"] = plane
+    if plane == "stress":
+        case["material"][0].pop("bbar", None)
+    if plane == "axisymmetric":
+        for entry in case["boundary"]:  # nodes on the axis stay there
+            if entry["on"] == "top" and "displacement" in entry:
+                entry["displacement"][0] = 0.0
+    elif rng.random() < 0.5:
+        case["thickness"] = d.length * 10 ** rng.uniform(-2, 1)
+    return plane
+
+
 def add_conditions(case, d, rng):
     """Springs and temperature besides, by dice of their own: the rest of the case stays what it is without."""
     stiffness = d.young / d.size[-1]
     kinds = rng.sample(("bed", "normal bed", "node springs", "warmth", "warm part", "slant"), rng.randint(1, 3))
     for kind in kinds:
+        if "warm" in kind and case.get("plane") == "stress":
+            continue
         if kind == "bed":
             case["boundary"].append({"on": rng.choice(("right", "top")), "spring": [
                 stiffness * rng.choice((0.0, 0.01, 1.0, 30.0)) for _ in d.size[1:]] + [stiffness * 0.1]})
@@ -134,7 +156,11 @@ def add_conditions(case, d, rng):
         else:
             case["material"][0]["expansion"] = rng.choice((-1e-5, 1e-5))
             on = "all" if kind == "warmth" else {"box": [[-d.length] * d.dim, [0.6 * d.size[0]] + [2 * s for s in d.size[1:]]]}
-            case["boundary"].append({"on": on, "temperature": rng.uniform(-2, 2) * d.strain * 1e5})
+            rise = rng.uniform(-2, 2) * d.strain * 1e5
+            if rng.random() < 0.5:
+                rise = {"value": rise, "gradient": [rise * rng.uniform(-2, 2) / length for length in d.size],
+                        "point": [length * rng.uniform(0, 1) for length in d.size]}
+            case["boundary"].append({"on": on, "temperature": rise})
     return " ".join(kinds)
 
 
@@ -163,6 +189,7 @@ def oracle_case(seed, index, conditions=False):
             case["contact"].append({"on": "right", "obstacle": {"plane": {
                 "point": d.vector(d.size[0] * (1 + 0.3 * d.strain), 0.0), "normal": d.vector(-1.0, 0.0)}}})
     name = f"{index} {kind.__name__} {d.element} {d.law} {d.obstacle} {d.friction}"
+    name += (" " + add_plane(case, d, body, random.Random(f"{seed} {index} plane"))).rstrip()
     if conditions:
         name += " " + add_conditions(case, d, random.Random(f"{seed} {index} conditions"))
     return name, case, body
