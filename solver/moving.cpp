@@ -136,7 +136,7 @@ class Chain {
     }
     pushed.travel = travel_;
     pushed.scale = pushed.force / part_.laws[0].secant(0.0);
-    if (part_.dim() == 3 || part_.plane == PlaneState::axisymmetric) pushed.scale /= extent_;
+    pushed.scale /= part_.dim() == 3 || part_.plane == PlaneState::axisymmetric ? extent_ : part_.thickness;
     const PushOutcome outcome = find_travel(pushed, [&](double travel) -> std::optional<double> {
       contact_.push(e, travel);
       solve_once();

@@ -13,16 +13,19 @@ void scale(std::vector<double>& values, double factor) {
   for (double& value : values) value *= factor;
 }
 
+/// Of what a part has of forces: the whole thickness.
+double force_of(const UnitSystem& units) { return units.force() * units.thickness; }
+
 void scale(Resultant& resultant, const UnitSystem& units) {
-  scale(resultant.force, units.force());
-  scale(resultant.moment, units.force() * units.length);
+  scale(resultant.force, force_of(units));
+  scale(resultant.moment, force_of(units) * units.length);
 }
 
 void scale(ContactTotals& contact, const UnitSystem& units) {
   scale(contact.total, units);
-  scale(contact.normal_force, units.force());
-  scale(contact.friction_force, units.force());
-  contact.area *= units.area();
+  scale(contact.normal_force, force_of(units));
+  scale(contact.friction_force, force_of(units));
+  contact.area *= units.area() * units.thickness;
   contact.max_pressure *= units.stress();
   contact.least_gap *= units.displacement;
   contact.first_gap *= units.displacement;
@@ -38,13 +41,17 @@ void scale(BodySize& body, const UnitSystem& units) {
   scale(body.lower, length);
   scale(body.upper, length);
   body.size *= length;
-  body.volume *= units.dim == 2 ? length * length : length * length * length;
+  body.volume *= units.dim == 2 ? length * length * units.thickness : length * length * length;
 }
 
-/// What boundary entries load the body with is in the user's units throughout.
+/// What boundary entries load the body with is in the user's units throughout, of a thickness of 1.
 void to_users_units(Result& result, const UnitSystem& units) {
   for (ContactTotals& contact : result.contact) scale(contact, units);
   for (BoundaryTotals& reaction : result.reaction) scale(reaction.total, units);
+  for (BoundaryTotals& load : result.load) {
+    scale(load.total.force, units.thickness);
+    scale(load.total.moment, units.thickness);
+  }
   scale(result.max_displacement, units.displacement, units.length);
   scale(result.max_strain, units.strain(), units.length);
   scale(result.max_flow, 1.0, units.length);
@@ -55,8 +62,8 @@ void to_users_units(Result& result, const UnitSystem& units) {
   result.lambda_max /= units.penalty();
   result.r_star *= units.penalty();
   result.r_active *= units.penalty();
-  scale(result.contact_force, units.force());
-  scale(result.friction_force, units.force());
+  scale(result.contact_force, force_of(units));
+  scale(result.friction_force, force_of(units));
   result.max_contact_pressure *= units.stress();
   result.max_von_mises *= units.stress();
   for (Vector3& probe : result.probe) scale(probe, units.displacement);
@@ -73,8 +80,8 @@ void to_users_units(Solution& solution, const UnitSystem& units) {
 }
 
 void to_users_units(LoadStep& step, const UnitSystem& units) {
-  scale(step.contact_force, units.force());
-  scale(step.friction_force, units.force());
+  scale(step.contact_force, force_of(units));
+  scale(step.friction_force, force_of(units));
   step.max_contact_pressure *= units.stress();
   for (Vector3& probe : step.probe) scale(probe, units.displacement);
 }

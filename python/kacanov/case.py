@@ -28,8 +28,8 @@ class Case:
     """
 
     def __init__(self, mesh: BoxMesh | MeshFile | Mesh | Mapping[str, Any] | None = None, *, order: int | None = None,
-                 refine: int | None = None, plane: str | None = None, name: str = "case",
-                 folder: str | os.PathLike[str] = ".") -> None:
+                 refine: int | None = None, plane: str | None = None, thickness: float | None = None,
+                 name: str = "case", folder: str | os.PathLike[str] = ".") -> None:
         self.name = name
         self.folder = os.path.abspath(folder)
         self.document: dict[str, Any] = {}
@@ -39,8 +39,9 @@ class Case:
             self._take_mesh(mesh)
             more = {"order": order, "refine": refine}
             self.document["mesh"].update({key: value for key, value in more.items() if value is not None})
-        if plane is not None:
-            self.document["plane"] = plane
+        for key, value in {"plane": plane, "thickness": thickness}.items():
+            if value is not None:
+                self.document[key] = value
 
     def _take_mesh(self, mesh: BoxMesh | MeshFile | Mesh | Mapping[str, Any]) -> None:
         if isinstance(mesh, Mesh):

@@ -174,6 +174,12 @@ class Solutions(unittest.TestCase):
         for stress in (sol.nodal_stress, sol.stress):
             np.testing.assert_allclose(stress, 0, atol=1e-6)
 
+    def test_thickness_of_a_plate(self):
+        case = kc.Case(kc.box((2, 1), (4, 2), "quad4"), plane="stress", thickness=5).material(young=200, poisson=0.3)
+        sol = case.fix("bottom", (None, 0)).fix("left", (0, None)).total_force((10, 0), "right").solve()
+        np.testing.assert_allclose(sol.stress[:, 0], 10 / 5, rtol=1e-8)
+        np.testing.assert_allclose(sol.u[:, 0], sol.points[:, 0] * 2 / 200, rtol=1e-6, atol=1e-12)
+
     def test_plane_stress_and_bodies_of_revolution(self):
         def pulled(plane):
             case = kc.Case(kc.box((2, 1), (8, 4), "quad4"), plane=plane).material(young=200, poisson=0.3)

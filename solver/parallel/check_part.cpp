@@ -198,6 +198,7 @@ void check_part(const Part& part, int rank, int ranks) {
   expect(part.plane == PlaneState::strain || (part.dim() == 2 && (part.plane == PlaneState::stress ||
                                                                   part.plane == PlaneState::axisymmetric)),
          "plane", "does not exist in this dimension");
+  expect(part.thickness > 0.0 && std::isfinite(part.thickness), "thickness", "is no length");
   const std::size_t dim = part.dim(), nodes = part.nodes();
   const std::size_t per_element = nodes_per_element(part.type);
   expect_length("coordinates", part.coordinates.size(), nodes * dim);

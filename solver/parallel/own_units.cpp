@@ -64,6 +64,7 @@ void scale(Part& part, const UnitSystem& factors) {
 UnitSystem units_of(const Part& part) {
   UnitSystem units;
   units.dim = part.plane == PlaneState::axisymmetric ? 3 : part.dim();
+  units.thickness = part.thickness;
   units.length = power_below(body_extent(part));
   int stiffest = std::ilogb(part.laws.at(0).secant(0.0)), softest = stiffest;
   for (const Law& law : part.laws) {

@@ -175,8 +175,8 @@ void exchange_fields(Either<IndexRuns> auto& indices, const auto& stream) {
 }
 
 void exchange_fields(Either<Part> auto& part, const auto& stream) {
-  stream(part.type, part.plane, part.coordinates, part.elements, part.node_index, part.element_index,
-         part.node_tags, part.element_tags, part.node_map, part.total_elements, part.laws,
+  stream(part.type, part.plane, part.thickness, part.coordinates, part.elements, part.node_index,
+         part.element_index, part.node_tags, part.element_tags, part.node_map, part.total_elements, part.laws,
          part.law_of_element, part.load, part.prescribed, part.steps, part.forces, part.prescribed_by,
          part.held, part.supports, part.applied, part.directions, part.springs, part.thermal, part.contact,
          part.owned_contact, part.contact_shares, part.wide_contact, part.contact_index, part.total_contact,

@@ -80,6 +80,7 @@ class Splitter {
   Part part(int rank) {
     Part part;
     part.plane = problem_.mesh.plane;
+    part.thickness = problem_.mesh.thickness;
     take_nodes(part, rank);
     take_elements(part, rank);
     plan_scatters(part, rank);

@@ -11,6 +11,8 @@ struct UnitSystem {
   double length = 1.0;        ///< of coordinates
   double displacement = 1.0;  ///< of gaps, too: small strains set nothing of it against lengths
   double modulus = 1.0;
+  double thickness =
+      1.0;  ///< of a plane body, in the user's units; forces of the part are of a thickness of 1
 
   double strain() const noexcept { return displacement / length; }
   double stress() const noexcept { return modulus * strain(); }

@@ -118,8 +118,10 @@ class CornerRise {
 void add_temperature(Problem& problem, const Model& model, const Temperature& rise,
                      std::span<const std::int32_t> elements, LoadOfEntry& load, const std::string& path) {
   const Mesh& mesh = problem.mesh;
-  const std::size_t n = nodes_per_element(mesh.type),
-                    width = rise.uniform() ? 1 : 1 + static_cast<std::size_t>(cell(mesh.type).corners);
+  const Cell& type = cell(mesh.type);
+  // The strain of linear elements cannot follow what changes within them: their mean is all they take.
+  const bool differs = !rise.uniform() && type.order > 1;
+  const std::size_t n = type.nodes, corners = type.corners, width = differs ? 1 + corners : 1;
   CornerRise corner_rise(mesh, rise, path);
   ThermalPressure& thermal = problem.thermal.back();
   thermal.of_element.assign(width * mesh.element_count(), 0.0);
@@ -127,21 +129,13 @@ void add_temperature(Problem& problem, const Model& model, const Temperature& ri
     const std::size_t law = problem.law_of_element[e];
     const double stiffness = 3.0 * problem.laws[law].bulk * model.materials[law].expansion;
     if (stiffness == 0.0) continue;
-    std::array<double, 1 + most_nodes> pressure{};  // the mean, and at the corners
-    const auto here = std::span(pressure).first(width), corners = here.subspan(1);
-    if (rise.uniform()) {
-      here[0] = stiffness * rise.value;
-    } else {
-      const auto warmer = corner_rise.of(e);
-      for (std::size_t k = 0; k < corners.size(); ++k) corners[k] = stiffness * warmer[k];
-      here[0] = mean_by_points(mesh, e, corners);
-      // With B-bar the trace is a mean, and so is what is taken off it.
-      if (problem.laws[law].mean_dilatation) std::fill(corners.begin(), corners.end(), here[0]);
-    }
-    std::copy(here.begin(), here.end(), thermal.of_element.begin() + static_cast<std::ptrdiff_t>(width * e));
-    const auto weights = gradient_weights(mesh, e, corners);
+    const auto pressure = std::span(thermal.of_element).subspan(width * e, width);
+    const auto warmer = rise.uniform() ? std::span<const double>() : corner_rise.of(e);
+    pressure[0] = stiffness * (warmer.empty() ? rise.value : mean_by_points(mesh, e, warmer));
+    for (std::size_t k = 1; k < width; ++k) pressure[k] = stiffness * warmer[k - 1];
+    const auto weights = gradient_weights(mesh, e, pressure.subspan(1));
     for (std::size_t k = 0; k < n; ++k)
-      load.add(mesh.elements[e * n + k], (corners.empty() ? here[0] : 1.0) * weights[k]);
+      load.add(mesh.elements[e * n + k], (differs ? 1.0 : pressure[0]) * weights[k]);
   }
 }
 
@@ -219,7 +213,8 @@ void assemble_load(Problem& problem, const Model& model, const Selection& select
     if (entry.body_force) {
       add_body_force(mesh, *entry.body_force, selection.elements(entry.on, path), load);
     } else if (entry.node_force) {
-      for (const std::int32_t node : selection.nodes(entry.on, path)) load.add(node, *entry.node_force);
+      for (const std::int32_t node : selection.nodes(entry.on, path))
+        load.add(node, 1.0 / mesh.thickness * *entry.node_force);
     } else if (entry.temperature) {
       if (mesh.plane == PlaneState::stress)
         throw InputError(path +
@@ -236,7 +231,8 @@ void assemble_load(Problem& problem, const Model& model, const Selection& select
       const std::vector<std::int32_t> facets = selection.facets(entry.on, path);
       if (entry.traction) add_traction(mesh, *entry.traction, facets, load);
       if (entry.total_force)
-        add_traction(mesh, (1.0 / area_of(mesh, facets)) * *entry.total_force, facets, load);
+        add_traction(mesh, (1.0 / (mesh.thickness * area_of(mesh, facets))) * *entry.total_force, facets,
+                     load);
       if (entry.pressure) add_pressure(mesh, *entry.pressure, facets, load);
     }
     load.finish();
@@ -268,7 +264,8 @@ void add_springs(Problem& problem, const Model& model, const Selection& selectio
       for (std::size_t c = 0; c < dim; ++c) block[c][c] += weight * stiffness[c];
     };
     if (entry.node_spring)
-      for (const std::int32_t node : selection.nodes(entry.on, path)) add_axes(node, 1.0, *entry.node_spring);
+      for (const std::int32_t node : selection.nodes(entry.on, path))
+        add_axes(node, 1.0 / mesh.thickness, *entry.node_spring);
     else
       for (const std::int32_t f : selection.facets(entry.on, path)) {
         const FacetWeights weights = lumped_weights(mesh, f);

@@ -29,9 +29,22 @@ void refuse_out_of_range(const std::string& what, double value) {
   throw InputError(text.str());
 }
 
+const char* name_of(PlaneState plane) {
+  return plane == PlaneState::stress         ? "plane stress"
+         : plane == PlaneState::axisymmetric ? "an axisymmetric body"
+                                             : "plane strain";
+}
+
 /// Puts the mesh under the model's plane; nodes next to the axis move onto it.
-void set_plane(Mesh& mesh, PlaneState plane) {
+void set_plane(Mesh& mesh, const Model& model) {
+  const PlaneState plane = model.plane;
+  if (mesh.plane != PlaneState::strain && mesh.plane != plane)
+    mesh.warnings.push_back(std::string("plane: the mesh is of elements of ") + name_of(mesh.plane) +
+                            ", and is taken as that of " + name_of(plane));
   mesh.plane = plane;
+  mesh.thickness = model.thickness;
+  if (mesh.thickness != 1.0 && mesh.dim() != 2)
+    throw InputError("thickness: expected 1, or a mesh in 2D, got one in 3D");
   if (plane == PlaneState::strain) return;
   if (mesh.dim() != 2) throw InputError("plane: expected \"strain\", or a mesh in 2D, got one in 3D");
   if (plane != PlaneState::axisymmetric) return;
@@ -61,7 +74,7 @@ Problem build_problem(Mesh mesh, const Model& model) {
   check_mesh(mesh);
   Problem problem;
   problem.mesh = std::move(mesh);
-  set_plane(problem.mesh, model.plane);
+  set_plane(problem.mesh, model);
   const std::size_t unknowns = problem.mesh.coordinates.size();
   problem.load.assign(unknowns, 0.0);
   problem.held.assign(unknowns, 0);

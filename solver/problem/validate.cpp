@@ -244,6 +244,9 @@ void validate(const SolverOptions& options) {
 }
 
 void validate(const Model& model) {
+  check("thickness", model.thickness, positive);
+  if (model.plane == PlaneState::axisymmetric && model.thickness != 1.0)
+    throw InputError("thickness: expected none with an axisymmetric mesh, which goes all round");
   if (model.materials.empty()) refuse("material", "at least one material", "[]");
   if (model.materials.size() >= std::numeric_limits<std::uint16_t>::max())
     throw InputError("material: expected fewer than 65535 entries");

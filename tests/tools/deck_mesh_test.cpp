@@ -190,10 +190,16 @@ TEST_CASE("bad decks are refused with file, line and what was expected") {
        "a.inp: line 12: elements of the type \"C3D20R\" are not supported: there "
        "are no quadratic hexahedra here: mesh the body with C3D10 or C3D8"},
       {cube + "*ELEMENT\n", "a.inp: line 12: *ELEMENT: expected TYPE=<type of element>"},
-      {"*NODE\n1,0,0\n2,1,0\n3,0,1\n*ELEMENT,TYPE=CPS3\n1,1,2,3\n",
-       "a.inp: line 5: a body of CPS3: plane stress is not solved: write plane strain (CPE3, CPE4) or a body "
-       "in "
-       "3D"},
+      {"*NODE\n1,0,0\n2,1,0\n3,0,1\n4,.5,0\n5,.5,.5\n6,0,.5\n*ELEMENT,TYPE=CAX6\n1,1,2,3,4,5,6\n",
+       "a.inp: line 8: a body of CAX6: quadratic triangles are no bodies here: write linear ones"},
+      {"*ELEMENT,TYPE=CPS8R\n",
+       "a.inp: line 1: elements of the type \"CPS8R\" are not supported: mesh the body with CPS3 or CPS4"},
+      {"*ELEMENT,TYPE=CAX8\n",
+       "a.inp: line 1: elements of the type \"CAX8\" are not supported: mesh the body with CAX3 or CAX4"},
+      {"*NODE\n1,0,0\n2,1,0\n3,0,1\n4,1,1\n*ELEMENT,TYPE=CPS3\n1,1,2,3\n*ELEMENT,TYPE=CAX3\n2,2,4,3\n",
+       "a.inp: line 8: a body of CAX3 beside CPS3: expected one of plane strain (CPE), plane stress (CPS), "
+       "axial "
+       "symmetry (CAX)"},
       {"*NODE\n1,0,x,0\n", "a.inp: line 2: expected a coordinate, got \"x\""},
       {"*NODE\n1,0,1e999,0\n", "a.inp: line 2: expected a coordinate, got \"1e999\""},
       {"*NODE\none,0,0,0\n", "a.inp: line 2: expected the number of a node, got \"one\""},

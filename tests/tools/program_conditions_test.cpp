@@ -211,6 +211,59 @@ TEST_CASE("parts hold springs and temperatures, to the same bits") {
   CHECK(place.json("a/result.json")["reaction"] == place.json("b/result.json")["reaction"]);
 }
 
+TEST_CASE("forces of a plane body are those of its thickness, in and out") {
+  const double thickness = 8;
+  json input = parsed(R"({
+    "mesh": {"box": {"size": [2, 1], "cells": [8, 4], "element": "quad4"}}, "plane": "stress", "thickness": 8,
+    "material": [{"on": "all", "young": 200, "poisson": 0.25}],
+    "boundary": [{"on": "left", "name": "wall", "displacement": [0, null]},
+                 {"on": "right", "name": "pull", "total_force": [4, 0]},
+                 {"on": "top", "name": "down", "traction": [0, -0.5]}, {"on": "right", "node_spring": [0, 0.5]}],
+    "contact": [{"on": "bottom", "name": "floor", "obstacle": {"plane": {"point": [0, 0], "normal": [0, 1]}},
+                 "friction": {"coulomb": 0.1}}],
+    "probe": [[2, 1]], "solver": {"tolerance": 1e-9}, "output": {"report": false}})");
+  const json thick = solved(input, "2");
+  CHECK(thick["load"]["pull"]["force"][0].get<double>() == doctest::Approx(4));
+  CHECK(thick["load"]["down"]["force"][1].get<double>() == doctest::Approx(-0.5 * 2 * thickness));
+  CHECK(thick["mesh"]["volume"].get<double>() == doctest::Approx(2 * thickness));
+  CHECK(thick["contact"]["floor"]["area"].get<double>() == doctest::Approx(2 * thickness));
+  // The same body of a thickness of 1 under an eighth of the forces.
+  input.erase("thickness");
+  input["boundary"][1]["total_force"] = {4 / thickness, 0};
+  input["boundary"][3]["node_spring"] = {0, 0.5 / thickness};
+  const json thin = solved(input, "2");
+  CHECK(thin["probe"] == thick["probe"]);
+  for (const char* list : {"contact", "reaction", "load"})
+    for (const auto& [name, entry] : thin[list].items())
+      for (const char* key : {"force", "moment"})
+        for (std::size_t c = 0; c < entry[key].size(); ++c)
+          CHECK(thickness * entry[key][c].get<double>() ==
+                doctest::Approx(thick[list][name][key][c].get<double>()).epsilon(1e-9));
+  CHECK(thin["max_von_mises"] == thick["max_von_mises"]);
+  // An obstacle that is pushed, in plane strain.
+  input["thickness"] = thickness;
+  input["plane"] = "strain";
+  input["boundary"] = parsed(R"([{"on": "bottom", "name": "base", "displacement": [0, 0]}])");
+  input["contact"] =
+      parsed(R"([{"on": "top", "name": "punch", "obstacle": {"plane": {"point": [0, 1.5], "normal": [0, -1]}},
+                                 "force_controlled": {"force": 3, "direction": [0, -1]}}])");
+  input["solver"]["tolerance"] = 1e-6;
+  for (const double force : {0.01, 3.0, 50.0}) {
+    input["contact"][0]["force_controlled"]["force"] = force;
+    const json pushed = solved(input);
+    CHECK(pushed["contact"]["punch"]["force"][1].get<double>() == doctest::Approx(-force).epsilon(1e-4));
+    CHECK(pushed["reaction"]["base"]["force"][1].get<double>() == doctest::Approx(force).epsilon(1e-4));
+  }
+  input["thickness"] = -1;
+  CHECK(refused(input).find("thickness: expected a number > 0, got -1") != std::string::npos);
+  input["thickness"] = 2;
+  input["plane"] = "axisymmetric";
+  CHECK(refused(input).find("thickness: expected none with an axisymmetric mesh") != std::string::npos);
+  input = bar("hex8", 0.3);
+  input["thickness"] = 2;
+  CHECK(refused(input).find("thickness: expected 1, or a mesh in 2D, got one in 3D") != std::string::npos);
+}
+
 TEST_CASE("what is no spring and no temperature is refused") {
   const auto with = [](const char* entry) {
     json input = bar("tet4", 0.3);

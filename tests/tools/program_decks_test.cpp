@@ -172,6 +172,88 @@ TEST_CASE("what cannot be part of a case is refused with file and line, and left
             .error.find("part.json: there is such a file already") != std::string::npos);
 }
 
+TEST_CASE(
+    "decks of plane stress, plane strain and round an axis: the plane, the thickness, forces of all of it") {
+  // 2 × 1 of two squares, held so that it may grow thinner; 3 thick.
+  const auto flat = [](const std::string& type) {
+    return "*NODE\n1,0,0\n2,1,0\n3,2,0\n4,0,1\n5,1,1\n6,2,1\n*ELEMENT, TYPE=" + type +
+           ", ELSET=Bar\n1,1,2,5,4\n2,2,3,6,5\n*NSET, NSET=Left\n1,4\n*NSET, NSET=Lower\n1,2,3\n" + steel +
+           "*SOLID SECTION, ELSET=Bar, MATERIAL=STEEL\n3.\n*STEP\n*STATIC\n";
+  };
+  const std::string points = " --set 'probe=[[2,1]]'";
+  for (const std::string type : {"CPS4", "CPS4R", "CPE4"}) {
+    const Workplace place;
+    const nlohmann::json result = solved_deck(
+        place, flat(type) + "*BOUNDARY\nLeft, 1\n1, 2\n*CLOAD\n3, 1, 150.\n6, 1, 150.\n*END STEP\n", points);
+    CAPTURE(type);
+    const bool free_across = type[2] == 'S';
+    CHECK(result["case"].value("plane", "strain") == (free_across ? "stress" : "strain"));
+    CHECK(result["case"]["thickness"] == 3.0);
+    CHECK(result["mesh"]["volume"].get<double>() == doctest::Approx(6.0));
+    CHECK(result["probe"][0][0].get<double>() ==
+          doctest::Approx(2 * 100 / 200000.0 * (free_across ? 1 : 1 - 0.09)).epsilon(1e-9));
+    CHECK(result["probe"][0][1].get<double>() ==
+          doctest::Approx(-0.3 * 100 / 200000.0 * (free_across ? 1 : 1.3)).epsilon(1e-9));
+    double held = 0.0, load = 0.0;
+    for (const auto& entry : result["reaction"]) held += entry["force"][0].get<double>();
+    for (const auto& entry : result["load"]) load += entry["force"][0].get<double>();
+    CHECK(held == doctest::Approx(-300.0).epsilon(1e-8));
+    CHECK(load == doctest::Approx(300.0));
+  }
+  for (const std::string type : {"CAX4", "CAX4R"}) {
+    const Workplace place;
+    const nlohmann::json result =
+        solved_deck(place, flat(type) + "*BOUNDARY\nLower, 2\n*DLOAD\nBar, P3, 50.\n*END STEP\n", points);
+    CHECK(result["case"]["plane"] == "axisymmetric");
+    CHECK(!result["case"].contains("thickness"));
+    CHECK(result["probe"][0][1].get<double>() == doctest::Approx(-50 / 200000.0).epsilon(1e-9));
+    CHECK(result["probe"][0][0].get<double>() == doctest::Approx(2 * 0.3 * 50 / 200000.0).epsilon(1e-9));
+    double load = 0.0;
+    for (const auto& entry : result["load"]) load += entry["force"][1].get<double>();
+    CHECK(load == doctest::Approx(-50 * 4 * 3.14159265358979));
+  }
+}
+
+TEST_CASE("a deck's temperatures: what the nodes are warmer by than at the start") {
+  const std::string held_all = "*BOUNDARY\nNall, 1, 3\n", step = "*STEP\n*STATIC\n";
+  const std::string warm_steel = steel + "*EXPANSION, ZERO=20.\n1.2e-5\n";
+  const double pressure = 200000 * 1.2e-5 * 100 / (1 - 2 * 0.3);
+  {
+    const Workplace place;
+    const nlohmann::json result = solved_deck(
+        place, bar + held_all + warm_steel + section + "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNall, 20.\n" +
+                   step + "*TEMPERATURE\nNall, 120.\n*END STEP\n");
+    CHECK(result["case"]["boundary"].back()["temperature"] == 100.0);
+    CHECK(result["max_von_mises"].get<double>() < 1e-9 * pressure);
+    CHECK(!place.has("deck.temperature.csv"));
+  }
+  const Workplace place;
+  const nlohmann::json result = solved_deck(
+      place, bar + held_all + warm_steel + section + "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNall, 20.\n" +
+                 step + "*TEMPERATURE\nNall, 70.\nRight, 270.\nLeft, 20.\n*END STEP\n");
+  CHECK(contents(place.path("deck.temperature.csv")).find("\n2, 50\n3, 250\n") != std::string::npos);
+  // 0, 50 and 250 at the nodes: 150 in the mean of the warmer element, and nothing moves.
+  CHECK(result["max_von_mises"].get<double>() < 1e-9 * pressure);
+  const Outcome again = place.run("run deck.inp --output at_once --set solver.tolerance=1e-10");
+  INFO(again.error);
+  CHECK(again.exit_code == 0);
+  CHECK(place.run("verify at_once/deck.json --output at_once --set solver.tolerance=1e-10").exit_code == 0);
+  CHECK(place.json("at_once/result.json")["reaction"] == place.json("out/result.json")["reaction"]);
+  check_refused(
+      bar + held_all + steel + "*EXPANSION\n1e-5, 0.\n2e-5, 100.\n" + section + step + "*END STEP\n",
+      "expected one coefficient of expansion, at all temperatures");
+  check_refused(
+      bar + held_all + steel + "*EXPANSION, TYPE=ORTHO\n1e-5, 1e-5, 1e-5\n" + section + step + "*END STEP\n",
+      "*EXPANSION: expected an isotropic material, got TYPE=ORTHO");
+  check_refused(bar + held_all + warm_steel + section + step + "*TEMPERATURE, FILE=heat\n*END STEP\n",
+                "*TEMPERATURE changes the answer: FILE=heat is not known here");
+  check_refused(bar + held_all + warm_steel + section + step + "*TEMPERATURE\nNowhere, 3.\n*END STEP\n",
+                "there is no set of nodes \"Nowhere\"");
+  check_refused(bar + held_all + warm_steel + section + "*INITIAL CONDITIONS, TYPE=STRESS\nBar, 3.\n" + step +
+                    "*END STEP\n",
+                "*INITIAL CONDITIONS changes the answer: it is not known here, but TYPE=TEMPERATURE");
+}
+
 TEST_CASE("meshes keep their groups and numbers from one format to another") {
   const Workplace place;
   place.put("a.inp", bar + "*SURFACE, NAME=End\n2, S4\n*ELSET, ELSET=Half way\n2\n");

@@ -27,7 +27,7 @@ READERS = [ROOT / "tools" / "case" / f"case_{name}.cpp" for name in ("file", "ma
 VECTOR = [0, 0, 1]
 # A case of every kind of entry; `kacanov check` takes it but for the files that are not there.
 SAMPLE = {
-    "title": "all keys", "$schema": "case.schema.json", "plane": "strain",
+    "title": "all keys", "$schema": "case.schema.json", "plane": "strain", "thickness": 1,
     "mesh": {"box": {"size": [2, 1, 1], "cells": [2, 1, 1], "element": "hex8"}, "refine": 0, "order": 1,
              "adapt": {"error": 0.05, "most_unknowns": 1000, "most_meshes": 3}},
     "material": [{"on": "all", "young": 200, "poisson": 0.3, "expansion": 1e-5, "bbar": True,

@@ -30,6 +30,7 @@ class CaseParser {
     const Object top(whole);
     parse_mesh(top.required("mesh"));
     if (const auto plane = top.optional("plane")) result_.model.plane = value_of(*plane, words::plane);
+    if (const auto thickness = top.optional("thickness")) result_.model.thickness = thickness->number();
     for (const Node& node : top.required("material").entries()) parse_material(node);
     if (const auto list = top.optional("boundary"))
       for (const Node& node : list->entries()) parse_boundary(node);

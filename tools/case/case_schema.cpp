@@ -208,6 +208,8 @@ KeySet top() {
        may("plane", one_of(words::plane),
            "of meshes in 2D: plane strain, plane stress, or a section x ≥ 0 that goes round the axis x = 0",
            word_of(Model().plane, words::plane)),
+       may("thickness", Number{positive}, "of plane strain and plane stress: what forces are of",
+           Model().thickness),
        must("material", materials, "elastic constants and laws; every element needs exactly one"),
        may("boundary", ListOf{boundary(), "a list of boundary conditions"}, "supports and loads"),
        may("contact", ListOf{contact(), "a list of contact entries"},

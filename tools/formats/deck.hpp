@@ -62,6 +62,7 @@ struct Deck {
   NodeIndex node_index, element_index;
   std::vector<DeckSet> node_sets, element_sets;
   std::vector<DeckSurface> surfaces;
+  PlaneState plane = PlaneState::strain;  ///< what elements in 2D are of
   std::vector<DeckBlock> blocks;  ///< all but nodes, elements, sets and surfaces, in the order of the deck
   std::vector<std::string> warnings;
 

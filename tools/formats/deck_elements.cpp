@@ -19,11 +19,10 @@ constexpr std::string_view hybrid = "pressure has no unknowns of its own here";
 constexpr std::string_view modified = "the plain quadratic tetrahedron is taken in its place";
 constexpr std::string_view reduced = "all points are integrated here, with B-bar where the body is plastic";
 constexpr std::string_view incompatible = "there are no incompatible modes here: stiffer in bending";
-constexpr std::string_view stress =
-    "plane stress is not solved: write plane strain (CPE3, CPE4) or a body in 3D";
-constexpr std::string_view axes = "axisymmetric bodies are not solved: model a sector in 3D";
+constexpr std::string_view all_points = "all points are integrated here";
+constexpr PlaneState stress = PlaneState::stress, round = PlaneState::axisymmetric;
 constexpr std::string_view thin = "shells, membranes and beams are not solved: model the body in 3D";
-constexpr std::string_view tri6 = "quadratic triangles are no bodies here: write CPE3 or CPE4";
+constexpr std::string_view tri6 = "quadratic triangles are no bodies here: write linear ones";
 
 constexpr auto entries = std::to_array<Entry>({
     {"C3D4", {"tet4", "", ""}},
@@ -51,15 +50,18 @@ constexpr auto entries = std::to_array<Entry>({
     {"CPE4RH", {"quad4", reduced, ""}},
     // What mesh generators write for the facets of a body, and what bodies cannot be made of.
     {"CPE6", {"tri6", "", tri6}},
-    {"CPS3", {"tri3", "", stress}},
-    {"CPS4", {"quad4", "", stress}},
-    {"CPS4R", {"quad4", "", stress}},
-    {"CPS4I", {"quad4", "", stress}},
-    {"CPS6", {"tri6", "", stress}},
-    {"CAX3", {"tri3", "", axes}},
-    {"CAX4", {"quad4", "", axes}},
-    {"CAX4R", {"quad4", "", axes}},
-    {"CAX6", {"tri6", "", axes}},
+    {"CPS3", {"tri3", "", "", stress}},
+    {"CPS4", {"quad4", "", "", stress}},
+    {"CPS4R", {"quad4", all_points, "", stress}},
+    {"CPS4I", {"quad4", incompatible, "", stress}},
+    {"CPS6", {"tri6", "", tri6}},
+    {"CAX3", {"tri3", "", "", round}},
+    {"CAX3H", {"tri3", hybrid, "", round}},
+    {"CAX4", {"quad4", "", "", round}},
+    {"CAX4H", {"quad4", hybrid, "", round}},
+    {"CAX4I", {"quad4", incompatible, "", round}},
+    {"CAX4R", {"quad4", reduced, "", round}},
+    {"CAX6", {"tri6", "", tri6}},
     {"DS3", {"tri3", "", thin}},
     {"DS4", {"quad4", "", thin}},
     {"M3D3", {"tri3", "", thin}},
@@ -116,10 +118,10 @@ std::string_view why_not_known(std::string_view type) {
   if (type.starts_with("C3D"))
     return "there are no wedges or pyramids here: mesh the body with C3D10 or C3D8";
   if (type.starts_with("CPE")) return "mesh the body with CPE3 or CPE4";
-  if (type.starts_with("CPS")) return stress;
-  if (type.starts_with("CAX")) return axes;
+  if (type.starts_with("CPS")) return "mesh the body with CPS3 or CPS4";
+  if (type.starts_with("CAX")) return "mesh the body with CAX3 or CAX4";
   if (type.starts_with("S") || type.starts_with("B") || type.starts_with("M3D")) return thin;
-  return "bodies are made of C3D4, C3D10, C3D8, CPE3 or CPE4";
+  return "bodies are made of C3D4, C3D10, C3D8, CPE3, CPE4, CPS3, CPS4, CAX3 or CAX4";
 }
 
 std::size_t deck_sides(std::size_t cell) { return sides_of(cells()[cell]).size(); }

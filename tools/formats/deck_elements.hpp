@@ -8,12 +8,15 @@
 #include <span>
 #include <string_view>
 
+#include <kacanov/mesh_view.hpp>
+
 namespace kacanov {
 
 struct DeckElementType {
-  std::string_view cell;     ///< name among cells()
-  std::string_view remark;   ///< how the element of a body differs here; empty where it does not
-  std::string_view refusal;  ///< why a body cannot be made of it; empty where it can
+  std::string_view cell;                  ///< name among cells()
+  std::string_view remark;                ///< how the element of a body differs here; empty where it does not
+  std::string_view refusal;               ///< why a body cannot be made of it; empty where it can
+  PlaneState plane = PlaneState::strain;  ///< of a body in 2D
 };
 
 /// What an element of this type, in upper case, is taken for. Nothing for one that is not known.

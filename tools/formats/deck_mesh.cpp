@@ -123,6 +123,7 @@ Mesh mesh_of(Deck deck) {
     if (!set.internal) add_points(set.members, group_name(deck.node_sets, set, deck.instance));
   grouping.finish();
   Mesh mesh = make_mesh(deck.files[0], std::move(content));
+  mesh.plane = deck.plane;
   mesh.warnings.insert(mesh.warnings.end(), deck.warnings.begin(), deck.warnings.end());
   return mesh;
 }

@@ -147,7 +147,7 @@ class Reader {
       }
       add_element(place, cell, {values.data(), count});
     }
-    types_.push_back({known->remark, known->refusal, upper, keyword.place, cell});
+    types_.push_back({*known, upper, keyword.place, cell});
     if (keyword.parameter("ELSET") != nullptr)
       sets_.push_back({{keyword, {}, in_part_}, first, deck_.element_tags.size()});
   }
@@ -205,18 +205,25 @@ class Reader {
   void check_types() {
     int dim = 0;
     for (const Type& type : types_) dim = std::max(dim, cells()[type.cell].dim);
+    const Type* first = nullptr;
     for (const Type& type : types_) {
       if (cells()[type.cell].dim < dim) continue;
-      if (!type.refusal.empty())
-        in_.fail(type.place, "a body of " + type.name + ": " + std::string(type.refusal));
-      if (!type.remark.empty())
+      if (!type.known.refusal.empty())
+        in_.fail(type.place, "a body of " + type.name + ": " + std::string(type.known.refusal));
+      if (!type.known.remark.empty())
         deck_.warnings.push_back(deck_.place_text(type.place) + ": " + type.name + ": " +
-                                 std::string(type.remark));
+                                 std::string(type.known.remark));
+      if (first == nullptr) first = &type;
+      if (type.known.plane != first->known.plane)
+        in_.fail(type.place,
+                 "a body of " + type.name + " beside " + first->name +
+                     ": expected one of plane strain (CPE), plane stress (CPS), axial symmetry (CAX)");
+      deck_.plane = type.known.plane;
     }
   }
 
   struct Type {
-    std::string_view remark, refusal;
+    DeckElementType known;
     std::string name;
     DeckPlace place;
     std::size_t cell;

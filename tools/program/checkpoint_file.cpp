@@ -16,7 +16,7 @@ namespace {
 constexpr std::string_view magic = "kacanov checkpoint 4\n";
 constexpr double share_of_time = 0.02;
 /// The sections of a case that have to be the same; solver options may change, but for the path of the load.
-constexpr const char* sections[] = {"plane", "mesh", "material", "boundary", "contact", "steps"};
+constexpr const char* sections[] = {"plane", "thickness", "mesh", "material", "boundary", "contact", "steps"};
 
 }  // namespace
 

@@ -75,6 +75,13 @@ std::filesystem::path convert_deck(const Command& command, const std::filesystem
   for (const std::filesystem::path& path : {to, mesh_path}) refuse_existing(path.string(), command.force);
   DeckCase made = case_of(read_deck(command.from), command.leave_out);
   check_mesh(made.mesh);
+  std::filesystem::path warm_path = to;
+  warm_path.replace_extension(".temperature.csv");
+  if (!made.temperatures.empty()) {
+    refuse_existing(warm_path.string(), command.force);
+    made.document["boundary"].push_back(
+        {{"on", "all"}, {"temperature", {{"file", warm_path.filename().string()}}}});
+  }
   made.document["mesh"] = {{"file", mesh_path.filename().string()}};
   try {  // what the deck's keywords come to has to be a case
     parse_case(nlohmann::json(made.document), to.parent_path().string());
@@ -84,6 +91,7 @@ std::filesystem::path convert_deck(const Command& command, const std::filesystem
   std::vector<std::string> comments{"Made by kacanov convert of " + command.from + "."};
   comments.insert(comments.end(), made.remarks.begin(), made.remarks.end());
   write_gmsh(mesh_path.string(), made.mesh);
+  if (!made.temperatures.empty()) write_file(warm_path.string(), made.temperatures);
   write_file(to.string(), case_text(made.document, comments));
   for (const std::string& remark : made.remarks) print_remark(remark);
   if (!command.quiet) say_what_was_written(mesh_path.string(), made.mesh);

@@ -11,6 +11,8 @@
 #include <utility>
 
 #include <kacanov/error.hpp>
+#include "formats/deck_names.hpp"
+#include "formats/deck_temperatures.hpp"
 #include "formats/gmsh_cursor.hpp"
 #include "program/deck_materials.hpp"
 
@@ -24,7 +26,12 @@ constexpr double is_free = std::numeric_limits<double>::quiet_NaN();
 class Converter {
  public:
   Converter(Deck deck, bool leave_out)
-      : blocks_(std::move(deck.blocks)), deck_(std::move(deck)), leave_out_(leave_out), materials_(deck_) {
+      : blocks_(std::move(deck.blocks)),
+        deck_(std::move(deck)),
+        leave_out_(leave_out),
+        materials_(deck_),
+        temperatures_(deck_),
+        names_(deck_) {
     deck_.blocks.clear();
     for (const Deck::Element& element : deck_.elements) dim_ = std::max(dim_, cells()[element.cell].dim);
     in_body_.resize(deck_.content.node_tags.size());
@@ -40,9 +47,17 @@ class Converter {
     nlohmann::ordered_json document;
     if (!deck_.title.empty()) document["title"] = deck_.title.substr(0, 200);
     document["mesh"] = nlohmann::ordered_json::object();
+    if (deck_.plane != PlaneState::strain)
+      document["plane"] = deck_.plane == PlaneState::stress ? "stress" : "axisymmetric";
+    if (const double thickness = materials_.sections()[0].thickness;
+        dim_ == 2 && deck_.plane != PlaneState::axisymmetric && thickness != 1.0)
+      document["thickness"] = thickness;
     document["material"] = materials();
     document["boundary"] = boundary();
-    DeckCase result{std::move(document), {}, std::move(remarks_)};
+    DeckCase result;
+    result.temperatures = add_temperatures(document);
+    result.document = std::move(document);
+    result.remarks = std::move(remarks_);
     for (const std::string& warning : deck_.warnings) result.remarks.push_back(warning);
     result.mesh = mesh_of(std::move(deck_));
     refuse_inner_sides(result.mesh);
@@ -66,9 +81,14 @@ class Converter {
     } else if (is_harmless(name)) {
       remarks_.push_back(deck_.place_text(block.keyword.place) + ": " + block.keyword.shown +
                          " is left out, which does not change the answer");
-    } else if (name == "EXPANSION") {
-      remarks_.push_back(deck_.place_text(block.keyword.place) + ": " + block.keyword.shown +
-                         " is left out: without temperatures it does nothing");
+    } else if (name == "TEMPERATURE") {
+      take_temperatures(block, temperatures_.at_end);
+    } else if (name == "INITIALCONDITIONS") {
+      const std::string* type = block.keyword.parameter("TYPE");
+      if (type != nullptr && upper_case(*type) == "TEMPERATURE")
+        take_temperatures(block, temperatures_.at_start);
+      else
+        change(block, "it is not known here, but TYPE=TEMPERATURE");
     } else {
       change(block, "it is not known here");
     }
@@ -155,6 +175,14 @@ class Converter {
     }
   }
 
+  void take_temperatures(const DeckBlock& block, std::vector<double>& of_node) {
+    static const std::set<std::string> known{"OP", "REGION", "NAME", "TYPE"};
+    for (const auto& [name, value] : block.keyword.parameters)
+      if (!known.contains(name))
+        change(block, name + (value.empty() ? "" : "=" + value) + " is not known here");
+    temperatures_.take(block, of_node);
+  }
+
   void take_point_load(Row row, bool in_part) {
     forces_.resize(deck_.content.node_tags.size(), Triple{});
     const std::int64_t direction = deck_integer(deck_, row, 1, "a degree of freedom");
@@ -216,7 +244,8 @@ class Converter {
   nlohmann::ordered_json materials() {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const DeckSection& section : materials_.sections()) {
-      if (section.thickness != materials_.sections()[0].thickness && dim_ == 2)
+      if (section.thickness != materials_.sections()[0].thickness && dim_ == 2 &&
+          deck_.plane != PlaneState::axisymmetric)
         deck_.fail(section.place, "another thickness: expected one for the whole body");
       nlohmann::ordered_json entry{{"on", name_of(section)}};
       entry.update(materials_.entry(section));
@@ -233,57 +262,7 @@ class Converter {
   }
 
   std::string name_of(const DeckSection& section) {
-    return name_of(deck_.element_sets, deck_.element_sets[index_of(section)].members, "elements");
-  }
-
-  /// The name of a set that has these members and a name that nothing else has; one is made where there is
-  /// none.
-  std::string name_of(std::vector<DeckSet>& sets, std::vector<std::int32_t> members, const char* base) {
-    for (DeckSet& set : sets)
-      if (set.members == members && owners(set.name) == 1) {
-        set.internal = false;
-        return set.name;
-      }
-    DeckSet& set = sets.emplace_back();
-    set.name = new_name(base);
-    set.members = std::move(members);
-    return set.name;
-  }
-
-  std::string name_of_sides(const std::vector<DeckSide>& sides) {
-    const auto places = [](const std::vector<DeckSide>& list) {
-      std::set<std::pair<std::int32_t, std::int32_t>> all;
-      for (const DeckSide& side : list) all.emplace(side.element, side.side);
-      return all;
-    };
-    for (DeckSurface& surface : deck_.surfaces)
-      if (surface.nodes.empty() && owners(surface.name) == 1 && places(surface.sides) == places(sides)) {
-        surface.internal = false;
-        return surface.name;
-      }
-    DeckSurface surface;
-    surface.name = new_name("pressed");
-    surface.sides = sides;
-    deck_.surfaces.push_back(surface);
-    return surface.name;
-  }
-
-  /// How many sets and surfaces have the name; "all" has a meaning of its own.
-  std::size_t owners(const std::string& name) const {
-    std::size_t count = name == "all" ? 2 : 0;
-    const std::string wanted = upper_case(name);
-    const auto same = [&](const auto& set) { return upper_case(set.name) == wanted; };
-    for (const auto* sets : {&deck_.node_sets, &deck_.element_sets})
-      count += static_cast<std::size_t>(std::count_if(sets->begin(), sets->end(), same));
-    return count +
-           static_cast<std::size_t>(std::count_if(deck_.surfaces.begin(), deck_.surfaces.end(), same));
-  }
-
-  std::string new_name(const std::string& base) {
-    for (;;) {
-      std::string name = base + "_" + std::to_string(++names_[base]);
-      if (owners(name) == 0) return name;
-    }
+    return names_.of(deck_.element_sets, deck_.element_sets[index_of(section)].members, "elements");
   }
 
   nlohmann::ordered_json vector(const Triple& v) const {
@@ -294,7 +273,7 @@ class Converter {
   }
 
   /// One entry for all nodes that have the same values.
-  void add_node_entries(const std::vector<Triple>& values, const char* key, const char* base, double scale,
+  void add_node_entries(const std::vector<Triple>& values, const char* key, const char* base,
                         nlohmann::ordered_json& list) {
     std::map<std::array<std::pair<bool, double>, 3>, std::vector<std::int32_t>> groups;
     for (std::size_t n = 0; n < values.size(); ++n) {
@@ -309,22 +288,20 @@ class Converter {
     }
     for (const auto& [known, nodes] : groups) {
       Triple value;
-      for (std::size_t c = 0; c < 3; ++c) value[c] = known[c].first ? known[c].second * scale : is_free;
-      list.push_back({{"on", name_of(deck_.node_sets, nodes, base)}, {key, vector(value)}});
+      for (std::size_t c = 0; c < 3; ++c) value[c] = known[c].first ? known[c].second : is_free;
+      list.push_back({{"on", names_.of(deck_.node_sets, nodes, base)}, {key, vector(value)}});
     }
   }
 
   nlohmann::ordered_json boundary() {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    add_node_entries(held_, "displacement", "held", 1.0, list);
-    // A plane case is of thickness 1.
-    add_node_entries(forces_, "node_force", "loaded",
-                     dim_ == 2 ? 1.0 / materials_.sections()[0].thickness : 1.0, list);
+    add_node_entries(held_, "displacement", "held", list);
+    add_node_entries(forces_, "node_force", "loaded", list);
     std::map<double, std::vector<DeckSide>> by_value;
     for (const auto& [side, pressed] : pressed_)
       if (pressed.value != 0.0) by_value[pressed.value].push_back({side.first, side.second});
     for (const auto& [value, sides] : by_value) {
-      const std::string name = name_of_sides(sides);
+      const std::string name = names_.of_sides(sides);
       pressed_names_.emplace_back(name,
                                   deck_.place_text(pressed_.at({sides[0].element, sides[0].side}).place));
       list.push_back({{"on", name}, {"pressure", value}});
@@ -350,10 +327,25 @@ class Converter {
       const DeckMaterial& material = materials_.of(section);
       if (!material.density || !(*material.density > 0.0))
         deck_.fail(gravity.place, "GRAV: the material " + in_quotes(material.shown) + " has no *DENSITY > 0");
-      list.push_back({{"on", name_of(deck_.element_sets, both, "elements")},
+      list.push_back({{"on", names_.of(deck_.element_sets, both, "elements")},
                       {"density", *material.density},
                       {"acceleration", vector(gravity.acceleration)}});
     }
+  }
+
+  /// An entry where all nodes are warmer by the same, else lines for a file.
+  std::string add_temperatures(nlohmann::ordered_json& document) const {
+    const auto& list = materials_.sections();
+    const bool expands = std::any_of(list.begin(), list.end(), [&](const DeckSection& section) {
+      return materials_.of(section).expansion.value_or(0.0) != 0.0;
+    });
+    if (!expands) return {};
+    const std::map<std::int64_t, double> rise = temperatures_.rise(in_body_);
+    if (const auto even = one_value(rise); !even)
+      return lines_of(rise);
+    else if (*even != 0.0)
+      document["boundary"].push_back({{"on", "all"}, {"temperature", *even}});
+    return {};
   }
 
   /// A pressure between two elements would push both of them.
@@ -377,10 +369,11 @@ class Converter {
   DeckMaterials materials_;
   std::vector<bool> in_body_;          ///< by node
   std::vector<Triple> held_, forces_;  ///< by node; empty where nothing is
+  DeckTemperatures temperatures_;
   std::map<std::pair<std::int32_t, std::int32_t>, Pressed> pressed_;
   std::vector<std::pair<std::string, std::string>> pressed_names_;  ///< with their places
   std::vector<Gravity> gravity_;
-  std::map<std::string, int> names_;
+  DeckNames names_;
   std::vector<std::string> remarks_;
 };
 

@@ -13,6 +13,7 @@ namespace kacanov {
 struct DeckCase {
   nlohmann::ordered_json document;   ///< without its mesh
   Mesh mesh;                         ///< with a group for everything that the document names
+  std::string temperatures;          ///< lines of a file of nodes that "temperature" of an entry is to name
   std::vector<std::string> remarks;  ///< what was left out, or means something else here; a sentence each
 };
 

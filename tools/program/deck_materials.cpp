@@ -17,17 +17,18 @@ bool DeckMaterials::take(const DeckBlock& block) {
     if (parameter == nullptr || parameter->empty())
       deck_.fail(block.keyword.place, block.keyword.shown + ": expected NAME=<name>");
     current_ = upper_case(*parameter);
-    if (!materials_.emplace(current_, DeckMaterial{block.keyword.place, *parameter, {}, {}, {}}).second)
+    if (!materials_.emplace(current_, DeckMaterial{block.keyword.place, *parameter, {}, {}, {}, {}}).second)
       deck_.fail(block.keyword.place, "a second material " + in_quotes(*parameter));
     return true;
   }
-  if (name != "ELASTIC" && name != "PLASTIC" && name != "DENSITY") return false;
+  if (name != "ELASTIC" && name != "PLASTIC" && name != "DENSITY" && name != "EXPANSION") return false;
   if (current_.empty()) deck_.fail(block.keyword.place, block.keyword.shown + " before any *MATERIAL");
   if (block.rows.empty())
     deck_.fail(block.keyword.place, block.keyword.shown + ": expected a line of numbers");
   DeckMaterial& material = materials_.at(current_);
   if (name == "ELASTIC") take_elastic(block, material);
   if (name == "PLASTIC") take_plastic(block, material);
+  if (name == "EXPANSION") take_expansion(block, material);
   if (name == "DENSITY") {
     if (block.rows.size() > 1) deck_.fail(block.rows[1].place, "expected one density, at all temperatures");
     material.density = deck_number(deck_, block.rows[0], 0, "a density");
@@ -45,6 +46,19 @@ void DeckMaterials::take_elastic(const DeckBlock& block, DeckMaterial& material)
     deck_.fail(block.rows[1].place, "expected one Young's modulus and Poisson's ratio, at all temperatures");
   material.elastic = {deck_number(deck_, block.rows[0], 0, "Young's modulus"),
                       deck_number(deck_, block.rows[0], 1, "Poisson's ratio")};
+}
+
+/// With one coefficient it does not matter what temperature ZERO it is told from.
+void DeckMaterials::take_expansion(const DeckBlock& block, DeckMaterial& material) {
+  const std::string* type = block.keyword.parameter("TYPE");
+  const std::string kind = type == nullptr ? "ISO" : upper_case(*type);
+  if (kind != "ISO" && kind != "ISOTROPIC")
+    deck_.fail(block.keyword.place,
+               block.keyword.shown + ": expected an isotropic material, got TYPE=" + kind.substr(0, 40));
+  material.expansion = deck_number(deck_, block.rows[0], 0, "a coefficient of expansion");
+  for (const DeckRow& row : block.rows)
+    if (deck_number(deck_, row, 0, "a coefficient of expansion") != *material.expansion)
+      deck_.fail(row.place, "expected one coefficient of expansion, at all temperatures");
 }
 
 void DeckMaterials::take_plastic(const DeckBlock& block, DeckMaterial& material) {
@@ -100,6 +114,7 @@ nlohmann::ordered_json DeckMaterials::entry(const DeckSection& section) const {
   const DeckMaterial& material = of(section);
   nlohmann::ordered_json entry{{"young", (*material.elastic)[0]}, {"poisson", (*material.elastic)[1]}};
   if (!material.plastic.empty()) entry["plastic"] = material.plastic;
+  if (material.expansion) entry["expansion"] = *material.expansion;
   return entry;
 }
 

@@ -17,7 +17,7 @@ struct DeckMaterial {
   std::string shown;                             ///< its name as the deck has it
   std::optional<std::array<double, 2>> elastic;  ///< Young's modulus and Poisson's ratio
   std::vector<std::array<double, 2>> plastic;    ///< stress and plastic strain
-  std::optional<double> density;
+  std::optional<double> density, expansion;
 };
 
 struct DeckSection {
@@ -43,6 +43,7 @@ class DeckMaterials {
 
  private:
   void take_elastic(const DeckBlock& block, DeckMaterial& material);
+  void take_expansion(const DeckBlock& block, DeckMaterial& material);
   void take_plastic(const DeckBlock& block, DeckMaterial& material);
   void take_section(const DeckBlock& block);
 

@@ -30,7 +30,8 @@ namespace {
 
 constexpr std::string_view part_magic = "kacanov part 13\n", boundary_magic = "kacanov boundary 6\n";
 /// The sections of a case that parts are made of.
-constexpr const char* sections[] = {"plane", "mesh", "material", "boundary", "contact", "steps", "probe"};
+constexpr const char* sections[] = {"plane",    "thickness", "mesh",  "material",
+                                    "boundary", "contact",   "steps", "probe"};
 
 std::filesystem::path part_file(const std::filesystem::path& folder, int rank) {
   return folder / ("part_" + std::to_string(rank) + ".kacanov");

@@ -25,10 +25,10 @@ Point point_at(const Mesh& mesh, const Indices& element, const QuadraturePoint& 
     for (std::size_t k = 0; k < dim; ++k) along[k] = along[k] + f.gradient[a][k] * mesh.nodes[element[a]];
   const Tensor dual{cross(along[1], along[2]), cross(along[2], along[0]), cross(along[0], along[1])};
   const Real det = dot(along[0], dual[0]);
-  const Real circle = mesh.circle(element, f);
-  Point point{q.weight * det * circle, {}, std::vector<Real>(element.size())};
+  const Real depth = mesh.depth(element, f);
+  Point point{q.weight * det * depth, {}, std::vector<Real>(element.size())};
   for (std::size_t a = 0; a < element.size() && mesh.is_round; ++a)
-    point.hoop[a] = 2 * std::acos(Real(-1)) * f.value[a] / circle;
+    point.hoop[a] = 2 * std::acos(Real(-1)) * f.value[a] / depth;
   for (const Vec& reference : f.gradient) {
     Vec g{};
     for (std::size_t k = 0; k < dim; ++k) g = g + reference[k] / det * dual[k];

@@ -56,8 +56,8 @@ std::vector<std::size_t> in_box(const Mesh& mesh, const nlohmann::json& on,
 
 }  // namespace
 
-Real Mesh::circle(const Indices& cell, const Functions& at) const {
-  if (!is_round) return 1;
+Real Mesh::depth(const Indices& cell, const Functions& at) const {
+  if (!is_round) return thickness;
   Real radius = 0;
   for (std::size_t k = 0; k < cell.size(); ++k) radius += at.value[k] * nodes[cell[k]][0];
   return 2 * std::acos(Real(-1)) * radius;

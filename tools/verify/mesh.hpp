@@ -30,8 +30,10 @@ struct Mesh {
   bool is_round = false;        ///< axisymmetric: x is the distance from the axis
   bool is_free_across = false;  ///< plane stress
 
-  /// The length of the circle that a point of the section stands for; 1 unless it goes round an axis.
-  Real circle(const Indices& cell, const Functions& at) const;
+  Real thickness = 1;  ///< of a plane body
+
+  /// The length of the line that a point of the section stands for: a circle round an axis, or the thickness.
+  Real depth(const Indices& cell, const Functions& at) const;
   int dim() const { return dimension(shape); }
   /// Length of the diagonal of the box round the nodes.
   Real size() const;

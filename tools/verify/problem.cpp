@@ -18,6 +18,7 @@ void read_plane(const nlohmann::json& document, Mesh& mesh) {
     throw Failure("plane: the verifier knows no plane " + plane);
   mesh.is_round = plane == "axisymmetric";
   mesh.is_free_across = plane == "stress";
+  mesh.thickness = document.value("thickness", 1.0);
   const Real reach = 1e-12L * mesh.size();
   for (Vec& x : mesh.nodes)
     if (mesh.is_round && std::abs(x[0]) <= reach) x[0] = 0;
@@ -70,7 +71,7 @@ void add_body_force(Problem& problem, const nlohmann::json& entry, Real factor) 
       const Functions f = functions(mesh.shape, point.at);
       const std::array<Vec, 3> along = along_at(mesh, mesh.elements[e], f);
       const Real volume =
-          mesh.circle(mesh.elements[e], f) * point.weight * dot(along[0], cross(along[1], along[2]));
+          mesh.depth(mesh.elements[e], f) * point.weight * dot(along[0], cross(along[1], along[2]));
       for (std::size_t a = 0; a < f.value.size(); ++a) {
         Vec& load = problem.load[mesh.elements[e][a]];
         load = load + volume * f.value[a] * force;
@@ -154,7 +155,7 @@ void add_temperature(Problem& problem, const nlohmann::json& document, const nlo
     for (const QuadraturePoint& point : stiffness_rule(mesh.shape)) {
       const Functions f = functions(mesh.shape, point.at);
       const std::array<Vec, 3> along = along_at(mesh, element, f);
-      const Real volume = point.weight * mesh.circle(element, f) * dot(along[0], cross(along[1], along[2]));
+      const Real volume = point.weight * mesh.depth(element, f) * dot(along[0], cross(along[1], along[2]));
       mean += volume * warmth.at(element, point.at);
       whole += volume;
     }
@@ -164,11 +165,11 @@ void add_temperature(Problem& problem, const nlohmann::json& document, const nlo
       const std::array<Vec, 3> along = along_at(mesh, element, f);
       const std::array<Vec, 3> dual{cross(along[1], along[2]), cross(along[2], along[0]),
                                     cross(along[0], along[1])};
-      const Real pressure = stiffness * (problem.laws[law].bbar ? mean : warmth.at(element, point.at));
+      const Real pressure = stiffness * (mesh.shape == Shape::tet10 ? warmth.at(element, point.at) : mean);
       for (std::size_t a = 0; a < f.value.size(); ++a) {
         Vec& load = problem.load[element[a]];
         for (std::size_t k = 0; k < dim; ++k)
-          load = load + mesh.circle(element, f) * point.weight * pressure * f.gradient[a][k] * dual[k];
+          load = load + mesh.depth(element, f) * point.weight * pressure * f.gradient[a][k] * dual[k];
         // u/r goes round with 2π r.
         if (mesh.is_round)
           load[0] += 2 * std::acos(Real(-1)) * point.weight * pressure * f.value[a] * dot(along[0], dual[0]);
@@ -221,7 +222,7 @@ FacetIntegrals consistent(const Mesh& mesh, const Indices& facet) {
   const Shape shape = facet_shape(mesh.shape);
   for (const QuadraturePoint& point : load_rule(shape)) {
     const Functions f = functions(shape, point.at);
-    const Vec normal = mesh.circle(facet, f) * normal_at(mesh, facet, f);
+    const Vec normal = mesh.depth(facet, f) * normal_at(mesh, facet, f);
     for (std::size_t k = 0; k < facet.size(); ++k) {
       out.area[k] += point.weight * f.value[k] * norm(normal);
       out.normal[k] = out.normal[k] + point.weight * f.value[k] * normal;

@@ -43,6 +43,7 @@ struct Mesh {
   std::vector<NodeField> node_fields;
   std::vector<std::string> warnings;      ///< what its reader left out
   PlaneState plane = PlaneState::strain;  ///< that of the model it is put under
+  double thickness = 1.0;                 ///< likewise
 
   int dim() const { return dimension(type); }
   std::size_t node_count() const { return coordinates.size() / static_cast<std::size_t>(dim()); }

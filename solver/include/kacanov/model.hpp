@@ -47,7 +47,7 @@ struct Temperature {
 struct BoundaryEntry {
   Selector on;
   std::optional<std::array<std::optional<double>, 3>> displacement;  ///< nullopt: component is free
-  std::optional<Vector3> traction;                                   ///< force an area (a length in 2D)
+  std::optional<Vector3> traction;                                   ///< force an area
   std::optional<Vector3> total_force;                                ///< spread evenly over the facets' area
   std::optional<double> pressure;                                    ///< against the outer normal
   std::optional<Vector3> body_force;                                 ///< force a volume
@@ -55,7 +55,7 @@ struct BoundaryEntry {
   std::optional<Vector3> spring = {};        ///< elastic bed: stiffness an area, of each component
   std::optional<double> normal_spring = {};  ///< the same along the facets' normals alone
   std::optional<Vector3> node_spring = {};   ///< stiffness of each node
-  std::optional<Vector3> node_force = {};    ///< on each node; in 2D a thickness
+  std::optional<Vector3> node_force = {};    ///< on each node
   std::optional<double> normal = {};  ///< displacement along the outer normal of a flat group of facets
   /// Axes, orthogonal, of any length, that `displacement` is told along; unset: those of the coordinates.
   std::optional<std::array<Vector3, 3>> frame = {};
@@ -155,6 +155,7 @@ struct LoadStage {
 
 struct Model {
   PlaneState plane = PlaneState::strain;  ///< of meshes in 2D
+  double thickness = 1.0;                 ///< of plane strain and plane stress: what all forces are of
   std::vector<MaterialEntry> materials;
   std::vector<BoundaryEntry> boundary;
   std::vector<ContactEntry> contact;

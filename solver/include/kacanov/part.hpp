@@ -28,6 +28,7 @@ struct Part {
   };
   ElementType type = ElementType::tet4;
   PlaneState plane = PlaneState::strain;
+  double thickness = 1.0;           ///< as in Model; all loads here are of a thickness of 1
   std::vector<double> coordinates;  ///< nodes × dim
   std::vector<std::int32_t> elements;
   std::vector<std::int32_t> node_index;               ///< index in Problem::mesh

@@ -8,8 +8,8 @@
 
 namespace kacanov {
 
-/// Force and moment about the origin, both of nodal forces at undeformed nodes. In 2D, for unit thickness,
-/// the moment has its third entry alone.
+/// Force and moment about the origin, both of nodal forces at undeformed nodes. In 2D, for the model's
+/// thickness, the moment has its third entry alone.
 struct Resultant {
   Vector3 force{}, moment{};
 };
@@ -19,7 +19,7 @@ struct ContactTotals {
   std::int32_t entry = 0;  ///< index into Model::contact
   Resultant total;         ///< normal and friction together
   Vector3 normal_force{}, friction_force{};
-  double area = 0.0;          ///< lumped, of the nodes under pressure (a length in 2D)
+  double area = 0.0;          ///< lumped, of the nodes under pressure (in 2D length times thickness)
   double max_pressure = 0.0;  ///< at a node
   double least_gap = 0.0;     ///< open distance that is left; negative by what the tolerance allows
   double travel = 0.0;        ///< how far an obstacle that is pushed has moved along its direction
@@ -48,7 +48,7 @@ struct BodySize {
   int dim = 3;
   Vector3 lower{}, upper{};  ///< of the smallest box round it
   double size = 0.0;         ///< that box's diagonal
-  double volume = 0.0;       ///< an area in 2D
+  double volume = 0.0;       ///< in 2D area times thickness
 };
 
 }  // namespace kacanov
