@@ -141,7 +141,7 @@ void take_laws(kacanov_operator& op, std::size_t count, const kacanov_law* laws,
 
   k::Operator made({op.mesh, checked, of_element}, op.options);
   std::optional<k::FloatOperator> single;
-  if (op.wants_single) single.emplace(k::Body{op.mesh, checked, of_element}, op.options);
+  if (op.wants_single) single.emplace(k::Body{op.mesh, checked, of_element}, op.options, made);
   std::string got(made.instruction_set());
   op.fast.emplace(std::move(made));
   op.instruction_set.swap(got);

@@ -58,7 +58,10 @@ void take_laws(kacanov_multigrid& multigrid) {
 k::MultigridBody body_of(const kacanov_multigrid& multigrid) {
   k::MeshView mesh = multigrid.op->mesh;
   if (!multigrid.used.empty()) mesh = {mesh.type, multigrid.coordinates, multigrid.connectivity};
-  return {{mesh, multigrid.laws, multigrid.law_of_element}, &multigrid.node_map, multigrid.held};
+  return {{mesh, multigrid.laws, multigrid.law_of_element},
+          &multigrid.node_map,
+          multigrid.held,
+          multigrid.used.empty() ? &*multigrid.op->fast : nullptr};
 }
 
 /// Constraints, in the multigrid's numbering, and where z = r.

@@ -12,12 +12,22 @@
 #include "simd/node_blocks.hpp"
 
 namespace kacanov {
+namespace {
+
+FloatOperator make_operator(const MultigridBody& body, const OperatorOptions& options) {
+  return body.like != nullptr ? FloatOperator(body.body, options, *body.like)
+                              : FloatOperator(body.body, options);
+}
+
+}  // namespace
 
 FineLevel::FineLevel(const MultigridBody& body, const MultigridOptions& options)
     : body_(body),
       threads_(options.threads),
-      op_(body.body, OperatorOptions{options.threads, options.instruction_set, body.node_map->shared}),
-      sum_(*body.node_map, static_cast<int>(body.dim())) {}
+      op_(make_operator(body, {options.threads, options.instruction_set, body.node_map->shared})),
+      sum_(*body.node_map, static_cast<int>(body.dim())) {
+  body_.like = nullptr;  // it may go
+}
 
 void FineLevel::build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space) {
   op_.set_secant(g);

@@ -7,6 +7,7 @@
 #include <span>
 
 #include <kacanov/index_map.hpp>
+#include <kacanov/operator.hpp>
 #include <kacanov/reference.hpp>
 
 namespace kacanov {
@@ -17,6 +18,8 @@ struct MultigridBody {
   Body body;
   const IndexMap* node_map = nullptr;  ///< of the nodes
   std::span<const std::uint8_t> held;  ///< nodes × dim: components that are zero
+  /// An operator of this mesh and its laws of elements, or null: how it divides them is taken over at once.
+  const Operator* like = nullptr;
 
   std::size_t dim() const noexcept { return dimension(body.mesh.type); }
   std::size_t nodes() const noexcept { return body.mesh.node_count(); }

@@ -7,18 +7,10 @@
 #include <map>
 #include <tuple>
 
-#include <kacanov/locality.hpp>
-
 namespace kacanov {
 namespace {
 
 using simd::Shape;
-
-/// 16-bit offsets of records of four values.
-constexpr std::size_t most_records = (std::size_t{1} << 16) / 4;
-
-/// Bytes of records a block works on: coordinates, displacement and force.
-constexpr std::size_t cache_bytes = 400 * 1024;
 
 /// Idle lanes work on these records, whose elements have a volume and no displacement.
 std::vector<std::array<double, 3>> idle_positions(ElementType type) {
@@ -44,17 +36,15 @@ struct Piece {
 
 struct Builder {
   const Body& body;
-  const Units units;
-  std::vector<std::int32_t> rank;  ///< of a node in the locality order
+  const Units& units;
+  std::span<const std::int32_t> rank;  ///< of a node
   Layout layout;
   std::vector<std::int32_t> local;  ///< of a node in the current block, −1
 
   using Key = std::tuple<std::uint16_t, Shape, std::uint8_t>;  ///< law, shape, length
   using Classes = std::map<Key, std::vector<Piece>>;
 
-  const std::int32_t* unit_nodes(std::uint32_t u) const {
-    return units.nodes.data() + units.units[u].first_node;
-  }
+  const std::int32_t* unit_nodes(std::uint32_t u) const { return units.nodes_begin(u); }
 
   /// Node k of a piece of shape and length. A ring cut open ends where it began.
   std::int32_t piece_node(const Piece& piece, Shape shape, std::uint32_t k) const {
@@ -192,55 +182,7 @@ struct Builder {
     layout.largest = std::max(layout.largest, range.count + layout.padding);
     layout.blocks.push_back(range);
   }
-
-  /// Cuts a list of units until each piece's nodes can be addressed by 16 bits.
-  void cut_to_size(std::vector<std::uint32_t> members, std::vector<std::vector<std::uint32_t>>& out) {
-    std::size_t count = 0;
-    std::vector<std::int32_t> seen;
-    for (const std::uint32_t u : members)
-      for (std::uint32_t k = 0; k < units.node_count(u); ++k)
-        if (auto& mark = local[at(unit_nodes(u)[k])]; mark < 0) {
-          mark = 0;
-          seen.push_back(unit_nodes(u)[k]);
-          ++count;
-        }
-    for (const std::int32_t node : seen) local[node] = -1;
-    if (count + layout.padding <= most_records) {
-      if (!members.empty()) out.push_back(std::move(members));
-      return;
-    }
-    const auto half = members.begin() + static_cast<std::ptrdiff_t>(members.size() / 2);
-    cut_to_size({members.begin(), half}, out);
-    cut_to_size({half, members.end()}, out);
-  }
 };
-
-/// Units of each block, in the locality order of their first node. A unit belongs where most of its nodes do.
-std::vector<std::vector<std::uint32_t>> assign_units(Builder& builder, int parts,
-                                                     std::span<const std::int32_t> part) {
-  const Units& units = builder.units;
-  std::vector<std::uint32_t> order(units.units.size());
-  std::vector<std::pair<std::int32_t, std::uint32_t>> keys(order.size());
-  for (std::uint32_t u = 0; u < order.size(); ++u) keys[u] = {builder.rank[at(builder.unit_nodes(u)[0])], u};
-  std::sort(keys.begin(), keys.end());
-  std::vector<std::vector<std::uint32_t>> members(parts);
-  for (const auto& [key, u] : keys) {
-    const std::int32_t* nodes = builder.unit_nodes(u);
-    const std::uint32_t count = units.node_count(u);
-    std::int32_t best = 0;
-    std::ptrdiff_t most = 0;
-    for (std::uint32_t k = 0; k < count; ++k) {
-      const std::int32_t candidate = part[nodes[k]];
-      const auto votes =
-          std::count_if(nodes, nodes + count, [&](std::int32_t n) { return part[n] == candidate; });
-      if (votes > most) most = votes, best = candidate;
-    }
-    members[best].push_back(u);
-  }
-  std::vector<std::vector<std::uint32_t>> blocks;
-  for (auto& list : members) builder.cut_to_size(std::move(list), blocks);
-  return blocks;
-}
 
 /// Contiguous shares of blocks with nearly equal numbers of points.
 std::vector<std::size_t> share_blocks(const Units& units, std::span<const std::vector<std::uint32_t>> blocks,
@@ -330,23 +272,14 @@ std::size_t Layout::bytes() const noexcept {
          size(contributions) + size(slots_of_thread) + size(lonely);
 }
 
-Layout make_layout(const Body& body, int lanes, int threads, std::size_t record_bytes,
+Layout make_layout(const Body& body, Division division, int lanes, int threads,
                    std::span<const std::int32_t> early) {
-  const std::vector<std::int32_t> order = node_order(body.mesh);
-  Builder builder{body, make_units(body), {}, {}, {}};
+  Builder builder{body, division.units, division.rank, {}, {}};
   Layout& layout = builder.layout;
   layout.lanes = lanes;
   layout.padding = static_cast<std::uint32_t>(idle_positions(body.mesh.type).size());
   builder.local.assign(body.mesh.node_count(), -1);
-  builder.rank.resize(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) builder.rank[order[i]] = static_cast<std::int32_t>(i);
-  const std::size_t per_block = cache_bytes / (3 * record_bytes);
-  const std::size_t nodes = body.mesh.connectivity.empty() ? 0 : body.mesh.node_count();
-  const std::size_t wanted = (nodes + per_block - 1) / per_block;
-  // A multiple of the threads, and each block worth its surface, but a block for every thread where possible.
-  const std::size_t team = threads;
-  const int parts = wanted == 0 ? 1 : static_cast<int>((wanted + team - 1) / team * team);
-  auto blocks = assign_units(builder, parts, partition_nodes(body.mesh, order, parts));
+  auto& blocks = division.blocks;
   layout.share = share_blocks(builder.units, blocks, threads);
   std::vector<char> is_early(body.mesh.node_count(), 0);
   for (const std::int32_t node : early) is_early[node] = 1;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <kacanov/reference.hpp>
-#include "operator/units.hpp"
+#include "operator/division.hpp"
 #include "simd/block.hpp"
 
 namespace kacanov {
@@ -52,9 +52,8 @@ struct Layout {
   std::size_t bytes() const noexcept;
 };
 
-/// `record_bytes` is the size of a node record (coordinates; the block's working set is three times that);
 /// `early` as in OperatorOptions.
-Layout make_layout(const Body& body, int lanes, int threads, std::size_t record_bytes,
+Layout make_layout(const Body& body, Division division, int lanes, int threads,
                    std::span<const std::int32_t> early);
 
 /// Records of local nodes, coordinates relative to the middle of their block, for `layout`.

@@ -32,7 +32,19 @@ void expect_plane_strain(PlaneState plane) {
 
 template <class Real>
 BasicOperator<Real>::BasicOperator(const Body& body, const OperatorOptions& options)
-    : data_(std::make_unique<Data>(checked(body, options), options)) {}
+    : data_(std::make_unique<Data>(checked(body, options), options, nullptr)) {}
+
+template <class Real>
+BasicOperator<Real>::BasicOperator(const Body& body, const OperatorOptions& options,
+                                   const BasicOperator<double>& like) {
+  const auto& from = *like.data_;
+  if (from.type != body.mesh.type || from.plane != body.mesh.plane || from.unknowns != body.unknowns() ||
+      from.points != body.secant_count())
+    throw std::invalid_argument("like: expected an operator of the same mesh");
+  check_options(body, options);
+  check_laws(body);
+  data_ = std::make_unique<Data>(body, options, &from.layout);
+}
 
 template <class Real>
 BasicOperator<Real>::~BasicOperator() = default;

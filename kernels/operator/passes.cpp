@@ -45,7 +45,7 @@ void in_parallel(int threads, Run&& run, Finish&& finish) {
 }  // namespace
 
 template <class Real>
-BasicOperator<Real>::Data::Data(const Body& body, const OperatorOptions& options)
+BasicOperator<Real>::Data::Data(const Body& body, const OperatorOptions& options, const Layout* like)
     : set(simd::choose_instruction_set(options.instruction_set)),
       kernels(simd::kernels<Real>(set)),
       type(body.mesh.type),
@@ -54,7 +54,10 @@ BasicOperator<Real>::Data::Data(const Body& body, const OperatorOptions& options
       unknowns(body.unknowns()),
       points(body.secant_count()),
       laws(body.laws.begin(), body.laws.end()),
-      layout(make_layout(body, kernels.lanes, threads, 4 * sizeof(Real), options.early)) {
+      layout(make_layout(body,
+                         like != nullptr ? divided_as(*like, body, sizeof(double) / sizeof(Real))
+                                         : divide(body, threads, 4 * sizeof(Real)),
+                         kernels.lanes, threads, options.early)) {
   for (const Law& law : laws)
     views.push_back(
         {law.bulk, law.secant(0.0), law.yield_strain(), law.mean_dilatation, &law, evaluate, across});

@@ -24,7 +24,8 @@ struct BasicOperator<Real>::Data {
     std::vector<Real> sums;  ///< private sums on the interface, three values a slot
   };
 
-  Data(const Body& body, const OperatorOptions& options);
+  /// `like`: how an operator in double of the same mesh has divided it; null: afresh.
+  Data(const Body& body, const OperatorOptions& options, const Layout* like);
   // The views of the laws point into it.
   Data(const Data&) = delete;
   Data& operator=(const Data&) = delete;

@@ -36,6 +36,7 @@ struct Units {
   std::uint32_t node_count(std::uint32_t unit) const {
     return nodes_of(units[unit].shape, units[unit].length);
   }
+  const std::int32_t* nodes_begin(std::uint32_t unit) const { return nodes.data() + units[unit].first_node; }
 };
 
 /// Covers a body by units of one law each. tet4: greedily, the edge with most tetrahedra left first; what

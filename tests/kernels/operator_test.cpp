@@ -216,6 +216,52 @@ TEST_CASE("diagonals") {
   });
 }
 
+TEST_CASE("divided as another operator: the same answers, whatever the precision, threads and early nodes") {
+  const auto check = [](const Body& body, const Operator& like, const OperatorOptions& options) {
+    const std::size_t n = body.unknowns();
+    const auto x = test::random_vector(n, 31), u = some_state(body, 32), g = some_secant(body.secant_count());
+    std::vector<double> product(n), force(n), y(n);
+    reference::apply(body, g, x, product);
+    reference::residual(body, u, force);
+    Operator op(body, options, like);
+    FloatOperator single(body, options, like);
+    op.set_secant(g);
+    op.apply(x, y);
+    CHECK(difference(y, product) < 1e-13);
+    op.residual(u, y);
+    CHECK(difference(y, force) < 1e-12);
+    std::vector<double> back(g.size());
+    op.secant(back);
+    CHECK(back == g);
+    std::vector<float> z(n), again(n);
+    single.set_secant(g);
+    single.apply(std::vector<float>(x.begin(), x.end()), z);
+    CHECK(difference(z, product) < 1e-5);
+    FloatOperator twin(body, options, like);
+    twin.set_secant(g);
+    twin.apply(std::vector<float>(x.begin(), x.end()), again);
+    CHECK(again == z);
+  };
+  for_every_body([&](const Body& body) {
+    for_every_operator(body, [&](const Operator& like) {
+      for (const int threads : {1, 3}) check(body, like, {threads, like.instruction_set()});
+    });
+  });
+  auto mesh = meshes::box(ElementType::tet4, {36, 18, 18}, {2, 1, 1});
+  meshes::jitter(mesh, 0.1, 33);
+  meshes::shuffle(mesh, 34);
+  const auto owned = test::with_every_law(std::move(mesh), 35);
+  const std::vector<std::int32_t> early{17, 18, 2000};
+  for (const int threads : {1, 2}) {
+    const Operator like(owned.body(), {threads, {}});
+    check(owned.body(), like, {2, {}, early});
+    check(owned.body(), Operator(owned.body(), {1, {}}, like), {3, {}});
+  }
+  const auto other = test::with_every_law(meshes::box(ElementType::tet4, {2, 2, 2}, {1, 1, 1}), 36);
+  CHECK_THROWS_WITH_AS(FloatOperator(owned.body(), {}, Operator(other.body())), doctest::Contains("like"),
+                       std::invalid_argument);
+}
+
 TEST_CASE("the same bits in every run, on a mesh of many blocks") {
   auto mesh = meshes::box(ElementType::tet4, {2 * thick, thick, thick}, {2, 1, 1});
   meshes::jitter(mesh, 0.1, 7);

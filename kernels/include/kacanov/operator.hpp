@@ -44,6 +44,9 @@ template <class Real>
 class BasicOperator {
  public:
   explicit BasicOperator(const Body& body, const OperatorOptions& options = {});
+  /// Divides the mesh as `like` does, which has to be of the same mesh with the same law_of_element; the laws
+  /// themselves may be others, and so may the options. Takes a fifth of the time. `like` may go afterwards.
+  BasicOperator(const Body& body, const OperatorOptions& options, const BasicOperator<double>& like);
   ~BasicOperator();
   BasicOperator(BasicOperator&&) noexcept;
   BasicOperator& operator=(BasicOperator&&) noexcept;
