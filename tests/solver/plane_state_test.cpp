@@ -65,6 +65,64 @@ TEST_CASE("plane stress: a bar in tension follows the curve that its material wa
       }
 }
 
+TEST_CASE("plane stress is that of a thin plate in 3D, beyond yield") {
+  constexpr double thickness = 0.02;
+  const Law law = hardening_law(0.005, 0.3);
+  const Vector3 load{0, -4e-4, 0};
+  Model flat = model_of(PlaneState::stress, law);
+  flat.boundary = {moved(named("left"), 2), traction(named("right"), load)};
+  flat.probes = {{4, 0.5, 0}};
+  const Run plane = run_alone(section(ElementType::quad4, 0.0, {4, 1}, 32, 8), flat);
+  Model model = model_of(PlaneState::strain, law);
+  model.materials[0].bbar = false;
+  model.boundary = {displacement(named("left"), {0.0, 0.0, std::nullopt}), roller(named("bottom"), 2),
+                    traction(named("right"), load)};
+  model.probes = {{4, 0.5, 0}};
+  const Run solid = run_alone(make_box({{4, 1, thickness}, {32, 8, 1}, ElementType::hex8}), model);
+  REQUIRE(plane.result().status == Status::converged);
+  REQUIRE(solid.result().status == Status::converged);
+  CHECK(plane.result().plastic_elements > 20);
+  MESSAGE("plane ", plane.probe()[1], " solid ", solid.probe()[1]);
+  for (std::size_t c = 0; c < 2; ++c)
+    CHECK(plane.probe()[c] == doctest::Approx(solid.probe()[c]).epsilon(0.005));
+  CHECK(plane.result().max_von_mises == doctest::Approx(solid.result().max_von_mises).epsilon(0.02));
+}
+
+TEST_CASE("round an axis is as a wedge in 3D, beyond yield") {
+  constexpr double half = 0.02;  // its angle, halved
+  const Law law = hardening_law(0.005, 0.3);
+  BoundaryEntry pressure;
+  pressure.on = named("left");
+  pressure.pressure = 0.012;
+  Model flat = model_of(PlaneState::axisymmetric, law);
+  flat.boundary = {moved(named("bottom"), 2), pressure};
+  flat.probes = {{1, 1, 0}, {2, 1, 0}};
+  const Run round = run_alone(section(ElementType::quad4, 1.0, {1, 1}, 12, 12), flat);
+  Mesh mesh = make_box({{1, 1, 1}, {12, 12, 1}, ElementType::hex8});
+  map_nodes(mesh, [](const Vector3& x) {
+    const double angle = half * (2.0 * x[2] - 1.0);
+    return Vector3{(1.0 + x[0]) * std::cos(angle), x[1], (1.0 + x[0]) * std::sin(angle)};
+  });
+  Model model = model_of(PlaneState::strain, law);
+  model.boundary = {moved(named("front"), 3), pressure};
+  for (const char* side : {"bottom", "top"}) {
+    BoundaryEntry symmetry;
+    symmetry.on = named(side);
+    symmetry.normal = 0.0;
+    model.boundary.push_back(symmetry);
+  }
+  model.probes = {{1, 1, 0}, {1.999, 1, 0}};
+  const Run wedge = run_alone(mesh, model);
+  REQUIRE(round.result().status == Status::converged);
+  REQUIRE(wedge.result().status == Status::converged);
+  CHECK(round.result().plastic_elements > 10);
+  MESSAGE("round ", round.probe()[0], " wedge ", wedge.probe()[0]);
+  for (std::size_t p = 0; p < 2; ++p)
+    for (std::size_t c = 0; c < 2; ++c)
+      CHECK(round.probe(p)[c] == doctest::Approx(wedge.probe(p)[c]).epsilon(0.003));
+  CHECK(round.result().max_von_mises == doctest::Approx(wedge.result().max_von_mises).epsilon(0.003));
+}
+
 TEST_CASE("plane stress: a hole in a wide plate raises the stress threefold") {
   // A quarter: angles along the first axis, radii that grow evenly along the second.
   constexpr int turns = 24, rings = 40;
