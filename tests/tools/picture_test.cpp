@@ -221,6 +221,13 @@ TEST_CASE("supports, loads and obstacles are drawn where they are seen, and told
   CHECK(count(deformed_svg(picture), "l-4.5 8h9Z") == 15);
   picture.view = {1, -1, -1};
   CHECK(well_formed(deformed_svg(picture)));
+
+  Bent disc = plane;  // the axis of revolution, unless it is far away
+  disc.mesh.plane = PlaneState::axisymmetric;
+  for (const std::size_t axes : {1, 1, 0}) {
+    CHECK(count(deformed_svg(disc.picture()), "x1=\"36\" y1=\"52\" x2=\"36\"") == axes);
+    for (std::size_t i = 0; i < disc.mesh.coordinates.size(); i += 2) disc.mesh.coordinates[i] += 3.0;
+  }
 }
 
 TEST_CASE("fields that are zero, uniform or broken still have a picture") {

@@ -136,6 +136,7 @@ class Drawing {
   std::string draw() const {
     SvgCanvas canvas(width, top + frame_.height + bottom);
     canvas.text(margin, 34, picture_.title, "font-size=\"17\" font-weight=\"bold\"");
+    if (shows_axis_) axis_of_revolution(canvas);
     for (const auto& patch : patches_) obstacle(canvas, patch);
     obstacle_facets(canvas);
     original(canvas);
@@ -162,6 +163,8 @@ class Drawing {
       for (const Vector& at : patch) seen.add(project(at));
     for (const auto& facet : picture_.obstacles)
       for (std::size_t k = 0; k < corners_of_facet(); ++k) seen.add(project(facet.corners[k]));
+    shows_axis_ = mesh_.plane == PlaneState::axisymmetric && seen.low[0] < seen.high[0] - seen.low[0];
+    if (shows_axis_) seen.add({0, seen.low[1], 0});
     const double w = seen.high[0] - seen.low[0], h = seen.high[1] - seen.low[1];
     frame_.left = margin;
     frame_.top = top;
@@ -185,6 +188,15 @@ class Drawing {
     } else if (p.size() == 2) {
       hatched(canvas, p[0], p[1]);
     }
+  }
+
+  /// A chain line over the whole height. Where it is farther from the body than that is wide it is left out.
+  void axis_of_revolution(SvgCanvas& canvas) const {
+    const double x = frame_.pixel({0, 0, 0})[0];
+    canvas.line(x, top - 12, x, top + frame_.height + 12,
+                "stroke=\"#777\" stroke-width=\"1\" stroke-dasharray=\"16 4 3 4\"");
+    canvas.text(x + 5, top + frame_.height + 16, "axis",
+                "font-size=\"12\" font-style=\"italic\" fill=\"#555\"");
   }
 
   std::size_t corners_of_facet() const { return static_cast<std::size_t>(dim_); }
@@ -361,6 +373,7 @@ class Drawing {
   ColourScale colours_;
   std::vector<std::vector<Vector>> patches_;
   Frame frame_;
+  bool shows_axis_ = false;
 };
 
 }  // namespace
