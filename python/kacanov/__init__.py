@@ -13,7 +13,7 @@ from .case import Case, ProgressTable
 from .errors import Error, InputError, InternalError, Interrupted, StateError
 from .mesh import BoxMesh, Mesh, MeshFile, box, from_meshio, read
 from .operator import CgResult, Multigrid, Operator, Tangent
-from .solution import Solution
+from .solution import Solution, Step
 from .words import (Block, Box, Cone, Cylinder, Gap, HeightMap, Law, Linear, LinearHardening, Logarithmic, Material,
                     Obstacle, Plane, Power, RambergOsgood, Saturating, Sphere, Surface, Table, Torus)
 
@@ -21,4 +21,4 @@ __all__ = [
     "Block", "Box", "BoxMesh", "Case", "CgResult", "Cone", "Cylinder", "Error", "Gap", "HeightMap", "InputError",
     "InternalError", "Interrupted", "Law", "Linear", "LinearHardening", "Logarithmic", "Material", "Mesh", "MeshFile",
     "Multigrid", "Obstacle", "Operator", "Plane", "Power", "ProgressTable", "RambergOsgood", "Saturating", "Solution",
-    "Sphere", "StateError", "Surface", "Table", "Tangent", "Torus", "box", "from_meshio", "read", "__version__"]
+    "Sphere", "StateError", "Step", "Surface", "Table", "Tangent", "Torus", "box", "from_meshio", "read", "__version__"]

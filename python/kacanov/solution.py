@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import json
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,66 @@ from . import _kacanov
 Array = npt.NDArray[Any]
 
 
-class Solution:
+class ElementMeans:
+    """Means over the elements, made when the first is asked for."""
+
+    @functools.cached_property
+    def _elements(self) -> dict[str, Array]:
+        raise NotImplementedError
+
+    @property
+    def stress(self) -> Array:
+        """Means over the elements, (elements, 6): xx yy zz xy yz zx."""
+        return self._elements["stress"]
+
+    @property
+    def von_mises(self) -> Array:
+        """Means over the elements, (elements,)."""
+        return self._elements["von_mises"]
+
+    @property
+    def dev_strain(self) -> Array:
+        """Norm of the strain deviator, means over the elements."""
+        return self._elements["dev_strain"]
+
+    @property
+    def g(self) -> Array:
+        """Secant shear modulus, means over the elements."""
+        return self._elements["g"]
+
+    @property
+    def plastic(self) -> Array:
+        """Whether any point of an element is beyond yield."""
+        return self._elements["plastic"]
+
+
+class Step(ElementMeans):
+    """The end of a load step: its line of result["load_steps"], and fields in the shapes of Solution. Read-only.
+
+    factor: what the loads are multiplied by; with `steps` of the case the time.
+    result: its numbers, as result["load_steps"] has them; empty where the run ended on the way to the next one.
+    u: displacement, (nodes, dim).
+    """
+
+    def __init__(self, factor: float, result: dict[str, Any], u: Array, elements: Callable[[], dict[str, Array]],
+                 contact: Callable[[], dict[str, Array]]) -> None:
+        self.factor, self.result, self.u = factor, result, u
+        self._make_elements, self._make_contact = elements, contact
+
+    @functools.cached_property
+    def _elements(self) -> dict[str, Array]:
+        return self._make_elements()
+
+    @functools.cached_property
+    def contact(self) -> dict[str, Array]:
+        """By contact point, as Solution.contact."""
+        return self._make_contact()
+
+    def __repr__(self) -> str:
+        return f"<kacanov.Step: {self.factor:g}>"
+
+
+class Solution(ElementMeans):
     """Numbers and fields of a solve. Arrays are read-only, in the numbering of the mesh, and made when asked for.
 
     `result` has all numbers under the names of result.json (docs/user-guide/results.md).
@@ -130,36 +190,28 @@ class Solution:
         result["discretisation"]["energy"]."""
         return self._solved.error()
 
-    @property
-    def stress(self) -> Array:
-        """Means over the elements, (elements, 6): xx yy zz xy yz zx."""
-        return self._elements["stress"]
-
-    @property
-    def von_mises(self) -> Array:
-        """Means over the elements, (elements,)."""
-        return self._elements["von_mises"]
-
-    @property
-    def dev_strain(self) -> Array:
-        """Norm of the strain deviator, means over the elements."""
-        return self._elements["dev_strain"]
-
-    @property
-    def g(self) -> Array:
-        """Secant shear modulus, means over the elements."""
-        return self._elements["g"]
-
-    @property
-    def plastic(self) -> Array:
-        """Whether any point of an element is beyond yield."""
-        return self._elements["plastic"]
-
     @functools.cached_property
     def contact(self) -> dict[str, Array]:
         """By contact point: `node` and `entry` (indices from 0), `normal` towards the obstacle, `gap` that is open,
         `pressure`, tangential `traction` that the obstacle does to the body, `status` (0 open, 1 stick, 2 slip)."""
         return self._solved.contact_fields()
+
+    @functools.cached_property
+    def steps(self) -> tuple[Step, ...]:
+        """The ends of the load steps that have converged, and the end of the run, which is the last one: the series that
+        the program writes. Of a case with one load step, or whose `output.steps` is false, the end alone."""
+        lines = self.result.get("load_steps", [])
+
+        def factor(line: dict[str, Any]) -> float:
+            return line["time"] if "time" in line else line["factor"]
+
+        end = self.result["load_factor"]
+        before = [Step(factor(lines[number - 1]), lines[number - 1], self._solved.step_displacement(index),
+                       functools.partial(self._solved.element_fields, index),
+                       functools.partial(self._solved.contact_fields, index))
+                  for index, number in enumerate(self._solved.step_numbers()) if factor(lines[number - 1]) < end]
+        last = lines[-1] if lines and factor(lines[-1]) == end else {}
+        return (*before, Step(end, last, self.u, lambda: self._elements, lambda: self.contact))
 
     # ---- for people
 

@@ -155,6 +155,7 @@ py::tuple solve(const py::dict& given) {
                                given["mesh"].cast<std::optional<std::string>>());
   CaseRun run;
   run.start = start.get();
+  run.keep_steps = input.output.steps;
   run.memory_check = given["memory_check"].cast<bool>();
   run.options.threads = threads_for(input, given["threads"].cast<std::optional<int>>());
   run.options.progress = [&host](const ProgressStep& step) { host.tell(step); };
@@ -251,7 +252,13 @@ py::dict nodal_fields(const py::object& self) {
   return all;
 }
 
-py::dict element_fields_of(const SolvedCase& solved) {
+/// One of the load steps that are kept, or null for none: the end of the run.
+const StepFields* step_of(const SolvedCase& solved, std::optional<std::size_t> step) {
+  return step ? &solved.steps.at(*step) : nullptr;
+}
+
+py::dict element_fields_of(const SolvedCase& solved, std::optional<std::size_t> index) {
+  const StepFields* step = step_of(solved, index);
   const auto count = static_cast<std::ptrdiff_t>(solved.problem.mesh.element_count());
   py::array stress = new_array<double>({count, 6}), von_mises = new_array<double>({count}),
             strain = new_array<double>({count}), secant = new_array<double>({count}),
@@ -262,7 +269,7 @@ py::dict element_fields_of(const SolvedCase& solved) {
                                         std::span(flags, static_cast<std::size_t>(count))};
   {
     const py::gil_scoped_release release;
-    element_fields(solved, wanted);
+    step == nullptr ? element_fields(solved, wanted) : element_fields(solved, *step, wanted);
   }
   py::dict all;
   all["stress"] = stress;
@@ -273,8 +280,10 @@ py::dict element_fields_of(const SolvedCase& solved) {
   return all;
 }
 
-py::dict contact_fields(const py::object& self) {
+py::dict contact_fields(const py::object& self, std::optional<std::size_t> index) {
   const auto& solved = self.cast<const SolvedCase&>();
+  const StepFields* step = step_of(solved, index);
+  const ContactFields& contact = step == nullptr ? solved.contact : step->contact;
   const auto count = static_cast<std::ptrdiff_t>(solved.problem.contact.size());
   py::array node = new_array<std::int32_t>({count}), entry = new_array<std::int32_t>({count}),
             status = new_array<std::int32_t>({count}), normal = new_array<double>({count, 3});
@@ -285,7 +294,7 @@ py::dict contact_fields(const py::object& self) {
     const ContactPoint& point = solved.problem.contact[i];
     nodes[i] = point.node;
     of[i] = point.entry;
-    states[i] = static_cast<std::int32_t>(solved.contact.status[i]);
+    states[i] = static_cast<std::int32_t>(contact.status[i]);
     for (std::size_t c = 0; c < 3; ++c) normals[3 * i + c] = point.normal[c];
   }
   py::dict all;
@@ -293,10 +302,21 @@ py::dict contact_fields(const py::object& self) {
   all["entry"] = entry;
   all["status"] = status;
   all["normal"] = normal;
-  all["gap"] = view<double>(self, solved.contact.gap);
-  all["pressure"] = view<double>(self, solved.contact.pressure);
-  all["traction"] = view<double>(self, solved.contact.traction, 3);
+  all["gap"] = view<double>(self, contact.gap);
+  all["pressure"] = view<double>(self, contact.pressure);
+  all["traction"] = view<double>(self, contact.traction, 3);
   return all;
+}
+
+std::vector<std::size_t> step_numbers(const SolvedCase& solved) {
+  std::vector<std::size_t> numbers;
+  for (const StepFields& step : solved.steps) numbers.push_back(step.number);
+  return numbers;
+}
+
+py::array step_displacement(const py::object& self, std::size_t index) {
+  const auto& solved = self.cast<const SolvedCase&>();
+  return view<double>(self, solved.steps.at(index).displacement, solved.problem.mesh.dim());
 }
 
 std::string svg(const SolvedCase& solved) {
@@ -315,8 +335,10 @@ void bind_solve(py::module_& module) {
       .def("nodal_fields", &nodal_fields)
       .def("error",
            [](const py::object& self) { return view<double>(self, self.cast<const SolvedCase&>().error); })
-      .def("element_fields", &element_fields_of)
-      .def("contact_fields", &contact_fields)
+      .def("element_fields", &element_fields_of, py::arg("step") = py::none())
+      .def("contact_fields", &contact_fields, py::arg("step") = py::none())
+      .def("step_numbers", &step_numbers)
+      .def("step_displacement", &step_displacement)
       .def("svg", &svg);
   module.def("solve", &solve);
   module.def("check", &check_case);

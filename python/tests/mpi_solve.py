@@ -31,6 +31,17 @@ class Together(unittest.TestCase):
         if WORLD.rank == 0:
             np.testing.assert_allclose(sol.stress[:, :3], -210e3 * 1e-3 / 0.4, rtol=1e-12)
 
+    def test_steps_are_the_first_ranks(self):
+        alone, sol = (pressed_beam().solver(load_steps=2).solve(threads=1, **comm) for comm in ({}, {"comm": WORLD}))
+        self.assertEqual([step.factor for step in sol.steps], [0.5, 1.0])
+        step, same = sol.steps[0], alone.steps[0]
+        if WORLD.rank == 0:
+            np.testing.assert_allclose(step.u, same.u, rtol=0, atol=1e-5 * np.abs(same.u).max())
+            np.testing.assert_allclose(step.stress, same.stress, rtol=0, atol=1e-4 * np.abs(same.stress).max())
+            self.assertEqual(step.contact["pressure"].shape, same.contact["pressure"].shape)
+        else:
+            self.assertEqual(len(step.u), 0)
+
     def test_what_is_wrong_is_raised_on_all(self):
         with self.assertRaisesRegex(kc.InputError, r"boundary\[2\].on: .*lid"):
             pressed_beam().pressure(1.0, "lid").solve(comm=WORLD)

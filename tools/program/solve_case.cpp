@@ -56,6 +56,23 @@ std::vector<double> gather_elements(const Part& part, const std::vector<double>&
   return all;
 }
 
+void fields_at(const SolvedCase& solved, std::span<const double> displacement,
+               std::span<const double> thermal, const reference::ElementFields& out) {
+  const Mesh& mesh = solved.problem.mesh;
+  const Body body{mesh.view(), solved.problem.laws, solved.problem.law_of_element};
+  reference::fields(body, displacement, out);
+  if (thermal.empty() || out.stress.empty()) return;
+  const std::size_t width = thermal.size() / mesh.element_count();  // the mean comes first
+  for (std::size_t e = 0; e < mesh.element_count(); ++e)
+    for (std::size_t c = 0; c < 3; ++c) out.stress[6 * e + c] -= thermal[width * e];
+}
+
+/// Collective.
+StepFields step_fields(const Part& part, const Solution& now) {
+  return {now.result.load_steps.size(), gather_nodal(part, now.displacement, part.dim()),
+          gather_elements(part, now.thermal), gather_contact_fields(part, now)};
+}
+
 }  // namespace
 
 Solution solve_part(const Case& input, Part& part, const MpiSession& mpi, const RunOptions& options) {
@@ -100,13 +117,11 @@ std::string deformed_picture(const Case& input, const Mesh& mesh, std::span<cons
 }
 
 void element_fields(const SolvedCase& solved, const reference::ElementFields& out) {
-  const Mesh& mesh = solved.problem.mesh;
-  const Body body{mesh.view(), solved.problem.laws, solved.problem.law_of_element};
-  reference::fields(body, solved.displacement, out);
-  if (solved.thermal.empty() || out.stress.empty()) return;
-  const std::size_t width = solved.thermal.size() / mesh.element_count();  // the mean comes first
-  for (std::size_t e = 0; e < mesh.element_count(); ++e)
-    for (std::size_t c = 0; c < 3; ++c) out.stress[6 * e + c] -= solved.thermal[width * e];
+  fields_at(solved, solved.displacement, solved.thermal, out);
+}
+
+void element_fields(const SolvedCase& solved, const StepFields& step, const reference::ElementFields& out) {
+  fields_at(solved, step.displacement, step.thermal, out);
 }
 
 SolvedCase solve_case(const Case& given, const MpiSession& mpi, const CaseRun& run) {
@@ -122,12 +137,18 @@ SolvedCase solve_case(const Case& given, const MpiSession& mpi, const CaseRun& r
   else if (!given.mesh.adapt)
     coarse = solve_coarser(input, mpi, options);
   if (coarse.solution) options.coarse = &*coarse.solution;
+  std::vector<StepFields> steps;
+  if (run.keep_steps)
+    options.load_step_over = [&](const Part& part, const Solution& now) {
+      steps.push_back(step_fields(part, now));
+    };
   Solution solution = solve_part(input, loaded.part, mpi, options);
   const double solved = MPI_Wtime();
   coarse.solution.reset();
 
   SolvedCase out;
   out.input = input;
+  out.steps = std::move(steps);
   const Part& part = loaded.part;
   const NodalStress nodal = recover_stress(part, solution);
   out.error = gather_elements(part, note_discretisation(part, coarse, solution));

@@ -39,6 +39,14 @@ struct PictureContent {
 std::string deformed_picture(const Case& input, const Mesh& mesh, std::span<const double> displacement,
                              const PictureContent& content, double largest_von_mises);
 
+/// The end of a load step before the last; displacement and contact are the first rank's.
+struct StepFields {
+  std::size_t number = 0;            ///< from 1: its line is result.load_steps[number − 1]
+  std::vector<double> displacement;  ///< nodes × dim
+  std::vector<double> thermal;       ///< as SolvedCase::thermal
+  ContactFields contact;
+};
+
 /// Everything that a run has to say, on the first rank and in the numbering of problem.mesh and
 /// problem.contact; other ranks have `result` and `json` alone.
 struct SolvedCase {
@@ -52,16 +60,20 @@ struct SolvedCase {
   std::vector<double> averaged_von_mises;   ///< nodes: means of the elements round them, as in pictures
   std::vector<double> error;                ///< elements: note_discretisation()
   ContactFields contact;
-  std::vector<double> thermal;  ///< Solution::thermal of all elements
+  std::vector<double> thermal;    ///< Solution::thermal of all elements
+  std::vector<StepFields> steps;  ///< where CaseRun::keep_steps asks for them: those that have converged
 };
 
-/// Means over the elements of problem.mesh, as in the program's files; on the first rank.
+/// Means over the elements of problem.mesh, as in the program's files: at the end of the run, or of one of
+/// its steps. On the first rank.
 void element_fields(const SolvedCase& solved, const reference::ElementFields& out);
+void element_fields(const SolvedCase& solved, const StepFields& step, const reference::ElementFields& out);
 
 struct CaseRun {
   RunOptions options;                 ///< without checkpoint and start
   const SolvedCase* start = nullptr;  ///< to start from: of the same body, on any mesh; on all ranks or none
   bool memory_check = true;           ///< refuse what does not fit
+  bool keep_steps = false;            ///< fields of the load steps before the last, too
 };
 
 /// What `kacanov run` does but for the files it writes: the same numbers to the last bit on as many ranks,
