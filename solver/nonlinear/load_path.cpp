@@ -73,7 +73,7 @@ void LoadPath::find_acting(const std::vector<double>& depth) {
 }
 
 double LoadPath::factor_of(std::int32_t entry) const {
-  return part_->steps.empty() ? share_ : factors_at(part_->steps, share_).boundary[entry];
+  return part_->steps.empty() ? share_ : factors_[entry];
 }
 
 double LoadPath::growth_to(double share) const {
@@ -126,6 +126,7 @@ void LoadPath::go_to(double share) {
 void LoadPath::go_along_curves(double time) {
   whole_ = false;
   const LoadFactors factors = factors_at(part_->steps, time);
+  factors_ = factors.boundary;
   load_.clear();
   for (const EntryForce& force : part_->forces) {
     if (load_.empty() || load_.back().component != force.component) load_.push_back({force.component, 0.0});

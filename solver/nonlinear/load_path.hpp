@@ -56,6 +56,7 @@ class LoadPath {
   std::vector<Part::ComponentValue> load_, prescribed_;  ///< at the share; empty at the full load
   /// At the share; how deep the entry's obstacle presses in; what the full prescribed displacements close.
   std::vector<double> gap_, depth_, closed_;
+  std::vector<double> factors_;     ///< of boundary entries, with load curves
   std::vector<std::uint8_t> acts_;  ///< boundary entries, then contact entries: whether any factor matters
 };
 
