@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <kacanov/error.hpp>
 #include <kacanov/solve.hpp>
@@ -53,9 +55,8 @@ class Chain {
     if (run_.coarse != nullptr) start_ = interpolate(*run_.coarse, part);
     run_.coarse = nullptr;
     u_.assign(part.unknowns(), 0.0);
-    // validate() has seen to it that there is one at most.
     for (std::size_t e = 0; e < model.contact.size(); ++e)
-      if (model.contact[e].force_controlled) pushed_ = e;
+      if (model.contact[e].force_controlled) pushed_.push_back({e, {}});
   }
 
   Solution run() {
@@ -69,10 +70,7 @@ class Chain {
       contact_.face(time, curves_[k - 1].time, u_);
       const int outer = last_.result.outer_iterations;
       const std::int64_t cg = last_.result.cg_iterations;
-      if (pushed_)
-        push(*pushed_, curves_[k].contact[*pushed_]);
-      else
-        solve_once();
+      push_all(curves_[k].contact);
       u_ = last_.displacement;
       const Result& result = last_.result;
       if (!result.load_steps.empty()) {
@@ -122,36 +120,71 @@ class Chain {
     start_.lambda_max = last_.result.lambda_max;
   }
 
-  /// Solves for the travel of an obstacle that makes its force the one that is asked for.
-  void push(std::size_t e, double factor) {
-    const ContactEntry& entry = model_.contact[e];
-    const Vector3 direction = MovingContact::direction(entry);
-    PushedObstacle pushed;
-    pushed.force = entry.force_controlled->force * factor;
-    pushed.tolerance = std::min(10.0 * model_.solver.tolerance, 0.1);
-    pushed.touch = contact_.touch(e);
-    if (pushed.force <= 0.0) {  // not there yet, or no longer
-      contact_.push(e, pushed.touch - extent_);
-      return solve_once();
+  /// A contact entry that is pushed by a force, in this load step.
+  struct Pushed {
+    std::size_t entry = 0;
+    PushedObstacle search;
+  };
+
+  double force_on(std::size_t entry) const {
+    return dot(last_.result.contact[entry].total.force, MovingContact::direction(model_.contact[entry]));
+  }
+
+  /// One obstacle after the other, until all have their forces at once (theory: force-control).
+  void push_all(const std::vector<double>& factors) {
+    constexpr int most_rounds = 100;
+    for (Pushed& pushed : pushed_) begin(pushed, factors[pushed.entry]);
+    std::vector<Pushed*> acting;
+    for (Pushed& pushed : pushed_)
+      if (pushed.search.force > 0.0) acting.push_back(&pushed);
+    if (acting.empty()) solve_once();
+    bool going = !acting.empty();
+    for (int round = 0; going && round < most_rounds; ++round) {
+      for (Pushed* pushed : acting) going = going && push(*pushed);
+      going = going && !std::all_of(acting.begin(), acting.end(), [&](const Pushed* pushed) {
+                return pushed->search.meets(force_on(pushed->entry));
+              });
     }
-    pushed.travel = travel_;
-    pushed.scale = pushed.force / part_.laws[0].secant(0.0);
-    pushed.scale /= part_.dim() == 3 || part_.plane == PlaneState::axisymmetric ? extent_ : part_.thickness;
-    const PushOutcome outcome = find_travel(pushed, [&](double travel) -> std::optional<double> {
-      contact_.push(e, travel);
+    for (const Pushed* pushed : acting) last_.result.contact[pushed->entry].travel = pushed->search.travel;
+    if (!going || acting.empty()) return;
+    last_.result.status = Status::not_converged;
+    last_.result.message = "the obstacles that are pushed act on each other, and after " +
+                           std::to_string(most_rounds) + " rounds have not all the forces that are asked for";
+  }
+
+  /// Puts it where its search begins.
+  void begin(Pushed& pushed, double factor) {
+    const ContactEntry& entry = model_.contact[pushed.entry];
+    PushedObstacle& search = pushed.search;
+    search.force = entry.force_controlled->force * factor;
+    search.tolerance = std::min(10.0 * model_.solver.tolerance, 0.1);
+    search.touch = contact_.touch(pushed.entry);
+    // Not there yet, or no longer.
+    if (search.force <= 0.0) return contact_.push(pushed.entry, search.touch - extent_);
+    search.scale = search.force / part_.laws[0].secant(0.0);
+    search.scale /= part_.dim() == 3 || part_.plane == PlaneState::axisymmetric ? extent_ : part_.thickness;
+    if (!std::isfinite(search.travel)) search.travel = search.touch + search.scale;
+    contact_.push(pushed.entry, search.travel);
+  }
+
+  /// Solves for the travel of an obstacle that makes its force the one that is asked for. Whether that is
+  /// found.
+  bool push(Pushed& pushed) {
+    const PushOutcome outcome = find_travel(pushed.search, [&](double travel) -> std::optional<double> {
+      contact_.push(pushed.entry, travel);
       solve_once();
       if (last_.result.status != Status::converged) return std::nullopt;
-      return dot(last_.result.contact[e].total.force, direction);
+      return force_on(pushed.entry);
     });
-    travel_ = outcome.travel;
-    last_.result.contact[e].travel = travel_;
-    if (outcome.reached || last_.result.status != Status::converged) return;
+    pushed.search.travel = outcome.travel;
+    if (outcome.reached || last_.result.status != Status::converged) return outcome.reached;
     last_.result.status = Status::not_converged;
     PlainText text;
-    text << "the obstacle of " << entry_name(entry, e) << " is pushed by " << pushed.force
-         << ", and no travel is found at which the body bears that; at " << outcome.travel << " it bears "
-         << outcome.force;
+    text << "the obstacle of " << entry_name(model_.contact[pushed.entry], pushed.entry) << " is pushed by "
+         << pushed.search.force << ", and no travel is found at which the body bears that; at "
+         << outcome.travel << " it bears " << outcome.force;
     last_.result.message = text.str();
+    return false;
   }
 
   void end_early(std::size_t step, double time) {
@@ -167,10 +200,9 @@ class Chain {
   RunOptions run_;
   MovingContact contact_;
   std::vector<LoadFactors> curves_;
-  double extent_;                      ///< of the body
-  std::optional<std::size_t> pushed_;  ///< the contact entry that is pushed by a force
-  double travel_ = HUGE_VAL;           ///< of that, as the last step ended; none yet
-  std::vector<double> u_;              ///< at the end of the load step before
+  double extent_;  ///< of the body
+  std::vector<Pushed> pushed_;
+  std::vector<double> u_;  ///< at the end of the load step before
   Start start_;
   decltype(RunOptions::load_step_over) over_;
   Solution last_;  ///< its counts, times and warnings are those of all solves so far

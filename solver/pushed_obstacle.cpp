@@ -27,7 +27,7 @@ PushOutcome find_travel(const PushedObstacle& pushed,
     if (!force) return outcome;
     outcome.force = *force;
     const Point here{next, *force - pushed.force};
-    outcome.reached = std::abs(here.excess) <= pushed.tolerance * pushed.force;
+    outcome.reached = pushed.meets(*force);
     if (outcome.reached) return outcome;
     const bool above = here.excess > 0.0;
     (above ? high : low) = here;

@@ -15,6 +15,8 @@ struct PushedObstacle {
   double travel = HUGE_VAL;  ///< to begin with; none: beyond touch by `scale`
   double scale = 0.0;        ///< of travels, > 0 unless force is 0
   int most = 40;             ///< solves
+
+  bool meets(double found) const { return std::abs(found - force) <= tolerance * force; }
 };
 
 struct PushOutcome {

@@ -136,12 +136,6 @@ void check_moves(const std::string& path, const Model& model, const ContactEntry
   if (entry.motion) throw InputError(path + ".force_controlled: expected no motion beside it");
   check(path + ".force_controlled.force", entry.force_controlled->force, positive);
   check_direction(path + ".force_controlled.direction", entry.force_controlled->direction);
-  const auto pushed =
-      std::count_if(model.contact.begin(), model.contact.end(),
-                    [](const ContactEntry& other) { return other.force_controlled.has_value(); });
-  if (pushed > 1)
-    throw InputError(path + ".force_controlled: expected one contact entry that is pushed, got " +
-                     std::to_string(pushed));
 }
 
 /// Results and load curves know entries by their names.

@@ -264,6 +264,38 @@ TEST_CASE("forces of a plane body are those of its thickness, in and out") {
   CHECK(refused(input).find("thickness: expected 1, or a mesh in 2D, got one in 3D") != std::string::npos);
 }
 
+TEST_CASE("several obstacles are pushed, and each has its own force") {
+  // Two balls side by side on a block, and a jaw at either end of it; friction between.
+  json input = parsed(R"({
+    "mesh": {"box": {"size": [4, 1], "cells": [16, 4], "element": "quad4"}},
+    "material": [{"on": "all", "young": 200, "poisson": 0.3}],
+    "boundary": [{"on": "bottom", "name": "base", "displacement": [null, 0]}],
+    "contact": [
+      {"on": {"box": [[0, 1], [2, 1]]}, "name": "a", "obstacle": {"sphere": {"centre": [1.5, 3], "radius": 1.9}},
+       "force_controlled": {"force": 0.5, "direction": [0, -1]}},
+      {"on": {"box": [[2, 1], [4, 1]]}, "name": "b", "obstacle": {"sphere": {"centre": [2.5, 3], "radius": 1.9}},
+       "force_controlled": {"force": 0.2, "direction": [0, -1]}},
+      {"on": "left", "name": "jaw", "obstacle": {"plane": {"point": [-0.1, 0], "normal": [1, 0]}},
+       "friction": {"coulomb": 0.2}, "force_controlled": {"force": 1, "direction": [1, 0]}},
+      {"on": "right", "name": "stop", "obstacle": {"plane": {"point": [4, 0], "normal": [-1, 0]}}}]})");
+  const auto force = [](const json& result, const char* name, std::size_t c) {
+    return result["contact"][name]["force"][c].get<double>();
+  };
+  for (const char* ranks : {"1", "2"}) {
+    const json result = solved(input, ranks);
+    CHECK(force(result, "a", 1) == doctest::Approx(-0.5).epsilon(1.1e-5));
+    CHECK(force(result, "b", 1) == doctest::Approx(-0.2).epsilon(1.1e-5));
+    CHECK(force(result, "jaw", 0) == doctest::Approx(1).epsilon(1.1e-5));
+    for (const char* name : {"a", "b", "jaw"}) CHECK(result["contact"][name]["travel"].get<double>() > 0.1);
+  }
+  input["steps"] =
+      parsed(R"([{"time": 1, "factors": {"jaw": 1, "a": 0}}, {"time": 2, "factors": {"a": 1, "jaw": 0.5}}])");
+  const json later = solved(input);
+  CHECK(force(later, "a", 1) == doctest::Approx(-0.5).epsilon(1.1e-5));
+  CHECK(force(later, "b", 1) == doctest::Approx(-0.2).epsilon(1.1e-5));
+  CHECK(force(later, "jaw", 0) == doctest::Approx(0.5).epsilon(1.1e-5));
+}
+
 TEST_CASE("what is no spring and no temperature is refused") {
   const auto with = [](const char* entry) {
     json input = bar("tet4", 0.3);
