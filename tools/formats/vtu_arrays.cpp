@@ -20,7 +20,7 @@
 namespace kacanov {
 namespace {
 
-constexpr std::string_view blanks = " \t\r\n";
+constexpr std::string_view white_space = " \t\r\n";
 
 /// No stream of zlib's is packed tighter.
 constexpr std::size_t most_packed = 1100;
@@ -52,7 +52,7 @@ std::string from_base64(std::string_view text, std::size_t count) {
       value = c == '+' ? 62 : 63;
     } else if (c == '=') {
       ++padding;
-    } else if (blanks.find(c) != std::string_view::npos) {
+    } else if (white_space.find(c) != std::string_view::npos) {
       continue;
     } else {
       break;
@@ -71,13 +71,13 @@ std::string from_base64(std::string_view text, std::size_t count) {
 XmlAttributes attributes_of(std::string_view text) {
   XmlAttributes found;
   for (;;) {
-    text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+    text.remove_prefix(std::min(text.find_first_not_of(white_space), text.size()));
     const std::size_t equals = text.find('=');
     if (equals == std::string_view::npos || equals + 1 >= text.size()) return found;
     std::string_view name = text.substr(0, equals);
-    name = name.substr(0, name.find_last_not_of(blanks) + 1);
+    name = name.substr(0, name.find_last_not_of(white_space) + 1);
     text.remove_prefix(equals + 1);
-    text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+    text.remove_prefix(std::min(text.find_first_not_of(white_space), text.size()));
     if (text.empty() || (text[0] != '"' && text[0] != '\'')) return found;
     const std::size_t end = text.find(text[0], 1);
     if (end == std::string_view::npos) return found;
@@ -171,7 +171,7 @@ std::string VtuFile::decoded(const Array& array, std::size_t bytes) const {
     data = appended_.substr(*begin);
     base64 = appended_base64_;
   }
-  data.remove_prefix(base64 ? std::min(data.find_first_not_of(blanks), data.size()) : 0);
+  data.remove_prefix(base64 ? std::min(data.find_first_not_of(white_space), data.size()) : 0);
   if (compressed_) return unpacked(array, data, bytes, base64);
   const std::size_t header = long_header_ ? 8 : 4;
   const std::string all =
@@ -234,7 +234,8 @@ std::vector<T> VtuFile::values(const Array& array, std::size_t count) const {
   if (format == array.attributes.end() || format->second == "ascii") {
     result.reserve(std::min(count, array.inline_data.size()));
     std::string_view text = array.inline_data;
-    for (std::string_view word = take_word(text, blanks); !word.empty(); word = take_word(text, blanks)) {
+    for (std::string_view word = take_word(text, white_space); !word.empty();
+         word = take_word(text, white_space)) {
       const std::optional<double> value = to_number(word);
       constexpr double most = 9e15;  // whole numbers beyond are not told apart
       if (!value || (std::is_integral_v<T> && !(std::abs(*value) < most)))
