@@ -63,6 +63,7 @@ void CheckpointFile::write(const Checkpoint& checkpoint) {
   header["problem"] = fingerprint_json(print_);
   header["load_steps"] = input_->model.solver.load_steps;
   header["case"] = case_sections(input_->document, sections);
+  header["numbers"] = header["fields"] = nlohmann::json::object();
   // As bits: JSON has no infinity.
   for (const auto& [name, value] : checkpoint.numbers)
     header["numbers"][name] = std::bit_cast<std::uint64_t>(value);

@@ -14,7 +14,7 @@ ordered_json entries(const Vector3& v, int dim) {
 }
 
 ordered_json residuals_json(const KktResiduals& residuals) {
-  ordered_json json;
+  ordered_json json = ordered_json::object();
   for (const auto& [name, entry] : residual_names) json[name] = residuals.*entry;
   return json;
 }
@@ -79,6 +79,7 @@ ordered_json estimate_json(const SpectrumResult& result) {
 /// Nothing of what one mesh alone does not tell.
 ordered_json discretisation_json(const Discretisation& error, int dim) {
   ordered_json json{{"energy", error.energy}, {"meshes", error.meshes}};
+  if (!error.probe.empty()) json["probe"] = ordered_json::array();
   for (const Vector3& probe : error.probe) json["probe"].push_back(entries(probe, dim));
   if (error.contact_force) json["contact_force"] = entries(*error.contact_force, dim);
   return json;
@@ -149,6 +150,7 @@ ordered_json result_json(const Result& result, const RunFigures& figures, const 
   json["probe"] = ordered_json::array();
   for (const Vector3& u : result.probe) json["probe"].push_back(entries(u, dim));
   json["discretisation"] = discretisation_json(result.discretisation, dim);
+  if (!result.load_steps.empty()) json["load_steps"] = ordered_json::array();
   for (const LoadStep& step : result.load_steps) {
     ordered_json line{{result.by_time ? "time" : "factor", step.factor},
                       {"outer_iterations", step.outer_iterations},
@@ -180,6 +182,7 @@ ordered_json result_json(const Result& result, const RunFigures& figures, const 
                      {"checkpoint", seconds.checkpoint},
                      {"certificate", seconds.certificate},
                      {"output", figures.output}};
+  if (!figures.nested.empty()) json["nested"] = ordered_json::array();
   for (const CoarseLevel& level : figures.nested) {
     json["nested"].push_back({{"unknowns", level.unknowns},
                               {"outer_iterations", level.outer_iterations},
