@@ -14,6 +14,8 @@
 #include "small_meshes.hpp"
 
 using Vector = std::vector<double>;
+inline constexpr std::int32_t all_elements[] = {KACANOV_TRI3, KACANOV_TET4, KACANOV_TET10, KACANOV_HEX8,
+                                                KACANOV_QUAD4};
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 
 struct Destroy {

@@ -4,9 +4,6 @@
 
 namespace {
 
-constexpr std::int32_t all_elements[] = {KACANOV_TRI3, KACANOV_TET4, KACANOV_TET10, KACANOV_HEX8,
-                                         KACANOV_QUAD4};
-
 /// What a host sees at its early nodes, and what it makes of it.
 struct Early {
   std::vector<std::int32_t> nodes;

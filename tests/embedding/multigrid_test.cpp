@@ -6,9 +6,6 @@
 
 namespace {
 
-constexpr std::int32_t all_elements[] = {KACANOV_TRI3, KACANOV_TET4, KACANOV_TET10, KACANOV_HEX8,
-                                         KACANOV_QUAD4};
-
 Vector preconditioned(const MultigridHandle& multigrid, const Vector& r) {
   Vector z(r.size());
   REQUIRE(kacanov_multigrid_apply(multigrid.get(), r.size(), r.data(), z.data()) == KACANOV_OK);

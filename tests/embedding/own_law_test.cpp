@@ -10,8 +10,6 @@
 
 namespace {
 
-constexpr std::int32_t all_elements[] = {KACANOV_TRI3, KACANOV_TET4, KACANOV_TET10, KACANOV_HEX8,
-                                         KACANOV_QUAD4};
 constexpr double yield = 0.01, exponent = 0.3;
 
 /// A host's power law, and what it sees.

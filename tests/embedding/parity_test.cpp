@@ -6,9 +6,6 @@
 
 namespace {
 
-constexpr std::int32_t all_elements[] = {KACANOV_TRI3, KACANOV_TET4, KACANOV_TET10, KACANOV_HEX8,
-                                         KACANOV_QUAD4};
-
 const kacanov::Cell& facts(std::int32_t element) {
   return kacanov::cell(static_cast<kacanov::ElementType>(element));
 }

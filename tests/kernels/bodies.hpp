@@ -66,6 +66,13 @@ inline std::vector<double> random_vector(std::size_t size, unsigned seed, double
   return v;
 }
 
+/// Frozen g between 0.1 and 0.4 at every point.
+inline std::vector<double> some_secant(const Body& body, unsigned seed) {
+  std::vector<double> g = random_vector(body.secant_count(), seed, 0.15);
+  for (double& value : g) value += 0.25;
+  return g;
+}
+
 /// max |a − b| / max |b|.
 template <class A, class B>
 double difference(const A& a, const B& b) {

@@ -31,12 +31,6 @@ Fields product(const Body& body, std::span<const double> g, const Fields& x) {
   return y;
 }
 
-std::vector<double> some_secant(const Body& body, unsigned seed) {
-  std::vector<double> g = test::random_vector(body.secant_count(), seed, 0.15);
-  for (double& value : g) value += 0.25;
-  return g;
-}
-
 /// u = H x and p = k0 tr H, k0 that of the first law.
 Fields linear(const Body& body, const double (&h)[3][3]) {
   const std::size_t dim = dimension(body.mesh.type);
@@ -127,7 +121,7 @@ TEST_CASE("the displacement-pressure form is symmetric, and blind to rigid motio
   for (const ElementType type : simplices) {
     const test::OwnedBody owned = test::small_body(type, 3);
     const Body body = owned.body();
-    const std::vector<double> g = some_secant(body, 5);
+    const std::vector<double> g = test::some_secant(body, 5);
     const Fields x = fields(body, 7), y = fields(body, 11);
     const Fields kx = product(body, g, x), ky = product(body, g, y);
     const double xy = dot(y.u, kx.u) + dot(y.p, kx.p), yx = dot(x.u, ky.u) + dot(x.p, ky.p);
@@ -146,7 +140,7 @@ TEST_CASE("constant strain with p = k0 tr has the forces of the displacement for
     meshes::jitter(mesh, 0.04, 5);  // curves the edges of tet10
     const test::OwnedBody owned = test::with_one_law(std::move(mesh), elastic_law(1.0, 0.4));
     const Body body = owned.body();
-    const std::vector<double> g = some_secant(body, 5);
+    const std::vector<double> g = test::some_secant(body, 5);
     const Fields x = linear(body, {{0.3, 0.1, -0.2}, {0.4, -0.1, 0.5}, {0.2, 0.1, 0.6}});
     const Fields y = product(body, g, x);
     std::vector<double> plain(x.u.size());
@@ -176,6 +170,6 @@ TEST_CASE("the inf-sup constant does not fall with the mesh, and would without t
 TEST_CASE("the displacement-pressure form of hexahedra is refused") {
   const test::OwnedBody owned = test::small_body(ElementType::hex8, 3);
   const Body body = owned.body();
-  CHECK_THROWS_WITH_AS(product(body, some_secant(body, 5), fields(body, 7)), doctest::Contains("not of hex8"),
-                       std::invalid_argument);
+  CHECK_THROWS_WITH_AS(product(body, test::some_secant(body, 5), fields(body, 7)),
+                       doctest::Contains("not of hex8"), std::invalid_argument);
 }

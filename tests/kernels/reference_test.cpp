@@ -29,13 +29,6 @@ std::vector<double> linear_field(const test::OwnedBody& body, const double (&h)[
   return u;
 }
 
-/// Frozen g between 0.1 and 0.4 at every point.
-std::vector<double> some_secant(const Body& body, unsigned seed) {
-  std::vector<double> g = test::random_vector(body.secant_count(), seed, 0.15);
-  for (double& value : g) value += 0.25;
-  return g;
-}
-
 }  // namespace
 
 TEST_CASE("element matrices in closed form are those of the reference") {
@@ -46,7 +39,7 @@ TEST_CASE("element matrices in closed form are those of the reference") {
     const Body body = owned.body();
     const std::size_t points = points_per_element(type);
     const std::size_t width = nodes_per_element(type) * dimension(type);
-    const std::vector<double> g = some_secant(body, 11);
+    const std::vector<double> g = test::some_secant(body, 11);
     std::vector<double> plain(width * width), closed(width * width, 7.0);
     for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
       const auto own = std::span(g).subspan(e * points, points);
@@ -115,7 +108,7 @@ TEST_CASE("B is symmetric, positive and blind to rigid motions") {
     CAPTURE(static_cast<int>(type));
     const auto owned = test::small_body(type, 1);
     const Body body = owned.body();
-    const auto g = some_secant(body, 2);
+    const auto g = test::some_secant(body, 2);
     const auto a = test::random_vector(body.unknowns(), 3), b = test::random_vector(body.unknowns(), 4);
     std::vector<double> ba(a.size()), bb(a.size());
     reference::apply(body, g, a, ba);
@@ -205,7 +198,7 @@ TEST_CASE("element matrices sum to the operator, and the diagonals are theirs") 
     CAPTURE(static_cast<int>(type));
     const auto owned = test::small_body(type, 11);
     const Body body = owned.body();
-    const auto g = some_secant(body, 12);
+    const auto g = test::some_secant(body, 12);
     const auto u = test::random_vector(body.unknowns(), 13, 0.01),
                x = test::random_vector(body.unknowns(), 14);
     const std::size_t dim = dim_of(owned), nodes = static_cast<std::size_t>(nodes_per_element(type));

@@ -12,6 +12,7 @@
 
 #include <kacanov/error.hpp>
 #include <kacanov/raise_order.hpp>
+#include "facet_measure.hpp"
 #include "problem/vector3.hpp"
 
 using namespace kacanov;
@@ -59,17 +60,6 @@ double worst_quality(const Mesh& mesh) {
 double total_size(const Mesh& mesh) {
   double sum = 0.0;
   for (std::size_t e = 0; e < mesh.element_count(); ++e) sum += size_of(mesh, e);
-  return sum;
-}
-
-/// Length or area of the facets of a group.
-double measure(const Mesh& mesh, const Group& group) {
-  double sum = 0.0;
-  for (const std::int32_t f : group.members) {
-    const auto n = mesh.facet(static_cast<std::size_t>(f));
-    const Vector3 a = position(mesh, n[1]) - position(mesh, n[0]);
-    sum += mesh.dim() == 2 ? norm(a) : 0.5 * norm(cross(a, position(mesh, n[2]) - position(mesh, n[0])));
-  }
   return sum;
 }
 
@@ -123,8 +113,8 @@ TEST_CASE("whatever is marked, elements fit together, sides stay, shapes stay go
         CAPTURE(start.groups[g].name);
         CHECK(finer.groups[g].name == start.groups[g].name);
         if (start.groups[g].dimension == start.dim() - 1)
-          CHECK(measure(finer, finer.groups[g]) ==
-                doctest::Approx(measure(start, start.groups[g])).epsilon(1e-12));
+          CHECK(testing::measure(finer, finer.groups[g]) ==
+                doctest::Approx(testing::measure(start, start.groups[g])).epsilon(1e-12));
       }
       mesh = finer;
     }

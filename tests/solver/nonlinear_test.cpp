@@ -20,7 +20,7 @@ using namespace kacanov;
 
 namespace {
 
-const Tuning tuning;
+const Tuning usual;
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 /// What a checkpoint would hold of it, and back.
@@ -45,29 +45,29 @@ Residuals residuals(double worst) {
 
 TEST_CASE("linearisation: the secant far off, the tangent near, and never for a linear body") {
   using Outer = SolverOptions::Outer;
-  const Linearisation both(Outer::automatic, false, tuning);
-  CHECK(!both.takes_tangent(1.01 * tuning.first_reach));
-  CHECK(both.takes_tangent(0.99 * tuning.first_reach));
-  CHECK(Linearisation(Outer::newton, false, tuning).takes_tangent(1e3));
-  CHECK(!Linearisation(Outer::kacanov, false, tuning).takes_tangent(1e-9));
+  const Linearisation both(Outer::automatic, false, usual);
+  CHECK(!both.takes_tangent(1.01 * usual.first_reach));
+  CHECK(both.takes_tangent(0.99 * usual.first_reach));
+  CHECK(Linearisation(Outer::newton, false, usual).takes_tangent(1e3));
+  CHECK(!Linearisation(Outer::kacanov, false, usual).takes_tangent(1e-9));
   for (const Outer outer : {Outer::automatic, Outer::newton})
-    CHECK(!Linearisation(outer, true, tuning).takes_tangent(1e-9));
+    CHECK(!Linearisation(outer, true, usual).takes_tangent(1e-9));
 }
 
 TEST_CASE("linearisation: a tangent that went too far is trusted less, down to a floor") {
-  Linearisation l(SolverOptions::Outer::automatic, false, tuning);
+  Linearisation l(SolverOptions::Outer::automatic, false, usual);
   l.after_tangent(0.2, 0.19);
-  CHECK(l.reach() == tuning.first_reach);
+  CHECK(l.reach() == usual.first_reach);
   l.after_tangent(0.2, 0.21);
-  CHECK(l.reach() == doctest::Approx(0.2 * tuning.reach_cut));
-  CHECK(copied_by_visit(l, Linearisation(SolverOptions::Outer::automatic, false, tuning)).reach() ==
+  CHECK(l.reach() == doctest::Approx(0.2 * usual.reach_cut));
+  CHECK(copied_by_visit(l, Linearisation(SolverOptions::Outer::automatic, false, usual)).reach() ==
         l.reach());
   l.after_tangent(0.08, not_a_number);
-  CHECK(l.reach() == doctest::Approx(0.08 * tuning.reach_cut));
+  CHECK(l.reach() == doctest::Approx(0.08 * usual.reach_cut));
   l.after_tangent(1e-6, 1.0);
-  CHECK(l.reach() == tuning.least_reach);
+  CHECK(l.reach() == usual.least_reach);
   l.start_again();
-  CHECK(l.reach() == tuning.first_reach);
+  CHECK(l.reach() == usual.first_reach);
 }
 
 TEST_CASE(
@@ -87,23 +87,23 @@ TEST_CASE(
     t = *next;
     ++trials;
   }
-  CHECK(trials <= tuning.max_damping_trials);
+  CHECK(trials <= usual.max_damping_trials);
   CHECK(work(t) <= 1.5);
 }
 
 TEST_CASE("fallback: steps that make progress never retreat") {
-  Fallback fallback(tuning);
+  Fallback fallback(usual);
   double worst = 1.0;
   for (int i = 0; i < 100; ++i) CHECK(!fallback.after_newton(worst *= 0.69, true));
   CHECK(!fallback.retreating());
 }
 
 TEST_CASE("fallback: a stall, a failed solve and a breakdown retreat, each time for longer") {
-  Fallback fallback(tuning);
+  Fallback fallback(usual);
   CHECK(!fallback.after_newton(1.0, true));
-  for (int i = 1; i < tuning.patience; ++i) CHECK(!fallback.after_newton(0.9, true));
+  for (int i = 1; i < usual.patience; ++i) CHECK(!fallback.after_newton(0.9, true));
   CHECK(fallback.after_newton(0.9, true));
-  int expected = tuning.first_retreat;
+  int expected = usual.first_retreat;
   for (const double worst : {0.5, 0.5, HUGE_VAL}) {
     int steps = 0;
     for (; fallback.retreating(); ++steps) fallback.after_admm(1e3);
@@ -115,39 +115,39 @@ TEST_CASE("fallback: a stall, a failed solve and a breakdown retreat, each time 
   for (int i = 0; i < 20; ++i) fallback.after_newton(1.0, false);
   int steps = 0;
   for (; fallback.retreating(); ++steps) fallback.after_admm(1e3);
-  CHECK(steps == tuning.first_retreat << tuning.most_doublings);
+  CHECK(steps == usual.first_retreat << usual.most_doublings);
 }
 
 TEST_CASE("fallback: steps without a gain are counted, and those without a solution for more") {
   for (const bool solved : {true, false}) {
-    Fallback fallback(tuning);
+    Fallback fallback(usual);
     fallback.after_newton(1.0, false);
     int steps = 0;
     for (; !fallback.stuck(); ++steps) fallback.after_admm(1.0, solved);
-    CHECK(steps == tuning.most_idle / (solved ? 1 : tuning.unsolved_worth));
+    CHECK(steps == usual.most_idle / (solved ? 1 : usual.unsolved_worth));
   }
 }
 
 TEST_CASE("fallback: ADMM hands back once it is well below the best Newton step") {
-  Fallback fallback(tuning);
+  Fallback fallback(usual);
   fallback.after_newton(0.4, true);
   fallback.after_newton(0.6, false);
   REQUIRE(fallback.retreating());
-  Fallback copy = copied_by_visit(fallback, Fallback(tuning));
+  Fallback copy = copied_by_visit(fallback, Fallback(usual));
   for (Fallback* each : {&fallback, &copy}) {
     each->after_admm(0.5 * 0.4);
     CHECK(each->retreating());
-    each->after_admm(0.99 * tuning.retreat_gain * 0.4);
+    each->after_admm(0.99 * usual.retreat_gain * 0.4);
     CHECK(!each->retreating());
   }
 }
 
 TEST_CASE("penalties: the first one goes with 1/λ_min and the root of the mesh width") {
-  const double one = first_penalty(0.5, 100, 3, tuning);
-  CHECK(first_penalty(0.25, 100, 3, tuning) == doctest::Approx(2.0 * one));
-  CHECK(first_penalty(0.5, 1600, 3, tuning) == doctest::Approx(0.5 * one));
-  CHECK(first_penalty(0.5, 400, 2, tuning) == doctest::Approx(0.5 * first_penalty(0.5, 100, 2, tuning)));
-  CHECK(first_penalty(0.0, 100, 3, tuning) == 1.0);
+  const double one = first_penalty(0.5, 100, 3, usual);
+  CHECK(first_penalty(0.25, 100, 3, usual) == doctest::Approx(2.0 * one));
+  CHECK(first_penalty(0.5, 1600, 3, usual) == doctest::Approx(0.5 * one));
+  CHECK(first_penalty(0.5, 400, 2, usual) == doctest::Approx(0.5 * first_penalty(0.5, 100, 2, usual)));
+  CHECK(first_penalty(0.0, 100, 3, usual) == 1.0);
 }
 
 TEST_CASE("penalties: each rule begins with its own, and only the automatic one moves") {
@@ -157,7 +157,7 @@ TEST_CASE("penalties: each rule begins with its own, and only the automatic one 
   const auto chosen = [&](SolverOptions::Penalty rule) {
     options.penalty = rule;
     options.r = 7.0;
-    PenaltyControl control(options, 3.0, tuning);
+    PenaltyControl control(options, 3.0, usual);
     CHECK(!control.chosen());
     control.choose(5.0, 0.1);
     CHECK(control.chosen());
@@ -182,7 +182,7 @@ TEST_CASE("penalties: each rule begins with its own, and only the automatic one 
 TEST_CASE(
     "penalties: up where held rows are behind, down where free ones are, by no more than e and within "
     "bounds") {
-  PenaltyControl control(SolverOptions(), 3.0, tuning);
+  PenaltyControl control(SolverOptions(), 3.0, usual);
   const Scales scales{1.0, 1.0, 1.0};
   const auto after = [&](const std::vector<BalanceSample>& samples, double lambda_min = 0.1) {
     control.choose(0.0, lambda_min);
@@ -204,7 +204,7 @@ TEST_CASE(
   CHECK(most.normal == doctest::Approx(3.0 * std::exp(1.0)));
   // Bounds, and nothing to be learnt.
   CHECK(after(std::vector<BalanceSample>(6, sample), 10.0).normal ==
-        doctest::Approx(tuning.largest_penalty / 10.0));
+        doctest::Approx(usual.largest_penalty / 10.0));
   CHECK(after({}).normal == 3.0);
   control.choose(0.0, 0.0);
   CHECK(!control.balance(std::vector<BalanceSample>(6, sample), scales));
@@ -212,16 +212,16 @@ TEST_CASE(
 
 TEST_CASE(
     "preconditioner: stale without one, fresh after a setup, stale once a step costs what a setup does") {
-  PreconditionerSchedule schedule(tuning);
+  PreconditionerSchedule schedule(usual);
   CHECK(schedule.stale());
   schedule.built();
   CHECK(!schedule.stale());
   schedule.watch(2.0, 20);  // ten iterations a digit are what it can do
   CHECK(!schedule.stale());
   schedule.watch(0.0, 0);
-  schedule.watch(2.0, 20 + static_cast<int>(tuning.setup_worth));
+  schedule.watch(2.0, 20 + static_cast<int>(usual.setup_worth));
   CHECK(!schedule.stale());
-  schedule.watch(1.0, 11 + static_cast<int>(tuning.setup_worth));
+  schedule.watch(1.0, 11 + static_cast<int>(usual.setup_worth));
   CHECK(schedule.stale());
   schedule.built();
   schedule.watch(2.0, 40);  // a new measure
@@ -231,12 +231,12 @@ TEST_CASE(
 }
 
 TEST_CASE("preconditioner: what it was built for, and what has moved since") {
-  PreconditionerSchedule schedule(tuning);
+  PreconditionerSchedule schedule(usual);
   schedule.built_for(Penalty{2.0, 1.0});
   CHECK(!schedule.penalty_moved({2.9 / 3.0 * 2.0, 1.0}, true));
-  CHECK(schedule.penalty_moved({2.0 * 1.01 * tuning.penalty_worth, 1.0}, false));
-  CHECK(schedule.penalty_moved({2.0, 0.99 / tuning.penalty_worth}, true));
-  CHECK(!schedule.penalty_moved({2.0, 0.99 / tuning.penalty_worth}, false));
+  CHECK(schedule.penalty_moved({2.0 * 1.01 * usual.penalty_worth, 1.0}, false));
+  CHECK(schedule.penalty_moved({2.0, 0.99 / usual.penalty_worth}, true));
+  CHECK(!schedule.penalty_moved({2.0, 0.99 / usual.penalty_worth}, false));
   const std::vector<TraceChoice> set{{true, false}, {false, false}};
   CHECK(schedule.set_moved(set));
   schedule.built_for(set);
@@ -244,47 +244,47 @@ TEST_CASE("preconditioner: what it was built for, and what has moved since") {
   CHECK(schedule.set_moved(std::vector<TraceChoice>{{true, true}, {false, false}}));
   schedule.built_for(Penalty{2.0, 1.0});  // pins nothing
   CHECK(schedule.set_moved(set));
-  CHECK(!schedule.drifted(0.9 * tuning.drift_worth * 8.0, 8.0));
-  CHECK(schedule.drifted(1.1 * tuning.drift_worth * 8.0, 8.0));
+  CHECK(!schedule.drifted(0.9 * usual.drift_worth * 8.0, 8.0));
+  CHECK(schedule.drifted(1.1 * usual.drift_worth * 8.0, 8.0));
 }
 
 TEST_CASE("accuracy: ADMM is solved below the residuals before it, but not far below the tolerance") {
   SolverOptions options;
   options.tolerance = 1e-6;
   const auto reach = [&](double worst) {
-    return admm_accuracy(options, residuals(worst), false, tuning).force_tolerance / 2.0;
+    return admm_accuracy(options, residuals(worst), false, usual).force_tolerance / 2.0;
   };
-  CHECK(reach(1e-2) == doctest::Approx(tuning.inner_reduction * 1e-2));
-  CHECK(reach(50.0) == doctest::Approx(tuning.inner_reduction));
+  CHECK(reach(1e-2) == doctest::Approx(usual.inner_reduction * 1e-2));
+  CHECK(reach(50.0) == doctest::Approx(usual.inner_reduction));
   CHECK(reach(1e-7) == doctest::Approx(0.5e-6));
-  const AdmmOptions later = admm_accuracy(options, residuals(1e-2), false, tuning);
+  const AdmmOptions later = admm_accuracy(options, residuals(1e-2), false, usual);
   CHECK(later.trace_tolerance / 3.0 == doctest::Approx(later.force_tolerance / 2.0));
-  CHECK(later.max_iterations == tuning.balancing_iterations);
+  CHECK(later.max_iterations == usual.balancing_iterations);
   // The opening: a guess for Newton steps, where they follow.
-  const AdmmOptions opening = admm_accuracy(options, residuals(1e-2), true, tuning);
-  CHECK(opening.max_iterations == tuning.opening_iterations);
+  const AdmmOptions opening = admm_accuracy(options, residuals(1e-2), true, usual);
+  CHECK(opening.max_iterations == usual.opening_iterations);
   CHECK(opening.sticking);
   CHECK_FALSE(later.sticking);
   options.contact = SolverOptions::Contact::admm;
-  const AdmmOptions alone = admm_accuracy(options, residuals(1e-2), true, tuning);
+  const AdmmOptions alone = admm_accuracy(options, residuals(1e-2), true, usual);
   CHECK(alone.max_iterations == options.max_contact);
   CHECK_FALSE(alone.sticking);
   options.contact = SolverOptions::Contact::automatic;
   options.max_contact = 2;
-  CHECK(admm_accuracy(options, residuals(1e-2), false, tuning).max_iterations == 2);
+  CHECK(admm_accuracy(options, residuals(1e-2), false, usual).max_iterations == 2);
   // Nothing sets a scale yet: by the forces that appear.
   Residuals rest;
-  const AdmmOptions at_rest = admm_accuracy(options, rest, true, tuning);
-  CHECK(at_rest.force_reduction == tuning.inner_reduction);
+  const AdmmOptions at_rest = admm_accuracy(options, rest, true, usual);
+  CHECK(at_rest.force_reduction == usual.inner_reduction);
   CHECK(std::isinf(at_rest.trace_tolerance));
   // The paper's stop, and what is relaxed.
   CHECK(at_rest.relaxation == 1.7);
   options.penalty = SolverOptions::Penalty::paper;
-  CHECK(admm_accuracy(options, rest, true, tuning).relaxation == 1.0);
+  CHECK(admm_accuracy(options, rest, true, usual).relaxation == 1.0);
   options.relaxation = 1.3;
-  CHECK(admm_accuracy(options, rest, true, tuning).relaxation == 1.3);
+  CHECK(admm_accuracy(options, rest, true, usual).relaxation == 1.3);
   options.stop = SolverOptions::Stop::paper;
-  CHECK(admm_accuracy(options, residuals(1e-2), false, tuning).step_tolerance == options.tolerance);
+  CHECK(admm_accuracy(options, residuals(1e-2), false, usual).step_tolerance == options.tolerance);
 }
 
 TEST_CASE(
@@ -292,15 +292,15 @@ TEST_CASE(
   SolverOptions options;
   options.tolerance = 1e-6;
   options.max_cg = 17;
-  const CgOptions far = newton_accuracy(options, residuals(1e-2), tuning);
-  CHECK(far.relative == tuning.solve_reduction);
-  const double last = tuning.last_share * 1e-6 * 2.0, reached = tuning.last_reach * last;
-  CHECK(far.target(0.99 * reached / tuning.solve_reduction) == doctest::Approx(last));
-  CHECK(far.target(1.01 * reached / tuning.solve_reduction) == doctest::Approx(1.01 * reached));
+  const CgOptions far = newton_accuracy(options, residuals(1e-2), usual);
+  CHECK(far.relative == usual.solve_reduction);
+  const double last = usual.last_share * 1e-6 * 2.0, reached = usual.last_reach * last;
+  CHECK(far.target(0.99 * reached / usual.solve_reduction) == doctest::Approx(last));
+  CHECK(far.target(1.01 * reached / usual.solve_reduction) == doctest::Approx(1.01 * reached));
   CHECK(far.most == doctest::Approx(1e-2 * 2.0));
-  CHECK(far.absolute == doctest::Approx(tuning.last_share * 1e-6 * 2.0));
+  CHECK(far.absolute == doctest::Approx(usual.last_share * 1e-6 * 2.0));
   CHECK(far.max_iterations == 17);
-  CHECK(admm_accuracy(options, residuals(1e-2), false, tuning).max_cg == 17);
+  CHECK(admm_accuracy(options, residuals(1e-2), false, usual).max_cg == 17);
 }
 
 TEST_CASE("accuracy: residuals fall further where the duality gap is behind them") {

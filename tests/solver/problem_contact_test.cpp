@@ -13,8 +13,6 @@ using namespace kacanov::testing;
 
 namespace {
 
-const auto every_type = element_types();
-
 /// Bottom against a plane a little below, clamped at the top.
 Model on_a_plane(int dim, double gap = 0.1) {
   Model model = elastic_model();

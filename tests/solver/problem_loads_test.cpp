@@ -15,8 +15,6 @@ using namespace kacanov::testing;
 
 namespace {
 
-const auto every_type = element_types();
-
 struct Total {
   Vector3 force{}, moment{};
 };

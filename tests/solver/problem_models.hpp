@@ -10,6 +10,8 @@
 
 namespace kacanov::testing {
 
+inline const auto every_type = element_types();
+
 inline Selector named(const std::string& name) {
   Selector on;
   on.kind = Selector::Kind::name;

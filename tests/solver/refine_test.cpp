@@ -11,6 +11,7 @@
 #include <kacanov/error.hpp>
 #include <kacanov/raise_order.hpp>
 #include <kacanov/refine.hpp>
+#include "facet_measure.hpp"
 #include "problem/vector3.hpp"
 
 using namespace kacanov;
@@ -35,22 +36,6 @@ std::set<std::array<long, 3>> points(const Mesh& mesh) {
   return all;
 }
 
-/// Length or area of the straight facets of a group.
-double measure(const Mesh& mesh, const Group& group) {
-  double sum = 0.0;
-  for (const std::int32_t f : group.members) {
-    const auto n = mesh.facet(f);
-    const Vector3 a = position(mesh, n[0]), b = position(mesh, n[1]);
-    if (mesh.dim() == 2) {
-      sum += norm(b - a);
-      continue;
-    }
-    const Vector3 c = position(mesh, n[2]);
-    sum += norm(cross(b - a, c - a)) * (cell(mesh.type).facet().corners == 4 ? 1.0 : 0.5);
-  }
-  return sum;
-}
-
 }  // namespace
 
 TEST_CASE("a refined box has the nodes, the elements and the sides of a box with twice the cells") {
@@ -71,8 +56,8 @@ TEST_CASE("a refined box has the nodes, the elements and the sides of a box with
       if (coarse.groups[g].dimension >= coarse.dim() - 1)
         CHECK(fine.groups[g].members.size() == coarse.groups[g].members.size() * children);
       if (coarse.groups[g].dimension == coarse.dim() - 1)
-        CHECK(measure(fine, fine.groups[g]) ==
-              doctest::Approx(measure(coarse, coarse.groups[g])).epsilon(1e-12));
+        CHECK(testing::measure(fine, fine.groups[g]) ==
+              doctest::Approx(testing::measure(coarse, coarse.groups[g])).epsilon(1e-12));
     }
   }
 }
@@ -160,7 +145,8 @@ TEST_CASE("a raised box has the nodes, the elements and the sides of a quadratic
     CAPTURE(linear.groups[g].name);
     CHECK(quadratic.groups[g].members.size() == linear.groups[g].members.size());
     if (linear.groups[g].dimension == 2)
-      CHECK(measure(quadratic, quadratic.groups[g]) == doctest::Approx(measure(linear, linear.groups[g])));
+      CHECK(testing::measure(quadratic, quadratic.groups[g]) ==
+            doctest::Approx(testing::measure(linear, linear.groups[g])));
   }
   const Group& edge = quadratic.groups.back();
   CHECK(edge.members.size() == 7);

@@ -20,7 +20,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-constexpr std::array every_type{ElementType::tri3, ElementType::tet4, ElementType::tet10, ElementType::hex8};
+constexpr std::array row_types{ElementType::tri3, ElementType::tet4, ElementType::tet10, ElementType::hex8};
 
 /// A second producer of rows: a facet's mean displacement, weighted by shares of its area, against a plane.
 void press_facet(const Problem& problem, std::int32_t facet, const Plane& plane, double tresca,
@@ -124,7 +124,7 @@ void check_copies(const Part& part, const Vector& y) {
 }  // namespace
 
 TEST_CASE("wide rows: forces are the transpose of traces on any number of ranks, copies the same bits") {
-  for (const ElementType type : every_type) {
+  for (const ElementType type : row_types) {
     CAPTURE(static_cast<int>(type));
     const Sample sample = block(type, 1.0, 0.01);
     const Part part = distribute(on_first(sample.problem), MPI_COMM_WORLD);
@@ -163,7 +163,7 @@ TEST_CASE("wide rows: forces are the transpose of traces on any number of ranks,
 }
 
 TEST_CASE("wide rows are held by an orthogonal projection, and lifted by a pseudo-inverse") {
-  for (const ElementType type : every_type) {
+  for (const ElementType type : row_types) {
     CAPTURE(static_cast<int>(type));
     // Means over the triangles of tet4 depend on each other.
     const Sample sample = block(type, 1.0, 0.01);
@@ -228,7 +228,7 @@ TEST_CASE("wide rows: every contact method finds what a dense solver finds, on a
   using Contact = SolverOptions::Contact;
   int ranks = 1;
   MPI_Comm_size(MPI_COMM_WORLD, &ranks);
-  for (const ElementType type : every_type)
+  for (const ElementType type : row_types)
     for (const double narrow_from : {1.0, 5.0})  // both kinds side by side, wide ones alone
       for (const double tresca : {0.0, 0.01}) {
         Sample sample = block(type, narrow_from, tresca);

@@ -29,12 +29,12 @@ std::string elements(const std::vector<std::string>& lines) {
   return text + "$EndElements\n";
 }
 
-Mesh read(const std::string& bytes) { return read_gmsh("a.msh", bytes); }
+Mesh read_text(const std::string& bytes) { return read_gmsh("a.msh", bytes); }
 
 /// The message, without the name in front.
 std::string refusal(const std::string& bytes) {
   try {
-    read(bytes);
+    read_text(bytes);
   } catch (const InputError& error) {
     const std::string text = error.what();
     CHECK(text.starts_with("a.msh: "));
@@ -69,12 +69,12 @@ std::string raw(T value) {
 
 TEST_CASE("groups without a name are named by their number, empty ones stay, equal names share one group") {
   const Mesh mesh =
-      read(format22 +
-           "$PhysicalNames\n5\n2 1 \"side with spaces\"\n2 8 \"\"\n2 9 \"never used\"\n3 2 \"side with "
-           "spaces\"\n2 3 \"side with spaces\"\n$EndPhysicalNames\n" +
-           tetrahedron_nodes +
-           elements({"1 2 2 1 1 1 3 2", "2 2 2 -12 1 1 2 4", "3 2 2 8 1 1 4 3", "4 2 2 3 1 2 3 4",
-                     "9 4 2 2 1 1 2 3 4"}));
+      read_text(format22 +
+                "$PhysicalNames\n5\n2 1 \"side with spaces\"\n2 8 \"\"\n2 9 \"never used\"\n3 2 \"side with "
+                "spaces\"\n2 3 \"side with spaces\"\n$EndPhysicalNames\n" +
+                tetrahedron_nodes +
+                elements({"1 2 2 1 1 1 3 2", "2 2 2 -12 1 1 2 4", "3 2 2 8 1 1 4 3", "4 2 2 3 1 2 3 4",
+                          "9 4 2 2 1 1 2 3 4"}));
   CHECK(group(mesh, "side with spaces", 2).members.size() == 2);
   CHECK(group(mesh, "side with spaces", 3).members == std::vector<std::int32_t>{0});
   CHECK(group(mesh, "12", 2).members.size() == 1);
@@ -87,15 +87,15 @@ TEST_CASE("groups without a name are named by their number, empty ones stay, equ
 
 TEST_CASE("an element repeated for several groups is one element in all of them") {
   const Mesh mesh =
-      read(format22 + tetrahedron_nodes +
-           elements({"1 4 2 7 1 1 2 3 4", "2 4 2 5 1 1 2 3 4", "3 2 2 6 1 1 3 2", "4 2 2 6 1 3 2 1"}));
+      read_text(format22 + tetrahedron_nodes +
+                elements({"1 4 2 7 1 1 2 3 4", "2 4 2 5 1 1 2 3 4", "3 2 2 6 1 1 3 2", "4 2 2 6 1 3 2 1"}));
   CHECK(mesh.element_count() == 1);
   CHECK(group(mesh, "7", 3).members == group(mesh, "5", 3).members);
   CHECK(group(mesh, "6", 2).members.size() == 1);
 }
 
 TEST_CASE("curves and points are node groups in 3D, curves are sides in 2D, inner surfaces no boundary") {
-  const Mesh body = read(
+  const Mesh body = read_text(
       format22 + "$Nodes\n5\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 0 0 -1\n$EndNodes\n" +
       elements({"1 15 2 1 1 4", "2 1 2 2 1 3 1", "3 2 2 3 1 1 2 3", "4 4 0 1 2 3 4", "5 4 2 0 1 1 3 2 5"}));
   CHECK(group(body, "1", 0).members == std::vector<std::int32_t>{3});
@@ -105,8 +105,9 @@ TEST_CASE("curves and points are node groups in 3D, curves are sides in 2D, inne
   CHECK(body.facet_count() == 6);
   CHECK(body.groups.size() == 3);
 
-  const Mesh sheet = read(format22 + square_nodes +
-                          elements({"1 1 2 1 1 2 1", "2 1 2 2 1 1 3", "3 2 2 4 1 1 2 3", "4 2 2 4 1 1 3 4"}));
+  const Mesh sheet =
+      read_text(format22 + square_nodes +
+                elements({"1 1 2 1 1 2 1", "2 1 2 2 1 1 3", "3 2 2 4 1 1 2 3", "4 2 2 4 1 1 3 4"}));
   CHECK(sheet.type == ElementType::tri3);
   CHECK(sheet.coordinates == std::vector<double>{0, 0, 1, 0, 1, 1, 0, 1});
   CHECK(group(sheet, "1", 1).members.size() == 1);
@@ -116,8 +117,8 @@ TEST_CASE("curves and points are node groups in 3D, curves are sides in 2D, inne
 
 TEST_CASE("quadrilaterals make a body in 2D, their sides its boundary") {
   const Mesh sheet =
-      read(format22 + "$Nodes\n6\n1 0 0 0\n2 1 0 0\n3 2 0 0\n4 0 1 0\n5 1 1 0\n6 2 1 0\n$EndNodes\n" +
-           elements({"1 1 2 7 1 1 2", "2 1 2 8 1 2 5", "3 3 2 9 1 1 2 5 4", "4 3 2 9 1 2 3 6 5"}));
+      read_text(format22 + "$Nodes\n6\n1 0 0 0\n2 1 0 0\n3 2 0 0\n4 0 1 0\n5 1 1 0\n6 2 1 0\n$EndNodes\n" +
+                elements({"1 1 2 7 1 1 2", "2 1 2 8 1 2 5", "3 3 2 9 1 1 2 5 4", "4 3 2 9 1 2 3 6 5"}));
   CHECK(sheet.type == ElementType::quad4);
   CHECK(sheet.element_count() == 2);
   CHECK(sheet.facet_count() == 6);
@@ -128,9 +129,9 @@ TEST_CASE("quadrilaterals make a body in 2D, their sides its boundary") {
 }
 
 TEST_CASE("comments, unknown sections and data are passed over") {
-  const Mesh mesh = read("$Comments\nmade by hand\n$EndComments\n" + format22 +
-                         "\n$Periodic\n0\n$EndPeriodic\n" + tetrahedron_nodes + "$Empty\n$EndEmpty\n" +
-                         elements({"1 4 0 1 2 3 4"}) + "$NodeData\n1\n\"$EndNode\"\n$EndNodeData\n\n");
+  const Mesh mesh = read_text("$Comments\nmade by hand\n$EndComments\n" + format22 +
+                              "\n$Periodic\n0\n$EndPeriodic\n" + tetrahedron_nodes + "$Empty\n$EndEmpty\n" +
+                              elements({"1 4 0 1 2 3 4"}) + "$NodeData\n1\n\"$EndNode\"\n$EndNodeData\n\n");
   CHECK(mesh.element_count() == 1);
 }
 
@@ -234,9 +235,10 @@ TEST_CASE("the parts of format 4.1 have to agree with one another") {
   const std::string nodes = "$Nodes\n1 4 1 4\n3 1 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n$EndNodes\n";
   const std::string entities = "$Entities\n0 0 0 1\n1 0 0 0 1 1 1 1 5 0\n$EndEntities\n";
   const Mesh mesh =
-      read(format41 + entities + nodes + "$Elements\n1 1 1 1\n3 1 4 1\n1 1 2 3 4\n$EndElements\n");
+      read_text(format41 + entities + nodes + "$Elements\n1 1 1 1\n3 1 4 1\n1 1 2 3 4\n$EndElements\n");
   CHECK(group(mesh, "5", 3).members == std::vector<std::int32_t>{0});
-  CHECK(read(format41 + nodes + "$Elements\n1 1 1 1\n3 1 4 1\n1 1 2 3 4\n$EndElements\n").groups.empty());
+  CHECK(
+      read_text(format41 + nodes + "$Elements\n1 1 1 1\n3 1 4 1\n1 1 2 3 4\n$EndElements\n").groups.empty());
 
   check_contains(
       refusal(format41 + entities + nodes + "$Elements\n1 1 1 1\n3 2 4 1\n1 1 2 3 4\n$EndElements\n"),
@@ -276,7 +278,7 @@ TEST_CASE("elements and nodes that cannot be used are named by their number") {
 
 TEST_CASE("nodes that no element of the body has are left out, with a warning") {
   // The first node and the fourth; a point and a side refer to them.
-  const Mesh mesh = read(
+  const Mesh mesh = read_text(
       format22 + "$Nodes\n5\n7 9 9 0\n8 0 0 0\n9 1 0 0\n10 5 5 0\n11 0 1 0\n$EndNodes\n" +
       elements({"1 15 2 1 1 7", "2 15 2 1 1 11", "3 1 2 2 1 8 9", "4 1 2 2 1 9 10", "5 2 2 3 1 8 9 11"}));
   REQUIRE(mesh.warnings.size() == 1);

@@ -74,7 +74,7 @@ void renumber(Mesh& mesh, std::int64_t spread, unsigned seed) {
 }
 
 /// The mesh in a file with these bytes, or nothing if it is refused.
-std::optional<Mesh> read(const std::string& bytes) {
+std::optional<Mesh> read_if_valid(const std::string& bytes) {
   try {
     return read_gmsh("a.msh", bytes);
   } catch (const InputError& error) {
@@ -109,7 +109,7 @@ TEST_CASE("a mesh of every type comes back from every form") {
         CAPTURE(static_cast<int>(type));
         CAPTURE(form.new_format);
         CAPTURE(form.binary);
-        const auto back = read(gmsh_file(mesh, form));
+        const auto back = read_if_valid(gmsh_file(mesh, form));
         REQUIRE(back);
         check_equal(mesh, *back);
       }
@@ -126,7 +126,7 @@ TEST_CASE("the rocker mesh comes back from every form") {
   std::sort(names.begin(), names.end());
   CHECK(names == std::vector<std::string>{"base", "body", "clamp", "top"});
   for (const GmshForm& form : all_forms) {
-    const auto back = read(gmsh_file(rocker, form));
+    const auto back = read_if_valid(gmsh_file(rocker, form));
     REQUIRE(back);
     check_equal(rocker, *back);
   }
@@ -150,10 +150,10 @@ TEST_CASE("a truncated file is refused, wherever it ends") {
     // The last line may lack its end.
     const std::size_t ends = form.carriage_returns ? 2 : 1;
     for (std::size_t length = 0; length < small.size() - ends; length += 7)
-      accepted += read(small.substr(0, length)).has_value();
+      accepted += read_if_valid(small.substr(0, length)).has_value();
     const std::string large = gmsh_file(rocker, form);
     for (std::size_t length = 100; length < large.size() - ends; length += 3989)
-      accepted += read(large.substr(0, length)).has_value();
+      accepted += read_if_valid(large.substr(0, length)).has_value();
     CHECK(accepted == 0);
   }
 }
@@ -167,7 +167,7 @@ TEST_CASE("a file with a wrong byte is refused or gives a mesh that holds togeth
     for (std::size_t at = 0; at < good.size(); at += stride) {
       std::string bad = good;
       bad[at] = static_cast<char>(bad[at] ^ (at % 2 == 0 ? 0x01 : 0x80));
-      const auto read_mesh = read(bad);
+      const auto read_mesh = read_if_valid(bad);
       refused += !read_mesh;
       if (!read_mesh) continue;
       inconsistent += !consistent(*read_mesh);
@@ -197,7 +197,7 @@ TEST_CASE("exchanged, repeated and lost pieces of a file do no harm either") {
         bad.insert(to, piece);
       else
         bad.replace(to, piece.size(), piece);
-      const auto read_mesh = read(bad);
+      const auto read_mesh = read_if_valid(bad);
       CHECK((!read_mesh || consistent(*read_mesh)));
     }
   }
