@@ -5,8 +5,8 @@ include("${CMAKE_CURRENT_LIST_DIR}/consuming.cmake")
 
 set(absolute "${WORK}/absolute")
 file(REMOVE_RECURSE "${WORK}/host" "${absolute}")
-# Joined files compile in half the time.
-set(arguments -DCMAKE_UNITY_BUILD=ON "-DKACANOV=${SOURCE}" -DKACANOV_INSTALL=ON -DBUILD_SHARED_LIBS=ON "-DCMAKE_INSTALL_PREFIX=${absolute}/else"
+# Joined files compile in half the time, and the plain kernels serve.
+set(arguments -DCMAKE_UNITY_BUILD=ON -DKACANOV_VECTOR_KERNELS=OFF "-DKACANOV=${SOURCE}" -DKACANOV_INSTALL=ON -DBUILD_SHARED_LIBS=ON "-DCMAKE_INSTALL_PREFIX=${absolute}/else"
   "-DCMAKE_INSTALL_LIBDIR=${absolute}/libraries" "-DCMAKE_INSTALL_INCLUDEDIR=${absolute}/headers" ${forbidden_to_build})
 configure(host "${HOST}" ${arguments})
 run("${CMAKE_COMMAND}" --build "${WORK}/host")
