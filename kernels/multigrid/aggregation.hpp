@@ -30,7 +30,7 @@ struct NodeAggregation {
   double size = 48.0;
   /// Nodes that are grouped at a time, neighbours in the numbering: a graph of all would be the largest array
   /// of a run.
-  std::int32_t section = 1 << 16;
+  std::int32_t section = 1 << 15;
   int threads = 1;  ///< which change nothing but the time
 };
 std::vector<std::int32_t> aggregate_nodes(const Body& body, std::span<const double> g, std::int32_t nodes,
