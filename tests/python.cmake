@@ -4,7 +4,7 @@ file(GLOB petsc4py "/usr/lib/petscdir/*/*-real/lib/python3/dist-packages")  # wh
 if(petsc4py)
   list(GET petsc4py 0 petsc4py)
 endif()
-foreach(area case notebooks operator plot steps)
+foreach(area case dolfinx notebooks operator plot steps)
   add_test(NAME python_${area} COMMAND "${PYTHON_EXECUTABLE}" -B -m unittest test_${area}
     WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}/python/tests")
   kacanov_test_properties(python_${area} 2)
@@ -21,5 +21,16 @@ if(NOT without_mpi4py)
   kacanov_test_properties(python_mpi_2 2)
   get_test_property(python_mpi_2 ENVIRONMENT environment)
   set_tests_properties(python_mpi_2 PROPERTIES LABELS python
+    ENVIRONMENT "${environment};PYTHONPATH=${PROJECT_BINARY_DIR}/python")
+endif()
+
+execute_process(COMMAND "${PYTHON_EXECUTABLE}" -c "import dolfinx, petsc4py" RESULT_VARIABLE without_dolfinx
+  OUTPUT_QUIET ERROR_QUIET)
+if(NOT without_dolfinx)
+  add_test(NAME example_dolfinx COMMAND "${PYTHON_EXECUTABLE}" -B "${PROJECT_SOURCE_DIR}/python/examples/dolfinx_multigrid.py"
+    --cells 4 --with-matrix)
+  kacanov_test_properties(example_dolfinx 2)
+  get_test_property(example_dolfinx ENVIRONMENT environment)
+  set_tests_properties(example_dolfinx PROPERTIES LABELS python
     ENVIRONMENT "${environment};PYTHONPATH=${PROJECT_BINARY_DIR}/python")
 endif()

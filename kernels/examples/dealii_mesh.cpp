@@ -1,20 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A deal.II program: its mesh of a ball is handed over as arrays, its SolverCG solves with our operator. With
-// a linear displacement prescribed on the boundary, the solution inside has to be that same linear field.
+// A deal.II program: its mesh of a ball is handed over as arrays, its SolverCG solves with our operator and
+// multigrid. With a linear displacement prescribed on the boundary, the solution inside is that same field.
+//
+// usage: dealii_mesh [REFINEMENTS [with_matrix]]; with_matrix: deal.II's SparseMatrix and Jacobi beside it.
 #include <deal.II/base/point.h>
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/tria.h>
+#include <deal.II/lac/dynamic_sparsity_pattern.h>
 #include <deal.II/lac/precondition.h>
 #include <deal.II/lac/solver_cg.h>
+#include <deal.II/lac/sparse_matrix.h>
 #include <deal.II/lac/vector.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <exception>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include <kacanov/kacanov.h>
@@ -23,23 +30,18 @@ namespace {
 
 using Vector = dealii::Vector<double>;
 
-/// B on the unknowns that are not held, the identity on those that are: what SolverCG wants of a matrix.
-class ConstrainedOperator {
+/// B(g), what SolverCG wants of a matrix.
+class Operator {
  public:
-  ConstrainedOperator(const dealii::Triangulation<3>& mesh, const kacanov_law& law) {
-    // Node a of our hexahedron, in Gmsh's order, is this vertex of deal.II's, in lexicographic order.
-    constexpr std::array<unsigned, 8> vertex{{0, 1, 3, 2, 4, 5, 7, 6}};
-    held.assign(3 * mesh.n_vertices(), false);
-    for (const auto& cell : mesh.active_cell_iterators()) {
-      for (const unsigned v : vertex)
+  Operator(const dealii::Triangulation<3>& mesh, const kacanov_law& law) {
+    std::vector<std::int32_t> connectivity;
+    for (const auto& cell : mesh.active_cell_iterators())
+      for (const unsigned v : cell->vertex_indices())
         connectivity.push_back(static_cast<std::int32_t>(cell->vertex_index(v)));
-      for (const auto& face : cell->face_iterators())
-        for (unsigned v = 0; face->at_boundary() && v < 4; ++v)
-          std::fill_n(held.begin() + 3 * static_cast<std::ptrdiff_t>(face->vertex_index(v)), 3, true);
-    }
     kacanov_description body{};
     body.struct_size = sizeof body;
     body.element = KACANOV_HEX8;
+    body.node_order = "dealii";
     body.threads = 2;
     body.nodes = mesh.n_vertices();
     body.coordinates = &mesh.get_vertices()[0][0];  // one dealii::Point a node
@@ -52,66 +54,159 @@ class ConstrainedOperator {
     kacanov_operator* made = nullptr;
     if (kacanov_create(&body, &made, message, sizeof message) != KACANOV_OK)
       throw std::runtime_error(message);
-    op.reset(made);
-    masked.reinit(static_cast<unsigned>(held.size()));
+    op_.reset(made);
   }
 
-  unsigned size() const { return masked.size(); }
-  bool is_held(unsigned i) const { return held[i]; }
-
-  /// y = B x, all unknowns.
-  void apply(const Vector& x, Vector& y) const {
-    if (kacanov_apply(op.get(), x.size(), x.begin(), y.begin()) != KACANOV_OK)
-      throw std::runtime_error(kacanov_message(op.get()));
-  }
   void vmult(Vector& y, const Vector& x) const {
-    for (unsigned i = 0; i < size(); ++i) masked[i] = held[i] ? 0.0 : x[i];
-    apply(masked, y);
-    for (unsigned i = 0; i < size(); ++i)
-      if (held[i]) y[i] = x[i];
+    check(kacanov_apply(op_.get(), x.size(), x.begin(), y.begin()));
   }
+  /// From here on the rows of these unknowns are those of the identity.
+  void constrain(const std::vector<std::int32_t>& held) {
+    check(kacanov_constrain(op_.get(), held.size(), held.data()));
+  }
+  void check(int code) const {
+    if (code != KACANOV_OK) throw std::runtime_error(kacanov_message(op_.get()));
+  }
+  kacanov_operator* get() const { return op_.get(); }
 
  private:
   struct Destroy {
     void operator()(kacanov_operator* handle) const { kacanov_destroy(handle); }
   };
-  std::unique_ptr<kacanov_operator, Destroy> op;
-  std::vector<std::int32_t> connectivity;
-  std::vector<bool> held;
-  mutable Vector masked;
+  std::unique_ptr<kacanov_operator, Destroy> op_;
 };
 
-}  // namespace
+/// What SolverCG wants of a preconditioner.
+class Multigrid {
+ public:
+  explicit Multigrid(const Operator& op) {
+    kacanov_multigrid* made = nullptr;
+    op.check(kacanov_multigrid_create(op.get(), nullptr, &made));
+    multigrid_.reset(made);
+  }
+  void vmult(Vector& z, const Vector& r) const {
+    if (kacanov_multigrid_apply(multigrid_.get(), r.size(), r.begin(), z.begin()) != KACANOV_OK)
+      throw std::runtime_error(kacanov_multigrid_message(multigrid_.get()));
+  }
 
-int main() {
+ private:
+  struct Destroy {
+    void operator()(kacanov_multigrid* handle) const { kacanov_multigrid_destroy(handle); }
+  };
+  std::unique_ptr<kacanov_multigrid, Destroy> multigrid_;
+};
+
+/// The operator as deal.II's own matrix.
+class Matrix {
+ public:
+  explicit Matrix(const Operator& op, std::size_t n) {
+    std::size_t entries = 0;
+    op.check(kacanov_matrix_entries(op.get(), n, &entries));
+    std::vector<std::int64_t> first(n + 1);
+    std::vector<std::int32_t> column(entries);
+    std::vector<double> value(entries);
+    op.check(kacanov_matrix(op.get(), n, nullptr, entries, first.data(), column.data(), value.data()));
+    const auto size = static_cast<unsigned>(n);
+    dealii::DynamicSparsityPattern rows(size, size);
+    for (unsigned i = 0; i < size; ++i)
+      for (auto k = static_cast<std::size_t>(first[i]); k < static_cast<std::size_t>(first[i + 1]); ++k)
+        rows.add(i, static_cast<unsigned>(column[k]));
+    pattern_.copy_from(rows);
+    matrix_.reinit(pattern_);
+    for (unsigned i = 0; i < size; ++i)
+      for (auto k = static_cast<std::size_t>(first[i]); k < static_cast<std::size_t>(first[i + 1]); ++k)
+        matrix_.set(i, static_cast<unsigned>(column[k]), value[k]);
+    jacobi_.initialize(matrix_);
+  }
+  const dealii::SparseMatrix<double>& get() const { return matrix_; }
+  const dealii::PreconditionJacobi<>& jacobi() const { return jacobi_; }
+
+ private:
+  dealii::SparsityPattern pattern_;
+  dealii::SparseMatrix<double> matrix_;
+  dealii::PreconditionJacobi<> jacobi_;
+};
+
+double seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Solves with what `make` gives, says what that took, and returns the largest relative error.
+template <class Solve>
+double report(const std::string& name, const Vector& lifted, const Vector& exact, const Solve& solve) {
+  Vector v(exact.size());
+  double ready = 0.0;
+  const double start = seconds();
+  const unsigned iterations = solve(v, ready);
+  const double end = seconds();
+  v += lifted;
+  v -= exact;
+  const double error = v.linfty_norm() / exact.linfty_norm();
+  std::cout << name << ": " << exact.size() << " unknowns, " << iterations << " iterations, setup "
+            << ready - start << " s, solve " << end - ready << " s, largest relative error " << error << "\n";
+  return error;
+}
+
+int run(unsigned refinements, bool with_matrix) {
   dealii::Triangulation<3> mesh;
   dealii::GridGenerator::hyper_ball(mesh);
-  mesh.refine_global(3);
+  mesh.refine_global(refinements);
   kacanov_law law{};
   law.struct_size = sizeof law;
   if (kacanov_elastic_law(1.0, 0.3, &law) != KACANOV_OK) return EXIT_FAILURE;
-  const ConstrainedOperator op(mesh, law);
+  Operator op(mesh, law);
 
-  Vector exact(op.size());
+  Vector exact(3 * mesh.n_vertices());
   for (unsigned i = 0; i < mesh.n_vertices(); ++i) {
     const dealii::Point<3>& p = mesh.get_vertices()[i];
     exact[3 * i] = 0.01 * p[0] + 0.02 * p[1];
     exact[3 * i + 1] = -0.03 * p[1] + 0.01 * p[2];
     exact[3 * i + 2] = 0.02 * p[2] - 0.01 * p[0];
   }
+  std::vector<bool> on_boundary(mesh.n_vertices(), false);
+  for (const auto& cell : mesh.active_cell_iterators())
+    for (const auto& face : cell->face_iterators())
+      for (unsigned v = 0; face->at_boundary() && v < 4; ++v) on_boundary[face->vertex_index(v)] = true;
+  std::vector<std::int32_t> held;
+  for (unsigned i = 0; i < exact.size(); ++i)
+    if (on_boundary[i / 3]) held.push_back(static_cast<std::int32_t>(i));
   // u = lifted + v, with v = 0 where held and B v = −B lifted elsewhere.
-  Vector lifted(op.size()), right(op.size()), v(op.size());
-  for (unsigned i = 0; i < op.size(); ++i) lifted[i] = op.is_held(i) ? exact[i] : 0.0;
-  op.apply(lifted, right);
-  for (unsigned i = 0; i < op.size(); ++i) right[i] = op.is_held(i) ? 0.0 : -right[i];
+  Vector lifted(exact.size()), right(exact.size());
+  for (const std::int32_t i : held) lifted[static_cast<unsigned>(i)] = exact[static_cast<unsigned>(i)];
+  op.vmult(right, lifted);
+  right *= -1.0;
+  for (const std::int32_t i : held) right[static_cast<unsigned>(i)] = 0.0;
+  op.constrain(held);
 
-  dealii::SolverControl control(1000, 1e-12 * right.l2_norm());
-  dealii::SolverCG<Vector> solver(control);
-  solver.solve(op, v, right, dealii::PreconditionIdentity());
-  v += lifted;
-  v -= exact;
-  const double error = v.linfty_norm() / exact.linfty_norm();
-  std::cout << op.size() << " unknowns, " << mesh.n_active_cells() << " cells: " << control.last_step()
-            << " iterations, largest relative error " << error << "\n";
-  return error < 1e-10 ? EXIT_SUCCESS : EXIT_FAILURE;
+  const double relative = with_matrix ? 1e-8 : 1e-12;
+  const auto solve = [&](const auto& matrix, const auto& preconditioner, Vector& v) {
+    dealii::SolverControl control(5000, relative * right.l2_norm());
+    dealii::SolverCG<Vector> solver(control);
+    solver.solve(matrix, v, right, preconditioner);
+    return control.last_step();
+  };
+  double error = report("operator and multigrid", lifted, exact, [&](Vector& v, double& ready) {
+    const Multigrid multigrid(op);
+    ready = seconds();
+    return solve(op, multigrid, v);
+  });
+  if (with_matrix)
+    error = std::max(error, report("matrix and Jacobi", lifted, exact, [&](Vector& v, double& ready) {
+                       const Matrix matrix(op, exact.size());
+                       ready = seconds();
+                       return solve(matrix.get(), matrix.jacobi(), v);
+                     }));
+  return error < (with_matrix ? 1e-5 : 1e-10) ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc > 1 ? static_cast<unsigned>(std::atoi(argv[1])) : 3,
+               argc > 2 && std::string(argv[2]) == "with_matrix");
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << "\n";
+    return EXIT_FAILURE;
+  }
 }
