@@ -40,7 +40,7 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
       {"meterial=1", "meterial: unknown key (did you mean \"material\"?)"},
       {"contact[0].obstacle.plane.nromal=[0,0,1]",
        "contact[0].obstacle.plane.nromal: unknown key (did you mean \"normal\"?)"},
-      {"zzz=1", "zzz: unknown key; known here: mesh, plane, material,"},
+      {"zzz=1", "zzz: unknown key; known here: mesh, plane, thickness, material,"},
       {"plane=flat", "plane: expected \"strain\", \"stress\" or \"axisymmetric\", got \"flat\""},
       {"material[0].law.gamma=0.1", "material[0].law.gamma: unknown key"},
       {"output.colour=1", "output.colour: unknown key"},

@@ -20,7 +20,7 @@ constexpr std::string_view modified = "the plain quadratic tetrahedron is taken 
 constexpr std::string_view reduced = "all points are integrated here, with B-bar where the body is plastic";
 constexpr std::string_view incompatible = "there are no incompatible modes here: stiffer in bending";
 constexpr std::string_view all_points = "all points are integrated here";
-constexpr PlaneState stress = PlaneState::stress, round = PlaneState::axisymmetric;
+constexpr PlaneState stress = PlaneState::stress, axes = PlaneState::axisymmetric;
 constexpr std::string_view thin = "shells, membranes and beams are not solved: model the body in 3D";
 constexpr std::string_view tri6 = "quadratic triangles are no bodies here: write linear ones";
 
@@ -55,12 +55,12 @@ constexpr auto entries = std::to_array<Entry>({
     {"CPS4R", {"quad4", all_points, "", stress}},
     {"CPS4I", {"quad4", incompatible, "", stress}},
     {"CPS6", {"tri6", "", tri6}},
-    {"CAX3", {"tri3", "", "", round}},
-    {"CAX3H", {"tri3", hybrid, "", round}},
-    {"CAX4", {"quad4", "", "", round}},
-    {"CAX4H", {"quad4", hybrid, "", round}},
-    {"CAX4I", {"quad4", incompatible, "", round}},
-    {"CAX4R", {"quad4", reduced, "", round}},
+    {"CAX3", {"tri3", "", "", axes}},
+    {"CAX3H", {"tri3", hybrid, "", axes}},
+    {"CAX4", {"quad4", "", "", axes}},
+    {"CAX4H", {"quad4", hybrid, "", axes}},
+    {"CAX4I", {"quad4", incompatible, "", axes}},
+    {"CAX4R", {"quad4", reduced, "", axes}},
     {"CAX6", {"tri6", "", tri6}},
     {"DS3", {"tri3", "", thin}},
     {"DS4", {"quad4", "", thin}},

@@ -17,13 +17,6 @@
 namespace kacanov {
 namespace {
 
-constexpr std::string_view blanks = " \t\r";
-
-std::string_view trimmed(std::string_view text) {
-  text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
-  return text.substr(0, text.find_last_not_of(blanks) + 1);
-}
-
 std::vector<std::int32_t> nodes_of_group(const Mesh& mesh, const Group& group) {
   const auto dim = static_cast<std::size_t>(mesh.dim());
   const auto dimension = static_cast<std::size_t>(group.dimension);
@@ -74,7 +67,7 @@ class NodeValueText {
 
   void take(std::string_view text) {
     std::size_t split = text.find_last_of(",;");
-    if (split == std::string_view::npos) split = text.find_last_of(blanks);
+    if (split == std::string_view::npos) split = text.find_last_of(" \t");
     if (split == std::string_view::npos)
       fail("expected a node or a group and its value, got " + in_quotes(text));
     const std::string_view who = trimmed(text.substr(0, split)), word = trimmed(text.substr(split + 1));

@@ -21,6 +21,12 @@ std::string_view take_word(std::string_view& line, std::string_view between) {
   return word;
 }
 
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view around = " \t\r";
+  text.remove_prefix(std::min(text.find_first_not_of(around), text.size()));
+  return text.substr(0, text.find_last_not_of(around) + 1);
+}
+
 std::optional<double> to_number(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
   double value = 0.0;
