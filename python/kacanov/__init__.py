@@ -15,11 +15,11 @@ from .mesh import BoxMesh, Mesh, MeshFile, box, from_dolfinx, from_meshio, read
 from .operator import CgResult, Multigrid, Operator, Tangent
 from .solution import Solution, Step
 from .words import (Block, Box, Cone, Cylinder, Gap, HeightMap, Law, Linear, LinearHardening, Logarithmic, Material,
-                    Obstacle, Plane, Power, RambergOsgood, Saturating, Sphere, Surface, Table, Torus)
+                    Obstacle, OwnLaw, Plane, Power, RambergOsgood, Saturating, Sphere, Surface, Table, Torus)
 
 __all__ = [
     "Block", "Box", "BoxMesh", "Case", "CgResult", "Cone", "Cylinder", "Error", "Gap", "HeightMap", "InputError",
     "InternalError", "Interrupted", "Law", "Linear", "LinearHardening", "Logarithmic", "Material", "Mesh", "MeshFile",
-    "Multigrid", "Obstacle", "Operator", "Plane", "Power", "ProgressTable", "RambergOsgood", "Saturating", "Solution",
-    "Sphere", "StateError", "Step", "Surface", "Table", "Tangent", "Torus", "box", "from_dolfinx", "from_meshio", "read",
-    "__version__"]
+    "Multigrid", "Obstacle", "Operator", "OwnLaw", "Plane", "Power", "ProgressTable", "RambergOsgood", "Saturating",
+    "Solution", "Sphere", "StateError", "Step", "Surface", "Table", "Tangent", "Torus", "box", "from_dolfinx",
+    "from_meshio", "read", "__version__"]

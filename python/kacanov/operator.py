@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from . import _kacanov
 from .errors import InputError, StateError
-from .words import Law, Material, plain
+from .words import Evaluate, Law, Linear, Material, OwnLaw, plain
 
 Array = npt.NDArray[Any]
 
@@ -69,21 +69,23 @@ class Operator(Symmetric):
 
     points: float64 (nodes, dim); cells: int32 (elements, nodes of an element), from 0, in the node order `order`
     ("gmsh", the same as "kacanov", "vtk", "basix", "dealii"). law: a Material, a list of them with `law_of_element`
-    (uint16 an element), or a Law beside `young` and `poisson`; left out: linear.
+    (uint16 an element), or a Law beside `young` and `poisson`; left out: linear. A law may be a function: see OwnLaw.
     plane: what a mesh in 2D is of, "strain", "stress" or "axisymmetric".
     Vectors are float64 and C-contiguous, of shape (n,) or (nodes, dim), with n = nodes × dim; nothing is copied.
     Python's lock is let go in every call; one thread at a time may use an operator.
     """
 
     def __init__(self, points: Array, cells: Array, element: str, *, order: str = "gmsh",
-                 law: Material | Law | Mapping[str, Any] | Sequence[Material | Mapping[str, Any]] | None = None,
+                 law: Material | Law | OwnLaw | Evaluate | Mapping[str, Any] | Sequence[Material | Mapping[str, Any]] |
+                 None = None,
                  young: float | None = None, poisson: float | None = None, law_of_element: Array | None = None,
                  threads: int = 1, single: bool = False, turn_inverted: bool = False, orphans: str = "zero",
                  plane: str = "strain", instruction_set: str | None = None) -> None:
+        materials, self._own_laws = _materials(law, young, poisson)
         self._op = _kacanov.Operator({
             "points": points, "cells": cells, "element": element, "order": order,
-            "laws": json.dumps(_materials(law, young, poisson)), "law_of_element": law_of_element, "threads": threads,
-            "single": single, "turn_inverted": turn_inverted, "orphans": orphans, "plane": plane,
+            "laws": json.dumps(materials), "own_laws": self._own_laws, "law_of_element": law_of_element,
+            "threads": threads, "single": single, "turn_inverted": turn_inverted, "orphans": orphans, "plane": plane,
             "instruction_set": instruction_set})
         size = self._op.information()
         self.nodes, self.elements, self.dimension = size["nodes"], size["elements"], size["dimension"]
@@ -302,17 +304,31 @@ class _PetscPc:
     applyTranspose = apply  # noqa: N815
 
 
-def _materials(law: Any, young: float | None, poisson: float | None) -> list[Any]:
-    """Materials in the words of the case file."""
+def _materials(law: Any, young: float | None, poisson: float | None) -> tuple[list[Any], list[tuple[int, OwnLaw]]]:
+    """Materials in the words of the case file, which has none for laws of one's own: these, by index."""
+    words, own = [], []
+    for index, material in enumerate(_listed(law, young, poisson)):
+        if isinstance(material, Material):
+            material = material.json()
+        said = material.get("law") if isinstance(material, Mapping) else None
+        if callable(said):
+            said = OwnLaw(said)
+        if isinstance(said, OwnLaw):
+            own.append((index, said))
+            material = {**material, "law": Linear()}
+        words.append(plain(material, f"law[{index}]"))
+    return words, own
+
+
+def _listed(law: Any, young: float | None, poisson: float | None) -> Sequence[Any]:
     if isinstance(law, Sequence):
         if young is not None or poisson is not None:
             raise InputError("young, poisson: expected within each material of a list")
-        return plain(list(law), "law")
+        return law
     if isinstance(law, Material) or (isinstance(law, Mapping) and "young" in law):
         if young is not None or poisson is not None:
             raise InputError("young, poisson: expected within the material")
-        return [plain(law, "law[0]")]
+        return [law]
     if young is None or poisson is None:
         raise InputError("law: expected a Material, or young and poisson beside it")
-    material = {"young": young, "poisson": poisson} | ({} if law is None else {"law": law})
-    return [plain(material, "law[0]")]
+    return [{"young": young, "poisson": poisson} | ({} if law is None else {"law": law})]

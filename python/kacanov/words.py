@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from .errors import InputError
+
+Array = npt.NDArray[Any]
+# (x, element, point) → (g, slope, energy), see OwnLaw
+Evaluate = Callable[[Array, Array, Array], tuple[Array, Array | None, Array | None]]
 
 
 def plain(value: Any, path: str = "") -> Any:
@@ -112,12 +117,27 @@ class RambergOsgood(Law):
 
 
 @dataclass(frozen=True)
+class OwnLaw:
+    """A law of your own, for operators: no case file has a word for it.
+
+    evaluate(x, element, point) is given some thousand points at once, as arrays of one length: x = |dev eps| (float64),
+    and of each the element and its point there (int32, from 0). It returns (g, slope, energy): the secant shear modulus
+    g > 0, dg/dx, and the integral of g(s) s ds from 0 to x. None may stand for slope where no tangent is wanted, and for
+    energy where no energy is.
+    yield_strain: the x beyond which `stress` says plastic; 0: never.
+    """
+
+    evaluate: Evaluate
+    yield_strain: float = 0.0
+
+
+@dataclass(frozen=True)
 class Material(Word):
     """An elastic body that may yield: by a `law`, by a test in tension (`plastic`), or bilinear (`tangent_modulus`)."""
 
     young: float
     poisson: float
-    law: Law | Mapping[str, Any] | None = None
+    law: Law | OwnLaw | Evaluate | Mapping[str, Any] | None = None  # the second and third for operators
     plastic: Sequence[Sequence[float]] | None = None
     yield_stress: float | None = None
     tangent_modulus: float | None = None

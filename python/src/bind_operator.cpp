@@ -17,6 +17,7 @@ std::shared_ptr<Operator> make_operator(const py::dict& fields) {
   d.element = fields["element"].cast<std::string>();
   d.order = fields["order"].cast<std::string>();
   d.laws = fields["laws"].cast<std::string>();
+  d.own_laws = fields["own_laws"].cast<decltype(d.own_laws)>();
   d.law_of_element = fields["law_of_element"];
   d.threads = fields["threads"].cast<int>();
   d.single = fields["single"].cast<bool>();

@@ -20,6 +20,7 @@ class CLaws {
   CLaws& operator=(const CLaws&) = delete;
 
   const std::vector<kacanov_law>& laws() const noexcept { return laws_; }
+  kacanov_law& law(std::size_t index) { return laws_.at(index); }
 
  private:
   std::vector<Law> kept_;

@@ -71,7 +71,11 @@ Operator::Operator(const Description& from) {
     throw InputError(
         "cells: expected the nodes of an element one after another: "
         "numpy.ascontiguousarray makes a copy that is so");
-  const CLaws laws(from.laws);
+  CLaws laws(from.laws);
+  for (const auto& [index, law] : from.own_laws) {
+    own_laws_.push_back(std::make_unique<OwnLaw>(law, index));
+    own_laws_.back()->enter(laws.law(index));
+  }
   body.laws = laws.laws().size();
   body.law = laws.laws().data();
   py::array law_of_element;

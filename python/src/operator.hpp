@@ -12,6 +12,7 @@
 
 #include <kacanov/kacanov.h>
 #include "errors.hpp"
+#include "own_law.hpp"
 
 namespace kacanov::python {
 
@@ -20,7 +21,8 @@ struct Description {
   pybind11::object points, cells;
   std::string element;
   std::string order = "gmsh";
-  std::string laws;  ///< JSON, see CLaws
+  std::string laws;                                                ///< JSON, see CLaws
+  std::vector<std::pair<std::size_t, pybind11::object>> own_laws;  ///< kacanov.OwnLaw in the place of others
   pybind11::object law_of_element = pybind11::none();
   int threads = 1;
   bool single = false, turn_inverted = false;
@@ -95,9 +97,12 @@ class Operator {
       const pybind11::gil_scoped_release release;
       code = work();
     }
+    if (code != KACANOV_OK)
+      for (const auto& law : own_laws_) law->raise();
     check(code, kacanov_message(handle_));
   }
 
+  std::vector<std::unique_ptr<OwnLaw>> own_laws_;
   kacanov_operator* handle_ = nullptr;
   kacanov_information size_{};
   std::atomic<bool> busy_ = false;
