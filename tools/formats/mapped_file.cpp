@@ -19,7 +19,7 @@ namespace {
 
 /// The one range in which a bus error is answered; others are what they always were.
 std::atomic<const char*> guarded_begin = nullptr, guarded_end = nullptr;
-struct sigaction before {};  // what the process did about them
+struct sigaction earlier {};  // what the process did about them
 
 /// Puts a page of zeros where the file has none any more; the read that failed is tried again and goes on.
 void put_zeros(int, siginfo_t* info, void*) {
@@ -28,7 +28,7 @@ void put_zeros(int, siginfo_t* info, void*) {
   void* start = reinterpret_cast<void*>(reinterpret_cast<std::uintptr_t>(at) / page * page);
   const bool ours = at >= guarded_begin.load() && at < guarded_end.load();
   if (!ours || ::mmap(start, page, PROT_READ, MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0) == MAP_FAILED)
-    sigaction(SIGBUS, &before, nullptr);
+    sigaction(SIGBUS, &earlier, nullptr);
 }
 
 /// From now on; an empty range ends it.
@@ -40,9 +40,9 @@ void guard(const char* data, std::size_t size) {
     struct sigaction action {};
     action.sa_sigaction = put_zeros;
     action.sa_flags = SA_SIGINFO;
-    sigaction(SIGBUS, &action, guards ? nullptr : &before);
+    sigaction(SIGBUS, &action, guards ? nullptr : &earlier);
   } else if (guards) {
-    sigaction(SIGBUS, &before, nullptr);
+    sigaction(SIGBUS, &earlier, nullptr);
   }
 }
 
