@@ -7,6 +7,7 @@
 #include <functional>
 #include <vector>
 
+#include <kacanov/model.hpp>
 #include "contact/balance.hpp"
 #include "contact/contact_state.hpp"
 #include "multigrid/cg.hpp"
@@ -32,7 +33,7 @@ struct AdmmOptions {
   double force_reduction = 0.0;  ///< or relative to the contact force: where nothing else sets a scale
   double trace_tolerance = 0.0;  ///< absolute, on max |Cu − φ|
   int max_iterations = 10000;
-  int max_cg = 2000;  ///< CG iterations of one solve
+  int max_cg = SolverOptions{}.max_cg;  ///< CG iterations of one solve
   /// Points under pressure that Coulomb's friction acts on stick, whatever their bound.
   bool sticking = false;
   /// With ε > 0 the stop is by steps (theory: step-stop), and the solves are as exact as the tolerances

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <kacanov/model.hpp>
 #include <kacanov/result.hpp>
 #include "contact/trace_rows.hpp"
 #include "linear/distributed_operator.hpp"
@@ -15,8 +16,8 @@
 namespace kacanov {
 
 struct SpectrumOptions {
-  double tolerance = 1e-2;  ///< relative, on eigenvalues
-  int max_cg = 2000;        ///< CG iterations of one product
+  double tolerance = 1e-2;              ///< relative, on eigenvalues
+  int max_cg = SolverOptions{}.max_cg;  ///< CG iterations of one product
 };
 
 /// Bookkeeping of a run of estimates.
