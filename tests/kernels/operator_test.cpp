@@ -28,6 +28,7 @@ std::vector<std::string> instruction_sets() {
     } catch (const std::invalid_argument&) {
     }
   }
+  if (testing::sanitized && sets.size() > 2) sets.erase(sets.begin() + 1);  // the ends of what blocks may be
   return sets;
 }
 
