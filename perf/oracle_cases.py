@@ -245,7 +245,9 @@ def straining_cases():
                                ("torus", {"torus": {"centre": below, "axis": [0, 1, 0], "radius": 0.75 * size, "tube": 0.25 * size}}),
                                ("cone", {"cone": {"apex": [-size, 0.3, -size - 0.01], "axis": [1, 0, 0], "half_angle": 45}}),
                                ("plane", {"plane": {"point": [size, -3 * size, -0.01], "normal": [0, 0, 1]}}),
-                               ("box", {"box": {"lower": [-size] * 3, "upper": [size, size, -0.01]}})):
+                               ("box", {"box": {"lower": [-size] * 3, "upper": [size, size, -0.01]}}),
+                               ("turned box", {"box": {"lower": [-size] * 3, "upper": [size, size, -0.01],
+                                                       "frame": [[4, 3, 0], [-3, 4, 0], [0, 0, 1]]}})):
             yield (f"size 1e{power} {name}", beam("hex8", contact=[{"on": "bottom", "obstacle": obstacle}]), None)
     for element in ("tri3", "tet4", "tet10", "hex8"):
         for ratio in (1e2, 1e3, 1e4):

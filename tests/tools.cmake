@@ -30,7 +30,7 @@ add_dependencies(test_program_verify kacanov)
 set_tests_properties(program_verify PROPERTIES PROCESSORS 2)
 
 kacanov_test(program_supports
-  SOURCES tools/program_supports_test.cpp tools/mesh_writer.cpp
+  SOURCES tools/program_supports_test.cpp tools/program_turned_box_test.cpp tools/mesh_writer.cpp
   LIBRARIES kacanov_program_runner kacanov_formats)
 add_dependencies(test_program_supports kacanov)
 set_tests_properties(program_supports PROPERTIES PROCESSORS 2)

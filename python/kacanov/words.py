@@ -218,6 +218,7 @@ class Block(Obstacle):
     key = "box"
     lower: Sequence[float]
     upper: Sequence[float]
+    frame: Sequence[Sequence[float]] | None = None
 
 
 @dataclass(frozen=True)

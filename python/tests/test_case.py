@@ -142,6 +142,14 @@ class Solutions(unittest.TestCase):
         found = self.case.check()
         self.assertEqual((found["unknowns"], found["element"]), (243, "hex8"))
 
+    def test_a_turned_block_is_a_plane_where_it_is_large(self):
+        case = kc.Case(kc.box((2, 1, 1), (4, 2, 2), "hex8")).material(210e3, 0.3).fix("top", (0, 0, -0.01))
+        of_plane = case.copy().contact("bottom", kc.Plane((0, 0, 0), (0.02, 0.02, 1))).solve()
+        block = kc.Block((-1, -9, -9), (1, 9, -0.2), frame=[(1, 1, -0.04), (-1, 1, 0), (0.02, 0.02, 1)])
+        self.assertEqual(block.json()["box"]["frame"][1], (-1, 1, 0))
+        turned = case.contact("bottom", block).solve()
+        np.testing.assert_allclose(turned.u, of_plane.u, rtol=0, atol=1e-9)
+
     def test_warmth_that_nothing_hinders_strains_without_stress(self):
         case = kc.Case(kc.box((2, 1, 1), (4, 2, 2), "hex8")).material(210e3, 0.3, expansion=1e-5).temperature(100)
         case.fix("left", (None, 0, None), frame=[(0, 1, 0), (1, 0, 0), (0, 0, 1)])

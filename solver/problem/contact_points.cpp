@@ -44,7 +44,7 @@ class Faces {
       return;
     }
     const auto* block = std::get_if<Block>(&obstacle);
-    if (block != nullptr && block->lower[2] == block->upper[2])
+    if (block != nullptr && block->flat())
       throw InputError(path_ + ": expected corners of three entries that differ in all of them");
   }
 

@@ -10,6 +10,7 @@
 #include <kacanov/error.hpp>
 #include <kacanov/obstacle.hpp>
 #include <kacanov/rules.hpp>
+#include "problem/vector3.hpp"
 
 namespace kacanov {
 
@@ -49,6 +50,16 @@ inline void check(const std::string& path, const Vector3& v) {
 inline void check_direction(const std::string& path, const Vector3& v) {
   check(path, v);
   if (v == Vector3{}) refuse(path, "a vector that is not zero", shown_list(v));
+}
+
+/// Orthogonal axes of any length.
+inline void check_axes(const std::string& path, const std::array<Vector3, 3>& axes) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    check_direction(at(path, a), axes[a]);
+    for (std::size_t b = 0; b < a; ++b)
+      if (std::abs(dot(axes[a], axes[b])) > 1e-9 * norm(axes[a]) * norm(axes[b]))
+        refuse(at(path, a), "an axis orthogonal to those before", shown_list(axes[a]));
+  }
 }
 
 }  // namespace kacanov

@@ -2,7 +2,6 @@
 // Obstacles in closed form: what is wrong with one, and how it is seen from a point (theory: traces).
 #include <kacanov/obstacle.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -17,14 +16,6 @@ namespace {
 
 /// What double precision leaves of a length that was computed from lengths as long as this, in some steps.
 constexpr double some_roundings = 1e-15;
-
-TrackedVector unit(const TrackedVector& v) { return Tracked(1.0) / norm(v) * v; }
-TrackedVector unit(const Vector3& v) { return unit(tracked(v)); }
-
-/// `lengths`: those of the case that the gap is a difference of.
-Facing facing(const TrackedVector& normal, const Tracked& gap, double lengths) {
-  return {values(normal), gap.value(), gap.error(), lengths};
-}
 
 /// Whether a vector of this length leads anywhere that can be told.
 bool leads_somewhere(const Tracked& length) { return length.value() > 1e12 * length.error(); }
@@ -162,40 +153,6 @@ Facing Torus::project(const SurfacePoint& from) const {
   Facing found = round(Tracked(radius) / distance * out - x, tube, false);
   found.lengths += distance.value() + radius;
   return found;
-}
-
-void Block::check(const std::string& path) const {
-  kacanov::check(path + ".lower", lower);
-  kacanov::check(path + ".upper", upper);
-  for (std::size_t c = 0; c < 3; ++c)
-    if (lower[c] > upper[c] || (c < 2 && lower[c] == upper[c]))
-      refuse(path, "a lower corner that is below the upper one in every direction",
-             shown_list(lower) + " and " + shown_list(upper));
-}
-
-Facing Block::project(const SurfacePoint& from) const {
-  const std::size_t dim = lower[2] == upper[2] ? 2 : 3;
-  Vector3 offset{};
-  double depth = HUGE_VAL;
-  for (std::size_t c = 0; c < dim; ++c) {
-    offset[c] = std::clamp(from.x[c], lower[c], upper[c]) - from.x[c];
-    depth = std::min({depth, from.x[c] - lower[c], upper[c] - from.x[c]});
-  }
-  const double distance = norm(offset);
-  if (distance > 0.0) return towards(offset, distance, some_roundings * distance);
-  // Of faces that are as near, as on an edge, the one that the body looks at.
-  const double equal = 1e-9 * norm(upper - lower);
-  Vector3 face{};
-  double opposite = -HUGE_VAL;
-  for (std::size_t c = 0; c < dim; ++c)
-    for (const double inwards : {1.0, -1.0}) {
-      const double below = inwards > 0.0 ? from.x[c] - lower[c] : upper[c] - from.x[c];
-      if (below > depth + equal || inwards * from.outer[c] <= opposite) continue;
-      opposite = inwards * from.outer[c];
-      face = {};
-      face[c] = inwards;
-    }
-  return {face, -depth, some_roundings * std::abs(depth)};
 }
 
 void SurfaceObstacle::check(const std::string&) const {}

@@ -91,6 +91,9 @@ inline Vector3 values(const TrackedVector& v) { return {v[0].value(), v[1].value
 inline TrackedVector operator-(const TrackedVector& a, const TrackedVector& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
+inline TrackedVector operator+(const TrackedVector& a, const TrackedVector& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
 inline TrackedVector operator*(const Tracked& s, const TrackedVector& v) {
   return {s * v[0], s * v[1], s * v[2]};
 }
@@ -98,5 +101,12 @@ inline Tracked dot(const TrackedVector& a, const TrackedVector& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 inline Tracked norm(const TrackedVector& v) { return sqrt(dot(v, v)); }
+inline TrackedVector unit(const TrackedVector& v) { return Tracked(1.0) / norm(v) * v; }
+inline TrackedVector unit(const Vector3& v) { return unit(tracked(v)); }
+
+/// `lengths`: those of the case that the gap is a difference of.
+inline Facing facing(const TrackedVector& normal, const Tracked& gap, double lengths) {
+  return {values(normal), gap.value(), gap.error(), lengths};
+}
 
 }  // namespace kacanov

@@ -38,13 +38,7 @@ void check_material(const std::string& path, const MaterialEntry& entry) {
 
 void check_frame(const std::string& path, const BoundaryEntry& entry) {
   if (!entry.displacement) throw InputError(path + ".frame: expected this key beside displacement alone");
-  const auto& axes = *entry.frame;
-  for (std::size_t a = 0; a < 3; ++a) {
-    check_direction(at(path + ".frame", a), axes[a]);
-    for (std::size_t b = 0; b < a; ++b)
-      if (std::abs(dot(axes[a], axes[b])) > 1e-9 * norm(axes[a]) * norm(axes[b]))
-        refuse(at(path + ".frame", a), "an axis orthogonal to those before", shown_list(axes[a]));
-  }
+  check_axes(path + ".frame", *entry.frame);
 }
 
 void check_stiffness(const std::string& path, const Vector3& stiffness) {

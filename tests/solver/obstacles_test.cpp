@@ -21,6 +21,10 @@ Facing look(const Obstacle& obstacle, const Vector3& x) {
   return std::visit([&](const auto& kind) { return kind.project({x, {0, 0, 1}}); }, obstacle);
 }
 
+/// Of axes of any length, right-handed.
+constexpr std::array<Vector3, 3> slanting_frame{Vector3{1, 0.2, 0.5}, Vector3{-0.2, 1, 0},
+                                                Vector3{-0.5, -0.1, 1.04}};
+
 class Dice {
  public:
   double number(double low = -1.0, double high = 1.0) { return low + (high - low) * uniform_(bits_); }
@@ -95,6 +99,7 @@ TEST_CASE("an obstacle without direction is a signed distance: ν is its slope, 
                                         Cone{{0, 0.1, 0.2}, {1, 0, -2}, 35.0, {}},
                                         Torus{{0.1, 0, 0}, {0, 1, 2}, 0.8, 0.3},
                                         Block{{-0.5, -0.4, -0.3}, {0.3, 0.6, 0.5}},
+                                        Block{{-0.5, -0.4, -0.3}, {0.3, 0.6, 0.5}, slanting_frame},
                                         SurfaceObstacle{shared_ball(2)}};
   Dice dice;
   for (const Obstacle& obstacle : obstacles)
@@ -234,6 +239,11 @@ TEST_CASE("what is wrong with an obstacle is said with its key") {
        "and "
        "[1,-1,1]",
        Block{{0, 0, 0}, {1, -1, 1}}},
+      {"obstacle.box.frame[1]: expected an axis orthogonal to those before, got [1,1,0]",
+       Block{{0, 0, 0}, {1, 1, 1}, std::array{Vector3{1, 0, 0}, Vector3{1, 1, 0}, Vector3{0, 0, 1}}}},
+      {"obstacle.box: expected a lower corner that is below the upper one in every direction of the frame, "
+       "got [0,0,0] and [1,1,1]",
+       Block{{0, 0, 0}, {1, 1, 1}, std::array{Vector3{1, 1, 0}, Vector3{-1, 1, 0}, Vector3{0, 0, 1}}}},
       {"obstacle.height_map.upper[1]: expected a number above that of the lower corner, 3, got 2",
        HeightMap{std::make_shared<const HeightField>(HeightField{2, 2, {0, 0, 0, 0}, {1, 3}, {2, 2}})}}};
   for (const auto& [message, obstacle] : rows) CHECK(complaint(obstacle) == message);
@@ -252,7 +262,11 @@ TEST_CASE(
         {Cylinder{{3, 0, -size}, {5, 0, 0}, size, {}}, 1.0},
         {Cylinder{{3, 0, -size}, {5, 0, 0}, size, Vector3{0, 0, -2}}, 1.0},
         {Torus{{0, 0, -size}, {1, 0, 0}, 0.75 * size, 0.25 * size}, 4.0},
-        {Block{{-size, -size, -size}, {size, size, 0}}, 0.0}};
+        {Block{{-size, -size, -size}, {size, size, 0}}, 0.0},
+        {Block{{-size, -size, -size},
+               {size, size, 0},
+               std::array{Vector3{4, 3, 0}, Vector3{-3, 4, 0}, Vector3{0, 0, 1}}},
+         0.0}};
     for (const auto& one : obstacles) {
       const auto& obstacle = one.first;
       const auto& bend = one.second;

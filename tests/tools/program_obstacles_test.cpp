@@ -118,6 +118,7 @@ TEST_CASE("every kind of obstacle: run on one rank or two, and verified") {
       R"({"cone": {"apex": [0.9, 0.5, 0], "axis": [0.1, 0, -1], "half_angle": 85, "direction": [0, 0, -1]}})",
       R"({"torus": {"centre": [1.01, 0.52, -0.2], "axis": [0, 0, 1], "radius": 0.4, "tube": 0.2}})",
       R"({"box": {"lower": [0.45, 0.2, -1], "upper": [1.55, 0.9, 0]}})",
+      R"({"box": {"lower": [0.7, -0.3, -1], "upper": [1.5, 1.1, 0.002], "frame": [[1, 1, 0.1], [-1, 1, 0], [-0.1, -0.1, 2]]}})",
       R"({"surface": {"file": "ball.stl"}})",
       R"({"surface": {"file": "ball.msh", "group": "tool"}})",
       R"({"height_map": {"file": "heights.csv", "lower": [0, 0], "upper": [2, 1]}})",

@@ -3,12 +3,10 @@
 // solutions; on any ranks, each verified from its files; bad input.
 #include <doctest/doctest.h>
 
-#include <array>
 #include <cmath>
-#include <functional>
 #include <string>
 
-#include "mesh_writer.hpp"
+#include "turned_body.hpp"
 #include "verified_run.hpp"
 
 using namespace kacanov;
@@ -16,32 +14,6 @@ using namespace kacanov::testing;
 using nlohmann::json;
 
 namespace {
-
-using Point = std::array<double, 3>;
-
-/// A rotation by 0.5 about (1, 2, 2)/3.
-Point turned(const Point& x) {
-  const Point a{1.0 / 3, 2.0 / 3, 2.0 / 3};
-  const double c = std::cos(0.5), s = std::sin(0.5), along = a[0] * x[0] + a[1] * x[1] + a[2] * x[2];
-  const Point across{a[1] * x[2] - a[2] * x[1], a[2] * x[0] - a[0] * x[2], a[0] * x[1] - a[1] * x[0]};
-  Point y{};
-  for (std::size_t k = 0; k < 3; ++k) y[k] = c * x[k] + s * across[k] + (1 - c) * along * a[k];
-  return y;
-}
-
-void put_mesh(const Workplace& place, const BoxSpec& box, const std::function<Point(const Point&)>& map) {
-  Mesh mesh = make_box(box);
-  for (std::size_t i = 0; i < mesh.coordinates.size(); i += 3) {
-    const Point x = map({mesh.coordinates[i], mesh.coordinates[i + 1], mesh.coordinates[i + 2]});
-    std::copy(x.begin(), x.end(), &mesh.coordinates[i]);
-  }
-  place.put("body.msh", gmsh_file(mesh, {.new_format = false}));
-}
-
-json list(const Point& x) { return {x[0], x[1], x[2]}; }
-Point vector(const json& list) { return list.get<Point>(); }
-
-double distance(const Point& a, const Point& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
 /// A plastic block between three planes of symmetry, on springs beside, with an obstacle before its top.
 json block(const Point& shear, const Point& up, const Point& top) {

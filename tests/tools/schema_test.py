@@ -61,7 +61,7 @@ LAWS = [{"type": "linear"}, {"type": "logarithmic", "yield_stress": 1}, {"type":
 OBSTACLES = [{"cylinder": {"point": VECTOR, "axis": [1, 0, 0], "radius": 1, "inside": True}},
              {"cone": {"apex": [0, 0, -1], "axis": [0, 0, -1], "half_angle": 80}},
              {"torus": {"centre": [0, 0, -9], "axis": VECTOR, "radius": 3, "tube": 1}},
-             {"box": {"lower": [0, 0, -2], "upper": [1, 1, -1]}},
+             {"box": {"lower": [0, 0, -2], "upper": [1, 1, -1], "frame": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}},
              {"surface": {"file": "a.stl", "group": "all"}},
              {"height_map": {"file": "a.csv", "lower": [0, 0], "upper": [1, 1], "scale": 1, "offset": 0, "body": "above"}}]
 

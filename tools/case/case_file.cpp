@@ -64,14 +64,6 @@ class CaseParser {
     return v;
   }
 
-  /// As many axes as the mesh has dimensions; the third of a plane is across it.
-  std::array<Vector3, 3> axes(const Node& node) {
-    const std::vector<Node> list = node.entries();
-    std::array<Vector3, 3> all{Vector3{1, 0, 0}, Vector3{0, 1, 0}, Vector3{0, 0, 1}};
-    for (std::size_t a = 0; a < list.size(); ++a) all[a] = vector(list[a]);
-    return all;
-  }
-
   /// A path, relative ones taken from the case file's folder.
   std::string in_folder(const std::string& name) const {
     const std::filesystem::path file = name;
@@ -196,7 +188,8 @@ class CaseParser {
       for (double& component : force) component *= density->number();
       entry.body_force = force;
     }
-    if (const auto frame = object.optional("frame")) entry.frame = axes(*frame);
+    if (const auto frame = object.optional("frame"))
+      entry.frame = parse_axes(*frame, [this](const Node& v) { return vector(v); });
     result_.model.boundary.push_back(entry);
   }
 

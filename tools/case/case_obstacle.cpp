@@ -70,7 +70,11 @@ Obstacle read_torus(const Object& parts, const Source& from) {
 }
 
 Obstacle read_box(const Object& parts, const Source& from) {
-  return Block{from.required(parts, "lower"), from.required(parts, "upper")};
+  Block result;
+  result.lower = from.required(parts, "lower");
+  result.upper = from.required(parts, "upper");
+  if (const auto frame = parts.optional("frame")) result.frame = parse_axes(*frame, from.vector);
+  return result;
 }
 
 Obstacle read_surface(const Object& parts, const Source& from) {
@@ -151,10 +155,12 @@ constexpr ObstacleEntry obstacle_entries[] = {
                       must("tube", Number{positive}, "radius of the tube")}};
      },
      read_torus},
-    {"box", "a block along the axes",
+    {"box", "a block, along the axes or turned",
      [] {
        return KeySet{{must("lower", vector_schema(), "its lower corner"),
-                      must("upper", vector_schema(), "its upper corner")}};
+                      must("upper", vector_schema(), "its upper corner"),
+                      may("frame", axes_schema(),
+                          "orthogonal axes that its edges are along; left out, the coordinates'")}};
      },
      read_box},
     {"surface", "the triangles of a file; 3D only",
@@ -190,6 +196,13 @@ Schema obstacle_schema() {
   for (const Key& key : set.keys) kinds.keys.push_back(key.name);
   set.one_of.push_back(std::move(kinds));
   return set;
+}
+
+std::array<Vector3, 3> parse_axes(const Node& node, const ReadVector& vector) {
+  const std::vector<Node> list = node.entries();
+  std::array<Vector3, 3> all{Vector3{1, 0, 0}, Vector3{0, 1, 0}, Vector3{0, 0, 1}};
+  for (std::size_t a = 0; a < list.size(); ++a) all[a] = vector(list[a]);
+  return all;
 }
 
 Obstacle parse_obstacle(const Node& node, const ReadVector& vector, std::optional<ObstacleFile>& file) {

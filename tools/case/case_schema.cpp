@@ -76,7 +76,6 @@ KeySet temperature() {
 KeySet boundary() {
   const char* free_or_number = "a number, or null for a free component";
   const Schema held = ListOf{Either{{Number{}, Null{}}, free_or_number}, "a list of 2 or 3 numbers", 2, 3};
-  const Schema axes = ListOf{vector_schema(), "a list of 2 or 3 axes", 2, 3};
   return {
       {must("on", selector(),
             "facets; elements for body_force, density, temperature; or nodes, where nodes will do"),
@@ -98,7 +97,7 @@ KeySet boundary() {
            "by how much elements are warmer than where they are free of strain"),
        may("normal", Number{},
            "displacement of flat facets along their outer normal; 0 is a plane of symmetry"),
-       may("frame", axes, "orthogonal axes that the entries of displacement are along")},
+       may("frame", axes_schema(), "orthogonal axes that the entries of displacement are along")},
       {{{"displacement", "traction", "pressure", "body_force", "total_force", "density", "spring",
          "node_spring", "node_force", "temperature", "normal"}}},
       {{"acceleration", "density", true}, {"frame", "displacement"}}};
@@ -225,6 +224,7 @@ KeySet top() {
 }  // namespace
 
 Schema vector_schema() { return Schema(ListOf{Number{}, "a list of 2 or 3 numbers", 2, 3}).named("vector"); }
+Schema axes_schema() { return ListOf{vector_schema(), "a list of 2 or 3 axes", 2, 3}; }
 
 const Schema& case_schema() {
   static const Schema schema = top();

@@ -23,6 +23,7 @@ inline Key may(const char* name, Schema schema, const char* help, nlohmann::json
 
 // Parts that have files of their own.
 Schema vector_schema();
+Schema axes_schema();
 Schema obstacle_schema();
 
 }  // namespace kacanov

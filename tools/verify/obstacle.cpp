@@ -104,28 +104,49 @@ Face torus(const json& given) {
 }
 
 Face block(const json& given) {
-  const Vec lower = read_vector(given.at("lower")), upper = read_vector(given.at("upper"));
+  const WideVec lower = wide_vector(given.at("lower")), upper = wide_vector(given.at("upper"));
+  std::array<WideVec, 3> axes{WideVec{{1, 0, 0}}, WideVec{{0, 1, 0}}, WideVec{{0, 0, 1}}};
+  if (given.contains("frame"))
+    for (std::size_t a = 0; a < given.at("frame").size(); ++a)
+      axes[a] = unit(wide_vector(given.at("frame").at(a)));
+  const bool flat = lower[2] == upper[2] && axes[2][0] == 0 && axes[2][1] == 0;
+  const Real close = 1e-9L * static_cast<Real>(length(upper - lower));
   return [=](const Vec& x, const Vec& outer) {
-    const std::size_t dim = lower[2] < upper[2] ? 3 : 2;
-    Vec way{};
-    std::vector<std::pair<Real, Vec>> faces;  // how deep below, and inwards
-    for (std::size_t c = 0; c < dim; ++c) {
-      way[c] = std::max(lower[c] - x[c], Real(0)) - std::max(x[c] - upper[c], Real(0));
-      Vec inwards{};
-      inwards[c] = 1;
-      faces.emplace_back(x[c] - lower[c], inwards);
-      faces.emplace_back(upper[c] - x[c], -1 * inwards);
+    Facing within{{}, -HUGE_VALL};
+    Real looked = -HUGE_VALL, unknown = 0;  // of what is outside
+    WideVec way{};
+    bool outside = false;
+    std::vector<std::pair<Wide, WideVec>> faces;  // how far below the face, and its outer normal
+    for (std::size_t a = 0; a < (flat ? 2 : 3); ++a)
+      for (const Wide side : {Wide(-1), Wide(1)}) {
+        const WideVec from = (side < 0 ? lower : upper) - wide(x);
+        const Wide below = side * inner(from, axes[a]);
+        faces.emplace_back(below, scaled(side, axes[a]));
+        Real lost = 0;
+        for (std::size_t c = 0; c < 3; ++c)
+          lost += closed * std::abs(static_cast<Real>(from[c] * axes[a][c]));
+        if (static_cast<Real>(-below) > within.gap) {
+          within.gap = static_cast<Real>(-below);
+          within.unknown = lost;
+        }
+        if (!(below < 0)) continue;
+        outside = true;
+        unknown += lost;
+        way = way - scaled(-side * below, axes[a]);
+      }
+    if (outside) {
+      const Wide far = length(way);
+      Facing found = facing(scaled(1 / far, way), far);
+      found.unknown = unknown;
+      return found;
     }
-    if (norm(way) > 0) return Facing{unit(way), norm(way)};
-    Real depth = HUGE_VALL, looked = -HUGE_VALL;
-    for (const auto& [below, inwards] : faces) depth = std::min(depth, below);
-    Facing facing{{}, -depth};
-    for (const auto& [below, inwards] : faces) {
-      if (below > depth + 1e-9L * norm(upper - lower) || dot(inwards, outer) <= looked) continue;
-      looked = dot(inwards, outer);
-      facing.normal = inwards;
+    for (const auto& [below, normal] : faces) {
+      const Real seen = -dot(narrow(normal), outer);
+      if (static_cast<Real>(below) > close - within.gap || seen <= looked) continue;
+      looked = seen;
+      within.normal = -1 * narrow(normal);
     }
-    return facing;
+    return within;
   };
 }
 

@@ -86,9 +86,13 @@ struct Torus {
   Facing project(const SurfacePoint& from) const;
 };
 
-/// Along the axes; in 2D the third entries do not count.
+/// A block, by opposite corners; in 2D the third entries do not count.
 struct Block {
   Vector3 lower{}, upper{};
+  /// Orthogonal, of any length: what its edges are along, from the lower corner to the upper one. Left out,
+  /// the coordinates' axes.
+  std::optional<std::array<Vector3, 3>> frame = {};
+  bool flat() const;  ///< without a length along the third axis: one for 2D
   static constexpr const char *key = "box", *undecided = "";
   void check(const std::string& path) const;
   Facing project(const SurfacePoint& from) const;

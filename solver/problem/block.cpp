@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The obstacle `box`, along the axes or turned (theory: traces).
+#include <array>
+#include <cmath>
+
+#include <kacanov/obstacle.hpp>
+#include "problem/model_checks.hpp"
+#include "problem/tracked.hpp"
+#include "problem/vector3.hpp"
+
+namespace kacanov {
+namespace {
+
+/// Of a box: through its lower or its upper corner.
+struct BoxFace {
+  TrackedVector inwards{};
+  Tracked above;         ///< how far the point that looks is above it
+  double lengths = 0.0;  ///< of the case that this is a difference of
+};
+
+BoxFace box_face(const Vector3& x, const Vector3& corner, const TrackedVector& inwards) {
+  const Vector3 way = corner - x, n = values(inwards);
+  return {inwards, dot(tracked(corner) - tracked(x), inwards),
+          std::abs(way[0] * n[0]) + std::abs(way[1] * n[1]) + std::abs(way[2] * n[2])};
+}
+
+}  // namespace
+
+bool Block::flat() const {
+  const Vector3 across = frame ? (*frame)[2] : Vector3{0.0, 0.0, 1.0};
+  return lower[2] == upper[2] && across[0] == 0.0 && across[1] == 0.0;
+}
+
+void Block::check(const std::string& path) const {
+  kacanov::check(path + ".lower", lower);
+  kacanov::check(path + ".upper", upper);
+  if (frame) check_axes(path + ".frame", *frame);
+  const Vector3 diagonal = upper - lower;
+  // Corners that lie at one height along an axis of a frame do so to rounding only.
+  const double least = frame ? 1e-12 * norm(diagonal) : 0.0;
+  for (std::size_t c = 0; c < (flat() ? 2 : 3); ++c)
+    if (!((frame ? dot(diagonal, (*frame)[c]) / norm((*frame)[c]) : diagonal[c]) > least))
+      refuse(path,
+             std::string("a lower corner that is below the upper one in every direction") +
+                 (frame ? " of the frame" : ""),
+             shown_list(lower) + " and " + shown_list(upper));
+}
+
+Facing Block::project(const SurfacePoint& from) const {
+  std::array<BoxFace, 6> faces;
+  const std::size_t count = flat() ? 4 : 6;
+  for (std::size_t f = 0; f < count; ++f) {
+    Vector3 axis{};
+    axis[f / 2] = 1.0;
+    if (frame) axis = (*frame)[f / 2];
+    faces[f] = box_face(from.x, f % 2 == 0 ? lower : upper, Tracked(f % 2 == 0 ? 1.0 : -1.0) * unit(axis));
+  }
+  TrackedVector offset{};
+  double lengths = 0.0;
+  Tracked nearest = -HUGE_VAL;
+  for (std::size_t f = 0; f < count; ++f) {
+    const BoxFace& face = faces[f];
+    if (face.above.value() > nearest.value()) nearest = face.above;
+    if (!(face.above.value() > 0.0)) continue;
+    offset = offset + face.above * face.inwards;
+    lengths += face.lengths;
+  }
+  if (nearest.value() > 0.0) {
+    const Tracked distance = norm(offset);
+    return facing(Tracked(1.0) / distance * offset, distance, lengths);
+  }
+  // Of faces that are as near, as on an edge, the one that the body looks at.
+  const double equal = 1e-9 * norm(upper - lower);
+  const BoxFace* faced = nullptr;
+  for (std::size_t f = 0; f < count; ++f) {
+    if (faces[f].above.value() < nearest.value() - equal) continue;
+    if (faced == nullptr ||
+        dot(values(faces[f].inwards), from.outer) > dot(values(faced->inwards), from.outer))
+      faced = &faces[f];
+  }
+  return facing(faced->inwards, nearest, faced->lengths);
+}
+
+}  // namespace kacanov
