@@ -3,6 +3,7 @@
 #include "operator.hpp"
 
 #include <array>
+#include <utility>
 
 #include <kacanov/cells.hpp>
 #include <kacanov/error.hpp>
@@ -220,7 +221,7 @@ py::tuple Operator::matrix(const py::object& u) {
   const double* from = nullptr;
   if (!u.is_none()) {
     in = wanted_array<double>(u, vector("u"));
-    from = entries<double>(in).data();
+    from = entries<double>(std::as_const(in)).data();
   }
   std::size_t count = 0;
   run([&] { return kacanov_matrix_entries(handle_, n, &count); });

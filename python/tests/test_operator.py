@@ -83,6 +83,21 @@ class Products(unittest.TestCase):
         self.assertIs(self.op.matvec(self.x, out), out)
         np.testing.assert_array_equal(out, self.op @ self.x)
 
+    def test_what_is_only_read_may_be_protected(self):
+        for array in (self.points, self.cells, self.u, self.x):
+            array.flags.writeable = False
+        op = kc.Operator(self.points, self.cells, "hex8", law=LAW)
+        op.update(self.u)
+        op.stress(self.u), op.energy(self.u), op.tangent(self.u) @ self.x
+        np.testing.assert_array_equal(op @ self.x, self.op_at(self.u) @ self.x)
+        np.testing.assert_array_equal(op.residual(self.u), self.op.residual(self.u))
+        if have("scipy"):
+            self.assertEqual(op.matrix(self.u).nnz, op.matrix().nnz)
+
+    def op_at(self, u):
+        self.op.update(u)
+        return self.op
+
     def test_arrays_in_fortrans_order_and_in_vtks(self):
         columns = kc.Operator(np.asfortranarray(self.points), self.cells, "hex8", law=LAW)
         np.testing.assert_allclose(columns @ self.x, self.op @ self.x, rtol=0, atol=1e-14)
