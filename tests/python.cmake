@@ -4,7 +4,7 @@ file(GLOB petsc4py "/usr/lib/petscdir/*/*-real/lib/python3/dist-packages")  # wh
 if(petsc4py)
   list(GET petsc4py 0 petsc4py)
 endif()
-foreach(area case dolfinx notebooks operator own_law plot steps)
+foreach(area case dolfinx notebooks operator own_law petsc plot steps)
   add_test(NAME python_${area} COMMAND "${PYTHON_EXECUTABLE}" -B -m unittest test_${area}
     WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}/python/tests")
   kacanov_test_properties(python_${area} 2)
