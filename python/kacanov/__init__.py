@@ -10,7 +10,7 @@
 """
 from ._kacanov import version as __version__
 from .case import Case, ProgressTable
-from .errors import Error, InputError, InternalError, Interrupted, StateError
+from .errors import Error, InputError, InternalError, Interrupted, RankError, StateError
 from .mesh import BoxMesh, Mesh, MeshFile, box, from_dolfinx, from_meshio, read
 from .operator import CgResult, Multigrid, Operator, Tangent
 from .solution import Solution, Step
@@ -20,6 +20,6 @@ from .words import (Block, Box, Cone, Cylinder, Gap, HeightMap, Law, Linear, Lin
 __all__ = [
     "Block", "Box", "BoxMesh", "Case", "CgResult", "Cone", "Cylinder", "Error", "Gap", "HeightMap", "InputError",
     "InternalError", "Interrupted", "Law", "Linear", "LinearHardening", "Logarithmic", "Material", "Mesh", "MeshFile",
-    "Multigrid", "Obstacle", "Operator", "OwnLaw", "Plane", "Power", "ProgressTable", "RambergOsgood", "Saturating",
-    "Solution", "Sphere", "StateError", "Step", "Surface", "Table", "Tangent", "Torus", "box", "from_dolfinx",
-    "from_meshio", "read", "__version__"]
+    "Multigrid", "Obstacle", "Operator", "OwnLaw", "Plane", "Power", "ProgressTable", "RambergOsgood", "RankError",
+    "Saturating", "Solution", "Sphere", "StateError", "Step", "Surface", "Table", "Tangent", "Torus", "box",
+    "from_dolfinx", "from_meshio", "read", "__version__"]

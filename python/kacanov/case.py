@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TextIO
 
 from . import _kacanov
-from .errors import InputError, Interrupted
+from .errors import InputError, Interrupted, RankError
 from .mesh import BoxMesh, Mesh, MeshFile
 from .solution import Solution
 from .words import Law, Obstacle, Word, plain
@@ -227,28 +227,43 @@ class Case:
         start: a solution of the same body to start from, on any mesh; it saves work and changes nothing else.
         stop: asked some fifty times a second; where it says True the solve ends as `interrupted`.
         threads: None: one for small bodies, else as many as there are cores.
-        comm: of mpi4py: the solve is one of all its ranks, and the fields are those of the first.
+        comm: of mpi4py: the solve is one of all its ranks. The case is that of the first, which has the progress and the
+        fields. Where one rank raises something all of them do: the others RankError, or Interrupted where it is Ctrl-C.
         memory_check: refuse what does not fit into memory.
         Ctrl-C ends the solve with the state after its last whole outer step, in Interrupted.solution and in
         `self.solution`. What a callback raises ends it likewise, and is raised.
         """
-        text, path, mesh = self._text()
-        tell = ProgressTable() if progress is True else progress or None
-        address = 0
-        if comm is not None:
-            from mpi4py import MPI  # what it has is what MPI is in this process
-            address = MPI._addressof(comm)
-        solved, raised = _kacanov.solve({
-            "text": text, "path": path, "mesh": mesh, "progress": tell, "stop": stop, "threads": threads,
-            "start": None if start is None else start._solved, "comm": address, "memory_check": memory_check})
+        given: dict[str, Any] = {
+            "progress": ProgressTable() if progress is True else progress or None, "stop": stop,
+            "comm": _address_of(comm), "threads": threads, "memory_check": memory_check, "failed": None}
+        try:
+            given["text"], given["path"], given["mesh"] = self._text()
+            given["start"] = None if start is None else start._solved
+        except BaseException as error:
+            if comm is None:
+                raise
+            given["failed"] = error  # the other ranks have to know
+        solved, raised, elsewhere = _kacanov.solve(given)
         if solved is not None:
             self.solution = Solution(solved)
-        if isinstance(raised, KeyboardInterrupt):
+        if isinstance(raised, KeyboardInterrupt) or (raised is None and elsewhere is not None and elsewhere[1]):
             raise Interrupted(self.solution if solved is not None else None) from raised
         if raised is not None:
             raise raised
+        if elsewhere is not None:
+            raise RankError(f"rank {elsewhere[0]}: {elsewhere[2]}", elsewhere[0])
         assert self.solution is not None
         return self.solution
+
+
+def _address_of(comm: Any) -> int:
+    """Where mpi4py keeps a communicator's handle; 0 without one."""
+    if comm is None:
+        return 0
+    from mpi4py import MPI  # what it has is what MPI is in this process
+    if comm == MPI.COMM_NULL:
+        raise InputError("comm: MPI.COMM_NULL")
+    return MPI._addressof(comm)
 
 
 class ProgressTable:

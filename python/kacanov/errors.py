@@ -26,8 +26,16 @@ class InternalError(Error, RuntimeError):
     """A library beneath has failed, or the library has a defect."""
 
 
+class RankError(Error, RuntimeError):
+    """Another rank of a solve of several has raised something, so that this one cannot go on. `rank`: which one."""
+
+    def __init__(self, message: str, rank: int) -> None:
+        super().__init__(message)
+        self.rank = rank
+
+
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C has ended a solve. `solution` is the state after its last whole outer step; None where there is none yet."""
+    """Ctrl-C has ended a solve, on this rank or on another one. `solution` is the state after its last whole outer step; None where there is none yet."""
 
     def __init__(self, solution: Solution | None) -> None:
         super().__init__("interrupted" + ("" if solution is None else ": " + solution.message))

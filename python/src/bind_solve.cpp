@@ -2,178 +2,19 @@
 // Cases that are solved in this process, and what comes out.
 #include <pybind11/stl.h>
 
-#include <chrono>
-#include <exception>
-#include <mutex>
-#include <thread>
-
-#include <kacanov/error.hpp>
 #include "arrays.hpp"
 #include "case/json_node.hpp"
-#include "errors.hpp"
 #include "module.hpp"
-#include "program/host_mpi.hpp"
-#include "program/launch.hpp"
 #include "program/loaded_case.hpp"
 #include "program/memory_model.hpp"
 #include "program/plain_locale.hpp"
 #include "program/solve_case.hpp"
+#include "run_case.hpp"
 
 namespace py = pybind11;
 
 namespace kacanov::python {
 namespace {
-
-using Solved = std::shared_ptr<const SolvedCase>;
-
-/// Asks and tells Python on a run's way. What is raised there, by callbacks or a signal, is kept, and stops
-/// the run at its next question.
-class Host {
- public:
-  Host(py::object progress, py::object stop, const PlainLocale& locale)
-      : progress_(std::move(progress)), stop_(std::move(stop)), locale_(locale) {}
-
-  void tell(const ProgressStep& step) {
-    if (progress_.is_none()) return;
-    const py::gil_scoped_acquire acquire;
-    guard([&] {
-      py::dict line;
-      line["phase"] = step.phase;
-      line["outer"] = step.outer;
-      line["contact_iterations"] = step.contact_iterations;
-      line["cg_iterations"] = step.cg_iterations;
-      line["r"] = step.r;
-      line["energy"] = step.energy;
-      line["worst_residual"] = step.certificate.worst();
-      line["seconds"] = step.seconds;
-      progress_(line);
-    });
-  }
-
-  /// Python's lock has to be waited for, so that it is asked no more than fifty times a second.
-  bool wants_stop() {
-    if (raised_ || stopped_) return true;
-    const auto now = std::chrono::steady_clock::now();
-    if (now - asked_ < std::chrono::milliseconds(20)) return false;
-    asked_ = now;
-    const py::gil_scoped_acquire acquire;
-    guard([&] {
-      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-      if (!stop_.is_none()) stopped_ = py::bool_(stop_());
-    });
-    return raised_ || stopped_;
-  }
-
-  /// A signal that came after the run's last question is one of the run still. With Python's lock.
-  void look_once_more() {
-    if (!raised_)
-      guard([] {
-        if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-      });
-  }
-
-  /// What was raised, as an exception object, or None. With Python's lock.
-  py::object raised() const {
-    if (!raised_) return py::none();
-    try {
-      std::rethrow_exception(raised_);
-    } catch (py::error_already_set& error) {
-      py::object value = error.value();
-      if (error.trace()) PyException_SetTraceback(value.ptr(), error.trace().ptr());
-      return value;
-    }
-  }
-
- private:
-  template <class Work>
-  void guard(const Work& work) {
-    try {
-      locale_.in_hosts(work);
-    } catch (py::error_already_set&) {
-      raised_ = std::current_exception();
-    }
-  }
-
-  py::object progress_, stop_;
-  const PlainLocale& locale_;
-  std::exception_ptr raised_;
-  bool stopped_ = false;
-  std::chrono::steady_clock::time_point asked_{};
-};
-
-/// The libraries beneath know one run a process: others wait, and may be interrupted meanwhile. With Python's
-/// lock, which is let go while waiting.
-class OneAtATime {
- public:
-  OneAtATime() {
-    if (holder_ == std::this_thread::get_id())
-      throw CodeError(KACANOV_ERROR_STATE, "solve: called from a callback of a solve");
-    while (!try_for_a_moment())
-      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    holder_ = std::this_thread::get_id();
-  }
-  ~OneAtATime() {
-    holder_ = std::thread::id();
-    mutex_.unlock();
-  }
-  OneAtATime(const OneAtATime&) = delete;
-  OneAtATime& operator=(const OneAtATime&) = delete;
-
- private:
-  static bool try_for_a_moment() {
-    const py::gil_scoped_release release;
-    return mutex_.try_lock_for(std::chrono::milliseconds(50));
-  }
-  static inline std::timed_mutex mutex_;
-  static inline std::atomic<std::thread::id> holder_;
-};
-
-/// A case and, where it is not in a file, the content of its mesh's.
-Case read_case(const std::string& text, const std::string& path, const std::optional<std::string>& mesh) {
-  Case input = parse_case(CaseText{path, text}, {});
-  if (mesh && input.mesh.file) input.mesh.content = std::make_shared<const std::string>(*mesh);
-  return input;
-}
-
-int threads_for(const Case& input, const std::optional<int>& asked) {
-  if (asked && (*asked < 1 || *asked > 4096))
-    throw InputError("threads: expected a whole number from 1 to 4096, got " + std::to_string(*asked));
-  return asked ? *asked : estimate_unknowns(input.mesh) < small_problem ? 1 : usable_cores();
-}
-
-/// mpi4py tells where it keeps a communicator's handle; 0: this process alone.
-MPI_Comm communicator_at(std::uintptr_t address) {
-  return address == 0 ? MPI_COMM_SELF : *reinterpret_cast<const MPI_Comm*>(address);
-}
-
-py::tuple solve(const py::dict& given) {
-  const auto start = given["start"].cast<Solved>();
-  const PlainLocale locale;
-  Host host(given["progress"], given["stop"], locale);
-  const auto address = given["comm"].cast<std::uintptr_t>();
-  const Case input = read_case(given["text"].cast<std::string>(), given["path"].cast<std::string>(),
-                               given["mesh"].cast<std::optional<std::string>>());
-  CaseRun run;
-  run.start = start.get();
-  run.keep_steps = input.output.steps;
-  run.memory_check = given["memory_check"].cast<bool>();
-  run.options.threads = threads_for(input, given["threads"].cast<std::optional<int>>());
-  run.options.progress = [&host](const ProgressStep& step) { host.tell(step); };
-  run.options.stop_requested = [&host] { return host.wants_stop(); };
-  const OneAtATime alone;
-  // Not ended by atexit, which comes before what PETSc, started later, does at its end.
-  if (start_host_mpi()) Py_AtExit(&end_host_mpi);
-  const MpiSession mpi(communicator_at(address));
-  std::shared_ptr<SolvedCase> solved;
-  try {
-    const py::gil_scoped_release release;
-    solved = std::make_shared<SolvedCase>(solve_case(input, mpi, run));
-  } catch (...) {
-    if (host.raised().is_none()) throw;
-  }
-  host.look_once_more();
-  return py::make_tuple(py::cast(Solved(std::move(solved))), host.raised());
-}
 
 /// What `kacanov check` finds, without MPI.
 py::dict check_case(const std::string& text, const std::string& path,
@@ -340,7 +181,7 @@ void bind_solve(py::module_& module) {
       .def("step_numbers", &step_numbers)
       .def("step_displacement", &step_displacement)
       .def("svg", &svg);
-  module.def("solve", &solve);
+  module.def("solve", &run_case);
   module.def("check", &check_case);
   module.def("normal", &normal);
   module.def("with_override", &with_override);

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A solve of several ranks through mpi4py: mpiexec -n 2 python3 mpi_solve.py. Not a part of discovery: it needs mpiexec."""
+import faulthandler
+import os
+import signal
+import threading
 import unittest
 
 import kacanov as kc
@@ -8,6 +12,7 @@ from mpi4py import MPI
 from support import pressed_beam
 
 WORLD = MPI.COMM_WORLD
+LAST = WORLD.size - 1
 
 
 class Together(unittest.TestCase):
@@ -47,9 +52,124 @@ class Together(unittest.TestCase):
             pressed_beam().pressure(1.0, "lid").solve(comm=WORLD)
 
     def test_one_that_wants_to_stop_stops_all(self):
-        sol = pressed_beam().solver(load_steps=1000).solve(comm=WORLD, stop=lambda: WORLD.rank == WORLD.size - 1)
+        sol = pressed_beam().solver(load_steps=1000).solve(comm=WORLD, stop=lambda: WORLD.rank == LAST)
         self.assertEqual(sol.status, "interrupted")
 
 
+class Raised(unittest.TestCase):
+    """What one rank raises ends the solve of all, which can go on together: none is left waiting."""
+
+    def tearDown(self):
+        self.assertEqual(WORLD.allreduce(1), WORLD.size)
+        self.assertTrue(pressed_beam(cells=(4, 1, 1)).solve(comm=WORLD, threads=1).converged)
+
+    def endless(self):
+        return pressed_beam().solver(load_steps=1000)
+
+    def assert_raised_by(self, rank, error, words):
+        """A context in which that rank raises the error, and the others say so."""
+        if WORLD.rank == rank:
+            return self.assertRaisesRegex(error, words)
+        return self.assertRaisesRegex(kc.RankError, f"rank {rank}: .*{words}")
+
+    def test_by_progress(self):
+        def tell(step):
+            if step["outer"] == 2:
+                raise ValueError("enough")
+
+        case = self.endless()
+        with self.assert_raised_by(0, ValueError, "enough") as caught:
+            case.solve(comm=WORLD, progress=tell)
+        self.assertEqual(case.solution.status, "interrupted")
+        if WORLD.rank != 0:
+            self.assertEqual((caught.exception.rank, str(caught.exception)), (0, "rank 0: ValueError: enough"))
+
+    def test_by_progress_of_the_last_step(self):
+        def tell(step):
+            if step["worst_residual"] < 1e-6:
+                raise OSError("the disk is full")
+
+        with self.assert_raised_by(0, OSError, "the disk is full"):
+            pressed_beam().solver(tolerance=1e-6).solve(comm=WORLD, progress=tell)
+
+    def test_by_the_question_whether_to_stop(self):
+        def stop():
+            if WORLD.rank == LAST:
+                raise LookupError("lost")
+            return False
+
+        with self.assert_raised_by(LAST, LookupError, "lost"):
+            self.endless().solve(comm=WORLD, stop=stop)
+
+    def test_by_all_of_them(self):
+        def stop():
+            raise LookupError(f"lost on {WORLD.rank}")
+
+        with self.assertRaisesRegex(LookupError, f"lost on {WORLD.rank}"):
+            self.endless().solve(comm=WORLD, stop=stop)
+
+    def test_ctrl_c_on_one(self):
+        asked = threading.Event()
+
+        def interrupt():
+            asked.wait()
+            os.kill(os.getpid(), signal.SIGINT)
+
+        def stop():
+            asked.set()
+            return False
+
+        if WORLD.rank == LAST:
+            threading.Thread(target=interrupt).start()
+        case = self.endless()
+        with self.assertRaises(kc.Interrupted) as caught:
+            case.solve(comm=WORLD, stop=stop)
+        self.assertIs(caught.exception.solution, case.solution)
+        self.assertEqual(case.solution.status, "interrupted")
+
+    def test_ctrl_c_outdoes_other_things(self):
+        def stop():
+            if WORLD.rank == LAST:
+                raise KeyboardInterrupt
+            raise LookupError("lost")
+
+        with self.assertRaises(kc.Interrupted if WORLD.rank == LAST else LookupError):
+            self.endless().solve(comm=WORLD, stop=stop)
+
+    def test_by_a_solve_within_a_callback(self):
+        def tell(_):
+            pressed_beam().solve(comm=WORLD)
+
+        with self.assert_raised_by(0, kc.StateError, "callback"):
+            self.endless().solve(comm=WORLD, progress=tell)
+
+    def test_before_anything_is_solved(self):
+        here = WORLD.rank == LAST
+        with self.assert_raised_by(LAST, kc.InputError, "threads: expected"):
+            pressed_beam().solve(comm=WORLD, threads=0 if here else 1)
+        case = pressed_beam()
+        if here:
+            case.document["solver"] = {"tolerance": object()}
+        with self.assert_raised_by(LAST, kc.InputError, "solver.tolerance: expected"):
+            case.solve(comm=WORLD)
+        with self.assert_raised_by(LAST, AttributeError, "_solved"):
+            pressed_beam().solve(comm=WORLD, start="that one" if here else None)
+
+    def test_the_case_is_the_first_ranks(self):
+        sol = pressed_beam(cells=(4, 1, 1) if WORLD.rank == 0 else (8, 2, 2)).solve(comm=WORLD, threads=1)
+        self.assertEqual(sol.result["mesh"]["elements"], 4)
+
+    @unittest.skipIf(WORLD.size == 1, "one rank has the start of all")
+    def test_a_start_on_one_alone(self):
+        sol = pressed_beam().solve(comm=WORLD, threads=1)
+        with self.assertRaisesRegex(kc.InputError, "start: expected a solution on all ranks"):
+            pressed_beam().solve(comm=WORLD, start=sol if WORLD.rank == 0 else None)
+
+    def test_no_ranks(self):
+        with self.assertRaisesRegex(kc.InputError, "comm: MPI.COMM_NULL"):
+            pressed_beam().solve(comm=MPI.COMM_NULL)
+
+
 if __name__ == "__main__":
+    faulthandler.dump_traceback_later(600, exit=True)  # whoever hangs says where, and the job ends
     unittest.main(verbosity=0)

@@ -64,10 +64,7 @@ namespace {
 
 /// The failure of rank `speaker`, thrown on all.
 [[noreturn]] void throw_everywhere(const MpiSession& mpi, int speaker, int exit_code, std::string cause) {
-  auto size = static_cast<int>(cause.size());
-  MPI_Bcast(&size, 1, MPI_INT, speaker, mpi.comm());
-  cause.resize(size);
-  MPI_Bcast(cause.data(), size, MPI_CHAR, speaker, mpi.comm());
+  broadcast(mpi, cause, speaker);
   if (exit_code == exit_bad_input) throw InputError(cause);
   throw InternalError(cause);
 }
@@ -95,11 +92,11 @@ void together(const MpiSession& mpi, const std::function<void()>& work) {
   throw ReportedFailure{worst};
 }
 
-void broadcast(const MpiSession& mpi, std::string& text) {
+void broadcast(const MpiSession& mpi, std::string& text, int from) {
   std::uint64_t size = text.size();
-  MPI_Bcast(&size, 1, MPI_UINT64_T, 0, mpi.comm());
+  MPI_Bcast(&size, 1, MPI_UINT64_T, from, mpi.comm());
   text.resize(size);
-  MPI_Bcast(text.data(), static_cast<int>(size), MPI_CHAR, 0, mpi.comm());
+  MPI_Bcast(text.data(), static_cast<int>(size), MPI_CHAR, from, mpi.comm());
 }
 
 void collectively(const MpiSession& mpi, const std::function<void()>& work) {

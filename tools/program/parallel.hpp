@@ -60,8 +60,8 @@ struct ReportedFailure {
 /// every rank throws ReportedFailure; in a host's process InputError or InternalError instead. Collective.
 void together(const MpiSession& mpi, const std::function<void()>& work);
 
-/// Hands the first rank's text to all. Collective.
-void broadcast(const MpiSession& mpi, std::string& text);
+/// Hands the text of one rank to all. Collective.
+void broadcast(const MpiSession& mpi, std::string& text, int from = 0);
 
 /// Does `work`, which communicates. Where it throws, the message is printed; with several ranks the rest
 /// cannot be waited for, and the whole job ends there with its exit code.
