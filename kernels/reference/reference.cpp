@@ -50,10 +50,18 @@ Strain strain_at(const Point<E>& point, const Nodal<E>& u) {
   return s;
 }
 
+/// With the strain z across the plane that leaves no stress there. Near ν = ½ the trace is a small difference
+/// that the bulk modulus makes large again: it is taken from what says that nothing acts across.
+Strain relaxed(const Law& law, double g, const Strain& plane, double z) {
+  Strain whole = stretched(plane, z);
+  if (law.bulk > g) whole.trace = -2.0 * g / law.bulk * whole.dev[2];
+  return whole;
+}
+
 /// As strain_at, whole in plane stress too, where it is that of the frozen g.
 Strain across(const Body& body, const Law& law, double g, const Strain& strain) {
   if (body.mesh.plane != PlaneState::stress) return strain;
-  return stretched(strain, -transverse_ratio(law.bulk, g) * strain.trace);
+  return relaxed(law, g, strain, 3.0 * transverse_ratio(law.bulk, g) * strain.dev[2]);
 }
 
 /// The same for the true law, or for what is said in its place.
@@ -62,9 +70,10 @@ Strain across(const Body& body, std::size_t e, std::size_t q, const Strain& stra
   if (body.mesh.plane != PlaneState::stress) return strain;
   if (body.moduli != nullptr)
     return across(body, body.law(e), body.moduli->secant[e * E::points + q], strain);
-  const double third = strain.trace / 3.0;
-  return stretched(
-      strain, transverse_strain(body.law(e), strain.dev[0] + third, strain.dev[1] + third, strain.dev[3]));
+  const Law& law = body.law(e);
+  const double third = -strain.dev[2];  // of the trace: there is no strain across yet
+  const double z = transverse_strain(law, strain.dev[0] + third, strain.dev[1] + third, strain.dev[3]);
+  return relaxed(law, law.secant(stretched(strain, z).norm()), strain, z);
 }
 
 /// The same of an increment as strain_at has it; in plane stress nothing acts across the plane.
