@@ -2,9 +2,10 @@
 // Which contact points touch, stick and slip in a primal–dual active set (semismooth Newton) step.
 #include "contact/active_set.hpp"
 
-#include <Eigen/Dense>
 #include <array>
 #include <cmath>
+
+#include "problem/dense.hpp"
 
 namespace kacanov {
 namespace {
@@ -42,9 +43,7 @@ Edge find_edge(const Traces& traces, const ContactState& state, const ActiveSet&
   }
   edge.any = normals.rows() > 1;
   if (!edge.any) return edge;
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-  decomposition.setThreshold(free_direction);
-  const Eigen::MatrixXd back = decomposition.compute(normals).pseudoInverse();
+  const Eigen::MatrixXd back = pseudo_inverse(normals, free_direction);
   edge.free -= back * normals;
   Eigen::Vector3d u = Eigen::Vector3d::Zero();
   const std::size_t dim = traces.part().dim();

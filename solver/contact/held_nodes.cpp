@@ -2,9 +2,10 @@
 // The contact nodes of one active set: how they close, and which reactions a nodal force stands for.
 #include "contact/held_nodes.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+
+#include "problem/dense.hpp"
 
 namespace kacanov {
 namespace {
@@ -14,13 +15,6 @@ using Eigen::VectorXd;
 
 /// Directions of less than this beside others held already are the same.
 constexpr double dependent = 1e-8;
-
-MatrixXd pseudo_inverse(const MatrixXd& a) {
-  if (a.size() == 0) return MatrixXd::Zero(a.cols(), a.rows());
-  Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
-  decomposition.setThreshold(dependent);
-  return decomposition.compute(a).pseudoInverse();
-}
 
 Eigen::Vector3d to_eigen(const Vector3& v) { return {v[0], v[1], v[2]}; }
 Vector3 from_eigen(const Eigen::Vector3d& v) { return {v(0), v(1), v(2)}; }
@@ -64,7 +58,7 @@ void HeldNodes::add_node(const ActiveSet& set, const ContactState& state, std::s
     rows_.push_back({static_cast<std::int32_t>(i), -1, {}});
   }
   const auto held_normals = static_cast<Eigen::Index>(normals.cols());
-  const MatrixXd back = pseudo_inverse(normals.transpose());
+  const MatrixXd back = pseudo_inverse(normals.transpose(), dependent);
   const Eigen::Matrix3d free = Eigen::Matrix3d::Identity() - back * normals.transpose();
   const Eigen::Vector3d closing = back * Eigen::Map<VectorXd>(normal_gaps.data(), held_normals);
   for (std::size_t i = first; i < last; ++i) {
@@ -81,18 +75,18 @@ void HeldNodes::add_node(const ActiveSet& set, const ContactState& state, std::s
   MatrixXd along(3, sticking);
   for (Eigen::Index k = 0; k < sticking; ++k) along.col(k) = tangents[k];
   // An orthonormal basis of what sticks, and the share of each row in a force along it.
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(along * along.transpose());
+  const SymmetricEigen eigen = symmetric_eigen(along * along.transpose());
   Eigen::Index rank = 0;
-  while (rank < 3 && eigen.eigenvalues()(2 - rank) > dependent) ++rank;
-  const MatrixXd basis = eigen.eigenvectors().rightCols(rank);
+  while (rank < 3 && eigen.values(2 - rank) > dependent) ++rank;
+  const MatrixXd basis = eigen.vectors.rightCols(rank);
   const MatrixXd seen = along.transpose() * basis;  // rows × rank
   const VectorXd weight = Eigen::Map<VectorXd>(weights.data(), sticking);
   const MatrixXd shares =
-      rank > 0
-          ? MatrixXd(weight.asDiagonal() * seen * (seen.transpose() * weight.asDiagonal() * seen).inverse())
-          : MatrixXd(sticking, rank);
+      rank > 0 ? MatrixXd(weight.asDiagonal() * seen * inverse(seen.transpose() * weight.asDiagonal() * seen))
+               : MatrixXd(sticking, rank);
   Eigen::Vector3d all = closing;
-  if (rank > 0) all -= basis * (pseudo_inverse(seen) * Eigen::Map<VectorXd>(slips.data(), sticking));
+  if (rank > 0)
+    all -= basis * (pseudo_inverse(seen, dependent) * Eigen::Map<VectorXd>(slips.data(), sticking));
   node.closing = from_eigen(all);
 
   // Reactions x along q and along the basis: C [q, basis] x = C force with C = [normals, basis]ᵀ.
@@ -108,7 +102,7 @@ void HeldNodes::add_node(const ActiveSet& set, const ContactState& state, std::s
       sliding.col(k) += set.coulomb[i] * set.slip_direction[2 * i + t] * tangent_of(i, t);
   }
   directions.leftCols(held_normals) += sliding;
-  const MatrixXd react = pseudo_inverse(rows.transpose() * directions) * rows.transpose();
+  const MatrixXd react = pseudo_inverse(rows.transpose() * directions, dependent) * rows.transpose();
   const MatrixXd friction = shares * react.bottomRows(rank);
   for (Eigen::Index k = 0; k < held_normals; ++k)
     rows_[node.first + static_cast<std::size_t>(k)].react = from_eigen(react.row(k).transpose());

@@ -2,12 +2,12 @@
 // A choice of contact rows, scaled by the roots of their masses: what is penalised, held or pinned.
 #include "contact/trace_rows.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <string>
 
 #include <kacanov/error.hpp>
+#include "problem/dense.hpp"
 
 namespace kacanov {
 namespace {
@@ -106,9 +106,7 @@ void TraceRows::invert(Group& group) const {
   Eigen::MatrixXd a(group.rows, 3);
   for (int k = 0; k < group.rows; ++k)
     for (int c = 0; c < 3; ++c) a(k, c) = group.row[k][c];
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
-  decomposition.setThreshold(1e-8);
-  const Eigen::MatrixXd inverse = decomposition.compute(a).pseudoInverse();
+  const Eigen::MatrixXd inverse = pseudo_inverse(a, 1e-8);
   for (int k = 0; k < group.rows; ++k)
     for (int c = 0; c < 3; ++c) group.inverse[k][c] = inverse(c, k);
 }

@@ -3,6 +3,7 @@
 // to rest.
 #include "problem/rigid_balance.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 

@@ -3,7 +3,7 @@
 // to rest.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <vector>
 
 namespace kacanov {

@@ -2,7 +2,6 @@
 // Which rigid motions nothing holds, found before the solver meets them.
 #include "problem/rigid_modes.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -10,6 +9,7 @@
 #include <kacanov/error.hpp>
 #include "mesh/plain_stream.hpp"
 #include "problem/conditions.hpp"
+#include "problem/dense.hpp"
 #include "problem/rigid_balance.hpp"
 #include "problem/vector3.hpp"
 
@@ -24,6 +24,9 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 constexpr double free_below = 1e-12;
 /// A load that leaves less than this of its forces is in balance by itself, up to rounding.
 constexpr double rounded_load = 1e-11;
+
+/// Normals of supports of which less than this is left beside the others span nothing more.
+constexpr double dependent_normals = 1e-12;
 
 /// One piece of the mesh whose elements hang together through nodes.
 struct Piece {
@@ -152,15 +155,15 @@ Eigen::MatrixXd free_modes(const Matrix6& gram, const Mesh& mesh) {
                                              ? std::vector<Eigen::Index>{4}
                                              : std::vector<Eigen::Index>{2, 3, 4};
   const Eigen::MatrixXd reduced = gram(kept, kept);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(reduced);
+  const SymmetricEigen eigen = symmetric_eigen(reduced);
   const double others = mesh.plane == PlaneState::axisymmetric ? gram(3, 3) : 0.0;
-  const double scale = std::max({eigen.eigenvalues().maxCoeff(), others, 1e-300});
+  const double scale = std::max({eigen.values.maxCoeff(), others, 1e-300});
   Eigen::Index count = 0;
-  while (count < eigen.eigenvalues().size() && eigen.eigenvalues()[count] <= free_below * scale) ++count;
+  while (count < eigen.values.size() && eigen.values[count] <= free_below * scale) ++count;
   Eigen::MatrixXd modes = Eigen::MatrixXd::Zero(count, 6);
   for (Eigen::Index m = 0; m < count; ++m) {
     for (std::size_t k = 0; k < kept.size(); ++k) {
-      modes(m, kept[k]) = eigen.eigenvectors()(static_cast<Eigen::Index>(k), m);
+      modes(m, kept[k]) = eigen.vectors(static_cast<Eigen::Index>(k), m);
     }
   }
   Eigen::Index lead = 0;
@@ -241,8 +244,7 @@ Eigen::VectorXd load_of(const Problem& problem, const Piece& piece, std::int32_t
 RigidPiece collect(const Problem& problem, const Piece& piece, std::int32_t number,
                    std::span<const std::int32_t> piece_of_node, const Eigen::MatrixXd& loose) {
   RigidPiece rigid;
-  rigid.basis = Eigen::HouseholderQR<Eigen::MatrixXd>(loose.transpose()).householderQ() *
-                Eigen::MatrixXd::Identity(6, loose.rows());
+  rigid.basis = orthonormal_basis(loose.transpose());
   for (std::size_t i = 0; i < problem.contact.size(); ++i) {
     const ContactPoint& point = problem.contact[i];
     if (piece_of_node[point.node] != number) continue;
@@ -269,8 +271,7 @@ std::string explain(const RigidPiece& rigid, const RigidBalance& failed, const P
   for (Eigen::Index k = 0; k < normals.cols(); ++k) normals.col(k) = rigid.points[failed.supports[k]].normal;
   Eigen::VectorXd motion = failed.motion;
   if (normals.cols() > 0) {
-    const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> across(normals);
-    motion -= normals * across.solve(motion);
+    motion -= normals * (pseudo_inverse(normals, dependent_normals) * motion);
     if (motion.norm() < 1e-3 * failed.motion.norm()) motion = failed.motion;
   }
   const double needed = friction_needed(rigid.points, rigid.load);
