@@ -55,14 +55,6 @@ std::vector<OwnedBody> bodies(ElementType type) {
     if (size <= count)
       all.push_back(test::with_one_law(some_elements(whole, size, unsigned(size)), test::every_law()[1]));
   all.push_back(test::with_every_law(whole, 2));
-  auto long_box = meshes::box(type, {9, 4, 4}, {4, 1, 1});
-  meshes::jitter(long_box, amount, 3);
-  if (type == ElementType::tet4) meshes::flip(long_box, 3, 4);
-  meshes::straighten(long_box);
-  meshes::shuffle(long_box, 5);
-  all.push_back(test::with_one_law(long_box, test::every_law()[4]));
-  stretch(long_box, 1000.0);
-  all.push_back(test::with_one_law(long_box, test::every_law()[1]));
   auto sheared = meshes::box(type, {7, 4, 3}, {1, 1, 1});  // hex8: parallelepipeds, and others further below
   const std::size_t dim = dimension(type);
   for (std::size_t i = 0; i < sheared.coordinates.size(); i += dim) {
@@ -71,8 +63,17 @@ std::vector<OwnedBody> bodies(ElementType type) {
     if (dim == 3 && x[2] < 0.4) x[2] *= 1.0 + 0.2 * x[0] * x[1];
   }
   all.push_back(test::with_every_law(sheared, 6));
+  if (testing::sanitized) return all;  // what follows differs in its numbers, not in the code it goes through
   stretch(sheared, 1000.0);
   all.push_back(test::with_one_law(sheared, test::every_law()[3]));
+  auto long_box = meshes::box(type, {9, 4, 4}, {4, 1, 1});
+  meshes::jitter(long_box, amount, 3);
+  if (type == ElementType::tet4) meshes::flip(long_box, 3, 4);
+  meshes::straighten(long_box);
+  meshes::shuffle(long_box, 5);
+  all.push_back(test::with_one_law(long_box, test::every_law()[4]));
+  stretch(long_box, 1000.0);
+  all.push_back(test::with_one_law(long_box, test::every_law()[1]));
   return all;
 }
 

@@ -20,12 +20,7 @@ struct Frame {
   Vector3 place(const Vector3& x) const { return turn({unit * x[0], unit * x[1], unit * x[2]}); }
 };
 
-Solution solve_everywhere(const Problem& problem, const Model& model, Part& part) {
-  part = distribute(&problem, MPI_COMM_WORLD);
-  return solve(part, model.solver, {});
-}
-
-double inner(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+double product(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /// A ring of mean radius 1 and thickness `thick` of quadrilaterals, with the upper half of its outer side and
 /// the lower one and its lowest facet as groups.
@@ -81,9 +76,9 @@ TEST_CASE("a block on an incline sticks just below its friction angle, with the 
       const Solution solution = solve_everywhere(build_problem(mesh, model), model, part);
       CHECK(solution.result.status == Status::converged);
       const double all = weight * unit * unit * unit;
-      CHECK(inner(solution.result.contact_force, frame.turn({0, 0, 1})) ==
+      CHECK(product(solution.result.contact_force, frame.turn({0, 0, 1})) ==
             doctest::Approx(all * std::cos(angle)).epsilon(1e-5));
-      CHECK(inner(solution.result.friction_force, frame.turn({1, 0, 0})) ==
+      CHECK(product(solution.result.friction_force, frame.turn({1, 0, 0})) ==
             doctest::Approx(-all * std::sin(angle)).epsilon(1e-5));
     }
 }
@@ -122,8 +117,8 @@ TEST_CASE("a wedge pressed between two planes: friction that slides on both take
       Part part;
       const Solution solution = solve_everywhere(build_problem(mesh, model), model, part);
       CHECK(solution.result.status == Status::converged);
-      const double normal = inner(solution.result.contact_force, frame.turn(above)),
-                   friction = inner(solution.result.friction_force, frame.turn(above));
+      const double normal = product(solution.result.contact_force, frame.turn(above)),
+                   friction = product(solution.result.friction_force, frame.turn(above));
       const double width = 2 * (0.5 + std::tan(alpha)),
                    force = 1e-3 * width * (dim == 3 ? unit * unit : unit);
       CHECK(normal + friction == doctest::Approx(force).epsilon(1e-5));
@@ -178,7 +173,7 @@ TEST_CASE("a ring pressed on its foot by a plane: the force of a curved beam, no
     const Solution solution = solve_everywhere(build_problem(ring(280, 6, thick, frame), model), model, part);
     CAPTURE(solution.result.message);
     CHECK(solution.result.status == Status::converged);
-    const double force = -inner(solution.result.contact_force, frame.turn({0, 1, 0}));
+    const double force = -product(solution.result.contact_force, frame.turn({0, 1, 0}));
     CHECK(force == doctest::Approx(press / compliance * unit).epsilon(0.03));
     CHECK(length(solution.result.friction_force) < 1e-3 * force);
   }

@@ -12,11 +12,6 @@ using namespace kacanov::testing;
 
 namespace {
 
-Solution solve_everywhere(const Problem& problem, const Model& model, Part& part) {
-  part = distribute(&problem, MPI_COMM_WORLD);
-  return solve(part, model.solver, {});
-}
-
 /// A slab sheared by its top over a floor whose film bears ψ; its sides bear the shear that goes with it.
 Model sheared_slab(Friction::Reference reference) {
   Model model;
@@ -33,12 +28,6 @@ Model sheared_slab(Friction::Reference reference) {
   model.solver.tolerance = 1e-9;
   return model;
 }
-
-/// A ball pressed on half of a half-space, then dragged by the far sides, there and halfway back.
-struct Mindlin {
-  double radius;                          ///< of the contact under the force that is found
-  std::vector<double> ratio, stick_area;  ///< Q / μP and what sticks, after each step
-};
 
 }  // namespace
 

@@ -54,7 +54,7 @@ Vector area_vector(const Mesh& mesh, std::size_t facet) {
   return sum;
 }
 
-double length(const Vector& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+double length_of(const Vector& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
 /// What check_mesh says, empty if nothing.
 std::string complaint(const Mesh& mesh) {
@@ -102,9 +102,9 @@ TEST_CASE("a box is a valid mesh whose closed boundary encloses its volume") {
       const Vector a = area_vector(mesh, f), x = at(mesh, mesh.facet(f)[0]);
       for (std::size_t k = 0; k < 3; ++k) sum[k] += a[k];
       flux += x[0] * a[0] + x[1] * a[1] + x[2] * a[2];
-      area += length(a);
+      area += length_of(a);
     }
-    CHECK(length(sum) == doctest::Approx(0).epsilon(1e-12));
+    CHECK(length_of(sum) == doctest::Approx(0).epsilon(1e-12));
     CHECK(flux / mesh.dim() == doctest::Approx(volume));
     CHECK(area == doctest::Approx(mesh.dim() == 2 ? 9.0 : 2 * (4 * 0.5 + 4 * 2 + 0.5 * 2)));
   }
@@ -132,7 +132,7 @@ TEST_CASE("the sides of a box are named, complete and turned outwards") {
       }
       const std::size_t axis = g / 2;
       CHECK(sum[axis] == doctest::Approx(g % 2 == 0 ? -full[axis] : full[axis]));
-      CHECK(length(sum) == doctest::Approx(full[axis]));
+      CHECK(length_of(sum) == doctest::Approx(full[axis]));
       members += mesh.groups[g].members.size();
     }
     CHECK(members == mesh.facet_count());

@@ -16,7 +16,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-Problem block(ElementType type, const std::vector<MaterialEntry>& materials, int cells = 2) {
+Problem stress_block(ElementType type, const std::vector<MaterialEntry>& materials, int cells = 2) {
   Mesh mesh = box_mesh(type, {2.0, 1.0, 1.0}, cells);
   Model model;
   model.materials = materials;
@@ -42,7 +42,7 @@ Mesh plate_with_hole() {
 TEST_CASE("even stress is met at every node of every element") {
   for (const ElementType type : element_types()) {
     CAPTURE(static_cast<int>(type));
-    const Problem problem = block(type, {{everything(), elastic_law(1.0, 0.25)}});
+    const Problem problem = stress_block(type, {{everything(), elastic_law(1.0, 0.25)}});
     const Part part = over_all_ranks(problem);
     const int dim = part.dim();
     const NodalStress found =
@@ -61,7 +61,7 @@ TEST_CASE("even stress is met at every node of every element") {
 }
 
 TEST_CASE("quadratic displacements of tet10 give their linear stress, at middles of edges too") {
-  const Problem problem = block(ElementType::tet10, {{everything(), elastic_law(1.0, 0.0)}});
+  const Problem problem = stress_block(ElementType::tet10, {{everything(), elastic_law(1.0, 0.0)}});
   const Part part = over_all_ranks(problem);
   const NodalStress found = recover_stress(part, nodal_field(part, [](const Vector3& x) {
                                              return Vector3{x[0] * x[1], 0, 0};
@@ -76,7 +76,7 @@ TEST_CASE("quadratic displacements of tet10 give their linear stress, at middles
 TEST_CASE("materials are kept apart; where they meet the larger stress is shown") {
   for (const ElementType type : {ElementType::tet4, ElementType::tet10, ElementType::hex8}) {
     CAPTURE(static_cast<int>(type));
-    const Problem problem = block(
+    const Problem problem = stress_block(
         type, {{everything(), elastic_law(1.0, 0.0)}, {box({0, 0, 0}, {1, 1, 1}), elastic_law(10.0, 0.0)}});
     const Part part = over_all_ranks(problem);
     const NodalStress found = recover_stress(part, nodal_field(part, [](const Vector3& x) {

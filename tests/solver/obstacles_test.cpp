@@ -25,7 +25,7 @@ Facing look(const Obstacle& obstacle, const Vector3& x) {
 constexpr std::array<Vector3, 3> slanting_frame{Vector3{1, 0.2, 0.5}, Vector3{-0.2, 1, 0},
                                                 Vector3{-0.5, -0.1, 1.04}};
 
-class Dice {
+class PointDice {
  public:
   double number(double low = -1.0, double high = 1.0) { return low + (high - low) * uniform_(bits_); }
   Vector3 vector() { return {number(), number(), number()}; }
@@ -101,7 +101,7 @@ TEST_CASE("an obstacle without direction is a signed distance: ν is its slope, 
                                         Block{{-0.5, -0.4, -0.3}, {0.3, 0.6, 0.5}},
                                         Block{{-0.5, -0.4, -0.3}, {0.3, 0.6, 0.5}, slanting_frame},
                                         SurfaceObstacle{shared_ball(2)}};
-  Dice dice;
+  PointDice dice;
   for (const Obstacle& obstacle : obstacles)
     for (int trial = 0; trial < 200; ++trial) {
       CAPTURE(obstacle.index());
@@ -121,7 +121,7 @@ TEST_CASE("an obstacle without direction is a signed distance: ν is its slope, 
 }
 
 TEST_CASE("along a direction the gap is the way to the surface, from outside and from within") {
-  Dice dice;
+  PointDice dice;
   for (int trial = 0; trial < 300; ++trial) {
     const Vector3 way = dice.vector(), unit_way = (1 / norm(way)) * way;
     for (const bool along : {true, false}) {
@@ -170,7 +170,7 @@ TEST_CASE("a box is a box in the plane too, and 3D wants one of three lengths") 
 }
 
 TEST_CASE("a tree finds what looking at every triangle finds, to the bit; a faceted ball is nearly a ball") {
-  Dice dice;
+  PointDice dice;
   for (const int times : {0, 2, 4}) {
     const Surface ball = faceted_ball(times);
     CHECK(ball.size() == static_cast<std::size_t>(20) << (2 * times));
@@ -251,7 +251,7 @@ TEST_CASE("what is wrong with an obstacle is said with its key") {
 
 TEST_CASE(
     "gaps of obstacles that are far larger than the body keep their digits, or say which they have lost") {
-  Dice dice;
+  PointDice dice;
   for (double size = 1.0; size < 1e31; size *= 8.0) {
     // All touch the plane z = 0 at the origin, and are as flat as it but for terms of 1/size.
     const std::vector<std::pair<Obstacle, double>> obstacles{
@@ -290,7 +290,7 @@ TEST_CASE(
 }
 
 TEST_CASE("numbers of twice the precision hold their bounds") {
-  Dice dice;
+  PointDice dice;
   for (int trial = 0; trial < 1000; ++trial) {
     // (a + b)² − a² − b² = 2ab, and a root squared, by numbers of any size.
     const double a = std::ldexp(dice.number(), static_cast<int>(dice.number(-60, 60)));

@@ -22,12 +22,6 @@ Mesh uneven_cube(double unit, const Rotation& turn) {
   return mesh;
 }
 
-/// Over all ranks, with the traction and the pressure of each point checked by the caller.
-Solution solve_everywhere(const Problem& problem, const Model& model, Part& part) {
-  part = distribute(&problem, MPI_COMM_WORLD);
-  return solve(part, model.solver, {});
-}
-
 double order(double coarse, double fine, double ratio) {
   return std::log(std::abs(coarse / fine)) / std::log(ratio);
 }
@@ -37,7 +31,7 @@ double order(double coarse, double fine, double ratio) {
 struct Hertz {
   double peak, radius;
 };
-Hertz ball(int n) {
+Hertz hertz_at(int n) {
   const HalfSpace space{n};
   const Law law = elastic_law(1.0, 0.3);
   const double radius = 50.0, depth = 1.0 / radius, modulus = plane_modulus(law);
@@ -111,7 +105,7 @@ TEST_CASE("tet10: Hertz's peak within 2 % at ten facets across the contact, and 
   int ranks = 1;
   MPI_Comm_size(MPI_COMM_WORLD, &ranks);
   if (ranks > 1) return;
-  const Hertz coarse = ball(3), fine = ball(5);
+  const Hertz coarse = hertz_at(3), fine = hertz_at(5);
   CAPTURE(coarse.peak);
   CAPTURE(fine.peak);
   CAPTURE(fine.radius);

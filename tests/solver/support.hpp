@@ -41,6 +41,12 @@ inline Part over_all_ranks(const Problem& problem) {
   return distribute(rank == 0 ? &problem : nullptr, MPI_COMM_WORLD);
 }
 
+/// Divides the problem, known on every rank, and solves it on all of them; `part` is this rank's.
+inline Solution solve_everywhere(const Problem& problem, const Model& model, Part& part) {
+  part = distribute(&problem, MPI_COMM_WORLD);
+  return solve(part, model.solver, {});
+}
+
 /// Displacements of the part's nodes by their positions.
 template <class Field>
 std::vector<double> nodal_field(const Part& part, const Field& field) {

@@ -56,15 +56,15 @@ void press_facet(const Problem& problem, std::int32_t facet, const Plane& plane,
   rows.push_back(point, entries);
 }
 
-struct Sample {
+struct WideSample {
   Problem problem;
   Model model;
 };
 
 /// A block, clamped at its left end and pressed on a plane a little below. Facets left of `narrow_from` touch
 /// by their means, the nodes right of it one by one.
-Sample block(ElementType type, double narrow_from, double tresca, double load = 0.15) {
-  Sample sample;
+WideSample pressed_block(ElementType type, double narrow_from, double tresca, double load = 0.15) {
+  WideSample sample;
   const Mesh mesh = box_mesh(type);
   const int dim = mesh.dim();
   const std::size_t up = dim - 1;
@@ -102,7 +102,7 @@ const Problem* on_first(const Problem& problem) {
   return rank == 0 ? &problem : nullptr;
 }
 
-double signature(std::int64_t node, std::size_t c) {
+double sign_of(std::int64_t node, std::size_t c) {
   return std::sin(1.3 * static_cast<double>(node) + 0.7 * static_cast<double>(c));
 }
 
@@ -111,7 +111,7 @@ Vector some_vector(const Part& part, double turn) {
   const std::size_t dim = part.dim();
   Vector x(part.unknowns());
   for (std::size_t i = 0; i < x.size(); ++i)
-    x[i] = part.held[i] ? 0.0 : std::sin(turn + 3.0 * signature(part.node_index[i / dim], i % dim));
+    x[i] = part.held[i] ? 0.0 : std::sin(turn + 3.0 * sign_of(part.node_index[i / dim], i % dim));
   return x;
 }
 
@@ -126,7 +126,7 @@ void check_copies(const Part& part, const Vector& y) {
 TEST_CASE("wide rows: forces are the transpose of traces on any number of ranks, copies the same bits") {
   for (const ElementType type : row_types) {
     CAPTURE(static_cast<int>(type));
-    const Sample sample = block(type, 1.0, 0.01);
+    const WideSample sample = pressed_block(type, 1.0, 0.01);
     const Part part = distribute(on_first(sample.problem), MPI_COMM_WORLD);
     const Part whole = distribute(&sample.problem, MPI_COMM_SELF);
     const Traces traces(part), alone(whole);
@@ -166,7 +166,7 @@ TEST_CASE("wide rows are held by an orthogonal projection, and lifted by a pseud
   for (const ElementType type : row_types) {
     CAPTURE(static_cast<int>(type));
     // Means over the triangles of tet4 depend on each other.
-    const Sample sample = block(type, 1.0, 0.01);
+    const WideSample sample = pressed_block(type, 1.0, 0.01);
     const Part part = distribute(on_first(sample.problem), MPI_COMM_WORLD);
     const TraceRows rows(part, std::vector<TraceChoice>(part.contact.size(), {true, true}));
     const auto norm = [&](const Vector& x) {
@@ -231,7 +231,7 @@ TEST_CASE("wide rows: every contact method finds what a dense solver finds, on a
   for (const ElementType type : row_types)
     for (const double narrow_from : {1.0, 5.0})  // both kinds side by side, wide ones alone
       for (const double tresca : {0.0, 0.01}) {
-        Sample sample = block(type, narrow_from, tresca);
+        WideSample sample = pressed_block(type, narrow_from, tresca);
         DenseSolver dense(sample.problem);
         const DenseSolver::Answer answer = dense.solve();
         REQUIRE(answer.converged);
@@ -268,7 +268,7 @@ TEST_CASE("wide rows: Coulomb friction follows the pressure inside the Newton st
     for (const double narrow_from : {1.0, 5.0}) {
       CAPTURE(static_cast<int>(type));
       CAPTURE(narrow_from);
-      Sample sample = block(type, narrow_from, 1e-12);
+      WideSample sample = pressed_block(type, narrow_from, 1e-12);
       for (ContactPoint& point : sample.problem.contact) point.coulomb = 0.3;
       Part part = distribute(on_first(sample.problem), MPI_COMM_WORLD);
       const Solution solution = solve(part, sample.model.solver, {});
@@ -291,7 +291,7 @@ TEST_CASE("wide rows: Coulomb friction follows the pressure inside the Newton st
 }
 
 TEST_CASE("wide rows: the assembled preconditioner takes nodes that a rank has for its rows alone") {
-  Sample sample = block(ElementType::hex8, 5.0, 0.01);
+  WideSample sample = pressed_block(ElementType::hex8, 5.0, 0.01);
   sample.model.solver.preconditioner = SolverOptions::Preconditioner::elasticity;
   Part part = distribute(on_first(sample.problem), MPI_COMM_WORLD);
   CHECK(solve(part, sample.model.solver, {}).result.status == Status::converged);

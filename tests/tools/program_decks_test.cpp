@@ -9,7 +9,7 @@ using namespace kacanov::testing;
 namespace {
 
 /// A bar of 2 × 1 × 1 of two cubes along x; what comes behind its elements is left to the test.
-const std::string bar =
+const std::string bar_nodes =
     "*HEADING\nBar in tension\n*NODE, "
     "NSET=Nall\n1,0,0,0\n2,1,0,0\n3,2,0,0\n4,0,1,0\n5,1,1,0\n6,2,1,0\n7,0,0,1\n"
     "8,1,0,1\n9,2,0,1\n10,0,1,1\n11,1,1,1\n12,2,1,1\n*ELEMENT, TYPE=C3D8, ELSET=Bar\n"
@@ -35,7 +35,7 @@ nlohmann::json solved_deck(const Workplace& place, const std::string& deck, cons
   return place.json("out/result.json");
 }
 
-void check_refused(const std::string& deck, const std::string& message) {
+void check_deck_refused(const std::string& deck, const std::string& message) {
   const Workplace place;
   place.put("deck.inp", deck);
   const Outcome refused = place.run("convert deck.inp");
@@ -55,8 +55,9 @@ TEST_CASE(
        {"*CLOAD\nRight, 1, 20.\nRight, 1, 5.\n", "*DLOAD\n2, P4, -100.\n",
         "*DLOAD\n2, P4, -60.\n*DSLOAD\nEnd, P, -40.\n", "*BOUNDARY\nRight, 1, 1, 1.e-3\n"}) {
     const Workplace place;
-    const nlohmann::json result = solved_deck(place, bar + "*SURFACE, NAME=End\n2, S4\n" + held + steel +
-                                                         section + "*STEP\n*STATIC\n" + load + "*END STEP\n");
+    const nlohmann::json result =
+        solved_deck(place, bar_nodes + "*SURFACE, NAME=End\n2, S4\n" + held + steel + section +
+                               "*STEP\n*STATIC\n" + load + "*END STEP\n");
     INFO(load);
     CHECK(result["probe"][0][0].get<double>() == doctest::Approx(2 * strain).epsilon(1e-9));
     CHECK(result["probe"][1][1].get<double>() == doctest::Approx(-0.3 * strain).epsilon(1e-9));
@@ -67,8 +68,8 @@ TEST_CASE(
 
 TEST_CASE("a deck is run at once, to the numbers of the case that convert makes of it") {
   const Workplace place;
-  const std::string deck =
-      bar + held + steel + section + "*STEP\n*STATIC\n*CLOAD\nRight, 1, 25.\n*NODE FILE\nU\n*END STEP\n";
+  const std::string deck = bar_nodes + held + steel + section +
+                           "*STEP\n*STATIC\n*CLOAD\nRight, 1, 25.\n*NODE FILE\nU\n*END STEP\n";
   const nlohmann::json expected = solved_deck(place, deck);
   for (const char* ranks : {"", " --ranks 2"}) {
     const Outcome run = place.run("run deck.inp --set solver.tolerance=1e-10" + std::string(ranks));
@@ -96,7 +97,7 @@ TEST_CASE("the curve of *PLASTIC is that of a bar in tension") {
   const Workplace place;
   const double stress = 300.0, strain = stress / 200000.0 + 0.005;  // half way from 250 to 350
   const nlohmann::json result =
-      solved_deck(place, bar + held + steel + "*PLASTIC\n250., 0.\n350., 0.01\n" + section +
+      solved_deck(place, bar_nodes + held + steel + "*PLASTIC\n250., 0.\n350., 0.01\n" + section +
                              "*STEP\n*STATIC\n0.1, 1.\n*CLOAD\nRight, 1, 75.\n*NODE FILE\nU\n*END STEP\n");
   CHECK(result["probe"][0][0].get<double>() == doctest::Approx(2 * strain).epsilon(1e-8));
   CHECK(result["max_von_mises"].get<double>() == doctest::Approx(stress).epsilon(1e-8));
@@ -107,7 +108,7 @@ TEST_CASE("the curve of *PLASTIC is that of a bar in tension") {
 
 TEST_CASE("sets of elements and of nodes that have one name are told apart") {
   const Workplace place;
-  const std::string deck = bar + held + steel +
+  const std::string deck = bar_nodes + held + steel +
                            "*ELSET, ELSET=Left\n1\n*ELSET, ELSET=Right\n2\n*SOLID SECTION, "
                            "ELSET=Left, MATERIAL=Steel\n*SOLID SECTION, ELSET=Right, MATERIAL=Steel\n"
                            "*STEP\n*STATIC\n*CLOAD\nRight, 1, 25.\n*END STEP\n";
@@ -120,7 +121,8 @@ TEST_CASE(
     "gravity of two materials, by the density of each, and a step's displacement in place of the model's") {
   const Workplace place;
   const nlohmann::json result = solved_deck(
-      place, bar + "*ELSET, ELSET=A\n1\n*ELSET, ELSET=B\n2\n*BOUNDARY\nNall, 2, 3\nLeft, XSYMM\nRight, 1\n" +
+      place, bar_nodes +
+                 "*ELSET, ELSET=A\n1\n*ELSET, ELSET=B\n2\n*BOUNDARY\nNall, 2, 3\nLeft, XSYMM\nRight, 1\n" +
                  steel +
                  "*DENSITY\n2.\n*MATERIAL, NAME=Lead\n*ELASTIC\n200000., 0.3\n*DENSITY\n10.\n*SOLID SECTION, "
                  "ELSET=A, "
@@ -135,31 +137,37 @@ TEST_CASE(
 
 TEST_CASE("what cannot be part of a case is refused with file and line, and left out only when told to") {
   const std::string step = "*STEP\n*STATIC\n*CLOAD\nRight, 1, 25.\n*END STEP\n";
-  check_refused(bar + held + steel + section, "deck.inp: expected a step, *STEP: this deck is a mesh alone");
-  check_refused(bar + held + steel + step, "deck.inp: expected a *SOLID SECTION");
-  check_refused(bar + held + section + step, "there is no material \"STEEL\"");
-  check_refused(bar + held + steel + "*SOLID SECTION, ELSET=Rod, MATERIAL=Steel\n" + step,
-                "deck.inp: line 31: there is no set of elements \"Rod\"");
-  check_refused(bar + held + "*MATERIAL, NAME=S\n*ELASTIC, TYPE=ORTHO\n1,2,3\n" + step,
-                "deck.inp: line 29: *ELASTIC: expected an isotropic material, got TYPE=ORTHO");
-  check_refused(bar + held + steel + "210000., 0.3, 100.\n" + step,
-                "deck.inp: line 31: expected one Young's modulus and Poisson's ratio, at all temperatures");
-  check_refused(bar + held + steel + section + step + step, "a second step: expected a deck of one");
-  check_refused(
-      bar + held + steel + section + "*STEP, NLGEOM\n*STATIC\n*END STEP\n",
+  check_deck_refused(bar_nodes + held + steel + section,
+                     "deck.inp: expected a step, *STEP: this deck is a mesh alone");
+  check_deck_refused(bar_nodes + held + steel + step, "deck.inp: expected a *SOLID SECTION");
+  check_deck_refused(bar_nodes + held + section + step, "there is no material \"STEEL\"");
+  check_deck_refused(bar_nodes + held + steel + "*SOLID SECTION, ELSET=Rod, MATERIAL=Steel\n" + step,
+                     "deck.inp: line 31: there is no set of elements \"Rod\"");
+  check_deck_refused(bar_nodes + held + "*MATERIAL, NAME=S\n*ELASTIC, TYPE=ORTHO\n1,2,3\n" + step,
+                     "deck.inp: line 29: *ELASTIC: expected an isotropic material, got TYPE=ORTHO");
+  check_deck_refused(
+      bar_nodes + held + steel + "210000., 0.3, 100.\n" + step,
+      "deck.inp: line 31: expected one Young's modulus and Poisson's ratio, at all temperatures");
+  check_deck_refused(bar_nodes + held + steel + section + step + step,
+                     "a second step: expected a deck of one");
+  check_deck_refused(
+      bar_nodes + held + steel + section + "*STEP, NLGEOM\n*STATIC\n*END STEP\n",
       "deck.inp: line 32: *STEP changes the answer: NLGEOM: displacements and rotations have to be small");
-  check_refused(bar + held + steel + section + "*STEP\n*STATIC\n*CLOAD\nRight, 4, 1.\n*END STEP\n",
-                "deck.inp: line 35: expected a degree of freedom 1 to 3, got 4");
-  check_refused(bar + held + steel + section + "*STEP\n*STATIC\n*DLOAD\nBar, P4, 1.\n*END STEP\n",
-                "deck.inp: line 35: 1 of these sides are inside the body, expected sides of its boundary");
-  check_refused(bar + held + steel + section + "*STEP\n*STATIC\n*DLOAD\nBar, GRAV, 1., 0, 0, 1\n*END STEP\n",
-                "deck.inp: line 35: GRAV: the material \"Steel\" has no *DENSITY > 0");
-  check_refused(
-      bar + held + steel + "*PLASTIC\n250., 0.\n200., 0.1\n" + section + step,
+  check_deck_refused(bar_nodes + held + steel + section + "*STEP\n*STATIC\n*CLOAD\nRight, 4, 1.\n*END STEP\n",
+                     "deck.inp: line 35: expected a degree of freedom 1 to 3, got 4");
+  check_deck_refused(
+      bar_nodes + held + steel + section + "*STEP\n*STATIC\n*DLOAD\nBar, P4, 1.\n*END STEP\n",
+      "deck.inp: line 35: 1 of these sides are inside the body, expected sides of its boundary");
+  check_deck_refused(
+      bar_nodes + held + steel + section + "*STEP\n*STATIC\n*DLOAD\nBar, GRAV, 1., 0, 0, 1\n*END STEP\n",
+      "deck.inp: line 35: GRAV: the material \"Steel\" has no *DENSITY > 0");
+  check_deck_refused(
+      bar_nodes + held + steel + "*PLASTIC\n250., 0.\n200., 0.1\n" + section + step,
       "the case that the deck comes to cannot be: material[0].plastic[1]: expected a stress not below");
-  const std::string contact = bar + held + steel + section + "*CONTACT PAIR, INTERACTION=I\nA, B\n" + step;
-  check_refused(contact,
-                "deck.inp: line 32: *CONTACT PAIR changes the answer: it is not known here; --leave-out");
+  const std::string contact =
+      bar_nodes + held + steel + section + "*CONTACT PAIR, INTERACTION=I\nA, B\n" + step;
+  check_deck_refused(
+      contact, "deck.inp: line 32: *CONTACT PAIR changes the answer: it is not known here; --leave-out");
   const Workplace place;
   place.put("deck.inp", contact);
   const Outcome left_out = place.run("convert deck.inp part.json --leave-out");
@@ -220,17 +228,19 @@ TEST_CASE("a deck's temperatures: what the nodes are warmer by than at the start
   const double pressure = 200000 * 1.2e-5 * 100 / (1 - 2 * 0.3);
   {
     const Workplace place;
-    const nlohmann::json result = solved_deck(
-        place, bar + held_all + warm_steel + section + "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNall, 20.\n" +
-                   step + "*TEMPERATURE\nNall, 120.\n*END STEP\n");
+    const nlohmann::json result =
+        solved_deck(place, bar_nodes + held_all + warm_steel + section +
+                               "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNall, 20.\n" + step +
+                               "*TEMPERATURE\nNall, 120.\n*END STEP\n");
     CHECK(result["case"]["boundary"].back()["temperature"] == 100.0);
     CHECK(result["max_von_mises"].get<double>() < 1e-9 * pressure);
     CHECK(!place.has("deck.temperature.csv"));
   }
   const Workplace place;
-  const nlohmann::json result = solved_deck(
-      place, bar + held_all + warm_steel + section + "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNall, 20.\n" +
-                 step + "*TEMPERATURE\nNall, 70.\nRight, 270.\nLeft, 20.\n*END STEP\n");
+  const nlohmann::json result =
+      solved_deck(place, bar_nodes + held_all + warm_steel + section +
+                             "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNall, 20.\n" + step +
+                             "*TEMPERATURE\nNall, 70.\nRight, 270.\nLeft, 20.\n*END STEP\n");
   CHECK(contents(place.path("deck.temperature.csv")).find("\n2, 50\n3, 250\n") != std::string::npos);
   // 0, 50 and 250 at the nodes: 150 in the mean of the warmer element, and nothing moves.
   CHECK(result["max_von_mises"].get<double>() < 1e-9 * pressure);
@@ -239,24 +249,26 @@ TEST_CASE("a deck's temperatures: what the nodes are warmer by than at the start
   CHECK(again.exit_code == 0);
   CHECK(place.run("verify at_once/deck.json --output at_once --set solver.tolerance=1e-10").exit_code == 0);
   CHECK(place.json("at_once/result.json")["reaction"] == place.json("out/result.json")["reaction"]);
-  check_refused(
-      bar + held_all + steel + "*EXPANSION\n1e-5, 0.\n2e-5, 100.\n" + section + step + "*END STEP\n",
+  check_deck_refused(
+      bar_nodes + held_all + steel + "*EXPANSION\n1e-5, 0.\n2e-5, 100.\n" + section + step + "*END STEP\n",
       "expected one coefficient of expansion, at all temperatures");
-  check_refused(
-      bar + held_all + steel + "*EXPANSION, TYPE=ORTHO\n1e-5, 1e-5, 1e-5\n" + section + step + "*END STEP\n",
-      "*EXPANSION: expected an isotropic material, got TYPE=ORTHO");
-  check_refused(bar + held_all + warm_steel + section + step + "*TEMPERATURE, FILE=heat\n*END STEP\n",
-                "*TEMPERATURE changes the answer: FILE=heat is not known here");
-  check_refused(bar + held_all + warm_steel + section + step + "*TEMPERATURE\nNowhere, 3.\n*END STEP\n",
-                "there is no set of nodes \"Nowhere\"");
-  check_refused(bar + held_all + warm_steel + section + "*INITIAL CONDITIONS, TYPE=STRESS\nBar, 3.\n" + step +
-                    "*END STEP\n",
-                "*INITIAL CONDITIONS changes the answer: it is not known here, but TYPE=TEMPERATURE");
+  check_deck_refused(bar_nodes + held_all + steel + "*EXPANSION, TYPE=ORTHO\n1e-5, 1e-5, 1e-5\n" + section +
+                         step + "*END STEP\n",
+                     "*EXPANSION: expected an isotropic material, got TYPE=ORTHO");
+  check_deck_refused(
+      bar_nodes + held_all + warm_steel + section + step + "*TEMPERATURE, FILE=heat\n*END STEP\n",
+      "*TEMPERATURE changes the answer: FILE=heat is not known here");
+  check_deck_refused(
+      bar_nodes + held_all + warm_steel + section + step + "*TEMPERATURE\nNowhere, 3.\n*END STEP\n",
+      "there is no set of nodes \"Nowhere\"");
+  check_deck_refused(bar_nodes + held_all + warm_steel + section +
+                         "*INITIAL CONDITIONS, TYPE=STRESS\nBar, 3.\n" + step + "*END STEP\n",
+                     "*INITIAL CONDITIONS changes the answer: it is not known here, but TYPE=TEMPERATURE");
 }
 
 TEST_CASE("meshes keep their groups and numbers from one format to another") {
   const Workplace place;
-  place.put("a.inp", bar + "*SURFACE, NAME=End\n2, S4\n*ELSET, ELSET=Half way\n2\n");
+  place.put("a.inp", bar_nodes + "*SURFACE, NAME=End\n2, S4\n*ELSET, ELSET=Half way\n2\n");
   for (const char* step :
        {"convert a.inp b.msh", "convert b.msh c.inp", "convert c.inp d.msh", "convert d.msh e.vtu"}) {
     const Outcome outcome = place.run(step);
@@ -278,7 +290,7 @@ TEST_CASE("meshes keep their groups and numbers from one format to another") {
 
 TEST_CASE("a deck is a mesh of a case, with sets and surfaces as groups") {
   const Workplace place;
-  place.put("bar.inp", bar + "*SURFACE, NAME=End\n2, S4\n" + steel);
+  place.put("bar.inp", bar_nodes + "*SURFACE, NAME=End\n2, S4\n" + steel);
   place.put_json("case.json", parsed(R"({"mesh": {"file": "bar.inp"},
     "material": [{"on": "Bar", "young": 200000, "poisson": 0}],
     "boundary": [{"on": "Left", "displacement": [0, 0, 0]}, {"on": "End", "traction": [100, 0, 0]}],
@@ -295,7 +307,7 @@ TEST_CASE("a deck is a mesh of a case, with sets and surfaces as groups") {
 
 TEST_CASE("a case to start from is one, with comments") {
   const Workplace place;
-  place.put("bar.inp", bar + "*SURFACE, NAME=End\n2, S4\n*SURFACE, NAME=\"Far // end\"\n1, S6\n");
+  place.put("bar.inp", bar_nodes + "*SURFACE, NAME=End\n2, S4\n*SURFACE, NAME=\"Far // end\"\n1, S6\n");
   const Outcome made = place.run("init bar.inp");
   INFO(made.error);
   REQUIRE(made.exit_code == 0);

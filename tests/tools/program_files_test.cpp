@@ -11,8 +11,6 @@ using namespace kacanov::testing;
 
 namespace {
 
-const std::string patience = "timeout -s KILL 120";
-
 /// A run that goes on until it is asked to stop.
 const std::string endless =
     "run beam.json --output out --set solver.contact=admm --set solver.r=1e-6 "

@@ -16,21 +16,21 @@ using namespace kacanov::testing;
 
 namespace {
 
-using Point = std::array<double, 3>;
-using Triangle = std::array<Point, 3>;
+using Corner = std::array<double, 3>;
+using Triangle = std::array<Corner, 3>;
 
 /// A cap of the ball round (1, 0.5, −2) with the radius 2 about its highest point, in rings; outwards.
 std::vector<Triangle> cap(int rings) {
   const auto at = [&](int ring, int part) {
     const double far = 0.9 * ring / rings, turn = 2 * M_PI * part / (6.0 * rings);
-    return Point{1 + 2 * std::sin(far) * std::cos(turn), 0.5 + 2 * std::sin(far) * std::sin(turn),
-                 -2 + 2 * std::cos(far)};
+    return Corner{1 + 2 * std::sin(far) * std::cos(turn), 0.5 + 2 * std::sin(far) * std::sin(turn),
+                  -2 + 2 * std::cos(far)};
   };
   std::vector<Triangle> triangles;
   for (int ring = 0; ring < rings; ++ring)
     for (int part = 0; part < 6 * rings; ++part) {
-      const Point a = at(ring, part), b = at(ring + 1, part), c = at(ring + 1, part + 1),
-                  d = at(ring, part + 1);
+      const Corner a = at(ring, part), b = at(ring + 1, part), c = at(ring + 1, part + 1),
+                   d = at(ring, part + 1);
       triangles.push_back({a, b, c});
       if (ring > 0) triangles.push_back({a, c, d});
     }
@@ -43,7 +43,7 @@ std::string ascii_stl(const std::vector<Triangle>& triangles) {
   text << "solid ball\n";
   for (const Triangle& t : triangles) {
     text << "facet normal 0 0 0\n outer loop\n";
-    for (const Point& x : t) text << "  vertex " << x[0] << " " << x[1] << " " << x[2] << "\n";
+    for (const Corner& x : t) text << "  vertex " << x[0] << " " << x[1] << " " << x[2] << "\n";
     text << " endloop\nendfacet\n";
   }
   text << "endsolid ball\n";
@@ -72,7 +72,7 @@ std::string gmsh_facets(const std::vector<Triangle>& triangles) {
   text << "$Nodes\n" << 3 * triangles.size() + 3 << "\n";
   std::size_t n = 0;
   for (const Triangle& t : triangles)
-    for (const Point& x : t) text << ++n << " " << x[0] << " " << x[1] << " " << x[2] << "\n";
+    for (const Corner& x : t) text << ++n << " " << x[0] << " " << x[1] << " " << x[2] << "\n";
   // A facet of another group, in the way.
   text << n + 1 << " 0 0 1\n" << n + 2 << " 2 0 1\n" << n + 3 << " 1 1 1\n";
   text << "$EndNodes\n$Elements\n" << triangles.size() + 1 << "\n";
@@ -247,7 +247,7 @@ TEST_CASE("a bad file of an obstacle is refused by its key, name and line") {
   place.put("words.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 zero\n");
   place.put("cut.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n");
   place.put("short.stl", binary_stl(cap(2)).substr(0, 200).replace(0, 5, "a bin"));
-  place.put("flat.stl", ascii_stl({{Point{0, 0, 0}, Point{1, 0, 0}, Point{2, 0, 0}}}));
+  place.put("flat.stl", ascii_stl({{Corner{0, 0, 0}, Corner{1, 0, 0}, Corner{2, 0, 0}}}));
   place.put("ball.msh", gmsh_facets(cap(2)));
   place.put("ragged.csv", "1,2,3\n4,5\n");
   place.put("words.csv", "1,2\n3,four\n");

@@ -37,6 +37,10 @@ class Workplace {
   TemporaryFolder folder_;
 };
 
+/// What a script or a program that may hang is started with: then the test ends it and sees another exit
+/// code.
+inline const std::string patience = "timeout -s KILL 120";
+
 /// The paper's beam, coarse: 54 nodes in a plane, clamped at its left, resting on a plane.
 nlohmann::json small_beam();
 

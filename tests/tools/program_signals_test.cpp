@@ -11,11 +11,8 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// Where a run hangs, the test ends it and sees another exit code.
-const std::string patience = "timeout -s KILL 120";
-
 /// Goes on until it is asked to stop, with a checkpoint after every step.
-const std::string endless =
+const std::string endless_ranks =
     "run beam.json --output out --ranks 2 --set solver.contact=admm --set solver.r=1e-6 "
     "--set solver.max_contact=2 --set solver.max_outer=100000000";
 
@@ -36,7 +33,7 @@ TEST_CASE("a run that does not stop when asked to is ended after some seconds, b
   // The last rank hangs: the first one cannot come to where it would stop.
   place.put("hang.sh", start_ranks + "kill -s STOP $last\nkill -s TERM $program\nwait $program\n");
   const auto before = std::chrono::steady_clock::now();
-  const Outcome outcome = place.run(endless + " --stop-within 1", patience + " sh hang.sh");
+  const Outcome outcome = place.run(endless_ranks + " --stop-within 1", patience + " sh hang.sh");
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count();
   INFO("error: ", outcome.error);
   CHECK(outcome.exit_code == 128 + 15);
@@ -52,6 +49,6 @@ TEST_CASE("a run that stops in time is not ended, however soon that had to be") 
   const Workplace place;
   place.put_json("beam.json", small_beam());
   place.put("stop.sh", start_ranks + "kill -s TERM $program\nwait $program\n");
-  CHECK(place.run(endless + " --stop-within 20", patience + " sh stop.sh").exit_code == 1);
+  CHECK(place.run(endless_ranks + " --stop-within 20", patience + " sh stop.sh").exit_code == 1);
   CHECK(place.json("out/result.json")["status"] == "interrupted");
 }

@@ -48,12 +48,12 @@ TEST_CASE("a body that is turned with its planes of symmetry answers as it did o
       const json slanting = solved(place, block(turned(shear), turned(down), turned(top)), ranks);
       CHECK(slanting["max_von_mises"].get<double>() ==
             doctest::Approx(straight["max_von_mises"].get<double>()).epsilon(1e-6));
-      CHECK(distance(vector(slanting["probe"][0]), turned(vector(straight["probe"][0]))) < 1e-9);
+      CHECK(distance(point_of(slanting["probe"][0]), turned(point_of(straight["probe"][0]))) < 1e-9);
       for (const char* part :
            {"/reaction/floor/force", "/contact/lid/force", "/contact/lid/friction_force"}) {
         CAPTURE(part);
         const json::json_pointer at(part);
-        CHECK(distance(vector(slanting[at]), turned(vector(straight[at]))) < 1e-6);
+        CHECK(distance(point_of(slanting[at]), turned(point_of(straight[at]))) < 1e-6);
       }
     }
   }
@@ -77,7 +77,7 @@ TEST_CASE("a sector of a tube under pressure, between two planes of symmetry: La
     const double r = k == 0 ? a : b;
     const double u = (1 + nu) / young * p * a * a / (b * b - a * a) * ((1 - 2 * nu) * r + b * b / r);
     const Point exact{u * std::cos(angle), u * std::sin(angle), 0};
-    CHECK(distance(vector(result["probe"][k]), exact) < 0.01 * u);
+    CHECK(distance(point_of(result["probe"][k]), exact) < 0.01 * u);
   }
 }
 
@@ -92,13 +92,13 @@ TEST_CASE("displacements in a frame are those along its axes, and grow with load
     "steps": [{"time": 1, "factors": {"grip": 1}}, {"time": 2, "factors": {"grip": 0.5}}],
     "probe": [[1, 0.3, 1]], "solver": {"tolerance": 1e-9}, "output": {"report": false}})");
   const json result = solved(place, input, "2");
-  const Point u = vector(result["probe"][0]), force = vector(result["reaction"]["grip"]["force"]);
+  const Point u = point_of(result["probe"][0]), force = point_of(result["reaction"]["grip"]["force"]);
   CHECK(0.6 * u[0] + 0.8 * u[2] == doctest::Approx(0.005).epsilon(1e-9));
   CHECK(force[0] / force[2] == doctest::Approx(0.75).epsilon(1e-6));
   CHECK(std::abs(force[1]) < 1e-7);
   // Three directions are a place.
   input["boundary"][1]["displacement"] = parsed("[0.01, 0, 0.02]");
-  const Point fixed = vector(solved(place, input)["probe"][0]);
+  const Point fixed = point_of(solved(place, input)["probe"][0]);
   CHECK(distance(fixed, {0.5 * (0.006 - 0.016), 0, 0.5 * (0.008 + 0.012)}) < 1e-12);
 }
 

@@ -72,10 +72,10 @@ TEST_CASE("a box that is turned with the body presses as it did along the axes")
     const json slanting = solved(place, on_punch(turn, dim, true), "2");
     for (const char* part : {"force", "friction_force"}) {
       CAPTURE(part);
-      const Point wanted = vector(straight["contact"]["punch"][part]);
+      const Point wanted = point_of(straight["contact"]["punch"][part]);
       CHECK(wanted[dim - 1] > (std::string(part) == "force" ? 0.1 : -1.0));
-      CHECK(distance(vector(framed["contact"]["punch"][part]), wanted) < 1e-9);
-      CHECK(distance(vector(slanting["contact"]["punch"][part]), turn(wanted)) < 1e-7);
+      CHECK(distance(point_of(framed["contact"]["punch"][part]), wanted) < 1e-9);
+      CHECK(distance(point_of(slanting["contact"]["punch"][part]), turn(wanted)) < 1e-7);
     }
     CHECK(slanting["active_nodes"] == straight["active_nodes"]);
     CHECK(straight["active_nodes"] < straight["contact_nodes"]);

@@ -45,7 +45,7 @@ inline void put_mesh(const Workplace& place, const BoxSpec& box,
 }
 
 inline nlohmann::json list(const Point& x) { return {x[0], x[1], x[2]}; }
-inline Point vector(const nlohmann::json& list) {
+inline Point point_of(const nlohmann::json& list) {
   return {list.at(0), list.at(1), list.size() > 2 ? list.at(2).get<double>() : 0.0};
 }
 inline double distance(const Point& a, const Point& b) {
