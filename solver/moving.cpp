@@ -52,7 +52,7 @@ class Chain {
     over_ = std::move(run_.load_step_over);
     run_.load_step_over = nullptr;
     run_.start = nullptr;
-    if (run_.coarse != nullptr) start_ = interpolate(*run_.coarse, part);
+    if (run_.coarse != nullptr && !run_.coarse->at_rest()) start_ = interpolate(*run_.coarse, part);
     run_.coarse = nullptr;
     u_.assign(part.unknowns(), 0.0);
     for (std::size_t e = 0; e < model.contact.size(); ++e)

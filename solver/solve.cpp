@@ -161,7 +161,7 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   const double began = MPI_Wtime();
   const bool restart = part.node_map.any(part.node_map.rank == 0 && run.start != nullptr);
   std::optional<Start> start;
-  if (!restart && run.coarse != nullptr) start = interpolate(*run.coarse, part);
+  if (!restart && run.coarse != nullptr && !run.coarse->at_rest()) start = interpolate(*run.coarse, part);
   if (!restart && run.from != nullptr) start = *run.from;
   InOwnUnits scaled(part);
   if (start) to_own_units(*start, scaled.units());

@@ -45,6 +45,11 @@ Weights weights_at(const CoarseSolution& coarse, const PointLocator& locator, co
 
 }  // namespace
 
+bool CoarseSolution::at_rest() const noexcept {
+  return std::all_of(displacement.begin(), displacement.end(), [](double u) { return u == 0.0; }) &&
+         std::all_of(contact.begin(), contact.end(), [](const auto& point) { return point.pressure == 0.0; });
+}
+
 CoarseSolution whole_solution(const Part& part, const Problem* problem, const Solution& solution) {
   CoarseSolution coarse;
   coarse.type = part.type;

@@ -10,6 +10,7 @@
 
 #include <kacanov/error.hpp>
 #include "mesh/plain_stream.hpp"
+#include "problem/faces.hpp"
 #include "problem/integration.hpp"
 #include "problem/vector3.hpp"
 
@@ -21,54 +22,6 @@ constexpr double far_away = 10.0;
 
 /// Below this length a trace row cannot carry a contact force: its node is held in that direction.
 constexpr double negligible_trace = 1e-8;
-
-/// Whether obstacles of this kind can be told from where they are met.
-template <class Kind>
-constexpr bool has_direction(const Kind&) {
-  return requires(const Kind& kind) { kind.direction; };
-}
-
-/// How an obstacle faces the nodes of a mesh.
-class Faces {
- public:
-  Faces(const Mesh& mesh, const Obstacle& obstacle, const std::string& path)
-      : mesh_(mesh), obstacle_(obstacle), path_(path + ".obstacle.") {
-    std::visit([&](const auto& kind) { path_ += kind.key; }, obstacle_);
-    const auto* surface = std::get_if<SurfaceObstacle>(&obstacle);
-    const auto* heights = std::get_if<HeightMap>(&obstacle);
-    if ((surface != nullptr && !surface->surface) || (heights != nullptr && !heights->field))
-      throw InputError(path_ + ": expected the obstacle's data, which are not read yet");
-    if (mesh.dim() == 2) {
-      if (surface != nullptr || heights != nullptr)
-        throw InputError(path_ + ": expected a mesh in 3D, the only ones that this obstacle faces");
-      return;
-    }
-    const auto* block = std::get_if<Block>(&obstacle);
-    if (block != nullptr && block->flat())
-      throw InputError(path_ + ": expected corners of three entries that differ in all of them");
-  }
-
-  const std::string& path() const noexcept { return path_; }
-  /// Of a node whose outer normal (of any length) is given; nothing where the obstacle is missed.
-  std::optional<Facing> at(std::int32_t node, const Vector3& outer) const {
-    const SurfacePoint point{position(mesh_, node), outer};
-    return std::visit(
-        [&](const auto& kind) -> std::optional<Facing> {
-          const Facing facing = kind.project(point);
-          if (facing.kind == Facing::Kind::met) return facing;
-          if (facing.kind == Facing::Kind::missed) return std::nullopt;
-          throw InputError(path_ + ": node " + std::to_string(mesh_.node_tag(node)) + " lies " +
-                           kind.undecided + ", where no direction leads out; " +
-                           (has_direction(kind) ? "give a \"direction\"" : "move the obstacle or the node"));
-        },
-        obstacle_);
-  }
-
- private:
-  const Mesh& mesh_;
-  const Obstacle& obstacle_;
-  std::string path_;
-};
 
 /// To three digits.
 std::string rough(double value) {

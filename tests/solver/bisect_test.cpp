@@ -10,10 +10,12 @@
 #include <numeric>
 #include <random>
 
+#include <kacanov/discretisation.hpp>
 #include <kacanov/error.hpp>
 #include <kacanov/raise_order.hpp>
 #include "facet_measure.hpp"
 #include "problem/vector3.hpp"
+#include "problem_models.hpp"
 
 using namespace kacanov;
 
@@ -26,7 +28,7 @@ std::vector<ElementType> simplices() {
   return types;
 }
 
-Mesh block(ElementType type, int cells = 2) {
+Mesh split_block(ElementType type, int cells = 2) {
   return make_box({{2.0, 1.0, 1.5}, {2 * cells, cells, cells}, type});
 }
 
@@ -87,7 +89,7 @@ TEST_CASE("a marked triangle, by hand") {
 
 TEST_CASE("nothing marked: nothing changes") {
   for (const ElementType type : simplices()) {
-    const Mesh mesh = block(type);
+    const Mesh mesh = split_block(type);
     const Mesh same = bisect(mesh, {});
     CHECK(same.elements == mesh.elements);
     CHECK(same.coordinates == mesh.coordinates);
@@ -100,7 +102,7 @@ TEST_CASE("whatever is marked, elements fit together, sides stay, shapes stay go
   std::mt19937 random(7);
   for (const ElementType type : simplices()) {
     CAPTURE(cell(type).name);
-    const Mesh start = block(type, 1);
+    const Mesh start = split_block(type, 1);
     const double before = worst_quality(start);
     Mesh mesh = start;
     for (int round = 0; round < 5; ++round) {
@@ -125,7 +127,7 @@ TEST_CASE("whatever is marked, elements fit together, sides stay, shapes stay go
 TEST_CASE("a corner asked for again and again: its elements shrink, few others do") {
   for (const ElementType type : simplices()) {
     CAPTURE(cell(type).name);
-    Mesh mesh = block(type, 1);
+    Mesh mesh = split_block(type, 1);
     const double before = worst_quality(mesh);
     for (int round = 0; round < 8; ++round) {
       std::vector<std::int32_t> marked;
@@ -144,7 +146,7 @@ TEST_CASE("a corner asked for again and again: its elements shrink, few others d
 }
 
 TEST_CASE("curves stay: new nodes lie where the element's own map takes them") {
-  Mesh mesh = block(ElementType::tet10);
+  Mesh mesh = split_block(ElementType::tet10);
   for (std::size_t n = 0; n < mesh.node_count(); ++n) {
     double* x = &mesh.coordinates[3 * n];
     x[2] += 0.1 * x[0] * x[0];  // a parabola, which quadratic edges follow exactly
@@ -164,7 +166,7 @@ TEST_CASE("curves stay: new nodes lie where the element's own map takes them") {
 
 TEST_CASE("elements, lines of nodes and numbers of a file are taken over") {
   for (const ElementType type : {ElementType::tet4, ElementType::tet10}) {
-    Mesh mesh = block(type, 1);
+    Mesh mesh = split_block(type, 1);
     mesh.groups.push_back({"half", 3, {}});
     double volume = 0.0;
     for (std::size_t e = 0; e < mesh.element_count(); e += 2) {
@@ -222,6 +224,46 @@ TEST_CASE("the worst elements have the share asked for, and no fewer do") {
 }
 
 TEST_CASE("other elements are refused") {
-  CHECK_THROWS_WITH_AS(bisect(block(ElementType::hex8), {}),
+  CHECK_THROWS_WITH_AS(bisect(split_block(ElementType::hex8), {}),
                        doctest::Contains("expected tri3, tet4 or tet10"), InputError);
+}
+
+TEST_CASE("elements that go through an obstacle between their nodes are found, and no others") {
+  for (const ElementType type : simplices()) {
+    const Mesh mesh = split_block(type);
+    const std::size_t dim = mesh.dim(), up = dim - 1;
+    const double height = dim == 2 ? 1.0 : 1.5;
+    // A small ball that stands over one place of the top, a tenth of its facets wide.
+    Vector3 centre{0.3, dim == 2 ? 0.0 : 0.1, 0.0};
+    centre[up] = height + 0.04;
+    Model model = testing::elastic_model();
+    model.boundary.push_back(testing::displacement(testing::named("bottom"),
+                                                   {0.0, 0.0, dim == 3 ? std::optional(0.0) : std::nullopt}));
+    ContactEntry entry;
+    entry.on = testing::named("top");
+    entry.obstacle = Sphere{centre, 0.05, std::nullopt};
+    model.contact.push_back(entry);
+    const Problem problem = build_problem(mesh, model);
+    std::vector<double> u(problem.mesh.coordinates.size(), 0.0);
+    const std::vector<std::int32_t> entered = entered_elements(problem, model, u, 0.0);
+    REQUIRE(entered.size() == 1);
+    const std::size_t nodes = nodes_per_element(type);
+    double lower = HUGE_VAL, upper = -HUGE_VAL, highest = -HUGE_VAL;
+    for (std::size_t a = 0; a < nodes; ++a) {
+      const Vector3 x = position(mesh, mesh.elements[static_cast<std::size_t>(entered[0]) * nodes + a]);
+      lower = std::min(lower, x[0]);
+      upper = std::max(upper, x[0]);
+      highest = std::max(highest, x[up]);
+    }
+    CHECK(lower <= 0.3);
+    CHECK(upper >= 0.3);
+    CHECK(highest == doctest::Approx(height));
+    // It lies 0.01 deep at most, and nothing does once the body has gone down by more than that.
+    CHECK(entered_elements(problem, model, u, 0.0101).empty());
+    for (std::size_t i = up; i < u.size(); i += dim) u[i] = -0.0101;
+    CHECK(entered_elements(problem, model, u, 0.0).empty());
+    model.contact[0].relinearise = true;
+    std::fill(u.begin(), u.end(), 0.0);
+    CHECK(entered_elements(problem, model, u, 0.0).empty());
+  }
 }

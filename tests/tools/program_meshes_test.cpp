@@ -166,6 +166,29 @@ TEST_CASE("an adapted mesh meets the error asked for, with fewer unknowns than a
         doctest::Approx(one["contact_force"][2].get<double>()).epsilon(0.1));
 }
 
+TEST_CASE("a first mesh that does not see the obstacle is refined until it does" * doctest::skip(sanitized)) {
+  const Workplace place;
+  nlohmann::json needle = press();
+  needle["mesh"] = {{"box", {{"size", {1, 1, 1}}, {"cells", {2, 2, 2}}, {"element", "tet10"}}},
+                    {"adapt", {{"error", 0.2}}}};
+  needle["contact"][0]["obstacle"] = {{"sphere", {{"centre", {0.33, 0.38, 1.098}}, {"radius", 0.1}}}};
+  place.put_json("needle.json", needle);
+  const Outcome outcome = place.run("run needle.json");
+  INFO("error: ", outcome.error);
+  REQUIRE(outcome.exit_code == 0);
+  const nlohmann::json result = place.json("results/needle/result.json");
+  CHECK(result["contact_force"][2].get<double>() < 0.0);
+  CHECK(result["discretisation"]["energy"] <= 0.2);
+  CHECK_FALSE(result["nested"][0].contains("error"));  // nothing strains the body there
+  CHECK(result["warnings"].dump().find("nothing says where") == std::string::npos);
+  // Where that may not be, it is said.
+  needle["mesh"]["adapt"]["most_unknowns"] = 100;
+  place.put_json("needle.json", needle);
+  CHECK(place.run("run needle.json").exit_code == 0);
+  CHECK(place.json("results/needle/result.json")["warnings"].dump().find("goes through an obstacle") !=
+        std::string::npos);
+}
+
 TEST_CASE("an adapted mesh stays below the unknowns allowed, and a run that was stopped goes on with it") {
   const Workplace place;
   place.put_json("press.json", press());

@@ -24,6 +24,10 @@ namespace {
 /// half as wide they keep a 4⁻ᵖ of theirs.
 constexpr double most_refined = 0.5, least_refined = 0.1;
 
+/// Of the largest displacement: as deep as the body may lie in an obstacle between its nodes. Corners of
+/// quadratic facets, which bear nothing, go through by a little on any mesh.
+constexpr double entered_at_most = 0.05;
+
 double share_to_refine(double error, double aim, int order) {
   const double to_lose = 1.0 - aim * aim / (error * error);
   return std::clamp(to_lose / (1.0 - std::ldexp(1.0, -2 * order)), least_refined, most_refined);
@@ -46,10 +50,10 @@ class Adaptation {
       const std::vector<double> error = solve_on_it();
       const CoarseLevel& level = run_.levels.back();
       if (mpi_.first() && !mpi_.hosted() && options_.progress) std::cout << level_line(level) << std::flush;
-      if (level.converged && level.error == 0.0)
+      if (level.converged && level.error == 0.0 && !enters())
         input_.warnings.push_back(
             "mesh.adapt: nothing strains the body on this mesh, so that nothing says where to refine it");
-      if (!level.converged || level.error <= aim_.error) break;
+      if (!level.converged || (level.error <= aim_.error && !enters())) break;
       if (number == aim_.most_meshes) {
         limit_met("mesh.adapt.most_meshes = " + std::to_string(number));
         break;
@@ -86,11 +90,29 @@ class Adaptation {
     DiscretisationError error = estimate_error(part, solution);
     run_.take(solution, part, problem ? &*problem : nullptr, began);
     run_.levels.back().error = error.relative;
+    if (solution.result.status == Status::converged)
+      find_entered(problem ? &*problem : nullptr, gather_nodal(part, solution.displacement, part.dim()));
     std::vector<double> all(static_cast<std::size_t>(part.total_elements), 0.0);
     for (std::size_t e = 0; e < error.element.size(); ++e) all[part.element_index[e]] = error.element[e];
     part.node_map.sum_all(all);
     return all;
   }
+
+  /// `u`: of the whole mesh, on the first rank as the problem is.
+  void find_entered(const Problem* problem, const std::vector<double>& u) {
+    together(mpi_, [&] {
+      if (problem == nullptr) return;
+      double largest = 0.0;
+      for (const double component : u) largest = std::max(largest, std::abs(component));
+      entered_ = entered_elements(*problem, input_.model, u, entered_at_most * largest);
+    });
+    entered_count_ = static_cast<std::int64_t>(entered_.size());
+    MPI_Bcast(&entered_count_, 1, MPI_INT64_T, 0, mpi_.comm());
+  }
+
+  /// Whether the body goes through an obstacle between its nodes, as a mesh that is too coarse to see it lets
+  /// it.
+  bool enters() const { return entered_count_ > 0; }
 
   /// Whether the next mesh is within the limit.
   bool refine(const std::vector<double>& error) {
@@ -99,7 +121,9 @@ class Adaptation {
       if (!mpi_.first()) return;
       const Mesh& mesh = *input_.mesh.adapted;
       const double share = share_to_refine(run_.levels.back().error, aim_.error, cell(mesh.type).order);
-      Mesh finer = bisect(mesh, worst_elements(error, share));
+      std::vector<std::int32_t> marked = worst_elements(error, share);
+      marked.insert(marked.end(), entered_.begin(), entered_.end());
+      Mesh finer = bisect(mesh, marked);
       const auto unknowns = static_cast<std::int64_t>(finer.coordinates.size());
       fits = unknowns <= aim_.most_unknowns ? 1 : 0;
       if (fits == 0) return;
@@ -111,9 +135,12 @@ class Adaptation {
   }
 
   void limit_met(const std::string& limit) {
+    const std::string entered = enters() ? ", and goes through an obstacle between the nodes of " +
+                                               std::to_string(entered_count_) + " elements"
+                                         : "";
     input_.warnings.push_back(limit + ": the mesh is refined no further, with an estimated error of " +
                               readable_share(run_.levels.back().error) + " in place of " +
-                              readable_share(aim_.error));
+                              readable_share(aim_.error) + entered);
   }
 
   Case& input_;
@@ -121,6 +148,8 @@ class Adaptation {
   const RunOptions& options_;
   const Adaptivity aim_;
   CoarseRun run_;
+  std::vector<std::int32_t> entered_;  ///< elements, on the first rank
+  std::int64_t entered_count_ = 0;     ///< on all
 };
 
 }  // namespace

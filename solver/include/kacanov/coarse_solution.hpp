@@ -25,6 +25,8 @@ struct CoarseSolution {
   std::vector<ContactTraction> contact;  ///< ascending by node
   double lambda_max = 0.0;               ///< of the contact compliance, which the mesh hardly changes
 
+  /// Whether nothing has moved and nothing bears: no better a start than none.
+  bool at_rest() const noexcept;
   MeshView view() const noexcept { return {type, coordinates, elements}; }
 };
 

@@ -2,12 +2,15 @@
 // How far a solution is from that of a mesh without end: an estimate from the solution itself.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include <kacanov/element_fields.hpp>
+#include <kacanov/model.hpp>
 #include <kacanov/part.hpp>
+#include <kacanov/problem.hpp>
 
 namespace kacanov {
 
@@ -30,5 +33,14 @@ DiscretisationError estimate_error(const Part& part, const BodyState& state);
 /// The same for a number that is known on meshes of falling width, each half the one before, coarsest first:
 /// how far the last is from that of a mesh without end. Nothing of fewer than two numbers.
 std::optional<double> error_of_last(std::span<const double> values);
+
+/// Elements (ascending) with a facet of a contact entry that, moved by u, lies in its obstacle by more than
+/// `least` somewhere: nodes are kept out of obstacles, what lies between them is not (theory: bisection).
+/// Entries whose obstacle moves are passed over.
+/// - problem: of `model`, whole; model: with its obstacles' data.
+/// - u: nodes × dim of problem.mesh; least: a length.
+/// Not collective.
+std::vector<std::int32_t> entered_elements(const Problem& problem, const Model& model,
+                                           std::span<const double> u, double least);
 
 }  // namespace kacanov
