@@ -22,10 +22,13 @@ kacanov_test(program_hard IN program NUMBERS
 kacanov_test(program_verify IN program
   SOURCES tools/program_verify_test.cpp tools/mesh_writer.cpp
   LIBRARIES kacanov_program_runner kacanov_formats)
+kacanov_test(program_coarser IN program
+  SOURCES tools/program_coarser_test.cpp tools/mesh_writer.cpp
+  LIBRARIES kacanov_program_runner kacanov_formats)
 kacanov_test(program_supports IN program
   SOURCES tools/program_supports_test.cpp tools/program_turned_box_test.cpp tools/mesh_writer.cpp
   LIBRARIES kacanov_program_runner kacanov_formats)
-set_tests_properties(program_verify program_supports PROPERTIES PROCESSORS 2)
+set_tests_properties(program_verify program_coarser program_supports PROPERTIES PROCESSORS 2)
 target_compile_definitions(test_program PRIVATE
   KACANOV_PROGRAM="$<TARGET_FILE:kacanov>" KACANOV_MPIEXEC="${MPIEXEC_EXECUTABLE}"
   KACANOV_HARD_CASES="${PROJECT_SOURCE_DIR}/tests/cases/hard")

@@ -45,7 +45,7 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
       {"material[0].law.gamma=0.1", "material[0].law.gamma: unknown key"},
       {"output.colour=1", "output.colour: unknown key"},
       // Wrong types.
-      {"mesh=3", "mesh: expected an object with the keys file, box, refine, order, adapt, got 3"},
+      {"mesh=3", "mesh: expected an object with the keys file, files, box, refine, order, adapt, got 3"},
       {"material={}", "material: expected a list of materials, got {}"},
       {"material[0].bbar=yes", "material[0].bbar: expected true or false, got \"yes\""},
       {"material[0].young=[1]", "material[0].young: expected a number > 0, got [1]"},
@@ -131,7 +131,7 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
        "total_force, "
        "density, spring, node_spring, node_force, temperature, normal, got "
        "traction and pressure"},
-      {"mesh.file=a.msh", "mesh: expected only one of the keys file, box, got file and box"},
+      {"mesh.file=a.msh", "mesh: expected only one of the keys file, files, box, got file and box"},
       {"material[0].law.yield_stress=1",
        "material[0].law: expected only one of the keys x0, yield_stress, got x0 and yield_stress"},
       {"material[0].law={}", "material[0].law.type: this key is missing"},

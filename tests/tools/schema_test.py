@@ -94,6 +94,7 @@ def samples():
     for steps in (3, [0.5, 1]):
         yield {**small, "solver": {"load_steps": steps, "r": "paper"}}
     yield {**small, "mesh": {"file": "a.msh"}}
+    yield {**small, "mesh": {"files": ["coarse.msh", "a.msh"]}}
 
 
 def named_schemas(schema=SCHEMA):

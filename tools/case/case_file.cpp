@@ -103,6 +103,15 @@ class CaseParser {
       result_.mesh.file = in_folder(file->text());
       return;
     }
+    if (const auto files = object.optional("files")) {
+      for (const Node& file : files->entries()) result_.mesh.coarser.push_back(in_folder(file.text()));
+      result_.mesh.file = result_.mesh.coarser.back();
+      result_.mesh.coarser.pop_back();
+      if (result_.mesh.adapt)
+        object.required("adapt").expected(
+            "no \"files\" beside it: the meshes that are made take their place");
+      return;
+    }
     const Object box(object.required("box"));
     const std::vector<Node> size = box.required("size").entries();
     const std::vector<Node> cells = box.required("cells").entries();

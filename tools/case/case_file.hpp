@@ -32,6 +32,7 @@ struct NodeValueFile {
 struct MeshSource {
   std::optional<std::string> file;  ///< path, relative ones taken from the case file's folder
   std::optional<BoxSpec> box;
+  std::vector<std::string> coarser = {};  ///< files of the same body to solve on first, coarsest first
   int order = 1;   ///< 2: quadratic elements are made of the file's linear ones; a box has them already
   int refine = 0;  ///< times that the mesh of the file is refined; a box has its cells cut already
   /// What is in the file, where a caller has it in memory: then the file is not opened.

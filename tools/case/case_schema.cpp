@@ -43,6 +43,9 @@ KeySet mesh() {
        may("most_meshes", Whole{1}, "nor more meshes than these", adapting.most_meshes)}};
   return {
       {may("file", Text{}, "Gmsh .msh, Abaqus or CalculiX .inp, or .vtu; relative to the case file's folder"),
+       may("files", ListOf{Text{}, "a list of mesh files", 1, ListOf::any_number, "at least one mesh file"},
+           "meshes of the same body, coarsest first: each is solved from the one before, the last is that of "
+           "the case"),
        may("box", box,
            "a generated box from the origin to `size`, with sides left, right, front, back, bottom, top"),
        may("refine",
@@ -52,7 +55,7 @@ KeySet mesh() {
        may("order", Whole{1, 2, "1 or 2"},
            "2 puts a node in the middle of every straight edge: tet10 of tet4", MeshSource().order),
        may("adapt", adapt, "refines the mesh where the solution asks for it")},
-      {{{"file", "box"}}}};
+      {{{"file", "files", "box"}}}};
 }
 
 KeySet material() {

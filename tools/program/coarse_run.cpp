@@ -33,7 +33,11 @@ std::int64_t unknowns_of(const BoxSpec& box) {
 }
 
 /// What makes a coarser mesh, on the first rank.
-using MakeMesh = std::function<Mesh()>;
+struct Coarser {
+  std::function<Mesh()> make;
+  bool halves = true;      ///< the mesh before it in half: its edges are those of the one before, halved
+  std::string named = {};  ///< by this key of the case; empty where the program makes it by itself
+};
 
 /// Half as many cells along each axis, coarsest first.
 std::vector<BoxSpec> coarser_boxes(const BoxSpec& fine) {
@@ -52,29 +56,54 @@ std::vector<BoxSpec> coarser_boxes(const BoxSpec& fine) {
 }
 
 /// Coarsest first.
-std::vector<MakeMesh> coarser_meshes(const MeshSource& mesh) {
-  std::vector<MakeMesh> meshes;
+std::vector<Coarser> coarser_meshes(const MeshSource& mesh) {
+  std::vector<Coarser> meshes;
   if (mesh.box)
-    for (const BoxSpec& box : coarser_boxes(*mesh.box)) meshes.push_back([box] { return make_box(box); });
+    for (const BoxSpec& box : coarser_boxes(*mesh.box)) meshes.push_back({[box] { return make_box(box); }});
+  for (std::size_t k = 0; k < mesh.coarser.size(); ++k) {
+    MeshSource coarse;
+    coarse.file = mesh.coarser[k];
+    coarse.order = mesh.order;
+    meshes.push_back(
+        {[coarse] { return load_mesh(coarse); }, false, "mesh.files[" + std::to_string(k) + "]"});
+  }
   MeshSource coarse = mesh;
   for (coarse.refine = 0; mesh.file && coarse.refine < mesh.refine; ++coarse.refine)
-    meshes.push_back([coarse] { return load_mesh(coarse); });
+    meshes.push_back({[coarse] { return load_mesh(coarse); }, coarse.refine > 0});
   return meshes;
 }
 
-/// The case on this mesh, without probes where one lies outside; nothing where it does not fit.
-std::optional<Problem> coarse_problem(const Case& input, const MakeMesh& mesh) {
-  try {
-    Model model = model_with_files(input);
-    const Mesh coarse = mesh();
-    try {
-      return build_problem(coarse, model);
+/// The case on this mesh, without probes where one lies outside.
+Problem put_on(const Case& input, Mesh mesh) {
+  Model model = model_with_files(input);
+  if (!model.probes.empty()) try {
+      return build_problem(mesh, model);
     } catch (const InputError&) {
-      if (model.probes.empty()) throw;
+      model.probes.clear();
     }
-    model.probes.clear();
-    return build_problem(coarse, model);
-  } catch (const InputError&) {
+  return build_problem(std::move(mesh), model);
+}
+
+/// Throws InputError where a file that the case names is no mesh of a body in so many dimensions.
+Mesh load_coarser(const Coarser& coarser, std::size_t dim) try {
+  Mesh mesh = coarser.make();
+  if (static_cast<std::size_t>(mesh.dim()) != dim)
+    throw InputError("expected a mesh in " + std::to_string(dim) + "D, as the last one is");
+  return mesh;
+} catch (const InputError& error) {
+  if (coarser.named.empty()) throw;
+  throw InputError(coarser.named + ": " + error.what());
+}
+
+/// The case on a coarser mesh; nothing where it does not fit, which is said of files that the case names.
+std::optional<Problem> coarse_problem(Case& input, std::size_t dim, const Coarser& coarser) {
+  Mesh mesh = load_coarser(coarser, dim);
+  try {
+    return put_on(input, std::move(mesh));
+  } catch (const InputError& error) {
+    if (!coarser.named.empty())
+      input.warnings.push_back(coarser.named +
+                               ": the mesh is passed over, the case does not fit it: " + error.what());
     return std::nullopt;
   }
 }
@@ -88,21 +117,23 @@ void extrapolate(const CoarseSolution& before, const Part& part, std::span<doubl
 }
 
 /// Solves on one mesh, from `run.solution` where there is one, and puts what comes out there.
-void solve_level(const Case& input, const MakeMesh& mesh, const MpiSession& mpi, const RunOptions& options,
-                 CoarseRun& run) {
+/// - halves: whether the next mesh is this one halved.
+void solve_level(Case& input, std::size_t dim, const Coarser& coarser, bool halved, const MpiSession& mpi,
+                 const RunOptions& options, CoarseRun& run) {
   const double start = MPI_Wtime();
   std::optional<Problem> problem;
   int fits = 0;
   together(mpi, [&] {
-    if (mpi.first()) problem = coarse_problem(input, mesh);
+    if (mpi.first()) problem = coarse_problem(input, dim, coarser);
     fits = problem.has_value() ? 1 : 0;
   });
   MPI_Bcast(&fits, 1, MPI_INT, 0, mpi.comm());
   if (fits == 0) return;
   Part part = distribute(problem ? &*problem : nullptr, mpi.comm());
   Solution solution = solve_roughly(input, part, options, run);
-  if (run.solution) extrapolate(*run.solution, part, solution.displacement);
-  run.take(solution, part, problem ? &*problem : nullptr, start);
+  if (run.solution && coarser.halves && halved && run.levels.back().converged)
+    extrapolate(*run.solution, part, solution.displacement);
+  run.take(solution, part, problem ? &*problem : nullptr, start, halved);
 }
 
 }  // namespace
@@ -138,12 +169,13 @@ Solution solve_roughly(const Case& input, Part& part, RunOptions options, const 
   return solve(part, solver, options);
 }
 
-void CoarseRun::take(const Solution& of, const Part& part, const Problem* problem, double began) {
+void CoarseRun::take(const Solution& of, const Part& part, const Problem* problem, double began,
+                     bool halved) {
   const Result& result = of.result;
   const bool converged = result.status == Status::converged;
   if (converged) solution = whole_solution(part, problem, of);
   levels.push_back({result.unknowns, result.outer_iterations, result.cg_iterations,
-                    result.operator_applications, MPI_Wtime() - began, converged, 0.0, result.probe,
+                    result.operator_applications, MPI_Wtime() - began, converged, halved, 0.0, result.probe,
                     result.contact_force});
 }
 
@@ -155,7 +187,7 @@ std::vector<double> note_discretisation(const Part& part, const CoarseRun& coars
   // Of the meshes in a row that end with this one.
   std::vector<const CoarseLevel*> levels;
   for (const CoarseLevel& level : coarse.levels) {
-    const bool knows = level.converged && level.error == 0.0 && level.probe.size() == result.probe.size();
+    const bool knows = level.converged && level.halved && level.probe.size() == result.probe.size();
     if (!knows) levels.clear();
     if (knows) levels.push_back(&level);
   }
@@ -180,17 +212,20 @@ std::vector<double> note_discretisation(const Part& part, const CoarseRun& coars
   return error.shares();
 }
 
-CoarseRun solve_coarser(const Case& input, const MpiSession& mpi, const RunOptions& options) {
+CoarseRun solve_coarser(Case& input, std::size_t dim, const MpiSession& mpi, const RunOptions& options) {
   CoarseRun run;
   const Model& model = input.model;
   if (!model.solver.nested || !model.solver.load_steps.empty() || !model.steps.empty() || any_moves(model))
     return run;
   const RunOptions coarse = silent(options);
-  for (const MakeMesh& mesh : coarser_meshes(input.mesh)) {
+  const std::vector<Coarser> meshes = coarser_meshes(input.mesh);
+  for (std::size_t k = 0; k < meshes.size(); ++k) {
     if (mpi.first() && options.phase) options.phase("solving on a coarser mesh");
     if (stop_wanted(mpi, options)) break;
     const std::size_t before = run.levels.size();
-    solve_level(input, mesh, mpi, coarse, run);
+    // The case's own mesh is the last one halved, but for one that mesh.files names before it.
+    const bool halved = k + 1 < meshes.size() ? meshes[k + 1].halves : meshes[k].named.empty();
+    solve_level(input, dim, meshes[k], halved, mpi, coarse, run);
     if (mpi.first() && !mpi.hosted() && options.progress && run.levels.size() > before)
       std::cout << level_line(run.levels.back()) << std::flush;
   }

@@ -19,7 +19,8 @@ struct CoarseRun {
   std::optional<CoarseSolution> solution;  ///< of the finest of them that has converged
 
   /// Takes up what has come out on one more mesh. `problem`: on the first rank. Collective.
-  void take(const Solution& of, const Part& part, const Problem* problem, double began);
+  /// `halved`: whether the next mesh has its edges halved.
+  void take(const Solution& of, const Part& part, const Problem* problem, double began, bool halved = false);
 };
 
 /// One line for people.
@@ -32,10 +33,13 @@ bool stop_wanted(const MpiSession& mpi, const RunOptions& options);
 Solution solve_roughly(const Case& input, Part& part, RunOptions options, const CoarseRun& before);
 
 /// The coarser meshes of a case, one after the other, to a thousandth: of a large enough box those with half
-/// the cells, of a file that is refined those before. One that the case does not fit, or that does not
-/// converge, is passed over: it is only to start from. None with load steps, or where solver.nested says so.
-/// Prints a line a mesh, but in a host's process. Collective.
-CoarseRun solve_coarser(const Case& input, const MpiSession& mpi, const RunOptions& options);
+/// the cells, of a file that is refined those before, and those that mesh.files names. One that the case does
+/// not fit, or that does not converge, is passed over: it is only to start from; of a file that was named, a
+/// warning of the case says why. None with load steps, or where solver.nested says so.
+/// - dim: of the case's own mesh.
+/// Prints a line a mesh, but in a host's process. Throws InputError for a named file that is no mesh, on all
+/// ranks alike. Collective.
+CoarseRun solve_coarser(Case& input, std::size_t dim, const MpiSession& mpi, const RunOptions& options);
 
 /// Fills in result.discretisation: the estimate of the strains, and what the coarser meshes tell of probes
 /// and the contact force. Returns each element's part of its energy; their squares add up to its square.

@@ -242,7 +242,7 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
   if (!command.restart && !given.mesh.adapt) {
     RunOptions before = options;
     if (command.quiet) before.progress = nullptr;
-    coarse = solve_coarser(input, mpi, before);
+    coarse = solve_coarser(input, loaded.part.dim(), mpi, before);
   }
   if (coarse.solution) options.coarse = &*coarse.solution;
   if (input.output.fields && input.output.steps)

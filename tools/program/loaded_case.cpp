@@ -5,6 +5,7 @@
 #include <malloc.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
 
 #include <kacanov/error.hpp>
@@ -43,6 +44,10 @@ Problem load_problem(const Case& input, RankCount ranks) {
     if (ranks.here > 0) refuse_what_cannot_fit(size, ranks.all, ranks.here);
   };
   if (input.mesh.box && !input.mesh.adapted) check_memory(size_of(*input.mesh.box, input.model));
+  for (std::size_t k = 0; k < input.mesh.coarser.size(); ++k)
+    if (std::error_code error; !std::filesystem::is_regular_file(input.mesh.coarser[k], error))
+      throw InputError("mesh.files[" + std::to_string(k) + "]: expected a mesh file, there is no " +
+                       input.mesh.coarser[k]);
   Mesh mesh = load_mesh(input.mesh);
   check_memory(size_of(mesh, input.model));
   check_dimension(input, mesh.dim());

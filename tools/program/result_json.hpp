@@ -24,6 +24,7 @@ struct CoarseLevel {
   std::uint64_t operator_applications = 0;
   double seconds = 0.0;  ///< everything from the mesh to the solution
   bool converged = false;
+  bool halved = false;         ///< whether the next mesh has this one's edges, each halved
   double error = 0.0;          ///< estimated, where the next mesh is refined by it
   std::vector<Vector3> probe;  ///< as in Result; empty where a probe lies outside this mesh
   Vector3 contact_force{};

@@ -135,7 +135,7 @@ SolvedCase solve_case(const Case& given, const MpiSession& mpi, const CaseRun& r
   if (run.start != nullptr)
     coarse.solution = start_of(*run.start, loaded.part.dim(), mpi);
   else if (!given.mesh.adapt)
-    coarse = solve_coarser(input, mpi, options);
+    coarse = solve_coarser(input, loaded.part.dim(), mpi, options);
   if (coarse.solution) options.coarse = &*coarse.solution;
   std::vector<StepFields> steps;
   if (run.keep_steps)

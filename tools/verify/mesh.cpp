@@ -76,7 +76,8 @@ Real Mesh::size() const {
 Mesh load_mesh(const nlohmann::json& source, const std::filesystem::path& folder) {
   Mesh mesh;
   const int refine = source.value("refine", 0), order = source.value("order", 1);
-  if (source.contains("file") && (refine > 0 || order > 1))
+  const bool one = source.contains("file"), read = one || source.contains("files");
+  if (read && (refine > 0 || order > 1))
     throw Failure(
         std::string(refine > 0 ? "mesh.refine" : "mesh.order") +
         ": new nodes of a file's mesh have numbers that no file holds; the verifier knows boxes only");
@@ -85,13 +86,14 @@ Mesh load_mesh(const nlohmann::json& source, const std::filesystem::path& folder
     for (auto& cells : box.at("cells")) cells = cells.get<int>() << refine;
     if (order > 1) box["element"] = "tet10";
     mesh = make_box(box);
-  } else if (source.contains("file")) {
-    const std::string file = source.at("file").get<std::string>();
+  } else if (read) {
+    // Of several, the others are only to start from.
+    const std::string file = (one ? source.at("file") : source.at("files").back()).get<std::string>();
     if (file.ends_with(".inp") || file.ends_with(".vtu"))
       throw Failure("mesh.file: the verifier reads Gmsh files: kacanov convert makes one of it");
-    mesh = read_gmsh(folder / source.at("file").get<std::string>());
+    mesh = read_gmsh(folder / file);
   } else {
-    throw Failure("mesh: the verifier knows `file` and `box` only");
+    throw Failure("mesh: the verifier knows `file`, `files` and `box` only");
   }
   find_boundary(mesh);
   return mesh;
