@@ -28,17 +28,35 @@ struct Bounds {
   }
 };
 
+/// Of all of an element. Edges with a node in their middle are parabolas: what they bound lies within the
+/// convex hull of the corners and of the edges' Bézier points, 2 m − (a + b)/2.
 Bounds bounds(const MeshView& mesh, std::span<const std::int32_t> nodes) {
-  const Vector3 first = position(mesh, nodes[0]);
-  Bounds box{first, first};
-  for (const std::int32_t node : nodes) box.take(position(mesh, node));
-  const double grown = cell(mesh.type).order == 2 ? 0.5 : 1e-5;
+  const Cell& type = cell(mesh.type);
+  const auto at = [&](int k) { return position(mesh, nodes[static_cast<std::size_t>(k)]); };
+  Bounds box{at(0), at(0)};
+  for (int k = 1; k < type.corners; ++k) box.take(at(k));
+  if (type.order == 2)
+    for (const CellEdge& edge : type.edges) box.take(2.0 * at(edge.middle) - 0.5 * (at(edge.a) + at(edge.b)));
   for (std::size_t c = 0; c < 3; ++c) {
-    const double margin = grown * (box.high[c] - box.low[c]);
+    const double margin = 1e-5 * (box.high[c] - box.low[c]);
     box.low[c] -= margin;
     box.high[c] += margin;
   }
   return box;
+}
+
+/// Reference coordinates of x in the simplex of the element's corners.
+Vector3 by_corners(const MeshView& mesh, std::span<const std::int32_t> nodes, const Vector3& x) {
+  const std::size_t dim = dimension(mesh.type);
+  const Vector3 origin = position(mesh, nodes[0]), far = x - origin;
+  Eigen::Matrix3d sides = Eigen::Matrix3d::Identity();
+  for (std::size_t k = 0; k < dim; ++k) {
+    const Vector3 side = position(mesh, nodes[k + 1]) - origin;
+    for (std::size_t c = 0; c < dim; ++c)
+      sides(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(k)) = side[c];
+  }
+  const Eigen::Vector3d at = sides.inverse() * Eigen::Vector3d(far[0], far[1], far[2]);
+  return {at[0], at[1], dim == 3 ? at[2] : 0.0};
 }
 
 }  // namespace
@@ -46,24 +64,25 @@ Bounds bounds(const MeshView& mesh, std::span<const std::int32_t> nodes) {
 std::optional<Vector3> reference_point(const MeshView& mesh, std::span<const std::int32_t> nodes,
                                        const Vector3& x) {
   const Cell& type = cell(mesh.type);
-  const bool affine = type.simplex && type.order == 1;
   Vector3 at{};
-  if (type.simplex) at = {0.25, 0.25, type.dim == 3 ? 0.25 : 0.0};
+  if (type.simplex) at = by_corners(mesh, nodes, x);
+  if (type.simplex && type.order == 1) return at;
+  const double length = norm(x - position(mesh, nodes[0]));
   for (int step = 0; step < 30; ++step) {
+    if (!(norm(at) < 10.0)) return std::nullopt;
     const Shapes shapes = shapes_at(type, at);
     Vector3 miss = x;
+    for (std::size_t k = 0; k < nodes.size(); ++k) miss = miss - shapes.value[k] * position(mesh, nodes[k]);
+    if (norm(miss) <= 1e-14 * length) return at;  // at once where all edges are straight
     Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
     for (std::size_t k = 0; k < nodes.size(); ++k) {
       const Vector3 node = position(mesh, nodes[k]);
-      miss = miss - shapes.value[k] * node;
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) jacobian(i, j) += node[i] * shapes.gradient[k][j];
     }
     if (type.dim == 2) jacobian(2, 2) = 1.0;
     const Eigen::Vector3d move = jacobian.inverse() * Eigen::Vector3d(miss[0], miss[1], miss[2]);
     at = at + Vector3{move[0], move[1], move[2]};
-    if (affine) return at;
-    if (!(norm(at) < 10.0)) return std::nullopt;
     if (move.norm() < 1e-12) return at;
   }
   return std::nullopt;
@@ -151,6 +170,7 @@ PointLocator::Place PointLocator::find(const Vector3& x) const {
 void PointLocator::search_ring(const Vector3& x, const Ring& where, double& least,
                                std::optional<Place>& best) const {
   const auto [ring, only_near] = where;
+  const Cell& type = cell(mesh_.type);
   const Cells middle = box_of(x);
   Cells from{}, to{};
   for (std::size_t c = 0; c < 3; ++c) {
@@ -165,10 +185,14 @@ void PointLocator::search_ring(const Vector3& x, const Ring& where, double& leas
         if (away != ring) continue;
         const std::int64_t box = (k * count_[1] + j) * count_[0] + i;
         for (std::int64_t m = start_[box]; m < start_[box + 1]; ++m) {
-          if (only_near && !near_element(mesh_, nodes(element_[m]), x)) continue;
-          const std::optional<Vector3> at = reference_point(mesh_, nodes(element_[m]), x);
+          const auto of = nodes(element_[m]);
+          if (only_near && !near_element(mesh_, of, x)) continue;
+          // What is far outside of the corners' simplex is not the nearest with its curves either.
+          if (!only_near && type.simplex && outside(type, by_corners(mesh_, of, x)) > 2.0 * least + 1.0)
+            continue;
+          const std::optional<Vector3> at = reference_point(mesh_, of, x);
           if (!at) continue;
-          const double miss = outside(cell(mesh_.type), *at);
+          const double miss = outside(type, *at);
           if (miss < least - rounding) {
             least = miss;
             best = Place{element_[m], *at};

@@ -21,7 +21,7 @@ std::optional<Vector3> reference_point(const MeshView& mesh, std::span<const std
 /// How far outside the reference cell a point lies, in reference coordinates; negative inside.
 double outside(const Cell& type, const Vector3& at);
 
-/// True where x lies in the element's bounding box, grown by half of it where elements bulge.
+/// True where x lies in a box round all of the element, its bulging sides included.
 bool near_element(const MeshView& mesh, std::span<const std::int32_t> nodes, const Vector3& x);
 
 /// Finds elements of a mesh by a grid of boxes. The answer depends on mesh and point alone: ranks agree.
