@@ -2,8 +2,6 @@
 // Passes over the blocks: every thread its share, private sums where threads meet, always in the same order.
 #include "operator/passes.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 
 #include "law/plane_stress.hpp"
@@ -25,21 +23,11 @@ double across(const void* law, double xx, double yy, double xy) {
   return transverse_strain(*static_cast<const Law*>(law), xx, yy, xy);
 }
 
-/// Calls run(t) for every t < threads, each by one thread where the runtime grants that many, and then, all
-/// runs done, finish(t).
+/// Calls run(t) for every t < threads and then, all runs done, finish(t).
 template <class Run, class Finish>
 void in_parallel(int threads, Run&& run, Finish&& finish) {
-  if (threads == 1 || is_forked_child()) {
-    for (int t = 0; t < threads; ++t) run(t);
-    for (int t = 0; t < threads; ++t) finish(t);
-    return;
-  }
-#pragma omp parallel num_threads(threads)
-  {
-    for (int t = omp_get_thread_num(); t < threads; t += omp_get_num_threads()) run(t);
-#pragma omp barrier
-    for (int t = omp_get_thread_num(); t < threads; t += omp_get_num_threads()) finish(t);
-  }
+  in_team(threads, run);
+  in_team(threads, finish);
 }
 
 }  // namespace

@@ -9,16 +9,16 @@
 namespace kacanov {
 
 /// Starts the calling thread's team of `threads` threads, which the passes then find waiting. Throws
-/// std::system_error where the system does not grant so many: the OpenMP runtime, left to itself, would end
-/// the process.
+/// std::system_error where the system does not grant so many.
 void start_team(int threads);
 
 /// Whether this process is a child made by fork() after an operator: the threads of its parent's teams are
-/// not there, and the runtime would wait for them for ever.
+/// not there.
 bool is_forked_child() noexcept;
 
-/// Calls run(t) for every t < threads, each by one thread where the runtime grants that many. What one of
-/// them throws is thrown once all are done.
+/// Calls run(t) once for every t < threads, on the calling thread and its team: one after another where there
+/// is none, as within such a call. Which thread calls which does not matter to the results. What one of them
+/// throws is thrown once all are done.
 void in_team(int threads, const std::function<void(int)>& run);
 
 /// Calls work(begin, end) for the shares of the threads in 0 … n − 1; at once where these are not worth
