@@ -248,7 +248,8 @@ std::vector<SpectrumResult> analyse_spectrum(Part& part, const SolverOptions& op
   validate(options);
   const InOwnUnits scaled(part);
   DistributedOperator op(part, run.threads, run.instruction_set);
-  const auto amg = make_preconditioner(options.preconditioner, part, run.threads, run.instruction_set);
+  const auto amg =
+      make_preconditioner(options.preconditioner, part, run.threads, run.instruction_set, &op.local());
   std::vector<double> secant(part.body().secant_count());
   op.local().secant(secant);
   std::vector<SpectrumResult> results;
@@ -276,7 +277,8 @@ ActivePenalty active_penalty(Part& part, const Solution& solution, const SolverO
   for (double& u : displacement) u /= scaled.units().displacement;
   DistributedOperator op(part, run.threads, run.instruction_set);
   op.update(displacement);
-  const auto amg = make_preconditioner(options.preconditioner, part, run.threads, run.instruction_set);
+  const auto amg =
+      make_preconditioner(options.preconditioner, part, run.threads, run.instruction_set, &op.local());
   std::vector<double> secant(part.body().secant_count());
   op.local().secant(secant);
   std::vector<TraceChoice> active(part.contact.size()), open(part.contact.size());

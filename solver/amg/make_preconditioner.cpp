@@ -8,12 +8,13 @@
 namespace kacanov {
 
 std::unique_ptr<Preconditioner> make_preconditioner(SolverOptions::Preconditioner kind, const Part& part,
-                                                    int threads, const std::string& instruction_set) {
+                                                    int threads, const std::string& instruction_set,
+                                                    const Operator* like) {
   if (kind == SolverOptions::Preconditioner::elasticity) return std::make_unique<ElasticityAmg>(part);
   MultigridOptions options;
   options.threads = threads;
   options.instruction_set = instruction_set;
-  return std::make_unique<PartMultigrid>(part, options);
+  return std::make_unique<PartMultigrid>(part, options, like);
 }
 
 }  // namespace kacanov

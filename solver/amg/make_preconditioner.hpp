@@ -6,14 +6,18 @@
 #include <string>
 
 #include <kacanov/model.hpp>
+#include <kacanov/operator.hpp>
 #include "linear/preconditioner.hpp"
 
 namespace kacanov {
 
 /// `multigrid`: Chebyshev on the matrix-free operator over rigid motions of aggregates (RigidMultigrid;
 /// theory: multigrid). `elasticity`: unknown-based BoomerAMG on the assembled matrix, the yardstick (theory:
-/// elasticity-amg). Threads and instruction set are the operator's. Collective; the part has to outlive it.
+/// elasticity-amg). Threads and instruction set are the operator's. `like`: an operator of the part's mesh
+/// and laws, whose division of the elements the multigrid takes over, or null. Collective; the part has to
+/// outlive it.
 std::unique_ptr<Preconditioner> make_preconditioner(SolverOptions::Preconditioner kind, const Part& part,
-                                                    int threads, const std::string& instruction_set);
+                                                    int threads, const std::string& instruction_set,
+                                                    const Operator* like = nullptr);
 
 }  // namespace kacanov

@@ -9,14 +9,16 @@
 namespace kacanov {
 
 /// The part as the multigrid sees it; it has to outlive that.
-inline MultigridBody multigrid_body(const Part& part) { return {part.body(), &part.node_map, part.held}; }
+inline MultigridBody multigrid_body(const Part& part, const Operator* like = nullptr) {
+  return {part.body(), &part.node_map, part.held, like};
+}
 
 class PartMultigrid final : public Preconditioner {
  public:
   /// Nothing is set up yet. The part has to outlive it. A setup throws InternalError where the coarsest
   /// matrix is not definite.
-  PartMultigrid(const Part& part, const MultigridOptions& options)
-      : multigrid_(multigrid_body(part), options) {}
+  PartMultigrid(const Part& part, const MultigridOptions& options, const Operator* like = nullptr)
+      : multigrid_(multigrid_body(part, like), options) {}
   void apply(std::span<const double> r, std::span<double> z) override { multigrid_.apply(r, z); }
   void secant(std::span<double> g) const override { multigrid_.secant(g); }
 
