@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -35,9 +36,10 @@ Response respond(const Law& law, const Patches::Values& strain) {
   return r;
 }
 
-/// ½ (τ(a) − τ(b)) : (a − b), which is not negative where stress does not fall with strain.
-double energy_between(const Law& law, const Patches::Values& a, const Patches::Values& b) {
-  const Response ra = respond(law, a), rb = respond(law, b);
+/// ½ (τ(a) − τ(b)) : (a − b), with what the law says of a; which is not negative where stress does not fall
+/// with strain.
+double energy_between(const Law& law, const Response& ra, const Patches::Values& b) {
+  const Response rb = respond(law, b);
   const double trace = ra.trace - rb.trace;
   double work = law.bulk * trace * trace;
   for (std::size_t i = 0; i < 6; ++i)
@@ -151,25 +153,52 @@ class Comparison {
  private:
   double energy_in(std::size_t element, const PatchFits& fits, double mean_trace) const {
     const Law& law = body_.law(element);
+    const auto corners = static_cast<std::size_t>(type_.corners),
+               nodes = static_cast<std::size_t>(type_.nodes);
+    std::array<Patches::Polynomial, 8> polynomial;
+    for (std::size_t a = 0; a < corners; ++a)
+      polynomial[a] =
+          patches_.polynomial(fits, static_cast<std::size_t>(part_.elements[element * nodes + a]));
+    // Of straight simplices strains are the same at all points, but round an axis.
+    const bool constant = type_.simplex && type_.order == 1 && part_.plane != PlaneState::axisymmetric;
+    Sample here;
+    Response response;
     double energy = 0.0;
-    for (const FinePoint& point : points_) {
-      Sample here = sample(part_, state_.u, element, point);
-      if (law.mean_dilatation) {
-        const double more = mean_trace - (here.strain[0] + here.strain[1] + here.strain[2]);
-        for (std::size_t c = 0; c < 3; ++c) here.strain[c] += more / 3.0;
+    for (std::size_t k = 0; k < points_.size(); ++k) {
+      const FinePoint& point = points_[k];
+      if (k == 0 || !constant) {
+        here = sample(part_, state_.u, element, point);
+        if (law.mean_dilatation) {
+          const double more = mean_trace - (here.strain[0] + here.strain[1] + here.strain[2]);
+          for (std::size_t c = 0; c < 3; ++c) here.strain[c] += more / 3.0;
+        }
+        if (part_.plane == PlaneState::stress)
+          here.strain[2] = transverse_strain(law, here.strain[0], here.strain[1], here.strain[3]);
+        response = respond(law, here.strain);
+      } else {
+        here.position = position_at(element, point);
+        here.volume *= point.weight / points_[k - 1].weight;
       }
       Patches::Values smooth{};
-      for (std::size_t a = 0; a < point.corner_share.size(); ++a) {
-        const std::int32_t node = part_.elements[element * point.value.size() + a];
-        const Patches::Values value = patches_.evaluate(fits, static_cast<std::size_t>(node), here.position);
+      for (std::size_t a = 0; a < corners; ++a) {
+        const Patches::Values value = polynomial[a](here.position);
         for (std::size_t c = 0; c < 6; ++c) smooth[c] += point.corner_share[a] * value[c];
       }
       if (part_.plane == PlaneState::stress)
-        for (Patches::Values* strain : {&here.strain, &smooth})
-          (*strain)[2] = transverse_strain(law, (*strain)[0], (*strain)[1], (*strain)[3]);
-      energy += here.volume * energy_between(law, here.strain, smooth);
+        smooth[2] = transverse_strain(law, smooth[0], smooth[1], smooth[3]);
+      energy += here.volume * energy_between(law, response, smooth);
     }
     return energy;
+  }
+
+  Vector3 position_at(std::size_t element, const FinePoint& point) const {
+    Vector3 x{};
+    for (std::size_t a = 0; a < point.value.size(); ++a) {
+      const Vector3 node =
+          node_position(part_, static_cast<std::size_t>(part_.elements[element * point.value.size() + a]));
+      for (std::size_t c = 0; c < 3; ++c) x[c] += point.value[a] * node[c];
+    }
+    return x;
   }
 
   const Part& part_;

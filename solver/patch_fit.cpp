@@ -75,9 +75,8 @@ void PatchFits::solve() {
   }
 }
 
-std::array<double, PatchFits::values> PatchFits::evaluate(std::size_t centre, const Vector3& x) const {
+std::array<double, PatchFits::values> PatchFits::evaluate(const double* coefficient, const Vector3& x) const {
   const auto p = monomials_.at(x);
-  const double* coefficient = &sums_[centre * width_ + pairs_];
   std::array<double, values> out{};
   for (std::size_t i = 0; i < monomials_.count(); ++i)
     for (std::size_t v = 0; v < values; ++v) out[v] += p[i] * *coefficient++;

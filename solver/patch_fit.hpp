@@ -44,7 +44,12 @@ class PatchFits {
   /// the higher orders first.
   void solve();
   /// After solve(): the polynomial's values.
-  std::array<double, values> evaluate(std::size_t centre, const Vector3& x) const;
+  std::array<double, values> evaluate(std::size_t centre, const Vector3& x) const {
+    return evaluate(coefficients(centre), x);
+  }
+  /// The same where many values of one polynomial are wanted.
+  const double* coefficients(std::size_t centre) const noexcept { return &sums_[centre * width_ + pairs_]; }
+  std::array<double, values> evaluate(const double* coefficients, const Vector3& x) const;
 
  private:
   Monomials monomials_;

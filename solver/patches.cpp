@@ -49,6 +49,10 @@ Vector3 Patches::from_corner(const Vector3& position, std::size_t node) const {
   return (1.0 / size_[node]) * (position - node_position(part_, node));
 }
 
+Patches::Polynomial Patches::polynomial(const PatchFits& fits, std::size_t node) const {
+  return {&fits, fits.coefficients(place(node)), node_position(part_, node), 1.0 / size_[node]};
+}
+
 void Patches::add(PatchFits& fits, std::size_t element, const Vector3& position, const double* sample) const {
   const Cell& type = cell(part_.type);
   for (std::size_t a = 0; a < static_cast<std::size_t>(type.corners); ++a) {

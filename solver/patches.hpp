@@ -36,9 +36,22 @@ class Patches {
   void solve(PatchFits& fits) const;
   /// Whether the patch of a corner has had any sample, on any rank.
   bool has(const PatchFits& fits, std::size_t node) const { return fits.has(place(node)); }
-  /// The polynomial of a corner at `position`.
+  /// The polynomial of a corner, for as long as the fits live.
+  struct Polynomial {
+    const PatchFits* fits;
+    const double* coefficients;
+    Vector3 centre;
+    double scale;
+    Values operator()(const Vector3& position) const {
+      return fits->evaluate(coefficients,
+                            {scale * (position[0] - centre[0]), scale * (position[1] - centre[1]),
+                             scale * (position[2] - centre[2])});
+    }
+  };
+  Polynomial polynomial(const PatchFits& fits, std::size_t node) const;
+  /// Its value at `position`.
   Values evaluate(const PatchFits& fits, std::size_t node, const Vector3& position) const {
-    return fits.evaluate(place(node), from_corner(position, node));
+    return polynomial(fits, node)(position);
   }
 
  private:
