@@ -15,14 +15,16 @@ Real table_stress(const Law& law, Real a) {
 }
 
 /// The y that y (1 + share (y x / x0)^(n − 1)) = 1 has, which is the elastic share of the strain x, by
-/// halving.
+/// Newton's steps from above, down to where a convex function that grows is zero.
 Real elastic_share(const Law& law, Real x) {
-  Real low = 0, high = 1;
-  for (int step = 0; step < 80; ++step) {
-    const Real y = (low + high) / 2;
-    (y * (1 + law.share * std::pow(y * x / law.x0, law.parameter - 1)) < 1 ? low : high) = y;
+  Real y = 1;
+  for (int step = 0; step < 1000; ++step) {
+    const Real over = law.share * std::pow(y * x / law.x0, law.parameter - 1);
+    const Real next = y - (y * (1 + over) - 1) / (1 + law.parameter * over);
+    if (!(next < y)) break;
+    y = next;
   }
-  return (low + high) / 2;
+  return y;
 }
 
 Real deviator(Real stress) { return std::sqrt(Real(2) / 3) * stress; }
