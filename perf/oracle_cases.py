@@ -137,8 +137,6 @@ def add_conditions(case, d, rng):
     stiffness = d.young / d.size[-1]
     kinds = rng.sample(("bed", "normal bed", "node springs", "warmth", "warm part", "slant"), rng.randint(1, 3))
     for kind in kinds:
-        if "warm" in kind and case.get("plane") == "stress":
-            continue
         if kind == "bed":
             case["boundary"].append({"on": rng.choice(("right", "top")), "spring": [
                 stiffness * rng.choice((0.0, 0.01, 1.0, 30.0)) for _ in d.size[1:]] + [stiffness * 0.1]})

@@ -47,13 +47,13 @@ BodySize size_of_body(const Part& part, double volume) {
 
 }  // namespace
 
-void collect_body_totals(const Part& part, std::span<const double> u, Result& result) {
+void collect_body_totals(const Part& part, const BodyState& state, Result& result) {
   std::int64_t plastic = 0, softening = 0;
   double von_mises = 0.0;
   std::array<double, 2> volumes{};  // all, beyond yield
   Largest strain, rotation, flow;
   const Body body = part.body();
-  visit_element_fields(part, u, [&](const ElementRun& run) {
+  visit_element_fields(part, state, [&](const ElementRun& run) {
     for (std::size_t e = 0; e < run.plastic.size(); ++e) {
       const std::int32_t index = part.element_index[run.first + e];
       plastic += run.plastic[e];
@@ -76,7 +76,7 @@ void collect_body_totals(const Part& part, std::span<const double> u, Result& re
   result.max_strain = agree_on_element(part, strain);
   result.max_flow = agree_on_element(part, flow);
   result.max_rotation = agree_on_element(part, rotation);
-  result.max_displacement = largest_displacement(part, u);
+  result.max_displacement = largest_displacement(part, state.u);
   result.body = size_of_body(part, volumes[0]);
 }
 

@@ -4,13 +4,13 @@
 
 #include <span>
 
+#include <kacanov/element_fields.hpp>
 #include <kacanov/part.hpp>
 #include <kacanov/result.hpp>
 
 namespace kacanov {
 
-/// Extremes, plastic and softening elements, and the undeformed body, over all ranks. `u`: nodes × dim of the
-/// part. Collective.
-void collect_body_totals(const Part& part, std::span<const double> u, Result& result);
+/// Extremes, plastic and softening elements, and the undeformed body, over all ranks. Collective.
+void collect_body_totals(const Part& part, const BodyState& state, Result& result);
 
 }  // namespace kacanov

@@ -88,7 +88,7 @@ void collect_contact(const Part& part, const ContactState& state, double toleran
 
 void collect_totals(const Part& part, const ContactState& state, Solution& solution) {
   collect_contact_totals(part, solution);
-  collect_body_totals(part, state.u, solution.result);
+  collect_body_totals(part, {state.u, solution.thermal}, solution.result);
   collect_probes(part, state.u, solution.result);
 }
 

@@ -13,6 +13,7 @@
 
 #include "finer_rule.hpp"
 #include "law/plane_stress.hpp"
+#include "linear/free_strain.hpp"
 #include "patches.hpp"
 
 namespace kacanov {
@@ -125,6 +126,7 @@ class Comparison {
       : part_(part),
         state_(state),
         body_(part.body()),
+        free_strain_(free_strain(part, state.thermal)),
         type_(cell(part.type)),
         points_(fine_points(type_)),
         patches_(part) {}
@@ -172,8 +174,7 @@ class Comparison {
           const double more = mean_trace - (here.strain[0] + here.strain[1] + here.strain[2]);
           for (std::size_t c = 0; c < 3; ++c) here.strain[c] += more / 3.0;
         }
-        if (part_.plane == PlaneState::stress)
-          here.strain[2] = transverse_strain(law, here.strain[0], here.strain[1], here.strain[3]);
+        if (part_.plane == PlaneState::stress) relax(element, here.strain);
         response = respond(law, here.strain);
       } else {
         here.position = position_at(element, point);
@@ -184,11 +185,18 @@ class Comparison {
         const Patches::Values value = polynomial[a](here.position);
         for (std::size_t c = 0; c < 6; ++c) smooth[c] += point.corner_share[a] * value[c];
       }
-      if (part_.plane == PlaneState::stress)
-        smooth[2] = transverse_strain(law, smooth[0], smooth[1], smooth[3]);
+      if (part_.plane == PlaneState::stress) relax(element, smooth);
       energy += here.volume * energy_between(law, response, smooth);
     }
     return energy;
+  }
+
+  /// Takes off what the element would be longer by, and adds the strain that leaves no stress across the
+  /// plane.
+  void relax(std::size_t element, Patches::Values& strain) const {
+    const double longer = free_strain_.empty() ? 0.0 : free_strain_[element];
+    strain[0] -= longer, strain[1] -= longer;
+    strain[2] = transverse_strain(body_.law(element), strain[0], strain[1], strain[3]);
   }
 
   Vector3 position_at(std::size_t element, const FinePoint& point) const {
@@ -204,6 +212,7 @@ class Comparison {
   const Part& part_;
   BodyState state_;
   Body body_;
+  std::vector<double> free_strain_;
   const Cell& type_;
   std::vector<FinePoint> points_;
   Patches patches_;
@@ -223,7 +232,12 @@ DiscretisationError estimate_error(const Part& part, const BodyState& state) {
   double sum = 0.0;
   for (const double one : error.element) sum += one;
   error.energy = part.node_map.sum_all(sum);
-  error.stored = part.node_map.sum_all(reference::energy(part.body(), state.u));
+  Body body = part.body();
+  error.stored = part.node_map.sum_all(reference::energy(body, state.u));
+  if (const std::vector<double> longer = free_strain(part, state.thermal); part.plane == PlaneState::stress) {
+    body.free_strain = longer;
+    error.stored = std::max(error.stored, part.node_map.sum_all(reference::energy(body, state.u)));
+  }
   if (error.stored > 0.0) error.relative = std::sqrt(error.energy / error.stored);
   return error;
 }

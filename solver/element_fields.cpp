@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "linear/free_strain.hpp"
 #include "problem/shapes.hpp"
 
 namespace kacanov {
@@ -12,21 +13,43 @@ namespace {
 
 constexpr std::size_t elements_a_run = 4096;
 
-Body elements_of(const Part& part, std::size_t first, std::size_t count) {
-  const std::size_t npe = nodes_per_element(part.type);
-  Body body = part.body();
-  body.mesh.connectivity = body.mesh.connectivity.subspan(first * npe, count * npe);
-  if (!body.law_of_element.empty()) body.law_of_element = body.law_of_element.subspan(first, count);
-  return body;
-}
+/// Elements in a row, with what they would be longer by in plane stress.
+struct Elements {
+  Body body;
+  std::vector<double> free_strain;
 
-/// Takes the means of elements from `first` on, or what their points have, off their stresses.
+  Elements(const Body& given, std::span<const double> thermal) : body(given) {
+    if (body.mesh.plane != PlaneState::stress || thermal.empty()) return;
+    free_strain = kacanov::free_strain(body, thermal);
+    body.free_strain = free_strain;
+  }
+  Elements(const Part& part, std::span<const double> thermal, std::size_t first, std::size_t count)
+      : Elements(some_of(part, first, count), part.plane != PlaneState::stress || thermal.empty()
+                                                  ? std::span<const double>()
+                                                  : thermal.subspan(first, count)) {}
+  Elements(const Elements&) = delete;
+  Elements& operator=(const Elements&) = delete;
+
+ private:
+  static Body some_of(const Part& part, std::size_t first, std::size_t count) {
+    const std::size_t npe = nodes_per_element(part.type);
+    Body some = part.body();
+    some.mesh.connectivity = some.mesh.connectivity.subspan(first * npe, count * npe);
+    if (!some.law_of_element.empty()) some.law_of_element = some.law_of_element.subspan(first, count);
+    return some;
+  }
+};
+
+/// Takes the means of elements from `first` on, or what their points have, off their stresses; in plane
+/// stress these know of it.
 class ThermalStress {
  public:
-  ThermalStress(const Part& part, std::span<const double> thermal) : thermal_(thermal) {
-    if (thermal.empty()) return;
-    width_ = thermal.size() / part.element_count();
-    const Cell& type = cell(part.type);
+  ThermalStress(const MeshView& mesh, std::size_t elements, std::span<const double> thermal)
+      : thermal_(thermal) {
+    if (mesh.plane == PlaneState::stress) thermal_ = {};
+    if (thermal_.empty()) return;
+    width_ = thermal.size() / elements;
+    const Cell& type = cell(mesh.type);
     for (const auto& at : type.points) {
       shape_.emplace_back();
       corner_cell(type).values(at.data(), shape_.back().data());
@@ -57,8 +80,15 @@ class ThermalStress {
 
 void element_fields(const Part& part, const BodyState& state, std::size_t first, std::size_t count,
                     const reference::ElementFields& out) {
-  reference::fields(elements_of(part, first, count), state.u, out);
-  if (!out.stress.empty()) ThermalStress(part, state.thermal).take_off_means(first, out.stress);
+  reference::fields(Elements(part, state.thermal, first, count).body, state.u, out);
+  if (!out.stress.empty())
+    ThermalStress(part.body().mesh, part.element_count(), state.thermal).take_off_means(first, out.stress);
+}
+
+void element_fields(const Body& body, const BodyState& state, const reference::ElementFields& out) {
+  reference::fields(Elements(body, state.thermal).body, state.u, out);
+  if (!out.stress.empty())
+    ThermalStress(body.mesh, body.mesh.element_count(), state.thermal).take_off_means(0, out.stress);
 }
 
 void element_strains(const Part& part, const BodyState& state, std::size_t first, std::size_t count,
@@ -66,7 +96,8 @@ void element_strains(const Part& part, const BodyState& state, std::size_t first
   const std::size_t points = points_per_element(part.type);
   std::vector<Vector3> position(count * points);
   std::vector<double> stress(6 * count * points), strain(stress.size()), volume(count * points);
-  reference::point_fields(elements_of(part, first, count), state.u, {position, stress, strain, volume});
+  reference::point_fields(Elements(part, state.thermal, first, count).body, state.u,
+                          {position, stress, strain, volume});
   for (std::size_t e = 0; e < count; ++e) {
     double whole = 0.0;
     std::array<double, 6> sum{};
@@ -92,7 +123,7 @@ void visit_element_fields(const Part& part, const BodyState& state,
     element_fields(
         part, state, run.first, count,
         {run.stress, run.von_mises, run.dev_strain, run.secant, run.plastic, run.strain, run.rotation});
-    reference::volumes(elements_of(part, run.first, count), run.volume);
+    reference::volumes(Elements(part, {}, run.first, count).body, run.volume);
     visit(run);
   }
 }
@@ -101,7 +132,7 @@ void visit_points(const Part& part, const BodyState& state,
                   const std::function<void(const PointRun&)>& visit) {
   const std::size_t elements = part.element_count();
   const std::size_t points = points_per_element(part.type);
-  const ThermalStress thermal(part, state.thermal);
+  const ThermalStress thermal(part.body().mesh, elements, state.thermal);
   PointRun run;
   for (run.first = 0; run.first < elements; run.first += elements_a_run) {
     const std::size_t count = std::min(elements_a_run, elements - run.first);
@@ -109,7 +140,7 @@ void visit_points(const Part& part, const BodyState& state,
     run.stress.resize(6 * count * points);
     run.strain.resize(6 * count * points);
     run.volume.resize(count * points);
-    reference::point_fields(elements_of(part, run.first, count), state.u,
+    reference::point_fields(Elements(part, state.thermal, run.first, count).body, state.u,
                             {run.position, run.stress, run.strain, run.volume});
     thermal.take_off_points(run.first, run.stress);
     visit(run);
@@ -120,10 +151,10 @@ namespace {
 
 /// Mean of what pick(run, k) says of the k-th element of a run, over those round a node, weighted by volume.
 template <typename Pick>
-std::vector<double> nodal_mean(const Part& part, std::span<const double> u, const Pick& pick) {
+std::vector<double> nodal_mean(const Part& part, const BodyState& state, const Pick& pick) {
   const std::size_t npe = nodes_per_element(part.type);
   std::vector<double> mean(part.nodes(), 0.0), weight(part.nodes(), 0.0);
-  visit_element_fields(part, u, [&](const ElementRun& run) {
+  visit_element_fields(part, state, [&](const ElementRun& run) {
     const std::size_t count = run.volume.size();
     for (std::size_t k = 0; k < count * npe; ++k) {
       const std::size_t node = part.elements[run.first * npe + k];
@@ -139,12 +170,13 @@ std::vector<double> nodal_mean(const Part& part, std::span<const double> u, cons
 
 }  // namespace
 
-std::vector<double> nodal_von_mises(const Part& part, std::span<const double> u) {
-  return nodal_mean(part, u, [](const ElementRun& run, std::size_t k) { return run.von_mises[k]; });
+std::vector<double> nodal_von_mises(const Part& part, const BodyState& state) {
+  return nodal_mean(part, state, [](const ElementRun& run, std::size_t k) { return run.von_mises[k]; });
 }
 
-std::vector<double> nodal_plastic_share(const Part& part, std::span<const double> u) {
-  return nodal_mean(part, u, [](const ElementRun& run, std::size_t k) { return run.plastic[k] ? 1.0 : 0.0; });
+std::vector<double> nodal_plastic_share(const Part& part, const BodyState& state) {
+  return nodal_mean(part, state,
+                    [](const ElementRun& run, std::size_t k) { return run.plastic[k] ? 1.0 : 0.0; });
 }
 
 }  // namespace kacanov

@@ -10,6 +10,7 @@
 #include "amg/make_preconditioner.hpp"
 #include "collect.hpp"
 #include "entry_totals.hpp"
+#include "linear/free_strain.hpp"
 #include "linear/springs.hpp"
 #include "load_steps.hpp"
 #include "mesh/plain_stream.hpp"
@@ -42,36 +43,31 @@ std::vector<double> load_points(const Part& part, const SolverOptions& options) 
   return times;
 }
 
-/// R(u) by the reference operator. Collective.
-Vector internal_force(const Part& part, std::span<const double> u) {
-  Vector internal(part.unknowns());
-  reference::residual(part.body(), u, internal);
-  part.node_map.sum(internal, part.dim());
-  add_spring_response(part, u, internal);
-  return internal;
-}
+/// R(u) and the stored energy by the reference operator: the certificate does not trust the one the loop ran
+/// on.
+struct Response {
+  Vector internal;
+  double energy = 0.0;
+};
 
-/// As the load has it, in the user's units; empty where nothing is warmer.
-std::vector<double> thermal_pressure(const Part& part, const LoadPath& path) {
-  std::size_t most = 0;
-  for (const ThermalPressure& thermal : part.thermal) most = std::max(most, thermal.of_element.size());
-  std::vector<double> sum(most, 0.0);
-  for (const ThermalPressure& thermal : part.thermal) {
-    const double factor = path.factor_of(thermal.entry);
-    // What is the same all over an element is so at its corners.
-    const std::size_t each = most / std::max(thermal.of_element.size(), std::size_t{1});
-    for (std::size_t k = 0; k < most; ++k) sum[k] += factor * thermal.of_element[k / each];
-  }
-  return sum;
-}
-
-/// KKT residuals by the reference operator: the certificate does not trust the one the loop ran on.
-Certificate certify_independently(const StepContext& context, std::span<const double> internal) {
+/// Collective.
+Response respond_independently(const StepContext& context) {
   const Part& part = context.part;
+  const Vector& u = context.state.u;
+  Vector strain;
+  if (!context.body.linear()) strain = free_strain(part, context.path.thermal_pressure());
+  Response response{Vector(part.unknowns())};
+  response.energy = reference_response(part, strain, u, response.internal) + spring_energy(part, u);
+  response.energy = part.node_map.sum_all(response.energy);
+  part.node_map.sum(response.internal, part.dim());
+  add_spring_response(part, u, response.internal);
+  return response;
+}
+
+Certificate certify(const StepContext& context, const Response& response) {
   BodyForces forces = context.body.forces(context.path);
-  forces.internal = internal;
-  forces.energy = part.node_map.sum_all(reference::energy(part.body(), context.state.u) +
-                                        spring_energy(part, context.state.u));
+  forces.internal = response.internal;
+  forces.energy = response.energy;
   return kkt_residuals(context.space, context.traces, context.state, forces).certificate;
 }
 
@@ -131,7 +127,7 @@ void hand_out_step(const StepContext& context, const Result& result, const RunOp
                    InOwnUnits& scaled) {
   Solution now;
   now.displacement = context.state.u;
-  now.thermal = thermal_pressure(context.part, context.path);
+  now.thermal = context.path.thermal_pressure();
   collect_contact(context.part, context.state, context.options.tolerance, now);
   to_users_units(now, scaled.units());
   now.result.load_steps = result.load_steps;
@@ -186,8 +182,8 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   const bool finished = !part.no_equilibrium.empty() || run_load_steps(loop, shares, result, step_over);
   const double looped = MPI_Wtime();
 
-  const Vector internal = internal_force(part, context.state.u);
-  result.certificate = certify_independently(context, internal);
+  const Response response = respond_independently(context);
+  result.certificate = certify(context, response);
   result.status = status_of(result.certificate, options.tolerance, loop.gave_up() && !loop.ran_away());
   if (result.status == Status::limited_by_rounding && !result.certificate.exhausted(options.tolerance) &&
       result.cg_iterations > 0)
@@ -206,10 +202,10 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   }
 
   solution.displacement = context.state.u;
-  solution.thermal = thermal_pressure(part, context.path);
+  solution.thermal = context.path.thermal_pressure();
   collect_contact(part, context.state, options.tolerance, solution);
   collect_totals(part, context.state, solution);
-  collect_entries(part, context.state, context.path, internal, solution);
+  collect_entries(part, context.state, context.path, response.internal, solution);
   to_users_units(solution, scaled.units());
   if (result.message.empty()) {
     result.message = verdict(result, options);
@@ -275,7 +271,10 @@ ActivePenalty active_penalty(Part& part, const Solution& solution, const SolverO
   const InOwnUnits scaled(part);
   std::vector<double> displacement = solution.displacement;
   for (double& u : displacement) u /= scaled.units().displacement;
+  std::vector<double> pressure = solution.thermal;
+  for (double& p : pressure) p /= scaled.units().stress();
   DistributedOperator op(part, run.threads, run.instruction_set);
+  op.set_free_strain(free_strain(part, pressure));
   op.update(displacement);
   const auto amg =
       make_preconditioner(options.preconditioner, part, run.threads, run.instruction_set, &op.local());

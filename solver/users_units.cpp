@@ -74,6 +74,7 @@ void to_users_units(Result& result, const UnitSystem& units) {
 void to_users_units(Solution& solution, const UnitSystem& units) {
   to_users_units(solution.result, units);
   scale(solution.displacement, units.displacement);
+  scale(solution.thermal, units.stress());
   scale(solution.gap, units.displacement);
   scale(solution.pressure, units.stress());
   for (Vector3& traction : solution.traction) scale(traction, units.stress());

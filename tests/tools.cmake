@@ -14,6 +14,8 @@ foreach(area conditions decks errors failures files memory meshes obstacles part
   kacanov_test(program_${area} IN program SOURCES tools/program_${area}_test.cpp LIBRARIES kacanov_program_runner)
   set_tests_properties(program_${area} PROPERTIES PROCESSORS 2)
 endforeach()
+kacanov_test(program_warm_plate IN program
+  SOURCES tools/program_warm_plate_test.cpp LIBRARIES kacanov_program_runner)
 kacanov_test(program_crafted IN program
   SOURCES tools/program_crafted_test.cpp
   LIBRARIES kacanov_program_runner kacanov_program kacanov_solver_internal)
@@ -28,7 +30,7 @@ kacanov_test(program_coarser IN program
 kacanov_test(program_supports IN program
   SOURCES tools/program_supports_test.cpp tools/program_turned_box_test.cpp tools/mesh_writer.cpp
   LIBRARIES kacanov_program_runner kacanov_formats)
-set_tests_properties(program_verify program_coarser program_supports PROPERTIES PROCESSORS 2)
+set_tests_properties(program_warm_plate program_verify program_coarser program_supports PROPERTIES PROCESSORS 2)
 target_compile_definitions(test_program PRIVATE
   KACANOV_PROGRAM="$<TARGET_FILE:kacanov>" KACANOV_MPIEXEC="${MPIEXEC_EXECUTABLE}"
   KACANOV_HARD_CASES="${PROJECT_SOURCE_DIR}/tests/cases/hard")

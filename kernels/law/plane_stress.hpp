@@ -17,6 +17,12 @@ inline double transverse_ratio(double bulk, double g) {
 inline double plane_stress_bulk(double bulk, double g) {
   return 4.0 * g * (6.0 * bulk - g) / (3.0 * (3.0 * bulk + 4.0 * g));
 }
+/// The stress within the plane of an elastic body that is kept from getting longer in it, over the strain
+/// that it would have in all directions: E / (1 − ν).
+inline double plane_stress_expansion(const Law& law) {
+  const double shear = law.secant(0.0);
+  return 2.0 * plane_stress_bulk(law.bulk, shear) + 2.0 / 3.0 * shear;
+}
 /// The strain across the plane that leaves no stress there; strains are components, not shears of engineers.
 double transverse_strain(const Law& law, double xx, double yy, double xy);
 

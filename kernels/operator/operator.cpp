@@ -59,6 +59,18 @@ std::size_t BasicOperator<Real>::unknowns() const noexcept {
 }
 
 template <class Real>
+void BasicOperator<Real>::set_free_strain(std::span<const double> of_element) {
+  Data& data = *data_;
+  if (data.plane != PlaneState::stress) throw std::logic_error("free strain is for plane stress");
+  const std::size_t each = points_per_element(data.type);
+  if (of_element.empty()) return Aligned<Real>().swap(data.free_strain);
+  expect_size(of_element.size() * each, data.points, "free strain");
+  std::vector<double> of_point(data.points);
+  for (std::size_t k = 0; k < of_point.size(); ++k) of_point[k] = of_element[k / each];
+  data.by_slot(of_point, data.free_strain);
+}
+
+template <class Real>
 void BasicOperator<Real>::update(std::span<const Real> u) {
   expect_size(u.size(), unknowns(), "u");
   data_->nonlinear(u.data(), nullptr, {.keep_secant = true});
@@ -255,12 +267,12 @@ std::string_view BasicOperator<Real>::instruction_set() const noexcept {
 template <class Real>
 std::size_t BasicOperator<Real>::bytes() const noexcept {
   const Data& data = *data_;
-  std::size_t sum =
-      data.layout.bytes() +
-      (data.coordinates.size() + data.secant.size() + data.tangent_secant.size() + data.strain.size() +
-       data.outside_secant.size() + data.outside_slope.size() + data.outside_energy.size()) *
-          sizeof(Real) +
-      data.tangent.size() * sizeof(float);
+  std::size_t sum = data.layout.bytes() +
+                    (data.coordinates.size() + data.secant.size() + data.tangent_secant.size() +
+                     data.strain.size() + data.free_strain.size() + data.outside_secant.size() +
+                     data.outside_slope.size() + data.outside_energy.size()) *
+                        sizeof(Real) +
+                    data.tangent.size() * sizeof(float);
   for (const auto& scratch : data.scratch)
     sum += (scratch.u.size() + scratch.f.size() + scratch.sums.size()) * sizeof(Real);
   return sum;

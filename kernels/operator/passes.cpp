@@ -102,7 +102,8 @@ simd::Block<Real> BasicOperator<Real>::Data::block(std::size_t b) {
           range.again,
           range.count,
           layout.padding,
-          plane};
+          plane,
+          free_strain.empty() ? nullptr : free_strain.data() + range.first_slot};
 }
 
 template <class Real>

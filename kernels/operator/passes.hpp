@@ -73,6 +73,7 @@ struct BasicOperator<Real>::Data {
   bool has_tangent = false;
   Aligned<float> tangent;
   Aligned<Real> tangent_secant;  ///< g of the tangent, where it is no longer `secant`
+  Aligned<Real> free_strain;     ///< by slot; empty: none
   Aligned<Real> strain, outside_secant, outside_slope, outside_energy;  ///< empty until they are asked for
   std::vector<Scratch> scratch;
   int scratch_vectors = 0;

@@ -78,6 +78,7 @@ struct Block {
   std::uint32_t count;
   std::uint32_t padding;  ///< records behind `count` that lanes without a unit work on
   PlaneState plane = PlaneState::strain;
+  const Real* free_strain = nullptr;  ///< as `secant`, in plane stress; null: 0
   Outside<Real> outside = {};
 };
 

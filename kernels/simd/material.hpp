@@ -175,6 +175,7 @@ struct NonlinearMaterial {
   Real* secant;
   float* tangent;
   double k0;
+  const Real* free_strain;
   Outside<Real> outside;
 
   NonlinearMaterial(const Block<Real>& block, const Group& group, Nonlinear& nonlinear)
@@ -184,6 +185,7 @@ struct NonlinearMaterial {
         tangent(block.tangent == nullptr ? nullptr
                                          : block.tangent + tangent_floats * std::size_t{group.first_slot}),
         k0(law.bulk),
+        free_strain(block.free_strain == nullptr ? nullptr : block.free_strain + group.first_slot),
         outside(block.outside.from(group.first_slot)) {}
 
   V bulk() const { return Real(k0) - V{}; }
@@ -199,7 +201,13 @@ struct NonlinearMaterial {
   KACANOV_INLINE void fetch_ahead(std::size_t, int) const {}
   /// `weight` is a number, or one a lane in axisymmetric bodies.
   template <class Weight>
-  KACANOV_INLINE Sym<V> stress(const Sym<V>& e, V det, V w, Weight weight, std::size_t point) const {
+  KACANOV_INLINE Sym<V> stress(const Sym<V>& total, V det, V w, Weight weight, std::size_t point) const {
+    Sym<V> e = total;
+    if constexpr (in_plane)
+      if (free_strain != nullptr) {
+        const V longer = det * L::load(free_strain + point * L::width);
+        e.xx -= longer, e.yy -= longer;
+      }
     const V inverse = w * (Real(1) / weight), half = Real(0.5) * inverse;
     V e_zz = e.zz * inverse;
     if constexpr (in_plane) e_zz = across(e.xx * inverse, e.yy * inverse, e.xy * half);

@@ -150,6 +150,13 @@ class Solutions(unittest.TestCase):
         turned = case.contact("bottom", block).solve()
         np.testing.assert_allclose(turned.u, of_plane.u, rtol=0, atol=1e-9)
 
+    def test_warmth_held_in_plane_stress_is_that_of_the_bar_in_tension(self):
+        case = kc.Case(kc.box((4, 1), (8, 3), "quad4")).set("plane", "stress").temperature(300)
+        case.material(200, 0.3, expansion=1e-5, yield_stress=0.2, tangent_modulus=20)
+        case.fix("left", (0, None)).fix("right", (0, None)).fix("bottom", (None, 0))
+        sol = case.solve()
+        np.testing.assert_allclose(sol.stress, np.broadcast_to([-0.24, 0, 0, 0, 0, 0], sol.stress.shape), rtol=0, atol=1e-6)
+
     def test_warmth_that_nothing_hinders_strains_without_stress(self):
         case = kc.Case(kc.box((2, 1, 1), (4, 2, 2), "hex8")).material(210e3, 0.3, expansion=1e-5).temperature(100)
         case.fix("left", (None, 0, None), frame=[(0, 1, 0), (1, 0, 0), (0, 0, 1)])

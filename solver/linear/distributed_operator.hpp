@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <numeric>
 #include <span>
 #include <string>
 #include <utility>
@@ -38,6 +39,16 @@ class DistributedOperator {
   /// Called after every application, on all ranks alike. It may throw to leave whatever loops go on.
   void watch(std::function<void()> watcher) { watcher_ = std::move(watcher); }
 
+  /// Plane stress: what follows of a displacement knows that elements would be longer by so much; forces and
+  /// energy with what the elastic body makes of it, which the load has. Empty: by nothing.
+  void set_free_strain(std::span<const double> of_element) {
+    if (of_element.empty() && free_force_.empty()) return;
+    local_.set_free_strain(of_element);
+    Body body = part_->body();
+    body.free_strain = of_element;
+    free_force_.resize(of_element.empty() ? 0 : part_->unknowns());
+    free_energy_ = of_element.empty() ? 0.0 : reference::free_force(body, free_force_);
+  }
   /// Freezes g at u.
   void update(std::span<const double> u) { local_.update(u); }
   /// Freezes the tangent, and g, at u.
@@ -48,20 +59,22 @@ class DistributedOperator {
   /// Internal force of the true law; counts as an application.
   void residual(std::span<const double> u, std::span<double> f) {
     local_.residual(u, f);
+    add_free_force(u, f);
     part_->node_map.sum(f, part_->dim());
     add_spring_response(*part_, u, f);
     ++applications_;
   }
   /// The same with the stored energy, which is returned, and g frozen at u, in one pass.
   double residual_energy_update(std::span<const double> u, std::span<double> f) {
-    const double energy = local_.residual_energy_update(u, f) + spring_energy(*part_, u);
+    double energy = local_.residual_energy_update(u, f) + spring_energy(*part_, u);
+    energy += add_free_force(u, f);
     part_->node_map.sum(f, part_->dim());
     add_spring_response(*part_, u, f);
     ++applications_;
     return part_->node_map.sum_all(energy);
   }
   double energy(std::span<const double> u) {
-    return part_->node_map.sum_all(local_.energy(u) + spring_energy(*part_, u));
+    return part_->node_map.sum_all(local_.energy(u) + spring_energy(*part_, u) + add_free_force(u, {}));
   }
 
   /// Diagonal of B(g), consistent: a measure of stiffness, so single precision does.
@@ -90,8 +103,17 @@ class DistributedOperator {
     return share;
   }
 
+  /// Of this rank's elements; returns what the energy gains. `f` may be empty.
+  double add_free_force(std::span<const double> u, std::span<double> f) const {
+    if (free_force_.empty()) return 0.0;
+    for (std::size_t i = 0; i < f.size(); ++i) f[i] += free_force_[i];
+    return std::inner_product(u.begin(), u.end(), free_force_.begin(), -free_energy_);
+  }
+
   const Part* part_;
   Operator local_;
+  std::vector<double> free_force_;
+  double free_energy_ = 0.0;
   Scatterer<double> sum_;
   std::uint64_t applications_ = 0;
   std::function<void()> watcher_;

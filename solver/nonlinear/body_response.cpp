@@ -15,6 +15,13 @@ BodyResponse::BodyResponse(const Part& part, int threads, const std::string& ins
       internal_(part.unknowns()),
       linear_(std::all_of(part.laws.begin(), part.laws.end(), [](const Law& law) { return law.linear(); })) {}
 
+void BodyResponse::set_free_strain(std::span<const double> of_element) {
+  if (linear_ || (of_element.empty() && !stretched_)) return;
+  op_.set_free_strain(of_element);
+  stretched_ = !of_element.empty();
+  current_ = false;
+}
+
 void BodyResponse::evaluate(std::span<const double> u) {
   op_.residual(u, internal_);
   energy_ = op_.energy(u);
@@ -29,7 +36,14 @@ void BodyResponse::evaluate_and_freeze(std::span<const double> u) {
 
 bool BodyResponse::freeze_elastic() {
   if (elastic_) return false;
-  op_.update(Vector(part_->unknowns(), 0.0));
+  const Vector rest(part_->unknowns(), 0.0);
+  if (stretched_) {
+    Vector g(part_->body().secant_count());
+    reference::secant(part_->body(), rest, g);
+    op_.set_secant(g);
+  } else {
+    op_.update(rest);
+  }
   elastic_ = true;
   current_ = false;
   return true;

@@ -18,6 +18,9 @@ class BodyResponse {
   /// At rest: elastic. `part` has to outlive it.
   BodyResponse(const Part& part, int threads, const std::string& instruction_set);
 
+  /// What elements would be longer by, in plane stress (theory: expansion-in-plane); R(u) and the energy have
+  /// what the load counts of it. Empty: by nothing.
+  void set_free_strain(std::span<const double> of_element);
   /// R(u) and the energy; the operator stays what it is.
   void evaluate(std::span<const double> u);
   /// The same, and freezes the secant at u, in one pass.
@@ -54,8 +57,9 @@ class BodyResponse {
   Vector internal_;
   double energy_ = 0.0;
   bool linear_;
-  bool elastic_ = true;  ///< the operator is
-  bool current_ = true;  ///< the operator's g is that of the u of R(u)
+  bool stretched_ = false;  ///< some free strain is there
+  bool elastic_ = true;     ///< the operator is
+  bool current_ = true;     ///< the operator's g is that of the u of R(u)
 };
 
 /// To be called before `bytes` are allocated in a few pieces. The allocator keeps what is free (Open MPI

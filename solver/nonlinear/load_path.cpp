@@ -76,6 +76,19 @@ double LoadPath::factor_of(std::int32_t entry) const {
   return part_->steps.empty() ? share_ : factors_[entry];
 }
 
+std::vector<double> LoadPath::thermal_pressure() const {
+  std::size_t most = 0;
+  for (const ThermalPressure& thermal : part_->thermal) most = std::max(most, thermal.of_element.size());
+  std::vector<double> sum(most, 0.0);
+  for (const ThermalPressure& thermal : part_->thermal) {
+    const double factor = factor_of(thermal.entry);
+    // What is the same all over an element is so at its corners.
+    const std::size_t each = most / std::max(thermal.of_element.size(), std::size_t{1});
+    for (std::size_t k = 0; k < most; ++k) sum[k] += factor * thermal.of_element[k / each];
+  }
+  return sum;
+}
+
 double LoadPath::growth_to(double share) const {
   if (part_->steps.empty()) return share / share_;
   const LoadFactors now = factors_at(part_->steps, share_), then = factors_at(part_->steps, share);

@@ -35,6 +35,8 @@ class LoadPath {
   std::span<const Part::ComponentValue> prescribed() const noexcept {
     return whole_ ? part_->prescribed : prescribed_;
   }
+  /// The pressures that temperature takes off, as ThermalPressure has them; empty where nothing is warmer.
+  std::vector<double> thermal_pressure() const;
   /// One a contact point.
   const std::vector<double>& gap() const noexcept { return gap_; }
 

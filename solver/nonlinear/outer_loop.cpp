@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "linear/free_strain.hpp"
 #include "mesh/plain_stream.hpp"
 #include "nonlinear/augmented_step.hpp"
 #include "nonlinear/body_measures.hpp"
@@ -72,6 +73,7 @@ OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOp
 void OuterLoop::take_load() {
   ContactState& state = context_.state;
   context_.path.prescribe(state.u);
+  context_.body.set_free_strain(free_strain(context_.part, context_.path.thermal_pressure()));
   state.gap = context_.path.gap();
   state.evaluate(context_.traces);
   for (std::size_t i = 0; i < state.gap.size(); ++i)

@@ -44,6 +44,7 @@ void scale(Part& part, const UnitSystem& factors) {
   scale(part.slip_origin, factors.displacement);
   for (Part::ComponentValue& entry : part.load) entry.value *= factors.force();
   for (EntryForce& entry : part.forces) entry.value *= factors.force();
+  for (ThermalPressure& thermal : part.thermal) scale(thermal.of_element, factors.stress());
   for (Part::ComponentValue& entry : part.prescribed) entry.value *= factors.displacement;
   for (HeldDirection& held : part.directions) held.value *= factors.displacement;
   for (NodeSpring& spring : part.springs)

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include <kacanov/error.hpp>
+#include "law/plane_stress.hpp"
 #include "problem/integration.hpp"
 #include "problem/load_curves.hpp"
 #include "problem/model_checks.hpp"
@@ -127,7 +128,9 @@ void add_temperature(Problem& problem, const Model& model, const Temperature& ri
   thermal.of_element.assign(width * mesh.element_count(), 0.0);
   for (const std::int32_t e : elements) {
     const std::size_t law = problem.law_of_element[e];
-    const double stiffness = 3.0 * problem.laws[law].bulk * model.materials[law].expansion;
+    const double stiffness = model.materials[law].expansion * (mesh.plane == PlaneState::stress
+                                                                   ? plane_stress_expansion(problem.laws[law])
+                                                                   : 3.0 * problem.laws[law].bulk);
     if (stiffness == 0.0) continue;
     const auto pressure = std::span(thermal.of_element).subspan(width * e, width);
     const auto warmer = rise.uniform() ? std::span<const double>() : corner_rise.of(e);
@@ -216,10 +219,6 @@ void assemble_load(Problem& problem, const Model& model, const Selection& select
       for (const std::int32_t node : selection.nodes(entry.on, path))
         load.add(node, 1.0 / mesh.thickness * *entry.node_force);
     } else if (entry.temperature) {
-      if (mesh.plane == PlaneState::stress)
-        throw InputError(path +
-                         ".temperature: expected plane strain or an axisymmetric mesh: plane stress "
-                         "has no thermal strain here");
       const std::vector<std::int32_t> elements = selection.elements(entry.on, path);
       if (std::none_of(elements.begin(), elements.end(), [&](std::int32_t e) {
             return model.materials[problem.law_of_element[e]].expansion != 0.0;

@@ -207,6 +207,66 @@ TEST_CASE(
     }
 }
 
+TEST_CASE(
+    "a free strain in plane stress: stress follows from what is left of the strain, fast and plain alike") {
+  for (const ElementType type : flat_types) {
+    CAPTURE(cell(type).name);
+    const PlaneBody of = plane_body(type, PlaneState::stress, 0.2);
+    Body body = of.body();
+    const std::size_t n = body.unknowns();
+    std::vector<double> longer;
+    for (std::size_t e = 0; e < body.mesh.element_count(); ++e)
+      longer.push_back(0.01 * std::sin(static_cast<double>(e)));
+    body.free_strain = longer;
+    const auto u = test::random_vector(n, 5, 0.01), x = test::random_vector(n, 6, 0.01);
+    std::vector<double> f(n), ahead = u, back = u, out(n), g(body.secant_count()), out_g(g.size()), t(n);
+    reference::residual(body, u, f);
+    reference::secant(body, u, g);
+    reference::apply_tangent(body, u, x, t);
+    const double energy = reference::energy(body, u), h = 1e-5;
+    for (std::size_t i = 0; i < n; ++i) ahead[i] += h * x[i], back[i] -= h * x[i];
+    CHECK((reference::energy(body, ahead) - reference::energy(body, back)) / (2.0 * h) ==
+          doctest::Approx(test::dot(f, x)).epsilon(1e-6));
+    for_every_plane_operator<Operator>(body, [&](Operator& op) {
+      op.set_free_strain(longer);
+      op.update_tangent(u);
+      op.secant(out_g);
+      CHECK(difference(out_g, g) < 1e-12);
+      op.apply_tangent(x, out);
+      CHECK(difference(out, t) < 1e-6);
+      CHECK(op.residual_energy_update(u, out) == doctest::Approx(energy).epsilon(1e-12));
+      CHECK(difference(out, f) < 1e-12);
+      op.set_free_strain({});
+      op.residual(u, out);
+      CHECK(difference(out, f) > 1e-3);
+    });
+    // A body that is as long as it wants to be has no stress, and strains that are that.
+    const std::vector<double> same(longer.size(), 0.03);
+    body.free_strain = same;
+    std::vector<double> grown(body.mesh.coordinates.begin(), body.mesh.coordinates.end());
+    for (double& entry : grown) entry *= 0.03;
+    reference::residual(body, grown, out);
+    CHECK(std::sqrt(test::dot(out, out)) < 1e-14 * std::sqrt(test::dot(f, f)) + 1e-15);
+    CHECK(reference::energy(body, grown) < 1e-25);
+    std::vector<double> strain(6 * body.secant_count());
+    reference::strains(body, grown, strain);
+    for (std::size_t i = 0; i < strain.size(); ++i)
+      CHECK(std::abs(strain[i] - (i % 6 < 3 ? 0.03 : 0.0)) < 1e-15);
+    // Of the elastic body it is a load.
+    std::vector<Law> linear(of.owned.laws.size(), elastic_law(1.0, 0.3));
+    body.laws = linear;
+    reference::residual(body, u, f);
+    reference::free_force(body, out);
+    for (std::size_t i = 0; i < n; ++i) f[i] += out[i];
+    body.free_strain = {};
+    reference::residual(body, u, out);
+    CHECK(difference(f, out) < 1e-12);
+  }
+  const PlaneBody of = plane_body(ElementType::tri3, PlaneState::axisymmetric, 0.2);
+  Operator round(of.body());
+  CHECK_THROWS_WITH_AS(round.set_free_strain({}), "free strain is for plane stress", std::logic_error);
+}
+
 TEST_CASE("in plane stress nothing is lost where the material is nearly incompressible") {
   for (const ElementType type : flat_types)
     for (const double poisson : {0.3, 0.499, 0.4999999, -0.9}) {

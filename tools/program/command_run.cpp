@@ -271,9 +271,8 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
   const std::vector<double>& displacement = contact.displacement;
   std::vector<double> von_mises, plastic;
   if (input.output.report && result.plastic_elements > 0)
-    plastic = at_boundary(loaded, nodal_plastic_share(loaded.part, solution.displacement), 1);
-  if (input.output.report)
-    von_mises = at_boundary(loaded, nodal_von_mises(loaded.part, solution.displacement), 1);
+    plastic = at_boundary(loaded, nodal_plastic_share(loaded.part, solution), 1);
+  if (input.output.report) von_mises = at_boundary(loaded, nodal_von_mises(loaded.part, solution), 1);
   if (phase && mpi.first()) phase("writing to " + printable(folder.string()));
   // The numbers first: whatever fails after them, they are there.
   figures.read = loaded.read_seconds;

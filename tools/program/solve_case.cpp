@@ -60,11 +60,7 @@ void fields_at(const SolvedCase& solved, std::span<const double> displacement,
                std::span<const double> thermal, const reference::ElementFields& out) {
   const Mesh& mesh = solved.problem.mesh;
   const Body body{mesh.view(), solved.problem.laws, solved.problem.law_of_element};
-  reference::fields(body, displacement, out);
-  if (thermal.empty() || out.stress.empty()) return;
-  const std::size_t width = thermal.size() / mesh.element_count();  // the mean comes first
-  for (std::size_t e = 0; e < mesh.element_count(); ++e)
-    for (std::size_t c = 0; c < 3; ++c) out.stress[6 * e + c] -= thermal[width * e];
+  element_fields(body, {displacement, thermal}, out);
 }
 
 /// Collective.
@@ -155,7 +151,7 @@ SolvedCase solve_case(const Case& given, const MpiSession& mpi, const CaseRun& r
   out.displacement = gather_nodal(part, solution.displacement, part.dim());
   out.nodal_stress = gather_nodal(part, nodal.stress, 6);
   out.recovered_von_mises = gather_nodal(part, nodal.von_mises, 1);
-  out.averaged_von_mises = gather_nodal(part, nodal_von_mises(part, solution.displacement), 1);
+  out.averaged_von_mises = gather_nodal(part, nodal_von_mises(part, solution), 1);
   out.contact = gather_contact_fields(part, solution);
   out.thermal = gather_elements(part, solution.thermal);
   out.result = std::move(solution.result);

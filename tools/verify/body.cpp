@@ -100,6 +100,8 @@ void add_element(const Problem& problem, std::size_t e, const std::vector<Vec>& 
   const Indices& element = mesh.elements[e];
   const Law& law = problem.laws[problem.law_of_element[e]];
   const auto dim = static_cast<std::size_t>(mesh.dim());
+  const Real longer = problem.free_strain.empty() ? 0 : problem.free_strain[e];
+  const Real warm = longer != 0 ? longer * expansion_stress(law) : 0;  // what the load has of it
   std::vector<Point> points;
   for (const QuadraturePoint& q : stiffness_rule(mesh.shape)) points.push_back(point_at(mesh, element, q));
   const std::vector<Vec> mean = mean_gradients(points);
@@ -108,12 +110,14 @@ void add_element(const Problem& problem, std::size_t e, const std::vector<Vec>& 
     std::vector<Vec> divergence = mean;
     for (std::size_t a = 0; a < element.size() && !law.bbar; ++a) divergence[a] = point.divergence(a);
     Tensor whole = strain(element, point, u);
+    whole[0][0] -= longer;
+    whole[1][1] -= longer;
     if (mesh.is_free_across) whole[2][2] = strain_across(law, whole);
     const Tensor deviator = deviator_of(whole);
-    Real trace = mesh.is_free_across ? whole[2][2] : 0;
+    Real trace = mesh.is_free_across ? whole[2][2] - 2 * longer : 0;
     for (std::size_t a = 0; a < element.size(); ++a) trace += dot(divergence[a], u[element[a]]);
     const Real x = norm_of(deviator), g = law.secant(x);
-    out.energy += point.volume * (law.bulk * trace * trace / 2 + 2 * law.energy(x));
+    out.energy += point.volume * (law.bulk * trace * trace / 2 + 2 * law.energy(x) - warm * longer);
     Real moved = 0;
     for (std::size_t a = 0; a < element.size(); ++a) moved += norm(point.gradient[a]) * norm(u[element[a]]);
     out.unknown_stress = larger(out.unknown_stress, 1e-15L * 2 * g * moved);
@@ -126,6 +130,8 @@ void add_element(const Problem& problem, std::size_t e, const std::vector<Vec>& 
         const Real round_axis = i == 0 ? deviator[2][2] * point.hoop[a] : 0;
         out.internal[node][i] +=
             point.volume * (law.bulk * trace * d[i] + 2 * g * (dot(deviator[i], n) + round_axis));
+        out.internal[node][i] += point.volume * warm * n[i];
+        out.energy += point.volume * warm * n[i] * u[node][i];
         out.diagonal[node][i] += point.volume * elastic_entry(mesh, law, point, a, i, d[i]);
       }
     }

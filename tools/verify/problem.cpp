@@ -109,6 +109,15 @@ void add_spring(Problem& problem, const nlohmann::json& entry) {
   }
 }
 
+}  // namespace
+
+Real expansion_stress(const Law& law) {
+  const Real mu = law.secant(0), lame = law.bulk - 2 * mu / 3;
+  return 2 * mu * (3 * lame + 2 * mu) / (lame + 2 * mu);
+}
+
+namespace {
+
 /// ΔT at the corners of elements.
 class Warmth {
  public:
@@ -139,7 +148,8 @@ class Warmth {
   std::vector<Real> nodes_;
 };
 
-/// −3 k₀ α ΔT div v, put on as a load (theory: expansion).
+/// −3 k₀ α ΔT div v, put on as a load (theory: expansion); in plane stress E/(1 − ν) α ΔT div v, beside the
+/// strain itself (theory: expansion-in-plane).
 void add_temperature(Problem& problem, const nlohmann::json& document, const nlohmann::json& entry,
                      Real factor, const std::filesystem::path& folder) {
   const Mesh& mesh = problem.mesh;
@@ -148,9 +158,10 @@ void add_temperature(Problem& problem, const nlohmann::json& document, const nlo
   for (const std::size_t e : select_elements(mesh, entry.at("on"))) {
     const Indices& element = mesh.elements[e];
     const std::size_t law = problem.law_of_element[e];
+    const Real expansion = factor * Real(document.at("material").at(law).value("expansion", 0.0));
+    if (expansion == 0) continue;
     const Real stiffness =
-        3 * problem.laws[law].bulk * factor * Real(document.at("material").at(law).value("expansion", 0.0));
-    if (stiffness == 0) continue;
+        expansion * (mesh.is_free_across ? expansion_stress(problem.laws[law]) : 3 * problem.laws[law].bulk);
     Real mean = 0, whole = 0;
     for (const QuadraturePoint& point : stiffness_rule(mesh.shape)) {
       const Functions f = functions(mesh.shape, point.at);
@@ -160,6 +171,10 @@ void add_temperature(Problem& problem, const nlohmann::json& document, const nlo
       whole += volume;
     }
     mean /= whole;
+    if (mesh.is_free_across) {
+      problem.free_strain.resize(mesh.elements.size());
+      problem.free_strain[e] += expansion * mean;
+    }
     for (const QuadraturePoint& point : stiffness_rule(mesh.shape)) {
       const Functions f = functions(mesh.shape, point.at);
       const std::array<Vec, 3> along = along_at(mesh, element, f);

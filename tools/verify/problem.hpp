@@ -35,11 +35,16 @@ struct GivenDirection {
   Real value = 0;
 };
 
+/// What keeps an elastic body in plane stress from getting longer, over the strain that it would have: E/(1 −
+/// ν).
+Real expansion_stress(const Law& law);
+
 struct Problem {
   Mesh mesh;
   std::vector<Law> laws;
   std::vector<std::size_t> law_of_element;
   std::vector<Vec> load;                  ///< F, one a node
+  std::vector<Real> free_strain;          ///< α ΔT of each element in plane stress; empty: none
   std::vector<std::array<bool, 3>> held;  ///< components with a prescribed displacement
   std::vector<Vec> prescribed;
   /// Off the axes, by node: orthonormal, in free components (theory: held-directions).

@@ -53,6 +53,9 @@ class BasicOperator {
 
   std::size_t unknowns() const noexcept;
 
+  /// Plane stress: as Body::free_strain, elements; what follows of a displacement knows of it, B(g) and B_T
+  /// stay what they are. Empty: none, as to begin with. Throws std::logic_error in other bodies.
+  void set_free_strain(std::span<const double> of_element);
   /// Freezes g at the displacement u. It starts as g = μ.
   void update(std::span<const Real> u);
   /// The frozen g into `g`, rounded to Real.

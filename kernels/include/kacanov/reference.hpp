@@ -28,6 +28,10 @@ struct Body {
   /// In place of what the laws say at the displacement asked for; they leave their k0. The reference's
   /// functions of a displacement know of it, operators do not. Null: the laws.
   const PointModuli* moduli = nullptr;
+  /// Plane stress: by how much each element is longer in all directions where nothing acts on it; the
+  /// reference's functions of a displacement know of it, operators by BasicOperator::set_free_strain().
+  /// Empty: by nothing (theory: expansion).
+  std::span<const double> free_strain = {};
 
   std::size_t unknowns() const noexcept { return mesh.coordinates.size(); }
   std::uint16_t law_index(std::size_t element) const noexcept {
@@ -59,6 +63,9 @@ void block_diagonal(const Body& body, std::span<const double> g, std::span<doubl
 void block_diagonal_tangent(const Body& body, std::span<const double> u, std::span<double> blocks);
 /// Internal force of the true nonlinear law at u (overwrites f).
 void residual(const Body& body, std::span<const double> u, std::span<double> f);
+/// What the elastic body would push its nodes with if its free strain were a strain (overwrites f). Returns
+/// the energy it would store.
+double free_force(const Body& body, std::span<double> f);
 /// Stored energy ∫ k0/2 tr² + 2 G(x) at u.
 double energy(const Body& body, std::span<const double> u);
 /// Stiffness of one element for frozen g (its own points only): `matrix` has (nodes·dim)² entries, row-major,

@@ -16,10 +16,12 @@ namespace kacanov {
 /// What stress and strain follow from. Nothing is owned.
 struct BodyState {
   std::span<const double> u;        ///< nodes × dim
-  std::span<const double> thermal;  ///< Solution::thermal
+  std::span<const double> thermal;  ///< Solution::thermal, in the units of the part
 
   BodyState(std::span<const double> displacement) : u(displacement) {}
   BodyState(const std::vector<double>& displacement) : u(displacement) {}
+  BodyState(std::span<const double> displacement, std::span<const double> pressure)
+      : u(displacement), thermal(pressure) {}
   BodyState(const Solution& solution) : u(solution.displacement), thermal(solution.thermal) {}
 };
 
@@ -27,6 +29,9 @@ struct BodyState {
 /// `count` entries (stress 6 each, xx yy zz xy yz zx), or none where not wanted.
 void element_fields(const Part& part, const BodyState& state, std::size_t first, std::size_t count,
                     const reference::ElementFields& out);
+
+/// The same of a whole body.
+void element_fields(const Body& body, const BodyState& state, const reference::ElementFields& out);
 
 /// Their mean strain: elements × 6, tensor components xx yy zz xy yz zx; what temperature does is in it.
 void element_strains(const Part& part, const BodyState& state, std::size_t first, std::size_t count,
@@ -56,8 +61,8 @@ void visit_points(const Part& part, const BodyState& state,
 
 /// von Mises stress at the part's nodes: the mean of the elements round a node over all ranks, weighted by
 /// volume. Collective.
-std::vector<double> nodal_von_mises(const Part& part, std::span<const double> u);
+std::vector<double> nodal_von_mises(const Part& part, const BodyState& state);
 /// Share of the volume of the elements round a node that belongs to plastic ones. Collective.
-std::vector<double> nodal_plastic_share(const Part& part, std::span<const double> u);
+std::vector<double> nodal_plastic_share(const Part& part, const BodyState& state);
 
 }  // namespace kacanov

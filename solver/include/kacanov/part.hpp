@@ -48,7 +48,7 @@ struct Part {
   std::vector<AppliedLoad> applied;           ///< of the whole problem
   std::vector<HeldDirection> directions;      ///< of local nodes, owned ones first
   std::vector<NodeSpring> springs;            ///< of local nodes, owned ones first
-  std::vector<ThermalPressure> thermal;       ///< of local elements; always in the user's units
+  std::vector<ThermalPressure> thermal;       ///< of local elements
   /// The points of owned nodes first, narrow ones of ghosts behind them. All nodes of an owned point are
   /// local; wide points are with their owners only.
   ConstraintRows contact;

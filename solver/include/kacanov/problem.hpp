@@ -64,7 +64,8 @@ struct NodeSpring {
   std::array<Vector3, 3> stiffness{};  ///< symmetric, positive semidefinite
 };
 
-/// A temperature entry: the pressure 3 k₀ α ΔT of each element, which no strain means (theory: expansion).
+/// A temperature entry: the pressure 3 k₀ α ΔT of each element, which no strain means (theory: expansion), in
+/// plane stress E α ΔT / (1 − ν) (theory: expansion-in-plane).
 /// Its mean over the element, and where it differs within elements those of the element's corners besides.
 struct ThermalPressure {
   std::int32_t entry = 0;          ///< index into Model::boundary

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The reference's walk over elements and their points, with the strain that a law sees there.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <kacanov/reference.hpp>
+#include "cells/dispatch.hpp"
+#include "cells/point.hpp"
+#include "law/plane_stress.hpp"
+#include "reference/point_strain.hpp"
+
+namespace kacanov::reference {
+
+using elements::Nodal;
+using elements::Point;
+using elements::points_of;
+
+/// What the law says at point q of element e, or who speaks in its place.
+template <class E>
+Moduli moduli_at(const Body& body, std::size_t e, std::size_t q, double x) {
+  if (body.moduli == nullptr) return body.law(e).moduli(x);
+  const std::size_t k = e * E::points + q;
+  return {body.moduli->secant[k], body.moduli->derivative.empty() ? 0.0 : body.moduli->derivative[k]};
+}
+
+template <class E>
+Gradient gradient_at(const Point<E>& point, const Nodal<E>& u) {
+  Gradient h{};
+  for (int a = 0; a < E::nodes; ++a)
+    for (int i = 0; i < E::dim; ++i)
+      for (int k = 0; k < E::dim; ++k) h[i][k] += u[point.at(a, i)] * point.gradient[a][k];
+  for (int a = 0; a < E::nodes; ++a) h[2][2] += u[point.at(a, 0)] * point.hoop[a];
+  return h;
+}
+
+/// In plane stress without the strain across the plane: across() has it.
+template <class E>
+Strain strain_at(const Point<E>& point, const Nodal<E>& u) {
+  const Gradient h = gradient_at<E>(point, u);
+  Strain s;
+  const double trace = h[0][0] + h[1][1] + h[2][2];
+  s.dev = {h[0][0] - trace / 3.0,     h[1][1] - trace / 3.0,     h[2][2] - trace / 3.0,
+           0.5 * (h[0][1] + h[1][0]), 0.5 * (h[1][2] + h[2][1]), 0.5 * (h[2][0] + h[0][2])};
+  for (int a = 0; a < E::nodes; ++a)
+    for (int i = 0; i < E::dim; ++i) s.trace += u[point.at(a, i)] * point.dilatation[a][i];
+  return s;
+}
+
+/// With the strain z across the plane that leaves no stress there. Near ν = ½ the trace is a small difference
+/// that the bulk modulus makes large again: it is taken from what says that nothing acts across.
+inline Strain relaxed(const Law& law, double g, const Strain& plane, double z) {
+  Strain whole = stretched(plane, z);
+  if (law.bulk > g) whole.trace = -2.0 * g / law.bulk * whole.dev[2];
+  return whole;
+}
+
+/// As strain_at, whole in plane stress too, where it is that of the frozen g.
+inline Strain across(const Body& body, const Law& law, double g, const Strain& strain) {
+  if (body.mesh.plane != PlaneState::stress) return strain;
+  return relaxed(law, g, strain, 3.0 * transverse_ratio(law.bulk, g) * strain.dev[2]);
+}
+
+inline double free_strain_of(const Body& body, std::size_t e) {
+  return body.free_strain.empty() ? 0.0 : body.free_strain[e];
+}
+
+/// The same strain within the plane in both directions: `strain` has none across.
+inline Strain widened(Strain strain, double by) {
+  strain.trace += 2.0 * by;
+  strain.dev[0] += by / 3.0, strain.dev[1] += by / 3.0, strain.dev[2] -= 2.0 / 3.0 * by;
+  return strain;
+}
+
+/// The same for the true law, or for what is said in its place, without the free strain.
+template <class E>
+Strain across(const Body& body, std::size_t e, std::size_t q, const Strain& total) {
+  if (body.mesh.plane != PlaneState::stress) return total;
+  const Strain strain = widened(total, -free_strain_of(body, e));
+  if (body.moduli != nullptr)
+    return across(body, body.law(e), body.moduli->secant[e * E::points + q], strain);
+  const Law& law = body.law(e);
+  const double third = -strain.dev[2];  // of the trace: there is no strain across yet
+  const double z = transverse_strain(law, strain.dev[0] + third, strain.dev[1] + third, strain.dev[3]);
+  return relaxed(law, law.secant(stretched(strain, z).norm()), strain, z);
+}
+
+inline const std::int32_t* nodes_of(const Body& body, std::size_t element) {
+  return body.mesh.connectivity.data() + element * nodes_per_element(body.mesh.type);
+}
+
+template <class E>
+Nodal<E> gather(const Body& body, std::size_t element, std::span<const double> values) {
+  Nodal<E> local;
+  const std::int32_t* node = nodes_of(body, element);
+  for (int a = 0; a < E::nodes; ++a)
+    for (int i = 0; i < E::dim; ++i) local[Point<E>::at(a, i)] = values[Point<E>::at(node[a], i)];
+  return local;
+}
+
+/// Calls visit(element, law, point index, point, strain of `u` as strain_at has it) for every point.
+template <class E, class Visit>
+void for_each_point(const Body& body, std::span<const double> u, Visit&& visit) {
+  for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
+    const Nodal<E> x = gather<E>(body, e, body.mesh.coordinates);
+    const Nodal<E> local = gather<E>(body, e, u);
+    const auto points = points_of<E>(x, body.law(e).mean_dilatation, body.mesh.plane);
+    for (std::size_t q = 0; q < E::points; ++q)
+      visit(e, body.law(e), q, points[q], strain_at<E>(points[q], local));
+  }
+}
+
+}  // namespace kacanov::reference
