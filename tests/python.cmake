@@ -27,6 +27,13 @@ endif()
 execute_process(COMMAND "${PYTHON_EXECUTABLE}" -c "import dolfinx, petsc4py" RESULT_VARIABLE without_dolfinx
   OUTPUT_QUIET ERROR_QUIET)
 if(NOT without_dolfinx)
+  add_test(NAME python_dolfinx_2
+    COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} 2 "${PYTHON_EXECUTABLE}" -B mpi_dolfinx.py
+    WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}/python/tests")
+  kacanov_test_properties(python_dolfinx_2 2)
+  get_test_property(python_dolfinx_2 ENVIRONMENT environment)
+  set_tests_properties(python_dolfinx_2 PROPERTIES LABELS python
+    ENVIRONMENT "${environment};PYTHONPATH=${PROJECT_BINARY_DIR}/python")
   add_test(NAME example_dolfinx COMMAND "${PYTHON_EXECUTABLE}" -B "${PROJECT_SOURCE_DIR}/python/examples/dolfinx_multigrid.py"
     --cells 4 --with-matrix)
   kacanov_test_properties(example_dolfinx 2)

@@ -10,8 +10,9 @@
 """
 from ._kacanov import version as __version__
 from .case import Case, ProgressTable
+from .dolfinx_mesh import from_dolfinx
 from .errors import Error, InputError, InternalError, Interrupted, RankError, StateError
-from .mesh import BoxMesh, Mesh, MeshFile, box, from_dolfinx, from_meshio, read
+from .mesh import BoxMesh, Mesh, MeshFile, box, from_meshio, read
 from .operator import CgResult, Multigrid, Operator, Tangent
 from .solution import Solution, Step
 from .words import (Block, Box, Cone, Cylinder, Gap, HeightMap, Law, Linear, LinearHardening, Logarithmic, Material,

@@ -24,15 +24,6 @@ ORDERS: dict[str, dict[str, list[int]]] = {
 MESHIO = {"triangle": "tri3", "quad": "quad4", "tetra": "tet4", "tetra10": "tet10", "hexahedron": "hex8"}
 
 
-# DOLFINx' cells with a Lagrange space of so many nodes on each.
-DOLFINX = {("triangle", 3): "tri3", ("quadrilateral", 4): "quad4", ("tetrahedron", 4): "tet4",
-           ("tetrahedron", 10): "tet10", ("hexahedron", 8): "hex8"}
-# Our nodes of the mirrored element, and which three edges from the first node say whether it is one.
-MIRRORED = {"tri3": [0, 2, 1], "quad4": [0, 3, 2, 1], "tet4": [0, 2, 1, 3], "hex8": [0, 3, 2, 1, 4, 7, 6, 5],
-            "tet10": [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]}
-AXES = {"tri3": [1, 2], "quad4": [1, 3], "tet4": [1, 2, 3], "tet10": [1, 2, 3], "hex8": [1, 3, 4]}
-
-
 class BoxMesh(Word):
     """The body [0, size] cut into cells, with sides left, right, front, back, bottom and top."""
 
@@ -187,50 +178,6 @@ def from_meshio(mesh: Any) -> Mesh:
                 facets={name: np.concatenate(all_) for name, all_ in facets.items()},
                 parts={name: np.concatenate(all_) for name, all_ in parts.items()},
                 nodes={name: np.asarray(group) for name, group in (mesh.point_sets or {}).items()})
-
-
-def from_dolfinx(space: Any, facets: Mapping[str, npt.ArrayLike] | None = None,
-                 parts: Mapping[str, npt.ArrayLike] | None = None) -> Mesh:
-    """The nodes and cells of a DOLFINx function space of displacements, of one process.
-
-    space: Lagrange of degree 1, or 2 on tetrahedra, with as many components as the mesh has dimensions. Nodes are
-    numbered as in the space: `u.x.array.reshape(mesh.points.shape)` is a displacement here, and back. `facets` and `parts`
-    name facets and cells by DOLFINx' numbers of them, as MeshTags.find gives. Cells the wrong way round are turned.
-    """
-    topology, dofmap, dim = space.mesh.topology, space.dofmap, space.mesh.geometry.dim
-    table = dofmap.list
-    if not isinstance(table, np.ndarray):  # before 0.7
-        table = table.array.reshape(table.num_nodes, -1)
-    name = topology.cell_name() if hasattr(topology, "cell_name") else topology.cell_type.name
-    element = DOLFINX.get((name, table.shape[1]))
-    if element is None or ELEMENTS[element][0] != dim:
-        raise InputError(f"space: expected Lagrange of degree 1, or 2 on tetrahedra, got {table.shape[1]} nodes a {name} in "
-                         f"{dim} dimensions")
-    if space.element.basix_element.discontinuous:
-        raise InputError("space: expected a continuous one")
-    if dofmap.index_map_bs != dim:
-        raise InputError(f"space: expected {dim} components, got {dofmap.index_map_bs}")
-    if dofmap.index_map.size_global != dofmap.index_map.size_local:
-        raise InputError("space: expected a mesh of one process")
-    points = np.asarray(space.tabulate_dof_coordinates())[:, :dim]
-    named = {}
-    if facets:
-        topology.create_connectivity(dim - 1, dim)
-        topology.create_connectivity(dim, dim - 1)
-        cells_of, facets_of = topology.connectivity(dim - 1, dim), topology.connectivity(dim, dim - 1)
-        for key, group in facets.items():
-            rows = []
-            for facet in Mesh._indices(f"facets[{key!r}]", group, 0, cells_of.num_nodes):
-                cell = cells_of.links(facet)[0]
-                local = int(np.flatnonzero(facets_of.links(cell) == facet)[0])
-                rows.append(table[cell][dofmap.dof_layout.entity_closure_dofs(dim - 1, local)])
-            named[key] = np.array(rows, dtype=np.int32).reshape(len(rows), -1) if rows else np.zeros(
-                (0, min(ELEMENTS[element][2])), dtype=np.int32)
-    mesh = Mesh(points, table, element, order="basix", facets=named, parts=parts)
-    corners = mesh.points[mesh.cells]
-    wrong = np.linalg.det(corners[:, AXES[element]] - corners[:, :1]) < 0
-    mesh.cells[wrong] = mesh.cells[wrong][:, MIRRORED[element]]
-    return mesh
 
 
 def _sets(mesh: Any) -> list[tuple[str, list[Any]]]:
