@@ -53,6 +53,21 @@ TEST_CASE("a body with more triangles than a page can hold has none of them ther
   CHECK(report_html(page).size() + 1000 < whole);
 }
 
+TEST_CASE("a body of revolution shows its axis, about the middle of the body, where it is near") {
+  SmallPage small;
+  CHECK_FALSE(scene_of(report_html(small.page())).contains("axis"));
+  small.mesh = make_box({{2, 1, 0}, {4, 2, 0}, ElementType::quad4});
+  small.displacement.assign(small.mesh.coordinates.size(), 0.0);
+  small.shown.fields[0].values.assign(small.mesh.node_count(), 1.0);
+  CHECK_FALSE(scene_of(report_html(small.page())).contains("axis"));
+  small.mesh.plane = PlaneState::axisymmetric;
+  const nlohmann::json axis = scene_of(report_html(small.page())).at("axis");
+  CHECK(axis["x"] == -1.0);
+  CHECK(axis["reach"].get<double>() == doctest::Approx(0.6));
+  for (std::size_t i = 0; i < small.mesh.coordinates.size(); i += 2) small.mesh.coordinates[i] += 3.0;
+  CHECK_FALSE(scene_of(report_html(small.page())).contains("axis"));
+}
+
 TEST_CASE("a field that does not fit the mesh is refused") {
   SmallPage small;
   small.shown.fields[0].values.pop_back();

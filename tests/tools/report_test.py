@@ -56,6 +56,31 @@ LIFTED = {  # from what it might touch
     "boundary": [{"on": "left", "displacement": [0, 0]}, {"on": "top", "pressure": -0.1}],
     "contact": [{"on": "bottom", "obstacle": {"plane": {"point": [0, 0], "normal": [0, 1]}}}],
 }
+DISC = {  # a ring, pressed on to a ball
+    "plane": "axisymmetric",
+    "mesh": {"file": "ring.msh"},
+    "material": [{"on": "all", "young": 200.0, "poisson": 0.3}],
+    "boundary": [{"on": {"box": [[0.5, 1], [2.5, 1]]}, "displacement": [None, -0.01]}],
+    "contact": [{"on": {"box": [[0.5, 0], [2.5, 0]]}, "obstacle": {"sphere": {"centre": [0, -9], "radius": 9.05}}}],
+}
+RING = """$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Nodes
+6
+1 0.5 0 0
+2 1.5 0 0
+3 2.5 0 0
+4 0.5 1 0
+5 1.5 1 0
+6 2.5 1 0
+$EndNodes
+$Elements
+2
+1 3 2 1 1 1 2 5 4
+2 3 2 1 1 2 3 6 5
+$EndElements
+"""
 VOID = {"meta", "img"}
 
 
@@ -185,6 +210,12 @@ def check_other(program, browser, folder):
         near("moved to", height + 0.5, 0.99)
     same("only plastic is missing", scene["not_shown"], ["No element is beyond yield: there is no plastic share."])
     same("pressure", "contact<" in picture and "largest von Mises" in picture, True)
+
+    (folder / "ring.msh").write_text(RING)
+    scene, _, picture, shown = run(DISC)
+    near("axis", scene["axis"]["x"], -1.5)
+    same("axis in the picture", ">axis<" in picture, True)
+    same("axis on the page", shown is None or "chain line: axis of revolution" in shown, True)
 
     scene, page, _, shown = run(LIFTED)
     same("quantity", scene["fields"][scene["first"]]["name"], "von Mises stress")

@@ -123,6 +123,9 @@ ordered_json scene_json(const ReportPage& page) {
   Vector3 centre{};
   for (std::size_t k = 0; k < dim; ++k) centre[k] = (box.lower[k] + box.upper[k]) / 2;
   scene["size"] = box.size;
+  // As in the picture: where it is farther away than the body is wide it is left out.
+  if (mesh.plane == PlaneState::axisymmetric && box.lower[0] < box.upper[0] - box.lower[0])
+    scene["axis"] = {{"x", -centre[0]}, {"reach", 0.6 * (box.upper[1] - box.lower[1])}};
   scene["scale"] = page.input->output.scale;
   scene["corners"] = packed(triangles);
   scene["points"] = packed_vectors(mesh.coordinates, dim, centre);

@@ -56,6 +56,13 @@ function patch(plane, size) {
   const corner = (a, b) => n.map((c, k) => far * c + 0.6 * size * (a * s[k] + b * t[k]));
   return [[-1, -1], [1, -1], [1, 1], [-1, -1], [1, 1], [-1, 1]].flatMap(([a, b]) => corner(a, b));
 }
+/** The axis of revolution as a chain line: dashes and dots, two ends each. */
+function chainLine({x, reach}, size) {
+  const ends = [], dash = 0.06 * size, gap = 0.015 * size;
+  for (let y = -reach; y < reach; y += dash + 3 * gap)
+    ends.push(x, y, 0, x, y + dash, 0, x, y + dash + gap, 0, x, y + dash + 2 * gap, 0);
+  return ends;
+}
 function start3d() {
   const at = place('view');
   make(at, 'h2', 'Body, to be turned');
@@ -95,6 +102,7 @@ function start3d() {
     box.onchange = draw;
     if (there) marks.push({colour, box, nodes: unpacked(mark.nodes, Uint32Array)});
   });
+  if (scene.axis) make(legend, 'span', 'chain line: axis of revolution');
 
   const shader = program(gl), uniform = name => gl.getUniformLocation(shader, name);
   gl.useProgram(shader);
@@ -121,6 +129,8 @@ function start3d() {
   for (const mark of marks) mark.buffer = buffer(gl.ELEMENT_ARRAY_BUFFER, mark.nodes);
   const planes = scene.planes.map(plane => vertices([[new Float32Array(patch(plane, scene.size)), 3]]));
   const others = unpacked(scene.obstacles, Float32Array), obstacles = vertices([[others, 3]]);
+  const chain = new Float32Array(scene.axis ? chainLine(scene.axis, scene.size) : []);
+  const axis = vertices([[chain, 3]]);
   const stops = [0x44, 0x01, 0x54, 0x3b, 0x52, 0x8b, 0x21, 0x91, 0x8c, 0x5e, 0xc9, 0x62, 0xfd, 0xe7, 0x25];
   gl.uniform3fv(uniform('stops'), stops.map(c => c / 255));
   gl.uniform1f(uniform('size'), scene.size / 2);
@@ -131,7 +141,7 @@ function start3d() {
       const [x, y, z] = scene.view;
       [turn, tilt] = [Math.hypot(x, y) > 0 ? Math.atan2(-x, -y) : 0, -Math.acos(z / Math.hypot(x, y, z))];
     }
-    zoom = 0.9;
+    zoom = scene.axis ? Math.min(0.9, 0.85 * scene.size / Math.abs(scene.axis.x)) : 0.9;
     pan = [0, 0];
   };
   const plain = (colour) => gl.uniform4fv(uniform('plain'), colour);
@@ -161,6 +171,11 @@ function start3d() {
       gl.bindVertexArray(obstacles);
       plain(scene.dim === 2 ? [0.3, 0.3, 0.3, 1] : [0.8, 0.83, 0.86, 1]);
       gl.drawArrays(scene.dim === 2 ? gl.LINES : gl.TRIANGLES, 0, others.length / 3);
+    }
+    if (chain.length > 0) {
+      gl.bindVertexArray(axis);
+      plain([0.45, 0.45, 0.45, 1]);
+      gl.drawArrays(gl.LINES, 0, chain.length / 3);
     }
     gl.uniform1f(uniform('nearer'), 0);
     gl.bindVertexArray(bodies[field]);
