@@ -7,126 +7,42 @@
 #include <deal.II/base/point.h>
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/tria.h>
-#include <deal.II/lac/dynamic_sparsity_pattern.h>
 #include <deal.II/lac/precondition.h>
 #include <deal.II/lac/solver_cg.h>
-#include <deal.II/lac/sparse_matrix.h>
-#include <deal.II/lac/vector.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
 #include <exception>
 #include <iostream>
-#include <memory>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include <kacanov/kacanov.h>
+#include "dealii_operator.hpp"
 
 namespace {
 
-using Vector = dealii::Vector<double>;
-
-/// B(g), what SolverCG wants of a matrix.
-class Operator {
- public:
-  Operator(const dealii::Triangulation<3>& mesh, const kacanov_law& law, int threads) {
-    std::vector<std::int32_t> connectivity;
-    for (const auto& cell : mesh.active_cell_iterators())
-      for (const unsigned v : cell->vertex_indices())
-        connectivity.push_back(static_cast<std::int32_t>(cell->vertex_index(v)));
-    kacanov_description body{};
-    body.struct_size = sizeof body;
-    body.element = KACANOV_HEX8;
-    body.node_order = "dealii";
-    body.threads = threads;
-    body.nodes = mesh.n_vertices();
-    body.coordinates = &mesh.get_vertices()[0][0];  // one dealii::Point a node
-    body.node_stride = sizeof(dealii::Point<3>) / sizeof(double);
-    body.elements = mesh.n_active_cells();
-    body.connectivity = connectivity.data();
-    body.laws = 1;
-    body.law = &law;
-    char message[256];
-    kacanov_operator* made = nullptr;
-    if (kacanov_create(&body, &made, message, sizeof message) != KACANOV_OK)
-      throw std::runtime_error(message);
-    op_.reset(made);
-  }
-
-  void vmult(Vector& y, const Vector& x) const {
-    check(kacanov_apply(op_.get(), x.size(), x.begin(), y.begin()));
-  }
-  /// From here on the rows of these unknowns are those of the identity.
-  void constrain(const std::vector<std::int32_t>& held) {
-    check(kacanov_constrain(op_.get(), held.size(), held.data()));
-  }
-  void check(int code) const {
-    if (code != KACANOV_OK) throw std::runtime_error(kacanov_message(op_.get()));
-  }
-  kacanov_operator* get() const { return op_.get(); }
-
- private:
-  struct Destroy {
-    void operator()(kacanov_operator* handle) const { kacanov_destroy(handle); }
-  };
-  std::unique_ptr<kacanov_operator, Destroy> op_;
-};
-
-/// What SolverCG wants of a preconditioner.
-class Multigrid {
- public:
-  explicit Multigrid(const Operator& op) {
-    kacanov_multigrid* made = nullptr;
-    op.check(kacanov_multigrid_create(op.get(), nullptr, &made));
-    multigrid_.reset(made);
-  }
-  void vmult(Vector& z, const Vector& r) const {
-    if (kacanov_multigrid_apply(multigrid_.get(), r.size(), r.begin(), z.begin()) != KACANOV_OK)
-      throw std::runtime_error(kacanov_multigrid_message(multigrid_.get()));
-  }
-
- private:
-  struct Destroy {
-    void operator()(kacanov_multigrid* handle) const { kacanov_multigrid_destroy(handle); }
-  };
-  std::unique_ptr<kacanov_multigrid, Destroy> multigrid_;
-};
-
-/// The operator as deal.II's own matrix.
-class Matrix {
- public:
-  explicit Matrix(const Operator& op, std::size_t n) {
-    std::size_t entries = 0;
-    op.check(kacanov_matrix_entries(op.get(), n, &entries));
-    std::vector<std::int64_t> first(n + 1);
-    std::vector<std::int32_t> column(entries);
-    std::vector<double> value(entries);
-    op.check(kacanov_matrix(op.get(), n, nullptr, entries, first.data(), column.data(), value.data()));
-    const auto size = static_cast<unsigned>(n);
-    dealii::DynamicSparsityPattern rows(size, size);
-    for (unsigned i = 0; i < size; ++i)
-      for (auto k = static_cast<std::size_t>(first[i]); k < static_cast<std::size_t>(first[i + 1]); ++k)
-        rows.add(i, static_cast<unsigned>(column[k]));
-    pattern_.copy_from(rows);
-    matrix_.reinit(pattern_);
-    for (unsigned i = 0; i < size; ++i)
-      for (auto k = static_cast<std::size_t>(first[i]); k < static_cast<std::size_t>(first[i + 1]); ++k)
-        matrix_.set(i, static_cast<unsigned>(column[k]), value[k]);
-    jacobi_.initialize(matrix_);
-  }
-  const dealii::SparseMatrix<double>& get() const { return matrix_; }
-  const dealii::PreconditionJacobi<>& jacobi() const { return jacobi_; }
-
- private:
-  dealii::SparsityPattern pattern_;
-  dealii::SparseMatrix<double> matrix_;
-  dealii::PreconditionJacobi<> jacobi_;
-};
+/// Of the mesh's vertices where they lie.
+Operator make_operator(const dealii::Triangulation<3>& mesh, const kacanov_law& law, int threads) {
+  std::vector<std::int32_t> connectivity;
+  for (const auto& cell : mesh.active_cell_iterators())
+    for (const unsigned v : cell->vertex_indices())
+      connectivity.push_back(static_cast<std::int32_t>(cell->vertex_index(v)));
+  kacanov_description body{};
+  body.struct_size = sizeof body;
+  body.element = KACANOV_HEX8;
+  body.node_order = "dealii";
+  body.threads = threads;
+  body.nodes = mesh.n_vertices();
+  body.coordinates = &mesh.get_vertices()[0][0];  // one dealii::Point a node
+  body.node_stride = sizeof(dealii::Point<3>) / sizeof(double);
+  body.elements = mesh.n_active_cells();
+  body.connectivity = connectivity.data();
+  body.laws = 1;
+  body.law = &law;
+  return Operator(body);
+}
 
 /// Of the processor.
 double seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
@@ -154,7 +70,7 @@ int run(unsigned refinements, bool with_matrix) {
   kacanov_law law{};
   law.struct_size = sizeof law;
   if (kacanov_elastic_law(1.0, 0.3, &law) != KACANOV_OK) return EXIT_FAILURE;
-  Operator op(mesh, law, with_matrix ? 1 : 2);
+  Operator op = make_operator(mesh, law, with_matrix ? 1 : 2);
 
   Vector exact(3 * mesh.n_vertices());
   for (unsigned i = 0; i < mesh.n_vertices(); ++i) {
@@ -193,8 +109,10 @@ int run(unsigned refinements, bool with_matrix) {
   if (with_matrix)
     error = std::max(error, report("matrix and Jacobi", lifted, exact, [&](Vector& v, double& ready) {
                        const Matrix matrix(op, exact.size());
+                       dealii::PreconditionJacobi<> jacobi;
+                       jacobi.initialize(matrix.get());
                        ready = seconds();
-                       return solve(matrix.get(), matrix.jacobi(), v);
+                       return solve(matrix.get(), jacobi, v);
                      }));
   return error < (with_matrix ? 1e-5 : 1e-10) ? EXIT_SUCCESS : EXIT_FAILURE;
 }
