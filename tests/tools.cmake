@@ -22,7 +22,7 @@ kacanov_test(program_crafted IN program
 kacanov_test(program_hard IN program NUMBERS
   SOURCES tools/program_hard_test.cpp LIBRARIES kacanov_program_runner)
 kacanov_test(program_verify IN program
-  SOURCES tools/program_verify_test.cpp tools/mesh_writer.cpp
+  SOURCES tools/program_verify_test.cpp tools/program_verify_finer_test.cpp tools/mesh_writer.cpp
   LIBRARIES kacanov_program_runner kacanov_formats)
 kacanov_test(program_coarser IN program
   SOURCES tools/program_coarser_test.cpp tools/mesh_writer.cpp

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <set>
 
+#include "verify/finer.hpp"
+
 namespace kacanov::verify {
 namespace {
 
@@ -77,10 +79,6 @@ Mesh load_mesh(const nlohmann::json& source, const std::filesystem::path& folder
   Mesh mesh;
   const int refine = source.value("refine", 0), order = source.value("order", 1);
   const bool one = source.contains("file"), read = one || source.contains("files");
-  if (read && (refine > 0 || order > 1))
-    throw Failure(
-        std::string(refine > 0 ? "mesh.refine" : "mesh.order") +
-        ": new nodes of a file's mesh have numbers that no file holds; the verifier knows boxes only");
   if (source.contains("box")) {
     nlohmann::json box = source.at("box");
     for (auto& cells : box.at("cells")) cells = cells.get<int>() << refine;
@@ -92,6 +90,8 @@ Mesh load_mesh(const nlohmann::json& source, const std::filesystem::path& folder
     if (file.ends_with(".inp") || file.ends_with(".vtu"))
       throw Failure("mesh.file: the verifier reads Gmsh files: kacanov convert makes one of it");
     mesh = read_gmsh(folder / file);
+    for (int time = 0; time < refine; ++time) mesh = halved(mesh);
+    if (order > 1 && mesh.shape == Shape::tet4) mesh = raised(mesh);
   } else {
     throw Failure("mesh: the verifier knows `file`, `files` and `box` only");
   }

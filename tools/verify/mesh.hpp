@@ -24,6 +24,7 @@ struct Mesh {
   Shape shape = Shape::tet4;
   std::vector<Vec> nodes;
   std::vector<std::int64_t> tags;  ///< the file's numbers of the nodes
+  std::vector<Indices> made_of;  ///< nodes between which a new one of a finer mesh lies; empty: none are new
   std::vector<Indices> elements;
   std::vector<Indices> facets;  ///< the boundary, outwards
   std::vector<NamedGroup> groups;

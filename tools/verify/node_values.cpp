@@ -3,6 +3,7 @@
 #include "verify/node_values.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 #include "verify/file.hpp"
@@ -36,7 +37,9 @@ Indices nodes_called(const Mesh& mesh, const std::string& name) {
 
 std::vector<Real> read_node_values(const std::filesystem::path& file, const nlohmann::json& given,
                                    const Mesh& mesh) {
-  std::vector<Real> values(mesh.nodes.size(), given.value("otherwise", 0.0));
+  const Real unknown = std::numeric_limits<Real>::quiet_NaN();
+  std::vector<Real> values(mesh.nodes.size(),
+                           given.contains("otherwise") ? Real(given.at("otherwise").get<double>()) : unknown);
   std::map<std::int64_t, Index> index;
   for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
     index[mesh.tags.empty() ? static_cast<std::int64_t>(n) + 1 : mesh.tags[n]] = static_cast<Index>(n);
@@ -54,6 +57,12 @@ std::vector<Real> read_node_values(const std::filesystem::path& file, const nloh
     else if (const auto found = index.find(std::stoll(who)); found != index.end())
       nodes = {found->second};
     for (const Index node : nodes) values[node] = value;
+  }
+  for (std::size_t n = 0; n < mesh.made_of.size(); ++n) {
+    if (mesh.made_of[n].empty()) continue;
+    values[n] = 0;
+    for (const Index parent : mesh.made_of[n])
+      values[n] += values[parent] / static_cast<Real>(mesh.made_of[n].size());
   }
   return values;
 }

@@ -129,6 +129,9 @@ class Warmth {
 
   Real at_node(Index node) const {
     if (given_.is_number()) return given_.get<double>();
+    if (!nodes_.empty() && std::isnan(nodes_[node]))
+      throw Failure("boundary: the file of temperatures does not have node " +
+                    std::to_string(mesh_.tags[node]));
     if (!nodes_.empty()) return nodes_[node];
     const Vec from = given_.contains("point") ? read_vector(given_.at("point")) : Vec{};
     return Real(given_.value("value", 0.0)) +
