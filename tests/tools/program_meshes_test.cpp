@@ -128,7 +128,7 @@ TEST_CASE("quadratic elements are made of a file's linear ones, and of a box's")
   INFO("error: ", hook.error);
   CHECK(hook.exit_code == 0);
   CHECK(place.json("results/hook/result.json")["mesh"]["element"] == "tet10");
-  CHECK(place.run("verify hook.json --output results/hook").error.find("mesh.order: ") != std::string::npos);
+  CHECK(place.run("verify hook.json --output results/hook").exit_code == 0);
   CHECK(place.run("check hook.json --set mesh.order=3").error.find("mesh.order: expected 1 or 2") !=
         std::string::npos);
   CHECK(place.run("check box4.json --set mesh.box.element=hex8").error.find("mesh.order: 2 makes tet10") !=
