@@ -11,6 +11,8 @@
 #include "mesh/plain_stream.hpp"
 #include "problem/conditions.hpp"
 #include "problem/contact_points.hpp"
+#include "problem/mistakes.hpp"
+#include "problem/model_checks.hpp"
 #include "problem/probes.hpp"
 #include "problem/rigid_modes.hpp"
 #include "problem/selection.hpp"
@@ -63,6 +65,29 @@ void set_plane(Mesh& mesh, const Model& model) {
 
 }  // namespace
 
+namespace {
+
+/// Every `on` that selects nothing, as the first that does ends the building of a problem.
+void note_empty_selections(const Model& model, const Selection& selection, Mistakes& mistakes) {
+  for (std::size_t i = 0; i < model.materials.size(); ++i)
+    mistakes.in([&] { selection.elements(model.materials[i].on, at("material", i)); });
+  for (std::size_t i = 0; i < model.boundary.size(); ++i) {
+    const BoundaryEntry& entry = model.boundary[i];
+    mistakes.in([&] {
+      if (entry.body_force || entry.temperature)
+        selection.elements(entry.on, at("boundary", i));
+      else if (entry.displacement || entry.node_force || entry.node_spring)
+        selection.nodes(entry.on, at("boundary", i));
+      else
+        selection.facets(entry.on, at("boundary", i));
+    });
+  }
+  for (std::size_t i = 0; i < model.contact.size(); ++i)
+    mistakes.in([&] { selection.facets(model.contact[i].on, at("contact", i)); });
+}
+
+}  // namespace
+
 Problem build_problem(Mesh mesh, const Model& model) {
   validate(model);
   if (!mesh.coordinates.empty()) refuse_out_of_range("mesh: the size of the body", extent(mesh).size);
@@ -81,11 +106,18 @@ Problem build_problem(Mesh mesh, const Model& model) {
   problem.prescribed.assign(unknowns, 0.0);
 
   const Selection selection(problem.mesh);
-  assign_materials(problem, model, selection);
-  assemble_load(problem, model, selection);
-  hold_displacements(problem, model, selection);
-  add_springs(problem, model, selection);
-  find_contact_points(problem, model, selection);
+  try {
+    assign_materials(problem, model, selection);
+    assemble_load(problem, model, selection);
+    hold_displacements(problem, model, selection);
+    add_springs(problem, model, selection);
+    find_contact_points(problem, model, selection);
+  } catch (const InputError& first) {
+    Mistakes mistakes;
+    mistakes.note(first.what());
+    note_empty_selections(model, selection, mistakes);
+    mistakes.raise();
+  }
   check_rigid_modes(problem);
   problem.probes = locate_probes(problem.mesh, model);
   return problem;

@@ -9,6 +9,7 @@
 #include <kacanov/model.hpp>
 #include <kacanov/rules.hpp>
 #include "problem/load_curves.hpp"
+#include "problem/mistakes.hpp"
 #include "problem/model_checks.hpp"
 #include "problem/vector3.hpp"
 
@@ -232,24 +233,31 @@ void validate(const SolverOptions& options) {
 }
 
 void validate(const Model& model) {
-  check("thickness", model.thickness, positive);
-  if (model.plane == PlaneState::axisymmetric && model.thickness != 1.0)
-    throw InputError("thickness: expected none with an axisymmetric mesh, which goes all round");
-  if (model.materials.empty()) refuse("material", "at least one material", "[]");
-  if (model.materials.size() >= std::numeric_limits<std::uint16_t>::max())
-    throw InputError("material: expected fewer than 65535 entries");
+  Mistakes mistakes;
+  mistakes.in([&] {
+    check("thickness", model.thickness, positive);
+    if (model.plane == PlaneState::axisymmetric && model.thickness != 1.0)
+      throw InputError("thickness: expected none with an axisymmetric mesh, which goes all round");
+  });
+  mistakes.in([&] {
+    if (model.materials.empty()) refuse("material", "at least one material", "[]");
+    if (model.materials.size() >= std::numeric_limits<std::uint16_t>::max())
+      throw InputError("material: expected fewer than 65535 entries");
+  });
   for (std::size_t i = 0; i < model.materials.size(); ++i)
-    check_material(at("material", i), model.materials[i]);
+    mistakes.in([&] { check_material(at("material", i), model.materials[i]); });
   for (std::size_t i = 0; i < model.boundary.size(); ++i)
-    check_boundary(at("boundary", i), model.boundary[i]);
+    mistakes.in([&] { check_boundary(at("boundary", i), model.boundary[i]); });
   for (std::size_t i = 0; i < model.contact.size(); ++i) {
-    check_contact(at("contact", i), model.contact[i]);
-    check_moves(at("contact", i), model, model.contact[i]);
+    mistakes.in([&] { check_contact(at("contact", i), model.contact[i]); });
+    mistakes.in([&] { check_moves(at("contact", i), model, model.contact[i]); });
   }
-  check_names(model);
-  for (std::size_t i = 0; i < model.probes.size(); ++i) check(at("probe", i), model.probes[i]);
-  validate(model.solver);
-  check_steps(model);
+  mistakes.in([&] { check_names(model); });
+  for (std::size_t i = 0; i < model.probes.size(); ++i)
+    mistakes.in([&] { check(at("probe", i), model.probes[i]); });
+  mistakes.in([&] { validate(model.solver); });
+  mistakes.in([&] { check_steps(model); });
+  mistakes.raise();
 }
 
 }  // namespace kacanov

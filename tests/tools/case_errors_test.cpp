@@ -2,6 +2,7 @@
 // Every mistake in a case file is named by its path, with what was expected.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -197,6 +198,60 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
   }
 }
 
+TEST_CASE("several mistakes are all said, each once, of ten at most") {
+  nlohmann::json document = complete_case();
+  for (const char* change :
+       {"material[0].youngs=1", "boundary[0].displacement=[\"free\",0,\"free\"]",
+        "contact[1].obstacle.sphere.radius=-2", "boundary[1]={\"on\":\"left\",\"tracton\":[0,0,1]}",
+        "solver.tolerance=high", "probe=[1,2,3]"})
+    apply_override(document, change);
+  document["material"][0].erase("young");
+  const auto said = [](const nlohmann::json& wrong) {
+    try {
+      parse_case(wrong, "");
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string all = said(document);
+  INFO(all);
+  CHECK(all.rfind("the case has 7 mistakes:\n  material[0].youngs: unknown key (did you mean \"young\"?)",
+                  0) == 0);
+  // What is misspelt is not missing too.
+  CHECK(all.find("young: this key is missing") == std::string::npos);
+  CHECK(all.find("boundary[1]: expected one of") == std::string::npos);
+  for (const char* part :
+       {"\n  boundary[0].displacement[0]: expected a number, or null for a free component, got \"free\"",
+        "\n  boundary[0].displacement[2]: expected a number, or null for a free component, got \"free\"",
+        "\n  boundary[1].tracton: unknown key (did you mean \"traction\"?)",
+        "\n  contact[1].obstacle.sphere.radius: expected a number > 0, got -2",
+        "\n  solver.tolerance: expected a number above 0",
+        "\n  probe[0]: expected a list of 2 or 3 numbers, got 1"})
+    CHECK(all.find(part) != std::string::npos);
+  // What is known only once all is read.
+  document = complete_case();
+  apply_override(document, "contact[0].obstacle.plane.normal=[0,0,0]");
+  apply_override(document, "contact[0].name=same");
+  apply_override(document, "contact[1].name=same");
+  CHECK(
+      said(document) ==
+      "the case has 2 mistakes:\n  contact[0].obstacle.plane.normal: expected a vector that is not zero, got "
+      "[0,0,0]\n  contact[1].name: expected another name than that of contact[0], got \"same\"");
+  for (int i = 0; i < 14; ++i) document["solver"]["key" + std::to_string(i)] = 1;
+  const std::string many = said(document);
+  INFO(many);
+  CHECK(many.rfind("the case has 14 mistakes, of which the first 10 are:\n", 0) == 0);
+  CHECK(std::count(many.begin(), many.end(), '\n') == 10);
+  // The file is named.
+  try {
+    parse_case(CaseText{"some/beam.json", document.dump()}, {});
+    CHECK(false);
+  } catch (const InputError& error) {
+    CHECK(std::string(error.what()).rfind("some/beam.json has 14 mistakes", 0) == 0);
+  }
+}
+
 TEST_CASE("mistakes in what a test in tension says") {
   const auto said = [](const std::string& keys) {
     return complaint("material[0]={\"on\":\"all\",\"young\":200,\"poisson\":0.3," + keys + "}");
@@ -269,9 +324,11 @@ TEST_CASE("overrides that lead nowhere") {
 TEST_CASE("vectors fit the dimension of the mesh; a third entry of zero fits a plane one too") {
   const Case solid = parse_case(complete_case(), "");
   CHECK_NOTHROW(check_dimension(solid, 3));
-  CHECK_THROWS_WITH_AS(check_dimension(solid, 2),
-                       "boundary[1].on.box[0]: expected 2 entries, as the mesh has 2 dimensions, got 3",
-                       InputError);
+  CHECK_THROWS_WITH_AS(
+      check_dimension(solid, 2),
+      doctest::Contains(
+          "\n  boundary[1].on.box[0]: expected 2 entries, as the mesh has 2 dimensions, got 3\n"),
+      InputError);
   nlohmann::json document = complete_case();
   apply_override(
       document, "boundary=[{\"on\":\"left\",\"displacement\":[0,0]},{\"on\":\"top\",\"traction\":[0,-1,0]}]");
@@ -279,7 +336,9 @@ TEST_CASE("vectors fit the dimension of the mesh; a third entry of zero fits a p
   apply_override(document, "probe=[[4,1]]");
   const Case flat = parse_case(document, "");
   CHECK_NOTHROW(check_dimension(flat, 2));
-  CHECK_THROWS_WITH_AS(check_dimension(flat, 3),
-                       "boundary[0].displacement: expected 3 entries, as the mesh has 3 dimensions, got 2",
-                       InputError);
+  CHECK_THROWS_WITH_AS(
+      check_dimension(flat, 3),
+      doctest::Contains(
+          "\n  boundary[0].displacement: expected 3 entries, as the mesh has 3 dimensions, got 2\n"),
+      InputError);
 }

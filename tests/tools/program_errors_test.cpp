@@ -28,6 +28,25 @@ nlohmann::json changed(const std::string& pointer, const nlohmann::json& value) 
 
 }  // namespace
 
+TEST_CASE("parts that the mesh does not have are all named, with the file") {
+  for (const char* words : {"run", "check", "run --ranks 2"}) {
+    const Workplace place;
+    nlohmann::json document = small_beam();
+    document["boundary"][0]["on"] = "lfet";
+    document["contact"][0]["on"] = "botom";
+    place.put_json("beam.json", document);
+    const Outcome outcome = place.run(std::string(words) + " beam.json");
+    INFO(outcome.error);
+    CHECK(outcome.exit_code == 2);
+    CHECK(
+        outcome.error.find("beam.json has 2 mistakes:\n  boundary[0].on: no part is called \"lfet\" (did you "
+                           "mean \"left\"?)") != std::string::npos);
+    CHECK(outcome.error.find("\n  contact[0].on: no part is called \"botom\" (did you mean \"bottom\"?)") !=
+          std::string::npos);
+    CHECK_FALSE(place.has("results"));
+  }
+}
+
 TEST_CASE("bad cases are refused alike by run and check, alone and on two ranks") {
   struct Row {
     const char* pointer;

@@ -12,6 +12,7 @@
 #include "case/case_words.hpp"
 #include "case/json_node.hpp"
 #include "mesh/plain_stream.hpp"
+#include "problem/mistakes.hpp"
 
 namespace kacanov {
 namespace {
@@ -335,7 +336,9 @@ Case parse_case(const CaseText& text, std::span<const std::string> overrides) {
   nlohmann::json document = parse_json(text.text, text.path);
   for (const std::string& assignment : overrides) apply_override(document, assignment);
   const std::filesystem::path file(text.path);
-  Case input = parse_case(document, file.parent_path().string());
+  Case input;
+  naming_file(text.path, [&] { input = parse_case(document, file.parent_path().string()); });
+  input.file = text.path;
   input.name = file.stem().string();
   // Results go to a folder of this name: not to the one above ("...json").
   if (input.name.empty() || input.name == "." || input.name == "..") input.name = "case";
@@ -344,11 +347,13 @@ Case parse_case(const CaseText& text, std::span<const std::string> overrides) {
 }
 
 void check_dimension(const Case& input, int dim) {
+  Mistakes mistakes;
   for (const VectorEntry& vector : input.vectors) {
     if (vector.length == static_cast<std::size_t>(dim) || (dim == 2 && vector.third_zero)) continue;
-    throw InputError(vector.path + ": expected " + std::to_string(dim) + " entries, as the mesh has " +
-                     std::to_string(dim) + " dimensions, got " + std::to_string(vector.length));
+    mistakes.note(vector.path + ": expected " + std::to_string(dim) + " entries, as the mesh has " +
+                  std::to_string(dim) + " dimensions, got " + std::to_string(vector.length));
   }
+  mistakes.raise();
 }
 
 }  // namespace kacanov

@@ -77,6 +77,7 @@ struct VectorEntry {
 
 struct Case {
   std::string name;  ///< of the file, without folder and extension
+  std::string file;  ///< where it was read from; empty: nowhere
   MeshSource mesh;
   Model model;
   OutputOptions output;
@@ -106,7 +107,7 @@ Case parse_case(const CaseText& text, std::span<const std::string> overrides);
 /// string. Missing objects on the way are made; whether the keys mean anything is for parse_case to say.
 void apply_override(nlohmann::json& document, const std::string& assignment);
 
-/// Throws InputError naming the first vector that does not fit a mesh of this dimension.
+/// Throws InputError naming the vectors that do not fit a mesh of this dimension.
 void check_dimension(const Case& input, int dim);
 
 }  // namespace kacanov

@@ -123,7 +123,7 @@ struct AnyForm {
 template <class Form>
 Schema::Schema(Form form) : form_(std::make_shared<const AnyForm>(AnyForm{std::move(form)})) {}
 
-/// Throws InputError about the first thing that is not as described: an unknown key, with the closest that is
+/// Throws InputError about all that is not as described: an unknown key, with the closest that is
 /// known, a missing one, a wrong type, a number out of range; named by its path, with what was expected.
 void check(const Node& node, const Schema& schema);
 

@@ -6,6 +6,7 @@
 #include <kacanov/error.hpp>
 #include "case/schema.hpp"
 #include "problem/closest_word.hpp"
+#include "problem/mistakes.hpp"
 
 namespace kacanov {
 namespace {
@@ -39,8 +40,10 @@ struct HasType {
   bool operator()(const Either&) const { return false; }
 };
 
+/// Throws about the value itself, and leaves what is wrong within it with `mistakes`.
 struct Check {
   const Node& node;
+  Mistakes& mistakes;
 
   void operator()(const Text&) const { node.text(); }
   void operator()(const Flag&) const { node.boolean(); }
@@ -65,17 +68,25 @@ struct Check {
     };
     if (entries.size() < form.least) refuse(form.words_below);
     if (entries.size() > form.most) refuse(form.words_above);
-    for (const Node& entry : entries) check(entry, form.entry);
+    std::vector<std::string> wrong;
+    for (const Node& entry : entries) try {
+        std::visit(Check{entry, mistakes}, form.entry.form().form);
+      } catch (const InputError& error) {
+        wrong.emplace_back(error.what());
+      }
+    // Where none is what was expected, as in a point in place of a list of points, that is one mistake.
+    if (wrong.size() == entries.size()) wrong.resize(std::min<std::size_t>(wrong.size(), 1));
+    for (const std::string& mistake : wrong) mistakes.note(mistake);
   }
   void operator()(const Tuple& form) const {
     const std::vector<Node> entries = node.list(form.expected);
     if (entries.size() != form.entries.size()) node.expected(form.expected);
-    for (std::size_t i = 0; i < entries.size(); ++i) check(entries[i], form.entries[i]);
+    for (std::size_t i = 0; i < entries.size(); ++i) within(entries[i], form.entries[i]);
   }
   void operator()(const MapOf& form) const {
     if (!node.value().is_object()) node.expected(form.expected);
     for (const auto& [name, value] : node.value().items())
-      check(Node(value, node.path() + "[\"" + name + "\"]"), form.entry);
+      within(Node(value, node.path() + "[\"" + name + "\"]"), form.entry);
   }
   void operator()(const Kinds& form) const {
     if (!node.value().is_object()) node.expected("an object with the keys " + joined(all_keys(form)));
@@ -86,27 +97,38 @@ struct Check {
   }
   void operator()(const Either& form) const {
     for (const Schema& schema : form.choices)
-      if (std::visit(HasType{node.value()}, schema.form().form)) return check(node, schema);
+      if (std::visit(HasType{node.value()}, schema.form().form)) return within(node, schema);
     node.expected(form.expected);
   }
   void operator()(const KeySet& set) const {
     if (!node.value().is_object()) node.expected("an object with the keys " + joined(names(set)));
-    refuse_unknown(set);
+    const std::vector<std::string> meant = note_unknown(set);
+    const auto is_meant = [&](const std::string& key) {
+      return std::find(meant.begin(), meant.end(), key) != meant.end();
+    };
     const Object object(node);
     for (const Key& key : set.keys)
-      if (key.required) object.required(key.name);
-    for (const OneOf& group : set.one_of) check_one_of(group);
+      if (key.required && !is_meant(key.name)) mistakes.in([&] { object.required(key.name); });
+    for (const OneOf& group : set.one_of)
+      if (std::none_of(group.keys.begin(), group.keys.end(), is_meant))
+        mistakes.in([&] { check_one_of(group); });
     for (const Beside& pair : set.beside) {
+      if (is_meant(pair.key) || is_meant(pair.main)) continue;
       const auto key = object.optional(pair.key);
       const bool main = node.value().contains(pair.main);
-      if (key && !main) key->expected("this key beside " + pair.main + " alone");
-      if (pair.both && main) object.required(pair.key);
+      mistakes.in([&] {
+        if (key && !main) key->expected("this key beside " + pair.main + " alone");
+        if (pair.both && main) object.required(pair.key);
+      });
     }
     for (const Key& key : set.keys)
-      if (const auto value = object.optional(key.name)) check(*value, key.value);
+      if (const auto value = object.optional(key.name)) within(*value, key.value);
   }
 
  private:
+  void within(const Node& part, const Schema& schema) const {
+    mistakes.in([&] { std::visit(Check{part, mistakes}, schema.form().form); });
+  }
   static std::vector<std::string> all_keys(const Kinds& form) {
     std::vector<std::string> list;
     for (const auto& kind : form.kinds)
@@ -114,15 +136,19 @@ struct Check {
         if (std::find(list.begin(), list.end(), key.name) == list.end()) list.push_back(key.name);
     return list;
   }
-  void refuse_unknown(const KeySet& set) const {
+  /// Returns the keys that they may stand for: these are not missed as well.
+  std::vector<std::string> note_unknown(const KeySet& set) const {
     const std::vector<std::string> known = names(set);
+    std::vector<std::string> meant;
     for (const auto& [key, value] : node.value().items()) {
       if (std::find(known.begin(), known.end(), key) != known.end()) continue;
       const std::string guess = closest_word(key, known);
-      throw InputError(Object(node).path_of(key) + ": unknown key" +
-                       (guess.empty() ? "" : " (did you mean \"" + guess + "\"?)") +
-                       "; known here: " + joined(known));
+      mistakes.note(Object(node).path_of(key) + ": unknown key" +
+                    (guess.empty() ? "" : " (did you mean \"" + guess + "\"?)") +
+                    "; known here: " + joined(known));
+      if (!guess.empty()) meant.push_back(guess);
     }
+    return meant;
   }
   void check_one_of(const OneOf& group) const {
     const std::string place = node.path().empty() ? "the case" : node.path();
@@ -141,6 +167,10 @@ struct Check {
 
 }  // namespace
 
-void check(const Node& node, const Schema& schema) { std::visit(Check{node}, schema.form().form); }
+void check(const Node& node, const Schema& schema) {
+  Mistakes mistakes;
+  mistakes.in([&] { std::visit(Check{node, mistakes}, schema.form().form); });
+  mistakes.raise();
+}
 
 }  // namespace kacanov

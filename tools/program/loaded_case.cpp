@@ -16,6 +16,7 @@
 #include "formats/mesh_file.hpp"
 #include "formats/node_values.hpp"
 #include "formats/printable.hpp"
+#include "problem/mistakes.hpp"
 #include "program/memory_model.hpp"
 #include "program/obstacle_files.hpp"
 
@@ -50,9 +51,10 @@ Problem load_problem(const Case& input, RankCount ranks) {
                        input.mesh.coarser[k]);
   Mesh mesh = load_mesh(input.mesh);
   check_memory(size_of(mesh, input.model));
-  check_dimension(input, mesh.dim());
+  naming_file(input.file, [&] { check_dimension(input, mesh.dim()); });
   const Model model = with_curves(model_with_files(input));
-  Problem problem = build_problem(std::move(mesh), model);
+  Problem problem;
+  naming_file(input.file, [&] { problem = build_problem(std::move(mesh), model); });
   problem.warnings.insert(problem.warnings.begin(), problem.mesh.warnings.begin(),
                           problem.mesh.warnings.end());
   const std::vector<std::string> found = examine(problem, model);
