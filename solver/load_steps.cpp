@@ -117,7 +117,7 @@ bool reach(OuterLoop& loop, const std::optional<OuterLoop::Place>& before, doubl
 }  // namespace
 
 bool run_load_steps(OuterLoop& loop, std::span<const double> shares, Result& result,
-                    const std::function<void()>& step_over) {
+                    const std::function<void()>& step_over, const CoarsePath& coarse) {
   std::optional<OuterLoop::Place> start;  // none: from rest
   for (;;) {
     const std::size_t over = result.load_steps.size();
@@ -126,7 +126,10 @@ bool run_load_steps(OuterLoop& loop, std::span<const double> shares, Result& res
     result.load_steps.push_back(line_now(loop, shares[over], result));
     step_over();
     start = loop.next_start();
-    loop.go_from(*start, shares[over + 1], result);
+    if (coarse)
+      loop.go_along(*start, shares[over + 1], coarse(over + 1), result);
+    else
+      loop.go_from(*start, shares[over + 1], result);
   }
 }
 

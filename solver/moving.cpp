@@ -52,8 +52,8 @@ class Chain {
     over_ = std::move(run_.load_step_over);
     run_.load_step_over = nullptr;
     run_.start = nullptr;
-    if (run_.coarse != nullptr && !run_.coarse->at_rest()) start_ = interpolate(*run_.coarse, part);
-    run_.coarse = nullptr;
+    if (!run_.coarse.empty() && !run_.coarse[0].at_rest()) start_ = interpolate(run_.coarse[0], part);
+    run_.coarse = {};
     u_.assign(part.unknowns(), 0.0);
     for (std::size_t e = 0; e < model.contact.size(); ++e)
       if (model.contact[e].force_controlled) pushed_.push_back({e, {}});

@@ -157,7 +157,7 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   const double began = MPI_Wtime();
   const bool restart = part.node_map.any(part.node_map.rank == 0 && run.start != nullptr);
   std::optional<Start> start;
-  if (!restart && run.coarse != nullptr && !run.coarse->at_rest()) start = interpolate(*run.coarse, part);
+  if (!restart && !run.coarse.empty() && !run.coarse[0].at_rest()) start = interpolate(run.coarse[0], part);
   if (!restart && run.from != nullptr) start = *run.from;
   InOwnUnits scaled(part);
   if (start) to_own_units(*start, scaled.units());
@@ -179,7 +179,19 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   const auto step_over = [&] {
     if (run.load_step_over) hand_out_step(context, result, run, scaled);
   };
-  const bool finished = !part.no_equilibrium.empty() || run_load_steps(loop, shares, result, step_over);
+  CoarsePath coarse;
+  if (shares.size() > 1 && run.coarse.size() == shares.size())
+    coarse = [&](std::size_t step) {
+      Start at;
+      {
+        const InUsersUnits back(scaled);
+        at = interpolate(run.coarse[step], part);
+      }
+      to_own_units(at, scaled.units());
+      return at;
+    };
+  const bool finished =
+      !part.no_equilibrium.empty() || run_load_steps(loop, shares, result, step_over, coarse);
   const double looped = MPI_Wtime();
 
   const Response response = respond_independently(context);

@@ -115,15 +115,24 @@ void OuterLoop::go_from(const Place& place, double share, const Result& result) 
   first_outer_ = result.outer_iterations;
 }
 
-void OuterLoop::adopt(const Start& start) {
+void OuterLoop::take(const Start& start) {
   ContactState& state = context_.state;
   state.u = start.displacement;
   state.lambda.normal = start.pressure;
   state.lambda.tangential = start.friction;
-  adopted_ = true;
-  coarse_lambda_max_ = start.lambda_max;
   take_load();
   state.phi.tangential = state.trace.tangential;
+}
+
+void OuterLoop::adopt(const Start& start) {
+  adopted_ = true;
+  coarse_lambda_max_ = start.lambda_max;
+  take(start);
+}
+
+void OuterLoop::go_along(const Place& place, double share, const Start& start, const Result& result) {
+  go_from(place, share, result);
+  take(start);
 }
 
 void OuterLoop::stand_at(const Place& place, const Result& result) {

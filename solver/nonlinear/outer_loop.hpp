@@ -57,6 +57,9 @@ class OuterLoop {
 
   /// Starts from what a coarser mesh says (theory: nested). Penalties begin as from rest.
   void adopt(const Start& start);
+  /// Another share of the load: goes on from that place, its slip counted as there, with the state that a
+  /// coarser mesh has at that share.
+  void go_along(const Place& place, double share, const Start& start, const Result& result);
   /// Goes on from a checkpoint, which rank 0 has.
   void restore(const Checkpoint* from, Result& result);
   /// What restore() needs, on rank 0.
@@ -101,6 +104,8 @@ class OuterLoop {
   void report(const StepOutcome& step, const Residuals& residuals, const Result& result) const;
   void choose_first_penalty(Result& result);
   void move_penalty(const StepOutcome& step, const Residuals& before, const Residuals& after, Result& result);
+  /// In the loop's units; its penalties stay.
+  void take(const Start& start);
   /// Prescribed components, gaps, traces and bounds of the load there is.
   void take_load();
   void keep(const Result& result);

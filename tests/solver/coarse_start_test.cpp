@@ -120,7 +120,7 @@ TEST_CASE("a start from a coarser mesh leads to the same answer in fewer iterati
       REQUIRE(alone.result().status == Status::converged);
       const CoarseSolution from = whole_solution(coarse.part, &coarse.problem, coarse.solution);
       RunOptions options;
-      options.coarse = &from;
+      options.coarse = {&from, 1};
       const Run started = run_alone(beam_mesh(type, across), model, options);
       CHECK(started.result().status == Status::converged);
       CHECK(started.probe()[0] == doctest::Approx(alone.probe()[0]).epsilon(1e-5));
@@ -128,4 +128,33 @@ TEST_CASE("a start from a coarser mesh leads to the same answer in fewer iterati
       CHECK(started.result().outer_iterations <= alone.result().outer_iterations);
       CHECK(started.result().operator_applications < alone.result().operator_applications);
     }
+}
+
+TEST_CASE("load steps start each from its own on a coarser mesh, with the same answers in fewer iterations") {
+  for (const auto reference : {Friction::Reference::start, Friction::Reference::step}) {
+    CAPTURE(static_cast<int>(reference));
+    Model model = beam(3, {0.0, 0.3, reference});
+    model.solver.load_steps = {0.3, 0.7, 1.0};
+    std::vector<CoarseSolution> from;
+    RunOptions options;
+    const Problem coarse = build_problem(beam_mesh(ElementType::tet10, 2), model);
+    Part part = distribute(&coarse, MPI_COMM_SELF);
+    options.load_step_over = [&](const Part& now, const Solution& step) {
+      from.push_back(whole_solution(now, &coarse, step));
+    };
+    from.push_back(whole_solution(part, &coarse, solve(part, model.solver, options)));
+    REQUIRE(from.size() == 3);
+    const Run alone = run_alone(beam_mesh(ElementType::tet10, 4), model);
+    options.load_step_over = {};
+    options.coarse = from;
+    const Run started = run_alone(beam_mesh(ElementType::tet10, 4), model, options);
+    REQUIRE(alone.result().status == Status::converged);
+    REQUIRE(started.result().status == Status::converged);
+    CHECK(started.result().operator_applications < alone.result().operator_applications);
+    REQUIRE(started.result().load_steps.size() == 3);
+    for (std::size_t k = 0; k < 3; ++k)
+      for (std::size_t c = 0; c < 3; ++c)
+        CHECK(started.result().load_steps[k].probe[0][c] ==
+              doctest::Approx(alone.result().load_steps[k].probe[0][c]).epsilon(1e-5).scale(0.01));
+  }
 }

@@ -33,11 +33,6 @@ double share_to_refine(double error, double aim, int order) {
   return std::clamp(to_lose / (1.0 - std::ldexp(1.0, -2 * order)), least_refined, most_refined);
 }
 
-/// Whether a run may start from the solution of another mesh; with load steps each goes through all of them.
-bool starts_from_another(const Model& model) {
-  return model.solver.load_steps.empty() && model.steps.empty() && !any_moves(model);
-}
-
 class Adaptation {
  public:
   Adaptation(Case& input, const MpiSession& mpi, const RunOptions& options)
@@ -63,7 +58,7 @@ class Adaptation {
         break;
       }
     }
-    if (!starts_from_another(input_.model)) run_.solution.reset();
+    if (any_moves(input_.model)) run_.solutions.clear();
     return std::move(run_);
   }
 
@@ -81,17 +76,20 @@ class Adaptation {
       problem = load_problem(input_, {mpi_.ranks(), 0});
     });
     Part part = distribute(problem ? &*problem : nullptr, mpi_.comm());
-    Solution solution;
-    if (starts_from_another(input_.model)) {
-      solution = solve_roughly(input_, part, silent(options_), run_);
-    } else {
-      solution = solve_part(input_, part, mpi_, silent(options_));
-    }
+    const Problem* whole = problem ? &*problem : nullptr;
+    std::vector<CoarseSolution> before;
+    // Obstacles that move lead every mesh all the way by themselves.
+    const Solution solution =
+        any_moves(input_.model)
+            ? solve_part(input_, part, mpi_, silent(options_))
+            : solve_roughly(input_, part, silent(options_), run_, [&](const Part& now, const Solution& step) {
+                before.push_back(whole_solution(now, whole, step));
+              });
     DiscretisationError error = estimate_error(part, solution);
-    run_.take(solution, part, problem ? &*problem : nullptr, began);
+    run_.take(solution, std::move(before), part, whole, began);
     run_.levels.back().error = error.relative;
     if (solution.result.status == Status::converged)
-      find_entered(problem ? &*problem : nullptr, gather_nodal(part, solution.displacement, part.dim()));
+      find_entered(whole, gather_nodal(part, solution.displacement, part.dim()));
     std::vector<double> all(static_cast<std::size_t>(part.total_elements), 0.0);
     for (std::size_t e = 0; e < error.element.size(); ++e) all[part.element_index[e]] = error.element[e];
     part.node_map.sum_all(all);

@@ -130,10 +130,19 @@ void solve_level(Case& input, std::size_t dim, const Coarser& coarser, bool halv
   MPI_Bcast(&fits, 1, MPI_INT, 0, mpi.comm());
   if (fits == 0) return;
   Part part = distribute(problem ? &*problem : nullptr, mpi.comm());
-  Solution solution = solve_roughly(input, part, options, run);
-  if (run.solution && coarser.halves && halved && run.levels.back().converged)
-    extrapolate(*run.solution, part, solution.displacement);
-  run.take(solution, part, problem ? &*problem : nullptr, start, halved);
+  const Problem* whole = problem ? &*problem : nullptr;
+  // Where this mesh and the next one are the one before halved.
+  const auto taken_on = [&](Solution solution, std::size_t step) {
+    if (step < run.solutions.size() && coarser.halves && halved && run.levels.back().converged)
+      extrapolate(run.solutions[step], part, solution.displacement);
+    return solution;
+  };
+  std::vector<CoarseSolution> before;
+  Solution solution = solve_roughly(input, part, options, run, [&](const Part& now, const Solution& step) {
+    before.push_back(whole_solution(now, whole, taken_on(step, before.size())));
+  });
+  solution = taken_on(std::move(solution), before.size());
+  run.take(solution, std::move(before), part, whole, start, halved);
 }
 
 }  // namespace
@@ -162,18 +171,23 @@ bool stop_wanted(const MpiSession& mpi, const RunOptions& options) {
   return stop != 0;
 }
 
-Solution solve_roughly(const Case& input, Part& part, RunOptions options, const CoarseRun& before) {
+Solution solve_roughly(const Case& input, Part& part, RunOptions options, const CoarseRun& before,
+                       std::function<void(const Part&, const Solution&)> step_over) {
   SolverOptions solver = input.model.solver;
   solver.tolerance = std::max(solver.tolerance, coarse_tolerance);
-  options.coarse = before.solution ? &*before.solution : nullptr;
+  options.coarse = before.solutions;
+  options.load_step_over = std::move(step_over);
   return solve(part, solver, options);
 }
 
-void CoarseRun::take(const Solution& of, const Part& part, const Problem* problem, double began,
-                     bool halved) {
+void CoarseRun::take(const Solution& of, std::vector<CoarseSolution> before, const Part& part,
+                     const Problem* problem, double began, bool halved) {
   const Result& result = of.result;
   const bool converged = result.status == Status::converged;
-  if (converged) solution = whole_solution(part, problem, of);
+  if (converged) {
+    before.push_back(whole_solution(part, problem, of));
+    solutions = std::move(before);
+  }
   levels.push_back({result.unknowns, result.outer_iterations, result.cg_iterations,
                     result.operator_applications, MPI_Wtime() - began, converged, halved, 0.0, result.probe,
                     result.contact_force});
@@ -215,8 +229,7 @@ std::vector<double> note_discretisation(const Part& part, const CoarseRun& coars
 CoarseRun solve_coarser(Case& input, std::size_t dim, const MpiSession& mpi, const RunOptions& options) {
   CoarseRun run;
   const Model& model = input.model;
-  if (!model.solver.nested || !model.solver.load_steps.empty() || !model.steps.empty() || any_moves(model))
-    return run;
+  if (!model.solver.nested || any_moves(model)) return run;
   const RunOptions coarse = silent(options);
   const std::vector<Coarser> meshes = coarser_meshes(input.mesh);
   for (std::size_t k = 0; k < meshes.size(); ++k) {

@@ -2,7 +2,7 @@
 // Solves a case on coarser meshes first, each from the one before.
 #pragma once
 
-#include <optional>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -15,12 +15,13 @@
 namespace kacanov {
 
 struct CoarseRun {
-  std::vector<CoarseLevel> levels;         ///< coarsest first
-  std::optional<CoarseSolution> solution;  ///< of the finest of them that has converged
+  std::vector<CoarseLevel> levels;        ///< coarsest first
+  std::vector<CoarseSolution> solutions;  ///< of the finest of them that has converged, one a load step
 
-  /// Takes up what has come out on one more mesh. `problem`: on the first rank. Collective.
-  /// `halved`: whether the next mesh has its edges halved.
-  void take(const Solution& of, const Part& part, const Problem* problem, double began, bool halved = false);
+  /// Takes up what has come out on one more mesh, with the ends of the load steps before the last. `problem`:
+  /// on the first rank. Collective. `halved`: whether the next mesh has its edges halved.
+  void take(const Solution& of, std::vector<CoarseSolution> before, const Part& part, const Problem* problem,
+            double began, bool halved = false);
 };
 
 /// One line for people.
@@ -29,13 +30,14 @@ std::string level_line(const CoarseLevel& level);
 RunOptions silent(const RunOptions& options);
 /// Whether any rank has been asked to stop. Collective.
 bool stop_wanted(const MpiSession& mpi, const RunOptions& options);
-/// To a thousandth, from the solution before. Collective.
-Solution solve_roughly(const Case& input, Part& part, RunOptions options, const CoarseRun& before);
+/// To a thousandth, from the solutions before. `step_over` as RunOptions::load_step_over. Collective.
+Solution solve_roughly(const Case& input, Part& part, RunOptions options, const CoarseRun& before,
+                       std::function<void(const Part&, const Solution&)> step_over);
 
 /// The coarser meshes of a case, one after the other, to a thousandth: of a large enough box those with half
 /// the cells, of a file that is refined those before, and those that mesh.files names. One that the case does
 /// not fit, or that does not converge, is passed over: it is only to start from; of a file that was named, a
-/// warning of the case says why. None with load steps, or where solver.nested says so.
+/// warning of the case says why. None where obstacles move, or where solver.nested says so.
 /// - dim: of the case's own mesh.
 /// Prints a line a mesh, but in a host's process. Throws InputError for a named file that is no mesh, on all
 /// ranks alike. Collective.

@@ -244,7 +244,7 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
     if (command.quiet) before.progress = nullptr;
     coarse = solve_coarser(input, loaded.part.dim(), mpi, before);
   }
-  if (coarse.solution) options.coarse = &*coarse.solution;
+  options.coarse = coarse.solutions;
   if (input.output.fields && input.output.steps)
     options.load_step_over = [&](const Part&, const Solution& now) {
       write_step({folder, now.result.load_steps.size()}, loaded, input.model, mpi, now);
@@ -253,7 +253,7 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
 
   const double solved = MPI_Wtime();
   stop_came_in_time();
-  coarse.solution.reset();
+  coarse.solutions.clear();
   RunFigures figures;
   figures.nested = coarse.levels;
   figures.sets = loaded.set_names;

@@ -129,10 +129,10 @@ SolvedCase solve_case(const Case& given, const MpiSession& mpi, const CaseRun& r
   LoadedCase loaded = load_case(input, mpi, run.memory_check);
   input.mesh.adapted.reset();
   if (run.start != nullptr)
-    coarse.solution = start_of(*run.start, loaded.part.dim(), mpi);
+    coarse.solutions = {start_of(*run.start, loaded.part.dim(), mpi)};
   else if (!given.mesh.adapt)
     coarse = solve_coarser(input, loaded.part.dim(), mpi, options);
-  if (coarse.solution) options.coarse = &*coarse.solution;
+  options.coarse = coarse.solutions;
   std::vector<StepFields> steps;
   if (run.keep_steps)
     options.load_step_over = [&](const Part& part, const Solution& now) {
@@ -140,7 +140,7 @@ SolvedCase solve_case(const Case& given, const MpiSession& mpi, const CaseRun& r
     };
   Solution solution = solve_part(input, loaded.part, mpi, options);
   const double solved = MPI_Wtime();
-  coarse.solution.reset();
+  coarse.solutions.clear();
 
   SolvedCase out;
   out.input = input;

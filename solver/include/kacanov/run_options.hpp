@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 
 #include <kacanov/checkpoint.hpp>
@@ -42,8 +43,9 @@ struct RunOptions {
   std::function<bool()> checkpoint_due;
   /// Where to go on from; on rank 0, of the same problem.
   const Checkpoint* start = nullptr;
-  /// The same body solved on a coarser mesh, to start from; the same on every rank. `start` goes before it.
-  const CoarseSolution* coarse = nullptr;
+  /// The same body solved on a coarser mesh, to start from; the same on every rank. `start` goes before it. One
+  /// to begin with, or one of every load step, which then begins with its own (theory: nested).
+  std::span<const CoarseSolution> coarse = {};
   /// Called on all ranks with the end of every load step that has converged but the last one; the part is
   /// in the user's units then, the result has the lines of the load steps so far. Empty: never.
   std::function<void(const Part&, const Solution&)> load_step_over;
