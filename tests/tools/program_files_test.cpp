@@ -209,3 +209,27 @@ TEST_CASE("a folder under the name of a result is no result, and stays") {
     std::filesystem::remove(place.path(std::string("out/") + name));
   }
 }
+
+TEST_CASE("each run keeps Open MPI's files in a folder of its own, and leaves none behind") {
+  const Workplace place;
+  place.put_json("beam.json", small_beam());
+  std::filesystem::create_directory(place.path("tmp"));
+  for (const char* ranks : {"1", "2"}) {
+    // What is in the folder while the ranks are at work: a session each.
+    const Outcome outcome =
+        script(place, std::string("export TMPDIR=$PWD/tmp\n$PROGRAM ") + endless + " --ranks " + ranks +
+                          " >/dev/null 2>&1 & run=$!\n" + await("out/checkpoint.kacanov") +
+                          "ls tmp\nls tmp/kacanov-mpi-*\nkill -TERM $run\nwait $run\nrm -r out\n");
+    CHECK(outcome.output.find("kacanov-mpi-") == 0);
+    CHECK(outcome.output.find("ompi.") != std::string::npos);
+    CHECK(std::filesystem::is_empty(place.path("tmp")));
+  }
+  // Where somebody says where, it is there.
+  std::filesystem::create_directory(place.path("mine"));
+  const Outcome told =
+      script(place, "export TMPDIR=$PWD/tmp OMPI_MCA_orte_tmpdir_base=$PWD/mine\n$PROGRAM " + endless +
+                        " >/dev/null 2>&1 & run=$!\n" + await("out/checkpoint.kacanov") +
+                        "ls tmp mine\nkill -TERM $run\nwait $run\n");
+  CHECK(told.output.find("kacanov-mpi-") == std::string::npos);
+  CHECK(told.output.find("ompi.") != std::string::npos);
+}

@@ -50,8 +50,9 @@ bool Workplace::has(const std::string& name) const { return std::filesystem::exi
 nlohmann::json Workplace::json(const std::string& name) const { return parsed(contents(path(name))); }
 
 Outcome Workplace::run(const std::string& arguments, const std::string& before) const {
-  const std::string command = "cd '" + path("").string() + "' && " + before + " '" KACANOV_PROGRAM "' " +
-                              arguments + " >output.txt 2>error.txt </dev/null";
+  // The program keeps Open MPI's files of each run apart by itself.
+  const std::string command = "unset OMPI_MCA_orte_tmpdir_base; cd '" + path("").string() + "' && " + before +
+                              " '" KACANOV_PROGRAM "' " + arguments + " >output.txt 2>error.txt </dev/null";
   const int status = std::system(command.c_str());
   const std::string printed = contents(path("output.txt"));
   Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, unwrapped(printed),

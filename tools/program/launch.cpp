@@ -20,7 +20,9 @@
 #include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include <kacanov/error.hpp>
@@ -28,6 +30,7 @@
 #include "program/command.hpp"
 #include "program/control_group.hpp"
 #include "program/interrupt.hpp"
+#include "program/mpi_folder.hpp"
 #include "program/terminal.hpp"
 
 namespace kacanov {
@@ -249,6 +252,7 @@ int run_under_mpiexec(const std::string& mpiexec, Shape shape, const std::string
                                  std::to_string(shape.ranks),
                                  std::filesystem::read_symlink("/proc/self/exe").string()};
   for (const char* argument : arguments.subspan(1)) words.emplace_back(argument);
+  std::optional<MpiFolder> folder(std::in_place);
   set_mpi_environment();
   setenv(started_mark, "1", 1);
   hand_terminal_down();
@@ -284,6 +288,7 @@ int run_under_mpiexec(const std::string& mpiexec, Shape shape, const std::string
   if (code > code_offset && code <= code_offset + exit_failure) return code - code_offset;
   if (caught_signal != 0) {  // it came when there was nothing yet to stop in order
     const int signal = caught_signal;
+    folder.reset();
     std::signal(signal, SIG_DFL);
     std::raise(signal);
   }

@@ -18,6 +18,7 @@
 #include "program/commands.hpp"
 #include "program/interrupt.hpp"
 #include "program/launch.hpp"
+#include "program/mpi_folder.hpp"
 #include "program/parallel.hpp"
 #include "program/part_files.hpp"
 
@@ -151,6 +152,7 @@ int run_alone(const Command& given, int argc, const char* const* argv) {
       throw InputError("--ranks: mpiexec is not on the PATH; without it there is only one rank");
     std::cerr << "kacanov: note: mpiexec is not on the PATH; running on one rank\n";
   }
+  const MpiFolder folder;
   set_mpi_environment();
   return run_here(command, input);
 }
