@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What sharing a small piece of work among threads takes where other programs want the cores, and where none
-// does: the team of the kernels beside OpenMP's regions.
-#include <omp.h>
-
+// does: on the kernels' own threads and on OpenMP's.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -73,15 +72,7 @@ class Region {
  public:
   Region(int threads, long steps) : threads_(threads), steps_(steps), sums_(8 * threads, 0.3) {}
 
-  void with_openmp() {
-#pragma omp parallel num_threads(threads_)
-    {
-      for (int t = omp_get_thread_num(); t < threads_; t += omp_get_num_threads()) share(t);
-#pragma omp barrier
-      for (int t = omp_get_thread_num(); t < threads_; t += omp_get_num_threads()) finish(t);
-    }
-  }
-  void with_team() {
+  void run() {
     kacanov::in_team(threads_, [&](int t) { share(t); });
     kacanov::in_team(threads_, [&](int t) { finish(t); });
   }
@@ -123,33 +114,38 @@ Json json_of(const Times& times) {
 int run(const Options& options) {
   const long steps = steps_in(options.work);
   Json out = {{"threads", options.threads}, {"work_ms", options.work}, {"others", options.busy}};
-  Region openmp(options.threads, steps), team(options.threads, steps);
+  Region openmp(options.threads, steps), own(options.threads, steps);
+  const auto on = [&](const char* whose, Region& region) {
+    setenv("KACANOV_THREADS", whose, 1);
+    kacanov::start_team(options.threads);
+    return json_of(measure(options, [&] { region.run(); }));
+  };
   const auto both = [&](const char* when) {
-    out["openmp"][when] = json_of(measure(options, [&] { openmp.with_openmp(); }));
-    out["team"][when] = json_of(measure(options, [&] { team.with_team(); }));
+    out["openmp"][when] = on("openmp", openmp);
+    out["own"][when] = on("own", own);
   };
   both("free");
   {
     const Others others(options.busy);
     both("contended");
   }
-  for (const char* who : {"openmp", "team"}) {
+  for (const char* who : {"openmp", "own"}) {
     Json& of = out[who];
     of["ratio"] = of["contended"]["mean_ms"].get<double>() / of["free"]["mean_ms"].get<double>();
   }
   if (options.json) {
     std::cout << out.dump(1) << "\n";
   } else {
-    for (const char* who : {"openmp", "team"})
+    for (const char* who : {"openmp", "own"})
       for (const char* when : {"free", "contended"}) {
         const Json& of = out[who][when];
         std::printf("%-7s %-10s mean %7.3f ms, median %7.3f ms, one in a hundred over %7.3f ms\n", who, when,
                     of["mean_ms"].get<double>(), of["median_ms"].get<double>(), of["slow_ms"].get<double>());
       }
-    for (const char* who : {"openmp", "team"})
+    for (const char* who : {"openmp", "own"})
       std::printf("%-7s contended / free %6.1f\n", who, out[who]["ratio"].get<double>());
   }
-  return openmp.sums() == team.sums() ? 0 : 1;
+  return openmp.sums() == own.sums() ? 0 : 1;
 }
 
 }  // namespace

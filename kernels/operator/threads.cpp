@@ -1,20 +1,47 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Threads as a guest in somebody's process: whether they can be had, and what becomes of them after fork().
+// Threads as a guest in somebody's process: whose they are, whether they can be had, and what becomes of them
+// after fork().
 #include "operator/threads.hpp"
 
+#include <omp.h>
 #include <pthread.h>
 
+#include <algorithm>
 #include <atomic>
+#include <condition_variable>
+#include <cstdlib>
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <system_error>
+#include <thread>
+#include <vector>
 
 #include "operator/team.hpp"
 
 namespace kacanov {
 namespace {
+
+/// Whose threads do the work, as said where the last operator was made.
+enum class Workers { not_asked, own, openmp };
+std::atomic<Workers> chosen_workers = Workers::not_asked;
+
+Workers choose_workers() {
+  const char* variable = std::getenv("KACANOV_THREADS");
+  const std::string_view wanted = variable != nullptr ? variable : "";
+  if (!wanted.empty() && wanted != "own" && wanted != "openmp")
+    throw std::invalid_argument("KACANOV_THREADS: expected own or openmp, got \"" + std::string(wanted) +
+                                "\"");
+  return chosen_workers = wanted == "openmp" ? Workers::openmp : Workers::own;
+}
+
+Workers workers() {
+  const Workers chosen = chosen_workers;
+  return chosen == Workers::not_asked ? choose_workers() : chosen;
+}
 
 std::atomic<bool> forked = false;
 thread_local bool within_share = false;  ///< whose own work is not divided further
@@ -48,6 +75,52 @@ OwnTeam& own_team() {
   return own;
 }
 
+[[noreturn]] void throw_too_few(int there, int threads) {
+  throw std::system_error(
+      std::make_error_code(std::errc::resource_unavailable_try_again),
+      "threads: only " + std::to_string(there) + " of " + std::to_string(threads) + " could be started");
+}
+
+/// How many of so many threads, the caller's included, the system grants: they are started, are there at the
+/// same time, and end.
+int granted_threads(int threads) {
+  std::mutex mutex;
+  std::condition_variable leave;
+  bool all_there = false;
+  std::vector<std::jthread> guests;
+  guests.reserve(static_cast<std::size_t>(threads - 1));
+  try {
+    while (static_cast<int>(guests.size()) < threads - 1)
+      guests.emplace_back([&] {
+        std::unique_lock lock(mutex);
+        leave.wait(lock, [&] { return all_there; });
+      });
+  } catch (const std::system_error&) {  // those that are there are the answer
+  }
+  {
+    const std::lock_guard lock(mutex);
+    all_there = true;
+  }
+  leave.notify_all();
+  return static_cast<int>(guests.size()) + 1;
+}
+
+/// For how many threads a thread of the host's has asked on OpenMP's behalf, and how many there were.
+/// OpenMP's runtime would end the process if it were not granted its threads.
+struct OpenMPTeam {
+  int asked = 1, there = 1;
+
+  int of(int threads) {
+    if (asked < threads) ask(threads);
+    return std::min(threads, there);
+  }
+  void ask(int threads) {
+    there = std::max(there, granted_threads(threads));  // the runtime keeps those it had
+    asked = threads;
+  }
+};
+thread_local OpenMPTeam openmp_team;
+
 bool is_alone(int threads) { return threads <= 1 || within_share || thread_ends || is_forked_child(); }
 
 struct Job {
@@ -67,18 +140,26 @@ struct Job {
   }
 };
 
+/// Each share by the thread of its number, where the runtime grants that many.
+void do_shares_with_openmp(int shares, int threads, Job& job) {
+#pragma omp parallel num_threads(threads)
+  for (int t = omp_get_thread_num(); t < shares; t += omp_get_num_threads()) job.do_share(t);
+}
+
 }  // namespace
 
 void start_team(int threads) {
+  const Workers who = choose_workers();
   if (is_alone(threads)) return;
   watch_forks();
+  if (who == Workers::openmp) {
+    if (openmp_team.of(threads) < threads) openmp_team.ask(threads);  // the system may grant more by now
+    if (openmp_team.there < threads) throw_too_few(openmp_team.there, threads);
+    return in_team(threads, [](int) {});
+  }
   OwnTeam& own = own_team();
   if (own.of(threads).threads() < threads) own.make(threads);  // the system may grant more by now
-  const int there = own.team->threads();
-  if (there < threads)
-    throw std::system_error(
-        std::make_error_code(std::errc::resource_unavailable_try_again),
-        "threads: only " + std::to_string(there) + " of " + std::to_string(threads) + " could be started");
+  if (own.team->threads() < threads) throw_too_few(own.team->threads(), threads);
 }
 
 bool is_forked_child() noexcept { return forked; }
@@ -89,8 +170,11 @@ void in_team(int threads, const std::function<void(int)>& run) {
     return;
   }
   Job job{run};
-  own_team().of(threads).run(
-      threads, [](void* opaque, int t) { static_cast<Job*>(opaque)->do_share(t); }, &job);
+  if (workers() == Workers::openmp)
+    do_shares_with_openmp(threads, openmp_team.of(threads), job);
+  else
+    own_team().of(threads).run(
+        threads, [](void* opaque, int t) { static_cast<Job*>(opaque)->do_share(t); }, &job);
   if (job.thrown) std::rethrow_exception(job.thrown);
 }
 

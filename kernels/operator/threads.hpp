@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Threads as a guest in somebody's process: whether they can be had, and what becomes of them after fork().
+// Threads as a guest in somebody's process: whose they are, whether they can be had, and what becomes of them
+// after fork().
 #pragma once
 
 #include <cstddef>
@@ -8,8 +9,10 @@
 
 namespace kacanov {
 
-/// Starts the calling thread's team of `threads` threads, which the passes then find waiting. Throws
-/// std::system_error where the system does not grant so many.
+/// Starts the calling thread's team of `threads` threads, which the passes then find waiting: the library's
+/// own, or, where the environment variable KACANOV_THREADS says "openmp", OpenMP's, from now on in all of the
+/// process. Throws std::invalid_argument for other values than that and "own", std::system_error where the
+/// system does not grant so many threads.
 void start_team(int threads);
 
 /// Whether this process is a child made by fork() after an operator: the threads of its parent's teams are

@@ -12,7 +12,8 @@ endif()
 set(prefix "${WORK}/moved prefix")
 file(RENAME "${WORK}/first" "${prefix}")
 consume(embed c,kernels ${forbidden})
-consume(no_component "" ${forbidden} -DCMAKE_DISABLE_FIND_PACKAGE_Threads=ON -DCMAKE_DISABLE_FIND_PACKAGE_METIS=ON)
+consume(no_component "" ${forbidden} -DCMAKE_DISABLE_FIND_PACKAGE_Threads=ON -DCMAKE_DISABLE_FIND_PACKAGE_OpenMP=ON
+  -DCMAKE_DISABLE_FIND_PACKAGE_METIS=ON)
 run("${WORK}/no_component/use_c")
 
 # The same through pkg-config, and an example as its README says. What is installed in a folder with a space is

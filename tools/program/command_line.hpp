@@ -25,6 +25,7 @@ inline constexpr Meaning exit_codes[] = {{"0", "converged"},
                                          {"3", "internal failure"}};
 inline constexpr Meaning environment[] = {
     {"KACANOV_INSTRUCTION_SET", "avx512, avx2 or plain: overrules the best there is"},
+    {"KACANOV_THREADS", "own or openmp: whose threads share a process's work; own if not set"},
     {"NO_COLOR", "set to anything: no colour"},
     {"OMP_NUM_THREADS", "threads a process under mpiexec or srun"}};
 

@@ -21,9 +21,9 @@
  * begins with struct_size, which the caller sets to its sizeof. What an old caller's struct does not have is
  * taken as zero; what a newer caller's has beyond this library has to be zero. Names and numbers stay.
  *
- * Threads are those of OpenMP, one team a calling thread. A small body uses fewer than asked for (see
- * kacanov_information.threads). After fork() the child has none of its parent's threads: operators there use
- * one. Where the machine is shared, set OMP_WAIT_POLICY=passive, or waiting threads take the time of others.
+ * Threads are the library's own, or with KACANOV_THREADS=openmp in the environment those of OpenMP, one team
+ * a calling thread. A small body uses fewer than asked for (see kacanov_information.threads). After fork()
+ * the child has none of its parent's threads: operators there use one.
  *
  *   kacanov_description body = {0};
  *   body.struct_size = sizeof body;
