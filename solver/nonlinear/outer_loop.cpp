@@ -78,6 +78,9 @@ void OuterLoop::take_load() {
   state.evaluate(context_.traces);
   for (std::size_t i = 0; i < state.gap.size(); ++i)
     state.phi.normal[i] = std::min(state.trace.normal[i], state.gap[i]);
+  // Points that an obstacle has gone past do not stick to it before they have touched: a step that did so
+  // would leave noise where nothing acts.
+  if (opening_ && !context_.part.slip_origin.empty()) state.phi.tangential = state.trace.tangential;
   follow_pressure(context_.part, state.lambda.normal, state.bound);
 }
 

@@ -155,6 +155,21 @@ TEST_CASE("an obstacle that drags along by friction: slip counts from where it h
   }
 }
 
+TEST_CASE("a tool with friction that has not come yet leaves the body at rest") {
+  Model model = over(Sphere{{1.1, 0.4, -3.0}, 2.0, {}});  // ν slants: the way has a part along the surface
+  model.contact[0].motion = lift(1.01);
+  model.contact[0].friction = Friction{0.0, 0.3};
+  model.solver.load_steps = {0.5, 0.9, 1.0};
+  const Run run = run_moving(slab(), model);
+  REQUIRE(run.result().status == Status::converged);
+  REQUIRE(run.result().load_steps.size() == 3);
+  for (const std::size_t step : {0, 1}) {
+    CHECK(run.result().load_steps[step].active_nodes == 0);
+    CHECK(run.result().load_steps[step].worst_residual == 0.0);
+  }
+  CHECK(run.result().load_steps[2].active_nodes > 0);
+}
+
 TEST_CASE("a ball that is pushed goes as deep as Hertz says of its force, and bears it") {
   const HalfSpace space{4};
   const Law law = elastic_law(1.0, 0.3);
