@@ -33,6 +33,8 @@ void locked_flow(const Result& result, Warnings& warnings);
 void large_displacement(const Result& result, Warnings& warnings);
 /// Contact entries that nothing presses on: lifted off, or never reached.
 void idle_contact(const Result& result, const Model& model, Warnings& warnings);
+/// Contact entries that so few nodes press on that their pressure is no number.
+void coarse_contact(const Result& result, const Model& model, Warnings& warnings);
 /// Tresca's friction where nothing presses.
 void open_friction(const Result& result, const Model& model, Warnings& warnings);
 

@@ -24,6 +24,7 @@ std::vector<std::string> examine(const Result& result, const Model& model) {
   validity::locked_flow(result, warnings);
   validity::large_displacement(result, warnings);
   validity::idle_contact(result, model, warnings);
+  validity::coarse_contact(result, model, warnings);
   validity::open_friction(result, model, warnings);
   return warnings;
 }

@@ -17,6 +17,8 @@ namespace {
 constexpr double least_yield_strain = 1e-5, most_yield_strain = 0.3;
 // Of Young's modulus: more crushes every body, less is a million times below what moves one.
 constexpr double least_load = 1e-9, most_load = 0.1;
+// Of the yield stress: kN for N, where loads come to 2 % of it and more.
+constexpr double most_over_yield = 20.0;
 
 /// In tension.
 double yield_stress(const Law& law) {
@@ -58,11 +60,13 @@ double stress_of(const BoundaryEntry& entry, std::size_t index, const Selection&
 }  // namespace
 
 void mixed_units(const Problem& problem, const Model& model, Warnings& warnings) {
-  double softest = std::numeric_limits<double>::max(), stiffest = 0.0;
+  double softest = std::numeric_limits<double>::max(), stiffest = 0.0, strongest = 0.0;
   for (std::size_t i = 0; i < problem.laws.size(); ++i) {
     check_material(problem.laws[i], "material[" + std::to_string(i) + "]", warnings);
     softest = std::min(softest, young_modulus(problem.laws[i]));
     stiffest = std::max(stiffest, young_modulus(problem.laws[i]));
+    const bool yields = !problem.laws[i].linear() && std::isfinite(problem.laws[i].proof_strain());
+    strongest = std::max(strongest, yields ? yield_stress(problem.laws[i]) : HUGE_VAL);
   }
   const Selection selection(problem.mesh);
   const double size = extent(problem.mesh).size;
@@ -70,10 +74,14 @@ void mixed_units(const Problem& problem, const Model& model, Warnings& warnings)
   for (std::size_t i = 0; i < model.boundary.size(); ++i) {
     const double stress = stress_of(model.boundary[i], i, selection, problem.mesh, size);
     largest = std::max(largest, stress);
-    if (stress <= most_load * stiffest) continue;
-    warnings.push_back(entry_name(model.boundary[i], i) + ": it comes to a stress of " + rounded(stress) +
-                       ", more than a tenth of Young's modulus " + rounded(stiffest) +
-                       ": are both in the same units?");
+    const std::string comes =
+        entry_name(model.boundary[i], i) + ": it comes to a stress of " + rounded(stress);
+    if (stress > most_load * stiffest)
+      warnings.push_back(comes + ", more than a tenth of Young's modulus " + rounded(stiffest) +
+                         ": are both in the same units?");
+    else if (stress > most_over_yield * strongest)
+      warnings.push_back(comes + ", " + rounded(stress / strongest) + " times the stress " +
+                         rounded(strongest) + " at which the body yields: are both in the same units?");
   }
   if (largest > 0.0 && largest < least_load * softest)
     warnings.push_back("boundary: the largest load comes to a stress of " + rounded(largest) +

@@ -63,6 +63,8 @@ TEST_CASE("units that do not go together") {
   CHECK(mentions(found(), "material[0]"));
   law.form = ramberg_osgood(law, 250.0, 0.4, 5.0);
   CHECK(found().empty());
+  model.boundary[1].traction = Vector3{0, 0, -20e3};  // kN for N
+  CHECK(mentions(found(), "boundary[1]: it comes to a stress of 2e+04, 80 times the stress 250 at which"));
   model.boundary[1].traction = Vector3{0, 0, -20e6};
   model.boundary[1].name = "lid";
   CHECK(mentions(found(), "lid: it comes to a stress of 2e+07"));
@@ -183,6 +185,21 @@ TEST_CASE("contact that bears nothing") {
   model.contact[0].obstacle = Plane{{0, 0, -0.1}, {0, 0, 1}};
   model.contact[0].name = "floor";
   CHECK(mentions(found(), "floor: nothing reaches this obstacle; of the least gap of 0.1 at rest"));
+}
+
+TEST_CASE("contact that hardly a node bears") {
+  Model model = sound_model();
+  const auto found = [&](int cells) {
+    const Mesh mesh = make_box({{2, 2, 1}, {cells, cells, 2}, ElementType::hex8});
+    return said(validity::coarse_contact, run_alone(mesh, model).result(), model);
+  };
+  CHECK(found(4).empty());
+  model.contact[0] = {named("bottom"), Sphere{{1, 1, -5}, 5.0, {}}, {}};
+  model.contact[0].name = "ball";
+  model.boundary[0] = moved(named("top"), 3, {0, 0, -0.004});
+  model.boundary.resize(1);
+  CHECK(mentions(found(4), "ball: only 1 of 25 nodes bear its pressure"));
+  CHECK(found(20).empty());
 }
 
 TEST_CASE("Tresca's friction on nodes that are open") {
