@@ -196,6 +196,9 @@ std::string describe(const Piece& piece, const Eigen::VectorXd& mode, int dim) {
   const Vector3 turn{mode[0], mode[1], mode[2]};
   const Vector3 shift{mode[3] * piece.radius, mode[4] * piece.radius, mode[5] * piece.radius};
   if (norm(turn) < 1e-6) return "translation along " + direction_name(shift, dim);
+  constexpr double far_off = 100.0;  // of the piece's size: an axis there tells less than the way it goes
+  if (norm(shift) > far_off * piece.radius * norm(turn))
+    return "translation along " + direction_name(shift, dim) + " with next to no rotation";
   const double squared = dot(turn, turn);
   const Vector3 along = (dot(shift, turn) / squared) * turn;
   Vector3 through = piece.centre + (1.0 / squared) * cross(turn, shift);
