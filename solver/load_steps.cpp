@@ -117,20 +117,27 @@ bool reach(OuterLoop& loop, const std::optional<OuterLoop::Place>& before, doubl
 }  // namespace
 
 bool run_load_steps(OuterLoop& loop, std::span<const double> shares, Result& result,
-                    const std::function<void()>& step_over, const CoarsePath& coarse) {
+                    const LoadStepCalls& calls) {
   std::optional<OuterLoop::Place> start;  // none: from rest
   for (;;) {
     const std::size_t over = result.load_steps.size();
+    if (calls.begins) calls.begins(over);
     const bool finished = reach(loop, start, shares[over], result);
     if (!finished || over + 1 == shares.size() || !worth_going_on(loop, result)) return finished;
     result.load_steps.push_back(line_now(loop, shares[over], result));
-    step_over();
+    if (calls.over) calls.over();
     start = loop.next_start();
-    if (coarse)
-      loop.go_along(*start, shares[over + 1], coarse(over + 1), result);
+    if (calls.coarse)
+      loop.go_along(*start, shares[over + 1], calls.coarse(over + 1), result);
     else
       loop.go_from(*start, shares[over + 1], result);
   }
+}
+
+std::string load_step_name(std::size_t number, std::size_t of, bool by_time, double at) {
+  PlainText name;
+  name << "load step " << number + 1 << " of " << of << (by_time ? " (time " : " (factor ") << at << ")";
+  return name.str();
 }
 
 LoadStep load_step_line(const Result& result, double share) {

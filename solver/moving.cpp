@@ -10,6 +10,7 @@
 
 #include <kacanov/error.hpp>
 #include <kacanov/solve.hpp>
+#include "load_steps.hpp"
 #include "mesh/plain_stream.hpp"
 #include "moving_contact.hpp"
 #include "parallel/body_extent.hpp"
@@ -67,6 +68,8 @@ class Chain {
       // Between the two the load is cut, where that has to be.
       part_.steps = {still(curves_[k - 1]), still(curves_[k])};
       part_.steps[0].time = 0.0;
+      if (curves_.size() > 2)
+        tell(load_step_name(k - 1, curves_.size() - 1, !model_.steps_are_factors, time));
       contact_.face(time, curves_[k - 1].time, u_);
       const int outer = last_.result.outer_iterations;
       const std::int64_t cg = last_.result.cg_iterations;
@@ -104,11 +107,22 @@ class Chain {
     return factors;
   }
 
+  void tell(const std::string& stage) const {
+    if (run_.stage && part_.node_map.rank == 0) run_.stage(stage);
+  }
+
   /// Solves from where the last solve has ended; counts, times and warnings go on.
   void solve_once() {
-    run_.from = start_.displacement.empty() ? nullptr : &start_;
     const Result before = std::move(last_.result);
-    last_ = solve(part_, model_.solver, run_);
+    RunOptions run = run_;
+    run.from = start_.displacement.empty() ? nullptr : &start_;
+    if (run_.progress)
+      run.progress = [&](ProgressStep step) {
+        step.outer += before.outer_iterations;
+        step.seconds += before.seconds.total;
+        run_.progress(step);
+      };
+    last_ = solve(part_, model_.solver, run);
     add(last_.result, before);
     start_.displacement = last_.displacement;
     start_.pressure = last_.pressure;
@@ -172,6 +186,9 @@ class Chain {
   bool push(Pushed& pushed) {
     const PushOutcome outcome = find_travel(pushed.search, [&](double travel) -> std::optional<double> {
       contact_.push(pushed.entry, travel);
+      PlainText place;
+      place << entry_name(model_.contact[pushed.entry], pushed.entry) << " pushed by " << travel;
+      tell(place.str());
       solve_once();
       if (last_.result.status != Status::converged) return std::nullopt;
       return force_on(pushed.entry);
@@ -189,10 +206,8 @@ class Chain {
 
   void end_early(std::size_t step, double time) {
     if (curves_.size() == 2) return;
-    PlainText place;
-    place << "load step " << step << " of " << curves_.size() - 1
-          << (model_.steps_are_factors ? " (factor " : " (time ") << time << "): ";
-    last_.result.message = place.str() + last_.result.message;
+    last_.result.message = load_step_name(step - 1, curves_.size() - 1, !model_.steps_are_factors, time) +
+                           ": " + last_.result.message;
   }
 
   Part& part_;

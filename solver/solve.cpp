@@ -116,10 +116,7 @@ void end_load_steps(const std::vector<double>& shares, bool finished, Result& re
   const std::size_t over = result.load_steps.size();
   if (finished) result.load_steps.push_back(load_step_line(result, shares[over]));
   if (over + 1 == shares.size() && finished) return;
-  PlainText place;
-  place << "load step " << over + 1 << " of " << shares.size() << (result.by_time ? " (time " : " (factor ")
-        << shares[over] << "): ";
-  result.message = place.str() + result.message;
+  result.message = load_step_name(over, shares.size(), result.by_time, shares[over]) + ": " + result.message;
 }
 
 /// Shows the caller where the loop stands at the end of a load step.
@@ -176,12 +173,16 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   if (restart) loop.restore(run.start, result);
   result.message = part.no_equilibrium;
   begin(part, run, "solving");
-  const auto step_over = [&] {
+  LoadStepCalls calls;
+  calls.begins = [&](std::size_t step) {
+    if (run.stage && shares.size() > 1 && part.node_map.rank == 0)
+      run.stage(load_step_name(step, shares.size(), result.by_time, shares[step]));
+  };
+  calls.over = [&] {
     if (run.load_step_over) hand_out_step(context, result, run, scaled);
   };
-  CoarsePath coarse;
   if (shares.size() > 1 && run.coarse.size() == shares.size())
-    coarse = [&](std::size_t step) {
+    calls.coarse = [&](std::size_t step) {
       Start at;
       {
         const InUsersUnits back(scaled);
@@ -190,8 +191,7 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
       to_own_units(at, scaled.units());
       return at;
     };
-  const bool finished =
-      !part.no_equilibrium.empty() || run_load_steps(loop, shares, result, step_over, coarse);
+  const bool finished = !part.no_equilibrium.empty() || run_load_steps(loop, shares, result, calls);
   const double looped = MPI_Wtime();
 
   const Response response = respond_independently(context);

@@ -163,8 +163,16 @@ TEST_CASE(
       CHECK(outcome.exit_code == 0);
     }
   CHECK(place.json("out/result.json").at("load_steps").size() == 4);
+  const std::string told = place.run("run brick.json --output out").output;
+  CHECK(told.find("\nload step 4 of 4 (factor 1)\n") != std::string::npos);
   place.put_json("brick.json", pushed);
-  REQUIRE(place.run("run brick.json --output out").exit_code == 0);
+  const Outcome to_force = place.run("run brick.json --output out --set output.report=true");
+  REQUIRE(to_force.exit_code == 0);
+  CHECK(to_force.output.find("\ntool pushed by 0.0") != std::string::npos);
+  // Outer steps are counted on from place to place.
+  const std::string history = contents(place.path("out/history.csv"));
+  CHECK(count_lines(history) == 1 + place.json("out/result.json").at("outer_iterations").get<std::size_t>());
+  CHECK(history.rfind("\n1,") == history.find("\n1,"));
   CHECK(force(place) == doctest::Approx(2.5).epsilon(1.1e-5));
   CHECK(place.json("out/result.json").at("contact").at("tool").at("travel") > 0.001);
   CHECK(place.run("verify brick.json --output out --set contact[0].force_controlled.force=2.501").exit_code ==

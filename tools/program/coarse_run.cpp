@@ -159,6 +159,7 @@ RunOptions silent(const RunOptions& options) {
   RunOptions coarse = options;
   coarse.progress = nullptr;
   coarse.phase = nullptr;
+  coarse.stage = nullptr;
   coarse.checkpoint = nullptr;
   coarse.start = nullptr;
   coarse.load_step_over = nullptr;

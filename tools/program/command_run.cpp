@@ -239,6 +239,7 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
     history.add(step);
     if (!command.quiet) table(step);
   };
+  if (!command.quiet) options.stage = [&](const std::string& name) { table.stage(name); };
   if (!command.restart && !given.mesh.adapt) {
     RunOptions before = options;
     if (command.quiet) before.progress = nullptr;

@@ -115,17 +115,26 @@ std::string discretisation_line(const Result& result) {
 
 }  // namespace
 
+void ProgressTable::head() {
+  if (headed_) return;
+  std::cout << coloured(terminal_, Colour::grey,
+                        format("%4s %-10s %7s %6s", "step", "method", "contact", "CG") +
+                            (terminal_.width >= 90 ? format(" %8s", "r") : "") +
+                            format(" %7s %7s %7s %7s %7s %8s", "equil.", "penetr.", "frict.", "worst",
+                                   "seconds", "left"))
+            << "\n";
+  headed_ = true;
+}
+
+void ProgressTable::stage(const std::string& name) {
+  head();
+  std::cout << coloured(terminal_, Colour::grey, printable(name)) << "\n" << std::flush;
+  worst_ = 0.0;
+}
+
 void ProgressTable::operator()(const ProgressStep& step) {
   const bool wide = terminal_.width >= 90;
-  if (!headed_) {
-    std::cout << coloured(terminal_, Colour::grey,
-                          format("%4s %-10s %7s %6s", "step", "method", "contact", "CG") +
-                              (wide ? format(" %8s", "r") : "") +
-                              format(" %7s %7s %7s %7s %7s %8s", "equil.", "penetr.", "frict.", "worst",
-                                     "seconds", "left"))
-              << "\n";
-    headed_ = true;
-  }
+  head();
   const Certificate& c = step.certificate;
   const double worst = c.worst();
   std::cout << format("%4d %-10s %7lld %6lld", step.outer, step.phase.c_str(),
@@ -185,6 +194,7 @@ std::string first_words(Status status) {
 std::string summary(const Result& result, const RunFigures& figures, const Model& model, int dim) {
   const Scales scales = scales_of(result);
   std::string text = first_words(result.status) + result.message + "\n";
+  for (const std::string& warning : result.warnings) text += "  warning       " + warning + "\n";
   text +=
       "  size          " + count(result.unknowns) + " unknowns, " + count(result.elements) + " elements\n";
   text += "  iterations    " + count(result.outer_iterations) + " outer, " +
@@ -232,7 +242,6 @@ std::string summary(const Result& result, const RunFigures& figures, const Model
             vector_text(result.probe[i], dim) + "\n";
   }
   text += discretisation_line(result);
-  for (const std::string& warning : result.warnings) text += "  warning       " + warning + "\n";
   const Certificate& c = result.certificate;
   text += "  certificate   equilibrium " + residual_text(c.equilibrium) + ", penetration " +
           residual_text(c.penetration) + ", tension " + residual_text(c.tension) + ", complementarity " +

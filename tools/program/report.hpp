@@ -17,8 +17,11 @@ class ProgressTable {
  public:
   ProgressTable(const Terminal& terminal, double tolerance) : terminal_(terminal), tolerance_(tolerance) {}
   void operator()(const ProgressStep& step);
+  /// As RunOptions::stage.
+  void stage(const std::string& name);
 
  private:
+  void head();
   std::string left(const ProgressStep& step) const;
 
   Terminal terminal_;

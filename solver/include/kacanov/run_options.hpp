@@ -33,6 +33,10 @@ struct RunOptions {
   /// Called on rank 0 with what begins now, in a few words: "setting the solver up"; may be empty.
   std::function<void(const std::string&)> phase;
 
+  /// Called on rank 0 where one of several load steps begins, and where an obstacle is pushed to: "load step
+  /// 2 of 4 (factor 0.5)"; may be empty.
+  std::function<void(const std::string&)> stage;
+
   /// Asked on every rank every few operator applications (it must not communicate); the first rank that says
   /// yes ends the run of all with the state after the last whole outer step and Status::interrupted. Empty:
   /// never.
