@@ -47,8 +47,8 @@ struct RunOptions {
   std::function<bool()> checkpoint_due;
   /// Where to go on from; on rank 0, of the same problem.
   const Checkpoint* start = nullptr;
-  /// The same body solved on a coarser mesh, to start from; the same on every rank. `start` goes before it. One
-  /// to begin with, or one of every load step, which then begins with its own (theory: nested).
+  /// The same body solved on a coarser mesh, to start from; the same on every rank. `start` goes before it.
+  /// One to begin with, or one of every load step, which then begins with its own (theory: nested).
   std::span<const CoarseSolution> coarse = {};
   /// Called on all ranks with the end of every load step that has converged but the last one; the part is
   /// in the user's units then, the result has the lines of the load steps so far. Empty: never.
