@@ -76,7 +76,8 @@ TEST_CASE("what is wrong on the first process is said on all, and one process st
   const MPI_Comm world = MPI_COMM_WORLD;
   const Run wrong(rank == 0 ? R"({"mesh": 3, "material": [], "boundary": []})" : block, &world);
   CHECK(wrong.code == KACANOV_ERROR_CASE);
-  CHECK(wrong.message.find("mesh: ") == 0);
+  CHECK(wrong.message.find("mesh: expected an object") != std::string::npos);
+  CHECK(wrong.message.find("material: expected at least one") != std::string::npos);
   int last = rank == ranks - 1 ? 1 : 0;
   const Run stopped(
       block, &world, [](void* yes) { return *static_cast<int*>(yes); }, &last);
