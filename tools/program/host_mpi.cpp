@@ -54,8 +54,8 @@ class KeptSignals {
   std::vector<std::optional<struct sigaction>> actions_;
 };
 
-pid_t started_in = 0;         // by us; 0: not
-MpiFolder* folder = nullptr;  // not of a child after fork(), which ends as well
+pid_t started_in = 0;                 // by us; 0: not
+MpiFolder* session_folder = nullptr;  // not of a child after fork(), which ends as well
 
 }  // namespace
 
@@ -70,7 +70,7 @@ bool start_host_mpi() {
   // What MPI and its settings leave there would be taken by the host's children for their own.
   const std::set<std::string> before = variables();
   const KeptSignals signals;
-  folder = new MpiFolder;
+  session_folder = new MpiFolder;
   set_mpi_environment();
   int provided = 0;
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided);
@@ -85,7 +85,7 @@ void end_host_mpi() {
   int ended = 0;
   MPI_Finalized(&ended);
   if (ended == 0) MPI_Finalize();
-  delete std::exchange(folder, nullptr);
+  delete std::exchange(session_folder, nullptr);
 }
 
 }  // namespace kacanov
