@@ -7,7 +7,7 @@ endif()
 foreach(area case dolfinx notebooks operator own_law petsc plot steps)
   add_test(NAME python_${area} COMMAND "${PYTHON_EXECUTABLE}" -B -m unittest test_${area}
     WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}/python/tests")
-  kacanov_test_properties(python_${area} 2)
+  kacanov_test_properties(python_${area} 1)
   get_test_property(python_${area} ENVIRONMENT environment)
   set_tests_properties(python_${area} PROPERTIES LABELS python
     ENVIRONMENT "${environment};PYTHONPATH=${PROJECT_BINARY_DIR}/python:${petsc4py};KACANOV_PROGRAM=$<TARGET_FILE:kacanov>")
