@@ -249,7 +249,7 @@ TEST_CASE("divided as another operator: the same answers, whatever the precision
       for (const int threads : {1, 3}) check(body, like, {threads, like.instruction_set()});
     });
   });
-  auto mesh = meshes::box(ElementType::tet4, {36, 18, 18}, {2, 1, 1});
+  auto mesh = meshes::box(ElementType::tet4, {24, 12, 12}, {2, 1, 1});
   meshes::jitter(mesh, 0.1, 33);
   meshes::shuffle(mesh, 34);
   const auto owned = test::with_every_law(std::move(mesh), 35);

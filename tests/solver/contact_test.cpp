@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "../sanitized.hpp"
 #include "contact/traces.hpp"
 #include "support.hpp"
 
@@ -192,7 +193,8 @@ TEST_CASE("Coulomb: a run cut short says that its bound still moves") {
   CHECK(mentions(run.result().message, "Coulomb's bound still moves"));
 }
 
-TEST_CASE("Coulomb friction by Newton steps alone: no retreat to ADMM, and its answer") {
+TEST_CASE("Coulomb friction by Newton steps alone: no retreat to ADMM, and its answer" *
+          doctest::skip(sanitized)) {
   Model model = beam(2, elastic_law(1.0, 0.3), 0.05);
   model.solver.tolerance = 1e-7;
   std::ptrdiff_t retreats = 0;
@@ -217,7 +219,8 @@ TEST_CASE("Coulomb friction by Newton steps alone: no retreat to ADMM, and its a
   CHECK(retreats == 0);
 }
 
-TEST_CASE("friction far beyond what a yielding body carries does not throw it about") {
+TEST_CASE("friction far beyond what a yielding body carries does not throw it about" *
+          doctest::skip(sanitized)) {
   // Moved along its obstacle by its top; to slip, the bottom would have to stretch the body by its e⁶⁵-fold
   // yield strain.
   Model model;

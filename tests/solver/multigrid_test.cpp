@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include <kacanov/operator.hpp>
+#include "../sanitized.hpp"
 #include "amg/part_multigrid.hpp"
 #include "multigrid/aggregate_motions.hpp"
 #include "multigrid/aggregation.hpp"
@@ -251,7 +252,8 @@ TEST_CASE("a level is symmetric, and the next one is its Galerkin matrix, on any
   CHECK(dot(ac, c, ac.size()) == doctest::Approx(dot(ax, p, ax.size())).epsilon(1e-12));
 }
 
-TEST_CASE("iterations hardly depend on the mesh: size, element, stretch, contrast") {
+TEST_CASE("iterations hardly depend on the mesh: size, element, stretch, contrast" *
+          doctest::skip(sanitized)) {
   for (const auto type : {ElementType::tet4, ElementType::hex8, ElementType::tri3}) {
     CAPTURE(static_cast<int>(type));
     const int fine = type == ElementType::tri3 ? 40 : 12;

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include <kacanov/scatterer.hpp>
+#include "../sanitized.hpp"
 #include "linear/space.hpp"
 #include "preconditioners.hpp"
 #include "support.hpp"
@@ -226,7 +227,7 @@ TEST_CASE("multigrid over the ranks is symmetric, positive definite and consiste
   }
 }
 
-TEST_CASE("the spectrum does not depend on the partition") {
+TEST_CASE("the spectrum does not depend on the partition" * doctest::skip(sanitized)) {
   for (const int dim : {2, 3}) {
     const Problem problem = beam_problem(dim, dim == 2 ? 8 : 3, 0.01);
     SolverOptions options;
