@@ -8,6 +8,10 @@ add_library(kacanov_program_runner OBJECT tools/program_runner.cpp)
 target_compile_features(kacanov_program_runner PUBLIC cxx_std_20)
 target_link_libraries(kacanov_program_runner PUBLIC nlohmann_json::nlohmann_json kacanov_warnings)
 target_compile_definitions(kacanov_program_runner PRIVATE KACANOV_PROGRAM="$<TARGET_FILE:kacanov>")
+find_package(ZLIB REQUIRED)
+add_library(kacanov_png_writer OBJECT tools/png_writer.cpp)
+target_compile_features(kacanov_png_writer PUBLIC cxx_std_20)
+target_link_libraries(kacanov_png_writer PUBLIC ZLIB::ZLIB PRIVATE kacanov_warnings)
 # The program as its users start it. Most runs are of one rank, and ranks that wait give way: two tests at a time take
 # two thirds of the time that they take one after the other.
 foreach(area conditions decks errors failures files memory meshes obstacles partition restart runs series signals temperature)
@@ -15,6 +19,7 @@ foreach(area conditions decks errors failures files memory meshes obstacles part
 endforeach()
 kacanov_test(program_warm_plate IN program
   SOURCES tools/program_warm_plate_test.cpp LIBRARIES kacanov_program_runner)
+target_link_libraries(test_program PRIVATE kacanov_png_writer)
 kacanov_test(program_crafted IN program
   SOURCES tools/program_crafted_test.cpp
   LIBRARIES kacanov_program_runner kacanov_program kacanov_solver_internal)
@@ -90,7 +95,8 @@ kacanov_test(deck SOURCES tools/deck_mesh_test.cpp LIBRARIES kacanov_formats)
 
 kacanov_test(memory_model NUMBERS SOURCES tools/memory_model_test.cpp LIBRARIES kacanov_program)
 
-kacanov_test(files SOURCES tools/control_group_test.cpp tools/mapped_file_test.cpp LIBRARIES kacanov_program)
+kacanov_test(files SOURCES tools/control_group_test.cpp tools/mapped_file_test.cpp tools/png_heights_test.cpp
+  LIBRARIES kacanov_program kacanov_formats kacanov_png_writer)
 
 kacanov_test(terminal SOURCES tools/terminal_test.cpp LIBRARIES kacanov_program)
 

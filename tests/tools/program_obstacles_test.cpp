@@ -10,6 +10,7 @@
 #include <sstream>
 #include <vector>
 
+#include "png_writer.hpp"
 #include "program_runner.hpp"
 
 using namespace kacanov::testing;
@@ -108,6 +109,7 @@ TEST_CASE("every kind of obstacle: run on one rank or two, and verified") {
   place.put("ball.msh", gmsh_facets(cap(6)));
   place.put("heights.csv", "# x ->\n0.00, -0.01, 0\n0, 0.002, 0.001\n-1e-3; 0 +0.001\n");
   place.put("heights.pgm", "P2\n# two by three\n2 3\n10\n0 5\n10 10\n3 4\n");
+  place.put("heights.png", png(2, 3, {0, 500, 999, 1000, 300, 400}, {0, 16, -1, 0}));
   place.put("heights.pbm", "P1\n3 2\n011\n1 0 0\n");
   const std::vector<const char*> obstacles{
       ball,
@@ -123,6 +125,7 @@ TEST_CASE("every kind of obstacle: run on one rank or two, and verified") {
       R"({"surface": {"file": "ball.msh", "group": "tool"}})",
       R"({"height_map": {"file": "heights.csv", "lower": [0, 0], "upper": [2, 1]}})",
       R"({"height_map": {"file": "heights.pgm", "lower": [-1, 0.1], "upper": [2, 1], "scale": 0.01, "offset": -0.002}})",
+      R"({"height_map": {"file": "heights.png", "lower": [-1, 0.1], "upper": [2, 1], "scale": 0.6, "offset": -0.002}})",
       R"({"height_map": {"file": "heights.pbm", "lower": [0, 0], "upper": [2, 1], "scale": -0.004}})"};
   int ranks = 1;
   for (const char* obstacle : obstacles) {
@@ -280,7 +283,7 @@ TEST_CASE("a bad file of an obstacle is refused by its key, name and line") {
       {"height_map", "short.pgm", "short.pgm: byte 11: the file ends before the last value"},
       {"height_map", "large.pgm", "large.pgm: byte 16: expected a value up to 3, got 4"},
       {"height_map", "huge.pgm", "expected at most 2^28 values, got 4294967296"},
-      {"height_map", "picture.png", "expected a PGM, PBM or CSV file, got a PNG"},
+      {"height_map", "picture.png", "picture.png: byte 0: expected the eight bytes that a PNG begins with"},
   };
   const auto refused = [&](const nlohmann::json& obstacle, const std::string& key,
                            const std::string& message) {

@@ -172,7 +172,7 @@ constexpr ObstacleEntry obstacle_entries[] = {
     {"height_map", "heights over a rectangle; 3D only",
      [] {
        const ObstacleFile standard;
-       return KeySet{{must("file", Text{}, "CSV, PGM or PBM"),
+       return KeySet{{must("file", Text{}, "CSV, PNG, PGM or PBM"),
                       must("lower", plane_corner(), "x and y of the corner"),
                       must("upper", plane_corner(), "x and y of the opposite corner"),
                       may("scale", Number{}, "height of the value 1", standard.scale),

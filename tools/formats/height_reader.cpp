@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Height maps: numbers on a grid from CSV, PBM and PGM files.
+// Height maps: numbers on a grid from CSV, PBM, PGM and PNG files.
 #include "formats/height_reader.hpp"
 
 #include <charconv>
@@ -7,12 +7,11 @@
 #include <kacanov/error.hpp>
 #include "formats/gmsh_cursor.hpp"
 #include "formats/mapped_file.hpp"
+#include "formats/png_heights.hpp"
 #include "formats/words.hpp"
 
 namespace kacanov {
 namespace {
-
-constexpr std::int64_t most_values = std::int64_t{1} << 28;
 
 [[noreturn]] void too_few(const std::string& path, const NumberGrid& grid) {
   throw InputError(path + ": expected at least 2 × 2 heights, got " + std::to_string(grid.rows) + " × " +
@@ -73,7 +72,7 @@ class NetPicture {
     const auto values = static_cast<std::int64_t>(grid.columns) * static_cast<std::int64_t>(grid.rows);
     // Said of rows without columns before any is looked for: there may be two thousand million.
     if (grid.rows < 2 || grid.columns < 2) too_few(path_, grid);
-    if (values > most_values) fail("expected at most 2^28 values, got " + std::to_string(values));
+    if (values > NumberGrid::most_values) fail("expected at most 2^28 values, got " + std::to_string(values));
     const int most = bits ? 1 : number("the largest value");
     if (most < 1 || most > 65535)
       fail("expected a largest value from 1 to 65535, got " + std::to_string(most));
@@ -155,9 +154,9 @@ class NetPicture {
 NumberGrid parse_heights(const std::string& path, std::string_view bytes) {
   const bool picture = bytes.size() > 2 && bytes[0] == 'P' &&
                        std::string_view("1245").find(bytes[1]) != std::string_view::npos;
-  if (!picture && bytes.starts_with("\x89PNG"))
-    throw InputError(path + ": expected a PGM, PBM or CSV file, got a PNG: pngtopnm makes a PGM of it");
-  const NumberGrid grid = picture ? NetPicture(path, bytes).parse() : CsvText(path, bytes).parse();
+  const NumberGrid grid = picture         ? NetPicture(path, bytes).parse()
+                          : is_png(bytes) ? parse_png(path, bytes)
+                                          : CsvText(path, bytes).parse();
   if (grid.rows < 2 || grid.columns < 2) too_few(path, grid);
   return grid;
 }

@@ -1,23 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Height maps: numbers on a grid from CSV, PBM and PGM files.
+// Height maps: numbers on a grid from CSV, PBM, PGM and PNG files.
 #pragma once
 
 #include <string>
 #include <string_view>
-#include <vector>
+
+#include "formats/number_grid.hpp"
 
 namespace kacanov {
 
-/// The first row is the upper one of a picture.
-struct NumberGrid {
-  std::size_t rows = 0, columns = 0;
-  std::vector<double> values;
-};
-
 /// `bytes` is the whole file, `path` its name in messages. CSV: numbers as they are, between commas,
 /// semicolons or blanks; lines that begin with # do not count. PGM (P2, P5): 0 black to 1 white. PBM (P1,
-/// P4): its digits, 1 for black. Throws InputError naming the line, or the place of the value, of what is
-/// wrong.
+/// P4): its digits, 1 for black. PNG: as parse_png. Throws InputError naming the line, or the place of the
+/// value, of what is wrong.
 NumberGrid parse_heights(const std::string& path, std::string_view bytes);
 NumberGrid read_heights(const std::string& path);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hands compressed blocks of VTK files to zlib.
+// Hands what VTK files and PNG have compressed to zlib.
 #include "formats/inflate.hpp"
 
 #include <zlib.h>

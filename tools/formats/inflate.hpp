@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Unpacks zlib's streams (RFC 1950, 1951): the compressed blocks of VTK files.
+// Unpacks zlib's streams (RFC 1950, 1951): the compressed blocks of VTK files, the pixels of PNG.
 #pragma once
 
 #include <span>

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "verify/file.hpp"
+#include "verify/png.hpp"
 
 namespace kacanov::verify {
 namespace {
@@ -76,7 +77,9 @@ bool starts_with_dollar(const std::filesystem::path& file) { return whole(file).
 Face read_height_map(const nlohmann::json& given, const std::filesystem::path& folder) {
   const std::string text = whole(folder / given.at("file").get<std::string>());
   const bool image = text.size() > 2 && text[0] == 'P' && std::strchr("1245", text[1]) != nullptr;
-  const Rows rows = image ? picture(text) : comma_separated(text);
+  const Rows rows = image                         ? picture(text)
+                    : text.starts_with("\x89PNG") ? png_rows(text)
+                                                  : comma_separated(text);
   const Real scale = given.value("scale", 1.0), offset = given.value("offset", 0.0);
   const bool above = given.value("body", "above") == "above";
   std::array<Real, 2> lower{}, upper{};

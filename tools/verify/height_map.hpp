@@ -6,7 +6,7 @@
 
 namespace kacanov::verify {
 
-/// Of a case's `height_map`: CSV, PBM, PGM.
+/// Of a case's `height_map`: CSV, PBM, PGM, PNG.
 Face read_height_map(const nlohmann::json& given, const std::filesystem::path& folder);
 
 /// Whether a file is Gmsh's.
