@@ -280,6 +280,11 @@ TEST_CASE("meshes keep their groups and numbers from one format to another") {
         std::string::npos);
   CHECK(place.run("run b.msh").error.find("b.msh: this is a mesh, expected a case; kacanov init") !=
         std::string::npos);
+  place.put("part.geo", "// a block\nSetFactory(\"OpenCASCADE\");\nBox(1) = {0, 0, 0, 1, 1, 1};\n");
+  CHECK(place.run("run part.geo").error.find("part.geo: this is a geometry, expected a case: gmsh -3") !=
+        std::string::npos);
+  CHECK(place.run("init part.geo").error.find("part.geo: this is a geometry, not yet a mesh: gmsh -3") !=
+        std::string::npos);
   CHECK(contents(place.path("c.inp")).find("\"Half way\"") != std::string::npos);
   CHECK(place.has("e.vtu"));
   CHECK(place.run("convert a.inp a.stl")

@@ -333,6 +333,10 @@ Case parse_case(const CaseText& text, std::span<const std::string> overrides) {
     throw InputError(text.path + ": this is a deck, expected a case; kacanov convert makes one of it");
   if (begin != std::string::npos && text.text.compare(begin, 11, "$MeshFormat") == 0)
     throw InputError(text.path + ": this is a mesh, expected a case; kacanov init writes one for it");
+  if (text.path.ends_with(".geo"))
+    throw InputError(text.path +
+                     ": this is a geometry, expected a case: gmsh -3 makes a mesh of it (-2 in the plane), "
+                     "and kacanov init a case for the mesh");
   nlohmann::json document = parse_json(text.text, text.path);
   for (const std::string& assignment : overrides) apply_override(document, assignment);
   const std::filesystem::path file(text.path);

@@ -15,6 +15,8 @@ namespace kacanov {
 MeshFormat format_of(const std::string& path, std::string_view bytes) {
   bytes.remove_prefix(std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size()));
   const auto refuse = [&](const char* what) { throw InputError(path + ": " + what); };
+  if (path.ends_with(".geo"))
+    refuse("this is a geometry, not yet a mesh: gmsh -3 makes the mesh of it (-2 in the plane), a .msh");
   if (bytes.starts_with('*')) return MeshFormat::deck;
   if (bytes.starts_with('<')) return MeshFormat::vtu;
   // Fluent writes its sections as lists in brackets, Mechanical APDL as commands.
