@@ -2,19 +2,12 @@
 // Python while a case is solved: its callbacks, its signals, its threads.
 #include "host.hpp"
 
-#include <atomic>
-#include <mutex>
-#include <thread>
-
 #include "errors.hpp"
 
 namespace py = pybind11;
 
 namespace kacanov::python {
 namespace {
-
-std::timed_mutex one_run;
-std::atomic<std::thread::id> runner;
 
 void take_signals_of_python() {
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
@@ -71,18 +64,12 @@ void Host::look_once_more() {
 }
 
 void refuse_within_callback() {
-  if (runner == std::this_thread::get_id())
-    throw CodeError(KACANOV_ERROR_STATE, "solve: called from a callback of a solve");
+  if (one_run.is_mine()) throw CodeError(KACANOV_ERROR_STATE, "solve: called from a callback of a solve");
 }
 
-OneAtATime::OneAtATime() {
+std::unique_lock<RunMutex> begin_run() {
   while (!try_for_a_moment()) take_signals_of_python();
-  runner = std::this_thread::get_id();
-}
-
-OneAtATime::~OneAtATime() {
-  runner = std::thread::id();
-  one_run.unlock();
+  return {one_run, std::adopt_lock};
 }
 
 }  // namespace kacanov::python

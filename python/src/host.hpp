@@ -6,8 +6,10 @@
 
 #include <chrono>
 #include <exception>
+#include <mutex>
 
 #include <kacanov/run_options.hpp>
+#include "program/one_run.hpp"
 #include "program/plain_locale.hpp"
 
 namespace kacanov::python {
@@ -41,14 +43,8 @@ class Host {
 /// Throws StateError where this thread is at a solve already, whose callback asks for another one.
 void refuse_within_callback();
 
-/// The libraries beneath know one run a process: others wait, and may be interrupted meanwhile. With Python's
-/// lock, which is let go while waiting.
-class OneAtATime {
- public:
-  OneAtATime();
-  ~OneAtATime();
-  OneAtATime(const OneAtATime&) = delete;
-  OneAtATime& operator=(const OneAtATime&) = delete;
-};
+/// Waits until nobody else is at a run, and may be interrupted meanwhile. With Python's lock, which is let go
+/// while waiting.
+std::unique_lock<RunMutex> begin_run();
 
 }  // namespace kacanov::python

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <memory>
+#include <mutex>
 #include <optional>
 
 #include <kacanov/error.hpp>
@@ -133,10 +134,10 @@ py::tuple run_case(const py::dict& arguments) {
   const PlainLocale locale;
   Host host(arguments["progress"], arguments["stop"], locale);
   Given given;
-  std::optional<OneAtATime> alone;
+  std::unique_lock<RunMutex> alone;
   std::exception_ptr raised = caught([&] {
     given = read(arguments);
-    alone.emplace();
+    alone = begin_run();
   });
   if (address == 0 && raised) std::rethrow_exception(raised);
   // Not ended by atexit, which comes before what PETSc, started later, does at its end.

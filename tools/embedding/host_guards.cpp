@@ -4,10 +4,7 @@
 
 #include <mpi.h>
 
-#include <atomic>
 #include <cstdlib>
-#include <mutex>
-#include <thread>
 
 #include <kacanov/error.hpp>
 #include "c/laws.hpp"
@@ -16,28 +13,18 @@
 namespace kacanov::embedding {
 namespace {
 
-std::mutex one_run;
-std::atomic<std::thread::id> runner;
-
 /// At the process's end; a run that another thread is still at would lose MPI beneath its feet.
 void end_mpi() {
-  if (!one_run.try_lock()) return;
-  end_host_mpi();
-  one_run.unlock();
+  const std::unique_lock alone(one_run, std::try_to_lock);
+  if (alone) end_host_mpi();
 }
 
 }  // namespace
 
-OneAtATime::OneAtATime() {
-  if (runner == std::this_thread::get_id())
+std::unique_lock<RunMutex> begin_run() {
+  if (one_run.is_mine())
     throw c_api::Fault(KACANOV_ERROR_STATE, "kacanov_solve: called from a callback of a solve");
-  one_run.lock();
-  runner = std::this_thread::get_id();
-}
-
-OneAtATime::~OneAtATime() {
-  runner = std::thread::id();
-  one_run.unlock();
+  return std::unique_lock(one_run);
 }
 
 void require_mpi() {

@@ -72,7 +72,7 @@ void tell(const kacanov_solve_options& host, const ProgressStep& step) {
 }
 
 std::unique_ptr<kacanov_solution> solve(const char* text, const kacanov_solve_options& options) {
-  const OneAtATime alone;
+  const std::unique_lock alone = begin_run();
   const PlainLocale locale;
   require_mpi();
   const auto* given = static_cast<const MPI_Comm*>(options.communicator);
