@@ -17,6 +17,15 @@
 
 using Vector = dealii::Vector<double>;
 
+/// How a unique_ptr lets go of a handle.
+template <auto free>
+struct FreeWith {
+  template <class Handle>
+  void operator()(Handle* handle) const {
+    free(handle);
+  }
+};
+
 /// B(g).
 class Operator {
  public:
@@ -41,10 +50,7 @@ class Operator {
   kacanov_operator* get() const { return op_.get(); }
 
  private:
-  struct Destroy {
-    void operator()(kacanov_operator* handle) const { kacanov_destroy(handle); }
-  };
-  std::unique_ptr<kacanov_operator, Destroy> op_;
+  std::unique_ptr<kacanov_operator, FreeWith<kacanov_destroy>> op_;
 };
 
 /// Near the inverse of B(g) with its constraints.
@@ -61,10 +67,7 @@ class Multigrid {
   }
 
  private:
-  struct Destroy {
-    void operator()(kacanov_multigrid* handle) const { kacanov_multigrid_destroy(handle); }
-  };
-  std::unique_ptr<kacanov_multigrid, Destroy> multigrid_;
+  std::unique_ptr<kacanov_multigrid, FreeWith<kacanov_multigrid_destroy>> multigrid_;
 };
 
 /// The operator as deal.II's own matrix of n rows, condensed by deal.II's constraints where there are some.

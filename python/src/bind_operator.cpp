@@ -29,18 +29,12 @@ std::shared_ptr<Operator> make_operator(const py::dict& fields) {
 }
 
 py::dict information(Operator& op) {
+  using namespace py::literals;
   const kacanov_information all = op.information();
-  py::dict dict;
-  dict["unknowns"] = all.unknowns;
-  dict["nodes"] = all.nodes;
-  dict["elements"] = all.elements;
-  dict["dimension"] = all.dimension;
-  dict["points_per_element"] = all.points_per_element;
-  dict["threads"] = all.threads;
-  dict["applications"] = all.applications;
-  dict["bytes"] = all.bytes;
-  dict["instruction_set"] = all.instruction_set;
-  return dict;
+  return py::dict("unknowns"_a = all.unknowns, "nodes"_a = all.nodes, "elements"_a = all.elements,
+                  "dimension"_a = all.dimension, "points_per_element"_a = all.points_per_element,
+                  "threads"_a = all.threads, "applications"_a = all.applications, "bytes"_a = all.bytes,
+                  "instruction_set"_a = all.instruction_set);
 }
 
 std::vector<std::ptrdiff_t> blocks_shape(const Operator& op) {

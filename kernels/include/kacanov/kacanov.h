@@ -321,7 +321,7 @@ typedef struct kacanov_multigrid kacanov_multigrid;
 typedef struct kacanov_multigrid_options {
   size_t struct_size; /* sizeof(kacanov_multigrid_options) */
   double aggregate;   /* nodes of an aggregate of the first coarse level, 4 to 1000; 0: 48. Fewer: somewhat
-                         fewer   iterations, more memory */
+                         fewer iterations, more memory */
 } kacanov_multigrid_options;
 
 /* For what the operator is now; `options` may be null. Costs some ten applications of it, and ten times as
