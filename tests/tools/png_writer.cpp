@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+// PNG files of any kind for tests: filters, packs and sums.
 #include "png_writer.hpp"
 
 #include <zlib.h>
