@@ -167,6 +167,65 @@ TEST_CASE("the inf-sup constant does not fall with the mesh, and would without t
   CHECK(quadratic_fine[0] > 0.5 * quadratic_coarse[0]);
 }
 
+TEST_CASE(
+    "volume by corners: the energy of means round the corners, symmetric, and no more than at the points") {
+  auto mesh = meshes::box(ElementType::tet10, {3, 2, 2}, {1.0, 0.7, 0.8});
+  meshes::jitter(mesh, 0.05, 4);
+  const auto owned = test::with_every_law(std::move(mesh), 5);
+  const Body body = owned.body();
+  const std::size_t n = body.unknowns(), points = body.secant_count();
+  const auto x = test::random_vector(n, 6), z = test::random_vector(n, 7);
+  std::vector<double> g = test::random_vector(points, 8), y(n), w(n), at_points(n), strain(6 * points),
+                      volume(points);
+  for (double& value : g) value = 1.5 + value;
+  reference::apply_by_corners(body, g, x, y);
+  reference::apply_by_corners(body, g, z, w);
+  CHECK(dot(x, w) == doctest::Approx(dot(z, y)).epsilon(1e-12));
+
+  reference::strains(body, x, strain);
+  reference::points(body, {}, volume);
+  std::vector<double> change(body.mesh.node_count(), 0.0), mass(change.size(), 0.0);
+  const Cell& type = cell(ElementType::tet10);
+  double energy = 0.0;
+  for (std::size_t k = 0; k < points; ++k) {
+    const std::size_t e = k / 4;
+    const double* s = &strain[6 * k];
+    const double trace = s[0] + s[1] + s[2];
+    for (std::size_t i = 0; i < 6; ++i) {
+      const double dev = i < 3 ? s[i] - trace / 3.0 : s[i];
+      energy += volume[k] * 2.0 * g[k] * (i < 3 ? 1.0 : 2.0) * dev * dev;
+    }
+    const auto& at = type.points[k % 4];
+    const double share[] = {1.0 - at[0] - at[1] - at[2], at[0], at[1], at[2]};
+    for (std::size_t c = 0; c < 4; ++c) {
+      change[body.mesh.connectivity[10 * e + c]] += volume[k] * share[c] * trace;
+      mass[body.mesh.connectivity[10 * e + c]] += volume[k] * share[c] / body.law(e).bulk;
+    }
+  }
+  for (std::size_t c = 0; c < mass.size(); ++c)
+    if (mass[c] > 0.0) energy += change[c] * change[c] / mass[c];
+  CHECK(dot(x, y) == doctest::Approx(energy).epsilon(1e-12));
+
+  reference::apply(body, g, x, at_points);
+  CHECK(dot(x, y) < 0.9 * dot(x, at_points));
+}
+
+TEST_CASE("volume by corners: constant strain has the forces that it has at the points, rigid motions none") {
+  auto mesh = meshes::box(ElementType::tet10, {2, 2, 1}, {1.0, 0.7, 0.8});
+  meshes::jitter(mesh, 0.05, 4);
+  const auto owned = test::with_one_law(std::move(mesh), elastic_law(2.0, 0.3));
+  const Body body = owned.body();
+  const std::vector<double> g(body.secant_count(), 0.01);
+  std::vector<double> expected(body.unknowns()), y(expected.size());
+  const Fields x = linear(body, {{0.02, 0.01, -0.03}, {0.02, -0.01, 0.005}, {0.0, 0.01, 0.04}});
+  reference::apply(body, g, x.u, expected);
+  reference::apply_by_corners(body, g, x.u, y);
+  CHECK(difference(y, expected) < 1e-12);
+  reference::apply_by_corners(
+      body, g, linear(body, {{0.0, 0.01, -0.03}, {-0.01, 0.0, 0.005}, {0.03, -0.005, 0.0}}).u, y);
+  for (const double force : y) CHECK(std::abs(force) < 1e-14);
+}
+
 TEST_CASE("the displacement-pressure form of hexahedra is refused") {
   const test::OwnedBody owned = test::small_body(ElementType::hex8, 3);
   const Body body = owned.body();
