@@ -99,6 +99,7 @@ constexpr Cell make() {
   if constexpr (requires { E::type; }) {
     static_assert(E::Facet::nodes <= static_cast<int>(most_facet_nodes));
     c.abaqus = E::abaqus, c.weight = E::weight, c.mean_dilatation = E::mean_dilatation;
+    c.corner_dilatation = E::corner_dilatation;
     c.facet_place = static_cast<int>(place<typename E::Facet>());
   }
   return c;

@@ -10,7 +10,7 @@ struct Hex8 {
   static constexpr ElementType type = ElementType::hex8;
   static constexpr std::string_view name = "hex8", abaqus = "C3D8", basix = "hexahedron";
   static constexpr int gmsh = 5, vtk = 12, dim = 3, order = 1, nodes = 8, corners = 8, points = 8;
-  static constexpr bool simplex = false, mean_dilatation = true;
+  static constexpr bool simplex = false, mean_dilatation = true, corner_dilatation = false;
   /// Corners of the reference element [-1, 1]³ in node order.
   static constexpr std::array<std::array<int, 3>, 8> corner{
       {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}}};

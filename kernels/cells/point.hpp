@@ -125,7 +125,7 @@ std::array<Point<E>, E::points> points_of(const Nodal<E>& x, bool mean_dilatatio
                                           PlaneState plane = PlaneState::strain) {
   std::array<Point<E>, E::points> points;
   for (std::size_t q = 0; q < E::points; ++q) points[q] = Point<E>(x, q, plane);
-  if (!mean_dilatation) return points;
+  if (!mean_dilatation || !E::mean_dilatation) return points;
   double volume = 0.0;
   for (const Point<E>& point : points) volume += point.volume;
   for (int a = 0; a < E::nodes; ++a)

@@ -10,7 +10,7 @@ struct Quad4 {
   static constexpr ElementType type = ElementType::quad4;
   static constexpr std::string_view name = "quad4", abaqus = "CPE4", basix = "quadrilateral";
   static constexpr int gmsh = 3, vtk = 9, dim = 2, order = 1, nodes = 4, corners = 4, points = 4;
-  static constexpr bool simplex = false, mean_dilatation = true;
+  static constexpr bool simplex = false, mean_dilatation = true, corner_dilatation = false;
   static constexpr std::array<std::array<int, 2>, 4> corner{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
   static constexpr std::array<CellEdge, 4> edge{{{0, 1}, {1, 2}, {2, 3}, {3, 0}}};
   static constexpr std::array<std::int8_t, 4> basix_order{0, 1, 3, 2};

@@ -11,7 +11,7 @@ struct Tet10 {
   static constexpr ElementType type = ElementType::tet10;
   static constexpr std::string_view name = "tet10", abaqus = "C3D10", basix = "tetrahedron";
   static constexpr int gmsh = 11, vtk = 24, dim = 3, order = 2, nodes = 10, corners = 4, points = 4;
-  static constexpr bool simplex = true, mean_dilatation = false;
+  static constexpr bool simplex = true, mean_dilatation = false, corner_dilatation = true;
   static constexpr std::array<CellEdge, 6> edge{
       {{0, 1, 4}, {1, 2, 5}, {2, 0, 6}, {3, 0, 7}, {3, 2, 8}, {3, 1, 9}}};
   /// VTK has the edges 13 and 23 the other way round.

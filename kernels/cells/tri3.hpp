@@ -10,7 +10,7 @@ struct Tri3 {
   static constexpr ElementType type = ElementType::tri3;
   static constexpr std::string_view name = "tri3", abaqus = "CPE3", basix = "triangle";
   static constexpr int gmsh = 2, vtk = 5, dim = 2, order = 1, nodes = 3, corners = 3, points = 1;
-  static constexpr bool simplex = true, mean_dilatation = false;
+  static constexpr bool simplex = true, mean_dilatation = false, corner_dilatation = false;
   static constexpr std::array<CellEdge, 3> edge{{{0, 1}, {1, 2}, {2, 0}}};
   static constexpr std::array<Triple, 1> triangles{{{0, 1, 2}}};
   using Facet = Line2;

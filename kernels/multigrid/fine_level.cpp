@@ -8,6 +8,7 @@
 
 #include "multigrid/largest_eigenvalue.hpp"
 #include "multigrid/rigid_multigrid.hpp"
+#include "operator/corner_sum.hpp"
 #include "operator/threads.hpp"
 #include "simd/node_blocks.hpp"
 
@@ -27,6 +28,8 @@ FineLevel::FineLevel(const MultigridBody& body, const MultigridOptions& options)
       op_(make_operator(body, {options.threads, options.instruction_set, body.node_map->shared})),
       sum_(*body.node_map, static_cast<int>(body.dim())) {
   body_.like = nullptr;  // it may go
+  if (body.node_map->ranks > 1 && !corner_moduli(body.body).empty())
+    op_.set_corner_sum(CornerSum<float>(corner_means(body.body), *body.node_map));
 }
 
 void FineLevel::build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space) {

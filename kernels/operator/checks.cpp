@@ -37,8 +37,11 @@ void check_laws(const Body& body) {
     if (law >= body.laws.size())
       throw std::invalid_argument("law_of_element: there is no law " + std::to_string(law));
   for (const Law& law : body.laws)
-    if (law.mean_dilatation && !cell(body.mesh.type).mean_dilatation)
-      throw std::invalid_argument("laws: mean dilatation (B-bar) is for " + bbar_names() + " only");
+    if (law.mean_dilatation && !cell(body.mesh.type).mean_dilatation &&
+        !cell(body.mesh.type).corner_dilatation)
+      throw std::invalid_argument(
+          "laws: mean dilatation is for " +
+          element_names([](const Cell& c) { return c.mean_dilatation || c.corner_dilatation; }) + " only");
   for (const Law& law : body.laws)
     if (law.mean_dilatation && body.mesh.plane == PlaneState::stress)
       throw std::invalid_argument("laws: mean dilatation (B-bar) is not for plane stress");

@@ -7,6 +7,8 @@
 #include <map>
 #include <tuple>
 
+#include "operator/corners.hpp"
+
 namespace kacanov {
 namespace {
 
@@ -274,6 +276,7 @@ std::size_t Layout::bytes() const noexcept {
 
 Layout make_layout(const Body& body, Division division, int lanes, int threads,
                    std::span<const std::int32_t> early) {
+  separate_moduli(body, division);
   Builder builder{body, division.units, division.rank, {}, {}};
   Layout& layout = builder.layout;
   layout.lanes = lanes;

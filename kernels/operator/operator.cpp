@@ -3,6 +3,7 @@
 #include <kacanov/operator.hpp>
 
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "operator/checks.hpp"
@@ -56,6 +57,12 @@ BasicOperator<Real>& BasicOperator<Real>::operator=(BasicOperator&&) noexcept = 
 template <class Real>
 std::size_t BasicOperator<Real>::unknowns() const noexcept {
   return data_->unknowns;
+}
+
+template <class Real>
+void BasicOperator<Real>::set_corner_sum(std::function<void(std::span<Real>)> sum) {
+  data_->sum_corners = std::move(sum);
+  data_->weigh_corners();
 }
 
 template <class Real>
@@ -267,7 +274,9 @@ std::string_view BasicOperator<Real>::instruction_set() const noexcept {
 template <class Real>
 std::size_t BasicOperator<Real>::bytes() const noexcept {
   const Data& data = *data_;
-  std::size_t sum = data.layout.bytes() +
+  std::size_t sum = data.layout.bytes() + data.corners.bytes() +
+                    (data.weight.size() + data.change.size() + data.mean.size()) * sizeof(Real) +
+                    (data.corner_bulk.size() + data.corner_volume.size()) * sizeof(double) +
                     (data.coordinates.size() + data.secant.size() + data.tangent_secant.size() +
                      data.strain.size() + data.free_strain.size() + data.outside_secant.size() +
                      data.outside_slope.size() + data.outside_energy.size()) *

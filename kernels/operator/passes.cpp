@@ -64,6 +64,14 @@ BasicOperator<Real>::Data::Data(const Body& body, const OperatorOptions& options
       std::fill(secant.data() + from, secant.data() + to, static_cast<Real>(views[group.law].shear));
     }
   }
+  if (const CornerMeans means = corner_means(body); means.size() > 0) {
+    corners = make_corner_layout(body, means, layout);
+    std::vector<double> none(means.size());
+    corner_volume.resize(means.size());
+    reference::corner_changes(body, means, std::vector<double>(unknowns, 0.0), none, corner_volume);
+    for (std::size_t i = 0; i < means.size(); ++i) corner_bulk.push_back(means.bulk(i));
+    weigh_corners();
+  }
   scratch.resize(threads);
   reserve_scratch(1);
   start_team(threads);
@@ -129,8 +137,8 @@ void BasicOperator<Real>::Data::add_interface(Real* y, int vectors, std::size_t 
 
 template <class Real>
 template <class LoopsOnBlock>
-double BasicOperator<Real>::Data::pass(const Real* x, Real* y, int vectors, const WhenEarly& when_early,
-                                       LoopsOnBlock&& loops) {
+double BasicOperator<Real>::Data::pass(const Real* x, Real* y, int vectors, bool averaged,
+                                       const WhenEarly& when_early, LoopsOnBlock&& loops) {
   reserve_scratch(vectors);
   const std::size_t stride = 4 * std::size_t{layout.largest};
   const std::size_t count = vectors;
@@ -152,6 +160,9 @@ double BasicOperator<Real>::Data::pass(const Real* x, Real* y, int vectors, cons
       for (std::size_t v = 0; v < count; ++v)
         kernels.gather(at, dimension, x + v * unknowns, mine.u.data() + v * stride,
                        mine.f.data() + v * stride);
+      for (std::size_t v = 0; averaged && v < count; ++v)
+        for (const BlockCorner& corner : corners.of(b))
+          mine.u[v * stride + 4 * corner.node + 3] = mean[v * corners.entries + corner.entry];
       sum += loops(at, mine.u.data(), mine.f.data(), stride);
       for (std::size_t v = 0; y != nullptr && v < count; ++v)
         kernels.scatter(at, dimension, mine.f.data() + v * stride, y + v * unknowns,
@@ -184,6 +195,50 @@ double BasicOperator<Real>::Data::pass(const Real* x, Real* y, int vectors, cons
 }
 
 template <class Real>
+void BasicOperator<Real>::Data::weigh_corners() {
+  weight.assign(corner_volume.begin(), corner_volume.end());
+  if (sum_corners) sum_corners(weight);
+  for (Real& w : weight) w = Real(1) / w;
+}
+
+template <class Real>
+double BasicOperator<Real>::Data::find_means(const Real* x, int vectors) {
+  reserve_scratch(vectors);
+  const std::size_t stride = 4 * std::size_t{layout.largest}, count = vectors;
+  change.assign(corners.places * count, Real(0));
+  mean.resize(corners.entries * count);
+  in_team(threads, [&](int thread) {
+    const std::size_t t = thread;
+    Scratch& mine = scratch[t];
+    for (std::size_t b = layout.share[t]; b < layout.share[t + 1]; ++b) {
+      if (corners.of(b).empty()) continue;
+      const simd::Block<Real> block_here = block(b);
+      for (std::size_t v = 0; v < count; ++v)
+        kernels.gather(block_here, 3, x + v * unknowns, mine.u.data() + v * stride,
+                       mine.f.data() + v * stride);
+      kernels.corner_changes(block_here, {mine.u.data(), mine.f.data(), vectors, stride});
+      for (std::size_t v = 0; v < count; ++v)
+        for (const BlockCorner& corner : corners.of(b))
+          change[v * corners.places + corner.place] += mine.f[v * stride + 4 * corner.node + 3];
+    }
+  });
+  double energy = 0.0;
+  for (std::size_t v = 0; v < count; ++v) {
+    const auto all = std::span(change).subspan(v * corners.places, corners.places);
+    for (std::size_t i = 0; i < corners.shared_entry.size(); ++i)
+      for (std::size_t k = corners.shared_first[i]; k < corners.shared_first[i + 1]; ++k)
+        all[corners.shared_entry[i]] += all[corners.shared_place[k]];
+    const auto means = std::span(mean).subspan(v * corners.entries, corners.entries);
+    std::copy_n(all.begin(), means.size(), means.begin());
+    if (sum_corners) sum_corners(means);
+    for (std::size_t i = 0; i < means.size(); ++i) means[i] *= weight[i];
+    for (std::size_t i = 0; v == 0 && i < means.size(); ++i)
+      energy += 0.5 * corner_bulk[i] * static_cast<double>(all[i]) * static_cast<double>(means[i]);
+  }
+  return energy;
+}
+
+template <class Real>
 double BasicOperator<Real>::Data::dots(const simd::Block<Real>& at, const simd::Vectors<Real>& vectors) {
   double sum = 0.0;
   for (std::size_t v = 0; v < static_cast<std::size_t>(vectors.count); ++v)
@@ -194,7 +249,9 @@ double BasicOperator<Real>::Data::dots(const simd::Block<Real>& at, const simd::
 template <class Real>
 double BasicOperator<Real>::Data::apply(const Real* x, Real* y, int vectors, bool with_dot,
                                         const WhenEarly& when_early) {
-  return pass(x, y, vectors, when_early,
+  const bool averaged = corners.entries > 0;
+  if (averaged) find_means(x, vectors);
+  return pass(x, y, vectors, averaged, when_early,
               [&](const simd::Block<Real>& at, const Real* u, Real* f, std::size_t stride) {
                 kernels.apply(at, {u, f, vectors, stride});
                 return with_dot ? dots(at, {u, f, vectors, stride}) : 0.0;
@@ -204,7 +261,9 @@ double BasicOperator<Real>::Data::apply(const Real* x, Real* y, int vectors, boo
 template <class Real>
 double BasicOperator<Real>::Data::apply_tangent(const Real* x, Real* y, int vectors, bool with_dot,
                                                 const WhenEarly& when_early) {
-  return pass(x, y, vectors, when_early,
+  const bool averaged = corners.entries > 0;
+  if (averaged) find_means(x, vectors);
+  return pass(x, y, vectors, averaged, when_early,
               [&](simd::Block<Real> at, const Real* u, Real* f, std::size_t stride) {
                 if (!tangent_secant.empty()) at.secant = tangent_secant.data() + (at.secant - secant.data());
                 kernels.apply_tangent(at, {u, f, vectors, stride});
@@ -233,12 +292,17 @@ double BasicOperator<Real>::Data::nonlinear(const Real* u, Real* f, simd::Nonlin
   } else if (keep.keep_secant) {
     detach_tangent();
   }
-  return pass(u, f, 1, {}, [&](simd::Block<Real> at, const Real* local, Real* forces, std::size_t) {
-    simd::Nonlinear out = keep;
-    at.outside = outside.from(static_cast<std::size_t>(at.secant - secant.data()));
-    kernels.nonlinear(at, local, forces, &out);
-    return out.energy;
-  });
+  // Without forces and energy the deviator alone counts.
+  const bool averaged = corners.entries > 0 && (f != nullptr || keep.sum_energy || outside.energy != nullptr);
+  const double of_volume = averaged ? find_means(u, 1) : 0.0;
+  const double energy =
+      pass(u, f, 1, averaged, {}, [&](simd::Block<Real> at, const Real* local, Real* forces, std::size_t) {
+        simd::Nonlinear out = keep;
+        at.outside = outside.from(static_cast<std::size_t>(at.secant - secant.data()));
+        kernels.nonlinear(at, local, forces, &out);
+        return out.energy;
+      });
+  return of_volume + energy;
 }
 
 template struct BasicOperator<double>::Data;

@@ -10,6 +10,7 @@
 
 #include <kacanov/operator.hpp>
 #include "operator/aligned.hpp"
+#include "operator/corners.hpp"
 #include "operator/layout.hpp"
 #include "simd/instruction_set.hpp"
 
@@ -49,9 +50,17 @@ struct BasicOperator<Real>::Data {
   /// Of the caller's elements × points: as the slots have them, 0 in idle lanes; null where there are none.
   const Real* by_slot(std::span<const double> values, Aligned<Real>& slots) const;
 
+  /// Means of tr ε(x_v) round the corners, from here and from other processes, into `mean`. Returns the
+  /// energy that k0 stores in those of the first vector, this process's share.
+  double find_means(const Real* x, int count);
+  /// Works out `weight`, with what other processes have.
+  void weigh_corners();
+
   /// Calls loops(block, u, f, stride) between gathering x and scattering y, and adds up what it returns.
+  /// `averaged`: find_means() has found those of x.
   template <class LoopsOnBlock>
-  double pass(const Real* x, Real* y, int count, const WhenEarly& when_early, LoopsOnBlock&& loops);
+  double pass(const Real* x, Real* y, int count, bool averaged, const WhenEarly& when_early,
+              LoopsOnBlock&& loops);
   void add_interface(Real* y, int count, std::size_t begin, std::size_t end);
 
   template <class E, class Visit>
@@ -75,6 +84,10 @@ struct BasicOperator<Real>::Data {
   Aligned<Real> tangent_secant;  ///< g of the tangent, where it is no longer `secant`
   Aligned<Real> free_strain;     ///< by slot; empty: none
   Aligned<Real> strain, outside_secant, outside_slope, outside_energy;  ///< empty until they are asked for
+  CornerLayout corners;
+  std::vector<double> corner_bulk, corner_volume;  ///< of the entries; volumes of this process
+  std::vector<Real> weight, change, mean;  ///< of the entries (or places): 1 over all volume; by vector
+  std::function<void(std::span<Real>)> sum_corners;  ///< over processes; null: there is one
   std::vector<Scratch> scratch;
   int scratch_vectors = 0;
   std::uint64_t applications = 0;

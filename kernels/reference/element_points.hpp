@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include <kacanov/reference.hpp>
 #include "cells/dispatch.hpp"
@@ -35,6 +36,36 @@ Gradient gradient_at(const Point<E>& point, const Nodal<E>& u) {
   for (int a = 0; a < E::nodes; ++a) h[2][2] += u[point.at(a, 0)] * point.hoop[a];
   return h;
 }
+
+/// Means of tr ε round the corners of elements, at some displacement.
+class CornerDilatation {
+ public:
+  /// Of u, or, unless that is empty, what is `known` of it (Body::corner_dilatation, which has to outlive
+  /// it).
+  CornerDilatation(const Body& body, std::span<const double> u, std::span<const double> known);
+  CornerDilatation(const CornerDilatation&) = delete;
+  CornerDilatation& operator=(const CornerDilatation&) = delete;
+
+  /// Replaces the trace of a strain at point q, where the element's law has it so.
+  template <class E>
+  void put(const Law& law, std::size_t e, std::size_t q, Strain& strain) const {
+    if constexpr (E::corner_dilatation)
+      if (law.mean_dilatation) {
+        const auto share = elements::barycentric<E::dim>(E::point[q].data());
+        strain.trace = strain.square = 0.0;
+        for (std::size_t c = 0; c < share.size(); ++c) {
+          const double mean = values_[e * corners_ + c];
+          strain.trace += share[c] * mean;
+          strain.square += share[c] * mean * mean;
+        }
+      }
+  }
+
+ private:
+  std::size_t corners_;
+  std::vector<double> own_;
+  std::span<const double> values_;
+};
 
 /// In plane stress without the strain across the plane: across() has it.
 template <class E>
@@ -102,7 +133,7 @@ Nodal<E> gather(const Body& body, std::size_t element, std::span<const double> v
 
 /// Calls visit(element, law, point index, point, strain of `u` as strain_at has it) for every point.
 template <class E, class Visit>
-void for_each_point(const Body& body, std::span<const double> u, Visit&& visit) {
+void for_each_plain_point(const Body& body, std::span<const double> u, Visit&& visit) {
   for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
     const Nodal<E> x = gather<E>(body, e, body.mesh.coordinates);
     const Nodal<E> local = gather<E>(body, e, u);
@@ -110,6 +141,18 @@ void for_each_point(const Body& body, std::span<const double> u, Visit&& visit) 
     for (std::size_t q = 0; q < E::points; ++q)
       visit(e, body.law(e), q, points[q], strain_at<E>(points[q], local));
   }
+}
+
+/// The same with means round the corners where laws have them; `known` of them as CornerDilatation has it.
+template <class E, class Visit>
+void for_each_point(const Body& body, std::span<const double> u, std::span<const double> known,
+                    Visit&& visit) {
+  const CornerDilatation means(body, u, known);
+  for_each_plain_point<E>(
+      body, u, [&](std::size_t e, const Law& law, std::size_t q, const Point<E>& point, Strain strain) {
+        means.put<E>(law, e, q, strain);
+        visit(e, law, q, point, strain);
+      });
 }
 
 }  // namespace kacanov::reference

@@ -21,6 +21,7 @@ void volumes(const Body& body, std::span<double> volume) {
 
 void fields(const Body& body, std::span<const double> u, const ElementFields& out) {
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
+    const CornerDilatation means(body, u, body.corner_dilatation);
     for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
       const Law& law = body.law(e);
       const Nodal<E> x = gather<E>(body, e, body.mesh.coordinates);
@@ -31,7 +32,9 @@ void fields(const Body& body, std::span<const double> u, const ElementFields& ou
       const auto points = points_of<E>(x, law.mean_dilatation, body.mesh.plane);
       for (std::size_t q = 0; q < E::points; ++q) {
         const Point<E>& point = points[q];
-        const Strain strain = across<E>(body, e, q, strain_at<E>(point, local));
+        Strain plane = strain_at<E>(point, local);
+        means.put<E>(law, e, q, plane);
+        const Strain strain = across<E>(body, e, q, plane);
         const double norm = strain.norm(), g = moduli_at<E>(body, e, q, norm).secant;
         const Sym point_tau = stress(law, g, strain);
         for (std::size_t i = 0; i < 6; ++i) tau[i] += point.volume * point_tau[i];
@@ -61,7 +64,7 @@ void fields(const Body& body, std::span<const double> u, const ElementFields& ou
 
 void strains(const Body& body, std::span<const double> u, std::span<double> out) {
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
-    for_each_point<E>(body, u,
+    for_each_point<E>(body, u, body.corner_dilatation,
                       [&](std::size_t e, const Law&, std::size_t q, const Point<E>&, const Strain& plane) {
                         const Strain strain = across<E>(body, e, q, plane);
                         const double mean = strain.trace / 3.0 + free_strain_of(body, e);
@@ -89,7 +92,7 @@ void points(const Body& body, std::span<double> position, std::span<double> weig
 void point_fields(const Body& body, std::span<const double> u, const PointFields& out) {
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     for_each_point<E>(
-        body, u,
+        body, u, body.corner_dilatation,
         [&](std::size_t e, const Law& law, std::size_t q, const Point<E>& point, const Strain& plane) {
           const std::size_t k = e * E::points + q;
           const Strain strain = across<E>(body, e, q, plane);

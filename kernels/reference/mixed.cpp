@@ -97,16 +97,4 @@ void apply_mixed(const Body& body, std::span<const double> g, const Displacement
   });
 }
 
-void apply_by_corners(const Body& body, std::span<const double> g, std::span<const double> x,
-                      std::span<double> y) {
-  if (body.mesh.type != ElementType::tet10) throw std::invalid_argument("volume by corners is that of tet10");
-  const std::size_t nodes = body.mesh.node_count();
-  const std::vector<double> still(x.size(), 0.0), one(nodes, 1.0);
-  std::vector<double> none(nodes, 0.0), mass(nodes), pressure(nodes);
-  apply_mixed(body, g, {still, one}, {y, mass});   // −C, 0 at mid-sides
-  apply_mixed(body, g, {x, none}, {y, pressure});  // B x
-  for (std::size_t c = 0; c < nodes; ++c) pressure[c] = mass[c] < 0.0 ? pressure[c] / -mass[c] : 0.0;
-  apply_mixed(body, g, {x, pressure}, {y, none});
-}
-
 }  // namespace kacanov::reference

@@ -22,11 +22,4 @@ struct DisplacementPressure {
 void apply_mixed(const Body& body, std::span<const double> g, const DisplacementPressure<const double>& x,
                  const DisplacementPressure<double>& y);
 
-/// y = (A + Bᵀ C⁻¹ B) x (overwrites y): the same with the pressure worked out, which quadratic displacements
-/// allow, because C is diagonal there. In place of k0 (tr ε)² at the points, that of its means round the
-/// corners. Symmetric; never more than `apply` in any direction, the same for constant strain. Throws
-/// std::invalid_argument for other elements than tet10.
-void apply_by_corners(const Body& body, std::span<const double> g, std::span<const double> x,
-                      std::span<double> y);
-
 }  // namespace kacanov::reference

@@ -27,6 +27,7 @@ inline double inner(const Sym& a, const Sym& b) {
 
 struct Strain {
   double trace = 0.0;
+  double square = 0.0;  ///< mean square of the means round corners that `trace` is one of; else unused
   Sym dev{};
   double norm() const { return std::sqrt(inner(dev, dev)); }
 };

@@ -44,12 +44,13 @@ double bulk_at(const Body& body, const Law& law, double g) {
   return body.mesh.plane == PlaneState::stress ? plane_stress_bulk(law.bulk, g) : law.bulk;
 }
 
-/// y = Σ forces of stress_of(element, law, point index, point, strain of x).
+/// y = Σ forces of stress_of(element, law, point index, point, strain of x); `known` as for_each_point.
 template <class E, class StressOf>
-void assemble(const Body& body, std::span<const double> x, std::span<double> y, StressOf&& stress_of) {
+void assemble(const Body& body, std::span<const double> x, std::span<const double> known, std::span<double> y,
+              StressOf&& stress_of) {
   std::fill(y.begin(), y.end(), 0.0);
   for_each_point<E>(
-      body, x,
+      body, x, known,
       [&](std::size_t e, const Law& law, std::size_t q, const Point<E>& point, const Strain& strain) {
         Nodal<E> f{};
         add_force<E>(point, stress_of(e, law, q, point, strain), f);
@@ -79,17 +80,17 @@ void fill_matrix(const Body& body, std::size_t element, std::span<double> matrix
 
 void secant(const Body& body, std::span<const double> u, std::span<double> g) {
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
-    for_each_point<E>(body, u,
-                      [&](std::size_t e, const Law&, std::size_t q, const Point<E>&, const Strain& plane) {
-                        const double x = across<E>(body, e, q, plane).norm();
-                        g[e * E::points + q] = moduli_at<E>(body, e, q, x).secant;
-                      });
+    for_each_plain_point<E>(
+        body, u, [&](std::size_t e, const Law&, std::size_t q, const Point<E>&, const Strain& plane) {
+          const double x = across<E>(body, e, q, plane).norm();
+          g[e * E::points + q] = moduli_at<E>(body, e, q, x).secant;
+        });
   });
 }
 
 void apply(const Body& body, std::span<const double> g, std::span<const double> x, std::span<double> y) {
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
-    assemble<E>(body, x, y,
+    assemble<E>(body, x, {}, y,
                 [&](std::size_t e, const Law& law, std::size_t q, const Point<E>&, const Strain& strain) {
                   const double at = g[e * E::points + q];
                   return stress(law, at, across(body, law, at, strain));
@@ -101,7 +102,7 @@ void apply_tangent(const Body& body, std::span<const double> u, std::span<const 
                    std::span<double> y) {
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     assemble<E>(
-        body, x, y,
+        body, x, {}, y,
         [&](std::size_t e, const Law& law, std::size_t q, const Point<E>& point, const Strain& strain) {
           const Strain at = across<E>(body, e, q, strain_at<E>(point, gather<E>(body, e, u)));
           return tangent_stress(body, law, moduli_at<E>(body, e, q, at.norm()), at, strain);
@@ -137,7 +138,7 @@ void block_diagonal(const Body& body, std::span<const double> g, std::span<doubl
 void block_diagonal_tangent(const Body& body, std::span<const double> u, std::span<double> blocks) {
   std::fill(blocks.begin(), blocks.end(), 0.0);
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
-    for_each_point<E>(
+    for_each_plain_point<E>(
         body, u,
         [&](std::size_t e, const Law& law, std::size_t q, const Point<E>& point, const Strain& plane) {
           const std::int32_t* node = nodes_of(body, e);
@@ -162,7 +163,7 @@ void block_diagonal_tangent(const Body& body, std::span<const double> u, std::sp
 
 void residual(const Body& body, std::span<const double> u, std::span<double> f) {
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
-    assemble<E>(body, u, f,
+    assemble<E>(body, u, body.corner_dilatation, f,
                 [&](std::size_t e, const Law& law, std::size_t q, const Point<E>&, const Strain& plane) {
                   const Strain strain = across<E>(body, e, q, plane);
                   return stress(law, moduli_at<E>(body, e, q, strain.norm()).secant, strain);
@@ -174,7 +175,7 @@ double free_force(const Body& body, std::span<double> f) {
   const std::vector<double> rest(body.unknowns(), 0.0);
   double energy = 0.0;
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
-    assemble<E>(body, rest, f,
+    assemble<E>(body, rest, {}, f,
                 [&](std::size_t e, const Law& law, std::size_t, const Point<E>& point, const Strain& strain) {
                   const double shear = law.secant(0.0);
                   const Strain all = across(body, law, shear, widened(strain, free_strain_of(body, e)));
@@ -190,12 +191,14 @@ double energy(const Body& body, std::span<const double> u) {
   double sum = 0.0;
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     for_each_point<E>(
-        body, u,
+        body, u, body.corner_dilatation,
         [&](std::size_t e, const Law& law, std::size_t q, const Point<E>& point, const Strain& plane) {
           const Strain strain = across<E>(body, e, q, plane);
+          const bool averaged = E::corner_dilatation && law.mean_dilatation;
+          const double square = averaged ? strain.square : strain.trace * strain.trace;
           const double shear =
               body.moduli == nullptr ? law.energy(strain.norm()) : body.moduli->energy[e * E::points + q];
-          sum += point.volume * (0.5 * law.bulk * strain.trace * strain.trace + 2.0 * shear);
+          sum += point.volume * (0.5 * law.bulk * square + 2.0 * shear);
         });
   });
   return sum;

@@ -19,7 +19,7 @@ struct LawView {
   double bulk;           ///< k0
   double shear;          ///< g up to `elastic`
   double elastic;        ///< strain norm up to which g is constant
-  bool mean_dilatation;  ///< k0 sees the element's mean of tr ε
+  bool mean_dilatation;  ///< k0 sees the element's mean of tr ε, or those round its corners
   const void* law;       ///< handed back to `evaluate`
   /// g and dg/dx at the strain norm x, and G unless `energy` is null.
   void (*evaluate)(const void* law, double x, double* g, double* slope, double* energy);
@@ -57,11 +57,11 @@ struct Outside {
   }
 };
 
-/// Local nodes are records of four values, the last one unused; of axisymmetric coordinates the third is the
-/// radius. `index` holds, batch by batch, node by
-/// node, lane by lane, the offset of a record (four times the local node). `secant` holds, batch by batch,
-/// point by point, lane by lane, g; `tangent` as many vectors (xx yy xy yz zx, see material.hpp) as
-/// tangent_floats for each.
+/// Local nodes are records of four values, the last one unused, but for corners round which tr ε is averaged:
+/// there the mean goes in, and the volume change comes out (theory: displacement-pressure); of axisymmetric
+/// coordinates the third is the radius. `index` holds, batch by batch, node by node, lane by lane, the offset
+/// of a record (four times the local node). `secant` holds, batch by batch, point by point, lane by lane, g;
+/// `tangent` as many vectors (xx yy xy yz zx, see material.hpp) as tangent_floats for each.
 template <class Real>
 struct Block {
   const Group* groups;
@@ -116,6 +116,8 @@ struct Kernels {
   void (*scatter)(const Block<Real>&, int dim, const Real* f, Real* y, Real* sums);
   /// Σ uᵀ f over the block's local nodes.
   double (*dot)(const Block<Real>&, const Real* u, const Real* f);
+  /// The last places of f += ∫ N tr ε(u) at corners round which tr ε is averaged.
+  void (*corner_changes)(const Block<Real>&, const Vectors<Real>&);
   /// f += B u.
   void (*apply)(const Block<Real>&, const Vectors<Real>&);
   /// f += B_T u.

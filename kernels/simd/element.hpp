@@ -41,6 +41,58 @@ constexpr ReferenceValues<E, Real> reference_values() {
   return table;
 }
 
+/// Of the corners at a point, points × corners: their barycentric coordinates, where elements average there.
+template <class E, class Real>
+struct CornerShares {
+  Real at[E::points][E::corners];
+};
+
+template <class E, class Real>
+constexpr CornerShares<E, Real> corner_shares() {
+  CornerShares<E, Real> table{};
+  if constexpr (E::corner_dilatation)
+    for (int q = 0; q < E::points; ++q) {
+      const auto share = kacanov::elements::barycentric<E::dim>(&E::point[q][0]);
+      for (int a = 0; a < E::corners; ++a) table.at[q][a] = static_cast<Real>(share[a]);
+    }
+  return table;
+}
+
+/// ∫ N tr ε over the elements of every corner, of elements that average there.
+template <class L, class Real, class E>
+inline void element_changes(const Block<Real>& block, const Group& group, Vectors<Real> vectors) {
+  using V = typename L::V;
+  static constexpr auto gradients = reference_gradients<E, Real>();
+  static constexpr auto shares = corner_shares<E, Real>();
+  const std::uint16_t* at = block.index + group.first_index;
+  for (std::uint32_t batch = 0; batch < group.batches; ++batch, at += E::nodes * L::width) {
+    V x[E::nodes][3];
+    for (int a = 0; a < E::nodes; ++a) L::load3(block.coordinates, at + a * L::width, x[a]);
+    for (int v = 0; v < vectors.count; ++v) {
+      const std::size_t offset = static_cast<std::size_t>(v) * vectors.stride;
+      V d[E::nodes][3], change[E::corners] = {};
+      for (int a = 0; a < E::nodes; ++a) L::load3(vectors.u + offset, at + a * L::width, d[a]);
+      for (int q = 0; q < E::points; ++q) {
+        V j[3][3] = {}, slope[3][3] = {}, trace{};  // ∂x/∂ξ_k, ∂u/∂ξ_k
+        for (int a = 0; a < E::nodes; ++a)
+          for (int k = 0; k < 3; ++k)
+            for (int i = 0; i < 3; ++i) {
+              j[k][i] += x[a][i] * gradients.at[q][a][k];
+              slope[k][i] += d[a][i] * gradients.at[q][a][k];
+            }
+        for (int k = 0; k < 3; ++k) {
+          V c[3];
+          cross(j[(k + 1) % 3], j[(k + 2) % 3], c);
+          trace += inner(slope[k], c);
+        }
+        for (int a = 0; a < E::corners; ++a) change[a] += Real(E::weight) * shares.at[q][a] * trace;
+      }
+      for (int a = 0; a < E::corners; ++a)
+        add_last<L, Real>(vectors.f + offset, at + a * L::width, change[a]);
+    }
+  }
+}
+
 /// Geometry of all points first, then every input vector, as for fans. `round`: axisymmetric.
 template <class L, class Real, class E, bool round = false, class Material>
 inline void element_loop(const Block<Real>& block, const Group& group, const Material& material,
@@ -49,10 +101,12 @@ inline void element_loop(const Block<Real>& block, const Group& group, const Mat
   constexpr int width = L::width;
   static constexpr auto gradients = reference_gradients<E, Real>();
   [[maybe_unused]] static constexpr auto values = reference_values<E, Real>();
-  bool mean = false;  // B-bar
-  if constexpr (E::mean_dilatation) mean = block.laws[group.law].mean_dilatation;
+  [[maybe_unused]] static constexpr auto shares = corner_shares<E, Real>();
+  bool mean = false;  // B-bar, or round corners
+  constexpr bool has_mean = E::mean_dilatation || E::corner_dilatation;
+  if constexpr (has_mean) mean = block.laws[group.law].mean_dilatation;
   const auto choose = [&]() -> decltype(auto) {
-    if constexpr (E::mean_dilatation)
+    if constexpr (has_mean)
       return mean ? material.without_bulk() : material;
     else
       return (material);
@@ -120,6 +174,10 @@ inline void element_loop(const Block<Real>& block, const Group& group, const Mat
           pressure = Real(E::weight) * material.bulk() * change / volume;
           material.add_energy(Real(0.5) * pressure * change);
         }
+      [[maybe_unused]] V at_corner[E::corners] = {};  // weight times the pressures of the means there
+      if constexpr (E::corner_dilatation)
+        for (int a = 0; mean && a < E::corners; ++a)
+          at_corner[a] = Real(E::weight) * material.bulk() * L::load_last(vectors.u + offset, at + a * width);
       for (int q = 0; q < E::points; ++q) {
         V h[9] = {};
         displacement_gradient(q, h);
@@ -132,7 +190,11 @@ inline void element_loop(const Block<Real>& block, const Group& group, const Mat
         if constexpr (E::mean_dilatation && round) {
           const V here = pressure * circle[q];
           s.xx += here, s.yy += here, s.zz += here;
-        } else if constexpr (E::mean_dilatation) {
+        } else if constexpr (has_mean) {
+          if constexpr (E::corner_dilatation) {
+            pressure = V{};
+            for (int a = 0; a < E::corners; ++a) pressure += shares.at[q][a] * at_corner[a];
+          }
           s.xx += pressure, s.yy += pressure, s.zz += pressure;
         }
         if constexpr (round) {

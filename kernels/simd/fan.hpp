@@ -18,6 +18,12 @@ KACANOV_INLINE inline V inner(const V* a, const V* b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/// Adds each lane's value to the last place of its record, one after another: lanes may share it.
+template <class L, class Real>
+KACANOV_INLINE inline void add_last(Real* base, const std::uint16_t* at, typename L::V value) {
+  for (int l = 0; l < L::width; ++l) base[at[l] + 3] += value[l];
+}
+
 /// e_i × e_{i+1}, the point's weight over the determinant, and that.
 template <class V>
 struct Wedge {

@@ -105,10 +105,12 @@ struct Loops {
             fan_loop_of_length<L, Real, true>(block, group, material, vectors);
           break;
         case ElementType::tet10:
-          if (group.shape == Shape::affine)
-            tet10_loop<L, Real>(block, group, material, vectors);
-          else
+          if (group.shape != Shape::affine)
             elements.template operator()<Tet10>();
+          else if (block.laws[group.law].mean_dilatation)
+            tet10_loop<L, Real, true>(block, group, material, vectors);
+          else
+            tet10_loop<L, Real, false>(block, group, material, vectors);
           break;
         case ElementType::hex8:
           if constexpr (decltype(material)::frozen)
@@ -170,7 +172,19 @@ struct Loops {
             [&](const Group& group) { return NonlinearMaterial<L, Real, false>(block, group, *out); });
   }
 
-  static constexpr Kernels<Real> table{L::width, gather, scatter, dot, apply, apply_tangent, nonlinear};
+  static void corner_changes(const Block<Real>& block, const Vectors<Real>& vectors) {
+    for (std::size_t i = 0; i < block.group_count; ++i) {
+      const Group& group = block.groups[i];
+      if (group.type != ElementType::tet10 || !block.laws[group.law].mean_dilatation) continue;
+      if (group.shape == Shape::affine)
+        tet10_changes<L, Real>(block, group, vectors);
+      else
+        element_changes<L, Real, Tet10>(block, group, vectors);
+    }
+  }
+
+  static constexpr Kernels<Real> table{L::width,       gather, scatter,       dot,
+                                       corner_changes, apply,  apply_tangent, nonlinear};
 };
 
 }  // namespace

@@ -22,10 +22,19 @@ constexpr TetMiddles tet_middles = [] {
 
 /// ∂u/∂λ_i at vertex j is 4 u_ij − u_i, and 3 u_i for i = j. A point's value of a linear function is `rest`
 /// times the value at its vertex plus `far` times the sum of all four; the transpose of that is the same.
-template <class L, class Real, class Material>
+/// `averaged`: tr ε is the mean of those round the corners, in the last places of their records.
+template <class L, class Real, bool averaged, class Material>
 inline void tet10_loop(const Block<Real>& block, const Group& group, const Material& material,
                        Vectors<Real> vectors) {
   using V = typename L::V;
+  [[maybe_unused]] const V bulk = Real(1.0 / 24.0) * material.bulk();
+  const auto choose = [&]() -> decltype(auto) {
+    if constexpr (averaged)
+      return material.without_bulk();
+    else
+      return (material);
+  };
+  const Material& at_point = choose();
   constexpr Real far = Real(kacanov::elements::Tet10::far);
   constexpr Real rest = Real(kacanov::elements::Tet10::near - kacanov::elements::Tet10::far);
   const std::uint16_t* at = block.index + group.first_index;
@@ -65,12 +74,22 @@ inline void tet10_loop(const Block<Real>& block, const Group& group, const Mater
         }
       }
       for (int n = 0; n < 9; ++n) h_sum[n] *= far;
+      [[maybe_unused]] V mean[4], mean_sum;
+      if constexpr (averaged) {
+#pragma GCC unroll 4
+        for (int a = 0; a < 4; ++a) mean[a] = bulk * L::load_last(vectors.u + offset, from + a * L::width);
+        mean_sum = far * (mean[0] + mean[1] + mean[2] + mean[3]);
+      }
 #pragma GCC unroll 4
       for (int q = 0; q < 4; ++q) {
-        V at_point[9];
-        for (int n = 0; n < 9; ++n) at_point[n] = rest * h[q][n] + h_sum[n];
-        const Sym<V> t = material.stress(strain_of(at_point), det, w, Real(1.0 / 24.0),
-                                         point + static_cast<std::size_t>(q));
+        V h_point[9];
+        for (int n = 0; n < 9; ++n) h_point[n] = rest * h[q][n] + h_sum[n];
+        Sym<V> t = at_point.stress(strain_of(h_point), det, w, Real(1.0 / 24.0),
+                                   point + static_cast<std::size_t>(q));
+        if constexpr (averaged) {
+          const V pressure = rest * mean[q] + mean_sum;
+          t.xx += pressure, t.yy += pressure, t.zz += pressure;
+        }
         s[q][0] = t.xx, s[q][1] = t.yy, s[q][2] = t.zz, s[q][3] = t.xy, s[q][4] = t.yz, s[q][5] = t.zx;
         for (int n = 0; n < 6; ++n) s_sum[n] = q == 0 ? s[q][n] : s_sum[n] + s[q][n];
       }
@@ -102,6 +121,50 @@ inline void tet10_loop(const Block<Real>& block, const Group& group, const Mater
     }
     at += 10 * L::width;
     point += 4;
+  }
+}
+
+/// ∫ N tr ε over the elements of every corner. At vertex j det tr ε is Σ_i ∂u/∂λ_i · c_i, c_i = det ∇λ_i, so
+/// with m_ij = u_ij · c_i of the mid-side nodes 4 Σ_(i≠j) m_ij − Σ_i u_i · c_i + 4 u_j · c_j; the integral of
+/// a linear function and N takes the corner's value and the sum of all, times det/120.
+template <class L, class Real>
+inline void tet10_changes(const Block<Real>& block, const Group& group, Vectors<Real> vectors) {
+  using V = typename L::V;
+  const std::uint16_t* at = block.index + group.first_index;
+  for (std::uint32_t batch = 0; batch < group.batches; ++batch, at += 10 * L::width) {
+    fetch_ahead(at, 10 * L::width);
+    V x[4][3], c[4][3];
+    for (int a = 0; a < 4; ++a) L::load3(block.coordinates, at + a * L::width, x[a]);
+    for (int a = 1; a < 4; ++a)
+      for (int k = 0; k < 3; ++k) x[a][k] -= x[0][k];
+    cross(x[2], x[3], c[1]);
+    cross(x[3], x[1], c[2]);
+    cross(x[1], x[2], c[3]);
+    for (int k = 0; k < 3; ++k) c[0][k] = -(c[1][k] + c[2][k] + c[3][k]);
+    for (int v = 0; v < vectors.count; ++v) {
+      const std::size_t offset = static_cast<std::size_t>(v) * vectors.stride;
+      const std::uint16_t* from = read_anew(at);
+      V own[4], trace[4] = {}, sum{};
+#pragma GCC unroll 4
+      for (int i = 0; i < 4; ++i) {
+        V u[3];
+        L::load3(vectors.u + offset, from + i * L::width, u);
+        own[i] = inner(u, c[i]);
+      }
+#pragma GCC unroll 4
+      for (int i = 0; i < 4; ++i)
+#pragma GCC unroll 4
+        for (int j = 0; j < i; ++j) {
+          V u[3];
+          L::load3(vectors.u + offset, from + tet_middles.between[i][j] * L::width, u);
+          trace[j] += inner(u, c[i]), trace[i] += inner(u, c[j]);
+        }
+      for (int j = 0; j < 4; ++j) sum += trace[j];
+      const V rest = Real(4) * sum - (own[0] + own[1] + own[2] + own[3]);
+      for (int j = 0; j < 4; ++j)
+        add_last<L, Real>(vectors.f + offset, from + j * L::width,
+                          Real(1.0 / 120.0) * (Real(4) * (trace[j] + own[j]) + rest));
+    }
   }
 }
 

@@ -47,6 +47,11 @@ struct Lanes<double> {
     v[1] = (V)_mm256_unpackhi_pd(xy02, xy13);
     v[2] = (V)_mm256_unpacklo_pd(z02, z13);
   }
+  /// The last places alone.
+  KACANOV_INLINE static V load_last(const double* base, const std::uint16_t* at) {
+    const double *p0 = base + at[0], *p1 = base + at[1], *p2 = base + at[2], *p3 = base + at[3];
+    return (V)_mm256_unpackhi_pd(halves(p0 + 2, p2 + 2), halves(p1 + 2, p3 + 2));
+  }
   KACANOV_INLINE static void add(double* p, __m256d v) {
     _mm256_store_pd(p, _mm256_add_pd(_mm256_load_pd(p), v));
   }
@@ -95,6 +100,11 @@ struct Lanes<float> {
     v[0] = (V)_mm256_unpacklo_pd(ab, cd);
     v[1] = (V)_mm256_unpackhi_pd(ab, cd);
     v[2] = (V)_mm256_unpacklo_pd(as_pd(_mm256_unpackhi_ps(a, b)), as_pd(_mm256_unpackhi_ps(c, d)));
+  }
+  KACANOV_INLINE static V load_last(const float* base, const std::uint16_t* at) {
+    const __m256 a = two(base, at[0], at[4]), b = two(base, at[1], at[5]);
+    const __m256 c = two(base, at[2], at[6]), d = two(base, at[3], at[7]);
+    return (V)_mm256_unpackhi_pd(as_pd(_mm256_unpackhi_ps(a, b)), as_pd(_mm256_unpackhi_ps(c, d)));
   }
   KACANOV_INLINE static void add(float* p, __m128 v) { _mm_store_ps(p, _mm_add_ps(_mm_load_ps(p), v)); }
   KACANOV_INLINE static void add_two(float* base, const std::uint16_t* at, __m256d v) {

@@ -45,6 +45,12 @@ struct Lanes<double> {
     v[2] = (V)_mm512_shuffle_f64x2(ab, cd, 0xDD);
     v[1] = (V)_mm512_shuffle_f64x2(_mm512_unpackhi_pd(a, b), _mm512_unpackhi_pd(c, d), 0x88);
   }
+  /// The last places alone.
+  KACANOV_INLINE static V load_last(const double* base, const std::uint16_t* at) {
+    const __m512d a = pair(base, at[0], at[2]), b = pair(base, at[1], at[3]);
+    const __m512d c = pair(base, at[4], at[6]), d = pair(base, at[5], at[7]);
+    return (V)_mm512_shuffle_f64x2(_mm512_unpackhi_pd(a, b), _mm512_unpackhi_pd(c, d), 0xDD);
+  }
   KACANOV_INLINE static void add(double* p, __m256d v) {
     _mm256_store_pd(p, _mm256_add_pd(_mm256_load_pd(p), v));
   }
@@ -97,6 +103,10 @@ struct Lanes<float> {
     v[0] = (V)_mm512_unpacklo_pd(as_pd(ab), as_pd(cd));
     v[1] = (V)_mm512_unpackhi_pd(as_pd(ab), as_pd(cd));
     v[2] = (V)_mm512_unpacklo_pd(as_pd(_mm512_unpackhi_ps(a, b)), as_pd(_mm512_unpackhi_ps(c, d)));
+  }
+  KACANOV_INLINE static V load_last(const float* base, const std::uint16_t* at) {
+    const __m512 a = four(base, at), b = four(base, at + 1), c = four(base, at + 2), d = four(base, at + 3);
+    return (V)_mm512_unpackhi_pd(as_pd(_mm512_unpackhi_ps(a, b)), as_pd(_mm512_unpackhi_ps(c, d)));
   }
   KACANOV_INLINE static void add(float* p, __m128 v) { _mm_store_ps(p, _mm_add_ps(_mm_load_ps(p), v)); }
   KACANOV_INLINE static void add_four(float* base, const std::uint16_t* at, __m512 v) {

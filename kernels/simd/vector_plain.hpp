@@ -49,6 +49,12 @@ struct Lanes {
       v[k] = load(lane);
     }
   }
+  /// The last places alone.
+  KACANOV_INLINE static V load_last(const Real* base, const std::uint16_t* at) {
+    Real lane[width];
+    for (int l = 0; l < width; ++l) lane[l] = base[at[l] + 3];
+    return load(lane);
+  }
   KACANOV_INLINE static void add3(Real* base, const std::uint16_t* at, const V* v) {
     for (int l = 0; l < width; ++l)
       for (int k = 0; k < 3; ++k) base[at[l] + k] += v[k][l];

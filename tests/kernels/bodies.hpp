@@ -46,12 +46,13 @@ struct OwnedBody {
 inline OwnedBody with_one_law(meshes::OwnedMesh mesh, const Law& law) { return {std::move(mesh), {law}, {}}; }
 
 /// Every law of `every_law` and the stiffening one, scattered over the elements; every second one
-/// with its mean dilatation where the element has that.
+/// with its mean dilatation where the element has that, round corners with two bulk moduli.
 inline OwnedBody with_every_law(meshes::OwnedMesh mesh, unsigned seed) {
   OwnedBody body{std::move(mesh), every_law(), {}};
   body.laws.push_back(stiffening_law());
-  for (std::size_t i = 1; cell(body.mesh.type).mean_dilatation && i < body.laws.size(); i += 2)
-    body.laws[i].mean_dilatation = true;
+  const bool has_mean = cell(body.mesh.type).mean_dilatation || cell(body.mesh.type).corner_dilatation;
+  for (std::size_t i = 1; has_mean && i < body.laws.size(); i += 2) body.laws[i].mean_dilatation = true;
+  if (cell(body.mesh.type).corner_dilatation) body.laws[3].bulk *= 1.5;
   std::mt19937 random(seed);
   for (std::size_t e = 0; e < body.mesh.view().element_count(); ++e)
     body.law_of_element.push_back(static_cast<std::uint16_t>(random() % body.laws.size()));

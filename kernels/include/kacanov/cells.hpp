@@ -44,6 +44,7 @@ struct Cell {
   std::span<const std::array<double, 3>> points;  ///< quadrature points, padded by zeros
   double weight;                                  ///< of each point
   bool mean_dilatation;                           ///< has a B-bar form (theory: b-bar)
+  bool corner_dilatation;  ///< can average tr ε round corners (theory: displacement-pressure)
   /// How a box is cut: corners of the elements of the unit cell [0, 1]^dim, elements × corners.
   std::span<const std::array<std::int8_t, 3>> box;
 

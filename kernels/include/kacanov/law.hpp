@@ -147,9 +147,11 @@ struct Law {
 
   Form form;
   Argument argument = Argument::norm;
-  double bulk = 0.0;             ///< k0
-  double shear = 0.0;            ///< μ = g(0); a table has its own
-  bool mean_dilatation = false;  ///< k0 sees the element's mean of tr ε (theory: b-bar); see Cell
+  double bulk = 0.0;   ///< k0
+  double shear = 0.0;  ///< μ = g(0); a table has its own
+  /// k0 sees a mean of tr ε: the element's (theory: b-bar), or that round its corners (theory:
+  /// displacement-pressure), as Cell says
+  bool mean_dilatation = false;
 
   /// True for the form whose g is constant.
   bool linear() const noexcept { return std::holds_alternative<laws::Linear>(form); }

@@ -53,6 +53,10 @@ class BasicOperator {
 
   std::size_t unknowns() const noexcept;
 
+  /// Where tr ε is averaged round corners (CornerMeans) that other processes have elements at, too: `sum`
+  /// adds up what they all have for each entry of corner_means() of this body. It is called at once, and then
+  /// by every product, residual and energy, so that these are collective; an empty one takes it back.
+  void set_corner_sum(std::function<void(std::span<Real>)> sum);
   /// Plane stress: as Body::free_strain, elements; what follows of a displacement knows of it, B(g) and B_T
   /// stay what they are. Empty: none, as to begin with. Throws std::logic_error in other bodies.
   void set_free_strain(std::span<const double> of_element);
@@ -68,9 +72,10 @@ class BasicOperator {
   /// y_v = B(g) x_v for `vectors` ≥ 1 input vectors, stored one after another; the geometry is worked out
   /// once for up to four of them.
   void apply_many(std::span<const Real> x, std::span<Real> y, int vectors);
-  /// Diagonal of B(g), nodes × dim.
+  /// Diagonal of B(g), nodes × dim; where tr ε is averaged round corners, that of its values at the points,
+  /// which is no less.
   void diagonal(std::span<Real> d) const;
-  /// Diagonal blocks of B(g), nodes × dim × dim, each block row-major.
+  /// Diagonal blocks of B(g), nodes × dim × dim, each block row-major; likewise.
   void block_diagonal(std::span<Real> blocks) const;
 
   /// Freezes the tangent (and g) at u for apply_tangent.

@@ -32,6 +32,10 @@ struct Body {
   /// reference's functions of a displacement know of it, operators by BasicOperator::set_free_strain().
   /// Empty: by nothing (theory: expansion).
   std::span<const double> free_strain = {};
+  /// Means of tr ε round the corners (CornerMeans) at the displacement asked for, elements × 4, where these
+  /// elements are some of a larger body; the reference's functions of a displacement know of it. Empty:
+  /// worked out from these elements.
+  std::span<const double> corner_dilatation = {};
 
   std::size_t unknowns() const noexcept { return mesh.coordinates.size(); }
   std::uint16_t law_index(std::size_t element) const noexcept {
@@ -55,9 +59,10 @@ void apply(const Body& body, std::span<const double> g, std::span<const double> 
 /// y = B_T(u) x, the consistent tangent 2g I_dev + (2g'/x) dev ε ⊗ dev ε of the law at u.
 void apply_tangent(const Body& body, std::span<const double> u, std::span<const double> x,
                    std::span<double> y);
-/// Diagonal of B(g).
+/// Diagonal of B(g); where tr ε is averaged round corners, that of its values at the points, which is no
+/// less.
 void diagonal(const Body& body, std::span<const double> g, std::span<double> d);
-/// dim × dim diagonal blocks of B(g), nodes × dim × dim, row-major.
+/// dim × dim diagonal blocks of B(g), nodes × dim × dim, row-major; likewise.
 void block_diagonal(const Body& body, std::span<const double> g, std::span<double> blocks);
 /// dim × dim diagonal blocks of B_T(u), as those of B(g).
 void block_diagonal_tangent(const Body& body, std::span<const double> u, std::span<double> blocks);
@@ -68,8 +73,8 @@ void residual(const Body& body, std::span<const double> u, std::span<double> f);
 double free_force(const Body& body, std::span<double> f);
 /// Stored energy ∫ k0/2 tr² + 2 G(x) at u.
 double energy(const Body& body, std::span<const double> u);
-/// Stiffness of one element for frozen g (its own points only): `matrix` has (nodes·dim)² entries, row-major,
-/// with the components of a node together.
+/// Stiffness of one element for frozen g (its own points only, tr ε at them even where it is averaged round
+/// corners): `matrix` has (nodes·dim)² entries, row-major, with the components of a node together.
 void element_matrix(const Body& body, std::size_t element, std::span<const double> g,
                     std::span<double> matrix);
 /// Tangent stiffness of one element at u, a vector of the whole body; `matrix` as above.

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Where blocks have the corners round which tr ε is averaged.
+#include "operator/corners.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace kacanov {
+
+std::size_t CornerLayout::bytes() const noexcept {
+  const auto size = [](const auto& v) { return v.size() * sizeof(v[0]); };
+  return size(first) + size(corners) + size(shared_entry) + size(shared_place) + size(shared_first);
+}
+
+CornerLayout make_corner_layout(const Body& body, const CornerMeans& means, const Layout& layout) {
+  CornerLayout out;
+  out.entries = out.places = means.size();
+  if (means.size() == 0) return out;
+  const std::size_t lanes = layout.lanes, points = points_per_element(body.mesh.type);
+  const std::size_t nodes = nodes_per_element(body.mesh.type), corners = cell(body.mesh.type).corners;
+  std::vector<std::int32_t> entry(layout.largest, -1);  // of a block's local node
+  out.first.push_back(0);
+  for (const BlockRange& range : layout.blocks) {
+    for (std::size_t i = 0; i < range.group_count; ++i) {
+      const simd::Group& group = layout.groups[range.first_group + i];
+      for (std::size_t k = 0; k < group.batches * lanes; ++k) {
+        const std::size_t batch = k / lanes, lane = k % lanes;
+        const std::int32_t point =
+            layout.element_point[range.first_slot + group.first_slot + batch * points * lanes + lane];
+        if (point < 0) continue;
+        const std::uint16_t* index =
+            layout.index.data() + range.first_index + group.first_index + batch * nodes * lanes + lane;
+        for (std::size_t c = 0; c < corners; ++c)
+          if (const std::int32_t e = means.of_element[at(point) / points * corners + c]; e >= 0)
+            entry[index[c * lanes] / 4U] = e;
+      }
+    }
+    for (std::uint32_t node = 0; node < range.count; ++node)
+      if (const std::int32_t e = std::exchange(entry[node], -1); e >= 0) out.corners.push_back({node, e, e});
+    out.first.push_back(out.corners.size());
+  }
+  // Who adds to an entry: a thread, or −2 for several.
+  std::vector<std::int32_t> owner(means.size(), -1);
+  const std::size_t threads = layout.share.size() - 1;
+  const auto of_thread = [&](std::size_t t) {
+    const std::size_t begin = out.first[layout.share[t]], end = out.first[layout.share[t + 1]];
+    return std::span(out.corners).subspan(begin, end - begin);
+  };
+  for (std::size_t t = 0; t < threads; ++t)
+    for (const BlockCorner& corner : of_thread(t)) {
+      const auto thread = static_cast<std::int32_t>(t);
+      std::int32_t& of = owner[corner.entry];
+      of = of == -1 || of == thread ? thread : -2;
+    }
+  std::vector<std::pair<std::int32_t, std::int32_t>> shared;  // entry, place: threads one after another
+  std::vector<std::int32_t> place(means.size(), -1);
+  for (std::size_t t = 0; t < threads; ++t) {
+    const std::size_t begin = shared.size();
+    for (BlockCorner& corner : of_thread(t)) {
+      if (owner[corner.entry] != -2) continue;
+      if (place[corner.entry] < 0) {
+        place[corner.entry] = static_cast<std::int32_t>(out.places++);
+        shared.emplace_back(corner.entry, place[corner.entry]);
+      }
+      corner.place = place[corner.entry];
+    }
+    for (std::size_t k = begin; k < shared.size(); ++k) place[shared[k].first] = -1;
+  }
+  std::sort(shared.begin(), shared.end());
+  for (const auto& [e, p] : shared) {
+    if (out.shared_entry.empty() || out.shared_entry.back() != e) {
+      out.shared_entry.push_back(e);
+      out.shared_first.push_back(out.shared_place.size());
+    }
+    out.shared_place.push_back(p);
+  }
+  out.shared_first.push_back(out.shared_place.size());
+  return out;
+}
+
+void separate_moduli(const Body& body, Division& division) {
+  const std::vector<double> moduli = corner_moduli(body);
+  if (moduli.size() < 2) return;
+  const auto kind = [&](std::uint32_t unit) {
+    const Law& law = body.laws[division.units.units[unit].law];
+    if (!averages_at_corners(law, body.mesh.type)) return std::ptrdiff_t{0};
+    return std::lower_bound(moduli.begin(), moduli.end(), law.bulk) - moduli.begin();
+  };
+  std::vector<std::vector<std::uint32_t>> apart;
+  for (const auto& members : division.blocks)
+    for (std::ptrdiff_t k = 0; k < static_cast<std::ptrdiff_t>(moduli.size()); ++k) {
+      std::vector<std::uint32_t> same;
+      std::copy_if(members.begin(), members.end(), std::back_inserter(same),
+                   [&](std::uint32_t unit) { return kind(unit) == k; });
+      if (!same.empty()) apart.push_back(std::move(same));
+    }
+  division.blocks = std::move(apart);
+}
+
+}  // namespace kacanov

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The corners round which an operator averages tr ε: where blocks have them, and the sums of its threads.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <kacanov/corner_means.hpp>
+#include "operator/layout.hpp"
+
+namespace kacanov {
+
+/// A corner of a block: its local node, the entry its mean comes from, and where its volume change is added,
+/// which is the entry's own place, or one of a thread's own behind all entries where several threads add.
+struct BlockCorner {
+  std::uint32_t node;
+  std::int32_t entry, place;
+};
+
+struct CornerLayout {
+  std::size_t entries = 0, places = 0;  ///< places: entries, then those of threads
+  std::vector<std::size_t> first;       ///< corners of block b: first[b] … first[b+1]
+  std::vector<BlockCorner> corners;
+  /// Places to add to an entry: shared_first[i] … [i+1] of shared_place belong to shared_entry[i].
+  std::vector<std::int32_t> shared_entry, shared_place;
+  std::vector<std::size_t> shared_first;
+
+  std::span<const BlockCorner> of(std::size_t block) const {
+    return std::span(corners).subspan(first[block], first[block + 1] - first[block]);
+  }
+  std::size_t bytes() const noexcept;
+};
+
+CornerLayout make_corner_layout(const Body& body, const CornerMeans& means, const Layout& layout);
+
+/// Cuts blocks whose corners would have several entries, so that each has one.
+void separate_moduli(const Body& body, Division& division);
+
+}  // namespace kacanov

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Volume changes summed to the corners of quadratic tetrahedra.
+#include <kacanov/corner_means.hpp>
+
+#include <algorithm>
+#include <utility>
+
+#include "reference/element_points.hpp"
+
+namespace kacanov {
+
+bool averages_at_corners(const Law& law, ElementType type) noexcept {
+  return law.mean_dilatation && cell(type).corner_dilatation;
+}
+
+std::vector<double> corner_moduli(const Body& body) {
+  std::vector<double> moduli;
+  for (const Law& law : body.laws)
+    if (averages_at_corners(law, body.mesh.type)) moduli.push_back(law.bulk);
+  std::sort(moduli.begin(), moduli.end());
+  moduli.erase(std::unique(moduli.begin(), moduli.end()), moduli.end());
+  return moduli;
+}
+
+CornerMeans corner_means(const Body& body) {
+  CornerMeans means;
+  means.moduli = corner_moduli(body);
+  if (means.moduli.empty()) return means;
+  const std::size_t elements = body.mesh.element_count(), width = means.moduli.size();
+  const std::size_t nodes = nodes_per_element(body.mesh.type), corners = cell(body.mesh.type).corners;
+  const auto place = [&](std::size_t e, std::size_t c) {
+    const std::size_t node = body.mesh.connectivity[e * nodes + c];
+    const auto at = std::lower_bound(means.moduli.begin(), means.moduli.end(), body.law(e).bulk);
+    return node * width + static_cast<std::size_t>(at - means.moduli.begin());
+  };
+  std::vector<std::int32_t> entry(body.mesh.node_count() * width, -1);
+  for (std::size_t e = 0; e < elements; ++e)
+    for (std::size_t c = 0; c < corners && averages_at_corners(body.law(e), body.mesh.type); ++c)
+      entry[place(e, c)] = 0;
+  for (std::size_t k = 0; k < entry.size(); ++k) {
+    if (entry[k] < 0) continue;
+    entry[k] = static_cast<std::int32_t>(means.size());
+    means.node.push_back(static_cast<std::int32_t>(k / width));
+    means.modulus.push_back(static_cast<std::int32_t>(k % width));
+  }
+  means.of_element.assign(elements * corners, -1);
+  for (std::size_t e = 0; e < elements; ++e)
+    for (std::size_t c = 0; c < corners && averages_at_corners(body.law(e), body.mesh.type); ++c)
+      means.of_element[e * corners + c] = entry[place(e, c)];
+  return means;
+}
+
+namespace reference {
+
+void corner_changes(const Body& body, const CornerMeans& means, std::span<const double> u,
+                    std::span<double> change, std::span<double> volume) {
+  std::fill(change.begin(), change.end(), 0.0);
+  std::fill(volume.begin(), volume.end(), 0.0);
+  if (means.size() == 0) return;
+  elements::dispatch(body.mesh.type, [&]<class E>(E) {
+    for_each_plain_point<E>(
+        body, u, [&](std::size_t e, const Law&, std::size_t q, const Point<E>& point, const Strain& strain) {
+          const auto share = elements::barycentric<E::dim>(E::point[q].data());
+          for (std::size_t c = 0; c < share.size(); ++c) {
+            const std::int32_t entry = means.of_element[e * share.size() + c];
+            if (entry < 0) continue;
+            change[entry] += point.volume * share[c] * strain.trace;
+            if (!volume.empty()) volume[entry] += point.volume * share[c];
+          }
+        });
+  });
+}
+
+CornerDilatation::CornerDilatation(const Body& body, std::span<const double> u, std::span<const double> known)
+    : corners_(cell(body.mesh.type).corners), values_(known) {
+  if (!known.empty()) return;
+  const CornerMeans means = corner_means(body);
+  if (means.size() == 0) return;
+  std::vector<double> change(means.size()), volume(means.size());
+  corner_changes(body, means, u, change, volume);
+  own_.assign(means.of_element.size(), 0.0);
+  for (std::size_t k = 0; k < own_.size(); ++k)
+    if (const std::int32_t entry = means.of_element[k]; entry >= 0) own_[k] = change[entry] / volume[entry];
+  values_ = own_;
+}
+
+}  // namespace reference
+}  // namespace kacanov
