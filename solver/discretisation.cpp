@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 
+#include <kacanov/corner_means.hpp>
 #include "finer_rule.hpp"
 #include "law/plane_stress.hpp"
 #include "linear/free_strain.hpp"
@@ -171,7 +172,13 @@ class Comparison {
       if (k == 0 || !constant) {
         here = sample(part_, state_.u, element, point);
         if (law.mean_dilatation) {
-          const double more = mean_trace - (here.strain[0] + here.strain[1] + here.strain[2]);
+          double trace = mean_trace;
+          if (averages_at_corners(law, part_.type)) {
+            trace = 0.0;
+            for (std::size_t a = 0; a < corners; ++a)
+              trace += point.corner_share[a] * state_.corner_dilatation[element * corners + a];
+          }
+          const double more = trace - (here.strain[0] + here.strain[1] + here.strain[2]);
           for (std::size_t c = 0; c < 3; ++c) here.strain[c] += more / 3.0;
         }
         if (part_.plane == PlaneState::stress) relax(element, here.strain);
@@ -233,6 +240,7 @@ DiscretisationError estimate_error(const Part& part, const BodyState& state) {
   for (const double one : error.element) sum += one;
   error.energy = part.node_map.sum_all(sum);
   Body body = part.body();
+  body.corner_dilatation = state.corner_dilatation;
   error.stored = part.node_map.sum_all(reference::energy(body, state.u));
   if (const std::vector<double> longer = free_strain(part, state.thermal); part.plane == PlaneState::stress) {
     body.free_strain = longer;

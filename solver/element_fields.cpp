@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 
+#include <kacanov/corner_means.hpp>
 #include "linear/free_strain.hpp"
 #include "problem/shapes.hpp"
 
@@ -23,10 +25,16 @@ struct Elements {
     free_strain = kacanov::free_strain(body, thermal);
     body.free_strain = free_strain;
   }
-  Elements(const Part& part, std::span<const double> thermal, std::size_t first, std::size_t count)
-      : Elements(some_of(part, first, count), part.plane != PlaneState::stress || thermal.empty()
+  Elements(const Part& part, const BodyState& state, std::size_t first, std::size_t count)
+      : Elements(some_of(part, first, count), part.plane != PlaneState::stress || state.thermal.empty()
                                                   ? std::span<const double>()
-                                                  : thermal.subspan(first, count)) {}
+                                                  : state.thermal.subspan(first, count)) {
+    if (corner_moduli(part.body()).empty()) return;
+    const std::size_t corners = cell(part.type).corners;
+    if (state.corner_dilatation.size() != corners * part.element_count())
+      throw std::logic_error("the state lacks its means of tr ε round the corners");
+    body.corner_dilatation = state.corner_dilatation.subspan(first * corners, count * corners);
+  }
   Elements(const Elements&) = delete;
   Elements& operator=(const Elements&) = delete;
 
@@ -80,7 +88,7 @@ class ThermalStress {
 
 void element_fields(const Part& part, const BodyState& state, std::size_t first, std::size_t count,
                     const reference::ElementFields& out) {
-  reference::fields(Elements(part, state.thermal, first, count).body, state.u, out);
+  reference::fields(Elements(part, state, first, count).body, state.u, out);
   if (!out.stress.empty())
     ThermalStress(part.body().mesh, part.element_count(), state.thermal).take_off_means(first, out.stress);
 }
@@ -96,7 +104,7 @@ void element_strains(const Part& part, const BodyState& state, std::size_t first
   const std::size_t points = points_per_element(part.type);
   std::vector<Vector3> position(count * points);
   std::vector<double> stress(6 * count * points), strain(stress.size()), volume(count * points);
-  reference::point_fields(Elements(part, state.thermal, first, count).body, state.u,
+  reference::point_fields(Elements(part, state, first, count).body, state.u,
                           {position, stress, strain, volume});
   for (std::size_t e = 0; e < count; ++e) {
     double whole = 0.0;
@@ -123,7 +131,7 @@ void visit_element_fields(const Part& part, const BodyState& state,
     element_fields(
         part, state, run.first, count,
         {run.stress, run.von_mises, run.dev_strain, run.secant, run.plastic, run.strain, run.rotation});
-    reference::volumes(Elements(part, {}, run.first, count).body, run.volume);
+    reference::volumes(Elements(part, state, run.first, count).body, run.volume);
     visit(run);
   }
 }
@@ -140,7 +148,7 @@ void visit_points(const Part& part, const BodyState& state,
     run.stress.resize(6 * count * points);
     run.strain.resize(6 * count * points);
     run.volume.resize(count * points);
-    reference::point_fields(Elements(part, state.thermal, run.first, count).body, state.u,
+    reference::point_fields(Elements(part, state, run.first, count).body, state.u,
                             {run.position, run.stress, run.strain, run.volume});
     thermal.take_off_points(run.first, run.stress);
     visit(run);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The solver's front door: runs the loops, then certifies and collects the result.
+#include <kacanov/corner_dilatation.hpp>
 #include <kacanov/solve.hpp>
 
 #include <algorithm>
@@ -125,6 +126,7 @@ void hand_out_step(const StepContext& context, const Result& result, const RunOp
   Solution now;
   now.displacement = context.state.u;
   now.thermal = context.path.thermal_pressure();
+  now.corner_dilatation = corner_dilatation(context.part, context.state.u);
   collect_contact(context.part, context.state, context.options.tolerance, now);
   to_users_units(now, scaled.units());
   now.result.load_steps = result.load_steps;

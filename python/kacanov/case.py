@@ -126,10 +126,11 @@ class Case:
     def material(self, young: float, poisson: float, law: Law | Mapping[str, Any] | None = None, *, on: On = "all",
                  plastic: Sequence[Vector] | None = None, yield_stress: float | None = None,
                  tangent_modulus: float | None = None, bbar: bool | None = None,
-                 expansion: float | None = None) -> Case:
+                 formulation: str | None = None, expansion: float | None = None) -> Case:
         """Adds a material. As all words that add, returns the case."""
         return self._add("material", on=on, young=young, poisson=poisson, law=law, plastic=plastic,
-                         yield_stress=yield_stress, tangent_modulus=tangent_modulus, bbar=bbar, expansion=expansion)
+                         yield_stress=yield_stress, tangent_modulus=tangent_modulus, bbar=bbar,
+                         formulation=formulation, expansion=expansion)
 
     def fix(self, on: On, displacement: Sequence[float | None] = (0.0, 0.0, 0.0), *,
             frame: Sequence[Vector] | None = None, name: str | None = None) -> Case:

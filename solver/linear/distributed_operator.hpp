@@ -13,6 +13,7 @@
 #include <kacanov/part.hpp>
 #include <kacanov/scatterer.hpp>
 #include "linear/springs.hpp"
+#include "operator/corner_sum.hpp"
 
 namespace kacanov {
 
@@ -21,11 +22,15 @@ namespace kacanov {
 /// Members that are not const are collective, and so is diagonal().
 class DistributedOperator {
  public:
-  /// The elastic operator. `part` has to outlive it; threads and instruction set are OperatorOptions'.
+  /// The elastic operator. Collective. `part` has to outlive it; threads and instruction set are
+  /// OperatorOptions'.
   DistributedOperator(const Part& part, int threads, const std::string& instruction_set)
       : part_(&part),
         local_(part.body(), OperatorOptions{threads, instruction_set, part.node_map.shared}),
-        sum_(part.node_map, part.dim()) {}
+        sum_(part.node_map, part.dim()) {
+    if (part.node_map.ranks > 1 && !corner_moduli(part.body()).empty())
+      local_.set_corner_sum(CornerSum<double>(corner_means(part.body()), part.node_map));
+  }
 
   /// y = B(g) x. What the ranks share travels while the rest is worked out. Returns this rank's share of xᵀ
   /// y.

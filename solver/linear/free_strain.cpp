@@ -4,6 +4,7 @@
 
 #include <numeric>
 
+#include <kacanov/corner_dilatation.hpp>
 #include <kacanov/reference.hpp>
 #include "law/plane_stress.hpp"
 
@@ -24,6 +25,8 @@ double reference_response(const Part& part, std::span<const double> strain, std:
                           std::span<double> internal) {
   Body body = part.body();
   body.free_strain = strain;
+  const std::vector<double> dilatation = corner_dilatation(part, u);
+  body.corner_dilatation = dilatation;
   reference::residual(body, u, internal);
   double energy = reference::energy(body, u);
   if (strain.empty()) return energy;

@@ -16,7 +16,7 @@ std::vector<double> free_strain(const Body& body, std::span<const double> pressu
 std::vector<double> free_strain(const Part& part, std::span<const double> pressure);
 
 /// R(u) + what the load has of temperature, and the energy whose slope that is, of this rank's elements
-/// alone, by the reference operator. `strain`: free_strain(), or empty where all laws are linear.
+/// alone, by the reference operator. Collective. `strain`: free_strain(), or empty where all laws are linear.
 double reference_response(const Part& part, std::span<const double> strain, std::span<const double> u,
                           std::span<double> internal);
 

@@ -144,6 +144,25 @@ void add_temperature(Problem& problem, const Model& model, const Temperature& ri
 
 }  // namespace
 
+namespace {
+
+/// Throws InputError where a formulation does not go with the elements, or with `bbar`.
+void check_formulation(const MaterialEntry& entry, const Mesh& mesh, const std::string& path) {
+  if (!entry.formulation) return;
+  const bool mixed = entry.formulation == MaterialEntry::Formulation::mixed;
+  if (entry.bbar && *entry.bbar != mixed)
+    throw InputError(path + ".formulation: " + (mixed ? "mixed is with" : "displacement is without") +
+                     " bbar, which is " + (mixed ? "false" : "true"));
+  const auto has_mean = [](const Cell& c) { return c.mean_dilatation || c.corner_dilatation; };
+  if (mixed && !has_mean(cell(mesh.type)))
+    throw InputError(path + ".formulation: expected displacement, or a mesh of " + element_names(has_mean) +
+                     "; mesh.order 2 makes tet10 of tet4");
+  if (mixed && mesh.plane == PlaneState::stress)
+    throw InputError(path + ".formulation: expected displacement with plane stress, which does not lock");
+}
+
+}  // namespace
+
 bool locks_without_bbar(const Law& law, ElementType type) {
   // Worked back from the moduli, ν is off by a few of its last digits, one way or the other with the units.
   constexpr double nearly_incompressible = 0.45 * (1.0 + 1e-12);
@@ -159,12 +178,14 @@ void assign_materials(Problem& problem, const Model& model, const Selection& sel
     const std::string path = at("material", i);
     const MaterialEntry& entry = model.materials[i];
     Law law = entry.law;
+    check_formulation(entry, mesh, path);
     law.mean_dilatation =
         entry.bbar.value_or(mesh.plane != PlaneState::stress &&
                             (entry.law.mean_dilatation || locks_without_bbar(entry.law, mesh.type)));
+    if (entry.formulation) law.mean_dilatation = entry.formulation == MaterialEntry::Formulation::mixed;
     if (law.mean_dilatation && mesh.plane == PlaneState::stress)
       throw InputError(path + ".bbar: expected false with plane stress, which does not lock");
-    if (law.mean_dilatation && !cell(mesh.type).mean_dilatation)
+    if (law.mean_dilatation && !cell(mesh.type).mean_dilatation && !entry.formulation)
       throw InputError(path + ".bbar: expected false, or a mesh of " + bbar_names() +
                        ": other elements have no B-bar here");
     problem.laws.push_back(law);

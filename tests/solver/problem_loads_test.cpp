@@ -196,6 +196,13 @@ TEST_CASE("every element has one material; only \"all\" may be overridden") {
   Model locked = model;
   locked.materials[0].law.mean_dilatation = true;
   CHECK(mentions(refusal(mesh, locked), "material[0].bbar: expected false"));
+  using Formulation = MaterialEntry::Formulation;
+  Model mixed = model;
+  mixed.materials[0].formulation = Formulation::mixed;
+  CHECK(mentions(refusal(mesh, mixed),
+                 "material[0].formulation: expected displacement, or a mesh of tet10, hex8 or quad4"));
+  mixed.materials[0].bbar = false;
+  CHECK(mentions(refusal(mesh, mixed), "material[0].formulation: mixed is with bbar, which is false"));
   const std::string bare = refusal(mesh, model);
   CHECK(mentions(bare, "has no material (" + std::to_string(mesh.element_count() / 2)));
   CHECK(mentions(bare, "material: element "));

@@ -143,6 +143,9 @@ class CaseParser {
     entry.on = selector(object.required("on"));
     entry.law = parse_material_law(object, result_.warnings);
     if (const auto bbar = object.optional("bbar")) entry.bbar = bbar->boolean();
+    if (const auto word = object.optional("formulation"))
+      entry.formulation = word->text() == "mixed" ? MaterialEntry::Formulation::mixed
+                                                  : MaterialEntry::Formulation::displacement;
     if (const auto expansion = object.optional("expansion")) entry.expansion = expansion->number();
     result_.model.materials.push_back(entry);
   }

@@ -61,6 +61,8 @@ KeySet mesh() {
 KeySet material() {
   KeySet set = material_law_keys();
   set.keys.insert(set.keys.begin(), must("on", selector(), "elements"));
+  set.keys.push_back(may("formulation", Word{{"displacement", "mixed"}},
+                         "mixed: a pressure of its own against locking; in tet10 linear, elsewhere bbar"));
   set.keys.push_back(may("expansion", Number{}, "linear thermal expansion, a strain over a temperature",
                          MaterialEntry().expansion));
   return set;

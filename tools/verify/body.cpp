@@ -2,6 +2,9 @@
 // Internal force, stored energy and the elastic diagonal, element by element in long double.
 #include "verify/body.hpp"
 
+#include <map>
+#include <utility>
+
 namespace kacanov::verify {
 namespace {
 
@@ -94,8 +97,53 @@ Real elastic_entry(const Mesh& mesh, const Law& law, const Point& point, std::si
   return shears - 2 * mu / 3 * (n + hoop) * (n + hoop) + law.bulk * divergence * divergence;
 }
 
+/// The volume and its change that belong to corners, where materials average round them: by corner and bulk
+/// modulus, as pressure jumps where that does.
+class CornerVolumes {
+ public:
+  CornerVolumes(const Problem& problem, const std::vector<Vec>& u) {
+    if (problem.mesh.shape != Shape::tet10) return;
+    for (std::size_t e = 0; e < problem.mesh.elements.size(); ++e) {
+      const Indices& element = problem.mesh.elements[e];
+      const Law& law = problem.laws[problem.law_of_element[e]];
+      if (!law.mixed) continue;
+      for (const QuadraturePoint& q : stiffness_rule(problem.mesh.shape)) {
+        const Point point = point_at(problem.mesh, element, q);
+        for (std::size_t c = 0; c < 4; ++c) {
+          At& at = corners_[{element[c], law.bulk}];
+          at.volume += share(q, c) * point.volume;
+          for (std::size_t a = 0; a < element.size(); ++a)
+            at.change += share(q, c) * point.volume * dot(point.divergence(a), u[element[a]]);
+        }
+      }
+    }
+  }
+  /// Whether the elements of this law average.
+  bool count(const Law& law) const { return law.mixed && !corners_.empty(); }
+  /// Of the means round the element's corners, their linear interpolation, or that of their squares.
+  Real mean(const Indices& element, const Law& law, const QuadraturePoint& q, bool squared) const {
+    Real sum = 0;
+    for (std::size_t c = 0; c < 4; ++c) {
+      const At& at = corners_.at({element[c], law.bulk});
+      const Real mean = at.change / at.volume;
+      sum += share(q, c) * (squared ? mean * mean : mean);
+    }
+    return sum;
+  }
+
+ private:
+  struct At {
+    Real volume = 0, change = 0;
+  };
+  static Real share(const QuadraturePoint& q, std::size_t corner) {
+    return corner == 0 ? 1 - q.at[0] - q.at[1] - q.at[2] : q.at[corner - 1];
+  }
+  std::map<std::pair<Indices::value_type, Real>, At> corners_;
+};
+
 /// Adds what one element does.
-void add_element(const Problem& problem, std::size_t e, const std::vector<Vec>& u, BodyResponse& out) {
+void add_element(const Problem& problem, std::size_t e, const std::vector<Vec>& u,
+                 const CornerVolumes& corners, BodyResponse& out) {
   const Mesh& mesh = problem.mesh;
   const Indices& element = mesh.elements[e];
   const Law& law = problem.laws[problem.law_of_element[e]];
@@ -103,12 +151,16 @@ void add_element(const Problem& problem, std::size_t e, const std::vector<Vec>& 
   const Real longer = problem.free_strain.empty() ? 0 : problem.free_strain[e];
   const Real warm = longer != 0 ? longer * expansion_stress(law) : 0;  // what the load has of it
   std::vector<Point> points;
-  for (const QuadraturePoint& q : stiffness_rule(mesh.shape)) points.push_back(point_at(mesh, element, q));
+  const auto rule = stiffness_rule(mesh.shape);
+  for (const QuadraturePoint& q : rule) points.push_back(point_at(mesh, element, q));
+  const bool averaged = corners.count(law);
   const std::vector<Vec> mean = mean_gradients(points);
   Real von_mises = 0, volume = 0;
-  for (const Point& point : points) {
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const Point& point = points[k];
     std::vector<Vec> divergence = mean;
-    for (std::size_t a = 0; a < element.size() && !law.bbar; ++a) divergence[a] = point.divergence(a);
+    for (std::size_t a = 0; a < element.size() && (averaged || !law.bbar); ++a)
+      divergence[a] = point.divergence(a);
     Tensor whole = strain(element, point, u);
     whole[0][0] -= longer;
     whole[1][1] -= longer;
@@ -116,8 +168,11 @@ void add_element(const Problem& problem, std::size_t e, const std::vector<Vec>& 
     const Tensor deviator = deviator_of(whole);
     Real trace = mesh.is_free_across ? whole[2][2] - 2 * longer : 0;
     for (std::size_t a = 0; a < element.size(); ++a) trace += dot(divergence[a], u[element[a]]);
+    Real square = trace * trace;
+    if (averaged) trace = corners.mean(element, law, rule[k], false);
+    if (averaged) square = corners.mean(element, law, rule[k], true);
     const Real x = norm_of(deviator), g = law.secant(x);
-    out.energy += point.volume * (law.bulk * trace * trace / 2 + 2 * law.energy(x) - warm * longer);
+    out.energy += point.volume * (law.bulk * square / 2 + 2 * law.energy(x) - warm * longer);
     Real moved = 0;
     for (std::size_t a = 0; a < element.size(); ++a) moved += norm(point.gradient[a]) * norm(u[element[a]]);
     out.unknown_stress = larger(out.unknown_stress, 1e-15L * 2 * g * moved);
@@ -144,7 +199,8 @@ void add_element(const Problem& problem, std::size_t e, const std::vector<Vec>& 
 BodyResponse respond(const Problem& problem, const std::vector<Vec>& u) {
   const std::size_t nodes = problem.mesh.nodes.size();
   BodyResponse out{std::vector<Vec>(nodes), std::vector<Vec>(nodes), 0, 0, 0};
-  for (std::size_t e = 0; e < problem.mesh.elements.size(); ++e) add_element(problem, e, u, out);
+  const CornerVolumes corners(problem, u);
+  for (std::size_t e = 0; e < problem.mesh.elements.size(); ++e) add_element(problem, e, u, corners, out);
   for (std::size_t n = 0; n < problem.springs.size(); ++n)
     for (std::size_t c = 0; c < 3; ++c) {
       const Real force = dot(problem.springs[n][c], u[n]);

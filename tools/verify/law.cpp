@@ -155,6 +155,7 @@ Law read_law(const nlohmann::json& entry, bool may_lock) {
   Law law = read_form(entry);
   const bool locks = law.form != Law::Form::linear || entry.at("poisson").get<double>() > 0.45;
   law.bbar = entry.value("bbar", may_lock && locks);
+  if (entry.contains("formulation")) law.mixed = law.bbar = entry.at("formulation") == "mixed";
   return law;
 }
 

@@ -13,6 +13,7 @@ struct Law {
   Form form = Form::linear;
   bool squared = false;  ///< the formulas are fed with x² in place of x
   bool bbar = false;
+  bool mixed = false;  ///< by word; with tet10: the trace is that of means round the corners
   Real bulk = 0, shear = 0;
   Real x0 = 0, parameter = 0;  ///< γ, n or q; of Ramberg and Osgood n
   Real share = 0;              ///< of Ramberg and Osgood: plastic over elastic strain at x0

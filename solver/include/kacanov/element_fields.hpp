@@ -15,14 +15,17 @@ namespace kacanov {
 
 /// What stress and strain follow from. Nothing is owned.
 struct BodyState {
-  std::span<const double> u;        ///< nodes × dim
-  std::span<const double> thermal;  ///< Solution::thermal, in the units of the part
+  std::span<const double> u;                  ///< nodes × dim
+  std::span<const double> thermal;            ///< Solution::thermal, in the units of the part
+  std::span<const double> corner_dilatation;  ///< Solution::corner_dilatation, of a part
 
   BodyState(std::span<const double> displacement) : u(displacement) {}
   BodyState(const std::vector<double>& displacement) : u(displacement) {}
-  BodyState(std::span<const double> displacement, std::span<const double> pressure)
-      : u(displacement), thermal(pressure) {}
-  BodyState(const Solution& solution) : u(solution.displacement), thermal(solution.thermal) {}
+  BodyState(std::span<const double> displacement, std::span<const double> pressure,
+            std::span<const double> dilatation = {})
+      : u(displacement), thermal(pressure), corner_dilatation(dilatation) {}
+  BodyState(const Solution& solution)
+      : u(solution.displacement), thermal(solution.thermal), corner_dilatation(solution.corner_dilatation) {}
 };
 
 /// Fields of elements `first` … `first` + `count` − 1 of the part. Spans of `out` have

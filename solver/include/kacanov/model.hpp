@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -28,6 +29,10 @@ struct MaterialEntry {
   /// B-bar (theory: b-bar). Unset: as the law has it, and wherever its elements have that form and lock
   /// without: in plastic and in nearly incompressible bodies.
   std::optional<bool> bbar = {};
+  /// Mixed: the pressure is a field of its own, by B-bar or, in tet10, by means round the corners (theory:
+  /// displacement-pressure). Unset: as `bbar` says.
+  enum class Formulation : std::uint8_t { displacement, mixed };
+  std::optional<Formulation> formulation = {};
   double expansion = 0.0;  ///< linear thermal expansion: a strain over a temperature
 };
 

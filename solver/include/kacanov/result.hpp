@@ -160,8 +160,10 @@ struct Solution {
   Result result;                     ///< the same on every rank
   std::vector<double> displacement;  ///< nodes × dim
   std::vector<double>
-      thermal;              ///< the pressure that temperature takes off, as in ThermalPressure; empty: none
-  std::vector<double> gap;  ///< contact points: ρ − Nu, the open distance
+      thermal;  ///< the pressure that temperature takes off, as in ThermalPressure; empty: none
+  std::vector<double> corner_dilatation;  ///< elements × 4: means of tr ε round their corners; empty where no
+                                          ///< law asks for them (theory: displacement-pressure)
+  std::vector<double> gap;                    ///< contact points: ρ − Nu, the open distance
   std::vector<double> pressure;               ///< contact points: λ_n
   std::vector<Vector3> traction;              ///< contact points: −λ_t, what the obstacle does to the body
   std::vector<ContactStatus> contact_status;  ///< contact points
