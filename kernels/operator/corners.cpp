@@ -17,23 +17,26 @@ CornerLayout make_corner_layout(const Body& body, const CornerMeans& means, cons
   CornerLayout out;
   out.entries = out.places = means.size();
   if (means.size() == 0) return out;
-  const std::size_t lanes = layout.lanes, points = points_per_element(body.mesh.type);
-  const std::size_t nodes = nodes_per_element(body.mesh.type), corners = cell(body.mesh.type).corners;
+  // Each corner of an element that averages has a point beside it, of the same number.
+  const std::size_t lanes = layout.lanes, corners = cell(body.mesh.type).corners;
+  const Units units{body.mesh.type, {}, {}, {}};
   std::vector<std::int32_t> entry(layout.largest, -1);  // of a block's local node
   out.first.push_back(0);
   for (const BlockRange& range : layout.blocks) {
     for (std::size_t i = 0; i < range.group_count; ++i) {
       const simd::Group& group = layout.groups[range.first_group + i];
-      for (std::size_t k = 0; k < group.batches * lanes; ++k) {
-        const std::size_t batch = k / lanes, lane = k % lanes;
-        const std::int32_t point =
-            layout.element_point[range.first_slot + group.first_slot + batch * points * lanes + lane];
-        if (point < 0) continue;
-        const std::uint16_t* index =
-            layout.index.data() + range.first_index + group.first_index + batch * nodes * lanes + lane;
-        for (std::size_t c = 0; c < corners; ++c)
-          if (const std::int32_t e = means.of_element[at(point) / points * corners + c]; e >= 0)
-            entry[index[c * lanes] / 4U] = e;
+      const std::size_t nodes = units.nodes_of(group.shape, group.length),
+                        points = units.points_of(group.shape, group.length);
+      const std::int32_t* point = &layout.element_point[range.first_slot + group.first_slot];
+      const std::uint16_t* index = &layout.index[range.first_index + group.first_index];
+      for (std::size_t k = 0; k < group.batches * points * lanes; ++k) {
+        const std::size_t lane = k % lanes, batch = k / lanes / points, p = k / lanes % points;
+        const std::int32_t e = point[k] < 0 ? -1 : means.of_element[at(point[k])];
+        if (e < 0) continue;
+        const std::size_t node =
+            units.node_of(group.shape, group.length, static_cast<std::uint32_t>(p / corners),
+                          static_cast<std::uint32_t>(p % corners));
+        entry[index[(batch * nodes + node) * lanes + lane] / 4U] = e;
       }
     }
     for (std::uint32_t node = 0; node < range.count; ++node)

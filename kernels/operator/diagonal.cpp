@@ -11,6 +11,7 @@
 #include "operator/checks.hpp"
 #include "operator/passes.hpp"
 #include "operator/threads.hpp"
+#include "operator/units.hpp"
 
 namespace kacanov {
 
@@ -21,11 +22,10 @@ template <class E, class Visit>
 void BasicOperator<Real>::Data::visit_points(const BlockRange& range, const simd::Group& group,
                                              const Visit& visit) const {
   using elements::Point;
-  const bool fan = group.shape == simd::Shape::open_fan || group.shape == simd::Shape::closed_fan;
   const std::size_t lanes = layout.lanes;
-  const std::size_t element_points = fan ? group.length : E::points,
-                    ring_ends = group.shape == simd::Shape::closed_fan ? 2 : 3,
-                    nodes = fan ? element_points + ring_ends : E::nodes;
+  const Units units{type, {}, {}, {}};
+  const std::uint32_t nodes = units.nodes_of(group.shape, group.length),
+                      count = units.points_of(group.shape, group.length);  // of points
   const std::uint16_t* index = layout.index.data() + range.first_index + group.first_index;
   const Real* records = coordinates.data() + 4 * range.first_record;
   const Law& law = laws[group.law];
@@ -33,15 +33,14 @@ void BasicOperator<Real>::Data::visit_points(const BlockRange& range, const simd
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       std::array<std::int32_t, E::nodes> id{};
       std::array<Point<E>, E::points> at{};  // of the element at hand
-      for (std::size_t p = 0; p < element_points; ++p) {
-        const std::size_t slot =
-            range.first_slot + group.first_slot + (batch * element_points + p) * lanes + lane;
+      for (std::uint32_t p = 0; p < count; ++p) {
+        const std::size_t slot = range.first_slot + group.first_slot + (batch * count + p) * lanes + lane;
         if (layout.element_point[slot] < 0) continue;
-        if (fan || p == 0) {
+        if (p % E::points == 0) {
           elements::Nodal<E> x;
           for (int a = 0; a < E::nodes; ++a) {
-            const std::size_t k = a;
-            const std::size_t node = fan && k >= 2 ? 2 + (p + k - 2) % (nodes - 2) : k;
+            const auto k = static_cast<std::uint32_t>(a);
+            const std::size_t node = units.node_of(group.shape, group.length, p / E::points, k);
             const std::size_t record = index[(batch * nodes + node) * lanes + lane];
             id[k] = layout.nodes[range.first_node + record / 4];
             for (int c = 0; c < E::dim; ++c) x[Point<E>::at(a, c)] = static_cast<double>(records[record + c]);
@@ -51,7 +50,7 @@ void BasicOperator<Real>::Data::visit_points(const BlockRange& range, const simd
           }
           at = elements::points_of<E>(x, law.mean_dilatation, plane);
         }
-        visit(at[fan ? 0 : p], id, law, slot);
+        visit(at[p % E::points], id, law, slot);
       }
     }
 }

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
+
+#include "cells/tet10.hpp"
 
 namespace kacanov {
 namespace {
@@ -25,22 +28,29 @@ struct EdgeTable {
   }
 };
 
+const Index* nodes_of(const MeshView& mesh, std::size_t element) {
+  return mesh.connectivity.data() + element * nodes_per_element(mesh.type);
+}
+
 EdgeTable make_edges(const MeshView& mesh) {
   struct Entry {
     Index high;
     std::uint32_t place;
   };
-  const Index* node = mesh.connectivity.data();
   std::vector<std::uint32_t> start(mesh.node_count() + 1, 0);
   const std::size_t count = mesh.element_count();
   for (std::size_t e = 0; e < count; ++e)
-    for (const auto& edge : edges) ++start[at(std::min(node[4 * e + edge[0]], node[4 * e + edge[1]])) + 1];
+    for (const auto& edge : edges) {
+      const Index* node = nodes_of(mesh, e);
+      ++start[at(std::min(node[edge[0]], node[edge[1]])) + 1];
+    }
   for (std::size_t i = 1; i < start.size(); ++i) start[i] += start[i - 1];
   std::vector<Entry> entries(6 * count);
   std::vector<std::uint32_t> fill(start.begin(), start.end() - 1);
   for (std::size_t e = 0; e < count; ++e)
     for (std::uint32_t k = 0; k < 6; ++k) {
-      const auto [low, high] = std::minmax(node[4 * e + edges[k][0]], node[4 * e + edges[k][1]]);
+      const Index* node = nodes_of(mesh, e);
+      const auto [low, high] = std::minmax(node[edges[k][0]], node[edges[k][1]]);
       entries[fill[low]++] = {high, static_cast<std::uint32_t>(8 * e) + k};
     }
   EdgeTable table;
@@ -76,7 +86,7 @@ std::vector<bool> longest_of_all(const MeshView& mesh, const EdgeTable& table) {
   for (std::size_t e = 0; e < longest.size(); ++e) {
     double best = -1.0;
     for (std::size_t k = 0; k < 6; ++k)
-      if (const double s = square(&mesh.connectivity[4 * e], k); s > best) {
+      if (const double s = square(nodes_of(mesh, e), k); s > best) {
         best = s;
         longest[e] = static_cast<std::uint8_t>(k);
       }
@@ -91,6 +101,7 @@ std::vector<bool> longest_of_all(const MeshView& mesh, const EdgeTable& table) {
 }
 
 struct Cover {
+  const MeshView& mesh;
   Units result;
 
   /// One tetrahedron round the edge, as the arc from ring node `a` to ring node `b`.
@@ -112,10 +123,29 @@ struct Cover {
                             static_cast<std::uint8_t>(chain.size()), chain[0].law,
                             static_cast<std::uint32_t>(result.nodes.size()),
                             static_cast<std::uint32_t>(result.elements.size())});
+    for (const Arc& arc : chain) result.elements.push_back(arc.element);
+    if (mesh.type == ElementType::tet10) return add_quadratic_nodes(p, q, chain);
     result.nodes.insert(result.nodes.end(), {p, q, chain[0].a});
-    for (const Arc& arc : chain) {
-      result.elements.push_back(arc.element);
+    for (const Arc& arc : chain)
       if (!closed || &arc != &chain.back()) result.nodes.push_back(arc.b);
+  }
+
+  Index middle(Index element, Index a, Index b) const {
+    const Index* node = nodes_of(mesh, at(element));
+    for (const CellEdge& edge : elements::Tet10::edge)
+      if (std::minmax(node[edge.a], node[edge.b]) == std::minmax(a, b)) return node[edge.middle];
+    return -1;
+  }
+
+  void add_quadratic_nodes(Index p, Index q, std::span<const Arc> chain) {
+    const auto add_corner = [&](Index element, Index r) {
+      result.nodes.insert(result.nodes.end(), {r, middle(element, p, r), middle(element, q, r)});
+    };
+    result.nodes.insert(result.nodes.end(), {p, q, middle(chain[0].element, p, q)});
+    add_corner(chain[0].element, chain[0].a);
+    for (const Arc& arc : chain) {
+      result.nodes.push_back(middle(arc.element, arc.a, arc.b));
+      add_corner(arc.element, arc.b);
     }
   }
 
@@ -140,7 +170,8 @@ struct Cover {
           next->used = true;
           chain.push_back(*next);
         }
-        const bool closed = rings && chain.size() >= 3 && chain.back().b == chain.front().a;
+        const bool closed =
+            rings && mesh.type == ElementType::tet4 && chain.size() >= 3 && chain.back().b == chain.front().a;
         add_fan(closed, p, q, chain);
       }
   }
@@ -148,12 +179,11 @@ struct Cover {
 
 }  // namespace
 
-Units cover_by_fans(const Body& body) {
+Units cover_by_fans(const Body& body, std::vector<bool> taken) {
   const MeshView& mesh = body.mesh;
   const EdgeTable table = make_edges(mesh);
   const std::vector<bool> preferred = longest_of_all(mesh, table);
-  Cover cover;
-  std::vector<bool> taken(mesh.element_count(), false);
+  Cover cover{mesh, {}, {}};
   const auto left_of = [&](std::uint32_t edge) {
     std::uint32_t left = 0;
     for (const std::uint32_t place : table.of(edge)) left += taken[place / 8] ? 0 : 1;
@@ -167,7 +197,6 @@ Units cover_by_fans(const Body& body) {
   };
   for (std::uint32_t edge = 0; edge < table.size(); ++edge)
     enqueue(edge, static_cast<std::uint32_t>(table.of(edge).size()));
-  const Index* node = mesh.connectivity.data();
   // Counts only fall, so an edge found in too high a bucket goes down to the one where it belongs.
   for (std::size_t bucket = queue.size(); bucket-- > 2;) {
     for (std::size_t i = 0; i < queue[bucket].size(); ++i) {
@@ -178,15 +207,15 @@ Units cover_by_fans(const Body& body) {
         continue;
       }
       const std::uint32_t first = table.of(edge)[0];
-      const Index low =
-          std::min(node[4 * (first / 8) + edges[first % 8][0]], node[4 * (first / 8) + edges[first % 8][1]]);
+      const Index low = std::min(nodes_of(mesh, first / 8)[edges[first % 8][0]],
+                                 nodes_of(mesh, first / 8)[edges[first % 8][1]]);
       Index p = 0, q = 0;
       cover.arcs.clear();
       for (const std::uint32_t place : table.of(edge)) {
         const std::uint32_t e = place / 8;
         if (taken[e]) continue;
         taken[e] = true;
-        const Index* t = node + 4 * std::size_t{e};
+        const Index* t = nodes_of(mesh, e);
         const auto& local = edges[place % 8];
         const bool forward = t[local[0]] == low;
         p = low, q = forward ? t[local[1]] : t[local[0]];

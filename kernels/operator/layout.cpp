@@ -23,8 +23,12 @@ std::vector<std::array<double, 3>> idle_positions(ElementType type) {
 
 /// The idle record node k of a lane stands on. A fan's ring goes to and fro between two positions; the third
 /// ends a closed ring of odd length.
-std::uint32_t idle_record(Shape shape, std::uint32_t length, std::uint32_t k) {
+std::uint32_t idle_record(ElementType type, Shape shape, std::uint32_t length, std::uint32_t k) {
   if (shape != Shape::open_fan && shape != Shape::closed_fan) return k;
+  if (type == ElementType::tet10) {
+    constexpr std::uint32_t edge[3] = {0, 1, 4}, round[8] = {2, 6, 5, 8, 3, 7, 9, 8};
+    return k < 3 ? edge[k] : round[(k - 3) % 8];
+  }
   if (k < 2) return k;
   const bool odd_end = shape == Shape::closed_fan && length % 2 == 1 && k == length + 1;
   return odd_end ? 4 : 2 + k % 2;
@@ -52,6 +56,7 @@ struct Builder {
   std::int32_t piece_node(const Piece& piece, Shape shape, std::uint32_t k) const {
     const std::int32_t* nodes = unit_nodes(piece.unit);
     if (shape != Shape::open_fan || k < 2) return nodes[k];
+    if (units.type == ElementType::tet10) return k < 3 ? nodes[k] : nodes[k + 4U * piece.from];
     const std::uint32_t ring = units.node_count(piece.unit) - 2;
     return nodes[2 + (piece.from + k - 2) % ring];
   }
@@ -84,7 +89,7 @@ struct Builder {
         }
       }
     };
-    if (body.mesh.type != ElementType::tet4) return classes;
+    if (!cell(body.mesh.type).simplex || dimension(body.mesh.type) != 3) return classes;
     std::vector<std::uint16_t> laws;
     for (const auto& [key, pieces] : classes)
       if (laws.empty() || laws.back() != std::get<0>(key)) laws.push_back(std::get<0>(key));
@@ -129,6 +134,21 @@ struct Builder {
     layout.nodes.insert(layout.nodes.end(), found.begin(), found.end());
   }
 
+  /// The caller's number of a point of a piece. In fans of tet10 elements begin with other corners than the
+  /// caller's have, and each point stays beside its corner.
+  std::int32_t point_of(const Piece& piece, Shape shape, std::uint32_t length, std::uint32_t point) const {
+    const auto per_element = static_cast<std::uint32_t>(points_per_element(units.type));
+    const std::uint32_t i = point / per_element;
+    std::uint32_t q = point % per_element;
+    const std::size_t element = at(units.elements[units.units[piece.unit].first_element + piece.from + i]);
+    if (units.type == ElementType::tet10) {
+      const std::int32_t* corner = &body.mesh.connectivity[element * nodes_per_element(units.type)];
+      const std::int32_t node = piece_node(piece, shape, units.node_of(shape, length, i, q));
+      q = static_cast<std::uint32_t>(std::find(corner, corner + 4, node) - corner);
+    }
+    return static_cast<std::int32_t>(element * per_element + q);
+  }
+
   /// Batches of one class, appended to the index and to the slots.
   void add_group(const Key& key, std::span<const Piece> pieces, BlockRange& range) {
     const auto [law, shape, length] = key;
@@ -138,7 +158,6 @@ struct Builder {
     layout.groups.push_back({units.type, shape, length, law, static_cast<std::uint32_t>(batches),
                              static_cast<std::uint32_t>(layout.index.size() - range.first_index),
                              static_cast<std::uint32_t>(layout.element_point.size() - range.first_slot)});
-    const std::size_t points_an_element = points_per_element(body.mesh.type);
     // Neighbouring tet10 share up to six nodes, whose sums wait for each other: their lanes work far apart.
     const bool apart = cell(units.type).order == 2;
     const auto piece_of = [&](std::size_t batch, std::size_t lane) {
@@ -150,7 +169,7 @@ struct Builder {
           const std::size_t i = piece_of(batch, lane);
           const std::uint32_t record =
               i < pieces.size() ? static_cast<std::uint32_t>(local[at(piece_node(pieces[i], shape, k))])
-                                : range.count + idle_record(shape, length, k);
+                                : range.count + idle_record(units.type, shape, length, k);
           layout.index.push_back(static_cast<std::uint16_t>(4 * record));
         }
       for (std::uint32_t point = 0; point < points; ++point)
@@ -158,9 +177,7 @@ struct Builder {
           const std::size_t i = piece_of(batch, lane);
           std::int32_t target = -1;
           if (i < pieces.size()) {
-            const std::size_t offset = (pieces[i].from + point) / points_an_element;
-            const std::int32_t element = units.elements[units.units[pieces[i].unit].first_element + offset];
-            target = static_cast<std::int32_t>(at(element) * points_an_element + point % points_an_element);
+            target = point_of(pieces[i], shape, length, point);
           }
           layout.element_point.push_back(target);
         }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Units of elements other than tet4; fans.cpp has those.
+// Units of single elements; fans.cpp has those of several.
 #include "operator/units.hpp"
 
 #include <algorithm>
@@ -46,19 +46,17 @@ bool parallelepiped(const MeshView& mesh, const std::int32_t* node) {
   return true;
 }
 
-simd::Shape shape_of(const MeshView& mesh, std::size_t element) {
-  const std::int32_t* node = &mesh.connectivity[element * nodes_per_element(mesh.type)];
-  const bool is_affine = mesh.type == ElementType::hex8 ? parallelepiped(mesh, node)
-                         : cell(mesh.type).order == 2   ? straight(mesh, node)
-                                                        : false;
-  return is_affine ? simd::Shape::affine : simd::Shape::general;
-}
+/// Nodes of an element of a fan of tet10 whose r_i is the first of all rings, and of how many the next one is
+/// ahead; p, q and their middle are all elements'.
+constexpr std::uint32_t quadratic_fan_nodes[10] = {0, 1, 3, 7, 2, 5, 4, 8, 6, 9};
+constexpr std::uint32_t quadratic_fan_step = 4;
 
 }  // namespace
 
 std::uint32_t Units::nodes_of(simd::Shape shape, std::uint32_t length) const {
   switch (shape) {
-    case simd::Shape::open_fan: return length + 3;
+    case simd::Shape::open_fan:
+      return type == ElementType::tet10 ? quadratic_fan_step * length + 6 : length + 3;
     case simd::Shape::closed_fan: return length + 2;
     case simd::Shape::affine:
     case simd::Shape::general: break;
@@ -69,22 +67,40 @@ std::uint32_t Units::nodes_of(simd::Shape shape, std::uint32_t length) const {
 std::uint32_t Units::points_of(simd::Shape shape, std::uint32_t length) const {
   switch (shape) {
     case simd::Shape::open_fan:
-    case simd::Shape::closed_fan: return length;
+    case simd::Shape::closed_fan: return static_cast<std::uint32_t>(points_per_element(type)) * length;
     case simd::Shape::affine:
     case simd::Shape::general: break;
   }
   return static_cast<std::uint32_t>(points_per_element(type));
 }
 
+std::uint32_t Units::node_of(simd::Shape shape, std::uint32_t length, std::uint32_t i,
+                             std::uint32_t a) const {
+  if (shape != simd::Shape::open_fan && shape != simd::Shape::closed_fan) return a;
+  if (type == ElementType::tet10) {
+    const std::uint32_t first = quadratic_fan_nodes[a];
+    return first < 3 ? first : first + quadratic_fan_step * i;
+  }
+  return a < 2 ? a : 2 + (i + a - 2) % (nodes_of(shape, length) - 2);
+}
+
 Units make_units(const Body& body) {
   const MeshView& mesh = body.mesh;
-  if (mesh.type == ElementType::tet4) return cover_by_fans(body);
-  Units result;
-  result.type = mesh.type;
-  result.nodes.assign(mesh.connectivity.begin(), mesh.connectivity.end());
   const auto nodes = static_cast<std::uint32_t>(nodes_per_element(mesh.type));
-  for (std::uint32_t e = 0; e < mesh.element_count(); ++e) {
-    result.units.push_back({shape_of(mesh, e), 1, body.law_index(e), e * nodes, e});
+  std::vector<bool> single(mesh.element_count(), mesh.type != ElementType::tet4);
+  const auto first_node = [&](std::size_t e) { return &mesh.connectivity[e * nodes]; };
+  for (std::size_t e = 0; mesh.type == ElementType::tet10 && e < single.size(); ++e)
+    single[e] = !straight(mesh, first_node(e));
+  Units result;
+  if (cell(mesh.type).simplex && dimension(mesh.type) == 3) result = cover_by_fans(body, single);
+  result.type = mesh.type;
+  for (std::uint32_t e = 0; e < single.size(); ++e) {
+    if (!single[e]) continue;
+    const bool affine = mesh.type == ElementType::hex8 && parallelepiped(mesh, first_node(e));
+    result.units.push_back({affine ? simd::Shape::affine : simd::Shape::general, 1, body.law_index(e),
+                            static_cast<std::uint32_t>(result.nodes.size()),
+                            static_cast<std::uint32_t>(result.elements.size())});
+    result.nodes.insert(result.nodes.end(), first_node(e), first_node(e) + nodes);
     result.elements.push_back(static_cast<std::int32_t>(e));
   }
   return result;

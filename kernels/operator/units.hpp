@@ -24,7 +24,8 @@ struct Unit {
 };
 
 /// Nodes of a fan: p, q, then the ring; its elements in ring order. Element i of a fan is the
-/// tetrahedron (p, q, ring i, ring i+1).
+/// tetrahedron (p, q, ring i, ring i+1). Fans of tet10 are all open and have their middles between, see
+/// simd/tet10.hpp; a ring that closes has its beginning again at its end.
 struct Units {
   ElementType type = ElementType::tet4;
   std::vector<Unit> units;
@@ -33,16 +34,18 @@ struct Units {
   /// Nodes and points a unit of this shape and length has.
   std::uint32_t nodes_of(simd::Shape shape, std::uint32_t length) const;
   std::uint32_t points_of(simd::Shape shape, std::uint32_t length) const;
+  /// Which of a unit's nodes is node a of its element i, as its points count the element's corners.
+  std::uint32_t node_of(simd::Shape shape, std::uint32_t length, std::uint32_t i, std::uint32_t a) const;
   std::uint32_t node_count(std::uint32_t unit) const {
     return nodes_of(units[unit].shape, units[unit].length);
   }
   const std::int32_t* nodes_begin(std::uint32_t unit) const { return nodes.data() + units[unit].first_node; }
 };
 
-/// Covers a body by units of one law each. tet4: greedily, the edge with most tetrahedra left first; what
-/// is left round it is split into chains. Other elements: one by one; a tet10 with straight sides (mid-side
-/// nodes within 1e-13 of the middle, relative to the side) and a hex8 that is a parallelepiped (corners
-/// within 1e-13 of its extent along each axis) are shapes of their own.
+/// Covers a body by units of one law each. tet4, and tet10 with straight sides (mid-side nodes within 1e-13
+/// of the middle, relative to the side): greedily, the edge with most tetrahedra left first; what is left
+/// round it is split into chains. Other elements: one by one; a hex8 that is a parallelepiped (corners within
+/// 1e-13 of its extent along each axis) is a shape of its own.
 Units make_units(const Body& body);
 
 }  // namespace kacanov

@@ -38,26 +38,35 @@ struct FanGeometry {
   Wedge<V> wedge[longest_fan];
 };
 
-template <class L, class Real, bool closed, class V = typename L::V>
+/// Where the ring begins among the nodes of a fan and how far apart its corners are, what a point weighs, and
+/// by what the loop wants all products of edges multiplied.
+struct LinearFan {
+  static constexpr int ring = 2, step = 1;
+  static constexpr double weight = 1.0 / 6.0, scale = 1.0;
+};
+
+template <class L, class Real, class Fan, bool closed, class V = typename L::V>
 KACANOV_INLINE inline void measure_fan(const Real* coordinates, const std::uint16_t* at, int length,
                                        FanGeometry<V>& geometry) {
+  constexpr Real scale = Real(Fan::scale), unscale = Real(1.0 / Fan::scale), weight = Real(Fan::weight);
   V p[3], eq[3], e[3], first[3];
-  const std::uint16_t* ring = at + 2 * L::width;
+  const std::uint16_t* ring = at + Fan::ring * L::width;
   L::load3(coordinates, at, p);
   L::load3(coordinates, at + L::width, eq);
   L::load3(coordinates, ring, e);
-  for (int k = 0; k < 3; ++k) eq[k] -= p[k], e[k] -= p[k], first[k] = e[k];
+  for (int k = 0; k < 3; ++k) eq[k] = scale * (eq[k] - p[k]), e[k] -= p[k], first[k] = e[k];
   cross(eq, e, geometry.spoke[0]);
   const auto measure = [&](const V* a, const V* b, Wedge<V>& wedge) __attribute__((always_inline)) {
     cross(a, b, wedge.c);
-    wedge.det = inner(eq, wedge.c);
-    wedge.w = Real(1.0 / 6.0) / wedge.det;
+    wedge.det = unscale * inner(eq, wedge.c);
+    wedge.w = weight / wedge.det;
+    for (int k = 0; k < 3; ++k) wedge.c[k] *= scale;
   };
   const int ring_nodes = length + (closed ? 0 : 1);
 #pragma GCC unroll 8
   for (int i = 1; i < ring_nodes; ++i) {
     V next[3];
-    L::load3(coordinates, ring + i * L::width, next);
+    L::load3(coordinates, ring + Fan::step * i * L::width, next);
     for (int k = 0; k < 3; ++k) next[k] -= p[k];
     cross(eq, next, geometry.spoke[i]);
     measure(e, next, geometry.wedge[i - 1]);
@@ -144,7 +153,7 @@ inline void fan_loop(const Block<Real>& block, const Group& group, const Materia
     fetch_ahead(at, (length + 3) * L::width);
     material.fetch_ahead(point, length * L::width);
     FanGeometry<typename L::V> geometry;
-    measure_fan<L, Real, closed>(block.coordinates, at, length, geometry);
+    measure_fan<L, Real, LinearFan, closed>(block.coordinates, at, length, geometry);
     for (int v = 0; v < vectors.count; ++v) {
       const std::size_t offset = static_cast<std::size_t>(v) * vectors.stride;
       load_fan<L, Real, closed>(material, geometry, {at, point, length}, vectors.u + offset,

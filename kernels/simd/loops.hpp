@@ -105,12 +105,12 @@ struct Loops {
             fan_loop_of_length<L, Real, true>(block, group, material, vectors);
           break;
         case ElementType::tet10:
-          if (group.shape != Shape::affine)
+          if (group.shape == Shape::general)
             elements.template operator()<Tet10>();
           else if (block.laws[group.law].mean_dilatation)
-            tet10_loop<L, Real, true>(block, group, material, vectors);
+            quadratic_fan_loop<L, Real, true>(block, group, material, vectors);
           else
-            tet10_loop<L, Real, false>(block, group, material, vectors);
+            quadratic_fan_loop<L, Real, false>(block, group, material, vectors);
           break;
         case ElementType::hex8:
           if constexpr (decltype(material)::frozen)
@@ -176,10 +176,10 @@ struct Loops {
     for (std::size_t i = 0; i < block.group_count; ++i) {
       const Group& group = block.groups[i];
       if (group.type != ElementType::tet10 || !block.laws[group.law].mean_dilatation) continue;
-      if (group.shape == Shape::affine)
-        tet10_changes<L, Real>(block, group, vectors);
-      else
+      if (group.shape == Shape::general)
         element_changes<L, Real, Tet10>(block, group, vectors);
+      else
+        quadratic_fan_changes<L, Real>(block, group, vectors);
     }
   }
 

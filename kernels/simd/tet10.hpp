@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Quadratic tetrahedra with straight sides, one a lane: their strain is linear, given by its vertex values.
+// Quadratic tetrahedra with straight sides in fans round an edge pq, a fan a lane: their strain is linear,
+// given by its vertex values.
 #pragma once
 
 #include "cells/tet10.hpp"
@@ -7,27 +8,105 @@
 
 namespace {
 
-/// The mid-side node between vertices i and j. A table: the compiler folds its entries where it would not run
-/// a search.
-struct TetMiddles {
-  int between[4][4];
+/// Nodes of a fan: p, q, their middle; r_0, its middles to p and q; then for every tetrahedron
+/// (p, q, r_i, r_{i+1}) the middle of its ring edge, r_{i+1}, and the middles of that to p and q. All
+/// products of edges by 4 `rest`: a displacement counts that much at the point next to its vertex.
+struct QuadraticFan {
+  static constexpr double far = kacanov::elements::Tet10::far;
+  static constexpr double rest = kacanov::elements::Tet10::near - far;
+  static constexpr int ring = 3, step = 4;
+  static constexpr double weight = kacanov::elements::Tet10::weight, scale = 4.0 * rest;
+  static constexpr int before = 6;  ///< nodes before those of the first tetrahedron
+  static constexpr int nodes(int length) { return before + step * length; }
 };
 
-constexpr TetMiddles tet_middles = [] {
-  TetMiddles table{};
-  for (const auto& edge : kacanov::elements::Tet10::edge)
-    table.between[edge.a][edge.b] = table.between[edge.b][edge.a] = edge.middle;
-  return table;
-}();
+/// A value at the nodes of a tetrahedron: of the edge or, where i = j, the vertex. Vertices are p, q, r_i and
+/// r_{i+1}.
+template <class V>
+struct TetNodes {
+  V* at[4][4];
 
-/// ∂u/∂λ_i at vertex j is 4 u_ij − u_i, and 3 u_i for i = j. A point's value of a linear function is `rest`
-/// times the value at its vertex plus `far` times the sum of all four; the transpose of that is the same.
-/// `averaged`: tr ε is the mean of those round the corners, in the last places of their records.
-template <class L, class Real, bool averaged, class Material>
-inline void tet10_loop(const Block<Real>& block, const Group& group, const Material& material,
-                       Vectors<Real> vectors) {
-  using V = typename L::V;
-  [[maybe_unused]] const V bulk = Real(1.0 / 24.0) * material.bulk();
+  KACANOV_INLINE TetNodes(V (&edge)[3][3], V (&behind)[3][3], V (&ring)[3], V (&ahead)[3][3])
+      : at{{edge[0], edge[2], behind[1], ahead[1]},
+           {edge[2], edge[1], behind[2], ahead[2]},
+           {behind[1], behind[2], behind[0], ring},
+           {ahead[1], ahead[2], ring, ahead[0]}} {}
+};
+
+/// det ∇λ of the vertices, but that of p and r_i turned round.
+template <class V>
+struct TetSlopes {
+  V p[3];
+  const V* at[4];
+
+  KACANOV_INLINE TetSlopes(const FanGeometry<V>& geometry, int i)
+      : at{p, geometry.wedge[i].c, geometry.spoke[i + 1], geometry.spoke[i]} {
+    for (int k = 0; k < 3; ++k) p[k] = at[1][k] - at[2][k] + at[3][k];
+  }
+  /// f += s det ∇λ of a vertex.
+  KACANOV_INLINE void add(const Sym<V>& s, int vertex, V* f) const {
+    if (vertex % 2 == 0)
+      subtract_product(s, at[vertex], f);
+    else
+      add_product(s, at[vertex], f);
+  }
+};
+
+/// e += the strain of r ⊗ n.
+template <class V>
+KACANOV_INLINE inline void add_strain(const V* r, const V* n, Sym<V>& e) {
+  e.xx += r[0] * n[0], e.yy += r[1] * n[1], e.zz += r[2] * n[2];
+  e.xy += r[0] * n[1], e.yz += r[1] * n[2], e.zx += r[2] * n[0];
+  e.xy += r[1] * n[0], e.yz += r[2] * n[1], e.zx += r[0] * n[2];
+}
+template <class V>
+KACANOV_INLINE inline void subtract_strain(const V* r, const V* n, Sym<V>& e) {
+  e.xx -= r[0] * n[0], e.yy -= r[1] * n[1], e.zz -= r[2] * n[2];
+  e.xy -= r[0] * n[1], e.yz -= r[1] * n[2], e.zx -= r[2] * n[0];
+  e.xy -= r[1] * n[0], e.yz -= r[2] * n[1], e.zx -= r[0] * n[2];
+}
+
+/// e += the strain whose displacements are `value` of the vertices.
+template <class V>
+KACANOV_INLINE inline void add_strain_of(const V* const* value, const TetSlopes<V>& slopes, Sym<V>& e) {
+  V r[3];
+#pragma GCC unroll 3
+  for (int i = 1; i < 4; ++i) {
+    for (int k = 0; k < 3; ++k) r[k] = value[i][k] - value[0][k];
+    if (i == 2)
+      subtract_strain(r, slopes.at[i], e);
+    else
+      add_strain(r, slopes.at[i], e);
+  }
+}
+
+/// a + f b.
+template <class V, class Real>
+KACANOV_INLINE inline Sym<V> plus(const Sym<V>& a, Real f, const Sym<V>& b) {
+  return {a.xx + f * b.xx, a.yy + f * b.yy, a.zz + f * b.zz,
+          a.xy + f * b.xy, a.yz + f * b.yz, a.zx + f * b.zx};
+}
+
+/// ∂u/∂λ_i at vertex j is 4 u_ij − u_i with u_jj = u_j, and a point's value of a linear function `rest` times
+/// that at its vertex plus `far` times the sum of all four: so at point j it is `scale` times u_ij + m_i,
+/// m_i = far/rest Σ_(j≠i) u_ij − u_i/4 the same at all points. The forces are the transpose of that.
+template <class L, class Real, bool averaged, class Material, class V = typename L::V>
+KACANOV_INLINE inline void load_quadratic_fan(const Material& material, const FanGeometry<V>& geometry,
+                                              const FanPlace& fan, const Real* u, Real* f) {
+  constexpr int width = L::width;
+  constexpr Real share = Real(QuadraticFan::far / QuadraticFan::rest), quarter = Real(0.25);
+  const std::uint16_t* at = read_anew(fan.at);
+  V edge[3][3], behind[3][3], ahead[3][3], ring[3];
+  V edge_force[3][3] = {}, behind_force[3][3] = {}, ahead_force[3][3], ring_force[3];
+  for (int a = 0; a < 3; ++a) L::load3(u, at + a * width, edge[a]);
+  for (int a = 0; a < 3; ++a) L::load3(u, at + (3 + a) * width, behind[a]);
+  // k0/24 of what is averaged round the vertices.
+  [[maybe_unused]] const V bulk = Real(QuadraticFan::weight) * material.bulk();
+  [[maybe_unused]] V mean[4];
+  if constexpr (averaged) {
+    for (int a = 0; a < 2; ++a) mean[a] = bulk * L::load_last(u, at + a * width);
+    mean[2] = bulk * L::load_last(u, at + 3 * width);
+  }
   const auto choose = [&]() -> decltype(auto) {
     if constexpr (averaged)
       return material.without_bulk();
@@ -35,136 +114,158 @@ inline void tet10_loop(const Block<Real>& block, const Group& group, const Mater
       return (material);
   };
   const Material& at_point = choose();
-  constexpr Real far = Real(kacanov::elements::Tet10::far);
-  constexpr Real rest = Real(kacanov::elements::Tet10::near - kacanov::elements::Tet10::far);
+  at += QuadraticFan::before * width;
+#pragma GCC unroll 1
+  for (int i = 0; i < fan.length; ++i, at += QuadraticFan::step * width) {
+    L::load3(u, at, ring);
+    for (int a = 0; a < 3; ++a) L::load3(u, at + (1 + a) * width, ahead[a]);
+    const TetNodes<V> value(edge, behind, ring, ahead),
+        force(edge_force, behind_force, ring_force, ahead_force);
+    const TetSlopes<V> slopes(geometry, i);
+    Sym<V> common{}, s[4], sum;
+    {
+      V m[4][3];
+#pragma GCC unroll 4
+      for (int a = 0; a < 4; ++a)
+#pragma GCC unroll 3
+        for (int k = 0; k < 3; ++k)
+          m[a][k] = share * (value.at[a][(a + 1) % 4][k] + value.at[a][(a + 2) % 4][k] +
+                             value.at[a][(a + 3) % 4][k]) -
+                    quarter * value.at[a][a][k];
+      const V* const all[4] = {m[0], m[1], m[2], m[3]};
+      add_strain_of(all, slopes, common);
+    }
+    [[maybe_unused]] V mean_sum;
+    if constexpr (averaged) {
+      mean[3] = bulk * L::load_last(u, at + width);
+      mean_sum = Real(QuadraticFan::far) * (mean[0] + mean[1] + mean[2] + mean[3]);
+    }
+#pragma GCC unroll 4
+    for (int q = 0; q < 4; ++q) {
+      Sym<V> e = common;
+      add_strain_of<V>(value.at[q], slopes, e);
+      const Wedge<V>& wedge = geometry.wedge[i];
+      s[q] = at_point.stress(e, wedge.det, wedge.w, Real(QuadraticFan::weight),
+                             fan.point + static_cast<std::size_t>(4 * i + q));
+      if constexpr (averaged) {
+        const V pressure = Real(QuadraticFan::rest) * mean[q] + mean_sum;
+        s[q].xx += pressure, s[q].yy += pressure, s[q].zz += pressure;
+      }
+      sum = q == 0 ? s[q] : plus(sum, Real(1), s[q]);
+    }
+#pragma GCC unroll 4
+    for (int a = 0; a < 4; ++a) {
+      if (a == 3)
+        multiply(plus(s[a], -quarter, sum), slopes.at[a], ahead_force[0]);
+      else
+        slopes.add(plus(s[a], -quarter, sum), a, force.at[a][a]);
+    }
+    L::add3(f, at - 3 * width, behind_force[0]);
+#pragma GCC unroll 4
+    for (int a = 0; a < 4; ++a) s[a] = plus(s[a], share, sum);
+#pragma GCC unroll 3
+    for (int a = 0; a < 2; ++a) {
+      slopes.add(s[a], 2, force.at[a][2]);
+      slopes.add(s[2], a, force.at[a][2]);
+      L::add3(f, at - (2 - a) * width, force.at[a][2]);
+    }
+    multiply(s[2], slopes.at[3], ring_force);
+    slopes.add(s[3], 2, ring_force);
+    L::add3(f, at, ring_force);
+    slopes.add(s[0], 1, edge_force[2]);
+    slopes.add(s[1], 0, edge_force[2]);
+#pragma GCC unroll 2
+    for (int a = 0; a < 2; ++a) {
+      multiply(s[a], slopes.at[3], ahead_force[1 + a]);
+      slopes.add(s[3], a, ahead_force[1 + a]);
+    }
+    if constexpr (averaged) mean[2] = mean[3];
+    for (int a = 0; a < 3; ++a)
+      for (int k = 0; k < 3; ++k) behind[a][k] = ahead[a][k], behind_force[a][k] = ahead_force[a][k];
+  }
+  for (int a = 0; a < 3; ++a) L::add3(f, at - (3 - a) * width, behind_force[a]);
+  at = read_anew(fan.at);
+  for (int a = 0; a < 3; ++a) L::add3(f, at + a * width, edge_force[a]);
+}
+
+/// Fans in place of single tetrahedra halve loads and additions of records, which were most of the time.
+/// `averaged`: tr ε is the mean of those round the corners, in the last places of their records.
+template <class L, class Real, bool averaged, class Material>
+inline void quadratic_fan_loop(const Block<Real>& block, const Group& group, const Material& material,
+                               Vectors<Real> vectors) {
+  const int length = group.length;
   const std::uint16_t* at = block.index + group.first_index;
   std::size_t point = 0;
   for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
-    fetch_ahead(at, 10 * L::width);
-    material.fetch_ahead(point, 4 * L::width);
-    V x[4][3], c[3][3];  // c: det ∇λ_{k+1}
-    for (int a = 0; a < 4; ++a) L::load3(block.coordinates, at + a * L::width, x[a]);
-    for (int a = 1; a < 4; ++a)
-      for (int k = 0; k < 3; ++k) x[a][k] -= x[0][k];
-    cross(x[2], x[3], c[0]);
-    cross(x[3], x[1], c[1]);
-    cross(x[1], x[2], c[2]);
-    const V det = inner(x[1], c[0]), w = Real(1.0 / 24.0) / det;
+    fetch_ahead(at, QuadraticFan::nodes(length) * L::width);
+    material.fetch_ahead(point, 4 * length * L::width);
+    FanGeometry<typename L::V> geometry;
+    measure_fan<L, Real, QuadraticFan, false>(block.coordinates, at, length, geometry);
     for (int v = 0; v < vectors.count; ++v) {
       const std::size_t offset = static_cast<std::size_t>(v) * vectors.stride;
-      const std::uint16_t* from = read_anew(at);
-      V d[10][3], h[4][9], h_sum[9], s[4][6], s_sum[6];
-#pragma GCC unroll 10
-      for (int a = 0; a < 10; ++a) L::load3(vectors.u + offset, from + a * L::width, d[a]);
-#pragma GCC unroll 4
-      for (int j = 0; j < 4; ++j) {
-        V r[3][3];  // ∂u/∂λ_{i+1} − ∂u/∂λ_0 at vertex j
-#pragma GCC unroll 3
-        for (int i = 1; i < 4; ++i)
-#pragma GCC unroll 3
-          for (int k = 0; k < 3; ++k) {
-            const V own = i == j ? Real(3) * d[i][k] : Real(4) * d[tet_middles.between[i][j]][k] - d[i][k];
-            const V base = j == 0 ? Real(3) * d[0][k] : Real(4) * d[tet_middles.between[0][j]][k] - d[0][k];
-            r[i - 1][k] = own - base;
-          }
-#pragma GCC unroll 9
-        for (int n = 0; n < 9; ++n) {
-          h[j][n] = r[0][n / 3] * c[0][n % 3] + r[1][n / 3] * c[1][n % 3] + r[2][n / 3] * c[2][n % 3];
-          h_sum[n] = j == 0 ? h[j][n] : h_sum[n] + h[j][n];
-        }
-      }
-      for (int n = 0; n < 9; ++n) h_sum[n] *= far;
-      [[maybe_unused]] V mean[4], mean_sum;
-      if constexpr (averaged) {
-#pragma GCC unroll 4
-        for (int a = 0; a < 4; ++a) mean[a] = bulk * L::load_last(vectors.u + offset, from + a * L::width);
-        mean_sum = far * (mean[0] + mean[1] + mean[2] + mean[3]);
-      }
-#pragma GCC unroll 4
-      for (int q = 0; q < 4; ++q) {
-        V h_point[9];
-        for (int n = 0; n < 9; ++n) h_point[n] = rest * h[q][n] + h_sum[n];
-        Sym<V> t = at_point.stress(strain_of(h_point), det, w, Real(1.0 / 24.0),
-                                   point + static_cast<std::size_t>(q));
-        if constexpr (averaged) {
-          const V pressure = rest * mean[q] + mean_sum;
-          t.xx += pressure, t.yy += pressure, t.zz += pressure;
-        }
-        s[q][0] = t.xx, s[q][1] = t.yy, s[q][2] = t.zz, s[q][3] = t.xy, s[q][4] = t.yz, s[q][5] = t.zx;
-        for (int n = 0; n < 6; ++n) s_sum[n] = q == 0 ? s[q][n] : s_sum[n] + s[q][n];
-      }
-      for (int n = 0; n < 6; ++n) s_sum[n] *= far;
-      V force[10][3] = {};
-#pragma GCC unroll 4
-      for (int j = 0; j < 4; ++j) {
-        const Sym<V> stress{rest * s[j][0] + s_sum[0], rest * s[j][1] + s_sum[1], rest * s[j][2] + s_sum[2],
-                            rest * s[j][3] + s_sum[3], rest * s[j][4] + s_sum[4], rest * s[j][5] + s_sum[5]};
-        V t[4][3];
-#pragma GCC unroll 3
-        for (int i = 1; i < 4; ++i) multiply(stress, c[i - 1], t[i]);
-        for (int k = 0; k < 3; ++k) t[0][k] = -(t[1][k] + t[2][k] + t[3][k]);
-#pragma GCC unroll 4
-        for (int i = 0; i < 4; ++i)
-#pragma GCC unroll 3
-          for (int k = 0; k < 3; ++k) {
-            if (i == j) {
-              force[i][k] += Real(3) * t[i][k];
-            } else {
-              force[i][k] -= t[i][k];
-              force[tet_middles.between[i][j]][k] += Real(4) * t[i][k];
-            }
-          }
-      }
-      from = read_anew(at);
-#pragma GCC unroll 10
-      for (int a = 0; a < 10; ++a) L::add3(vectors.f + offset, from + a * L::width, force[a]);
+      load_quadratic_fan<L, Real, averaged>(material, geometry, {at, point, length}, vectors.u + offset,
+                                            vectors.f + offset);
     }
-    at += 10 * L::width;
-    point += 4;
+    at += QuadraticFan::nodes(length) * L::width;
+    point += static_cast<std::size_t>(4 * length);
   }
 }
 
 /// ∫ N tr ε over the elements of every corner. At vertex j det tr ε is Σ_i ∂u/∂λ_i · c_i, c_i = det ∇λ_i, so
 /// with m_ij = u_ij · c_i of the mid-side nodes 4 Σ_(i≠j) m_ij − Σ_i u_i · c_i + 4 u_j · c_j; the integral of
 /// a linear function and N takes the corner's value and the sum of all, times det/120.
+template <class L, class Real, class V = typename L::V>
+KACANOV_INLINE inline void add_changes(const FanGeometry<V>& geometry, const FanPlace& fan, const Real* u,
+                                       Real* f) {
+  constexpr int width = L::width;
+  constexpr Real factor = Real(1.0 / 120.0 / QuadraticFan::scale);
+  const std::uint16_t* at = read_anew(fan.at);
+  V edge[3][3], behind[3][3], ahead[3][3], ring[3], change[3] = {};  // of p, q, r_i
+  for (int a = 0; a < 3; ++a) L::load3(u, at + a * width, edge[a]);
+  for (int a = 0; a < 3; ++a) L::load3(u, at + (3 + a) * width, behind[a]);
+  at += QuadraticFan::before * width;
+#pragma GCC unroll 1
+  for (int i = 0; i < fan.length; ++i, at += QuadraticFan::step * width) {
+    L::load3(u, at, ring);
+    for (int a = 0; a < 3; ++a) L::load3(u, at + (1 + a) * width, ahead[a]);
+    const TetNodes<V> value(edge, behind, ring, ahead);
+    const TetSlopes<V> slopes(geometry, i);
+    V own[4], trace[4] = {}, sum{};
+    const auto product = [&](int a, int b) __attribute__((always_inline)) {
+      const V dot = inner(value.at[a][b], slopes.at[b]);
+      return b % 2 == 0 ? -dot : dot;
+    };
+#pragma GCC unroll 4
+    for (int a = 0; a < 4; ++a) own[a] = product(a, a);
+#pragma GCC unroll 4
+    for (int a = 0; a < 4; ++a)
+#pragma GCC unroll 4
+      for (int b = 0; b < a; ++b) trace[b] += product(b, a), trace[a] += product(a, b);
+    for (int a = 0; a < 4; ++a) sum += trace[a];
+    const V rest = Real(4) * sum - (own[0] + own[1] + own[2] + own[3]);
+    for (int a = 0; a < 3; ++a) change[a] += Real(4) * (trace[a] + own[a]) + rest;
+    add_last<L, Real>(f, at - 3 * width, factor * change[2]);
+    change[2] = Real(4) * (trace[3] + own[3]) + rest;
+    for (int a = 0; a < 3; ++a)
+      for (int k = 0; k < 3; ++k) behind[a][k] = ahead[a][k];
+  }
+  add_last<L, Real>(f, at - 3 * width, factor * change[2]);
+  for (int a = 0; a < 2; ++a) add_last<L, Real>(f, fan.at + a * width, factor * change[a]);
+}
+
 template <class L, class Real>
-inline void tet10_changes(const Block<Real>& block, const Group& group, Vectors<Real> vectors) {
-  using V = typename L::V;
+inline void quadratic_fan_changes(const Block<Real>& block, const Group& group, Vectors<Real> vectors) {
+  const int length = group.length;
   const std::uint16_t* at = block.index + group.first_index;
-  for (std::uint32_t batch = 0; batch < group.batches; ++batch, at += 10 * L::width) {
-    fetch_ahead(at, 10 * L::width);
-    V x[4][3], c[4][3];
-    for (int a = 0; a < 4; ++a) L::load3(block.coordinates, at + a * L::width, x[a]);
-    for (int a = 1; a < 4; ++a)
-      for (int k = 0; k < 3; ++k) x[a][k] -= x[0][k];
-    cross(x[2], x[3], c[1]);
-    cross(x[3], x[1], c[2]);
-    cross(x[1], x[2], c[3]);
-    for (int k = 0; k < 3; ++k) c[0][k] = -(c[1][k] + c[2][k] + c[3][k]);
+  for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
+    fetch_ahead(at, QuadraticFan::nodes(length) * L::width);
+    FanGeometry<typename L::V> geometry;
+    measure_fan<L, Real, QuadraticFan, false>(block.coordinates, at, length, geometry);
     for (int v = 0; v < vectors.count; ++v) {
       const std::size_t offset = static_cast<std::size_t>(v) * vectors.stride;
-      const std::uint16_t* from = read_anew(at);
-      V own[4], trace[4] = {}, sum{};
-#pragma GCC unroll 4
-      for (int i = 0; i < 4; ++i) {
-        V u[3];
-        L::load3(vectors.u + offset, from + i * L::width, u);
-        own[i] = inner(u, c[i]);
-      }
-#pragma GCC unroll 4
-      for (int i = 0; i < 4; ++i)
-#pragma GCC unroll 4
-        for (int j = 0; j < i; ++j) {
-          V u[3];
-          L::load3(vectors.u + offset, from + tet_middles.between[i][j] * L::width, u);
-          trace[j] += inner(u, c[i]), trace[i] += inner(u, c[j]);
-        }
-      for (int j = 0; j < 4; ++j) sum += trace[j];
-      const V rest = Real(4) * sum - (own[0] + own[1] + own[2] + own[3]);
-      for (int j = 0; j < 4; ++j)
-        add_last<L, Real>(vectors.f + offset, from + j * L::width,
-                          Real(1.0 / 120.0) * (Real(4) * (trace[j] + own[j]) + rest));
+      add_changes<L, Real>(geometry, {at, 0, length}, vectors.u + offset, vectors.f + offset);
     }
+    at += QuadraticFan::nodes(length) * L::width;
   }
 }
 
