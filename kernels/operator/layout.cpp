@@ -102,22 +102,23 @@ struct Builder {
     return classes;
   }
 
-  /// Numbers the block's nodes: new to the thread, met before, shared with other threads, each in the
-  /// locality order. `state` of a node: 1 if this thread has met it, else 0; `slot`: its place in the
-  /// thread's private sums where it is shared, else −1.
+  /// Numbers the block's nodes: new to the thread, met before, shared with other threads; of each those whose
+  /// coordinates are read come first, in the locality order. `state` of a node: 1 if this thread has met it,
+  /// else 0; `slot`: its place in the thread's private sums where it is shared, else −1.
   void number_nodes(std::span<const std::uint32_t> members, std::vector<std::int32_t>& state,
                     std::span<const std::int32_t> slot, BlockRange& range) {
     std::vector<std::int32_t> found;
     for (const std::uint32_t u : members)
       for (std::uint32_t k = 0; k < units.node_count(u); ++k) {
         const std::int32_t node = unit_nodes(u)[k];
-        if (local[node] >= 0) continue;
-        local[node] = 0;
-        found.push_back(node);
+        if (local[node] < 0) found.push_back(node);
+        // 1 for those that are nowhere placed, until the numbers are there
+        const std::int32_t seen = local[node] < 0 ? 1 : local[node];
+        local[node] = units.is_placed(units.units[u].shape, k) ? 0 : seen;
       }
     const auto kind = [&](std::int32_t node) { return slot[node] >= 0 ? 2 : state[node]; };
     std::sort(found.begin(), found.end(), [&](std::int32_t a, std::int32_t b) {
-      return std::make_tuple(kind(a), rank[a]) < std::make_tuple(kind(b), rank[b]);
+      return std::make_tuple(kind(a), local[a], rank[a]) < std::make_tuple(kind(b), local[b], rank[b]);
     });
     range.first_node = layout.nodes.size();
     range.first_shared = layout.shared.size();
@@ -127,6 +128,7 @@ struct Builder {
       const std::int32_t node = found[i];
       range.first += kind(node) == 0 ? 1 : 0;
       range.again += kind(node) <= 1 ? 1 : 0;
+      range.placed[kind(node)] += local[node] == 0 ? 1 : 0;
       if (kind(node) == 2) layout.shared.push_back(slot[node]);
       local[node] = static_cast<std::int32_t>(i);
     }

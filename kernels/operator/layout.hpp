@@ -19,7 +19,7 @@ struct BlockRange {
   std::size_t first_index, first_slot;
   std::size_t first_record;  ///< in records (four values each)
   std::size_t first_node, first_shared;
-  std::uint32_t first, again, count;  ///< as in simd::Block
+  std::uint32_t first, again, count, placed[3];  ///< as in simd::Block
 };
 
 /// Everything but values of the material, for batches of `lanes` lanes and `shares` threads.

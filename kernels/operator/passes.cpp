@@ -109,6 +109,7 @@ simd::Block<Real> BasicOperator<Real>::Data::block(std::size_t b) {
           range.first,
           range.again,
           range.count,
+          {range.placed[0], range.placed[1], range.placed[2]},
           layout.padding,
           plane,
           free_strain.empty() ? nullptr : free_strain.data() + range.first_slot};

@@ -36,6 +36,10 @@ struct Units {
   std::uint32_t points_of(simd::Shape shape, std::uint32_t length) const;
   /// Which of a unit's nodes is node a of its element i, as its points count the element's corners.
   std::uint32_t node_of(simd::Shape shape, std::uint32_t length, std::uint32_t i, std::uint32_t a) const;
+  /// Whether the loops read where node k of a unit of this shape is. Straight sides need no middles.
+  bool is_placed(simd::Shape shape, std::uint32_t k) const {
+    return type != ElementType::tet10 || shape == simd::Shape::general || k < 2 || k % 4 == 3;
+  }
   std::uint32_t node_count(std::uint32_t unit) const {
     return nodes_of(units[unit].shape, units[unit].length);
   }

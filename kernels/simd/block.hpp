@@ -76,7 +76,8 @@ struct Block {
   std::uint32_t first;         ///< local nodes [0, first) are met for the first time by this thread
   std::uint32_t again;         ///< [first, again) were met before, [again, count) are other threads' too
   std::uint32_t count;
-  std::uint32_t padding;  ///< records behind `count` that lanes without a unit work on
+  std::uint32_t placed[3];  ///< how many of these three, from the beginning of each, have coordinates read
+  std::uint32_t padding;    ///< records behind `count` that lanes without a unit work on
   PlaneState plane = PlaneState::strain;
   const Real* free_strain = nullptr;  ///< as `secant`, in plane stress; null: 0
   Outside<Real> outside = {};

@@ -42,10 +42,17 @@ struct Loops {
   template <int dim>
   static void gather_in(const Block<Real>& block, const Real* x, Real* u, Real* f) {
     const std::int32_t* nodes = block.nodes;
-    for (std::size_t i = 0; i < block.count; ++i) {
+    const auto copy = [&](std::size_t i) {
       __builtin_prefetch(x + dim * std::ptrdiff_t{nodes[i + nodes_ahead]});
-      __builtin_prefetch(block.coordinates + 4 * i, 0, 2);
       L::store_record(u + 4 * i, load_row<dim>(x + dim * std::ptrdiff_t{nodes[i]}));
+    };
+    const std::size_t ends[3] = {block.first, block.again, block.count};
+    for (std::size_t kind = 0, i = 0; kind < 3; ++kind) {
+      for (const std::size_t end = i + block.placed[kind]; i < end; ++i) {
+        __builtin_prefetch(block.coordinates + 4 * i, 0, 2);
+        copy(i);
+      }
+      for (; i < ends[kind]; ++i) copy(i);
     }
     const std::size_t end = 4 * std::size_t{block.count + block.padding};
     for (std::size_t i = 4 * std::size_t{block.count}; i < end; ++i) u[i] = 0;
