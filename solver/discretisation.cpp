@@ -16,6 +16,7 @@
 #include "law/plane_stress.hpp"
 #include "linear/free_strain.hpp"
 #include "patches.hpp"
+#include "problem/vector3.hpp"
 
 namespace kacanov {
 namespace {
@@ -129,6 +130,7 @@ class Comparison {
         body_(part.body()),
         free_strain_(free_strain(part, state.thermal)),
         type_(cell(part.type)),
+        even_(type_.simplex && type_.order == 1 && part.plane != PlaneState::axisymmetric),
         points_(fine_points(type_)),
         patches_(part) {}
 
@@ -136,17 +138,18 @@ class Comparison {
     std::vector<double> of_element(part_.element_count(), 0.0);
     for (std::int32_t batch = 0; batch < patches_.batches(); ++batch) {
       PatchFits fits = patches_.fits();
-      std::vector<double> trace(part_.element_count());  // that of B-bar is the same all over an element
-      visit_points(part_, state_, [&](const PointRun& run) {
-        for (std::size_t k = 0; k < run.volume.size(); ++k) {
-          const std::size_t e = run.first + k / type_.points.size();
-          if (!patches_.is_in(e, batch)) continue;
-          const double* strain = &run.strain[6 * k];
-          patches_.add(fits, e, run.position[k], strain);
-          trace[e] = strain[0] + strain[1] + strain[2];
-        }
+      std::vector<double> trace(even_ ? 0 : part_.element_count());  // B-bar's is even in an element
+      visit_strains(batch, [&](std::size_t e, const Vector3& position, const double* strain, double) {
+        patches_.add(fits, e, position, strain);
+        if (!even_) trace[e] = strain[0] + strain[1] + strain[2];
       });
       patches_.solve(fits);
+      if (even_) {
+        visit_strains(batch, [&](std::size_t e, const Vector3&, const double* strain, double volume) {
+          of_element[e] = energy_in_even(e, fits, strain, volume);
+        });
+        continue;
+      }
       for (std::size_t e = 0; e < of_element.size(); ++e)
         if (patches_.is_in(e, batch)) of_element[e] = energy_in(e, fits, trace[e]);
     }
@@ -154,46 +157,79 @@ class Comparison {
   }
 
  private:
+  using Polynomials = std::array<Patches::Polynomial, 8>;
+
+  /// Calls visit(element, position, strain, volume) for the points of a batch.
+  template <class Visit>
+  void visit_strains(std::int32_t batch, const Visit& visit) const {
+    const std::size_t points = type_.points.size();
+    visit_points(part_, state_, PointValues::all_but_stress, [&](const PointRun& run) {
+      for (std::size_t k = 0; k < run.volume.size(); ++k)
+        if (const std::size_t e = run.first + k / points; patches_.is_in(e, batch))
+          visit(e, run.position[k], &run.strain[6 * k], run.volume[k]);
+    });
+  }
+
+  Polynomials polynomials(std::size_t element, const PatchFits& fits) const {
+    Polynomials of_corner;
+    const std::int32_t* node = &part_.elements[element * static_cast<std::size_t>(type_.nodes)];
+    for (std::size_t a = 0; a < static_cast<std::size_t>(type_.corners); ++a)
+      of_corner[a] = patches_.polynomial(fits, static_cast<std::size_t>(node[a]));
+    return of_corner;
+  }
+
+  Patches::Values smooth_strain(const Polynomials& of_corner, const FinePoint& point,
+                                const Vector3& position) const {
+    Patches::Values smooth{};
+    for (std::size_t a = 0; a < point.corner_share.size(); ++a) {
+      const Patches::Values value = of_corner[a](position);
+      for (std::size_t c = 0; c < 6; ++c) smooth[c] += point.corner_share[a] * value[c];
+    }
+    return smooth;
+  }
+
+  /// Of a straight simplex, whose strain is the same all over it.
+  double energy_in_even(std::size_t element, const PatchFits& fits, const double* strain,
+                        double volume) const {
+    const Law& law = body_.law(element);
+    const Polynomials of_corner = polynomials(element, fits);
+    Patches::Values here;
+    std::copy_n(strain, here.size(), here.begin());
+    if (part_.plane == PlaneState::stress) relax(element, here);
+    const Response response = respond(law, here);
+    double energy = 0.0, weights = 0.0;
+    for (const FinePoint& point : points_) {
+      Vector3 position{};
+      for (std::size_t a = 0; a < point.corner_share.size(); ++a)
+        position = position + point.corner_share[a] * of_corner[a].centre;
+      Patches::Values smooth = smooth_strain(of_corner, point, position);
+      if (part_.plane == PlaneState::stress) relax(element, smooth);
+      energy += point.weight * energy_between(law, response, smooth);
+      weights += point.weight;
+    }
+    return volume / weights * energy;
+  }
+
   double energy_in(std::size_t element, const PatchFits& fits, double mean_trace) const {
     const Law& law = body_.law(element);
-    const auto corners = static_cast<std::size_t>(type_.corners),
-               nodes = static_cast<std::size_t>(type_.nodes);
-    std::array<Patches::Polynomial, 8> polynomial;
-    for (std::size_t a = 0; a < corners; ++a)
-      polynomial[a] =
-          patches_.polynomial(fits, static_cast<std::size_t>(part_.elements[element * nodes + a]));
-    // Of straight simplices strains are the same at all points, but round an axis.
-    const bool constant = type_.simplex && type_.order == 1 && part_.plane != PlaneState::axisymmetric;
-    Sample here;
-    Response response;
+    const auto corners = static_cast<std::size_t>(type_.corners);
+    const Polynomials of_corner = polynomials(element, fits);
     double energy = 0.0;
-    for (std::size_t k = 0; k < points_.size(); ++k) {
-      const FinePoint& point = points_[k];
-      if (k == 0 || !constant) {
-        here = sample(part_, state_.u, element, point);
-        if (law.mean_dilatation) {
-          double trace = mean_trace;
-          if (averages_at_corners(law, part_.type)) {
-            trace = 0.0;
-            for (std::size_t a = 0; a < corners; ++a)
-              trace += point.corner_share[a] * state_.corner_dilatation[element * corners + a];
-          }
-          const double more = trace - (here.strain[0] + here.strain[1] + here.strain[2]);
-          for (std::size_t c = 0; c < 3; ++c) here.strain[c] += more / 3.0;
+    for (const FinePoint& point : points_) {
+      Sample here = sample(part_, state_.u, element, point);
+      if (law.mean_dilatation) {
+        double trace = mean_trace;
+        if (averages_at_corners(law, part_.type)) {
+          trace = 0.0;
+          for (std::size_t a = 0; a < corners; ++a)
+            trace += point.corner_share[a] * state_.corner_dilatation[element * corners + a];
         }
-        if (part_.plane == PlaneState::stress) relax(element, here.strain);
-        response = respond(law, here.strain);
-      } else {
-        here.position = position_at(element, point);
-        here.volume *= point.weight / points_[k - 1].weight;
+        const double more = trace - (here.strain[0] + here.strain[1] + here.strain[2]);
+        for (std::size_t c = 0; c < 3; ++c) here.strain[c] += more / 3.0;
       }
-      Patches::Values smooth{};
-      for (std::size_t a = 0; a < corners; ++a) {
-        const Patches::Values value = polynomial[a](here.position);
-        for (std::size_t c = 0; c < 6; ++c) smooth[c] += point.corner_share[a] * value[c];
-      }
-      if (part_.plane == PlaneState::stress) relax(element, smooth);
-      energy += here.volume * energy_between(law, response, smooth);
+      Patches::Values smooth = smooth_strain(of_corner, point, here.position);
+      if (part_.plane == PlaneState::stress) relax(element, here.strain), relax(element, smooth);
+      energy += here.volume * energy_between(law, respond(law, here.strain), smooth);
     }
     return energy;
   }
@@ -206,21 +242,12 @@ class Comparison {
     strain[2] = transverse_strain(body_.law(element), strain[0], strain[1], strain[3]);
   }
 
-  Vector3 position_at(std::size_t element, const FinePoint& point) const {
-    Vector3 x{};
-    for (std::size_t a = 0; a < point.value.size(); ++a) {
-      const Vector3 node =
-          node_position(part_, static_cast<std::size_t>(part_.elements[element * point.value.size() + a]));
-      for (std::size_t c = 0; c < 3; ++c) x[c] += point.value[a] * node[c];
-    }
-    return x;
-  }
-
   const Part& part_;
   BodyState state_;
   Body body_;
   std::vector<double> free_strain_;
   const Cell& type_;
+  bool even_;  ///< straight simplices, whose strains are the same at all points, but round an axis
   std::vector<FinePoint> points_;
   Patches patches_;
 };
@@ -241,10 +268,10 @@ DiscretisationError estimate_error(const Part& part, const BodyState& state) {
   error.energy = part.node_map.sum_all(sum);
   Body body = part.body();
   body.corner_dilatation = state.corner_dilatation;
-  error.stored = part.node_map.sum_all(reference::energy(body, state.u));
+  error.stored = part.node_map.sum_all(stored_energy(body, state.u));
   if (const std::vector<double> longer = free_strain(part, state.thermal); part.plane == PlaneState::stress) {
     body.free_strain = longer;
-    error.stored = std::max(error.stored, part.node_map.sum_all(reference::energy(body, state.u)));
+    error.stored = std::max(error.stored, part.node_map.sum_all(stored_energy(body, state.u)));
   }
   if (error.stored > 0.0) error.relative = std::sqrt(error.energy / error.stored);
   return error;

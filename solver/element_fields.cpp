@@ -9,6 +9,7 @@
 #include <kacanov/corner_means.hpp>
 #include "linear/free_strain.hpp"
 #include "problem/shapes.hpp"
+#include "tet4_fields.hpp"
 
 namespace kacanov {
 namespace {
@@ -84,17 +85,27 @@ class ThermalStress {
   std::vector<std::array<double, most_nodes>> shape_;  ///< of the corners, at each point
 };
 
+void fastest_fields(const Body& body, std::span<const double> u, const reference::ElementFields& out) {
+  if (body.mesh.type == ElementType::tet4) return tet4::fields(body, u, out);
+  reference::fields(body, u, out);
+}
+
+void fastest_point_fields(const Body& body, std::span<const double> u, const reference::PointFields& out) {
+  if (body.mesh.type == ElementType::tet4) return tet4::point_fields(body, u, out);
+  reference::point_fields(body, u, out);
+}
+
 }  // namespace
 
 void element_fields(const Part& part, const BodyState& state, std::size_t first, std::size_t count,
                     const reference::ElementFields& out) {
-  reference::fields(Elements(part, state, first, count).body, state.u, out);
+  fastest_fields(Elements(part, state, first, count).body, state.u, out);
   if (!out.stress.empty())
     ThermalStress(part.body().mesh, part.element_count(), state.thermal).take_off_means(first, out.stress);
 }
 
 void element_fields(const Body& body, const BodyState& state, const reference::ElementFields& out) {
-  reference::fields(Elements(body, state.thermal).body, state.u, out);
+  fastest_fields(Elements(body, state.thermal).body, state.u, out);
   if (!out.stress.empty())
     ThermalStress(body.mesh, body.mesh.element_count(), state.thermal).take_off_means(0, out.stress);
 }
@@ -102,10 +113,10 @@ void element_fields(const Body& body, const BodyState& state, const reference::E
 void element_strains(const Part& part, const BodyState& state, std::size_t first, std::size_t count,
                      std::span<double> out) {
   const std::size_t points = points_per_element(part.type);
-  std::vector<Vector3> position(count * points);
-  std::vector<double> stress(6 * count * points), strain(stress.size()), volume(count * points);
-  reference::point_fields(Elements(part, state, first, count).body, state.u,
-                          {position, stress, strain, volume});
+  const Elements some(part, state, first, count);
+  if (points == 1) return fastest_point_fields(some.body, state.u, {{}, {}, out, {}});
+  std::vector<double> strain(6 * count * points), volume(count * points);
+  fastest_point_fields(some.body, state.u, {{}, {}, strain, volume});
   for (std::size_t e = 0; e < count; ++e) {
     double whole = 0.0;
     std::array<double, 6> sum{};
@@ -128,15 +139,14 @@ void visit_element_fields(const Part& part, const BodyState& state,
          {&run.von_mises, &run.dev_strain, &run.secant, &run.strain, &run.rotation, &run.volume})
       field->resize(count);
     run.plastic.resize(count);
-    element_fields(
-        part, state, run.first, count,
-        {run.stress, run.von_mises, run.dev_strain, run.secant, run.plastic, run.strain, run.rotation});
-    reference::volumes(Elements(part, state, run.first, count).body, run.volume);
+    element_fields(part, state, run.first, count,
+                   {run.stress, run.von_mises, run.dev_strain, run.secant, run.plastic, run.strain,
+                    run.rotation, run.volume});
     visit(run);
   }
 }
 
-void visit_points(const Part& part, const BodyState& state,
+void visit_points(const Part& part, const BodyState& state, PointValues wanted,
                   const std::function<void(const PointRun&)>& visit) {
   const std::size_t elements = part.element_count();
   const std::size_t points = points_per_element(part.type);
@@ -145,46 +155,46 @@ void visit_points(const Part& part, const BodyState& state,
   for (run.first = 0; run.first < elements; run.first += elements_a_run) {
     const std::size_t count = std::min(elements_a_run, elements - run.first);
     run.position.resize(count * points);
-    run.stress.resize(6 * count * points);
+    run.stress.resize(wanted == PointValues::all ? 6 * count * points : 0);
     run.strain.resize(6 * count * points);
     run.volume.resize(count * points);
-    reference::point_fields(Elements(part, state, run.first, count).body, state.u,
-                            {run.position, run.stress, run.strain, run.volume});
+    fastest_point_fields(Elements(part, state, run.first, count).body, state.u,
+                         {run.position, run.stress, run.strain, run.volume});
     thermal.take_off_points(run.first, run.stress);
     visit(run);
   }
 }
 
-namespace {
-
-/// Mean of what pick(run, k) says of the k-th element of a run, over those round a node, weighted by volume.
-template <typename Pick>
-std::vector<double> nodal_mean(const Part& part, const BodyState& state, const Pick& pick) {
-  const std::size_t npe = nodes_per_element(part.type);
-  std::vector<double> mean(part.nodes(), 0.0), weight(part.nodes(), 0.0);
-  visit_element_fields(part, state, [&](const ElementRun& run) {
-    const std::size_t count = run.volume.size();
-    for (std::size_t k = 0; k < count * npe; ++k) {
-      const std::size_t node = part.elements[run.first * npe + k];
-      mean[node] += run.volume[k / npe] * pick(run, k / npe);
-      weight[node] += run.volume[k / npe];
-    }
-  });
-  part.node_map.sum(mean, 1);
-  part.node_map.sum(weight, 1);
-  for (std::size_t n = 0; n < mean.size(); ++n) mean[n] /= weight[n];
-  return mean;
+NodalMeans nodal_means(const Part& part, const BodyState& state) {
+  const std::size_t npe = nodes_per_element(part.type), elements = part.element_count();
+  NodalMeans means{std::vector<double>(part.nodes(), 0.0), std::vector<double>(part.nodes(), 0.0)};
+  std::vector<double> weight(part.nodes(), 0.0), von_mises(elements_a_run), volume(elements_a_run);
+  std::vector<std::uint8_t> plastic(elements_a_run);
+  for (std::size_t first = 0; first < elements; first += elements_a_run) {
+    const std::size_t count = std::min(elements_a_run, elements - first);
+    reference::ElementFields wanted;
+    wanted.von_mises = std::span(von_mises).first(count);
+    wanted.plastic = std::span(plastic).first(count);
+    wanted.volume = std::span(volume).first(count);
+    element_fields(part, state, first, count, wanted);
+    for (std::size_t k = 0; k < count; ++k)
+      for (std::size_t a = 0; a < npe; ++a) {
+        const auto node = static_cast<std::size_t>(part.elements[(first + k) * npe + a]);
+        means.von_mises[node] += volume[k] * von_mises[k];
+        means.plastic_share[node] += plastic[k] != 0 ? volume[k] : 0.0;
+        weight[node] += volume[k];
+      }
+  }
+  for (auto* sum : {&means.von_mises, &means.plastic_share, &weight}) part.node_map.sum(*sum, 1);
+  for (std::size_t n = 0; n < weight.size(); ++n) {
+    means.von_mises[n] /= weight[n];
+    means.plastic_share[n] /= weight[n];
+  }
+  return means;
 }
 
-}  // namespace
-
-std::vector<double> nodal_von_mises(const Part& part, const BodyState& state) {
-  return nodal_mean(part, state, [](const ElementRun& run, std::size_t k) { return run.von_mises[k]; });
-}
-
-std::vector<double> nodal_plastic_share(const Part& part, const BodyState& state) {
-  return nodal_mean(part, state,
-                    [](const ElementRun& run, std::size_t k) { return run.plastic[k] ? 1.0 : 0.0; });
+double stored_energy(const Body& body, std::span<const double> u) {
+  return body.mesh.type == ElementType::tet4 ? tet4::energy(body, u) : reference::energy(body, u);
 }
 
 }  // namespace kacanov

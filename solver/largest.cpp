@@ -34,13 +34,6 @@ Extreme agree(const Part& part, const Largest& here, const At& at, const Tag& ta
 
 }  // namespace
 
-Vector3 node_position(const Part& part, std::size_t node) {
-  const std::size_t dim = part.dim();
-  Vector3 x{};
-  for (std::size_t c = 0; c < dim; ++c) x[c] = part.coordinates[node * dim + c];
-  return x;
-}
-
 Extreme agree_on_node(const Part& part, const Largest& here) {
   return agree(
       part, here, [&](std::size_t n) { return node_position(part, n); },

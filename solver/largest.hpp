@@ -27,7 +27,12 @@ struct Largest {
 };
 
 /// Undeformed; the third entry is 0 in 2D.
-Vector3 node_position(const Part& part, std::size_t node);
+inline Vector3 node_position(const Part& part, std::size_t node) {
+  const std::size_t dim = part.dim();
+  Vector3 x{};
+  for (std::size_t c = 0; c < dim; ++c) x[c] = part.coordinates[node * dim + c];
+  return x;
+}
 
 /// The largest of all ranks, of owned nodes or of elements. Collective.
 Extreme agree_on_node(const Part& part, const Largest& here);

@@ -46,7 +46,7 @@ class Recovery {
  private:
   void recover(std::int32_t batch) {
     PatchFits fits = patches_.fits();
-    visit_points(part_, state_, [&](const PointRun& run) {
+    visit_points(part_, state_, PointValues::all, [&](const PointRun& run) {
       for (std::size_t k = 0; k < run.position.size(); ++k) {
         const std::size_t e = run.first + k / type_.points.size();
         if (patches_.is_in(e, batch)) patches_.add(fits, e, run.position[k], &run.stress[6 * k]);

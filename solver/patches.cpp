@@ -8,6 +8,7 @@
 #include "largest.hpp"
 #include "law_batches.hpp"
 #include "problem/vector3.hpp"
+#include "tet4_fields.hpp"
 
 namespace kacanov {
 namespace {
@@ -16,7 +17,10 @@ std::vector<double> patch_sizes(const Part& part) {
   std::vector<double> of_element(part.element_count()), size(part.nodes(), 0.0);
   Body flat = part.body();
   flat.mesh.plane = PlaneState::strain;  // sizes within the plane
-  reference::volumes(flat, of_element);
+  if (part.type == ElementType::tet4)
+    tet4::volumes(flat, of_element);
+  else
+    reference::volumes(flat, of_element);
   const std::size_t nodes = nodes_per_element(part.type);
   for (std::size_t k = 0; k < part.elements.size(); ++k) size[part.elements[k]] += of_element[k / nodes];
   part.node_map.sum(size, 1);
@@ -28,17 +32,18 @@ std::vector<double> patch_sizes(const Part& part) {
 
 Patches::Patches(const Part& part)
     : part_(part),
+      nodes_of_element_(nodes_per_element(part.type)),
+      corners_of_element_(static_cast<std::size_t>(cell(part.type).corners)),
       place_of_node_(part.nodes(), -1),
       size_(patch_sizes(part)),
       batch_of_law_(law_batches(part)),
       batches_(1 + *std::max_element(batch_of_law_.begin(), batch_of_law_.end())) {
-  const std::size_t nodes = nodes_per_element(part.type);
-  const std::size_t corners = cell(part.type).corners;
-  for (std::size_t k = 0; k < part.elements.size(); ++k) {
-    if (k % nodes >= corners || place_of_node_[part.elements[k]] >= 0) continue;
-    place_of_node_[part.elements[k]] = static_cast<std::int32_t>(corners_.size());
-    corners_.push_back(part.elements[k]);
-  }
+  for (std::size_t first = 0; first < part.elements.size(); first += nodes_of_element_)
+    for (std::size_t k = first; k < first + corners_of_element_; ++k) {
+      if (place_of_node_[part.elements[k]] >= 0) continue;
+      place_of_node_[part.elements[k]] = static_cast<std::int32_t>(corners_.size());
+      corners_.push_back(part.elements[k]);
+    }
 }
 
 PatchFits Patches::fits() const {
@@ -54,9 +59,8 @@ Patches::Polynomial Patches::polynomial(const PatchFits& fits, std::size_t node)
 }
 
 void Patches::add(PatchFits& fits, std::size_t element, const Vector3& position, const double* sample) const {
-  const Cell& type = cell(part_.type);
-  for (std::size_t a = 0; a < static_cast<std::size_t>(type.corners); ++a) {
-    const std::size_t node = part_.elements[element * static_cast<std::size_t>(type.nodes) + a];
+  for (std::size_t a = 0; a < corners_of_element_; ++a) {
+    const std::size_t node = part_.elements[element * nodes_of_element_ + a];
     fits.add(place(node), from_corner(position, node), sample);
   }
 }

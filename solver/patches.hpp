@@ -59,6 +59,7 @@ class Patches {
   Vector3 from_corner(const Vector3& position, std::size_t node) const;
 
   const Part& part_;
+  std::size_t nodes_of_element_, corners_of_element_;
   std::vector<std::int32_t> corners_, place_of_node_;
   std::vector<double> size_;  ///< third root of the volume round each node, or square root of an area
   std::vector<std::int32_t> batch_of_law_;

@@ -58,6 +58,7 @@ void fields(const Body& body, std::span<const double> u, const ElementFields& ou
       if (!out.plastic.empty()) out.plastic[e] = plastic ? 1 : 0;
       if (!out.strain.empty()) out.strain[e] = largest;
       if (!out.rotation.empty()) out.rotation[e] = rotation;
+      if (!out.volume.empty()) out.volume[e] = volume;
     }
   });
 }
@@ -96,11 +97,15 @@ void point_fields(const Body& body, std::span<const double> u, const PointFields
         [&](std::size_t e, const Law& law, std::size_t q, const Point<E>& point, const Strain& plane) {
           const std::size_t k = e * E::points + q;
           const Strain strain = across<E>(body, e, q, plane);
-          const Sym tau = stress(law, moduli_at<E>(body, e, q, strain.norm()).secant, strain);
-          std::copy(tau.begin(), tau.end(), &out.stress[6 * k]);
+          if (!out.stress.empty()) {
+            const Sym tau = stress(law, moduli_at<E>(body, e, q, strain.norm()).secant, strain);
+            std::copy(tau.begin(), tau.end(), &out.stress[6 * k]);
+          }
           const double mean = strain.trace / 3.0 + free_strain_of(body, e);
-          for (std::size_t i = 0; i < 6; ++i) out.strain[6 * k + i] = strain.dev[i] + (i < 3 ? mean : 0.0);
-          out.volume[k] = point.volume;
+          for (std::size_t i = 0; i < 6 && !out.strain.empty(); ++i)
+            out.strain[6 * k + i] = strain.dev[i] + (i < 3 ? mean : 0.0);
+          if (!out.volume.empty()) out.volume[k] = point.volume;
+          if (out.position.empty()) return;
           const auto shape = E::values(E::point[q].data());
           const std::int32_t* node = nodes_of(body, e);
           out.position[k] = {};

@@ -271,9 +271,11 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
   fields.error = note_discretisation(loaded.part, coarse, solution);
   const std::vector<double>& displacement = contact.displacement;
   std::vector<double> von_mises, plastic;
-  if (input.output.report && result.plastic_elements > 0)
-    plastic = at_boundary(loaded, nodal_plastic_share(loaded.part, solution), 1);
-  if (input.output.report) von_mises = at_boundary(loaded, nodal_von_mises(loaded.part, solution), 1);
+  if (input.output.report) {
+    const NodalMeans means = nodal_means(loaded.part, solution);
+    if (result.plastic_elements > 0) plastic = at_boundary(loaded, means.plastic_share, 1);
+    von_mises = at_boundary(loaded, means.von_mises, 1);
+  }
   if (phase && mpi.first()) phase("writing to " + printable(folder.string()));
   // The numbers first: whatever fails after them, they are there.
   figures.read = loaded.read_seconds;

@@ -151,7 +151,7 @@ SolvedCase solve_case(const Case& given, const MpiSession& mpi, const CaseRun& r
   out.displacement = gather_nodal(part, solution.displacement, part.dim());
   out.nodal_stress = gather_nodal(part, nodal.stress, 6);
   out.recovered_von_mises = gather_nodal(part, nodal.von_mises, 1);
-  out.averaged_von_mises = gather_nodal(part, nodal_von_mises(part, solution), 1);
+  out.averaged_von_mises = gather_nodal(part, nodal_means(part, solution).von_mises, 1);
   out.contact = gather_contact_fields(part, solution);
   out.thermal = gather_elements(part, solution.thermal);
   out.result = std::move(solution.result);

@@ -93,6 +93,7 @@ struct ElementFields {
   std::span<std::uint8_t> plastic;  ///< elements: 1 if any point is beyond yield
   std::span<double> strain = {};    ///< elements: the largest principal strain of any point, or its opposite
   std::span<double> rotation = {};  ///< elements: the largest angle of rotation of any point, radians
+  std::span<double> volume = {};    ///< elements: undeformed, as volumes() has it
 };
 /// Fills the spans that are not empty.
 void fields(const Body& body, std::span<const double> u, const ElementFields& out);
@@ -104,7 +105,7 @@ struct PointFields {
   std::span<double> strain;  ///< × 6, tensor components in the same order, with B-bar's trace
   std::span<double> volume;  ///< quadrature weight, of the undeformed body
 };
-/// Fills all four.
+/// Fills the spans that are not empty.
 void point_fields(const Body& body, std::span<const double> u, const PointFields& out);
 
 /// Small strain at the points: × 6, components (not engineering shears) xx yy zz xy yz zx; the trace is the

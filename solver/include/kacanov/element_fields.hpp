@@ -58,14 +58,20 @@ struct PointRun {
   std::vector<double> strain;  ///< × 6, tensor components; what temperature does is in it
   std::vector<double> volume;
 };
+/// What a caller of visit_points() wants to know; the others of a run are empty.
+enum class PointValues : std::uint8_t { all, all_but_stress };
 /// Calls visit(run) for the whole part, some thousand elements at a time.
-void visit_points(const Part& part, const BodyState& state,
+void visit_points(const Part& part, const BodyState& state, PointValues wanted,
                   const std::function<void(const PointRun&)>& visit);
 
-/// von Mises stress at the part's nodes: the mean of the elements round a node over all ranks, weighted by
-/// volume. Collective.
-std::vector<double> nodal_von_mises(const Part& part, const BodyState& state);
-/// Share of the volume of the elements round a node that belongs to plastic ones. Collective.
-std::vector<double> nodal_plastic_share(const Part& part, const BodyState& state);
+/// At the part's nodes, of the elements round a node over all ranks, weighted by volume.
+struct NodalMeans {
+  std::vector<double> von_mises;      ///< mean stress
+  std::vector<double> plastic_share;  ///< of the volume, that belongs to plastic ones
+};
+/// Collective.
+NodalMeans nodal_means(const Part& part, const BodyState& state);
+/// The energy that this rank's elements store.
+double stored_energy(const Body& body, std::span<const double> u);
 
 }  // namespace kacanov
