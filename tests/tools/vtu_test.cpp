@@ -17,6 +17,7 @@
 #include <kacanov/error.hpp>
 #include <kacanov/mesh.hpp>
 #include "formats/inflate.hpp"
+#include "formats/packed_blocks.hpp"
 #include "formats/vtu_writer.hpp"
 #include "temporary_folder.hpp"
 
@@ -126,6 +127,31 @@ bool meshio_finds(std::vector<Array> in_order) {
 }
 
 }  // namespace
+
+TEST_CASE("blocks come back, whatever was packed before them") {
+  std::mt19937 random(7);
+  std::vector<unsigned char> noise(block_bytes), even(block_bytes, 3), numbers(block_bytes), half(noise);
+  for (unsigned char& byte : noise) byte = static_cast<unsigned char>(random());
+  for (std::size_t i = 0; i < numbers.size(); i += 8) numbers[i] = static_cast<unsigned char>(i / 8);
+  std::copy(noise.begin(), noise.begin() + block_bytes / 4, half.begin());
+  const std::vector<unsigned char> none;
+  std::vector<unsigned char> small(noise.begin(), noise.begin() + 5);
+  BlockDeflater deflater;
+  std::vector<unsigned char> packed;
+  const auto comes_back = [&](const std::vector<unsigned char>& block, std::size_t length) {
+    CHECK(length <= packed.size());
+    std::vector<unsigned char> out(block.size());
+    const auto* last = reinterpret_cast<const char*>(packed.data()) + packed.size() - length;
+    return inflate_zlib({last, length}, {out.data(), out.size()}) && out == block;
+  };
+  for (const auto* block : {&even, &even, &noise, &even, &small, &numbers, &half, &half, &numbers}) {
+    CHECK(comes_back(*block, deflater.pack(*block, packed)));
+    CHECK(comes_back(*block, wrap_as_it_is(*block, packed)));
+  }
+  CHECK(deflater.pack(even, packed) < block_bytes / 100);
+  CHECK(deflater.pack(noise, packed) == block_bytes + 16);
+  CHECK(wrap_as_it_is(none, packed) == 11);
+}
 
 TEST_CASE("points, cells and fields of every element type come back") {
   const TemporaryFolder folder;

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -22,9 +23,25 @@ class BlockSink {
   virtual void packed(std::span<const unsigned char> bytes, std::span<const std::uint64_t> lengths) = 0;
 };
 
-/// Adds a block, packed, to `out`, and returns its length there. What zlib would hardly shorten is wrapped as
-/// it is: the digits of fields are noise to it, and trying costs ten times as long as writing them.
-std::size_t pack_block(std::span<const unsigned char> block, std::vector<unsigned char>& out);
+/// Packs blocks one after the other; zlib's tables are set up once for all of them.
+class BlockDeflater {
+ public:
+  BlockDeflater();
+  ~BlockDeflater();
+  /// Adds a block, packed, to `out`, and returns its length there. What zlib would hardly shorten is wrapped
+  /// as it is: the digits of fields are noise to it, and trying costs ten times as long as writing them.
+  std::size_t pack(std::span<const unsigned char> block, std::vector<unsigned char>& out);
+
+ private:
+  struct Stream;
+  std::span<const unsigned char> shortened(std::span<const unsigned char> block);
+
+  std::unique_ptr<Stream> stream_;
+  std::vector<unsigned char> room_, last_, last_packed_;  ///< last_: of those that zlib has shortened
+};
+
+/// The same without zlib's help, which takes ten times as long to leave bytes as they are.
+std::size_t wrap_as_it_is(std::span<const unsigned char> block, std::vector<unsigned char>& out);
 
 /// Cuts a share of an array, which lies anywhere in it, at the ends of the array's blocks.
 class BlockPacker {
@@ -39,10 +56,11 @@ class BlockPacker {
   void finish();
 
  private:
-  void pack();
+  void pack(std::span<const unsigned char> block);
   void hand_over();
 
   BlockSink& sink_;
+  BlockDeflater deflater_;
   std::size_t head_;  ///< bytes that are missing to the end of the block that the share begins in
   std::vector<unsigned char> block_, packed_;
   std::vector<std::uint64_t> lengths_;

@@ -159,6 +159,12 @@ void VtuShare::add_cells(const Grid& grid) {
   add("type=\"UInt8\" Name=\"types\"", 1, types);
 }
 
+std::uint64_t VtuShare::largest() const {
+  std::uint64_t bytes = 0;
+  for (const Array& array : arrays_) bytes = std::max(bytes, array.bytes);
+  return bytes;
+}
+
 void VtuShare::pack(std::size_t array, BlockSink& sink) const {
   BlockPacker packer(arrays_[array].before, sink);
   arrays_[array].visit([&](const void* data, std::size_t bytes) { packer.write(data, bytes); });
@@ -212,7 +218,7 @@ void VtuFileWriter::loose(std::span<const unsigned char> bytes) {
     bytes = bytes.subspan(some);
     if (block_.size() < block_bytes) continue;
     std::vector<unsigned char> out;
-    lengths_.push_back(pack_block(block_, out));
+    lengths_.push_back(deflater_.pack(block_, out));
     put(out);
     block_.clear();
   }
@@ -227,7 +233,7 @@ void VtuFileWriter::end() {
   const std::uint64_t last = block_.size();
   if (last > 0) {
     std::vector<unsigned char> out;
-    lengths_.push_back(pack_block(block_, out));
+    lengths_.push_back(deflater_.pack(block_, out));
     put(out);
     block_.clear();
   }

@@ -94,6 +94,8 @@ class VtuShare {
   VtuShare(const std::string& path, const Grid& grid, const GridPlace& place);
 
   std::size_t arrays() const noexcept { return arrays_.size(); }
+  /// Bytes of the largest array, of all shares together.
+  std::uint64_t largest() const;
   /// Hands an array's share over in blocks.
   void pack(std::size_t array, BlockSink& sink) const;
 
@@ -138,6 +140,7 @@ class VtuFileWriter : public BlockSink {
   std::size_t room_ = 0;                ///< for head(), before the arrays
   std::uint64_t written_ = 0;           ///< bytes of arrays
   std::size_t array_ = 0;
+  BlockDeflater deflater_;
   std::vector<unsigned char> block_;    ///< what is there of a block that shares have part in
   std::vector<std::uint64_t> lengths_;  ///< of the array's blocks
 };

@@ -3,7 +3,7 @@
 #include "program/shared_grid.hpp"
 
 #include <array>
-#include <cstring>
+#include <deque>
 #include <exception>
 #include <optional>
 
@@ -30,36 +30,83 @@ struct Front {
   std::uint64_t bytes = 0, lengths = 0;
 };
 
-/// Sends blocks to the first rank.
+/// Sends blocks to the first rank, and goes on while that packs its own: `ahead` bytes may wait here to be
+/// taken. Without that the ranks would pack one after the other.
 class Sender : public BlockSink {
  public:
-  explicit Sender(MPI_Comm comm) : comm_(comm) {}
+  Sender(MPI_Comm comm, std::uint64_t ahead) : comm_(comm), ahead_(ahead) {}
+  ~Sender() override { wait_until(0); }
+  Sender(const Sender&) = delete;
+  Sender& operator=(const Sender&) = delete;
+
   void loose(std::span<const unsigned char> bytes) override { send(Kind::loose, bytes, {}); }
   void packed(std::span<const unsigned char> bytes, std::span<const std::uint64_t> lengths) override {
     send(Kind::packed, bytes, lengths);
   }
   void send(Kind kind, std::span<const unsigned char> bytes = {},
             std::span<const std::uint64_t> lengths = {}) {
-    const Front front{kind, bytes.size(), lengths.size()};
+    wait_until(ahead_);
+    waiting_.push_back({{kind, bytes.size(), lengths.size()},
+                        {lengths.begin(), lengths.end()},
+                        {bytes.begin(), bytes.end()},
+                        {MPI_REQUEST_NULL, MPI_REQUEST_NULL, MPI_REQUEST_NULL}});
+    Message& message = waiting_.back();
+    pending_ += bytes.size();
+    const auto start = [&](const void* data, std::size_t size, MPI_Request& request) {
+      MPI_Isend(data, static_cast<int>(size), MPI_BYTE, 0, 1, comm_, &request);
+    };
+    start(&message.front, sizeof message.front, message.requests[0]);
+    if (!lengths.empty()) start(message.lengths.data(), lengths.size_bytes(), message.requests[1]);
+    if (!bytes.empty()) start(message.bytes.data(), bytes.size(), message.requests[2]);
+  }
+  /// Needs no memory: it may be that which is missing.
+  void give_up() {
+    wait_until(0);
+    const Front front{Kind::failed, 0, 0};
     send_bytes(&front, sizeof front, 0, comm_);
-    send_bytes(lengths.data(), lengths.size_bytes(), 0, comm_);
-    send_bytes(bytes.data(), bytes.size(), 0, comm_);
   }
 
  private:
+  struct Message {
+    Front front;
+    std::vector<std::uint64_t> lengths;
+    std::vector<unsigned char> bytes;
+    std::array<MPI_Request, 3> requests;
+  };
+
+  /// Lets go of what has been taken, and waits until no more than so many bytes are left.
+  void wait_until(std::uint64_t most) {
+    while (!waiting_.empty()) {
+      Message& oldest = waiting_.front();
+      int taken = 0;
+      if (pending_ > most || most == 0) {
+        MPI_Waitall(3, oldest.requests.data(), MPI_STATUSES_IGNORE);
+        taken = 1;
+      } else {
+        MPI_Testall(3, oldest.requests.data(), &taken, MPI_STATUSES_IGNORE);
+      }
+      if (taken == 0) return;
+      pending_ -= oldest.bytes.size();
+      waiting_.pop_front();
+    }
+  }
+
   MPI_Comm comm_;
+  std::uint64_t ahead_, pending_ = 0;
+  std::deque<Message> waiting_;
 };
 
 /// Sends all arrays; where that fails, says so and sends no more.
-void send_share(const VtuShare& share, MPI_Comm comm) {
-  Sender sender(comm);
+void send_share(const VtuShare& share, const MpiSession& mpi) {
+  // An array's share: while the first rank packs its own of one, the others do so too.
+  Sender sender(mpi.comm(), share.largest() / static_cast<std::uint64_t>(mpi.ranks()));
   try {
     for (std::size_t array = share.arrays(); array-- > 0;) {
       share.pack(array, sender);
       sender.send(Kind::end);
     }
   } catch (...) {
-    sender.send(Kind::failed);
+    sender.give_up();
     throw;
   }
 }
@@ -147,7 +194,7 @@ void write_shared_vtu(const std::string& path, const Grid& share, const MpiSessi
     if (mpi.first())
       collector->write();
     else
-      send_share(*arrays, mpi.comm());
+      send_share(*arrays, mpi);
   } catch (...) {
     error = std::current_exception();
   }
