@@ -17,16 +17,6 @@ Monomials::Monomials(int dim, int order) : dim_(dim), quadratic_(order > 1) {
   count_ = quadratic_ ? (dim_ + 1) * (dim_ + 2) / 2 : dim_ + 1;
 }
 
-std::array<double, Monomials::most> Monomials::at(const Vector3& x) const {
-  std::array<double, most> value{1.0};
-  for (std::size_t i = 0; i < dim_; ++i) value[1 + i] = x[i];
-  if (!quadratic_) return value;
-  std::size_t k = 1 + dim_;
-  for (std::size_t i = 0; i < dim_; ++i)
-    for (std::size_t j = i; j < dim_; ++j) value[k++] = x[i] * x[j];
-  return value;
-}
-
 PatchFits::PatchFits(std::size_t centres, const Monomials& monomials)
     : monomials_(monomials),
       pairs_(monomials.count() * (monomials.count() + 1) / 2),
@@ -79,16 +69,6 @@ void PatchFits::solve_of() {
         side[i * values + v] = rest / l[i][i];
       }
   }
-}
-
-std::array<double, PatchFits::values> PatchFits::evaluate(const double* coefficient, const Vector3& x) const {
-  const auto p = monomials_.at(x);
-  std::array<double, values> out{};
-  monomials_.with_count([&](auto count) {
-    for (std::size_t i = 0; i < count(); ++i)
-      for (std::size_t v = 0; v < values; ++v) out[v] += p[i] * coefficient[i * values + v];
-  });
-  return out;
 }
 
 }  // namespace kacanov

@@ -19,7 +19,15 @@ class Monomials {
   Monomials(int dim, int order);
   std::size_t count() const noexcept { return count_; }
   std::size_t linear() const noexcept { return 1 + dim_; }  ///< those of order 0 and 1
-  std::array<double, most> at(const Vector3& x) const;
+  std::array<double, most> at(const Vector3& x) const {
+    std::array<double, most> value{1.0};
+    for (std::size_t i = 0; i < dim_; ++i) value[1 + i] = x[i];
+    if (!quadratic_) return value;
+    std::size_t k = 1 + dim_;
+    for (std::size_t i = 0; i < dim_; ++i)
+      for (std::size_t j = i; j < dim_; ++j) value[k++] = x[i] * x[j];
+    return value;
+  }
   /// Calls work(std::integral_constant of count()): loops over monomials then are of known length, which
   /// makes them three times as fast.
   template <class Work>
@@ -61,7 +69,15 @@ class PatchFits {
   }
   /// The same where many values of one polynomial are wanted.
   const double* coefficients(std::size_t centre) const noexcept { return &sums_[centre * width_ + pairs_]; }
-  std::array<double, values> evaluate(const double* coefficients, const Vector3& x) const;
+  std::array<double, values> evaluate(const double* coefficients, const Vector3& x) const {
+    const auto p = monomials_.at(x);
+    std::array<double, values> out{};
+    monomials_.with_count([&](auto count) {
+      for (std::size_t i = 0; i < count(); ++i)
+        for (std::size_t v = 0; v < values; ++v) out[v] += p[i] * coefficients[i * values + v];
+    });
+    return out;
+  }
 
  private:
   template <std::size_t n>

@@ -13,12 +13,18 @@
 namespace kacanov {
 namespace {
 
-/// One facet of one element: its corner nodes, ascending, unused ones −1 and last.
+/// One facet of one element, among those of one lowest node: its other corners, ascending, unused ones −1 and
+/// last. In two numbers they compare twice as fast as in four.
 struct FacetKey {
-  std::array<std::int32_t, 4> nodes{-1, -1, -1, -1};
-  std::uint32_t id = 0;  ///< element · facets_per_element + local facet
+  std::uint64_t middle = 0;  ///< second and third
+  std::uint32_t last = 0;    ///< fourth
+  std::uint32_t id = 0;      ///< element · facets_per_element + local facet
 
-  bool same_corners(const FacetKey& other) const { return nodes == other.nodes; }
+  bool same_corners(const FacetKey& other) const { return middle == other.middle && last == other.last; }
+  bool operator<(const FacetKey& other) const {
+    if (middle != other.middle) return middle < other.middle;
+    return last != other.last ? last < other.last : id < other.id;
+  }
 };
 
 /// The facets of all elements, ordered into sets of equal corners. Buckets by the lowest node keep the
@@ -37,12 +43,11 @@ class FacetSets {
       throw InputError("the mesh has " + std::to_string(mesh.element_count()) +
                        " elements: more than 2^32 element sides cannot be indexed");
     bucket_.assign(mesh.node_count() + 1, 0);
-    const auto count = static_cast<std::uint32_t>(total);
-    for (std::uint32_t id = 0; id < count; ++id) ++bucket_[lowest_node(id) + 1];
+    for_each_lowest_node([&](std::size_t lowest, std::uint32_t) { ++bucket_[lowest + 1]; });
     for (std::size_t i = 1; i < bucket_.size(); ++i) bucket_[i] += bucket_[i - 1];
     ids_.resize(total);
     std::vector<std::uint32_t> next(bucket_.begin(), bucket_.end() - 1);
-    for (std::uint32_t id = 0; id < count; ++id) ids_[next[lowest_node(id)]++] = id;
+    for_each_lowest_node([&](std::size_t lowest, std::uint32_t id) { ids_[next[lowest]++] = id; });
   }
 
   /// Calls visit(span of FacetKey) for every set of facets with the same corners.
@@ -52,9 +57,7 @@ class FacetSets {
     for (std::size_t node = 0; node + 1 < bucket_.size(); ++node) {
       keys.clear();
       for (std::uint32_t i = bucket_[node]; i < bucket_[node + 1]; ++i) keys.push_back(key(ids_[i]));
-      std::sort(keys.begin(), keys.end(), [](const FacetKey& a, const FacetKey& b) {
-        return a.nodes != b.nodes ? a.nodes < b.nodes : a.id < b.id;
-      });
+      std::sort(keys.begin(), keys.end());
       for (std::size_t first = 0; first < keys.size();) {
         std::size_t last = first + 1;
         while (last < keys.size() && keys[last].same_corners(keys[first])) ++last;
@@ -74,22 +77,30 @@ class FacetSets {
   std::size_t facet_nodes() const { return facet_nodes_; }
 
  private:
-  std::size_t lowest_node(std::uint32_t id) const {
-    std::int32_t lowest = node(id, 0);
-    for (std::size_t k = 1; k < corners_; ++k) lowest = std::min(lowest, node(id, k));
-    return static_cast<std::size_t>(lowest);
+  /// Calls visit(lowest node, id) for all facets, without a division for each.
+  template <typename Visit>
+  void for_each_lowest_node(const Visit& visit) const {
+    std::uint32_t id = 0;
+    for (const std::int32_t* element = mesh_.elements.data(); id < ids(); element += element_nodes_)
+      for (const std::int8_t* local = table_.data(); local != table_.data() + table_.size();
+           local += facet_nodes_) {
+        std::int32_t lowest = element[local[0]];
+        for (std::size_t k = 1; k < corners_; ++k) lowest = std::min(lowest, element[local[k]]);
+        visit(static_cast<std::size_t>(lowest), id++);
+      }
   }
+  std::uint32_t ids() const { return static_cast<std::uint32_t>(mesh_.element_count()) * facets_; }
+
   FacetKey key(std::uint32_t id) const {
-    FacetKey result;
-    result.id = id;
+    std::array<std::int32_t, 4> nodes{-1, -1, -1, -1};
     for (std::size_t k = 0; k < corners_; ++k) {
       const std::int32_t next = node(id, k);
       std::size_t place = k;
-      for (; place > 0 && result.nodes[place - 1] > next; --place)
-        result.nodes[place] = result.nodes[place - 1];
-      result.nodes[place] = next;
+      for (; place > 0 && nodes[place - 1] > next; --place) nodes[place] = nodes[place - 1];
+      nodes[place] = next;
     }
-    return result;
+    const auto number = [&](std::size_t k) { return static_cast<std::uint32_t>(nodes[k]); };
+    return {std::uint64_t{number(1)} << 32 | number(2), number(3), id};
   }
 
   const Mesh& mesh_;
@@ -176,7 +187,7 @@ class Geometry {
         longest = std::max(longest, square);
       }
     result.longest_edge = std::sqrt(longest);
-    result.scale = std::pow(result.longest_edge, static_cast<double>(dim_));
+    result.scale = dim_ == 3 ? longest * result.longest_edge : longest;
     return result;
   }
 
