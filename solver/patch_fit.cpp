@@ -23,18 +23,6 @@ PatchFits::PatchFits(std::size_t centres, const Monomials& monomials)
       width_(pairs_ + values * monomials.count()),
       sums_(centres * width_, 0.0) {}
 
-void PatchFits::add(std::size_t centre, const Vector3& x, const double* sample) {
-  const auto p = monomials_.at(x);
-  monomials_.with_count([&](auto count) {
-    constexpr std::size_t n = count();
-    double* sum = &sums_[centre * width_];
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = i; j < n; ++j) *sum++ += p[i] * p[j];
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t v = 0; v < values; ++v) *sum++ += p[i] * sample[v];
-  });
-}
-
 void PatchFits::solve() {
   monomials_.with_count([&](auto count) { solve_of<count()>(); });
 }

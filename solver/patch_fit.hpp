@@ -52,7 +52,17 @@ class PatchFits {
   PatchFits(std::size_t centres, const Monomials& monomials);
 
   /// `x`: from the centre, in units of the patch's size.
-  void add(std::size_t centre, const Vector3& x, const double* sample);
+  void add(std::size_t centre, const Vector3& x, const double* sample) {
+    const auto p = monomials_.at(x);
+    monomials_.with_count([&](auto count) {
+      constexpr std::size_t n = count();
+      double* sum = &sums_[centre * width_];
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = i; j < n; ++j) *sum++ += p[i] * p[j];
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t v = 0; v < values; ++v) *sum++ += p[i] * sample[v];
+    });
+  }
   /// The sums of centre i, to be added up over ranks.
   std::span<double> sums(std::size_t centre) noexcept {
     return std::span(sums_).subspan(centre * width_, width_);
