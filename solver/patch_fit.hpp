@@ -28,8 +28,7 @@ class Monomials {
       for (std::size_t j = i; j < dim_; ++j) value[k++] = x[i] * x[j];
     return value;
   }
-  /// Calls work(std::integral_constant of count()): loops over monomials then are of known length, which
-  /// makes them three times as fast.
+  /// Calls work(std::integral_constant of count()), so that loops over monomials are of known length.
   template <class Work>
   decltype(auto) with_count(const Work& work) const {
     switch (count_) {

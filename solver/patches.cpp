@@ -13,7 +13,7 @@
 namespace kacanov {
 namespace {
 
-std::vector<double> patch_sizes(const Part& part) {
+std::vector<double> patch_scales(const Part& part) {
   std::vector<double> of_element(part.element_count()), size(part.nodes(), 0.0);
   Body flat = part.body();
   flat.mesh.plane = PlaneState::strain;  // sizes within the plane
@@ -24,7 +24,7 @@ std::vector<double> patch_sizes(const Part& part) {
   const std::size_t nodes = nodes_per_element(part.type);
   for (std::size_t k = 0; k < part.elements.size(); ++k) size[part.elements[k]] += of_element[k / nodes];
   part.node_map.sum(size, 1);
-  for (double& v : size) v = part.dim() == 3 ? std::cbrt(v) : std::sqrt(v);
+  for (double& v : size) v = 1.0 / (part.dim() == 3 ? std::cbrt(v) : std::sqrt(v));
   return size;
 }
 
@@ -35,7 +35,7 @@ Patches::Patches(const Part& part)
       nodes_of_element_(nodes_per_element(part.type)),
       corners_of_element_(static_cast<std::size_t>(cell(part.type).corners)),
       place_of_node_(part.nodes(), -1),
-      size_(patch_sizes(part)),
+      scale_(patch_scales(part)),
       batch_of_law_(law_batches(part)),
       batches_(1 + *std::max_element(batch_of_law_.begin(), batch_of_law_.end())) {
   for (std::size_t first = 0; first < part.elements.size(); first += nodes_of_element_)
@@ -50,18 +50,14 @@ PatchFits Patches::fits() const {
   return PatchFits(corners_.size(), Monomials(static_cast<int>(part_.dim()), cell(part_.type).order));
 }
 
-Vector3 Patches::from_corner(const Vector3& position, std::size_t node) const {
-  return (1.0 / size_[node]) * (position - node_position(part_, node));
-}
-
 Patches::Polynomial Patches::polynomial(const PatchFits& fits, std::size_t node) const {
-  return {&fits, fits.coefficients(place(node)), node_position(part_, node), 1.0 / size_[node]};
+  return {&fits, fits.coefficients(place(node)), node_position(part_, node), scale_[node]};
 }
 
 void Patches::add(PatchFits& fits, std::size_t element, const Vector3& position, const double* sample) const {
   for (std::size_t a = 0; a < corners_of_element_; ++a) {
     const std::size_t node = part_.elements[element * nodes_of_element_ + a];
-    fits.add(place(node), from_corner(position, node), sample);
+    fits.add(place(node), scale_[node] * (position - node_position(part_, node)), sample);
   }
 }
 

@@ -56,12 +56,12 @@ class Patches {
 
  private:
   std::size_t place(std::size_t node) const { return static_cast<std::size_t>(place_of_node_[node]); }
-  Vector3 from_corner(const Vector3& position, std::size_t node) const;
 
   const Part& part_;
   std::size_t nodes_of_element_, corners_of_element_;
   std::vector<std::int32_t> corners_, place_of_node_;
-  std::vector<double> size_;  ///< third root of the volume round each node, or square root of an area
+  /// One over the third root of the volume round each node, or over the square root of an area.
+  std::vector<double> scale_;
   std::vector<std::int32_t> batch_of_law_;
   std::int32_t batches_ = 0;
 };
