@@ -110,6 +110,16 @@ void BasicOperator<Real>::block_diagonal(std::span<Real> blocks) const {
 }
 
 template <class Real>
+void BasicOperator<Real>::block_diagonal_deviator(std::span<Real> blocks) const {
+  const Data& data = *data_;
+  if (pressures() == 0) throw std::logic_error("block_diagonal_deviator where nothing is averaged");
+  data.sum_blocks(blocks, [&](const auto& point, int a, const Law& law, std::size_t slot, Real* block) {
+    point.add_diagonal_block(a, law.mean_dilatation ? 0.0 : law.bulk, static_cast<double>(data.secant[slot]),
+                             block);
+  });
+}
+
+template <class Real>
 void BasicOperator<Real>::diagonal(std::span<Real> d) const {
   expect_size(d.size(), unknowns(), "d");
   std::vector<Real> blocks(d.size() * data_->dim());
@@ -143,6 +153,8 @@ void BasicOperator<Real>::diagonal_tangent(std::span<Real> d) const {
   take_diagonal<Real>(blocks, data_->dim(), d);
 }
 
+template void BasicOperator<double>::block_diagonal_deviator(std::span<double>) const;
+template void BasicOperator<float>::block_diagonal_deviator(std::span<float>) const;
 template void BasicOperator<double>::diagonal(std::span<double>) const;
 template void BasicOperator<float>::diagonal(std::span<float>) const;
 template void BasicOperator<double>::block_diagonal(std::span<double>) const;

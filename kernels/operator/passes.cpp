@@ -158,9 +158,10 @@ double BasicOperator<Real>::Data::pass(const Real* x, Real* y, int vectors, bool
     double sum = sums[t];
     for (std::size_t b = begin; b < end; ++b) {
       const simd::Block<Real> at = block(b);
-      for (std::size_t v = 0; v < count; ++v)
+      for (std::size_t v = 0; x != nullptr && v < count; ++v)
         kernels.gather(at, dimension, x + v * unknowns, mine.u.data() + v * stride,
                        mine.f.data() + v * stride);
+      if (x == nullptr) std::fill_n(mine.f.data(), 4 * std::size_t{at.count + at.padding}, Real(0));
       for (std::size_t v = 0; averaged && v < count; ++v)
         for (const BlockCorner& corner : corners.of(b))
           mine.u[v * stride + 4 * corner.node + 3] = mean[v * corners.entries + corner.entry];
@@ -203,11 +204,10 @@ void BasicOperator<Real>::Data::weigh_corners() {
 }
 
 template <class Real>
-double BasicOperator<Real>::Data::find_means(const Real* x, int vectors) {
+void BasicOperator<Real>::Data::find_changes(const Real* x, int vectors) {
   reserve_scratch(vectors);
   const std::size_t stride = 4 * std::size_t{layout.largest}, count = vectors;
   change.assign(corners.places * count, Real(0));
-  mean.resize(corners.entries * count);
   in_team(threads, [&](int thread) {
     const std::size_t t = thread;
     Scratch& mine = scratch[t];
@@ -223,12 +223,47 @@ double BasicOperator<Real>::Data::find_means(const Real* x, int vectors) {
           change[v * corners.places + corner.place] += mine.f[v * stride + 4 * corner.node + 3];
     }
   });
-  double energy = 0.0;
   for (std::size_t v = 0; v < count; ++v) {
     const auto all = std::span(change).subspan(v * corners.places, corners.places);
     for (std::size_t i = 0; i < corners.shared_entry.size(); ++i)
       for (std::size_t k = corners.shared_first[i]; k < corners.shared_first[i + 1]; ++k)
         all[corners.shared_entry[i]] += all[corners.shared_place[k]];
+  }
+}
+
+template <class Real>
+void BasicOperator<Real>::Data::apply_deviator(const Real* x, Real* y, const WhenEarly& when_early) {
+  pass(x, y, 1, false, when_early,
+       [&](const simd::Block<Real>& at, const Real* u, Real* f, std::size_t stride) {
+         kernels.apply(at, {u, f, 1, stride});  // gathering leaves means of zero
+         return 0.0;
+       });
+}
+
+template <class Real>
+void BasicOperator<Real>::Data::apply_pressure(const Real* x, const Real* p, Real* y,
+                                               const WhenEarly& when_early) {
+  mean.assign(p, p + corners.entries);
+  // The loops over displacements multiply a mean by its k0.
+  for (std::size_t i = 0; x != nullptr && i < mean.size(); ++i) mean[i] /= static_cast<Real>(corner_bulk[i]);
+  pass(x, y, 1, true, when_early,
+       [&](const simd::Block<Real>& at, const Real* u, Real* f, std::size_t stride) {
+         if (x != nullptr)
+           kernels.apply(at, {u, f, 1, stride});
+         else
+           kernels.corner_forces(at, {u, f, 1, stride});
+         return 0.0;
+       });
+}
+
+template <class Real>
+double BasicOperator<Real>::Data::find_means(const Real* x, int vectors) {
+  find_changes(x, vectors);
+  const std::size_t count = vectors;
+  mean.resize(corners.entries * count);
+  double energy = 0.0;
+  for (std::size_t v = 0; v < count; ++v) {
+    const auto all = std::span(change).subspan(v * corners.places, corners.places);
     const auto means = std::span(mean).subspan(v * corners.entries, corners.entries);
     std::copy_n(all.begin(), means.size(), means.begin());
     if (sum_corners) sum_corners(means);

@@ -50,6 +50,12 @@ struct BasicOperator<Real>::Data {
   /// Of the caller's elements × points: as the slots have them, 0 in idle lanes; null where there are none.
   const Real* by_slot(std::span<const double> values, Aligned<Real>& slots) const;
 
+  /// change = ∫ N tr ε(x_v) round the corners, this process's share, in the places of the entries.
+  void find_changes(const Real* x, int count);
+  /// y = A x (theory: displacement-pressure).
+  void apply_deviator(const Real* x, Real* y, const WhenEarly& when_early);
+  /// y = A x + Bᵀ p, or Bᵀ p where x is null (theory: displacement-pressure).
+  void apply_pressure(const Real* x, const Real* p, Real* y, const WhenEarly& when_early);
   /// Means of tr ε(x_v) round the corners, from here and from other processes, into `mean`. Returns the
   /// energy that k0 stores in those of the first vector, this process's share.
   double find_means(const Real* x, int count);
@@ -57,7 +63,7 @@ struct BasicOperator<Real>::Data {
   void weigh_corners();
 
   /// Calls loops(block, u, f, stride) between gathering x and scattering y, and adds up what it returns.
-  /// `averaged`: find_means() has found those of x.
+  /// `averaged`: find_means() has found those of x. Where x is null the records of u hold means alone.
   template <class LoopsOnBlock>
   double pass(const Real* x, Real* y, int count, bool averaged, const WhenEarly& when_early,
               LoopsOnBlock&& loops);

@@ -119,6 +119,8 @@ struct Kernels {
   double (*dot)(const Block<Real>&, const Real* u, const Real* f);
   /// The last places of f += ∫ N tr ε(u) at corners round which tr ε is averaged.
   void (*corner_changes)(const Block<Real>&, const Vectors<Real>&);
+  /// f += ∫ p ∇N of the p in the last places of u at corners round which tr ε is averaged: the transpose.
+  void (*corner_forces)(const Block<Real>&, const Vectors<Real>&);
   /// f += B u.
   void (*apply)(const Block<Real>&, const Vectors<Real>&);
   /// f += B_T u.

@@ -4,6 +4,7 @@
 
 #include "simd/element.hpp"
 #include "simd/hex8.hpp"
+#include "simd/pressure.hpp"
 #include "simd/tet10.hpp"
 
 namespace {
@@ -190,8 +191,19 @@ struct Loops {
     }
   }
 
-  static constexpr Kernels<Real> table{L::width,       gather, scatter,       dot,
-                                       corner_changes, apply,  apply_tangent, nonlinear};
+  static void corner_forces(const Block<Real>& block, const Vectors<Real>& vectors) {
+    for (std::size_t i = 0; i < block.group_count; ++i) {
+      const Group& group = block.groups[i];
+      if (group.type != ElementType::tet10 || !block.laws[group.law].mean_dilatation) continue;
+      if (group.shape == Shape::general)
+        element_pressures<L, Real, Tet10>(block, group, vectors);
+      else
+        quadratic_fan_pressures<L, Real>(block, group, vectors);
+    }
+  }
+
+  static constexpr Kernels<Real> table{L::width,      gather, scatter,       dot,      corner_changes,
+                                       corner_forces, apply,  apply_tangent, nonlinear};
 };
 
 }  // namespace

@@ -78,6 +78,22 @@ class BasicOperator {
   /// Diagonal blocks of B(g), nodes × dim × dim, each block row-major; likewise.
   void block_diagonal(std::span<Real> blocks) const;
 
+  // B(g) = A + Bᵀ C⁻¹ B where tr ε is averaged round corners, C their volumes over k0 (theory:
+  // displacement-pressure): its parts, for preconditioners. p and q have an entry for each of corner_means()
+  // of this body, p a stress, q a volume. Throw std::logic_error where nothing is averaged.
+
+  /// Entries of p; 0 where nothing is averaged.
+  std::size_t pressures() const noexcept;
+  /// y = A x + Bᵀ p; without p, A x.
+  void apply_deviator(std::span<const Real> x, std::span<const Real> p, std::span<Real> y,
+                      const WhenEarly& when_early = {});
+  /// y = Bᵀ p.
+  void pressure_force(std::span<const Real> p, std::span<Real> y, const WhenEarly& when_early = {});
+  /// q = B x, this process's share.
+  void volume_change(std::span<const Real> x, std::span<Real> q);
+  /// Diagonal blocks of A, as block_diagonal.
+  void block_diagonal_deviator(std::span<Real> blocks) const;
+
   /// Freezes the tangent (and g) at u for apply_tangent.
   void update_tangent(std::span<const Real> u);
   /// y = B_T x with the tangent frozen last, whatever became of g since. The direction of dev ε in its
