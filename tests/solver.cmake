@@ -129,6 +129,10 @@ kacanov_test(outer IN numbers
 kacanov_test(nonlinear IN solver
   MPI SOURCES solver/nonlinear_test.cpp solver/augmented_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
+kacanov_test(pressure_multigrid IN solver
+  MPI SOURCES solver/pressure_multigrid_test.cpp
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal
+  RANKS 1 2 3)
 
 # Whole runs.
 if(KACANOV_SLOW_TESTS)

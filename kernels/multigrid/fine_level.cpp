@@ -22,9 +22,10 @@ FloatOperator make_operator(const MultigridBody& body, const OperatorOptions& op
 
 }  // namespace
 
-FineLevel::FineLevel(const MultigridBody& body, const MultigridOptions& options)
+FineLevel::FineLevel(const MultigridBody& body, const MultigridOptions& options, FinePart part)
     : body_(body),
       threads_(options.threads),
+      part_(part),
       op_(make_operator(body, {options.threads, options.instruction_set, body.node_map->shared})),
       sum_(*body.node_map, static_cast<int>(body.dim())) {
   body_.like = nullptr;  // it may go
@@ -51,11 +52,16 @@ void FineLevel::rebuild(std::span<const NodeBlock> blocks, const HeldSpace& spac
   const std::size_t dim = body_.dim();
   const std::size_t packed = dim * (dim + 1) / 2;
   std::vector<float> diagonal(body_.nodes() * dim * dim);
-  op_.block_diagonal(diagonal);
+  if (part_ == FinePart::deviator)
+    op_.block_diagonal_deviator(diagonal);
+  else
+    op_.block_diagonal(diagonal);
   for (const auto& b : blocks_)
     for (std::size_t k = 0; k < dim * dim; ++k)
       diagonal[static_cast<std::size_t>(b.node) * dim * dim + k] += static_cast<float>(b.value[k]);
   body_.node_map->sum(std::span<float>(diagonal), static_cast<int>(dim * dim));
+  held_stiffness_.clear();
+  for (const std::int32_t i : held_) held_stiffness_.push_back(diagonal[i * dim + i % dim]);
   inverse_.resize(body_.nodes() * packed);
   in_shares(threads_, body_.nodes(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
@@ -84,20 +90,54 @@ void FineLevel::add_blocks(std::span<const NodeBlock> blocks, std::span<const fl
   }
 }
 
-void FineLevel::multiply(std::span<const float> x, std::span<float> y) {
-  const auto blocks = std::span(blocks_);
+/// y = what apply(when_early) leaves in it and the blocks' forces, over all ranks; without x no blocks.
+template <class Apply>
+void FineLevel::product(const Apply& apply, std::span<const float> x, std::span<float> y) {
+  const auto blocks = x.empty() ? std::span<NodeBlock>() : std::span(blocks_);
+  const std::size_t shared = std::min(shared_blocks_, blocks.size());
   if (body_.node_map->ranks > 1) {
-    op_.apply(x, y, [&, this] {
-      add_blocks(blocks.first(shared_blocks_), x, y);
+    apply([&, this] {
+      add_blocks(blocks.first(shared), x, y);
       sum_.start_sum(y);
     });
-    add_blocks(blocks.subspan(shared_blocks_), x, y);
+    add_blocks(blocks.subspan(shared), x, y);
     sum_.finish_sum(y);
   } else {
-    op_.apply(x, y);
+    apply(WhenEarly());
     add_blocks(blocks, x, y);
   }
   hold(y);
+}
+
+void FineLevel::multiply(std::span<const float> x, std::span<float> y) {
+  if (part_ == FinePart::deviator) return multiply(x, {}, y);
+  product([&](const WhenEarly& early) { op_.apply(x, y, early); }, x, y);
+}
+
+void FineLevel::multiply(std::span<const float> x, std::span<const float> p, std::span<float> y) {
+  product([&](const WhenEarly& early) { op_.apply_deviator(x, p, y, early); }, x, y);
+}
+
+void FineLevel::pressure_force(std::span<const float> p, std::span<float> y) {
+  product([&](const WhenEarly& early) { op_.pressure_force(p, y, early); }, {}, y);
+}
+
+void FineLevel::add_scaled(float factor, std::span<const float> b, std::span<const float> image,
+                           std::span<float> x) const {
+  constexpr std::size_t piece = 128;
+  const std::size_t dim = body_.dim();
+  in_shares(threads_, body_.nodes(), [&](std::size_t begin, std::size_t end) {
+    std::array<float, 3 * piece> residual;
+    std::array<float, 3 * piece + 1> scaled;
+    for (std::size_t node = begin; node < end; node += piece) {
+      const std::size_t nodes = std::min(piece, end - node), at = node * dim, count = nodes * dim;
+      for (std::size_t i = 0; i < count; ++i)
+        residual[i] = image.empty() ? b[at + i] : b[at + i] - image[at + i];
+      simd::scale_by_blocks(static_cast<int>(dim), &inverse_[node * dim * (dim + 1) / 2], residual.data(),
+                            nodes, scaled.data());
+      for (std::size_t i = 0; i < count; ++i) x[at + i] += factor * scaled[i];
+    }
+  });
 }
 
 void FineLevel::relax(const ChebyshevStep<float>& weights, std::span<const float> b,

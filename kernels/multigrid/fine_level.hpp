@@ -17,6 +17,10 @@ namespace kacanov {
 
 struct MultigridOptions;
 
+/// What of B(g) a fine level is of: all of it, or A, without k0 where tr ε is averaged round corners (theory:
+/// displacement-pressure).
+enum class FinePart { whole, deviator };
+
 /// A = B(g) + blocks on free components, in single precision, never stored. Directions that the space of the
 /// setup holds are held by stiff blocks here, so that the smoother stays definite in the spaces of later
 /// solves; corrections from below are projected. Vectors have the body's unknowns and are consistent;
@@ -25,7 +29,7 @@ struct MultigridOptions;
 class FineLevel {
  public:
   /// g = μ and no blocks until build(). What the body points to has to outlive it.
-  FineLevel(const MultigridBody& body, const MultigridOptions& options);
+  FineLevel(const MultigridBody& body, const MultigridOptions& options, FinePart part = FinePart::whole);
   /// Freezes g and takes the blocks and the space over; D follows.
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space);
   /// With the g of the last build.
@@ -40,6 +44,22 @@ class FineLevel {
   /// Chebyshev::smooth's step, with D the dim × dim diagonal blocks of A.
   void relax(const ChebyshevStep<float>& weights, std::span<const float> b, std::span<const float> image,
              std::span<float> step, std::span<float> x) const;
+  /// x += factor D⁻¹ (b − image), without an image x += factor D⁻¹ b.
+  void add_scaled(float factor, std::span<const float> b, std::span<const float> image,
+                  std::span<float> x) const;
+  /// y = A x + Bᵀ p of the deviator's A; p has an entry for each of the operator's pressures. Collective.
+  void multiply(std::span<const float> x, std::span<const float> p, std::span<float> y);
+  /// y = Bᵀ p. Collective.
+  void pressure_force(std::span<const float> p, std::span<float> y);
+  /// q = B x, this rank's share.
+  void volume_change(std::span<const float> x, std::span<float> q) { op_.volume_change(x, q); }
+  /// D⁻¹, nodes × 6: the upper triangles of the inverse blocks, by rows; 3 in 2D.
+  std::span<const float> inverse() const noexcept { return inverse_; }
+  /// Of held components, which keep their blocks' entries: D's diagonal.
+  std::span<const float> held_stiffness() const noexcept { return held_stiffness_; }
+  std::span<const std::int32_t> held() const noexcept { return held_; }
+  /// Λ, of D⁻¹A; choose_smoother has worked it out.
+  double largest() const noexcept { return smoother_.upper; }
   /// Zero in held components.
   void hold(std::span<float> x) const;
   /// Onto the space of the setup.
@@ -50,17 +70,21 @@ class FineLevel {
   const Chebyshev& smoother() const noexcept { return smoother_; }
   std::size_t bytes() const noexcept {
     return op_.bytes() + held_.size() * sizeof(std::int32_t) + blocks_.size() * sizeof(NodeBlock) +
-           inverse_.size() * sizeof(float);
+           (inverse_.size() + held_stiffness_.size()) * sizeof(float);
   }
 
  private:
+  template <class Apply>
+  void product(const Apply& apply, std::span<const float> x, std::span<float> y);
   void add_blocks(std::span<const NodeBlock> blocks, std::span<const float> x, std::span<float> y) const;
 
   MultigridBody body_;
   int threads_;
+  FinePart part_;
   FloatOperator op_;
   Scatterer<float> sum_;
   std::vector<std::int32_t> held_;  ///< components
+  std::vector<float> held_stiffness_;
   HeldSpace space_;
   std::vector<NodeBlock> blocks_;
   std::size_t shared_blocks_ = 0;  ///< the first of them belong to nodes that other ranks have too

@@ -6,27 +6,19 @@
 #include <cmath>
 #include <optional>
 
+#include <kacanov/corner_means.hpp>
 #include "multigrid/aggregate_motions.hpp"
 #include "multigrid/aggregation.hpp"
 #include "multigrid/chebyshev.hpp"
 #include "multigrid/direct_solve.hpp"
 #include "multigrid/fine_level.hpp"
+#include "multigrid/hierarchy.hpp"
+#include "multigrid/pressure_hierarchy.hpp"
+#include "multigrid/softened_laws.hpp"
 #include "multigrid/sums.hpp"
 #include "operator/threads.hpp"
 
 namespace kacanov {
-
-/// What the number of modes does not change.
-struct RigidMultigrid::Hierarchy {
-  virtual ~Hierarchy() = default;
-  virtual void build(std::span<const double> g, std::span<const NodeBlock> blocks,
-                     const HeldSpace& space) = 0;
-  virtual void rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space) = 0;
-  virtual void apply(std::span<const double> r, std::span<double> z, const Factors& factors) = 0;
-  virtual void secant(std::span<double> g) const = 0;
-  virtual int levels() const noexcept = 0;
-  virtual std::size_t bytes() const noexcept = 0;
-};
 
 namespace {
 
@@ -45,21 +37,6 @@ struct Stage {
 };
 
 constexpr std::int64_t direct_rows = 400;
-
-/// Bulk over shear modulus: of an entry's seven digits in single precision, shear keeps two (theory:
-/// softened-bulk).
-constexpr double stiffest_bulk = 1e5;
-
-std::vector<Law> softened(std::span<const Law> laws) {
-  std::vector<Law> soft(laws.begin(), laws.end());
-  for (Law& law : soft) law.bulk = std::min(law.bulk, stiffest_bulk * law.secant(0.0));
-  return soft;
-}
-
-MultigridBody with_laws(MultigridBody body, std::span<const Law> laws) {
-  body.body.laws = laws;
-  return body;
-}
 
 template <int M>
 class ModesHierarchy final : public RigidMultigrid::Hierarchy {
@@ -219,10 +196,50 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
   std::vector<float> b_, x_, step_, image_;
 };
 
+/// Which of the two it is shows in a build: modes of aggregates until pressures pay, then these for good.
+class ChosenHierarchy final : public RigidMultigrid::Hierarchy {
+ public:
+  ChosenHierarchy(const MultigridBody& body, const MultigridOptions& options)
+      : body_(body), options_(options) {}
+
+  void build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space) override {
+    const bool pays = pressure_contrast(body_, g) >= options_.pressure_contrast;
+    if (pays && !with_pressures_) {
+      chosen_ = make_pressure_hierarchy(body_, options_);
+      with_pressures_ = true;
+    } else if (!chosen_) {
+      chosen_ = std::make_unique<ModesHierarchy<6>>(body_, options_);
+    }
+    chosen_->build(g, blocks, space);
+  }
+  void rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space) override {
+    chosen_->rebuild(blocks, space);
+  }
+  void apply(std::span<const double> r, std::span<double> z,
+             const RigidMultigrid::Factors& factors) override {
+    chosen_->apply(r, z, factors);
+  }
+  void secant(std::span<double> g) const override {
+    if (chosen_) return chosen_->secant(g);
+    const std::size_t points = points_per_element(body_.body.mesh.type);
+    for (std::size_t i = 0; i < g.size(); ++i) g[i] = body_.body.law(i / points).secant(0.0);
+  }
+  int levels() const noexcept override { return chosen_ ? chosen_->levels() : 1; }
+  std::size_t bytes() const noexcept override { return chosen_ ? chosen_->bytes() : 0; }
+
+ private:
+  MultigridBody body_;
+  MultigridOptions options_;
+  std::unique_ptr<RigidMultigrid::Hierarchy> chosen_;
+  bool with_pressures_ = false;
+};
+
 }  // namespace
 
 RigidMultigrid::RigidMultigrid(const MultigridBody& body, const MultigridOptions& options) {
-  if (body.dim() == 3)
+  if (body.dim() == 3 && !corner_moduli(body.body).empty())
+    hierarchy_ = std::make_unique<ChosenHierarchy>(body, options);
+  else if (body.dim() == 3)
     hierarchy_ = std::make_unique<ModesHierarchy<6>>(body, options);
   else
     hierarchy_ = std::make_unique<ModesHierarchy<3>>(body, options);

@@ -28,13 +28,19 @@ struct MultigridOptions {
   /// than what they stand for. 56 its with 1 and 1. Below 2 the cycle stays definite.
   double fine_gain = 1.5, coarse_gain = 1.3;
   int cycles = 2;  ///< 1: V, 2: W; 99 and 80 its
+  /// Where tr ε is averaged round corners: from which k0/g on pressures are unknowns of the cycle, too
+  /// (theory: pressure-multigrid). Such a cycle takes some three times as long, and its number does not grow
+  /// with k0/g.
+  double pressure_contrast = 40.0;
 };
 
 /// z = one symmetric cycle on r: z ≈ (B(g) + blocks)⁻¹ r, symmetric positive definite and fixed between two
 /// setups. Level 0 is B(g) + blocks in single precision, never stored, smoothed by Chebyshev's iteration on
 /// D⁻¹A with 3 × 3 blocks. The levels below are Galerkin matrices over the rigid motions of aggregates, which
 /// pairwise matching along strong couplings makes; the last is factorised on every rank (theory: multigrid,
-/// aggregation, over-correction). Vectors have the body's unknowns and are consistent. Calls are collective.
+/// aggregation, over-correction). Where tr ε is averaged round corners and g falls far below k0 the cycle is
+/// one on displacements and pressures (theory: pressure-multigrid). Vectors have the body's unknowns and are
+/// consistent. Calls are collective.
 class RigidMultigrid {
  public:
   /// Nothing is set up yet. What the body points to has to outlive it.

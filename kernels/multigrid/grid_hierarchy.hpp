@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The levels on background grids below a fine one.
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "multigrid/corner_pressures.hpp"
+#include "multigrid/grid_level.hpp"
+#include "multigrid/grid_sums.hpp"
+#include "multigrid/grid_transfer.hpp"
+#include "multigrid/pressure_direct.hpp"
+
+namespace kacanov {
+
+/// Grids from 2.6 times the spacing of the nodes on, each next one twice as coarse, the last one solved
+/// directly. What depends on the mesh alone is made once.
+class GridHierarchy {
+ public:
+  /// Collective.
+  GridHierarchy(const MultigridBody& body, const CornerPressures& pressures, int threads);
+
+  /// For frozen g, elements × points, and stiffnesses of local nodes. Collective.
+  void build(std::span<const double> g, std::span<const NodeBlock> blocks);
+  /// Adds a correction for what is left of forces on nodes and of volume changes at rows: `u` of the nodes
+  /// this rank owns, `p` of its rows. Collective.
+  void correct(std::span<const float> force, std::span<const double> change, std::span<float> u,
+               std::span<double> p);
+
+  int levels() const noexcept { return static_cast<int>(levels_.size()); }
+  std::size_t bytes() const noexcept;
+
+ private:
+  struct Level {
+    GridVertices vertices;
+    std::optional<GridTransfer> down;  ///< to the next; none on the last
+    std::optional<GridLevel> matrix;
+    GridVector b, x, rest;
+  };
+  void cycle(std::size_t k);
+
+  MultigridBody body_;
+  int threads_;
+  std::optional<GridTree> tree_;
+  std::vector<std::int32_t> cell_;  ///< the deepest, of every local node
+  std::deque<Level> levels_;
+  std::optional<GridTransfer> nodes_, rows_;
+  std::optional<PressureDirect> direct_;
+};
+
+}  // namespace kacanov

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The way between points, be they nodes or rows of a finer grid, and the trilinear functions on a tree.
+#include "multigrid/grid_transfer.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "operator/threads.hpp"
+
+namespace kacanov {
+namespace {
+
+/// For reverse scatters, too: what one has of the other and the other way round, the lower rank's first.
+/// Ghosts end with what is of no use.
+void add_sums(IndexMap& map) {
+  for (IndexMap::Neighbour& n : map.neighbours) {
+    const auto& [first, second] =
+        map.rank < n.rank ? std::tie(n.send, n.receive) : std::tie(n.receive, n.send);
+    n.shared = first;
+    n.shared.insert(n.shared.end(), second.begin(), second.end());
+    map.shared.insert(map.shared.end(), n.shared.begin(), n.shared.end());
+  }
+  std::sort(map.shared.begin(), map.shared.end());
+  map.shared.erase(std::unique(map.shared.begin(), map.shared.end()), map.shared.end());
+}
+
+std::array<float, 8> trilinear_weights(const std::array<float, 3>& xi) {
+  std::array<float, 8> w{};
+  for (std::size_t k = 0; k < 8; ++k)
+    w[k] = ((k & 1) != 0 ? xi[0] : 1.0F - xi[0]) * ((k & 2) != 0 ? xi[1] : 1.0F - xi[1]) *
+           ((k & 4) != 0 ? xi[2] : 1.0F - xi[2]);
+  return w;
+}
+
+}  // namespace
+
+GridTransfer::GridTransfer(const GridVertices& vertices, std::vector<Place> points, const Communicator& comm,
+                           int threads)
+    : threads_(threads) {
+  std::vector<std::int32_t> place(vertices.tree().cells().size(), -1), leaves;
+  for (const Place& p : points)
+    if (place[p.leaf] < 0) place[p.leaf] = 0, leaves.push_back(p.leaf);
+  std::sort(leaves.begin(), leaves.end());
+  for (std::size_t i = 0; i < leaves.size(); ++i) place[leaves[i]] = static_cast<std::int32_t>(i);
+  first_point_.assign(leaves.size() + 1, 0);
+  for (const Place& p : points) ++first_point_[static_cast<std::size_t>(place[p.leaf]) + 1];
+  std::partial_sum(first_point_.begin(), first_point_.end(), first_point_.begin());
+  std::vector<std::size_t> next(first_point_.begin(), first_point_.end() - 1);
+  point_.resize(points.size());
+  within_.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::size_t to = next[place[points[i].leaf]]++;
+    point_[to] = static_cast<std::int32_t>(i);
+    for (std::size_t k = 0; k < 3; ++k) within_[to][k] = static_cast<float>(points[i].within[k]);
+  }
+
+  const auto starts = vertices.starts();
+  const std::int64_t begin = starts[comm.rank], end = starts[comm.rank + 1];
+  std::vector<std::int64_t> ghosts;
+  for (const std::int32_t leaf : leaves)
+    for (std::size_t k = 0; k < 8; ++k)
+      for (const auto& share : vertices.corner(leaf, k))
+        if (share.row < begin || share.row >= end) ghosts.push_back(share.row);
+  std::sort(ghosts.begin(), ghosts.end());
+  ghosts.erase(std::unique(ghosts.begin(), ghosts.end()), ghosts.end());
+  IndexMap map = make_index_map(comm, static_cast<std::int32_t>(end - begin), std::move(ghosts));
+  add_sums(map);
+  map_ = std::make_unique<const IndexMap>(std::move(map));
+  first_share_.push_back(0);
+  for (const std::int32_t leaf : leaves)
+    for (std::size_t k = 0; k < 8; ++k) {
+      for (const auto& share : vertices.corner(leaf, k)) {
+        const bool mine = share.row >= begin && share.row < end;
+        const auto ghost = std::lower_bound(map_->ghosts.begin(), map_->ghosts.end(), share.row);
+        const std::int64_t local = mine ? share.row - begin : end - begin + (ghost - map_->ghosts.begin());
+        shares_.push_back({static_cast<std::int32_t>(local), static_cast<float>(share.weight)});
+      }
+      first_share_.push_back(shares_.size());
+    }
+}
+
+template <class Real>
+void GridTransfer::prolong(std::span<const double> rows, int components, std::span<Real> x, int stride) {
+  const std::size_t width = stride, count = components, leaves = first_point_.size() - 1;
+  local_.assign(map_->size() * width, 0.0);
+  std::copy(rows.begin(), rows.end(), local_.begin());
+  map_->forward(local_, stride);
+  in_shares(threads_, leaves, [&](std::size_t begin, std::size_t end) {
+    std::array<double, 32> value;
+    for (std::size_t leaf = begin; leaf < end; ++leaf) {
+      value.fill(0.0);
+      for (std::size_t k = 0; k < 8; ++k)
+        for (const Share& share : shares(8 * leaf + k))
+          for (std::size_t c = 0; c < count; ++c)
+            value[k * width + c] +=
+                static_cast<double>(share.weight) * local_[static_cast<std::size_t>(share.row) * width + c];
+      for (std::size_t i = first_point_[leaf]; i < first_point_[leaf + 1]; ++i) {
+        const auto w = trilinear_weights(within_[i]);
+        for (std::size_t c = 0; c < count; ++c) {
+          double sum = 0.0;
+          for (std::size_t k = 0; k < 8; ++k) sum += static_cast<double>(w[k]) * value[k * width + c];
+          x[static_cast<std::size_t>(point_[i]) * count + c] += static_cast<Real>(sum);
+        }
+      }
+    }
+  });
+}
+
+template <class Real>
+void GridTransfer::restrict_to(std::span<const Real> x, int components, std::span<double> rows, int stride) {
+  const std::size_t width = stride, count = components, leaves = first_point_.size() - 1;
+  corner_.assign(8 * leaves * width, 0.0);
+  in_shares(threads_, leaves, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t leaf = begin; leaf < end; ++leaf) {
+      double* value = &corner_[8 * leaf * width];
+      for (std::size_t i = first_point_[leaf]; i < first_point_[leaf + 1]; ++i) {
+        const auto w = trilinear_weights(within_[i]);
+        for (std::size_t c = 0; c < count; ++c) {
+          const auto at = static_cast<double>(x[static_cast<std::size_t>(point_[i]) * count + c]);
+          for (std::size_t k = 0; k < 8; ++k) value[k * width + c] += static_cast<double>(w[k]) * at;
+        }
+      }
+    }
+  });
+  local_.assign(map_->size() * width, 0.0);
+  for (std::size_t corner = 0; corner < 8 * leaves; ++corner)
+    for (const Share& share : shares(corner))
+      for (std::size_t c = 0; c < count; ++c)
+        local_[static_cast<std::size_t>(share.row) * width + c] +=
+            static_cast<double>(share.weight) * corner_[corner * width + c];
+  map_->sum(local_, stride);
+  std::copy_n(local_.begin(), rows.size(), rows.begin());
+}
+
+std::size_t GridTransfer::bytes() const noexcept {
+  const auto size = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+  return size(first_share_) + size(shares_) + size(first_point_) + size(point_) + size(within_) +
+         size(local_) + size(corner_);
+}
+
+template void GridTransfer::prolong(std::span<const double>, int, std::span<float>, int);
+template void GridTransfer::prolong(std::span<const double>, int, std::span<double>, int);
+template void GridTransfer::restrict_to(std::span<const float>, int, std::span<double>, int);
+template void GridTransfer::restrict_to(std::span<const double>, int, std::span<double>, int);
+
+}  // namespace kacanov

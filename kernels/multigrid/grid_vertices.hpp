@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The corners of a tree's leaves, numbered over the ranks, and what hangs on others.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "multigrid/grid_tree.hpp"
+
+namespace kacanov {
+
+/// The trilinear functions on the leaves of one level of a tree: one a row, rows numbered one rank after the
+/// other. A corner in the middle of a larger leaf's face or edge hangs: it has the value that the larger one
+/// has there. The same on every rank.
+class GridVertices {
+ public:
+  struct Share {
+    std::int32_t row;
+    double weight;
+  };
+
+  /// The tree has to outlive it.
+  GridVertices(const GridTree& tree, int level, int ranks);
+
+  const GridTree& tree() const noexcept { return *tree_; }
+  int level() const noexcept { return level_; }
+
+  /// ranks + 1: the first row of each rank, and their number.
+  std::span<const std::int64_t> starts() const noexcept { return starts_; }
+  /// Of a row.
+  const GridTree::Position& position(std::int32_t row) const { return position_[row]; }
+  /// What corner k (bit i: upper along axis i) of a leaf is made of.
+  std::span<const Share> corner(std::int32_t leaf, std::size_t k) const {
+    const std::size_t v = corner_[static_cast<std::size_t>(place_[leaf]) * 8 + k];
+    return std::span(shares_).subspan(first_[v], first_[v + 1] - first_[v]);
+  }
+  /// A leaf with a position inside or at its border; −1: there is none.
+  std::int32_t leaf_round(const GridTree::Position& at) const;
+
+  std::size_t bytes() const noexcept;
+
+ private:
+  static std::uint64_t key(const GridTree::Position& at) {
+    return static_cast<std::uint64_t>(at[0]) << 42 | static_cast<std::uint64_t>(at[1]) << 21 |
+           static_cast<std::uint64_t>(at[2]);
+  }
+  std::vector<Share> shares_of(const GridTree::Position& at) const;
+  std::int32_t larger_leaf(const GridTree::Position& at) const;
+
+  const GridTree* tree_;
+  int level_;
+  std::unordered_map<std::uint64_t, std::int32_t> vertex_;  ///< by position
+  std::vector<std::int32_t> row_;                           ///< of a vertex, −1 where it hangs
+  std::vector<GridTree::Position> position_;                ///< of a row
+  std::vector<std::int64_t> starts_;
+  std::vector<std::int32_t> place_;    ///< of a cell among the leaves
+  std::vector<std::uint32_t> corner_;  ///< leaves × 8: vertices
+  std::vector<std::size_t> first_;     ///< vertices + 1, into
+  std::vector<Share> shares_;
+};
+
+/// The trilinear functions at a point of a cell: w_k, and ∂w_k/∂ξ where asked for.
+inline std::array<double, 8> trilinear(const Vector3& xi) {
+  std::array<double, 8> w{};
+  for (std::size_t k = 0; k < 8; ++k)
+    w[k] = ((k & 1) != 0 ? xi[0] : 1.0 - xi[0]) * ((k & 2) != 0 ? xi[1] : 1.0 - xi[1]) *
+           ((k & 4) != 0 ? xi[2] : 1.0 - xi[2]);
+  return w;
+}
+
+}  // namespace kacanov

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The hierarchy of bodies whose volume change is averaged round corners.
+#include "multigrid/pressure_hierarchy.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "multigrid/corner_schur.hpp"
+#include "multigrid/fine_level.hpp"
+#include "multigrid/grid_hierarchy.hpp"
+#include "multigrid/softened_laws.hpp"
+#include "multigrid/sums.hpp"
+#include "operator/threads.hpp"
+
+namespace kacanov {
+namespace {
+
+constexpr int fine_steps = 3;
+
+struct Solves {
+  PressureSteps between, at_ends;
+};
+
+/// What is left of a volume change where the pressure is let go counts k0/g times: the first and the last
+/// step of a cycle solve better, all the better the larger `contrast`, the largest k0/g, times `strength`.
+Solves solves_for(double contrast, double strength) {
+  constexpr double range = 40.0;
+  const double sigma = (range + 1.0) / (range - 1.0);
+  const double wanted = std::acosh(std::max(1.0, 0.01 * contrast)) / std::acosh(sigma);
+  const int ends = static_cast<int>(std::ceil(strength * std::clamp(wanted, 10.0, 30.0)));
+  const int middle = (ends + 2) / 3;
+  return {{middle, 2.0 * middle + 2.0}, {ends, range}};
+}
+
+class PressureHierarchy final : public RigidMultigrid::Hierarchy {
+ public:
+  PressureHierarchy(const MultigridBody& body, const MultigridOptions& options)
+      : laws_(softened(body.body.laws)),
+        body_(with_laws(body, laws_)),
+        options_(options),
+        fine_(body_, options, FinePart::deviator),
+        pressures_(body_) {
+    body_.like = nullptr;  // it may go
+  }
+
+  void build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space) override {
+    fine_.build(g, blocks, space);
+    complete(g);
+  }
+
+  void rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space) override {
+    fine_.rebuild(blocks, space);
+    Vector g(body_.body.secant_count());
+    fine_.secant(g);
+    complete(g);
+  }
+
+  void secant(std::span<double> g) const override { fine_.secant(g); }
+
+  void apply(std::span<const double> r, std::span<double> z,
+             const RigidMultigrid::Factors& factors) override {
+    do {
+      cycle(r, z, factors);
+    } while (work(r, z) < 0.0 && strengthen());
+  }
+
+  int levels() const noexcept override { return 1 + (grids_ ? grids_->levels() : 0); }
+
+  std::size_t bytes() const noexcept override {
+    return fine_.bytes() + pressures_.bytes() + (schur_ ? schur_->bytes() : 0) +
+           (grids_ ? grids_->bytes() : 0) +
+           (b_.size() + x_.size() + image_.size() + entries_.size()) * sizeof(float) +
+           (p_.size() + change_.size() + rest_.size()) * sizeof(double);
+  }
+
+ private:
+  template <class Work>
+  void each(std::size_t n, const Work& work) const {
+    in_shares(options_.threads, n, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) work(i);
+    });
+  }
+
+  void cycle(std::span<const double> r, std::span<double> z, const RigidMultigrid::Factors& factors) {
+    each(r.size(), [&](std::size_t i) { b_[i] = static_cast<float>(factors.in * r[i]); });
+    fine_.hold(b_);
+    std::fill(p_.begin(), p_.end(), 0.0);
+    for (int s = 0; s < fine_steps; ++s) smooth(s == 0, s == 0 ? solves_.at_ends : solves_.between);
+    correct();
+    for (int s = 0; s < fine_steps; ++s)
+      smooth(false, s + 1 == fine_steps ? solves_.at_ends : solves_.between);
+    each(z.size(), [&](std::size_t i) { z[i] = factors.out * static_cast<double>(x_[i]); });
+  }
+
+  /// rᵀ z: negative where the cycle is not definite.
+  double work(std::span<const double> r, std::span<const double> z) const {
+    return body_.node_map->sum_all(
+        sum_shares(options_.threads, body_.owned_unknowns(), [&](std::size_t begin, std::size_t end) {
+          double sum = 0.0;
+          for (std::size_t i = begin; i < end; ++i) sum += r[i] * z[i];
+          return sum;
+        }));
+  }
+
+  /// Solves with S better from now on; false where that has gone as far as it may.
+  bool strengthen() {
+    if (strength_ > 3.0) return false;
+    strength_ *= 1.5;
+    solves_ = solves_for(contrast_, strength_);
+    return true;
+  }
+
+  /// All but the fine operator.
+  void complete(std::span<const double> g) {
+    if (!schur_) {
+      schur_.emplace(body_, pressures_, options_.threads);
+      grids_.emplace(body_, pressures_, options_.threads);
+      for (auto* v : {&b_, &x_, &image_}) v->resize(body_.unknowns());
+      entries_.resize(pressures_.means().size());
+      p_.resize(schur_->size());
+      for (auto* v : {&change_, &rest_}) v->resize(pressures_.rows());
+    }
+    fine_.choose_smoother(1, 1.0);
+    scale_ = 1.0 / (pressure_damping * fine_.largest());
+    schur_->build(fine_.inverse(), scale_, pressures_.compliance());
+    grids_->build(g, stiffnesses());
+    contrast_ = pressure_contrast(body_, g);
+    solves_ = solves_for(contrast_, strength_);
+  }
+
+  /// Of nodes this rank owns: blocks, and what holds components, where a grid would move them.
+  std::vector<NodeBlock> stiffnesses() const {
+    std::vector<NodeBlock> all(fine_.blocks().begin(), fine_.blocks().end());
+    const auto held = fine_.held();
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      const std::int32_t node = held[i] / 3, c = held[i] % 3;
+      if (static_cast<std::size_t>(node) >= body_.owned_nodes()) break;
+      NodeBlock block{node, {}};
+      block.value[static_cast<std::size_t>(4 * c)] = static_cast<double>(fine_.held_stiffness()[i]);
+      all.push_back(block);
+    }
+    return all;
+  }
+
+  /// A step of Braess and Sarazin's smoother: with t = x + Â⁻¹(b − A x), p by S p = B t, x = t − Â⁻¹Bᵀ p.
+  void smooth(bool from_zero, const PressureSteps& with) {
+    const auto scale = static_cast<float>(scale_);
+    if (from_zero) {
+      std::fill(x_.begin(), x_.end(), 0.0F);
+      fine_.add_scaled(scale, b_, {}, x_);
+    } else {
+      fine_.multiply(x_, image_);
+      fine_.add_scaled(scale, b_, image_, x_);
+    }
+    fine_.hold(x_);
+    fine_.volume_change(x_, entries_);
+    pressures_.sum(entries_, change_);
+    schur_->improve(with, change_, p_);
+    pressures_.spread(std::span(p_).first(pressures_.rows()), entries_);
+    fine_.pressure_force(entries_, image_);
+    fine_.add_scaled(-scale, image_, {}, x_);
+  }
+
+  /// By the grids: of forces b − A x − Bᵀp, and of volume changes what the last step has left, S p − q.
+  void correct() {
+    fine_.multiply(x_, entries_, image_);
+    each(image_.size(), [&](std::size_t i) { image_[i] = b_[i] - image_[i]; });
+    fine_.project(image_);
+    schur_->multiply(p_, rest_);
+    for (std::size_t r = 0; r < rest_.size(); ++r) rest_[r] -= change_[r];
+    std::vector<float>& u = step_;
+    u.assign(x_.size(), 0.0F);
+    grids_->correct(image_, rest_, u, p_);
+    body_.node_map->forward(std::span<float>(u), 3);
+    fine_.project(u);
+    each(x_.size(), [&](std::size_t i) { x_[i] += u[i]; });
+  }
+
+  std::vector<Law> laws_;  ///< softened; body_ points to them
+  MultigridBody body_;
+  MultigridOptions options_;
+  FineLevel fine_;
+  CornerPressures pressures_;
+  std::optional<CornerSchur> schur_;
+  std::optional<GridHierarchy> grids_;
+  double scale_ = 1.0;  ///< Â⁻¹ = scale D⁻¹
+  double contrast_ = 1.0, strength_ = 1.0;
+  Solves solves_;
+  std::vector<float> b_, x_, image_, step_, entries_;
+  std::vector<double> p_;  ///< with room for the ghosts of S
+  std::vector<double> change_, rest_;
+};
+
+}  // namespace
+
+double pressure_contrast(const MultigridBody& body, std::span<const double> g) {
+  const std::size_t points = points_per_element(body.body.mesh.type);
+  double largest = 1.0;
+  for (std::size_t i = 0; i < g.size(); ++i) {
+    const Law& law = body.body.law(i / points);
+    if (law.mean_dilatation && g[i] > 0.0) largest = std::max(largest, law.bulk / g[i]);
+  }
+  return body.node_map->max_all(largest);
+}
+
+std::unique_ptr<RigidMultigrid::Hierarchy> make_pressure_hierarchy(const MultigridBody& body,
+                                                                   const MultigridOptions& options) {
+  return std::make_unique<PressureHierarchy>(body, options);
+}
+
+}  // namespace kacanov

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Background grids, and the cycle on displacements and pressures: its count does not grow with k0/g.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <kacanov/operator.hpp>
+#include "../sanitized.hpp"
+#include "amg/part_multigrid.hpp"
+#include "multigrid/cg.hpp"
+#include "multigrid/grid_level.hpp"
+#include "multigrid/grid_sums.hpp"
+#include "multigrid/grid_transfer.hpp"
+#include "operator/corner_sum.hpp"
+#include "preconditioners.hpp"
+#include "support.hpp"
+
+using namespace kacanov;
+using namespace kacanov::testing;
+
+namespace {
+
+/// A bar of tet10 with its volume by corners, held at one end; `graded`: cells ever wider along its axes.
+Part bar(int cells, bool graded) {
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  Model model = elastic_model();
+  model.materials[0].formulation = MaterialEntry::Formulation::mixed;
+  model.boundary.push_back(moved(named("left"), 3));
+  if (rank > 0) return distribute(nullptr, MPI_COMM_WORLD);
+  Mesh mesh = make_box({{2, 1, 1}, {2 * cells, cells, cells}, ElementType::tet10});
+  for (std::size_t i = 0; graded && i < mesh.coordinates.size(); ++i) {
+    const double length = i % 3 == 0 ? 2.0 : 1.0;
+    mesh.coordinates[i] = length * std::expm1(2.5 * mesh.coordinates[i] / length) / std::expm1(2.5);
+  }
+  const Problem problem = build_problem(mesh, model);
+  return distribute(&problem, MPI_COMM_WORLD);
+}
+
+/// g of a bent bar: it falls by `jump` towards the upper and lower side near the support.
+Vector bent(const Part& part, double jump) {
+  const Body body = part.body();
+  Vector at(3 * body.secant_count()), volume(body.secant_count()), g(body.secant_count());
+  reference::points(body, at, volume);
+  for (std::size_t i = 0; i < g.size(); ++i) {
+    const double depth = std::max(0.0, 1.0 - at[3 * i] / 0.9) * std::abs(at[3 * i + 2] - 0.5) * 2.0;
+    g[i] = body.law(i / 4).shear * std::pow(jump, -std::min(1.0, 1.6 * depth));
+  }
+  return g;
+}
+
+struct Grids {
+  Vector spacing;
+  GridTree tree;
+  explicit Grids(const Part& part) : spacing(spacings(part)), tree(nodes(part), 2.6, part.node_map) {}
+  static Vector spacings(const Part& part) {
+    std::vector<double> sums = node_spacings(part.body());
+    part.node_map.sum(sums, 2);
+    Vector h(part.nodes());
+    for (std::size_t n = 0; n < h.size(); ++n) h[n] = sums[2 * n] / sums[2 * n + 1];
+    return h;
+  }
+  GridTree::Nodes nodes(const Part& part) const {
+    return {part.body().mesh.coordinates, spacing, static_cast<std::size_t>(part.owned_nodes())};
+  }
+  std::vector<GridTransfer::Place> places(const Part& part) const {
+    std::vector<GridTransfer::Place> all;
+    for (std::size_t n = 0; n < static_cast<std::size_t>(part.owned_nodes()); ++n) {
+      const double* x = &part.body().mesh.coordinates[3 * n];
+      const std::int32_t leaf = tree.leaf_of(x, 0);
+      all.push_back({leaf, tree.within(tree.cells()[leaf], x)});
+    }
+    return all;
+  }
+};
+
+/// 1 + x − 2y + 3z at a point.
+double linear(const Vector3& x) { return 1.0 + x[0] - 2.0 * x[1] + 3.0 * x[2]; }
+
+int iterations(const Part& part, double jump, double contrast = 0.0) {
+  const Space space(part);
+  Operator op(part.body());
+  if (part.node_map.ranks > 1) op.set_corner_sum(CornerSum<double>(corner_means(part.body()), part.node_map));
+  const Vector g = bent(part, jump);
+  op.set_secant(g);
+  MultigridOptions options;
+  options.pressure_contrast = contrast;
+  PartMultigrid multigrid(part, options);
+  multigrid.setup(g, {}, space);
+  CgWork work;
+  work.resize(part.unknowns());
+  for (std::size_t i = 0; i < part.unknowns(); ++i)
+    work.residual[i] = part.held[i] ? 0.0 : std::sin(0.1 * static_cast<double>(part.node_index[i / 3]));
+  Vector u(part.unknowns(), 0.0);
+  const CgResult solve = conjugate_gradients(
+      space,
+      [&](std::span<const double> p, std::span<double> q) {
+        const double share = op.apply_dot(p, q);
+        part.node_map.sum(q, 3);
+        return share;
+      },
+      [&](std::span<const double> p, std::span<double> q) { multigrid.apply(p, q); }, u, work,
+      {0.0, 1e-8, 600});
+  CHECK(solve.converged);
+  return solve.iterations;
+}
+
+double sum_all(double v) {
+  MPI_Allreduce(MPI_IN_PLACE, &v, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
+  return v;
+}
+
+}  // namespace
+
+TEST_CASE("trees have cells as large as the spacing of nodes asks for, round every node") {
+  for (const bool graded : {false, true}) {
+    const Part part = bar(4, graded);
+    const Grids grids(part);
+    int smallest = 0, largest = GridTree::deepest;
+    for (std::size_t n = 0; n < part.nodes(); ++n) {
+      const std::int32_t leaf = grids.tree.leaf_of(&part.body().mesh.coordinates[3 * n], 0);
+      REQUIRE(leaf >= 0);
+      smallest = std::max(smallest, grids.tree.cells()[leaf].depth);
+      largest = std::min(largest, grids.tree.cells()[leaf].depth);
+      CHECK(grids.tree.length(grids.tree.cells()[leaf]) < 4.0 * 2.6 * grids.spacing[n]);
+    }
+    CHECK(sum_all(smallest > largest ? 1.0 : 0.0) > (graded ? 0.5 : -0.5));
+    if (!graded) CHECK(smallest == largest);
+    CHECK(grids.tree.leaf_at({-1, 0, 0}, 0) == -1);
+  }
+}
+
+TEST_CASE("trilinear functions are linear ones' exactly, next to larger cells and on every level") {
+  for (const bool graded : {false, true}) {
+    CAPTURE(graded);
+    const Part part = bar(4, graded);
+    const Grids grids(part);
+    const int rank = part.node_map.rank;
+    for (int level = 0; level <= grids.tree.last_level(); ++level) {
+      const GridVertices vertices(grids.tree, level, part.node_map.ranks);
+      auto places = grids.places(part);
+      for (std::size_t n = 0; n < places.size(); ++n) {
+        const double* x = &part.body().mesh.coordinates[3 * n];
+        places[n].leaf = grids.tree.leaf_of(x, level);
+        places[n].within = grids.tree.within(grids.tree.cells()[places[n].leaf], x);
+      }
+      GridTransfer transfer(vertices, places, part.node_map, 1);
+      Vector rows;
+      for (std::int64_t r = vertices.starts()[rank]; r < vertices.starts()[rank + 1]; ++r)
+        rows.push_back(linear(grids.tree.point(vertices.position(static_cast<std::int32_t>(r)))));
+      Vector at(places.size(), 0.0);
+      transfer.prolong(std::span<const double>(rows), 1, std::span(at), 1);
+      for (std::size_t n = 0; n < at.size(); ++n) {
+        const double* x = &part.body().mesh.coordinates[3 * n];
+        CHECK(at[n] == doctest::Approx(linear({x[0], x[1], x[2]})).epsilon(1e-6));
+      }
+      // The way down is the transpose of the way up.
+      Vector force(at.size()), down(rows.size());
+      for (std::size_t n = 0; n < force.size(); ++n) force[n] = std::sin(static_cast<double>(n) + rank);
+      transfer.restrict_to(std::span<const double>(force), 1, std::span(down), 1);
+      const double up = std::inner_product(at.begin(), at.end(), force.begin(), 0.0);
+      const double work = std::inner_product(rows.begin(), rows.end(), down.begin(), 0.0);
+      CHECK(sum_all(up) == doctest::Approx(sum_all(work)).epsilon(1e-6));
+    }
+  }
+}
+
+TEST_CASE("a grid's matrix is blind to rigid motions, has uniform strain's energy, and C's mass") {
+  const Part part = bar(3, true);
+  const Body body = part.body();
+  const Grids grids(part);
+  const GridVertices vertices(grids.tree, 0, part.node_map.ranks);
+  std::vector<std::int32_t> cells;
+  for (std::size_t n = 0; n < part.nodes(); ++n)
+    cells.push_back(grids.tree.leaf_of(&body.mesh.coordinates[3 * n], 0));
+  const Vector g(body.secant_count(), 0.5);
+  GridLevel level(vertices.starts(),
+                  grid_sums(vertices, {body.mesh.coordinates, cells}, node_measures(body, g), {}),
+                  part.node_map, 1);
+  const auto residual = [&](const auto& displacement, double pressure) {
+    GridVector b, x, r;
+    for (GridVector* v : {&b, &x, &r}) v->resize(level.map().size()), v->clear();
+    for (std::size_t i = 0; i < level.rows(); ++i) {
+      const auto row = static_cast<std::int32_t>(level.map().first() + static_cast<std::int64_t>(i));
+      const Vector3 u = displacement(grids.tree.point(vertices.position(row)));
+      for (std::size_t c = 0; c < 3; ++c) x.u[GridVector::width * i + c] = u[c];
+      x.p[i] = pressure;
+    }
+    level.residual(b, x, r);
+    double energy = 0.0, change = 0.0, largest = 0.0;
+    for (std::size_t i = 0; i < level.rows(); ++i) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        energy -= x.u[GridVector::width * i + c] * r.u[GridVector::width * i + c];
+        largest = std::max(largest, std::abs(r.u[GridVector::width * i + c]));
+      }
+      change += r.p[i];
+    }
+    return std::array<double, 3>{sum_all(energy), sum_all(change), largest};
+  };
+  const auto still = residual(
+      [](const Vector3& x) {
+        return Vector3{1.0 - x[1], x[0] - x[2], x[1] + 2.0};
+      },
+      0.0);
+  CHECK(still[2] < 1e-6);
+  CHECK(std::abs(still[1]) < 1e-6);
+  // ε_xx = 1 over the volume 2: 2g dev ε:dev ε = 2/3, and tr ε = 1.
+  const auto stretched = residual([](const Vector3& x) { return Vector3{x[0], 0.0, 0.0}; }, 0.0);
+  CHECK(stretched[0] == doctest::Approx(2.0 * 2.0 / 3.0).epsilon(1e-5));
+  CHECK(stretched[1] == doctest::Approx(-2.0).epsilon(1e-5));
+  const auto pressed = residual([](const Vector3&) { return Vector3{}; }, 1.0);
+  CHECK(pressed[1] == doctest::Approx(2.0 / body.law(0).bulk).epsilon(1e-5));
+}
+
+TEST_CASE("the cycle on displacements and pressures is symmetric") {
+  const Part part = bar(4, false);
+  const Space space(part);
+  MultigridOptions options;
+  options.pressure_contrast = 0.0;
+  PartMultigrid multigrid(part, options);
+  multigrid.setup(bent(part, 100.0), {}, space);
+  const auto random = [&](double frequency) {
+    Vector x(part.unknowns());
+    for (std::size_t i = 0; i < x.size(); ++i)
+      x[i] = part.held[i] ? 0.0
+                          : std::sin(frequency * static_cast<double>(3 * part.node_index[i / 3]) +
+                                     static_cast<double>(i % 3));
+    return x;
+  };
+  const Vector x = random(0.7), y = random(1.9);
+  Vector mx(x.size()), my(x.size());
+  multigrid.apply(x, mx);
+  multigrid.apply(y, my);
+  const auto dot = [&](const Vector& a, const Vector& b) {
+    return sum_all(std::inner_product(
+        a.begin(), a.begin() + static_cast<std::ptrdiff_t>(part.owned_unknowns()), b.begin(), 0.0));
+  };
+  CHECK(dot(x, mx) > 0.0);
+  CHECK(std::abs(dot(x, my) - dot(y, mx)) < 1e-4 * std::sqrt(dot(x, mx) * dot(y, my)));
+}
+
+TEST_CASE("its count hardly depends on k0/g, where that of modes alone does" * doctest::skip(sanitized)) {
+  const Part small = bar(4, false), large = bar(8, false), graded = bar(6, true);
+  const int least = iterations(small, 1.0);
+  CHECK(least <= 20);
+  CHECK(iterations(small, 1000.0) <= 26);
+  CHECK(iterations(large, 1000.0) <= 26);
+  CHECK(iterations(large, 1e4) <= 30);
+  CHECK(iterations(graded, 1000.0) <= 60);
+  CHECK(iterations(small, 1000.0, 1e9) > 60);
+}
