@@ -32,7 +32,7 @@ struct Options {
   std::vector<double> poisson{0.3}, penalty{0.0}, jump{1.0}, aspect{1.0};
   double tolerance = 1e-8;
   int ranks = 0, threads = 1, repeat = 1;
-  bool json = false;
+  bool mixed = false, json = false;
 };
 
 SolverOptions::Preconditioner preconditioner(const std::string& name) {
@@ -41,8 +41,12 @@ SolverOptions::Preconditioner preconditioner(const std::string& name) {
 }
 
 PressedBeam beam_of(const Options& options, int cells, double poisson, double aspect) {
-  return {
-      .cells = cells, .element = options.element, .mesh = options.mesh, .poisson = poisson, .aspect = aspect};
+  return {.cells = cells,
+          .element = options.element,
+          .mixed = options.mixed,
+          .mesh = options.mesh,
+          .poisson = poisson,
+          .aspect = aspect};
 }
 
 std::int64_t heap_bytes() {
@@ -132,6 +136,7 @@ void run(const Options& options, const MpiSession& mpi) {
               for (const std::string& kind : options.kinds) {
                 Json entry = measure(part, op, kind, g, penalty, options);
                 entry["element"] = options.mesh.empty() ? options.element : options.mesh;
+                entry["mixed"] = options.mixed;
                 entry["poisson"] = poisson;
                 entry["penalty"] = penalty;
                 entry["jump"] = jump;
@@ -174,6 +179,7 @@ int main(int argc, char** argv) {
   app.add_option("--ranks", options.ranks, "0: one a core");
   app.add_option("--threads", options.threads);
   app.add_option("--repeat", options.repeat, "turns");
+  app.add_flag("--mixed", options.mixed, "the mixed formulation of the element");
   app.add_flag("--json", options.json);
   CLI11_PARSE(app, argc, argv);
   if (!started_by_mpi()) {

@@ -43,6 +43,7 @@ Problem make_pressed_beam(const PressedBeam& options) {
   MaterialEntry material;
   material.law.bulk = 1.0 / (3.0 * (1.0 - 2.0 * options.poisson));
   material.law.shear = 1.0 / (2.0 * (1.0 + options.poisson));
+  if (options.mixed) material.formulation = MaterialEntry::Formulation::mixed;
   model.materials.push_back(material);
   BoundaryEntry held, loaded;
   held.on = side(0, false, 0.0);

@@ -12,7 +12,8 @@
 struct PressedBeam {
   int cells = 40;  ///< across a beam of 4 x 1 x 1 (40: 811,923 unknowns with tet4)
   std::string element = "tet4";
-  std::string mesh;  ///< a Gmsh file instead of the beam; held at its lowest x, pressed from above
+  bool mixed = false;  ///< the formulation: its volume by corners or by B-bar
+  std::string mesh;    ///< a Gmsh file instead of the beam; held at its lowest x, pressed from above
   double poisson = 0.3;
   double aspect = 1.0;  ///< length of a cell over its width
 };
