@@ -51,7 +51,7 @@ TEST_CASE("mixed tet10: a coarser start, a temperature and load steps") {
   const Workplace place;
   json input = block();
   input["mesh"] = {{"box", {{"size", {2, 1, 1}}, {"cells", {3, 2, 2}}, {"element", "tet10"}}}, {"refine", 1}};
-  input["material"] = {input["material"][0]};
+  input["material"] = json::array({input["material"][0]});
   input["material"][0]["expansion"] = 0.001;
   input["boundary"][1]["traction"] = {0, 0, -0.02};
   input["boundary"].push_back({{"on", "all"}, {"temperature", 5}});
