@@ -11,11 +11,6 @@
 #include "operator/threads.hpp"
 
 namespace kacanov {
-namespace {
-
-/// definite.
-
-}  // namespace
 
 GridLevel::GridLevel(std::span<const std::int64_t> starts, BlockSums<4> sums, const Communicator& comm,
                      int threads)

@@ -25,14 +25,6 @@ void add_sums(IndexMap& map) {
   map.shared.erase(std::unique(map.shared.begin(), map.shared.end()), map.shared.end());
 }
 
-std::array<float, 8> trilinear_weights(const std::array<float, 3>& xi) {
-  std::array<float, 8> w{};
-  for (std::size_t k = 0; k < 8; ++k)
-    w[k] = ((k & 1) != 0 ? xi[0] : 1.0F - xi[0]) * ((k & 2) != 0 ? xi[1] : 1.0F - xi[1]) *
-           ((k & 4) != 0 ? xi[2] : 1.0F - xi[2]);
-  return w;
-}
-
 }  // namespace
 
 GridTransfer::GridTransfer(const GridVertices& vertices, std::vector<Place> points, const Communicator& comm,
@@ -96,7 +88,7 @@ void GridTransfer::prolong(std::span<const double> rows, int components, std::sp
             value[k * width + c] +=
                 static_cast<double>(share.weight) * local_[static_cast<std::size_t>(share.row) * width + c];
       for (std::size_t i = first_point_[leaf]; i < first_point_[leaf + 1]; ++i) {
-        const auto w = trilinear_weights(within_[i]);
+        const auto w = trilinear(within_[i]);
         for (std::size_t c = 0; c < count; ++c) {
           double sum = 0.0;
           for (std::size_t k = 0; k < 8; ++k) sum += static_cast<double>(w[k]) * value[k * width + c];
@@ -115,7 +107,7 @@ void GridTransfer::restrict_to(std::span<const Real> x, int components, std::spa
     for (std::size_t leaf = begin; leaf < end; ++leaf) {
       double* value = &corner_[8 * leaf * width];
       for (std::size_t i = first_point_[leaf]; i < first_point_[leaf + 1]; ++i) {
-        const auto w = trilinear_weights(within_[i]);
+        const auto w = trilinear(within_[i]);
         for (std::size_t c = 0; c < count; ++c) {
           const auto at = static_cast<double>(x[static_cast<std::size_t>(point_[i]) * count + c]);
           for (std::size_t k = 0; k < 8; ++k) value[k * width + c] += static_cast<double>(w[k]) * at;

@@ -62,12 +62,13 @@ class GridVertices {
   std::vector<Share> shares_;
 };
 
-/// The trilinear functions at a point of a cell: w_k, and ∂w_k/∂ξ where asked for.
-inline std::array<double, 8> trilinear(const Vector3& xi) {
-  std::array<double, 8> w{};
+/// The trilinear functions of a cell's corners at a point of it.
+template <class Real>
+std::array<Real, 8> trilinear(const std::array<Real, 3>& xi) {
+  std::array<Real, 8> w{};
   for (std::size_t k = 0; k < 8; ++k)
-    w[k] = ((k & 1) != 0 ? xi[0] : 1.0 - xi[0]) * ((k & 2) != 0 ? xi[1] : 1.0 - xi[1]) *
-           ((k & 4) != 0 ? xi[2] : 1.0 - xi[2]);
+    w[k] = ((k & 1) != 0 ? xi[0] : Real(1) - xi[0]) * ((k & 2) != 0 ? xi[1] : Real(1) - xi[1]) *
+           ((k & 4) != 0 ? xi[2] : Real(1) - xi[2]);
   return w;
 }
 

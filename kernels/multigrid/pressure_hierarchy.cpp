@@ -71,7 +71,7 @@ class PressureHierarchy final : public RigidMultigrid::Hierarchy {
   std::size_t bytes() const noexcept override {
     return fine_.bytes() + pressures_.bytes() + (schur_ ? schur_->bytes() : 0) +
            (grids_ ? grids_->bytes() : 0) +
-           (b_.size() + x_.size() + image_.size() + entries_.size()) * sizeof(float) +
+           (b_.size() + x_.size() + image_.size() + step_.size() + entries_.size()) * sizeof(float) +
            (p_.size() + change_.size() + rest_.size()) * sizeof(double);
   }
 

@@ -180,26 +180,27 @@ struct Loops {
             [&](const Group& group) { return NonlinearMaterial<L, Real, false>(block, group, *out); });
   }
 
-  static void corner_changes(const Block<Real>& block, const Vectors<Real>& vectors) {
+  /// Calls fans(group) or curved(group) for those that average round their corners.
+  template <class Fans, class Curved>
+  static void over_averaged(const Block<Real>& block, const Fans& fans, const Curved& curved) {
     for (std::size_t i = 0; i < block.group_count; ++i) {
       const Group& group = block.groups[i];
       if (group.type != ElementType::tet10 || !block.laws[group.law].mean_dilatation) continue;
       if (group.shape == Shape::general)
-        element_changes<L, Real, Tet10>(block, group, vectors);
+        curved(group);
       else
-        quadratic_fan_changes<L, Real>(block, group, vectors);
+        fans(group);
     }
   }
-
+  static void corner_changes(const Block<Real>& block, const Vectors<Real>& vectors) {
+    over_averaged(
+        block, [&](const Group& group) { quadratic_fan_changes<L, Real>(block, group, vectors); },
+        [&](const Group& group) { element_changes<L, Real, Tet10>(block, group, vectors); });
+  }
   static void corner_forces(const Block<Real>& block, const Vectors<Real>& vectors) {
-    for (std::size_t i = 0; i < block.group_count; ++i) {
-      const Group& group = block.groups[i];
-      if (group.type != ElementType::tet10 || !block.laws[group.law].mean_dilatation) continue;
-      if (group.shape == Shape::general)
-        element_pressures<L, Real, Tet10>(block, group, vectors);
-      else
-        quadratic_fan_pressures<L, Real>(block, group, vectors);
-    }
+    over_averaged(
+        block, [&](const Group& group) { quadratic_fan_pressures<L, Real>(block, group, vectors); },
+        [&](const Group& group) { element_pressures<L, Real, Tet10>(block, group, vectors); });
   }
 
   static constexpr Kernels<Real> table{L::width,      gather, scatter,       dot,      corner_changes,

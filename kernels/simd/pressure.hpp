@@ -59,18 +59,10 @@ KACANOV_INLINE inline void add_pressures(const FanGeometry<V>& geometry, const F
 
 template <class L, class Real>
 inline void quadratic_fan_pressures(const Block<Real>& block, const Group& group, Vectors<Real> vectors) {
-  const int length = group.length;
-  const std::uint16_t* at = block.index + group.first_index;
-  for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
-    fetch_ahead(at, QuadraticFan::nodes(length) * L::width);
-    FanGeometry<typename L::V> geometry;
-    measure_fan<L, Real, QuadraticFan, false>(block.coordinates, at, length, geometry);
-    for (int v = 0; v < vectors.count; ++v) {
-      const std::size_t offset = static_cast<std::size_t>(v) * vectors.stride;
-      add_pressures<L, Real>(geometry, {at, 0, length}, vectors.u + offset, vectors.f + offset);
-    }
-    at += QuadraticFan::nodes(length) * L::width;
-  }
+  over_quadratic_fans<L>(block, group, vectors,
+                         [](const auto& geometry, const FanPlace& fan, const Real* u, Real* f) {
+                           add_pressures<L, Real>(geometry, fan, u, f);
+                         });
 }
 
 /// The same of any element that averages there: the transpose of element_changes.

@@ -255,8 +255,10 @@ KACANOV_INLINE inline void add_changes(const FanGeometry<V>& geometry, const Fan
   for (int a = 0; a < 2; ++a) add_last<L, Real>(f, fan.at + a * width, factor * change[a]);
 }
 
-template <class L, class Real>
-inline void quadratic_fan_changes(const Block<Real>& block, const Group& group, Vectors<Real> vectors) {
+/// Calls work(geometry, fan, u, f) for every batch of fans and every input vector.
+template <class L, class Real, class Work>
+inline void over_quadratic_fans(const Block<Real>& block, const Group& group, Vectors<Real> vectors,
+                                const Work& work) {
   const int length = group.length;
   const std::uint16_t* at = block.index + group.first_index;
   for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
@@ -265,10 +267,18 @@ inline void quadratic_fan_changes(const Block<Real>& block, const Group& group, 
     measure_fan<L, Real, QuadraticFan, false>(block.coordinates, at, length, geometry);
     for (int v = 0; v < vectors.count; ++v) {
       const std::size_t offset = static_cast<std::size_t>(v) * vectors.stride;
-      add_changes<L, Real>(geometry, {at, 0, length}, vectors.u + offset, vectors.f + offset);
+      work(geometry, FanPlace{at, 0, length}, vectors.u + offset, vectors.f + offset);
     }
     at += QuadraticFan::nodes(length) * L::width;
   }
+}
+
+template <class L, class Real>
+inline void quadratic_fan_changes(const Block<Real>& block, const Group& group, Vectors<Real> vectors) {
+  over_quadratic_fans<L>(block, group, vectors,
+                         [](const auto& geometry, const FanPlace& fan, const Real* u, Real* f) {
+                           add_changes<L, Real>(geometry, fan, u, f);
+                         });
 }
 
 }  // namespace
