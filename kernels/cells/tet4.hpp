@@ -28,7 +28,7 @@ struct Tet4 {
   static constexpr ElementType type = ElementType::tet4;
   static constexpr std::string_view name = "tet4", abaqus = "C3D4", basix = "tetrahedron";
   static constexpr int gmsh = 4, vtk = 10, dim = 3, order = 1, nodes = 4, corners = 4, points = 1;
-  static constexpr bool simplex = true, mean_dilatation = false, corner_dilatation = false;
+  static constexpr bool simplex = true, mean_dilatation = false, corner_dilatation = true;
   static constexpr std::array<CellEdge, 6> edge{{{0, 1}, {1, 2}, {2, 0}, {3, 0}, {3, 2}, {3, 1}}};
   using Facet = Tri3;
   static constexpr std::array<std::array<std::int8_t, 3>, 4> facet{

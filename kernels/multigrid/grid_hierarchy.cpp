@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "multigrid/node_spacing.hpp"
+
 namespace kacanov {
 namespace {
 
@@ -22,13 +24,8 @@ GridHierarchy::GridHierarchy(const MultigridBody& body, const CornerPressures& p
   body_.like = nullptr;  // it may go
   const IndexMap& map = *body.node_map;
   const std::span<const double> coordinates = body.body.mesh.coordinates;
-  {
-    std::vector<double> sums = node_spacings(body.body), spacing(body.nodes());
-    map.sum(sums, 2);
-    for (std::size_t n = 0; n < spacing.size(); ++n)
-      spacing[n] = sums[2 * n] / (sums[2 * n + 1] > 0.0 ? sums[2 * n + 1] : 1.0);
-    tree_.emplace(GridTree::Nodes{coordinates, spacing, body.owned_nodes()}, first_grid, map);
-  }
+  tree_.emplace(GridTree::Nodes{coordinates, node_spacings(body.body, map), body.owned_nodes()}, first_grid,
+                map);
   for (std::size_t n = 0; n < body.nodes(); ++n) cell_.push_back(tree_->leaf_of(&coordinates[3 * n], 0));
   const auto place = [&](std::size_t n) {
     return GridTransfer::Place{cell_[n], tree_->within(tree_->cells()[cell_[n]], &coordinates[3 * n])};

@@ -174,20 +174,6 @@ std::vector<NodeMeasure> node_measures(const Body& body, std::span<const double>
   return measures;
 }
 
-std::vector<double> node_spacings(const Body& body) {
-  // Where tetrahedra fill space there are some 1.4 nodes of tet10 for each.
-  constexpr double spacing_over_root = 0.9;
-  std::vector<double> sums(2 * body.mesh.node_count(), 0.0), volume(body.mesh.element_count());
-  reference::volumes(body, volume);
-  const std::size_t npe = nodes_per_element(body.mesh.type);
-  for (std::size_t e = 0; e < volume.size(); ++e)
-    for (std::size_t a = 0; a < npe; ++a) {
-      double* to = &sums[2 * static_cast<std::size_t>(body.mesh.connectivity[e * npe + a])];
-      to[0] += spacing_over_root * std::cbrt(std::abs(volume[e])), to[1] += 1.0;
-    }
-  return sums;
-}
-
 BlockSums<4> grid_sums(const GridVertices& vertices, const NodesInTree& nodes,
                        std::span<const NodeMeasure> measures, std::span<const NodeBlock> blocks) {
   const GridTree& tree = vertices.tree();

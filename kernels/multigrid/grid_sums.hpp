@@ -20,9 +20,6 @@ struct NodeMeasure {
 
 /// Of every node, elements shared evenly among their nodes; g: elements × points.
 std::vector<NodeMeasure> node_measures(const Body& body, std::span<const double> g);
-/// How far apart nodes are, by the volumes of the elements round them: the number of these in the second
-/// entry, the sum of what they say in the first; of every node.
-std::vector<double> node_spacings(const Body& body);
 
 /// The nodes of this rank and where in the deepest leaves they are.
 struct NodesInTree {

@@ -17,8 +17,9 @@ CornerLayout make_corner_layout(const Body& body, const CornerMeans& means, cons
   CornerLayout out;
   out.entries = out.places = means.size();
   if (means.size() == 0) return out;
-  // Each corner of an element that averages has a point beside it, of the same number.
-  const std::size_t lanes = layout.lanes, corners = cell(body.mesh.type).corners;
+  const Cell& type = cell(body.mesh.type);
+  const std::size_t lanes = layout.lanes, corners = type.corners, element_nodes = type.nodes,
+                    element_points = type.points.size();
   const Units units{body.mesh.type, {}, {}, {}};
   std::vector<std::int32_t> entry(layout.largest, -1);  // of a block's local node
   out.first.push_back(0);
@@ -31,12 +32,19 @@ CornerLayout make_corner_layout(const Body& body, const CornerMeans& means, cons
       const std::uint16_t* index = &layout.index[range.first_index + group.first_index];
       for (std::size_t k = 0; k < group.batches * points * lanes; ++k) {
         const std::size_t lane = k % lanes, batch = k / lanes / points, p = k / lanes % points;
-        const std::int32_t e = point[k] < 0 ? -1 : means.of_element[at(point[k])];
-        if (e < 0) continue;
-        const std::size_t node =
-            units.node_of(group.shape, group.length, static_cast<std::uint32_t>(p / corners),
-                          static_cast<std::uint32_t>(p % corners));
-        entry[index[(batch * nodes + node) * lanes + lane] / 4U] = e;
+        if (point[k] < 0 || p % element_points > 0) continue;
+        const std::size_t element = at(point[k]) / element_points;
+        const std::int32_t* of = &means.of_element[element * corners];
+        if (of[0] < 0) continue;
+        // A unit turns its elements: which corner a node is, the mesh knows.
+        const std::int32_t* first = &body.mesh.connectivity[element * element_nodes];
+        for (std::uint32_t a = 0; a < corners; ++a) {
+          const std::size_t node =
+              units.node_of(group.shape, group.length, static_cast<std::uint32_t>(p / element_points), a);
+          const std::size_t local = index[(batch * nodes + node) * lanes + lane] / 4U;
+          entry[local] =
+              of[std::find(first, first + corners, layout.nodes[range.first_node + local]) - first];
+        }
       }
     }
     for (std::uint32_t node = 0; node < range.count; ++node)

@@ -43,6 +43,7 @@ struct FanGeometry {
 struct LinearFan {
   static constexpr int ring = 2, step = 1;
   static constexpr double weight = 1.0 / 6.0, scale = 1.0;
+  static constexpr int nodes(int length, bool closed) { return length + (closed ? 2 : 3); }
 };
 
 template <class L, class Real, class Fan, bool closed, class V = typename L::V>
@@ -75,6 +76,15 @@ KACANOV_INLINE inline void measure_fan(const Real* coordinates, const std::uint1
   if constexpr (closed) measure(e, first, geometry.wedge[length - 1]);
 }
 
+/// The material itself, or without the bulk modulus where that acts on means.
+template <bool averaged, class Material>
+KACANOV_INLINE inline decltype(auto) choose_bulk(const Material& material) {
+  if constexpr (averaged)
+    return material.without_bulk();
+  else
+    return (material);
+}
+
 /// Where a batch of fans stands: its indices, its first point, and how many tetrahedra each fan has.
 struct FanPlace {
   const std::uint16_t* at;
@@ -83,8 +93,9 @@ struct FanPlace {
 };
 
 /// Forces of one input vector. p takes minus the sum of all others. A ring node's force is stored one step
-/// late, when it has long been ready.
-template <class L, class Real, bool closed, class Material, class V = typename L::V>
+/// late, when it has long been ready. `averaged`: tr ε is the mean of those round the corners, in the last
+/// places of their records.
+template <class L, class Real, bool closed, bool averaged, class Material, class V = typename L::V>
 KACANOV_INLINE inline void load_fan(const Material& material, const FanGeometry<V>& geometry,
                                     const FanPlace& fan, const Real* u, Real* f) {
   const std::uint16_t* at = read_anew(fan.at);
@@ -96,6 +107,14 @@ KACANOV_INLINE inline void load_fan(const Material& material, const FanGeometry<
   L::load3(u, at + L::width, dq);
   L::load3(u, ring, d);
   for (int k = 0; k < 3; ++k) dq[k] -= p[k], d[k] -= p[k], first[k] = d[k];
+  // k0/24 of the means: of p and q together, of r_i and r_0.
+  [[maybe_unused]] const V bulk = Real(LinearFan::weight / 4.0) * material.bulk();
+  [[maybe_unused]] V of_edge{}, of_ring{}, of_first{};
+  if constexpr (averaged) {
+    of_edge = bulk * (L::load_last(u, at) + L::load_last(u, at + L::width));
+    of_ring = of_first = bulk * L::load_last(u, ring);
+  }
+  const Material& at_point = choose_bulk<averaged>(material);
 #pragma GCC unroll 8
   for (int i = 0; i < length; ++i) {
     const bool closing = closed && i == length - 1;
@@ -114,8 +133,14 @@ KACANOV_INLINE inline void load_fan(const Material& material, const FanGeometry<
       for (int c = 0; c < 3; ++c)
         h[3 * r + c] = dq[r] * wedge.c[c] - d[r] * next_spoke[c] + next[r] * spoke[c];
     if (i > 1) L::add3(f, ring + (i - 1) * L::width, done);
-    const Sym<V> s = material.stress(strain_of(h), wedge.det, wedge.w, Real(1.0 / 6.0),
-                                     fan.point + static_cast<std::size_t>(i));
+    Sym<V> s = at_point.stress(strain_of(h), wedge.det, wedge.w, Real(LinearFan::weight),
+                               fan.point + static_cast<std::size_t>(i));
+    if constexpr (averaged) {
+      const V ahead = closing ? of_first : bulk * L::load_last(u, ring + (i + 1) * L::width);
+      const V pressure = of_edge + of_ring + ahead;
+      s.xx += pressure, s.yy += pressure, s.zz += pressure;
+      of_ring = ahead;
+    }
     subtract_product(s, next_spoke, carry);
     for (int k = 0; k < 3; ++k) {
       sum[k] += carry[k];
@@ -143,7 +168,7 @@ KACANOV_INLINE inline void load_fan(const Material& material, const FanGeometry<
 /// the stresses behind them (a processor looks ahead some 60 vector operations, less than one tetrahedron),
 /// which took the loop from 149 to 113 cycles for 8 tetrahedra (Zen 4; 81 multiply-adds are the floor). A
 /// `fixed` length above zero unrolls the ring, worth 15 %.
-template <class L, class Real, bool closed, int fixed, class Material>
+template <class L, class Real, bool closed, bool averaged, int fixed, class Material>
 inline void fan_loop(const Block<Real>& block, const Group& group, const Material& material,
                      Vectors<Real> vectors) {
   const int length = fixed > 0 ? fixed : int{group.length};
@@ -156,8 +181,8 @@ inline void fan_loop(const Block<Real>& block, const Group& group, const Materia
     measure_fan<L, Real, LinearFan, closed>(block.coordinates, at, length, geometry);
     for (int v = 0; v < vectors.count; ++v) {
       const std::size_t offset = static_cast<std::size_t>(v) * vectors.stride;
-      load_fan<L, Real, closed>(material, geometry, {at, point, length}, vectors.u + offset,
-                                vectors.f + offset);
+      load_fan<L, Real, closed, averaged>(material, geometry, {at, point, length}, vectors.u + offset,
+                                          vectors.f + offset);
     }
     at += (length + (closed ? 2 : 3)) * L::width;
     point += static_cast<std::size_t>(length);
@@ -166,10 +191,12 @@ inline void fan_loop(const Block<Real>& block, const Group& group, const Materia
 
 /// The lengths that make up most of a mesh have loops of their own; several input vectors and the true law,
 /// which are bound by other things, do with one for all.
-template <class L, class Real, bool closed, class Material>
+template <class L, class Real, bool closed, bool averaged, class Material>
 inline void fan_loop_of_length(const Block<Real>& block, const Group& group, const Material& material,
                                Vectors<Real> vectors) {
-  const auto run = [&]<int fixed>() { fan_loop<L, Real, closed, fixed>(block, group, material, vectors); };
+  const auto run = [&]<int fixed>() {
+    fan_loop<L, Real, closed, averaged, fixed>(block, group, material, vectors);
+  };
   if constexpr (Material::frozen) {
     switch (group.length - (closed ? 3 : 0)) {
       case 1: return run.template operator()<1 + (closed ? 3 : 0)>();
@@ -181,6 +208,72 @@ inline void fan_loop_of_length(const Block<Real>& block, const Group& group, con
     }
   }
   run.template operator()<0>();
+}
+
+/// Calls work(geometry, fan, u, f) for every batch of fans and every input vector.
+template <class L, class Real, class Fan, bool closed, class Work>
+inline void over_batches(const Block<Real>& block, const Group& group, Vectors<Real> vectors,
+                         const Work& work) {
+  const int length = group.length, nodes = Fan::nodes(length, closed);
+  const std::uint16_t* at = block.index + group.first_index;
+  for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
+    fetch_ahead(at, nodes * L::width);
+    FanGeometry<typename L::V> geometry;
+    measure_fan<L, Real, Fan, closed>(block.coordinates, at, length, geometry);
+    for (int v = 0; v < vectors.count; ++v) {
+      const std::size_t offset = static_cast<std::size_t>(v) * vectors.stride;
+      work(geometry, FanPlace{at, 0, length}, vectors.u + offset, vectors.f + offset);
+    }
+    at += nodes * L::width;
+  }
+}
+
+/// ∫ N tr ε over the elements of every corner: a quarter of each element's change of volume. That is of
+/// u_q · wedge − u_i · spoke_{i+1} + u_{i+1} · spoke_i, displacements from p's.
+template <class L, class Real, bool closed>
+inline void linear_fan_changes(const Block<Real>& block, const Group& group, Vectors<Real> vectors) {
+  using V = typename L::V;
+  over_batches<L, Real, LinearFan, closed>(
+      block, group, vectors, [](const FanGeometry<V>& geometry, const FanPlace& fan, const Real* u, Real* f) {
+        constexpr int width = L::width;
+        const std::uint16_t* at = read_anew(fan.at);
+        const std::uint16_t* ring = at + LinearFan::ring * width;
+        V p[3], q[3], d[3], first[3], sum{}, carry{}, of_first{};
+        L::load3(u, at, p);
+        L::load3(u, at + width, q);
+        L::load3(u, ring, d);
+        for (int k = 0; k < 3; ++k) q[k] -= p[k], d[k] -= p[k], first[k] = d[k];
+        for (int i = 0; i < fan.length; ++i) {
+          const bool closing = closed && i == fan.length - 1;
+          V next[3];
+          if (closing) {
+            for (int k = 0; k < 3; ++k) next[k] = first[k];
+          } else {
+            L::load3(u, ring + (i + 1) * width, next);
+            for (int k = 0; k < 3; ++k) next[k] -= p[k];
+          }
+          const V change = Real(LinearFan::weight / 4.0) *
+                           (inner(q, geometry.wedge[i].c) - inner(d, geometry.spoke[closing ? 0 : i + 1]) +
+                            inner(next, geometry.spoke[i]));
+          sum += change;
+          if (closed && i == 0)
+            of_first = change;
+          else
+            add_last<L, Real>(f, ring + i * width, carry + change);
+          carry = change;
+          for (int k = 0; k < 3; ++k) d[k] = next[k];
+        }
+        add_last<L, Real>(f, ring + (closed ? 0 : fan.length) * width, closed ? of_first + carry : carry);
+        add_last<L, Real>(f, at, sum);
+        add_last<L, Real>(f, at + width, sum);
+      });
+}
+template <class L, class Real>
+inline void linear_fan_changes(const Block<Real>& block, const Group& group, Vectors<Real> vectors) {
+  if (group.shape == kacanov::simd::Shape::open_fan)
+    linear_fan_changes<L, Real, false>(block, group, vectors);
+  else
+    linear_fan_changes<L, Real, true>(block, group, vectors);
 }
 
 }  // namespace

@@ -97,6 +97,15 @@ struct Loops {
     return sum[0] + sum[1] + sum[2];
   }
 
+  template <bool averaged, class Material>
+  static void over_fans(const Block<Real>& block, const Group& group, const Material& material,
+                        const Vectors<Real>& vectors) {
+    if (group.shape == Shape::open_fan)
+      fan_loop_of_length<L, Real, false, averaged>(block, group, material, vectors);
+    else
+      fan_loop_of_length<L, Real, true, averaged>(block, group, material, vectors);
+  }
+
   template <class MakeMaterial>
   static void sweep(const Block<Real>& block, const Vectors<Real>& vectors, MakeMaterial&& make) {
     for (std::size_t i = 0; i < block.group_count; ++i) {
@@ -107,10 +116,10 @@ struct Loops {
         case ElementType::tri3: elements.template operator()<Tri3>(); break;
         case ElementType::quad4: elements.template operator()<Quad4>(); break;
         case ElementType::tet4:
-          if (group.shape == Shape::open_fan)
-            fan_loop_of_length<L, Real, false>(block, group, material, vectors);
+          if (block.laws[group.law].mean_dilatation)
+            over_fans<true>(block, group, material, vectors);
           else
-            fan_loop_of_length<L, Real, true>(block, group, material, vectors);
+            over_fans<false>(block, group, material, vectors);
           break;
         case ElementType::tet10:
           if (group.shape == Shape::general)
@@ -180,26 +189,31 @@ struct Loops {
             [&](const Group& group) { return NonlinearMaterial<L, Real, false>(block, group, *out); });
   }
 
-  /// Calls fans(group) or curved(group) for those that average round their corners.
-  template <class Fans, class Curved>
-  static void over_averaged(const Block<Real>& block, const Fans& fans, const Curved& curved) {
+  /// Calls linear(group), quadratic(group) or curved(group) for those that average round their corners.
+  template <class Linear, class Quadratic, class Curved>
+  static void over_averaged(const Block<Real>& block, const Linear& linear, const Quadratic& quadratic,
+                            const Curved& curved) {
     for (std::size_t i = 0; i < block.group_count; ++i) {
       const Group& group = block.groups[i];
-      if (group.type != ElementType::tet10 || !block.laws[group.law].mean_dilatation) continue;
-      if (group.shape == Shape::general)
+      if (!block.laws[group.law].mean_dilatation) continue;
+      if (group.type == ElementType::tet4)
+        linear(group);
+      else if (group.type == ElementType::tet10 && group.shape == Shape::general)
         curved(group);
-      else
-        fans(group);
+      else if (group.type == ElementType::tet10)
+        quadratic(group);
     }
   }
   static void corner_changes(const Block<Real>& block, const Vectors<Real>& vectors) {
     over_averaged(
-        block, [&](const Group& group) { quadratic_fan_changes<L, Real>(block, group, vectors); },
+        block, [&](const Group& group) { linear_fan_changes<L, Real>(block, group, vectors); },
+        [&](const Group& group) { quadratic_fan_changes<L, Real>(block, group, vectors); },
         [&](const Group& group) { element_changes<L, Real, Tet10>(block, group, vectors); });
   }
   static void corner_forces(const Block<Real>& block, const Vectors<Real>& vectors) {
     over_averaged(
-        block, [&](const Group& group) { quadratic_fan_pressures<L, Real>(block, group, vectors); },
+        block, [&](const Group& group) { linear_fan_pressures<L, Real>(block, group, vectors); },
+        [&](const Group& group) { quadratic_fan_pressures<L, Real>(block, group, vectors); },
         [&](const Group& group) { element_pressures<L, Real, Tet10>(block, group, vectors); });
   }
 

@@ -59,10 +59,57 @@ KACANOV_INLINE inline void add_pressures(const FanGeometry<V>& geometry, const F
 
 template <class L, class Real>
 inline void quadratic_fan_pressures(const Block<Real>& block, const Group& group, Vectors<Real> vectors) {
-  over_quadratic_fans<L>(block, group, vectors,
-                         [](const auto& geometry, const FanPlace& fan, const Real* u, Real* f) {
-                           add_pressures<L, Real>(geometry, fan, u, f);
-                         });
+  over_batches<L, Real, QuadraticFan, false>(
+      block, group, vectors, [](const auto& geometry, const FanPlace& fan, const Real* u, Real* f) {
+        add_pressures<L, Real>(geometry, fan, u, f);
+      });
+}
+
+/// The transpose of linear_fan_changes: the mean of four pressures, once for each tetrahedron.
+template <class L, class Real, bool closed>
+inline void linear_fan_pressures(const Block<Real>& block, const Group& group, Vectors<Real> vectors) {
+  using V = typename L::V;
+  over_batches<L, Real, LinearFan, closed>(
+      block, group, vectors, [](const FanGeometry<V>& geometry, const FanPlace& fan, const Real* u, Real* f) {
+        constexpr int width = L::width;
+        constexpr Real factor = Real(LinearFan::weight / 4.0);
+        const std::uint16_t* at = read_anew(fan.at);
+        const std::uint16_t* ring = at + LinearFan::ring * width;
+        const V of_edge = factor * (L::load_last(u, at) + L::load_last(u, at + width));
+        const V of_first = factor * L::load_last(u, ring);
+        V of_ring = of_first, q[3] = {}, carry[3] = {}, first[3] = {}, sum[3] = {};
+        for (int i = 0; i < fan.length; ++i) {
+          const bool closing = closed && i == fan.length - 1;
+          const V ahead = closing ? of_first : factor * L::load_last(u, ring + (i + 1) * width);
+          const V pressure = of_edge + of_ring + ahead;
+          const V* spoke = geometry.spoke[i];
+          const V* next_spoke = geometry.spoke[closing ? 0 : i + 1];
+          for (int k = 0; k < 3; ++k) {
+            carry[k] -= pressure * next_spoke[k];
+            sum[k] += carry[k];
+            q[k] += pressure * geometry.wedge[i].c[k];
+            if (i == 0) first[k] = carry[k];
+          }
+          if (i > 0) L::add3(f, ring + i * width, carry);
+          for (int k = 0; k < 3; ++k) carry[k] = pressure * spoke[k];
+          of_ring = ahead;
+        }
+        for (int k = 0; k < 3; ++k) sum[k] = -(sum[k] + carry[k] + q[k]);
+        if constexpr (closed)
+          for (int k = 0; k < 3; ++k) first[k] += carry[k];
+        else
+          L::add3(f, ring + fan.length * width, carry);
+        L::add3(f, ring, first);
+        L::add3(f, at + width, q);
+        L::add3(f, at, sum);
+      });
+}
+template <class L, class Real>
+inline void linear_fan_pressures(const Block<Real>& block, const Group& group, Vectors<Real> vectors) {
+  if (group.shape == kacanov::simd::Shape::open_fan)
+    linear_fan_pressures<L, Real, false>(block, group, vectors);
+  else
+    linear_fan_pressures<L, Real, true>(block, group, vectors);
 }
 
 /// The same of any element that averages there: the transpose of element_changes.

@@ -17,7 +17,7 @@ struct QuadraticFan {
   static constexpr int ring = 3, step = 4;
   static constexpr double weight = kacanov::elements::Tet10::weight, scale = 4.0 * rest;
   static constexpr int before = 6;  ///< nodes before those of the first tetrahedron
-  static constexpr int nodes(int length) { return before + step * length; }
+  static constexpr int nodes(int length, bool = false) { return before + step * length; }
 };
 
 /// A value at the nodes of a tetrahedron: of the edge or, where i = j, the vertex. Vertices are p, q, r_i and
@@ -109,13 +109,7 @@ KACANOV_INLINE inline void load_quadratic_fan(const Material& material, const Fa
     for (int a = 0; a < 2; ++a) mean[a] = bulk * L::load_last(u, at + a * width);
     mean[2] = bulk * L::load_last(u, at + 3 * width);
   }
-  const auto choose = [&]() -> decltype(auto) {
-    if constexpr (averaged)
-      return material.without_bulk();
-    else
-      return (material);
-  };
-  const Material& at_point = choose();
+  const Material& at_point = choose_bulk<averaged>(material);
   at += QuadraticFan::before * width;
 #pragma GCC unroll 1
   for (int i = 0; i < fan.length; ++i, at += QuadraticFan::step * width) {
@@ -255,30 +249,12 @@ KACANOV_INLINE inline void add_changes(const FanGeometry<V>& geometry, const Fan
   for (int a = 0; a < 2; ++a) add_last<L, Real>(f, fan.at + a * width, factor * change[a]);
 }
 
-/// Calls work(geometry, fan, u, f) for every batch of fans and every input vector.
-template <class L, class Real, class Work>
-inline void over_quadratic_fans(const Block<Real>& block, const Group& group, Vectors<Real> vectors,
-                                const Work& work) {
-  const int length = group.length;
-  const std::uint16_t* at = block.index + group.first_index;
-  for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
-    fetch_ahead(at, QuadraticFan::nodes(length) * L::width);
-    FanGeometry<typename L::V> geometry;
-    measure_fan<L, Real, QuadraticFan, false>(block.coordinates, at, length, geometry);
-    for (int v = 0; v < vectors.count; ++v) {
-      const std::size_t offset = static_cast<std::size_t>(v) * vectors.stride;
-      work(geometry, FanPlace{at, 0, length}, vectors.u + offset, vectors.f + offset);
-    }
-    at += QuadraticFan::nodes(length) * L::width;
-  }
-}
-
 template <class L, class Real>
 inline void quadratic_fan_changes(const Block<Real>& block, const Group& group, Vectors<Real> vectors) {
-  over_quadratic_fans<L>(block, group, vectors,
-                         [](const auto& geometry, const FanPlace& fan, const Real* u, Real* f) {
-                           add_changes<L, Real>(geometry, fan, u, f);
-                         });
+  over_batches<L, Real, QuadraticFan, false>(
+      block, group, vectors, [](const auto& geometry, const FanPlace& fan, const Real* u, Real* f) {
+        add_changes<L, Real>(geometry, fan, u, f);
+      });
 }
 
 }  // namespace

@@ -36,6 +36,8 @@ TEST_CASE("bad input is named") {
   CHECK_THROWS_WITH_AS(Operator{wrong.body()}, doctest::Contains("99"), std::invalid_argument);
   wrong = owned;
   wrong.laws[2].mean_dilatation = true;
+  wrong.mesh = meshes::box(ElementType::tri3, {3, 2}, {1, 1});
+  wrong.law_of_element.clear();
   CHECK_THROWS_WITH_AS(Operator{wrong.body()}, doctest::Contains("hex8 or quad4"), std::invalid_argument);
   wrong = owned;
   wrong.law_of_element.pop_back();

@@ -13,6 +13,7 @@
 #include "multigrid/grid_level.hpp"
 #include "multigrid/grid_sums.hpp"
 #include "multigrid/grid_transfer.hpp"
+#include "multigrid/node_spacing.hpp"
 #include "operator/corner_sum.hpp"
 #include "preconditioners.hpp"
 #include "support.hpp"
@@ -54,14 +55,8 @@ Vector bent(const Part& part, double jump) {
 struct Grids {
   Vector spacing;
   GridTree tree;
-  explicit Grids(const Part& part) : spacing(spacings(part)), tree(nodes(part), 2.6, part.node_map) {}
-  static Vector spacings(const Part& part) {
-    std::vector<double> sums = node_spacings(part.body());
-    part.node_map.sum(sums, 2);
-    Vector h(part.nodes());
-    for (std::size_t n = 0; n < h.size(); ++n) h[n] = sums[2 * n] / sums[2 * n + 1];
-    return h;
-  }
+  explicit Grids(const Part& part)
+      : spacing(node_spacings(part.body(), part.node_map)), tree(nodes(part), 2.6, part.node_map) {}
   GridTree::Nodes nodes(const Part& part) const {
     return {part.body().mesh.coordinates, spacing, static_cast<std::size_t>(part.owned_nodes())};
   }
