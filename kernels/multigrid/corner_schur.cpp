@@ -143,9 +143,7 @@ void CornerSchur::build(std::span<const float> inverse, double factor, std::span
   for (std::int32_t r = 0; r < rows; ++r) level.block(r, r)[0] += compliance[r];
   level.complete(std::move(outside));
   take_rows();
-  std::vector<double> start(level.size(), 0.0);
-  for (std::size_t i = 0; i < level.owned_size(); ++i)
-    start[i] = static_cast<double>(scatter(static_cast<std::uint64_t>(level.first()) + i));
+  std::vector<double> start = scattered<double>(level.map(), 1);
   solve_.largest = largest_eigenvalue(
       start, [this](std::span<double> x, std::span<double> y) { multiply(x, y); },
       [this](std::span<const double> x, std::span<double> y) {

@@ -171,13 +171,7 @@ void FineLevel::project(std::span<float> x) const {
 }
 
 void FineLevel::choose_smoother(int degree, double range) {
-  std::vector<float> x(body_.unknowns());
-  const std::size_t dim = body_.dim();
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const auto id =
-        body_.node_map->number(i / dim) * static_cast<std::int64_t>(dim) + static_cast<std::int64_t>(i % dim);
-    x[i] = scatter(static_cast<std::uint64_t>(id));
-  }
+  std::vector<float> x = scattered<float>(*body_.node_map, body_.dim());
   hold(x);
   const auto owned = body_.owned_unknowns();
   const double largest = largest_eigenvalue(

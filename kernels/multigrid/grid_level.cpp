@@ -69,12 +69,6 @@ void GridLevel::find_scales() {
       for (int r = 0; r < 3; ++r)
         for (int t = 0; t < 3; ++t) inverse_[12 * i + 4 * t + r] = inverse(r, t);
     }
-  const auto start = [&](std::size_t components) {
-    std::vector<double> x(components * map_->size(), 0.0);
-    for (std::size_t i = 0; i < components * rows_; ++i)
-      x[i] = static_cast<double>(scatter(static_cast<std::uint64_t>(map_->first()) * components + i));
-    return x;
-  };
   const auto dot = [this](std::size_t components) {
     return [this, components](const std::vector<double>& x, const std::vector<double>& y) {
       double sum = 0.0;
@@ -82,7 +76,7 @@ void GridLevel::find_scales() {
       return map_->sum_all(sum);
     };
   };
-  std::vector<double> u = start(GridVector::width);
+  std::vector<double> u = scattered<double>(*map_, GridVector::width);
   for (std::size_t i = 3; i < u.size(); i += GridVector::width) u[i] = 0.0;
   const double largest = largest_eigenvalue(
       u,
@@ -106,7 +100,7 @@ void GridLevel::find_scales() {
     }
     schur_inverse_[i] = sum > 0.0 ? 1.0 / sum : 0.0;
   }
-  std::vector<double> p = start(1);
+  std::vector<double> p = scattered<double>(*map_, 1);
   solve_.largest = largest_eigenvalue(
       p, [this](std::span<double> x, std::span<double> y) { schur(x, y); },
       [this](std::span<const double> x, std::span<double> y) {

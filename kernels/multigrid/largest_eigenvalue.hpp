@@ -9,6 +9,8 @@
 #include <span>
 #include <vector>
 
+#include <kacanov/index_map.hpp>
+
 namespace kacanov {
 
 /// A number in [−1, 1] that looks random, the same for the same index wherever it lives.
@@ -19,9 +21,19 @@ inline float scatter(std::uint64_t index) {
   return static_cast<float>(static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1.0);
 }
 
+/// A start for largest_eigenvalue: scatter()ed entries, `components` for every index of the map.
+template <class S>
+std::vector<S> scattered(const IndexMap& map, std::size_t components) {
+  std::vector<S> x(map.size() * components);
+  for (std::size_t i = 0; i < x.size(); ++i)
+    x[i] = static_cast<S>(
+        scatter(static_cast<std::uint64_t>(map.number(i / components)) * components + i % components));
+  return x;
+}
+
 /// Λ (theory: chebyshev): Lanczos' estimate after ten steps of conjugate gradients preconditioned by D, a
-/// tenth added since it comes from below; 1 where the start is zero. `r` holds the start (of scatter()ed
-/// entries) and is used up. `multiply(x, y)`: y = A x; `scale(x, y)`: y = D⁻¹ x, on vectors as long as r;
+/// tenth added since it comes from below; 1 where the start is zero. `r` holds the start and is used
+/// up. `multiply(x, y)`: y = A x; `scale(x, y)`: y = D⁻¹ x, on vectors as long as r;
 /// `dot` sums over what this process owns and all ranks. Collective where these are.
 template <class S, class Multiply, class Scale, class Dot>
 double largest_eigenvalue(std::vector<S>& r, const Multiply& multiply, const Scale& scale, const Dot& dot) {

@@ -76,22 +76,17 @@ class PressureHierarchy final : public RigidMultigrid::Hierarchy {
   }
 
  private:
-  template <class Work>
-  void each(std::size_t n, const Work& work) const {
-    in_shares(options_.threads, n, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) work(i);
-    });
-  }
-
   void cycle(std::span<const double> r, std::span<double> z, const RigidMultigrid::Factors& factors) {
-    each(r.size(), [&](std::size_t i) { b_[i] = static_cast<float>(factors.in * r[i]); });
+    each_in_shares(options_.threads, r.size(),
+                   [&](std::size_t i) { b_[i] = static_cast<float>(factors.in * r[i]); });
     fine_.hold(b_);
     std::fill(p_.begin(), p_.end(), 0.0);
     for (int s = 0; s < fine_steps; ++s) smooth(s == 0, s == 0 ? solves_.at_ends : solves_.between);
     correct();
     for (int s = 0; s < fine_steps; ++s)
       smooth(false, s + 1 == fine_steps ? solves_.at_ends : solves_.between);
-    each(z.size(), [&](std::size_t i) { z[i] = factors.out * static_cast<double>(x_[i]); });
+    each_in_shares(options_.threads, z.size(),
+                   [&](std::size_t i) { z[i] = factors.out * static_cast<double>(x_[i]); });
   }
 
   /// rᵀ z: negative where the cycle is not definite.
@@ -166,7 +161,7 @@ class PressureHierarchy final : public RigidMultigrid::Hierarchy {
   /// By the grids: of forces b − A x − Bᵀp, and of volume changes what the last step has left, S p − q.
   void correct() {
     fine_.multiply(x_, entries_, image_);
-    each(image_.size(), [&](std::size_t i) { image_[i] = b_[i] - image_[i]; });
+    each_in_shares(options_.threads, image_.size(), [&](std::size_t i) { image_[i] = b_[i] - image_[i]; });
     fine_.project(image_);
     schur_->multiply(p_, rest_);
     for (std::size_t r = 0; r < rest_.size(); ++r) rest_[r] -= change_[r];
@@ -175,7 +170,7 @@ class PressureHierarchy final : public RigidMultigrid::Hierarchy {
     grids_->correct(image_, rest_, u, p_);
     body_.node_map->forward(std::span<float>(u), 3);
     fine_.project(u);
-    each(x_.size(), [&](std::size_t i) { x_[i] += u[i]; });
+    each_in_shares(options_.threads, x_.size(), [&](std::size_t i) { x_[i] += u[i]; });
   }
 
   std::vector<Law> laws_;  ///< softened; body_ points to them

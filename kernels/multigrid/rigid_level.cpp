@@ -278,9 +278,7 @@ void RigidLevel<M>::relax(const ChebyshevStep<double>& weights, std::span<const 
 
 template <int M>
 double RigidLevel<M>::largest_eigenvalue() {
-  std::vector<double> start(size());
-  for (std::size_t i = 0; i < owned_size(); ++i)
-    start[i] = scatter(static_cast<std::uint64_t>(first()) * M + i);
+  std::vector<double> start = scattered<double>(*map_, M);
   return kacanov::largest_eigenvalue(
       start, [this](std::span<double> x, std::span<double> y) { multiply(x, y); },
       [&](std::span<const double> x, std::span<double> y) {

@@ -73,7 +73,8 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
 
   void apply(std::span<const double> r, std::span<double> z,
              const RigidMultigrid::Factors& factors) override {
-    each(r.size(), [&](std::size_t i) { b_[i] = static_cast<float>(factors.in * r[i]); });
+    each_in_shares(options_.threads, r.size(),
+                   [&](std::size_t i) { b_[i] = static_cast<float>(factors.in * r[i]); });
     fine_.hold(b_);
     const auto multiply = [this](std::span<const float> x, std::span<float> y) { fine_.multiply(x, y); };
     const auto relax = [this](const auto& weights, std::span<const float> b, std::span<const float> image,
@@ -81,7 +82,7 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
                               std::span<float> x) { fine_.relax(weights, b, image, step, x); };
     fine_.smoother().template smooth<float>(true, {b_, x_, step_, image_}, multiply, relax);
     fine_.multiply(x_, image_);
-    each(b_.size(), [&](std::size_t i) { image_[i] = b_[i] - image_[i]; });
+    each_in_shares(options_.threads, b_.size(), [&](std::size_t i) { image_[i] = b_[i] - image_[i]; });
     fine_.project(image_);
     auto& first = stages_.front();
     motions_->restrict_forces(image_, first.b);
@@ -89,9 +90,10 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
     motions_->prolong(first.x, options_.fine_gain, image_);
     body_.node_map->forward(std::span<float>(image_), static_cast<int>(body_.dim()));
     fine_.project(image_);
-    each(x_.size(), [&](std::size_t i) { x_[i] += image_[i]; });
+    each_in_shares(options_.threads, x_.size(), [&](std::size_t i) { x_[i] += image_[i]; });
     fine_.smoother().template smooth<float>(false, {b_, x_, step_, image_}, multiply, relax);
-    each(z.size(), [&](std::size_t i) { z[i] = factors.out * static_cast<double>(x_[i]); });
+    each_in_shares(options_.threads, z.size(),
+                   [&](std::size_t i) { z[i] = factors.out * static_cast<double>(x_[i]); });
   }
 
   int levels() const noexcept override { return 1 + static_cast<int>(stages_.size()); }
@@ -106,14 +108,6 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
   }
 
  private:
-  /// Calls work(i) for all i < n, on the threads.
-  template <class Work>
-  void each(std::size_t n, const Work& work) const {
-    in_shares(options_.threads, n, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) work(i);
-    });
-  }
-
   /// Everything below the first coarse level, and the smoothers.
   void complete() {
     while (stages_.back().level.total() > direct_rows) {

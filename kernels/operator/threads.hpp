@@ -36,6 +36,14 @@ void in_shares(int threads, std::size_t n, const Work& work) {
   });
 }
 
+/// Calls work(i) for every i < n, in the shares of the threads.
+template <class Work>
+void each_in_shares(int threads, std::size_t n, const Work& work) {
+  in_shares(threads, n, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) work(i);
+  });
+}
+
 /// Σ part(begin, end) over the shares, in their order.
 template <class Part>
 double sum_shares(int threads, std::size_t n, const Part& part) {
