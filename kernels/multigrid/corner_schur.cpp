@@ -4,199 +4,224 @@
 
 #include <algorithm>
 #include <numeric>
-#include <utility>
 
 #include "cells/dispatch.hpp"
 #include "cells/point.hpp"
-#include "distributed/exchange.hpp"
 #include "multigrid/largest_eigenvalue.hpp"
+#include "multigrid/sums.hpp"
 #include "operator/threads.hpp"
 #include "simd/grid_rows.hpp"
 
 namespace kacanov {
 namespace {
 
-/// What a node's displacement does to an entry of the pressures.
-struct Part {
-  std::int32_t entry;
-  std::array<float, 3> change;
+/// Of an element: ∫ share_c ∂_k N_a.
+template <class E>
+using ElementChanges = std::array<std::array<std::array<double, 3>, E::corners>, E::nodes>;
+
+template <class E>
+ElementChanges<E> element_changes(const Body& body, std::size_t e) {
+  const std::int32_t* node = body.mesh.connectivity.data() + e * E::nodes;
+  elements::Nodal<E> x;
+  for (std::size_t a = 0; a < E::nodes; ++a)
+    for (std::size_t c = 0; c < 3; ++c)
+      x[a * 3 + c] = body.mesh.coordinates[static_cast<std::size_t>(node[a]) * 3 + c];
+  ElementChanges<E> sum{};
+  for (std::size_t q = 0; q < E::points; ++q) {
+    const elements::Point<E> point(x, q);
+    const auto share = elements::barycentric<E::dim>(E::point[q].data());
+    for (std::size_t a = 0; a < E::nodes; ++a)
+      for (std::size_t c = 0; c < E::corners; ++c)
+        for (std::size_t k = 0; k < 3; ++k) sum[a][c][k] += point.volume * share[c] * point.gradient[a][k];
+  }
+  return sum;
+}
+
+/// Nodes, and entries of the pressures, of all elements here that average.
+struct AveragingElements {
+  std::vector<std::size_t> element, first_node{0}, first_entry{0};
+  std::vector<std::int32_t> node, entry;
 };
 
-/// The same between ranks.
-struct Change {
-  std::int64_t node, row;
-  std::array<float, 3> change;
-};
-
-/// Of all elements here, by node.
-std::vector<std::vector<Part>> element_parts(const Body& body, const CornerPressures& pressures) {
-  std::vector<std::vector<Part>> of_node(body.mesh.node_count());
+AveragingElements averaging_elements(const Body& body, const CornerPressures& pressures) {
+  AveragingElements all;
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     if constexpr (E::dim == 3 && E::corner_dilatation)
       for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
         const std::int32_t* entry = &pressures.means().of_element[e * E::corners];
         if (entry[0] < 0) continue;
         const std::int32_t* node = body.mesh.connectivity.data() + e * E::nodes;
-        elements::Nodal<E> x;
-        for (std::size_t a = 0; a < E::nodes; ++a)
-          for (std::size_t c = 0; c < 3; ++c)
-            x[a * 3 + c] = body.mesh.coordinates[static_cast<std::size_t>(node[a]) * 3 + c];
-        double sum[E::nodes][E::corners][3] = {};
-        for (std::size_t q = 0; q < E::points; ++q) {
-          const elements::Point<E> point(x, q);
-          const auto share = elements::barycentric<E::dim>(E::point[q].data());
-          for (std::size_t a = 0; a < E::nodes; ++a)
-            for (std::size_t c = 0; c < E::corners; ++c)
-              for (std::size_t k = 0; k < 3; ++k)
-                sum[a][c][k] += point.volume * share[c] * point.gradient[a][k];
-        }
-        for (std::size_t a = 0; a < E::nodes; ++a)
-          for (std::size_t c = 0; c < E::corners; ++c) {
-            auto& parts = of_node[node[a]];
-            auto at =
-                std::find_if(parts.begin(), parts.end(), [&](const Part& p) { return p.entry == entry[c]; });
-            if (at == parts.end()) at = parts.insert(at, {entry[c], {}});
-            for (std::size_t k = 0; k < 3; ++k) at->change[k] += static_cast<float>(sum[a][c][k]);
-          }
+        all.element.push_back(e);
+        all.node.insert(all.node.end(), node, node + E::nodes);
+        all.entry.insert(all.entry.end(), entry, entry + E::corners);
+        std::sort(all.entry.end() - E::corners, all.entry.end());
+        all.entry.erase(std::unique(all.entry.end() - E::corners, all.entry.end()), all.entry.end());
+        all.first_node.push_back(all.node.size()), all.first_entry.push_back(all.entry.size());
       }
   });
-  return of_node;
+  return all;
 }
 
 }  // namespace
 
 CornerSchur::CornerSchur(const MultigridBody& body, const CornerPressures& pressures, int threads)
-    : nodes_(body.owned_nodes()), held_(body.held.begin(), body.held.end()), threads_(threads) {
-  const IndexMap& map = *body.node_map;
-  std::vector<std::vector<Part>> parts = element_parts(body.body, pressures);
-  // Of nodes that other ranks own, these are told; theirs of ours come back.
-  std::vector<std::vector<Change>> to(map.ranks);
-  for (std::size_t n = nodes_; n < parts.size(); ++n)
-    for (const Part& part : parts[n])
-      to[map.owner(map.number(n))].push_back({map.number(n), pressures.number(part.entry), part.change});
-  std::vector<std::vector<Entry>> told(map.ranks > 1 ? nodes_ : 0);
-  for (const Change& change : exchange_all(to, map).entries)
-    told[change.node - map.first()].push_back({static_cast<std::int32_t>(change.row), change.change});
-  first_.push_back(0);
-  for (std::size_t n = 0; n < nodes_; ++n) {
-    for (const Part& part : parts[n])
-      entries_.push_back({static_cast<std::int32_t>(pressures.number(part.entry)), part.change});
-    std::vector<Part>().swap(parts[n]);
-    for (std::size_t k = 0; !told.empty() && k < told[n].size(); ++k) {
-      const Entry& more = told[n][k];
-      const auto here = entries_.begin() + static_cast<std::ptrdiff_t>(first_.back());
-      const auto same = std::find_if(here, entries_.end(), [&](const Entry& e) { return e.row == more.row; });
-      if (same == entries_.end())
-        entries_.push_back(more);
-      else
-        for (std::size_t c = 0; c < 3; ++c) same->change[c] += more.change[c];
-    }
-    first_.push_back(entries_.size());
-  }
-  entries_.shrink_to_fit();
-  BlockSums<1> couplings;
-  const std::int64_t first = body.node_map->sum_below(static_cast<std::int64_t>(pressures.rows()));
-  for (std::size_t r = 0; r < pressures.rows(); ++r) {
-    const auto row = first + static_cast<std::int64_t>(r);
-    couplings.at(row, row);
-  }
+    : threads_(threads), nodes_(body.owned_nodes()) {
+  take_changes(body, pressures);
+  const std::size_t rows = pattern_->rows();
+  fill_.emplace(pattern_->columns(), 1);
+  fill_single_.emplace(pattern_->columns(), 1);
+  solve_.resize(pattern_->owned_rows(), size());
+  image_.resize(pattern_->owned_rows());
+  std::vector<std::int32_t> row_of(size(), -1);
+  for (std::size_t r = 0; r < rows; ++r)
+    row_of[pattern_->column(pattern_->number(r))] = static_cast<std::int32_t>(r);
+  first_node_.assign(rows + 1, 0);
+  for (const Entry& entry : entries_) ++first_node_[static_cast<std::size_t>(row_of[entry.row]) + 1];
+  std::partial_sum(first_node_.begin(), first_node_.end(), first_node_.begin());
+  std::vector<std::int64_t> next(first_node_.begin(), first_node_.end() - 1);
+  node_.resize(entries_.size());
   for (std::size_t n = 0; n < nodes_; ++n)
-    for (std::size_t i = first_[n]; i < first_[n + 1]; ++i)
-      for (std::size_t j = first_[n]; j < first_[n + 1]; ++j)
-        if (entries_[i].row <= entries_[j].row) couplings.at(entries_[i].row, entries_[j].row);
-  level_.emplace(std::vector<Vector3>(pressures.rows()), std::move(couplings), *body.node_map, 1);
-  fill_.emplace(level_->map(), 1);
+    for (const Entry& entry : entries_of(n)) node_[next[row_of[entry.row]]++] = static_cast<std::int32_t>(n);
+}
+
+/// B, and S's pattern by it.
+void CornerSchur::take_changes(const MultigridBody& body, const CornerPressures& pressures) {
+  const IndexMap& map = *body.node_map;
+  const std::vector<std::int64_t> starts = number_owned(static_cast<std::int64_t>(pressures.rows()), map);
+  std::vector<std::int64_t> number;
+  std::vector<std::size_t> first;
+  std::vector<std::int32_t> index;
+  {
+    std::vector<std::int64_t> node_number(body.nodes()), entry_number(pressures.means().size());
+    for (std::size_t n = 0; n < node_number.size(); ++n) node_number[n] = map.number(n);
+    for (std::size_t k = 0; k < entry_number.size(); ++k) entry_number[k] = pressures.number(k);
+    AveragingElements elements = averaging_elements(body.body, pressures);
+    const SummedPattern b({map.starts, node_number, elements.node, elements.first_node},
+                          {starts, entry_number, elements.entry, elements.first_entry}, map, threads_);
+    std::vector<float> value(3 * b.entries(), 0.0F);
+    elements::dispatch(body.body.mesh.type, [&]<class E>(E) {
+      if constexpr (E::dim == 3 && E::corner_dilatation)
+        for (const std::size_t e : elements.element) {
+          const auto sum = element_changes<E>(body.body, e);
+          for (std::size_t a = 0; a < E::nodes; ++a)
+            for (std::size_t c = 0; c < E::corners; ++c) {
+              const std::size_t k =
+                  b.entry(b.row(node_number[body.body.mesh.connectivity[e * E::nodes + a]]),
+                          b.column(entry_number[pressures.means().of_element[e * E::corners + c]]));
+              for (std::size_t i = 0; i < 3; ++i) value[3 * k + i] += static_cast<float>(sum[a][c][i]);
+            }
+        }
+    });
+    b.complete(value, 3);
+    const auto start = b.start().first(nodes_ + 1);
+    first.assign(start.begin(), start.end());
+    index.assign(b.column().begin(), b.column().begin() + start.back());
+    for (std::size_t c = 0; c < b.columns().size(); ++c) number.push_back(b.columns().number(c));
+    entries_.resize(index.size());
+    for (std::size_t n = 0; n < nodes_; ++n)
+      for (std::size_t k = first[n]; k < first[n + 1]; ++k)
+        for (std::size_t i = 0; i < 3; ++i)
+          entries_[k].change[i] = body.held[3 * n + i] != 0 ? 0.0F : value[3 * k + i];
+  }
+  // A row for every pressure, even one that no node moves.
+  first_ = first;
+  for (std::int64_t n = starts[map.rank]; n < starts[map.rank + 1]; ++n) {
+    index.push_back(static_cast<std::int32_t>(number.size()));
+    number.push_back(n);
+    first.push_back(index.size());
+  }
+  const MatrixSide side{starts, number, index, first};
+  pattern_.emplace(side, side, map, threads_);
+  for (std::size_t k = 0; k < entries_.size(); ++k) entries_[k].row = pattern_->column(number[index[k]]);
 }
 
 void CornerSchur::build(std::span<const float> inverse, double factor, std::span<const double> compliance) {
-  RigidLevel<1>& level = *level_;
-  level.clear();
-  BlockSums<1> outside;
-  const std::int32_t rows = level.rows();
-  std::vector<std::int32_t> local;
-  std::vector<std::array<double, 3>> scaled;
-  for (std::size_t n = 0; n < nodes_; ++n) {
-    const auto of = std::span(entries_).subspan(first_[n], first_[n + 1] - first_[n]);
-    const float* d = &inverse[6 * n];
-    const double d00 = d[0], d01 = d[1], d02 = d[2], d11 = d[3], d12 = d[4], d22 = d[5];
-    local.clear(), scaled.clear();
-    for (const Entry& entry : of) {
-      std::array<double, 3> b{};
-      for (std::size_t k = 0; k < 3; ++k)
-        if (held_[3 * n + k] == 0) b[k] = static_cast<double>(entry.change[k]);
-      local.push_back(level.local(entry.row));
-      scaled.push_back({factor * (d00 * b[0] + d01 * b[1] + d02 * b[2]),
-                        factor * (d01 * b[0] + d11 * b[1] + d12 * b[2]),
-                        factor * (d02 * b[0] + d12 * b[1] + d22 * b[2])});
-    }
-    for (std::size_t i = 0; i < of.size(); ++i)
-      for (std::size_t j = 0; j < of.size(); ++j) {
-        const std::int32_t a = local[i], b = local[j];
-        const bool mine = a >= 0 && b >= 0 && (a < rows || b < rows);
-        if (mine ? a > b : of[i].row > of[j].row) continue;
-        double value = 0.0;
-        for (std::size_t k = 0; k < 3; ++k)
-          if (held_[3 * n + k] == 0) value += static_cast<double>(of[i].change[k]) * scaled[j][k];
-        (mine ? level.block(a, b) : outside.at(of[i].row, of[j].row))[0] += value;
-      }
+  value_.resize(pattern_->entries());
+  in_shares(threads_, pattern_->rows(),
+            [&](std::size_t begin, std::size_t end) { sum_rows(inverse, factor, begin, end); });
+  pattern_->complete(value_, 1);
+  const std::size_t rows = pattern_->owned_rows();
+  inverse_.assign(rows, 0.0F);
+  for (std::size_t r = 0; r < rows; ++r) {
+    const auto row = static_cast<std::int32_t>(r);
+    float& diagonal = value_[pattern_->entry(row, row)];
+    diagonal += static_cast<float>(compliance[r]);
+    if (diagonal > 0.0F) inverse_[r] = 1.0F / diagonal;
   }
-  for (std::int32_t r = 0; r < rows; ++r) level.block(r, r)[0] += compliance[r];
-  level.complete(std::move(outside));
-  take_rows();
-  std::vector<double> start = scattered<double>(level.map(), 1);
+  std::vector<float> start = scattered<float>(pattern_->columns(), 1);
   solve_.largest = largest_eigenvalue(
-      start, [this](std::span<double> x, std::span<double> y) { multiply(x, y); },
-      [this](std::span<const double> x, std::span<double> y) {
-        for (std::size_t i = 0; i < inverse_.size(); ++i) y[i] = inverse_[i] * x[i];
+      start, [this](std::span<float> x, std::span<float> y) { times(*fill_single_, x, y); },
+      [this](std::span<const float> x, std::span<float> y) {
+        each_in_shares(threads_, inverse_.size(), [&](std::size_t i) { y[i] = inverse_[i] * x[i]; });
       },
-      [&](const std::vector<double>& x, const std::vector<double>& y) {
-        double sum = 0.0;
-        for (std::size_t i = 0; i < inverse_.size(); ++i) sum += x[i] * y[i];
-        return level.map().sum_all(sum);
+      [&](const std::vector<float>& x, const std::vector<float>& y) {
+        return pattern_->columns().sum_all(eight_sums(inverse_.size(), [&](std::size_t i) {
+          return static_cast<double>(x[i]) * static_cast<double>(y[i]);
+        }));
       });
 }
 
-void CornerSchur::take_rows() {
-  const std::size_t rows = level_->owned_size();
-  start_.assign(rows + 1, 0);
-  const auto both = [&](const auto& visit) {
-    level_->visit([&](std::int32_t i, std::int32_t j, const BlockSums<1>::Block& block) {
-      visit(static_cast<std::size_t>(i), j, block[0]);
-      if (j != i && static_cast<std::size_t>(j) < rows) visit(static_cast<std::size_t>(j), i, block[0]);
-    });
-  };
-  both([&](std::size_t row, std::int32_t, double) { ++start_[row + 1]; });
-  std::partial_sum(start_.begin(), start_.end(), start_.begin());
-  std::vector<std::int64_t> next(start_.begin(), start_.end() - 1);
-  column_.resize(start_.back());
-  value_.resize(start_.back());
-  inverse_.assign(rows, 0.0);
-  both([&](std::size_t row, std::int32_t column, double value) {
-    const std::int64_t k = next[row]++;
-    column_[k] = column;
-    value_[k] = static_cast<float>(value);
-    if (static_cast<std::size_t>(column) == row && value > 0.0) inverse_[row] = 1.0 / value;
+/// Row by row: what this rank's nodes give.
+void CornerSchur::sum_rows(std::span<const float> inverse, double factor, std::size_t begin,
+                           std::size_t end) {
+  std::vector<double> sum(pattern_->columns().size(), 0.0);
+  for (std::size_t r = begin; r < end; ++r) {
+    const std::int32_t own = pattern_->column(pattern_->number(r));
+    for (std::int64_t k = first_node_[r]; k < first_node_[r + 1]; ++k) {
+      const std::size_t n = node_[k];
+      const std::span<const Entry> of = entries_of(n);
+      const auto* entry = of.data();
+      while (entry->row != own) ++entry;
+      const double b[3] = {factor * static_cast<double>(entry->change[0]),
+                           factor * static_cast<double>(entry->change[1]),
+                           factor * static_cast<double>(entry->change[2])};
+      double d[6];
+      for (std::size_t i = 0; i < 6; ++i) d[i] = static_cast<double>(inverse[6 * n + i]);
+      const double scaled[3] = {d[0] * b[0] + d[1] * b[1] + d[2] * b[2],
+                                d[1] * b[0] + d[3] * b[1] + d[4] * b[2],
+                                d[2] * b[0] + d[4] * b[1] + d[5] * b[2]};
+      for (const Entry& other : of)
+        sum[other.row] += scaled[0] * static_cast<double>(other.change[0]) +
+                          scaled[1] * static_cast<double>(other.change[1]) +
+                          scaled[2] * static_cast<double>(other.change[2]);
+    }
+    for (std::int64_t k = pattern_->start()[r]; k < pattern_->start()[r + 1]; ++k) {
+      double& from = sum[pattern_->column()[k]];
+      value_[k] = static_cast<float>(from), from = 0.0;
+    }
+  }
+}
+
+template <class Real>
+void CornerSchur::times(Scatterer<Real>& fill, std::span<Real> p, std::span<Real> y) {
+  fill.start_forward(p), fill.finish_forward(p);
+  const auto start = pattern_->start();
+  each_in_shares(threads_, inverse_.size(), [&](std::size_t i) {
+    y[i] = simd::times_numbers({pattern_->column().data(), static_cast<std::size_t>(start[i]),
+                                static_cast<std::size_t>(start[i + 1])},
+                               value_.data(), p.data());
   });
 }
 
-void CornerSchur::multiply(std::span<double> p, std::span<double> y) {
-  fill_->start_forward(p), fill_->finish_forward(p);
-  in_shares(threads_, inverse_.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      y[i] = simd::times_numbers(
-          {column_.data(), static_cast<std::size_t>(start_[i]), static_cast<std::size_t>(start_[i + 1])},
-          value_.data(), p.data());
-  });
-}
+void CornerSchur::multiply(std::span<double> p, std::span<double> y) { times(*fill_, p, y); }
 
-void CornerSchur::improve(const PressureSteps& steps, std::span<const double> q, std::span<double> p) {
-  solve_.improve(steps, q, inverse_, p, [this](std::span<double> x, std::span<double> y) { multiply(x, y); });
+void CornerSchur::improve(bool from_zero, const PressureSteps& steps, std::span<const double> q,
+                          std::span<double> p) {
+  const std::span<float> residual = solve_.residual();
+  if (!from_zero) multiply(p, image_);
+  each_in_shares(threads_, q.size(), [&](std::size_t i) {
+    residual[i] = static_cast<float>(from_zero ? q[i] : q[i] - image_[i]);
+  });
+  const auto more = solve_.solve(steps, inverse_, threads_, [this](std::span<float> x, std::span<float> y) {
+    times(*fill_single_, x, y);
+  });
+  each_in_shares(threads_, q.size(), [&](std::size_t i) { p[i] += static_cast<double>(more[i]); });
 }
 
 std::size_t CornerSchur::bytes() const noexcept {
   const auto size = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  return size(first_) + size(entries_) + size(inverse_) + size(start_) + size(column_) + size(value_) +
-         level_->bytes();
+  return size(first_) + size(entries_) + size(first_node_) + size(node_) + size(inverse_) + size(value_) +
+         size(image_) + pattern_->bytes() + solve_.bytes();
 }
 
 }  // namespace kacanov

@@ -2,6 +2,7 @@
 // The Schur complement of the pressures at corners, as a matrix.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -10,12 +11,12 @@
 #include <kacanov/scatterer.hpp>
 #include "multigrid/corner_pressures.hpp"
 #include "multigrid/pressure_steps.hpp"
-#include "multigrid/rigid_level.hpp"
+#include "multigrid/summed_pattern.hpp"
 
 namespace kacanov {
 
-/// S = B Â⁻¹ Bᵀ + C over the rows of CornerPressures, Â of node blocks (theory: pressure-smoothing).
-/// Couplings depend on the mesh alone, they are found once.
+/// S = B Â⁻¹ Bᵀ + C over the rows of CornerPressures, Â of node blocks (theory: pressure-smoothing). B and
+/// which rows couple depend on the mesh alone, they are found once.
 class CornerSchur {
  public:
   /// Collective.
@@ -24,32 +25,40 @@ class CornerSchur {
   /// For Â⁻¹ = factor times blocks of local nodes, packed as FineLevel::inverse; held components give
   /// nothing. Collective.
   void build(std::span<const float> inverse, double factor, std::span<const double> compliance);
-  /// p += S⁻¹ (q − S p), nearly. p has room for size() entries, q this rank's rows. Collective.
-  void improve(const PressureSteps& steps, std::span<const double> q, std::span<double> p);
+  /// p += S⁻¹ (q − S p), nearly; `from_zero`: p is zero. p has room for size() entries, q this rank's rows.
+  /// Collective.
+  void improve(bool from_zero, const PressureSteps& steps, std::span<const double> q, std::span<double> p);
   /// y = S p. Collective.
   void multiply(std::span<double> p, std::span<double> y);
 
-  std::size_t size() const noexcept { return level_->size(); }
+  std::size_t size() const noexcept { return pattern_->columns().size(); }
   std::size_t bytes() const noexcept;
 
  private:
+  /// What a node's displacement does to a row.
   struct Entry {
-    std::int32_t row;  ///< over all ranks
+    std::int32_t row;  ///< as a column of S
     std::array<float, 3> change;
   };
-  std::size_t nodes_;
-  std::vector<std::uint8_t> held_;
-  std::vector<std::size_t> first_;  ///< owned nodes + 1, into
-  std::vector<Entry> entries_;      ///< B by columns: what a node's displacement does to rows
-  std::optional<RigidLevel<1>> level_;
-  void take_rows();
+  std::span<const Entry> entries_of(std::size_t node) const {
+    return std::span(entries_).subspan(first_[node], first_[node + 1] - first_[node]);
+  }
+  void take_changes(const MultigridBody& body, const CornerPressures& pressures);
+  void sum_rows(std::span<const float> inverse, double factor, std::size_t begin, std::size_t end);
+  template <class Real>
+  void times(Scatterer<Real>& fill, std::span<Real> p, std::span<Real> y);
 
   int threads_;
-  std::vector<std::int64_t> start_;  ///< whole rows, in single precision
-  std::vector<std::int32_t> column_;
-  std::vector<float> value_;
+  std::size_t nodes_;               ///< that this rank owns
+  std::vector<std::size_t> first_;  ///< nodes + 1, into
+  std::vector<Entry> entries_;      ///< B by columns, without held components
+  std::vector<std::int64_t> first_node_;
+  std::vector<std::int32_t> node_;  ///< that have something to do with a row
+  std::optional<SummedPattern> pattern_;
+  std::vector<float> value_, inverse_;  ///< of S, of its diagonal
+  std::vector<double> image_;           ///< scratch
   std::optional<Scatterer<double>> fill_;
-  std::vector<double> inverse_;  ///< of the diagonal
+  std::optional<Scatterer<float>> fill_single_;
   PressureSolve solve_;
 };
 

@@ -14,7 +14,6 @@ namespace {
 constexpr double first_grid = 2.6;
 constexpr std::int64_t last_grid_rows = 300;
 constexpr int coarse_steps = 2;
-constexpr int row_width = GridVector::width;
 constexpr PressureSteps coarse_pressures{4, 8.0};
 
 }  // namespace
@@ -31,9 +30,11 @@ GridHierarchy::GridHierarchy(const MultigridBody& body, const CornerPressures& p
     return GridTransfer::Place{cell_[n], tree_->within(tree_->cells()[cell_[n]], &coordinates[3 * n])};
   };
   for (int level = 0; level <= tree_->last_level(); ++level) {
-    levels_.push_back({GridVertices(*tree_, level, map.ranks), {}, {}, {}, {}, {}});
+    levels_.push_back({GridVertices(*tree_, level, map.ranks), {}, {}, {}, {}, {}, {}});
     if (levels_.back().vertices.starts().back() <= last_grid_rows) break;
   }
+  std::vector<GridLeaves> leaves = leaves_of_levels(*tree_, cell_, static_cast<int>(levels_.size()) - 1);
+  for (std::size_t k = 0; k < levels_.size(); ++k) levels_[k].leaves = std::move(leaves[k]);
   std::vector<GridTransfer::Place> points;
   for (std::size_t n = 0; n < body.owned_nodes(); ++n) points.push_back(place(n));
   nodes_.emplace(levels_.front().vertices, std::move(points), map, threads);
@@ -57,27 +58,32 @@ GridHierarchy::GridHierarchy(const MultigridBody& body, const CornerPressures& p
 }
 
 void GridHierarchy::build(std::span<const double> g, std::span<const NodeBlock> blocks) {
-  const std::vector<NodeMeasure> measures = node_measures(body_.body, g);
-  const NodesInTree nodes{body_.body.mesh.coordinates, cell_};
+  const Communicator& comm = *body_.node_map;
+  LevelMoments moments = level_moments(*tree_, levels_.front().leaves, {body_.body.mesh.coordinates, cell_},
+                                       node_measures(body_.body, g, threads_), blocks, threads_);
   direct_.reset();
-  for (Level& level : levels_) {
-    level.matrix.emplace(level.vertices.starts(), grid_sums(level.vertices, nodes, measures, blocks),
-                         *body_.node_map, threads_);
-    for (GridVector* v : {&level.b, &level.x, &level.rest}) v->resize(level.matrix->map().size());
-    if (&level == &levels_.back()) direct_.emplace(*level.matrix);
-    level.matrix->forget_blocks();
+  for (std::size_t k = 0; k + 1 < levels_.size(); ++k) {
+    Level& level = levels_[k];
+    if (!level.matrix) level.matrix.emplace(level.vertices, level.leaves, comm, threads_);
+    level.matrix->build(*tree_, level.leaves, moments);
+    for (auto* v : {&level.b, &level.x, &level.rest}) v->resize(grid_width * level.matrix->map().size());
+    moments = raised(*tree_, level.leaves, levels_[k + 1].leaves, moments);
   }
+  Level& last = levels_.back();
+  direct_.emplace(last.vertices, last.leaves, moments, comm);
+  const auto starts = last.vertices.starts();
+  for (auto* v : {&last.b, &last.x})
+    v->resize(grid_width * static_cast<std::size_t>(starts[comm.rank + 1] - starts[comm.rank]));
 }
 
 void GridHierarchy::correct(std::span<const float> force, std::span<const double> change, std::span<float> u,
                             std::span<double> p) {
   Level& first = levels_.front();
-  const std::size_t rows = first.matrix->rows();
-  nodes_->restrict_to(force, 3, std::span(first.b.u).first(row_width * rows), row_width);
-  rows_->restrict_to(change, 1, std::span(first.b.p).first(rows), 1);
+  nodes_->restrict_to(force, 3, std::span(first.b), grid_width);
+  rows_->restrict_to(change, 1, std::span(first.b).subspan(3), grid_width);
   cycle(0);
-  nodes_->prolong(std::span(first.x.u).first(row_width * rows), 3, u, row_width);
-  rows_->prolong(std::span(first.x.p).first(rows), 1, p, 1);
+  nodes_->prolong(std::span<const float>(first.x), grid_width, 3, u);
+  rows_->prolong(std::span<const float>(first.x).subspan(3), grid_width, 1, p);
 }
 
 /// x of a level from its b, by a V-cycle from zero.
@@ -87,15 +93,9 @@ void GridHierarchy::cycle(std::size_t k) {
   level.matrix->smooth(true, coarse_steps, coarse_pressures, level.b, level.x);
   level.matrix->residual(level.b, level.x, level.rest);
   Level& next = levels_[k + 1];
-  const std::size_t rows = level.matrix->rows(), fewer = next.matrix->rows();
-  level.down->restrict_to(std::span<const double>(level.rest.u).first(row_width * rows), row_width,
-                          std::span(next.b.u).first(row_width * fewer), row_width);
-  level.down->restrict_to(std::span<const double>(level.rest.p).first(rows), 1,
-                          std::span(next.b.p).first(fewer), 1);
+  level.down->restrict_to(std::span<const float>(level.rest), grid_width, std::span(next.b), grid_width);
   cycle(k + 1);
-  level.down->prolong(std::span<const double>(next.x.u).first(row_width * fewer), row_width,
-                      std::span(level.x.u), row_width);
-  level.down->prolong(std::span<const double>(next.x.p).first(fewer), 1, std::span(level.x.p), 1);
+  level.down->prolong(std::span<const float>(next.x), grid_width, grid_width, std::span(level.x));
   level.matrix->smooth(false, coarse_steps, coarse_pressures, level.b, level.x);
 }
 
@@ -105,8 +105,9 @@ std::size_t GridHierarchy::bytes() const noexcept {
   for (const Level& level : levels_) {
     sum += level.vertices.bytes();
     if (level.down) sum += level.down->bytes();
-    if (level.matrix)
-      sum += level.matrix->bytes() + 3 * (row_width + 1) * sizeof(double) * level.matrix->map().size();
+    sum += (level.b.size() + level.x.size() + level.rest.size()) * sizeof(float) +
+           (level.leaves.cell.size() + level.leaves.above.size()) * sizeof(std::int32_t);
+    if (level.matrix) sum += level.matrix->bytes();
   }
   return sum + (direct_ ? direct_->bytes() : 0);
 }

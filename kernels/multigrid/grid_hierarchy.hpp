@@ -9,7 +9,6 @@
 
 #include "multigrid/corner_pressures.hpp"
 #include "multigrid/grid_level.hpp"
-#include "multigrid/grid_sums.hpp"
 #include "multigrid/grid_transfer.hpp"
 #include "multigrid/pressure_direct.hpp"
 
@@ -35,9 +34,10 @@ class GridHierarchy {
  private:
   struct Level {
     GridVertices vertices;
+    GridLeaves leaves;
     std::optional<GridTransfer> down;  ///< to the next; none on the last
-    std::optional<GridLevel> matrix;
-    GridVector b, x, rest;
+    std::optional<GridLevel> matrix;   ///< likewise
+    std::vector<float> b, x, rest;     ///< four values a row
   };
   void cycle(std::size_t k);
 

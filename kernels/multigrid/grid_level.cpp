@@ -4,207 +4,243 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <utility>
+#include <numeric>
 
 #include "multigrid/largest_eigenvalue.hpp"
-#include "multigrid/rigid_blocks.hpp"
-#include "operator/threads.hpp"
+#include "multigrid/sums.hpp"
 
 namespace kacanov {
+namespace {
 
-GridLevel::GridLevel(std::span<const std::int64_t> starts, BlockSums<4> sums, const Communicator& comm,
+/// Without what has no stiffness: what no node moves with stays where it is.
+Eigen::Matrix3d inverse_of_stiff(const Eigen::Matrix3d& d) {
+  const double largest = d.diagonal().maxCoeff();
+  // No eigenvalue is below a ninth of the determinant over the square of the largest.
+  if (d.determinant() > 1e-4 * largest * largest * largest) return d.inverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(d);
+  Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
+  for (int m = 0; m < 3; ++m)
+    if (const double value = solver.eigenvalues()[m]; value > 1e-6 * largest)
+      inverse += solver.eigenvectors().col(m) * solver.eigenvectors().col(m).transpose() / value;
+  return inverse;
+}
+
+/// Where a row has its own column.
+std::size_t own_entry(const simd::GridRow& row, std::size_t i) {
+  std::size_t k = row.begin;
+  while (static_cast<std::size_t>(row.column[k]) != i) ++k;
+  return k;
+}
+
+}  // namespace
+
+GridLevel::GridLevel(const GridVertices& vertices, const GridLeaves& leaves, const Communicator& comm,
                      int threads)
-    : rows_(static_cast<std::size_t>(starts[comm.rank + 1] - starts[comm.rank])), threads_(threads) {
-  blocks_.emplace(std::vector<Vector3>(rows_), std::move(sums), comm, 1);
-  map_ = std::make_unique<const IndexMap>(blocks_->map());
-  fill_u_.emplace(*map_, static_cast<int>(GridVector::width));
-  fill_p_.emplace(*map_, 1);
-  take_rows();
+    : threads_(threads) {
+  // Small matrices: a leaf's corners, or what these hang on.
+  std::vector<std::int64_t> number(vertices.starts().back());
+  std::iota(number.begin(), number.end(), 0);
+  std::vector<std::size_t> first{0};
+  std::vector<std::int32_t> index;
+  for (const std::int32_t leaf : leaves.cell) {
+    for (std::size_t k = 0; k < 8; ++k)
+      for (const GridVertices::Share& share : vertices.corner(leaf, k)) index.push_back(share.row);
+    const auto here = index.begin() + static_cast<std::ptrdiff_t>(first.back());
+    std::sort(here, index.end());
+    index.erase(std::unique(here, index.end()), index.end());
+    first.push_back(index.size());
+  }
+  const MatrixSide side{vertices.starts(), number, index, first};
+  pattern_.emplace(side, side, comm, threads);
+  first_.push_back(0);
+  for (const std::int32_t leaf : leaves.cell)
+    for (std::size_t k = 0; k < 8; ++k) {
+      for (const GridVertices::Share& share : vertices.corner(leaf, k))
+        shares_.push_back(
+            {pattern_->row(share.row), pattern_->column(share.row), static_cast<float>(share.weight)});
+      first_.push_back(shares_.size());
+    }
+  fill_.emplace(map(), static_cast<int>(grid_width));
+  fill_p_.emplace(map(), 1);
+  solve_.resize(rows(), map().size());
+  p_.resize(map().size());
+  for (auto* v : {&lifted_, &moved_}) v->resize(grid_width * map().size());
+}
+
+void GridLevel::build(const GridTree& tree, const GridLeaves& leaves, const LevelMoments& moments) {
+  force_.assign(12 * pattern_->entries(), 0.0F);
+  for (auto* v : {&pressure_, &divergence_}) v->assign(4 * pattern_->entries(), 0.0F);
+  in_shares(threads_, pattern_->rows(), [&](std::size_t begin, std::size_t end) {
+    const auto from = static_cast<std::int32_t>(begin), to = static_cast<std::int32_t>(end);
+    for (std::size_t leaf = 0; leaf < leaves.cell.size(); ++leaf) {
+      const auto of = std::span(shares_).subspan(first_[8 * leaf], first_[8 * leaf + 8] - first_[8 * leaf]);
+      if (std::any_of(of.begin(), of.end(), [&](const Share& s) { return s.row >= from && s.row < to; }))
+        add(leaf_form(tree, leaves, moments, leaf), leaf, from, to);
+    }
+  });
+  pattern_->complete(force_, 12), pattern_->complete(pressure_, 4), pattern_->complete(divergence_, 4);
+  invert_diagonal();
   find_scales();
 }
 
-/// Whole rows, kind by kind.
-void GridLevel::take_rows() {
-  std::vector<std::int64_t> count(rows_ + 1, 0);
-  const auto both = [&](const auto& visit) {
-    blocks_->visit([&](std::int32_t i, std::int32_t j, const BlockSums<4>::Block& block) {
-      visit(static_cast<std::size_t>(i), j, block, false);
-      if (j != i && static_cast<std::size_t>(j) < rows_) visit(static_cast<std::size_t>(j), i, block, true);
-    });
+/// To rows in [begin, end).
+void GridLevel::add(const LeafForm& form, std::size_t leaf, std::int32_t begin, std::int32_t end) {
+  const auto shares = [&](std::size_t corner) {
+    const std::size_t at = 8 * leaf + corner;
+    return std::span(shares_).subspan(first_[at], first_[at + 1] - first_[at]);
   };
-  both([&](std::size_t row, std::int32_t, const auto&, bool) { ++count[row + 1]; });
-  for (std::size_t i = 0; i < rows_; ++i) count[i + 1] += count[i];
-  start_ = count;
-  const std::size_t entries = start_.back();
-  column_.resize(entries), a_.resize(12 * entries), gradient_.resize(4 * entries);
-  divergence_.resize(4 * entries), compliance_.resize(entries);
-  both([&](std::size_t row, std::int32_t column, const BlockSums<4>::Block& block, bool turned) {
-    const std::size_t k = count[row]++;
-    const auto at = [&](std::size_t r, std::size_t t) {
-      return static_cast<float>(turned ? block[t * 4 + r] : block[r * 4 + t]);
-    };
-    column_[k] = column;
-    for (std::size_t r = 0; r < 3; ++r) {
-      for (std::size_t t = 0; t < 3; ++t) a_[12 * k + 4 * t + r] = at(r, t);
-      gradient_[4 * k + r] = at(r, 3), divergence_[4 * k + r] = at(3, r);
+  for (std::size_t i = 0; i < 8; ++i)
+    for (const Share& row : shares(i)) {
+      if (row.row < begin || row.row >= end) continue;
+      for (std::size_t j = 0; j < 8; ++j)
+        for (const Share& column : shares(j)) {
+          const std::size_t k = pattern_->entry(row.row, column.column);
+          const double w = static_cast<double>(row.weight) * static_cast<double>(column.weight);
+          const LeafForm::Block& block = form.block(i, j);
+          for (std::size_t r = 0; r < 4; ++r) {
+            for (std::size_t t = 0; t < 3; ++t)
+              force_[12 * k + 4 * t + r] += static_cast<float>(w * block[4 * r + t]);
+            pressure_[4 * k + r] += static_cast<float>(w * block[4 * r + 3]);
+          }
+          for (std::size_t t = 0; t < 3; ++t) divergence_[4 * k + t] += static_cast<float>(w * block[12 + t]);
+        }
     }
-    compliance_[k] = -at(3, 3);
+}
+
+void GridLevel::invert_diagonal() {
+  inverse_.assign(12 * map().size(), 0.0F);
+  each_row([&](std::size_t i) {
+    const float* columns = &force_[12 * own_entry(row(i), i)];
+    Eigen::Matrix3d d;
+    for (int r = 0; r < 3; ++r)
+      for (int t = 0; t < 3; ++t) d(r, t) = static_cast<double>(columns[4 * t + r]);
+    const Eigen::Matrix3d inverse = inverse_of_stiff(d);
+    for (int r = 0; r < 3; ++r)
+      for (int t = 0; t < 3; ++t)
+        inverse_[12 * i + static_cast<std::size_t>(4 * t + r)] = static_cast<float>(inverse(r, t));
   });
 }
 
 void GridLevel::find_scales() {
-  inverse_.assign(12 * map_->size(), 0.0);
-  for (std::size_t i = 0; i < rows_; ++i)
-    for (std::int64_t k = start_[i]; k < start_[i + 1]; ++k) {
-      if (static_cast<std::size_t>(column_[k]) != i) continue;
-      Eigen::Matrix3d d;
-      for (int r = 0; r < 3; ++r)
-        for (int t = 0; t < 3; ++t) d(r, t) = static_cast<double>(a_[12 * k + 4 * t + r]);
-      // What no node moves with has no stiffness: it stays where it is.
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(d);
-      Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
-      for (int m = 0; m < 3; ++m)
-        if (const double value = solver.eigenvalues()[m]; value > 1e-6 * d.diagonal().maxCoeff())
-          inverse += solver.eigenvectors().col(m) * solver.eigenvectors().col(m).transpose() / value;
-      for (int r = 0; r < 3; ++r)
-        for (int t = 0; t < 3; ++t) inverse_[12 * i + 4 * t + r] = inverse(r, t);
-    }
   const auto dot = [this](std::size_t components) {
-    return [this, components](const std::vector<double>& x, const std::vector<double>& y) {
-      double sum = 0.0;
-      for (std::size_t i = 0; i < components * rows_; ++i) sum += x[i] * y[i];
-      return map_->sum_all(sum);
+    return [this, components](const std::vector<float>& x, const std::vector<float>& y) {
+      const auto term = [&](std::size_t i) { return static_cast<double>(x[i]) * static_cast<double>(y[i]); };
+      return map().sum_all(eight_sums(components * rows(), term));
     };
   };
-  std::vector<double> u = scattered<double>(*map_, GridVector::width);
-  for (std::size_t i = 3; i < u.size(); i += GridVector::width) u[i] = 0.0;
+  std::vector<float> u = scattered<float>(map(), grid_width);
   const double largest = largest_eigenvalue(
       u,
-      [this](std::span<double> x, std::span<double> y) {
-        fill_u_->start_forward(x), fill_u_->finish_forward(x);
-        force(x, y);
+      [this](std::span<float> x, std::span<float> y) {
+        fill(x);
+        each_row([&](std::size_t i) {
+          simd::store_four(&y[grid_width * i], simd::times_blocks(row(i), force_.data(), x.data()));
+        });
       },
-      [this](std::span<const double> x, std::span<double> y) { scale(x, y); }, dot(GridVector::width));
-  for (double& v : inverse_) v /= pressure_damping * largest;
-  map_->forward(inverse_, 12);
-  schur_inverse_.assign(rows_, 0.0);
-  for (std::size_t i = 0; i < rows_; ++i) {
+      [this](std::span<const float> x, std::span<float> y) {
+        each_row([&](std::size_t i) {
+          simd::store_four(&y[grid_width * i], simd::times_three(&inverse_[12 * i], &x[grid_width * i]));
+        });
+      },
+      dot(grid_width));
+  const auto factor = static_cast<float>(1.0 / (pressure_damping * largest));
+  for (float& v : inverse_) v *= factor;
+  map().forward(inverse_, 12);
+  schur_inverse_.assign(rows(), 0.0F);
+  each_row([&](std::size_t i) {
+    const simd::GridRow entries = row(i);
     double sum = 0.0;
-    for (std::int64_t k = start_[i]; k < start_[i + 1]; ++k) {
+    for (std::size_t k = entries.begin; k < entries.end; ++k) {
       const float* b = &divergence_[4 * k];
-      const double* d = &inverse_[12 * static_cast<std::size_t>(column_[k])];
-      for (std::size_t r = 0; r < 3; ++r)
-        for (std::size_t t = 0; t < 3; ++t)
-          sum += static_cast<double>(b[r]) * d[4 * t + r] * static_cast<double>(b[t]);
-      if (static_cast<std::size_t>(column_[k]) == i) sum += static_cast<double>(compliance_[k]);
+      const auto scaled = simd::times_three(&inverse_[12 * static_cast<std::size_t>(entries.column[k])], b);
+      for (int r = 0; r < 3; ++r) sum += static_cast<double>(b[r]) * static_cast<double>(scaled[r]);
     }
-    schur_inverse_[i] = sum > 0.0 ? 1.0 / sum : 0.0;
-  }
-  std::vector<double> p = scattered<double>(*map_, 1);
+    sum -= static_cast<double>(pressure_[4 * own_entry(entries, i) + 3]);
+    if (sum > 0.0) schur_inverse_[i] = static_cast<float>(1.0 / sum);
+  });
+  std::vector<float> p = scattered<float>(map(), 1);
   solve_.largest = largest_eigenvalue(
-      p, [this](std::span<double> x, std::span<double> y) { schur(x, y); },
-      [this](std::span<const double> x, std::span<double> y) {
-        for (std::size_t i = 0; i < rows_; ++i) y[i] = schur_inverse_[i] * x[i];
+      p, [this](std::span<float> x, std::span<float> y) { schur(x, y); },
+      [this](std::span<const float> x, std::span<float> y) {
+        each_row([&](std::size_t i) { y[i] = schur_inverse_[i] * x[i]; });
       },
       dot(1));
 }
 
-void GridLevel::force(std::span<const double> u, std::span<double> y) const {
-  in_shares(threads_, rows_, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      simd::store_four(&y[GridVector::width * i], simd::times_blocks(row(i), a_.data(), u.data()));
-  });
-}
-
-void GridLevel::gradient(std::span<const double> p, std::span<double> y) const {
-  in_shares(threads_, rows_, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      simd::store_four(&y[GridVector::width * i], simd::times_vectors(row(i), gradient_.data(), p.data()));
-  });
-}
-
-void GridLevel::divergence(std::span<const double> u, std::span<double> q) const {
-  in_shares(threads_, rows_, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) q[i] = simd::dot_vectors(row(i), divergence_.data(), u.data());
-  });
-}
-
-void GridLevel::compliance(std::span<const double> p, std::span<double> q) const {
-  in_shares(threads_, rows_, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      q[i] = simd::times_numbers(row(i), compliance_.data(), p.data());
-  });
-}
-
-void GridLevel::scale(std::span<const double> x, std::span<double> y) const {
-  std::fill_n(y.begin(), GridVector::width * rows_, 0.0);
-  add_scaled(1.0, x, y);
-}
-
-void GridLevel::add_scaled(double sign, std::span<const double> x, std::span<double> y) const {
-  for (std::size_t i = 0; i < rows_; ++i) {
-    const double *d = &inverse_[12 * i], *at = &x[GridVector::width * i];
-    simd::store_four(
-        &y[GridVector::width * i],
-        simd::load_four(&y[GridVector::width * i]) +
-            (simd::load_four(d) * at[0] + simd::load_four(d + 4) * at[1] + simd::load_four(d + 8) * at[2]) *
-                sign);
-  }
-}
-
-void GridLevel::fill(std::vector<double>& x, Scatterer<double>& scatterer) {
-  scatterer.start_forward(x), scatterer.finish_forward(x);
-}
-
-void GridLevel::schur(std::span<double> p, std::span<double> q) {
-  image_.resize(GridVector::width * map_->size()), lifted_.resize(GridVector::width * map_->size()),
-      change_.resize(rows_);
+void GridLevel::lift(std::span<float> p, std::span<float> y) {
   fill_p_->start_forward(p), fill_p_->finish_forward(p);
-  gradient(p, image_);
-  scale(image_, lifted_);
-  fill(lifted_, *fill_u_);
-  divergence(lifted_, q);
-  compliance(p, change_);
-  for (std::size_t i = 0; i < rows_; ++i) q[i] += change_[i];
+  each_row([&](std::size_t i) {
+    const simd::FourFloats force = simd::times_vectors(row(i), pressure_.data(), p.data());
+    const float at[3] = {force[0], force[1], force[2]};
+    simd::FourFloats lifted = simd::times_three(&inverse_[12 * i], at);
+    lifted[3] = force[3];
+    simd::store_four(&y[grid_width * i], lifted);
+  });
 }
 
-void GridLevel::smooth(bool from_zero, int steps, const PressureSteps& with, const GridVector& b,
-                       GridVector& x) {
-  if (from_zero) x.clear();
-  std::vector<double> w(GridVector::width * rows_), q(rows_);
+void GridLevel::schur(std::span<float> p, std::span<float> q) {
+  lift(p, moved_);
+  fill(moved_);
+  each_row([&](std::size_t i) {
+    q[i] = simd::dot_vectors(row(i), divergence_.data(), moved_.data()) - moved_[grid_width * i + 3];
+  });
+}
+
+void GridLevel::smooth(bool from_zero, int steps, const PressureSteps& with, std::span<const float> b,
+                       std::vector<float>& x) {
+  if (from_zero) {
+    std::fill(x.begin(), x.end(), 0.0F), std::fill(p_.begin(), p_.end(), 0.0F);
+    std::fill(lifted_.begin(), lifted_.end(), 0.0F);
+  } else {
+    each_row([&](std::size_t i) { p_[i] = x[grid_width * i + 3]; });
+    lift(p_, lifted_);
+  }
+  const std::span<float> residual = solve_.residual();
   for (int s = 0; s < steps; ++s) {
-    if (s == 0 && from_zero) {
-      std::copy_n(b.u.begin(), w.size(), w.begin());
-    } else {
-      fill(x.u, *fill_u_);
-      force(x.u, w);
-      for (std::size_t i = 0; i < w.size(); ++i) w[i] = b.u[i] - w[i];
-    }
-    add_scaled(1.0, w, x.u);
-    fill(x.u, *fill_u_);
-    divergence(x.u, q);
-    for (std::size_t i = 0; i < q.size(); ++i) q[i] -= b.p[i];
-    solve_.improve(with, q, schur_inverse_, x.p,
-                   [this](std::span<double> p, std::span<double> y) { schur(p, y); });
-    fill(x.p, *fill_p_);
-    gradient(x.p, w);
-    add_scaled(-1.0, w, x.u);
+    // What moves: t − Â⁻¹Bᵀp, t = u + Â⁻¹(b − A u).
+    if (s > 0 || !from_zero) fill(x);
+    each_row([&](std::size_t i) {
+      simd::FourFloats left = simd::load_four(&b[grid_width * i]);
+      if (s > 0 || !from_zero) left -= simd::times_blocks(row(i), force_.data(), x.data());
+      const float at[3] = {left[0], left[1], left[2]};
+      simd::store_four(&moved_[grid_width * i], simd::load_four(&x[grid_width * i]) +
+                                                    simd::times_three(&inverse_[12 * i], at) -
+                                                    simd::load_four(&lifted_[grid_width * i]));
+    });
+    fill(moved_);
+    each_row([&](std::size_t i) {
+      residual[i] = simd::dot_vectors(row(i), divergence_.data(), moved_.data()) +
+                    lifted_[grid_width * i + 3] - b[grid_width * i + 3];
+      simd::store_four(&x[grid_width * i],
+                       simd::load_four(&moved_[grid_width * i]) + simd::load_four(&lifted_[grid_width * i]));
+    });
+    const auto more = solve_.solve(with, schur_inverse_, threads_,
+                                   [this](std::span<float> p, std::span<float> y) { schur(p, y); });
+    each_row([&](std::size_t i) { p_[i] += more[i]; });
+    lift(p_, lifted_);
+    each_row([&](std::size_t i) {
+      simd::FourFloats u = simd::load_four(&x[grid_width * i]) - simd::load_four(&lifted_[grid_width * i]);
+      u[3] = p_[i];
+      simd::store_four(&x[grid_width * i], u);
+    });
   }
 }
 
-void GridLevel::residual(const GridVector& b, GridVector& x, GridVector& r) {
-  fill(x.u, *fill_u_), fill(x.p, *fill_p_);
-  std::vector<double> y(GridVector::width * rows_), q(rows_);
-  force(x.u, y), gradient(x.p, std::span(r.u));
-  for (std::size_t i = 0; i < y.size(); ++i) r.u[i] = b.u[i] - y[i] - r.u[i];
-  divergence(x.u, q), compliance(x.p, std::span(r.p));
-  for (std::size_t i = 0; i < q.size(); ++i) r.p[i] = b.p[i] - q[i] + r.p[i];
+void GridLevel::residual(std::span<const float> b, std::vector<float>& x, std::span<float> r) {
+  fill(x);
+  each_row([&](std::size_t i) {
+    simd::store_four(&r[grid_width * i],
+                     simd::load_four(&b[grid_width * i]) -
+                         simd::times_blocks(row(i), force_.data(), x.data()) -
+                         simd::times_vectors<grid_width>(row(i), pressure_.data(), x.data() + 3));
+  });
 }
 
 std::size_t GridLevel::bytes() const noexcept {
   const auto size = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  return size(start_) + size(column_) + size(a_) + size(gradient_) + size(divergence_) + size(compliance_) +
-         size(inverse_) + size(schur_inverse_) + (blocks_ ? blocks_->bytes() : 0);
+  return pattern_->bytes() + size(first_) + size(shares_) + size(force_) + size(pressure_) +
+         size(divergence_) + size(inverse_) + size(schur_inverse_) + size(p_) + size(lifted_) + size(moved_) +
+         solve_.bytes();
 }
 
 }  // namespace kacanov

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "operator/threads.hpp"
+#include "simd/grid_rows.hpp"
 
 namespace kacanov {
 namespace {
@@ -73,56 +74,62 @@ GridTransfer::GridTransfer(const GridVertices& vertices, std::vector<Place> poin
 }
 
 template <class Real>
-void GridTransfer::prolong(std::span<const double> rows, int components, std::span<Real> x, int stride) {
-  const std::size_t width = stride, count = components, leaves = first_point_.size() - 1;
-  local_.assign(map_->size() * width, 0.0);
-  std::copy(rows.begin(), rows.end(), local_.begin());
-  map_->forward(local_, stride);
+void GridTransfer::prolong(std::span<const float> rows, std::size_t stride, std::size_t count,
+                           std::span<Real> x) {
+  const std::size_t leaves = first_point_.size() - 1, owned = map_->owned;
+  local_.resize(map_->size() * count);
+  for (std::size_t r = 0; r < owned; ++r)
+    for (std::size_t c = 0; c < count; ++c) local_[r * count + c] = rows[r * stride + c];
+  map_->forward(local_, static_cast<int>(count));
   in_shares(threads_, leaves, [&](std::size_t begin, std::size_t end) {
-    std::array<double, 32> value;
+    std::array<simd::FourFloats, 8> value;  // of the corners
     for (std::size_t leaf = begin; leaf < end; ++leaf) {
-      value.fill(0.0);
-      for (std::size_t k = 0; k < 8; ++k)
+      for (std::size_t k = 0; k < 8; ++k) {
+        std::array<float, 4> sum{};
         for (const Share& share : shares(8 * leaf + k))
           for (std::size_t c = 0; c < count; ++c)
-            value[k * width + c] +=
-                static_cast<double>(share.weight) * local_[static_cast<std::size_t>(share.row) * width + c];
+            sum[c] += share.weight * local_[static_cast<std::size_t>(share.row) * count + c];
+        value[k] = simd::load_four(sum.data());
+      }
       for (std::size_t i = first_point_[leaf]; i < first_point_[leaf + 1]; ++i) {
         const auto w = trilinear(within_[i]);
-        for (std::size_t c = 0; c < count; ++c) {
-          double sum = 0.0;
-          for (std::size_t k = 0; k < 8; ++k) sum += static_cast<double>(w[k]) * value[k * width + c];
-          x[static_cast<std::size_t>(point_[i]) * count + c] += static_cast<Real>(sum);
-        }
+        simd::FourFloats sum{};
+        for (std::size_t k = 0; k < 8; ++k) sum += value[k] * w[k];
+        Real* to = &x[static_cast<std::size_t>(point_[i]) * count];
+        for (std::size_t c = 0; c < count; ++c) to[c] += static_cast<Real>(sum[c]);
       }
     }
   });
 }
 
 template <class Real>
-void GridTransfer::restrict_to(std::span<const Real> x, int components, std::span<double> rows, int stride) {
-  const std::size_t width = stride, count = components, leaves = first_point_.size() - 1;
-  corner_.assign(8 * leaves * width, 0.0);
+void GridTransfer::restrict_to(std::span<const Real> x, std::size_t count, std::span<float> rows,
+                               std::size_t stride) {
+  const std::size_t leaves = first_point_.size() - 1, owned = map_->owned;
+  corner_.resize(8 * leaves * count);
   in_shares(threads_, leaves, [&](std::size_t begin, std::size_t end) {
     for (std::size_t leaf = begin; leaf < end; ++leaf) {
-      double* value = &corner_[8 * leaf * width];
+      std::array<simd::FourFloats, 8> value{};
       for (std::size_t i = first_point_[leaf]; i < first_point_[leaf + 1]; ++i) {
         const auto w = trilinear(within_[i]);
-        for (std::size_t c = 0; c < count; ++c) {
-          const auto at = static_cast<double>(x[static_cast<std::size_t>(point_[i]) * count + c]);
-          for (std::size_t k = 0; k < 8; ++k) value[k * width + c] += static_cast<double>(w[k]) * at;
-        }
+        std::array<float, 4> at{};
+        for (std::size_t c = 0; c < count; ++c)
+          at[c] = static_cast<float>(x[static_cast<std::size_t>(point_[i]) * count + c]);
+        const simd::FourFloats four = simd::load_four(at.data());
+        for (std::size_t k = 0; k < 8; ++k) value[k] += four * w[k];
       }
+      for (std::size_t k = 0; k < 8; ++k)
+        for (std::size_t c = 0; c < count; ++c) corner_[(8 * leaf + k) * count + c] = value[k][c];
     }
   });
-  local_.assign(map_->size() * width, 0.0);
+  local_.assign(map_->size() * count, 0.0F);
   for (std::size_t corner = 0; corner < 8 * leaves; ++corner)
     for (const Share& share : shares(corner))
       for (std::size_t c = 0; c < count; ++c)
-        local_[static_cast<std::size_t>(share.row) * width + c] +=
-            static_cast<double>(share.weight) * corner_[corner * width + c];
-  map_->sum(local_, stride);
-  std::copy_n(local_.begin(), rows.size(), rows.begin());
+        local_[static_cast<std::size_t>(share.row) * count + c] += share.weight * corner_[corner * count + c];
+  map_->sum(local_, static_cast<int>(count));
+  for (std::size_t r = 0; r < owned; ++r)
+    for (std::size_t c = 0; c < count; ++c) rows[r * stride + c] = local_[r * count + c];
 }
 
 std::size_t GridTransfer::bytes() const noexcept {
@@ -131,9 +138,9 @@ std::size_t GridTransfer::bytes() const noexcept {
          size(local_) + size(corner_);
 }
 
-template void GridTransfer::prolong(std::span<const double>, int, std::span<float>, int);
-template void GridTransfer::prolong(std::span<const double>, int, std::span<double>, int);
-template void GridTransfer::restrict_to(std::span<const float>, int, std::span<double>, int);
-template void GridTransfer::restrict_to(std::span<const double>, int, std::span<double>, int);
+template void GridTransfer::prolong(std::span<const float>, std::size_t, std::size_t, std::span<float>);
+template void GridTransfer::prolong(std::span<const float>, std::size_t, std::size_t, std::span<double>);
+template void GridTransfer::restrict_to(std::span<const float>, std::size_t, std::span<float>, std::size_t);
+template void GridTransfer::restrict_to(std::span<const double>, std::size_t, std::span<float>, std::size_t);
 
 }  // namespace kacanov

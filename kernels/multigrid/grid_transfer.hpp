@@ -24,13 +24,13 @@ class GridTransfer {
   GridTransfer(const GridVertices& vertices, std::vector<Place> points, const Communicator& comm,
                int threads);
 
-  /// Adds the values there to x, `components` a point; `rows` has this rank's, `stride` ≥ components a row.
-  /// Collective.
+  /// Adds values there to x, `count` a point: of the rows, `stride` values each, those from the first on that
+  /// the span begins with. `rows` has this rank's. Collective.
   template <class Real>
-  void prolong(std::span<const double> rows, int components, std::span<Real> x, int stride);
-  /// rows = the transpose of that. Collective.
+  void prolong(std::span<const float> rows, std::size_t stride, std::size_t count, std::span<Real> x);
+  /// rows = the transpose of that; other values of the rows stay. Collective.
   template <class Real>
-  void restrict_to(std::span<const Real> x, int components, std::span<double> rows, int stride);
+  void restrict_to(std::span<const Real> x, std::size_t count, std::span<float> rows, std::size_t stride);
 
   std::size_t bytes() const noexcept;
 
@@ -49,7 +49,7 @@ class GridTransfer {
   std::vector<std::size_t> first_point_;  ///< leaves + 1
   std::vector<std::int32_t> point_;       ///< leaf by leaf
   std::vector<std::array<float, 3>> within_;
-  std::vector<double> local_, corner_;  ///< scratch: values of local rows, of the leaves' corners
+  std::vector<float> local_, corner_;  ///< scratch: values of local rows, of the leaves' corners
 };
 
 }  // namespace kacanov

@@ -152,7 +152,7 @@ class PressureHierarchy final : public RigidMultigrid::Hierarchy {
     fine_.hold(x_);
     fine_.volume_change(x_, entries_);
     pressures_.sum(entries_, change_);
-    schur_->improve(with, change_, p_);
+    schur_->improve(from_zero, with, change_, p_);
     pressures_.spread(std::span(p_).first(pressures_.rows()), entries_);
     fine_.pressure_force(entries_, image_);
     fine_.add_scaled(-scale, image_, {}, x_);
@@ -164,7 +164,7 @@ class PressureHierarchy final : public RigidMultigrid::Hierarchy {
     each_in_shares(options_.threads, image_.size(), [&](std::size_t i) { image_[i] = b_[i] - image_[i]; });
     fine_.project(image_);
     schur_->multiply(p_, rest_);
-    for (std::size_t r = 0; r < rest_.size(); ++r) rest_[r] -= change_[r];
+    each_in_shares(options_.threads, rest_.size(), [&](std::size_t r) { rest_[r] -= change_[r]; });
     std::vector<float>& u = step_;
     u.assign(x_.size(), 0.0F);
     grids_->correct(image_, rest_, u, p_);

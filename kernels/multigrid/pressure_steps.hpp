@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "multigrid/chebyshev.hpp"
+#include "operator/threads.hpp"
 
 namespace kacanov {
 
@@ -20,43 +21,50 @@ struct PressureSteps {
   double range = 8.0;
 };
 
-/// p += P(S) (q − S p), P ≈ S⁻¹ and never above it: what it stands for is S or more, so that the smoother it
-/// is part of stays definite.
+/// P(S) ≈ S⁻¹, never above it: what it stands for is S or more, so that the smoother it is part of stays
+/// definite. In single precision: what it works on is what is left of something.
 class PressureSolve {
  public:
   double largest = 1.0;  ///< Λ, of D⁻¹S
 
-  /// `multiply(x, y)`: y = S x, where x has `size` entries, which may be more than q has; `inverse`: D⁻¹.
+  /// `owned` rows; vectors of `size` entries, with room for ghosts, are multiplied.
+  void resize(std::size_t owned, std::size_t size) {
+    residual_.resize(owned), step_.resize(owned), image_.resize(owned), x_.resize(size);
+  }
+  /// What is left, for the caller to fill: an entry a row.
+  std::span<float> residual() noexcept { return residual_; }
+
+  /// P(S) times what is left. `multiply(x, y)`: y = S x; `inverse`: D⁻¹. Collective where that is.
   template <class Multiply>
-  void improve(const PressureSteps& steps, std::span<const double> q, std::span<const double> inverse,
-               std::span<double> p, const Multiply& multiply) {
-    const std::size_t owned = q.size();
-    for (auto* v : {&residual_, &correction_, &step_, &image_}) v->resize(p.size());
-    multiply(p, std::span(image_));
-    for (std::size_t i = 0; i < owned; ++i) residual_[i] = q[i] - image_[i];
+  std::span<const float> solve(const PressureSteps& steps, std::span<const float> inverse, int threads,
+                               const Multiply& multiply) {
     const Chebyshev chebyshev{steps.degree, largest / steps.range, largest};
-    const auto first = [owned](std::vector<double>& v) { return std::span(v).first(owned); };
-    chebyshev.smooth<double>(
-        true, {first(residual_), first(correction_), first(step_), first(image_)},
-        [&](std::span<const double>, std::span<double>) {
-          multiply(std::span(correction_), std::span(image_));
-        },
-        [&](const ChebyshevStep<double>& weights, std::span<const double> b, std::span<const double> image,
-            std::span<double> step, std::span<double> x) {
+    const std::span<float> x = std::span(x_).first(residual_.size());
+    chebyshev.smooth<float>(
+        true, {residual_, x, step_, image_},
+        [&](std::span<const float>, std::span<float> image) { multiply(std::span(x_), image); },
+        [&](const ChebyshevStep<float>& weights, std::span<const float> b, std::span<const float> image,
+            std::span<float> step, std::span<float> to) {
           weights.visit([&]<bool zero, bool no_step>() {
-            for (std::size_t i = 0; i < owned; ++i)
+            each_in_shares(threads, b.size(), [&](std::size_t i) {
               weights.template take<zero, no_step>(inverse[i] * (zero ? b[i] : b[i] - image[i]), step[i],
-                                                   x[i]);
+                                                   to[i]);
+            });
           });
         });
     // The polynomial's error swings between ±1/T(σ) on the interval.
     const double sigma = (steps.range + 1.0) / (steps.range - 1.0);
-    const double below = 1.0 / (1.0 + 1.0 / std::cosh(steps.degree * std::acosh(sigma)));
-    for (std::size_t i = 0; i < owned; ++i) p[i] += below * correction_[i];
+    const auto below = static_cast<float>(1.0 / (1.0 + 1.0 / std::cosh(steps.degree * std::acosh(sigma))));
+    each_in_shares(threads, x.size(), [&](std::size_t i) { x[i] *= below; });
+    return x;
+  }
+
+  std::size_t bytes() const noexcept {
+    return (residual_.size() + x_.size() + step_.size() + image_.size()) * sizeof(float);
   }
 
  private:
-  std::vector<double> residual_, correction_, step_, image_;
+  std::vector<float> residual_, x_, step_, image_;
 };
 
 }  // namespace kacanov

@@ -301,9 +301,7 @@ std::vector<typename BlockSums<M>::Entry> RigidLevel<M>::gathered() const {
   return kacanov::gathered(mine, *map_);
 }
 
-template class RigidLevel<1>;
 template class RigidLevel<3>;
-template class RigidLevel<4>;
 template class RigidLevel<6>;
 
 }  // namespace kacanov

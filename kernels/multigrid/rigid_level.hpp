@@ -132,9 +132,7 @@ class RigidLevel {
   std::optional<Scatterer<double>> fill_;  ///< of the ghosts of a vector
 };
 
-extern template class RigidLevel<1>;
 extern template class RigidLevel<3>;
-extern template class RigidLevel<4>;
 extern template class RigidLevel<6>;
 
 }  // namespace kacanov

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows of the displacement–pressure matrix of a grid times vectors, the three components of a displacement in
-// four lanes.
+// Rows of the displacement–pressure matrix of a grid times vectors in single precision, what belongs to a row
+// in four lanes.
 #pragma once
 
 #include <cstddef>
@@ -9,39 +9,18 @@
 
 namespace kacanov::simd {
 
-/// Two registers of the least instruction set there is.
-struct FourDoubles {
-  using Two = double __attribute__((vector_size(16)));
-  Two low, high;
+using FourFloats = float __attribute__((vector_size(16)));
 
-  FourDoubles& operator+=(const FourDoubles& other) {
-    low += other.low, high += other.high;
-    return *this;
-  }
-};
-
-inline FourDoubles operator+(FourDoubles a, const FourDoubles& b) { return a += b; }
-inline FourDoubles operator*(const FourDoubles& a, double s) { return {a.low * s, a.high * s}; }
-inline FourDoubles operator*(const FourDoubles& a, const FourDoubles& b) {
-  return {a.low * b.low, a.high * b.high};
-}
-
-inline FourDoubles load_four(const double* from) {
-  FourDoubles v{};
-  std::memcpy(&v.low, from, sizeof v.low);
-  std::memcpy(&v.high, from + 2, sizeof v.high);
+inline FourFloats load_four(const float* from) {
+  FourFloats v;
+  std::memcpy(&v, from, sizeof v);
   return v;
 }
-inline FourDoubles load_four(const float* from) {
-  using Two = float __attribute__((vector_size(8)));
-  Two low, high;
-  std::memcpy(&low, from, sizeof low);
-  std::memcpy(&high, from + 2, sizeof high);
-  return {__builtin_convertvector(low, FourDoubles::Two), __builtin_convertvector(high, FourDoubles::Two)};
-}
-inline void store_four(double* to, const FourDoubles& v) {
-  std::memcpy(to, &v.low, sizeof v.low);
-  std::memcpy(to + 2, &v.high, sizeof v.high);
+inline void store_four(float* to, const FourFloats& v) { std::memcpy(to, &v, sizeof v); }
+
+/// M x for a matrix of three columns, four values each.
+inline FourFloats times_three(const float* columns, const float* x) {
+  return load_four(columns) * x[0] + load_four(columns + 4) * x[1] + load_four(columns + 8) * x[2];
 }
 
 /// The entries of a row: columns, and what they have in each array of values.
@@ -50,48 +29,55 @@ struct GridRow {
   std::size_t begin, end;
 };
 
-/// Σ_j M_j x_j of 3 × 3 blocks: `columns` has, an entry, the three columns of M with four values each, the
-/// last of them 0; x four values a row.
-inline FourDoubles times_blocks(const GridRow& row, const float* columns, const double* x) {
-  FourDoubles first{}, second{}, third{};
+/// Σ_j M_j x_j, of the first three of x's four values a row: `columns` has, an entry, the three columns of M,
+/// four values each.
+inline FourFloats times_blocks(const GridRow& row, const float* columns, const float* x) {
+  FourFloats first{}, second{}, third{};
   for (std::size_t k = row.begin; k < row.end; ++k) {
     const float* m = columns + 12 * k;
-    const double* at = x + 4 * static_cast<std::size_t>(row.column[k]);
+    const float* at = x + 4 * static_cast<std::size_t>(row.column[k]);
     first += load_four(m) * at[0], second += load_four(m + 4) * at[1], third += load_four(m + 8) * at[2];
   }
   return first + second + third;
 }
 
-/// Σ_j g_j p_j of vectors with four values an entry.
-inline FourDoubles times_vectors(const GridRow& row, const float* vectors, const double* p) {
-  FourDoubles even{}, odd{};
+/// Σ_j g_j p_j of vectors with four values an entry; p: `stride` values a row, the first of which counts.
+template <std::size_t stride = 1>
+FourFloats times_vectors(const GridRow& row, const float* vectors, const float* p) {
+  FourFloats even{}, odd{};
+  const auto term = [&](std::size_t k) {
+    return load_four(vectors + 4 * k) * p[stride * static_cast<std::size_t>(row.column[k])];
+  };
   std::size_t k = row.begin;
-  for (; k + 1 < row.end; k += 2) {
-    even += load_four(vectors + 4 * k) * p[row.column[k]];
-    odd += load_four(vectors + 4 * k + 4) * p[row.column[k + 1]];
-  }
-  if (k < row.end) even += load_four(vectors + 4 * k) * p[row.column[k]];
+  for (; k + 1 < row.end; k += 2) even += term(k), odd += term(k + 1);
+  if (k < row.end) even += term(k);
   return even + odd;
 }
 
 /// Σ_j d_jᵀ x_j.
-inline double dot_vectors(const GridRow& row, const float* vectors, const double* x) {
-  FourDoubles even{}, odd{};
-  const auto at = [x, &row](std::size_t k) {
-    return load_four(x + 4 * static_cast<std::size_t>(row.column[k]));
+inline float dot_vectors(const GridRow& row, const float* vectors, const float* x) {
+  FourFloats even{}, odd{};
+  const auto term = [&](std::size_t k) {
+    return load_four(vectors + 4 * k) * load_four(x + 4 * static_cast<std::size_t>(row.column[k]));
   };
   std::size_t k = row.begin;
-  for (; k + 1 < row.end; k += 2) {
-    even += load_four(vectors + 4 * k) * at(k);
-    odd += load_four(vectors + 4 * k + 4) * at(k + 1);
-  }
-  if (k < row.end) even += load_four(vectors + 4 * k) * at(k);
+  for (; k + 1 < row.end; k += 2) even += term(k), odd += term(k + 1);
+  if (k < row.end) even += term(k);
   even += odd;
-  const FourDoubles::Two sum = even.low + even.high;
-  return sum[0] + sum[1];
+  return (even[0] + even[1]) + (even[2] + even[3]);
 }
 
-/// Σ_j c_j p_j.
+/// Σ_j c_j p_j, as four sums.
+inline float times_numbers(const GridRow& row, const float* numbers, const float* p) {
+  FourFloats sum{};
+  std::size_t k = row.begin;
+  for (; k + 3 < row.end; k += 4) {
+    const std::int32_t* c = row.column + k;
+    sum += load_four(numbers + k) * FourFloats{p[c[0]], p[c[1]], p[c[2]], p[c[3]]};
+  }
+  for (; k < row.end; ++k) sum[0] += numbers[k] * p[row.column[k]];
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
 inline double times_numbers(const GridRow& row, const float* numbers, const double* p) {
   double sum[4] = {};
   const auto term = [&](std::size_t k) { return static_cast<double>(numbers[k]) * p[row.column[k]]; };

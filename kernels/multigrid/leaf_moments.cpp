@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the displacement–pressure form on a tree's leaves is made of.
+#include "multigrid/leaf_moments.hpp"
+
+#include <algorithm>
+
+#include <kacanov/corner_means.hpp>
+#include "cells/dispatch.hpp"
+#include "cells/point.hpp"
+#include "operator/threads.hpp"
+
+namespace kacanov {
+namespace {
+
+/// Of a weight of one at a point of the leaf.
+Moments moments_at(const Vector3& xi) {
+  std::array<std::array<double, 3>, 3> l;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double a = 1.0 - xi[k], b = xi[k];
+    l[k] = {a * a, a * b, b * b};
+  }
+  Moments m;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      for (std::size_t k = 0; k < 3; ++k) m[9 * i + 3 * j + k] = l[0][i] * l[1][j] * l[2][k];
+  return m;
+}
+
+void add_scaled(Moments& to, double weight, const Moments& m) {
+  for (std::size_t k = 0; k < m.size(); ++k) to[k] += weight * m[k];
+}
+
+/// As moments of the cube twice as large that has the leaf as its octant (bit i: the upper half along axis
+/// i). Below, L₀ = l₀ + l₁/2 and L₁ = l₁/2; above, the other way round.
+Moments in_larger(Moments m, std::size_t octant) {
+  for (std::size_t axis = 0, stride = 9; axis < 3; ++axis, stride /= 3)
+    for (std::size_t k = 0; k < 9; ++k) {
+      double* at = &m[axis == 0 ? k : axis == 1 ? 9 * (k / 3) + k % 3 : 3 * k];
+      const bool upper = (octant >> axis & 1) != 0;
+      double &near = at[upper ? 2 * stride : 0], &cross = at[stride], &far = at[upper ? 0 : 2 * stride];
+      near += cross + 0.25 * far, cross = 0.5 * cross + 0.25 * far, far *= 0.25;
+    }
+  return m;
+}
+
+void add_raised(Moments& to, const Moments& m, int octant) {
+  add_scaled(to, 1.0, octant < 0 ? m : in_larger(m, static_cast<std::size_t>(octant)));
+}
+
+/// Which of a cell's children another one is, −1 if it is the cell itself.
+int octant_of(const GridTree::Cell& cell, std::int32_t child) {
+  const auto at = std::find(cell.child.begin(), cell.child.end(), child);
+  return at == cell.child.end() ? -1 : static_cast<int>(at - cell.child.begin());
+}
+
+/// Integrals over an element, `of_nodes` of them for each of its nodes.
+template <class E>
+NodeMeasure element_measure(const Body& body, std::span<const double> g, std::size_t e) {
+  const std::int32_t* node = body.mesh.connectivity.data() + e * E::nodes;
+  elements::Nodal<E> x;
+  for (std::size_t a = 0; a < E::nodes; ++a)
+    for (std::size_t c = 0; c < 3; ++c)
+      x[a * 3 + c] = body.mesh.coordinates[static_cast<std::size_t>(node[a]) * 3 + c];
+  const Law& law = body.law(e);
+  NodeMeasure sum;
+  double all = 0.0;
+  for (std::size_t q = 0; q < E::points; ++q) {
+    const double volume = elements::Point<E>(x, q).volume / E::nodes;
+    sum.shear += g[e * E::points + q] * volume;
+    all += volume;
+  }
+  if (averages_at_corners(law, body.mesh.type))
+    sum.volume = all, sum.compliance = all / law.bulk;
+  else
+    sum.bulk = law.bulk * all;
+  return sum;
+}
+
+}  // namespace
+
+std::vector<NodeMeasure> node_measures(const Body& body, std::span<const double> g, int threads) {
+  std::vector<NodeMeasure> measures(body.mesh.node_count());
+  elements::dispatch(body.mesh.type, [&]<class E>(E) {
+    if constexpr (E::dim == 3) {
+      constexpr std::size_t piece = 8192;
+      std::vector<NodeMeasure> of_element(piece);
+      for (std::size_t first = 0; first < body.mesh.element_count(); first += piece) {
+        const std::size_t count = std::min(piece, body.mesh.element_count() - first);
+        each_in_shares(threads, count,
+                       [&](std::size_t e) { of_element[e] = element_measure<E>(body, g, first + e); });
+        for (std::size_t e = 0; e < count; ++e)
+          for (std::size_t a = 0; a < E::nodes; ++a) {
+            NodeMeasure& to = measures[body.mesh.connectivity[(first + e) * E::nodes + a]];
+            to.shear += of_element[e].shear, to.bulk += of_element[e].bulk;
+            to.volume += of_element[e].volume, to.compliance += of_element[e].compliance;
+          }
+      }
+    }
+  });
+  return measures;
+}
+
+std::vector<GridLeaves> leaves_of_levels(const GridTree& tree, std::span<const std::int32_t> cell, int last) {
+  std::vector<GridLeaves> levels(1);
+  std::vector<std::int32_t> place(tree.cells().size());
+  const auto take = [&](GridLeaves& to, std::span<const std::int32_t> from, int level,
+                        std::vector<std::int32_t>* which) {
+    std::fill(place.begin(), place.end(), -1);
+    for (const std::int32_t c : from) place[tree.leaf_above(c, level)] = 0;
+    for (std::size_t c = 0; c < place.size(); ++c)
+      if (place[c] == 0) {
+        place[c] = static_cast<std::int32_t>(to.cell.size());
+        to.cell.push_back(static_cast<std::int32_t>(c));
+      }
+    for (std::size_t i = 0; which != nullptr && i < from.size(); ++i)
+      which->push_back(place[tree.leaf_above(from[i], level)]);
+  };
+  take(levels.front(), cell, 0, nullptr);
+  for (int level = 1; level <= last; ++level) {
+    GridLeaves next;
+    take(next, levels.back().cell, level, &levels.back().above);
+    levels.push_back(std::move(next));
+  }
+  return levels;
+}
+
+LevelMoments level_moments(const GridTree& tree, const GridLeaves& leaves, const NodesInTree& nodes,
+                           std::span<const NodeMeasure> measures, std::span<const NodeBlock> blocks,
+                           int threads) {
+  std::vector<std::int32_t> place(tree.cells().size(), -1);
+  for (std::size_t l = 0; l < leaves.cell.size(); ++l) place[leaves.cell[l]] = static_cast<std::int32_t>(l);
+  LevelMoments sums;
+  sums.leaf.resize(leaves.cell.size());
+  const auto at = [&](std::size_t n) {
+    return moments_at(tree.within(tree.cells()[nodes.cell[n]], &nodes.coordinates[3 * n]));
+  };
+  const auto team = static_cast<std::size_t>(threads);
+  in_team(threads, [&](int t) {
+    const std::size_t share = t, count = leaves.cell.size();
+    const std::size_t begin = count * share / team, end = count * (share + 1) / team;
+    for (std::size_t n = 0; n < measures.size(); ++n) {
+      const std::size_t l = place[nodes.cell[n]];
+      if (l < begin || l >= end) continue;
+      const Moments m = at(n);
+      LeafMoments& to = sums.leaf[l];
+      const NodeMeasure& of = measures[n];
+      add_scaled(to.shear, of.shear, m);
+      if (of.bulk != 0.0) add_scaled(to.bulk, of.bulk, m);
+      if (of.volume == 0.0) continue;
+      add_scaled(to.volume, of.volume, m), add_scaled(to.compliance, of.compliance, m);
+    }
+  });
+  sums.stiff.assign(leaves.cell.size(), -1);
+  for (const NodeBlock& block : blocks) {
+    std::int32_t& which = sums.stiff[place[nodes.cell[block.node]]];
+    if (which < 0) {
+      which = static_cast<std::int32_t>(sums.stiffness.size());
+      sums.stiffness.emplace_back();
+    }
+    const Moments m = at(static_cast<std::size_t>(block.node));
+    for (std::size_t r = 0, k = 0; r < 3; ++r)
+      for (std::size_t t = r; t < 3; ++t) add_scaled(sums.stiffness[which][k++], block.value[r * 3 + t], m);
+  }
+  return sums;
+}
+
+LevelMoments raised(const GridTree& tree, const GridLeaves& fine, const GridLeaves& coarse,
+                    const LevelMoments& moments) {
+  LevelMoments sums;
+  sums.leaf.resize(coarse.cell.size());
+  sums.stiff.assign(coarse.cell.size(), -1);
+  for (std::size_t l = 0; l < fine.cell.size(); ++l) {
+    const std::size_t above = fine.above[l];
+    const int octant = octant_of(tree.cells()[coarse.cell[above]], fine.cell[l]);
+    const LeafMoments& from = moments.leaf[l];
+    LeafMoments& to = sums.leaf[above];
+    add_raised(to.shear, from.shear, octant), add_raised(to.bulk, from.bulk, octant);
+    add_raised(to.volume, from.volume, octant), add_raised(to.compliance, from.compliance, octant);
+    if (moments.stiff[l] < 0) continue;
+    if (sums.stiff[above] < 0) {
+      sums.stiff[above] = static_cast<std::int32_t>(sums.stiffness.size());
+      sums.stiffness.emplace_back();
+    }
+    for (std::size_t k = 0; k < 6; ++k)
+      add_raised(sums.stiffness[sums.stiff[above]][k], moments.stiffness[moments.stiff[l]][k], octant);
+  }
+  return sums;
+}
+
+}  // namespace kacanov
