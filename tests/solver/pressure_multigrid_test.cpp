@@ -13,6 +13,7 @@
 #include "multigrid/grid_level.hpp"
 #include "multigrid/grid_transfer.hpp"
 #include "multigrid/node_spacing.hpp"
+#include "multigrid/summed_pattern.hpp"
 #include "operator/corner_sum.hpp"
 #include "preconditioners.hpp"
 #include "support.hpp"
@@ -160,6 +161,64 @@ TEST_CASE("trilinear functions are linear ones' exactly, next to larger cells an
       const double work = std::inner_product(rows.begin(), rows.end(), down.begin(), 0.0);
       CHECK(sum_all(up) == doctest::Approx(sum_all(work)).epsilon(1e-5));
     }
+  }
+}
+
+TEST_CASE("matrices summed of small ones have whole rows on their ranks, whoever adds to them") {
+  int rank = 0, ranks = 1;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  const Part part = bar(2, false);  // for its communicator
+  const std::int64_t rows_a_rank = 7, columns_a_rank = 5;
+  const std::size_t rows = 7 * static_cast<std::size_t>(ranks), columns = 5 * static_cast<std::size_t>(ranks);
+  std::vector<std::int64_t> row_starts, column_starts, row_number(rows), column_number(columns);
+  for (int r = 0; r <= ranks; ++r) {
+    row_starts.push_back(r * rows_a_rank);
+    column_starts.push_back(r * columns_a_rank);
+  }
+  std::iota(row_number.begin(), row_number.end(), 0);
+  std::iota(column_number.begin(), column_number.end(), 0);
+  // Matrices of three rows and two columns; the last row of all belongs to none.
+  std::vector<std::int32_t> row, column;
+  std::vector<std::size_t> first_row{0}, first_column{0};
+  for (std::size_t m = 0; m < 9; ++m) {
+    for (std::size_t k = 0; k < 3; ++k)
+      row.push_back(
+          static_cast<std::int32_t>((5 * m + 2 * k + 3 * static_cast<std::size_t>(rank)) % (rows - 1)));
+    for (std::size_t k = 0; k < 2; ++k) column.push_back(static_cast<std::int32_t>((m + k) % columns));
+    first_row.push_back(row.size()), first_column.push_back(column.size());
+  }
+  const SummedPattern pattern({row_starts, row_number, row, first_row},
+                              {column_starts, column_number, column, first_column}, part.node_map, 2);
+  std::vector<float> values(2 * pattern.entries(), 0.0F);
+  Vector whole(2 * rows * columns, 0.0);
+  for (std::size_t m = 0; m < 9; ++m)
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 2; ++j) {
+        const std::int32_t r = row[3 * m + i], c = column[2 * m + j];
+        const std::size_t k = pattern.entry(pattern.row(r), pattern.column(c));
+        const auto value = static_cast<float>(1 + m + 10 * i + 100 * j);
+        const std::size_t at = static_cast<std::size_t>(r) * columns + static_cast<std::size_t>(c);
+        values[2 * k] += value, values[2 * k + 1] -= value;
+        whole[2 * at] += static_cast<double>(value), whole[2 * at + 1] -= static_cast<double>(value);
+      }
+  pattern.complete(values, 2);
+  part.node_map.sum_all(std::span(whole));
+  REQUIRE(pattern.owned_rows() == 7);
+  for (std::size_t r = 0; r < 7; ++r) {
+    const auto begin = static_cast<std::size_t>(pattern.start()[r]);
+    const auto end = static_cast<std::size_t>(pattern.start()[r + 1]);
+    CHECK(std::is_sorted(pattern.column().begin() + pattern.start()[r],
+                         pattern.column().begin() + pattern.start()[r + 1]));
+    Vector of_row(2 * columns, 0.0);
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto c =
+          static_cast<std::size_t>(pattern.columns().number(static_cast<std::size_t>(pattern.column()[k])));
+      for (std::size_t i = 0; i < 2; ++i) of_row[2 * c + i] += static_cast<double>(values[2 * k + i]);
+      CHECK(values[2 * k] > 0.0F);
+    }
+    const std::size_t number = r + 7 * static_cast<std::size_t>(rank);
+    for (std::size_t i = 0; i < 2 * columns; ++i) CHECK(of_row[i] == whole[2 * columns * number + i]);
   }
 }
 
