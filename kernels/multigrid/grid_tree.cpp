@@ -104,7 +104,8 @@ void GridTree::find_owners(const Nodes& nodes, const Communicator& comm) {
 GridTree::Position GridTree::lattice(const double* node) const {
   Position p{};
   for (std::size_t k = 0; k < 3; ++k) {
-    const double at = std::floor((node[k] - origin_[k]) / unit_);
+    // A node on the face between two cubes is in the same one, however its coordinate was rounded.
+    const double at = std::floor((node[k] - origin_[k]) / unit_ + 0.37);
     p[k] = static_cast<std::int32_t>(std::clamp(at, 0.0, side - 1.0));
   }
   return p;

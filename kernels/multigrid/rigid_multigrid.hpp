@@ -31,7 +31,7 @@ struct MultigridOptions {
   /// Where tr ε is averaged round corners: from which k0/g on pressures are unknowns of the cycle, too
   /// (theory: pressure-multigrid). Such a cycle takes some three times as long, and its number does not grow
   /// with k0/g.
-  double pressure_contrast = 40.0;
+  double pressure_contrast = 20.0;
 };
 
 /// z = one symmetric cycle on r: z ≈ (B(g) + blocks)⁻¹ r, symmetric positive definite and fixed between two

@@ -2,35 +2,32 @@
 // Sums over processes of what belongs to the corners round which tr ε is averaged.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
-#include <kacanov/corner_means.hpp>
-#include <kacanov/index_map.hpp>
+#include <kacanov/scatterer.hpp>
+#include "operator/corner_rows.hpp"
 
 namespace kacanov {
 
-/// What BasicOperator::set_corner_sum() wants, for `Real` float or double.
+/// What BasicOperator::set_corner_sum() wants, for `Real` float or double. Copies share their buffers.
 template <class Real>
 class CornerSum {
  public:
-  /// The map, of the nodes, has to outlive it. All processes have to have the same `moduli`.
+  /// `nodes`: the map of the nodes. All processes have to have the same `moduli`. Collective.
   CornerSum(const CornerMeans& means, const IndexMap& nodes);
   /// Adds up what all processes have for an entry. Collective.
   void operator()(std::span<Real> entries);
 
  private:
-  struct Shared {
-    std::int32_t entry;
-    std::size_t place;
+  struct State {
+    explicit State(CornerRows all);
+    CornerRows rows;
+    std::vector<Real> values;  ///< of the rows; those without an entry here stay zero
+    Scatterer<Real> scatterer;
   };
-  const IndexMap* nodes_;
-  std::size_t width_;
-  std::vector<Shared> shared_;
-  std::vector<Real>
-      of_node_;  ///< nodes × moduli, of which those that others have count; empty: there are none
+  std::shared_ptr<State> state_;  ///< null: there is one process
 };
 
 }  // namespace kacanov

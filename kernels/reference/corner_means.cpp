@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Volume changes summed to the corners of quadratic tetrahedra.
+// Volume changes summed to the corners of tetrahedra, or to patches of them.
 #include <kacanov/corner_means.hpp>
 
 #include <algorithm>
@@ -37,12 +37,21 @@ CornerMeans corner_means(const Body& body) {
   for (std::size_t e = 0; e < elements; ++e)
     for (std::size_t c = 0; c < corners && averages_at_corners(body.law(e), body.mesh.type); ++c)
       entry[place(e, c)] = 0;
-  for (std::size_t k = 0; k < entry.size(); ++k) {
-    if (entry[k] < 0) continue;
-    entry[k] = static_cast<std::int32_t>(means.size());
-    means.node.push_back(static_cast<std::int32_t>(k / width));
-    means.modulus.push_back(static_cast<std::int32_t>(k % width));
-  }
+  means.has_patches = !body.pressure_patch.empty();
+  std::vector<std::pair<std::int64_t, std::int32_t>> keys;  // place, modulus
+  const auto key = [&](std::size_t k) {
+    const std::size_t node = k / width;
+    return std::pair(means.has_patches ? body.pressure_patch[node] : static_cast<std::int64_t>(node),
+                     static_cast<std::int32_t>(k % width));
+  };
+  for (std::size_t k = 0; k < entry.size(); ++k)
+    if (entry[k] >= 0) keys.push_back(key(k));
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  for (std::size_t k = 0; k < entry.size(); ++k)
+    if (entry[k] >= 0)
+      entry[k] = static_cast<std::int32_t>(std::lower_bound(keys.begin(), keys.end(), key(k)) - keys.begin());
+  for (const auto& [where, modulus] : keys) means.place.push_back(where), means.modulus.push_back(modulus);
   means.of_element.assign(elements * corners, -1);
   for (std::size_t e = 0; e < elements; ++e)
     for (std::size_t c = 0; c < corners && averages_at_corners(body.law(e), body.mesh.type); ++c)

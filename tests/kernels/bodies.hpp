@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include <kacanov/pressure_patches.hpp>
 #include <kacanov/reference.hpp>
 #include "../../perf/meshes.hpp"
 
@@ -39,14 +40,27 @@ struct OwnedBody {
   meshes::OwnedMesh mesh;
   std::vector<Law> laws;
   std::vector<std::uint16_t> law_of_element;
+  std::vector<std::int64_t> pressure_patch = {};
 
-  Body body() const { return {mesh.view(), laws, law_of_element}; }
+  Body body() const {
+    Body view{mesh.view(), laws, law_of_element};
+    view.pressure_patch = pressure_patch;
+    return view;
+  }
+  /// Over which its laws average, where it is of tet4.
+  void make_patches() {
+    IndexMap alone;
+    alone.owned = static_cast<std::int32_t>(mesh.view().node_count());
+    alone.starts = {0, alone.owned};
+    pressure_patch = pressure_patches(body(), alone);
+  }
 };
 
 inline OwnedBody with_one_law(meshes::OwnedMesh mesh, const Law& law) { return {std::move(mesh), {law}, {}}; }
 
 /// Every law of `every_law` and the stiffening one, scattered over the elements; every second one
-/// with its mean dilatation where the element has that, round corners with two bulk moduli.
+/// with its mean dilatation where the element has that, round corners with two bulk moduli; tet4 over
+/// patches.
 inline OwnedBody with_every_law(meshes::OwnedMesh mesh, unsigned seed) {
   OwnedBody body{std::move(mesh), every_law(), {}};
   body.laws.push_back(stiffening_law());
@@ -56,6 +70,7 @@ inline OwnedBody with_every_law(meshes::OwnedMesh mesh, unsigned seed) {
   std::mt19937 random(seed);
   for (std::size_t e = 0; e < body.mesh.view().element_count(); ++e)
     body.law_of_element.push_back(static_cast<std::uint16_t>(random() % body.laws.size()));
+  body.make_patches();
   return body;
 }
 

@@ -108,7 +108,8 @@ struct Cylinder {
     constexpr double x0 = 1e-6;
     law.form = laws::Logarithmic{x0};
     law.mean_dilatation = mean_dilatation;
-    const auto owned = test::with_one_law(mesh, law);
+    auto owned = test::with_one_law(mesh, law);
+    owned.make_patches();
     Operator op(owned.body());
     const std::size_t n = op.unknowns();
     // Outside u = C/r, x = √2 C/r²; inside the surface everything starts from that.
@@ -168,15 +169,20 @@ TEST_CASE("B-bar does not lock where the plain element does") {
 }
 
 TEST_CASE("means round the corners do not lock in plastic flow") {
-  const Cylinder cylinder(ElementType::tet10);
+  ElementType type = ElementType::tet10;
+  SUBCASE("tet10") {}
+  SUBCASE("tet4") { type = ElementType::tet4; }
+  const Cylinder cylinder(type);
   for (const double strain : {10.0, 1e3, 1e4}) {
     const double plain = cylinder.plastic_pressure(strain, false),
                  mixed = cylinder.plastic_pressure(strain, true);
     CAPTURE(plain);
     CAPTURE(mixed);
-    // The exact pressure is that of an incompressible body, which is not far from it at ten yield strains
-    // yet.
-    CHECK(mixed == doctest::Approx(1.0).epsilon(strain > 100.0 ? 0.005 : 0.02));
+    // The exact pressure is that of an incompressible body, which it is not quite at ten yield strains yet.
+    // The cylinder is two nodes thick: patches of tet4 reach through it.
+    const double coarse = type == ElementType::tet4 ? 0.02 : 0.005;
+    CHECK(mixed == doctest::Approx(1.0).epsilon(strain > 100.0 ? coarse : 0.02));
+    if (type == ElementType::tet4 && strain > 100.0) CHECK(plain > 2.0);
   }
 }
 

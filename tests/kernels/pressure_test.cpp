@@ -20,8 +20,8 @@ std::vector<Real> rounded(const std::vector<double>& v) {
   return {v.begin(), v.end()};
 }
 
-test::OwnedBody tet10_body(double bent) {
-  auto mesh = meshes::box(ElementType::tet10, {3, 2, 3}, {1.5, 1.0, 1.2});
+test::OwnedBody mixed_body(ElementType type, double bent) {
+  auto mesh = meshes::box(type, {3, 2, 3}, {1.5, 1.0, 1.2});
   if (bent > 0.0) meshes::jitter(mesh, bent, 3);
   Law law = elastic_law(1.0, 0.3);
   law.mean_dilatation = true;
@@ -35,7 +35,7 @@ void check_parts(const test::OwnedBody& owned, const OperatorOptions& options, d
   const std::vector<double> g = test::some_secant(body, 5), x = test::random_vector(body.unknowns(), 6),
                             p = test::random_vector(means.size(), 7);
   std::vector<double> at_nodes(body.mesh.node_count(), 0.0), none(at_nodes), no_motion(x.size(), 0.0);
-  for (std::size_t i = 0; i < means.size(); ++i) at_nodes[means.node[i]] = p[i];
+  for (std::size_t i = 0; i < means.size(); ++i) at_nodes[means.place[i]] = p[i];
   const auto reference = [&](const std::vector<double>& u, const std::vector<double>& pressure) {
     std::pair<std::vector<double>, std::vector<double>> y{std::vector<double>(x.size()),
                                                           std::vector<double>(at_nodes.size())};
@@ -56,17 +56,19 @@ void check_parts(const test::OwnedBody& owned, const OperatorOptions& options, d
   op.volume_change(u, q);
   std::vector<double> change;
   const auto of_nodes = reference(x, none).second;
-  for (std::size_t i = 0; i < means.size(); ++i) change.push_back(of_nodes[means.node[i]]);
+  for (std::size_t i = 0; i < means.size(); ++i) change.push_back(of_nodes[means.place[i]]);
   CHECK(difference(q, change) < tolerance);
 }
 
 }  // namespace
 
 TEST_CASE("deviator, forces of pressures and volume changes are those of the plain form") {
-  for (const double bent : {0.0, 0.03}) {
-    const auto owned = tet10_body(bent);
+  for (const auto& [type, bent] : {std::pair(ElementType::tet10, 0.0), std::pair(ElementType::tet10, 0.03),
+                                   std::pair(ElementType::tet4, 0.1)}) {
+    const auto owned = mixed_body(type, bent);
     for (const char* set : {"avx512", "avx2", "plain"})
       for (const int threads : {1, 2, 3}) {
+        CAPTURE(cell(type).name);
         CAPTURE(bent);
         CAPTURE(set);
         CAPTURE(threads);
@@ -80,7 +82,10 @@ TEST_CASE("deviator, forces of pressures and volume changes are those of the pla
 }
 
 TEST_CASE("the parts make up the whole, pressures transpose volume changes, with laws of several moduli") {
-  const auto owned = test::small_body(ElementType::tet10, 3);
+  ElementType type = ElementType::tet10;
+  SUBCASE("tet10") {}
+  SUBCASE("tet4, over patches") { type = ElementType::tet4; }
+  const auto owned = test::small_body(type, 3);
   const Body body = owned.body();
   const CornerMeans means = corner_means(body);
   const std::vector<double> g = test::some_secant(body, 5), x = test::random_vector(body.unknowns(), 6),
@@ -102,7 +107,10 @@ TEST_CASE("the parts make up the whole, pressures transpose volume changes, with
 }
 
 TEST_CASE("the deviator's blocks are those of single displacements") {
-  const auto owned = test::small_body(ElementType::tet10, 3);
+  ElementType type = ElementType::tet10;
+  SUBCASE("tet10") {}
+  SUBCASE("tet4") { type = ElementType::tet4; }
+  const auto owned = test::small_body(type, 3);
   const Body body = owned.body();
   Operator op(body);
   op.set_secant(test::some_secant(body, 5));

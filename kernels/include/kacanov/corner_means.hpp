@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where quadratic tetrahedra average their volume change: round the corners of the mesh.
+// Where tetrahedra average their volume change: round the corners of the mesh, or over patches of them.
 #pragma once
 
 #include <cstddef>
@@ -12,15 +12,17 @@
 namespace kacanov {
 
 /// The corners round which tr ε is averaged (theory: displacement-pressure), those of the elements whose law
-/// asks for it and whose type has it: an entry for every corner, and one for every bulk modulus that meets
-/// there, as pressure may jump between materials. Ascending by node, then by modulus.
+/// asks for it and whose type has it: an entry for every corner, or for every patch of them
+/// (Body::pressure_patch), and one for every bulk modulus that meets there, as pressure may jump between
+/// materials. Ascending by place, then by modulus.
 struct CornerMeans {
-  std::vector<std::int32_t> node;        ///< of every entry
+  bool has_patches = false;
+  std::vector<std::int64_t> place;       ///< of every entry: local node, or number of the patch
   std::vector<std::int32_t> modulus;     ///< of every entry: which of `moduli`
   std::vector<double> moduli;            ///< k0, ascending
   std::vector<std::int32_t> of_element;  ///< elements × 4, −1 where an element has none; empty: none has
 
-  std::size_t size() const noexcept { return node.size(); }
+  std::size_t size() const noexcept { return place.size(); }
   double bulk(std::size_t entry) const noexcept { return moduli[modulus[entry]]; }
 };
 

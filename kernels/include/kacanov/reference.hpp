@@ -36,6 +36,10 @@ struct Body {
   /// elements are some of a larger body; the reference's functions of a displacement know of it. Empty:
   /// worked out from these elements.
   std::span<const double> corner_dilatation = {};
+  /// Nodes of one number have one mean of tr ε together where laws average round corners; it is the number
+  /// over all processes of one of them, on all the same (pressure_patches() makes some). Empty: every node
+  /// has a mean of its own.
+  std::span<const std::int64_t> pressure_patch = {};
 
   std::size_t unknowns() const noexcept { return mesh.coordinates.size(); }
   std::uint16_t law_index(std::size_t element) const noexcept {
