@@ -49,7 +49,7 @@ class AsTheProgram(unittest.TestCase):
 
     def test_a_box_that_is_solved_on_coarser_meshes_first(self):
         sol = self.compare(pressed_beam("tet4", (32, 12, 16)))
-        self.assertEqual(len(sol.result["nested"]), 1)
+        self.assertEqual(len(sol.result["nested"]), 2)
 
     def test_obstacles_that_move(self):
         case = pressed_beam()

@@ -20,7 +20,7 @@ namespace kacanov {
 namespace {
 
 /// Below this a mesh is solved at once: a coarser one costs as much as it saves.
-constexpr std::int64_t least_fine = 20000, least_coarse = 1500;
+constexpr std::int64_t least_fine = 1000, least_coarse = 100;
 /// What a start has to be known to: interpolation adds more than that.
 constexpr double coarse_tolerance = 1e-3;
 
