@@ -7,7 +7,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "reference/point_strain.hpp"
+#include "cells/tet4.hpp"
+#include "reference/element_points.hpp"
 
 namespace kacanov::tet4 {
 namespace {
@@ -78,6 +79,7 @@ struct Abreast {
 reference::Strain strain_of(const reference::Gradient& h) {
   reference::Strain s;
   s.trace = h[0][0] + h[1][1] + h[2][2];
+  s.square = s.trace * s.trace;
   const double mean = s.trace / 3.0;
   s.dev = {h[0][0] - mean,
            h[1][1] - mean,
@@ -87,6 +89,22 @@ reference::Strain strain_of(const reference::Gradient& h) {
            0.5 * (h[2][0] + h[0][2])};
   return s;
 }
+
+/// The strain that a law sees: with means of tr ε round the corners where it has those.
+class Strains {
+ public:
+  Strains(const Body& body, std::span<const double> u)
+      : body_(body), means_(body, u, body.corner_dilatation) {}
+  reference::Strain operator()(std::size_t element, const reference::Gradient& h) const {
+    reference::Strain strain = strain_of(h);
+    means_.put<elements::Tet4>(body_.law(element), element, 0, strain);
+    return strain;
+  }
+
+ private:
+  const Body& body_;
+  reference::CornerDilatation means_;
+};
 
 /// Calls visit(element, elements abreast, lane).
 template <class Visit>
@@ -105,9 +123,10 @@ void for_each_element(const Body& body, std::span<const double> u, const Visit& 
 
 void fields(const Body& body, std::span<const double> u, const reference::ElementFields& out) {
   const bool moduli = !out.stress.empty() || !out.von_mises.empty() || !out.secant.empty();
+  const Strains strains(body, u);
   for_each_element(body, u, [&](std::size_t e, const Abreast& some, std::size_t lane) {
     const reference::Gradient h = some.gradient_of(lane);
-    const reference::Strain strain = strain_of(h);
+    const reference::Strain strain = strains(e, h);
     const Law& law = body.law(e);
     const double norm = strain.norm(), g = moduli ? law.secant(norm) : 0.0;
     if (!out.stress.empty()) {
@@ -125,8 +144,9 @@ void fields(const Body& body, std::span<const double> u, const reference::Elemen
 }
 
 void point_fields(const Body& body, std::span<const double> u, const reference::PointFields& out) {
+  const Strains strains(body, u);
   for_each_element(body, u, [&](std::size_t e, const Abreast& some, std::size_t lane) {
-    const reference::Strain strain = strain_of(some.gradient_of(lane));
+    const reference::Strain strain = strains(e, some.gradient_of(lane));
     if (!out.stress.empty()) {
       const Law& law = body.law(e);
       const reference::Sym tau = reference::stress(law, law.secant(strain.norm()), strain);
@@ -141,11 +161,11 @@ void point_fields(const Body& body, std::span<const double> u, const reference::
 
 double energy(const Body& body, std::span<const double> u) {
   double sum = 0.0;
+  const Strains strains(body, u);
   for_each_element(body, u, [&](std::size_t e, const Abreast& some, std::size_t lane) {
-    const reference::Strain strain = strain_of(some.gradient_of(lane));
+    const reference::Strain strain = strains(e, some.gradient_of(lane));
     const Law& law = body.law(e);
-    sum +=
-        some.volume[lane] * (0.5 * law.bulk * strain.trace * strain.trace + 2.0 * law.energy(strain.norm()));
+    sum += some.volume[lane] * (0.5 * law.bulk * strain.square + 2.0 * law.energy(strain.norm()));
   });
   return sum;
 }

@@ -9,6 +9,7 @@
 
 #include <kacanov/error.hpp>
 #include <kacanov/locality.hpp>
+#include <kacanov/pressure_patches.hpp>
 #include "parallel/long_messages.hpp"
 #include "parallel/part_fields.hpp"
 #include "parallel/sharers.hpp"
@@ -314,7 +315,10 @@ void split(const Problem& problem, int ranks, const std::function<void(int rank,
   take(0, splitter.part(0));
 }
 
-void join(Part& part, MPI_Comm comm) { static_cast<Communicator&>(part.node_map) = mpi_communicator(comm); }
+void join(Part& part, MPI_Comm comm) {
+  static_cast<Communicator&>(part.node_map) = mpi_communicator(comm);
+  part.pressure_patch = pressure_patches(part.body(), part.node_map);
+}
 
 Part distribute(const Problem* problem, MPI_Comm comm) {
   int rank = 0, ranks = 1;

@@ -155,8 +155,7 @@ void check_formulation(const MaterialEntry& entry, const Mesh& mesh, const std::
                      " bbar, which is " + (mixed ? "false" : "true"));
   const auto has_mean = [](const Cell& c) { return c.mean_dilatation || c.corner_dilatation; };
   if (mixed && !has_mean(cell(mesh.type)))
-    throw InputError(path + ".formulation: expected displacement, or a mesh of " + element_names(has_mean) +
-                     "; mesh.order 2 makes tet10 of tet4");
+    throw InputError(path + ".formulation: expected displacement, or a mesh of " + element_names(has_mean));
   if (mixed && mesh.plane == PlaneState::stress)
     throw InputError(path + ".formulation: expected displacement with plane stress, which does not lock");
 }

@@ -27,8 +27,8 @@ void locking(const Problem& problem, const Model& model, Warnings& warnings);
 
 /// Strains or rotations beyond what a theory of small strains is good for.
 void large_strain(const Result& result, Warnings& warnings);
-/// Linear tetrahedra far beyond yield.
-void locked_flow(const Result& result, Warnings& warnings);
+/// Linear tetrahedra far beyond yield, unless they are mixed.
+void locked_flow(const Result& result, const Model& model, Warnings& warnings);
 /// Displacements that are not small beside the body.
 void large_displacement(const Result& result, Warnings& warnings);
 /// Contact entries that nothing presses on: lifted off, or never reached.

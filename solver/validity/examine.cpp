@@ -21,7 +21,7 @@ std::vector<std::string> examine(const Problem& problem, const Model& model) {
 std::vector<std::string> examine(const Result& result, const Model& model) {
   validity::Warnings warnings;
   validity::large_strain(result, warnings);
-  validity::locked_flow(result, warnings);
+  validity::locked_flow(result, model, warnings);
   validity::large_displacement(result, warnings);
   validity::idle_contact(result, model, warnings);
   validity::coarse_contact(result, model, warnings);

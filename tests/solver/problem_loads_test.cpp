@@ -199,8 +199,10 @@ TEST_CASE("every element has one material; only \"all\" may be overridden") {
   using Formulation = MaterialEntry::Formulation;
   Model mixed = model;
   mixed.materials[0].formulation = Formulation::mixed;
-  CHECK(mentions(refusal(mesh, mixed),
-                 "material[0].formulation: expected displacement, or a mesh of tet10, hex8 or quad4"));
+  Model flat = elastic_model();
+  flat.materials[0].formulation = Formulation::mixed;
+  CHECK(mentions(refusal(make_box({{1, 1, 0}, {2, 2, 1}, ElementType::tri3}), flat),
+                 "material[0].formulation: expected displacement, or a mesh of tet4, tet10, hex8 or quad4"));
   mixed.materials[0].bbar = false;
   CHECK(mentions(refusal(mesh, mixed), "material[0].formulation: mixed is with bbar, which is false"));
   const std::string bare = refusal(mesh, model);

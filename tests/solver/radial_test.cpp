@@ -99,8 +99,20 @@ double displacement_error(const Run& run, const RadialSolution& exact) {
   return std::sqrt(error / size);
 }
 
+using Formulation = MaterialEntry::Formulation;
+
+Model shell_model(int dim, const Law& law, Formulation formulation, double pressure_inside) {
+  Model model;
+  model.materials.push_back({everything(), law});
+  if (formulation == Formulation::mixed) model.materials[0].formulation = formulation;
+  for (int c = 0; c < dim; ++c) model.boundary.push_back(roller(named(std::string("plane") + "xyz"[c]), c));
+  model.boundary.push_back(pressure(named("inside"), pressure_inside));
+  model.solver.tolerance = 1e-8;
+  return model;
+}
+
 void check_order(int dim, const std::vector<int>& cells, double pressure_inside, double finest_error,
-                 PlaneState plane = PlaneState::strain) {
+                 PlaneState plane = PlaneState::strain, Formulation formulation = Formulation::displacement) {
   CAPTURE(dim);
   for (const Law& law : {elastic_law(1.0, 0.3), logarithmic_law(0.01)}) {
     // A quarter of a disc that goes round an axis is half a sphere.
@@ -109,13 +121,8 @@ void check_order(int dim, const std::vector<int>& cells, double pressure_inside,
     if (!law.linear()) CHECK(exact.largest_dev_strain() > 3 * law.yield_strain());
     std::vector<double> errors;
     for (const int n : cells) {
-      Model model;
+      Model model = shell_model(dim, law, formulation, pressure_inside);
       model.plane = plane;
-      model.materials.push_back({everything(), law});
-      for (int c = 0; c < dim; ++c)
-        model.boundary.push_back(roller(named(std::string("plane") + "xyz"[c]), c));
-      model.boundary.push_back(pressure(named("inside"), pressure_inside));
-      model.solver.tolerance = 1e-8;
       const Run run = run_alone(round_shell(dim, n), model);
       CHECK(run.result().status == Status::converged);
       errors.push_back(displacement_error(run, exact));
@@ -167,6 +174,43 @@ TEST_CASE("thick cylinder under pressure: second order against the radial equati
 
 TEST_CASE("thick sphere under pressure: second order against the radial equation") {
   check_order(3, {5, 10}, 0.02, 3e-2);
+}
+
+TEST_CASE("thick sphere of mixed tet4 under pressure: second order against the radial equation") {
+  check_order(3, {5, 10}, 0.02, 3e-2, PlaneState::strain, Formulation::mixed);
+}
+
+TEST_CASE("thick sphere far beyond yield: mixed tet4 bears the exact pressure, plain tet4 much more") {
+  constexpr double x0 = 1e-3;
+  const Law law = logarithmic_law(x0);
+  const auto bore = [&](double load) { return RadialSolution(law, 2, inner, outer, load, 200)(inner); };
+  // The pressure whose exact solution opens the bore by this.
+  const auto pressure_for = [&](double u) {
+    double low = 0.0, high = 1.0;
+    for (int i = 0; i < 24; ++i) (bore(0.5 * (low + high)) < u ? low : high) = 0.5 * (low + high);
+    return high;
+  };
+  for (const double strain : {10.0, 1e3}) {
+    CAPTURE(strain);
+    const double load = pressure_for(strain * x0 / std::sqrt(6.0) * inner);
+    for (const Formulation formulation : {Formulation::displacement, Formulation::mixed}) {
+      const Run run = run_alone(round_shell(3, 5), shell_model(3, law, formulation, load));
+      CHECK(run.result().status == Status::converged);
+      double u = 0.0, count = 0.0;
+      for (std::size_t n = 0; n < run.part.nodes(); ++n) {
+        const double* x = &run.part.coordinates[3 * n];
+        if (std::abs(std::hypot(x[0], x[1], x[2]) - inner) > 1e-9) continue;
+        const double* moved = &run.solution.displacement[3 * n];
+        u += std::hypot(moved[0], moved[1], moved[2]), count += 1.0;
+      }
+      const double over = load / pressure_for(u / count);
+      CAPTURE(over);
+      if (formulation == Formulation::mixed)
+        CHECK(over == doctest::Approx(1.0).epsilon(0.005));
+      else
+        CHECK(over > (strain > 100.0 ? 1.3 : 1.07));
+    }
+  }
 }
 
 TEST_CASE("thick sphere as a section that goes round an axis: second order against the radial equation") {

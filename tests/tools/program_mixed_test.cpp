@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// tet10 with its volume averaged round corners: verified by an assembly of its own, on any number of ranks.
+// Tetrahedra with their volume averaged round corners or over patches: verified by an assembly of its own, on
+// any number of ranks.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -12,9 +13,9 @@ using nlohmann::json;
 namespace {
 
 /// A block of three materials, two of them mixed with bulk moduli of their own, pressed on a plane.
-json block() {
-  return json::parse(R"({
-    "mesh": {"box": {"size": [2, 1, 1], "cells": [6, 3, 3], "element": "tet10"}},
+json block(const char* element) {
+  json input = json::parse(R"({
+    "mesh": {"box": {"size": [2, 1, 1], "cells": [6, 3, 3]}},
     "material": [
       {"on": "all", "young": 1, "poisson": 0.3, "law": {"type": "logarithmic", "x0": 0.005}, "formulation": "mixed"},
       {"on": {"box": [[0, 0, 0.66], [2, 1, 1]]}, "young": 3, "poisson": 0.45, "formulation": "mixed",
@@ -27,16 +28,21 @@ json block() {
     "solver": {"tolerance": 1e-8},
     "probe": [[2, 0.5, 1]]
   })");
+  input["mesh"]["box"]["element"] = element;
+  return input;
 }
 
 }  // namespace
 
-TEST_CASE("mixed tet10: verified, and the same on one rank, two and three") {
+TEST_CASE("mixed tetrahedra: verified, and the same on one rank, two and three") {
+  const char* element = "tet10";
+  SUBCASE("tet10") {}
+  SUBCASE("tet4") { element = "tet4"; }
   const Workplace place;
-  const json alone = solved(place, block(), "1");
+  const json alone = solved(place, block(element), "1");
   CHECK(alone["plastic_elements"] > 0);
   for (const char* ranks : {"2", "3"}) {
-    const json several = solved(place, block(), ranks);
+    const json several = solved(place, block(element), ranks);
     for (std::size_t c = 0; c < 3; ++c)
       CHECK(several["probe"][0][c].get<double>() ==
             doctest::Approx(alone["probe"][0][c].get<double>()).epsilon(1e-6));
@@ -47,10 +53,13 @@ TEST_CASE("mixed tet10: verified, and the same on one rank, two and three") {
   }
 }
 
-TEST_CASE("mixed tet10: a coarser start, a temperature and load steps") {
+TEST_CASE("mixed tetrahedra: a coarser start, a temperature and load steps") {
+  const char* element = "tet10";
+  SUBCASE("tet10") {}
+  SUBCASE("tet4") { element = "tet4"; }
   const Workplace place;
-  json input = block();
-  input["mesh"] = {{"box", {{"size", {2, 1, 1}}, {"cells", {3, 2, 2}}, {"element", "tet10"}}}, {"refine", 1}};
+  json input = block(element);
+  input["mesh"] = {{"box", {{"size", {2, 1, 1}}, {"cells", {3, 2, 2}}, {"element", element}}}, {"refine", 1}};
   input["material"] = json::array({input["material"][0]});
   input["material"][0]["expansion"] = 0.001;
   input["boundary"][1]["traction"] = {0, 0, -0.02};
@@ -63,8 +72,7 @@ TEST_CASE("mixed tet10: a coarser start, a temperature and load steps") {
 
 TEST_CASE("mixed, by word, is B-bar in hexahedra") {
   const Workplace place;
-  json input = block();
-  input["mesh"]["box"]["element"] = "hex8";
+  json input = block("hex8");
   const json mixed = solved(place, input, "1");
   for (json& material : input["material"]) {
     const bool was = material.contains("formulation");

@@ -62,7 +62,8 @@ KeySet material() {
   KeySet set = material_law_keys();
   set.keys.insert(set.keys.begin(), must("on", selector(), "elements"));
   set.keys.push_back(may("formulation", Word{{"displacement", "mixed"}},
-                         "mixed: a pressure of its own against locking; in tet10 linear, elsewhere bbar"));
+                         "mixed: a pressure of its own against locking; in tet10 linear, in tet4 by patches "
+                         "of nodes, elsewhere bbar"));
   set.keys.push_back(may("expansion", Number{}, "linear thermal expansion, a strain over a temperature",
                          MaterialEntry().expansion));
   return set;

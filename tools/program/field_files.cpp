@@ -238,6 +238,9 @@ void write_body(const FieldPlace& place, const Part& part, const Solution& solut
                        {"node_id", 1, tags(owned, [&part](std::size_t i) { return part.node_tag(i); })},
                        {"nodal_stress", 6, nodal(fields.nodal.stress, 6)},
                        {"nodal_von_mises", 1, nodal(fields.nodal.von_mises, 1)}};
+  if (part.has_patches())
+    grid.point_fields.push_back(
+        {"pressure_patch", 1, tags(owned, [&part](std::size_t i) { return part.pressure_patch[i]; })});
   grid.cell_fields = {
       {"stress", 6, of_elements(6, &Fields::stress)},
       {"von_mises", 1, of_elements(1, &Fields::von_mises)},

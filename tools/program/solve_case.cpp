@@ -56,10 +56,19 @@ std::vector<double> gather_elements(const Part& part, const std::vector<double>&
   return all;
 }
 
+/// Of all nodes on the first rank; empty where there are none. Collective.
+std::vector<std::int64_t> gather_patches(const Part& part) {
+  if (!part.has_patches()) return {};
+  const std::vector<double> local(part.pressure_patch.begin(), part.pressure_patch.end());
+  const std::vector<double> all = gather_nodal(part, local, 1);
+  return {all.begin(), all.end()};
+}
+
 void fields_at(const SolvedCase& solved, std::span<const double> displacement,
                std::span<const double> thermal, const reference::ElementFields& out) {
   const Mesh& mesh = solved.problem.mesh;
-  const Body body{mesh.view(), solved.problem.laws, solved.problem.law_of_element};
+  Body body{mesh.view(), solved.problem.laws, solved.problem.law_of_element};
+  body.pressure_patch = solved.pressure_patch;
   element_fields(body, {displacement, thermal}, out);
 }
 
@@ -147,6 +156,7 @@ SolvedCase solve_case(const Case& given, const MpiSession& mpi, const CaseRun& r
   out.steps = std::move(steps);
   const Part& part = loaded.part;
   const NodalStress nodal = recover_stress(part, solution);
+  out.pressure_patch = gather_patches(part);
   out.error = gather_elements(part, note_discretisation(part, coarse, solution));
   out.displacement = gather_nodal(part, solution.displacement, part.dim());
   out.nodal_stress = gather_nodal(part, nodal.stress, 6);

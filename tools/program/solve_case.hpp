@@ -60,7 +60,8 @@ struct SolvedCase {
   std::vector<double> averaged_von_mises;   ///< nodes: means of the elements round them, as in pictures
   std::vector<double> error;                ///< elements: note_discretisation()
   ContactFields contact;
-  std::vector<double> thermal;    ///< Solution::thermal of all elements
+  std::vector<double> thermal;               ///< Solution::thermal of all elements
+  std::vector<std::int64_t> pressure_patch;  ///< as in Body
   std::vector<StepFields> steps;  ///< where CaseRun::keep_steps asks for them: those that have converged
 };
 

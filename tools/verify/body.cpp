@@ -97,12 +97,12 @@ Real elastic_entry(const Mesh& mesh, const Law& law, const Point& point, std::si
   return shears - 2 * mu / 3 * (n + hoop) * (n + hoop) + law.bulk * divergence * divergence;
 }
 
-/// The volume and its change that belong to corners, where materials average round them: by corner and bulk
-/// modulus, as pressure jumps where that does.
+/// The volume and its change that belong to corners, or to patches of them, where materials average there: by
+/// corner or patch and bulk modulus, as pressure jumps where that does.
 class CornerVolumes {
  public:
-  CornerVolumes(const Problem& problem, const std::vector<Vec>& u) {
-    if (problem.mesh.shape != Shape::tet10) return;
+  CornerVolumes(const Problem& problem, const std::vector<Vec>& u) : problem_(problem) {
+    if (problem.mesh.shape != Shape::tet10 && problem.mesh.shape != Shape::tet4) return;
     for (std::size_t e = 0; e < problem.mesh.elements.size(); ++e) {
       const Indices& element = problem.mesh.elements[e];
       const Law& law = problem.laws[problem.law_of_element[e]];
@@ -110,7 +110,7 @@ class CornerVolumes {
       for (const QuadraturePoint& q : stiffness_rule(problem.mesh.shape)) {
         const Point point = point_at(problem.mesh, element, q);
         for (std::size_t c = 0; c < 4; ++c) {
-          At& at = corners_[{element[c], law.bulk}];
+          At& at = corners_[{place(element[c]), law.bulk}];
           at.volume += share(q, c) * point.volume;
           for (std::size_t a = 0; a < element.size(); ++a)
             at.change += share(q, c) * point.volume * dot(point.divergence(a), u[element[a]]);
@@ -124,7 +124,7 @@ class CornerVolumes {
   Real mean(const Indices& element, const Law& law, const QuadraturePoint& q, bool squared) const {
     Real sum = 0;
     for (std::size_t c = 0; c < 4; ++c) {
-      const At& at = corners_.at({element[c], law.bulk});
+      const At& at = corners_.at({place(element[c]), law.bulk});
       const Real mean = at.change / at.volume;
       sum += share(q, c) * (squared ? mean * mean : mean);
     }
@@ -135,10 +135,14 @@ class CornerVolumes {
   struct At {
     Real volume = 0, change = 0;
   };
+  std::int64_t place(Index node) const {
+    return problem_.patch.empty() ? static_cast<std::int64_t>(node) : problem_.patch[node];
+  }
   static Real share(const QuadraturePoint& q, std::size_t corner) {
     return corner == 0 ? 1 - q.at[0] - q.at[1] - q.at[2] : q.at[corner - 1];
   }
-  std::map<std::pair<Indices::value_type, Real>, At> corners_;
+  const Problem& problem_;
+  std::map<std::pair<std::int64_t, Real>, At> corners_;
 };
 
 /// Adds what one element does.

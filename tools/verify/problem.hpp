@@ -44,6 +44,7 @@ struct Problem {
   std::vector<Law> laws;
   std::vector<std::size_t> law_of_element;
   std::vector<Vec> load;                  ///< F, one a node
+  std::vector<std::int64_t> patch;        ///< of each node, where the result has that; else empty
   std::vector<Real> free_strain;          ///< α ΔT of each element in plane stress; empty: none
   std::vector<std::array<bool, 3>> held;  ///< components with a prescribed displacement
   std::vector<Vec> prescribed;

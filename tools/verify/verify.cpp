@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <fstream>
 #include <map>
+#include <numeric>
 
 #include "verify/file.hpp"
 #include "verify/residuals.hpp"
@@ -45,8 +46,28 @@ Vec triple(const Array& array, std::size_t i) {
   return {array.values.at(3 * i), array.values.at(3 * i + 1), array.values.at(3 * i + 2)};
 }
 
-/// The displacement of every node, from all pieces; copies have to agree.
-std::vector<Vec> read_displacement(const std::filesystem::path& folder, const Mesh& mesh) {
+/// Whether the nodes of every patch hang together by elements.
+bool hang_together(const Mesh& mesh, const std::vector<std::int64_t>& patch) {
+  std::vector<std::size_t> above(patch.size());
+  std::iota(above.begin(), above.end(), std::size_t{0});
+  const auto top = [&](std::size_t n) {
+    while (above[n] != n) n = above[n] = above[above[n]];
+    return n;
+  };
+  for (const Indices& element : mesh.elements)
+    for (const auto a : element)
+      for (const auto b : element)
+        if (patch[a] == patch[b]) above[top(a)] = top(b);
+  std::map<std::int64_t, std::size_t> seen;
+  for (std::size_t n = 0; n < patch.size(); ++n)
+    if (seen.emplace(patch[n], top(n)).first->second != top(n)) return false;
+  return true;
+}
+
+/// The displacement of every node, from all pieces; copies have to agree. `patch`: the patches of nodes,
+/// where the file has those.
+std::vector<Vec> read_displacement(const std::filesystem::path& folder, const Mesh& mesh,
+                                   std::vector<std::int64_t>& patch) {
   std::map<std::int64_t, std::size_t> index;
   for (std::size_t n = 0; n < mesh.tags.size(); ++n) index[mesh.tags[n]] = n;
   const std::string file = (folder / "body.vtu").string();
@@ -56,6 +77,8 @@ std::vector<Vec> read_displacement(const std::filesystem::path& folder, const Me
   for (const auto& piece : read_body(folder)) {
     const Array &ids = array_of(piece, "node_id", 1, file), &points = array_of(piece, "Points", 3, file, ids),
                 &values = array_of(piece, "displacement", 3, file, ids);
+    const bool patches = piece.count("pressure_patch") > 0;
+    if (patches) patch.resize(u.size());
     for (std::size_t i = 0; i < ids.values.size(); ++i) {
       const auto found = index.find(static_cast<std::int64_t>(ids.values[i]));
       const std::string name = file + ": node " + std::to_string(static_cast<std::int64_t>(ids.values[i]));
@@ -65,6 +88,8 @@ std::vector<Vec> read_displacement(const std::filesystem::path& folder, const Me
       if (mesh.dim() == 2) away[2] = 0;
       if (!(norm(away) <= slack)) throw Failure(name + " lies elsewhere in the mesh");
       const Vec value = triple(values, i);
+      if (patches)
+        patch[n] = static_cast<std::int64_t>(array_of(piece, "pressure_patch", 1, file, ids).values[i]);
       if (known[n] && u[n] != value) throw Failure(name + " moves differently on two ranks");
       u[n] = value;
       known[n] = true;
@@ -72,6 +97,8 @@ std::vector<Vec> read_displacement(const std::filesystem::path& folder, const Me
   }
   if (!std::all_of(known.begin(), known.end(), [](bool b) { return b; }))
     throw Failure(file + ": there are nodes of the mesh that it does not have");
+  if (!patch.empty() && !hang_together(mesh, patch))
+    throw Failure(file + ": pressure_patch: there are patches of nodes that do not hang together");
   return u;
 }
 
@@ -192,7 +219,10 @@ Verdict verify(json document, const std::filesystem::path& folder, const std::fi
     document["mesh"] = {{"file", std::filesystem::absolute(output / "mesh.msh").string()}};
   Problem problem = read_problem(document, folder, result);
   Answer answer;
-  answer.u = read_displacement(output, problem.mesh);
+  answer.u = read_displacement(output, problem.mesh, problem.patch);
+  if (problem.mesh.shape == Shape::tet4 && problem.patch.empty() &&
+      std::any_of(problem.laws.begin(), problem.laws.end(), [](const Law& law) { return law.mixed; }))
+    throw Failure((output / "body.vtu").string() + ": expected an array pressure_patch: tet4 is mixed");
   read_multipliers(output, problem, answer);
   const Findings found = examine(problem, answer);
 

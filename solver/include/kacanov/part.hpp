@@ -63,8 +63,9 @@ struct Part {
   int loose_modes = 0;
   /// Points × 2: Tu of an obstacle that has moved, which slip is counted from; empty: none has. Not in files.
   std::vector<double> slip_origin;
-  std::vector<double> start;   ///< nodes × dim: displacement to start from; empty: none
-  std::string no_equilibrium;  ///< as in Problem
+  std::vector<double> start;                 ///< nodes × dim: displacement to start from; empty: none
+  std::vector<std::int64_t> pressure_patch;  ///< as in Body, since join(). Not in files
+  std::string no_equilibrium;                ///< as in Problem
 
   int dim() const noexcept { return dimension(type); }
   std::size_t nodes() const noexcept { return node_index.size(); }
@@ -92,7 +93,13 @@ struct Part {
   void prescribe(std::span<double> u) const noexcept {
     for (const auto& p : prescribed) u[p.component] = p.value;
   }
-  Body body() const noexcept { return {{type, coordinates, elements, plane}, laws, law_of_element}; }
+  /// On any rank: the same everywhere.
+  bool has_patches() const { return node_map.any(!pressure_patch.empty()); }
+  Body body() const noexcept {
+    Body whole{{type, coordinates, elements, plane}, laws, law_of_element};
+    whole.pressure_patch = pressure_patch;
+    return whole;
+  }
 };
 
 /// Splits the problem with METIS and hands out the parts one after another, so that only one lies beside the
