@@ -63,8 +63,10 @@ void check_parts(const test::OwnedBody& owned, const OperatorOptions& options, d
 }  // namespace
 
 TEST_CASE("deviator, forces of pressures and volume changes are those of the plain form") {
-  for (const auto& [type, bent] : {std::pair(ElementType::tet10, 0.0), std::pair(ElementType::tet10, 0.03),
-                                   std::pair(ElementType::tet4, 0.1)}) {
+  for (const auto& body : {std::pair(ElementType::tet10, 0.0), std::pair(ElementType::tet10, 0.03),
+                           std::pair(ElementType::tet4, 0.1)}) {
+    const ElementType type = body.first;
+    const double bent = body.second;
     const auto owned = mixed_body(type, bent);
     for (const char* set : {"avx512", "avx2", "plain"})
       for (const int threads : {1, 2, 3}) {
