@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include <kacanov/vector3.hpp>
 #include "cells/tet4.hpp"
 #include "reference/element_points.hpp"
 
