@@ -26,9 +26,12 @@ struct Sharer {
 
 CornerRows make_corner_rows(const CornerMeans& means, const IndexMap& nodes) {
   CornerRows rows;
+  const auto number_of = [&](std::size_t entry) {
+    return means.has_patches ? means.place[entry] : nodes.number(means.place[entry]);
+  };
   std::vector<std::vector<Key>> to(nodes.ranks);
   for (std::size_t i = 0; i < means.size(); ++i) {
-    const std::int64_t node = means.has_patches ? means.place[i] : nodes.number(means.place[i]);
+    const std::int64_t node = number_of(i);
     to[nodes.owner(node)].push_back({node, means.modulus[i]});
   }
   const Received<Key> asked = exchange_all(to, nodes);
@@ -74,10 +77,8 @@ CornerRows make_corner_rows(const CornerMeans& means, const IndexMap& nodes) {
   };
   // Answers come in the order of the questions.
   std::vector<std::size_t> next(number.starts.begin(), number.starts.end() - 1);
-  for (std::size_t i = 0; i < means.size(); ++i) {
-    const std::int64_t node = means.has_patches ? means.place[i] : nodes.number(means.place[i]);
-    rows.of_entry.push_back(local(number.entries[next[nodes.owner(node)]++]));
-  }
+  for (std::size_t i = 0; i < means.size(); ++i)
+    rows.of_entry.push_back(local(number.entries[next[nodes.owner(number_of(i))]++]));
   std::map<std::int64_t, std::vector<std::int64_t>> rows_with;  // by rank
   for (const Sharer& sharer : shared.entries) rows_with[sharer.rank].push_back(sharer.row);
   for (auto& [rank, common] : rows_with) {

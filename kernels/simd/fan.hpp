@@ -210,6 +210,15 @@ inline void fan_loop_of_length(const Block<Real>& block, const Group& group, con
   run.template operator()<0>();
 }
 
+/// Calls work<closed>(), as the fans of the group are.
+template <class Work>
+inline void closed_or_open(const Group& group, const Work& work) {
+  if (group.shape == kacanov::simd::Shape::open_fan)
+    work.template operator()<false>();
+  else
+    work.template operator()<true>();
+}
+
 /// Calls work(geometry, fan, u, f) for every batch of fans and every input vector.
 template <class L, class Real, class Fan, bool closed, class Work>
 inline void over_batches(const Block<Real>& block, const Group& group, Vectors<Real> vectors,
@@ -267,13 +276,6 @@ inline void linear_fan_changes(const Block<Real>& block, const Group& group, Vec
         add_last<L, Real>(f, at, sum);
         add_last<L, Real>(f, at + width, sum);
       });
-}
-template <class L, class Real>
-inline void linear_fan_changes(const Block<Real>& block, const Group& group, Vectors<Real> vectors) {
-  if (group.shape == kacanov::simd::Shape::open_fan)
-    linear_fan_changes<L, Real, false>(block, group, vectors);
-  else
-    linear_fan_changes<L, Real, true>(block, group, vectors);
 }
 
 }  // namespace

@@ -100,10 +100,9 @@ struct Loops {
   template <bool averaged, class Material>
   static void over_fans(const Block<Real>& block, const Group& group, const Material& material,
                         const Vectors<Real>& vectors) {
-    if (group.shape == Shape::open_fan)
-      fan_loop_of_length<L, Real, false, averaged>(block, group, material, vectors);
-    else
-      fan_loop_of_length<L, Real, true, averaged>(block, group, material, vectors);
+    closed_or_open(group, [&]<bool closed>() {
+      fan_loop_of_length<L, Real, closed, averaged>(block, group, material, vectors);
+    });
   }
 
   template <class MakeMaterial>
@@ -206,13 +205,21 @@ struct Loops {
   }
   static void corner_changes(const Block<Real>& block, const Vectors<Real>& vectors) {
     over_averaged(
-        block, [&](const Group& group) { linear_fan_changes<L, Real>(block, group, vectors); },
+        block,
+        [&](const Group& group) {
+          closed_or_open(group,
+                         [&]<bool closed>() { linear_fan_changes<L, Real, closed>(block, group, vectors); });
+        },
         [&](const Group& group) { quadratic_fan_changes<L, Real>(block, group, vectors); },
         [&](const Group& group) { element_changes<L, Real, Tet10>(block, group, vectors); });
   }
   static void corner_forces(const Block<Real>& block, const Vectors<Real>& vectors) {
     over_averaged(
-        block, [&](const Group& group) { linear_fan_pressures<L, Real>(block, group, vectors); },
+        block,
+        [&](const Group& group) {
+          closed_or_open(
+              group, [&]<bool closed>() { linear_fan_pressures<L, Real, closed>(block, group, vectors); });
+        },
         [&](const Group& group) { quadratic_fan_pressures<L, Real>(block, group, vectors); },
         [&](const Group& group) { element_pressures<L, Real, Tet10>(block, group, vectors); });
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Forces of pressures at the corners of quadratic tetrahedra, fans or curved ones.
+// Forces of pressures at the corners of tetrahedra: linear and quadratic fans, curved ones.
 #pragma once
 
 #include "cells/tet10.hpp"
@@ -104,15 +104,8 @@ inline void linear_fan_pressures(const Block<Real>& block, const Group& group, V
         L::add3(f, at, sum);
       });
 }
-template <class L, class Real>
-inline void linear_fan_pressures(const Block<Real>& block, const Group& group, Vectors<Real> vectors) {
-  if (group.shape == kacanov::simd::Shape::open_fan)
-    linear_fan_pressures<L, Real, false>(block, group, vectors);
-  else
-    linear_fan_pressures<L, Real, true>(block, group, vectors);
-}
 
-/// The same of any element that averages there: the transpose of element_changes.
+/// The transpose of element_changes, of any element that averages there.
 template <class L, class Real, class E>
 inline void element_pressures(const Block<Real>& block, const Group& group, Vectors<Real> vectors) {
   using V = typename L::V;
