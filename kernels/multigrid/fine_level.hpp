@@ -65,7 +65,8 @@ class FineLevel {
   /// Onto the space of the setup.
   void project(std::span<float> x) const;
   /// Estimates the largest eigenvalue of D⁻¹A for a polynomial of this degree on [Λ/range, Λ] (theory:
-  /// chebyshev).
+  /// chebyshev). It serves for later blocks as well: they are part of both D and A, and take their share of Λ
+  /// towards 1.
   void choose_smoother(int degree, double range);
   const Chebyshev& smoother() const noexcept { return smoother_; }
   std::size_t bytes() const noexcept {

@@ -47,6 +47,7 @@ class PressureHierarchy final : public RigidMultigrid::Hierarchy {
 
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space) override {
     fine_.build(g, blocks, space);
+    fine_.choose_smoother(1, 1.0);
     complete(g);
   }
 
@@ -117,7 +118,6 @@ class PressureHierarchy final : public RigidMultigrid::Hierarchy {
       p_.resize(schur_->size());
       for (auto* v : {&change_, &rest_}) v->resize(pressures_.rows());
     }
-    fine_.choose_smoother(1, 1.0);
     scale_ = 1.0 / (pressure_damping * fine_.largest());
     schur_->build(fine_.inverse(), scale_, pressures_.compliance());
     grids_->build(g, stiffnesses());

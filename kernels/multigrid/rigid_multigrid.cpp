@@ -50,6 +50,7 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space) override {
     direct_.reset();
     fine_.build(g, blocks, space);
+    fine_.choose_smoother(options_.fine_degree, options_.fine_range);
     if (!motions_) {
       motions_.emplace(body_, g, options_);
       stages_.emplace_back(motions_->make_level());
@@ -108,7 +109,7 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
   }
 
  private:
-  /// Everything below the first coarse level, and the smoothers.
+  /// Everything below the first coarse level, and the smoothers of these levels.
   void complete() {
     while (stages_.back().level.total() > direct_rows) {
       auto& stage = stages_.back();
@@ -132,7 +133,6 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
       const double largest = stage.level.largest_eigenvalue();
       stage.smoother = {options_.coarse_degree, largest / options_.coarse_range, largest};
     }
-    fine_.choose_smoother(options_.fine_degree, options_.fine_range);
     for (auto* v : {&b_, &x_, &step_, &image_}) v->resize(body_.unknowns());
   }
 

@@ -15,12 +15,12 @@
 
 namespace kacanov {
 
-/// Finds the element of every slot again in its batch. Calls visit(point, the caller's nodes, law, slot) for
-/// each of its points.
+/// Finds the elements of the slots again in their batches. Calls visit(points, the caller's nodes, law, slot
+/// of the first point) for each; slots of an element's points are `lanes` apart.
 template <class Real>
 template <class E, class Visit>
-void BasicOperator<Real>::Data::visit_points(const BlockRange& range, const simd::Group& group,
-                                             const Visit& visit) const {
+void BasicOperator<Real>::Data::visit_elements(const BlockRange& range, const simd::Group& group,
+                                               const Visit& visit) const {
   using elements::Point;
   const std::size_t lanes = layout.lanes;
   const Units units{type, {}, {}, {}};
@@ -32,25 +32,21 @@ void BasicOperator<Real>::Data::visit_points(const BlockRange& range, const simd
   for (std::size_t batch = 0; batch < group.batches; ++batch)
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       std::array<std::int32_t, E::nodes> id{};
-      std::array<Point<E>, E::points> at{};  // of the element at hand
-      for (std::uint32_t p = 0; p < count; ++p) {
+      elements::Nodal<E> x;
+      for (std::uint32_t p = 0; p < count; p += E::points) {
         const std::size_t slot = range.first_slot + group.first_slot + (batch * count + p) * lanes + lane;
         if (layout.element_point[slot] < 0) continue;
-        if (p % E::points == 0) {
-          elements::Nodal<E> x;
-          for (int a = 0; a < E::nodes; ++a) {
-            const auto k = static_cast<std::uint32_t>(a);
-            const std::size_t node = units.node_of(group.shape, group.length, p / E::points, k);
-            const std::size_t record = index[(batch * nodes + node) * lanes + lane];
-            id[k] = layout.nodes[range.first_node + record / 4];
-            for (int c = 0; c < E::dim; ++c) x[Point<E>::at(a, c)] = static_cast<double>(records[record + c]);
-            // Radii count as they are, not from the middle of the block.
-            if (plane == PlaneState::axisymmetric)
-              x[Point<E>::at(a, 0)] = static_cast<double>(records[record + 2]);
-          }
-          at = elements::points_of<E>(x, law.mean_dilatation, plane);
+        for (int a = 0; a < E::nodes; ++a) {
+          const auto k = static_cast<std::uint32_t>(a);
+          const std::size_t node = units.node_of(group.shape, group.length, p / E::points, k);
+          const std::size_t record = index[(batch * nodes + node) * lanes + lane];
+          id[k] = layout.nodes[range.first_node + record / 4];
+          for (int c = 0; c < E::dim; ++c) x[Point<E>::at(a, c)] = static_cast<double>(records[record + c]);
+          // Radii count as they are, not from the middle of the block.
+          if (plane == PlaneState::axisymmetric)
+            x[Point<E>::at(a, 0)] = static_cast<double>(records[record + 2]);
         }
-        visit(at[p % E::points], id, law, slot);
+        visit(elements::points_of<E>(x, law.mean_dilatation, plane), id, law, slot);
       }
     }
 }
@@ -74,14 +70,22 @@ void BasicOperator<Real>::Data::sum_blocks(std::span<Real> blocks, const Add& ad
       const std::int32_t at = place[node];
       return at < 0 ? blocks.data() + node * size : mine.data() + at * size;
     };
+    const auto add_element = [&]<class E>(E, const auto& at, const auto& node, const Law& law,
+                                          std::size_t slot) {
+      for (int a = 0; a < E::nodes; ++a) {
+        double here[E::dim * E::dim] = {};
+        for (std::size_t q = 0; q < E::points; ++q) add(at[q], a, law, slot + q * layout.lanes, here);
+        Real* block = block_of(node[a]);
+        for (int i = 0; i < E::dim * E::dim; ++i) block[i] += static_cast<Real>(here[i]);
+      }
+    };
     for (std::size_t b = layout.share[t]; b < layout.share[static_cast<std::size_t>(t) + 1]; ++b)
       for (std::size_t i = 0; i < layout.blocks[b].group_count; ++i)
-        elements::dispatch(type, [&]<class E>(E) {
-          visit_points<E>(
-              layout.blocks[b], layout.groups[layout.blocks[b].first_group + i],
-              [&](const elements::Point<E>& point, const auto& node, const Law& law, std::size_t slot) {
-                for (int a = 0; a < E::nodes; ++a) add(point, a, law, slot, block_of(node[a]));
-              });
+        elements::dispatch(type, [&]<class E>(E element) {
+          visit_elements<E>(layout.blocks[b], layout.groups[layout.blocks[b].first_group + i],
+                            [&](const auto& at, const auto& node, const Law& law, std::size_t slot) {
+                              add_element(element, at, node, law, slot);
+                            });
         });
   });
   for (const auto& mine : sums)
@@ -103,7 +107,7 @@ void take_diagonal(std::span<const Real> blocks, std::size_t dim, std::span<Real
 template <class Real>
 void BasicOperator<Real>::block_diagonal(std::span<Real> blocks) const {
   const Data& data = *data_;
-  data.sum_blocks(blocks, [&](const auto& point, int a, const Law& law, std::size_t slot, Real* block) {
+  data.sum_blocks(blocks, [&](const auto& point, int a, const Law& law, std::size_t slot, double* block) {
     const auto secant = static_cast<double>(data.secant[slot]);
     point.add_diagonal_block(a, data.bulk_at(law, secant), secant, block);
   });
@@ -113,7 +117,7 @@ template <class Real>
 void BasicOperator<Real>::block_diagonal_deviator(std::span<Real> blocks) const {
   const Data& data = *data_;
   if (pressures() == 0) throw std::logic_error("block_diagonal_deviator where nothing is averaged");
-  data.sum_blocks(blocks, [&](const auto& point, int a, const Law& law, std::size_t slot, Real* block) {
+  data.sum_blocks(blocks, [&](const auto& point, int a, const Law& law, std::size_t slot, double* block) {
     point.add_diagonal_block(a, law.mean_dilatation ? 0.0 : law.bulk, static_cast<double>(data.secant[slot]),
                              block);
   });
@@ -133,7 +137,7 @@ void BasicOperator<Real>::block_diagonal_tangent(std::span<Real> blocks) const {
   if (!data.has_tangent) throw std::logic_error("block_diagonal_tangent before update_tangent");
   const Aligned<Real>& g = data.tangent_secant.empty() ? data.secant : data.tangent_secant;
   const std::size_t lanes = data.layout.lanes;
-  data.sum_blocks(blocks, [&](const auto& point, int a, const Law& law, std::size_t slot, Real* block) {
+  data.sum_blocks(blocks, [&](const auto& point, int a, const Law& law, std::size_t slot, double* block) {
     const auto secant = static_cast<double>(g[slot]);
     point.add_diagonal_block(a, data.bulk_at(law, secant), secant, block);
     // √|2 g'/x| dev ε, component by component over the lanes; see material.hpp.

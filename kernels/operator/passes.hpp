@@ -70,7 +70,7 @@ struct BasicOperator<Real>::Data {
   void add_interface(Real* y, int count, std::size_t begin, std::size_t end);
 
   template <class E, class Visit>
-  void visit_points(const BlockRange& range, const simd::Group& group, const Visit& visit) const;
+  void visit_elements(const BlockRange& range, const simd::Group& group, const Visit& visit) const;
   template <class Add>
   void sum_blocks(std::span<Real> blocks, const Add& add) const;
 
