@@ -99,16 +99,24 @@ void CornerSchur::take_changes(const MultigridBody& body, const CornerPressures&
     const SummedPattern b({map.starts, node_number, elements.node, elements.first_node},
                           {starts, entry_number, elements.entry, elements.first_entry}, map, threads_);
     std::vector<float> value(3 * b.entries(), 0.0F);
+    std::vector<std::int32_t> row, column;
+    for (const std::int64_t n : node_number) row.push_back(b.row(n));
+    for (const std::int64_t n : entry_number) column.push_back(b.column(n));
     elements::dispatch(body.body.mesh.type, [&]<class E>(E) {
       if constexpr (E::dim == 3 && E::corner_dilatation)
-        for (const std::size_t e : elements.element) {
+        for (std::size_t m = 0; m < elements.element.size(); ++m) {
+          const std::size_t e = elements.element[m];
+          const std::int32_t* node = body.body.mesh.connectivity.data() + e * E::nodes;
+          const std::int32_t* corner_entry = &pressures.means().of_element[e * E::corners];
           const auto sum = element_changes<E>(body.body, e);
-          for (std::size_t a = 0; a < E::nodes; ++a)
-            for (std::size_t c = 0; c < E::corners; ++c) {
-              const std::size_t k =
-                  b.entry(b.row(node_number[body.body.mesh.connectivity[e * E::nodes + a]]),
-                          b.column(entry_number[pressures.means().of_element[e * E::corners + c]]));
-              for (std::size_t i = 0; i < 3; ++i) value[3 * k + i] += static_cast<float>(sum[a][c][i]);
+          // Corners of one patch have an entry together.
+          for (std::size_t j = elements.first_entry[m]; j < elements.first_entry[m + 1]; ++j)
+            for (std::size_t a = 0; a < E::nodes; ++a) {
+              const std::size_t k = b.entry(row[node[a]], column[elements.entry[j]]);
+              for (std::size_t c = 0; c < E::corners; ++c) {
+                if (corner_entry[c] != elements.entry[j]) continue;
+                for (std::size_t i = 0; i < 3; ++i) value[3 * k + i] += static_cast<float>(sum[a][c][i]);
+              }
             }
         }
     });

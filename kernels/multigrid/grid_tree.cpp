@@ -126,8 +126,10 @@ std::int32_t GridTree::leaf_at(const Position& at, int level) const {
 
 Vector3 GridTree::within(const Cell& cell, const double* point) const {
   Vector3 xi{};
-  for (std::size_t k = 0; k < 3; ++k)
+  for (std::size_t k = 0; k < 3; ++k) {
     xi[k] = ((point[k] - origin_[k]) / unit_ - cell.origin[k]) / cell.size();
+    if (std::abs(xi[k] - std::round(xi[k])) < on_side) xi[k] = std::round(xi[k]);
+  }
   return xi;
 }
 

@@ -29,7 +29,7 @@ Solves solves_for(double contrast, double strength) {
   constexpr double range = 40.0;
   const double sigma = (range + 1.0) / (range - 1.0);
   const double wanted = std::acosh(std::max(1.0, 0.01 * contrast)) / std::acosh(sigma);
-  const int ends = static_cast<int>(std::ceil(strength * std::clamp(wanted, 10.0, 30.0)));
+  const int ends = static_cast<int>(std::ceil(strength * std::clamp(wanted, 6.0, 30.0)));
   const int middle = (ends + 2) / 3;
   return {{middle, 2.0 * middle + 2.0}, {ends, range}};
 }
