@@ -2,9 +2,14 @@
 // What the fast operator refuses, and the order of nodes and elements that it likes.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
 #include <cstdlib>
 #include <limits>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include <kacanov/locality.hpp>
 #include <kacanov/operator.hpp>
@@ -74,4 +79,49 @@ TEST_CASE("the locality order is a renumbering that brings neighbours together")
     after += std::abs(rank[a] - rank[b]);
   }
   CHECK(after < 0.2 * before);
+}
+
+namespace {
+
+/// Hilbert index of a point of a 2^20 grid, as Skilling (2004) has it, bit by bit.
+std::uint64_t plain_hilbert(std::array<std::uint32_t, 3> x) {
+  for (std::uint32_t q = 1u << 19; q > 1; q >>= 1)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t swap = (x[0] ^ x[i]) & (q - 1);
+      if (x[i] & q) {
+        x[0] ^= q - 1;
+      } else {
+        x[0] ^= swap;
+        x[i] ^= swap;
+      }
+    }
+  for (std::size_t i = 1; i < 3; ++i) x[i] ^= x[i - 1];
+  std::uint32_t t = 0;
+  for (std::uint32_t q = 1u << 19; q > 1; q >>= 1)
+    if (x[2] & q) t ^= q - 1;
+  std::uint64_t key = 0;
+  for (unsigned b = 20; b-- > 0;)
+    for (const std::uint32_t xi : x) key = key << 1 | ((xi ^ t) >> b & 1u);
+  return key;
+}
+
+}  // namespace
+
+TEST_CASE("the locality order follows the Hilbert curve") {
+  auto mesh = meshes::box(ElementType::tet4, {9, 9, 9}, {1, 1, 1});
+  meshes::shuffle(mesh, 62);
+  // Cells are cubes, and the mesh is: the curve's grid is that of the coordinates.
+  std::vector<std::pair<std::uint64_t, std::int32_t>> expected;
+  for (std::size_t n = 0; n < mesh.view().node_count(); ++n) {
+    std::array<std::uint32_t, 3> x{};
+    for (std::size_t k = 0; k < 3; ++k)
+      x[k] = static_cast<std::uint32_t>(mesh.coordinates[3 * n + k] * ((1u << 20) - 1));
+    expected.emplace_back(plain_hilbert(x), static_cast<std::int32_t>(n));
+  }
+  std::sort(expected.begin(), expected.end());
+  const std::vector<std::int32_t> order = node_order(mesh.view());
+  REQUIRE(order.size() == expected.size());
+  std::size_t same = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) same += order[i] == expected[i].second ? 1 : 0;
+  CHECK(same == order.size());
 }
