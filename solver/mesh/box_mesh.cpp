@@ -89,24 +89,65 @@ void add_elements(const Lattice& lattice, const Index3& cells, ElementType type,
       for (int x = 0; x < cells[0]; ++x) add_cell(lattice, {x * step, y * step, z * step}, facts, elements);
 }
 
-void name_sides(const Lattice& lattice, Mesh& mesh) {
+/// The sides of boxes: low and high end of each direction.
+using Sides = std::vector<std::array<Group, 2>>;
+
+Sides named_sides(std::size_t dim) {
   constexpr std::array<std::array<const char*, 2>, 3> names3{
       {{"left", "right"}, {"front", "back"}, {"bottom", "top"}}};
   constexpr std::array<std::array<const char*, 2>, 2> names2{{{"left", "right"}, {"bottom", "top"}}};
-  const std::size_t dim = mesh.dim();
+  Sides sides(dim);
   for (std::size_t k = 0; k < dim; ++k)
     for (std::size_t end = 0; end < 2; ++end) {
-      Group side{dim == 3 ? names3[k][end] : names2[k][end], mesh.dim() - 1, {}};
-      const double plane = end == 0 ? 0.0 : lattice.size[k];
-      for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-        const auto nodes = mesh.facet(f);
-        if (std::all_of(nodes.begin(), nodes.end(), [&](std::int32_t n) {
-              return mesh.coordinates[static_cast<std::size_t>(n) * dim + k] == plane;
-            }))
-          side.members.push_back(static_cast<std::int32_t>(f));
-      }
-      mesh.groups.push_back(std::move(side));
+      sides[k][end].name = dim == 3 ? names3[k][end] : names2[k][end];
+      sides[k][end].dimension = static_cast<int>(dim) - 1;
     }
+  return sides;
+}
+
+/// Adds the facets that elements of the box cell `at` have on the sides, as find_boundary() would.
+void add_facets(const Index3& cells, const Index3& at, Mesh& mesh, Sides& sides, std::size_t first_element) {
+  const Cell& type = cell(mesh.type);
+  const std::size_t facet_nodes = type.facet().nodes, facet_corners = type.facet().corners;
+  for (std::size_t e = 0; e < static_cast<std::size_t>(type.box_elements()); ++e)
+    for (std::size_t f = 0; f < type.facet_nodes.size(); f += facet_nodes) {
+      const auto nodes = type.facet_nodes.subspan(f, facet_nodes);
+      for (std::size_t k = 0; k < sides.size(); ++k)
+        for (const int end : {0, 1}) {
+          if (at[k] != end * (cells[k] - 1)) continue;
+          const auto on_side = [&](std::int8_t corner) {
+            return type.box[e * static_cast<std::size_t>(type.corners) + static_cast<std::size_t>(corner)]
+                           [k] == end;
+          };
+          if (!std::all_of(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(facet_corners),
+                           on_side))
+            continue;
+          sides[k][static_cast<std::size_t>(end)].members.push_back(
+              static_cast<std::int32_t>(mesh.facet_count()));
+          mesh.facet_element.push_back(static_cast<std::int32_t>(first_element + e));
+          for (const std::int8_t node : nodes)
+            mesh.facets.push_back(mesh.elements[(first_element + e) * static_cast<std::size_t>(type.nodes) +
+                                                static_cast<std::size_t>(node)]);
+        }
+    }
+}
+
+void add_boundary(const Index3& cells, Mesh& mesh) {
+  Sides sides = named_sides(static_cast<std::size_t>(mesh.dim()));
+  const auto is_outer = [&](const Index3& at) {
+    for (std::size_t k = 0; k < sides.size(); ++k)
+      if (at[k] == 0 || at[k] == cells[k] - 1) return true;
+    return false;
+  };
+  std::size_t element = 0;
+  for (int z = 0; z < std::max(cells[2], 1); ++z)
+    for (int y = 0; y < cells[1]; ++y)
+      for (int x = 0; x < cells[0]; ++x) {
+        if (is_outer({x, y, z})) add_facets(cells, {x, y, z}, mesh, sides, element);
+        element += static_cast<std::size_t>(cell(mesh.type).box_elements());
+      }
+  for (auto& ends : sides)
+    for (Group& side : ends) mesh.groups.push_back(std::move(side));
 }
 
 }  // namespace
@@ -122,8 +163,7 @@ Mesh make_box(const BoxSpec& spec) {
   const Lattice lattice{spec.size, {cells[0] * refinement, cells[1] * refinement, cells[2] * refinement}};
   add_nodes(lattice, dim, mesh.coordinates);
   add_elements(lattice, cells, spec.type, mesh.elements);
-  find_boundary(mesh);
-  name_sides(lattice, mesh);
+  add_boundary(cells, mesh);
   return mesh;
 }
 

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 #include "problem/shapes.hpp"
 #include "problem/vector3.hpp"
@@ -28,20 +30,27 @@ struct Bounds {
   }
 };
 
-/// Of all of an element. Edges with a node in their middle are parabolas: what they bound lies within the
-/// convex hull of the corners and of the edges' Bézier points, 2 m − (a + b)/2.
-Bounds bounds(const MeshView& mesh, std::span<const std::int32_t> nodes) {
+/// How far all of an element reaches along axis c. Edges with a node in their middle are parabolas: what they
+/// bound lies within the convex hull of the corners and of the edges' Bézier points, 2 m − (a + b)/2.
+std::pair<double, double> reach(const MeshView& mesh, std::span<const std::int32_t> nodes, std::size_t c) {
   const Cell& type = cell(mesh.type);
-  const auto at = [&](int k) { return position(mesh, nodes[static_cast<std::size_t>(k)]); };
-  Bounds box{at(0), at(0)};
-  for (int k = 1; k < type.corners; ++k) box.take(at(k));
+  const std::size_t dim = type.dim;
+  if (c >= dim) return {0.0, 0.0};
+  const auto at = [&](int k) {
+    return mesh.coordinates[static_cast<std::size_t>(nodes[static_cast<std::size_t>(k)]) * dim + c];
+  };
+  double low = at(0), high = low;
+  const auto take = [&](double x) { low = std::min(low, x), high = std::max(high, x); };
+  for (int k = 1; k < type.corners; ++k) take(at(k));
   if (type.order == 2)
-    for (const CellEdge& edge : type.edges) box.take(2.0 * at(edge.middle) - 0.5 * (at(edge.a) + at(edge.b)));
-  for (std::size_t c = 0; c < 3; ++c) {
-    const double margin = 1e-5 * (box.high[c] - box.low[c]);
-    box.low[c] -= margin;
-    box.high[c] += margin;
-  }
+    for (const CellEdge& edge : type.edges) take(2.0 * at(edge.middle) - 0.5 * (at(edge.a) + at(edge.b)));
+  const double margin = 1e-5 * (high - low);
+  return {low - margin, high + margin};
+}
+
+Bounds bounds(const MeshView& mesh, std::span<const std::int32_t> nodes) {
+  Bounds box;
+  for (std::size_t c = 0; c < 3; ++c) std::tie(box.low[c], box.high[c]) = reach(mesh, nodes, c);
   return box;
 }
 
@@ -99,9 +108,9 @@ double outside(const Cell& type, const Vector3& at) {
 }
 
 bool near_element(const MeshView& mesh, std::span<const std::int32_t> nodes, const Vector3& x) {
-  const Bounds box = bounds(mesh, nodes);
-  for (std::size_t c = 0; c < static_cast<std::size_t>(dimension(mesh.type)); ++c)
-    if (x[c] < box.low[c] || x[c] > box.high[c]) return false;
+  for (std::size_t c = 0; c < static_cast<std::size_t>(dimension(mesh.type));
+       ++c)  // most are off in the first
+    if (const auto [low, high] = reach(mesh, nodes, c); x[c] < low || x[c] > high) return false;
   return true;
 }
 

@@ -184,6 +184,18 @@ TEST_CASE("midside nodes of elements and facets lie in the middle of their edges
   for (std::size_t f = 0; f < mesh.facet_count(); ++f) check(mesh.facet(f), 3, {{0, 1}, {1, 2}, {2, 0}});
 }
 
+TEST_CASE("the boundary of a box is what is found of its elements") {
+  for (const ElementType type : all_types)
+    for (const std::array<int, 3> cells : {std::array{1, 1, 1}, {2, 1, 1}, {1, 3, 2}, {4, 3, 3}}) {
+      const Mesh box = make_box({{3, 2, 1}, cells, type});
+      Mesh found = box;
+      find_boundary(found);
+      CAPTURE(static_cast<int>(type));
+      CHECK(box.facets == found.facets);
+      CHECK(box.facet_element == found.facet_element);
+    }
+}
+
 TEST_CASE("the boundary does not depend on the order of the elements") {
   for (const ElementType type : all_types) {
     Mesh mesh = make_box({{1, 1, 1}, {3, 3, 3}, type});
