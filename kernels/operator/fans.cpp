@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <utility>
 
 #include "cells/tet10.hpp"
@@ -28,44 +29,52 @@ struct EdgeTable {
   }
 };
 
-const Index* nodes_of(const MeshView& mesh, std::size_t element) {
-  return mesh.connectivity.data() + element * nodes_per_element(mesh.type);
-}
+/// The nodes of each tetrahedron, where loops keep them at hand.
+class Tetrahedra {
+ public:
+  explicit Tetrahedra(const MeshView& mesh)
+      : nodes_(mesh.connectivity.data()), stride_(static_cast<std::size_t>(nodes_per_element(mesh.type))) {}
 
-EdgeTable make_edges(const MeshView& mesh) {
-  struct Entry {
-    Index high;
-    std::uint32_t place;
-  };
-  std::vector<std::uint32_t> start(mesh.node_count() + 1, 0);
-  const std::size_t count = mesh.element_count();
-  for (std::size_t e = 0; e < count; ++e)
-    for (const auto& edge : edges) {
-      const Index* node = nodes_of(mesh, e);
-      ++start[at(std::min(node[edge[0]], node[edge[1]])) + 1];
-    }
-  for (std::size_t i = 1; i < start.size(); ++i) start[i] += start[i - 1];
-  std::vector<Entry> entries(6 * count);
-  std::vector<std::uint32_t> fill(start.begin(), start.end() - 1);
-  for (std::size_t e = 0; e < count; ++e)
-    for (std::uint32_t k = 0; k < 6; ++k) {
-      const Index* node = nodes_of(mesh, e);
-      const auto [low, high] = std::minmax(node[edges[k][0]], node[edges[k][1]]);
-      entries[fill[low]++] = {high, static_cast<std::uint32_t>(8 * e) + k};
-    }
-  EdgeTable table;
-  table.around.reserve(entries.size());
-  for (std::size_t i = 0; i + 1 < start.size(); ++i) {
-    const auto from = entries.begin() + start[i], to = entries.begin() + start[i + 1];
-    std::sort(from, to, [](const Entry& a, const Entry& b) {
-      return a.high != b.high ? a.high < b.high : a.place < b.place;
-    });
-    for (auto it = from; it != to; ++it) {
-      if (it == from || it->high != (it - 1)->high)
-        table.first.push_back(static_cast<std::uint32_t>(table.around.size()));
-      table.around.push_back(it->place);
-    }
+  const Index* operator[](std::size_t element) const { return nodes_ + element * stride_; }
+  /// The lower and the higher end of a local edge, as in EdgeTable::around.
+  std::pair<Index, Index> ends(std::uint32_t place) const {
+    const Index* node = (*this)[place / 8];
+    const auto& edge = edges[place % 8];
+    const Index a = node[edge[0]], b = node[edge[1]];
+    return {std::min(a, b), std::max(a, b)};
   }
+
+ private:
+  const Index* nodes_;
+  std::size_t stride_;
+};
+
+/// Sorts the local edges of all tetrahedra by their higher end and then, where they stand, by the lower one:
+/// two passes of counting, as both are numbers of nodes.
+EdgeTable make_edges(const MeshView& mesh) {
+  const Tetrahedra tetrahedra(mesh);
+  std::vector<std::uint32_t> low_start(mesh.node_count() + 1, 0), high_start(low_start);
+  const auto count = static_cast<std::uint32_t>(mesh.element_count());
+  const auto for_each_place = [&](const auto& visit) {
+    for (std::uint32_t e = 0; e < count; ++e)
+      for (std::uint32_t k = 0; k < edges.size(); ++k) visit(8 * e + k);
+  };
+  for_each_place([&](std::uint32_t place) {
+    const auto [low, high] = tetrahedra.ends(place);
+    ++low_start[at(low) + 1];
+    ++high_start[at(high) + 1];
+  });
+  std::partial_sum(low_start.begin(), low_start.end(), low_start.begin());
+  std::partial_sum(high_start.begin(), high_start.end(), high_start.begin());
+  EdgeTable table;
+  table.around.resize(edges.size() * count);
+  std::vector<std::uint32_t> by_high(table.around.size());
+  for_each_place([&](std::uint32_t place) { by_high[high_start[tetrahedra.ends(place).second]++] = place; });
+  for (const std::uint32_t place : by_high) table.around[low_start[tetrahedra.ends(place).first]++] = place;
+  std::pair<Index, Index> before{-1, -1};
+  for (std::uint32_t i = 0; i < table.around.size(); ++i)
+    if (const auto ends = tetrahedra.ends(table.around[i]); std::exchange(before, ends) != ends)
+      table.first.push_back(i);
   table.first.push_back(static_cast<std::uint32_t>(table.around.size()));
   return table;
 }
@@ -73,23 +82,19 @@ EdgeTable make_edges(const MeshView& mesh) {
 /// Edges that are the longest of every tetrahedron round them. Taken first among equals they keep a cover
 /// regular: in a box cut along its diagonals the diagonals' fans of six tile it.
 std::vector<bool> longest_of_all(const MeshView& mesh, const EdgeTable& table) {
-  const auto square = [&](const Index* t, std::size_t k) {
-    double sum = 0.0;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double d =
-          mesh.coordinates[3 * at(t[edges[k][0]]) + c] - mesh.coordinates[3 * at(t[edges[k][1]]) + c];
-      sum += d * d;
-    }
-    return sum;
-  };
+  const Tetrahedra tetrahedra(mesh);
   std::vector<std::uint8_t> longest(mesh.element_count());
   for (std::size_t e = 0; e < longest.size(); ++e) {
+    const Index* t = tetrahedra[e];
+    std::array<const double*, 4> x;
+    for (std::size_t a = 0; a < 4; ++a) x[a] = &mesh.coordinates[3 * at(t[a])];
     double best = -1.0;
-    for (std::size_t k = 0; k < 6; ++k)
-      if (const double s = square(nodes_of(mesh, e), k); s > best) {
-        best = s;
-        longest[e] = static_cast<std::uint8_t>(k);
-      }
+    for (std::size_t k = 0; k < edges.size(); ++k) {
+      const double *from = x[edges[k][0]], *to = x[edges[k][1]];
+      double square = 0.0;
+      for (std::size_t c = 0; c < 3; ++c) square += (from[c] - to[c]) * (from[c] - to[c]);
+      if (square > best) best = square, longest[e] = static_cast<std::uint8_t>(k);
+    }
   }
   std::vector<bool> result(table.size());
   for (std::uint32_t i = 0; i < result.size(); ++i) {
@@ -131,7 +136,7 @@ struct Cover {
   }
 
   Index middle(Index element, Index a, Index b) const {
-    const Index* node = nodes_of(mesh, at(element));
+    const Index* node = Tetrahedra(mesh)[at(element)];
     for (const CellEdge& edge : elements::Tet10::edge)
       if (std::minmax(node[edge.a], node[edge.b]) == std::minmax(a, b)) return node[edge.middle];
     return -1;
@@ -181,6 +186,7 @@ struct Cover {
 
 Units cover_by_fans(const Body& body, std::vector<bool> taken) {
   const MeshView& mesh = body.mesh;
+  const Tetrahedra tetrahedra(mesh);
   const EdgeTable table = make_edges(mesh);
   const std::vector<bool> preferred = longest_of_all(mesh, table);
   Cover cover{mesh, {}, {}};
@@ -206,16 +212,14 @@ Units cover_by_fans(const Body& body, std::vector<bool> taken) {
         if (left > 0) enqueue(edge, left);
         continue;
       }
-      const std::uint32_t first = table.of(edge)[0];
-      const Index low = std::min(nodes_of(mesh, first / 8)[edges[first % 8][0]],
-                                 nodes_of(mesh, first / 8)[edges[first % 8][1]]);
+      const Index low = tetrahedra.ends(table.of(edge)[0]).first;
       Index p = 0, q = 0;
       cover.arcs.clear();
       for (const std::uint32_t place : table.of(edge)) {
         const std::uint32_t e = place / 8;
         if (taken[e]) continue;
         taken[e] = true;
-        const Index* t = nodes_of(mesh, e);
+        const Index* t = tetrahedra[e];
         const auto& local = edges[place % 8];
         const bool forward = t[local[0]] == low;
         p = low, q = forward ? t[local[1]] : t[local[0]];
