@@ -7,7 +7,9 @@
 #include <cstddef>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <tuple>
+#include <utility>
 
 #include <kacanov/corner_means.hpp>
 #include <kacanov/vector3.hpp>
@@ -54,12 +56,13 @@ class PatchMaker {
   }
 
   std::vector<std::int64_t> run() {
+    find_pieces();
     do {
-      while (tell_neighbours()) {
-      }
+      tell_pieces();
     } while (nodes_.any(tell_ranks(head_)));
     join_small_ones();
     std::vector<std::int64_t> patch;
+    patch.reserve(head_.size());
     for (const Head& head : head_) patch.push_back(head.node);
     return patch;
   }
@@ -70,25 +73,39 @@ class PatchMaker {
     return {x[0], x[1], x[2]};
   }
 
-  /// Calls visit(a, b) for the edges of elements that average, both ways round.
+  /// Calls visit(a, b) for the edges of elements that average.
   template <class Visit>
   void for_each_edge(const Visit& visit) const {
     for (std::size_t e = 0; e < body_.mesh.element_count(); ++e) {
       if (!averages_at_corners(body_.law(e), body_.mesh.type)) continue;
       const std::int32_t* node = &body_.mesh.connectivity[4 * e];
       for (std::size_t a = 0; a < 4; ++a)
-        for (std::size_t b = 0; b < 4; ++b)
-          if (a != b) visit(static_cast<std::size_t>(node[a]), static_cast<std::size_t>(node[b]));
+        for (std::size_t b = a + 1; b < 4; ++b)
+          visit(static_cast<std::size_t>(node[a]), static_cast<std::size_t>(node[b]));
     }
   }
 
-  /// Of the best head known; whether somebody in the same cube has learned something.
-  bool tell_neighbours() {
-    bool news = false;
+  /// The pieces of this rank's nodes that hang together within a cube: all of one follow the same head.
+  void find_pieces() {
+    piece_.resize(head_.size());
+    std::iota(piece_.begin(), piece_.end(), std::size_t{0});
+    const auto root_of = [&](std::size_t n) {
+      while (piece_[n] != n) n = piece_[n] = piece_[piece_[n]];
+      return n;
+    };
     for_each_edge([&](std::size_t a, std::size_t b) {
-      if (cube_[a] == cube_[b] && head_[a] < head_[b]) head_[b] = head_[a], news = true;
+      if (cube_[a] != cube_[b]) return;
+      const std::size_t one = root_of(a), other = root_of(b);
+      piece_[std::max(one, other)] = std::min(one, other);
     });
-    return news;
+    for (std::size_t n = 0; n < piece_.size(); ++n) piece_[n] = root_of(n);
+  }
+
+  /// Of the best head that one of its nodes knows.
+  void tell_pieces() {
+    for (std::size_t n = 0; n < head_.size(); ++n)
+      if (head_[n] < head_[piece_[n]]) head_[piece_[n]] = head_[n];
+    for (std::size_t n = 0; n < head_.size(); ++n) head_[n] = head_[piece_[n]];
   }
 
   /// The least of all ranks at every node; whether this one learns something.
@@ -109,9 +126,11 @@ class PatchMaker {
 
   /// Nodes of each node's patch.
   std::vector<std::int64_t> sizes() const {
+    std::vector<std::int64_t> size(head_.size(), 0);  // at the first node of each piece, at last at all
+    for (std::size_t n = 0; n < static_cast<std::size_t>(nodes_.owned); ++n) ++size[piece_[n]];
     std::map<std::int64_t, std::int64_t> here;
     for (std::size_t n = 0; n < head_.size(); ++n)
-      here[head_[n].node] += n < static_cast<std::size_t>(nodes_.owned) ? 1 : 0;
+      if (piece_[n] == n) here[head_[n].node] += size[n];
     std::vector<std::vector<Count>> to(nodes_.ranks);
     for (const auto& [node, count] : here) to[nodes_.owner(node)].push_back({node, count});
     const Received<Count> told = exchange_all(to, nodes_);
@@ -121,8 +140,8 @@ class PatchMaker {
     for (std::size_t r = 0; r < back.size(); ++r)
       for (const Count& one : told.from(r)) back[r].push_back({one.node, all.at(one.node)});
     for (const Count& one : exchange_all(back, nodes_).entries) here[one.node] = one.count;
-    std::vector<std::int64_t> size;
-    for (const Head& head : head_) size.push_back(here.at(head.node));
+    for (std::size_t n = 0; n < head_.size(); ++n)
+      size[n] = piece_[n] == n ? here.at(head_[n].node) : size[piece_[n]];
     return size;
   }
 
@@ -131,16 +150,21 @@ class PatchMaker {
     const std::vector<std::int64_t> size = sizes();
     std::vector<char> settled(head_.size());
     for (std::size_t n = 0; n < head_.size(); ++n) settled[n] = size[n] >= least_nodes;
+    std::vector<std::pair<std::size_t, std::size_t>> ways;  // to nodes that are not settled: few
+    for_each_edge([&](std::size_t a, std::size_t b) {
+      if (!settled[b]) ways.emplace_back(a, b);
+      if (!settled[a]) ways.emplace_back(b, a);
+    });
     constexpr double nowhere = std::numeric_limits<double>::infinity();
     for (bool more = true; nodes_.any(more);) {
       std::vector<Head> best(head_.size(), {nowhere, {}, 0});
-      for_each_edge([&](std::size_t a, std::size_t b) {
-        if (!settled[a] || settled[b]) return;
+      for (const auto& [a, b] : ways) {
+        if (!settled[a] || settled[b]) continue;
         const Vector3 here = position(b);
         double off = 0.0;
         for (std::size_t k = 0; k < 3; ++k) off += (here[k] - head_[a].at[k]) * (here[k] - head_[a].at[k]);
         best[b] = std::min(best[b], Head{off, head_[a].at, head_[a].node});
-      });
+      }
       tell_ranks(best);
       more = false;
       for (std::size_t n = 0; n < head_.size(); ++n) {
@@ -155,6 +179,7 @@ class PatchMaker {
   const Body& body_;
   const IndexMap& nodes_;
   std::vector<std::int32_t> cube_;  ///< of a node
+  std::vector<std::size_t> piece_;  ///< likewise: its first node
   std::vector<Head> head_;          ///< the best known in its patch
 };
 

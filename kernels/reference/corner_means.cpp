@@ -44,13 +44,18 @@ CornerMeans corner_means(const Body& body) {
     return std::pair(means.has_patches ? body.pressure_patch[node] : static_cast<std::int64_t>(node),
                      static_cast<std::int32_t>(k % width));
   };
+  // Nodes one after another often have a patch in common, and without patches none is like another.
   for (std::size_t k = 0; k < entry.size(); ++k)
-    if (entry[k] >= 0) keys.push_back(key(k));
-  std::sort(keys.begin(), keys.end());
+    if (entry[k] >= 0 && (keys.empty() || keys.back() != key(k))) keys.push_back(key(k));
+  if (!std::is_sorted(keys.begin(), keys.end())) std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-  for (std::size_t k = 0; k < entry.size(); ++k)
-    if (entry[k] >= 0)
-      entry[k] = static_cast<std::int32_t>(std::lower_bound(keys.begin(), keys.end(), key(k)) - keys.begin());
+  std::size_t found = 0;
+  for (std::size_t k = 0; k < entry.size(); ++k) {
+    if (entry[k] < 0) continue;
+    if (found + 1 < keys.size() && keys[found + 1] == key(k)) ++found;
+    if (keys[found] != key(k)) found = std::lower_bound(keys.begin(), keys.end(), key(k)) - keys.begin();
+    entry[k] = static_cast<std::int32_t>(found);
+  }
   for (const auto& [where, modulus] : keys) means.place.push_back(where), means.modulus.push_back(modulus);
   means.of_element.assign(elements * corners, -1);
   for (std::size_t e = 0; e < elements; ++e)

@@ -8,6 +8,8 @@
 #include <array>
 #include <map>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include <kacanov/corner_means.hpp>
 #include "bodies.hpp"
@@ -69,6 +71,26 @@ TEST_CASE("patches do not depend on how nodes and elements are numbered") {
   CHECK(one == other);
 }
 
+TEST_CASE("the nodes of a patch hang together by edges") {
+  auto mesh = meshes::box(ElementType::tet4, {9, 7, 6}, {9, 7, 6});
+  meshes::jitter(mesh, 0.2, 5);
+  meshes::shuffle(mesh, 18);
+  const auto owned = patched(std::move(mesh));
+  const std::vector<std::int64_t>& patch = owned.pressure_patch;
+  std::vector<std::size_t> least(
+      patch.size());  // of the numbers of the nodes that a node hangs together with
+  for (std::size_t n = 0; n < least.size(); ++n) least[n] = n;
+  for (bool more = true; std::exchange(more, false);)
+    for (std::size_t k = 0; k < owned.mesh.connectivity.size(); ++k)
+      for (std::size_t other = k / 4 * 4; other < k / 4 * 4 + 4; ++other) {
+        const std::size_t a = owned.mesh.connectivity[k], b = owned.mesh.connectivity[other];
+        if (patch[a] == patch[b] && least[a] < least[b]) least[b] = least[a], more = true;
+      }
+  std::map<std::int64_t, std::set<std::size_t>> pieces;
+  for (std::size_t n = 0; n < least.size(); ++n) pieces[patch[n]].insert(least[n]);
+  for (const auto& [name, of] : pieces) CHECK(of.size() == 1);
+}
+
 TEST_CASE("patches do not reach across a slit") {
   // Two slabs one above the other, closer than their nodes are, that share none.
   auto mesh = meshes::box(ElementType::tet4, {6, 6, 3}, {6, 6, 3});
@@ -92,6 +114,17 @@ TEST_CASE("a patch has one mean for every bulk modulus that meets there, and mea
   CHECK(means.moduli.size() == 2);
   std::set<std::pair<std::int64_t, std::int32_t>> seen;
   for (std::size_t i = 0; i < means.size(); ++i) CHECK(seen.emplace(means.place[i], means.modulus[i]).second);
+  CHECK(std::is_sorted(means.place.begin(), means.place.end()));
+  for (std::size_t k = 0; k < means.of_element.size(); ++k) {
+    const std::int32_t entry = means.of_element[k];
+    if (!averages_at_corners(body.law(k / 4), body.mesh.type)) {
+      CHECK(entry == -1);
+      continue;
+    }
+    REQUIRE(entry >= 0);
+    CHECK(means.place[entry] == body.pressure_patch[body.mesh.connectivity[k]]);
+    CHECK(means.bulk(entry) == body.law(k / 4).bulk);
+  }
   std::vector<double> u(body.unknowns()), change(means.size()), volume(means.size());
   for (std::size_t i = 0; i < u.size(); ++i) u[i] = 0.01 * body.mesh.coordinates[i];
   reference::corner_changes(body, means, u, change, volume);
