@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include <kacanov/corner_means.hpp>
+#include "hex8_fields.hpp"
 #include "linear/free_strain.hpp"
 #include "problem/shapes.hpp"
 #include "tet4_fields.hpp"
@@ -86,13 +87,19 @@ class ThermalStress {
 };
 
 void fastest_fields(const Body& body, std::span<const double> u, const reference::ElementFields& out) {
-  if (body.mesh.type == ElementType::tet4) return tet4::fields(body, u, out);
-  reference::fields(body, u, out);
+  switch (body.mesh.type) {
+    case ElementType::tet4: return tet4::fields(body, u, out);
+    case ElementType::hex8: return hex8::fields(body, u, out);
+    default: return reference::fields(body, u, out);
+  }
 }
 
 void fastest_point_fields(const Body& body, std::span<const double> u, const reference::PointFields& out) {
-  if (body.mesh.type == ElementType::tet4) return tet4::point_fields(body, u, out);
-  reference::point_fields(body, u, out);
+  switch (body.mesh.type) {
+    case ElementType::tet4: return tet4::point_fields(body, u, out);
+    case ElementType::hex8: return hex8::point_fields(body, u, out);
+    default: return reference::point_fields(body, u, out);
+  }
 }
 
 }  // namespace
@@ -194,7 +201,11 @@ NodalMeans nodal_means(const Part& part, const BodyState& state) {
 }
 
 double stored_energy(const Body& body, std::span<const double> u) {
-  return body.mesh.type == ElementType::tet4 ? tet4::energy(body, u) : reference::energy(body, u);
+  switch (body.mesh.type) {
+    case ElementType::tet4: return tet4::energy(body, u);
+    case ElementType::hex8: return hex8::energy(body, u);
+    default: return reference::energy(body, u);
+  }
 }
 
 }  // namespace kacanov

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hex8_fields.hpp"
 #include "largest.hpp"
 #include "law_batches.hpp"
 #include "problem/vector3.hpp"
@@ -17,10 +18,11 @@ std::vector<double> patch_scales(const Part& part) {
   std::vector<double> of_element(part.element_count()), size(part.nodes(), 0.0);
   Body flat = part.body();
   flat.mesh.plane = PlaneState::strain;  // sizes within the plane
-  if (part.type == ElementType::tet4)
-    tet4::volumes(flat, of_element);
-  else
-    reference::volumes(flat, of_element);
+  switch (part.type) {
+    case ElementType::tet4: tet4::volumes(flat, of_element); break;
+    case ElementType::hex8: hex8::volumes(flat, of_element); break;
+    default: reference::volumes(flat, of_element);
+  }
   const std::size_t nodes = nodes_per_element(part.type);
   for (std::size_t k = 0; k < part.elements.size(); ++k) size[part.elements[k]] += of_element[k / nodes];
   part.node_map.sum(size, 1);

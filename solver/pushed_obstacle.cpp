@@ -8,7 +8,7 @@ namespace kacanov {
 namespace {
 
 /// A travel and what its force has too much.
-struct Point {
+struct Trial {
   double travel = 0.0, excess = 0.0;
 };
 
@@ -17,7 +17,7 @@ struct Point {
 PushOutcome find_travel(const PushedObstacle& pushed,
                         const std::function<std::optional<double>(double)>& force_at) {
   PushOutcome outcome;
-  std::optional<Point> low, high;
+  std::optional<Trial> low, high;
   double next = std::isfinite(pushed.travel) ? pushed.travel : pushed.touch + pushed.scale;
   bool was_above = false;
   double back = std::max(pushed.scale, std::abs(next - pushed.touch));
@@ -26,13 +26,13 @@ PushOutcome find_travel(const PushedObstacle& pushed,
     const std::optional<double> force = force_at(next);
     if (!force) return outcome;
     outcome.force = *force;
-    const Point here{next, *force - pushed.force};
+    const Trial here{next, *force - pushed.force};
     outcome.reached = pushed.meets(*force);
     if (outcome.reached) return outcome;
     const bool above = here.excess > 0.0;
     (above ? high : low) = here;
     // The end that stays a second time counts half (Illinois).
-    std::optional<Point>& other = above ? low : high;
+    std::optional<Trial>& other = above ? low : high;
     if (other && outcome.solves > 0 && above == was_above) other->excess *= 0.5;
     was_above = above;
     if (low && high) {

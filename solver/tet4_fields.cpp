@@ -3,70 +3,41 @@
 #include "tet4_fields.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 
 #include <kacanov/vector3.hpp>
 #include "cells/tet4.hpp"
+#include "lanes.hpp"
 #include "reference/element_points.hpp"
 
 namespace kacanov::tet4 {
 namespace {
 
-constexpr std::size_t abreast = 16;
-using Lanes = std::array<double, abreast>;
-
-/// Elements in a row. Loops over lanes have no branches and no calls, so that compilers make vectors of them:
-/// 30 ns an element against 100 of the reference.
+/// Elements in a row: 30 ns an element against 100 of the reference.
 struct Abreast {
   Lanes x[4][3], moved[4][3];
   Lanes gradient[3][3];  ///< ∂u_i/∂x_k
   Lanes volume;
 
-  /// Elements from `first` on, the last one again where there are no more.
   void gather(const Body& body, std::span<const double> u, std::size_t first) {
-    const std::size_t last = body.mesh.element_count() - 1;
-    for (std::size_t lane = 0; lane < abreast; ++lane) {
-      const std::int32_t* node = &body.mesh.connectivity[4 * std::min(first + lane, last)];
-      for (std::size_t a = 0; a < 4; ++a) {
-        const std::size_t from = 3 * static_cast<std::size_t>(node[a]);
-        for (std::size_t i = 0; i < 3; ++i) {
-          x[a][i][lane] = body.mesh.coordinates[from + i];
-          moved[a][i][lane] = u[from + i];
-        }
-      }
-    }
+    const ElementsAbreast row = in_a_row(first, body.mesh.element_count());
+    kacanov::gather(body.mesh, row, body.mesh.coordinates, x);
+    kacanov::gather(body.mesh, row, u, moved);
   }
 
   void work_out() {
     for (std::size_t lane = 0; lane < abreast; ++lane) {
-      double j[3][3], d[3][3], cofactor[3][3];  // j, d: along the edges from the first corner
+      double j[3][3], d[3][3], h[3][3];  // j, d: along the edges from the first corner
       for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t k = 0; k < 3; ++k) {
           j[i][k] = x[k + 1][i][lane] - x[0][i][lane];
           d[i][k] = moved[k + 1][i][lane] - moved[0][i][lane];
         }
+      volume[lane] = map_gradient(j, d, h) / 6.0;
       for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t k = 0; k < 3; ++k) {
-          const std::size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
-          cofactor[i][k] = j[i1][k1] * j[i2][k2] - j[i1][k2] * j[i2][k1];
-        }
-      const double det = j[0][0] * cofactor[0][0] + j[0][1] * cofactor[0][1] + j[0][2] * cofactor[0][2];
-      const double scale = 1.0 / det;
-      volume[lane] = det / 6.0;
-      for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t k = 0; k < 3; ++k)
-          gradient[i][k][lane] =
-              scale * (d[i][0] * cofactor[k][0] + d[i][1] * cofactor[k][1] + d[i][2] * cofactor[k][2]);
+        for (std::size_t k = 0; k < 3; ++k) gradient[i][k][lane] = h[i][k];
     }
-  }
-
-  reference::Gradient gradient_of(std::size_t lane) const {
-    reference::Gradient h;
-    for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t k = 0; k < 3; ++k) h[i][k] = gradient[i][k][lane];
-    return h;
   }
 
   Vector3 middle_of(std::size_t lane) const {
@@ -126,7 +97,7 @@ void fields(const Body& body, std::span<const double> u, const reference::Elemen
   const bool moduli = !out.stress.empty() || !out.von_mises.empty() || !out.secant.empty();
   const Strains strains(body, u);
   for_each_element(body, u, [&](std::size_t e, const Abreast& some, std::size_t lane) {
-    const reference::Gradient h = some.gradient_of(lane);
+    const reference::Gradient h = gradient_of(some.gradient, lane);
     const reference::Strain strain = strains(e, h);
     const Law& law = body.law(e);
     const double norm = strain.norm(), g = moduli ? law.secant(norm) : 0.0;
@@ -147,7 +118,7 @@ void fields(const Body& body, std::span<const double> u, const reference::Elemen
 void point_fields(const Body& body, std::span<const double> u, const reference::PointFields& out) {
   const Strains strains(body, u);
   for_each_element(body, u, [&](std::size_t e, const Abreast& some, std::size_t lane) {
-    const reference::Strain strain = strains(e, some.gradient_of(lane));
+    const reference::Strain strain = strains(e, gradient_of(some.gradient, lane));
     if (!out.stress.empty()) {
       const Law& law = body.law(e);
       const reference::Sym tau = reference::stress(law, law.secant(strain.norm()), strain);
@@ -164,7 +135,7 @@ double energy(const Body& body, std::span<const double> u) {
   double sum = 0.0;
   const Strains strains(body, u);
   for_each_element(body, u, [&](std::size_t e, const Abreast& some, std::size_t lane) {
-    const reference::Strain strain = strains(e, some.gradient_of(lane));
+    const reference::Strain strain = strains(e, gradient_of(some.gradient, lane));
     const Law& law = body.law(e);
     sum += some.volume[lane] * (0.5 * law.bulk * strain.square + 2.0 * law.energy(strain.norm()));
   });

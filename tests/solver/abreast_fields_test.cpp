@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fields of tet4 some elements abreast: those of the reference, for any number of elements and any law.
-#include "tet4_fields.hpp"
-
+// Fields of tet4 and hex8 some elements abreast: those of the reference, for any number of elements and any
+// law.
 #include <doctest/doctest.h>
 
 #include <cmath>
 
+#include "hex8_fields.hpp"
 #include "support.hpp"
+#include "tet4_fields.hpp"
 
 using namespace kacanov;
 using namespace kacanov::testing;
@@ -47,10 +48,23 @@ struct Points {
   reference::PointFields all() { return {position, stress, strain, volume}; }
 };
 
-}  // namespace
+/// What there is of an element type.
+struct Abreast {
+  ElementType type;
+  decltype(&tet4::fields) fields;
+  decltype(&tet4::point_fields) point_fields;
+  decltype(&tet4::energy) energy;
+  decltype(&tet4::volumes) volumes;
+};
 
-TEST_CASE("tet4 abreast have the fields of the reference") {
-  Mesh mesh = box_mesh(ElementType::tet4, {2.0, 1.0, 1.0}, 3);
+constexpr Abreast all_abreast[] = {
+    {ElementType::tet4, tet4::fields, tet4::point_fields, tet4::energy, tet4::volumes},
+    {ElementType::hex8, hex8::fields, hex8::point_fields, hex8::energy, hex8::volumes}};
+
+void compare_with_reference(const Abreast& fast, bool mean_dilatation) {
+  CAPTURE(cell(fast.type).name);
+  CAPTURE(mean_dilatation);
+  Mesh mesh = box_mesh(fast.type, {2.0, 1.0, 1.0}, 3);
   map_nodes(mesh, [](const Vector3& x) {
     return Vector3{x[0] + 0.1 * std::sin(3.0 * x[1]), x[1] + 0.05 * x[0] * x[2], 1.2 * x[2]};
   });
@@ -58,10 +72,13 @@ TEST_CASE("tet4 abreast have the fields of the reference") {
   for (std::size_t i = 0; i < u.size(); ++i) u[i] = 0.02 * std::sin(1.7 * static_cast<double>(i));
   Law log = elastic_law(1.0, 0.3), linear = elastic_law(3.0, 0.45);
   log.form = laws::Logarithmic{0.01};
+  log.mean_dilatation = mean_dilatation;
   const std::vector<Law> laws{log, linear};
-  const std::size_t npe = 4;
+  const auto npe = static_cast<std::size_t>(nodes_per_element(fast.type));
+  const auto points_each = static_cast<std::size_t>(points_per_element(fast.type));
   for (const std::size_t elements :
        {std::size_t{1}, std::size_t{16}, std::size_t{37}, mesh.element_count()}) {
+    if (elements > mesh.element_count()) continue;
     CAPTURE(elements);
     std::vector<std::uint16_t> law_of_element(elements);
     for (std::size_t e = 0; e < elements; ++e) law_of_element[e] = e % 3 == 2 ? 1 : 0;
@@ -70,7 +87,7 @@ TEST_CASE("tet4 abreast have the fields of the reference") {
     const Body body{view, laws, law_of_element};
 
     Fields found(elements), expected(elements);
-    tet4::fields(body, u, found.all());
+    fast.fields(body, u, found.all());
     reference::fields(body, u, expected.all());
     check_near(found.stress, expected.stress);
     check_near(found.von_mises, expected.von_mises);
@@ -81,33 +98,47 @@ TEST_CASE("tet4 abreast have the fields of the reference") {
     check_near(found.volume, expected.volume);
     CHECK(found.plastic == expected.plastic);
 
-    Points points(elements), as_reference(elements);
-    tet4::point_fields(body, u, points.all());
+    Points points(elements * points_each), as_reference(elements * points_each);
+    fast.point_fields(body, u, points.all());
     reference::point_fields(body, u, as_reference.all());
     check_near(points.stress, as_reference.stress);
     check_near(points.strain, as_reference.strain);
     check_near(points.volume, as_reference.volume);
-    for (std::size_t e = 0; e < elements; ++e) check_near(points.position[e], as_reference.position[e]);
+    for (std::size_t k = 0; k < points.position.size(); ++k)
+      check_near(points.position[k], as_reference.position[k]);
 
     std::vector<double> volume(elements), reference_volume(elements);
-    tet4::volumes(body, volume);
+    fast.volumes(body, volume);
     reference::volumes(body, reference_volume);
     check_near(volume, reference_volume);
-    CHECK(tet4::energy(body, u) == doctest::Approx(reference::energy(body, u)).epsilon(1e-12));
+    CHECK(fast.energy(body, u) == doctest::Approx(reference::energy(body, u)).epsilon(1e-12));
   }
 }
 
-TEST_CASE("fields of tet4 that nobody asked for are left alone") {
-  const Mesh mesh = box_mesh(ElementType::tet4, {1.0, 1.0, 1.0}, 1);
-  const std::vector<Law> laws{elastic_law(1.0, 0.3)};
-  const Body body{mesh.view(), laws, {}};
-  const std::vector<double> u = mesh.coordinates;
-  std::vector<double> strain(6 * mesh.element_count());
-  tet4::point_fields(body, u, {{}, {}, strain, {}});
-  for (std::size_t k = 0; k < strain.size(); ++k) CHECK(strain[k] == doctest::Approx(k % 6 < 3 ? 1.0 : 0.0));
-  std::vector<double> von_mises(mesh.element_count(), 1.0);
-  reference::ElementFields wanted;
-  wanted.von_mises = von_mises;
-  tet4::fields(body, u, wanted);
-  for (const double one : von_mises) CHECK(std::abs(one) < 1e-12);
+}  // namespace
+
+TEST_CASE("elements abreast have the fields of the reference") {
+  for (const Abreast& fast : all_abreast) compare_with_reference(fast, false);
+  // Of tet4 tr ε would be averaged round corners, which the reference tests have.
+  compare_with_reference(all_abreast[1], true);
+}
+
+TEST_CASE("fields that nobody asked for are left alone") {
+  for (const Abreast& fast : all_abreast) {
+    CAPTURE(cell(fast.type).name);
+    const Mesh mesh = box_mesh(fast.type, {1.0, 1.0, 1.0}, 1);
+    const std::vector<Law> laws{elastic_law(1.0, 0.3)};
+    const Body body{mesh.view(), laws, {}};
+    const std::vector<double> u = mesh.coordinates;
+    std::vector<double> strain(6 * mesh.element_count() *
+                               static_cast<std::size_t>(points_per_element(fast.type)));
+    fast.point_fields(body, u, {{}, {}, strain, {}});
+    for (std::size_t k = 0; k < strain.size(); ++k)
+      CHECK(strain[k] == doctest::Approx(k % 6 < 3 ? 1.0 : 0.0));
+    std::vector<double> von_mises(mesh.element_count(), 1.0);
+    reference::ElementFields wanted;
+    wanted.von_mises = von_mises;
+    fast.fields(body, u, wanted);
+    for (const double one : von_mises) CHECK(std::abs(one) < 1e-12);
+  }
 }

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Stress and strain of trilinear hexahedra.
+#include "hex8_fields.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "cells/hex8.hpp"
+#include "hex8_lanes.hpp"
+
+namespace kacanov::hex8 {
+namespace {
+
+using elements::Hex8;
+
+/// Elements in a row with what their points have.
+struct Row {
+  std::size_t first = 0, count = 0;
+  Hexahedra shape;
+  GradientLanes at[Hex8::points];  ///< the weight of points is 1: `det` is their volume
+  StrainLanes strain[Hex8::points];
+  Lanes volume;
+  const Law* law[abreast];
+
+  void work_out(const Body& body, std::span<const double> u) {
+    const std::size_t elements = body.mesh.element_count();
+    const ElementsAbreast row = in_a_row(first, elements);
+    count = std::min(abreast, elements - first);
+    bool mean_dilatation = false;
+    for (std::size_t lane = 0; lane < abreast; ++lane) {
+      law[lane] = &body.law(row[lane]);
+      mean_dilatation = mean_dilatation || law[lane]->mean_dilatation;
+    }
+    shape.gather(body.mesh, u, row);
+    volume.fill(0.0);
+    for (std::size_t q = 0; q < Hex8::points; ++q) {
+      shape.gradient(Hex8::point[q], at[q]);
+      strain[q] = at[q].strain();
+      for (std::size_t lane = 0; lane < abreast; ++lane) volume[lane] += at[q].det[lane];
+    }
+    if (mean_dilatation) average_traces();
+  }
+
+ private:
+  void average_traces() {
+    Lanes mean{};
+    for (std::size_t q = 0; q < Hex8::points; ++q)
+      for (std::size_t lane = 0; lane < abreast; ++lane)
+        mean[lane] += at[q].det[lane] * strain[q].trace[lane];
+    for (std::size_t lane = 0; lane < abreast; ++lane)
+      if (law[lane]->mean_dilatation)
+        for (StrainLanes& s : strain) s.trace[lane] = mean[lane] / volume[lane];
+  }
+};
+
+/// Calls visit(row).
+template <class Visit>
+void for_each_row(const Body& body, std::span<const double> u, const Visit& visit) {
+  Row row;
+  for (; row.first < body.mesh.element_count(); row.first += abreast) {
+    row.work_out(body, u);
+    visit(row);
+  }
+}
+
+Lanes secants(const Row& row, const Lanes& norm) {
+  Lanes g;
+  for (std::size_t lane = 0; lane < abreast; ++lane) g[lane] = row.law[lane]->secant(norm[lane]);
+  return g;
+}
+
+void add(Lanes& sum, const Lanes& weight, const Lanes& value) {
+  for (std::size_t lane = 0; lane < abreast; ++lane) sum[lane] += weight[lane] * value[lane];
+}
+
+void put(const Row& row, const Lanes& sum, std::span<double> out) {
+  for (std::size_t lane = 0; lane < row.count && !out.empty(); ++lane)
+    out[row.first + lane] = sum[lane] / row.volume[lane];
+}
+
+/// Means over the points.
+void put_stress(const Row& row, const reference::ElementFields& out) {
+  if (out.stress.empty() && out.von_mises.empty() && out.secant.empty()) return;
+  Lanes stress[6] = {}, von_mises{}, secant{};
+  Lanes trace{};
+  for (std::size_t q = 0; q < Hex8::points; ++q) {
+    const StrainLanes& strain = row.strain[q];
+    const Lanes& volume = row.at[q].det;
+    const Lanes g = secants(row, strain.norm);
+    add(secant, volume, g);
+    add(trace, volume, strain.trace);
+    for (std::size_t lane = 0; lane < abreast; ++lane) {
+      const double twice = 2.0 * volume[lane] * g[lane];
+      von_mises[lane] += twice * strain.norm[lane];
+      for (std::size_t c = 0; c < 6; ++c) stress[c][lane] += twice * strain.dev[c][lane];
+    }
+  }
+  put(row, secant, out.secant);
+  for (double& v : von_mises) v *= std::sqrt(1.5);
+  put(row, von_mises, out.von_mises);
+  if (out.stress.empty()) return;
+  for (std::size_t lane = 0; lane < row.count; ++lane)
+    for (std::size_t c = 0; c < 6; ++c)
+      out.stress[6 * (row.first + lane) + c] =
+          (stress[c][lane] + (c < 3 ? row.law[lane]->bulk * trace[lane] : 0.0)) / row.volume[lane];
+}
+
+/// Largest values of the points.
+void put_largest(const Row& row, const reference::ElementFields& out) {
+  for (std::size_t lane = 0; lane < row.count; ++lane) {
+    double strain = 0.0, rotation = 0.0;
+    for (const GradientLanes& at : row.at) {
+      const reference::Gradient h = gradient_of(at.h, lane);
+      if (!out.strain.empty()) strain = std::max(strain, reference::largest_principal(h));
+      if (!out.rotation.empty()) rotation = std::max(rotation, reference::rotation_angle(h));
+    }
+    if (!out.strain.empty()) out.strain[row.first + lane] = strain;
+    if (!out.rotation.empty()) out.rotation[row.first + lane] = rotation;
+  }
+}
+
+}  // namespace
+
+void fields(const Body& body, std::span<const double> u, const reference::ElementFields& out) {
+  for_each_row(body, u, [&](const Row& row) {
+    put_stress(row, out);
+    if (!out.strain.empty() || !out.rotation.empty()) put_largest(row, out);
+    Lanes dev_strain{}, largest{};
+    for (std::size_t q = 0; q < Hex8::points; ++q) {
+      add(dev_strain, row.at[q].det, row.strain[q].norm);
+      for (std::size_t lane = 0; lane < abreast; ++lane)
+        largest[lane] = std::max(largest[lane], row.strain[q].norm[lane]);
+    }
+    put(row, dev_strain, out.dev_strain);
+    for (std::size_t lane = 0; lane < row.count; ++lane) {
+      const std::size_t e = row.first + lane;
+      if (!out.plastic.empty()) out.plastic[e] = row.law[lane]->plastic(largest[lane]) ? 1 : 0;
+      if (!out.volume.empty()) out.volume[e] = row.volume[lane];
+    }
+  });
+}
+
+void point_fields(const Body& body, std::span<const double> u, const reference::PointFields& out) {
+  for_each_row(body, u, [&](const Row& row) {
+    for (std::size_t q = 0; q < Hex8::points; ++q) {
+      const StrainLanes& strain = row.strain[q];
+      const auto place = [&](std::size_t lane) { return (row.first + lane) * Hex8::points + q; };
+      if (!out.stress.empty()) {
+        const Lanes g = secants(row, strain.norm);
+        for (std::size_t lane = 0; lane < row.count; ++lane)
+          for (std::size_t c = 0; c < 6; ++c)
+            out.stress[6 * place(lane) + c] = 2.0 * g[lane] * strain.dev[c][lane] +
+                                              (c < 3 ? row.law[lane]->bulk * strain.trace[lane] : 0.0);
+      }
+      for (std::size_t lane = 0; lane < row.count && !out.strain.empty(); ++lane)
+        for (std::size_t c = 0; c < 6; ++c)
+          out.strain[6 * place(lane) + c] = strain.dev[c][lane] + (c < 3 ? strain.trace[lane] / 3.0 : 0.0);
+      for (std::size_t lane = 0; lane < row.count && !out.volume.empty(); ++lane)
+        out.volume[place(lane)] = row.at[q].det[lane];
+      if (out.position.empty()) continue;
+      Lanes away[3];
+      row.shape.from_middle(Hex8::point[q], away);
+      for (std::size_t lane = 0; lane < row.count; ++lane)
+        for (std::size_t i = 0; i < 3; ++i)
+          out.position[place(lane)][i] = row.shape.x[0][i][lane] + away[i][lane];
+    }
+  });
+}
+
+double energy(const Body& body, std::span<const double> u) {
+  double sum = 0.0;
+  for_each_row(body, u, [&](const Row& row) {
+    for (std::size_t q = 0; q < Hex8::points; ++q)
+      for (std::size_t lane = 0; lane < row.count; ++lane) {
+        const double trace = row.strain[q].trace[lane];
+        sum += row.at[q].det[lane] * (0.5 * row.law[lane]->bulk * trace * trace +
+                                      2.0 * row.law[lane]->energy(row.strain[q].norm[lane]));
+      }
+  });
+  return sum;
+}
+
+void volumes(const Body& body, std::span<double> volume) {
+  for_each_row(body, body.mesh.coordinates,
+               [&](const Row& row) { std::copy_n(row.volume.begin(), row.count, &volume[row.first]); });
+}
+
+}  // namespace kacanov::hex8

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Elements abreast: numbers of several elements side by side, so that one loop works on all of them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <kacanov/reference.hpp>
+#include "reference/point_strain.hpp"
+
+namespace kacanov {
+
+constexpr std::size_t abreast = 16;
+/// One number of each of the elements. Loops over lanes have no branches and no calls, so that compilers make
+/// vectors of them.
+using Lanes = std::array<double, abreast>;
+using ElementsAbreast = std::array<std::size_t, abreast>;
+
+/// Elements from `first` on, the last one again where there are no more.
+inline ElementsAbreast in_a_row(std::size_t first, std::size_t elements) {
+  ElementsAbreast row;
+  for (std::size_t lane = 0; lane < abreast; ++lane) row[lane] = std::min(first + lane, elements - 1);
+  return row;
+}
+
+/// Of elements of so many nodes in space.
+template <std::size_t nodes>
+void gather(const MeshView& mesh, const ElementsAbreast& element, std::span<const double> values,
+            Lanes (&out)[nodes][3]) {
+  for (std::size_t lane = 0; lane < abreast; ++lane) {
+    const std::int32_t* node = &mesh.connectivity[nodes * element[lane]];
+    for (std::size_t a = 0; a < nodes; ++a) {
+      const std::size_t from = 3 * static_cast<std::size_t>(node[a]);
+      for (std::size_t i = 0; i < 3; ++i) out[a][i][lane] = values[from + i];
+    }
+  }
+}
+
+/// ∂u_i/∂x_k from j = ∂x/∂ξ and d = ∂u/∂ξ; returns det j.
+inline double map_gradient(const double (&j)[3][3], const double (&d)[3][3], double (&gradient)[3][3]) {
+  double cofactor[3][3];
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+      cofactor[i][k] = j[i1][k1] * j[i2][k2] - j[i1][k2] * j[i2][k1];
+    }
+  const double det = j[0][0] * cofactor[0][0] + j[0][1] * cofactor[0][1] + j[0][2] * cofactor[0][2];
+  const double scale = 1.0 / det;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      gradient[i][k] =
+          scale * (d[i][0] * cofactor[k][0] + d[i][1] * cofactor[k][1] + d[i][2] * cofactor[k][2]);
+  return det;
+}
+
+inline reference::Gradient gradient_of(const Lanes (&gradient)[3][3], std::size_t lane) {
+  reference::Gradient h;
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t k = 0; k < 3; ++k) h[i][k] = gradient[i][k][lane];
+  return h;
+}
+
+}  // namespace kacanov
