@@ -12,6 +12,7 @@
 #include <string>
 
 #include <kacanov/corner_means.hpp>
+#include "cells/dispatch.hpp"
 #include "finer_rule.hpp"
 #include "law/plane_stress.hpp"
 #include "linear/free_strain.hpp"
@@ -85,40 +86,53 @@ struct Sample {
   double volume = 0.0;
 };
 
-Sample sample(const Part& part, std::span<const double> u, std::size_t element, const FinePoint& point) {
-  const std::size_t dim = part.dim(), nodes = nodes_per_element(part.type);
-  Eigen::Matrix3d jacobian = Eigen::Matrix3d::Identity(), along = Eigen::Matrix3d::Zero();
-  jacobian.topLeftCorner(part.dim(), part.dim()).setZero();
-  Sample out;
-  for (std::size_t a = 0; a < nodes; ++a) {
-    const auto node = static_cast<std::size_t>(part.elements[element * nodes + a]);
-    for (std::size_t i = 0; i < dim; ++i) {
-      const double x = part.coordinates[node * dim + i], moved = u[node * dim + i];
-      out.position[i] += point.value[a] * x;
-      for (std::size_t k = 0; k < dim; ++k) {
-        const auto row = static_cast<Eigen::Index>(i), column = static_cast<Eigen::Index>(k);
-        jacobian(row, column) += x * point.gradient[a * dim + k];
-        along(row, column) += moved * point.gradient[a * dim + k];
+/// An element with what its nodes move by. Loops over nodes are of known length.
+template <class E>
+struct ElementAt {
+  double x[E::nodes][3] = {}, u[E::nodes][3] = {};
+
+  ElementAt(const Part& part, std::span<const double> displacement, std::size_t element) {
+    for (std::size_t a = 0; a < E::nodes; ++a) {
+      const auto node = static_cast<std::size_t>(part.elements[element * E::nodes + a]);
+      for (std::size_t i = 0; i < E::dim; ++i) {
+        x[a][i] = part.coordinates[node * E::dim + i];
+        u[a][i] = displacement[node * E::dim + i];
       }
     }
   }
-  const Eigen::Matrix3d h = along * jacobian.inverse();
-  out.strain = {h(0, 0),
-                h(1, 1),
-                h(2, 2),
-                0.5 * (h(0, 1) + h(1, 0)),
-                0.5 * (h(1, 2) + h(2, 1)),
-                0.5 * (h(2, 0) + h(0, 2))};
-  out.volume = point.weight * jacobian.determinant();
-  if (part.plane == PlaneState::axisymmetric) {
-    double along_radius = 0.0;
-    for (std::size_t a = 0; a < nodes; ++a)
-      along_radius += point.value[a] * u[static_cast<std::size_t>(part.elements[element * nodes + a]) * dim];
-    out.strain[2] = along_radius / out.position[0];
-    out.volume *= 2.0 * std::numbers::pi * out.position[0];
+
+  Sample sample(const FinePoint& point, PlaneState plane) const {
+    Eigen::Matrix3d jacobian = Eigen::Matrix3d::Identity(), along = Eigen::Matrix3d::Zero();
+    Sample out;
+    for (int i = 0; i < E::dim; ++i) {
+      const auto row = static_cast<std::size_t>(i);
+      double j[3] = {}, d[3] = {};
+      for (std::size_t a = 0; a < E::nodes; ++a) {
+        out.position[row] += point.value[a] * x[a][i];
+        for (std::size_t k = 0; k < E::dim; ++k) {
+          j[k] += x[a][i] * point.gradient[a * E::dim + k];
+          d[k] += u[a][i] * point.gradient[a * E::dim + k];
+        }
+      }
+      for (int k = 0; k < E::dim; ++k) jacobian(i, k) = j[k], along(i, k) = d[k];
+    }
+    const Eigen::Matrix3d h = along * jacobian.inverse();
+    out.strain = {h(0, 0),
+                  h(1, 1),
+                  h(2, 2),
+                  0.5 * (h(0, 1) + h(1, 0)),
+                  0.5 * (h(1, 2) + h(2, 1)),
+                  0.5 * (h(2, 0) + h(0, 2))};
+    out.volume = point.weight * jacobian.determinant();
+    if (plane == PlaneState::axisymmetric) {
+      double along_radius = 0.0;
+      for (std::size_t a = 0; a < E::nodes; ++a) along_radius += point.value[a] * u[a][0];
+      out.strain[2] = along_radius / out.position[0];
+      out.volume *= 2.0 * std::numbers::pi * out.position[0];
+    }
+    return out;
   }
-  return out;
-}
+};
 
 /// The strains of a solution beside smoother ones.
 class Comparison {
@@ -150,8 +164,10 @@ class Comparison {
         });
         continue;
       }
-      for (std::size_t e = 0; e < of_element.size(); ++e)
-        if (patches_.is_in(e, batch)) of_element[e] = energy_in(e, fits, trace[e]);
+      elements::dispatch(part_.type, [&]<class E>(E) {
+        for (std::size_t e = 0; e < of_element.size(); ++e)
+          if (patches_.is_in(e, batch)) of_element[e] = energy_in<E>(e, fits, trace[e]);
+      });
     }
     return of_element;
   }
@@ -166,6 +182,19 @@ class Comparison {
         if (const std::size_t e = run.first + k / points; patches_.is_in(e, batch))
           visit(e, run.position[k], &run.strain[6 * k], run.volume[k]);
     });
+  }
+
+  /// sum += share of a linear polynomial's values at `position`. Loops of known length.
+  template <std::size_t dim, class Position>
+  static void add_linear(const Patches::Polynomial& of, double share, const Position& position,
+                         Patches::Values& sum) {
+    const double* coefficient = of.coefficients;
+    for (std::size_t v = 0; v < sum.size(); ++v) sum[v] += share * coefficient[v];
+    for (std::size_t i = 0; i < dim; ++i) {
+      const double along = share * of.scale * (position[i] - of.centre[i]);
+      coefficient += sum.size();
+      for (std::size_t v = 0; v < sum.size(); ++v) sum[v] += along * coefficient[v];
+    }
   }
 
   /// energy_in() of a straight simplex of so many dimensions, whose strain is the same all over it. Its
@@ -188,16 +217,8 @@ class Comparison {
       for (std::size_t a = 0; a <= dim; ++a)
         for (std::size_t i = 0; i < dim; ++i) position[i] += point.corner_share[a] * of_corner[a].centre[i];
       Patches::Values smooth{};
-      for (std::size_t a = 0; a <= dim; ++a) {
-        const double share = point.corner_share[a];
-        const double* coefficient = of_corner[a].coefficients;
-        for (std::size_t v = 0; v < smooth.size(); ++v) smooth[v] += share * coefficient[v];
-        for (std::size_t i = 0; i < dim; ++i) {
-          const double along = share * of_corner[a].scale * (position[i] - of_corner[a].centre[i]);
-          coefficient += smooth.size();
-          for (std::size_t v = 0; v < smooth.size(); ++v) smooth[v] += along * coefficient[v];
-        }
-      }
+      for (std::size_t a = 0; a <= dim; ++a)
+        add_linear<dim>(of_corner[a], point.corner_share[a], position, smooth);
       if (part_.plane == PlaneState::stress) relax(element, smooth);
       energy += point.weight * energy_between(law, response, smooth);
       weights += point.weight;
@@ -205,16 +226,18 @@ class Comparison {
     return volume / weights * energy;
   }
 
+  template <class E>
   double energy_in(std::size_t element, const PatchFits& fits, double mean_trace) const {
     const Law& law = body_.law(element);
-    const auto corners = static_cast<std::size_t>(type_.corners);
-    const std::int32_t* node = &part_.elements[element * static_cast<std::size_t>(type_.nodes)];
-    std::array<Patches::Polynomial, 8> of_corner;
+    constexpr std::size_t corners = E::corners;
+    const std::int32_t* node = &part_.elements[element * E::nodes];
+    const ElementAt<E> moved(part_, state_.u, element);
+    std::array<Patches::Polynomial, corners> of_corner;
     for (std::size_t a = 0; a < corners; ++a)
       of_corner[a] = patches_.polynomial(fits, static_cast<std::size_t>(node[a]));
     double energy = 0.0;
     for (const FinePoint& point : points_) {
-      Sample here = sample(part_, state_.u, element, point);
+      Sample here = moved.sample(point, part_.plane);
       if (law.mean_dilatation) {
         double trace = mean_trace;
         if (averages_at_corners(law, part_.type)) {
@@ -227,6 +250,10 @@ class Comparison {
       }
       Patches::Values smooth{};
       for (std::size_t a = 0; a < corners; ++a) {
+        if constexpr (E::order == 1) {
+          add_linear<E::dim>(of_corner[a], point.corner_share[a], here.position, smooth);
+          continue;
+        }
         const Patches::Values value = of_corner[a](here.position);
         for (std::size_t c = 0; c < 6; ++c) smooth[c] += point.corner_share[a] * value[c];
       }
