@@ -56,8 +56,8 @@ class GridTree {
     while (!is_leaf(cell, level)) cell = cells_[cell].parent;
     return cell;
   }
-  /// Points as near as that to a side of a cell, in its lengths, are on it: a vertex that they move by rounding
-  /// alone would have a stiffness of next to nothing, and an inverse beyond floats.
+  /// Points as near as that to a side of a cell, in its lengths, are on it: a vertex that they would move
+  /// with by rounding alone has a stiffness of next to nothing, and an inverse beyond floats.
   static constexpr double on_side = 1e-4;
   /// Where a point lies in a cell, 0 to 1 each way.
   Vector3 within(const Cell& cell, const double* point) const;

@@ -127,6 +127,20 @@ TEST_CASE("trees have cells as large as the spacing of nodes asks for, round eve
   }
 }
 
+TEST_CASE("points next to a side of a cell but for rounding are on it") {
+  const Part part = bar(3, true);
+  const Grids grids(part);
+  for (const GridTree::Cell& cell : grids.tree.cells()) {
+    const Vector3 corner = grids.tree.point(cell.origin);
+    const double length = grids.tree.length(cell);
+    const Vector3 beside{corner[0] + 1e-9 * length, corner[1] - 1e-9 * length, corner[2] + 0.25 * length};
+    const Vector3 xi = grids.tree.within(cell, beside.data());
+    CHECK(xi[0] == 0.0);
+    CHECK(xi[1] == 0.0);
+    CHECK(xi[2] == doctest::Approx(0.25));
+  }
+}
+
 TEST_CASE("trilinear functions are linear ones' exactly, next to larger cells and on every level") {
   for (const bool graded : {false, true}) {
     CAPTURE(graded);
