@@ -143,8 +143,9 @@ TEST_CASE("in units that are powers of two of others, results are the same bits"
 TEST_CASE("in any units results are the same numbers") {
   for (const int dim : {2, 3})
     for (Model model : models(dim)) {
-      model.solver.tolerance = 1e-12;
+      model.solver.tolerance = 2e-12;  // rounding leaves up to 6.8e-13 of one of them
       const Run plain = solved(dim, model, {});
+      INFO(plain.result().message);
       REQUIRE(plain.result().status == Status::converged);
       for (const Scale& s :
            {Scale{1e-3, 2.1e11}, Scale{1e-40, 1e-40}, Scale{1e20, 1e20}, Scale{1e-40, 1e20}}) {
