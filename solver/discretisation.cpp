@@ -2,7 +2,6 @@
 // How far a solution is from that of a mesh without end: an estimate from the solution itself.
 #include <kacanov/discretisation.hpp>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include <kacanov/corner_means.hpp>
 #include "cells/dispatch.hpp"
 #include "finer_rule.hpp"
+#include "lanes.hpp"
 #include "law/plane_stress.hpp"
 #include "linear/free_strain.hpp"
 #include "patches.hpp"
@@ -102,28 +102,25 @@ struct ElementAt {
   }
 
   Sample sample(const FinePoint& point, PlaneState plane) const {
-    Eigen::Matrix3d jacobian = Eigen::Matrix3d::Identity(), along = Eigen::Matrix3d::Zero();
     Sample out;
-    for (int i = 0; i < E::dim; ++i) {
-      const auto row = static_cast<std::size_t>(i);
-      double j[3] = {}, d[3] = {};
+    double jacobian[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, along[3][3] = {}, h[3][3];
+    for (std::size_t i = 0; i < E::dim; ++i) {
+      jacobian[i][i] = 0.0;
       for (std::size_t a = 0; a < E::nodes; ++a) {
-        out.position[row] += point.value[a] * x[a][i];
+        out.position[i] += point.value[a] * x[a][i];
         for (std::size_t k = 0; k < E::dim; ++k) {
-          j[k] += x[a][i] * point.gradient[a * E::dim + k];
-          d[k] += u[a][i] * point.gradient[a * E::dim + k];
+          jacobian[i][k] += x[a][i] * point.gradient[a * E::dim + k];
+          along[i][k] += u[a][i] * point.gradient[a * E::dim + k];
         }
       }
-      for (int k = 0; k < E::dim; ++k) jacobian(i, k) = j[k], along(i, k) = d[k];
     }
-    const Eigen::Matrix3d h = along * jacobian.inverse();
-    out.strain = {h(0, 0),
-                  h(1, 1),
-                  h(2, 2),
-                  0.5 * (h(0, 1) + h(1, 0)),
-                  0.5 * (h(1, 2) + h(2, 1)),
-                  0.5 * (h(2, 0) + h(0, 2))};
-    out.volume = point.weight * jacobian.determinant();
+    out.volume = point.weight * map_gradient(jacobian, along, h);
+    out.strain = {h[0][0],
+                  h[1][1],
+                  h[2][2],
+                  0.5 * (h[0][1] + h[1][0]),
+                  0.5 * (h[1][2] + h[2][1]),
+                  0.5 * (h[2][0] + h[0][2])};
     if (plane == PlaneState::axisymmetric) {
       double along_radius = 0.0;
       for (std::size_t a = 0; a < E::nodes; ++a) along_radius += point.value[a] * u[a][0];

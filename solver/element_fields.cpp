@@ -7,10 +7,9 @@
 #include <stdexcept>
 
 #include <kacanov/corner_means.hpp>
-#include "hex8_fields.hpp"
+#include "field_loops.hpp"
 #include "linear/free_strain.hpp"
 #include "problem/shapes.hpp"
-#include "tet4_fields.hpp"
 
 namespace kacanov {
 namespace {
@@ -86,33 +85,17 @@ class ThermalStress {
   std::vector<std::array<double, most_nodes>> shape_;  ///< of the corners, at each point
 };
 
-void fastest_fields(const Body& body, std::span<const double> u, const reference::ElementFields& out) {
-  switch (body.mesh.type) {
-    case ElementType::tet4: return tet4::fields(body, u, out);
-    case ElementType::hex8: return hex8::fields(body, u, out);
-    default: return reference::fields(body, u, out);
-  }
-}
-
-void fastest_point_fields(const Body& body, std::span<const double> u, const reference::PointFields& out) {
-  switch (body.mesh.type) {
-    case ElementType::tet4: return tet4::point_fields(body, u, out);
-    case ElementType::hex8: return hex8::point_fields(body, u, out);
-    default: return reference::point_fields(body, u, out);
-  }
-}
-
 }  // namespace
 
 void element_fields(const Part& part, const BodyState& state, std::size_t first, std::size_t count,
                     const reference::ElementFields& out) {
-  fastest_fields(Elements(part, state, first, count).body, state.u, out);
+  field_loops(part.type).fields(Elements(part, state, first, count).body, state.u, out);
   if (!out.stress.empty())
     ThermalStress(part.body().mesh, part.element_count(), state.thermal).take_off_means(first, out.stress);
 }
 
 void element_fields(const Body& body, const BodyState& state, const reference::ElementFields& out) {
-  fastest_fields(Elements(body, state.thermal).body, state.u, out);
+  field_loops(body.mesh.type).fields(Elements(body, state.thermal).body, state.u, out);
   if (!out.stress.empty())
     ThermalStress(body.mesh, body.mesh.element_count(), state.thermal).take_off_means(0, out.stress);
 }
@@ -121,9 +104,9 @@ void element_strains(const Part& part, const BodyState& state, std::size_t first
                      std::span<double> out) {
   const std::size_t points = points_per_element(part.type);
   const Elements some(part, state, first, count);
-  if (points == 1) return fastest_point_fields(some.body, state.u, {{}, {}, out, {}});
+  if (points == 1) return field_loops(part.type).point_fields(some.body, state.u, {{}, {}, out, {}});
   std::vector<double> strain(6 * count * points), volume(count * points);
-  fastest_point_fields(some.body, state.u, {{}, {}, strain, volume});
+  field_loops(part.type).point_fields(some.body, state.u, {{}, {}, strain, volume});
   for (std::size_t e = 0; e < count; ++e) {
     double whole = 0.0;
     std::array<double, 6> sum{};
@@ -165,8 +148,8 @@ void visit_points(const Part& part, const BodyState& state, PointValues wanted,
     run.stress.resize(wanted == PointValues::all ? 6 * count * points : 0);
     run.strain.resize(6 * count * points);
     run.volume.resize(count * points);
-    fastest_point_fields(Elements(part, state, run.first, count).body, state.u,
-                         {run.position, run.stress, run.strain, run.volume});
+    field_loops(part.type).point_fields(Elements(part, state, run.first, count).body, state.u,
+                                        {run.position, run.stress, run.strain, run.volume});
     thermal.take_off_points(run.first, run.stress);
     visit(run);
   }
@@ -201,11 +184,7 @@ NodalMeans nodal_means(const Part& part, const BodyState& state) {
 }
 
 double stored_energy(const Body& body, std::span<const double> u) {
-  switch (body.mesh.type) {
-    case ElementType::tet4: return tet4::energy(body, u);
-    case ElementType::hex8: return hex8::energy(body, u);
-    default: return reference::energy(body, u);
-  }
+  return field_loops(body.mesh.type).energy(body, u);
 }
 
 }  // namespace kacanov

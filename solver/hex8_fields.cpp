@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Stress and strain of trilinear hexahedra.
-#include "hex8_fields.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
 #include "cells/hex8.hpp"
+#include "field_loops.hpp"
 #include "hex8_lanes.hpp"
 
 namespace kacanov::hex8 {
@@ -120,8 +119,6 @@ void put_largest(const Row& row, const reference::ElementFields& out) {
   }
 }
 
-}  // namespace
-
 void fields(const Body& body, std::span<const double> u, const reference::ElementFields& out) {
   for_each_row(body, u, [&](const Row& row) {
     put_stress(row, out);
@@ -186,4 +183,7 @@ void volumes(const Body& body, std::span<double> volume) {
                [&](const Row& row) { std::copy_n(row.volume.begin(), row.count, &volume[row.first]); });
 }
 
+}  // namespace
 }  // namespace kacanov::hex8
+
+const kacanov::FieldLoops kacanov::hex8_loops{hex8::fields, hex8::point_fields, hex8::energy, hex8::volumes};

@@ -34,18 +34,9 @@ void to_monomials(Lanes (&v)[8][n]) {
 }
 
 struct StrainLanes {
-  Lanes dev[6], trace, norm;
+  Lanes dev[6];  ///< xx yy zz xy yz zx
+  Lanes trace, norm;
 };
-
-/// Of a deviator xx yy zz xy yz zx.
-inline void set_norm(StrainLanes& strain) {
-  for (std::size_t lane = 0; lane < abreast; ++lane) {
-    double square = 0.0;
-    for (std::size_t c = 0; c < 6; ++c)
-      square += (c < 3 ? 1.0 : 2.0) * strain.dev[c][lane] * strain.dev[c][lane];
-    strain.norm[lane] = std::sqrt(square);
-  }
-}
 
 /// The displacement gradient at a point of each element.
 struct GradientLanes {
@@ -57,13 +48,16 @@ struct GradientLanes {
     for (std::size_t lane = 0; lane < abreast; ++lane) {
       const double trace = h[0][0][lane] + h[1][1][lane] + h[2][2][lane];
       s.trace[lane] = trace;
+      double square = 0.0;
       for (std::size_t i = 0; i < 3; ++i) {
         const std::size_t k = (i + 1) % 3;
-        s.dev[i][lane] = h[i][i][lane] - trace / 3.0;
-        s.dev[3 + i][lane] = 0.5 * (h[i][k][lane] + h[k][i][lane]);
+        const double stretch = h[i][i][lane] - trace / 3.0, shear = 0.5 * (h[i][k][lane] + h[k][i][lane]);
+        s.dev[i][lane] = stretch;
+        s.dev[3 + i][lane] = shear;
+        square += stretch * stretch + 2.0 * shear * shear;
       }
+      s.norm[lane] = std::sqrt(square);
     }
-    set_norm(s);
     return s;
   }
 };

@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hex8_fields.hpp"
+#include "field_loops.hpp"
 #include "largest.hpp"
 #include "law_batches.hpp"
 #include "problem/vector3.hpp"
-#include "tet4_fields.hpp"
 
 namespace kacanov {
 namespace {
@@ -18,11 +17,7 @@ std::vector<double> patch_scales(const Part& part) {
   std::vector<double> of_element(part.element_count()), size(part.nodes(), 0.0);
   Body flat = part.body();
   flat.mesh.plane = PlaneState::strain;  // sizes within the plane
-  switch (part.type) {
-    case ElementType::tet4: tet4::volumes(flat, of_element); break;
-    case ElementType::hex8: hex8::volumes(flat, of_element); break;
-    default: reference::volumes(flat, of_element);
-  }
+  field_loops(part.type).volumes(flat, of_element);
   const std::size_t nodes = nodes_per_element(part.type);
   for (std::size_t k = 0; k < part.elements.size(); ++k) size[part.elements[k]] += of_element[k / nodes];
   part.node_map.sum(size, 1);

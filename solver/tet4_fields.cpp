@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Stress and strain of straight tetrahedra, where they are the same all over an element.
-#include "tet4_fields.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 
 #include <kacanov/vector3.hpp>
 #include "cells/tet4.hpp"
+#include "field_loops.hpp"
 #include "lanes.hpp"
 #include "reference/element_points.hpp"
 
@@ -91,8 +90,6 @@ void for_each_element(const Body& body, std::span<const double> u, const Visit& 
   }
 }
 
-}  // namespace
-
 void fields(const Body& body, std::span<const double> u, const reference::ElementFields& out) {
   const bool moduli = !out.stress.empty() || !out.von_mises.empty() || !out.secant.empty();
   const Strains strains(body, u);
@@ -148,4 +145,7 @@ void volumes(const Body& body, std::span<double> volume) {
   });
 }
 
+}  // namespace
 }  // namespace kacanov::tet4
+
+const kacanov::FieldLoops kacanov::tet4_loops{tet4::fields, tet4::point_fields, tet4::energy, tet4::volumes};
