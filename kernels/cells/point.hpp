@@ -15,6 +15,16 @@ template <class E>
 using Nodal = std::array<double, E::nodes * E::dim>;
 
 template <class E>
+Nodal<E> coordinates_of(const MeshView& mesh, std::size_t element) {
+  Nodal<E> x;
+  for (std::size_t a = 0; a < E::nodes; ++a) {
+    const std::size_t from = E::dim * static_cast<std::size_t>(mesh.connectivity[element * E::nodes + a]);
+    for (std::size_t k = 0; k < E::dim; ++k) x[E::dim * a + k] = mesh.coordinates[from + k];
+  }
+  return x;
+}
+
+template <class E>
 struct Point {
   double gradient[E::nodes][E::dim];
   double dilatation[E::nodes][E::dim];  ///< of k0 and tr ε: their derivatives, or the means of these (B-bar)

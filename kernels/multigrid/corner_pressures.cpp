@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "operator/corners.hpp"
+
 namespace kacanov {
 
 CornerPressures::CornerPressures(const MultigridBody& body)
@@ -12,8 +14,7 @@ CornerPressures::CornerPressures(const MultigridBody& body)
       scatterer_(rows_->map, 1),
       compliance_(rows()),
       values_(rows_->map.size()) {
-  std::vector<double> change(means_.size()), volume(means_.size());
-  reference::corner_changes(body.body, means_, std::vector<double>(body.unknowns(), 0.0), change, volume);
+  const std::vector<double> volume = corner_volumes(body.body, means_);
   const std::vector<float> share(volume.begin(), volume.end());
   sum(share, compliance_);
   for (std::size_t r = 0; r < rows(); ++r) compliance_[r] /= means_.moduli[rows_->modulus[r]];

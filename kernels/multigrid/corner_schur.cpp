@@ -7,6 +7,7 @@
 
 #include "cells/dispatch.hpp"
 #include "cells/point.hpp"
+#include "cells/straight.hpp"
 #include "multigrid/largest_eigenvalue.hpp"
 #include "multigrid/sums.hpp"
 #include "operator/threads.hpp"
@@ -21,12 +22,12 @@ using ElementChanges = std::array<std::array<std::array<double, 3>, E::corners>,
 
 template <class E>
 ElementChanges<E> element_changes(const Body& body, std::size_t e) {
-  const std::int32_t* node = body.mesh.connectivity.data() + e * E::nodes;
-  elements::Nodal<E> x;
-  for (std::size_t a = 0; a < E::nodes; ++a)
-    for (std::size_t c = 0; c < 3; ++c)
-      x[a * 3 + c] = body.mesh.coordinates[static_cast<std::size_t>(node[a]) * 3 + c];
+  const elements::Nodal<E> x = elements::coordinates_of<E>(body.mesh, e);
   ElementChanges<E> sum{};
+  if (elements::has_straight_sides(x)) {
+    elements::StraightSides(x.data()).integrate(sum);
+    return sum;
+  }
   for (std::size_t q = 0; q < E::points; ++q) {
     const elements::Point<E> point(x, q);
     const auto share = elements::barycentric<E::dim>(E::point[q].data());

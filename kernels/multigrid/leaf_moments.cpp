@@ -7,6 +7,7 @@
 #include <kacanov/corner_means.hpp>
 #include "cells/dispatch.hpp"
 #include "cells/point.hpp"
+#include "cells/straight.hpp"
 #include "operator/threads.hpp"
 
 namespace kacanov {
@@ -53,19 +54,26 @@ int octant_of(const GridTree::Cell& cell, std::int32_t child) {
   return at == cell.child.end() ? -1 : static_cast<int>(at - cell.child.begin());
 }
 
+template <class E>
+bool straight_sides(const elements::Nodal<E>& x) {
+  if constexpr (E::simplex) return elements::has_straight_sides(x);
+  return false;
+}
+
 /// Integrals over an element, `of_nodes` of them for each of its nodes.
 template <class E>
 NodeMeasure element_measure(const Body& body, std::span<const double> g, std::size_t e) {
-  const std::int32_t* node = body.mesh.connectivity.data() + e * E::nodes;
-  elements::Nodal<E> x;
-  for (std::size_t a = 0; a < E::nodes; ++a)
-    for (std::size_t c = 0; c < 3; ++c)
-      x[a * 3 + c] = body.mesh.coordinates[static_cast<std::size_t>(node[a]) * 3 + c];
+  const elements::Nodal<E> x = elements::coordinates_of<E>(body.mesh, e);
   const Law& law = body.law(e);
   NodeMeasure sum;
   double all = 0.0;
+  std::array<double, E::points> volumes;
+  if (straight_sides<E>(x))
+    volumes.fill(elements::StraightSides(x.data()).volume / E::points);
+  else
+    for (std::size_t q = 0; q < E::points; ++q) volumes[q] = elements::Point<E>(x, q).volume;
   for (std::size_t q = 0; q < E::points; ++q) {
-    const double volume = elements::Point<E>(x, q).volume / E::nodes;
+    const double volume = volumes[q] / E::nodes;
     sum.shear += g[e * E::points + q] * volume;
     all += volume;
   }

@@ -35,6 +35,9 @@ struct CornerLayout {
 
 CornerLayout make_corner_layout(const Body& body, const CornerMeans& means, const Layout& layout);
 
+/// ∫ N over the elements of every corner or patch, as reference::corner_changes() has it.
+std::vector<double> corner_volumes(const Body& body, const CornerMeans& means);
+
 /// Cuts blocks whose corners would have several entries, so that each has one.
 void separate_moduli(const Body& body, Division& division);
 

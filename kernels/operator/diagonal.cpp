@@ -7,6 +7,7 @@
 
 #include "cells/dispatch.hpp"
 #include "cells/point.hpp"
+#include "cells/straight.hpp"
 #include "law/plane_stress.hpp"
 #include "operator/checks.hpp"
 #include "operator/passes.hpp"
@@ -15,8 +16,8 @@
 
 namespace kacanov {
 
-/// Finds the elements of the slots again in their batches. Calls visit(points, the caller's nodes, law, slot
-/// of the first point) for each; slots of an element's points are `lanes` apart.
+/// Finds the elements of the slots again in their batches. Calls visit(nodal coordinates, the caller's nodes,
+/// law, slot of the first point) for each; slots of an element's points are `lanes` apart.
 template <class Real>
 template <class E, class Visit>
 void BasicOperator<Real>::Data::visit_elements(const BlockRange& range, const simd::Group& group,
@@ -46,13 +47,14 @@ void BasicOperator<Real>::Data::visit_elements(const BlockRange& range, const si
           if (plane == PlaneState::axisymmetric)
             x[Point<E>::at(a, 0)] = static_cast<double>(records[record + 2]);
         }
-        visit(elements::points_of<E>(x, law.mean_dilatation, plane), id, law, slot);
+        visit(x, id, law, slot);
       }
     }
 }
 
-/// Sums blocks: add(point, a, law, slot, block) adds that of node a of an element. Threads have sums of their
-/// own for nodes where they meet, which are added in their order.
+/// Sums blocks: add(type, nodal coordinates, whether its sides are straight, law, slot of its first point,
+/// blocks) adds those of an element's nodes. Threads have sums of their own for nodes where they meet, which
+/// are added in their order.
 template <class Real>
 template <class Add>
 void BasicOperator<Real>::Data::sum_blocks(std::span<Real> blocks, const Add& add) const {
@@ -70,21 +72,21 @@ void BasicOperator<Real>::Data::sum_blocks(std::span<Real> blocks, const Add& ad
       const std::int32_t at = place[node];
       return at < 0 ? blocks.data() + node * size : mine.data() + at * size;
     };
-    const auto add_element = [&]<class E>(E, const auto& at, const auto& node, const Law& law,
-                                          std::size_t slot) {
-      for (int a = 0; a < E::nodes; ++a) {
-        double here[E::dim * E::dim] = {};
-        for (std::size_t q = 0; q < E::points; ++q) add(at[q], a, law, slot + q * layout.lanes, here);
-        Real* block = block_of(node[a]);
-        for (int i = 0; i < E::dim * E::dim; ++i) block[i] += static_cast<Real>(here[i]);
-      }
-    };
     for (std::size_t b = layout.share[t]; b < layout.share[static_cast<std::size_t>(t) + 1]; ++b)
       for (std::size_t i = 0; i < layout.blocks[b].group_count; ++i)
         elements::dispatch(type, [&]<class E>(E element) {
-          visit_elements<E>(layout.blocks[b], layout.groups[layout.blocks[b].first_group + i],
-                            [&](const auto& at, const auto& node, const Law& law, std::size_t slot) {
-                              add_element(element, at, node, law, slot);
+          const simd::Group& group = layout.groups[layout.blocks[b].first_group + i];
+          const bool straight =
+              group.shape == simd::Shape::open_fan || group.shape == simd::Shape::closed_fan;
+          visit_elements<E>(layout.blocks[b], group,
+                            [&](const auto& x, const auto& node, const Law& law, std::size_t slot) {
+                              double here[E::nodes][E::dim * E::dim] = {};
+                              add(element, x, straight, law, slot, here);
+                              for (int a = 0; a < E::nodes; ++a) {
+                                Real* block = block_of(node[a]);
+                                for (int k = 0; k < E::dim * E::dim; ++k)
+                                  block[k] += static_cast<Real>(here[a][k]);
+                              }
                             });
         });
   });
@@ -96,6 +98,14 @@ void BasicOperator<Real>::Data::sum_blocks(std::span<Real> blocks, const Add& ad
 
 namespace {
 
+/// add(point, a, slot, block) for every node and point of an element.
+template <class E, class Add>
+void over_points(const std::array<elements::Point<E>, E::points>& points, std::size_t slot, std::size_t lanes,
+                 double (&blocks)[E::nodes][E::dim * E::dim], const Add& add) {
+  for (int a = 0; a < E::nodes; ++a)
+    for (std::size_t q = 0; q < E::points; ++q) add(points[q], a, slot + q * lanes, blocks[a]);
+}
+
 /// d[i]: entry i % dim of row i of the blocks.
 template <class Real>
 void take_diagonal(std::span<const Real> blocks, std::size_t dim, std::span<Real> d) {
@@ -104,23 +114,36 @@ void take_diagonal(std::span<const Real> blocks, std::size_t dim, std::span<Real
 
 }  // namespace
 
+/// Of the secant, the volume change counted bulk(law, g) times.
 template <class Real>
-void BasicOperator<Real>::block_diagonal(std::span<Real> blocks) const {
-  const Data& data = *data_;
-  data.sum_blocks(blocks, [&](const auto& point, int a, const Law& law, std::size_t slot, double* block) {
-    const auto secant = static_cast<double>(data.secant[slot]);
-    point.add_diagonal_block(a, data.bulk_at(law, secant), secant, block);
+template <class Bulk>
+void BasicOperator<Real>::Data::sum_secant_blocks(std::span<Real> blocks, const Bulk& bulk) const {
+  const std::size_t lanes = layout.lanes;
+  sum_blocks(blocks, [&]<class E>(E, const elements::Nodal<E>& x, bool straight, const Law& law,
+                                  std::size_t slot, auto& here) {
+    const auto g = [&](std::size_t at) { return static_cast<double>(secant[at]); };
+    if constexpr (E::type == ElementType::tet10)
+      if (straight) {
+        const std::array<double, 4> at{g(slot), g(slot + lanes), g(slot + 2 * lanes), g(slot + 3 * lanes)};
+        return elements::StraightSides(x.data()).add_diagonal_blocks(bulk(law, at[0]), at, here);
+      }
+    over_points<E>(elements::points_of<E>(x, law.mean_dilatation, plane), slot, lanes, here,
+                   [&](const auto& point, int a, std::size_t at, double* block) {
+                     point.add_diagonal_block(a, bulk(law, g(at)), g(at), block);
+                   });
   });
 }
 
 template <class Real>
+void BasicOperator<Real>::block_diagonal(std::span<Real> blocks) const {
+  data_->sum_secant_blocks(blocks, [&](const Law& law, double g) { return data_->bulk_at(law, g); });
+}
+
+template <class Real>
 void BasicOperator<Real>::block_diagonal_deviator(std::span<Real> blocks) const {
-  const Data& data = *data_;
   if (pressures() == 0) throw std::logic_error("block_diagonal_deviator where nothing is averaged");
-  data.sum_blocks(blocks, [&](const auto& point, int a, const Law& law, std::size_t slot, double* block) {
-    point.add_diagonal_block(a, law.mean_dilatation ? 0.0 : law.bulk, static_cast<double>(data.secant[slot]),
-                             block);
-  });
+  data_->sum_secant_blocks(blocks,
+                           [](const Law& law, double) { return law.mean_dilatation ? 0.0 : law.bulk; });
 }
 
 template <class Real>
@@ -137,15 +160,20 @@ void BasicOperator<Real>::block_diagonal_tangent(std::span<Real> blocks) const {
   if (!data.has_tangent) throw std::logic_error("block_diagonal_tangent before update_tangent");
   const Aligned<Real>& g = data.tangent_secant.empty() ? data.secant : data.tangent_secant;
   const std::size_t lanes = data.layout.lanes;
-  data.sum_blocks(blocks, [&](const auto& point, int a, const Law& law, std::size_t slot, double* block) {
-    const auto secant = static_cast<double>(g[slot]);
-    point.add_diagonal_block(a, data.bulk_at(law, secant), secant, block);
-    // √|2 g'/x| dev ε, component by component over the lanes; see material.hpp.
-    const std::size_t lane = slot % lanes;
-    const float* t = data.tangent.data() + simd::tangent_floats * (slot - lane) + lane;
-    const auto kept = [&](std::size_t k) { return static_cast<double>(t[k * lanes]); };
-    const std::array<double, 6> d{kept(0), kept(1), -(kept(0) + kept(1)), kept(2), kept(3), kept(4)};
-    point.add_rank_one_block(a, std::signbit(t[0]) ? 1.0 : -1.0, d, block);
+  data.sum_blocks(blocks, [&]<class E>(E, const elements::Nodal<E>& x, bool, const Law& law, std::size_t slot,
+                                       auto& here) {
+    over_points<E>(elements::points_of<E>(x, law.mean_dilatation, data.plane), slot, lanes, here,
+                   [&](const auto& point, int a, std::size_t at, double* block) {
+                     const auto secant = static_cast<double>(g[at]);
+                     point.add_diagonal_block(a, data.bulk_at(law, secant), secant, block);
+                     // √|2 g'/x| dev ε, component by component over the lanes; see material.hpp.
+                     const std::size_t lane = at % lanes;
+                     const float* t = data.tangent.data() + simd::tangent_floats * (at - lane) + lane;
+                     const auto kept = [&](std::size_t k) { return static_cast<double>(t[k * lanes]); };
+                     const std::array<double, 6> d{kept(0), kept(1), -(kept(0) + kept(1)),
+                                                   kept(2), kept(3), kept(4)};
+                     point.add_rank_one_block(a, std::signbit(t[0]) ? 1.0 : -1.0, d, block);
+                   });
   });
 }
 

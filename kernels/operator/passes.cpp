@@ -66,9 +66,7 @@ BasicOperator<Real>::Data::Data(const Body& body, const OperatorOptions& options
   }
   if (const CornerMeans means = corner_means(body); means.size() > 0) {
     corners = make_corner_layout(body, means, layout);
-    std::vector<double> none(means.size());
-    corner_volume.resize(means.size());
-    reference::corner_changes(body, means, std::vector<double>(unknowns, 0.0), none, corner_volume);
+    corner_volume = corner_volumes(body, means);
     for (std::size_t i = 0; i < means.size(); ++i) corner_bulk.push_back(means.bulk(i));
     weigh_corners();
   }

@@ -73,6 +73,8 @@ struct BasicOperator<Real>::Data {
   void visit_elements(const BlockRange& range, const simd::Group& group, const Visit& visit) const;
   template <class Add>
   void sum_blocks(std::span<Real> blocks, const Add& add) const;
+  template <class Bulk>
+  void sum_secant_blocks(std::span<Real> blocks, const Bulk& bulk) const;
 
   simd::InstructionSet set;
   const simd::Kernels<Real>& kernels;

@@ -7,26 +7,11 @@
 #include <cmath>
 
 #include "cells/hex8.hpp"
+#include "cells/straight.hpp"
 #include "operator/fans.hpp"
 
 namespace kacanov {
 namespace {
-
-/// Whether the nodes on edges lie in the middle of them, to rounding of the edge.
-bool straight(const MeshView& mesh, const std::int32_t* node) {
-  const Cell& type = cell(mesh.type);
-  const std::size_t dim = type.dim;
-  const auto x = [&](std::int8_t a, std::size_t k) { return mesh.coordinates[dim * node[a] + k]; };
-  for (const CellEdge& edge : type.edges) {
-    double off = 0.0, side = 0.0;
-    for (std::size_t k = 0; edge.middle >= 0 && k < dim; ++k) {
-      off = std::max(off, std::abs(x(edge.middle, k) - 0.5 * (x(edge.a, k) + x(edge.b, k))));
-      side = std::max(side, std::abs(x(edge.a, k) - x(edge.b, k)));
-    }
-    if (off > 1e-13 * side) return false;
-  }
-  return true;
-}
 
 /// Whether a hex8 is one: each edge is that of the first corner along its direction, to rounding
 /// of the element's own extent along each axis.
@@ -90,7 +75,7 @@ Units make_units(const Body& body) {
   std::vector<bool> single(mesh.element_count(), mesh.type != ElementType::tet4);
   const auto first_node = [&](std::size_t e) { return &mesh.connectivity[e * nodes]; };
   for (std::size_t e = 0; mesh.type == ElementType::tet10 && e < single.size(); ++e)
-    single[e] = !straight(mesh, first_node(e));
+    single[e] = !elements::has_straight_sides(elements::coordinates_of<elements::Tet10>(mesh, e));
   Units result;
   if (cell(mesh.type).simplex && dimension(mesh.type) == 3) result = cover_by_fans(body, single);
   result.type = mesh.type;
