@@ -20,16 +20,6 @@ namespace {
 /// Rounding leaves points of shared facets this far outside of both elements, in reference coordinates.
 constexpr double rounding = 1e-9;
 
-struct Bounds {
-  Vector3 low{}, high{};
-  void take(const Vector3& x) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      low[c] = std::min(low[c], x[c]);
-      high[c] = std::max(high[c], x[c]);
-    }
-  }
-};
-
 /// How far all of an element reaches along axis c. Edges with a node in their middle are parabolas: what they
 /// bound lies within the convex hull of the corners and of the edges' Bézier points, 2 m − (a + b)/2.
 std::pair<double, double> reach(const MeshView& mesh, std::span<const std::int32_t> nodes, std::size_t c) {
@@ -46,12 +36,6 @@ std::pair<double, double> reach(const MeshView& mesh, std::span<const std::int32
     for (const CellEdge& edge : type.edges) take(2.0 * at(edge.middle) - 0.5 * (at(edge.a) + at(edge.b)));
   const double margin = 1e-5 * (high - low);
   return {low - margin, high + margin};
-}
-
-Bounds bounds(const MeshView& mesh, std::span<const std::int32_t> nodes) {
-  Bounds box;
-  for (std::size_t c = 0; c < 3; ++c) std::tie(box.low[c], box.high[c]) = reach(mesh, nodes, c);
-  return box;
 }
 
 /// Reference coordinates of x in the simplex of the element's corners.
@@ -114,15 +98,25 @@ bool near_element(const MeshView& mesh, std::span<const std::int32_t> nodes, con
   return true;
 }
 
+bool PointLocator::Bounds::has(const Vector3& x, std::size_t dim) const {
+  for (std::size_t c = 0; c < dim; ++c)
+    if (x[c] < low[c] || x[c] > high[c]) return false;
+  return true;
+}
+
 PointLocator::PointLocator(const MeshView& mesh) : mesh_(mesh) {
   const std::size_t dim = dimension(mesh.type), npe = nodes_per_element(mesh.type);
   const auto elements = static_cast<std::int32_t>(mesh.connectivity.size() / npe);
-  Bounds all = bounds(mesh, nodes(0));
-  for (std::int32_t e = 1; e < elements; ++e) {
-    const Bounds box = bounds(mesh, nodes(e));
-    all.take(box.low);
-    all.take(box.high);
+  for (std::int32_t e = 0; e < elements; ++e) {
+    Bounds& box = bounds_.emplace_back();
+    for (std::size_t c = 0; c < 3; ++c) std::tie(box.low[c], box.high[c]) = reach(mesh, nodes(e), c);
   }
+  Bounds all = bounds_.front();
+  for (const Bounds& box : bounds_)
+    for (std::size_t c = 0; c < 3; ++c) {
+      all.low[c] = std::min(all.low[c], box.low[c]);
+      all.high[c] = std::max(all.high[c], box.high[c]);
+    }
   low_ = all.low;
   // A box for four elements: an element then lies in eight boxes at most where all are alike.
   double volume = 1.0;
@@ -135,7 +129,7 @@ PointLocator::PointLocator(const MeshView& mesh) : mesh_(mesh) {
   }
   const auto visit = [&](auto&& take) {
     for (std::int32_t e = 0; e < elements; ++e) {
-      const Bounds box = bounds(mesh, nodes(e));
+      const Bounds& box = bounds_[e];
       const Cells from = box_of(box.low), to = box_of(box.high);
       for (std::int64_t k = from[2]; k <= to[2]; ++k)
         for (std::int64_t j = from[1]; j <= to[1]; ++j)
@@ -195,7 +189,7 @@ void PointLocator::search_ring(const Vector3& x, const Ring& where, double& leas
         const std::int64_t box = (k * count_[1] + j) * count_[0] + i;
         for (std::int64_t m = start_[box]; m < start_[box + 1]; ++m) {
           const auto of = nodes(element_[m]);
-          if (only_near && !near_element(mesh_, of, x)) continue;
+          if (only_near && !bounds_[element_[m]].has(x, dimension(mesh_.type))) continue;
           // What is far outside of the corners' simplex is not the nearest with its curves either.
           if (!only_near && type.simplex && outside(type, by_corners(mesh_, of, x)) > 2.0 * least + 1.0)
             continue;

@@ -39,6 +39,11 @@ class PointLocator {
 
  private:
   using Cells = std::array<std::int64_t, 3>;
+  /// Of a box round all of an element.
+  struct Bounds {
+    Vector3 low{}, high{};
+    bool has(const Vector3& x, std::size_t dim) const;
+  };
   Cells box_of(const Vector3& x) const;
   std::span<const std::int32_t> nodes(std::int32_t element) const;
   struct Ring {
@@ -49,6 +54,7 @@ class PointLocator {
   void search_ring(const Vector3& x, const Ring& where, double& least, std::optional<Place>& best) const;
 
   MeshView mesh_;
+  std::vector<Bounds> bounds_;
   Vector3 low_{}, inverse_{};        ///< lowest corner; boxes a length
   Cells count_{1, 1, 1};             ///< boxes along each axis
   std::vector<std::int64_t> start_;  ///< elements of each box, compressed rows
