@@ -2,8 +2,6 @@
 // From the state of the loop to the fields and totals of a solution.
 #include "collect.hpp"
 
-#include <kacanov/corner_dilatation.hpp>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -89,7 +87,6 @@ void collect_contact(const Part& part, const ContactState& state, double toleran
 }
 
 void collect_totals(const Part& part, const ContactState& state, Solution& solution) {
-  solution.corner_dilatation = corner_dilatation(part, state.u);
   collect_contact_totals(part, solution);
   collect_body_totals(part, {state.u, solution.thermal, solution.corner_dilatation}, solution.result);
   collect_probes(part, state.u, solution.result);

@@ -12,7 +12,8 @@ namespace kacanov {
 /// of the bound. Collective.
 void collect_contact(const Part& part, const ContactState& state, double tolerance, Solution& solution);
 
-/// Forces, counts, extremes and probes over all ranks; `solution` has its contact fields. Collective.
+/// Forces, counts, extremes and probes over all ranks; `solution` has its contact fields and its
+/// corner_dilatation. Collective.
 void collect_totals(const Part& part, const ContactState& state, Solution& solution);
 
 }  // namespace kacanov

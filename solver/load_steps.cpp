@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include <kacanov/corner_dilatation.hpp>
 #include "collect.hpp"
 #include "mesh/plain_stream.hpp"
 #include "unsettled.hpp"
@@ -19,6 +20,7 @@ LoadStep line_now(const OuterLoop& loop, double share, const Result& result) {
   const StepContext& context = loop.context();
   Solution now;
   now.result = result;
+  now.corner_dilatation = corner_dilatation(context.part, context.state.u);
   collect_contact(context.part, context.state, context.options.tolerance, now);
   collect_totals(context.part, context.state, now);
   now.result.certificate = context.certify().certificate;

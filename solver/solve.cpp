@@ -51,14 +51,15 @@ struct Response {
   double energy = 0.0;
 };
 
-/// Collective.
-Response respond_independently(const StepContext& context) {
+/// Collective. `dilatation`: corner_dilatation() of the state.
+Response respond_independently(const StepContext& context, std::span<const double> dilatation) {
   const Part& part = context.part;
   const Vector& u = context.state.u;
   Vector strain;
   if (!context.body.linear()) strain = free_strain(part, context.path.thermal_pressure());
   Response response{Vector(part.unknowns())};
-  response.energy = reference_response(part, strain, u, response.internal) + spring_energy(part, u);
+  response.energy =
+      reference_response(part, {u, strain, dilatation}, response.internal) + spring_energy(part, u);
   response.energy = part.node_map.sum_all(response.energy);
   part.node_map.sum(response.internal, part.dim());
   add_spring_response(part, u, response.internal);
@@ -196,7 +197,8 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   const bool finished = !part.no_equilibrium.empty() || run_load_steps(loop, shares, result, calls);
   const double looped = MPI_Wtime();
 
-  const Response response = respond_independently(context);
+  solution.corner_dilatation = corner_dilatation(part, context.state.u);
+  const Response response = respond_independently(context, solution.corner_dilatation);
   result.certificate = certify(context, response);
   result.status = status_of(result.certificate, options.tolerance, loop.gave_up() && !loop.ran_away());
   if (result.status == Status::limited_by_rounding && !result.certificate.exhausted(options.tolerance) &&

@@ -109,4 +109,32 @@ struct StraightSides {
   }
 };
 
+/// Over an element: ∫ L_c ∂_k N_a, and ∫ L_c, of its corners' linear functions L.
+template <class E>
+struct CornerIntegrals {
+  std::array<std::array<std::array<double, 3>, E::corners>, E::nodes> change{};
+  std::array<double, E::corners> volume{};
+};
+
+template <class E>
+CornerIntegrals<E> corner_integrals(const Nodal<E>& x) {
+  CornerIntegrals<E> of;
+  if (has_straight_sides(x)) {
+    const StraightSides sides(x.data());
+    sides.integrate(of.change);
+    of.volume.fill(sides.volume / E::corners);
+    return of;
+  }
+  for (std::size_t q = 0; q < E::points; ++q) {
+    const Point<E> point(x, q);
+    const auto share = barycentric<E::dim>(E::point[q].data());
+    for (std::size_t c = 0; c < E::corners; ++c) of.volume[c] += point.volume * share[c];
+    for (std::size_t a = 0; a < E::nodes; ++a)
+      for (std::size_t c = 0; c < E::corners; ++c)
+        for (std::size_t k = 0; k < 3; ++k)
+          of.change[a][c][k] += point.volume * share[c] * point.gradient[a][k];
+  }
+  return of;
+}
+
 }  // namespace kacanov::elements

@@ -49,13 +49,25 @@ template <class E, class StressOf>
 void assemble(const Body& body, std::span<const double> x, std::span<const double> known, std::span<double> y,
               StressOf&& stress_of) {
   std::fill(y.begin(), y.end(), 0.0);
+  Nodal<E> f{};
   for_each_point<E>(
       body, x, known,
       [&](std::size_t e, const Law& law, std::size_t q, const Point<E>& point, const Strain& strain) {
-        Nodal<E> f{};
+        if (q == 0) f = {};
         add_force<E>(point, stress_of(e, law, q, point, strain), f);
-        scatter_add<E>(body, e, f, y);
+        if (q + 1 == E::points) scatter_add<E>(body, e, f, y);
       });
+}
+
+/// At a point, of its strain as across() has it.
+template <class E>
+double stored(const Body& body, std::size_t e, std::size_t q, const Point<E>& point, const Strain& strain) {
+  const Law& law = body.law(e);
+  const bool averaged = E::corner_dilatation && law.mean_dilatation;
+  const double square = averaged ? strain.square : strain.trace * strain.trace;
+  const double shear =
+      body.moduli == nullptr ? law.energy(strain.norm()) : body.moduli->energy[e * E::points + q];
+  return point.volume * (0.5 * law.bulk * square + 2.0 * shear);
 }
 
 /// Columns of an element matrix: the forces of unit displacements. stress_of(point index, point, strain).
@@ -171,6 +183,20 @@ void residual(const Body& body, std::span<const double> u, std::span<double> f) 
   });
 }
 
+double response(const Body& body, std::span<const double> u, std::span<double> f) {
+  double energy = 0.0;
+  elements::dispatch(body.mesh.type, [&]<class E>(E) {
+    assemble<E>(
+        body, u, body.corner_dilatation, f,
+        [&](std::size_t e, const Law& law, std::size_t q, const Point<E>& point, const Strain& plane) {
+          const Strain strain = across<E>(body, e, q, plane);
+          energy += stored<E>(body, e, q, point, strain);
+          return stress(law, moduli_at<E>(body, e, q, strain.norm()).secant, strain);
+        });
+  });
+  return energy;
+}
+
 double free_force(const Body& body, std::span<double> f) {
   const std::vector<double> rest(body.unknowns(), 0.0);
   double energy = 0.0;
@@ -192,13 +218,8 @@ double energy(const Body& body, std::span<const double> u) {
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     for_each_point<E>(
         body, u, body.corner_dilatation,
-        [&](std::size_t e, const Law& law, std::size_t q, const Point<E>& point, const Strain& plane) {
-          const Strain strain = across<E>(body, e, q, plane);
-          const bool averaged = E::corner_dilatation && law.mean_dilatation;
-          const double square = averaged ? strain.square : strain.trace * strain.trace;
-          const double shear =
-              body.moduli == nullptr ? law.energy(strain.norm()) : body.moduli->energy[e * E::points + q];
-          sum += point.volume * (0.5 * law.bulk * square + 2.0 * shear);
+        [&](std::size_t e, const Law&, std::size_t q, const Point<E>& point, const Strain& plane) {
+          sum += stored<E>(body, e, q, point, across<E>(body, e, q, plane));
         });
   });
   return sum;

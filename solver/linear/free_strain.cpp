@@ -4,7 +4,6 @@
 
 #include <numeric>
 
-#include <kacanov/corner_dilatation.hpp>
 #include <kacanov/reference.hpp>
 #include "law/plane_stress.hpp"
 
@@ -21,19 +20,17 @@ std::vector<double> free_strain(const Body& body, std::span<const double> pressu
   return strain;
 }
 
-double reference_response(const Part& part, std::span<const double> strain, std::span<const double> u,
-                          std::span<double> internal) {
+double reference_response(const Part& part, const ReferenceState& state, std::span<double> internal) {
+  const auto& [u, strain, dilatation] = state;
   Body body = part.body();
   body.free_strain = strain;
-  const std::vector<double> dilatation = corner_dilatation(part, u);
   body.corner_dilatation = dilatation;
-  reference::residual(body, u, internal);
-  double energy = reference::energy(body, u);
+  const double energy = reference::response(body, u, internal);
   if (strain.empty()) return energy;
   std::vector<double> load(part.unknowns());
-  energy -= reference::free_force(body, load);
+  const double free = reference::free_force(body, load);
   for (std::size_t i = 0; i < load.size(); ++i) internal[i] += load[i];
-  return std::inner_product(load.begin(), load.end(), u.begin(), energy);
+  return std::inner_product(load.begin(), load.end(), u.begin(), energy - free);
 }
 
 }  // namespace kacanov

@@ -15,9 +15,14 @@ std::vector<double> free_strain(const Body& body, std::span<const double> pressu
 /// The same of a part; empty but in plane stress, and where nothing is warmer.
 std::vector<double> free_strain(const Part& part, std::span<const double> pressure);
 
+struct ReferenceState {
+  std::span<const double> u;
+  std::span<const double> strain;             ///< free_strain(), or empty where all laws are linear
+  std::span<const double> corner_dilatation;  ///< corner_dilatation() of u
+};
+
 /// R(u) + what the load has of temperature, and the energy whose slope that is, of this rank's elements
-/// alone, by the reference operator. Collective. `strain`: free_strain(), or empty where all laws are linear.
-double reference_response(const Part& part, std::span<const double> strain, std::span<const double> u,
-                          std::span<double> internal);
+/// alone, by the reference operator.
+double reference_response(const Part& part, const ReferenceState& state, std::span<double> internal);
 
 }  // namespace kacanov

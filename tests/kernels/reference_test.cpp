@@ -254,3 +254,18 @@ TEST_CASE("volumes fill the box and show inverted elements") {
   reference::volumes(owned.body(), volume);
   CHECK(volume[0] == doctest::Approx(-0.5));
 }
+
+TEST_CASE("energy and internal force on one walk are those of two") {
+  for (const ElementType type :
+       {ElementType::tri3, ElementType::tet4, ElementType::tet10, ElementType::hex8}) {
+    CAPTURE(cell(type).name);
+    const auto owned = test::small_body(type, 7);
+    const Body body = owned.body();
+    const std::vector<double> u = test::random_vector(body.unknowns(), 8);
+    std::vector<double> both(u.size()), force(u.size());
+    const double energy = reference::response(body, u, both);
+    reference::residual(body, u, force);
+    CHECK(energy == reference::energy(body, u));
+    CHECK(both == force);
+  }
+}

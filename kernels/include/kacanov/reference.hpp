@@ -77,6 +77,8 @@ void residual(const Body& body, std::span<const double> u, std::span<double> f);
 double free_force(const Body& body, std::span<double> f);
 /// Stored energy ∫ k0/2 tr² + 2 G(x) at u.
 double energy(const Body& body, std::span<const double> u);
+/// residual() and energy() on one walk over the elements.
+double response(const Body& body, std::span<const double> u, std::span<double> f);
 /// Stiffness of one element for frozen g (its own points only, tr ε at them even where it is averaged round
 /// corners): `matrix` has (nodes·dim)² entries, row-major, with the components of a node together.
 void element_matrix(const Body& body, std::size_t element, std::span<const double> g,
