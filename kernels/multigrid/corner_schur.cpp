@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "cells/dispatch.hpp"
-#include "cells/point.hpp"
 #include "cells/straight.hpp"
 #include "multigrid/largest_eigenvalue.hpp"
 #include "multigrid/sums.hpp"
@@ -15,28 +15,6 @@
 
 namespace kacanov {
 namespace {
-
-/// Of an element: ∫ share_c ∂_k N_a.
-template <class E>
-using ElementChanges = std::array<std::array<std::array<double, 3>, E::corners>, E::nodes>;
-
-template <class E>
-ElementChanges<E> element_changes(const Body& body, std::size_t e) {
-  const elements::Nodal<E> x = elements::coordinates_of<E>(body.mesh, e);
-  ElementChanges<E> sum{};
-  if (elements::has_straight_sides(x)) {
-    elements::StraightSides(x.data()).integrate(sum);
-    return sum;
-  }
-  for (std::size_t q = 0; q < E::points; ++q) {
-    const elements::Point<E> point(x, q);
-    const auto share = elements::barycentric<E::dim>(E::point[q].data());
-    for (std::size_t a = 0; a < E::nodes; ++a)
-      for (std::size_t c = 0; c < E::corners; ++c)
-        for (std::size_t k = 0; k < 3; ++k) sum[a][c][k] += point.volume * share[c] * point.gradient[a][k];
-  }
-  return sum;
-}
 
 /// Nodes, and entries of the pressures, of all elements here that average.
 struct AveragingElements {
@@ -61,6 +39,21 @@ AveragingElements averaging_elements(const Body& body, const CornerPressures& pr
       }
   });
   return all;
+}
+
+/// Nodes in the middle of an edge whose end is one of the first `nodes`, too: the end moves all rows that the
+/// middle does, and couples them.
+std::vector<char> enclosed_nodes(const Body& body, const CornerPressures& pressures, std::size_t nodes) {
+  std::vector<char> enclosed(body.mesh.node_count(), 0);
+  const Cell& type = cell(body.mesh.type);
+  const auto here = [&](std::int32_t node) { return static_cast<std::size_t>(node) < nodes; };
+  for (std::size_t e = 0; type.order == 2 && e < body.mesh.element_count(); ++e) {
+    if (pressures.means().of_element[e * static_cast<std::size_t>(type.corners)] < 0) continue;
+    const std::int32_t* node = body.mesh.connectivity.data() + e * static_cast<std::size_t>(type.nodes);
+    for (const CellEdge& edge : type.edges)
+      if (here(node[edge.a]) || here(node[edge.b])) enclosed[node[edge.middle]] = 1;
+  }
+  return enclosed;
 }
 
 }  // namespace
@@ -109,7 +102,8 @@ void CornerSchur::take_changes(const MultigridBody& body, const CornerPressures&
           const std::size_t e = elements.element[m];
           const std::int32_t* node = body.body.mesh.connectivity.data() + e * E::nodes;
           const std::int32_t* corner_entry = &pressures.means().of_element[e * E::corners];
-          const auto sum = element_changes<E>(body.body, e);
+          const auto sum =
+              elements::corner_integrals<E>(elements::coordinates_of<E>(body.body.mesh, e)).change;
           // Corners of one patch have an entry together.
           for (std::size_t j = elements.first_entry[m]; j < elements.first_entry[m + 1]; ++j)
             for (std::size_t a = 0; a < E::nodes; ++a) {
@@ -132,14 +126,22 @@ void CornerSchur::take_changes(const MultigridBody& body, const CornerPressures&
         for (std::size_t i = 0; i < 3; ++i)
           entries_[k].change[i] = body.held[3 * n + i] != 0 ? 0.0F : value[3 * k + i];
   }
-  // A row for every pressure, even one that no node moves.
-  first_ = first;
-  for (std::int64_t n = starts[map.rank]; n < starts[map.rank + 1]; ++n) {
-    index.push_back(static_cast<std::int32_t>(number.size()));
-    number.push_back(n);
-    first.push_back(index.size());
+  std::vector<std::size_t> first_coupling{0};
+  std::vector<std::int32_t> coupling;
+  const std::vector<char> enclosed = enclosed_nodes(body.body, pressures, nodes_);
+  for (std::size_t n = 0; n < nodes_; ++n) {
+    if (enclosed[n] != 0) continue;
+    for (std::size_t k = first[n]; k < first[n + 1]; ++k) coupling.push_back(index[k]);
+    first_coupling.push_back(coupling.size());
   }
-  const MatrixSide side{starts, number, index, first};
+  // A row for every pressure, even one that no node moves.
+  for (std::int64_t n = starts[map.rank]; n < starts[map.rank + 1]; ++n) {
+    coupling.push_back(static_cast<std::int32_t>(number.size()));
+    number.push_back(n);
+    first_coupling.push_back(coupling.size());
+  }
+  first_ = std::move(first);
+  const MatrixSide side{starts, number, coupling, first_coupling};
   pattern_.emplace(side, side, map, threads_);
   for (std::size_t k = 0; k < entries_.size(); ++k) entries_[k].row = pattern_->column(number[index[k]]);
 }
