@@ -71,9 +71,23 @@ void GridHierarchy::build(std::span<const double> g, std::span<const NodeBlock> 
   }
   Level& last = levels_.back();
   direct_.emplace(last.vertices, last.leaves, moments, comm);
+  last_moments_ = std::move(moments);
   const auto starts = last.vertices.starts();
   for (auto* v : {&last.b, &last.x})
     v->resize(grid_width * static_cast<std::size_t>(starts[comm.rank + 1] - starts[comm.rank]));
+}
+
+void GridHierarchy::change(std::span<const NodeBlock> blocks) {
+  LevelStiffness stiffness =
+      level_stiffness(*tree_, levels_.front().leaves, {body_.body.mesh.coordinates, cell_}, blocks);
+  direct_.reset();
+  for (std::size_t k = 0; k + 1 < levels_.size(); ++k) {
+    levels_[k].matrix->change(*tree_, levels_[k].leaves, stiffness);
+    stiffness = raised(*tree_, levels_[k].leaves, levels_[k + 1].leaves, stiffness);
+  }
+  static_cast<LevelStiffness&>(last_moments_) = std::move(stiffness);
+  const Level& last = levels_.back();
+  direct_.emplace(last.vertices, last.leaves, last_moments_, *body_.node_map);
 }
 
 void GridHierarchy::correct(std::span<const float> force, std::span<const double> change, std::span<float> u,

@@ -23,6 +23,8 @@ class GridHierarchy {
 
   /// For frozen g, elements × points, and stiffnesses of local nodes. Collective.
   void build(std::span<const double> g, std::span<const NodeBlock> blocks);
+  /// The same with other stiffnesses. Collective.
+  void change(std::span<const NodeBlock> blocks);
   /// Adds a correction for what is left of forces on nodes and of volume changes at rows: `u` of the nodes
   /// this rank owns, `p` of its rows. Collective.
   void correct(std::span<const float> force, std::span<const double> change, std::span<float> u,
@@ -47,6 +49,7 @@ class GridHierarchy {
   std::vector<std::int32_t> cell_;  ///< the deepest, of every local node
   std::deque<Level> levels_;
   std::optional<GridTransfer> nodes_, rows_;
+  LevelMoments last_moments_;
   std::optional<PressureDirect> direct_;
 };
 

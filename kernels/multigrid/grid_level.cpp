@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "multigrid/largest_eigenvalue.hpp"
 #include "multigrid/sums.hpp"
@@ -70,17 +71,68 @@ GridLevel::GridLevel(const GridVertices& vertices, const GridLeaves& leaves, con
 void GridLevel::build(const GridTree& tree, const GridLeaves& leaves, const LevelMoments& moments) {
   force_.assign(12 * pattern_->entries(), 0.0F);
   for (auto* v : {&pressure_, &divergence_}) v->assign(4 * pattern_->entries(), 0.0F);
-  in_shares(threads_, pattern_->rows(), [&](std::size_t begin, std::size_t end) {
-    const auto from = static_cast<std::int32_t>(begin), to = static_cast<std::int32_t>(end);
-    for (std::size_t leaf = 0; leaf < leaves.cell.size(); ++leaf) {
-      const auto of = std::span(shares_).subspan(first_[8 * leaf], first_[8 * leaf + 8] - first_[8 * leaf]);
-      if (std::any_of(of.begin(), of.end(), [&](const Share& s) { return s.row >= from && s.row < to; }))
-        add(leaf_form(tree, leaves, moments, leaf), leaf, from, to);
-    }
+  add_forms(leaves.cell.size(), [&](std::size_t leaf) {
+    return std::optional<LeafForm>(std::in_place, moments.leaf[leaf], nullptr,
+                                   tree.length(tree.cells()[leaves.cell[leaf]]));
   });
   pattern_->complete(force_, 12), pattern_->complete(pressure_, 4), pattern_->complete(divergence_, 4);
+  kept_row_.clear(), kept_.clear();
+  change(tree, leaves, moments);
+}
+
+void GridLevel::change(const GridTree& tree, const GridLeaves& leaves, const LevelStiffness& stiffness) {
+  const float* kept = kept_.data();
+  for (const std::int32_t r : kept_row_) {
+    const simd::GridRow of = row(static_cast<std::size_t>(r));
+    const std::size_t count = 12 * (of.end - of.begin);
+    std::copy_n(kept, count, &force_[12 * of.begin]);
+    kept += count;
+  }
+  keep_rows(stiffness);
+  // What is in other ranks' rows they have already.
+  std::fill(force_.begin() + 12 * pattern_->start()[rows()], force_.end(), 0.0F);
+  const LeafMoments none;
+  add_forms(leaves.cell.size(), [&](std::size_t leaf) {
+    std::optional<LeafForm> form;
+    if (const std::int32_t which = stiffness.stiff[leaf]; which >= 0)
+      form.emplace(none, &stiffness.stiffness[which], tree.length(tree.cells()[leaves.cell[leaf]]));
+    return form;
+  });
+  pattern_->complete(force_, 12);
   invert_diagonal();
   find_scales();
+}
+
+/// Those of this rank that it or another may add stiffnesses to.
+void GridLevel::keep_rows(const LevelStiffness& stiffness) {
+  std::vector<char> touched(pattern_->rows(), 0);
+  for (std::size_t leaf = 0; leaf < stiffness.stiff.size(); ++leaf)
+    if (stiffness.stiff[leaf] >= 0)
+      for (const Share& share : shares_of(leaf)) touched[share.row] = 1;
+  const auto start = pattern_->start();
+  for (const std::int64_t entry : pattern_->added())
+    touched[static_cast<std::size_t>(std::upper_bound(start.begin(), start.end(), entry) - start.begin()) -
+            1] = 1;
+  kept_row_.clear(), kept_.clear();
+  for (std::size_t r = 0; r < rows(); ++r) {
+    if (touched[r] == 0) continue;
+    kept_row_.push_back(static_cast<std::int32_t>(r));
+    kept_.insert(kept_.end(), force_.begin() + 12 * start[r], force_.begin() + 12 * start[r + 1]);
+  }
+}
+
+/// form_of(leaf) of all leaves that have one.
+template <class FormOf>
+void GridLevel::add_forms(std::size_t leaves, const FormOf& form_of) {
+  in_shares(threads_, pattern_->rows(), [&](std::size_t begin, std::size_t end) {
+    const auto from = static_cast<std::int32_t>(begin), to = static_cast<std::int32_t>(end);
+    for (std::size_t leaf = 0; leaf < leaves; ++leaf) {
+      const auto of = shares_of(leaf);
+      if (std::none_of(of.begin(), of.end(), [&](const Share& s) { return s.row >= from && s.row < to; }))
+        continue;
+      if (const std::optional<LeafForm> form = form_of(leaf)) add(*form, leaf, from, to);
+    }
+  });
 }
 
 /// To rows in [begin, end).
@@ -238,9 +290,9 @@ void GridLevel::residual(std::span<const float> b, std::vector<float>& x, std::s
 
 std::size_t GridLevel::bytes() const noexcept {
   const auto size = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  return pattern_->bytes() + size(first_) + size(shares_) + size(force_) + size(pressure_) +
-         size(divergence_) + size(inverse_) + size(schur_inverse_) + size(p_) + size(lifted_) + size(moved_) +
-         solve_.bytes();
+  return pattern_->bytes() + size(first_) + size(shares_) + size(kept_row_) + size(kept_) + size(force_) +
+         size(pressure_) + size(divergence_) + size(inverse_) + size(schur_inverse_) + size(p_) +
+         size(lifted_) + size(moved_) + solve_.bytes();
 }
 
 }  // namespace kacanov

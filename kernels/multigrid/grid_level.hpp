@@ -27,6 +27,8 @@ class GridLevel {
   GridLevel(const GridVertices& vertices, const GridLeaves& leaves, const Communicator& comm, int threads);
   /// The matrix. Collective.
   void build(const GridTree& tree, const GridLeaves& leaves, const LevelMoments& moments);
+  /// The same with other stiffnesses of nodes. Collective.
+  void change(const GridTree& tree, const GridLeaves& leaves, const LevelStiffness& stiffness);
 
   std::size_t rows() const noexcept { return pattern_->owned_rows(); }
   const IndexMap& map() const noexcept { return pattern_->columns(); }
@@ -43,7 +45,13 @@ class GridLevel {
     std::int32_t row, column;
     float weight;
   };
+  std::span<const Share> shares_of(std::size_t leaf) const {
+    return std::span(shares_).subspan(first_[8 * leaf], first_[8 * leaf + 8] - first_[8 * leaf]);
+  }
+  template <class FormOf>
+  void add_forms(std::size_t leaves, const FormOf& form_of);
   void add(const LeafForm& form, std::size_t leaf, std::int32_t begin, std::int32_t end);
+  void keep_rows(const LevelStiffness& stiffness);
   void invert_diagonal();
   void find_scales();
   void fill(std::span<float> x) { fill_->start_forward(x), fill_->finish_forward(x); }
@@ -68,6 +76,9 @@ class GridLevel {
   /// An entry: the three columns of A with B's entries below, Bᵀ's column with −C's entry below, and B's
   /// once more.
   std::vector<float> force_, pressure_, divergence_;
+  /// Rows of A that stiffnesses add to, as they are without.
+  std::vector<std::int32_t> kept_row_;
+  std::vector<float> kept_;
   std::vector<float> inverse_;        ///< of Â: local rows × three columns of four
   std::vector<float> schur_inverse_;  ///< of S's diagonal
   PressureSolve solve_;

@@ -31,12 +31,4 @@ class LeafForm {
   std::array<Block, 64> block_;
 };
 
-/// Of a leaf of a level.
-inline LeafForm leaf_form(const GridTree& tree, const GridLeaves& leaves, const LevelMoments& moments,
-                          std::size_t leaf) {
-  const std::int32_t stiff = moments.stiff[leaf];
-  return {moments.leaf[leaf], stiff < 0 ? nullptr : &moments.stiffness[stiff],
-          tree.length(tree.cells()[leaves.cell[leaf]])};
-}
-
 }  // namespace kacanov

@@ -54,6 +54,17 @@ int octant_of(const GridTree::Cell& cell, std::int32_t child) {
   return at == cell.child.end() ? -1 : static_cast<int>(at - cell.child.begin());
 }
 
+/// Of a cell: which of the leaves it is.
+std::vector<std::int32_t> places_of(const GridTree& tree, const GridLeaves& leaves) {
+  std::vector<std::int32_t> place(tree.cells().size(), -1);
+  for (std::size_t l = 0; l < leaves.cell.size(); ++l) place[leaves.cell[l]] = static_cast<std::int32_t>(l);
+  return place;
+}
+
+Moments moments_of_node(const GridTree& tree, const NodesInTree& nodes, std::size_t n) {
+  return moments_at(tree.within(tree.cells()[nodes.cell[n]], &nodes.coordinates[3 * n]));
+}
+
 template <class E>
 bool straight_sides(const elements::Nodal<E>& x) {
   if constexpr (E::simplex) return elements::has_straight_sides(x);
@@ -135,13 +146,9 @@ std::vector<GridLeaves> leaves_of_levels(const GridTree& tree, std::span<const s
 LevelMoments level_moments(const GridTree& tree, const GridLeaves& leaves, const NodesInTree& nodes,
                            std::span<const NodeMeasure> measures, std::span<const NodeBlock> blocks,
                            int threads) {
-  std::vector<std::int32_t> place(tree.cells().size(), -1);
-  for (std::size_t l = 0; l < leaves.cell.size(); ++l) place[leaves.cell[l]] = static_cast<std::int32_t>(l);
+  const std::vector<std::int32_t> place = places_of(tree, leaves);
   LevelMoments sums;
   sums.leaf.resize(leaves.cell.size());
-  const auto at = [&](std::size_t n) {
-    return moments_at(tree.within(tree.cells()[nodes.cell[n]], &nodes.coordinates[3 * n]));
-  };
   const auto team = static_cast<std::size_t>(threads);
   in_team(threads, [&](int t) {
     const std::size_t share = t, count = leaves.cell.size();
@@ -149,7 +156,7 @@ LevelMoments level_moments(const GridTree& tree, const GridLeaves& leaves, const
     for (std::size_t n = 0; n < measures.size(); ++n) {
       const std::size_t l = place[nodes.cell[n]];
       if (l < begin || l >= end) continue;
-      const Moments m = at(n);
+      const Moments m = moments_of_node(tree, nodes, n);
       LeafMoments& to = sums.leaf[l];
       const NodeMeasure& of = measures[n];
       add_scaled(to.shear, of.shear, m);
@@ -158,6 +165,14 @@ LevelMoments level_moments(const GridTree& tree, const GridLeaves& leaves, const
       add_scaled(to.volume, of.volume, m), add_scaled(to.compliance, of.compliance, m);
     }
   });
+  static_cast<LevelStiffness&>(sums) = level_stiffness(tree, leaves, nodes, blocks);
+  return sums;
+}
+
+LevelStiffness level_stiffness(const GridTree& tree, const GridLeaves& leaves, const NodesInTree& nodes,
+                               std::span<const NodeBlock> blocks) {
+  const std::vector<std::int32_t> place = places_of(tree, leaves);
+  LevelStiffness sums;
   sums.stiff.assign(leaves.cell.size(), -1);
   for (const NodeBlock& block : blocks) {
     std::int32_t& which = sums.stiff[place[nodes.cell[block.node]]];
@@ -165,7 +180,7 @@ LevelMoments level_moments(const GridTree& tree, const GridLeaves& leaves, const
       which = static_cast<std::int32_t>(sums.stiffness.size());
       sums.stiffness.emplace_back();
     }
-    const Moments m = at(static_cast<std::size_t>(block.node));
+    const Moments m = moments_of_node(tree, nodes, static_cast<std::size_t>(block.node));
     for (std::size_t r = 0, k = 0; r < 3; ++r)
       for (std::size_t t = r; t < 3; ++t) add_scaled(sums.stiffness[which][k++], block.value[r * 3 + t], m);
   }
@@ -176,7 +191,6 @@ LevelMoments raised(const GridTree& tree, const GridLeaves& fine, const GridLeav
                     const LevelMoments& moments) {
   LevelMoments sums;
   sums.leaf.resize(coarse.cell.size());
-  sums.stiff.assign(coarse.cell.size(), -1);
   for (std::size_t l = 0; l < fine.cell.size(); ++l) {
     const std::size_t above = fine.above[l];
     const int octant = octant_of(tree.cells()[coarse.cell[above]], fine.cell[l]);
@@ -184,7 +198,20 @@ LevelMoments raised(const GridTree& tree, const GridLeaves& fine, const GridLeav
     LeafMoments& to = sums.leaf[above];
     add_raised(to.shear, from.shear, octant), add_raised(to.bulk, from.bulk, octant);
     add_raised(to.volume, from.volume, octant), add_raised(to.compliance, from.compliance, octant);
+  }
+  static_cast<LevelStiffness&>(sums) =
+      raised(tree, fine, coarse, static_cast<const LevelStiffness&>(moments));
+  return sums;
+}
+
+LevelStiffness raised(const GridTree& tree, const GridLeaves& fine, const GridLeaves& coarse,
+                      const LevelStiffness& moments) {
+  LevelStiffness sums;
+  sums.stiff.assign(coarse.cell.size(), -1);
+  for (std::size_t l = 0; l < fine.cell.size(); ++l) {
     if (moments.stiff[l] < 0) continue;
+    const std::size_t above = fine.above[l];
+    const int octant = octant_of(tree.cells()[coarse.cell[above]], fine.cell[l]);
     if (sums.stiff[above] < 0) {
       sums.stiff[above] = static_cast<std::int32_t>(sums.stiffness.size());
       sums.stiffness.emplace_back();

@@ -42,11 +42,15 @@ struct GridLeaves {
 /// Level by level, up to `last`; `cell`: the deepest, of every node.
 std::vector<GridLeaves> leaves_of_levels(const GridTree& tree, std::span<const std::int32_t> cell, int last);
 
-/// Moments of a level's leaves.
-struct LevelMoments {
-  std::vector<LeafMoments> leaf;
+/// Stiffnesses of nodes, of a level's leaves.
+struct LevelStiffness {
   std::vector<std::int32_t> stiff;  ///< of every leaf: which of `stiffness` it has, −1 for none
   std::vector<StiffnessMoments> stiffness;
+};
+
+/// Moments of a level's leaves.
+struct LevelMoments : LevelStiffness {
+  std::vector<LeafMoments> leaf;
 };
 
 /// The nodes of this rank and where in the deepest leaves they are.
@@ -60,8 +64,14 @@ LevelMoments level_moments(const GridTree& tree, const GridLeaves& leaves, const
                            std::span<const NodeMeasure> measures, std::span<const NodeBlock> blocks,
                            int threads);
 
+/// The same without the elements.
+LevelStiffness level_stiffness(const GridTree& tree, const GridLeaves& leaves, const NodesInTree& nodes,
+                               std::span<const NodeBlock> blocks);
+
 /// Of the next level, `coarse`.
 LevelMoments raised(const GridTree& tree, const GridLeaves& fine, const GridLeaves& coarse,
                     const LevelMoments& moments);
+LevelStiffness raised(const GridTree& tree, const GridLeaves& fine, const GridLeaves& coarse,
+                      const LevelStiffness& moments);
 
 }  // namespace kacanov

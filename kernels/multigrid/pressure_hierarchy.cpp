@@ -48,14 +48,18 @@ class PressureHierarchy final : public RigidMultigrid::Hierarchy {
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space) override {
     fine_.build(g, blocks, space);
     fine_.choose_smoother(1, 1.0);
-    complete(g);
+    if (!schur_) prepare();
+    scale_ = 1.0 / (pressure_damping * fine_.largest());
+    schur_->build(fine_.inverse(), scale_, pressures_.compliance());
+    grids_->build(g, stiffnesses());
+    contrast_ = pressure_contrast(body_, g);
+    solves_ = solves_for(contrast_, strength_);
   }
 
   void rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space) override {
     fine_.rebuild(blocks, space);
-    Vector g(body_.body.secant_count());
-    fine_.secant(g);
-    complete(g);
+    schur_->build(fine_.inverse(), scale_, pressures_.compliance());
+    grids_->change(stiffnesses());
   }
 
   void secant(std::span<double> g) const override { fine_.secant(g); }
@@ -108,21 +112,14 @@ class PressureHierarchy final : public RigidMultigrid::Hierarchy {
     return true;
   }
 
-  /// All but the fine operator.
-  void complete(std::span<const double> g) {
-    if (!schur_) {
-      schur_.emplace(body_, pressures_, options_.threads);
-      grids_.emplace(body_, pressures_, options_.threads);
-      for (auto* v : {&b_, &x_, &image_}) v->resize(body_.unknowns());
-      entries_.resize(pressures_.means().size());
-      p_.resize(schur_->size());
-      for (auto* v : {&change_, &rest_}) v->resize(pressures_.rows());
-    }
-    scale_ = 1.0 / (pressure_damping * fine_.largest());
-    schur_->build(fine_.inverse(), scale_, pressures_.compliance());
-    grids_->build(g, stiffnesses());
-    contrast_ = pressure_contrast(body_, g);
-    solves_ = solves_for(contrast_, strength_);
+  /// What depends on the mesh alone.
+  void prepare() {
+    schur_.emplace(body_, pressures_, options_.threads);
+    grids_.emplace(body_, pressures_, options_.threads);
+    for (auto* v : {&b_, &x_, &image_}) v->resize(body_.unknowns());
+    entries_.resize(pressures_.means().size());
+    p_.resize(schur_->size());
+    for (auto* v : {&change_, &rest_}) v->resize(pressures_.rows());
   }
 
   /// Of nodes this rank owns: blocks, and what holds components, where a grid would move them.

@@ -49,6 +49,8 @@ class SummedPattern {
   /// Adds to this rank's rows what the others have summed in theirs for it: `width` values an entry.
   /// Collective.
   void complete(std::span<float> values, std::size_t width) const;
+  /// The entries that complete() may add to.
+  std::span<const std::int64_t> added() const noexcept { return into_; }
   std::size_t bytes() const noexcept;
 
  private:

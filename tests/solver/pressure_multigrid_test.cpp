@@ -251,58 +251,68 @@ TEST_CASE("grids' matrices are blind to rigid motions, have uniform strain's ene
   std::vector<NodeBlock> springs;
   for (std::int32_t n = 0; n < part.owned_nodes(); n += 7)
     springs.push_back({n, {2.0, 1.0, 0.0, 1.0, 3.0, 0.0, 0.0, 0.0, 0.0}});
+  std::vector<NodeBlock> others;
+  for (std::int32_t n = 0; n < part.owned_nodes(); n += 5)
+    others.push_back({n, {4e3, 0.0, 0.0, 0.0, 5e3, 0.0, 0.0, 0.0, 6e3}});
   const double spring_count = sum_all(static_cast<double>(springs.size()));
   for (const int threads : {1, 2})
-    for (const bool held : {false, true}) {
-      LevelMoments moments =
-          level_moments(grids.tree, leaves[0], nodes, node_measures(body, g, threads),
-                        held ? std::span<const NodeBlock>(springs) : std::span<const NodeBlock>(), threads);
-      for (int k = 0; k <= last; ++k) {
-        CAPTURE(threads);
-        CAPTURE(held);
-        CAPTURE(k);
-        const GridVertices vertices(grids.tree, k, part.node_map.ranks);
-        if (k > 0) moments = raised(grids.tree, leaves[k - 1], leaves[k], moments);
-        GridLevel level(vertices, leaves[k], part.node_map, threads);
-        level.build(grids.tree, leaves[k], moments);
-        const auto residual = [&](const auto& displacement, double pressure) {
-          std::vector<float> b(grid_width * level.map().size(), 0.0F), x = b, r = b;
-          for (std::size_t i = 0; i < level.rows(); ++i) {
-            const auto row = static_cast<std::int32_t>(level.map().first() + static_cast<std::int64_t>(i));
-            const Vector3 u = displacement(grids.tree.point(vertices.position(row)));
-            for (std::size_t c = 0; c < 3; ++c) x[grid_width * i + c] = static_cast<float>(u[c]);
-            x[grid_width * i + 3] = static_cast<float>(pressure);
+    for (const bool changed : {false, true})
+      for (const bool held : {false, true}) {
+        // Changed: built with other springs, and these in their place.
+        const auto of = held ? std::span<const NodeBlock>(springs) : std::span<const NodeBlock>();
+        LevelMoments moments = level_moments(grids.tree, leaves[0], nodes, node_measures(body, g, threads),
+                                             changed ? std::span<const NodeBlock>(others) : of, threads);
+        LevelStiffness stiffness = level_stiffness(grids.tree, leaves[0], nodes, of);
+        for (int k = 0; k <= last; ++k) {
+          CAPTURE(threads);
+          CAPTURE(held);
+          CAPTURE(k);
+          const GridVertices vertices(grids.tree, k, part.node_map.ranks);
+          if (k > 0) {
+            moments = raised(grids.tree, leaves[k - 1], leaves[k], moments);
+            stiffness = raised(grids.tree, leaves[k - 1], leaves[k], stiffness);
           }
-          level.residual(b, x, r);
-          double energy = 0.0, change = 0.0, largest = 0.0;
-          for (std::size_t i = 0; i < level.rows(); ++i) {
-            for (std::size_t c = 0; c < 3; ++c) {
-              const auto force = static_cast<double>(r[grid_width * i + c]);
-              energy -= static_cast<double>(x[grid_width * i + c]) * force;
-              largest = std::max(largest, std::abs(force));
+          GridLevel level(vertices, leaves[k], part.node_map, threads);
+          level.build(grids.tree, leaves[k], moments);
+          if (changed) level.change(grids.tree, leaves[k], stiffness);
+          const auto residual = [&](const auto& displacement, double pressure) {
+            std::vector<float> b(grid_width * level.map().size(), 0.0F), x = b, r = b;
+            for (std::size_t i = 0; i < level.rows(); ++i) {
+              const auto row = static_cast<std::int32_t>(level.map().first() + static_cast<std::int64_t>(i));
+              const Vector3 u = displacement(grids.tree.point(vertices.position(row)));
+              for (std::size_t c = 0; c < 3; ++c) x[grid_width * i + c] = static_cast<float>(u[c]);
+              x[grid_width * i + 3] = static_cast<float>(pressure);
             }
-            change += static_cast<double>(r[grid_width * i + 3]);
-          }
-          return std::array<double, 3>{sum_all(energy), sum_all(change), largest};
-        };
-        const auto moved = residual([](const Vector3&) { return Vector3{1.0, 1.0, 1.0}; }, 0.0);
-        CHECK(std::abs(moved[0] - (held ? 7.0 * spring_count : 0.0)) < 1e-5 * (1.0 + spring_count));
-        if (held) continue;
-        const auto still = residual(
-            [](const Vector3& x) {
-              return Vector3{1.0 - x[1], x[0] - x[2], x[1] + 2.0};
-            },
-            0.0);
-        CHECK(still[2] < 4e-6);
-        CHECK(std::abs(still[1]) < 4e-6);
-        // ε_xx = 1 over the volume 2: 2g dev ε:dev ε = 2/3, and tr ε = 1.
-        const auto stretched = residual([](const Vector3& x) { return Vector3{x[0], 0.0, 0.0}; }, 0.0);
-        CHECK(stretched[0] == doctest::Approx(2.0 * 2.0 / 3.0).epsilon(1e-5));
-        CHECK(stretched[1] == doctest::Approx(-2.0).epsilon(1e-5));
-        const auto pressed = residual([](const Vector3&) { return Vector3{}; }, 1.0);
-        CHECK(pressed[1] == doctest::Approx(2.0 / body.law(0).bulk).epsilon(1e-5));
+            level.residual(b, x, r);
+            double energy = 0.0, change = 0.0, largest = 0.0;
+            for (std::size_t i = 0; i < level.rows(); ++i) {
+              for (std::size_t c = 0; c < 3; ++c) {
+                const auto force = static_cast<double>(r[grid_width * i + c]);
+                energy -= static_cast<double>(x[grid_width * i + c]) * force;
+                largest = std::max(largest, std::abs(force));
+              }
+              change += static_cast<double>(r[grid_width * i + 3]);
+            }
+            return std::array<double, 3>{sum_all(energy), sum_all(change), largest};
+          };
+          const auto moved = residual([](const Vector3&) { return Vector3{1.0, 1.0, 1.0}; }, 0.0);
+          CHECK(std::abs(moved[0] - (held ? 7.0 * spring_count : 0.0)) < 1e-5 * (1.0 + spring_count));
+          if (held) continue;
+          const auto still = residual(
+              [](const Vector3& x) {
+                return Vector3{1.0 - x[1], x[0] - x[2], x[1] + 2.0};
+              },
+              0.0);
+          CHECK(still[2] < 4e-6);
+          CHECK(std::abs(still[1]) < 4e-6);
+          // ε_xx = 1 over the volume 2: 2g dev ε:dev ε = 2/3, and tr ε = 1.
+          const auto stretched = residual([](const Vector3& x) { return Vector3{x[0], 0.0, 0.0}; }, 0.0);
+          CHECK(stretched[0] == doctest::Approx(2.0 * 2.0 / 3.0).epsilon(1e-5));
+          CHECK(stretched[1] == doctest::Approx(-2.0).epsilon(1e-5));
+          const auto pressed = residual([](const Vector3&) { return Vector3{}; }, 1.0);
+          CHECK(pressed[1] == doctest::Approx(2.0 / body.law(0).bulk).epsilon(1e-5));
+        }
       }
-    }
 }
 
 TEST_CASE("the cycle on displacements and pressures is symmetric") {
