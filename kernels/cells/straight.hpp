@@ -72,6 +72,16 @@ struct StraightSides {
   }
 
   /// Adds what Point::add_diagonal_block() does for all nodes and points, the points' g given.
+  void add_diagonal_blocks(double bulk, const std::array<double, 1>& g, double (&block)[4][9]) const {
+    const double shear = volume * g[0], volumetric = volume * bulk + shear * (1.0 / 3.0);
+    for (std::size_t a = 0; a < 4; ++a) {
+      const double* d = gradient[a];
+      const double even = shear * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j)
+          block[a][3 * i + j] += volumetric * d[i] * d[j] + (i == j ? even : 0.0);
+    }
+  }
   void add_diagonal_blocks(double bulk, const std::array<double, 4>& g, double (&block)[10][9]) const {
     constexpr double far = Tet10::far, near = Tet10::near;
     // Sums of f L_a L_b over the points, f 1 or g: L_a is `near` at its point and `far` at others.

@@ -22,7 +22,8 @@ FloatOperator make_operator(const MultigridBody& body, const OperatorOptions& op
 
 }  // namespace
 
-FineLevel::FineLevel(const MultigridBody& body, const MultigridOptions& options, FinePart part)
+FineLevel::FineLevel(const MultigridBody& body, const MultigridOptions& options, FinePart part,
+                     const CornerMeans* means)
     : body_(body),
       threads_(options.threads),
       part_(part),
@@ -30,7 +31,7 @@ FineLevel::FineLevel(const MultigridBody& body, const MultigridOptions& options,
       sum_(*body.node_map, static_cast<int>(body.dim())) {
   body_.like = nullptr;  // it may go
   if (body.node_map->ranks > 1 && !corner_moduli(body.body).empty())
-    op_.set_corner_sum(CornerSum<float>(corner_means(body.body), *body.node_map));
+    op_.set_corner_sum(CornerSum<float>(means != nullptr ? *means : corner_means(body.body), *body.node_map));
 }
 
 void FineLevel::build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space) {

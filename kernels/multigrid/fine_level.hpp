@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <kacanov/corner_means.hpp>
 #include <kacanov/operator.hpp>
 #include <kacanov/scatterer.hpp>
 #include "multigrid/chebyshev.hpp"
@@ -28,8 +29,10 @@ enum class FinePart { whole, deviator };
 /// choose_smoother are collective.
 class FineLevel {
  public:
-  /// g = μ and no blocks until build(). What the body points to has to outlive it.
-  FineLevel(const MultigridBody& body, const MultigridOptions& options, FinePart part = FinePart::whole);
+  /// g = μ and no blocks until build(). What the body points to has to outlive it. `means`: corner_means()
+  /// of the body, or null.
+  FineLevel(const MultigridBody& body, const MultigridOptions& options, FinePart part = FinePart::whole,
+            const CornerMeans* means = nullptr);
   /// Freezes g and takes the blocks and the space over; D follows.
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space);
   /// With the g of the last build.

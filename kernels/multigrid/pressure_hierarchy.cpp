@@ -40,8 +40,8 @@ class PressureHierarchy final : public RigidMultigrid::Hierarchy {
       : laws_(softened(body.body.laws)),
         body_(with_laws(body, laws_)),
         options_(options),
-        fine_(body_, options, FinePart::deviator),
-        pressures_(body_) {
+        pressures_(body_),
+        fine_(body_, options, FinePart::deviator, &pressures_.means()) {
     body_.like = nullptr;  // it may go
   }
 
@@ -173,8 +173,8 @@ class PressureHierarchy final : public RigidMultigrid::Hierarchy {
   std::vector<Law> laws_;  ///< softened; body_ points to them
   MultigridBody body_;
   MultigridOptions options_;
-  FineLevel fine_;
   CornerPressures pressures_;
+  FineLevel fine_;
   std::optional<CornerSchur> schur_;
   std::optional<GridHierarchy> grids_;
   double scale_ = 1.0;  ///< Â⁻¹ = scale D⁻¹

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
+#include <vector>
 
 #include "cells/dispatch.hpp"
 #include "cells/point.hpp"
@@ -30,6 +32,10 @@ void BasicOperator<Real>::Data::visit_elements(const BlockRange& range, const si
   const std::uint16_t* index = layout.index.data() + range.first_index + group.first_index;
   const Real* records = coordinates.data() + 4 * range.first_record;
   const Law& law = laws[group.law];
+  std::vector<std::uint32_t> node_of;  // of a unit, element by element
+  for (std::uint32_t p = 0; p < count; p += E::points)
+    for (std::uint32_t a = 0; a < E::nodes; ++a)
+      node_of.push_back(units.node_of(group.shape, group.length, p / E::points, a));
   for (std::size_t batch = 0; batch < group.batches; ++batch)
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       std::array<std::int32_t, E::nodes> id{};
@@ -39,7 +45,7 @@ void BasicOperator<Real>::Data::visit_elements(const BlockRange& range, const si
         if (layout.element_point[slot] < 0) continue;
         for (int a = 0; a < E::nodes; ++a) {
           const auto k = static_cast<std::uint32_t>(a);
-          const std::size_t node = units.node_of(group.shape, group.length, p / E::points, k);
+          const std::size_t node = node_of[p / E::points * E::nodes + k];
           const std::size_t record = index[(batch * nodes + node) * lanes + lane];
           id[k] = layout.nodes[range.first_node + record / 4];
           for (int c = 0; c < E::dim; ++c) x[Point<E>::at(a, c)] = static_cast<double>(records[record + c]);
@@ -122,9 +128,10 @@ void BasicOperator<Real>::Data::sum_secant_blocks(std::span<Real> blocks, const 
   sum_blocks(blocks, [&]<class E>(E, const elements::Nodal<E>& x, bool straight, const Law& law,
                                   std::size_t slot, auto& here) {
     const auto g = [&](std::size_t at) { return static_cast<double>(secant[at]); };
-    if constexpr (E::type == ElementType::tet10)
+    if constexpr (E::simplex && E::dim == 3)
       if (straight) {
-        const std::array<double, 4> at{g(slot), g(slot + lanes), g(slot + 2 * lanes), g(slot + 3 * lanes)};
+        std::array<double, E::points> at;
+        for (std::size_t q = 0; q < E::points; ++q) at[q] = g(slot + q * lanes);
         return elements::StraightSides(x.data()).add_diagonal_blocks(bulk(law, at[0]), at, here);
       }
     over_points<E>(elements::points_of<E>(x, law.mean_dilatation, plane), slot, lanes, here,

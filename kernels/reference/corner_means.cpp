@@ -28,15 +28,22 @@ CornerMeans corner_means(const Body& body) {
   if (means.moduli.empty()) return means;
   const std::size_t elements = body.mesh.element_count(), width = means.moduli.size();
   const std::size_t nodes = nodes_per_element(body.mesh.type), corners = cell(body.mesh.type).corners;
-  const auto place = [&](std::size_t e, std::size_t c) {
-    const std::size_t node = body.mesh.connectivity[e * nodes + c];
-    const auto at = std::lower_bound(means.moduli.begin(), means.moduli.end(), body.law(e).bulk);
-    return node * width + static_cast<std::size_t>(at - means.moduli.begin());
+  std::vector<std::ptrdiff_t> of_law;  // which modulus, −1 where it does not average
+  for (const Law& law : body.laws) {
+    const auto at = std::lower_bound(means.moduli.begin(), means.moduli.end(), law.bulk);
+    of_law.push_back(averages_at_corners(law, body.mesh.type) ? at - means.moduli.begin() : -1);
+  }
+  // Calls visit(element × corners, node × moduli) for what averages.
+  const auto each = [&](const auto& visit) {
+    for (std::size_t e = 0; e < elements; ++e) {
+      const std::ptrdiff_t m = of_law[body.law_index(e)];
+      for (std::size_t c = 0; m >= 0 && c < corners; ++c)
+        visit(e * corners + c, static_cast<std::size_t>(body.mesh.connectivity[e * nodes + c]) * width +
+                                   static_cast<std::size_t>(m));
+    }
   };
   std::vector<std::int32_t> entry(body.mesh.node_count() * width, -1);
-  for (std::size_t e = 0; e < elements; ++e)
-    for (std::size_t c = 0; c < corners && averages_at_corners(body.law(e), body.mesh.type); ++c)
-      entry[place(e, c)] = 0;
+  each([&](std::size_t, std::size_t place) { entry[place] = 0; });
   means.has_patches = !body.pressure_patch.empty();
   std::vector<std::pair<std::int64_t, std::int32_t>> keys;  // place, modulus
   const auto key = [&](std::size_t k) {
@@ -58,9 +65,7 @@ CornerMeans corner_means(const Body& body) {
   }
   for (const auto& [where, modulus] : keys) means.place.push_back(where), means.modulus.push_back(modulus);
   means.of_element.assign(elements * corners, -1);
-  for (std::size_t e = 0; e < elements; ++e)
-    for (std::size_t c = 0; c < corners && averages_at_corners(body.law(e), body.mesh.type); ++c)
-      means.of_element[e * corners + c] = entry[place(e, c)];
+  each([&](std::size_t corner, std::size_t place) { means.of_element[corner] = entry[place]; });
   return means;
 }
 

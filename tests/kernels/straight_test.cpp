@@ -62,6 +62,18 @@ TEST_CASE("a node off the middle of its edge bends a side") {
   CHECK_FALSE(elements::has_straight_sides(x));
 }
 
+TEST_CASE("diagonal blocks of linear tetrahedra are those of their point") {
+  for (unsigned seed = 1; seed < 20; ++seed) {
+    const elements::Nodal<elements::Tet4> x = distorted<elements::Tet4>(seed);
+    double fast[4][9] = {}, plain[4][9] = {};
+    StraightSides(x.data()).add_diagonal_blocks(3.0, std::array{0.7}, fast);
+    for (int a = 0; a < 4; ++a)
+      elements::Point<elements::Tet4>(x, 0).add_diagonal_block(a, 3.0, 0.7, plain[a]);
+    for (std::size_t a = 0; a < 4; ++a)
+      for (std::size_t k = 0; k < 9; ++k) CHECK(std::abs(fast[a][k] - plain[a][k]) < 1e-12);
+  }
+}
+
 TEST_CASE("diagonal blocks of tetrahedra with straight sides are the sums over their points") {
   for (unsigned seed = 1; seed < 20; ++seed)
     for (const double bulk : {0.0, 3.0}) {
