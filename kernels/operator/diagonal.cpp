@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cells/dispatch.hpp"
+#include "cells/parallelepiped.hpp"
 #include "cells/point.hpp"
 #include "cells/straight.hpp"
 #include "law/plane_stress.hpp"
@@ -58,7 +59,7 @@ void BasicOperator<Real>::Data::visit_elements(const BlockRange& range, const si
     }
 }
 
-/// Sums blocks: add(type, nodal coordinates, whether its sides are straight, law, slot of its first point,
+/// Sums blocks: add(type, nodal coordinates, whether its map is affine, law, slot of its first point,
 /// blocks) adds those of an element's nodes. Threads have sums of their own for nodes where they meet, which
 /// are added in their order.
 template <class Real>
@@ -82,12 +83,11 @@ void BasicOperator<Real>::Data::sum_blocks(std::span<Real> blocks, const Add& ad
       for (std::size_t i = 0; i < layout.blocks[b].group_count; ++i)
         elements::dispatch(type, [&]<class E>(E element) {
           const simd::Group& group = layout.groups[layout.blocks[b].first_group + i];
-          const bool straight =
-              group.shape == simd::Shape::open_fan || group.shape == simd::Shape::closed_fan;
+          const bool affine = group.shape != simd::Shape::general;
           visit_elements<E>(layout.blocks[b], group,
                             [&](const auto& x, const auto& node, const Law& law, std::size_t slot) {
                               double here[E::nodes][E::dim * E::dim] = {};
-                              add(element, x, straight, law, slot, here);
+                              add(element, x, affine, law, slot, here);
                               for (int a = 0; a < E::nodes; ++a) {
                                 Real* block = block_of(node[a]);
                                 for (int k = 0; k < E::dim * E::dim; ++k)
@@ -125,11 +125,18 @@ template <class Real>
 template <class Bulk>
 void BasicOperator<Real>::Data::sum_secant_blocks(std::span<Real> blocks, const Bulk& bulk) const {
   const std::size_t lanes = layout.lanes;
-  sum_blocks(blocks, [&]<class E>(E, const elements::Nodal<E>& x, bool straight, const Law& law,
+  sum_blocks(blocks, [&]<class E>(E, const elements::Nodal<E>& x, bool affine, const Law& law,
                                   std::size_t slot, auto& here) {
     const auto g = [&](std::size_t at) { return static_cast<double>(secant[at]); };
+    if constexpr (E::type == ElementType::hex8)
+      if (affine) {
+        std::array<double, E::points> at;
+        for (std::size_t q = 0; q < E::points; ++q) at[q] = g(slot + q * lanes);
+        return elements::Parallelepiped(x.data()).add_diagonal_blocks(bulk(law, at[0]), law.mean_dilatation,
+                                                                      at, here);
+      }
     if constexpr (E::simplex && E::dim == 3)
-      if (straight) {
+      if (affine) {
         std::array<double, E::points> at;
         for (std::size_t q = 0; q < E::points; ++q) at[q] = g(slot + q * lanes);
         return elements::StraightSides(x.data()).add_diagonal_blocks(bulk(law, at[0]), at, here);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What tetrahedra with straight sides have in closed form, against sums over their points.
+// What elements have in closed form whose map is affine, against sums over their points.
 #include <doctest/doctest.h>
 
 #include "bodies.hpp"
+#include "cells/parallelepiped.hpp"
 #include "cells/straight.hpp"
 #include "operator/corners.hpp"
 
@@ -84,6 +85,29 @@ TEST_CASE("diagonal blocks of tetrahedra with straight sides are the sums over t
       for (std::size_t q = 0; q < 4; ++q)
         for (int a = 0; a < 10; ++a) elements::Point<Tet10>(x, q).add_diagonal_block(a, bulk, g[q], plain[a]);
       for (std::size_t a = 0; a < 10; ++a)
+        for (std::size_t k = 0; k < 9; ++k) CHECK(std::abs(fast[a][k] - plain[a][k]) < 1e-12);
+    }
+}
+
+TEST_CASE("diagonal blocks of parallelepipeds are the sums over their points") {
+  for (unsigned seed = 1; seed < 20; ++seed)
+    for (const bool mean : {false, true}) {
+      const std::vector<double> bend = test::random_vector(9, seed), g = test::random_vector(8, seed + 100);
+      elements::Nodal<elements::Hex8> x;
+      for (std::size_t a = 0; a < 8; ++a)
+        for (std::size_t i = 0; i < 3; ++i) {
+          x[3 * a + i] = 2.0 * elements::Hex8::corner[a][i];
+          for (std::size_t k = 0; k < 3; ++k)
+            x[3 * a + i] += 0.3 * bend[3 * i + k] * elements::Hex8::corner[a][k];
+        }
+      std::array<double, 8> of_points;
+      std::copy(g.begin(), g.end(), of_points.begin());
+      double fast[8][9] = {}, plain[8][9] = {};
+      elements::Parallelepiped(x.data()).add_diagonal_blocks(3.0, mean, of_points, fast);
+      const auto points = elements::points_of<elements::Hex8>(x, mean);
+      for (std::size_t q = 0; q < 8; ++q)
+        for (int a = 0; a < 8; ++a) points[q].add_diagonal_block(a, 3.0, g[q], plain[a]);
+      for (std::size_t a = 0; a < 8; ++a)
         for (std::size_t k = 0; k < 9; ++k) CHECK(std::abs(fast[a][k] - plain[a][k]) < 1e-12);
     }
 }
