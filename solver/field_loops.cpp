@@ -14,6 +14,7 @@ const FieldLoops& field_loops(ElementType type) {
   switch (type) {
     case ElementType::tet4: return tet4_loops;
     case ElementType::hex8: return hex8_loops;
+    case ElementType::tet10: return tet10_loops;
     default: return plain_loops;
   }
 }

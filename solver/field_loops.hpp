@@ -17,7 +17,7 @@ struct FieldLoops {
 };
 
 /// Some elements abreast; Body::moduli is taken to be null.
-extern const FieldLoops tet4_loops, hex8_loops;
+extern const FieldLoops tet4_loops, hex8_loops, tet10_loops;
 
 /// The fastest there are: the reference's for a type that has none of its own.
 const FieldLoops& field_loops(ElementType type);

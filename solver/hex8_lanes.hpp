@@ -2,10 +2,11 @@
 // Trilinear hexahedra abreast: position, displacement gradient and strain anywhere in them.
 #pragma once
 
-#include <cmath>
+#include <array>
 #include <cstddef>
 #include <span>
 
+#include "cells/hex8.hpp"
 #include "lanes.hpp"
 
 namespace kacanov::hex8 {
@@ -33,37 +34,10 @@ void to_monomials(Lanes (&v)[8][n]) {
     }
 }
 
-struct StrainLanes {
-  Lanes dev[6];  ///< xx yy zz xy yz zx
-  Lanes trace, norm;
-};
-
-/// The displacement gradient at a point of each element.
-struct GradientLanes {
-  Lanes h[3][3];
-  Lanes det;  ///< of ∂x/∂ξ
-
-  StrainLanes strain() const {
-    StrainLanes s;
-    for (std::size_t lane = 0; lane < abreast; ++lane) {
-      const double trace = h[0][0][lane] + h[1][1][lane] + h[2][2][lane];
-      s.trace[lane] = trace;
-      double square = 0.0;
-      for (std::size_t i = 0; i < 3; ++i) {
-        const std::size_t k = (i + 1) % 3;
-        const double stretch = h[i][i][lane] - trace / 3.0, shear = 0.5 * (h[i][k][lane] + h[k][i][lane]);
-        s.dev[i][lane] = stretch;
-        s.dev[3 + i][lane] = shear;
-        square += stretch * stretch + 2.0 * shear * shear;
-      }
-      s.norm[lane] = std::sqrt(square);
-    }
-    return s;
-  }
-};
-
 /// Hexahedra abreast, as polynomials of their reference coordinates.
 struct Hexahedra {
+  using Element = elements::Hex8;
+
   Lanes x[8][3], moved[8][3];  ///< coefficients as to_monomials() has them
 
   void gather(const MeshView& mesh, std::span<const double> u, const ElementsAbreast& element) {
@@ -88,8 +62,8 @@ struct Hexahedra {
     }
   }
 
-  /// From the middle ξ = 0, which x[0] has.
-  void from_middle(const std::array<double, 3>& xi, Lanes (&out)[3]) const {
+  /// From ξ = 0, the middle, which x[0] has.
+  void from_base(const std::array<double, 3>& xi, Lanes (&out)[3]) const {
     const double a = xi[0], b = xi[1], c = xi[2];
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t lane = 0; lane < abreast; ++lane)
