@@ -4,20 +4,20 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
 #include <kacanov/reference.hpp>
 #include "reference/point_strain.hpp"
+#include "simd/row_points.hpp"
 
 namespace kacanov {
 
-constexpr std::size_t abreast = 16;
+constexpr std::size_t abreast = simd::row_lanes;
 /// One number of each of the elements. Loops over lanes have no branches and no calls, so that compilers make
 /// vectors of them.
-using Lanes = std::array<double, abreast>;
+using Lanes = simd::RowLanes;
 using ElementsAbreast = std::array<std::size_t, abreast>;
 
 /// Elements from `first` on, the last one again where there are no more.
@@ -56,34 +56,6 @@ inline double map_gradient(const double (&j)[3][3], const double (&d)[3][3], dou
           scale * (d[i][0] * cofactor[k][0] + d[i][1] * cofactor[k][1] + d[i][2] * cofactor[k][2]);
   return det;
 }
-
-/// Of a strain, at a point of each element.
-struct StrainLanes {
-  Lanes dev[6];  ///< xx yy zz xy yz zx
-  Lanes trace, norm;
-};
-
-/// The displacement gradient at a point of each element.
-struct GradientLanes {
-  Lanes h[3][3];
-  Lanes det;  ///< of ∂x/∂ξ
-
-  void strain(StrainLanes& s) const {
-    for (std::size_t lane = 0; lane < abreast; ++lane) {
-      const double trace = h[0][0][lane] + h[1][1][lane] + h[2][2][lane];
-      s.trace[lane] = trace;
-      double square = 0.0;
-      for (std::size_t i = 0; i < 3; ++i) {
-        const std::size_t k = (i + 1) % 3;
-        const double stretch = h[i][i][lane] - trace / 3.0, shear = 0.5 * (h[i][k][lane] + h[k][i][lane]);
-        s.dev[i][lane] = stretch;
-        s.dev[3 + i][lane] = shear;
-        square += stretch * stretch + 2.0 * shear * shear;
-      }
-      s.norm[lane] = std::sqrt(square);
-    }
-  }
-};
 
 inline reference::Gradient gradient_of(const Lanes (&gradient)[3][3], std::size_t lane) {
   reference::Gradient h;

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The loops over elements in a row. Included once for each instruction set, with its flags.
+#pragma once
+
+#include <cmath>
+#include <cstring>
+
+#include "simd/inline.hpp"
+#include "simd/row_points.hpp"
+
+namespace kacanov::simd {
+namespace {
+
+#if defined(__AVX512F__)
+constexpr std::size_t vector_bytes = 64;
+#elif defined(__AVX2__)
+constexpr std::size_t vector_bytes = 32;
+#else
+constexpr std::size_t vector_bytes = 16;
+#endif
+/// Left to lanes that are numbers, compilers made no vectors of loops as long as these.
+using Pack [[gnu::vector_size(vector_bytes)]] = double;
+constexpr std::size_t pack_lanes = vector_bytes / sizeof(double);
+
+KACANOV_INLINE inline Pack load(const RowLanes& lanes, std::size_t first) {
+  Pack pack;
+  std::memcpy(&pack, &lanes[first], sizeof pack);
+  return pack;
+}
+KACANOV_INLINE inline void store(Pack pack, std::size_t first, RowLanes& lanes) {
+  std::memcpy(&lanes[first], &pack, sizeof pack);
+}
+
+void take_roots(RowLanes& squares) {
+  for (double& square : squares) square = std::sqrt(square);
+}
+
+/// Of a strain xx yy zz xy yz zx. The norm is left squared.
+KACANOV_INLINE inline void split(const Pack (&strain)[6], std::size_t first, RowStrain& out) {
+  const Pack trace = strain[0] + strain[1] + strain[2], third = trace * (1.0 / 3.0);
+  Pack square{};
+#pragma GCC unroll 3
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Pack stretch = strain[i] - third, shear = strain[3 + i];
+    square += stretch * stretch + 2.0 * (shear * shear);
+    store(stretch, first, out.dev[i]);
+    store(shear, first, out.dev[3 + i]);
+  }
+  store(trace, first, out.trace);
+  store(square, first, out.norm);
+}
+
+template <std::size_t nodes>
+void strain_of_row(const double* slopes, const RowLanes (&x)[nodes][3], const RowLanes (&u)[nodes][3],
+                   RowPoint& out) {
+  for (std::size_t first = 0; first < row_lanes; first += pack_lanes) {
+    Pack j[3][3] = {}, inverse[3][3], h[3][3];
+    for (std::size_t a = 0; a < nodes; ++a)
+#pragma GCC unroll 3
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Pack at = load(x[a][i], first);
+#pragma GCC unroll 3
+        for (std::size_t k = 0; k < 3; ++k) j[i][k] += slopes[3 * a + k] * at;
+      }
+#pragma GCC unroll 3
+    for (std::size_t i = 0; i < 3; ++i)
+#pragma GCC unroll 3
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+        inverse[k][i] = j[i1][k1] * j[i2][k2] - j[i1][k2] * j[i2][k1];
+      }
+    const Pack det = j[0][0] * inverse[0][0] + j[0][1] * inverse[1][0] + j[0][2] * inverse[2][0];
+    const Pack scale = 1.0 / det;
+    store(det, first, out.det);
+#pragma GCC unroll 3
+    for (std::size_t i = 0; i < 3; ++i) {
+      Pack d[3] = {};
+      for (std::size_t a = 0; a < nodes; ++a) {
+        const Pack by = load(u[a][i], first);
+#pragma GCC unroll 3
+        for (std::size_t k = 0; k < 3; ++k) d[k] += slopes[3 * a + k] * by;
+      }
+#pragma GCC unroll 3
+      for (std::size_t k = 0; k < 3; ++k) {
+        h[i][k] = scale * (d[0] * inverse[0][k] + d[1] * inverse[1][k] + d[2] * inverse[2][k]);
+        store(h[i][k], first, out.h[i][k]);
+      }
+    }
+    const Pack strain[6] = {h[0][0],
+                            h[1][1],
+                            h[2][2],
+                            0.5 * (h[0][1] + h[1][0]),
+                            0.5 * (h[1][2] + h[2][1]),
+                            0.5 * (h[2][0] + h[0][2])};
+    split(strain, first, out.strain);
+  }
+  take_roots(out.strain.norm);
+}
+
+template <std::size_t nodes>
+void position_in_row(const double* shape, const RowLanes (&x)[nodes][3], RowLanes (&out)[3]) {
+  for (std::size_t first = 0; first < row_lanes; first += pack_lanes)
+#pragma GCC unroll 3
+    for (std::size_t i = 0; i < 3; ++i) {
+      Pack sum{};
+      for (std::size_t a = 0; a < nodes; ++a) sum += shape[a] * load(x[a][i], first);
+      store(sum, first, out[i]);
+    }
+}
+
+template <std::size_t terms, std::size_t corners>
+void smooth_in_row(const double* share, const RowPolynomial<terms> (&of_corner)[corners],
+                   const RowLanes (&position)[3], RowStrain& out) {
+  for (std::size_t first = 0; first < row_lanes; first += pack_lanes) {
+    Pack sum[6] = {};
+    for (std::size_t a = 0; a < corners; ++a) {
+      const RowPolynomial<terms>& of = of_corner[a];
+      const Pack scale = load(of.scale, first);
+      Pack y[3], term[terms];
+      term[0] = Pack{} + share[a];
+#pragma GCC unroll 3
+      for (std::size_t i = 0; i < 3; ++i) {
+        y[i] = scale * (load(position[i], first) - load(of.centre[i], first));
+        term[1 + i] = share[a] * y[i];
+      }
+      if constexpr (terms == 10) {
+        std::size_t k = 4;
+#pragma GCC unroll 3
+        for (std::size_t i = 0; i < 3; ++i)
+#pragma GCC unroll 3
+          for (std::size_t j = i; j < 3; ++j) term[k++] = term[1 + i] * y[j];
+      }
+#pragma GCC unroll 10
+      for (std::size_t k = 0; k < terms; ++k)
+#pragma GCC unroll 6
+        for (std::size_t v = 0; v < 6; ++v) sum[v] += term[k] * load(of.coefficient[k][v], first);
+    }
+    split(sum, first, out);
+  }
+  take_roots(out.norm);
+}
+
+void add_work_in_row(const RowDifference& of, const RowLanes& weight, RowLanes& sum) {
+  for (std::size_t first = 0; first < row_lanes; first += pack_lanes) {
+    const Pack ga = 2.0 * load(of.ga, first), gb = 2.0 * load(of.gb, first);
+    const Pack trace = load(of.a.trace, first) - load(of.b.trace, first);
+    Pack work = load(of.bulk, first) * trace * trace;
+#pragma GCC unroll 6
+    for (std::size_t c = 0; c < 6; ++c) {
+      const Pack a = load(of.a.dev[c], first), b = load(of.b.dev[c], first);
+      work += (c < 3 ? 1.0 : 2.0) * ((ga * a - gb * b) * (a - b));
+    }
+    const Pack positive = work > 0.0 ? work : Pack{};
+    store(load(sum, first) + load(weight, first) * (0.5 * positive), first, sum);
+  }
+}
+
+template <std::size_t nodes>
+constexpr RowLoops<nodes> loops_of{strain_of_row<nodes>, position_in_row<nodes>,
+                                   smooth_in_row<RowLoops<nodes>::terms, RowLoops<nodes>::corners>,
+                                   add_work_in_row};
+
+constexpr AllRowLoops all_row_loops{loops_of<4>, loops_of<8>, loops_of<10>};
+
+}  // namespace
+}  // namespace kacanov::simd
