@@ -57,6 +57,7 @@ void FineLevel::rebuild(std::span<const NodeBlock> blocks, const HeldSpace& spac
     op_.block_diagonal_deviator(diagonal);
   else
     op_.block_diagonal(diagonal);
+  if (part_ == FinePart::deviator) take_own_stiffness(diagonal);
   for (const auto& b : blocks_)
     for (std::size_t k = 0; k < dim * dim; ++k)
       diagonal[static_cast<std::size_t>(b.node) * dim * dim + k] += static_cast<float>(b.value[k]);
@@ -79,6 +80,16 @@ void FineLevel::rebuild(std::span<const NodeBlock> blocks, const HeldSpace& spac
           *to++ = static_cast<float>(inverse(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
     }
   });
+}
+
+/// Of blocks without what is added to them.
+void FineLevel::take_own_stiffness(std::span<const float> blocks) {
+  const std::size_t dim = body_.dim();
+  own_stiffness_.assign(body_.nodes(), 0.0F);
+  for (std::size_t n = 0; n < body_.nodes(); ++n)
+    for (std::size_t i = 0; i < dim; ++i)
+      own_stiffness_[n] += blocks[(n * dim + i) * dim + i] / static_cast<float>(dim);
+  body_.node_map->sum(std::span<float>(own_stiffness_), 1);
 }
 
 void FineLevel::add_blocks(std::span<const NodeBlock> blocks, std::span<const float> x,

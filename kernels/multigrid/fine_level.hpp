@@ -60,6 +60,8 @@ class FineLevel {
   std::span<const float> inverse() const noexcept { return inverse_; }
   /// Of held components, which keep their blocks' entries: D's diagonal.
   std::span<const float> held_stiffness() const noexcept { return held_stiffness_; }
+  /// Of every node, the mean of its block's diagonal without what is added; of the deviator alone.
+  std::span<const float> own_stiffness() const noexcept { return own_stiffness_; }
   std::span<const std::int32_t> held() const noexcept { return held_; }
   /// Λ, of D⁻¹A; choose_smoother has worked it out.
   double largest() const noexcept { return smoother_.upper; }
@@ -74,12 +76,13 @@ class FineLevel {
   const Chebyshev& smoother() const noexcept { return smoother_; }
   std::size_t bytes() const noexcept {
     return op_.bytes() + held_.size() * sizeof(std::int32_t) + blocks_.size() * sizeof(NodeBlock) +
-           (inverse_.size() + held_stiffness_.size()) * sizeof(float);
+           (inverse_.size() + held_stiffness_.size() + own_stiffness_.size()) * sizeof(float);
   }
 
  private:
   template <class Apply>
   void product(const Apply& apply, std::span<const float> x, std::span<float> y);
+  void take_own_stiffness(std::span<const float> blocks);
   void add_blocks(std::span<const NodeBlock> blocks, std::span<const float> x, std::span<float> y) const;
 
   MultigridBody body_;
@@ -88,7 +91,7 @@ class FineLevel {
   FloatOperator op_;
   Scatterer<float> sum_;
   std::vector<std::int32_t> held_;  ///< components
-  std::vector<float> held_stiffness_;
+  std::vector<float> held_stiffness_, own_stiffness_;
   HeldSpace space_;
   std::vector<NodeBlock> blocks_;
   std::size_t shared_blocks_ = 0;  ///< the first of them belong to nodes that other ranks have too

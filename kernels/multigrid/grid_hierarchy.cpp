@@ -4,14 +4,16 @@
 
 #include <utility>
 
+#include "multigrid/largest_eigenvalue.hpp"
 #include "multigrid/node_spacing.hpp"
+#include "multigrid/sums.hpp"
 
 namespace kacanov {
 namespace {
 
-/// Edge of the first grid over the spacing of the nodes: 2.5 takes 18 iterations where 3 takes 21, and
-/// has 1.6 times the entries.
-constexpr double first_grid = 2.6;
+/// Edge of the first grid over the spacing of the nodes: 2.6 has 1.5 times the entries, and takes as many
+/// iterations.
+constexpr double first_grid = 3.0;
 constexpr std::int64_t last_grid_rows = 300;
 constexpr int coarse_steps = 2;
 constexpr PressureSteps coarse_pressures{4, 8.0};
@@ -75,6 +77,7 @@ void GridHierarchy::build(std::span<const double> g, std::span<const NodeBlock> 
   const auto starts = last.vertices.starts();
   for (auto* v : {&last.b, &last.x})
     v->resize(grid_width * static_cast<std::size_t>(starts[comm.rank + 1] - starts[comm.rank]));
+  choose_cycle();
 }
 
 void GridHierarchy::change(std::span<const NodeBlock> blocks) {
@@ -88,6 +91,7 @@ void GridHierarchy::change(std::span<const NodeBlock> blocks) {
   static_cast<LevelStiffness&>(last_moments_) = std::move(stiffness);
   const Level& last = levels_.back();
   direct_.emplace(last.vertices, last.leaves, last_moments_, *body_.node_map);
+  choose_cycle();
 }
 
 void GridHierarchy::correct(std::span<const float> force, std::span<const double> change, std::span<float> u,
@@ -100,17 +104,48 @@ void GridHierarchy::correct(std::span<const float> force, std::span<const double
   rows_->prolong(std::span<const float>(first.x).subspan(3), grid_width, 1, p);
 }
 
-/// x of a level from its b, by a V-cycle from zero.
+/// x of a level from its b, from zero.
 void GridHierarchy::cycle(std::size_t k) {
   Level& level = levels_[k];
   if (k + 1 == levels_.size()) return direct_->solve(level.b, level.x);
   level.matrix->smooth(true, coarse_steps, coarse_pressures, level.b, level.x);
-  level.matrix->residual(level.b, level.x, level.rest);
   Level& next = levels_[k + 1];
-  level.down->restrict_to(std::span<const float>(level.rest), grid_width, std::span(next.b), grid_width);
-  cycle(k + 1);
-  level.down->prolong(std::span<const float>(next.x), grid_width, grid_width, std::span(level.x));
+  const int corrections = twice_ && k + 2 < levels_.size() ? 2 : 1;
+  for (int turn = 0; turn < corrections; ++turn) {
+    level.matrix->residual(level.b, level.x, level.rest);
+    level.down->restrict_to(std::span<const float>(level.rest), grid_width, std::span(next.b), grid_width);
+    cycle(k + 1);
+    level.down->prolong(std::span<const float>(next.x), grid_width, grid_width, std::span(level.x));
+  }
   level.matrix->smooth(false, coarse_steps, coarse_pressures, level.b, level.x);
+}
+
+void GridHierarchy::choose_cycle() {
+  twice_ = levels_.size() > 2;
+  if (twice_ && !settles(1)) twice_ = false;
+}
+
+/// Whether a level's cycle, repeated, takes an error down.
+bool GridHierarchy::settles(std::size_t k) {
+  constexpr int steps = 8, last = 3;
+  Level& level = levels_[k];
+  const std::size_t size = grid_width * level.matrix->rows();
+  std::vector<float> error = scattered<float>(level.matrix->map(), grid_width);
+  const std::vector<float> nothing(level.b.size(), 0.0F);
+  const auto square = [&] {
+    const auto term = [&](std::size_t i) {  // of displacements
+      return i % grid_width < 3 ? static_cast<double>(error[i]) * static_cast<double>(error[i]) : 0.0;
+    };
+    return body_.node_map->sum_all(eight_sums(size, term));
+  };
+  double before = 0.0;
+  for (int s = 0; s < steps; ++s) {
+    if (s == steps - last) before = square();
+    level.matrix->residual(nothing, error, level.b);
+    cycle(k);
+    for (std::size_t i = 0; i < size; ++i) error[i] += level.x[i];
+  }
+  return square() < before;
 }
 
 std::size_t GridHierarchy::bytes() const noexcept {

@@ -14,7 +14,7 @@
 
 namespace kacanov {
 
-/// Grids from 2.6 times the spacing of the nodes on, each next one twice as coarse, the last one solved
+/// Grids from 3 times the spacing of the nodes on, each next one twice as coarse, the last one solved
 /// directly. What depends on the mesh alone is made once.
 class GridHierarchy {
  public:
@@ -42,6 +42,8 @@ class GridHierarchy {
     std::vector<float> b, x, rest;     ///< four values a row
   };
   void cycle(std::size_t k);
+  void choose_cycle();
+  bool settles(std::size_t k);
 
   MultigridBody body_;
   int threads_;
@@ -51,6 +53,8 @@ class GridHierarchy {
   std::optional<GridTransfer> nodes_, rows_;
   LevelMoments last_moments_;
   std::optional<PressureDirect> direct_;
+  /// Two corrections of a level by the next one, C of K: 2C − CKC, definite as long as CK < 2.
+  bool twice_ = false;
 };
 
 }  // namespace kacanov

@@ -10,6 +10,7 @@
 #include "multigrid/corner_schur.hpp"
 #include "multigrid/fine_level.hpp"
 #include "multigrid/grid_hierarchy.hpp"
+#include "multigrid/grid_stiffness.hpp"
 #include "multigrid/softened_laws.hpp"
 #include "multigrid/sums.hpp"
 #include "operator/threads.hpp"
@@ -17,7 +18,7 @@
 namespace kacanov {
 namespace {
 
-constexpr int fine_steps = 3;
+constexpr int fine_steps = 4;
 
 struct Solves {
   PressureSteps between, at_ends;
@@ -122,19 +123,7 @@ class PressureHierarchy final : public RigidMultigrid::Hierarchy {
     for (auto* v : {&change_, &rest_}) v->resize(pressures_.rows());
   }
 
-  /// Of nodes this rank owns: blocks, and what holds components, where a grid would move them.
-  std::vector<NodeBlock> stiffnesses() const {
-    std::vector<NodeBlock> all(fine_.blocks().begin(), fine_.blocks().end());
-    const auto held = fine_.held();
-    for (std::size_t i = 0; i < held.size(); ++i) {
-      const std::int32_t node = held[i] / 3, c = held[i] % 3;
-      if (static_cast<std::size_t>(node) >= body_.owned_nodes()) break;
-      NodeBlock block{node, {}};
-      block.value[static_cast<std::size_t>(4 * c)] = static_cast<double>(fine_.held_stiffness()[i]);
-      all.push_back(block);
-    }
-    return all;
-  }
+  std::vector<NodeBlock> stiffnesses() const { return grid_stiffnesses(fine_, body_.owned_nodes()); }
 
   /// A step of Braess and Sarazin's smoother: with t = x + Â⁻¹(b − A x), p by S p = B t, x = t − Â⁻¹Bᵀ p.
   void smooth(bool from_zero, const PressureSteps& with) {

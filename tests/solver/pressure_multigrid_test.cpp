@@ -11,8 +11,10 @@
 #include "amg/part_multigrid.hpp"
 #include "multigrid/cg.hpp"
 #include "multigrid/grid_level.hpp"
+#include "multigrid/grid_stiffness.hpp"
 #include "multigrid/grid_transfer.hpp"
 #include "multigrid/node_spacing.hpp"
+#include "multigrid/rigid_multigrid.hpp"
 #include "multigrid/summed_pattern.hpp"
 #include "operator/corner_sum.hpp"
 #include "preconditioners.hpp"
@@ -313,6 +315,43 @@ TEST_CASE("grids' matrices are blind to rigid motions, have uniform strain's ene
           CHECK(pressed[1] == doctest::Approx(2.0 / body.law(0).bulk).epsilon(1e-5));
         }
       }
+}
+
+TEST_CASE(
+    "grids have directions that are held as stiff as their node is thrice, and the rest of its blocks") {
+  const Part part = bar(2, false);
+  FineLevel fine(multigrid_body(part), {}, FinePart::deviator);
+  const Vector3 held{0.6, 0.0, 0.8}, along{0.8, 0.0, -0.6};
+  HeldSpace space;
+  std::vector<NodeBlock> blocks;
+  for (std::int32_t n = 0; n < part.owned_nodes(); ++n) {
+    if (part.held[3 * static_cast<std::size_t>(n)] != 0) continue;
+    HeldDirections& directions = space.directions.emplace_back(HeldDirections{n, 1, {}});
+    directions.basis[0] = held;
+    NodeBlock& block = blocks.emplace_back(NodeBlock{n, {}});
+    for (std::size_t r = 0; r < 3; ++r)
+      for (std::size_t c = 0; c < 3; ++c)
+        block.value[3 * r + c] = 1e4 * held[r] * held[c] + 7.0 * along[r] * along[c] + (r == c ? 2.0 : 0.0);
+  }
+  fine.build(bent(part, 10.0), blocks, space);
+  std::vector<std::array<double, 9>> sum(part.nodes());
+  for (const NodeBlock& block : grid_stiffnesses(fine, part.owned_nodes()))
+    for (std::size_t k = 0; k < 9; ++k) sum[block.node][k] += block.value[k];
+  const auto energy = [](const std::array<double, 9>& block, const Vector3& a, const Vector3& b) {
+    double e = 0.0;
+    for (std::size_t r = 0; r < 3; ++r)
+      for (std::size_t c = 0; c < 3; ++c) e += a[r] * block[3 * r + c] * b[c];
+    return e;
+  };
+  for (const HeldDirections& at : space.directions) {
+    const double own = static_cast<double>(fine.own_stiffness()[at.node]);
+    CHECK(own > 0.0);
+    CHECK(energy(sum[at.node], held, held) == doctest::Approx(3.0 * own));
+    CHECK(energy(sum[at.node], along, along) == doctest::Approx(9.0));
+    CHECK(std::abs(energy(sum[at.node], held, along)) < 1e-9);
+  }
+  for (const std::int32_t i : fine.held())
+    if (i / 3 < part.owned_nodes()) CHECK(sum[i / 3][static_cast<std::size_t>(4 * (i % 3))] > 0.0);
 }
 
 TEST_CASE("the cycle on displacements and pressures is symmetric") {
