@@ -155,25 +155,26 @@ void visit_points(const Part& part, const BodyState& state, PointValues wanted,
   }
 }
 
-NodalMeans nodal_means(const Part& part, const BodyState& state) {
-  const std::size_t npe = nodes_per_element(part.type), elements = part.element_count();
+ElementNumbers element_numbers(const Part& part, const BodyState& state) {
+  const std::size_t elements = part.element_count();
+  ElementNumbers out;
+  for (auto* field : {&out.von_mises, &out.dev_strain, &out.secant, &out.volume}) field->resize(elements);
+  out.plastic.resize(elements);
+  element_fields(part, state, 0, elements,
+                 {{}, out.von_mises, out.dev_strain, out.secant, out.plastic, {}, {}, out.volume});
+  return out;
+}
+
+NodalMeans nodal_means(const Part& part, const ElementNumbers& of) {
+  const std::size_t npe = nodes_per_element(part.type);
   NodalMeans means{std::vector<double>(part.nodes(), 0.0), std::vector<double>(part.nodes(), 0.0)};
-  std::vector<double> weight(part.nodes(), 0.0), von_mises(elements_a_run), volume(elements_a_run);
-  std::vector<std::uint8_t> plastic(elements_a_run);
-  for (std::size_t first = 0; first < elements; first += elements_a_run) {
-    const std::size_t count = std::min(elements_a_run, elements - first);
-    reference::ElementFields wanted;
-    wanted.von_mises = std::span(von_mises).first(count);
-    wanted.plastic = std::span(plastic).first(count);
-    wanted.volume = std::span(volume).first(count);
-    element_fields(part, state, first, count, wanted);
-    for (std::size_t k = 0; k < count; ++k)
-      for (std::size_t a = 0; a < npe; ++a) {
-        const auto node = static_cast<std::size_t>(part.elements[(first + k) * npe + a]);
-        means.von_mises[node] += volume[k] * von_mises[k];
-        means.plastic_share[node] += plastic[k] != 0 ? volume[k] : 0.0;
-        weight[node] += volume[k];
-      }
+  std::vector<double> weight(part.nodes(), 0.0);
+  for (std::size_t k = 0; k < part.elements.size(); ++k) {
+    const auto node = static_cast<std::size_t>(part.elements[k]);
+    const std::size_t e = k / npe;
+    means.von_mises[node] += of.volume[e] * of.von_mises[e];
+    means.plastic_share[node] += of.plastic[e] != 0 ? of.volume[e] : 0.0;
+    weight[node] += of.volume[e];
   }
   for (auto* sum : {&means.von_mises, &means.plastic_share, &weight}) part.node_map.sum(*sum, 1);
   for (std::size_t n = 0; n < weight.size(); ++n) {

@@ -44,24 +44,36 @@ class Monomials {
   bool quadratic_;
 };
 
-/// Least squares round many centres at once, six values a sample.
+/// Places in space and what is known there: `sets` of six values each.
+struct Samples {
+  static constexpr std::size_t values = 6, most_sets = 2;
+  std::span<const Vector3> position;
+  std::array<const double*, most_sets> set{};  ///< positions × 6
+};
+
+/// Sums over samples about the mean of their places: what linear polynomials are fitted with round any
+/// centre.
+struct LinearSums {
+  double count = 0.0;
+  Vector3 mean{};
+  std::array<std::array<double, 3>, 3> square{};  ///< of places from the mean
+  std::array<std::array<std::array<double, Samples::values>, 4>, Samples::most_sets> side{};
+
+  LinearSums(const Samples& samples, std::size_t sets);
+};
+
+/// Least squares round many centres at once.
 class PatchFits {
  public:
-  static constexpr std::size_t values = 6;
-  PatchFits(std::size_t centres, const Monomials& monomials);
+  static constexpr std::size_t values = Samples::values;
+  PatchFits(std::size_t centres, const Monomials& monomials, std::size_t sets = 1);
 
-  /// `x`: from the centre, in units of the patch's size.
-  void add(std::size_t centre, const Vector3& x, const double* sample) {
-    const auto p = monomials_.at(x);
-    monomials_.with_count([&](auto count) {
-      constexpr std::size_t n = count();
-      double* sum = &sums_[centre * width_];
-      for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t j = i; j < n; ++j) *sum++ += p[i] * p[j];
-      for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t v = 0; v < values; ++v) *sum++ += p[i] * sample[v];
-    });
-  }
+  bool linear() const noexcept { return monomials_.count() == monomials_.linear(); }
+  std::size_t sets() const noexcept { return sets_; }
+  /// `at`: the place of centre i; `scale`: one over its patch's size.
+  void add(std::size_t i, const Vector3& at, double scale, const Samples& samples);
+  /// The same of linear().
+  void add(std::size_t i, const Vector3& at, double scale, const LinearSums& sums);
   /// The sums of centre i, to be added up over ranks.
   std::span<double> sums(std::size_t centre) noexcept {
     return std::span(sums_).subspan(centre * width_, width_);
@@ -72,12 +84,11 @@ class PatchFits {
   /// Solves the normal equations of all centres in place. What too few samples leave open is kept small,
   /// the higher orders first.
   void solve();
-  /// After solve(): the polynomial's values.
-  std::array<double, values> evaluate(std::size_t centre, const Vector3& x) const {
-    return evaluate(coefficients(centre), x);
+  /// After solve(): monomials × 6, of the polynomial of a set.
+  const double* coefficients(std::size_t centre, std::size_t set) const noexcept {
+    return &sums_[centre * width_ + pairs_ + set * values * monomials_.count()];
   }
-  /// The same where many values of one polynomial are wanted.
-  const double* coefficients(std::size_t centre) const noexcept { return &sums_[centre * width_ + pairs_]; }
+  /// `x`: from the centre, times the scale.
   std::array<double, values> evaluate(const double* coefficients, const Vector3& x) const {
     const auto p = monomials_.at(x);
     std::array<double, values> out{};
@@ -90,11 +101,16 @@ class PatchFits {
 
  private:
   template <std::size_t n>
+  void add_of(double* sum, const Vector3& at, double scale, const Samples& samples) const;
+  template <std::size_t n>
+  void add_of(double* sum, const Vector3& from, double scale, const LinearSums& of) const;
+  template <std::size_t n>
   void solve_of();
 
   Monomials monomials_;
-  std::size_t pairs_, width_;
-  std::vector<double> sums_;  ///< centre by centre: upper triangle of the matrix, row by row; then the sides
+  std::size_t sets_, pairs_, width_;
+  /// Centre by centre: upper triangle of the matrix, row by row; then the sides, set by set.
+  std::vector<double> sums_;
 };
 
 }  // namespace kacanov

@@ -43,19 +43,26 @@ Patches::Patches(const Part& part)
     }
 }
 
-PatchFits Patches::fits() const {
-  return PatchFits(corners_.size(), Monomials(static_cast<int>(part_.dim()), cell(part_.type).order));
+PatchFits Patches::fits(std::size_t sets) const {
+  return PatchFits(corners_.size(), Monomials(static_cast<int>(part_.dim()), cell(part_.type).order), sets);
 }
 
-Patches::Polynomial Patches::polynomial(const PatchFits& fits, std::size_t node) const {
-  return {&fits, fits.coefficients(place(node)), node_position(part_, node), scale_[node]};
+Patches::Polynomial Patches::polynomial(const PatchFits& fits, std::size_t set, std::size_t node) const {
+  return {&fits, fits.coefficients(place(node), set), node_position(part_, node), scale_[node]};
 }
 
-void Patches::add(PatchFits& fits, std::size_t element, const Vector3& position, const double* sample) const {
-  for (std::size_t a = 0; a < corners_of_element_; ++a) {
-    const std::size_t node = part_.elements[element * nodes_of_element_ + a];
-    fits.add(place(node), scale_[node] * (position - node_position(part_, node)), sample);
-  }
+void Patches::add(PatchFits& fits, std::size_t element, const Samples& samples) const {
+  const std::int32_t* node = &part_.elements[element * nodes_of_element_];
+  const auto add_all = [&](const auto& what) {
+    for (std::size_t a = 0; a < corners_of_element_; ++a)
+      fits.add(place(static_cast<std::size_t>(node[a])),
+               node_position(part_, static_cast<std::size_t>(node[a])),
+               scale_[static_cast<std::size_t>(node[a])], what);
+  };
+  if (fits.linear())
+    add_all(LinearSums(samples, fits.sets()));
+  else
+    add_all(samples);
 }
 
 void Patches::solve(PatchFits& fits) const {

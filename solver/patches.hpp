@@ -29,9 +29,9 @@ class Patches {
   const std::vector<std::int32_t>& corners() const noexcept { return corners_; }
 
   /// Without samples yet.
-  PatchFits fits() const;
-  /// A sample at `position` in `element`, for the patches of all its corners.
-  void add(PatchFits& fits, std::size_t element, const Vector3& position, const double* sample) const;
+  PatchFits fits(std::size_t sets) const;
+  /// The samples of an element, for the patches of all its corners.
+  void add(PatchFits& fits, std::size_t element, const Samples& samples) const;
   /// Adds up over the ranks that share a corner, and fits. Collective.
   void solve(PatchFits& fits) const;
   /// Whether the patch of a corner has had any sample, on any rank.
@@ -48,11 +48,7 @@ class Patches {
                              scale * (position[2] - centre[2])});
     }
   };
-  Polynomial polynomial(const PatchFits& fits, std::size_t node) const;
-  /// Its value at `position`.
-  Values evaluate(const PatchFits& fits, std::size_t node, const Vector3& position) const {
-    return polynomial(fits, node)(position);
-  }
+  Polynomial polynomial(const PatchFits& fits, std::size_t set, std::size_t node) const;
 
  private:
   std::size_t place(std::size_t node) const { return static_cast<std::size_t>(place_of_node_[node]); }

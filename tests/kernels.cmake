@@ -9,6 +9,7 @@ kacanov_test(kernels
   SOURCES kernels/cells_test.cpp kernels/law_test.cpp kernels/reference_test.cpp kernels/operator_test.cpp
     kernels/operator_input_test.cpp kernels/point_moduli_test.cpp kernels/locking_test.cpp
     kernels/mixed_test.cpp kernels/plane_test.cpp kernels/pressure_test.cpp kernels/pressure_patches_test.cpp
-    kernels/straight_test.cpp kernels/team_test.cpp kernels/threads_test.cpp kernels/uniaxial_test.cpp ../perf/meshes.cpp
+    kernels/row_points_test.cpp kernels/straight_test.cpp kernels/team_test.cpp kernels/threads_test.cpp
+    kernels/uniaxial_test.cpp ../perf/meshes.cpp
   LIBRARIES kacanov_kernels_internal kacanov_dense_algebra)
 kacanov_test_with_openmp(kernels test_kernels "--source-file=*team_test.cpp,*threads_test.cpp")

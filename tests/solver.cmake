@@ -52,7 +52,7 @@ kacanov_test(validity IN solver
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 kacanov_test(nodal_stress IN solver
-  MPI SOURCES solver/nodal_stress_test.cpp solver/discretisation_test.cpp solver/abreast_fields_test.cpp
+  MPI SOURCES solver/nodal_stress_test.cpp solver/discretisation_test.cpp solver/abreast_fields_test.cpp solver/abreast_errors_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal
   RANKS 1 2 3)
 

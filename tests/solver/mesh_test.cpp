@@ -19,12 +19,10 @@ using namespace kacanov;
 
 namespace {
 
-using Vector = std::array<double, 3>;
-
 const auto all_types = element_types();
 
-Vector at(const Mesh& mesh, std::int32_t node) {
-  Vector x{};
+Vector3 at(const Mesh& mesh, std::int32_t node) {
+  Vector3 x{};
   for (int k = 0; k < mesh.dim(); ++k)
     x[k] = mesh.coordinates[static_cast<std::size_t>(node) * static_cast<std::size_t>(mesh.dim()) +
                             static_cast<std::size_t>(k)];
@@ -32,17 +30,17 @@ Vector at(const Mesh& mesh, std::int32_t node) {
 }
 
 /// Area times outward normal of a flat facet, from its corners.
-Vector area_vector(const Mesh& mesh, std::size_t facet) {
+Vector3 area_vector(const Mesh& mesh, std::size_t facet) {
   const auto n = mesh.facet(facet);
   if (mesh.dim() == 2) {
-    const Vector a = at(mesh, n[0]), b = at(mesh, n[1]);
+    const Vector3 a = at(mesh, n[0]), b = at(mesh, n[1]);
     return {b[1] - a[1], a[0] - b[0], 0};
   }
   const std::size_t corners = cell(mesh.type).facet().corners;
-  Vector sum{};
-  const Vector o = at(mesh, n[0]);
+  Vector3 sum{};
+  const Vector3 o = at(mesh, n[0]);
   for (std::size_t k = 1; k + 1 < corners; ++k) {
-    Vector a = at(mesh, n[k]), b = at(mesh, n[k + 1]);
+    Vector3 a = at(mesh, n[k]), b = at(mesh, n[k + 1]);
     for (std::size_t c = 0; c < 3; ++c) {
       a[c] -= o[c];
       b[c] -= o[c];
@@ -54,7 +52,7 @@ Vector area_vector(const Mesh& mesh, std::size_t facet) {
   return sum;
 }
 
-double length_of(const Vector& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+double length_of(const Vector3& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
 /// What check_mesh says, empty if nothing.
 std::string complaint(const Mesh& mesh) {
@@ -96,10 +94,10 @@ TEST_CASE("a box is a valid mesh whose closed boundary encloses its volume") {
     CAPTURE(static_cast<int>(type));
     CHECK(complaint(mesh).empty());
     const double volume = mesh.dim() == 2 ? 2.0 : 4.0;
-    Vector sum{};
+    Vector3 sum{};
     double flux = 0, area = 0;
     for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
-      const Vector a = area_vector(mesh, f), x = at(mesh, mesh.facet(f)[0]);
+      const Vector3 a = area_vector(mesh, f), x = at(mesh, mesh.facet(f)[0]);
       for (std::size_t k = 0; k < 3; ++k) sum[k] += a[k];
       flux += x[0] * a[0] + x[1] * a[1] + x[2] * a[2];
       area += length_of(a);
@@ -118,16 +116,16 @@ TEST_CASE("the sides of a box are named, complete and turned outwards") {
     const std::vector<std::string> names =
         flat ? std::vector<std::string>{"left", "right", "bottom", "top"}
              : std::vector<std::string>{"left", "right", "front", "back", "bottom", "top"};
-    const Vector full = flat ? Vector{0.5, 4, 0} : Vector{1, 8, 2};
+    const Vector3 full = flat ? Vector3{0.5, 4, 0} : Vector3{1, 8, 2};
     REQUIRE(mesh.groups.size() == names.size());
     std::size_t members = 0;
     for (std::size_t g = 0; g < names.size(); ++g) {
       CHECK(mesh.groups[g].name == names[g]);
       CHECK(mesh.groups[g].dimension == mesh.dim() - 1);
       CHECK(std::is_sorted(mesh.groups[g].members.begin(), mesh.groups[g].members.end()));
-      Vector sum{};
+      Vector3 sum{};
       for (const std::int32_t f : mesh.groups[g].members) {
-        const Vector a = area_vector(mesh, f);
+        const Vector3 a = area_vector(mesh, f);
         for (std::size_t k = 0; k < 3; ++k) sum[k] += a[k];
       }
       const std::size_t axis = g / 2;

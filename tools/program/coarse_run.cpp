@@ -194,9 +194,7 @@ void CoarseRun::take(const Solution& of, std::vector<CoarseSolution> before, con
                     result.contact_force});
 }
 
-std::vector<double> note_discretisation(const Part& part, const CoarseRun& coarse, Solution& solution) {
-  const DiscretisationError error = estimate_error(part, solution);
-  Result& result = solution.result;
+void note_discretisation(const DiscretisationError& error, const CoarseRun& coarse, Result& result) {
   Discretisation& out = result.discretisation;
   out.energy = error.relative;
   // Of the meshes in a row that end with this one.
@@ -224,7 +222,6 @@ std::vector<double> note_discretisation(const Part& part, const CoarseRun& coars
       out.contact_force =
           errors(result.contact_force, [](const CoarseLevel& level) { return level.contact_force; });
   }
-  return error.shares();
 }
 
 CoarseRun solve_coarser(Case& input, std::size_t dim, const MpiSession& mpi, const RunOptions& options) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <kacanov/coarse_solution.hpp>
+#include <kacanov/discretisation.hpp>
 #include <kacanov/run_options.hpp>
 #include "case/case_file.hpp"
 #include "program/parallel.hpp"
@@ -44,8 +45,7 @@ Solution solve_roughly(const Case& input, Part& part, RunOptions options, const 
 CoarseRun solve_coarser(Case& input, std::size_t dim, const MpiSession& mpi, const RunOptions& options);
 
 /// Fills in result.discretisation: the estimate of the strains, and what the coarser meshes tell of probes
-/// and the contact force. Returns each element's part of its energy; their squares add up to its square.
-/// Collective.
-std::vector<double> note_discretisation(const Part& part, const CoarseRun& coarse, Solution& solution);
+/// and the contact force.
+void note_discretisation(const DiscretisationError& error, const CoarseRun& coarse, Result& result);
 
 }  // namespace kacanov

@@ -136,8 +136,9 @@ void write_step(const FieldPlace& place, const LoadedCase& loaded, const Model& 
                 const Solution& solution) {
   ContactFields contact = gather_contact_fields(loaded.part, solution);
   contact.displacement = at_boundary(loaded, solution.displacement, loaded.part.dim());
-  const BodyFields fields{recover_stress(loaded.part, solution),
-                          estimate_error(loaded.part, solution).shares(), loaded.sets};
+  Recovered recovered = recover_and_estimate(loaded.part, solution);
+  const BodyFields fields{std::move(recovered.nodal), element_numbers(loaded.part, solution),
+                          recovered.error.shares(), loaded.sets};
   write_body(place, loaded.part, solution, fields, mpi);
   together(mpi, [&] {
     if (mpi.first()) write_surface(place, *loaded.problem, model, contact);
@@ -266,13 +267,15 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
   if (mpi.first()) complete_messages(input, *loaded.problem, result);
   ContactFields contact = gather_contact_fields(loaded.part, solution);
   contact.displacement = at_boundary(loaded, solution.displacement, dim);
-  BodyFields fields{recover_stress(loaded.part, solution), {}, loaded.sets};
+  Recovered recovered = recover_and_estimate(loaded.part, solution);
+  note_discretisation(recovered.error, coarse, result);
+  const BodyFields fields{std::move(recovered.nodal), element_numbers(loaded.part, solution),
+                          recovered.error.shares(), loaded.sets};
   result.max_von_mises_nodal = fields.nodal.max_von_mises;
-  fields.error = note_discretisation(loaded.part, coarse, solution);
   const std::vector<double>& displacement = contact.displacement;
   std::vector<double> von_mises, plastic;
   if (input.output.report) {
-    const NodalMeans means = nodal_means(loaded.part, solution);
+    const NodalMeans means = nodal_means(loaded.part, fields.numbers);
     if (result.plastic_elements > 0) plastic = at_boundary(loaded, means.plastic_share, 1);
     von_mises = at_boundary(loaded, means.von_mises, 1);
   }

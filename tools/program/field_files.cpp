@@ -6,7 +6,6 @@
 #include <array>
 #include <map>
 
-#include <kacanov/element_fields.hpp>
 #include "formats/vtu_writer.hpp"
 #include "problem/selection.hpp"
 #include "problem/vector3.hpp"
@@ -197,25 +196,15 @@ ContactFields gather_contact_fields(const Part& part, const Solution& solution) 
 
 void write_body(const FieldPlace& place, const Part& part, const Solution& solution, const BodyFields& fields,
                 const MpiSession& mpi) {
-  using Fields = reference::ElementFields;
   const int dim = part.dim();
   const std::size_t owned = part.owned_nodes(), elements = part.element_count();
   const auto nodal = [owned](const std::vector<double>& all, int components) {
     return Values<double>(std::span(all).first(owned * static_cast<std::size_t>(components)));
   };
-  const auto of_elements = [&](int components, std::span<double> Fields::*which) {
-    const std::size_t width = components;
-    return Values<double>(elements * width,
-                          [&part, &solution, which, width](std::size_t first, std::span<double> out) {
-                            Fields wanted;
-                            wanted.*which = out;
-                            element_fields(part, solution, first / width, out.size() / width, wanted);
-                          });
-  };
-  const Values<std::uint8_t> plastic(elements, [&](std::size_t first, std::span<std::uint8_t> out) {
-    Fields wanted;
-    wanted.plastic = out;
-    element_fields(part, solution, first, out.size(), wanted);
+  const Values<double> stress(6 * elements, [&](std::size_t first, std::span<double> out) {
+    reference::ElementFields wanted;
+    wanted.stress = out;
+    element_fields(part, solution, first / 6, out.size() / 6, wanted);
   });
   const Values<double> strain(6 * elements, [&](std::size_t first, std::span<double> out) {
     element_strains(part, solution, first / 6, out.size() / 6, out);
@@ -242,12 +231,12 @@ void write_body(const FieldPlace& place, const Part& part, const Solution& solut
     grid.point_fields.push_back(
         {"pressure_patch", 1, tags(owned, [&part](std::size_t i) { return part.pressure_patch[i]; })});
   grid.cell_fields = {
-      {"stress", 6, of_elements(6, &Fields::stress)},
-      {"von_mises", 1, of_elements(1, &Fields::von_mises)},
+      {"stress", 6, stress},
+      {"von_mises", 1, Values<double>(fields.numbers.von_mises)},
       {"strain", 6, strain},
-      {"dev_strain", 1, of_elements(1, &Fields::dev_strain)},
-      {"g", 1, of_elements(1, &Fields::secant)},
-      {"plastic", 1, plastic},
+      {"dev_strain", 1, Values<double>(fields.numbers.dev_strain)},
+      {"g", 1, Values<double>(fields.numbers.secant)},
+      {"plastic", 1, Values<std::uint8_t>(fields.numbers.plastic)},
       {"material", 1, tags(elements, material)},
       {"set", 1, tags(elements, set)},
       {"element_id", 1, tags(elements, [&part](std::size_t e) { return part.element_tag(e); })},

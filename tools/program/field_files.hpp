@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include <kacanov/element_fields.hpp>
 #include <kacanov/nodal_stress.hpp>
 #include <kacanov/part.hpp>
 #include <kacanov/problem.hpp>
@@ -42,7 +43,8 @@ bool is_step_file(std::string_view name);
 
 /// What its fields are besides those of a Solution.
 struct BodyFields {
-  NodalStress nodal;                         ///< recover_stress()
+  NodalStress nodal;  ///< recover_stress()
+  ElementNumbers numbers;
   std::vector<double> error;                 ///< elements: shares() of estimate_error()
   std::span<const std::uint16_t> sets = {};  ///< elements: SetNumbers
 };

@@ -2,10 +2,10 @@
 // A case from its file to its numbers, for commands and for programs that have the solver within them.
 #include "program/solve_case.hpp"
 
+#include <kacanov/discretisation.hpp>
 #include <kacanov/element_fields.hpp>
 #include <kacanov/error.hpp>
 #include <kacanov/moving.hpp>
-#include <kacanov/nodal_stress.hpp>
 #include <kacanov/solve.hpp>
 #include <kacanov/validity.hpp>
 #include "pictures/picture.hpp"
@@ -155,13 +155,15 @@ SolvedCase solve_case(const Case& given, const MpiSession& mpi, const CaseRun& r
   out.input = input;
   out.steps = std::move(steps);
   const Part& part = loaded.part;
-  const NodalStress nodal = recover_stress(part, solution);
+  const auto [nodal, error] = recover_and_estimate(part, solution);
+  note_discretisation(error, coarse, solution.result);
   out.pressure_patch = gather_patches(part);
-  out.error = gather_elements(part, note_discretisation(part, coarse, solution));
+  out.error = gather_elements(part, error.shares());
   out.displacement = gather_nodal(part, solution.displacement, part.dim());
   out.nodal_stress = gather_nodal(part, nodal.stress, 6);
   out.recovered_von_mises = gather_nodal(part, nodal.von_mises, 1);
-  out.averaged_von_mises = gather_nodal(part, nodal_means(part, solution).von_mises, 1);
+  out.averaged_von_mises =
+      gather_nodal(part, nodal_means(part, element_numbers(part, solution)).von_mises, 1);
   out.contact = gather_contact_fields(part, solution);
   out.thermal = gather_elements(part, solution.thermal);
   out.result = std::move(solution.result);

@@ -58,7 +58,7 @@ struct SolvedCase {
   std::vector<double> nodal_stress;  ///< nodes × 6: xx yy zz xy yz zx, recovered (theory: nodal-stress)
   std::vector<double> recovered_von_mises;  ///< nodes: of that stress
   std::vector<double> averaged_von_mises;   ///< nodes: means of the elements round them, as in pictures
-  std::vector<double> error;                ///< elements: note_discretisation()
+  std::vector<double> error;                ///< elements: shares() of estimate_error()
   ContactFields contact;
   std::vector<double> thermal;               ///< Solution::thermal of all elements
   std::vector<std::int64_t> pressure_patch;  ///< as in Body

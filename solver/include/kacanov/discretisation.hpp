@@ -9,6 +9,7 @@
 
 #include <kacanov/element_fields.hpp>
 #include <kacanov/model.hpp>
+#include <kacanov/nodal_stress.hpp>
 #include <kacanov/part.hpp>
 #include <kacanov/problem.hpp>
 
@@ -29,6 +30,14 @@ struct DiscretisationError {
 /// By Zienkiewicz and Zhu: strains are compared with polynomials fitted round the corners of the elements.
 /// Memory while it works as of recover_stress(). Collective.
 DiscretisationError estimate_error(const Part& part, const BodyState& state);
+
+struct Recovered {
+  NodalStress nodal;
+  DiscretisationError error;
+};
+/// recover_stress() and estimate_error(), most of whose work is the same: 1.5 times their memory, two thirds
+/// of their time. Collective.
+Recovered recover_and_estimate(const Part& part, const BodyState& state);
 
 /// The same for a number that is known on meshes of falling width, each half the one before, coarsest first:
 /// how far the last is from that of a mesh without end. Nothing of fewer than two numbers.

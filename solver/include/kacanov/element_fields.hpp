@@ -64,13 +64,20 @@ enum class PointValues : std::uint8_t { all, all_but_stress };
 void visit_points(const Part& part, const BodyState& state, PointValues wanted,
                   const std::function<void(const PointRun&)>& visit);
 
+/// Fields of one number an element, of all elements of a part: some 33 bytes each.
+struct ElementNumbers {
+  std::vector<double> von_mises, dev_strain, secant, volume;
+  std::vector<std::uint8_t> plastic;
+};
+ElementNumbers element_numbers(const Part& part, const BodyState& state);
+
 /// At the part's nodes, of the elements round a node over all ranks, weighted by volume.
 struct NodalMeans {
   std::vector<double> von_mises;      ///< mean stress
   std::vector<double> plastic_share;  ///< of the volume, that belongs to plastic ones
 };
 /// Collective.
-NodalMeans nodal_means(const Part& part, const BodyState& state);
+NodalMeans nodal_means(const Part& part, const ElementNumbers& of);
 /// The energy that this rank's elements store.
 double stored_energy(const Body& body, std::span<const double> u);
 
