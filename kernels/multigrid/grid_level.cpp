@@ -91,11 +91,11 @@ void GridLevel::change(const GridTree& tree, const GridLeaves& leaves, const Lev
   keep_rows(stiffness);
   // What is in other ranks' rows they have already.
   std::fill(force_.begin() + 12 * pattern_->start()[rows()], force_.end(), 0.0F);
-  const LeafMoments none;
+  const LeafMoments no_moments;
   add_forms(leaves.cell.size(), [&](std::size_t leaf) {
     std::optional<LeafForm> form;
     if (const std::int32_t which = stiffness.stiff[leaf]; which >= 0)
-      form.emplace(none, &stiffness.stiffness[which], tree.length(tree.cells()[leaves.cell[leaf]]));
+      form.emplace(no_moments, &stiffness.stiffness[which], tree.length(tree.cells()[leaves.cell[leaf]]));
     return form;
   });
   pattern_->complete(force_, 12);
