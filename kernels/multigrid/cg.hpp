@@ -4,12 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <span>
 
 #include "multigrid/sums.hpp"
 
 namespace kacanov {
+
+struct CgResult {
+  int iterations = 0;
+  double first_residual = 0.0, residual = 0.0;  ///< ‖r‖ in the space
+  double energy = 0.0;  ///< δᵀA δ = δᵀr₀ of what the solve has added to x, the δ of CG
+  bool converged = false;
+};
 
 /// When a solve stops (theory: cg).
 struct CgOptions {
@@ -19,17 +27,23 @@ struct CgOptions {
   double most = std::numeric_limits<double>::infinity();  ///< ‖r‖ that `relative` alone may not leave
   double reach = 1.0;  ///< a solve that would stop within this factor of `absolute` goes on to there
 
+  /// The residual that the linear problem leaves out of a nonlinear one, at the x of the moment (theory:
+  /// left-out); ‖r‖ has no need to fall below `share` of it. Asked for once, at ‖r‖ ≤ asked · ‖r₀‖, where
+  /// the target looks to be as many as `worth` iterations away.
+  std::function<double()> left_out = {};
+  double asked = 0.2, share = 0.7, worth = 2.0;
+
   /// ‖r‖ at which a solve stops that starts with `first`.
   double target(double first) const {
     const double wanted = std::min(relative * first, most);
     return wanted <= reach * absolute ? absolute : wanted;
   }
-};
-
-struct CgResult {
-  int iterations = 0;
-  double first_residual = 0.0, residual = 0.0;  ///< ‖r‖ in the space
-  bool converged = false;
+  /// Whether a solve that has come so far asks for what is left out.
+  bool asks(const CgResult& sofar, double target) const {
+    if (sofar.residual <= target || sofar.residual > asked * sofar.first_residual) return false;
+    const double rate = std::log(sofar.first_residual / sofar.residual) / sofar.iterations;
+    return std::log(sofar.residual / target) >= worth * rate;
+  }
 };
 
 /// Work vectors, kept between solves.
@@ -54,7 +68,8 @@ CgResult conjugate_gradients(const InnerSpace& space, const Apply& apply, const 
   auto& z = q;  // wanted one after the other
   space.project(r);
   result.first_residual = result.residual = space.norm(r);
-  const double target = options.target(result.first_residual);
+  double target = options.target(result.first_residual);
+  bool to_ask = static_cast<bool>(options.left_out);
   result.converged = result.residual <= target;
   double rz = 0.0;
   while (!result.converged && result.iterations < options.max_iterations) {
@@ -68,8 +83,14 @@ CgResult conjugate_gradients(const InnerSpace& space, const Apply& apply, const 
     const double pq = space.sum_all(apply(p, q));
     space.project(q);
     if (!(pq > 0.0) || !std::isfinite(pq)) return result;
-    result.residual = space.advance(rz / pq, p, q, x, r);
+    const double length = rz / pq;
+    result.energy += length * rz;
+    result.residual = space.advance(length, p, q, x, r);
     ++result.iterations;
+    if (to_ask && options.asks(result, target)) {
+      target = std::max(target, options.share * options.left_out());
+      to_ask = false;
+    }
     result.converged = result.residual <= target;
   }
   return result;

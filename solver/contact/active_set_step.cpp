@@ -93,6 +93,21 @@ void least_reactions(const TraceRows& rows, const ActiveSet& set, const Traces& 
   }
 }
 
+/// The residual that the linear problem of a step leaves out, once it has come to δ.
+double left_out(const LinearProblem& problem, const Space& space, const ActiveSet& set,
+                const ContactState& state, std::span<const double> delta, CgWork& work) {
+  Vector& there = work.image;  // A p and M⁻¹ r are wanted no more
+  for (std::size_t i = 0; i < there.size(); ++i) there[i] = state.u[i] + delta[i];
+  Vector rest(there.size());
+  problem.unbalanced(there, rest);
+  ContactValues trace(problem.traces->size());
+  state.evaluate(*problem.traces, there, trace);
+  subtract_slip_force(*problem.traces, set, trace.tangential, rest);
+  space.project(rest);
+  for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= work.residual[i];
+  return space.norm(rest);
+}
+
 /// What a step solves where reactions are normal to what they hold.
 struct SymmetricPart {
   const Space& space;
@@ -171,7 +186,7 @@ std::vector<NodeBlock> slip_blocks(const Part& part, const ActiveSet& set) {
 }
 
 ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, const ActiveSet& set,
-                              const ContactState& state, const CgOptions& options, CgWork& work) {
+                              const ContactState& state, CgOptions options, CgWork& work) {
   const Traces& traces = *problem.traces;
   const TraceRows rows(part, set.held);
   Space space(part);
@@ -184,12 +199,17 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
     const double share = problem.apply(p, q);
     return share + add_slip_stiffness(traces, set, p, q);
   };
-  subtract_slip_force(traces, set, state.trace.tangential, work.residual);
+  const auto pull = [&](std::span<double> f) {
+    problem.pull(f);
+    subtract_slip_force(traces, set, state.trace.tangential, f);
+  };
+  pull(work.residual);
   // The held rows first.
   const double wide = part.wide_contact ? close_rows(rows, set, traces, state, delta) : 0.0;
   step.closing = std::max(wide, nodes.close(delta));
+  double closed = 0.0;
   if (step.closing > 0.0) {
-    apply(delta, work.image);
+    closed = space.sum_all(apply(delta, work.image));
     for (std::size_t i = 0; i < delta.size(); ++i) work.residual[i] -= work.image[i];
   }
   const SymmetricPart symmetric{
@@ -197,6 +217,8 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
         const double share = apply(p, q);
         return problem.loose > 0.0 ? share + traces.add_penalty({0.0, problem.loose}, p, q) : share;
       }};
+  if (problem.unbalanced)
+    options.left_out = [&] { return left_out(problem, space, set, state, delta, work); };
   const CgResult solve = nodes.oblique()
                              ? solve_oblique(symmetric, nodes, delta, work, options)
                              : conjugate_gradients(space, apply, problem.precondition, delta, work, options);
@@ -206,9 +228,20 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
   if (solve.iterations > 0 && solve.residual > 0.0)
     step.cg_digits = std::log10(solve.first_residual / solve.residual);
   step.turning = space.sum_all(add_slip_stiffness(traces, set, delta, work.image));
-  step.curvature = space.sum_all(apply(delta, work.image));
-  nodes.subtract_sliding(work.image);
-  step.slope = nodes.oblique() ? space.dot(delta, work.image) : step.curvature;
+  if (nodes.oblique()) {
+    step.curvature = space.sum_all(apply(delta, work.image));
+    nodes.subtract_sliding(work.image);
+    step.slope = space.dot(delta, work.image);
+    return step;
+  }
+  step.curvature = solve.energy;
+  if (step.closing > 0.0) {
+    // δ = c + x, of what closes and what CG found, which lies in the space and has xᵀ(f − B c) = xᵀB x.
+    pull(work.image);
+    space.project(work.image);
+    step.curvature += closed + 2.0 * (space.dot(delta, work.image) - solve.energy);
+  }
+  step.slope = step.curvature;
   return step;
 }
 

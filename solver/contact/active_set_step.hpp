@@ -26,11 +26,11 @@ struct ActiveSetStep {
 };
 
 /// Solves the linearised problem with the rows of `set` held: B δ + slip terms = F − R(u) − CᵀMλ, Cu + Cδ on
-/// the obstacle or at rest. On entry `work.residual` is F − R(u), without contact forces. Of the options
+/// the obstacle or at rest. Of the options
 /// `relative` alone says little: points moved onto the obstacle one by one strain the elements beside them
 /// beyond anything else, so `most` should be what was unbalanced before. Collective.
 ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, const ActiveSet& set,
-                              const ContactState& state, const CgOptions& options, CgWork& work);
+                              const ContactState& state, CgOptions options, CgWork& work);
 
 /// Multipliers after a step: from the forces F − R(u) at held rows, from the friction law at slipping ones
 /// (projected onto the disc), zero elsewhere. Uses state.trace at the new u; φ is set so that ADMM can go on

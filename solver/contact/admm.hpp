@@ -24,6 +24,10 @@ struct LinearProblem {
   /// Penalty on slip that preconditions Newton steps with sliding friction, where contact alone holds
   /// motions.
   double loose = 0.0;
+  /// f = F − R(u) of the state that the problem is linearised at, for Newton steps.
+  std::function<void(std::span<double>)> pull = {};
+  /// f = F − R(u) anywhere, of a body whose response is not linear. Collective.
+  std::function<void(std::span<const double>, std::span<double>)> unbalanced = {};
 };
 
 struct AdmmOptions {

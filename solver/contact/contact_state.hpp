@@ -17,9 +17,11 @@ struct ContactState {
   Vector origin;
 
   /// Fills `trace` from `u`.
-  void evaluate(const Traces& traces) {
-    traces.evaluate(u, trace);
-    for (std::size_t k = 0; k < origin.size(); ++k) trace.tangential[k] -= origin[k];
+  void evaluate(const Traces& traces) { evaluate(traces, u, trace); }
+  /// Traces at another displacement.
+  void evaluate(const Traces& traces, std::span<const double> displacement, ContactValues& values) const {
+    traces.evaluate(displacement, values);
+    for (std::size_t k = 0; k < origin.size(); ++k) values.tangential[k] -= origin[k];
   }
   /// From here on slip of the points that follow the load steps is counted from `u`, whose traces `trace`
   /// holds.

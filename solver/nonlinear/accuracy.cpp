@@ -41,15 +41,40 @@ AdmmOptions admm_accuracy(const SolverOptions& options, const Residuals& before,
   return out;
 }
 
-CgOptions newton_accuracy(const SolverOptions& options, const Residuals& before, const Tuning& tuning) {
-  const double worst = before.certificate.worst();
+namespace {
+
+/// ‖r‖ of a Newton step's solve that may be the last.
+double last_residual(const SolverOptions& options, const Residuals& before, const Tuning& tuning) {
+  return tuning.last_share * options.tolerance * gap_share(before.certificate) * before.scales.force;
+}
+
+/// What solves of Newton steps have in common.
+CgOptions step_accuracy(const SolverOptions& options, const Tuning& tuning) {
   CgOptions out;
-  out.absolute = tuning.last_share * options.tolerance * gap_share(before.certificate) * before.scales.force;
   out.relative = tuning.solve_reduction;
   out.max_iterations = options.max_cg;
+  out.asked = tuning.left_out_asked;
+  out.share = tuning.left_out_share;
+  out.worth = tuning.left_out_worth;
+  return out;
+}
+
+}  // namespace
+
+CgOptions newton_accuracy(const SolverOptions& options, const Residuals& before, const Tuning& tuning) {
+  const double worst = before.certificate.worst();
+  CgOptions out = step_accuracy(options, tuning);
+  out.absolute = last_residual(options, before, tuning);
   out.reach = tuning.last_reach;
   // The first residual alone says little: points moved onto the obstacle strain the elements beside them.
   out.most = std::min(worst, 1.0) * before.scales.force;
+  return out;
+}
+
+AugmentedAccuracy augmented_accuracy(const SolverOptions& options, const Residuals& before,
+                                     const Tuning& tuning) {
+  AugmentedAccuracy out{last_residual(options, before, tuning), step_accuracy(options, tuning)};
+  out.solve.absolute = 0.5 * out.force;
   return out;
 }
 

@@ -17,6 +17,15 @@ AdmmOptions admm_accuracy(const SolverOptions& options, const Residuals& before,
 /// so that answers do not depend on ranks or threads to more than that.
 CgOptions newton_accuracy(const SolverOptions& options, const Residuals& before, const Tuning& tuning);
 
+/// Of a step of the method of multipliers: the force that may be left unbalanced, and the CG solves on the
+/// way.
+struct AugmentedAccuracy {
+  double force = 0.0;
+  CgOptions solve;
+};
+AugmentedAccuracy augmented_accuracy(const SolverOptions& options, const Residuals& before,
+                                     const Tuning& tuning);
+
 /// How much further than the tolerance the residuals have to fall for the duality gap to meet it, 1e-4 to 1.
 /// Where a body moves far and strains little, their work along the motion is large beside the stored energy.
 double gap_share(const Certificate& certificate);

@@ -30,7 +30,7 @@ class Descent {
   }
 
   /// From the residual there is. Whether the solve gave a direction to go.
-  bool step(bool tangent, const CgOptions& options, StepOutcome& outcome) {
+  bool step(bool tangent, CgOptions options, StepOutcome& outcome) {
     const ActiveSet set = contact_.derivative(c_.state.trace);
     c_.preconditioner.prepare(set, contact_.penalty(), loose());
     if (tangent) c_.body.freeze_tangent(c_.state.u);
@@ -41,6 +41,7 @@ class Descent {
       const double share = problem.apply(p, q);
       return share + contact_.add_stiffness(set, p, q) + hold_loosely(p, q);
     };
+    if (problem.unbalanced) options.left_out = [&] { return left_out(problem); };
     CgResult solve = conjugate_gradients(c_.space, apply, problem.precondition, delta_, c_.work, options);
     if (!solve.converged && c_.preconditioner.factorise()) {
       outcome.cg_iterations += solve.iterations;
@@ -67,6 +68,20 @@ class Descent {
   double hold_loosely(std::span<const double> p, std::span<double> q) const {
     const double r = loose();
     return r > 0.0 ? c_.traces.add_penalty({r, r}, p, q) : 0.0;
+  }
+
+  /// The residual that the linear problem leaves out, once it has come to δ.
+  double left_out(const LinearProblem& problem) const {
+    Vector& there = c_.work.image;
+    for (std::size_t i = 0; i < there.size(); ++i) there[i] = c_.state.u[i] + delta_[i];
+    Vector rest(there.size());
+    problem.unbalanced(there, rest);
+    ContactValues trace(c_.traces.size());
+    c_.state.evaluate(c_.traces, there, trace);
+    c_.traces.add_force(contact_.multipliers(trace), -1.0, rest);
+    c_.space.project(rest);
+    for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= c_.work.residual[i];
+    return c_.space.norm(rest);
   }
 
   void follow(double slope) {
@@ -97,8 +112,7 @@ StepOutcome augmented_step(StepContext& c, AugmentedControl& control, const Resi
   StepOutcome outcome;
   outcome.method = "augmented";
   const auto applied = c.body.op().applications();
-  const double enough =
-      c.tuning.last_share * c.options.tolerance * gap_share(before.certificate) * before.scales.force;
+  const AugmentedAccuracy accuracy = augmented_accuracy(c.options, before, c.tuning);
   control.advance(c.traces, c.state);
   Descent descent(c, control.penalty());
   const bool may_tangent = !c.body.linear() && c.options.outer != SolverOptions::Outer::kacanov;
@@ -106,15 +120,12 @@ StepOutcome augmented_step(StepContext& c, AugmentedControl& control, const Resi
   for (;;) {
     double moved = 0.0;
     const double force = descent.unbalanced(moved);
-    if (force <= std::max(enough, c.tuning.augmented_balance * moved) && outcome.contact_iterations > 0)
+    if (force <= std::max(accuracy.force, c.tuning.augmented_balance * moved) &&
+        outcome.contact_iterations > 0)
       break;
     if (outcome.contact_iterations == c.tuning.augmented_iterations || !std::isfinite(force)) break;
     ++outcome.contact_iterations;
-    CgOptions cg;
-    cg.relative = c.tuning.solve_reduction;
-    cg.absolute = 0.5 * enough;
-    cg.max_iterations = c.options.max_cg;
-    if (!descent.step(tangent, cg, outcome)) {
+    if (!descent.step(tangent, accuracy.solve, outcome)) {
       outcome.solved = false;
       break;
     }

@@ -22,10 +22,27 @@ void BodyResponse::set_free_strain(std::span<const double> of_element) {
   current_ = false;
 }
 
+bool BodyResponse::at_rest(std::span<const double> u) const {
+  const bool moved = stretched_ || std::any_of(u.begin(), u.end(), [](double value) { return value != 0.0; });
+  return !part_->node_map.any(moved);
+}
+
 void BodyResponse::evaluate(std::span<const double> u) {
+  current_ = false;
+  if (at_rest(u)) {
+    std::fill(internal_.begin(), internal_.end(), 0.0);
+    energy_ = 0.0;
+    return;
+  }
   op_.residual(u, internal_);
   energy_ = op_.energy(u);
-  current_ = false;
+}
+
+void BodyResponse::take_elastic_force(std::span<const double> u) {
+  if (at_rest(u))
+    std::fill(internal_.begin(), internal_.end(), 0.0);
+  else
+    op_.apply(u, internal_);
 }
 
 void BodyResponse::evaluate_and_freeze(std::span<const double> u) {
@@ -62,6 +79,12 @@ void BodyResponse::freeze_tangent(std::span<const double> u) {
 
 void BodyResponse::unbalanced(const LoadPath& path, std::span<double> f) const {
   for (std::size_t i = 0; i < internal_.size(); ++i) f[i] = -internal_[i];
+  path.add_load(f);
+}
+
+void BodyResponse::unbalanced(const LoadPath& path, std::span<const double> u, std::span<double> f) {
+  op_.residual(u, f);
+  for (double& value : f) value = -value;
   path.add_load(f);
 }
 

@@ -27,7 +27,7 @@ class BodyResponse {
   void evaluate_and_freeze(std::span<const double> u);
   /// The elastic force in place of R(u): where prescribed displacements put in at once look like huge strains
   /// in the first layer of elements.
-  void take_elastic_force(std::span<const double> u) { op_.apply(u, internal_); }
+  void take_elastic_force(std::span<const double> u);
   /// Freezes the elastic operator; whether it was another.
   bool freeze_elastic();
   /// Freezes the secant at u, if it is not.
@@ -38,6 +38,8 @@ class BodyResponse {
 
   /// f = F − R(u).
   void unbalanced(const LoadPath& path, std::span<double> f) const;
+  /// The same at any u; leaves R(u) and the operator as they are. Collective.
+  void unbalanced(const LoadPath& path, std::span<const double> u, std::span<double> f);
   BodyForces forces(const LoadPath& path) const { return {path.load(), internal_, energy_, diagonal_}; }
   std::span<const double> internal() const noexcept { return internal_; }
   /// g as frozen: elements × points.
@@ -51,6 +53,9 @@ class BodyResponse {
   const DistributedOperator& op() const noexcept { return op_; }
 
  private:
+  /// Nothing moves and nothing pulls: R(u) is 0. Collective.
+  bool at_rest(std::span<const double> u) const;
+
   const Part* part_;
   DistributedOperator op_;
   std::vector<float> diagonal_;

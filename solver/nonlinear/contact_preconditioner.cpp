@@ -2,6 +2,7 @@
 // The preconditioner of the steps' linear problems, set up when its schedule says that it pays.
 #include "nonlinear/contact_preconditioner.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -63,7 +64,10 @@ void ContactPreconditioner::prepare(const ActiveSet& set, double penalty, double
 
 void ContactPreconditioner::watch(double digits, std::int64_t iterations) {
   schedule_.watch(digits, iterations);
-  if (iterations > tuning_.most_iterations) factorise();
+  const auto unknowns = static_cast<double>(part_->total_nodes()) * static_cast<double>(part_->dim());
+  const double factor =
+      tuning_.factor_iterations * std::pow(unknowns / tuning_.factor_unknowns, tuning_.factor_growth);
+  if (static_cast<double>(iterations) > std::min(factor, tuning_.most_iterations)) factorise();
 }
 
 bool ContactPreconditioner::factorise() {

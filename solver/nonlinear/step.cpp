@@ -81,6 +81,11 @@ StepContext::StepContext(const Part& the_part, const SolverOptions& the_options,
   secant = {&space, &traces,
             [this](std::span<const double> x, std::span<double> y) { return body.op().apply(x, y); },
             [this](std::span<const double> r, std::span<double> z) { preconditioner.apply(r, z); }};
+  secant.pull = [this](std::span<double> f) { body.unbalanced(path, f); };
+  if (!body.linear())
+    secant.unbalanced = [this](std::span<const double> u, std::span<double> f) {
+      body.unbalanced(path, u, f);
+    };
   tangent = secant;
   tangent.apply = [this](std::span<const double> x, std::span<double> y) {
     return body.op().apply_tangent(x, y);
@@ -139,7 +144,6 @@ StepOutcome newton_step(StepContext& c, double penalty, bool tangent, const Resi
   LinearProblem problem = tangent ? c.tangent : c.secant;
   if (c.part.loose_modes > 0) problem.loose = c.tuning.loose_share * penalty;
   const auto attempt = [&] {
-    c.body.unbalanced(c.path, c.work.residual);
     return active_set_step(problem, c.part, set, c.state, newton_accuracy(c.options, before, c.tuning),
                            c.work);
   };

@@ -21,7 +21,10 @@ struct Tuning {
   /// `last_share` of the tolerance goes on to there: it may be the last then, and digits cost more in a step
   /// of their own (87 cases: 8,071 applications and 554 steps in place of 8,448 and 606).
   double solve_reduction = 0.03;
-  double last_reach = 100.0, last_share = 0.5;
+  double last_reach = 100.0, last_share = 0.7;
+  /// What a step leaves out is asked for at this share of its first residual, where that can save so many
+  /// iterations, and the solve stops at this share of it.
+  double left_out_asked = 0.2, left_out_worth = 2.0, left_out_share = 0.7;
 
   // Linearisation (theory: newton, damping).
 
@@ -82,15 +85,17 @@ struct Tuning {
 
   /// Once a step needs this many CG iterations more than it would have right after the last setup: half of
   /// what a setup costs.
-  double setup_worth = 5.0;
+  double setup_worth = 4.0;
   /// Before a step where g has moved by this share in the mean.
   double drift_worth = 0.05;
   /// Where a penalty has moved by this factor (elastic beam, ADMM: 144 applications instead of 212).
   double penalty_worth = 3.0;
 
-  /// A solve of so many CG iterations asks for a factor, in a body of at most so many unknowns: that takes as
-  /// long as 250 iterations for 2,160 of them, 3,000 for 9,800.
-  int most_iterations = 500;
+  /// A solve of so many CG iterations asks for a factor, or of as many as a factor takes the time of:
+  /// `factor_iterations` for a body of `factor_unknowns`, growing with this power of them (3,000 for 9,800),
+  /// in a body of at most `most_factorised` unknowns.
+  double most_iterations = 500.0;
+  double factor_iterations = 250.0, factor_unknowns = 2160.0, factor_growth = 1.64;
   std::int64_t most_factorised = 10'000;
 
   // From Newton steps back to ADMM (theory: active-set), and giving up.

