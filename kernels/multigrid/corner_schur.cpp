@@ -25,8 +25,11 @@ struct AveragingElements {
 AveragingElements averaging_elements(const Body& body, const CornerPressures& pressures) {
   AveragingElements all;
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
-    if constexpr (E::dim == 3 && E::corner_dilatation)
-      for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
+    if constexpr (E::dim == 3 && E::corner_dilatation) {
+      const std::size_t most = body.mesh.element_count();
+      for (auto* v : {&all.element, &all.first_node, &all.first_entry}) v->reserve(most + 1);
+      all.node.reserve(most * E::nodes), all.entry.reserve(most * E::corners);
+      for (std::size_t e = 0; e < most; ++e) {
         const std::int32_t* entry = &pressures.means().of_element[e * E::corners];
         if (entry[0] < 0) continue;
         const std::int32_t* node = body.mesh.connectivity.data() + e * E::nodes;
@@ -37,6 +40,7 @@ AveragingElements averaging_elements(const Body& body, const CornerPressures& pr
         all.entry.erase(std::unique(all.entry.end() - E::corners, all.entry.end()), all.entry.end());
         all.first_node.push_back(all.node.size()), all.first_entry.push_back(all.entry.size());
       }
+    }
   });
   return all;
 }
@@ -70,12 +74,13 @@ CornerSchur::CornerSchur(const MultigridBody& body, const CornerPressures& press
   for (std::size_t r = 0; r < rows; ++r)
     row_of[pattern_->column(pattern_->number(r))] = static_cast<std::int32_t>(r);
   first_node_.assign(rows + 1, 0);
-  for (const Entry& entry : entries_) ++first_node_[static_cast<std::size_t>(row_of[entry.row]) + 1];
+  for (const std::int32_t row : row_) ++first_node_[static_cast<std::size_t>(row_of[row]) + 1];
   std::partial_sum(first_node_.begin(), first_node_.end(), first_node_.begin());
   std::vector<std::int64_t> next(first_node_.begin(), first_node_.end() - 1);
-  node_.resize(entries_.size());
+  node_.resize(row_.size());
   for (std::size_t n = 0; n < nodes_; ++n)
-    for (const Entry& entry : entries_of(n)) node_[next[row_of[entry.row]]++] = static_cast<std::int32_t>(n);
+    for (std::int64_t k = first_[n]; k < first_[n + 1]; ++k)
+      node_[next[row_of[row_[k]]]++] = static_cast<std::int32_t>(n);
 }
 
 /// B, and S's pattern by it.
@@ -83,16 +88,14 @@ void CornerSchur::take_changes(const MultigridBody& body, const CornerPressures&
   const IndexMap& map = *body.node_map;
   const std::vector<std::int64_t> starts = number_owned(static_cast<std::int64_t>(pressures.rows()), map);
   std::vector<std::int64_t> number;
-  std::vector<std::size_t> first;
-  std::vector<std::int32_t> index;
   {
     std::vector<std::int64_t> node_number(body.nodes()), entry_number(pressures.means().size());
     for (std::size_t n = 0; n < node_number.size(); ++n) node_number[n] = map.number(n);
     for (std::size_t k = 0; k < entry_number.size(); ++k) entry_number[k] = pressures.number(k);
     AveragingElements elements = averaging_elements(body.body, pressures);
-    const SummedPattern b({map.starts, node_number, elements.node, elements.first_node},
-                          {starts, entry_number, elements.entry, elements.first_entry}, map, threads_);
-    std::vector<float> value(3 * b.entries(), 0.0F);
+    SummedPattern b({map.starts, node_number, elements.node, elements.first_node},
+                    {starts, entry_number, elements.entry, elements.first_entry}, map, threads_);
+    change_.assign(3 * b.entries(), 0.0F);
     std::vector<std::int32_t> row, column;
     for (const std::int64_t n : node_number) row.push_back(b.row(n));
     for (const std::int64_t n : entry_number) column.push_back(b.column(n));
@@ -110,28 +113,30 @@ void CornerSchur::take_changes(const MultigridBody& body, const CornerPressures&
               const std::size_t k = b.entry(row[node[a]], column[elements.entry[j]]);
               for (std::size_t c = 0; c < E::corners; ++c) {
                 if (corner_entry[c] != elements.entry[j]) continue;
-                for (std::size_t i = 0; i < 3; ++i) value[3 * k + i] += static_cast<float>(sum[a][c][i]);
+                for (std::size_t i = 0; i < 3; ++i) change_[3 * k + i] += static_cast<float>(sum[a][c][i]);
               }
             }
         }
     });
-    b.complete(value, 3);
+    b.complete(change_, 3);
     const auto start = b.start().first(nodes_ + 1);
-    first.assign(start.begin(), start.end());
-    index.assign(b.column().begin(), b.column().begin() + start.back());
+    first_.assign(start.begin(), start.end());
     for (std::size_t c = 0; c < b.columns().size(); ++c) number.push_back(b.columns().number(c));
-    entries_.resize(index.size());
+    row_ = std::move(b).take_columns();
+    // Of this rank's nodes, which come first.
+    row_.resize(static_cast<std::size_t>(first_.back()));
+    change_.resize(3 * row_.size());
     for (std::size_t n = 0; n < nodes_; ++n)
-      for (std::size_t k = first[n]; k < first[n + 1]; ++k)
-        for (std::size_t i = 0; i < 3; ++i)
-          entries_[k].change[i] = body.held[3 * n + i] != 0 ? 0.0F : value[3 * k + i];
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::int64_t k = first_[n]; body.held[3 * n + i] != 0 && k < first_[n + 1]; ++k)
+          change_[3 * k + i] = 0.0F;
   }
   std::vector<std::size_t> first_coupling{0};
   std::vector<std::int32_t> coupling;
   const std::vector<char> enclosed = enclosed_nodes(body.body, pressures, nodes_);
   for (std::size_t n = 0; n < nodes_; ++n) {
     if (enclosed[n] != 0) continue;
-    for (std::size_t k = first[n]; k < first[n + 1]; ++k) coupling.push_back(index[k]);
+    coupling.insert(coupling.end(), row_.begin() + first_[n], row_.begin() + first_[n + 1]);
     first_coupling.push_back(coupling.size());
   }
   // A row for every pressure, even one that no node moves.
@@ -140,10 +145,9 @@ void CornerSchur::take_changes(const MultigridBody& body, const CornerPressures&
     number.push_back(n);
     first_coupling.push_back(coupling.size());
   }
-  first_ = std::move(first);
   const MatrixSide side{starts, number, coupling, first_coupling};
   pattern_.emplace(side, side, map, threads_);
-  for (std::size_t k = 0; k < entries_.size(); ++k) entries_[k].row = pattern_->column(number[index[k]]);
+  for (std::int32_t& row : row_) row = pattern_->column(number[row]);
 }
 
 void CornerSchur::build(std::span<const float> inverse, double factor, std::span<const double> compliance) {
@@ -180,21 +184,19 @@ void CornerSchur::sum_rows(std::span<const float> inverse, double factor, std::s
     const std::int32_t own = pattern_->column(pattern_->number(r));
     for (std::int64_t k = first_node_[r]; k < first_node_[r + 1]; ++k) {
       const std::size_t n = node_[k];
-      const std::span<const Entry> of = entries_of(n);
-      const auto* entry = of.data();
-      while (entry->row != own) ++entry;
-      const double b[3] = {factor * static_cast<double>(entry->change[0]),
-                           factor * static_cast<double>(entry->change[1]),
-                           factor * static_cast<double>(entry->change[2])};
+      std::int64_t at = first_[n];
+      while (row_[at] != own) ++at;
+      const auto change = [&](std::int64_t j, std::size_t i) {
+        return static_cast<double>(change_[3 * j + i]);
+      };
+      const double b[3] = {factor * change(at, 0), factor * change(at, 1), factor * change(at, 2)};
       double d[6];
       for (std::size_t i = 0; i < 6; ++i) d[i] = static_cast<double>(inverse[6 * n + i]);
       const double scaled[3] = {d[0] * b[0] + d[1] * b[1] + d[2] * b[2],
                                 d[1] * b[0] + d[3] * b[1] + d[4] * b[2],
                                 d[2] * b[0] + d[4] * b[1] + d[5] * b[2]};
-      for (const Entry& other : of)
-        sum[other.row] += scaled[0] * static_cast<double>(other.change[0]) +
-                          scaled[1] * static_cast<double>(other.change[1]) +
-                          scaled[2] * static_cast<double>(other.change[2]);
+      for (std::int64_t j = first_[n]; j < first_[n + 1]; ++j)
+        sum[row_[j]] += scaled[0] * change(j, 0) + scaled[1] * change(j, 1) + scaled[2] * change(j, 2);
     }
     for (std::int64_t k = pattern_->start()[r]; k < pattern_->start()[r + 1]; ++k) {
       double& from = sum[pattern_->column()[k]];
@@ -231,8 +233,8 @@ void CornerSchur::improve(bool from_zero, const PressureSteps& steps, std::span<
 
 std::size_t CornerSchur::bytes() const noexcept {
   const auto size = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  return size(first_) + size(entries_) + size(first_node_) + size(node_) + size(inverse_) + size(value_) +
-         size(image_) + pattern_->bytes() + solve_.bytes();
+  return size(first_) + size(row_) + size(change_) + size(first_node_) + size(node_) + size(inverse_) +
+         size(value_) + size(image_) + pattern_->bytes() + solve_.bytes();
 }
 
 }  // namespace kacanov

@@ -35,23 +35,17 @@ class CornerSchur {
   std::size_t bytes() const noexcept;
 
  private:
-  /// What a node's displacement does to a row.
-  struct Entry {
-    std::int32_t row;  ///< as a column of S
-    std::array<float, 3> change;
-  };
-  std::span<const Entry> entries_of(std::size_t node) const {
-    return std::span(entries_).subspan(first_[node], first_[node + 1] - first_[node]);
-  }
   void take_changes(const MultigridBody& body, const CornerPressures& pressures);
   void sum_rows(std::span<const float> inverse, double factor, std::size_t begin, std::size_t end);
   template <class Real>
   void times(Scatterer<Real>& fill, std::span<Real> p, std::span<Real> y);
 
   int threads_;
-  std::size_t nodes_;               ///< that this rank owns
-  std::vector<std::size_t> first_;  ///< nodes + 1, into
-  std::vector<Entry> entries_;      ///< B by columns, without held components
+  std::size_t nodes_;  ///< that this rank owns
+  // B by nodes, without held components.
+  std::vector<std::int64_t> first_;  ///< nodes + 1, into
+  std::vector<std::int32_t> row_;    ///< that a node's displacement changes, as a column of S
+  std::vector<float> change_;        ///< by so much: 3 for each of those
   std::vector<std::int64_t> first_node_;
   std::vector<std::int32_t> node_;  ///< that have something to do with a row
   std::optional<SummedPattern> pattern_;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <kacanov/index_map.hpp>
@@ -43,6 +44,8 @@ class SummedPattern {
   std::span<const std::int64_t> start() const noexcept { return start_; }  ///< rows + 1
   std::span<const std::int32_t> column() const noexcept { return column_; }
   std::size_t entries() const noexcept { return column_.size(); }
+  /// The columns of all rows, which it has no more.
+  std::vector<std::int32_t> take_columns() && noexcept { return std::move(column_); }
   /// Where in the row a column is; it has to be there.
   std::size_t entry(std::int32_t row, std::int32_t column) const;
 

@@ -71,6 +71,11 @@ CgOptions newton_accuracy(const SolverOptions& options, const Residuals& before,
   return out;
 }
 
+double digits_left(const SolverOptions& options, const Residuals& before, const Tuning& tuning) {
+  const double left = before.certificate.worst() / (tuning.last_share * options.tolerance);
+  return left > 1.0 ? std::log10(left) : 0.0;
+}
+
 AugmentedAccuracy augmented_accuracy(const SolverOptions& options, const Residuals& before,
                                      const Tuning& tuning) {
   AugmentedAccuracy out{last_residual(options, before, tuning), step_accuracy(options, tuning)};

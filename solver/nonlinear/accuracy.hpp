@@ -17,6 +17,9 @@ AdmmOptions admm_accuracy(const SolverOptions& options, const Residuals& before,
 /// so that answers do not depend on ranks or threads to more than that.
 CgOptions newton_accuracy(const SolverOptions& options, const Residuals& before, const Tuning& tuning);
 
+/// Decimal digits from the residuals of now to those that Newton steps end at.
+double digits_left(const SolverOptions& options, const Residuals& before, const Tuning& tuning);
+
 /// Of a step of the method of multipliers: the force that may be left unbalanced, and the CG solves on the
 /// way.
 struct AugmentedAccuracy {

@@ -34,9 +34,9 @@ void ContactPreconditioner::prepare(const Penalty& penalty, bool first) {
   schedule_.built_for(penalty);
 }
 
-void ContactPreconditioner::prepare(const ActiveSet& set) {
+void ContactPreconditioner::prepare(const ActiveSet& set, double digits) {
   make_room(2 * sizeof(double) * part_->body().secant_count());  // g of now and then
-  const bool again = worn();
+  const bool again = worn(digits);
   if (!again && !part_->node_map.any(schedule_.set_moved(set.held))) return;
   const TraceRows rows(*part_, set.held);
   Space space(*part_);
@@ -77,8 +77,8 @@ bool ContactPreconditioner::factorise() {
   return true;
 }
 
-bool ContactPreconditioner::worn() const {
-  if (schedule_.stale()) return true;
+bool ContactPreconditioner::worn(double digits) const {
+  if (schedule_.stale(digits)) return true;
   if (body_->linear()) return false;
   const Vector now = body_->secant();
   Vector then(now.size());

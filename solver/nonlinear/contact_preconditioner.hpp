@@ -2,6 +2,7 @@
 // The preconditioner of the steps' linear problems, set up when its schedule says that it pays.
 #pragma once
 
+#include <cmath>
 #include <memory>
 
 #include "linear/preconditioner.hpp"
@@ -25,8 +26,8 @@ class ContactPreconditioner {
   /// Before an ADMM step, where it pays; `first`: the elastic one, for which g and penalties are what they
   /// were.
   void prepare(const Penalty& penalty, bool first);
-  /// Before a semismooth Newton step with this set, where it pays.
-  void prepare(const ActiveSet& set);
+  /// Before a semismooth Newton step with this set, where it pays; so many decimal digits are to be gained.
+  void prepare(const ActiveSet& set, double digits);
   /// Before a step that has penalties on the held rows of this set, where it pays; `loose` on all rows.
   void prepare(const ActiveSet& set, double penalty, double loose);
   /// Learns from a solve: decimal digits gained, CG iterations. One of very many ends in factorise().
@@ -49,7 +50,7 @@ class ContactPreconditioner {
 
  private:
   /// Whether the g of now pays for a new setup.
-  bool worn() const;
+  bool worn(double digits = HUGE_VAL) const;
   /// With the g of now if that of the last setup is worn, else with that.
   void build(bool worn, std::span<const NodeBlock> blocks, const Space& space);
   std::vector<NodeBlock> penalty_blocks(const Penalty& penalty) const;

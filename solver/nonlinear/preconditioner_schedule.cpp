@@ -19,7 +19,7 @@ bool PreconditionerSchedule::set_moved(std::span<const TraceChoice> held, double
 
 void PreconditionerSchedule::built() {
   stale_ = false;
-  digits_per_cg_ = 0.0;
+  digits_per_cg_ = lost_per_digit_ = 0.0;
 }
 
 void PreconditionerSchedule::built_for(const Penalty& penalty) {
@@ -31,7 +31,8 @@ void PreconditionerSchedule::watch(double digits, std::int64_t iterations) {
   if (iterations == 0) return;
   const auto taken = static_cast<double>(iterations);
   if (digits_per_cg_ == 0.0) digits_per_cg_ = digits / taken;
-  stale_ = stale_ || taken - digits / digits_per_cg_ > tuning_.setup_worth;
+  const double lost = taken - digits / digits_per_cg_;
+  if (lost > tuning_.setup_worth) lost_per_digit_ = digits > 0.0 ? lost / digits : HUGE_VAL;
 }
 
 }  // namespace kacanov

@@ -2,6 +2,7 @@
 // When a preconditioner is worth setting up again.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -17,8 +18,11 @@ class PreconditionerSchedule {
  public:
   explicit PreconditionerSchedule(const Tuning& tuning) : tuning_(tuning) {}
 
-  /// Whether it is due whatever else: there is none, or it has served its time.
-  bool stale() const noexcept { return stale_; }
+  /// Whether it is due whatever else: there is none, or it has served its time, and what it would lose in so
+  /// many decimal digits more is worth a setup.
+  bool stale(double digits = HUGE_VAL) const noexcept {
+    return stale_ || (lost_per_digit_ > 0.0 && lost_per_digit_ * digits > tuning_.setup_worth);
+  }
   void mark_stale() noexcept { stale_ = true; }
   /// Whether g is too far from that of the last setup: sums over all points of |g − g then| and of g then.
   bool drifted(double change, double size) const noexcept { return change > tuning_.drift_worth * size; }
@@ -43,6 +47,8 @@ class PreconditionerSchedule {
   Tuning tuning_;
   bool stale_ = true;
   double digits_per_cg_ = 0.0;  ///< right after the last setup; 0: not known
+  /// CG iterations that the last solve took beyond those, a digit; 0: not worth a setup.
+  double lost_per_digit_ = 0.0;
   Penalty penalty_;
   std::vector<TraceChoice> pinned_;
   double held_by_ = 0.0;  ///< penalty of those rows; 0: pinned

@@ -137,7 +137,8 @@ StepOutcome admm_step(StepContext& c, const Penalty& penalty, const Residuals& b
 StepOutcome newton_step(StepContext& c, double penalty, bool tangent, const Residuals& before) {
   c.body.freeze_secant(c.state.u);
   const ActiveSet set = decide(c.traces, c.state, c.tuning.decision_share * penalty);
-  c.preconditioner.prepare(set);
+  const double digits = digits_left(c.options, before, c.tuning);
+  c.preconditioner.prepare(set, digits);
   // After the setup: the two do not have to fit into memory at once.
   if (tangent) c.body.freeze_tangent(c.state.u);
   const auto applied = c.body.op().applications();
@@ -151,7 +152,7 @@ StepOutcome newton_step(StepContext& c, double penalty, bool tangent, const Resi
   StepOutcome outcome;
   if (!step.met && c.preconditioner.factorise()) {
     outcome.cg_iterations = step.cg_iterations;
-    c.preconditioner.prepare(set);
+    c.preconditioner.prepare(set, digits);
     step = attempt();
   }
   outcome.applications = c.body.op().applications() - applied;

@@ -223,11 +223,13 @@ TEST_CASE(
   CHECK(!schedule.stale());
   schedule.watch(1.0, 11 + static_cast<int>(usual.setup_worth));
   CHECK(schedule.stale());
+  CHECK(schedule.stale(1.0));
+  CHECK(!schedule.stale(0.9 * usual.setup_worth / (usual.setup_worth + 1.0)));  // too little is left to gain
   schedule.built();
   schedule.watch(2.0, 40);  // a new measure
   CHECK(!schedule.stale());
   schedule.mark_stale();
-  CHECK(schedule.stale());
+  CHECK(schedule.stale(0.0));
 }
 
 TEST_CASE("preconditioner: what it was built for, and what has moved since") {

@@ -52,7 +52,7 @@ class RadialSolution {
     return {mean + 2 * g * dr, mean + 2 * g * dt, x};
   }
   double radial_strain(double hoop, double tau) const {
-    double low = -1.0, high = 1.0;
+    double high = 1.0 + 3.0 * std::abs(hoop), low = -high;
     for (int i = 0; i < 60; ++i) {
       const double middle = 0.5 * (low + high);
       (stress({middle, hoop}).radial < tau ? low : high) = middle;
