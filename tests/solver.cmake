@@ -127,7 +127,7 @@ kacanov_test(outer IN numbers
   MPI NUMBERS SOURCES solver/outer_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 kacanov_test(nonlinear IN solver
-  MPI SOURCES solver/nonlinear_test.cpp solver/augmented_test.cpp
+  MPI SOURCES solver/nonlinear_test.cpp solver/preconditioner_schedule_test.cpp solver/augmented_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 kacanov_test(pressure_multigrid IN solver
   MPI SOURCES solver/pressure_multigrid_test.cpp

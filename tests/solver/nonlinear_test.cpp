@@ -14,7 +14,6 @@
 #include "nonlinear/linearisation.hpp"
 #include "nonlinear/load_path.hpp"
 #include "nonlinear/penalty_control.hpp"
-#include "nonlinear/preconditioner_schedule.hpp"
 
 using namespace kacanov;
 
@@ -210,46 +209,6 @@ TEST_CASE(
   CHECK(!control.balance(std::vector<BalanceSample>(6, sample), scales));
 }
 
-TEST_CASE(
-    "preconditioner: stale without one, fresh after a setup, stale once a step costs what a setup does") {
-  PreconditionerSchedule schedule(usual);
-  CHECK(schedule.stale());
-  schedule.built();
-  CHECK(!schedule.stale());
-  schedule.watch(2.0, 20);  // ten iterations a digit are what it can do
-  CHECK(!schedule.stale());
-  schedule.watch(0.0, 0);
-  schedule.watch(2.0, 20 + static_cast<int>(usual.setup_worth));
-  CHECK(!schedule.stale());
-  schedule.watch(1.0, 11 + static_cast<int>(usual.setup_worth));
-  CHECK(schedule.stale());
-  CHECK(schedule.stale(1.0));
-  CHECK(!schedule.stale(0.9 * usual.setup_worth / (usual.setup_worth + 1.0)));  // too little is left to gain
-  schedule.built();
-  schedule.watch(2.0, 40);  // a new measure
-  CHECK(!schedule.stale());
-  schedule.mark_stale();
-  CHECK(schedule.stale(0.0));
-}
-
-TEST_CASE("preconditioner: what it was built for, and what has moved since") {
-  PreconditionerSchedule schedule(usual);
-  schedule.built_for(Penalty{2.0, 1.0});
-  CHECK(!schedule.penalty_moved({2.9 / 3.0 * 2.0, 1.0}, true));
-  CHECK(schedule.penalty_moved({2.0 * 1.01 * usual.penalty_worth, 1.0}, false));
-  CHECK(schedule.penalty_moved({2.0, 0.99 / usual.penalty_worth}, true));
-  CHECK(!schedule.penalty_moved({2.0, 0.99 / usual.penalty_worth}, false));
-  const std::vector<TraceChoice> set{{true, false}, {false, false}};
-  CHECK(schedule.set_moved(set));
-  schedule.built_for(set);
-  CHECK(!schedule.set_moved(set));
-  CHECK(schedule.set_moved(std::vector<TraceChoice>{{true, true}, {false, false}}));
-  schedule.built_for(Penalty{2.0, 1.0});  // pins nothing
-  CHECK(schedule.set_moved(set));
-  CHECK(!schedule.drifted(0.9 * usual.drift_worth * 8.0, 8.0));
-  CHECK(schedule.drifted(1.1 * usual.drift_worth * 8.0, 8.0));
-}
-
 TEST_CASE("accuracy: ADMM is solved below the residuals before it, but not far below the tolerance") {
   SolverOptions options;
   options.tolerance = 1e-6;
@@ -302,6 +261,12 @@ TEST_CASE(
   CHECK(far.most == doctest::Approx(1e-2 * 2.0));
   CHECK(far.absolute == doctest::Approx(usual.last_share * 1e-6 * 2.0));
   CHECK(far.max_iterations == 17);
+  const AugmentedAccuracy augmented = augmented_accuracy(options, residuals(1e-2), usual);
+  CHECK(augmented.force == far.absolute);
+  CHECK(augmented.solve.absolute == 0.5 * far.absolute);
+  CHECK(augmented.solve.max_iterations == 17);
+  CHECK(digits_left(options, residuals(1e-2), usual) == doctest::Approx(4.0 - std::log10(usual.last_share)));
+  CHECK(digits_left(options, residuals(1e-7), usual) == 0.0);
   CHECK(admm_accuracy(options, residuals(1e-2), false, usual).max_cg == 17);
 }
 

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// When a preconditioner is set up again, with made-up numbers: no body, no solve.
+#include <doctest/doctest.h>
+
+#include <vector>
+
+#include "nonlinear/preconditioner_schedule.hpp"
+
+using namespace kacanov;
+
+TEST_CASE(
+    "preconditioner: stale without one, fresh after a setup, stale once a step costs what a setup does") {
+  const Tuning usual;
+  PreconditionerSchedule schedule(usual);
+  CHECK(schedule.stale());
+  schedule.built();
+  CHECK(!schedule.stale());
+  schedule.watch(2.0, 20);  // ten iterations a digit are what it can do
+  CHECK(!schedule.stale());
+  schedule.watch(0.0, 0);
+  schedule.watch(2.0, 20 + static_cast<int>(usual.setup_worth));
+  CHECK(!schedule.stale());
+  schedule.watch(1.0, 11 + static_cast<int>(usual.setup_worth));
+  CHECK(schedule.stale());
+  CHECK(schedule.stale(1.0));
+  CHECK(!schedule.stale(0.9 * usual.setup_worth / (usual.setup_worth + 1.0)));  // too little is left to gain
+  schedule.built();
+  schedule.watch(2.0, 40);  // a new measure
+  CHECK(!schedule.stale());
+  schedule.mark_stale();
+  CHECK(schedule.stale(0.0));
+}
+
+TEST_CASE("preconditioner: what it was built for, and what has moved since") {
+  const Tuning usual;
+  PreconditionerSchedule schedule(usual);
+  schedule.built_for(Penalty{2.0, 1.0});
+  CHECK(!schedule.penalty_moved({2.9 / 3.0 * 2.0, 1.0}, true));
+  CHECK(schedule.penalty_moved({2.0 * 1.01 * usual.penalty_worth, 1.0}, false));
+  CHECK(schedule.penalty_moved({2.0, 0.99 / usual.penalty_worth}, true));
+  CHECK(!schedule.penalty_moved({2.0, 0.99 / usual.penalty_worth}, false));
+  const std::vector<TraceChoice> set{{true, false}, {false, false}};
+  CHECK(schedule.set_moved(set));
+  schedule.built_for(set);
+  CHECK(!schedule.set_moved(set));
+  CHECK(schedule.set_moved(std::vector<TraceChoice>{{true, true}, {false, false}}));
+  schedule.built_for(Penalty{2.0, 1.0});  // pins nothing
+  CHECK(schedule.set_moved(set));
+  CHECK(!schedule.drifted(0.9 * usual.drift_worth * 8.0, 8.0));
+  CHECK(schedule.drifted(1.1 * usual.drift_worth * 8.0, 8.0));
+}
