@@ -10,20 +10,21 @@ using namespace kacanov;
 
 TEST_CASE(
     "preconditioner: stale without one, fresh after a setup, stale once a step costs what a setup does") {
-  const Tuning usual;
-  PreconditionerSchedule schedule(usual);
+  const Tuning defaults;
+  PreconditionerSchedule schedule(defaults);
   CHECK(schedule.stale());
   schedule.built();
   CHECK(!schedule.stale());
   schedule.watch(2.0, 20);  // ten iterations a digit are what it can do
   CHECK(!schedule.stale());
   schedule.watch(0.0, 0);
-  schedule.watch(2.0, 20 + static_cast<int>(usual.setup_worth));
+  schedule.watch(2.0, 20 + static_cast<int>(defaults.setup_worth));
   CHECK(!schedule.stale());
-  schedule.watch(1.0, 11 + static_cast<int>(usual.setup_worth));
+  schedule.watch(1.0, 11 + static_cast<int>(defaults.setup_worth));
   CHECK(schedule.stale());
   CHECK(schedule.stale(1.0));
-  CHECK(!schedule.stale(0.9 * usual.setup_worth / (usual.setup_worth + 1.0)));  // too little is left to gain
+  CHECK(!schedule.stale(0.9 * defaults.setup_worth /
+                        (defaults.setup_worth + 1.0)));  // too little is left to gain
   schedule.built();
   schedule.watch(2.0, 40);  // a new measure
   CHECK(!schedule.stale());
@@ -32,13 +33,13 @@ TEST_CASE(
 }
 
 TEST_CASE("preconditioner: what it was built for, and what has moved since") {
-  const Tuning usual;
-  PreconditionerSchedule schedule(usual);
+  const Tuning defaults;
+  PreconditionerSchedule schedule(defaults);
   schedule.built_for(Penalty{2.0, 1.0});
   CHECK(!schedule.penalty_moved({2.9 / 3.0 * 2.0, 1.0}, true));
-  CHECK(schedule.penalty_moved({2.0 * 1.01 * usual.penalty_worth, 1.0}, false));
-  CHECK(schedule.penalty_moved({2.0, 0.99 / usual.penalty_worth}, true));
-  CHECK(!schedule.penalty_moved({2.0, 0.99 / usual.penalty_worth}, false));
+  CHECK(schedule.penalty_moved({2.0 * 1.01 * defaults.penalty_worth, 1.0}, false));
+  CHECK(schedule.penalty_moved({2.0, 0.99 / defaults.penalty_worth}, true));
+  CHECK(!schedule.penalty_moved({2.0, 0.99 / defaults.penalty_worth}, false));
   const std::vector<TraceChoice> set{{true, false}, {false, false}};
   CHECK(schedule.set_moved(set));
   schedule.built_for(set);
@@ -46,6 +47,6 @@ TEST_CASE("preconditioner: what it was built for, and what has moved since") {
   CHECK(schedule.set_moved(std::vector<TraceChoice>{{true, true}, {false, false}}));
   schedule.built_for(Penalty{2.0, 1.0});  // pins nothing
   CHECK(schedule.set_moved(set));
-  CHECK(!schedule.drifted(0.9 * usual.drift_worth * 8.0, 8.0));
-  CHECK(schedule.drifted(1.1 * usual.drift_worth * 8.0, 8.0));
+  CHECK(!schedule.drifted(0.9 * defaults.drift_worth * 8.0, 8.0));
+  CHECK(schedule.drifted(1.1 * defaults.drift_worth * 8.0, 8.0));
 }
