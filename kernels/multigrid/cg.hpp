@@ -31,7 +31,7 @@ struct CgOptions {
   /// left-out); ‖r‖ has no need to fall below `share` of it. Asked for once, at ‖r‖ ≤ asked · ‖r₀‖, where
   /// the target looks to be as many as `worth` iterations away.
   std::function<double()> left_out = {};
-  double asked = 0.2, share = 0.7, worth = 2.0;
+  double asked = 1.0, share = 1.0, worth = 0.0;
 
   /// ‖r‖ at which a solve stops that starts with `first`.
   double target(double first) const {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "contact/held_nodes.hpp"
+#include "contact/left_out.hpp"
 #include "linear/gcr.hpp"
 
 namespace kacanov {
@@ -91,21 +92,6 @@ void least_reactions(const TraceRows& rows, const ActiveSet& set, const Traces& 
       for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k)
         lambda.tangential[2 * i + k] = force[at++] / root;
   }
-}
-
-/// The residual that the linear problem of a step leaves out, once it has come to δ.
-double left_out(const LinearProblem& problem, const Space& space, const ActiveSet& set,
-                const ContactState& state, std::span<const double> delta, CgWork& work) {
-  Vector& there = work.image;  // A p and M⁻¹ r are wanted no more
-  for (std::size_t i = 0; i < there.size(); ++i) there[i] = state.u[i] + delta[i];
-  Vector rest(there.size());
-  problem.unbalanced(there, rest);
-  ContactValues trace(problem.traces->size());
-  state.evaluate(*problem.traces, there, trace);
-  subtract_slip_force(*problem.traces, set, trace.tangential, rest);
-  space.project(rest);
-  for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= work.residual[i];
-  return space.norm(rest);
 }
 
 /// What a step solves where reactions are normal to what they hold.
@@ -218,7 +204,11 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
         return problem.loose > 0.0 ? share + traces.add_penalty({0.0, problem.loose}, p, q) : share;
       }};
   if (problem.unbalanced)
-    options.left_out = [&] { return left_out(problem, space, set, state, delta, work); };
+    options.left_out = [&] {
+      return left_out(problem, space, state, delta, work, [&](const ContactValues& trace, Vector& f) {
+        subtract_slip_force(traces, set, trace.tangential, f);
+      });
+    };
   const CgResult solve = nodes.oblique()
                              ? solve_oblique(symmetric, nodes, delta, work, options)
                              : conjugate_gradients(space, apply, problem.precondition, delta, work, options);

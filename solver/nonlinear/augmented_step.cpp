@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "contact/augmented.hpp"
+#include "contact/left_out.hpp"
 #include "nonlinear/accuracy.hpp"
 #include "nonlinear/line_search.hpp"
 
@@ -41,7 +42,13 @@ class Descent {
       const double share = problem.apply(p, q);
       return share + contact_.add_stiffness(set, p, q) + hold_loosely(p, q);
     };
-    if (problem.unbalanced) options.left_out = [&] { return left_out(problem); };
+    if (problem.unbalanced)
+      options.left_out = [&] {
+        return left_out(problem, c_.space, c_.state, delta_, c_.work,
+                        [&](const ContactValues& trace, Vector& f) {
+                          c_.traces.add_force(contact_.multipliers(trace), -1.0, f);
+                        });
+      };
     CgResult solve = conjugate_gradients(c_.space, apply, problem.precondition, delta_, c_.work, options);
     if (!solve.converged && c_.preconditioner.factorise()) {
       outcome.cg_iterations += solve.iterations;
@@ -68,20 +75,6 @@ class Descent {
   double hold_loosely(std::span<const double> p, std::span<double> q) const {
     const double r = loose();
     return r > 0.0 ? c_.traces.add_penalty({r, r}, p, q) : 0.0;
-  }
-
-  /// The residual that the linear problem leaves out, once it has come to δ.
-  double left_out(const LinearProblem& problem) const {
-    Vector& there = c_.work.image;
-    for (std::size_t i = 0; i < there.size(); ++i) there[i] = c_.state.u[i] + delta_[i];
-    Vector rest(there.size());
-    problem.unbalanced(there, rest);
-    ContactValues trace(c_.traces.size());
-    c_.state.evaluate(c_.traces, there, trace);
-    c_.traces.add_force(contact_.multipliers(trace), -1.0, rest);
-    c_.space.project(rest);
-    for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= c_.work.residual[i];
-    return c_.space.norm(rest);
   }
 
   void follow(double slope) {
