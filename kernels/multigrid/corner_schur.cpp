@@ -4,10 +4,7 @@
 
 #include <algorithm>
 #include <numeric>
-#include <utility>
 
-#include "cells/dispatch.hpp"
-#include "cells/straight.hpp"
 #include "multigrid/largest_eigenvalue.hpp"
 #include "multigrid/sums.hpp"
 #include "operator/threads.hpp"
@@ -16,151 +13,168 @@
 namespace kacanov {
 namespace {
 
-/// Nodes, and entries of the pressures, of all elements here that average.
-struct AveragingElements {
-  std::vector<std::size_t> element, first_node{0}, first_entry{0};
-  std::vector<std::int32_t> node, entry;
-};
+constexpr std::int64_t most_parts = 8;
 
-AveragingElements averaging_elements(const Body& body, const CornerPressures& pressures) {
-  AveragingElements all;
-  elements::dispatch(body.mesh.type, [&]<class E>(E) {
-    if constexpr (E::dim == 3 && E::corner_dilatation) {
-      const std::size_t most = body.mesh.element_count();
-      for (auto* v : {&all.element, &all.first_node, &all.first_entry}) v->reserve(most + 1);
-      all.node.reserve(most * E::nodes), all.entry.reserve(most * E::corners);
-      for (std::size_t e = 0; e < most; ++e) {
-        const std::int32_t* entry = &pressures.means().of_element[e * E::corners];
-        if (entry[0] < 0) continue;
-        const std::int32_t* node = body.mesh.connectivity.data() + e * E::nodes;
-        all.element.push_back(e);
-        all.node.insert(all.node.end(), node, node + E::nodes);
-        all.entry.insert(all.entry.end(), entry, entry + E::corners);
-        std::sort(all.entry.end() - E::corners, all.entry.end());
-        all.entry.erase(std::unique(all.entry.end() - E::corners, all.entry.end()), all.entry.end());
-        all.first_node.push_back(all.node.size()), all.first_entry.push_back(all.entry.size());
-      }
-    }
-  });
-  return all;
+/// The ranks that own the body's nodes.
+std::vector<int> owners(const MultigridBody& body) {
+  std::vector<int> owner(body.nodes(), body.node_map->rank);
+  for (std::size_t n = body.owned_nodes(); n < owner.size(); ++n)
+    owner[n] = body.node_map->owner(body.node_map->number(n));
+  return owner;
 }
 
-/// Nodes in the middle of an edge whose end is one of the first `nodes`, too: the end moves all rows that the
-/// middle does, and couples them.
-std::vector<char> enclosed_nodes(const Body& body, const CornerPressures& pressures, std::size_t nodes) {
-  std::vector<char> enclosed(body.mesh.node_count(), 0);
-  const Cell& type = cell(body.mesh.type);
-  const auto here = [&](std::int32_t node) { return static_cast<std::size_t>(node) < nodes; };
-  for (std::size_t e = 0; type.order == 2 && e < body.mesh.element_count(); ++e) {
+/// All nodes but those in the middle of an edge with an end that the same rank owns: the end moves all rows
+/// that the middle does, and couples them.
+std::vector<char> coupling_nodes(const MultigridBody& body, const CornerPressures& pressures) {
+  std::vector<char> coupling(body.nodes(), 1);
+  const auto& mesh = body.body.mesh;
+  const Cell& type = cell(mesh.type);
+  if (type.order != 2) return coupling;
+  const std::vector<int> owner = owners(body);
+  for (std::size_t e = 0; e < mesh.element_count(); ++e) {
     if (pressures.means().of_element[e * static_cast<std::size_t>(type.corners)] < 0) continue;
-    const std::int32_t* node = body.mesh.connectivity.data() + e * static_cast<std::size_t>(type.nodes);
-    for (const CellEdge& edge : type.edges)
-      if (here(node[edge.a]) || here(node[edge.b])) enclosed[node[edge.middle]] = 1;
+    const std::int32_t* node = mesh.connectivity.data() + e * static_cast<std::size_t>(type.nodes);
+    for (const CellEdge& edge : type.edges) {
+      const std::int32_t middle = node[edge.middle];
+      for (const std::int32_t end : {node[edge.a], node[edge.b]})
+        if (owner[end] == owner[middle]) coupling[middle] = 0;
+    }
   }
-  return enclosed;
+  return coupling;
 }
+
+/// The same one of `parts` on all ranks for each of the body's nodes, about as many nodes of a rank in each.
+std::vector<char> parts_of(const MultigridBody& body, std::int64_t parts) {
+  const IndexMap& map = *body.node_map;
+  const std::vector<int> owner = owners(body);
+  std::vector<char> part(body.nodes());
+  for (std::size_t n = 0; n < part.size(); ++n) {
+    const std::size_t rank = static_cast<std::size_t>(owner[n]);
+    const std::int64_t nodes = map.starts[rank + 1] - map.starts[rank];
+    part[n] = static_cast<char>(parts * (map.number(n) - map.starts[rank]) / nodes);
+  }
+  return part;
+}
+
+/// A node that changes a row, and the how many-eth of the node's rows it is.
+struct Use {
+  std::int32_t node, place;
+};
 
 }  // namespace
 
-CornerSchur::CornerSchur(const MultigridBody& body, const CornerPressures& pressures, int threads)
-    : threads_(threads), nodes_(body.owned_nodes()) {
-  take_changes(body, pressures);
-  const std::size_t rows = pattern_->rows();
+CornerSchur::CornerSchur(const MultigridBody& body, const CornerPressures& pressures, int threads,
+                         std::int64_t nodes_at_once)
+    : body_(&body),
+      pressures_(&pressures),
+      threads_(threads),
+      nodes_at_once_(nodes_at_once),
+      starts_(number_owned(static_cast<std::int64_t>(pressures.rows()), *body.node_map)) {
+  const IndexMap& map = *body.node_map;
+  CornerChanges b = changed_corners(body, pressures, starts_, coupling_nodes(body, pressures), threads);
+  std::vector<std::size_t> first_coupling(b.first.begin(), b.first.end());
+  // A row for every pressure, even one that no node moves.
+  for (std::int64_t n = starts_[map.rank]; n < starts_[map.rank + 1]; ++n) {
+    b.row.push_back(static_cast<std::int32_t>(b.number.size()));
+    b.number.push_back(n);
+    first_coupling.push_back(b.row.size());
+  }
+  const MatrixSide side{starts_, b.number, b.row, first_coupling};
+  pattern_.emplace(side, side, map, threads_);
   fill_.emplace(pattern_->columns(), 1);
   fill_single_.emplace(pattern_->columns(), 1);
   solve_.resize(pattern_->owned_rows(), size());
   image_.resize(pattern_->owned_rows());
-  std::vector<std::int32_t> row_of(size(), -1);
-  for (std::size_t r = 0; r < rows; ++r)
-    row_of[pattern_->column(pattern_->number(r))] = static_cast<std::int32_t>(r);
-  first_node_.assign(rows + 1, 0);
-  for (const std::int32_t row : row_) ++first_node_[static_cast<std::size_t>(row_of[row]) + 1];
-  std::partial_sum(first_node_.begin(), first_node_.end(), first_node_.begin());
-  std::vector<std::int64_t> next(first_node_.begin(), first_node_.end() - 1);
-  node_.resize(row_.size());
-  for (std::size_t n = 0; n < nodes_; ++n)
-    for (std::int64_t k = first_[n]; k < first_[n + 1]; ++k)
-      node_[next[row_of[row_[k]]]++] = static_cast<std::int32_t>(n);
 }
 
-/// B, and S's pattern by it.
-void CornerSchur::take_changes(const MultigridBody& body, const CornerPressures& pressures) {
-  const IndexMap& map = *body.node_map;
-  const std::vector<std::int64_t> starts = number_owned(static_cast<std::int64_t>(pressures.rows()), map);
-  std::vector<std::int64_t> number;
-  {
-    std::vector<std::int64_t> node_number(body.nodes()), entry_number(pressures.means().size());
-    for (std::size_t n = 0; n < node_number.size(); ++n) node_number[n] = map.number(n);
-    for (std::size_t k = 0; k < entry_number.size(); ++k) entry_number[k] = pressures.number(k);
-    AveragingElements elements = averaging_elements(body.body, pressures);
-    SummedPattern b({map.starts, node_number, elements.node, elements.first_node},
-                    {starts, entry_number, elements.entry, elements.first_entry}, map, threads_);
-    change_.assign(3 * b.entries(), 0.0F);
-    std::vector<std::int32_t> row, column;
-    for (const std::int64_t n : node_number) row.push_back(b.row(n));
-    for (const std::int64_t n : entry_number) column.push_back(b.column(n));
-    elements::dispatch(body.body.mesh.type, [&]<class E>(E) {
-      if constexpr (E::dim == 3 && E::corner_dilatation)
-        for (std::size_t m = 0; m < elements.element.size(); ++m) {
-          const std::size_t e = elements.element[m];
-          const std::int32_t* node = body.body.mesh.connectivity.data() + e * E::nodes;
-          const std::int32_t* corner_entry = &pressures.means().of_element[e * E::corners];
-          const auto sum =
-              elements::corner_integrals<E>(elements::coordinates_of<E>(body.body.mesh, e)).change;
-          // Corners of one patch have an entry together.
-          for (std::size_t j = elements.first_entry[m]; j < elements.first_entry[m + 1]; ++j)
-            for (std::size_t a = 0; a < E::nodes; ++a) {
-              const std::size_t k = b.entry(row[node[a]], column[elements.entry[j]]);
-              for (std::size_t c = 0; c < E::corners; ++c) {
-                if (corner_entry[c] != elements.entry[j]) continue;
-                for (std::size_t i = 0; i < 3; ++i) change_[3 * k + i] += static_cast<float>(sum[a][c][i]);
-              }
-            }
-        }
-    });
-    b.complete(change_, 3);
-    const auto start = b.start().first(nodes_ + 1);
-    first_.assign(start.begin(), start.end());
-    for (std::size_t c = 0; c < b.columns().size(); ++c) number.push_back(b.columns().number(c));
-    row_ = std::move(b).take_columns();
-    // Of this rank's nodes, which come first.
-    row_.resize(static_cast<std::size_t>(first_.back()));
-    change_.resize(3 * row_.size());
-    for (std::size_t n = 0; n < nodes_; ++n)
-      for (std::size_t i = 0; i < 3; ++i)
-        for (std::int64_t k = first_[n]; body.held[3 * n + i] != 0 && k < first_[n + 1]; ++k)
-          change_[3 * k + i] = 0.0F;
-  }
-  std::vector<std::size_t> first_coupling{0};
-  std::vector<std::int32_t> coupling;
-  const std::vector<char> enclosed = enclosed_nodes(body.body, pressures, nodes_);
-  for (std::size_t n = 0; n < nodes_; ++n) {
-    if (enclosed[n] != 0) continue;
-    coupling.insert(coupling.end(), row_.begin() + first_[n], row_.begin() + first_[n + 1]);
-    first_coupling.push_back(coupling.size());
-  }
-  // A row for every pressure, even one that no node moves.
-  for (std::int64_t n = starts[map.rank]; n < starts[map.rank + 1]; ++n) {
-    coupling.push_back(static_cast<std::int32_t>(number.size()));
-    number.push_back(n);
-    first_coupling.push_back(coupling.size());
-  }
-  const MatrixSide side{starts, number, coupling, first_coupling};
-  pattern_.emplace(side, side, map, threads_);
-  for (std::int32_t& row : row_) row = pattern_->column(number[row]);
+CornerChanges CornerSchur::changes(std::span<const char> wanted) const {
+  return corner_changes(*body_, *pressures_, starts_, wanted, threads_);
 }
 
-void CornerSchur::build(std::span<const float> inverse, double factor, std::span<const double> compliance) {
-  value_.resize(pattern_->entries());
-  in_shares(threads_, pattern_->rows(),
-            [&](std::size_t begin, std::size_t end) { sum_rows(inverse, factor, begin, end); });
+void CornerSchur::build(std::span<const float> inverse, double factor) {
+  factor_ = factor;
+  value_.assign(pattern_->entries(), 0.0F);
+  const IndexMap& map = *body_->node_map;
+  const std::int64_t parts =
+      std::clamp<std::int64_t>(map.total() / (map.ranks * nodes_at_once_), 1, most_parts);
+  const std::vector<char> part = parts_of(*body_, parts);
+  std::vector<char> wanted(part.size());
+  for (char p = 0; p < parts; ++p) {
+    for (std::size_t n = 0; n < part.size(); ++n) wanted[n] = part[n] == p ? 1 : 0;
+    add(changes(wanted), inverse, {});
+  }
   pattern_->complete(value_, 1);
-  const std::size_t rows = pattern_->owned_rows();
-  inverse_.assign(rows, 0.0F);
-  for (std::size_t r = 0; r < rows; ++r) {
+  const std::span<const double> compliance = pressures_->compliance();
+  for (std::size_t r = 0; r < compliance.size(); ++r) {
     const auto row = static_cast<std::int32_t>(r);
-    float& diagonal = value_[pattern_->entry(row, row)];
-    diagonal += static_cast<float>(compliance[r]);
+    value_[pattern_->entry(row, row)] += static_cast<float>(compliance[r]);
+  }
+  take_diagonal();
+}
+
+void CornerSchur::change(std::span<const float> before, std::span<const float> inverse) {
+  std::vector<char> changed(body_->nodes(), 0);
+  for (std::size_t n = 0; n < changed.size(); ++n)
+    if (!std::equal(&before[6 * n], &before[6 * n] + 6, &inverse[6 * n])) changed[n] = 1;
+  if (!body_->node_map->any(std::find(changed.begin(), changed.end(), 1) != changed.end())) return;
+  // Of other ranks' rows what changes is told, not what they are.
+  std::fill(value_.begin() + pattern_->start()[pattern_->owned_rows()], value_.end(), 0.0F);
+  add(changes(changed), inverse, before);
+  pattern_->complete(value_, 1);
+  take_diagonal();
+}
+
+/// What these nodes give, row by row.
+void CornerSchur::add(const CornerChanges& b, std::span<const float> inverse, std::span<const float> before) {
+  std::vector<std::int32_t> row, column;
+  for (const std::int64_t n : b.number) {
+    row.push_back(pattern_->row(n));
+    column.push_back(pattern_->column(n));
+  }
+  std::vector<std::int64_t> first_use(pattern_->rows() + 1, 0);
+  for (const std::int32_t k : b.row) ++first_use[static_cast<std::size_t>(row[k]) + 1];
+  std::partial_sum(first_use.begin(), first_use.end(), first_use.begin());
+  std::vector<std::int64_t> next(first_use.begin(), first_use.end() - 1);
+  std::vector<Use> use(b.row.size());
+  for (std::size_t n = 0; n + 1 < b.first.size(); ++n)
+    for (std::int64_t k = b.first[n]; k < b.first[n + 1]; ++k)
+      use[next[row[b.row[k]]]++] = {static_cast<std::int32_t>(n), static_cast<std::int32_t>(k - b.first[n])};
+  in_shares(threads_, pattern_->rows(), [&](std::size_t begin, std::size_t end) {
+    std::vector<double> sum(size(), 0.0);
+    for (std::size_t r = begin; r < end; ++r) {
+      for (std::int64_t u = first_use[r]; u < first_use[r + 1]; ++u) {
+        const std::size_t n = use[u].node;
+        const auto change = [&](std::int64_t k, std::size_t i) {
+          return static_cast<double>(b.change[3 * k + i]);
+        };
+        const std::int64_t own = b.first[n] + use[u].place;
+        const double mine[3] = {factor_ * change(own, 0), factor_ * change(own, 1), factor_ * change(own, 2)};
+        double d[6];
+        for (std::size_t i = 0; i < 6; ++i) {
+          d[i] = static_cast<double>(inverse[6 * n + i]);
+          if (!before.empty()) d[i] -= static_cast<double>(before[6 * n + i]);
+        }
+        const double scaled[3] = {d[0] * mine[0] + d[1] * mine[1] + d[2] * mine[2],
+                                  d[1] * mine[0] + d[3] * mine[1] + d[4] * mine[2],
+                                  d[2] * mine[0] + d[4] * mine[1] + d[5] * mine[2]};
+        for (std::int64_t k = b.first[n]; k < b.first[n + 1]; ++k)
+          sum[column[b.row[k]]] +=
+              scaled[0] * change(k, 0) + scaled[1] * change(k, 1) + scaled[2] * change(k, 2);
+      }
+      if (first_use[r] == first_use[r + 1]) continue;
+      for (std::int64_t k = pattern_->start()[r]; k < pattern_->start()[r + 1]; ++k) {
+        double& from = sum[pattern_->column()[k]];
+        value_[k] += static_cast<float>(from), from = 0.0;
+      }
+    }
+  });
+}
+
+void CornerSchur::take_diagonal() {
+  inverse_.assign(pattern_->owned_rows(), 0.0F);
+  for (std::size_t r = 0; r < inverse_.size(); ++r) {
+    const auto row = static_cast<std::int32_t>(r);
+    const float diagonal = value_[pattern_->entry(row, row)];
     if (diagonal > 0.0F) inverse_[r] = 1.0F / diagonal;
   }
   std::vector<float> start = scattered<float>(pattern_->columns(), 1);
@@ -174,35 +188,6 @@ void CornerSchur::build(std::span<const float> inverse, double factor, std::span
           return static_cast<double>(x[i]) * static_cast<double>(y[i]);
         }));
       });
-}
-
-/// Row by row: what this rank's nodes give.
-void CornerSchur::sum_rows(std::span<const float> inverse, double factor, std::size_t begin,
-                           std::size_t end) {
-  std::vector<double> sum(pattern_->columns().size(), 0.0);
-  for (std::size_t r = begin; r < end; ++r) {
-    const std::int32_t own = pattern_->column(pattern_->number(r));
-    for (std::int64_t k = first_node_[r]; k < first_node_[r + 1]; ++k) {
-      const std::size_t n = node_[k];
-      std::int64_t at = first_[n];
-      while (row_[at] != own) ++at;
-      const auto change = [&](std::int64_t j, std::size_t i) {
-        return static_cast<double>(change_[3 * j + i]);
-      };
-      const double b[3] = {factor * change(at, 0), factor * change(at, 1), factor * change(at, 2)};
-      double d[6];
-      for (std::size_t i = 0; i < 6; ++i) d[i] = static_cast<double>(inverse[6 * n + i]);
-      const double scaled[3] = {d[0] * b[0] + d[1] * b[1] + d[2] * b[2],
-                                d[1] * b[0] + d[3] * b[1] + d[4] * b[2],
-                                d[2] * b[0] + d[4] * b[1] + d[5] * b[2]};
-      for (std::int64_t j = first_[n]; j < first_[n + 1]; ++j)
-        sum[row_[j]] += scaled[0] * change(j, 0) + scaled[1] * change(j, 1) + scaled[2] * change(j, 2);
-    }
-    for (std::int64_t k = pattern_->start()[r]; k < pattern_->start()[r + 1]; ++k) {
-      double& from = sum[pattern_->column()[k]];
-      value_[k] = static_cast<float>(from), from = 0.0;
-    }
-  }
 }
 
 template <class Real>
@@ -233,8 +218,7 @@ void CornerSchur::improve(bool from_zero, const PressureSteps& steps, std::span<
 
 std::size_t CornerSchur::bytes() const noexcept {
   const auto size = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  return size(first_) + size(row_) + size(change_) + size(first_node_) + size(node_) + size(inverse_) +
-         size(value_) + size(image_) + pattern_->bytes() + solve_.bytes();
+  return size(inverse_) + size(value_) + size(image_) + pattern_->bytes() + solve_.bytes();
 }
 
 }  // namespace kacanov

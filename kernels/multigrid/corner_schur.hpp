@@ -2,29 +2,34 @@
 // The Schur complement of the pressures at corners, as a matrix.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include <kacanov/scatterer.hpp>
+#include "multigrid/corner_changes.hpp"
 #include "multigrid/corner_pressures.hpp"
 #include "multigrid/pressure_steps.hpp"
 #include "multigrid/summed_pattern.hpp"
 
 namespace kacanov {
 
-/// S = B Â⁻¹ Bᵀ + C over the rows of CornerPressures, Â of node blocks (theory: pressure-smoothing). B and
-/// which rows couple depend on the mesh alone, they are found once.
+/// S = B Â⁻¹ Bᵀ + C over the rows of CornerPressures, Â of node blocks (theory: pressure-smoothing). B
+/// depends on the mesh alone, but would take four times S's memory: it is found part by part whenever it is
+/// needed.
 class CornerSchur {
  public:
-  /// Collective.
-  CornerSchur(const MultigridBody& body, const CornerPressures& pressures, int threads);
+  /// Finds which rows couple. B is found for so many nodes at once, or for an eighth of a rank's if that is
+  /// more: every part looks through all elements. What is passed has to outlive it. Collective.
+  CornerSchur(const MultigridBody& body, const CornerPressures& pressures, int threads,
+              std::int64_t nodes_at_once = 1 << 15);
 
   /// For Â⁻¹ = factor times blocks of local nodes, packed as FineLevel::inverse; held components give
   /// nothing. Collective.
-  void build(std::span<const float> inverse, double factor, std::span<const double> compliance);
+  void build(std::span<const float> inverse, double factor);
+  /// For other blocks with the factor of the last build, which were `before`. Collective.
+  void change(std::span<const float> before, std::span<const float> inverse);
   /// p += S⁻¹ (q − S p), nearly; `from_zero`: p is zero. p has room for size() entries, q this rank's rows.
   /// Collective.
   void improve(bool from_zero, const PressureSteps& steps, std::span<const double> q, std::span<double> p);
@@ -35,19 +40,18 @@ class CornerSchur {
   std::size_t bytes() const noexcept;
 
  private:
-  void take_changes(const MultigridBody& body, const CornerPressures& pressures);
-  void sum_rows(std::span<const float> inverse, double factor, std::size_t begin, std::size_t end);
+  CornerChanges changes(std::span<const char> wanted) const;
+  void add(const CornerChanges& b, std::span<const float> inverse, std::span<const float> before);
+  void take_diagonal();
   template <class Real>
   void times(Scatterer<Real>& fill, std::span<Real> p, std::span<Real> y);
 
+  const MultigridBody* body_;
+  const CornerPressures* pressures_;
   int threads_;
-  std::size_t nodes_;  ///< that this rank owns
-  // B by nodes, without held components.
-  std::vector<std::int64_t> first_;  ///< nodes + 1, into
-  std::vector<std::int32_t> row_;    ///< that a node's displacement changes, as a column of S
-  std::vector<float> change_;        ///< by so much: 3 for each of those
-  std::vector<std::int64_t> first_node_;
-  std::vector<std::int32_t> node_;  ///< that have something to do with a row
+  std::int64_t nodes_at_once_;
+  double factor_ = 1.0;
+  std::vector<std::int64_t> starts_;  ///< of the numbers of the ranks' rows
   std::optional<SummedPattern> pattern_;
   std::vector<float> value_, inverse_;  ///< of S, of its diagonal
   std::vector<double> image_;           ///< scratch

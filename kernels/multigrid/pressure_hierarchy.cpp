@@ -51,15 +51,16 @@ class PressureHierarchy final : public RigidMultigrid::Hierarchy {
     fine_.choose_smoother(1, 1.0);
     if (!schur_) prepare();
     scale_ = 1.0 / (pressure_damping * fine_.largest());
-    schur_->build(fine_.inverse(), scale_, pressures_.compliance());
+    schur_->build(fine_.inverse(), scale_);
     grids_->build(g, stiffnesses());
     contrast_ = pressure_contrast(body_, g);
     solves_ = solves_for(contrast_, strength_);
   }
 
   void rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space) override {
+    const std::vector<float> before(fine_.inverse().begin(), fine_.inverse().end());
     fine_.rebuild(blocks, space);
-    schur_->build(fine_.inverse(), scale_, pressures_.compliance());
+    schur_->change(before, fine_.inverse());
     grids_->change(stiffnesses());
   }
 

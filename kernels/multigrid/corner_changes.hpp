@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How displacements of nodes change what is averaged at corners.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "multigrid/corner_pressures.hpp"
+
+namespace kacanov {
+
+/// B of some of this rank's nodes. Held components change nothing.
+struct CornerChanges {
+  std::vector<std::int64_t> first;   ///< owned nodes + 1, into
+  std::vector<std::int32_t> row;     ///< that a node's displacement changes, as an index of `number`
+  std::vector<float> change;         ///< by so much: 3 for each of those
+  std::vector<std::int64_t> number;  ///< over all ranks, of rows of CornerPressures
+};
+
+/// Of the nodes that are `wanted`: for each of the body's nodes, the same on all ranks that have it. The
+/// numbers of rank r's rows begin at starts[r]. Collective.
+CornerChanges corner_changes(const MultigridBody& body, const CornerPressures& pressures,
+                             std::span<const std::int64_t> starts, std::span<const char> wanted, int threads);
+/// The same without `change`, which stays empty.
+CornerChanges changed_corners(const MultigridBody& body, const CornerPressures& pressures,
+                              std::span<const std::int64_t> starts, std::span<const char> wanted,
+                              int threads);
+
+}  // namespace kacanov
