@@ -37,7 +37,7 @@ void ContactPreconditioner::prepare(const Penalty& penalty, bool first) {
 void ContactPreconditioner::prepare(const ActiveSet& set, double digits) {
   make_room(2 * sizeof(double) * part_->body().secant_count());  // g of now and then
   const bool again = worn(digits);
-  if (!again && !part_->node_map.any(schedule_.set_moved(set.held))) return;
+  if (!again && !part_->node_map.any(schedule_.set_moved(set))) return;
   const TraceRows rows(*part_, set.held);
   Space space(*part_);
   rows.hold_in(space);
@@ -45,12 +45,12 @@ void ContactPreconditioner::prepare(const ActiveSet& set, double digits) {
   const auto slip = slip_blocks(*part_, set);
   blocks.insert(blocks.end(), slip.begin(), slip.end());
   build(again, blocks, space);
-  schedule_.built_for(set.held);
+  schedule_.built_for(set);
 }
 
 void ContactPreconditioner::prepare(const ActiveSet& set, double penalty, double loose) {
   const bool again = worn();
-  if (!again && !part_->node_map.any(schedule_.set_moved(set.held, penalty))) return;
+  if (!again && !part_->node_map.any(schedule_.set_moved(set, penalty))) return;
   auto blocks = TraceRows(*part_, set.held).penalty_blocks(penalty);
   const auto slip = slip_blocks(*part_, set);
   blocks.insert(blocks.end(), slip.begin(), slip.end());
@@ -59,7 +59,7 @@ void ContactPreconditioner::prepare(const ActiveSet& set, double penalty, double
     blocks.insert(blocks.end(), all.begin(), all.end());
   }
   build(again, blocks, Space(*part_));
-  schedule_.built_for(set.held, penalty);
+  schedule_.built_for(set, penalty);
 }
 
 void ContactPreconditioner::watch(double digits, std::int64_t iterations) {

@@ -6,15 +6,18 @@
 
 namespace kacanov {
 
+bool PreconditionerSchedule::far(double now, double then) const {
+  return now > tuning_.penalty_worth * then || then > tuning_.penalty_worth * now;
+}
+
 bool PreconditionerSchedule::penalty_moved(const Penalty& now, bool friction) const {
-  const auto far = [&](double here, double then) {
-    return here > tuning_.penalty_worth * then || then > tuning_.penalty_worth * here;
-  };
   return far(now.normal, penalty_.normal) || (friction && far(now.tangential, penalty_.tangential));
 }
 
-bool PreconditionerSchedule::set_moved(std::span<const TraceChoice> held, double penalty) const {
-  return held_by_ != penalty || !std::equal(held.begin(), held.end(), pinned_.begin(), pinned_.end());
+bool PreconditionerSchedule::set_moved(const ActiveSet& set, double penalty) const {
+  return held_by_ != penalty || set.held != pinned_ ||
+         !std::equal(set.slip_stiffness.begin(), set.slip_stiffness.end(), slip_stiffness_.begin(),
+                     [this](double now, double then) { return !far(now, then); });
 }
 
 void PreconditionerSchedule::built() {
@@ -24,7 +27,12 @@ void PreconditionerSchedule::built() {
 
 void PreconditionerSchedule::built_for(const Penalty& penalty) {
   penalty_ = penalty;
-  pinned_.clear();
+  pinned_.clear(), slip_stiffness_.clear();
+}
+
+void PreconditionerSchedule::built_for(const ActiveSet& set, double penalty) {
+  pinned_ = set.held, slip_stiffness_ = set.slip_stiffness;
+  held_by_ = penalty;
 }
 
 void PreconditionerSchedule::watch(double digits, std::int64_t iterations) {

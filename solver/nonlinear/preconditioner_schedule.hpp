@@ -28,22 +28,21 @@ class PreconditionerSchedule {
   bool drifted(double change, double size) const noexcept { return change > tuning_.drift_worth * size; }
   /// Whether it was built with penalties that are far from these.
   bool penalty_moved(const Penalty& now, bool friction) const;
-  /// Whether it holds other rows than `held`, or none at all, or by another penalty (0: pins them). Every
-  /// node it gets wrong costs CG a few iterations.
-  bool set_moved(std::span<const TraceChoice> held, double penalty = 0.0) const;
+  /// Whether it holds other rows than the set, or none at all, or by another penalty (0: pins them), or
+  /// somewhere a slip as stiff as it was far from being. Every node it gets wrong costs CG a few iterations.
+  bool set_moved(const ActiveSet& set, double penalty = 0.0) const;
 
   /// It was set up with a new g.
   void built();
   void built_for(const Penalty& penalty);
-  void built_for(std::vector<TraceChoice> held, double penalty = 0.0) {
-    pinned_ = std::move(held);
-    held_by_ = penalty;
-  }
+  void built_for(const ActiveSet& set, double penalty = 0.0);
   /// Learns from a solve: decimal digits gained, CG iterations. The first one after a setup is what it can
   /// do; one that needs more than that by what a setup is worth makes it stale.
   void watch(double digits, std::int64_t iterations);
 
  private:
+  bool far(double now, double then) const;
+
   Tuning tuning_;
   bool stale_ = true;
   double digits_per_cg_ = 0.0;  ///< right after the last setup; 0: not known
@@ -51,6 +50,7 @@ class PreconditionerSchedule {
   double lost_per_digit_ = 0.0;
   Penalty penalty_;
   std::vector<TraceChoice> pinned_;
+  Vector slip_stiffness_;
   double held_by_ = 0.0;  ///< penalty of those rows; 0: pinned
 };
 

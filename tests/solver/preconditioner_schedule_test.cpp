@@ -40,11 +40,26 @@ TEST_CASE("preconditioner: what it was built for, and what has moved since") {
   CHECK(schedule.penalty_moved({2.0 * 1.01 * defaults.penalty_worth, 1.0}, false));
   CHECK(schedule.penalty_moved({2.0, 0.99 / defaults.penalty_worth}, true));
   CHECK(!schedule.penalty_moved({2.0, 0.99 / defaults.penalty_worth}, false));
-  const std::vector<TraceChoice> set{{true, false}, {false, false}};
+  ActiveSet set(2);
+  set.held[0] = {true, false};
+  set.slip_stiffness[0] = 4.0;
   CHECK(schedule.set_moved(set));
   schedule.built_for(set);
   CHECK(!schedule.set_moved(set));
-  CHECK(schedule.set_moved(std::vector<TraceChoice>{{true, true}, {false, false}}));
+  CHECK(schedule.set_moved(set, 1.0));
+  ActiveSet other = set;
+  other.held[0].tangential = true;
+  CHECK(schedule.set_moved(other));
+  other = set;
+  for (const double factor : {0.99, 1.01}) {
+    other.slip_stiffness[0] = 4.0 * factor * defaults.penalty_worth;
+    CHECK(schedule.set_moved(other) == (factor > 1.0));
+    other.slip_stiffness[0] = 4.0 / (factor * defaults.penalty_worth);
+    CHECK(schedule.set_moved(other) == (factor > 1.0));
+  }
+  other = set;
+  other.slip_stiffness[1] = 0.1;
+  CHECK(schedule.set_moved(other));
   schedule.built_for(Penalty{2.0, 1.0});  // pins nothing
   CHECK(schedule.set_moved(set));
   CHECK(!schedule.drifted(0.9 * defaults.drift_worth * 8.0, 8.0));
