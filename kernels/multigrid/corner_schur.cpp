@@ -84,7 +84,6 @@ CornerSchur::CornerSchur(const MultigridBody& body, const CornerPressures& press
   fill_.emplace(pattern_->columns(), 1);
   fill_single_.emplace(pattern_->columns(), 1);
   solve_.resize(pattern_->owned_rows(), size());
-  image_.resize(pattern_->owned_rows());
 }
 
 CornerChanges CornerSchur::changes(std::span<const char> wanted) const {
@@ -203,22 +202,18 @@ void CornerSchur::times(Scatterer<Real>& fill, std::span<Real> p, std::span<Real
 
 void CornerSchur::multiply(std::span<double> p, std::span<double> y) { times(*fill_, p, y); }
 
-void CornerSchur::improve(bool from_zero, const PressureSteps& steps, std::span<const double> q,
-                          std::span<double> p) {
+void CornerSchur::improve(const PressureSteps& steps, std::span<const double> rest, std::span<double> p) {
   const std::span<float> residual = solve_.residual();
-  if (!from_zero) multiply(p, image_);
-  each_in_shares(threads_, q.size(), [&](std::size_t i) {
-    residual[i] = static_cast<float>(from_zero ? q[i] : q[i] - image_[i]);
-  });
+  each_in_shares(threads_, rest.size(), [&](std::size_t i) { residual[i] = static_cast<float>(rest[i]); });
   const auto more = solve_.solve(steps, inverse_, threads_, [this](std::span<float> x, std::span<float> y) {
     times(*fill_single_, x, y);
   });
-  each_in_shares(threads_, q.size(), [&](std::size_t i) { p[i] += static_cast<double>(more[i]); });
+  each_in_shares(threads_, rest.size(), [&](std::size_t i) { p[i] += static_cast<double>(more[i]); });
 }
 
 std::size_t CornerSchur::bytes() const noexcept {
   const auto size = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
-  return size(inverse_) + size(value_) + size(image_) + pattern_->bytes() + solve_.bytes();
+  return size(inverse_) + size(value_) + pattern_->bytes() + solve_.bytes();
 }
 
 }  // namespace kacanov

@@ -30,10 +30,9 @@ class CornerSchur {
   void build(std::span<const float> inverse, double factor);
   /// For other blocks with the factor of the last build, which were `before`. Collective.
   void change(std::span<const float> before, std::span<const float> inverse);
-  /// p += S⁻¹ (q − S p), nearly; `from_zero`: p is zero. p has room for size() entries, q this rank's rows.
-  /// Collective.
-  void improve(bool from_zero, const PressureSteps& steps, std::span<const double> q, std::span<double> p);
-  /// y = S p. Collective.
+  /// p += S⁻¹ rest, nearly; of this rank's rows. Collective.
+  void improve(const PressureSteps& steps, std::span<const double> rest, std::span<double> p);
+  /// y = S p; p has room for size() entries. Collective.
   void multiply(std::span<double> p, std::span<double> y);
 
   std::size_t size() const noexcept { return pattern_->columns().size(); }
@@ -54,7 +53,6 @@ class CornerSchur {
   std::vector<std::int64_t> starts_;  ///< of the numbers of the ranks' rows
   std::optional<SummedPattern> pattern_;
   std::vector<float> value_, inverse_;  ///< of S, of its diagonal
-  std::vector<double> image_;           ///< scratch
   std::optional<Scatterer<double>> fill_;
   std::optional<Scatterer<float>> fill_single_;
   PressureSolve solve_;

@@ -15,7 +15,6 @@ namespace {
 /// iterations.
 constexpr double first_grid = 3.0;
 constexpr std::int64_t last_grid_rows = 300;
-constexpr int coarse_steps = 2;
 constexpr PressureSteps coarse_pressures{4, 8.0};
 
 }  // namespace
@@ -108,7 +107,7 @@ void GridHierarchy::correct(std::span<const float> force, std::span<const double
 void GridHierarchy::cycle(std::size_t k) {
   Level& level = levels_[k];
   if (k + 1 == levels_.size()) return direct_->solve(level.b, level.x);
-  level.matrix->smooth(true, coarse_steps, coarse_pressures, level.b, level.x);
+  level.matrix->smooth(true, coarse_pressures, level.b, level.x);
   Level& next = levels_[k + 1];
   const int corrections = twice_ && k + 2 < levels_.size() ? 2 : 1;
   for (int turn = 0; turn < corrections; ++turn) {
@@ -117,7 +116,7 @@ void GridHierarchy::cycle(std::size_t k) {
     cycle(k + 1);
     level.down->prolong(std::span<const float>(next.x), grid_width, grid_width, std::span(level.x));
   }
-  level.matrix->smooth(false, coarse_steps, coarse_pressures, level.b, level.x);
+  level.matrix->smooth(false, coarse_pressures, level.b, level.x);
 }
 
 void GridHierarchy::choose_cycle() {

@@ -13,6 +13,8 @@
 namespace kacanov {
 namespace {
 
+const SmootherWeights grid_smoothing = chebyshev_weights(2, 6.0);
+
 /// Without what has no stiffness: what no node moves with stays where it is.
 Eigen::Matrix3d inverse_of_stiff(const Eigen::Matrix3d& d) {
   const double largest = d.diagonal().maxCoeff();
@@ -195,7 +197,7 @@ void GridLevel::find_scales() {
         });
       },
       dot(grid_width));
-  const auto factor = static_cast<float>(1.0 / (pressure_damping * largest));
+  const auto factor = static_cast<float>(1.0 / (grid_smoothing.damping * largest));
   for (float& v : inverse_) v *= factor;
   map().forward(inverse_, 12);
   schur_inverse_.assign(rows(), 0.0F);
@@ -238,40 +240,44 @@ void GridLevel::schur(std::span<float> p, std::span<float> q) {
   });
 }
 
-void GridLevel::smooth(bool from_zero, int steps, const PressureSteps& with, std::span<const float> b,
+void GridLevel::smooth(bool down, const PressureSteps& with, std::span<const float> b,
                        std::vector<float>& x) {
-  if (from_zero) {
-    std::fill(x.begin(), x.end(), 0.0F), std::fill(p_.begin(), p_.end(), 0.0F);
-    std::fill(lifted_.begin(), lifted_.end(), 0.0F);
+  if (down) {
+    for (auto* v : {&x, &p_, &lifted_}) std::fill(v->begin(), v->end(), 0.0F);
   } else {
     each_row([&](std::size_t i) { p_[i] = x[grid_width * i + 3]; });
     lift(p_, lifted_);
   }
   const std::span<float> residual = solve_.residual();
-  for (int s = 0; s < steps; ++s) {
-    // What moves: t − Â⁻¹Bᵀp, t = u + Â⁻¹(b − A u).
-    if (s > 0 || !from_zero) fill(x);
+  const std::size_t steps = grid_smoothing.weight.size();
+  for (std::size_t s = 0; s < steps; ++s) {
+    const bool from_zero = down && s == 0;
+    const auto weight = static_cast<float>(grid_smoothing.weight[down ? steps - 1 - s : s]);
+    // What moves: t − ωÂ⁻¹Bᵀp, t = u + ωÂ⁻¹(b − A u).
+    if (!from_zero) fill(x);
     each_row([&](std::size_t i) {
       simd::FourFloats left = simd::load_four(&b[grid_width * i]);
-      if (s > 0 || !from_zero) left -= simd::times_blocks(row(i), force_.data(), x.data());
+      if (!from_zero) left -= simd::times_blocks(row(i), force_.data(), x.data());
       const float at[3] = {left[0], left[1], left[2]};
       simd::store_four(&moved_[grid_width * i], simd::load_four(&x[grid_width * i]) +
-                                                    simd::times_three(&inverse_[12 * i], at) -
-                                                    simd::load_four(&lifted_[grid_width * i]));
+                                                    weight * (simd::times_three(&inverse_[12 * i], at) -
+                                                              simd::load_four(&lifted_[grid_width * i])));
     });
     fill(moved_);
     each_row([&](std::size_t i) {
-      residual[i] = simd::dot_vectors(row(i), divergence_.data(), moved_.data()) +
-                    lifted_[grid_width * i + 3] - b[grid_width * i + 3];
-      simd::store_four(&x[grid_width * i],
-                       simd::load_four(&moved_[grid_width * i]) + simd::load_four(&lifted_[grid_width * i]));
+      residual[i] = (simd::dot_vectors(row(i), divergence_.data(), moved_.data()) +
+                     lifted_[grid_width * i + 3] - b[grid_width * i + 3]) /
+                    weight;
+      simd::store_four(&x[grid_width * i], simd::load_four(&moved_[grid_width * i]) +
+                                               weight * simd::load_four(&lifted_[grid_width * i]));
     });
     const auto more = solve_.solve(with, schur_inverse_, threads_,
                                    [this](std::span<float> p, std::span<float> y) { schur(p, y); });
     each_row([&](std::size_t i) { p_[i] += more[i]; });
     lift(p_, lifted_);
     each_row([&](std::size_t i) {
-      simd::FourFloats u = simd::load_four(&x[grid_width * i]) - simd::load_four(&lifted_[grid_width * i]);
+      simd::FourFloats u =
+          simd::load_four(&x[grid_width * i]) - weight * simd::load_four(&lifted_[grid_width * i]);
       u[3] = p_[i];
       simd::store_four(&x[grid_width * i], u);
     });

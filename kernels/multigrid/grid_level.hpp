@@ -33,9 +33,8 @@ class GridLevel {
   std::size_t rows() const noexcept { return pattern_->owned_rows(); }
   const IndexMap& map() const noexcept { return pattern_->columns(); }
 
-  /// `steps` steps on x for the input b, from zero if that is said. Collective.
-  void smooth(bool from_zero, int steps, const PressureSteps& with, std::span<const float> b,
-              std::vector<float>& x);
+  /// Steps on x for the input b: on a cycle's way down they begin at zero. Collective.
+  void smooth(bool down, const PressureSteps& with, std::span<const float> b, std::vector<float>& x);
   /// r = b − K x on owned rows. Collective.
   void residual(std::span<const float> b, std::vector<float>& x, std::span<float> r);
   std::size_t bytes() const noexcept;

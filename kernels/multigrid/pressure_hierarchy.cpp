@@ -18,7 +18,7 @@
 namespace kacanov {
 namespace {
 
-constexpr int fine_steps = 4;
+const SmootherWeights fine_smoothing = chebyshev_weights(4, 4.0);
 
 struct Solves {
   PressureSteps between, at_ends;
@@ -31,7 +31,7 @@ Solves solves_for(double contrast, double strength) {
   const double sigma = (range + 1.0) / (range - 1.0);
   const double wanted = std::acosh(std::max(1.0, 0.01 * contrast)) / std::acosh(sigma);
   const int ends = static_cast<int>(std::ceil(strength * std::clamp(wanted, 6.0, 30.0)));
-  const int middle = (ends + 2) / 3;
+  const int middle = (2 * ends + 2) / 3;
   return {{middle, 2.0 * middle + 2.0}, {ends, range}};
 }
 
@@ -50,7 +50,7 @@ class PressureHierarchy final : public RigidMultigrid::Hierarchy {
     fine_.build(g, blocks, space);
     fine_.choose_smoother(1, 1.0);
     if (!schur_) prepare();
-    scale_ = 1.0 / (pressure_damping * fine_.largest());
+    scale_ = 1.0 / (fine_smoothing.damping * fine_.largest());
     schur_->build(fine_.inverse(), scale_);
     grids_->build(g, stiffnesses());
     contrast_ = pressure_contrast(body_, g);
@@ -87,11 +87,12 @@ class PressureHierarchy final : public RigidMultigrid::Hierarchy {
     each_in_shares(options_.threads, r.size(),
                    [&](std::size_t i) { b_[i] = static_cast<float>(factors.in * r[i]); });
     fine_.hold(b_);
-    std::fill(p_.begin(), p_.end(), 0.0);
-    for (int s = 0; s < fine_steps; ++s) smooth(s == 0, s == 0 ? solves_.at_ends : solves_.between);
+    const std::size_t steps = fine_smoothing.weight.size();
+    for (std::size_t s = 0; s < steps; ++s)
+      smooth(s == 0, s == 0 ? solves_.at_ends : solves_.between, fine_smoothing.weight[s]);
     correct();
-    for (int s = 0; s < fine_steps; ++s)
-      smooth(false, s + 1 == fine_steps ? solves_.at_ends : solves_.between);
+    for (std::size_t s = steps; s-- > 0;)
+      smooth(false, s == 0 ? solves_.at_ends : solves_.between, fine_smoothing.weight[s]);
     each_in_shares(options_.threads, z.size(),
                    [&](std::size_t i) { z[i] = factors.out * static_cast<double>(x_[i]); });
   }
@@ -126,23 +127,29 @@ class PressureHierarchy final : public RigidMultigrid::Hierarchy {
 
   std::vector<NodeBlock> stiffnesses() const { return grid_stiffnesses(fine_, body_.owned_nodes()); }
 
-  /// A step of Braess and Sarazin's smoother: with t = x + Â⁻¹(b − A x), p by S p = B t, x = t − Â⁻¹Bᵀ p.
-  void smooth(bool from_zero, const PressureSteps& with) {
-    const auto scale = static_cast<float>(scale_);
+  /// A step of Braess and Sarazin's smoother: with t = x + ωÂ⁻¹(b − A x), p by (ω (S − C) + C) p = B t,
+  /// x = t − ωÂ⁻¹Bᵀ p.
+  void smooth(bool from_zero, const PressureSteps& with, double weight) {
+    const auto scale = static_cast<float>(weight * scale_);
     if (from_zero) {
-      std::fill(x_.begin(), x_.end(), 0.0F);
+      std::fill(x_.begin(), x_.end(), 0.0F), std::fill(p_.begin(), p_.end(), 0.0);
+      std::fill(rest_.begin(), rest_.end(), 0.0);
       fine_.add_scaled(scale, b_, {}, x_);
     } else {
       fine_.multiply(x_, image_);
       fine_.add_scaled(scale, b_, image_, x_);
+      schur_->multiply(p_, rest_);
     }
     fine_.hold(x_);
     fine_.volume_change(x_, entries_);
     pressures_.sum(entries_, change_);
-    schur_->improve(from_zero, with, change_, p_);
+    for (std::size_t r = 0; r < rest_.size(); ++r)
+      rest_[r] = (change_[r] + (weight - 1.0) * pressures_.compliance()[r] * p_[r]) / weight - rest_[r];
+    schur_->improve(with, rest_, p_);
     pressures_.spread(std::span(p_).first(pressures_.rows()), entries_);
     fine_.pressure_force(entries_, image_);
     fine_.add_scaled(-scale, image_, {}, x_);
+    last_weight_ = weight;
   }
 
   /// By the grids: of forces b − A x − Bᵀp, and of volume changes what the last step has left, S p − q.
@@ -151,7 +158,10 @@ class PressureHierarchy final : public RigidMultigrid::Hierarchy {
     each_in_shares(options_.threads, image_.size(), [&](std::size_t i) { image_[i] = b_[i] - image_[i]; });
     fine_.project(image_);
     schur_->multiply(p_, rest_);
-    each_in_shares(options_.threads, rest_.size(), [&](std::size_t r) { rest_[r] -= change_[r]; });
+    each_in_shares(options_.threads, rest_.size(), [&](std::size_t r) {
+      rest_[r] =
+          last_weight_ * rest_[r] - (last_weight_ - 1.0) * pressures_.compliance()[r] * p_[r] - change_[r];
+    });
     std::vector<float>& u = step_;
     u.assign(x_.size(), 0.0F);
     grids_->correct(image_, rest_, u, p_);
@@ -173,6 +183,7 @@ class PressureHierarchy final : public RigidMultigrid::Hierarchy {
   std::vector<float> b_, x_, image_, step_, entries_;
   std::vector<double> p_;  ///< with room for the ghosts of S
   std::vector<double> change_, rest_;
+  double last_weight_ = 1.0;  ///< of a smoother's step
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -11,9 +12,24 @@
 
 namespace kacanov {
 
-/// Â = this times Λ D, Λ the largest eigenvalue of D⁻¹A: a smoother with less than a half would not be
-/// definite, with all of it the cycle takes a quarter more iterations.
-inline constexpr double pressure_damping = 0.65;
+/// A smoother takes steps with Â/ω: the weights ω of Chebyshev's polynomial on [Λ/range, Λ], Λ the largest
+/// eigenvalue of D⁻¹A. A cycle takes them in one order on its way down and in the other on its way back.
+struct SmootherWeights {
+  double damping;              ///< Â = this times Λ D
+  std::vector<double> weight;  ///< 1 or more
+};
+
+/// S is that of the smallest weight, which is 1: others' is ω (S − C) + C ≤ ω S. It comes first, then the
+/// rest falling.
+inline SmootherWeights chebyshev_weights(int steps, double range) {
+  const double middle = (1.0 + 1.0 / range) / 2.0, half = (1.0 - 1.0 / range) / 2.0;
+  const auto root = [&](int k) {  // in units of Λ, falling
+    return middle + half * std::cos((2.0 * k + 1.0) * std::numbers::pi / (2.0 * steps));
+  };
+  SmootherWeights all{root(0), {1.0}};
+  for (int k = steps - 1; k > 0; --k) all.weight.push_back(root(0) / root(k));
+  return all;
+}
 
 /// How well S is solved with: a polynomial of this degree in D⁻¹S on [Λ/range, Λ].
 struct PressureSteps {
