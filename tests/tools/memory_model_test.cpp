@@ -84,6 +84,18 @@ TEST_CASE("the box of a case file has the size of the mesh that is made of it") 
   }
 }
 
+TEST_CASE("pressures of tetrahedra take memory, and hexahedra have none beside their displacements") {
+  Model plain = clamped(), mixed = clamped();
+  mixed.materials[0].formulation = MaterialEntry::Formulation::mixed;
+  for (const ElementType type : {ElementType::tet4, ElementType::tet10, ElementType::hex8}) {
+    const bool tetrahedra = type != ElementType::hex8;
+    const double more =
+        estimated_memory(size_of(box_of(type), mixed), 1) - estimated_memory(size_of(box_of(type), plain), 1);
+    CHECK((more > 0.0) == tetrahedra);
+    CHECK(size_of(make_box(box_of(type)), mixed).pressures == tetrahedra);
+  }
+}
+
 TEST_CASE("the estimate is the largest sum at one time, and each rank adds what a process takes") {
   ProblemSize size;
   size.nodes = 1e6;

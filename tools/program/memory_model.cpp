@@ -20,6 +20,8 @@ constexpr double bytes_per_contact_point = 1.8e3;  // rows of traces, their spac
 constexpr double lanes_filled = 1.07;              // slots of the operators an element
 constexpr double nodes_of_blocks = 1.25;           // nodes of the operators' blocks a node
 constexpr double overhead = 1.03;                  // of the allocator
+// A node, measured on boxes of 1 to 50 million unknowns: means and their places, S, grids.
+constexpr double bytes_of_pressures_tet4 = 430, bytes_of_pressures_tet10 = 220;
 
 /// The number behind a word at the beginning of a line, 0 where there is none.
 double number_after(const std::string& path, const std::string& word) {
@@ -39,12 +41,21 @@ bool nonlinear(const Model& model) {
                      [](const MaterialEntry& entry) { return !entry.law.linear(); });
 }
 
+/// Whether some material's pressure is a field of its own, which has a multigrid of its own.
+bool with_pressures(const Model& model, ElementType type) {
+  return cell(type).corner_dilatation &&
+         std::any_of(model.materials.begin(), model.materials.end(), [](const MaterialEntry& entry) {
+           return entry.formulation == MaterialEntry::Formulation::mixed;
+         });
+}
+
 }  // namespace
 
 ProblemSize size_of(const BoxSpec& box, const Model& model) {
   ProblemSize size;
   size.type = box.type;
   size.nonlinear = nonlinear(model);
+  size.pressures = with_pressures(model, size.type);
   const std::size_t dim = dimension(box.type);
   const double order = cell(box.type).order;
   size.nodes = 1.0;
@@ -60,6 +71,7 @@ ProblemSize size_of(const Mesh& mesh, const Model& model) {
   ProblemSize size;
   size.type = mesh.type;
   size.nonlinear = nonlinear(model);
+  size.pressures = with_pressures(model, size.type);
   size.nodes = static_cast<double>(mesh.node_count());
   size.elements = static_cast<double>(mesh.element_count());
   return size;
@@ -83,6 +95,9 @@ MemoryShares memory_shares(const ProblemSize& size) {
   shares.operators = bytes(nodes_of_blocks * (32 + 4 + 16 + 4), slots * (8 + 4 + 4 + 4) + 2 * index);
   shares.loops = bytes(8 * dim * 6 + 4 * dim, 0);  // u, kept u, R(u), three vectors of CG; diagonal
   shares.multigrid = bytes(16 * dim + 4 * dim * (dim + 1) / 2 + 4 + rows, 0);
+  if (size.pressures)
+    shares.multigrid +=
+        bytes(size.type == ElementType::tet4 ? bytes_of_pressures_tet4 : bytes_of_pressures_tet10, 0);
   shares.setup = bytes(8 + 1.15 * rows, 8 * points);  // aggregates, sums of blocks; g
   shares.step = bytes(8 * dim, 0);
   shares.tangent = size.nonlinear ? bytes(0, 20 * slots) : 0.0;

@@ -14,6 +14,7 @@ struct ProblemSize {
   double nodes = 0.0, elements = 0.0;
   double contact_points = 0.0;  ///< 0 where not known yet: they are few in 3D
   bool nonlinear = true;        ///< some law is not linear: the run takes tangents
+  bool pressures = false;       ///< some material is mixed, and the elements are tetrahedra
 };
 
 /// Size of a model on a mesh, or on the one that `box` stands for, without its contact points.
