@@ -88,7 +88,8 @@ struct Tuning {
   double setup_worth = 4.0;
   /// Before a step where g has moved by this share in the mean.
   double drift_worth = 0.05;
-  /// Where a penalty, or how stiff a slip is, has moved by this factor (elastic beam, ADMM: 144 applications instead of 212).
+  /// Where a penalty, or how stiff a slip is, has moved by this factor (elastic beam, ADMM: 144 applications
+  /// instead of 212).
   double penalty_worth = 3.0;
 
   /// A solve of so many CG iterations asks for a factor, or of as many as a factor takes the time of:
