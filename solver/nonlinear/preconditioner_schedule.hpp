@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "contact/active_set.hpp"
@@ -29,7 +28,8 @@ class PreconditionerSchedule {
   /// Whether it was built with penalties that are far from these.
   bool penalty_moved(const Penalty& now, bool friction) const;
   /// Whether it holds other rows than the set, or none at all, or by another penalty (0: pins them), or
-  /// somewhere a slip as stiff as it was far from being. Every node it gets wrong costs CG a few iterations.
+  /// has a slip somewhere that is far stiffer or softer than now. Every node it gets wrong costs CG a few
+  /// iterations.
   bool set_moved(const ActiveSet& set, double penalty = 0.0) const;
 
   /// It was set up with a new g.
