@@ -78,15 +78,14 @@ std::vector<float> summed_changes(const SummedPattern& b, const AveragingElement
 
 template <class E>
 CornerChanges changes_of(const MultigridBody& body, const CornerPressures& pressures,
-                         std::span<const std::int64_t> starts, std::span<const char> wanted, bool rows_alone,
-                         int threads) {
+                         std::span<const char> wanted, bool rows_alone, int threads) {
   const IndexMap& map = *body.node_map;
   std::vector<std::int64_t> node_number(body.nodes()), entry_number(pressures.means().size());
   for (std::size_t n = 0; n < node_number.size(); ++n) node_number[n] = map.number(n);
   for (std::size_t k = 0; k < entry_number.size(); ++k) entry_number[k] = pressures.number(k);
   const AveragingElements elements = averaging_elements<E>(body.body, pressures, wanted);
   SummedPattern b({map.starts, node_number, elements.node, elements.first_node},
-                  {starts, entry_number, elements.entry, elements.first_entry}, map, threads);
+                  {pressures.starts(), entry_number, elements.entry, elements.first_entry}, map, threads);
   CornerChanges all;
   const auto start = b.start().first(body.owned_nodes() + 1);
   all.first.assign(start.begin(), start.end());
@@ -109,11 +108,12 @@ CornerChanges changes_of(const MultigridBody& body, const CornerPressures& press
   return all;
 }
 
-template <class... Args>
-CornerChanges dispatched(const MultigridBody& body, const Args&... args) {
+CornerChanges changes_of(const MultigridBody& body, const CornerPressures& pressures,
+                         std::span<const char> wanted, bool rows_alone, int threads) {
   CornerChanges all;
   elements::dispatch(body.body.mesh.type, [&]<class E>(E) {
-    if constexpr (E::dim == 3 && E::corner_dilatation) all = changes_of<E>(body, args...);
+    if constexpr (E::dim == 3 && E::corner_dilatation)
+      all = changes_of<E>(body, pressures, wanted, rows_alone, threads);
   });
   return all;
 }
@@ -121,15 +121,13 @@ CornerChanges dispatched(const MultigridBody& body, const Args&... args) {
 }  // namespace
 
 CornerChanges corner_changes(const MultigridBody& body, const CornerPressures& pressures,
-                             std::span<const std::int64_t> starts, std::span<const char> wanted,
-                             int threads) {
-  return dispatched(body, pressures, starts, wanted, false, threads);
+                             std::span<const char> wanted, int threads) {
+  return changes_of(body, pressures, wanted, false, threads);
 }
 
 CornerChanges changed_corners(const MultigridBody& body, const CornerPressures& pressures,
-                              std::span<const std::int64_t> starts, std::span<const char> wanted,
-                              int threads) {
-  return dispatched(body, pressures, starts, wanted, true, threads);
+                              std::span<const char> wanted, int threads) {
+  return changes_of(body, pressures, wanted, true, threads);
 }
 
 }  // namespace kacanov

@@ -18,13 +18,12 @@ struct CornerChanges {
   std::vector<std::int64_t> number;  ///< over all ranks, of rows of CornerPressures
 };
 
-/// Of the nodes that are `wanted`: for each of the body's nodes, the same on all ranks that have it. The
-/// numbers of rank r's rows begin at starts[r]. Collective.
+/// Of the nodes that are `wanted`: for each of the body's nodes, the same on all ranks that have it.
+/// Collective.
 CornerChanges corner_changes(const MultigridBody& body, const CornerPressures& pressures,
-                             std::span<const std::int64_t> starts, std::span<const char> wanted, int threads);
+                             std::span<const char> wanted, int threads);
 /// The same without `change`, which stays empty.
 CornerChanges changed_corners(const MultigridBody& body, const CornerPressures& pressures,
-                              std::span<const std::int64_t> starts, std::span<const char> wanted,
-                              int threads);
+                              std::span<const char> wanted, int threads);
 
 }  // namespace kacanov

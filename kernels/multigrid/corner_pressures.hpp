@@ -25,6 +25,8 @@ class CornerPressures {
   std::size_t rows() const noexcept { return rows_->node.size(); }
   /// Local node of a row: where it is, or near the middle of its patch.
   std::int32_t node(std::size_t row) const { return rows_->node[row]; }
+  /// Ranks + 1: where the numbers of each one's rows begin.
+  std::span<const std::int64_t> starts() const noexcept { return rows_->map.starts; }
   /// Number over all ranks of an entry's row.
   std::int64_t number(std::size_t entry) const { return rows_->map.number(rows_->of_entry[entry]); }
   const CornerMeans& means() const noexcept { return means_; }

@@ -49,7 +49,7 @@ std::vector<char> parts_of(const MultigridBody& body, std::int64_t parts) {
   const std::vector<int> owner = owners(body);
   std::vector<char> part(body.nodes());
   for (std::size_t n = 0; n < part.size(); ++n) {
-    const std::size_t rank = static_cast<std::size_t>(owner[n]);
+    const auto rank = static_cast<std::size_t>(owner[n]);
     const std::int64_t nodes = map.starts[rank + 1] - map.starts[rank];
     part[n] = static_cast<char>(parts * (map.number(n) - map.starts[rank]) / nodes);
   }
@@ -65,29 +65,22 @@ struct Use {
 
 CornerSchur::CornerSchur(const MultigridBody& body, const CornerPressures& pressures, int threads,
                          std::int64_t nodes_at_once)
-    : body_(&body),
-      pressures_(&pressures),
-      threads_(threads),
-      nodes_at_once_(nodes_at_once),
-      starts_(number_owned(static_cast<std::int64_t>(pressures.rows()), *body.node_map)) {
+    : body_(&body), pressures_(&pressures), threads_(threads), nodes_at_once_(nodes_at_once) {
   const IndexMap& map = *body.node_map;
-  CornerChanges b = changed_corners(body, pressures, starts_, coupling_nodes(body, pressures), threads);
+  const std::span<const std::int64_t> starts = pressures.starts();
+  CornerChanges b = changed_corners(body, pressures, coupling_nodes(body, pressures), threads);
   std::vector<std::size_t> first_coupling(b.first.begin(), b.first.end());
   // A row for every pressure, even one that no node moves.
-  for (std::int64_t n = starts_[map.rank]; n < starts_[map.rank + 1]; ++n) {
+  for (std::int64_t n = starts[map.rank]; n < starts[map.rank + 1]; ++n) {
     b.row.push_back(static_cast<std::int32_t>(b.number.size()));
     b.number.push_back(n);
     first_coupling.push_back(b.row.size());
   }
-  const MatrixSide side{starts_, b.number, b.row, first_coupling};
+  const MatrixSide side{starts, b.number, b.row, first_coupling};
   pattern_.emplace(side, side, map, threads_);
   fill_.emplace(pattern_->columns(), 1);
   fill_single_.emplace(pattern_->columns(), 1);
   solve_.resize(pattern_->owned_rows(), size());
-}
-
-CornerChanges CornerSchur::changes(std::span<const char> wanted) const {
-  return corner_changes(*body_, *pressures_, starts_, wanted, threads_);
 }
 
 void CornerSchur::build(std::span<const float> inverse, double factor) {
@@ -100,7 +93,7 @@ void CornerSchur::build(std::span<const float> inverse, double factor) {
   std::vector<char> wanted(part.size());
   for (char p = 0; p < parts; ++p) {
     for (std::size_t n = 0; n < part.size(); ++n) wanted[n] = part[n] == p ? 1 : 0;
-    add(changes(wanted), inverse, {});
+    add(corner_changes(*body_, *pressures_, wanted, threads_), inverse, {});
   }
   pattern_->complete(value_, 1);
   const std::span<const double> compliance = pressures_->compliance();
@@ -118,7 +111,7 @@ void CornerSchur::change(std::span<const float> before, std::span<const float> i
   if (!body_->node_map->any(std::find(changed.begin(), changed.end(), 1) != changed.end())) return;
   // Of other ranks' rows what changes is told, not what they are.
   std::fill(value_.begin() + pattern_->start()[pattern_->owned_rows()], value_.end(), 0.0F);
-  add(changes(changed), inverse, before);
+  add(corner_changes(*body_, *pressures_, changed, threads_), inverse, before);
   pattern_->complete(value_, 1);
   take_diagonal();
 }

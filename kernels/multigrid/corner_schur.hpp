@@ -39,7 +39,6 @@ class CornerSchur {
   std::size_t bytes() const noexcept;
 
  private:
-  CornerChanges changes(std::span<const char> wanted) const;
   void add(const CornerChanges& b, std::span<const float> inverse, std::span<const float> before);
   void take_diagonal();
   template <class Real>
@@ -50,7 +49,6 @@ class CornerSchur {
   int threads_;
   std::int64_t nodes_at_once_;
   double factor_ = 1.0;
-  std::vector<std::int64_t> starts_;  ///< of the numbers of the ranks' rows
   std::optional<SummedPattern> pattern_;
   std::vector<float> value_, inverse_;  ///< of S, of its diagonal
   std::optional<Scatterer<double>> fill_;

@@ -143,13 +143,17 @@ class PressureHierarchy final : public RigidMultigrid::Hierarchy {
     fine_.hold(x_);
     fine_.volume_change(x_, entries_);
     pressures_.sum(entries_, change_);
-    for (std::size_t r = 0; r < rest_.size(); ++r)
-      rest_[r] = (change_[r] + (weight - 1.0) * pressures_.compliance()[r] * p_[r]) / weight - rest_[r];
+    each_in_shares(options_.threads, rest_.size(),
+                   [&](std::size_t r) { rest_[r] = wanted(r, weight) / weight - rest_[r]; });
     schur_->improve(with, rest_, p_);
     pressures_.spread(std::span(p_).first(pressures_.rows()), entries_);
     fine_.pressure_force(entries_, image_);
     fine_.add_scaled(-scale, image_, {}, x_);
-    last_weight_ = weight;
+  }
+
+  /// What ω S p has to be for (ω (S − C) + C) p = B t.
+  double wanted(std::size_t r, double weight) const {
+    return change_[r] + (weight - 1.0) * pressures_.compliance()[r] * p_[r];
   }
 
   /// By the grids: of forces b − A x − Bᵀp, and of volume changes what the last step has left, S p − q.
@@ -158,10 +162,9 @@ class PressureHierarchy final : public RigidMultigrid::Hierarchy {
     each_in_shares(options_.threads, image_.size(), [&](std::size_t i) { image_[i] = b_[i] - image_[i]; });
     fine_.project(image_);
     schur_->multiply(p_, rest_);
-    each_in_shares(options_.threads, rest_.size(), [&](std::size_t r) {
-      rest_[r] =
-          last_weight_ * rest_[r] - (last_weight_ - 1.0) * pressures_.compliance()[r] * p_[r] - change_[r];
-    });
+    const double last = fine_smoothing.weight.back();
+    each_in_shares(options_.threads, rest_.size(),
+                   [&](std::size_t r) { rest_[r] = last * rest_[r] - wanted(r, last); });
     std::vector<float>& u = step_;
     u.assign(x_.size(), 0.0F);
     grids_->correct(image_, rest_, u, p_);
@@ -183,7 +186,6 @@ class PressureHierarchy final : public RigidMultigrid::Hierarchy {
   std::vector<float> b_, x_, image_, step_, entries_;
   std::vector<double> p_;  ///< with room for the ghosts of S
   std::vector<double> change_, rest_;
-  double last_weight_ = 1.0;  ///< of a smoother's step
 };
 
 }  // namespace

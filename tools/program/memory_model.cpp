@@ -20,7 +20,8 @@ constexpr double bytes_per_contact_point = 1.8e3;  // rows of traces, their spac
 constexpr double lanes_filled = 1.07;              // slots of the operators an element
 constexpr double nodes_of_blocks = 1.25;           // nodes of the operators' blocks a node
 constexpr double overhead = 1.03;                  // of the allocator
-// A node, measured on boxes of 1 to 50 million unknowns: means and their places, S, grids.
+// A node, measured on boxes of 1 million (tet4) and 1 to 50 million unknowns (tet10): means and their places,
+// S, grids.
 constexpr double bytes_of_pressures_tet4 = 430, bytes_of_pressures_tet10 = 220;
 
 /// The number behind a word at the beginning of a line, 0 where there is none.
