@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "c/handle.hpp"
-#include "multigrid/rigid_multigrid.hpp"
+#include "multigrid/multigrid.hpp"
 
 /// What a multigrid keeps of an operator: copies, so that the operator may get other laws. Coordinates and
 /// connectivity are the operator's, but where nodes belong to no element: these are left out.
@@ -27,7 +27,7 @@ struct kacanov_multigrid {
   std::vector<std::uint8_t> held;
   std::vector<std::int32_t> unit_rows;  ///< unknowns where z = r
   kacanov::IndexMap node_map;           ///< of one process
-  std::optional<kacanov::RigidMultigrid> cycle;
+  std::optional<kacanov::Multigrid> cycle;
   std::vector<double> r, z;  ///< of the nodes used, where not all are
   std::atomic<bool> busy = false;
   char message[512] = "";

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "multigrid/multigrid.hpp"
 #include "multigrid/multigrid_body.hpp"
 #include "multigrid/rigid_level.hpp"
-#include "multigrid/rigid_multigrid.hpp"
 
 namespace kacanov {
 

@@ -7,7 +7,7 @@
 #include <array>
 
 #include "multigrid/largest_eigenvalue.hpp"
-#include "multigrid/rigid_multigrid.hpp"
+#include "multigrid/multigrid.hpp"
 #include "operator/corner_sum.hpp"
 #include "operator/threads.hpp"
 #include "simd/node_blocks.hpp"

@@ -2,12 +2,12 @@
 // What every kind of hierarchy does for the multigrid.
 #pragma once
 
-#include "multigrid/rigid_multigrid.hpp"
+#include "multigrid/multigrid.hpp"
 
 namespace kacanov {
 
-/// The members of RigidMultigrid, whatever the levels are made of.
-struct RigidMultigrid::Hierarchy {
+/// The members of Multigrid, whatever the levels are made of.
+struct Multigrid::Hierarchy {
   virtual ~Hierarchy() = default;
   virtual void build(std::span<const double> g, std::span<const NodeBlock> blocks,
                      const HeldSpace& space) = 0;

@@ -35,7 +35,7 @@ Solves solves_for(double contrast, double strength) {
   return {{middle, 2.0 * middle + 2.0}, {ends, range}};
 }
 
-class PressureHierarchy final : public RigidMultigrid::Hierarchy {
+class PressureHierarchy final : public Multigrid::Hierarchy {
  public:
   PressureHierarchy(const MultigridBody& body, const MultigridOptions& options)
       : laws_(softened(body.body.laws)),
@@ -66,8 +66,7 @@ class PressureHierarchy final : public RigidMultigrid::Hierarchy {
 
   void secant(std::span<double> g) const override { fine_.secant(g); }
 
-  void apply(std::span<const double> r, std::span<double> z,
-             const RigidMultigrid::Factors& factors) override {
+  void apply(std::span<const double> r, std::span<double> z, const Multigrid::Factors& factors) override {
     do {
       cycle(r, z, factors);
     } while (work(r, z) < 0.0 && strengthen());
@@ -83,7 +82,7 @@ class PressureHierarchy final : public RigidMultigrid::Hierarchy {
   }
 
  private:
-  void cycle(std::span<const double> r, std::span<double> z, const RigidMultigrid::Factors& factors) {
+  void cycle(std::span<const double> r, std::span<double> z, const Multigrid::Factors& factors) {
     each_in_shares(options_.threads, r.size(),
                    [&](std::size_t i) { b_[i] = static_cast<float>(factors.in * r[i]); });
     fine_.hold(b_);
@@ -200,8 +199,8 @@ double pressure_contrast(const MultigridBody& body, std::span<const double> g) {
   return body.node_map->max_all(largest);
 }
 
-std::unique_ptr<RigidMultigrid::Hierarchy> make_pressure_hierarchy(const MultigridBody& body,
-                                                                   const MultigridOptions& options) {
+std::unique_ptr<Multigrid::Hierarchy> make_pressure_hierarchy(const MultigridBody& body,
+                                                              const MultigridOptions& options) {
   return std::make_unique<PressureHierarchy>(body, options);
 }
 

@@ -10,8 +10,8 @@ namespace kacanov {
 
 /// A cycle on displacements and pressures, of which the displacements are handed out (theory:
 /// pressure-multigrid). For bodies in 3D with a law that averages. Collective.
-std::unique_ptr<RigidMultigrid::Hierarchy> make_pressure_hierarchy(const MultigridBody& body,
-                                                                   const MultigridOptions& options);
+std::unique_ptr<Multigrid::Hierarchy> make_pressure_hierarchy(const MultigridBody& body,
+                                                              const MultigridOptions& options);
 
 /// The largest k0/g of what averages; g: elements × points. Collective.
 double pressure_contrast(const MultigridBody& body, std::span<const double> g);

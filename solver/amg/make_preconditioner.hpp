@@ -11,7 +11,7 @@
 
 namespace kacanov {
 
-/// `multigrid`: Chebyshev on the matrix-free operator over rigid motions of aggregates (RigidMultigrid;
+/// `multigrid`: Chebyshev on the matrix-free operator over rigid motions of aggregates (Multigrid;
 /// theory: multigrid). `elasticity`: unknown-based BoomerAMG on the assembled matrix, the yardstick (theory:
 /// elasticity-amg). Threads and instruction set are the operator's. `like`: an operator of the part's mesh
 /// and laws, whose division of the elements the multigrid takes over, or null. Collective; the part has to

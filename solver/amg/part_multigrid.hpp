@@ -4,7 +4,7 @@
 
 #include <kacanov/part.hpp>
 #include "linear/preconditioner.hpp"
-#include "multigrid/rigid_multigrid.hpp"
+#include "multigrid/multigrid.hpp"
 
 namespace kacanov {
 
@@ -30,7 +30,7 @@ class PartMultigrid final : public Preconditioner {
     multigrid_.rebuild(blocks, space.held());
   }
 
-  RigidMultigrid multigrid_;
+  Multigrid multigrid_;
 };
 
 }  // namespace kacanov

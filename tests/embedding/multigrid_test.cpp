@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Constraints, penalties, multigrid and conjugate gradients through the C interface.
-#include "multigrid/rigid_multigrid.hpp"
+#include "multigrid/multigrid.hpp"
 
 #include "multigrid_example.hpp"
 
@@ -186,7 +186,7 @@ TEST_CASE("a cycle is symmetric and positive, is the solver's, and does not mind
          example.law_of_element},
         &map,
         mask};
-    kacanov::RigidMultigrid plain(body, {});
+    kacanov::Multigrid plain(body, {});
     auto about = sized<kacanov_information>();
     REQUIRE(kacanov_inspect(op.get(), &about) == KACANOV_OK);
     Vector g(about.elements * static_cast<std::size_t>(about.points_per_element)), expected(n);

@@ -14,8 +14,8 @@
 #include "multigrid/grid_level.hpp"
 #include "multigrid/grid_stiffness.hpp"
 #include "multigrid/grid_transfer.hpp"
+#include "multigrid/multigrid.hpp"
 #include "multigrid/node_spacing.hpp"
-#include "multigrid/rigid_multigrid.hpp"
 #include "operator/corner_sum.hpp"
 #include "pressure_bodies.hpp"
 

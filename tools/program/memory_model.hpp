@@ -22,7 +22,7 @@ ProblemSize size_of(const BoxSpec& box, const Model& model);
 ProblemSize size_of(const Mesh& mesh, const Model& model);
 
 /// What the arrays of a run hold, all ranks together, in bytes; see Part, Layout, StepContext,
-/// RigidMultigrid.
+/// Multigrid.
 struct MemoryShares {
   double mesh = 0.0, problem = 0.0;  ///< on the first rank, until all have their parts
   double part = 0.0, operators = 0.0, loops = 0.0, multigrid = 0.0;

@@ -1,25 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Multigrid without a matrix on the fine level: Chebyshev on the operator, rigid motions of aggregates below.
-#include "multigrid/rigid_multigrid.hpp"
+// The hierarchy over the rigid motions of aggregates.
+#include "multigrid/modes_hierarchy.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
+#include <utility>
+#include <vector>
 
-#include <kacanov/corner_means.hpp>
 #include "multigrid/aggregate_motions.hpp"
 #include "multigrid/aggregation.hpp"
 #include "multigrid/chebyshev.hpp"
 #include "multigrid/direct_solve.hpp"
 #include "multigrid/fine_level.hpp"
-#include "multigrid/hierarchy.hpp"
-#include "multigrid/pressure_hierarchy.hpp"
 #include "multigrid/softened_laws.hpp"
 #include "multigrid/sums.hpp"
 #include "operator/threads.hpp"
 
 namespace kacanov {
-
 namespace {
 
 /// A coarse level with its smoother, its vectors and the way down.
@@ -39,7 +36,7 @@ struct Stage {
 constexpr std::int64_t direct_rows = 400;
 
 template <int M>
-class ModesHierarchy final : public RigidMultigrid::Hierarchy {
+class ModesHierarchy final : public Multigrid::Hierarchy {
  public:
   ModesHierarchy(const MultigridBody& body, const MultigridOptions& options)
       : laws_(softened(body.body.laws)),
@@ -72,8 +69,7 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
 
   void secant(std::span<double> g) const override { fine_.secant(g); }
 
-  void apply(std::span<const double> r, std::span<double> z,
-             const RigidMultigrid::Factors& factors) override {
+  void apply(std::span<const double> r, std::span<double> z, const Multigrid::Factors& factors) override {
     each_in_shares(options_.threads, r.size(),
                    [&](std::size_t i) { b_[i] = static_cast<float>(factors.in * r[i]); });
     fine_.hold(b_);
@@ -190,75 +186,12 @@ class ModesHierarchy final : public RigidMultigrid::Hierarchy {
   std::vector<float> b_, x_, step_, image_;
 };
 
-/// Which of the two it is shows in a build: modes of aggregates until pressures pay, then these for good.
-class ChosenHierarchy final : public RigidMultigrid::Hierarchy {
- public:
-  ChosenHierarchy(const MultigridBody& body, const MultigridOptions& options)
-      : body_(body), options_(options) {}
-
-  void build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space) override {
-    const bool pays = pressure_contrast(body_, g) >= options_.pressure_contrast;
-    if (pays && !with_pressures_) {
-      chosen_ = make_pressure_hierarchy(body_, options_);
-      with_pressures_ = true;
-    } else if (!chosen_) {
-      chosen_ = std::make_unique<ModesHierarchy<6>>(body_, options_);
-    }
-    chosen_->build(g, blocks, space);
-  }
-  void rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space) override {
-    chosen_->rebuild(blocks, space);
-  }
-  void apply(std::span<const double> r, std::span<double> z,
-             const RigidMultigrid::Factors& factors) override {
-    chosen_->apply(r, z, factors);
-  }
-  void secant(std::span<double> g) const override {
-    if (chosen_) return chosen_->secant(g);
-    const std::size_t points = points_per_element(body_.body.mesh.type);
-    for (std::size_t i = 0; i < g.size(); ++i) g[i] = body_.body.law(i / points).secant(0.0);
-  }
-  int levels() const noexcept override { return chosen_ ? chosen_->levels() : 1; }
-  std::size_t bytes() const noexcept override { return chosen_ ? chosen_->bytes() : 0; }
-
- private:
-  MultigridBody body_;
-  MultigridOptions options_;
-  std::unique_ptr<RigidMultigrid::Hierarchy> chosen_;
-  bool with_pressures_ = false;
-};
-
 }  // namespace
 
-RigidMultigrid::RigidMultigrid(const MultigridBody& body, const MultigridOptions& options) {
-  if (body.dim() == 3 && !corner_moduli(body.body).empty())
-    hierarchy_ = std::make_unique<ChosenHierarchy>(body, options);
-  else if (body.dim() == 3)
-    hierarchy_ = std::make_unique<ModesHierarchy<6>>(body, options);
-  else
-    hierarchy_ = std::make_unique<ModesHierarchy<3>>(body, options);
+std::unique_ptr<Multigrid::Hierarchy> make_modes_hierarchy(const MultigridBody& body,
+                                                           const MultigridOptions& options) {
+  if (body.dim() == 3) return std::make_unique<ModesHierarchy<6>>(body, options);
+  return std::make_unique<ModesHierarchy<3>>(body, options);
 }
-
-RigidMultigrid::~RigidMultigrid() = default;
-RigidMultigrid::RigidMultigrid(RigidMultigrid&&) noexcept = default;
-
-void RigidMultigrid::build(std::span<const double> g, std::span<const NodeBlock> blocks,
-                           const HeldSpace& space) {
-  hierarchy_->build(g, blocks, space);
-}
-
-void RigidMultigrid::rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space) {
-  hierarchy_->rebuild(blocks, space);
-}
-
-void RigidMultigrid::secant(std::span<double> g) const { hierarchy_->secant(g); }
-
-void RigidMultigrid::apply(std::span<const double> r, std::span<double> z, const Factors& factors) {
-  hierarchy_->apply(r, z, factors);
-}
-
-int RigidMultigrid::levels() const noexcept { return hierarchy_->levels(); }
-
-std::size_t RigidMultigrid::bytes() const noexcept { return hierarchy_->bytes(); }
 
 }  // namespace kacanov

@@ -41,12 +41,12 @@ struct MultigridOptions {
 /// aggregation, over-correction). Where tr ε is averaged round corners and g falls far below k0 the cycle is
 /// one on displacements and pressures (theory: pressure-multigrid). Vectors have the body's unknowns and are
 /// consistent. Calls are collective.
-class RigidMultigrid {
+class Multigrid {
  public:
   /// Nothing is set up yet. What the body points to has to outlive it.
-  RigidMultigrid(const MultigridBody& body, const MultigridOptions& options);
-  ~RigidMultigrid();
-  RigidMultigrid(RigidMultigrid&&) noexcept;
+  Multigrid(const MultigridBody& body, const MultigridOptions& options);
+  ~Multigrid();
+  Multigrid(Multigrid&&) noexcept;
 
   /// For frozen g (elements × points), the blocks of *owned* nodes (several may name one), and what the space
   /// of the solves holds. The aggregates of the first time are kept. Throws InternalError where the coarsest
