@@ -166,7 +166,8 @@ int kacanov_multigrid_create(kacanov_operator* op, const kacanov_multigrid_optio
     made->op = op;
     made->options.threads = op->options.threads;
     made->options.instruction_set = op->instruction_set;
-    if (wanted.aggregate != 0.0) made->options.fine_size = wanted.aggregate;
+    if (wanted.aggregate != 0.0)
+      made->options.fine_size = wanted.aggregate, made->options.grid_contrast = 0.0;
     take_mesh(*made);
     set_up(*made);
     op->owners.fetch_add(1, std::memory_order_relaxed);

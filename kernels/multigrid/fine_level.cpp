@@ -57,7 +57,7 @@ void FineLevel::rebuild(std::span<const NodeBlock> blocks, const HeldSpace& spac
     op_.block_diagonal_deviator(diagonal);
   else
     op_.block_diagonal(diagonal);
-  if (part_ == FinePart::deviator) take_own_stiffness(diagonal);
+  take_own_stiffness(diagonal);
   for (const auto& b : blocks_)
     for (std::size_t k = 0; k < dim * dim; ++k)
       diagonal[static_cast<std::size_t>(b.node) * dim * dim + k] += static_cast<float>(b.value[k]);

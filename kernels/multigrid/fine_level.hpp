@@ -60,7 +60,7 @@ class FineLevel {
   std::span<const float> inverse() const noexcept { return inverse_; }
   /// Of held components, which keep their blocks' entries: D's diagonal.
   std::span<const float> held_stiffness() const noexcept { return held_stiffness_; }
-  /// Of every node, the mean of its block's diagonal without what is added; of the deviator alone.
+  /// Of every node, the mean of its block's diagonal without what is added.
   std::span<const float> own_stiffness() const noexcept { return own_stiffness_; }
   std::span<const std::int32_t> held() const noexcept { return held_; }
   /// Λ, of D⁻¹A; choose_smoother has worked it out.

@@ -11,16 +11,14 @@
 namespace kacanov {
 namespace {
 
-/// Edge of the first grid over the spacing of the nodes: 2.6 has 1.5 times the entries, and takes as many
-/// iterations.
-constexpr double first_grid = 3.0;
 constexpr std::int64_t last_grid_rows = 300;
 constexpr PressureSteps coarse_pressures{4, 8.0};
 
 }  // namespace
 
-GridHierarchy::GridHierarchy(const MultigridBody& body, const CornerPressures& pressures, int threads)
-    : body_(body), threads_(threads) {
+GridHierarchy::GridHierarchy(const MultigridBody& body, const CornerPressures* pressures, double first_grid,
+                             int threads)
+    : body_(body), volume_(pressures != nullptr ? VolumeOf::corners : VolumeOf::all), threads_(threads) {
   body_.like = nullptr;  // it may go
   const IndexMap& map = *body.node_map;
   const std::span<const double> coordinates = body.body.mesh.coordinates;
@@ -39,9 +37,11 @@ GridHierarchy::GridHierarchy(const MultigridBody& body, const CornerPressures& p
   std::vector<GridTransfer::Place> points;
   for (std::size_t n = 0; n < body.owned_nodes(); ++n) points.push_back(place(n));
   nodes_.emplace(levels_.front().vertices, std::move(points), map, threads);
-  points.clear();
-  for (std::size_t r = 0; r < pressures.rows(); ++r) points.push_back(place(pressures.node(r)));
-  rows_.emplace(levels_.front().vertices, std::move(points), map, threads);
+  if (pressures != nullptr) {
+    points.clear();
+    for (std::size_t r = 0; r < pressures->rows(); ++r) points.push_back(place(pressures->node(r)));
+    rows_.emplace(levels_.front().vertices, std::move(points), map, threads);
+  }
   for (std::size_t k = 0; k + 1 < levels_.size(); ++k) {
     const GridVertices& fine = levels_[k].vertices;
     const GridVertices& coarse = levels_[k + 1].vertices;
@@ -61,7 +61,7 @@ GridHierarchy::GridHierarchy(const MultigridBody& body, const CornerPressures& p
 void GridHierarchy::build(std::span<const double> g, std::span<const NodeBlock> blocks) {
   const Communicator& comm = *body_.node_map;
   LevelMoments moments = level_moments(*tree_, levels_.front().leaves, {body_.body.mesh.coordinates, cell_},
-                                       node_measures(body_.body, g, threads_), blocks, threads_);
+                                       node_measures(body_.body, g, volume_, threads_), blocks, threads_);
   direct_.reset();
   for (std::size_t k = 0; k + 1 < levels_.size(); ++k) {
     Level& level = levels_[k];
@@ -97,10 +97,10 @@ void GridHierarchy::correct(std::span<const float> force, std::span<const double
                             std::span<double> p) {
   Level& first = levels_.front();
   nodes_->restrict_to(force, 3, std::span(first.b), grid_width);
-  rows_->restrict_to(change, 1, std::span(first.b).subspan(3), grid_width);
+  if (rows_) rows_->restrict_to(change, 1, std::span(first.b).subspan(3), grid_width);
   cycle(0);
   nodes_->prolong(std::span<const float>(first.x), grid_width, 3, u);
-  rows_->prolong(std::span<const float>(first.x).subspan(3), grid_width, 1, p);
+  if (rows_) rows_->prolong(std::span<const float>(first.x).subspan(3), grid_width, 1, p);
 }
 
 /// x of a level from its b, from zero.
@@ -148,7 +148,7 @@ bool GridHierarchy::settles(std::size_t k) {
 }
 
 std::size_t GridHierarchy::bytes() const noexcept {
-  std::size_t sum = nodes_->bytes() + rows_->bytes() + cell_.size() * sizeof(std::int32_t) +
+  std::size_t sum = nodes_->bytes() + (rows_ ? rows_->bytes() : 0) + cell_.size() * sizeof(std::int32_t) +
                     tree_->cells().size() * sizeof(GridTree::Cell);
   for (const Level& level : levels_) {
     sum += level.vertices.bytes();

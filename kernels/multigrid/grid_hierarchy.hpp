@@ -8,25 +8,29 @@
 #include <vector>
 
 #include "multigrid/corner_pressures.hpp"
+#include "multigrid/grid_fit.hpp"
 #include "multigrid/grid_level.hpp"
 #include "multigrid/grid_transfer.hpp"
 #include "multigrid/pressure_direct.hpp"
 
 namespace kacanov {
 
-/// Grids from 3 times the spacing of the nodes on, each next one twice as coarse, the last one solved
-/// directly. What depends on the mesh alone is made once.
+/// Grids, each twice as coarse as the one before, the last one solved directly. What depends on the mesh
+/// alone is made once.
 class GridHierarchy {
  public:
-  /// Collective.
-  GridHierarchy(const MultigridBody& body, const CornerPressures& pressures, int threads);
+  /// `first_grid`: edge of the first one over the spacing of the nodes. Without `pressures` grids have one of
+  /// their own all over the body, with them one where these are. Collective.
+  GridHierarchy(const MultigridBody& body, const CornerPressures* pressures, double first_grid, int threads);
+  /// Of the first grid. Collective.
+  GridFit fit() const { return grid_fit(levels_.front().vertices, cell_, body_); }
 
   /// For frozen g, elements × points, and stiffnesses of local nodes. Collective.
   void build(std::span<const double> g, std::span<const NodeBlock> blocks);
   /// The same with other stiffnesses. Collective.
   void change(std::span<const NodeBlock> blocks);
-  /// Adds a correction for what is left of forces on nodes and of volume changes at rows: `u` of the nodes
-  /// this rank owns, `p` of its rows. Collective.
+  /// Adds a correction for what is left of forces on nodes and of volume changes at rows of the pressures, if
+  /// there are any: `u` of the nodes this rank owns, `p` of its rows. Collective.
   void correct(std::span<const float> force, std::span<const double> change, std::span<float> u,
                std::span<double> p);
 
@@ -46,6 +50,7 @@ class GridHierarchy {
   bool settles(std::size_t k);
 
   MultigridBody body_;
+  VolumeOf volume_;
   int threads_;
   std::optional<GridTree> tree_;
   std::vector<std::int32_t> cell_;  ///< the deepest, of every local node

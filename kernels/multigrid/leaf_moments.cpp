@@ -73,7 +73,7 @@ bool straight_sides(const elements::Nodal<E>& x) {
 
 /// Integrals over an element, `of_nodes` of them for each of its nodes.
 template <class E>
-NodeMeasure element_measure(const Body& body, std::span<const double> g, std::size_t e) {
+NodeMeasure element_measure(const Body& body, std::span<const double> g, VolumeOf volume, std::size_t e) {
   const elements::Nodal<E> x = elements::coordinates_of<E>(body.mesh, e);
   const Law& law = body.law(e);
   NodeMeasure sum;
@@ -84,11 +84,11 @@ NodeMeasure element_measure(const Body& body, std::span<const double> g, std::si
   else
     for (std::size_t q = 0; q < E::points; ++q) volumes[q] = elements::Point<E>(x, q).volume;
   for (std::size_t q = 0; q < E::points; ++q) {
-    const double volume = volumes[q] / E::nodes;
-    sum.shear += g[e * E::points + q] * volume;
-    all += volume;
+    const double share = volumes[q] / E::nodes;
+    sum.shear += g[e * E::points + q] * share;
+    all += share;
   }
-  if (averages_at_corners(law, body.mesh.type))
+  if (volume == VolumeOf::all || averages_at_corners(law, body.mesh.type))
     sum.volume = all, sum.compliance = all / law.bulk;
   else
     sum.bulk = law.bulk * all;
@@ -97,7 +97,8 @@ NodeMeasure element_measure(const Body& body, std::span<const double> g, std::si
 
 }  // namespace
 
-std::vector<NodeMeasure> node_measures(const Body& body, std::span<const double> g, int threads) {
+std::vector<NodeMeasure> node_measures(const Body& body, std::span<const double> g, VolumeOf volume,
+                                       int threads) {
   std::vector<NodeMeasure> measures(body.mesh.node_count());
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
     if constexpr (E::dim == 3) {
@@ -105,8 +106,9 @@ std::vector<NodeMeasure> node_measures(const Body& body, std::span<const double>
       std::vector<NodeMeasure> of_element(piece);
       for (std::size_t first = 0; first < body.mesh.element_count(); first += piece) {
         const std::size_t count = std::min(piece, body.mesh.element_count() - first);
-        each_in_shares(threads, count,
-                       [&](std::size_t e) { of_element[e] = element_measure<E>(body, g, first + e); });
+        each_in_shares(threads, count, [&](std::size_t e) {
+          of_element[e] = element_measure<E>(body, g, volume, first + e);
+        });
         for (std::size_t e = 0; e < count; ++e)
           for (std::size_t a = 0; a < E::nodes; ++a) {
             NodeMeasure& to = measures[body.mesh.connectivity[(first + e) * E::nodes + a]];

@@ -13,14 +13,18 @@
 
 namespace kacanov {
 
-/// What a node stands for: integrals over its shares of the elements here. `bulk`: of k0 where tr ε is not
-/// averaged; where it is, of 1 (`volume`) and of 1/k0 (`compliance`).
+/// Whose volume changes have pressures: those of elements that average tr ε round corners, or of all.
+enum class VolumeOf { corners, all };
+
+/// What a node stands for: integrals over its shares of the elements here. `bulk`: of k0 where there is no
+/// pressure; where there is one, of 1 (`volume`) and of 1/k0 (`compliance`).
 struct NodeMeasure {
   double shear = 0.0, bulk = 0.0, volume = 0.0, compliance = 0.0;
 };
 
 /// Of every node, elements shared evenly among their nodes; g: elements × points.
-std::vector<NodeMeasure> node_measures(const Body& body, std::span<const double> g, int threads);
+std::vector<NodeMeasure> node_measures(const Body& body, std::span<const double> g, VolumeOf volume,
+                                       int threads);
 
 /// Integrals over a leaf of l₀², l₀l₁, l₁² along each axis times a weight, l₀ = 1 − ξ and l₁ = ξ: of their
 /// sums all products of two trilinear functions and their derivatives consist.

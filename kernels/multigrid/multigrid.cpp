@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Multigrid without a matrix on the fine level: Chebyshev on the operator, rigid motions of aggregates below.
+// Multigrid without a matrix on the fine level.
 #include "multigrid/multigrid.hpp"
 
+#include <utility>
+
 #include <kacanov/corner_means.hpp>
+#include "multigrid/background_hierarchy.hpp"
 #include "multigrid/hierarchy.hpp"
 #include "multigrid/modes_hierarchy.hpp"
 #include "multigrid/pressure_hierarchy.hpp"
@@ -11,20 +14,20 @@ namespace kacanov {
 
 namespace {
 
-/// Which of the two it is shows in a build: modes of aggregates until pressures pay, then these for good.
+/// Which of the three it is shows in a build: background grids as long as shear is not far below bulk and
+/// they fit the body, modes of aggregates until pressures pay, then these for good.
 class ChosenHierarchy final : public Multigrid::Hierarchy {
  public:
   ChosenHierarchy(const MultigridBody& body, const MultigridOptions& options)
-      : body_(body), options_(options) {}
+      : body_(body), options_(options), averages_(!corner_moduli(body.body).empty()) {}
 
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space) override {
-    const bool pays = pressure_contrast(body_, g) >= options_.pressure_contrast;
-    if (pays && !with_pressures_) {
-      chosen_ = make_pressure_hierarchy(body_, options_);
-      with_pressures_ = true;
-    } else if (!chosen_) {
-      chosen_ = make_modes_hierarchy(body_, options_);
-    }
+    if (kind_ != Kind::pressures && averages_ && pressure_contrast(body_, g) >= options_.pressure_contrast)
+      take(Kind::pressures, make_pressure_hierarchy(body_, options_));
+    const bool small = kind_ <= Kind::grids && mean_contrast(body_, g) < options_.grid_contrast;
+    if (kind_ == Kind::none && small) take(Kind::grids, make_background_hierarchy(body_, options_));
+    if (kind_ == Kind::none || (kind_ == Kind::grids && !small))
+      take(Kind::modes, make_modes_hierarchy(body_, options_));
     chosen_->build(g, blocks, space);
   }
   void rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space) override {
@@ -42,16 +45,24 @@ class ChosenHierarchy final : public Multigrid::Hierarchy {
   std::size_t bytes() const noexcept override { return chosen_ ? chosen_->bytes() : 0; }
 
  private:
+  enum class Kind { none, grids, modes, pressures };
+
+  /// Unless there is none.
+  void take(Kind kind, std::unique_ptr<Multigrid::Hierarchy> hierarchy) {
+    if (hierarchy) kind_ = kind, chosen_ = std::move(hierarchy);
+  }
+
   MultigridBody body_;
   MultigridOptions options_;
+  bool averages_;
+  Kind kind_ = Kind::none;
   std::unique_ptr<Multigrid::Hierarchy> chosen_;
-  bool with_pressures_ = false;
 };
 
 }  // namespace
 
 Multigrid::Multigrid(const MultigridBody& body, const MultigridOptions& options) {
-  if (body.dim() == 3 && !corner_moduli(body.body).empty())
+  if (body.dim() == 3)
     hierarchy_ = std::make_unique<ChosenHierarchy>(body, options);
   else
     hierarchy_ = make_modes_hierarchy(body, options);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Multigrid without a matrix on the fine level: Chebyshev on the operator, rigid motions of aggregates below.
+// Multigrid without a matrix on the fine level: background grids, rigid motions of aggregates, or grids with
+// pressures below.
 #pragma once
 
 #include <cstddef>
@@ -28,6 +29,9 @@ struct MultigridOptions {
   /// than what they stand for. 56 its with 1 and 1. Below 2 the cycle stays definite.
   double fine_gain = 1.5, coarse_gain = 1.3;
   int cycles = 2;  ///< 1: V, 2: W; 99 and 80 its
+  /// Up to which mean k0/g bodies in 3D have background grids below the operator in place of aggregates
+  /// (theory: background-cycle): half as many iterations at 2, and as much time at 30.
+  double grid_contrast = 30.0;
   /// Where tr ε is averaged round corners: from which k0/g on pressures are unknowns of the cycle, too
   /// (theory: pressure-multigrid). Such a cycle takes some three times as long, and its number does not grow
   /// with k0/g.
@@ -36,10 +40,11 @@ struct MultigridOptions {
 
 /// z = one symmetric cycle on r: z ≈ (B(g) + blocks)⁻¹ r, symmetric positive definite and fixed between two
 /// setups. Level 0 is B(g) + blocks in single precision, never stored, smoothed by Chebyshev's iteration on
-/// D⁻¹A with 3 × 3 blocks. The levels below are Galerkin matrices over the rigid motions of aggregates, which
-/// pairwise matching along strong couplings makes; the last is factorised on every rank (theory: multigrid,
-/// aggregation, over-correction). Where tr ε is averaged round corners and g falls far below k0 the cycle is
-/// one on displacements and pressures (theory: pressure-multigrid). Vectors have the body's unknowns and are
+/// D⁻¹A with 3 × 3 blocks. The levels below are background grids in 3D where g is not far below k0 (theory:
+/// background-cycle), otherwise Galerkin matrices over the rigid motions of aggregates, which pairwise
+/// matching along strong couplings makes (theory: multigrid, aggregation, over-correction); the last is
+/// factorised on every rank. Where tr ε is averaged round corners and g falls far below k0 the cycle is one
+/// on displacements and pressures (theory: pressure-multigrid). Vectors have the body's unknowns and are
 /// consistent. Calls are collective.
 class Multigrid {
  public:
@@ -49,8 +54,8 @@ class Multigrid {
   Multigrid(Multigrid&&) noexcept;
 
   /// For frozen g (elements × points), the blocks of *owned* nodes (several may name one), and what the space
-  /// of the solves holds. The aggregates of the first time are kept. Throws InternalError where the coarsest
-  /// matrix is not definite.
+  /// of the solves holds. Aggregates and grids of the first time are kept. Throws InternalError where the
+  /// coarsest matrix is not definite.
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space);
   /// The same with the g of the last build, at a fraction of the cost where few nodes see a change.
   void rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space);

@@ -19,7 +19,7 @@ struct MultigridBody {
   const IndexMap* node_map = nullptr;  ///< of the nodes
   std::span<const std::uint8_t> held;  ///< nodes × dim: components that are zero
   /// An operator of this mesh and its laws of elements, or null: how it divides them is taken over, at once
-  /// or, where laws average tr ε round corners, in some build.
+  /// or, in 3D, in some build.
   const Operator* like = nullptr;
 
   std::size_t dim() const noexcept { return dimension(body.mesh.type); }

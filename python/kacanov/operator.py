@@ -185,7 +185,7 @@ class Operator(Symmetric):
     # ---- solved
 
     def multigrid(self, aggregate: float = 0) -> Multigrid:
-        """A preconditioner: near the inverse of B(g) with its constraints. `aggregate`: nodes of an aggregate, 0: 48."""
+        """A preconditioner: near the inverse of B(g) with its constraints. `aggregate`: nodes of an aggregate, 0: chosen."""
         return Multigrid(self, aggregate)
 
     def cg(self, b: Array, x0: Array | None = None, *, M: Multigrid | None = None, rtol: float = 1e-8,  # noqa: N803

@@ -11,8 +11,8 @@
 
 namespace kacanov {
 
-/// `multigrid`: Chebyshev on the matrix-free operator over rigid motions of aggregates (Multigrid;
-/// theory: multigrid). `elasticity`: unknown-based BoomerAMG on the assembled matrix, the yardstick (theory:
+/// `multigrid`: Chebyshev on the matrix-free operator over grids or aggregates (Multigrid; theory:
+/// multigrid). `elasticity`: unknown-based BoomerAMG on the assembled matrix, the yardstick (theory:
 /// elasticity-amg). Threads and instruction set are the operator's. `like`: an operator of the part's mesh
 /// and laws, whose division of the elements the multigrid takes over, or null. Collective; the part has to
 /// outlive it.

@@ -75,7 +75,7 @@ struct Tuning {
   /// Rounds that it remembers.
   int augmented_memory = 6;
   /// What is left unbalanced, as a share of the force that the multipliers move by.
-  double augmented_balance = 0.1;
+  double augmented_balance = 0.03;
   /// Newton steps between two moves of the multipliers.
   int augmented_iterations = 10;
   /// Share of the penalty on all rows where contact alone holds motions.

@@ -256,12 +256,13 @@ TEST_CASE("iterations hardly depend on the mesh: size, element, stretch, contras
           doctest::skip(sanitized)) {
   for (const auto type : {ElementType::tet4, ElementType::hex8, ElementType::tri3}) {
     CAPTURE(static_cast<int>(type));
+    const bool grids = dimension(type) == 3;
     const int fine = type == ElementType::tri3 ? 40 : 12;
     const int small = iterations(beam(fine / 2, 3.0, type), 1.0),
               large = iterations(beam(fine, 3.0, type), 1.0);
-    CHECK(small <= 40);
+    CHECK(small <= (grids ? 20 : 40));
     CHECK(large <= 1.5 * small);
-    CHECK(iterations(beam(fine / 2, 30.0, type), 1.0) <= 6 * small);
+    CHECK(iterations(beam(fine / 2, 30.0, type), 1.0) <= (grids ? 100 : 6 * small));
     CHECK(iterations(beam(fine / 2, 3.0, type), 0.1) <= 3 * small);
   }
 }

@@ -11,6 +11,7 @@
 #include "amg/part_multigrid.hpp"
 #include "multigrid/cg.hpp"
 #include "multigrid/fine_level.hpp"
+#include "multigrid/grid_fit.hpp"
 #include "multigrid/grid_level.hpp"
 #include "multigrid/grid_stiffness.hpp"
 #include "multigrid/grid_transfer.hpp"
@@ -174,8 +175,9 @@ TEST_CASE("grids' matrices are blind to rigid motions, have uniform strain's ene
       for (const bool held : {false, true}) {
         // Changed: built with other springs, and these in their place.
         const auto of = held ? std::span<const NodeBlock>(springs) : std::span<const NodeBlock>();
-        LevelMoments moments = level_moments(grids.tree, leaves[0], nodes, node_measures(body, g, threads),
-                                             changed ? std::span<const NodeBlock>(others) : of, threads);
+        LevelMoments moments =
+            level_moments(grids.tree, leaves[0], nodes, node_measures(body, g, VolumeOf::corners, threads),
+                          changed ? std::span<const NodeBlock>(others) : of, threads);
         LevelStiffness stiffness = level_stiffness(grids.tree, leaves[0], nodes, of);
         for (int k = 0; k <= last; ++k) {
           CAPTURE(threads);
@@ -266,31 +268,91 @@ TEST_CASE(
     if (i / 3 < part.owned_nodes()) CHECK(sum[i / 3][static_cast<std::size_t>(4 * (i % 3))] > 0.0);
 }
 
-TEST_CASE("the cycle on displacements and pressures is symmetric") {
-  const Part part = bar(4, false);
-  const Space space(part);
-  MultigridOptions options;
-  options.pressure_contrast = 0.0;
-  PartMultigrid multigrid(part, options);
-  multigrid.setup(bent(part, 100.0), {}, space);
-  const auto random = [&](double frequency) {
-    Vector x(part.unknowns());
-    for (std::size_t i = 0; i < x.size(); ++i)
-      x[i] = part.held[i] ? 0.0
-                          : std::sin(frequency * static_cast<double>(3 * part.node_index[i / 3]) +
-                                     static_cast<double>(i % 3));
-    return x;
-  };
-  const Vector x = random(0.7), y = random(1.9);
-  Vector mx(x.size()), my(x.size());
-  multigrid.apply(x, mx);
-  multigrid.apply(y, my);
-  const auto dot = [&](const Vector& a, const Vector& b) {
-    return sum_all(std::inner_product(
-        a.begin(), a.begin() + static_cast<std::ptrdiff_t>(part.owned_unknowns()), b.begin(), 0.0));
-  };
-  CHECK(dot(x, mx) > 0.0);
-  CHECK(std::abs(dot(x, my) - dot(y, mx)) < 1e-4 * std::sqrt(dot(x, mx) * dot(y, my)));
+TEST_CASE(
+    "grids fit solid bodies; a slot cuts functions, long elements leave cubes between their nodes empty") {
+  enum class Kind { solid, slot, stretched };
+  for (const Kind kind : {Kind::solid, Kind::slot, Kind::stretched}) {
+    CAPTURE(static_cast<int>(kind));
+    int rank = 0;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    Model model = elastic_model();
+    model.boundary.push_back(moved(named("left"), 3));
+    Problem problem;
+    if (rank == 0) {
+      Mesh mesh = make_box({{2, 1, 1}, {16, 8, 8}, ElementType::hex8});
+      // Beyond x = 0.5 what is above the middle has nodes of its own there.
+      std::vector<std::int32_t> twin(mesh.node_count(), -1);
+      const std::size_t nodes = mesh.node_count();
+      for (std::size_t n = 0; kind == Kind::slot && n < nodes; ++n) {
+        const Vector3 x{mesh.coordinates[3 * n], mesh.coordinates[3 * n + 1], mesh.coordinates[3 * n + 2]};
+        if (x[0] < 0.51 || std::abs(x[2] - 0.5) > 1e-6) continue;
+        twin[n] = static_cast<std::int32_t>(mesh.coordinates.size() / 3);
+        mesh.coordinates.insert(mesh.coordinates.end(), x.begin(), x.end());
+      }
+      for (std::size_t e = 0; e < mesh.element_count(); ++e) {
+        double middle = 0.0;
+        for (std::size_t a = 0; a < 8; ++a)
+          middle += mesh.coordinates[3 * static_cast<std::size_t>(mesh.elements[8 * e + a]) + 2] / 8.0;
+        for (std::size_t a = 0; middle > 0.5 && a < 8; ++a) {
+          std::int32_t& node = mesh.elements[8 * e + a];
+          if (twin[node] >= 0) node = twin[node];
+        }
+      }
+      for (std::size_t i = 0; kind == Kind::stretched && i < mesh.coordinates.size(); i += 3)
+        mesh.coordinates[i] *= 16.0;
+      problem = build_problem(mesh, model);
+    }
+    const Part part = distribute(rank == 0 ? &problem : nullptr, MPI_COMM_WORLD);
+    const Vector spacing = node_spacings(part.body(), part.node_map);
+    const GridTree tree({part.body().mesh.coordinates, spacing, static_cast<std::size_t>(part.owned_nodes())},
+                        3.0, part.node_map);
+    std::vector<std::int32_t> cell;
+    for (std::size_t n = 0; n < part.nodes(); ++n)
+      cell.push_back(tree.leaf_of(&part.body().mesh.coordinates[3 * n], 0));
+    const GridFit fit = grid_fit(GridVertices(tree, 0, part.node_map.ranks), cell, multigrid_body(part));
+    CHECK((fit.cut_off > 0.03) == (kind == Kind::slot));
+    CHECK((fit.apart > 0.01) == (kind == Kind::stretched));
+    if (kind == Kind::solid) CHECK(fit.cut_off == 0.0);
+    if (kind == Kind::solid) CHECK(fit.apart == 0.0);
+  }
+}
+
+TEST_CASE("the cycles on grids, with displacements alone and with pressures, are symmetric") {
+  for (const double contrast : {0.0, 1e9}) {
+    CAPTURE(contrast);
+    const Part part = bar(4, false);
+    const Space space(part);
+    MultigridOptions options;
+    options.pressure_contrast = contrast;
+    options.grid_contrast = 1e9;
+    PartMultigrid multigrid(part, options);
+    multigrid.setup(bent(part, 100.0), {}, space);
+    const auto random = [&](double frequency) {
+      Vector x(part.unknowns());
+      for (std::size_t i = 0; i < x.size(); ++i)
+        x[i] = part.held[i] ? 0.0
+                            : std::sin(frequency * static_cast<double>(3 * part.node_index[i / 3]) +
+                                       static_cast<double>(i % 3));
+      return x;
+    };
+    const Vector x = random(0.7), y = random(1.9);
+    Vector mx(x.size()), my(x.size());
+    multigrid.apply(x, mx);
+    multigrid.apply(y, my);
+    const auto dot = [&](const Vector& a, const Vector& b) {
+      return sum_all(std::inner_product(
+          a.begin(), a.begin() + static_cast<std::ptrdiff_t>(part.owned_unknowns()), b.begin(), 0.0));
+    };
+    CHECK(dot(x, mx) > 0.0);
+    CHECK(std::abs(dot(x, my) - dot(y, mx)) < 1e-4 * std::sqrt(dot(x, mx) * dot(y, my)));
+  }
+}
+
+TEST_CASE("displacements alone take few iterations on grids, on every size" * doctest::skip(sanitized)) {
+  const int small = iterations(bar(4, false), 1.0, 1e9), large = iterations(bar(8, false), 1.0, 1e9);
+  CHECK(small <= 20);
+  CHECK(large <= 20);
+  CHECK(iterations(bar(6, true), 1.0, 1e9) <= 60);
 }
 
 TEST_CASE("its count hardly depends on k0/g, where that of modes alone does" * doctest::skip(sanitized)) {

@@ -313,15 +313,16 @@ KACANOV_API int kacanov_set_blocks(kacanov_operator* op, size_t count, const int
 
 /* ---- Multigrid: z = M r with M near the inverse of B(g), constraints and blocks included; symmetric and
  * positive definite, the same from update to update. For tangents too, with the g of the same displacement.
- * It is that of kacanov's solver: aggregates of nodes and their rigid-body motions, without a matrix of the
- * body, in single precision within. Good for any units. The operator has to be definite once it is
- * constrained. It has the operator's threads, and may be destroyed before or after it. ---- */
+ * It is that of kacanov's solver: grids round the body, or aggregates of nodes and their rigid-body motions,
+ * without a matrix of the body, in single precision within. Good for any units. The operator has to be
+ * definite once it is constrained. It has the operator's threads, and may be destroyed before or after it.
+ * ---- */
 typedef struct kacanov_multigrid kacanov_multigrid;
 
 typedef struct kacanov_multigrid_options {
   size_t struct_size; /* sizeof(kacanov_multigrid_options) */
-  double aggregate;   /* nodes of an aggregate of the first coarse level, 4 to 1000; 0: 48. Fewer: somewhat
-                         fewer iterations, more memory */
+  double aggregate;   /* 0: grids in 3D where g is not far below k0, otherwise aggregates of 48 nodes. 4 to
+                         1000:   aggregates of so many. Fewer: somewhat fewer iterations, more memory */
 } kacanov_multigrid_options;
 
 /* For what the operator is now; `options` may be null. Costs some ten applications of it, and ten times as

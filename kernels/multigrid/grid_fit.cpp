@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whether a background grid fits a body.
+#include "multigrid/grid_fit.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace kacanov {
+namespace {
+
+/// Sets of indices that are joined one by one.
+class Joined {
+ public:
+  explicit Joined(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
+  std::int32_t root(std::int32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(std::int32_t i, std::int32_t j) {
+    i = root(i), j = root(j);
+    parent_[std::max(i, j)] = std::min(i, j);
+  }
+
+ private:
+  std::vector<std::int32_t> parent_;
+};
+
+using Pair = std::pair<std::int32_t, std::int32_t>;
+
+/// Of all ranks, the same on each: sets of a rank's nodes in one leaf that its elements join there, and which
+/// of these elements or common nodes join across leaves and ranks.
+struct Fragments {
+  std::vector<std::int32_t> leaf;
+  std::vector<double> nodes;
+  std::vector<Pair> joined;  ///< both ways, ascending
+};
+
+/// What each rank has, one after the other. Collective.
+std::vector<double> all_of(const Communicator& comm, std::span<const double> mine) {
+  const auto count = static_cast<std::int64_t>(mine.size());
+  std::vector<double> all(comm.sum_all(count), 0.0);
+  std::copy(mine.begin(), mine.end(), all.begin() + static_cast<std::ptrdiff_t>(comm.sum_below(count)));
+  comm.sum_all(all);
+  return all;
+}
+
+Fragments fragments_of(std::span<const std::int32_t> cell, const MultigridBody& body) {
+  const IndexMap& map = *body.node_map;
+  const MeshView& mesh = body.body.mesh;
+  const std::size_t npe = nodes_per_element(mesh.type);
+  const auto node_of = [&](std::size_t e, std::size_t a) { return mesh.connectivity[e * npe + a]; };
+  Joined sets(cell.size());
+  for (std::size_t e = 0; e < mesh.element_count(); ++e)
+    for (std::size_t a = 1; a < npe; ++a)
+      for (std::size_t b = 0; b < a; ++b)
+        if (cell[node_of(e, a)] == cell[node_of(e, b)]) {
+          sets.join(node_of(e, a), node_of(e, b));
+          break;
+        }
+  std::vector<std::int32_t> fragment(cell.size());
+  std::vector<double> leaf, nodes;
+  for (std::size_t n = 0; n < cell.size(); ++n) {
+    const auto root = static_cast<std::size_t>(sets.root(static_cast<std::int32_t>(n)));
+    if (root == n) {
+      fragment[n] = static_cast<std::int32_t>(leaf.size());
+      leaf.push_back(cell[n]), nodes.push_back(0.0);
+    }
+    fragment[n] = fragment[root];  // roots come first
+    if (n < body.owned_nodes()) nodes[fragment[n]] += 1.0;
+  }
+  const auto first = static_cast<std::int32_t>(map.sum_below(static_cast<std::int64_t>(leaf.size())));
+  for (std::int32_t& f : fragment) f += first;
+  std::vector<Pair> joined;
+  std::vector<Pair> lately(1024, Pair(-1, -1));  // most of them come again and again
+  const auto join = [&](std::int32_t f, std::int32_t g) {
+    const Pair pair(std::min(f, g), std::max(f, g));
+    Pair& same = lately[static_cast<std::uint32_t>(31 * pair.first + pair.second) % lately.size()];
+    if (f == g || same == pair) return;
+    joined.push_back(pair);
+    same = pair;
+  };
+  for (std::size_t e = 0; e < mesh.element_count(); ++e)
+    for (std::size_t a = 1; a < npe; ++a)
+      for (std::size_t b = 0; b < a; ++b) join(fragment[node_of(e, a)], fragment[node_of(e, b)]);
+  std::vector<std::int32_t> owners = fragment;
+  map.forward(owners, 1);
+  for (std::size_t n = body.owned_nodes(); n < cell.size(); ++n) join(fragment[n], owners[n]);
+  std::sort(joined.begin(), joined.end());
+  joined.erase(std::unique(joined.begin(), joined.end()), joined.end());
+  std::vector<double> ends;
+  for (const auto& [f, g] : joined) ends.push_back(f), ends.push_back(g);
+
+  Fragments all;
+  for (const double l : all_of(map, leaf)) all.leaf.push_back(static_cast<std::int32_t>(l));
+  all.nodes = all_of(map, nodes);
+  const std::vector<double> all_ends = all_of(map, ends);
+  for (std::size_t i = 0; i < all_ends.size(); i += 2) {
+    const auto f = static_cast<std::int32_t>(all_ends[i]), g = static_cast<std::int32_t>(all_ends[i + 1]);
+    all.joined.emplace_back(f, g), all.joined.emplace_back(g, f);
+  }
+  std::sort(all.joined.begin(), all.joined.end());
+  return all;
+}
+
+/// Nodes of a function with these fragments, and how many of them are not in its largest piece.
+std::array<double, 2> pieces(const Fragments& fragments, std::span<const std::int32_t> of) {
+  Joined sets(of.size());
+  for (std::size_t i = 0; i < of.size(); ++i) {
+    const auto begin = std::lower_bound(fragments.joined.begin(), fragments.joined.end(), Pair(of[i], 0));
+    for (auto at = begin; at != fragments.joined.end() && at->first == of[i]; ++at) {
+      const auto other = std::lower_bound(of.begin(), of.end(), at->second);
+      if (other != of.end() && *other == at->second)
+        sets.join(static_cast<std::int32_t>(i), static_cast<std::int32_t>(other - of.begin()));
+    }
+  }
+  std::vector<double> nodes(of.size(), 0.0);
+  double total = 0.0;
+  for (std::size_t i = 0; i < of.size(); ++i) {
+    nodes[sets.root(static_cast<std::int32_t>(i))] += fragments.nodes[of[i]];
+    total += fragments.nodes[of[i]];
+  }
+  return {total, total - *std::max_element(nodes.begin(), nodes.end())};
+}
+
+/// Whether some function moves nodes of both leaves.
+bool share_rows(const GridVertices& vertices, std::int32_t a, std::int32_t b) {
+  for (std::size_t i = 0; i < 8; ++i)
+    for (const auto& one : vertices.corner(a, i))
+      for (std::size_t j = 0; j < 8; ++j)
+        for (const auto& other : vertices.corner(b, j))
+          if (one.row == other.row) return true;
+  return false;
+}
+
+}  // namespace
+
+GridFit grid_fit(const GridVertices& vertices, std::span<const std::int32_t> cell,
+                 const MultigridBody& body) {
+  const IndexMap& map = *body.node_map;
+  const Fragments fragments = fragments_of(cell, body);
+  const std::int64_t begin = vertices.starts()[map.rank], end = vertices.starts()[map.rank + 1];
+  std::vector<std::vector<std::int32_t>> of_row(end - begin);
+  for (std::size_t f = 0; f < fragments.leaf.size(); ++f)
+    for (std::size_t k = 0; k < 8; ++k)
+      for (const GridVertices::Share& share : vertices.corner(fragments.leaf[f], k)) {
+        if (share.row < begin || share.row >= end) continue;
+        auto& list = of_row[share.row - begin];
+        if (list.empty() || list.back() != static_cast<std::int32_t>(f))
+          list.push_back(static_cast<std::int32_t>(f));
+      }
+  std::array<double, 2> sums{};
+  for (const auto& list : of_row) {
+    if (list.empty()) continue;
+    const auto row = pieces(fragments, list);
+    sums[0] += row[0], sums[1] += row[1];
+  }
+  map.sum_all(sums);
+  double apart = 0.0;
+  for (const auto& [f, g] : fragments.joined)
+    if (f < g && !share_rows(vertices, fragments.leaf[f], fragments.leaf[g])) apart += 2.0;
+  const auto joined = static_cast<double>(fragments.joined.size());
+  return {sums[0] > 0.0 ? sums[1] / sums[0] : 0.0, joined > 0.0 ? apart / joined : 0.0};
+}
+
+}  // namespace kacanov
