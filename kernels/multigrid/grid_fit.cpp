@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
-#include <utility>
 #include <vector>
+
+#include "distributed/exchange.hpp"
 
 namespace kacanov {
 namespace {
@@ -28,7 +29,7 @@ class Joined {
   std::vector<std::int32_t> parent_;
 };
 
-using Pair = std::pair<std::int32_t, std::int32_t>;
+using Pair = std::array<std::int32_t, 2>;
 
 /// Of all ranks, the same on each: sets of a rank's nodes in one leaf that its elements join there, and which
 /// of these elements or common nodes join across leaves and ranks.
@@ -37,15 +38,6 @@ struct Fragments {
   std::vector<double> nodes;
   std::vector<Pair> joined;  ///< both ways, ascending
 };
-
-/// What each rank has, one after the other. Collective.
-std::vector<double> all_of(const Communicator& comm, std::span<const double> mine) {
-  const auto count = static_cast<std::int64_t>(mine.size());
-  std::vector<double> all(comm.sum_all(count), 0.0);
-  std::copy(mine.begin(), mine.end(), all.begin() + static_cast<std::ptrdiff_t>(comm.sum_below(count)));
-  comm.sum_all(all);
-  return all;
-}
 
 Fragments fragments_of(std::span<const std::int32_t> cell, const MultigridBody& body) {
   const IndexMap& map = *body.node_map;
@@ -61,7 +53,8 @@ Fragments fragments_of(std::span<const std::int32_t> cell, const MultigridBody& 
           break;
         }
   std::vector<std::int32_t> fragment(cell.size());
-  std::vector<double> leaf, nodes;
+  std::vector<std::int32_t> leaf;
+  std::vector<double> nodes;
   for (std::size_t n = 0; n < cell.size(); ++n) {
     const auto root = static_cast<std::size_t>(sets.root(static_cast<std::int32_t>(n)));
     if (root == n) {
@@ -74,10 +67,11 @@ Fragments fragments_of(std::span<const std::int32_t> cell, const MultigridBody& 
   const auto first = static_cast<std::int32_t>(map.sum_below(static_cast<std::int64_t>(leaf.size())));
   for (std::int32_t& f : fragment) f += first;
   std::vector<Pair> joined;
-  std::vector<Pair> lately(1024, Pair(-1, -1));  // most of them come again and again
+  std::vector<Pair> lately(1024, Pair{-1, -1});  // most of them come again and again
   const auto join = [&](std::int32_t f, std::int32_t g) {
-    const Pair pair(std::min(f, g), std::max(f, g));
-    Pair& same = lately[static_cast<std::uint32_t>(31 * pair.first + pair.second) % lately.size()];
+    const Pair pair{std::min(f, g), std::max(f, g)};
+    Pair& same =
+        lately[(31 * static_cast<std::size_t>(pair[0]) + static_cast<std::size_t>(pair[1])) % lately.size()];
     if (f == g || same == pair) return;
     joined.push_back(pair);
     same = pair;
@@ -90,17 +84,10 @@ Fragments fragments_of(std::span<const std::int32_t> cell, const MultigridBody& 
   for (std::size_t n = body.owned_nodes(); n < cell.size(); ++n) join(fragment[n], owners[n]);
   std::sort(joined.begin(), joined.end());
   joined.erase(std::unique(joined.begin(), joined.end()), joined.end());
-  std::vector<double> ends;
-  for (const auto& [f, g] : joined) ends.push_back(f), ends.push_back(g);
 
-  Fragments all;
-  for (const double l : all_of(map, leaf)) all.leaf.push_back(static_cast<std::int32_t>(l));
-  all.nodes = all_of(map, nodes);
-  const std::vector<double> all_ends = all_of(map, ends);
-  for (std::size_t i = 0; i < all_ends.size(); i += 2) {
-    const auto f = static_cast<std::int32_t>(all_ends[i]), g = static_cast<std::int32_t>(all_ends[i + 1]);
-    all.joined.emplace_back(f, g), all.joined.emplace_back(g, f);
-  }
+  Fragments all{gathered(leaf, map), gathered(nodes, map), gathered(joined, map)};
+  const std::size_t one_way = all.joined.size();
+  for (std::size_t i = 0; i < one_way; ++i) all.joined.push_back({all.joined[i][1], all.joined[i][0]});
   std::sort(all.joined.begin(), all.joined.end());
   return all;
 }
@@ -109,10 +96,10 @@ Fragments fragments_of(std::span<const std::int32_t> cell, const MultigridBody& 
 std::array<double, 2> pieces(const Fragments& fragments, std::span<const std::int32_t> of) {
   Joined sets(of.size());
   for (std::size_t i = 0; i < of.size(); ++i) {
-    const auto begin = std::lower_bound(fragments.joined.begin(), fragments.joined.end(), Pair(of[i], 0));
-    for (auto at = begin; at != fragments.joined.end() && at->first == of[i]; ++at) {
-      const auto other = std::lower_bound(of.begin(), of.end(), at->second);
-      if (other != of.end() && *other == at->second)
+    const auto begin = std::lower_bound(fragments.joined.begin(), fragments.joined.end(), Pair{of[i], 0});
+    for (auto at = begin; at != fragments.joined.end() && (*at)[0] == of[i]; ++at) {
+      const auto other = std::lower_bound(of.begin(), of.end(), (*at)[1]);
+      if (other != of.end() && *other == (*at)[1])
         sets.join(static_cast<std::int32_t>(i), static_cast<std::int32_t>(other - of.begin()));
     }
   }

@@ -322,7 +322,7 @@ typedef struct kacanov_multigrid kacanov_multigrid;
 typedef struct kacanov_multigrid_options {
   size_t struct_size; /* sizeof(kacanov_multigrid_options) */
   double aggregate;   /* 0: grids in 3D where g is not far below k0, otherwise aggregates of 48 nodes. 4 to
-                         1000:   aggregates of so many. Fewer: somewhat fewer iterations, more memory */
+                         1000: aggregates of so many. Fewer: somewhat fewer iterations, more memory */
 } kacanov_multigrid_options;
 
 /* For what the operator is now; `options` may be null. Costs some ten applications of it, and ten times as
