@@ -145,16 +145,10 @@ void put_stress(const Row<Element>& row, const reference::ElementFields& out) {
 /// Largest values of the points.
 template <class Element>
 void put_largest(const Row<Element>& row, const reference::ElementFields& out) {
-  for (std::size_t lane = 0; lane < row.count; ++lane) {
-    double strain = 0.0, rotation = 0.0;
-    for (const RowPoint& at : row.at) {
-      const reference::Gradient h = gradient_of(at.h, lane);
-      if (!out.strain.empty()) strain = std::max(strain, reference::largest_principal(h));
-      if (!out.rotation.empty()) rotation = std::max(rotation, reference::rotation_angle(h));
-    }
-    if (!out.strain.empty()) out.strain[row.first + lane] = strain;
-    if (!out.rotation.empty()) out.rotation[row.first + lane] = rotation;
-  }
+  Lanes strain{}, rotation{};
+  for (const RowPoint& at : row.at) row.loops.raise(at, strain, rotation);
+  if (!out.strain.empty()) std::copy_n(strain.begin(), row.count, &out.strain[row.first]);
+  if (!out.rotation.empty()) std::copy_n(rotation.begin(), row.count, &out.rotation[row.first]);
 }
 
 template <class Element>

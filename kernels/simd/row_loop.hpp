@@ -2,8 +2,11 @@
 // The loops over elements in a row. Included once for each instruction set, with its flags.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <numbers>
 
 #include "simd/inline.hpp"
 #include "simd/row_points.hpp"
@@ -50,26 +53,59 @@ KACANOV_INLINE inline void split(const Pack (&strain)[6], std::size_t first, Row
   store(square, first, out.norm);
 }
 
+/// j = ∂x/∂ξ; the adjugate is det j times the inverse. Returns det j.
+template <std::size_t nodes>
+KACANOV_INLINE inline Pack map_at(const double* slopes, const RowLanes (&x)[nodes][3], std::size_t first,
+                                  Pack (&j)[3][3], Pack (&adjugate)[3][3]) {
+  for (std::size_t a = 0; a < nodes; ++a)
+#pragma GCC unroll 3
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Pack at = load(x[a][i], first);
+#pragma GCC unroll 3
+      for (std::size_t k = 0; k < 3; ++k) j[i][k] += slopes[3 * a + k] * at;
+    }
+#pragma GCC unroll 3
+  for (std::size_t i = 0; i < 3; ++i)
+#pragma GCC unroll 3
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
+      adjugate[k][i] = j[i1][k1] * j[i2][k2] - j[i1][k2] * j[i2][k1];
+    }
+  return j[0][0] * adjugate[0][0] + j[0][1] * adjugate[1][0] + j[0][2] * adjugate[2][0];
+}
+
+template <std::size_t nodes>
+void map_of_row(const double* slopes, const RowLanes (&x)[nodes][3], RowMap& out) {
+  RowLanes stretch, inverse;
+  for (std::size_t first = 0; first < row_lanes; first += pack_lanes) {
+    Pack j[3][3] = {}, adjugate[3][3];
+    store(map_at<nodes>(slopes, x, first, j, adjugate), first, out.det);
+    Pack of_j{}, of_adjugate{};
+#pragma GCC unroll 3
+    for (std::size_t i = 0; i < 3; ++i)
+#pragma GCC unroll 3
+      for (std::size_t k = 0; k < 3; ++k) {
+        of_j += j[i][k] * j[i][k];
+        of_adjugate += adjugate[i][k] * adjugate[i][k];
+      }
+    store(of_j, first, stretch);
+    store(of_adjugate, first, inverse);
+  }
+  take_roots(stretch);
+  take_roots(inverse);
+  for (std::size_t lane = 0; lane < row_lanes; ++lane) {
+    const double size = stretch[lane] * inverse[lane];
+    const bool known = size > 0.0 && size < std::numeric_limits<double>::infinity();
+    out.thinness[lane] = known ? 3.0 * out.det[lane] / size : 0.0;
+  }
+}
+
 template <std::size_t nodes>
 void strain_of_row(const double* slopes, const RowLanes (&x)[nodes][3], const RowLanes (&u)[nodes][3],
                    RowPoint& out) {
   for (std::size_t first = 0; first < row_lanes; first += pack_lanes) {
     Pack j[3][3] = {}, inverse[3][3], h[3][3];
-    for (std::size_t a = 0; a < nodes; ++a)
-#pragma GCC unroll 3
-      for (std::size_t i = 0; i < 3; ++i) {
-        const Pack at = load(x[a][i], first);
-#pragma GCC unroll 3
-        for (std::size_t k = 0; k < 3; ++k) j[i][k] += slopes[3 * a + k] * at;
-      }
-#pragma GCC unroll 3
-    for (std::size_t i = 0; i < 3; ++i)
-#pragma GCC unroll 3
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t i1 = (i + 1) % 3, i2 = (i + 2) % 3, k1 = (k + 1) % 3, k2 = (k + 2) % 3;
-        inverse[k][i] = j[i1][k1] * j[i2][k2] - j[i1][k2] * j[i2][k1];
-      }
-    const Pack det = j[0][0] * inverse[0][0] + j[0][1] * inverse[1][0] + j[0][2] * inverse[2][0];
+    const Pack det = map_at<nodes>(slopes, x, first, j, inverse);
     const Pack scale = 1.0 / det;
     store(det, first, out.det);
 #pragma GCC unroll 3
@@ -95,6 +131,64 @@ void strain_of_row(const double* slopes, const RowLanes (&x)[nodes][3], const Ro
     split(strain, first, out.strain);
   }
   take_roots(out.strain.norm);
+}
+
+/// cos(φ/3) of z = sin²(φ/8), 0 ≤ φ ≤ π: the series of F(a, −a; ½; sin² y) = cos(2 a y) (Abramowitz and
+/// Stegun, 15.1.17) with a = 4/3. z is at most 0.147, so that these terms leave no more than rounding.
+constexpr auto third_of_angle = [] {
+  constexpr double a = 4.0 / 3.0;
+  std::array<double, 19> term{1.0};
+  for (std::size_t n = 0; n + 1 < term.size(); ++n) {
+    const auto k = static_cast<double>(n);
+    term[n + 1] = term[n] * (k + a) * (k - a) / ((k + 0.5) * (k + 1.0));
+  }
+  return term;
+}();
+
+/// cos(φ/3) from half of 1 + cos φ.
+void take_thirds(RowLanes& angle) {
+  take_roots(angle);  // cos(φ/2)
+  for (double& lane : angle) lane = 0.5 * (1.0 + lane);
+  take_roots(angle);  // cos(φ/4)
+  for (std::size_t first = 0; first < row_lanes; first += pack_lanes) {
+    const Pack z = 0.5 * (1.0 - load(angle, first));
+    Pack sum{};
+    for (std::size_t n = third_of_angle.size(); n-- > 0;) sum = sum * z + third_of_angle[n];
+    store(sum, first, angle);
+  }
+}
+
+/// Principal strains as reference::largest_principal(), without its calls of cosines.
+void raise_to_largest(const RowPoint& to, RowLanes& strain, RowLanes& rotation) {
+  RowLanes mean, half_length, upper, lower, turn;
+  for (std::size_t first = 0; first < row_lanes; first += pack_lanes) {
+    const auto h = [&](std::size_t i, std::size_t k) { return load(to.h[i][k], first); };
+    store((h(0, 0) + h(1, 1) + h(2, 2)) * (1.0 / 3.0), first, mean);
+    const Pack x = h(2, 1) - h(1, 2), y = h(0, 2) - h(2, 0), z = h(1, 0) - h(0, 1);
+    store(0.25 * (x * x + y * y + z * z), first, turn);
+    const Pack norm = load(to.strain.norm, first), p = norm * (std::numbers::inv_sqrt3 / std::numbers::sqrt2);
+    store(p, first, half_length);
+    constexpr double nothing = 1e-150;
+    const Pack scale = norm > nothing ? 1.0 / p : Pack{};
+    const auto dev = [&](std::size_t c) { return scale * load(to.strain.dev[c], first); };
+    const Pack a = dev(0), b = dev(1), c = dev(2), d = dev(3), e = dev(4), f = dev(5);
+    const Pack det = a * (b * c - e * e) - d * (d * c - e * f) + f * (d * e - b * f);
+    Pack cosine = 0.5 * det;
+    cosine = cosine > 1.0 ? Pack{} + 1.0 : cosine;
+    cosine = cosine < -1.0 ? Pack{} - 1.0 : cosine;
+    store(0.5 * (1.0 + cosine), first, upper);
+    store(0.5 * (1.0 - cosine), first, lower);
+  }
+  take_roots(turn);
+  take_thirds(upper);
+  take_thirds(lower);
+  for (std::size_t lane = 0; lane < row_lanes; ++lane) {
+    const double high = std::abs(mean[lane] + 2.0 * half_length[lane] * upper[lane]);
+    const double low = std::abs(mean[lane] - 2.0 * half_length[lane] * lower[lane]);
+    const double largest = high > low ? high : low;
+    strain[lane] = largest > strain[lane] ? largest : strain[lane];
+    rotation[lane] = turn[lane] > rotation[lane] ? turn[lane] : rotation[lane];
+  }
 }
 
 template <std::size_t nodes>
@@ -156,7 +250,10 @@ void add_work_in_row(const RowDifference& of, const RowLanes& weight, RowLanes& 
 }
 
 template <std::size_t nodes>
-constexpr RowLoops<nodes> loops_of{strain_of_row<nodes>, position_in_row<nodes>,
+constexpr RowLoops<nodes> loops_of{strain_of_row<nodes>,
+                                   raise_to_largest,
+                                   map_of_row<nodes>,
+                                   position_in_row<nodes>,
                                    smooth_in_row<RowLoops<nodes>::terms, RowLoops<nodes>::corners>,
                                    add_work_in_row};
 

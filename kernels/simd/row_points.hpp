@@ -26,6 +26,11 @@ struct RowPoint {
   RowStrain strain;
 };
 
+/// ∂x/∂ξ at a point of each element: its determinant, and how thin it makes them (see ElementMap).
+struct RowMap {
+  RowLanes det, thinness;
+};
+
 /// A polynomial of six values round a corner of each element: `terms` monomials 1, x_i and x_i x_j of what
 /// lies between a place and the centre, times the scale.
 template <std::size_t terms>
@@ -49,6 +54,10 @@ struct RowLoops {
 
   /// With `slopes` of the shape functions along reference coordinates, nodes × 3.
   void (*strain)(const double* slopes, const Nodal& x, const Nodal& u, RowPoint& out);
+  /// Raises both to what the points have: the largest magnitude of a principal strain, and the angle of
+  /// rotation.
+  void (*raise)(const RowPoint& to, RowLanes& strain, RowLanes& rotation);
+  void (*map)(const double* slopes, const Nodal& x, RowMap& out);
   /// With `shape` functions' values.
   void (*position)(const double* shape, const Nodal& x, RowLanes (&out)[3]);
   /// The polynomials of the corners, each with its `share`.

@@ -37,6 +37,8 @@ template <std::size_t nodes>
 struct Worked {
   using Loops = RowLoops<nodes>;
   RowPoint point;
+  RowMap map;
+  RowLanes strain{}, rotation{};
   RowLanes position[3];
   RowStrain smooth;
   RowLanes work;
@@ -60,6 +62,8 @@ struct Worked {
     RowLanes ga, gb, bulk, weight;
     for (auto* lanes : {&ga, &gb, &bulk, &weight, &work}) number.fill(*lanes);
     loops.strain(slopes.data(), x, u, point);
+    loops.raise(point, strain, rotation);
+    loops.map(slopes.data(), x, map);
     loops.position(shape.data(), x, position);
     loops.smooth(share.data(), polynomials, position, smooth);
     loops.add_work({point.strain, smooth, ga, gb, bulk}, weight, work);
@@ -74,6 +78,10 @@ void compare_with_plain(std::string_view set) {
     for (std::size_t k = 0; k < 3; ++k) check_near(found.point.h[i][k], expected.point.h[i][k]);
   check_near(found.point.det, expected.point.det);
   check_near(found.point.strain, expected.point.strain);
+  check_near(found.strain, expected.strain);
+  check_near(found.rotation, expected.rotation);
+  check_near(found.map.det, expected.map.det);
+  check_near(found.map.thinness, expected.map.thinness);
   for (std::size_t i = 0; i < 3; ++i) check_near(found.position[i], expected.position[i]);
   check_near(found.smooth, expected.smooth);
   check_near(found.work, expected.work);
@@ -93,4 +101,45 @@ TEST_CASE("loops over elements in a row do the same on every instruction set") {
     compare_with_plain<8>(set);
     compare_with_plain<10>(set);
   }
+}
+
+TEST_CASE("principal strains of simple states are known") {
+  const double e = 1e-3, shear = 2e-3;
+  struct State {
+    double h[3][3];
+    double strain, rotation;
+  };
+  const State states[] = {
+      {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, 0.0, 0.0},
+      {{{e, 0, 0}, {0, e, 0}, {0, 0, e}}, e, 0.0},
+      {{{e, 0, 0}, {0, 0, 0}, {0, 0, 0}}, e, 0.0},
+      {{{0, 0, 0}, {0, 0, 0}, {0, 0, -e}}, e, 0.0},
+      {{{-e, 0, 0}, {0, -e, 0}, {0, 0, 0}}, e, 0.0},
+      {{{0, shear, 0}, {0, 0, 0}, {0, 0, 0}}, 0.5 * shear, 0.5 * shear},
+      {{{0, 0, 0}, {0, 0, shear}, {0, -shear, 0}}, 0.0, shear},
+      {{{3 * e, 0, 0}, {0, -2 * e, 0}, {0, 0, e}}, 3 * e, 0.0},
+  };
+  const RowLoops<4>& loops = row_loops<4>({});
+  const double slopes[12] = {-1, -1, -1, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  RowLanes x[4][3] = {}, u[4][3] = {}, strain{}, rotation{};
+  for (std::size_t i = 0; i < 3; ++i) x[i + 1][i].fill(1.0);
+  for (std::size_t lane = 0; lane < row_lanes; ++lane)
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t k = 0; k < 3; ++k) u[k + 1][i][lane] = states[lane % 8].h[i][k];
+  RowPoint point;
+  loops.strain(slopes, x, u, point);
+  loops.raise(point, strain, rotation);
+  for (std::size_t lane = 0; lane < row_lanes; ++lane) {
+    CAPTURE(lane);
+    // Where two principal strains are equal, rounding of their invariants leaves half of the digits.
+    CHECK(strain[lane] == doctest::Approx(states[lane % 8].strain).epsilon(1e-7));
+    CHECK(rotation[lane] == doctest::Approx(states[lane % 8].rotation).epsilon(1e-12));
+  }
+  const RowLanes before = strain;
+  for (auto& gradient : point.h)
+    for (RowLanes& lanes : gradient) lanes.fill(0.0);
+  for (RowLanes& lanes : point.strain.dev) lanes.fill(0.0);
+  point.strain.norm.fill(0.0);
+  loops.raise(point, strain, rotation);
+  check_near(strain, before);
 }
