@@ -21,7 +21,7 @@ using simd::RowPoint, simd::RowStrain;
 template <class Element>
 struct Row {
   std::size_t first = 0, count = 0;
-  Lanes x[Element::nodes][3], moved[Element::nodes][3];
+  Lanes x[Element::nodes][3];
   RowPoint at[Element::points];
   Lanes weight[Element::points];  ///< the points' volumes
   Lanes square[Element::points];  ///< of the trace, as the energy has it
@@ -40,10 +40,12 @@ struct Row {
       mean_dilatation = mean_dilatation || law[lane]->mean_dilatation;
     }
     gather(body.mesh, row, body.mesh.coordinates, x);
-    gather(body.mesh, row, u, moved);
+    gather(body.mesh, row, u, moved_);
+    loops.take_sides(x, sides_);
+    loops.take_sides(moved_, moved_sides_);
     volume.fill(0.0);
     for (std::size_t q = 0; q < Element::points; ++q) {
-      loops.strain(Element::gradients(Element::point[q].data()).data(), x, moved, at[q]);
+      loops.strain(Element::gradients(Element::point[q].data()).data(), sides_, moved_sides_, at[q]);
       for (std::size_t lane = 0; lane < abreast; ++lane) {
         weight[q][lane] = Element::weight * at[q].det[lane];
         volume[lane] += weight[q][lane];
@@ -79,6 +81,9 @@ struct Row {
       }
     }
   }
+
+  Lanes moved_[Element::nodes][3];
+  typename simd::RowLoops<Element::nodes>::Sides sides_, moved_sides_;
 };
 
 /// Calls visit(row).

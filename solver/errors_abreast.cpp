@@ -27,6 +27,8 @@ class ErrorRows {
   void work_out(const ElementsAbreast& row, Lanes& energy) {
     gather(body_.mesh, row, body_.mesh.coordinates, x_);
     gather(body_.mesh, row, of_.state.u, moved_);
+    loops_.take_sides(x_, sides_);
+    loops_.take_sides(moved_, moved_sides_);
     for (std::size_t lane = 0; lane < abreast; ++lane) take(row[lane], lane);
     energy.fill(0.0);
     simd::RowPoint here;
@@ -35,7 +37,7 @@ class ErrorRows {
     for (const FinePoint& point : points_) {
       const bool even = Element::nodes == 4 && &point != points_.data();  // as at the first point
       if (!even) {
-        loops_.strain(point.gradient.data(), x_, moved_, here);
+        loops_.strain(point.gradient.data(), sides_, moved_sides_, here);
         put_means(point, here.strain.trace);
         find_secants(here.strain.norm, g);
       }
@@ -89,6 +91,7 @@ class ErrorRows {
   std::vector<FinePoint> points_;
   const Loops& loops_ = simd::row_loops<Element::nodes>({});
   Lanes x_[Element::nodes][3], moved_[Element::nodes][3], bulk_, trace_[Loops::corners];
+  typename Loops::Sides sides_, moved_sides_;
   std::array<const Law*, abreast> law_;
   std::array<bool, abreast> averaged_;
   typename Loops::Polynomials polynomial_;

@@ -86,10 +86,11 @@ class MapRows {
         for (std::size_t i = 0; i < 3; ++i)
           x_[a][i][lane] = mesh_.coordinates[3 * static_cast<std::size_t>(node[a]) + i];
     }
+    loops_.take_sides(x_, sides_);
     out.fill(no_point_yet);
     simd::RowMap at;
     for (const auto& slopes : slopes_) {
-      loops_.map(slopes.data(), x_, at);
+      loops_.map(slopes.data(), sides_, at);
       for (std::size_t lane = 0; lane < simd::row_lanes; ++lane)
         add_point(out[lane], E::weight, at.det[lane], at.thinness[lane]);
     }
@@ -100,6 +101,7 @@ class MapRows {
   const simd::RowLoops<E::nodes>& loops_ = simd::row_loops<E::nodes>({});
   std::array<std::array<double, E::nodes * 3>, E::point.size()> slopes_;
   simd::RowLanes x_[E::nodes][3];
+  typename simd::RowLoops<E::nodes>::Sides sides_;
 };
 
 }  // namespace

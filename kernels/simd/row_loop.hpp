@@ -53,17 +53,47 @@ KACANOV_INLINE inline void split(const Pack (&strain)[6], std::size_t first, Row
   store(square, first, out.norm);
 }
 
+/// Ends of the edges of a hexahedron in the order of its sides, four along each reference coordinate.
+constexpr std::size_t edge_ends[12][2] = {{0, 1}, {3, 2}, {4, 5}, {7, 6}, {0, 3}, {1, 2},
+                                          {4, 7}, {5, 6}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+
+template <std::size_t nodes>
+using RowSides = typename RowLoops<nodes>::Sides;
+
+template <std::size_t nodes>
+void take_sides(const RowLanes (&of)[nodes][3], RowSides<nodes>& out) {
+  for (std::size_t side = 0; side < RowLoops<nodes>::sides; ++side)
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t lane = 0; lane < row_lanes; ++lane)
+        if constexpr (nodes == 8)
+          out[side][i][lane] = of[edge_ends[side][1]][i][lane] - of[edge_ends[side][0]][i][lane];
+        else
+          out[side][i][lane] = of[side][i][lane];
+}
+
+/// Slopes of a component along the reference coordinates.
+template <std::size_t nodes>
+KACANOV_INLINE inline void add_slopes(const double* slopes, const RowSides<nodes>& of, std::size_t i,
+                                      std::size_t first, Pack (&sum)[3]) {
+  if constexpr (nodes == 8) {
+#pragma GCC unroll 12
+    for (std::size_t side = 0; side < 12; ++side)
+      sum[side / 4] += slopes[3 * edge_ends[side][1] + side / 4] * load(of[side][i], first);
+  } else {
+    for (std::size_t a = 0; a < nodes; ++a) {
+      const Pack at = load(of[a][i], first);
+#pragma GCC unroll 3
+      for (std::size_t k = 0; k < 3; ++k) sum[k] += slopes[3 * a + k] * at;
+    }
+  }
+}
+
 /// j = ∂x/∂ξ; the adjugate is det j times the inverse. Returns det j.
 template <std::size_t nodes>
-KACANOV_INLINE inline Pack map_at(const double* slopes, const RowLanes (&x)[nodes][3], std::size_t first,
+KACANOV_INLINE inline Pack map_at(const double* slopes, const RowSides<nodes>& x, std::size_t first,
                                   Pack (&j)[3][3], Pack (&adjugate)[3][3]) {
-  for (std::size_t a = 0; a < nodes; ++a)
 #pragma GCC unroll 3
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Pack at = load(x[a][i], first);
-#pragma GCC unroll 3
-      for (std::size_t k = 0; k < 3; ++k) j[i][k] += slopes[3 * a + k] * at;
-    }
+  for (std::size_t i = 0; i < 3; ++i) add_slopes<nodes>(slopes, x, i, first, j[i]);
 #pragma GCC unroll 3
   for (std::size_t i = 0; i < 3; ++i)
 #pragma GCC unroll 3
@@ -75,7 +105,7 @@ KACANOV_INLINE inline Pack map_at(const double* slopes, const RowLanes (&x)[node
 }
 
 template <std::size_t nodes>
-void map_of_row(const double* slopes, const RowLanes (&x)[nodes][3], RowMap& out) {
+void map_of_row(const double* slopes, const RowSides<nodes>& x, RowMap& out) {
   RowLanes stretch, inverse;
   for (std::size_t first = 0; first < row_lanes; first += pack_lanes) {
     Pack j[3][3] = {}, adjugate[3][3];
@@ -101,8 +131,7 @@ void map_of_row(const double* slopes, const RowLanes (&x)[nodes][3], RowMap& out
 }
 
 template <std::size_t nodes>
-void strain_of_row(const double* slopes, const RowLanes (&x)[nodes][3], const RowLanes (&u)[nodes][3],
-                   RowPoint& out) {
+void strain_of_row(const double* slopes, const RowSides<nodes>& x, const RowSides<nodes>& u, RowPoint& out) {
   for (std::size_t first = 0; first < row_lanes; first += pack_lanes) {
     Pack j[3][3] = {}, inverse[3][3], h[3][3];
     const Pack det = map_at<nodes>(slopes, x, first, j, inverse);
@@ -111,11 +140,7 @@ void strain_of_row(const double* slopes, const RowLanes (&x)[nodes][3], const Ro
 #pragma GCC unroll 3
     for (std::size_t i = 0; i < 3; ++i) {
       Pack d[3] = {};
-      for (std::size_t a = 0; a < nodes; ++a) {
-        const Pack by = load(u[a][i], first);
-#pragma GCC unroll 3
-        for (std::size_t k = 0; k < 3; ++k) d[k] += slopes[3 * a + k] * by;
-      }
+      add_slopes<nodes>(slopes, u, i, first, d);
 #pragma GCC unroll 3
       for (std::size_t k = 0; k < 3; ++k) {
         h[i][k] = scale * (d[0] * inverse[0][k] + d[1] * inverse[1][k] + d[2] * inverse[2][k]);
@@ -250,12 +275,11 @@ void add_work_in_row(const RowDifference& of, const RowLanes& weight, RowLanes& 
 }
 
 template <std::size_t nodes>
-constexpr RowLoops<nodes> loops_of{strain_of_row<nodes>,
-                                   raise_to_largest,
-                                   map_of_row<nodes>,
-                                   position_in_row<nodes>,
-                                   smooth_in_row<RowLoops<nodes>::terms, RowLoops<nodes>::corners>,
-                                   add_work_in_row};
+constexpr RowLoops<nodes> loops_of{
+    take_sides<nodes>,      strain_of_row<nodes>,
+    raise_to_largest,       map_of_row<nodes>,
+    position_in_row<nodes>, smooth_in_row<RowLoops<nodes>::terms, RowLoops<nodes>::corners>,
+    add_work_in_row};
 
 constexpr AllRowLoops all_row_loops{loops_of<4>, loops_of<8>, loops_of<10>};
 

@@ -50,14 +50,19 @@ template <std::size_t nodes>
 struct RowLoops {
   static constexpr std::size_t corners = nodes == 8 ? 8 : 4, terms = nodes == 10 ? 10 : 4;
   using Nodal = RowLanes[nodes][3];
+  /// What slopes are taken of: of hexahedra, whose shape functions have opposite slopes at both ends of an
+  /// edge, the differences along the four edges of each direction; of tetrahedra the nodal values themselves.
+  static constexpr std::size_t sides = nodes == 8 ? 12 : nodes;
+  using Sides = RowLanes[sides][3];
   using Polynomials = RowPolynomial<terms>[corners];
 
+  void (*take_sides)(const Nodal& of, Sides& out);
   /// With `slopes` of the shape functions along reference coordinates, nodes × 3.
-  void (*strain)(const double* slopes, const Nodal& x, const Nodal& u, RowPoint& out);
+  void (*strain)(const double* slopes, const Sides& x, const Sides& u, RowPoint& out);
   /// Raises both to what the points have: the largest magnitude of a principal strain, and the angle of
   /// rotation.
   void (*raise)(const RowPoint& to, RowLanes& strain, RowLanes& rotation);
-  void (*map)(const double* slopes, const Nodal& x, RowMap& out);
+  void (*map)(const double* slopes, const Sides& x, RowMap& out);
   /// With `shape` functions' values.
   void (*position)(const double* shape, const Nodal& x, RowLanes (&out)[3]);
   /// The polynomials of the corners, each with its `share`.

@@ -61,9 +61,12 @@ struct Worked {
     }
     RowLanes ga, gb, bulk, weight;
     for (auto* lanes : {&ga, &gb, &bulk, &weight, &work}) number.fill(*lanes);
-    loops.strain(slopes.data(), x, u, point);
+    typename Loops::Sides of_x, of_u;
+    loops.take_sides(x, of_x);
+    loops.take_sides(u, of_u);
+    loops.strain(slopes.data(), of_x, of_u, point);
     loops.raise(point, strain, rotation);
-    loops.map(slopes.data(), x, map);
+    loops.map(slopes.data(), of_x, map);
     loops.position(shape.data(), x, position);
     loops.smooth(share.data(), polynomials, position, smooth);
     loops.add_work({point.strain, smooth, ga, gb, bulk}, weight, work);

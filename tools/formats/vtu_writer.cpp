@@ -159,12 +159,6 @@ void VtuShare::add_cells(const Grid& grid) {
   add("type=\"UInt8\" Name=\"types\"", 1, types);
 }
 
-std::uint64_t VtuShare::largest() const {
-  std::uint64_t bytes = 0;
-  for (const Array& array : arrays_) bytes = std::max(bytes, array.bytes);
-  return bytes;
-}
-
 void VtuShare::pack(std::size_t array, BlockSink& sink) const {
   BlockPacker packer(arrays_[array].before, sink);
   arrays_[array].visit([&](const void* data, std::size_t bytes) { packer.write(data, bytes); });

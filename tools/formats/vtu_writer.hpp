@@ -94,8 +94,6 @@ class VtuShare {
   VtuShare(const std::string& path, const Grid& grid, const GridPlace& place);
 
   std::size_t arrays() const noexcept { return arrays_.size(); }
-  /// Bytes of the largest array, of all shares together.
-  std::uint64_t largest() const;
   /// Hands an array's share over in blocks.
   void pack(std::size_t array, BlockSink& sink) const;
 

@@ -30,12 +30,13 @@ struct Front {
   std::uint64_t bytes = 0, lengths = 0;
 };
 
-/// Sends blocks to the first rank, and goes on while that packs its own: `ahead` bytes may wait here to be
-/// taken. Without that the ranks would pack one after the other.
+/// Sends blocks to the first rank, and goes on while that packs its own; at an array's end it waits until all
+/// are taken. MPI may move bytes while both ranks are within it alone: of ranks that went on to the next
+/// array the first one waited for theirs to get through, a third of the time that a file took.
 class Sender : public BlockSink {
  public:
-  Sender(MPI_Comm comm, std::uint64_t ahead) : comm_(comm), ahead_(ahead) {}
-  ~Sender() override { wait_until(0); }
+  explicit Sender(MPI_Comm comm) : comm_(comm) {}
+  ~Sender() override { wait_for_all(); }
   Sender(const Sender&) = delete;
   Sender& operator=(const Sender&) = delete;
 
@@ -45,23 +46,22 @@ class Sender : public BlockSink {
   }
   void send(Kind kind, std::span<const unsigned char> bytes = {},
             std::span<const std::uint64_t> lengths = {}) {
-    wait_until(ahead_);
     waiting_.push_back({{kind, bytes.size(), lengths.size()},
                         {lengths.begin(), lengths.end()},
                         {bytes.begin(), bytes.end()},
                         {MPI_REQUEST_NULL, MPI_REQUEST_NULL, MPI_REQUEST_NULL}});
     Message& message = waiting_.back();
-    pending_ += bytes.size();
     const auto start = [&](const void* data, std::size_t size, MPI_Request& request) {
       MPI_Isend(data, static_cast<int>(size), MPI_BYTE, 0, 1, comm_, &request);
     };
     start(&message.front, sizeof message.front, message.requests[0]);
     if (!lengths.empty()) start(message.lengths.data(), lengths.size_bytes(), message.requests[1]);
     if (!bytes.empty()) start(message.bytes.data(), bytes.size(), message.requests[2]);
+    if (kind == Kind::end) wait_for_all();
   }
   /// Needs no memory: it may be that which is missing.
   void give_up() {
-    wait_until(0);
+    wait_for_all();
     const Front front{Kind::failed, 0, 0};
     send_bytes(&front, sizeof front, 0, comm_);
   }
@@ -74,32 +74,18 @@ class Sender : public BlockSink {
     std::array<MPI_Request, 3> requests;
   };
 
-  /// Lets go of what has been taken, and waits until no more than so many bytes are left.
-  void wait_until(std::uint64_t most) {
-    while (!waiting_.empty()) {
-      Message& oldest = waiting_.front();
-      int taken = 0;
-      if (pending_ > most || most == 0) {
-        MPI_Waitall(3, oldest.requests.data(), MPI_STATUSES_IGNORE);
-        taken = 1;
-      } else {
-        MPI_Testall(3, oldest.requests.data(), &taken, MPI_STATUSES_IGNORE);
-      }
-      if (taken == 0) return;
-      pending_ -= oldest.bytes.size();
-      waiting_.pop_front();
-    }
+  void wait_for_all() {
+    for (Message& message : waiting_) MPI_Waitall(3, message.requests.data(), MPI_STATUSES_IGNORE);
+    waiting_.clear();
   }
 
   MPI_Comm comm_;
-  std::uint64_t ahead_, pending_ = 0;
-  std::deque<Message> waiting_;
+  std::deque<Message> waiting_;  ///< of one array
 };
 
 /// Sends all arrays; where that fails, says so and sends no more.
 void send_share(const VtuShare& share, const MpiSession& mpi) {
-  // An array's share: while the first rank packs its own of one, the others do so too.
-  Sender sender(mpi.comm(), share.largest() / static_cast<std::uint64_t>(mpi.ranks()));
+  Sender sender(mpi.comm());
   try {
     for (std::size_t array = share.arrays(); array-- > 0;) {
       share.pack(array, sender);
