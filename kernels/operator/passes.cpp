@@ -334,7 +334,7 @@ double BasicOperator<Real>::Data::nonlinear(const Real* u, Real* f, simd::Nonlin
         simd::Nonlinear out = keep;
         at.outside = outside.from(static_cast<std::size_t>(at.secant - secant.data()));
         kernels.nonlinear(at, local, forces, &out);
-        return out.energy;
+        return out.energy();
       });
   return of_volume + energy;
 }

@@ -94,7 +94,14 @@ struct Nonlinear {
   bool keep_secant = false;
   bool keep_tangent = false;
   bool sum_energy = false;
-  double energy = 0.0;  ///< added to
+  /// Added to, lane by lane: one number that lanes were added to in turn made each wait for the one before.
+  alignas(64) double energies[16] = {};
+
+  double energy() const {
+    double sum = 0.0;
+    for (const double lane : energies) sum += lane;
+    return sum;
+  }
 };
 
 /// Input vectors on the records of a block and, for each, what is added to: `count` of them (1, 2 or 4),

@@ -195,7 +195,7 @@ struct NonlinearMaterial {
     return other;
   }
   void add_energy(V density) const {
-    for (int l = 0; l < L::width; ++l) out.energy += double(density[l]);
+    for (int l = 0; l < L::width; ++l) out.energies[l] += double(density[l]);
   }
 
   KACANOV_INLINE void fetch_ahead(std::size_t, int) const {}
@@ -227,12 +227,14 @@ struct NonlinearMaterial {
       slope = outside.slope == nullptr ? V{} : L::load(outside.slope + slot);
       energy = outside.energy == nullptr ? V{} : L::load(outside.energy + slot);
     } else {
-      for (int l = 0; l < L::width; ++l)
-        if (double(x[l]) > law.elastic) {
-          double lane_g, lane_slope, lane_energy = 0.0;
-          law.evaluate(law.law, double(x[l]), &lane_g, &lane_slope, out.sum_energy ? &lane_energy : nullptr);
-          g[l] = Real(lane_g), slope[l] = Real(lane_slope), energy[l] = Real(lane_energy);
-        }
+      if (L::any_above(x, Real(law.elastic) - V{}))
+        for (int l = 0; l < L::width; ++l)
+          if (double(x[l]) > law.elastic) {
+            double lane_g, lane_slope, lane_energy = 0.0;
+            law.evaluate(law.law, double(x[l]), &lane_g, &lane_slope,
+                         out.sum_energy ? &lane_energy : nullptr);
+            g[l] = Real(lane_g), slope[l] = Real(lane_slope), energy[l] = Real(lane_energy);
+          }
     }
     add_energy(det * weight * (Real(0.5 * k0) * trace * trace + Real(2) * energy));
     if (out.keep_secant) L::store(secant + slot, g);
@@ -281,12 +283,13 @@ struct NonlinearMaterial {
   /// √|2 g' x| dev ε/x, turned so that its first component has the sign bit of g' < 0; zero where g' is.
   static void keep(const Sym<V>& dev, V x, V slope, float* t) {
     const V values[tangent_floats] = {dev.xx, dev.yy, dev.xy, dev.yz, dev.zx};
-    for (int l = 0; l < L::width; ++l) {
-      const bool hardens = slope[l] > Real(0), turn = std::signbit(values[0][l]) != hardens;
-      const Real length = slope[l] != Real(0) ? std::sqrt(std::abs(Real(2) * slope[l] / x[l])) : Real(0);
-      for (int k = 0; k < tangent_floats; ++k)
-        t[k * L::width + l] = static_cast<float>(length * (turn ? -values[k][l] : values[k][l]));
-    }
+    typedef decltype(x < x) Bits;
+    using Lane = std::remove_cvref_t<decltype(Bits{}[0])>;
+    const Bits sign = Bits{} + std::numeric_limits<Lane>::min();
+    const Bits turn = ((Bits)dev.xx ^ (slope > V{})) & sign;
+    const V length = slope != V{} ? L::sqrt((V)((Bits)(Real(2) * slope / x) & ~sign)) : V{};
+    const V factor = (V)((Bits)length | turn);
+    for (int k = 0; k < tangent_floats; ++k) L::narrow(t + k * L::width, factor * values[k]);
   }
 };
 

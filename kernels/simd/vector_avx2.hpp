@@ -21,7 +21,11 @@ struct Lanes<double> {
   KACANOV_INLINE static V load(const double* p) { return (V)_mm256_loadu_pd(p); }
   KACANOV_INLINE static void store(double* p, V v) { _mm256_storeu_pd(p, (__m256d)v); }
   KACANOV_INLINE static V widen(const float* p) { return (V)_mm256_cvtps_pd(_mm_loadu_ps(p)); }
+  KACANOV_INLINE static void narrow(float* p, V v) { _mm_storeu_ps(p, _mm256_cvtpd_ps((__m256d)v)); }
   KACANOV_INLINE static V sqrt(V v) { return (V)_mm256_sqrt_pd((__m256d)v); }
+  KACANOV_INLINE static bool any_above(V v, V limit) {
+    return _mm256_movemask_pd(_mm256_cmp_pd((__m256d)v, (__m256d)limit, _CMP_GT_OQ)) != 0;
+  }
 
   // A row is three values of the caller's, a record four aligned ones of a block.
   typedef double Record __attribute__((vector_size(32)));
@@ -74,7 +78,11 @@ struct Lanes<float> {
   KACANOV_INLINE static V load(const float* p) { return (V)_mm256_loadu_ps(p); }
   KACANOV_INLINE static void store(float* p, V v) { _mm256_storeu_ps(p, (__m256)v); }
   KACANOV_INLINE static V widen(const float* p) { return load(p); }
+  KACANOV_INLINE static void narrow(float* p, V v) { store(p, v); }
   KACANOV_INLINE static V sqrt(V v) { return (V)_mm256_sqrt_ps((__m256)v); }
+  KACANOV_INLINE static bool any_above(V v, V limit) {
+    return _mm256_movemask_ps(_mm256_cmp_ps((__m256)v, (__m256)limit, _CMP_GT_OQ)) != 0;
+  }
 
   typedef float Record __attribute__((vector_size(16)));
   KACANOV_INLINE static Record load_row(const float* p) {

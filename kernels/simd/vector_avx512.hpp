@@ -24,7 +24,11 @@ struct Lanes<double> {
   KACANOV_INLINE static V load(const double* p) { return (V)_mm512_loadu_pd(p); }
   KACANOV_INLINE static void store(double* p, V v) { _mm512_storeu_pd(p, (__m512d)v); }
   KACANOV_INLINE static V widen(const float* p) { return (V)_mm512_cvtps_pd(_mm256_loadu_ps(p)); }
+  KACANOV_INLINE static void narrow(float* p, V v) { _mm256_storeu_ps(p, _mm512_cvtpd_ps((__m512d)v)); }
   KACANOV_INLINE static V sqrt(V v) { return (V)_mm512_sqrt_pd((__m512d)v); }
+  KACANOV_INLINE static bool any_above(V v, V limit) {
+    return _mm512_cmp_pd_mask((__m512d)v, (__m512d)limit, _CMP_GT_OQ) != 0;
+  }
 
   // A row is three values of the caller's, a record four aligned ones of a block.
   typedef double Record __attribute__((vector_size(32)));
@@ -81,7 +85,11 @@ struct Lanes<float> {
   KACANOV_INLINE static V load(const float* p) { return (V)_mm512_loadu_ps(p); }
   KACANOV_INLINE static void store(float* p, V v) { _mm512_storeu_ps(p, (__m512)v); }
   KACANOV_INLINE static V widen(const float* p) { return load(p); }
+  KACANOV_INLINE static void narrow(float* p, V v) { store(p, v); }
   KACANOV_INLINE static V sqrt(V v) { return (V)_mm512_sqrt_ps((__m512)v); }
+  KACANOV_INLINE static bool any_above(V v, V limit) {
+    return _mm512_cmp_ps_mask((__m512)v, (__m512)limit, _CMP_GT_OQ) != 0;
+  }
 
   typedef float Record __attribute__((vector_size(16)));
   KACANOV_INLINE static Record load_row(const float* p) { return (Record)_mm_maskz_loadu_ps(7, p); }

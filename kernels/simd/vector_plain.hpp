@@ -24,6 +24,14 @@ struct Lanes {
     for (int l = 0; l < width; ++l) v[l] = p[l];
     return v;
   }
+  KACANOV_INLINE static void narrow(float* p, V v) {
+    for (int l = 0; l < width; ++l) p[l] = static_cast<float>(v[l]);
+  }
+  KACANOV_INLINE static bool any_above(V v, V limit) {
+    bool any = false;
+    for (int l = 0; l < width; ++l) any = any || v[l] > limit[l];
+    return any;
+  }
   KACANOV_INLINE static V sqrt(V v) {
     for (int l = 0; l < width; ++l) v[l] = static_cast<Real>(__builtin_sqrt(v[l]));
     return v;
