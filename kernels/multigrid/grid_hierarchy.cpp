@@ -16,9 +16,9 @@ constexpr PressureSteps coarse_pressures{4, 8.0};
 
 }  // namespace
 
-GridHierarchy::GridHierarchy(const MultigridBody& body, const CornerPressures* pressures, double first_grid,
+GridHierarchy::GridHierarchy(const MultigridBody& body, const PressureRows* pressures, double first_grid,
                              int threads)
-    : body_(body), volume_(pressures != nullptr ? VolumeOf::corners : VolumeOf::all), threads_(threads) {
+    : body_(body), volume_(pressures != nullptr ? VolumeOf::averaging : VolumeOf::all), threads_(threads) {
   body_.like = nullptr;  // it may go
   const IndexMap& map = *body.node_map;
   const std::span<const double> coordinates = body.body.mesh.coordinates;

@@ -7,11 +7,11 @@
 #include <span>
 #include <vector>
 
-#include "multigrid/corner_pressures.hpp"
 #include "multigrid/grid_fit.hpp"
 #include "multigrid/grid_level.hpp"
 #include "multigrid/grid_transfer.hpp"
 #include "multigrid/pressure_direct.hpp"
+#include "multigrid/pressure_rows.hpp"
 
 namespace kacanov {
 
@@ -21,7 +21,7 @@ class GridHierarchy {
  public:
   /// `first_grid`: edge of the first one over the spacing of the nodes. Without `pressures` grids have one of
   /// their own all over the body, with them one where these are. Collective.
-  GridHierarchy(const MultigridBody& body, const CornerPressures* pressures, double first_grid, int threads);
+  GridHierarchy(const MultigridBody& body, const PressureRows* pressures, double first_grid, int threads);
   /// Of the first grid. Collective.
   GridFit fit() const { return grid_fit(levels_.front().vertices, cell_, body_); }
 

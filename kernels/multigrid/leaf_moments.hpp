@@ -13,8 +13,8 @@
 
 namespace kacanov {
 
-/// Whose volume changes have pressures: those of elements that average tr ε round corners, or of all.
-enum class VolumeOf { corners, all };
+/// Whose volume changes have pressures: those of elements that average tr ε, or of all.
+enum class VolumeOf { averaging, all };
 
 /// What a node stands for: integrals over its shares of the elements here. `bulk`: of k0 where there is no
 /// pressure; where there is one, of 1 (`volume`) and of 1/k0 (`compliance`).

@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "multigrid/corner_schur.hpp"
 #include "multigrid/fine_level.hpp"
 #include "multigrid/grid_hierarchy.hpp"
 #include "multigrid/grid_stiffness.hpp"
+#include "multigrid/pressure_schur.hpp"
 #include "multigrid/softened_laws.hpp"
 #include "multigrid/sums.hpp"
 #include "operator/threads.hpp"
@@ -178,9 +178,9 @@ class PressureHierarchy final : public Multigrid::Hierarchy {
   std::vector<Law> laws_;  ///< softened; body_ points to them
   MultigridBody body_;
   MultigridOptions options_;
-  CornerPressures pressures_;
+  PressureRows pressures_;
   FineLevel fine_;
-  std::optional<CornerSchur> schur_;
+  std::optional<PressureSchur> schur_;
   std::optional<GridHierarchy> grids_;
   double scale_ = 1.0;  ///< Â⁻¹ = scale D⁻¹
   double contrast_ = 1.0, strength_ = 1.0;

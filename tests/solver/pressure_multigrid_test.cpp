@@ -176,7 +176,7 @@ TEST_CASE("grids' matrices are blind to rigid motions, have uniform strain's ene
         // Changed: built with other springs, and these in their place.
         const auto of = held ? std::span<const NodeBlock>(springs) : std::span<const NodeBlock>();
         LevelMoments moments =
-            level_moments(grids.tree, leaves[0], nodes, node_measures(body, g, VolumeOf::corners, threads),
+            level_moments(grids.tree, leaves[0], nodes, node_measures(body, g, VolumeOf::averaging, threads),
                           changed ? std::span<const NodeBlock>(others) : of, threads);
         LevelStiffness stiffness = level_stiffness(grids.tree, leaves[0], nodes, of);
         for (int k = 0; k <= last; ++k) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How displacements of nodes change what is averaged at corners.
-#include "multigrid/corner_changes.hpp"
+// How displacements of nodes change averaged volumes.
+#include "multigrid/volume_changes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -21,7 +21,7 @@ struct AveragingElements {
 };
 
 template <class E>
-AveragingElements averaging_elements(const Body& body, const CornerPressures& pressures,
+AveragingElements averaging_elements(const Body& body, const PressureRows& pressures,
                                      std::span<const char> wanted) {
   AveragingElements all;
   for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
@@ -56,7 +56,7 @@ std::array<std::size_t, E::corners> by_column(const std::int32_t* entry,
 /// 3 values for each entry of the pattern, of the elements here.
 template <class E>
 std::vector<float> summed_changes(const SummedPattern& b, const AveragingElements& elements, const Body& body,
-                                  const CornerPressures& pressures, std::span<const std::int32_t> row,
+                                  const PressureRows& pressures, std::span<const std::int32_t> row,
                                   std::span<const std::int32_t> column) {
   std::vector<float> change(3 * b.entries(), 0.0F);
   for (const std::size_t e : elements.element) {
@@ -77,7 +77,7 @@ std::vector<float> summed_changes(const SummedPattern& b, const AveragingElement
 }
 
 template <class E>
-CornerChanges changes_of(const MultigridBody& body, const CornerPressures& pressures,
+VolumeChanges changes_of(const MultigridBody& body, const PressureRows& pressures,
                          std::span<const char> wanted, bool rows_alone, int threads) {
   const IndexMap& map = *body.node_map;
   std::vector<std::int64_t> node_number(body.nodes()), entry_number(pressures.means().size());
@@ -86,7 +86,7 @@ CornerChanges changes_of(const MultigridBody& body, const CornerPressures& press
   const AveragingElements elements = averaging_elements<E>(body.body, pressures, wanted);
   SummedPattern b({map.starts, node_number, elements.node, elements.first_node},
                   {pressures.starts(), entry_number, elements.entry, elements.first_entry}, map, threads);
-  CornerChanges all;
+  VolumeChanges all;
   const auto start = b.start().first(body.owned_nodes() + 1);
   all.first.assign(start.begin(), start.end());
   if (!rows_alone) {
@@ -108,9 +108,9 @@ CornerChanges changes_of(const MultigridBody& body, const CornerPressures& press
   return all;
 }
 
-CornerChanges changes_of(const MultigridBody& body, const CornerPressures& pressures,
+VolumeChanges changes_of(const MultigridBody& body, const PressureRows& pressures,
                          std::span<const char> wanted, bool rows_alone, int threads) {
-  CornerChanges all;
+  VolumeChanges all;
   elements::dispatch(body.body.mesh.type, [&]<class E>(E) {
     if constexpr (E::dim == 3 && E::corner_dilatation)
       all = changes_of<E>(body, pressures, wanted, rows_alone, threads);
@@ -120,13 +120,13 @@ CornerChanges changes_of(const MultigridBody& body, const CornerPressures& press
 
 }  // namespace
 
-CornerChanges corner_changes(const MultigridBody& body, const CornerPressures& pressures,
+VolumeChanges volume_changes(const MultigridBody& body, const PressureRows& pressures,
                              std::span<const char> wanted, int threads) {
   return changes_of(body, pressures, wanted, false, threads);
 }
 
-CornerChanges changed_corners(const MultigridBody& body, const CornerPressures& pressures,
-                              std::span<const char> wanted, int threads) {
+VolumeChanges changed_pressures(const MultigridBody& body, const PressureRows& pressures,
+                                std::span<const char> wanted, int threads) {
   return changes_of(body, pressures, wanted, true, threads);
 }
 

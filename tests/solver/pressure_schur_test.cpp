@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The Schur complement of the pressures at corners, what it is summed by, and the weights of the steps round
-// it.
+// The Schur complement of the pressures, what it is summed by, and the weights of the steps round it.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -8,8 +7,8 @@
 #include <numeric>
 
 #include "amg/part_multigrid.hpp"
-#include "multigrid/corner_schur.hpp"
 #include "multigrid/fine_level.hpp"
+#include "multigrid/pressure_schur.hpp"
 #include "multigrid/summed_pattern.hpp"
 #include "pressure_bodies.hpp"
 
@@ -78,7 +77,7 @@ TEST_CASE(
     "S is C and what pressures do to volumes by way of the node blocks, found at once or part by part") {
   const Part part = bar(4, false);
   const MultigridBody body = multigrid_body(part);
-  CornerPressures pressures(body);
+  PressureRows pressures(body);
   FineLevel fine(body, {}, FinePart::deviator, &pressures.means());
   const double factor = 0.4;
   std::vector<NodeBlock> springs;
@@ -87,7 +86,7 @@ TEST_CASE(
   for (const int threads : {1, 2})
     for (const std::int64_t nodes_at_once : {10, 1 << 15}) {
       fine.build(bent(part, 100.0), {}, HeldSpace());
-      CornerSchur schur(body, pressures, threads, nodes_at_once);
+      PressureSchur schur(body, pressures, threads, nodes_at_once);
       schur.build(fine.inverse(), factor);
       // Without springs, with some, and without them again.
       for (const bool sprung : {false, true, false}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pressures at corners round which tr ε is averaged, as rows over the ranks.
+// The pressures of what averages tr ε, as rows over the ranks.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +16,10 @@ namespace kacanov {
 
 /// The rows of CornerRows. An operator has entries (CornerMeans), with copies on all ranks that have elements
 /// there.
-class CornerPressures {
+class PressureRows {
  public:
   /// Collective.
-  explicit CornerPressures(const MultigridBody& body);
+  explicit PressureRows(const MultigridBody& body);
 
   /// This rank's.
   std::size_t rows() const noexcept { return rows_->node.size(); }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pressures at corners round which tr ε is averaged, as rows over the ranks.
-#include "multigrid/corner_pressures.hpp"
+// The pressures of what averages tr ε, as rows over the ranks.
+#include "multigrid/pressure_rows.hpp"
 
 #include <algorithm>
 
@@ -8,7 +8,7 @@
 
 namespace kacanov {
 
-CornerPressures::CornerPressures(const MultigridBody& body)
+PressureRows::PressureRows(const MultigridBody& body)
     : means_(corner_means(body.body)),
       rows_(std::make_unique<const CornerRows>(make_corner_rows(means_, *body.node_map))),
       scatterer_(rows_->map, 1),
@@ -20,7 +20,7 @@ CornerPressures::CornerPressures(const MultigridBody& body)
   for (std::size_t r = 0; r < rows(); ++r) compliance_[r] /= means_.moduli[rows_->modulus[r]];
 }
 
-void CornerPressures::sum(std::span<const float> entries, std::span<double> rows) {
+void PressureRows::sum(std::span<const float> entries, std::span<double> rows) {
   std::fill(values_.begin(), values_.end(), 0.0);
   for (std::size_t e = 0; e < entries.size(); ++e)
     values_[rows_->of_entry[e]] = static_cast<double>(entries[e]);
@@ -28,14 +28,14 @@ void CornerPressures::sum(std::span<const float> entries, std::span<double> rows
   std::copy_n(values_.begin(), rows.size(), rows.begin());
 }
 
-void CornerPressures::spread(std::span<const double> rows, std::span<float> entries) {
+void PressureRows::spread(std::span<const double> rows, std::span<float> entries) {
   std::copy(rows.begin(), rows.end(), values_.begin());
   scatterer_.start_forward(values_), scatterer_.finish_forward(values_);
   for (std::size_t e = 0; e < entries.size(); ++e)
     entries[e] = static_cast<float>(values_[rows_->of_entry[e]]);
 }
 
-std::size_t CornerPressures::bytes() const noexcept {
+std::size_t PressureRows::bytes() const noexcept {
   const auto size = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
   return size(rows_->of_entry) + size(rows_->node) + size(rows_->modulus) + size(compliance_) +
          size(values_) + size(means_.place) + size(means_.modulus) + size(means_.of_element);

@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How displacements of nodes change what is averaged at corners.
+// How displacements of nodes change averaged volumes.
 #pragma once
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "multigrid/corner_pressures.hpp"
+#include "multigrid/pressure_rows.hpp"
 
 namespace kacanov {
 
 /// B of some of this rank's nodes. Held components change nothing.
-struct CornerChanges {
+struct VolumeChanges {
   std::vector<std::int64_t> first;   ///< owned nodes + 1, into
   std::vector<std::int32_t> row;     ///< that a node's displacement changes, as an index of `number`
   std::vector<float> change;         ///< by so much: 3 for each of those
-  std::vector<std::int64_t> number;  ///< over all ranks, of rows of CornerPressures
+  std::vector<std::int64_t> number;  ///< over all ranks, of rows of PressureRows
 };
 
 /// Of the nodes that are `wanted`: for each of the body's nodes, the same on all ranks that have it.
 /// Collective.
-CornerChanges corner_changes(const MultigridBody& body, const CornerPressures& pressures,
+VolumeChanges volume_changes(const MultigridBody& body, const PressureRows& pressures,
                              std::span<const char> wanted, int threads);
 /// The same without `change`, which stays empty.
-CornerChanges changed_corners(const MultigridBody& body, const CornerPressures& pressures,
-                              std::span<const char> wanted, int threads);
+VolumeChanges changed_pressures(const MultigridBody& body, const PressureRows& pressures,
+                                std::span<const char> wanted, int threads);
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The Schur complement of the pressures at corners, as a matrix.
+// The Schur complement of the pressures, as a matrix.
 #pragma once
 
 #include <cstdint>
@@ -8,22 +8,22 @@
 #include <vector>
 
 #include <kacanov/scatterer.hpp>
-#include "multigrid/corner_changes.hpp"
-#include "multigrid/corner_pressures.hpp"
+#include "multigrid/pressure_rows.hpp"
 #include "multigrid/pressure_steps.hpp"
 #include "multigrid/summed_pattern.hpp"
+#include "multigrid/volume_changes.hpp"
 
 namespace kacanov {
 
-/// S = B Â⁻¹ Bᵀ + C over the rows of CornerPressures, Â of node blocks (theory: pressure-smoothing). B
+/// S = B Â⁻¹ Bᵀ + C over the rows of PressureRows, Â of node blocks (theory: pressure-smoothing). B
 /// depends on the mesh alone, but would take four times S's memory: it is found part by part whenever it is
 /// needed.
-class CornerSchur {
+class PressureSchur {
  public:
   /// Finds which rows couple. B is found for so many nodes at once, or for an eighth of a rank's if that is
   /// more: every part looks through all elements. What is passed has to outlive it. Collective.
-  CornerSchur(const MultigridBody& body, const CornerPressures& pressures, int threads,
-              std::int64_t nodes_at_once = 1 << 15);
+  PressureSchur(const MultigridBody& body, const PressureRows& pressures, int threads,
+                std::int64_t nodes_at_once = 1 << 15);
 
   /// For Â⁻¹ = factor times blocks of local nodes, packed as FineLevel::inverse; held components give
   /// nothing. Collective.
@@ -39,13 +39,13 @@ class CornerSchur {
   std::size_t bytes() const noexcept;
 
  private:
-  void add(const CornerChanges& b, std::span<const float> inverse, std::span<const float> before);
+  void add(const VolumeChanges& b, std::span<const float> inverse, std::span<const float> before);
   void take_diagonal();
   template <class Real>
   void times(Scatterer<Real>& fill, std::span<Real> p, std::span<Real> y);
 
   const MultigridBody* body_;
-  const CornerPressures* pressures_;
+  const PressureRows* pressures_;
   int threads_;
   std::int64_t nodes_at_once_;
   double factor_ = 1.0;

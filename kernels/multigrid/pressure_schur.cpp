@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The Schur complement of the pressures at corners, as a matrix.
-#include "multigrid/corner_schur.hpp"
+// The Schur complement of the pressures, as a matrix.
+#include "multigrid/pressure_schur.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -25,7 +25,7 @@ std::vector<int> owners(const MultigridBody& body) {
 
 /// All nodes but those in the middle of an edge with an end that the same rank owns: the end moves all rows
 /// that the middle does, and couples them.
-std::vector<char> coupling_nodes(const MultigridBody& body, const CornerPressures& pressures) {
+std::vector<char> coupling_nodes(const MultigridBody& body, const PressureRows& pressures) {
   std::vector<char> coupling(body.nodes(), 1);
   const auto& mesh = body.body.mesh;
   const Cell& type = cell(mesh.type);
@@ -63,12 +63,12 @@ struct Use {
 
 }  // namespace
 
-CornerSchur::CornerSchur(const MultigridBody& body, const CornerPressures& pressures, int threads,
-                         std::int64_t nodes_at_once)
+PressureSchur::PressureSchur(const MultigridBody& body, const PressureRows& pressures, int threads,
+                             std::int64_t nodes_at_once)
     : body_(&body), pressures_(&pressures), threads_(threads), nodes_at_once_(nodes_at_once) {
   const IndexMap& map = *body.node_map;
   const std::span<const std::int64_t> starts = pressures.starts();
-  CornerChanges b = changed_corners(body, pressures, coupling_nodes(body, pressures), threads);
+  VolumeChanges b = changed_pressures(body, pressures, coupling_nodes(body, pressures), threads);
   std::vector<std::size_t> first_coupling(b.first.begin(), b.first.end());
   // A row for every pressure, even one that no node moves.
   for (std::int64_t n = starts[map.rank]; n < starts[map.rank + 1]; ++n) {
@@ -83,7 +83,7 @@ CornerSchur::CornerSchur(const MultigridBody& body, const CornerPressures& press
   solve_.resize(pattern_->owned_rows(), size());
 }
 
-void CornerSchur::build(std::span<const float> inverse, double factor) {
+void PressureSchur::build(std::span<const float> inverse, double factor) {
   factor_ = factor;
   value_.assign(pattern_->entries(), 0.0F);
   const IndexMap& map = *body_->node_map;
@@ -93,7 +93,7 @@ void CornerSchur::build(std::span<const float> inverse, double factor) {
   std::vector<char> wanted(part.size());
   for (char p = 0; p < parts; ++p) {
     for (std::size_t n = 0; n < part.size(); ++n) wanted[n] = part[n] == p ? 1 : 0;
-    add(corner_changes(*body_, *pressures_, wanted, threads_), inverse, {});
+    add(volume_changes(*body_, *pressures_, wanted, threads_), inverse, {});
   }
   pattern_->complete(value_, 1);
   const std::span<const double> compliance = pressures_->compliance();
@@ -104,20 +104,21 @@ void CornerSchur::build(std::span<const float> inverse, double factor) {
   take_diagonal();
 }
 
-void CornerSchur::change(std::span<const float> before, std::span<const float> inverse) {
+void PressureSchur::change(std::span<const float> before, std::span<const float> inverse) {
   std::vector<char> changed(body_->nodes(), 0);
   for (std::size_t n = 0; n < changed.size(); ++n)
     if (!std::equal(&before[6 * n], &before[6 * n] + 6, &inverse[6 * n])) changed[n] = 1;
   if (!body_->node_map->any(std::find(changed.begin(), changed.end(), 1) != changed.end())) return;
   // Of other ranks' rows what changes is told, not what they are.
   std::fill(value_.begin() + pattern_->start()[pattern_->owned_rows()], value_.end(), 0.0F);
-  add(corner_changes(*body_, *pressures_, changed, threads_), inverse, before);
+  add(volume_changes(*body_, *pressures_, changed, threads_), inverse, before);
   pattern_->complete(value_, 1);
   take_diagonal();
 }
 
 /// What these nodes give, row by row.
-void CornerSchur::add(const CornerChanges& b, std::span<const float> inverse, std::span<const float> before) {
+void PressureSchur::add(const VolumeChanges& b, std::span<const float> inverse,
+                        std::span<const float> before) {
   std::vector<std::int32_t> row, column;
   for (const std::int64_t n : b.number) {
     row.push_back(pattern_->row(n));
@@ -162,7 +163,7 @@ void CornerSchur::add(const CornerChanges& b, std::span<const float> inverse, st
   });
 }
 
-void CornerSchur::take_diagonal() {
+void PressureSchur::take_diagonal() {
   inverse_.assign(pattern_->owned_rows(), 0.0F);
   for (std::size_t r = 0; r < inverse_.size(); ++r) {
     const auto row = static_cast<std::int32_t>(r);
@@ -183,7 +184,7 @@ void CornerSchur::take_diagonal() {
 }
 
 template <class Real>
-void CornerSchur::times(Scatterer<Real>& fill, std::span<Real> p, std::span<Real> y) {
+void PressureSchur::times(Scatterer<Real>& fill, std::span<Real> p, std::span<Real> y) {
   fill.start_forward(p), fill.finish_forward(p);
   const auto start = pattern_->start();
   each_in_shares(threads_, inverse_.size(), [&](std::size_t i) {
@@ -193,9 +194,9 @@ void CornerSchur::times(Scatterer<Real>& fill, std::span<Real> p, std::span<Real
   });
 }
 
-void CornerSchur::multiply(std::span<double> p, std::span<double> y) { times(*fill_, p, y); }
+void PressureSchur::multiply(std::span<double> p, std::span<double> y) { times(*fill_, p, y); }
 
-void CornerSchur::improve(const PressureSteps& steps, std::span<const double> rest, std::span<double> p) {
+void PressureSchur::improve(const PressureSteps& steps, std::span<const double> rest, std::span<double> p) {
   const std::span<float> residual = solve_.residual();
   each_in_shares(threads_, rest.size(), [&](std::size_t i) { residual[i] = static_cast<float>(rest[i]); });
   const auto more = solve_.solve(steps, inverse_, threads_, [this](std::span<float> x, std::span<float> y) {
@@ -204,7 +205,7 @@ void CornerSchur::improve(const PressureSteps& steps, std::span<const double> re
   each_in_shares(threads_, rest.size(), [&](std::size_t i) { p[i] += static_cast<double>(more[i]); });
 }
 
-std::size_t CornerSchur::bytes() const noexcept {
+std::size_t PressureSchur::bytes() const noexcept {
   const auto size = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
   return size(inverse_) + size(value_) + pattern_->bytes() + solve_.bytes();
 }
