@@ -130,7 +130,7 @@ kacanov_test(nonlinear IN solver
   MPI SOURCES solver/nonlinear_test.cpp solver/preconditioner_schedule_test.cpp solver/augmented_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 kacanov_test(pressure_multigrid IN solver
-  MPI SOURCES solver/pressure_multigrid_test.cpp solver/pressure_schur_test.cpp
+  MPI SOURCES solver/element_pressures_test.cpp solver/pressure_multigrid_test.cpp solver/pressure_schur_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal
   RANKS 1 2 3)
 

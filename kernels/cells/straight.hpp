@@ -27,6 +27,18 @@ inline bool has_straight_sides(const Nodal<Tet10>& x) {
 }
 inline bool has_straight_sides(const Nodal<Tet4>&) { return true; }
 
+/// Of the corners' functions: linear ones of tetrahedra; hexahedra have one function of them all.
+template <class E>
+std::array<double, E::corners> corner_shares(const double* xi) {
+  if constexpr (E::simplex) {
+    return barycentric<E::dim>(xi);
+  } else {
+    std::array<double, E::corners> even;
+    even.fill(1.0 / E::corners);
+    return even;
+  }
+}
+
 /// ∇L of the corners, and the volume.
 struct StraightSides {
   double gradient[4][3];
@@ -129,15 +141,16 @@ struct CornerIntegrals {
 template <class E>
 CornerIntegrals<E> corner_integrals(const Nodal<E>& x) {
   CornerIntegrals<E> of;
-  if (has_straight_sides(x)) {
-    const StraightSides sides(x.data());
-    sides.integrate(of.change);
-    of.volume.fill(sides.volume / E::corners);
-    return of;
-  }
+  if constexpr (E::simplex)
+    if (has_straight_sides(x)) {
+      const StraightSides sides(x.data());
+      sides.integrate(of.change);
+      of.volume.fill(sides.volume / E::corners);
+      return of;
+    }
   for (std::size_t q = 0; q < E::points; ++q) {
     const Point<E> point(x, q);
-    const auto share = barycentric<E::dim>(E::point[q].data());
+    const auto share = corner_shares<E>(E::point[q].data());
     for (std::size_t c = 0; c < E::corners; ++c) of.volume[c] += point.volume * share[c];
     for (std::size_t a = 0; a < E::nodes; ++a)
       for (std::size_t c = 0; c < E::corners; ++c)

@@ -20,12 +20,6 @@ namespace {
 constexpr double first_grid = 4.0;
 constexpr int fine_degree = 5;
 constexpr double fine_range = 20.0;
-/// Where a slot runs along a bar it is 0.09 to 0.12, and takes 2 to 4 times the iterations of modes; in a
-/// hook with its mouth 0.013, and half of them.
-constexpr double most_cut_off = 0.03;
-/// From there on elements are more than some seven times as long as they are wide, and cubes between their
-/// nodes empty.
-constexpr double most_apart = 0.01;
 
 class BackgroundHierarchy final : public Multigrid::Hierarchy {
  public:
@@ -35,10 +29,7 @@ class BackgroundHierarchy final : public Multigrid::Hierarchy {
         options_(options),
         grids_(body_, nullptr, first_grid, options.threads) {}
 
-  bool fits() const {
-    const GridFit fit = grids_.fit();
-    return fit.cut_off <= most_cut_off && fit.apart <= most_apart;
-  }
+  bool pays() const { return grids_.fit().pays(); }
 
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space) override {
     if (!fine_) prepare();
@@ -110,7 +101,7 @@ class BackgroundHierarchy final : public Multigrid::Hierarchy {
 std::unique_ptr<Multigrid::Hierarchy> make_background_hierarchy(const MultigridBody& body,
                                                                 const MultigridOptions& options) {
   auto made = std::make_unique<BackgroundHierarchy>(body, options);
-  if (!made->fits()) return nullptr;
+  if (!made->pays()) return nullptr;
   return made;
 }
 

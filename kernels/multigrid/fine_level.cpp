@@ -8,6 +8,7 @@
 
 #include "multigrid/largest_eigenvalue.hpp"
 #include "multigrid/multigrid.hpp"
+#include "multigrid/softened_laws.hpp"
 #include "operator/corner_sum.hpp"
 #include "operator/threads.hpp"
 #include "simd/node_blocks.hpp"
@@ -20,6 +21,14 @@ FloatOperator make_operator(const MultigridBody& body, const OperatorOptions& op
                               : FloatOperator(body.body, options);
 }
 
+/// Without the stiffness that pressures stand for.
+std::vector<Law> without_means(std::span<const Law> laws) {
+  std::vector<Law> rest(laws.begin(), laws.end());
+  for (Law& law : rest)
+    if (law.mean_dilatation) law.bulk = 0.0, law.mean_dilatation = false;
+  return rest;
+}
+
 }  // namespace
 
 FineLevel::FineLevel(const MultigridBody& body, const MultigridOptions& options, FinePart part,
@@ -27,9 +36,13 @@ FineLevel::FineLevel(const MultigridBody& body, const MultigridOptions& options,
     : body_(body),
       threads_(options.threads),
       part_(part),
-      op_(make_operator(body, {options.threads, options.instruction_set, body.node_map->shared})),
+      laws_(part == FinePart::deviator && averages_over_elements(body.body) ? without_means(body.body.laws)
+                                                                            : std::vector<Law>()),
+      op_(make_operator(laws_.empty() ? body : with_laws(body, laws_),
+                        {options.threads, options.instruction_set, body.node_map->shared})),
       sum_(*body.node_map, static_cast<int>(body.dim())) {
   body_.like = nullptr;  // it may go
+  if (!laws_.empty()) body_.body.laws = laws_, of_elements_.emplace(body.body, *means, threads_);
   if (body.node_map->ranks > 1 && !corner_moduli(body.body).empty())
     op_.set_corner_sum(CornerSum<float>(means != nullptr ? *means : corner_means(body.body), *body.node_map));
 }
@@ -53,7 +66,7 @@ void FineLevel::rebuild(std::span<const NodeBlock> blocks, const HeldSpace& spac
   const std::size_t dim = body_.dim();
   const std::size_t packed = dim * (dim + 1) / 2;
   std::vector<float> diagonal(body_.nodes() * dim * dim);
-  if (part_ == FinePart::deviator)
+  if (part_ == FinePart::deviator && !of_elements_)
     op_.block_diagonal_deviator(diagonal);
   else
     op_.block_diagonal(diagonal);
@@ -127,11 +140,30 @@ void FineLevel::multiply(std::span<const float> x, std::span<float> y) {
 }
 
 void FineLevel::multiply(std::span<const float> x, std::span<const float> p, std::span<float> y) {
-  product([&](const WhenEarly& early) { op_.apply_deviator(x, p, y, early); }, x, y);
+  product(
+      [&](const WhenEarly& early) {
+        if (!of_elements_) return op_.apply_deviator(x, p, y, early);
+        op_.apply(x, y);
+        if (!p.empty()) of_elements_->add_force(p, y);
+        if (early) early();
+      },
+      x, y);
+}
+
+void FineLevel::volume_change(std::span<const float> x, std::span<float> q) {
+  if (of_elements_) return of_elements_->volume_change(x, q);
+  op_.volume_change(x, q);
 }
 
 void FineLevel::pressure_force(std::span<const float> p, std::span<float> y) {
-  product([&](const WhenEarly& early) { op_.pressure_force(p, y, early); }, {}, y);
+  product(
+      [&](const WhenEarly& early) {
+        if (!of_elements_) return op_.pressure_force(p, y, early);
+        std::fill(y.begin(), y.end(), 0.0F);
+        of_elements_->add_force(p, y);
+        if (early) early();
+      },
+      {}, y);
 }
 
 void FineLevel::add_scaled(float factor, std::span<const float> b, std::span<const float> image,

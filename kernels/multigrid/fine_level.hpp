@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include <kacanov/operator.hpp>
 #include <kacanov/scatterer.hpp>
 #include "multigrid/chebyshev.hpp"
+#include "multigrid/element_pressures.hpp"
 #include "multigrid/held_space.hpp"
 #include "multigrid/multigrid_body.hpp"
 #include "multigrid/node_block.hpp"
@@ -18,7 +20,7 @@ namespace kacanov {
 
 struct MultigridOptions;
 
-/// What of B(g) a fine level is of: all of it, or A, without k0 where tr ε is averaged round corners (theory:
+/// What of B(g) a fine level is of: all of it, or A, without k0 where tr ε is averaged (theory:
 /// displacement-pressure).
 enum class FinePart { whole, deviator };
 
@@ -29,8 +31,8 @@ enum class FinePart { whole, deviator };
 /// choose_smoother are collective.
 class FineLevel {
  public:
-  /// g = μ and no blocks until build(). What the body points to has to outlive it. `means`: corner_means()
-  /// of the body, or null.
+  /// g = μ and no blocks until build(). What the body points to has to outlive it. `means`: those of the
+  /// body's PressureRows; null if it is not the deviator of elements that average over themselves.
   FineLevel(const MultigridBody& body, const MultigridOptions& options, FinePart part = FinePart::whole,
             const CornerMeans* means = nullptr);
   /// Freezes g and takes the blocks and the space over; D follows.
@@ -50,12 +52,12 @@ class FineLevel {
   /// x += factor D⁻¹ (b − image), without an image x += factor D⁻¹ b.
   void add_scaled(float factor, std::span<const float> b, std::span<const float> image,
                   std::span<float> x) const;
-  /// y = A x + Bᵀ p of the deviator's A; p has an entry for each of the operator's pressures. Collective.
+  /// y = A x + Bᵀ p of the deviator's A; p has an entry for each of the means. Collective.
   void multiply(std::span<const float> x, std::span<const float> p, std::span<float> y);
   /// y = Bᵀ p. Collective.
   void pressure_force(std::span<const float> p, std::span<float> y);
   /// q = B x, this rank's share.
-  void volume_change(std::span<const float> x, std::span<float> q) { op_.volume_change(x, q); }
+  void volume_change(std::span<const float> x, std::span<float> q);
   /// D⁻¹, nodes × 6: the upper triangles of the inverse blocks, by rows; 3 in 2D.
   std::span<const float> inverse() const noexcept { return inverse_; }
   /// Of held components, which keep their blocks' entries: D's diagonal.
@@ -75,7 +77,8 @@ class FineLevel {
   void choose_smoother(int degree, double range);
   const Chebyshev& smoother() const noexcept { return smoother_; }
   std::size_t bytes() const noexcept {
-    return op_.bytes() + held_.size() * sizeof(std::int32_t) + blocks_.size() * sizeof(NodeBlock) +
+    return op_.bytes() + (of_elements_ ? of_elements_->bytes() : 0) + held_.size() * sizeof(std::int32_t) +
+           blocks_.size() * sizeof(NodeBlock) +
            (inverse_.size() + held_stiffness_.size() + own_stiffness_.size()) * sizeof(float);
   }
 
@@ -88,6 +91,8 @@ class FineLevel {
   MultigridBody body_;
   int threads_;
   FinePart part_;
+  std::vector<Law> laws_;  ///< where elements average over themselves: the body's without what has pressures
+  std::optional<ElementChanges> of_elements_;  ///< B of these, which the operator does not have by itself
   FloatOperator op_;
   Scatterer<float> sum_;
   std::vector<std::int32_t> held_;  ///< components

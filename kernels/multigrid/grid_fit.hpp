@@ -18,6 +18,8 @@ struct GridFit {
   /// Where cubes are smaller than elements, there are some between their nodes that have none, and no
   /// function joins what is on both sides: the share of such pairs of cubes among those that elements join.
   double apart = 0.0;
+  /// Whether cycles on the grid are better than those on modes of aggregates.
+  bool pays() const noexcept;
 };
 
 /// Of the grid of `vertices`; `cell`: its leaf of every local node. Collective.

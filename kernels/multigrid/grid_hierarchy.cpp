@@ -16,14 +16,13 @@ constexpr PressureSteps coarse_pressures{4, 8.0};
 
 }  // namespace
 
-GridHierarchy::GridHierarchy(const MultigridBody& body, const PressureRows* pressures, double first_grid,
+GridHierarchy::GridHierarchy(const MultigridBody& body, const PressureRows* pressures, double edge,
                              int threads)
     : body_(body), volume_(pressures != nullptr ? VolumeOf::averaging : VolumeOf::all), threads_(threads) {
   body_.like = nullptr;  // it may go
   const IndexMap& map = *body.node_map;
   const std::span<const double> coordinates = body.body.mesh.coordinates;
-  tree_.emplace(GridTree::Nodes{coordinates, node_spacings(body.body, map), body.owned_nodes()}, first_grid,
-                map);
+  tree_.emplace(GridTree::Nodes{coordinates, node_spacings(body.body, map), body.owned_nodes()}, edge, map);
   for (std::size_t n = 0; n < body.nodes(); ++n) cell_.push_back(tree_->leaf_of(&coordinates[3 * n], 0));
   const auto place = [&](std::size_t n) {
     return GridTransfer::Place{cell_[n], tree_->within(tree_->cells()[cell_[n]], &coordinates[3 * n])};

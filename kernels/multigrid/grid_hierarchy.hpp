@@ -19,9 +19,9 @@ namespace kacanov {
 /// alone is made once.
 class GridHierarchy {
  public:
-  /// `first_grid`: edge of the first one over the spacing of the nodes. Without `pressures` grids have one of
+  /// `edge` of the first one over the spacing of the nodes. Without `pressures` grids have one of
   /// their own all over the body, with them one where these are. Collective.
-  GridHierarchy(const MultigridBody& body, const PressureRows* pressures, double first_grid, int threads);
+  GridHierarchy(const MultigridBody& body, const PressureRows* pressures, double edge, int threads);
   /// Of the first grid. Collective.
   GridFit fit() const { return grid_fit(levels_.front().vertices, cell_, body_); }
 

@@ -88,7 +88,7 @@ NodeMeasure element_measure(const Body& body, std::span<const double> g, VolumeO
     sum.shear += g[e * E::points + q] * share;
     all += share;
   }
-  if (volume == VolumeOf::all || averages_at_corners(law, body.mesh.type))
+  if (volume == VolumeOf::all || law.mean_dilatation)
     sum.volume = all, sum.compliance = all / law.bulk;
   else
     sum.bulk = law.bulk * all;

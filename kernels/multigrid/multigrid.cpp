@@ -6,6 +6,7 @@
 
 #include <kacanov/corner_means.hpp>
 #include "multigrid/background_hierarchy.hpp"
+#include "multigrid/element_pressures.hpp"
 #include "multigrid/hierarchy.hpp"
 #include "multigrid/modes_hierarchy.hpp"
 #include "multigrid/pressure_hierarchy.hpp"
@@ -14,19 +15,31 @@ namespace kacanov {
 
 namespace {
 
+/// Beyond that a cycle with pressures of elements solves so well with S that modes take no more time.
+constexpr double most_element_contrast = 1e5;
+
 /// Which of the three it is shows in a build: background grids as long as shear is not far below bulk and
-/// they fit the body, modes of aggregates until pressures pay, then these for good.
+/// they fit the body, modes of aggregates until pressures pay, then these for good. Where elements average
+/// over themselves, pressures that are no use any more, or do not fit, are not asked for again.
 class ChosenHierarchy final : public Multigrid::Hierarchy {
  public:
   ChosenHierarchy(const MultigridBody& body, const MultigridOptions& options)
-      : body_(body), options_(options), averages_(!corner_moduli(body.body).empty()) {}
+      : body_(body), options_(options) {
+    if (!corner_moduli(body.body).empty())
+      averages_ = Averages::round_corners;
+    else if (averages_over_elements(body.body))
+      averages_ = Averages::over_elements;
+  }
 
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space) override {
-    if (kind_ != Kind::pressures && averages_ && pressure_contrast(body_, g) >= options_.pressure_contrast)
-      take(Kind::pressures, make_pressure_hierarchy(body_, options_));
-    const bool small = kind_ <= Kind::grids && mean_contrast(body_, g) < options_.grid_contrast;
-    if (kind_ == Kind::none && small) take(Kind::grids, make_background_hierarchy(body_, options_));
-    if (kind_ == Kind::none || (kind_ == Kind::grids && !small))
+    const bool flows = mean_contrast(body_, g) >= options_.grid_contrast;
+    const double contrast = averages_ == Averages::none ? 1.0 : pressure_contrast(body_, g);
+    if (averages_ == Averages::over_elements && contrast > most_element_contrast) give_up_pressures();
+    if (kind_ != Kind::pressures && pressures_pay(contrast, flows) &&
+        !take(Kind::pressures, make_pressure_hierarchy(body_, options_)))
+      give_up_pressures();
+    if (kind_ == Kind::none && !flows) take(Kind::grids, make_background_hierarchy(body_, options_));
+    if (kind_ == Kind::none || (kind_ == Kind::grids && flows))
       take(Kind::modes, make_modes_hierarchy(body_, options_));
     chosen_->build(g, blocks, space);
   }
@@ -46,15 +59,28 @@ class ChosenHierarchy final : public Multigrid::Hierarchy {
 
  private:
   enum class Kind { none, grids, modes, pressures };
+  enum class Averages { none, round_corners, over_elements };
+
+  bool pressures_pay(double contrast, bool flows) const {
+    if (averages_ == Averages::over_elements) return flows && contrast >= options_.element_contrast;
+    return averages_ == Averages::round_corners && contrast >= options_.pressure_contrast;
+  }
+
+  void give_up_pressures() {
+    averages_ = Averages::none;
+    if (kind_ == Kind::pressures) kind_ = Kind::none;
+  }
 
   /// Unless there is none.
-  void take(Kind kind, std::unique_ptr<Multigrid::Hierarchy> hierarchy) {
-    if (hierarchy) kind_ = kind, chosen_ = std::move(hierarchy);
+  bool take(Kind kind, std::unique_ptr<Multigrid::Hierarchy> hierarchy) {
+    if (!hierarchy) return false;
+    kind_ = kind, chosen_ = std::move(hierarchy);
+    return true;
   }
 
   MultigridBody body_;
   MultigridOptions options_;
-  bool averages_;
+  Averages averages_ = Averages::none;
   Kind kind_ = Kind::none;
   std::unique_ptr<Multigrid::Hierarchy> chosen_;
 };

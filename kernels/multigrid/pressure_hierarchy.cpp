@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The hierarchy of bodies whose volume change is averaged round corners.
+// The hierarchy of bodies whose volume change is averaged.
 #include "multigrid/pressure_hierarchy.hpp"
 
 #include <algorithm>
@@ -21,20 +21,29 @@ namespace {
 const SmootherWeights fine_smoothing = chebyshev_weights(4, 4.0);
 /// Edge of the first grid over the spacing of the nodes: 2.6 has 1.5 times the entries, and takes as many
 /// iterations.
-constexpr double first_grid = 3.0;
+constexpr double first_pressure_grid = 3.0;
 
 struct Solves {
   PressureSteps between, at_ends;
 };
 
-/// What is left of a volume change where the pressure is let go counts k0/g times: the first and the last
-/// step of a cycle solve better, all the better the larger `contrast`, the largest k0/g, times `strength`.
-Solves solves_for(double contrast, double strength) {
+/// What is left of a volume change where the pressure is let go counts `contrast`, the largest k0/g, times:
+/// the first and the last step of a cycle solve better than those between.
+Solves round_corners(double contrast, double strength) {
   constexpr double range = 40.0;
   const double sigma = (range + 1.0) / (range - 1.0);
   const double wanted = std::acosh(std::max(1.0, 0.01 * contrast)) / std::acosh(sigma);
   const int ends = static_cast<int>(std::ceil(strength * std::clamp(wanted, 6.0, 30.0)));
   const int middle = (2 * ends + 2) / 3;
+  return {{middle, 2.0 * middle + 2.0}, {ends, range}};
+}
+
+/// Pressures that swing from element to element hardly move anything, so that S has eigenvalues λ down to
+/// C's. Of these a polynomial of degree 2√range leaves so much that contrast λ times it is 1 or less.
+Solves over_elements(double contrast, double strength) {
+  const double range = strength * strength * std::max(20.0, contrast / (2.0 * std::exp(1.0)));
+  const int ends = static_cast<int>(std::ceil(2.0 * std::sqrt(range)));
+  const int middle = static_cast<int>(std::ceil(2.0 * std::sqrt(ends)));
   return {{middle, 2.0 * middle + 2.0}, {ends, range}};
 }
 
@@ -45,9 +54,13 @@ class PressureHierarchy final : public Multigrid::Hierarchy {
         body_(with_laws(body, laws_)),
         options_(options),
         pressures_(body_),
-        fine_(body_, options, FinePart::deviator, &pressures_.means()) {
+        fine_(body_, options, FinePart::deviator, &pressures_.means()),
+        grids_(body_, &pressures_, first_pressure_grid, options.threads) {
     body_.like = nullptr;  // it may go
   }
+
+  /// Where elements average over themselves modes may do better.
+  bool pays() const { return !averages_over_elements(body_.body) || grids_.fit().pays(); }
 
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space) override {
     fine_.build(g, blocks, space);
@@ -55,16 +68,16 @@ class PressureHierarchy final : public Multigrid::Hierarchy {
     if (!schur_) prepare();
     scale_ = 1.0 / (fine_smoothing.damping * fine_.largest());
     schur_->build(fine_.inverse(), scale_);
-    grids_->build(g, stiffnesses());
+    grids_.build(g, stiffnesses());
     contrast_ = pressure_contrast(body_, g);
-    solves_ = solves_for(contrast_, strength_);
+    solves_ = solves();
   }
 
   void rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space) override {
     const std::vector<float> before(fine_.inverse().begin(), fine_.inverse().end());
     fine_.rebuild(blocks, space);
     schur_->change(before, fine_.inverse());
-    grids_->change(stiffnesses());
+    grids_.change(stiffnesses());
   }
 
   void secant(std::span<double> g) const override { fine_.secant(g); }
@@ -75,11 +88,10 @@ class PressureHierarchy final : public Multigrid::Hierarchy {
     } while (work(r, z) < 0.0 && strengthen());
   }
 
-  int levels() const noexcept override { return 1 + (grids_ ? grids_->levels() : 0); }
+  int levels() const noexcept override { return 1 + grids_.levels(); }
 
   std::size_t bytes() const noexcept override {
-    return fine_.bytes() + pressures_.bytes() + (schur_ ? schur_->bytes() : 0) +
-           (grids_ ? grids_->bytes() : 0) +
+    return fine_.bytes() + pressures_.bytes() + (schur_ ? schur_->bytes() : 0) + grids_.bytes() +
            (b_.size() + x_.size() + image_.size() + step_.size() + entries_.size()) * sizeof(float) +
            (p_.size() + change_.size() + rest_.size()) * sizeof(double);
   }
@@ -109,18 +121,21 @@ class PressureHierarchy final : public Multigrid::Hierarchy {
         }));
   }
 
+  Solves solves() const {
+    return (averages_over_elements(body_.body) ? over_elements : round_corners)(contrast_, strength_);
+  }
+
   /// Solves with S better from now on; false where that has gone as far as it may.
   bool strengthen() {
     if (strength_ > 3.0) return false;
     strength_ *= 1.5;
-    solves_ = solves_for(contrast_, strength_);
+    solves_ = solves();
     return true;
   }
 
   /// What depends on the mesh alone.
   void prepare() {
     schur_.emplace(body_, pressures_, options_.threads);
-    grids_.emplace(body_, &pressures_, first_grid, options_.threads);
     for (auto* v : {&b_, &x_, &image_}) v->resize(body_.unknowns());
     entries_.resize(pressures_.means().size());
     p_.resize(schur_->size());
@@ -169,7 +184,7 @@ class PressureHierarchy final : public Multigrid::Hierarchy {
                    [&](std::size_t r) { rest_[r] = last * rest_[r] - wanted(r, last); });
     std::vector<float>& u = step_;
     u.assign(x_.size(), 0.0F);
-    grids_->correct(image_, rest_, u, p_);
+    grids_.correct(image_, rest_, u, p_);
     body_.node_map->forward(std::span<float>(u), 3);
     fine_.project(u);
     each_in_shares(options_.threads, x_.size(), [&](std::size_t i) { x_[i] += u[i]; });
@@ -181,7 +196,7 @@ class PressureHierarchy final : public Multigrid::Hierarchy {
   PressureRows pressures_;
   FineLevel fine_;
   std::optional<PressureSchur> schur_;
-  std::optional<GridHierarchy> grids_;
+  GridHierarchy grids_;
   double scale_ = 1.0;  ///< Â⁻¹ = scale D⁻¹
   double contrast_ = 1.0, strength_ = 1.0;
   Solves solves_;
@@ -204,7 +219,9 @@ double pressure_contrast(const MultigridBody& body, std::span<const double> g) {
 
 std::unique_ptr<Multigrid::Hierarchy> make_pressure_hierarchy(const MultigridBody& body,
                                                               const MultigridOptions& options) {
-  return std::make_unique<PressureHierarchy>(body, options);
+  auto made = std::make_unique<PressureHierarchy>(body, options);
+  if (!made->pays()) return nullptr;
+  return made;
 }
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The hierarchy of bodies whose volume change is averaged round corners.
+// The hierarchy of bodies whose volume change is averaged.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,8 @@
 namespace kacanov {
 
 /// A cycle on displacements and pressures, of which the displacements are handed out (theory:
-/// pressure-multigrid). For bodies in 3D with a law that averages. Collective.
+/// pressure-multigrid). Null where elements average over themselves and the first grid does not fit the body.
+/// For bodies in 3D with a law that averages. Collective.
 std::unique_ptr<Multigrid::Hierarchy> make_pressure_hierarchy(const MultigridBody& body,
                                                               const MultigridOptions& options);
 

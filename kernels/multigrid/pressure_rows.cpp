@@ -4,13 +4,26 @@
 
 #include <algorithm>
 
+#include "multigrid/element_pressures.hpp"
 #include "operator/corners.hpp"
 
 namespace kacanov {
+namespace {
+
+CornerMeans means_of(const Body& body) {
+  return averages_over_elements(body) ? element_means(body) : corner_means(body);
+}
+
+CornerRows rows_of(const MultigridBody& body, const CornerMeans& means) {
+  return averages_over_elements(body.body) ? element_rows(means, body.body, *body.node_map)
+                                           : make_corner_rows(means, *body.node_map);
+}
+
+}  // namespace
 
 PressureRows::PressureRows(const MultigridBody& body)
-    : means_(corner_means(body.body)),
-      rows_(std::make_unique<const CornerRows>(make_corner_rows(means_, *body.node_map))),
+    : means_(means_of(body.body)),
+      rows_(std::make_unique<const CornerRows>(rows_of(body, means_))),
       scatterer_(rows_->map, 1),
       compliance_(rows()),
       values_(rows_->map.size()) {

@@ -112,8 +112,7 @@ VolumeChanges changes_of(const MultigridBody& body, const PressureRows& pressure
                          std::span<const char> wanted, bool rows_alone, int threads) {
   VolumeChanges all;
   elements::dispatch(body.body.mesh.type, [&]<class E>(E) {
-    if constexpr (E::dim == 3 && E::corner_dilatation)
-      all = changes_of<E>(body, pressures, wanted, rows_alone, threads);
+    if constexpr (E::dim == 3) all = changes_of<E>(body, pressures, wanted, rows_alone, threads);
   });
   return all;
 }

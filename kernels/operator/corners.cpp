@@ -97,21 +97,12 @@ CornerLayout make_corner_layout(const Body& body, const CornerMeans& means, cons
 std::vector<double> corner_volumes(const Body& body, const CornerMeans& means) {
   std::vector<double> volume(means.size(), 0.0);
   elements::dispatch(body.mesh.type, [&]<class E>(E) {
-    if constexpr (E::corner_dilatation)
+    if constexpr (E::dim == 3)
       for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
         const std::int32_t* entry = &means.of_element[e * E::corners];
         if (entry[0] < 0) continue;
         const elements::Nodal<E> x = elements::coordinates_of<E>(body.mesh, e);
-        std::array<double, E::corners> share{};
-        if (elements::has_straight_sides(x)) {
-          share.fill(elements::StraightSides(x.data()).volume / E::corners);
-        } else {
-          for (std::size_t q = 0; q < E::points; ++q) {
-            const double here = elements::Point<E>(x, q).volume;
-            const auto at = elements::barycentric<E::dim>(E::point[q].data());
-            for (std::size_t c = 0; c < share.size(); ++c) share[c] += here * at[c];
-          }
-        }
+        const std::array<double, E::corners> share = elements::corner_integrals<E>(x).volume;
         for (std::size_t c = 0; c < share.size(); ++c) volume[entry[c]] += share[c];
       }
   });

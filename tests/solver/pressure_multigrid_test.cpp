@@ -6,10 +6,8 @@
 #include <cmath>
 #include <numeric>
 
-#include <kacanov/operator.hpp>
 #include "../sanitized.hpp"
 #include "amg/part_multigrid.hpp"
-#include "multigrid/cg.hpp"
 #include "multigrid/fine_level.hpp"
 #include "multigrid/grid_fit.hpp"
 #include "multigrid/grid_level.hpp"
@@ -17,7 +15,6 @@
 #include "multigrid/grid_transfer.hpp"
 #include "multigrid/multigrid.hpp"
 #include "multigrid/node_spacing.hpp"
-#include "operator/corner_sum.hpp"
 #include "pressure_bodies.hpp"
 
 using namespace kacanov;
@@ -46,34 +43,6 @@ struct Grids {
 
 /// 1 + x − 2y + 3z at a point.
 double linear(const Vector3& x) { return 1.0 + x[0] - 2.0 * x[1] + 3.0 * x[2]; }
-
-int iterations(const Part& part, double jump, double contrast = 0.0) {
-  const Space space(part);
-  Operator op(part.body());
-  if (part.node_map.ranks > 1) op.set_corner_sum(CornerSum<double>(corner_means(part.body()), part.node_map));
-  const Vector g = bent(part, jump);
-  op.set_secant(g);
-  MultigridOptions options;
-  options.pressure_contrast = contrast;
-  PartMultigrid multigrid(part, options);
-  multigrid.setup(g, {}, space);
-  CgWork work;
-  work.resize(part.unknowns());
-  for (std::size_t i = 0; i < part.unknowns(); ++i)
-    work.residual[i] = part.held[i] ? 0.0 : std::sin(0.1 * static_cast<double>(part.node_index[i / 3]));
-  Vector u(part.unknowns(), 0.0);
-  const CgResult solve = conjugate_gradients(
-      space,
-      [&](std::span<const double> p, std::span<double> q) {
-        const double share = op.apply_dot(p, q);
-        part.node_map.sum(q, 3);
-        return share;
-      },
-      [&](std::span<const double> p, std::span<double> q) { multigrid.apply(p, q); }, u, work,
-      {0.0, 1e-8, 600});
-  CHECK(solve.converged);
-  return solve.iterations;
-}
 
 double sum_all(double v) {
   MPI_Allreduce(MPI_IN_PLACE, &v, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
@@ -318,34 +287,36 @@ TEST_CASE(
 }
 
 TEST_CASE("the cycles on grids, with displacements alone and with pressures, are symmetric") {
-  for (const double contrast : {0.0, 1e9}) {
-    CAPTURE(contrast);
-    const Part part = bar(4, false);
-    const Space space(part);
-    MultigridOptions options;
-    options.pressure_contrast = contrast;
-    options.grid_contrast = 1e9;
-    PartMultigrid multigrid(part, options);
-    multigrid.setup(bent(part, 100.0), {}, space);
-    const auto random = [&](double frequency) {
-      Vector x(part.unknowns());
-      for (std::size_t i = 0; i < x.size(); ++i)
-        x[i] = part.held[i] ? 0.0
-                            : std::sin(frequency * static_cast<double>(3 * part.node_index[i / 3]) +
-                                       static_cast<double>(i % 3));
-      return x;
-    };
-    const Vector x = random(0.7), y = random(1.9);
-    Vector mx(x.size()), my(x.size());
-    multigrid.apply(x, mx);
-    multigrid.apply(y, my);
-    const auto dot = [&](const Vector& a, const Vector& b) {
-      return sum_all(std::inner_product(
-          a.begin(), a.begin() + static_cast<std::ptrdiff_t>(part.owned_unknowns()), b.begin(), 0.0));
-    };
-    CHECK(dot(x, mx) > 0.0);
-    CHECK(std::abs(dot(x, my) - dot(y, mx)) < 1e-4 * std::sqrt(dot(x, mx) * dot(y, my)));
-  }
+  for (const bool over_elements : {false, true})
+    for (const double contrast : {0.0, 1e9}) {
+      CAPTURE(over_elements);
+      CAPTURE(contrast);
+      const Part part = over_elements ? bar(8, false, ElementType::hex8) : bar(4, false);
+      const Space space(part);
+      MultigridOptions options;
+      options.pressure_contrast = options.element_contrast = contrast;
+      options.grid_contrast = contrast;
+      PartMultigrid multigrid(part, options);
+      multigrid.setup(bent(part, 100.0), {}, space);
+      const auto random = [&](double frequency) {
+        Vector x(part.unknowns());
+        for (std::size_t i = 0; i < x.size(); ++i)
+          x[i] = part.held[i] ? 0.0
+                              : std::sin(frequency * static_cast<double>(3 * part.node_index[i / 3]) +
+                                         static_cast<double>(i % 3));
+        return x;
+      };
+      const Vector x = random(0.7), y = random(1.9);
+      Vector mx(x.size()), my(x.size());
+      multigrid.apply(x, mx);
+      multigrid.apply(y, my);
+      const auto dot = [&](const Vector& a, const Vector& b) {
+        return sum_all(std::inner_product(
+            a.begin(), a.begin() + static_cast<std::ptrdiff_t>(part.owned_unknowns()), b.begin(), 0.0));
+      };
+      CHECK(dot(x, mx) > 0.0);
+      CHECK(std::abs(dot(x, my) - dot(y, mx)) < 1e-4 * std::sqrt(dot(x, mx) * dot(y, my)));
+    }
 }
 
 TEST_CASE("displacements alone take few iterations on grids, on every size" * doctest::skip(sanitized)) {

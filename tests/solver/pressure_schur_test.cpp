@@ -75,48 +75,51 @@ TEST_CASE("matrices summed of small ones have whole rows on their ranks, whoever
 
 TEST_CASE(
     "S is C and what pressures do to volumes by way of the node blocks, found at once or part by part") {
-  const Part part = bar(4, false);
-  const MultigridBody body = multigrid_body(part);
-  PressureRows pressures(body);
-  FineLevel fine(body, {}, FinePart::deviator, &pressures.means());
-  const double factor = 0.4;
-  std::vector<NodeBlock> springs;
-  for (std::int32_t n = 0; n < part.owned_nodes(); n += 11)
-    springs.push_back({n, {4e3, 0.0, 0.0, 0.0, 2.0, 1.0, 0.0, 1.0, 3.0}});
-  for (const int threads : {1, 2})
-    for (const std::int64_t nodes_at_once : {10, 1 << 15}) {
-      fine.build(bent(part, 100.0), {}, HeldSpace());
-      PressureSchur schur(body, pressures, threads, nodes_at_once);
-      schur.build(fine.inverse(), factor);
-      // Without springs, with some, and without them again.
-      for (const bool sprung : {false, true, false}) {
-        CAPTURE(threads);
-        CAPTURE(nodes_at_once);
-        CAPTURE(sprung);
-        const std::vector<float> before(fine.inverse().begin(), fine.inverse().end());
-        fine.rebuild(sprung ? std::span<const NodeBlock>(springs) : std::span<const NodeBlock>(),
-                     HeldSpace());
-        schur.change(before, fine.inverse());
-        Vector p(schur.size()), of_matrix(pressures.rows()), by_sweeps(pressures.rows());
-        for (std::size_t r = 0; r < pressures.rows(); ++r)
-          p[r] = std::sin(0.7 * static_cast<double>(part.node_index[pressures.node(r)]));
-        schur.multiply(p, of_matrix);
-        std::vector<float> entries(pressures.means().size()), force(part.unknowns()), moved = force;
-        pressures.spread(std::span(p).first(pressures.rows()), entries);
-        fine.pressure_force(entries, force);
-        fine.add_scaled(static_cast<float>(factor), force, {}, moved);
-        fine.hold(moved);
-        fine.volume_change(moved, entries);
-        pressures.sum(entries, by_sweeps);
-        double largest = 0.0, off = 0.0;
-        for (std::size_t r = 0; r < pressures.rows(); ++r) {
-          by_sweeps[r] += pressures.compliance()[r] * p[r];
-          largest = std::max(largest, std::abs(by_sweeps[r]));
-          off = std::max(off, std::abs(of_matrix[r] - by_sweeps[r]));
+  for (const ElementType type : {ElementType::tet10, ElementType::hex8}) {
+    CAPTURE(cell(type).name);
+    const Part part = bar(4, false, type);
+    const MultigridBody body = multigrid_body(part);
+    PressureRows pressures(body);
+    FineLevel fine(body, {}, FinePart::deviator, &pressures.means());
+    const double factor = 0.4;
+    std::vector<NodeBlock> springs;
+    for (std::int32_t n = 0; n < part.owned_nodes(); n += 11)
+      springs.push_back({n, {4e3, 0.0, 0.0, 0.0, 2.0, 1.0, 0.0, 1.0, 3.0}});
+    for (const int threads : {1, 2})
+      for (const std::int64_t nodes_at_once : {10, 1 << 15}) {
+        fine.build(bent(part, 100.0), {}, HeldSpace());
+        PressureSchur schur(body, pressures, threads, nodes_at_once);
+        schur.build(fine.inverse(), factor);
+        // Without springs, with some, and without them again.
+        for (const bool sprung : {false, true, false}) {
+          CAPTURE(threads);
+          CAPTURE(nodes_at_once);
+          CAPTURE(sprung);
+          const std::vector<float> before(fine.inverse().begin(), fine.inverse().end());
+          fine.rebuild(sprung ? std::span<const NodeBlock>(springs) : std::span<const NodeBlock>(),
+                       HeldSpace());
+          schur.change(before, fine.inverse());
+          Vector p(schur.size()), of_matrix(pressures.rows()), by_sweeps(pressures.rows());
+          for (std::size_t r = 0; r < pressures.rows(); ++r)
+            p[r] = std::sin(0.7 * static_cast<double>(part.node_index[pressures.node(r)]));
+          schur.multiply(p, of_matrix);
+          std::vector<float> entries(pressures.means().size()), force(part.unknowns()), moved = force;
+          pressures.spread(std::span(p).first(pressures.rows()), entries);
+          fine.pressure_force(entries, force);
+          fine.add_scaled(static_cast<float>(factor), force, {}, moved);
+          fine.hold(moved);
+          fine.volume_change(moved, entries);
+          pressures.sum(entries, by_sweeps);
+          double largest = 0.0, off = 0.0;
+          for (std::size_t r = 0; r < pressures.rows(); ++r) {
+            by_sweeps[r] += pressures.compliance()[r] * p[r];
+            largest = std::max(largest, std::abs(by_sweeps[r]));
+            off = std::max(off, std::abs(of_matrix[r] - by_sweeps[r]));
+          }
+          CHECK(off < 2e-6 * part.node_map.max_all(largest));
         }
-        CHECK(off < 2e-6 * part.node_map.max_all(largest));
       }
-    }
+  }
 }
 
 TEST_CASE("a smoother's weights make Chebyshev's polynomial, and none is below 1") {
