@@ -96,6 +96,39 @@ TEST_CASE("pressures of tetrahedra take memory, and hexahedra have none beside t
   }
 }
 
+TEST_CASE("hexahedra that average and yield may come to have pressures, as the case says") {
+  Model model = clamped();
+  CHECK_FALSE(size_of(box_of(ElementType::hex8), model).may_flow);
+  model.materials[0].law.form = laws::Logarithmic{0.01};
+  const ProblemSize size = size_of(box_of(ElementType::hex8), model);
+  CHECK(size.may_flow);
+  CHECK_FALSE(size.pressures);
+  CHECK(memory_shares(flowing(size)).multigrid > memory_shares(size).multigrid);
+  for (const ElementType type : {ElementType::tet4, ElementType::tet10, ElementType::quad4})
+    CHECK_FALSE(size_of(box_of(type), model).may_flow);
+  model.materials[0].bbar = false;
+  CHECK_FALSE(size_of(box_of(ElementType::hex8), model).may_flow);
+  model.materials[0].bbar.reset();
+  model.materials[0].formulation = MaterialEntry::Formulation::displacement;
+  CHECK_FALSE(size_of(box_of(ElementType::hex8), model).may_flow);
+}
+
+TEST_CASE("a run that would not fit if it flowed is told so, and not refused") {
+  Model model = clamped();
+  model.materials[0].law.form = laws::Logarithmic{0.01};
+  ProblemSize size = size_of(BoxSpec{{1, 1, 1}, {100, 100, 100}, ElementType::hex8}, model);
+  CHECK(may_not_fit(size, 1, 1).empty());
+  const double available = available_memory();
+  REQUIRE(available > 0.0);
+  // A tenth less than there is.
+  const double factor = 0.9 * available / estimated_memory(size, 1);
+  size.nodes *= factor, size.elements *= factor;
+  CHECK_NOTHROW(refuse_what_cannot_fit(size, 1, 1));
+  CHECK(may_not_fit(size, 1, 1).find("are available") != std::string::npos);
+  size.may_flow = false;
+  CHECK(may_not_fit(size, 1, 1).empty());
+}
+
 TEST_CASE("the estimate is the largest sum at one time, and each rank adds what a process takes") {
   ProblemSize size;
   size.nodes = 1e6;

@@ -94,18 +94,19 @@ void print_contact_gaps(const Problem& problem) {
 
 // A rough model of the time, fitted to runs of the beam in 2D and 3D: seconds of a core an unknown. The case
 // decides more.
-constexpr double seconds_elastic = 1e-5, seconds_plastic = 4e-5;
+constexpr double seconds_elastic = 1e-5, seconds_plastic = 2.5e-5;
 
 void print_estimate(const Problem& problem, const Case& input, int ranks) {
   const auto unknowns = static_cast<double>(problem.mesh.coordinates.size());
   ProblemSize size = size_of(problem.mesh, input.model);
   size.contact_points = static_cast<double>(problem.contact.size());
   const double seconds = unknowns * (size.nonlinear ? seconds_plastic : seconds_elastic) / ranks;
+  std::string memory = readable_bytes(estimated_memory(size, ranks)) + " of memory";
+  if (size.may_flow)
+    memory += " (" + readable_bytes(estimated_memory(flowing(size), ranks)) + " where k0/g gets beyond 300)";
   std::printf(
-      "  estimate       %s of memory, %s on %d %s (time within a factor of three for a usual case); "
-      "available: %s\n",
-      readable_bytes(estimated_memory(size, ranks)).c_str(),
-      readable_seconds(std::max(seconds, 0.05)).c_str(), ranks, ranks == 1 ? "rank" : "ranks",
+      "  estimate       %s, %s on %d %s (time within a factor of three for a usual case); available: %s\n",
+      memory.c_str(), readable_seconds(std::max(seconds, 0.05)).c_str(), ranks, ranks == 1 ? "rank" : "ranks",
       readable_bytes(available_memory()).c_str());
 }
 

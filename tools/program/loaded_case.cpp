@@ -41,8 +41,8 @@ Mesh load_mesh(const MeshSource& source) {
 }
 
 Problem load_problem(const Case& input, RankCount ranks) {
-  const auto check_memory = [&](const ProblemSize& size) {
-    if (ranks.here > 0) refuse_what_cannot_fit(size, ranks.all, ranks.here);
+  const auto check_memory = [&](const ProblemSize& needed) {
+    if (ranks.here > 0) refuse_what_cannot_fit(needed, ranks.all, ranks.here);
   };
   if (input.mesh.box && !input.mesh.adapted) check_memory(size_of(*input.mesh.box, input.model));
   for (std::size_t k = 0; k < input.mesh.coarser.size(); ++k)
@@ -50,8 +50,10 @@ Problem load_problem(const Case& input, RankCount ranks) {
       throw InputError("mesh.files[" + std::to_string(k) + "]: expected a mesh file, there is no " +
                        input.mesh.coarser[k]);
   Mesh mesh = load_mesh(input.mesh);
-  check_memory(size_of(mesh, input.model));
+  const ProblemSize size = size_of(mesh, input.model);
+  check_memory(size);
   naming_file(input.file, [&] { check_dimension(input, mesh.dim()); });
+  const std::string too_large = ranks.here > 0 ? may_not_fit(size, ranks.all, ranks.here) : "";
   const Model model = with_curves(model_with_files(input));
   Problem problem;
   naming_file(input.file, [&] { problem = build_problem(std::move(mesh), model); });
@@ -59,6 +61,7 @@ Problem load_problem(const Case& input, RankCount ranks) {
                           problem.mesh.warnings.end());
   const std::vector<std::string> found = examine(problem, model);
   problem.warnings.insert(problem.warnings.end(), found.begin(), found.end());
+  if (!too_large.empty()) problem.warnings.push_back(too_large);
   return problem;
 }
 

@@ -20,9 +20,10 @@ constexpr double bytes_per_contact_point = 1.8e3;  // rows of traces, their spac
 constexpr double lanes_filled = 1.07;              // slots of the operators an element
 constexpr double nodes_of_blocks = 1.25;           // nodes of the operators' blocks a node
 constexpr double overhead = 1.03;                  // of the allocator
-// A node, measured on boxes of 1 million (tet4) and 1 to 50 million unknowns (tet10): means and their places,
-// S, grids.
-constexpr double bytes_of_pressures_tet4 = 430, bytes_of_pressures_tet10 = 220;
+// A node, measured on boxes of 1 million unknowns, tet10 up to 50 million: grids over what modes of
+// aggregates hold; pressures: means and their places, S, grids of four fields.
+constexpr double bytes_of_grids = 105, bytes_of_pressures_tet4 = 500, bytes_of_pressures_tet10 = 220,
+                 bytes_of_pressures_hex8 = 600;
 
 /// The number behind a word at the beginning of a line, 0 where there is none.
 double number_after(const std::string& path, const std::string& word) {
@@ -50,13 +51,39 @@ bool with_pressures(const Model& model, ElementType type) {
          });
 }
 
+/// Whether some material yields whose hexahedra average their volume change.
+bool averages_and_yields(const Model& model, ElementType type) {
+  return dimension(type) == 3 && cell(type).mean_dilatation &&
+         std::any_of(model.materials.begin(), model.materials.end(), [](const MaterialEntry& entry) {
+           return !entry.law.linear() && entry.bbar.value_or(true) &&
+                  entry.formulation != MaterialEntry::Formulation::displacement;
+         });
+}
+
+double bytes_of_pressures(ElementType type) {
+  return type == ElementType::tet4    ? bytes_of_pressures_tet4
+         : type == ElementType::tet10 ? bytes_of_pressures_tet10
+                                      : bytes_of_pressures_hex8;
+}
+
+double estimated_memory_here(const ProblemSize& size, int ranks, int ranks_here) {
+  return estimated_memory(size, ranks) * ranks_here / ranks;
+}
+
 }  // namespace
+
+ProblemSize flowing(const ProblemSize& size) {
+  ProblemSize most = size;
+  most.pressures = size.pressures || size.may_flow;
+  return most;
+}
 
 ProblemSize size_of(const BoxSpec& box, const Model& model) {
   ProblemSize size;
   size.type = box.type;
   size.nonlinear = nonlinear(model);
   size.pressures = with_pressures(model, size.type);
+  size.may_flow = averages_and_yields(model, size.type);
   const std::size_t dim = dimension(box.type);
   const double order = cell(box.type).order;
   size.nodes = 1.0;
@@ -73,6 +100,7 @@ ProblemSize size_of(const Mesh& mesh, const Model& model) {
   size.type = mesh.type;
   size.nonlinear = nonlinear(model);
   size.pressures = with_pressures(model, size.type);
+  size.may_flow = averages_and_yields(model, size.type);
   size.nodes = static_cast<double>(mesh.node_count());
   size.elements = static_cast<double>(mesh.element_count());
   return size;
@@ -96,9 +124,8 @@ MemoryShares memory_shares(const ProblemSize& size) {
   shares.operators = bytes(nodes_of_blocks * (32 + 4 + 16 + 4), slots * (8 + 4 + 4 + 4) + 2 * index);
   shares.loops = bytes(8 * dim * 6 + 4 * dim, 0);  // u, kept u, R(u), three vectors of CG; diagonal
   shares.multigrid = bytes(16 * dim + 4 * dim * (dim + 1) / 2 + 4 + rows, 0);
-  if (size.pressures)
-    shares.multigrid +=
-        bytes(size.type == ElementType::tet4 ? bytes_of_pressures_tet4 : bytes_of_pressures_tet10, 0);
+  if (dim == 3) shares.multigrid += bytes(bytes_of_grids, 0);
+  if (size.pressures) shares.multigrid += bytes(bytes_of_pressures(size.type), 0);
   shares.setup = bytes(8 + 1.15 * rows, 8 * points);  // aggregates, sums of blocks; g
   shares.step = bytes(8 * dim, 0);
   shares.tangent = size.nonlinear ? bytes(0, 20 * slots) : 0.0;
@@ -130,12 +157,20 @@ double available_memory() {
 }
 
 void refuse_what_cannot_fit(const ProblemSize& size, int ranks, int ranks_here) {
-  const double needed = estimated_memory(size, ranks) * ranks_here / ranks, available = available_memory();
+  const double needed = estimated_memory_here(size, ranks, ranks_here), available = available_memory();
   if (available == 0.0 || needed <= available) return;
   throw InputError(
       "this case needs about " + readable_bytes(needed) + " of memory on " + std::to_string(ranks_here) +
       (ranks_here == 1 ? " rank, " : " ranks, ") + readable_bytes(available) +
       " are available: take a coarser mesh or more machines (--no-memory-check tries all the same)");
+}
+
+std::string may_not_fit(const ProblemSize& size, int ranks, int ranks_here) {
+  const double needed = estimated_memory_here(flowing(size), ranks, ranks_here),
+               available = available_memory();
+  if (!size.may_flow || available == 0.0 || needed <= available) return {};
+  return "where the body flows until k0/g is 300 this case needs about " + readable_bytes(needed) +
+         " of memory, " + readable_bytes(available) + " are available";
 }
 
 }  // namespace kacanov

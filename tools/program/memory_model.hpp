@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include <kacanov/mesh.hpp>
 #include "case/case_file.hpp"
@@ -14,8 +15,12 @@ struct ProblemSize {
   double nodes = 0.0, elements = 0.0;
   double contact_points = 0.0;  ///< 0 where not known yet: they are few in 3D
   bool nonlinear = true;        ///< some law is not linear: the run takes tangents
-  bool pressures = false;       ///< some material is mixed, and the elements are tetrahedra
+  bool pressures = false;       ///< the multigrid has pressures: some material of tetrahedra is mixed
+  bool may_flow = false;        ///< hexahedra that average: it has them from k0/g = 300 on
 };
+
+/// The same body where it flows far enough for pressures of hexahedra.
+ProblemSize flowing(const ProblemSize& size);
 
 /// Size of a model on a mesh, or on the one that `box` stands for, without its contact points.
 ProblemSize size_of(const BoxSpec& box, const Model& model);
@@ -32,7 +37,7 @@ struct MemoryShares {
 MemoryShares memory_shares(const ProblemSize& size);
 
 /// Sum over the ranks of their largest resident memories in bytes, with the default preconditioner: within 15
-/// % from some 10,000 nodes on (measured).
+/// % from some 10,000 nodes on (measured). What `may_flow` is taken as not flowing that far.
 double estimated_memory(const ProblemSize& size, int ranks);
 
 /// Largest resident memory of this process so far, in bytes. 0: unknown.
@@ -45,5 +50,8 @@ double available_memory();
 /// Throws InputError where `ranks_here` of the `ranks` ranks of a run of this size would not fit on this
 /// machine, with both numbers.
 void refuse_what_cannot_fit(const ProblemSize& size, int ranks, int ranks_here);
+
+/// What to say of a run that fits as long as it does not flow that far; empty: nothing.
+std::string may_not_fit(const ProblemSize& size, int ranks, int ranks_here);
 
 }  // namespace kacanov
