@@ -82,6 +82,11 @@ class Warnings(unittest.TestCase):
     def words(code):
         return "".join(STRING.findall(code)).replace('\\"', '"')
 
+    def body_of(self, function):
+        """From where its definition, in whichever file, opens."""
+        opening = re.compile(rf"std::string {function}\([^)]*\) {{")
+        return next(text[found.end():] for text in self.sources.values() if (found := opening.search(text)))
+
     def warnings(self):
         """The words of each warning, by the place that makes it."""
         made = re.compile(r'(?:warnings|remarks_)\.push_back\((.*?)\);\n|"kacanov: (?:warning|note): .*?;\n', re.DOTALL)
@@ -90,7 +95,7 @@ class Warnings(unittest.TestCase):
             for match in made.finditer(text):
                 code = match[0]
                 if function := re.search(r"\b(\w+_message)\(", code):
-                    body = text[re.search(rf"std::string {function[1]}\([^)]*\) {{", text).end():]
+                    body = self.body_of(function[1])
                     code = body[:body.index("\n}\n")]
                 elif "text.str()" in code:
                     code = text[text.rindex("PlainText", 0, match.start()):match.end()]

@@ -117,16 +117,17 @@ TEST_CASE("a run that would not fit if it flowed is told so, and not refused") {
   Model model = clamped();
   model.materials[0].law.form = laws::Logarithmic{0.01};
   ProblemSize size = size_of(BoxSpec{{1, 1, 1}, {100, 100, 100}, ElementType::hex8}, model);
-  CHECK(may_not_fit(size, 1, 1).empty());
+  CHECK_FALSE(may_outgrow(size, 1, 1));
   const double available = available_memory();
   REQUIRE(available > 0.0);
   // A tenth less than there is.
   const double factor = 0.9 * available / estimated_memory(size, 1);
   size.nodes *= factor, size.elements *= factor;
   CHECK_NOTHROW(refuse_what_cannot_fit(size, 1, 1));
-  CHECK(may_not_fit(size, 1, 1).find("are available") != std::string::npos);
+  CHECK(may_outgrow(size, 1, 1));
+  CHECK(outgrown_memory_message(size, 1, 1).find("are available") != std::string::npos);
   size.may_flow = false;
-  CHECK(may_not_fit(size, 1, 1).empty());
+  CHECK_FALSE(may_outgrow(size, 1, 1));
 }
 
 TEST_CASE("the estimate is the largest sum at one time, and each rank adds what a process takes") {

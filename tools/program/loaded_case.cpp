@@ -53,7 +53,9 @@ Problem load_problem(const Case& input, RankCount ranks) {
   const ProblemSize size = size_of(mesh, input.model);
   check_memory(size);
   naming_file(input.file, [&] { check_dimension(input, mesh.dim()); });
-  const std::string too_large = ranks.here > 0 ? may_not_fit(size, ranks.all, ranks.here) : "";
+  std::vector<std::string> warnings;
+  if (ranks.here > 0 && may_outgrow(size, ranks.all, ranks.here))
+    warnings.push_back(outgrown_memory_message(size, ranks.all, ranks.here));
   const Model model = with_curves(model_with_files(input));
   Problem problem;
   naming_file(input.file, [&] { problem = build_problem(std::move(mesh), model); });
@@ -61,7 +63,7 @@ Problem load_problem(const Case& input, RankCount ranks) {
                           problem.mesh.warnings.end());
   const std::vector<std::string> found = examine(problem, model);
   problem.warnings.insert(problem.warnings.end(), found.begin(), found.end());
-  if (!too_large.empty()) problem.warnings.push_back(too_large);
+  problem.warnings.insert(problem.warnings.end(), warnings.begin(), warnings.end());
   return problem;
 }
 

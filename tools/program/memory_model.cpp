@@ -165,12 +165,16 @@ void refuse_what_cannot_fit(const ProblemSize& size, int ranks, int ranks_here) 
       " are available: take a coarser mesh or more machines (--no-memory-check tries all the same)");
 }
 
-std::string may_not_fit(const ProblemSize& size, int ranks, int ranks_here) {
-  const double needed = estimated_memory_here(flowing(size), ranks, ranks_here),
-               available = available_memory();
-  if (!size.may_flow || available == 0.0 || needed <= available) return {};
-  return "where the body flows until k0/g is 300 this case needs about " + readable_bytes(needed) +
-         " of memory, " + readable_bytes(available) + " are available";
+bool may_outgrow(const ProblemSize& size, int ranks, int ranks_here) {
+  const double available = available_memory();
+  return size.may_flow && available > 0.0 &&
+         estimated_memory_here(flowing(size), ranks, ranks_here) > available;
+}
+
+std::string outgrown_memory_message(const ProblemSize& size, int ranks, int ranks_here) {
+  return "where the body flows until k0/g is 300 this case needs about " +
+         readable_bytes(estimated_memory_here(flowing(size), ranks, ranks_here)) + " of memory, " +
+         readable_bytes(available_memory()) + " are available";
 }
 
 }  // namespace kacanov

@@ -51,7 +51,10 @@ double available_memory();
 /// machine, with both numbers.
 void refuse_what_cannot_fit(const ProblemSize& size, int ranks, int ranks_here);
 
-/// What to say of a run that fits as long as it does not flow that far; empty: nothing.
-std::string may_not_fit(const ProblemSize& size, int ranks, int ranks_here);
+/// Whether such a run, that may flow, would not fit once it does.
+bool may_outgrow(const ProblemSize& size, int ranks, int ranks_here);
+
+/// What to say of it.
+std::string outgrown_memory_message(const ProblemSize& size, int ranks, int ranks_here);
 
 }  // namespace kacanov
