@@ -183,7 +183,8 @@ elif case["material"][0]["law"]["type"] == "linear":
 else:
     n = 3 * (cells[0] + 1) * (cells[1] + 1) * (cells[2] + 1)
     (pathlib.Path(options[1]) / "result.json").write_text(json.dumps(dict(status="converged", unknowns=n, outer_iterations=3, cg_iterations=9,
-        operator_applications=20, peak_memory_bytes=100 * n, seconds=dict(total=2e-6 * n, preconditioner_setup=5e-7 * n),
+        operator_applications=20, peak_memory_bytes=100 * n, seconds=dict(total=2e-6 * n, solve=1e-6 * n, preconditioner_setup=5e-7 * n),
+        nested=[dict(seconds=1e-7 * n), dict(seconds=2e-7 * n)],
         certificate=dict(equilibrium=1e-8, tension=0.0))))
 """
 
@@ -203,6 +204,10 @@ else:
         self.assertIn("no such luck", entries[2]["status"])
         first = [c.strip() for c in done.stdout.splitlines()[2].split("|")[1:-1]]
         self.assertEqual(first[3:6] + [first[7], first[8], first[10]], ["3", "9", "20", "2.0", "25 %", "100"])
+        titles, _, *rows = [[c.strip() for c in line.split("|")[1:-1]] for line in done.stdout.split("an unknown:\n\n")[1].splitlines()]
+        self.assertEqual(len(rows), 2)  # what failed has no phases
+        phases = dict(zip(titles, rows[0]))
+        self.assertEqual([phases[k] for k in ("read", "coarser meshes", "solve", "setups in it")], ["0.00", "0.30", "1.00", "0.50"])
 
     def test_bad_usage(self):
         self.assertEqual(run("bench_run", "nowhere").returncode, 2)
