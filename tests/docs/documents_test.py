@@ -83,9 +83,9 @@ class Warnings(unittest.TestCase):
         return "".join(STRING.findall(code)).replace('\\"', '"')
 
     def body_of(self, function):
-        """From where its definition, in whichever file, opens."""
-        opening = re.compile(rf"std::string {function}\([^)]*\) {{")
-        return next(text[found.end():] for text in self.sources.values() if (found := opening.search(text)))
+        """Of its definition, in whichever file that is."""
+        definition = re.compile(rf"std::string {function}\([^)]*\) {{(.*?)\n}}\n", re.DOTALL)
+        return next(found[1] for text in self.sources.values() if (found := definition.search(text)))
 
     def warnings(self):
         """The words of each warning, by the place that makes it."""
@@ -95,8 +95,7 @@ class Warnings(unittest.TestCase):
             for match in made.finditer(text):
                 code = match[0]
                 if function := re.search(r"\b(\w+_message)\(", code):
-                    body = self.body_of(function[1])
-                    code = body[:body.index("\n}\n")]
+                    code = self.body_of(function[1])
                 elif "text.str()" in code:
                     code = text[text.rindex("PlainText", 0, match.start()):match.end()]
                 elif not re.search("[a-z]{3}", self.words(code.replace("kacanov: warning: ", ""))) and passed_on.search(code):
