@@ -2,6 +2,8 @@
 // Signals that ask a run to stop.
 #include "program/interrupt.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
 #include <ctime>
@@ -12,9 +14,27 @@ namespace {
 
 std::atomic<bool> listening = false, came = false, in_time = false;
 std::atomic<double> seconds_to_stop = 0.0;
+std::atomic<bool> held = false;
+pthread_t worker{};  // the thread that asked for this one
+
+extern "C" void hold(int) {
+  held = true;
+  while (true) pause();
+}
+
+/// Holds the worker where it is, or goes on after a second where it cannot be reached. METIS sets and resets
+/// handlers of SIGTERM as it works; one set between the two lines of die_of() would be run by a thread that
+/// it does not know.
+void hold_worker() {
+  constexpr timespec moment{0, 1'000'000};
+  std::signal(SIGUSR2, hold);
+  pthread_kill(worker, SIGUSR2);
+  for (int tries = 0; !held && tries < 1000; ++tries) nanosleep(&moment, nullptr);
+}
 
 /// As if nobody had ever taken the signal.
 void die_of(int signal) {
+  hold_worker();
   std::signal(signal, SIG_DFL);
   sigset_t one;
   sigemptyset(&one);
@@ -72,6 +92,7 @@ void take_signals() {
       sigaddset(&set, signal);
   }
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
+  worker = pthread_self();
   std::thread(wait_for_signals, set).detach();
 }
 
