@@ -265,7 +265,16 @@ std::vector<std::int32_t> aggregate(WeightedGraph graph, double size) {
   std::iota(result.begin(), result.end(), 0);
   std::vector<std::int32_t> members(result.size(), 1);
   std::int32_t before = rows;
-  while (static_cast<double>(before) * size > static_cast<double>(rows) * 1.4) {
+  // The mean is of what can be joined: with the rows that have no neighbour here, at the edge of a part, the
+  // others would be joined until next to nothing was left of them.
+  const auto too_small = [&] {
+    std::int32_t lone_groups = 0, lone_rows = 0;
+    for (std::int32_t i = 0; i < before; ++i)
+      if (graph.start[i] == graph.start[static_cast<std::size_t>(i) + 1])
+        ++lone_groups, lone_rows += members[i];
+    return static_cast<double>(before - lone_groups) * size > static_cast<double>(rows - lone_rows) * 1.4;
+  };
+  while (too_small()) {
     const std::vector<std::int32_t> group = match(graph, members);
     const std::int32_t groups = group.empty() ? 0 : 1 + *std::max_element(group.begin(), group.end());
     if (groups == before) break;

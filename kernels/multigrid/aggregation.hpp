@@ -20,8 +20,9 @@ struct WeightedGraph {
 };
 
 /// Group of each row (theory: aggregation). Rows, then pairs, then fours ... are joined along their heaviest
-/// edges until groups have `size` ≥ 1 rows in the mean or nothing is left to join. Groups are numbered from 0
-/// in the order of their first rows. Not collective: rows of this rank alone.
+/// edges until groups have `size` ≥ 1 rows in the mean, but for those that have no neighbours, or nothing is
+/// left to join. Groups are numbered from 0 in the order of their first rows. Not collective: rows of this
+/// rank alone.
 std::vector<std::int32_t> aggregate(WeightedGraph graph, double size);
 
 /// The same for the first `nodes` nodes of a body (those a rank owns) by their couplings; g: elements ×
