@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <fstream>
 #include <iostream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -31,13 +32,15 @@ struct Options {
   std::vector<std::string> kinds{"multigrid", "elasticity"};
   std::vector<double> poisson{0.3}, penalty{0.0}, jump{1.0}, aspect{1.0};
   double tolerance = 1e-8;
-  int ranks = 0, threads = 1, repeat = 1;
+  int ranks = 0, threads = 1, repeat = 1, coarse_rows = std::numeric_limits<int>::max();
   bool mixed = false, json = false;
 };
 
-SolverOptions::Preconditioner preconditioner(const std::string& name) {
-  if (name == "elasticity") return SolverOptions::Preconditioner::elasticity;
-  return SolverOptions::Preconditioner::multigrid;
+SolverOptions solver_options(const std::string& kind, const Options& options) {
+  SolverOptions solver;
+  if (kind == "elasticity") solver.preconditioner = SolverOptions::Preconditioner::elasticity;
+  if (kind == "coarse-amg") solver.coarse_amg = options.coarse_rows;
+  return solver;
 }
 
 PressedBeam beam_of(const Options& options, int cells, double poisson, double aspect) {
@@ -75,7 +78,7 @@ Json measure(const Part& part, DistributedOperator& op, const std::string& kind,
   const std::int64_t heap = heap_bytes(), resident = status_bytes("VmRSS:");
   MPI_Barrier(mpi_of(part.node_map));
   const double begin = MPI_Wtime();
-  const auto amg = make_preconditioner(preconditioner(kind), part, options.threads, "");
+  const auto amg = make_preconditioner(solver_options(kind, options), part, options.threads, "");
   MPI_Barrier(mpi_of(part.node_map));
   const double start = MPI_Wtime();
   amg->setup(g, blocks, space);
@@ -170,7 +173,9 @@ int main(int argc, char** argv) {
   });
   app.add_option("--mesh", options.mesh,
                  "a Gmsh file instead of the beam; held at its lowest x, pressed from above");
-  app.add_option("--preconditioner", options.kinds)->check(CLI::IsMember({"multigrid", "elasticity"}));
+  app.add_option("--preconditioner", options.kinds)
+      ->check(CLI::IsMember({"multigrid", "coarse-amg", "elasticity"}));
+  app.add_option("--coarse-rows", options.coarse_rows, "coarse-amg: largest level that goes to BoomerAMG");
   app.add_option("--poisson", options.poisson);
   app.add_option("--penalty", options.penalty, "r on the whole bottom");
   app.add_option("--jump", options.jump, "g varies by this factor");

@@ -260,8 +260,7 @@ std::vector<SpectrumResult> analyse_spectrum(Part& part, const SolverOptions& op
   validate(options);
   const InOwnUnits scaled(part);
   DistributedOperator op(part, run.threads, run.instruction_set);
-  const auto amg =
-      make_preconditioner(options.preconditioner, part, run.threads, run.instruction_set, &op.local());
+  const auto amg = make_preconditioner(options, part, run.threads, run.instruction_set, &op.local());
   std::vector<double> secant(part.body().secant_count());
   op.local().secant(secant);
   std::vector<SpectrumResult> results;
@@ -292,8 +291,7 @@ ActivePenalty active_penalty(Part& part, const Solution& solution, const SolverO
   DistributedOperator op(part, run.threads, run.instruction_set);
   op.set_free_strain(free_strain(part, pressure));
   op.update(displacement);
-  const auto amg =
-      make_preconditioner(options.preconditioner, part, run.threads, run.instruction_set, &op.local());
+  const auto amg = make_preconditioner(options, part, run.threads, run.instruction_set, &op.local());
   std::vector<double> secant(part.body().secant_count());
   op.local().secant(secant);
   std::vector<TraceChoice> active(part.contact.size()), open(part.contact.size());

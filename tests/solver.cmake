@@ -14,7 +14,7 @@ kacanov_test(algebra IN solver
   MPI SOURCES solver/algebra_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal kacanov_dense_matrices)
 kacanov_test(multigrid IN solver
-  MPI SOURCES solver/multigrid_test.cpp
+  MPI SOURCES solver/coarse_amg_test.cpp solver/multigrid_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal Eigen3::Eigen
   RANKS 1 2 3)
 kacanov_test(spectrum IN numbers

@@ -3,6 +3,7 @@
 #include "multigrid/modes_hierarchy.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "multigrid/aggregate_motions.hpp"
 #include "multigrid/aggregation.hpp"
 #include "multigrid/chebyshev.hpp"
+#include "multigrid/coarse_solver.hpp"
 #include "multigrid/direct_solve.hpp"
 #include "multigrid/fine_level.hpp"
 #include "multigrid/softened_laws.hpp"
@@ -45,7 +47,7 @@ class ModesHierarchy final : public Multigrid::Hierarchy {
         fine_(body_, options) {}
 
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space) override {
-    direct_.reset();
+    forget_last();
     fine_.build(g, blocks, space);
     fine_.choose_smoother(options_.fine_degree, options_.fine_range);
     if (!motions_) {
@@ -58,7 +60,7 @@ class ModesHierarchy final : public Multigrid::Hierarchy {
   }
 
   void rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space) override {
-    direct_.reset();
+    forget_last();
     stages_.erase(stages_.begin() + 1, stages_.end());
     Vector g(body_.body.secant_count());
     fine_.secant(g);
@@ -105,10 +107,19 @@ class ModesHierarchy final : public Multigrid::Hierarchy {
   }
 
  private:
+  void forget_last() {
+    direct_.reset();
+    coarse_.reset();
+  }
+
   /// Everything below the first coarse level, and the smoothers of these levels.
   void complete() {
     while (stages_.back().level.total() > direct_rows) {
       auto& stage = stages_.back();
+      if (options_.make_coarse && stage.level.total() <= options_.coarse_rows) {
+        coarse_ = options_.make_coarse(coarse_matrix(stage.level, motions_->length()));
+        break;
+      }
       const std::int64_t before = stage.level.total();
       stage.group = aggregate(stage.level.couplings(), options_.coarse_size);
       RigidLevel<M> next = stage.level.coarsened(stage.group, motions_->length());
@@ -124,10 +135,10 @@ class ModesHierarchy final : public Multigrid::Hierarchy {
       }
       stages_.emplace_back(std::move(next));
     }
-    direct_.emplace(stages_.back().level);
-    for (auto& stage : stages_) {
-      const double largest = stage.level.largest_eigenvalue();
-      stage.smoother = {options_.coarse_degree, largest / options_.coarse_range, largest};
+    if (!coarse_) direct_.emplace(stages_.back().level);
+    for (std::size_t k = 0; k + 1 < stages_.size(); ++k) {  // the last one needs none
+      const double largest = stages_[k].level.largest_eigenvalue();
+      stages_[k].smoother = {options_.coarse_degree, largest / options_.coarse_range, largest};
     }
     for (auto* v : {&b_, &x_, &step_, &image_}) v->resize(body_.unknowns());
   }
@@ -138,8 +149,8 @@ class ModesHierarchy final : public Multigrid::Hierarchy {
     const std::size_t owned = stage.level.owned_size();
     const auto first = [owned](Vector& v) { return std::span(v).first(owned); };
     if (k + 1 == stages_.size()) {
-      direct_->solve(first(stage.b), first(stage.x));
-      return;
+      if (coarse_) return coarse_->solve(first(stage.b), first(stage.x));
+      return direct_->solve(first(stage.b), first(stage.x));
     }
     const auto multiply = [&](std::span<const double>, std::span<double> y) {
       stage.level.multiply(stage.x, y);
@@ -155,7 +166,7 @@ class ModesHierarchy final : public Multigrid::Hierarchy {
     smooth(true);
     Stage<M>& next = stages_[k + 1];
     for (int c = 0; c < options_.cycles; ++c) {
-      if (c > 0 && k + 2 == stages_.size()) break;  // the last level is solved exactly
+      if (c > 0 && k + 2 == stages_.size() && direct_) break;  // the last level is solved exactly
       stage.level.multiply(stage.x, stage.image);
       std::fill(next.b.begin(), next.b.end(), 0.0);
       for (std::size_t i = 0; i < stage.group.size(); ++i) {
@@ -181,8 +192,9 @@ class ModesHierarchy final : public Multigrid::Hierarchy {
   MultigridOptions options_;
   FineLevel fine_;
   std::optional<AggregateMotions<M>> motions_;
-  std::vector<Stage<M>> stages_;  ///< the first one lives as long as the aggregates do
-  std::optional<DirectSolve<M>> direct_;
+  std::vector<Stage<M>> stages_;          ///< the first one lives as long as the aggregates do
+  std::optional<DirectSolve<M>> direct_;  ///< of the last stage, unless that is handed to `coarse_`
+  std::unique_ptr<CoarseSolver> coarse_;
   std::vector<float> b_, x_, step_, image_;
 };
 

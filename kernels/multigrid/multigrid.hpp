@@ -4,10 +4,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
 
+#include "multigrid/coarse_solver.hpp"
 #include "multigrid/held_space.hpp"
 #include "multigrid/multigrid_body.hpp"
 #include "multigrid/node_block.hpp"
@@ -39,6 +41,10 @@ struct MultigridOptions {
   /// The same where elements average over themselves, whose other cycles are better and whose pressures are
   /// more: as much time at 300, two thirds of it at 1,000, at three times the memory.
   double element_contrast = 300.0;
+  /// Of the levels over aggregates, the first one of at most so many rows is handed to what `make_coarse`
+  /// makes, if it is too large to be factorised (theory: coarse-amg). 0: none is.
+  std::int64_t coarse_rows = 0;
+  MakeCoarseSolver make_coarse = {};
 };
 
 /// z = one symmetric cycle on r: z ≈ (B(g) + blocks)⁻¹ r, symmetric positive definite and fixed between two

@@ -62,8 +62,11 @@ BoomerAmg::~BoomerAmg() {
 void BoomerAmg::release() {
   if (solver_ != nullptr) HYPRE_BoomerAMGDestroy(solver_);
   if (matrix_ != nullptr) HYPRE_IJMatrixDestroy(matrix_);
+  for (const HYPRE_IJVector vector : smooth_) HYPRE_IJVectorDestroy(vector);
   solver_ = nullptr;
   matrix_ = nullptr;
+  smooth_.clear();
+  smooth_objects_.clear();
 }
 
 void BoomerAmg::begin(std::span<const HYPRE_Int> row_sizes) {
@@ -81,14 +84,28 @@ void BoomerAmg::add_row(HYPRE_BigInt row, std::span<HYPRE_BigInt> columns, std::
         "IJMatrixAddToValues");
 }
 
-void BoomerAmg::finish(const BoomerAmgOptions& options) {
+/// Vectors and their list stay as long as the solver, which does not copy them.
+void BoomerAmg::reach(std::span<const std::vector<double>> smooth) {
+  for (const std::vector<double>& values : smooth) {
+    smooth_.push_back(nullptr);
+    smooth_objects_.push_back(create_vector(comm_, first_, count_, smooth_.back()));
+    check(HYPRE_IJVectorSetValues(smooth_.back(), count_, nullptr, values.data()), "IJVectorSetValues");
+  }
+  check(HYPRE_BoomerAMGSetInterpVectors(solver_, static_cast<HYPRE_Int>(smooth_objects_.size()),
+                                        smooth_objects_.data()),
+        "SetInterpVectors");
+  check(HYPRE_BoomerAMGSetInterpVecVariant(solver_, 1), "SetInterpVecVariant");  // "GM1", on every level
+  check(HYPRE_BoomerAMGSetInterpVecQMax(solver_, 4), "SetInterpVecQMax");
+}
+
+void BoomerAmg::finish(const BoomerAmgOptions& options, std::span<const std::vector<double>> smooth) {
   check(HYPRE_IJMatrixAssemble(matrix_), "IJMatrixAssemble");
   void* object = nullptr;
   check(HYPRE_IJMatrixGetObject(matrix_, &object), "IJMatrixGetObject");
   object_ = static_cast<HYPRE_ParCSRMatrix>(object);
   check(HYPRE_BoomerAMGCreate(&solver_), "BoomerAMGCreate");
   check(HYPRE_BoomerAMGSetPrintLevel(solver_, 0), "SetPrintLevel");
-  check(HYPRE_BoomerAMGSetMaxIter(solver_, 1), "SetMaxIter");
+  check(HYPRE_BoomerAMGSetMaxIter(solver_, options.cycles), "SetMaxIter");
   check(HYPRE_BoomerAMGSetTol(solver_, 0.0), "SetTol");
   check(HYPRE_BoomerAMGSetNumFunctions(solver_, options.functions), "SetNumFunctions");
   check(HYPRE_BoomerAMGSetCoarsenType(solver_, 10), "SetCoarsenType");  // HMIS
@@ -98,10 +115,15 @@ void BoomerAmg::finish(const BoomerAmgOptions& options) {
   // l1 Gauss–Seidel forward on the way down, backward on the way up: symmetric at half the cost of a
   // symmetric sweep on both (404 CG steps against 385, 4.3 s against 5.1 s of CPU time, 3D beam, h = 1/16);
   // Gaussian elimination at the end.
-  check(HYPRE_BoomerAMGSetCycleRelaxType(solver_, 13, 1), "SetCycleRelaxType");
-  check(HYPRE_BoomerAMGSetCycleRelaxType(solver_, 14, 2), "SetCycleRelaxType");
+  check(HYPRE_BoomerAMGSetCycleRelaxType(solver_, options.both_ways ? 8 : 13, 1), "SetCycleRelaxType");
+  check(HYPRE_BoomerAMGSetCycleRelaxType(solver_, options.both_ways ? 8 : 14, 2), "SetCycleRelaxType");
   check(HYPRE_BoomerAMGSetCycleRelaxType(solver_, 9, 3), "SetCycleRelaxType");
   check(HYPRE_BoomerAMGSetAggNumLevels(solver_, options.aggressive_levels), "SetAggNumLevels");
+  if (options.nodes_together) {
+    check(HYPRE_BoomerAMGSetNodal(solver_, 4), "SetNodal");  // by the row sums of a block's sizes
+    check(HYPRE_BoomerAMGSetNodalDiag(solver_, 1), "SetNodalDiag");
+  }
+  if (!smooth.empty()) reach(smooth);
   check(HYPRE_BoomerAMGSetup(solver_, object_, right_object_, left_object_), "BoomerAMGSetup");
 }
 

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace kacanov {
 
@@ -16,10 +17,15 @@ struct BoomerAmgOptions {
   int functions = 1;              ///< unknowns a node, interleaved
   double strong_threshold = 0.5;  ///< couplings below this share of a row's largest are weak
   int aggressive_levels = 0;      ///< the first of them are coarsened twice at once
+  bool nodes_together = false;    ///< coarsened by nodes, else each of their unknowns apart
+  /// Whether l1 Gauss–Seidel goes there and back on the way down and on the way up; otherwise forward on the
+  /// way down, backward on the way up, at half the cost.
+  bool both_ways = false;
+  int cycles = 1;  ///< V-cycles an application
 };
 
-/// Filled row by row, then one V-cycle at a time. Contributions to rows of other ranks are sent to them. All
-/// is collective but add_row(); what hypre refuses is an InternalError with its words.
+/// Filled row by row, then applied: V-cycles from zero. Contributions to rows of other ranks are sent to
+/// them. All is collective but add_row(); what hypre refuses is an InternalError with its words.
 class BoomerAmg {
  public:
   /// This rank owns the global rows first … first + count − 1 of `total`. Throws InputError where 32-bit
@@ -33,13 +39,15 @@ class BoomerAmg {
   void begin(std::span<const HYPRE_Int> row_sizes);
   /// Adds values at global columns, one each, to a row of any rank.
   void add_row(HYPRE_BigInt row, std::span<HYPRE_BigInt> columns, std::span<double> values);
-  /// Assembles the matrix and sets the hierarchy up.
-  void finish(const BoomerAmgOptions& options);
-  /// z = one V-cycle on r from zero; `count` owned entries each.
+  /// Assembles the matrix and sets the hierarchy up. `smooth`: vectors of `count` owned entries that the
+  /// interpolation should reach, besides those that are constant in one of a node's unknowns.
+  void finish(const BoomerAmgOptions& options, std::span<const std::vector<double>> smooth = {});
+  /// z = the V-cycles on r from zero; `count` owned entries each.
   void apply(const double* r, double* z);
 
  private:
   void release();
+  void reach(std::span<const std::vector<double>> smooth);
 
   MPI_Comm comm_;
   HYPRE_BigInt first_ = 0, count_ = 0;
@@ -48,6 +56,8 @@ class BoomerAmg {
   HYPRE_Solver solver_ = nullptr;
   HYPRE_IJVector right_ = nullptr, left_ = nullptr;
   HYPRE_ParVector right_object_ = nullptr, left_object_ = nullptr;
+  std::vector<HYPRE_IJVector> smooth_;
+  std::vector<HYPRE_ParVector> smooth_objects_;
 };
 
 }  // namespace kacanov

@@ -2,19 +2,23 @@
 // The choice of a preconditioner.
 #include "amg/make_preconditioner.hpp"
 
+#include "amg/coarse_amg.hpp"
 #include "amg/elasticity_amg.hpp"
 #include "amg/part_multigrid.hpp"
 
 namespace kacanov {
 
-std::unique_ptr<Preconditioner> make_preconditioner(SolverOptions::Preconditioner kind, const Part& part,
+std::unique_ptr<Preconditioner> make_preconditioner(const SolverOptions& options, const Part& part,
                                                     int threads, const std::string& instruction_set,
                                                     const Operator* like) {
-  if (kind == SolverOptions::Preconditioner::elasticity) return std::make_unique<ElasticityAmg>(part);
-  MultigridOptions options;
-  options.threads = threads;
-  options.instruction_set = instruction_set;
-  return std::make_unique<PartMultigrid>(part, options, like);
+  if (options.preconditioner == SolverOptions::Preconditioner::elasticity)
+    return std::make_unique<ElasticityAmg>(part);
+  MultigridOptions multigrid;
+  multigrid.threads = threads;
+  multigrid.instruction_set = instruction_set;
+  multigrid.coarse_rows = options.coarse_amg;
+  multigrid.make_coarse = make_coarse_amg;
+  return std::make_unique<PartMultigrid>(part, multigrid, like);
 }
 
 }  // namespace kacanov

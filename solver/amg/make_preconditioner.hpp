@@ -12,11 +12,11 @@
 namespace kacanov {
 
 /// `multigrid`: Chebyshev on the matrix-free operator over grids or aggregates (Multigrid; theory:
-/// multigrid). `elasticity`: unknown-based BoomerAMG on the assembled matrix, the yardstick (theory:
-/// elasticity-amg). Threads and instruction set are the operator's. `like`: an operator of the part's mesh
-/// and laws, whose division of the elements the multigrid takes over, or null. Collective; the part has to
-/// outlive it.
-std::unique_ptr<Preconditioner> make_preconditioner(SolverOptions::Preconditioner kind, const Part& part,
+/// multigrid), with BoomerAMG from options.coarse_amg rows down (theory: coarse-amg). `elasticity`:
+/// unknown-based BoomerAMG on the assembled matrix, the yardstick (theory: elasticity-amg). Threads and
+/// instruction set are the operator's. `like`: an operator of the part's mesh and laws, whose division of the
+/// elements the multigrid takes over, or null. Collective; the part has to outlive it.
+std::unique_ptr<Preconditioner> make_preconditioner(const SolverOptions& options, const Part& part,
                                                     int threads, const std::string& instruction_set,
                                                     const Operator* like = nullptr);
 

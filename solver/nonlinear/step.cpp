@@ -73,10 +73,10 @@ StepContext::StepContext(const Part& the_part, const SolverOptions& the_options,
       space(the_part),
       traces(the_part),
       body(the_part, run.threads, run.instruction_set),
-      preconditioner(the_part, body,
-                     make_preconditioner(the_options.preconditioner, the_part, run.threads,
-                                         run.instruction_set, &body.op().local()),
-                     the_tuning) {
+      preconditioner(
+          the_part, body,
+          make_preconditioner(the_options, the_part, run.threads, run.instruction_set, &body.op().local()),
+          the_tuning) {
   refuse_beyond_floats(part, body.diagonal());
   secant = {&space, &traces,
             [this](std::span<const double> x, std::span<double> y) { return body.op().apply(x, y); },

@@ -224,6 +224,8 @@ void validate(const SolverOptions& options) {
   check_count("solver.max_outer", options.max_outer);
   check_count("solver.max_contact", options.max_contact);
   check_count("solver.max_cg", options.max_cg);
+  if (options.coarse_amg < 0)
+    refuse("solver.coarse_amg", "a whole number ≥ 0", std::to_string(options.coarse_amg));
   const std::vector<double>& factors = options.load_steps;
   for (std::size_t i = 0; i < factors.size(); ++i) check(at("solver.load_steps", i), factors[i], load_factor);
   if (!factors.empty() && factors.back() != 1.0)

@@ -30,7 +30,7 @@ struct Setting {
         space(part),
         traces(part),
         op(part, 1, ""),
-        amg(make_preconditioner(SolverOptions::Preconditioner::multigrid, part, 1, "")) {
+        amg(make_preconditioner(SolverOptions(), part, 1, "")) {
     std::vector<double> secant(part.body().secant_count());
     op.local().secant(secant);
     const std::size_t points = part.contact.size();

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <kacanov/operator.hpp>
 #include "../sanitized.hpp"
 #include "amg/part_multigrid.hpp"
+#include "chain.hpp"
 #include "multigrid/aggregate_motions.hpp"
 #include "multigrid/aggregation.hpp"
 #include "multigrid/cg.hpp"
@@ -20,45 +20,6 @@ using namespace kacanov;
 using namespace kacanov::testing;
 
 namespace {
-
-/// A chain of `rows` springs a rank, joined across the ranks, each block 6 × 6 positive definite.
-RigidLevel<6> chain(std::int32_t rows) {
-  int rank = 0, ranks = 1;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
-  const std::int64_t first = static_cast<std::int64_t>(rank) * rows,
-                     total = static_cast<std::int64_t>(ranks) * rows;
-  std::vector<Vector3> centres;
-  BlockSums<6> sums;
-  for (std::int64_t i = first; i < first + rows; ++i) {
-    centres.push_back({static_cast<double>(i), 0.1 * static_cast<double>(i % 3), 0.0});
-    for (std::size_t k = 0; k < 6; ++k) {
-      sums.at(i, i)[7 * k] += 2.5 + 0.1 * static_cast<double>(k);
-      // Each rank also adds to rows of the next.
-      if (i + 1 < total) sums.at(i, i + 1)[7 * k] -= 1.0;
-      if (i + 1 < total) sums.at(i + 1, i + 1)[7 * k] += 0.25;
-    }
-    if (i + 1 < total) sums.at(i, i + 1)[1] = 0.125;
-  }
-  return {std::move(centres), std::move(sums), mpi_communicator(MPI_COMM_WORLD)};
-}
-
-double sum_all(double v) {
-  MPI_Allreduce(MPI_IN_PLACE, &v, 1, MPI_DOUBLE, MPI_SUM, MPI_COMM_WORLD);
-  return v;
-}
-
-double dot(const std::vector<double>& x, const std::vector<double>& y, std::size_t n) {
-  return sum_all(std::inner_product(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(n), y.begin(), 0.0));
-}
-
-template <int M>
-std::vector<double> wave(const RigidLevel<M>& level, double frequency) {
-  std::vector<double> x(level.size(), 0.0);
-  for (std::size_t i = 0; i < level.owned_size(); ++i)
-    x[i] = std::sin(frequency * static_cast<double>(level.first() * M + static_cast<std::int64_t>(i)) + 0.3);
-  return x;
-}
 
 /// Of CG to 1e-8 with every seventh element `stretch` times as stiff in shear as the others.
 int iterations(const Part& part, double stretch, const char* preconditioner = "multigrid") {
@@ -223,6 +184,25 @@ TEST_CASE("aggregates follow the strong couplings and leave nobody out") {
   int across = 0;
   for (std::size_t a = 0; a < members.size(); ++a) across += high[a] == low[a] ? 1 : 0;
   CHECK(across > groups * 9 / 10);
+}
+
+TEST_CASE("rows without neighbours do not make the groups of the others grow") {
+  // A chain, and a third as many rows at the edge of a part, whose neighbours are all of other ranks.
+  constexpr std::int32_t joined = 3000, lone = 1000;
+  WeightedGraph graph;
+  graph.start.push_back(0);
+  for (std::int32_t i = 0; i < joined + lone; ++i) {
+    if (i > 0 && i < joined) graph.column.push_back(i - 1);
+    if (i + 1 < joined) graph.column.push_back(i + 1);
+    graph.start.push_back(static_cast<std::int64_t>(graph.column.size()));
+  }
+  graph.weight.assign(graph.column.size(), 1.0F);
+  const auto group = aggregate(std::move(graph), 48.0);
+  std::vector<int> members(1 + *std::max_element(group.begin(), group.end()), 0);
+  for (const std::int32_t a : group) ++members[a];
+  CHECK(*std::max_element(members.begin(), members.end()) <= 64);
+  CHECK(std::count(members.begin(), members.end(), 1) == lone);
+  CHECK(members.size() <= lone + joined / 24);
 }
 
 TEST_CASE("a level is symmetric, and the next one is its Galerkin matrix, on any number of ranks") {

@@ -13,9 +13,9 @@ namespace kacanov::testing {
 /// `multigrid`, `elasticity` or `factor`. Collective.
 inline std::unique_ptr<Preconditioner> preconditioner_named(const std::string& name, const Part& part) {
   if (name == "factor") return std::make_unique<Factorised>(part);
-  return make_preconditioner(name == "multigrid" ? SolverOptions::Preconditioner::multigrid
-                                                 : SolverOptions::Preconditioner::elasticity,
-                             part, 1, "");
+  SolverOptions options;
+  if (name == "elasticity") options.preconditioner = SolverOptions::Preconditioner::elasticity;
+  return make_preconditioner(options, part, 1, "");
 }
 
 }  // namespace kacanov::testing

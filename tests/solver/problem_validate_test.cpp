@@ -74,6 +74,7 @@ TEST_CASE("options: the path of the key, what was expected, what was there") {
       {[](Options& o) { o.max_outer = 0; }, "solver.max_outer: expected a whole number ≥ 1, got 0"},
       {[](Options& o) { o.max_contact = -3; }, "solver.max_contact: expected a whole number ≥ 1, got -3"},
       {[](Options& o) { o.max_cg = 0; }, "solver.max_cg: expected a whole number ≥ 1, got 0"},
+      {[](Options& o) { o.coarse_amg = -1; }, "solver.coarse_amg: expected a whole number ≥ 0, got -1"},
       {[](Options& o) {
          o.load_steps = {0.5, -0.25, 1.0};
        },

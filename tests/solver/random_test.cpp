@@ -47,8 +47,8 @@ struct Sample {
   Model model;
 };
 
-Law random_law(Dice& dice, double young, double strain) {
-  Law law = elastic_law(young, dice.uniform(0.0, 0.45));
+Law random_law(Dice& dice, double modulus, double strain) {
+  Law law = elastic_law(modulus, dice.uniform(0.0, 0.45));
   const int kind = dice.whole(0, 5);
   double x0 = strain * dice.decades(-0.7, 0.5);
   double gamma = dice.decades(-1.5, -0.1);
@@ -130,14 +130,14 @@ Sample random_problem(unsigned seed) {
     return Vector3{x[0] + 0.1 * cell * shift[0], x[1] + 0.1 * cell * shift[1], x[2] + 0.1 * cell * shift[2]};
   });
 
-  const double young = dice.decades(-2.0, 4.0), strain = dice.decades(-4.0, -1.3);
+  const double modulus = dice.decades(-2.0, 4.0), strain = dice.decades(-4.0, -1.3);
   const double length = spec.size[up], move = strain * length;
   Model& model = sample.model;
-  model.materials.push_back({everything(), random_law(dice, young, strain)});
+  model.materials.push_back({everything(), random_law(dice, modulus, strain)});
   if (dice.chance(0.3)) {
     Vector3 low{-1, -1, -1}, high{3, 3, 3};
     high[0] = 0.75 * spec.size[0];
-    const Law law = random_law(dice, young * dice.decades(-1.0, 1.0), strain);
+    const Law law = random_law(dice, modulus * dice.decades(-1.0, 1.0), strain);
     if (spec.cells[0] >= 3) model.materials.push_back({box(low, high), law});
   }
 
@@ -149,23 +149,24 @@ Sample random_problem(unsigned seed) {
     shift[0] = move * dice.uniform(-0.3, 0.3);
     model.boundary.push_back(moved(named("top"), dim, shift));
     if (dice.chance(0.7))
-      model.boundary.push_back(traction(named("right"), times(young * strain, dice.direction(dim))));
+      model.boundary.push_back(traction(named("right"), times(modulus * strain, dice.direction(dim))));
   } else {
     model.boundary.push_back(moved(named("left"), dim));
     if (dim == 3 && dice.chance(0.3)) model.boundary.push_back(roller(named("front"), 1));
     Vector3 pull = dice.direction(dim);
     pull[up] = -std::abs(pull[up]);
     if (dice.chance(0.8))
-      model.boundary.push_back(traction(named("top"), times(young * strain, pull)));
+      model.boundary.push_back(traction(named("top"), times(modulus * strain, pull)));
     else
-      model.boundary.push_back(pressure(named("top"), young * strain * dice.uniform(-0.3, 1.0)));
+      model.boundary.push_back(pressure(named("top"), modulus * strain * dice.uniform(-0.3, 1.0)));
     if (dice.chance(0.3))
-      model.boundary.push_back(body_force(everything(), times(young * strain / length, dice.direction(dim))));
+      model.boundary.push_back(
+          body_force(everything(), times(modulus * strain / length, dice.direction(dim))));
   }
 
   std::optional<Friction> friction;
   const double kind = dice.uniform(0.0, 1.0);
-  if (kind > 0.35) friction = Friction{young * strain * dice.decades(-2.0, 0.3), 0.0};
+  if (kind > 0.35) friction = Friction{modulus * strain * dice.decades(-2.0, 0.3), 0.0};
   if (kind > 0.75) friction = Friction{0.0, dice.uniform(0.05, 0.3)};
   const double gap = dice.chance(0.3) ? 0.0 : move * dice.uniform(-0.5, 1.0);
   ContactEntry below;

@@ -24,7 +24,7 @@ inline nlohmann::json complete_case() {
                 {"on": "front", "obstacle": {"sphere": {"centre": [0, -9, 0], "radius": 2, "direction": [0, -1, 0]}}},
                 {"on": "back", "obstacle": {"gap": -0.01}}],
     "solver": {"tolerance": 1e-7, "outer": "kacanov", "contact": "admm", "r": 0.5, "stop": "paper", "max_outer": 50,
-               "max_contact": 1e5, "spectrum_tolerance": 1e-3, "relaxation": 1.5},
+               "max_contact": 1e5, "coarse_amg": 5000, "spectrum_tolerance": 1e-3, "relaxation": 1.5},
     "probe": [[4, 0.5, 1]],
     "output": {"fields": "none", "report": false}
   })",

@@ -77,6 +77,7 @@ TEST_CASE("every entry of the sample arrives") {
   CHECK(solver.max_outer == 50);
   CHECK(solver.max_contact == 100000);
   CHECK(solver.spectrum_tolerance == 1e-3);
+  CHECK(solver.coarse_amg == 5000);
   CHECK(solver.relaxation == 1.5);
   CHECK(model.probes == std::vector<Vector3>{{4.0, 0.5, 1.0}});
   CHECK_FALSE(input.output.fields);

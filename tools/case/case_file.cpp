@@ -257,6 +257,7 @@ class CaseParser {
     if (const auto v = object.optional("r")) parse_penalty(*v);
     if (const auto v = object.optional("preconditioner"))
       options.preconditioner = value_of(*v, words::preconditioner);
+    if (const auto v = object.optional("coarse_amg")) options.coarse_amg = v->integer(0);
     if (const auto v = object.optional("max_outer")) options.max_outer = v->integer(1);
     if (const auto v = object.optional("max_contact")) options.max_contact = v->integer(1);
     if (const auto v = object.optional("max_cg")) options.max_cg = v->integer(1);

@@ -187,6 +187,8 @@ KeySet solver() {
            "over-relaxation of ADMM; left out, 1 with r or stop as in the paper, else 1.7"),
        may("preconditioner", one_of(words::preconditioner), "of the linear solves",
            word_of(standard.preconditioner, words::preconditioner)),
+       may("coarse_amg", Whole{0},
+           "aggregates: a level of at most so many is handed to BoomerAMG; 0: none is", standard.coarse_amg),
        may("load_steps", load_steps(), "how many, or factors > 0 of which the last is 1", 1),
        may("nested", Flag{}, "whether coarser meshes are solved first, where there are some",
            standard.nested)}};

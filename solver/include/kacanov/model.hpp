@@ -137,6 +137,9 @@ struct SolverOptions {
   double r = 0.0;                        ///< with Penalty::fixed, > 0: stress over length
   Stop stop = Stop::kkt;
   Preconditioner preconditioner = Preconditioner::multigrid;
+  /// With the multigrid over aggregates: the first level of at most so many goes to BoomerAMG with all below
+  /// (theory: coarse-amg). 0: none does.
+  int coarse_amg = 0;
   int max_outer = 100;               ///< outer steps of a load step
   int max_contact = 10000;           ///< contact iterations within an outer step
   int max_cg = 2000;                 ///< CG iterations of one solve; what takes more has not converged
