@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "multigrid/largest_eigenvalue.hpp"
 #include "multigrid/multigrid.hpp"
@@ -49,43 +50,73 @@ FineLevel::FineLevel(const MultigridBody& body, const MultigridOptions& options,
 
 void FineLevel::build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space) {
   op_.set_secant(g);
-  rebuild(blocks, space);
-}
-
-void FineLevel::rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space) {
-  space_ = space;
+  take_blocks(blocks, space);
   held_.clear();
   for (std::size_t i = 0; i < body_.held.size(); ++i)
     if (body_.held[i] != 0) held_.push_back(static_cast<std::int32_t>(i));
+  held_stiffness_.resize(held_.size());
+  inverse_.resize(body_.nodes() * body_.dim() * (body_.dim() + 1) / 2);
+  std::vector<float> diagonal = node_blocks({});
+  take_own_stiffness(diagonal);
+  take_diagonal(diagonal, {});
+}
+
+void FineLevel::rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space) {
+  std::vector<NodeBlock> both = std::move(blocks_);
+  both.insert(both.end(), blocks.begin(), blocks.end());
+  const std::vector<char> touched = touched_by(both);
+  take_blocks(blocks, space);
+  std::vector<float> diagonal = node_blocks(touched);
+  take_diagonal(diagonal, touched);
+}
+
+/// A flag a node, on every rank that has it.
+std::vector<char> FineLevel::touched_by(std::span<const NodeBlock> blocks) const {
+  std::vector<std::int32_t> flag(body_.nodes(), 0);
+  for (const NodeBlock& b : blocks) flag[b.node] = 1;
+  body_.node_map->forward(flag, 1);
+  return {flag.begin(), flag.end()};
+}
+
+void FineLevel::take_blocks(std::span<const NodeBlock> blocks, const HeldSpace& space) {
+  space_ = space;
   blocks_.assign(blocks.begin(), blocks.end());
   std::vector<char> is_shared(body_.nodes(), 0);
   for (const std::int32_t node : body_.node_map->shared) is_shared[node] = 1;
   const auto rest = std::stable_partition(blocks_.begin(), blocks_.end(),
                                           [&](const NodeBlock& b) { return is_shared[b.node] != 0; });
   shared_blocks_ = static_cast<std::size_t>(rest - blocks_.begin());
-  const std::size_t dim = body_.dim();
-  const std::size_t packed = dim * (dim + 1) / 2;
-  std::vector<float> diagonal(body_.nodes() * dim * dim);
+}
+
+/// This rank's share of the operator's own.
+std::vector<float> FineLevel::node_blocks(std::span<const char> wanted) const {
+  std::vector<float> blocks(body_.nodes() * body_.dim() * body_.dim());
   if (part_ == FinePart::deviator && !of_elements_)
-    op_.block_diagonal_deviator(diagonal);
+    op_.block_diagonal_deviator(blocks, wanted);
   else
-    op_.block_diagonal(diagonal);
-  take_own_stiffness(diagonal);
+    op_.block_diagonal(blocks, wanted);
+  return blocks;
+}
+
+/// D and what follows from it at the renewed nodes, all where none is named, of their own blocks.
+void FineLevel::take_diagonal(std::span<float> blocks, std::span<const char> renewed) {
+  const std::size_t dim = body_.dim(), packed = dim * (dim + 1) / 2;
   for (const auto& b : blocks_)
     for (std::size_t k = 0; k < dim * dim; ++k)
-      diagonal[static_cast<std::size_t>(b.node) * dim * dim + k] += static_cast<float>(b.value[k]);
-  body_.node_map->sum(std::span<float>(diagonal), static_cast<int>(dim * dim));
-  held_stiffness_.clear();
-  for (const std::int32_t i : held_) held_stiffness_.push_back(diagonal[i * dim + i % dim]);
-  inverse_.resize(body_.nodes() * packed);
+      blocks[static_cast<std::size_t>(b.node) * dim * dim + k] += static_cast<float>(b.value[k]);
+  body_.node_map->sum(blocks, static_cast<int>(dim * dim));
+  const auto stays = [&](std::size_t node) { return !renewed.empty() && renewed[node] == 0; };
+  for (std::size_t k = 0; k < held_.size(); ++k)
+    if (const std::size_t i = held_[k]; !stays(i / dim)) held_stiffness_[k] = blocks[i * dim + i % dim];
   in_shares(threads_, body_.nodes(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
+      if (stays(n)) continue;
       Eigen::Matrix3d d = Eigen::Matrix3d::Identity();
       for (std::size_t i = 0; i < dim; ++i)
         for (std::size_t j = 0; j < dim; ++j)
           if (body_.held[n * dim + i] == 0 && body_.held[n * dim + j] == 0)
             d(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
-                static_cast<double>(diagonal[(n * dim + i) * dim + j]);
+                static_cast<double>(blocks[(n * dim + i) * dim + j]);
       const Eigen::Matrix3d inverse = d.inverse();
       float* to = &inverse_[n * packed];
       for (std::size_t i = 0; i < dim; ++i)

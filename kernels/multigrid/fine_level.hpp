@@ -37,7 +37,7 @@ class FineLevel {
             const CornerMeans* means = nullptr);
   /// Freezes g and takes the blocks and the space over; D follows.
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space);
-  /// With the g of the last build.
+  /// With the g and the held components of the last build: D changes where there are blocks, or were some.
   void rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space);
   /// What it was built with.
   std::span<const NodeBlock> blocks() const noexcept { return blocks_; }
@@ -85,7 +85,11 @@ class FineLevel {
  private:
   template <class Apply>
   void product(const Apply& apply, std::span<const float> x, std::span<float> y);
+  std::vector<float> node_blocks(std::span<const char> wanted) const;
+  std::vector<char> touched_by(std::span<const NodeBlock> blocks) const;
+  void take_blocks(std::span<const NodeBlock> blocks, const HeldSpace& space);
   void take_own_stiffness(std::span<const float> blocks);
+  void take_diagonal(std::span<float> blocks, std::span<const char> renewed);
   void add_blocks(std::span<const NodeBlock> blocks, std::span<const float> x, std::span<float> y) const;
 
   MultigridBody body_;

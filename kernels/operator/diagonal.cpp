@@ -20,11 +20,12 @@
 namespace kacanov {
 
 /// Finds the elements of the slots again in their batches. Calls visit(nodal coordinates, the caller's nodes,
-/// law, slot of the first point) for each; slots of an element's points are `lanes` apart.
+/// law, slot of the first point) for each that has a wanted node; slots of an element's points are `lanes`
+/// apart.
 template <class Real>
 template <class E, class Visit>
 void BasicOperator<Real>::Data::visit_elements(const BlockRange& range, const simd::Group& group,
-                                               const Visit& visit) const {
+                                               std::span<const char> wanted, const Visit& visit) const {
   using elements::Point;
   const std::size_t lanes = layout.lanes;
   const Units units{type, {}, {}, {}};
@@ -44,11 +45,16 @@ void BasicOperator<Real>::Data::visit_elements(const BlockRange& range, const si
       for (std::uint32_t p = 0; p < count; p += E::points) {
         const std::size_t slot = range.first_slot + group.first_slot + (batch * count + p) * lanes + lane;
         if (layout.element_point[slot] < 0) continue;
+        std::array<std::size_t, E::nodes> at;  // of their records
+        bool asked = wanted.empty();
+        for (std::size_t k = 0; k < at.size(); ++k) {
+          at[k] = index[(batch * nodes + node_of[p / E::points * E::nodes + k]) * lanes + lane];
+          id[k] = layout.nodes[range.first_node + at[k] / 4];
+          asked = asked || wanted[static_cast<std::size_t>(id[k])] != 0;
+        }
+        if (!asked) continue;
         for (int a = 0; a < E::nodes; ++a) {
-          const auto k = static_cast<std::uint32_t>(a);
-          const std::size_t node = node_of[p / E::points * E::nodes + k];
-          const std::size_t record = index[(batch * nodes + node) * lanes + lane];
-          id[k] = layout.nodes[range.first_node + record / 4];
+          const std::size_t record = at[static_cast<std::size_t>(a)];
           for (int c = 0; c < E::dim; ++c) x[Point<E>::at(a, c)] = static_cast<double>(records[record + c]);
           // Radii count as they are, not from the middle of the block.
           if (plane == PlaneState::axisymmetric)
@@ -64,8 +70,10 @@ void BasicOperator<Real>::Data::visit_elements(const BlockRange& range, const si
 /// are added in their order.
 template <class Real>
 template <class Add>
-void BasicOperator<Real>::Data::sum_blocks(std::span<Real> blocks, const Add& add) const {
+void BasicOperator<Real>::Data::sum_blocks(std::span<Real> blocks, std::span<const char> wanted,
+                                           const Add& add) const {
   expect_size(blocks.size(), unknowns * dim(), "blocks");
+  if (!wanted.empty()) expect_size(wanted.size(), unknowns / dim(), "wanted");
   const std::size_t size = dim() * dim(), interface_size = layout.interface_node.size();
   std::vector<std::int32_t> place(unknowns / dim(), -1);
   for (std::size_t i = 0; i < interface_size; ++i)
@@ -84,7 +92,7 @@ void BasicOperator<Real>::Data::sum_blocks(std::span<Real> blocks, const Add& ad
         elements::dispatch(type, [&]<class E>(E element) {
           const simd::Group& group = layout.groups[layout.blocks[b].first_group + i];
           const bool affine = group.shape != simd::Shape::general;
-          visit_elements<E>(layout.blocks[b], group,
+          visit_elements<E>(layout.blocks[b], group, wanted,
                             [&](const auto& x, const auto& node, const Law& law, std::size_t slot) {
                               double here[E::nodes][E::dim * E::dim] = {};
                               add(element, x, affine, law, slot, here);
@@ -123,40 +131,43 @@ void take_diagonal(std::span<const Real> blocks, std::size_t dim, std::span<Real
 /// Of the secant, the volume change counted bulk(law, g) times.
 template <class Real>
 template <class Bulk>
-void BasicOperator<Real>::Data::sum_secant_blocks(std::span<Real> blocks, const Bulk& bulk) const {
+void BasicOperator<Real>::Data::sum_secant_blocks(std::span<Real> blocks, std::span<const char> wanted,
+                                                  const Bulk& bulk) const {
   const std::size_t lanes = layout.lanes;
-  sum_blocks(blocks, [&]<class E>(E, const elements::Nodal<E>& x, bool affine, const Law& law,
-                                  std::size_t slot, auto& here) {
-    const auto g = [&](std::size_t at) { return static_cast<double>(secant[at]); };
-    if constexpr (E::type == ElementType::hex8)
-      if (affine) {
-        std::array<double, E::points> at;
-        for (std::size_t q = 0; q < E::points; ++q) at[q] = g(slot + q * lanes);
-        return elements::Parallelepiped(x.data()).add_diagonal_blocks(bulk(law, at[0]), law.mean_dilatation,
-                                                                      at, here);
-      }
-    if constexpr (E::simplex && E::dim == 3)
-      if (affine) {
-        std::array<double, E::points> at;
-        for (std::size_t q = 0; q < E::points; ++q) at[q] = g(slot + q * lanes);
-        return elements::StraightSides(x.data()).add_diagonal_blocks(bulk(law, at[0]), at, here);
-      }
-    over_points<E>(elements::points_of<E>(x, law.mean_dilatation, plane), slot, lanes, here,
-                   [&](const auto& point, int a, std::size_t at, double* block) {
-                     point.add_diagonal_block(a, bulk(law, g(at)), g(at), block);
-                   });
-  });
+  sum_blocks(blocks, wanted,
+             [&]<class E>(E, const elements::Nodal<E>& x, bool affine, const Law& law, std::size_t slot,
+                          auto& here) {
+               const auto g = [&](std::size_t at) { return static_cast<double>(secant[at]); };
+               if constexpr (E::type == ElementType::hex8)
+                 if (affine) {
+                   std::array<double, E::points> at;
+                   for (std::size_t q = 0; q < E::points; ++q) at[q] = g(slot + q * lanes);
+                   return elements::Parallelepiped(x.data()).add_diagonal_blocks(
+                       bulk(law, at[0]), law.mean_dilatation, at, here);
+                 }
+               if constexpr (E::simplex && E::dim == 3)
+                 if (affine) {
+                   std::array<double, E::points> at;
+                   for (std::size_t q = 0; q < E::points; ++q) at[q] = g(slot + q * lanes);
+                   return elements::StraightSides(x.data()).add_diagonal_blocks(bulk(law, at[0]), at, here);
+                 }
+               over_points<E>(elements::points_of<E>(x, law.mean_dilatation, plane), slot, lanes, here,
+                              [&](const auto& point, int a, std::size_t at, double* block) {
+                                point.add_diagonal_block(a, bulk(law, g(at)), g(at), block);
+                              });
+             });
 }
 
 template <class Real>
-void BasicOperator<Real>::block_diagonal(std::span<Real> blocks) const {
-  data_->sum_secant_blocks(blocks, [&](const Law& law, double g) { return data_->bulk_at(law, g); });
+void BasicOperator<Real>::block_diagonal(std::span<Real> blocks, std::span<const char> wanted) const {
+  data_->sum_secant_blocks(blocks, wanted, [&](const Law& law, double g) { return data_->bulk_at(law, g); });
 }
 
 template <class Real>
-void BasicOperator<Real>::block_diagonal_deviator(std::span<Real> blocks) const {
+void BasicOperator<Real>::block_diagonal_deviator(std::span<Real> blocks,
+                                                  std::span<const char> wanted) const {
   if (pressures() == 0) throw std::logic_error("block_diagonal_deviator where nothing is averaged");
-  data_->sum_secant_blocks(blocks,
+  data_->sum_secant_blocks(blocks, wanted,
                            [](const Law& law, double) { return law.mean_dilatation ? 0.0 : law.bulk; });
 }
 
@@ -174,21 +185,22 @@ void BasicOperator<Real>::block_diagonal_tangent(std::span<Real> blocks) const {
   if (!data.has_tangent) throw std::logic_error("block_diagonal_tangent before update_tangent");
   const Aligned<Real>& g = data.tangent_secant.empty() ? data.secant : data.tangent_secant;
   const std::size_t lanes = data.layout.lanes;
-  data.sum_blocks(blocks, [&]<class E>(E, const elements::Nodal<E>& x, bool, const Law& law, std::size_t slot,
-                                       auto& here) {
-    over_points<E>(elements::points_of<E>(x, law.mean_dilatation, data.plane), slot, lanes, here,
-                   [&](const auto& point, int a, std::size_t at, double* block) {
-                     const auto secant = static_cast<double>(g[at]);
-                     point.add_diagonal_block(a, data.bulk_at(law, secant), secant, block);
-                     // √|2 g'/x| dev ε, component by component over the lanes; see material.hpp.
-                     const std::size_t lane = at % lanes;
-                     const float* t = data.tangent.data() + simd::tangent_floats * (at - lane) + lane;
-                     const auto kept = [&](std::size_t k) { return static_cast<double>(t[k * lanes]); };
-                     const std::array<double, 6> d{kept(0), kept(1), -(kept(0) + kept(1)),
-                                                   kept(2), kept(3), kept(4)};
-                     point.add_rank_one_block(a, std::signbit(t[0]) ? 1.0 : -1.0, d, block);
-                   });
-  });
+  data.sum_blocks(
+      blocks, {},
+      [&]<class E>(E, const elements::Nodal<E>& x, bool, const Law& law, std::size_t slot, auto& here) {
+        over_points<E>(elements::points_of<E>(x, law.mean_dilatation, data.plane), slot, lanes, here,
+                       [&](const auto& point, int a, std::size_t at, double* block) {
+                         const auto secant = static_cast<double>(g[at]);
+                         point.add_diagonal_block(a, data.bulk_at(law, secant), secant, block);
+                         // √|2 g'/x| dev ε, component by component over the lanes; see material.hpp.
+                         const std::size_t lane = at % lanes;
+                         const float* t = data.tangent.data() + simd::tangent_floats * (at - lane) + lane;
+                         const auto kept = [&](std::size_t k) { return static_cast<double>(t[k * lanes]); };
+                         const std::array<double, 6> d{kept(0), kept(1), -(kept(0) + kept(1)),
+                                                       kept(2), kept(3), kept(4)};
+                         point.add_rank_one_block(a, std::signbit(t[0]) ? 1.0 : -1.0, d, block);
+                       });
+      });
 }
 
 template <class Real>
@@ -199,12 +211,12 @@ void BasicOperator<Real>::diagonal_tangent(std::span<Real> d) const {
   take_diagonal<Real>(blocks, data_->dim(), d);
 }
 
-template void BasicOperator<double>::block_diagonal_deviator(std::span<double>) const;
-template void BasicOperator<float>::block_diagonal_deviator(std::span<float>) const;
+template void BasicOperator<double>::block_diagonal_deviator(std::span<double>, std::span<const char>) const;
+template void BasicOperator<float>::block_diagonal_deviator(std::span<float>, std::span<const char>) const;
 template void BasicOperator<double>::diagonal(std::span<double>) const;
 template void BasicOperator<float>::diagonal(std::span<float>) const;
-template void BasicOperator<double>::block_diagonal(std::span<double>) const;
-template void BasicOperator<float>::block_diagonal(std::span<float>) const;
+template void BasicOperator<double>::block_diagonal(std::span<double>, std::span<const char>) const;
+template void BasicOperator<float>::block_diagonal(std::span<float>, std::span<const char>) const;
 template void BasicOperator<double>::diagonal_tangent(std::span<double>) const;
 template void BasicOperator<float>::diagonal_tangent(std::span<float>) const;
 template void BasicOperator<double>::block_diagonal_tangent(std::span<double>) const;

@@ -70,11 +70,12 @@ struct BasicOperator<Real>::Data {
   void add_interface(Real* y, int count, std::size_t begin, std::size_t end);
 
   template <class E, class Visit>
-  void visit_elements(const BlockRange& range, const simd::Group& group, const Visit& visit) const;
+  void visit_elements(const BlockRange& range, const simd::Group& group, std::span<const char> wanted,
+                      const Visit& visit) const;
   template <class Add>
-  void sum_blocks(std::span<Real> blocks, const Add& add) const;
+  void sum_blocks(std::span<Real> blocks, std::span<const char> wanted, const Add& add) const;
   template <class Bulk>
-  void sum_secant_blocks(std::span<Real> blocks, const Bulk& bulk) const;
+  void sum_secant_blocks(std::span<Real> blocks, std::span<const char> wanted, const Bulk& bulk) const;
 
   simd::InstructionSet set;
   const simd::Kernels<Real>& kernels;

@@ -207,6 +207,12 @@ TEST_CASE("diagonals") {
       CHECK(difference(actual, expected) < 1e-13);
       op.block_diagonal(blocks);
       CHECK(difference(blocks, expected_blocks) < 1e-13);
+      std::vector<char> wanted(n / dim, 0);
+      for (std::size_t node = 0; node < wanted.size(); node += 5) wanted[node] = 1;
+      std::vector<double> some(n * dim, -1.0);
+      op.block_diagonal(some, wanted);
+      for (std::size_t i = 0; i < some.size(); ++i)
+        if (wanted[i / (dim * dim)] != 0) CHECK(some[i] == blocks[i]);
       CHECK_THROWS_AS(op.block_diagonal_tangent(blocks), std::logic_error);
       op.update_tangent(u);
       op.set_secant(g);  // the tangent stays what it was frozen as

@@ -131,6 +131,12 @@ TEST_CASE("the deviator's blocks are those of single displacements") {
     for (std::size_t c = 0; c < 3; ++c) expected[3 * (i - i % 3 + c) + i % 3] = y[i - i % 3 + c];
   }
   CHECK(difference(blocks, expected) < 1e-12);
+  std::vector<char> wanted(blocks.size() / 9, 0);
+  for (std::size_t node = 1; node < wanted.size(); node += 4) wanted[node] = 1;
+  std::vector<double> some(blocks.size());
+  op.block_diagonal_deviator(some, wanted);
+  for (std::size_t i = 0; i < some.size(); ++i)
+    if (wanted[i / 9] != 0) CHECK(some[i] == blocks[i]);
 }
 
 TEST_CASE("what has no pressures says so") {

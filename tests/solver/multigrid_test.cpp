@@ -12,6 +12,7 @@
 #include "multigrid/aggregate_motions.hpp"
 #include "multigrid/aggregation.hpp"
 #include "multigrid/cg.hpp"
+#include "multigrid/fine_level.hpp"
 #include "multigrid/rigid_level.hpp"
 #include "preconditioners.hpp"
 #include "support.hpp"
@@ -244,6 +245,37 @@ TEST_CASE("iterations hardly depend on the mesh: size, element, stretch, contras
     CHECK(large <= 1.5 * small);
     CHECK(iterations(beam(fine / 2, 30.0, type), 1.0) <= (grids ? 100 : 6 * small));
     CHECK(iterations(beam(fine / 2, 3.0, type), 0.1) <= 3 * small);
+  }
+}
+
+TEST_CASE("a fine level with other blocks is as one made anew") {
+  for (const ElementType type : {ElementType::hex8, ElementType::tet4, ElementType::tri3}) {
+    CAPTURE(static_cast<int>(type));
+    const Part part = beam(dimension(type) == 2 ? 8 : 3, 3.0, type);
+    const std::size_t dim = part.dim();
+    const Space space(part);
+    Vector g(part.body().secant_count());
+    for (std::size_t e = 0; e < g.size(); ++e) g[e] = 0.2 + static_cast<double>(e % 5);
+    const auto blocks = [&](std::int64_t every) {
+      std::vector<NodeBlock> all;
+      for (std::int32_t n = 0; n < part.owned_nodes(); ++n) {
+        if (part.node_index[static_cast<std::size_t>(n)] % every != 0) continue;
+        all.push_back({n, {}});
+        for (std::size_t c = 0; c < dim; ++c)
+          all.back().value[c * dim + c] = 1e3 * static_cast<double>(1 + c);
+      }
+      return all;
+    };
+    FineLevel changed(multigrid_body(part), {}), anew(multigrid_body(part), {});
+    changed.build(g, blocks(4), space.held());
+    changed.rebuild(blocks(6), space.held());
+    anew.build(g, blocks(6), space.held());
+    const auto same = [](std::span<const float> x, std::span<const float> y) {
+      return std::equal(x.begin(), x.end(), y.begin(), y.end());
+    };
+    CHECK(same(changed.inverse(), anew.inverse()));
+    CHECK(same(changed.held_stiffness(), anew.held_stiffness()));
+    CHECK(same(changed.own_stiffness(), anew.own_stiffness()));
   }
 }
 

@@ -75,8 +75,9 @@ class BasicOperator {
   /// Diagonal of B(g), nodes × dim; where tr ε is averaged round corners, that of its values at the points,
   /// which is no less.
   void diagonal(std::span<Real> d) const;
-  /// Diagonal blocks of B(g), nodes × dim × dim, each block row-major; likewise.
-  void block_diagonal(std::span<Real> blocks) const;
+  /// Diagonal blocks of B(g), nodes × dim × dim, each block row-major; likewise. `wanted`: a flag a node, or
+  /// none for all of them; blocks of nodes without it may lack elements.
+  void block_diagonal(std::span<Real> blocks, std::span<const char> wanted = {}) const;
 
   // B(g) = A + Bᵀ C⁻¹ B where tr ε is averaged round corners, C their volumes over k0 (theory:
   // displacement-pressure): its parts, for preconditioners. p and q have an entry for each of corner_means()
@@ -92,7 +93,7 @@ class BasicOperator {
   /// q = B x, this process's share.
   void volume_change(std::span<const Real> x, std::span<Real> q);
   /// Diagonal blocks of A, as block_diagonal.
-  void block_diagonal_deviator(std::span<Real> blocks) const;
+  void block_diagonal_deviator(std::span<Real> blocks, std::span<const char> wanted = {}) const;
 
   /// Freezes the tangent (and g) at u for apply_tangent.
   void update_tangent(std::span<const Real> u);
