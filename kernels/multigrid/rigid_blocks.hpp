@@ -16,12 +16,4 @@ Dense<M> dense(const typename BlockSums<M>::Block& block) {
   return Eigen::Map<const Dense<M>>(block.data());
 }
 
-template <int M>
-typename BlockSums<M>::Block transposed(const typename BlockSums<M>::Block& block) {
-  typename BlockSums<M>::Block result;
-  for (std::size_t i = 0; i < M; ++i)
-    for (std::size_t j = 0; j < M; ++j) result[j * M + i] = block[i * M + j];
-  return result;
-}
-
 }  // namespace kacanov

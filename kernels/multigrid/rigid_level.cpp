@@ -294,9 +294,8 @@ double RigidLevel<M>::largest_eigenvalue() {
 template <int M>
 std::vector<typename BlockSums<M>::Entry> RigidLevel<M>::gathered() const {
   std::vector<typename BlockSums<M>::Entry> mine;
-  visit([&](std::int32_t i, std::int32_t j, const Block& block) {
-    mine.push_back({first() + i, map_->number(j), block});
-    if (j < rows() && j != i) mine.push_back({first() + j, first() + i, transposed<M>(block)});
+  visit_rows([&](std::int64_t row, std::int64_t column, const Block& block) {
+    mine.push_back({row, column, block});
   });
   return kacanov::gathered(mine, *map_);
 }

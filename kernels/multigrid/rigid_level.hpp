@@ -41,6 +41,14 @@ class BlockSums {
   std::deque<Entry> entries_;  // never moved: they are most of the memory of a setup
 };
 
+template <int M>
+typename BlockSums<M>::Block transposed(const typename BlockSums<M>::Block& block) {
+  typename BlockSums<M>::Block result;
+  for (std::size_t i = 0; i < M; ++i)
+    for (std::size_t j = 0; j < M; ++j) result[j * M + i] = block[i * M + j];
+  return result;
+}
+
 /// A Galerkin matrix over rigid motions, distributed by rows: M × M blocks, symmetric (theory: multigrid).
 /// Vectors have M entries a row; those handed to multiply have room for the ghosts behind the owned rows. All
 /// is double: a long body bends with 1e-8 of the energy that the entries suggest, which single precision
@@ -81,6 +89,14 @@ class RigidLevel {
       for (std::size_t k = start_[i]; k < static_cast<std::size_t>(start_[static_cast<std::size_t>(i) + 1]);
            ++k)
         f(i, column_[k], block_[k]);
+  }
+  /// Calls f(row, column, block) for all blocks of the owned rows, numbered over all ranks.
+  template <class F>
+  void visit_rows(F&& f) const {
+    visit([&](std::int32_t i, std::int32_t j, const Block& here) {
+      f(first() + i, map_->number(j), here);
+      if (j < rows() && j != i) f(first() + j, first() + i, transposed<M>(here));
+    });
   }
   /// To sum the matrix anew with the couplings it has: clear, add to blocks, complete.
   void clear();

@@ -16,8 +16,8 @@
 namespace kacanov {
 namespace {
 
-void check_count(const std::string& path, int value) {
-  if (value < 1) refuse(path, "a whole number ≥ 1", std::to_string(value));
+void check_count(const std::string& path, int value, int least = 1) {
+  if (value < least) refuse(path, "a whole number ≥ " + std::to_string(least), std::to_string(value));
 }
 
 void check_selector(const std::string& path, const Selector& on) {
@@ -224,8 +224,7 @@ void validate(const SolverOptions& options) {
   check_count("solver.max_outer", options.max_outer);
   check_count("solver.max_contact", options.max_contact);
   check_count("solver.max_cg", options.max_cg);
-  if (options.coarse_amg < 0)
-    refuse("solver.coarse_amg", "a whole number ≥ 0", std::to_string(options.coarse_amg));
+  check_count("solver.coarse_amg", options.coarse_amg, 0);
   const std::vector<double>& factors = options.load_steps;
   for (std::size_t i = 0; i < factors.size(); ++i) check(at("solver.load_steps", i), factors[i], load_factor);
   if (!factors.empty() && factors.back() != 1.0)
