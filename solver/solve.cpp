@@ -55,8 +55,7 @@ struct Response {
 Response respond_independently(const StepContext& context, std::span<const double> dilatation) {
   const Part& part = context.part;
   const Vector& u = context.state.u;
-  Vector strain;
-  if (!context.body.linear()) strain = free_strain(part, context.path.thermal_pressure());
+  const Vector strain = context.body.linear() ? Vector() : context.free_strain;
   Response response{Vector(part.unknowns())};
   response.energy =
       reference_response(part, {u, strain, dilatation}, response.internal) + spring_energy(part, u);
@@ -64,13 +63,6 @@ Response respond_independently(const StepContext& context, std::span<const doubl
   part.node_map.sum(response.internal, part.dim());
   add_spring_response(part, u, response.internal);
   return response;
-}
-
-Certificate certify(const StepContext& context, const Response& response) {
-  BodyForces forces = context.body.forces(context.path);
-  forces.internal = response.internal;
-  forces.energy = response.energy;
-  return kkt_residuals(context.space, context.traces, context.state, forces).certificate;
 }
 
 /// `gave_up`: the loop has found nothing more to gain. Where rounding alone is above the tolerance, that is
@@ -199,7 +191,8 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
 
   solution.corner_dilatation = corner_dilatation(part, context.state.u);
   const Response response = respond_independently(context, solution.corner_dilatation);
-  result.certificate = certify(context, response);
+  result.certificate =
+      context.certify(response.internal, response.energy, solution.corner_dilatation).certificate;
   result.status = status_of(result.certificate, options.tolerance, loop.gave_up() && !loop.ran_away());
   if (result.status == Status::limited_by_rounding && !result.certificate.exhausted(options.tolerance) &&
       result.cg_iterations > 0)

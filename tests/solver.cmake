@@ -123,6 +123,10 @@ kacanov_test(units IN solver
 kacanov_test(certificate IN solver
   MPI SOURCES solver/certificate_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
+kacanov_test(regions IN solver
+  MPI SOURCES solver/regions_test.cpp
+  LIBRARIES kacanov_solver_internal kacanov_kernels_internal
+  RANKS 1 2 3)
 kacanov_test(outer IN numbers
   MPI NUMBERS SOURCES solver/outer_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)

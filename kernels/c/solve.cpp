@@ -34,6 +34,7 @@ class FreeUnknowns {
     return sum(x.size(), [&](std::size_t i) { return x[i] * y[i]; });
   }
   double norm(std::span<const double> x) const { return std::sqrt(dot(x, x)); }
+  double residual_norm(std::span<const double> r) const { return norm(r); }
   double advance(double alpha, std::span<const double> p, std::span<const double> q, std::span<double> x,
                  std::span<double> r) const {
     return std::sqrt(sum(x.size(), [&](std::size_t i) {

@@ -59,7 +59,7 @@ struct CgWork {
 /// share of pᵀq, which it has at hand. `precondition(r, z)`: z ≈ A⁻¹ r, symmetric positive definite,
 /// consistent. A breakdown (pᵀAp not positive: the operator has lost its definiteness) ends the loop
 /// unconverged. All vectors have the unknowns of the space, which is anything that does what the solver's
-/// Space does: project, dot, norm, sum_all, advance, turn. Collective where these are.
+/// Space does: project, dot, residual_norm, sum_all, advance, turn. Collective where these are.
 template <class InnerSpace, class Apply, class Precondition>
 CgResult conjugate_gradients(const InnerSpace& space, const Apply& apply, const Precondition& precondition,
                              std::span<double> x, CgWork& work, const CgOptions& options) {
@@ -67,7 +67,7 @@ CgResult conjugate_gradients(const InnerSpace& space, const Apply& apply, const 
   auto& [r, p, q] = work;
   auto& z = q;  // wanted one after the other
   space.project(r);
-  result.first_residual = result.residual = space.norm(r);
+  result.first_residual = result.residual = space.residual_norm(r);
   double target = options.target(result.first_residual);
   bool to_ask = static_cast<bool>(options.left_out);
   result.converged = result.residual <= target;

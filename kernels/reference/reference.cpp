@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "reference/element_points.hpp"
+#include "reference/expansion.hpp"
 
 namespace kacanov::reference {
 namespace {
@@ -209,6 +210,38 @@ double free_force(const Body& body, std::span<double> f) {
                             (0.5 * law.bulk * all.trace * all.trace + shear * inner(all.dev, all.dev));
                   return stress(law, shear, all);
                 });
+  });
+  return energy;
+}
+
+double expansion_force(const Body& body, std::span<const double> pressure, std::span<double> f) {
+  std::fill(f.begin(), f.end(), 0.0);
+  const std::size_t width = pressure.size() / std::max(body.mesh.element_count(), std::size_t{1});
+  double energy = 0.0;
+  elements::dispatch(body.mesh.type, [&]<class E>(E) {
+    for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
+      const std::span<const double> here = pressure.subspan(e * width, width);
+      const Law& law = body.law(e);
+      const double stiffness =
+          body.mesh.plane == PlaneState::stress ? plane_stress_expansion(law) : 2.0 * law.bulk;
+      const auto points = points_of<E>(gather<E>(body, e, body.mesh.coordinates), false, body.mesh.plane);
+      Nodal<E> local{};
+      for (std::size_t q = 0; q < E::points; ++q) {
+        double p = here[0];
+        if (width > 1) {
+          const auto share = elements::barycentric<E::dim>(E::point[q].data());
+          p = 0.0;
+          for (std::size_t c = 0; c < share.size(); ++c) p += share[c] * here[1 + c];
+        }
+        const Point<E>& point = points[q];
+        energy += point.volume * p * p / stiffness;
+        for (int a = 0; a < E::nodes; ++a)
+          for (int i = 0; i < E::dim; ++i)
+            local[point.at(a, i)] +=
+                point.volume * p * (point.gradient[a][i] + (i == 0 ? point.hoop[a] : 0.0));
+      }
+      scatter_add<E>(body, e, local, f);
+    }
   });
   return energy;
 }

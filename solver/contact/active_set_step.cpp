@@ -112,7 +112,7 @@ CgResult solve_oblique(const SymmetricPart& part, const HeldNodes& nodes, std::s
   space.project(work.residual);
   Vector residual = work.residual;
   CgResult result;
-  result.first_residual = space.norm(residual);
+  result.first_residual = space.residual_norm(residual);
   const double target = options.target(result.first_residual);
   const auto oblique = [&](std::span<const double> p, std::span<double> q) {
     part.apply(p, q);
@@ -176,6 +176,7 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
   const Traces& traces = *problem.traces;
   const TraceRows rows(part, set.held);
   Space space(part);
+  space.weigh(problem.space->weights());
   rows.hold_in(space);
   const HeldNodes nodes(part, set, state);
   ActiveSetStep step;

@@ -124,7 +124,7 @@ AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work,
     update_multipliers(traces, options, state, steps);
     steps.balance.finish(traces);
     result.trace_residual = steps.trace_residual;
-    result.force_residual = solve.residual + traces.force_norm(steps.dual);
+    result.force_residual = solve.residual + options.contact_weight * traces.force_norm(steps.dual);
     traces.add_force(steps.shift, 1.0, work.residual);
     ++result.iterations;
     if (stop_by_step) {

@@ -35,6 +35,7 @@ struct AdmmOptions {
   double relaxation = 1.0;       ///< α: Nu is replaced by α Nu + (1 − α) φ in steps 2 and 3
   double force_tolerance = 0.0;  ///< absolute, on the residual of the linear equilibrium
   double force_reduction = 0.0;  ///< or relative to the contact force: where nothing else sets a scale
+  double contact_weight = 1.0;   ///< of contact forces beside the residual's (Scales::contact_weight)
   double trace_tolerance = 0.0;  ///< absolute, on max |Cu − φ|
   int max_iterations = 10000;
   int max_cg = SolverOptions{}.max_cg;  ///< CG iterations of one solve
@@ -67,8 +68,9 @@ inline CgOptions solve_options(const AdmmOptions& options) {
 /// Whether the residuals of `result` meet the tolerances; `lambda` as it is now.
 inline bool meets_tolerances(const AdmmResult& result, const AdmmOptions& options, const Traces& traces,
                              const ContactValues& lambda) {
-  const double enough =
-      options.force_reduction > 0.0 ? options.force_reduction * traces.force_norm(lambda) : 0.0;
+  const double enough = options.force_reduction > 0.0
+                            ? options.force_reduction * options.contact_weight * traces.force_norm(lambda)
+                            : 0.0;
   return result.force_residual <= std::max(options.force_tolerance, enough) &&
          result.trace_residual <= options.trace_tolerance;
 }

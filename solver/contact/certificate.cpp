@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 
+#include "distributed/exchange.hpp"
 #include "linear/springs.hpp"
 #include "problem/vector3.hpp"
 
@@ -41,69 +44,129 @@ namespace {
 /// Forces below this share of the harmonic mean of D times ‖u‖ are none to measure others by: of that mean,
 /// because a part as stiff as rigid would else make any force look small.
 constexpr double least_force = 3e-9;
+/// What is weak beside what acts elsewhere is measured by the geometric mean of the two, but by no less than
+/// this share of the latter (theory: kkt).
+constexpr double least_share = 1e-3;
 /// Share of D∘u, and of u·(D∘u), that the rounding of R(u) may come to: nine units of it, because a row of B
 /// is a few times its diagonal (measured: up to 5.4e-16); and of traces and gaps, which are short sums.
 constexpr double rounding = 1e-15, rounding_of_traces = 3e-16;
+constexpr double tiny = 1e-300;
 
-/// Products and extremes over the contact points.
+double weak_beside(double weak, double strong, double least = least_share) {
+  return std::min(strong, std::max(std::sqrt(weak * strong), least * strong));
+}
+
+/// The structs as numbers, which travel together.
+template <class Struct>
+std::span<double> numbers(std::vector<Struct>& structs) {
+  return {reinterpret_cast<double*>(structs.data()), structs.size() * sizeof(Struct) / sizeof(double)};
+}
+
+/// Sums over the points of one contact entry in one region.
 struct ContactSums {
-  double normal_product = 0.0;    // Σ M λ_n |Nu − ρ|
-  double friction_product = 0.0;  // Σ M | ψ|Tu| − λ_t·Tu |
+  double products = 0.0;  // Σ M |λ_n (Nu − ρ)| + Σ M | ψ|Tu| − λ_t·Tu |
   double dual_work = 0.0;  // Σ M (λ_n (ρ − Nu) + ψ|Tu| − λ_t·Tu), the contact part of the duality gap
-  double area = 0.0, force = 0.0;
-  double penetration = 0.0, tension = 0.0, cone = 0.0, pressure = 0.0;
-  double unknown_trace = 0.0, unknown_product = 0.0;  // what rounding leaves of a gap, and of Σ M λ times it
+  double area = 0.0, square = 0.0;  // Σ M, Σ (M |λ|)²
+  double unknown_product = 0.0;     // what rounding leaves of Σ M λ times a gap
 };
+
+/// Largest values, likewise.
+struct ContactPeaks {
+  double penetration = 0.0, tension = 0.0, cone = 0.0, pressure = 0.0;
+  double indentation = 0.0;    // M λ_n over the stiffness of the nodes
+  double unknown_trace = 0.0;  // what rounding leaves of a gap
+};
+
+/// Contact, by region and entry.
+struct Contact {
+  std::size_t entries = 0;
+  std::vector<ContactSums> sums;
+  std::vector<ContactPeaks> peaks;
+};
+
+/// The mean of D at the nodes of a point.
+double stiffness_of(std::span<const RowEntry> entries, std::span<const float> diagonal, std::size_t dim) {
+  double sum = 0.0;
+  for (const RowEntry& entry : entries)
+    for (std::size_t c = 0; c < dim; ++c) sum += static_cast<double>(diagonal[entry.node * dim + c]);
+  return sum / static_cast<double>(entries.size() * dim);
+}
 
 /// `displacement`: max |u|. A trace is known to the rounding of the displacements that it is taken of,
 /// however small it is beside them.
-ContactSums contact_sums(const Traces& traces, const ContactState& state, double displacement) {
-  ContactSums s;
+Contact sum_contact(const Traces& traces, const ContactState& state, const BodyForces& forces,
+                    const StiffnessRegions& regions, double displacement) {
   const auto points = traces.points().first(traces.owned());
+  const std::size_t dim = traces.part().dim();
+  std::int32_t entries = 0;
+  for (const ContactPoint& point : points) entries = std::max(entries, point.entry + 1);
+  Contact out;
+  out.entries = static_cast<std::size_t>(traces.ranks().max_all(entries));
+  out.sums.resize(out.entries * regions.count());
+  out.peaks.resize(out.sums.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto& point = points[i];
+    const auto rows = traces.entries(i);
+    const std::size_t group = static_cast<std::size_t>(regions.of_node(rows[0].node)) * out.entries +
+                              static_cast<std::size_t>(point.entry);
+    ContactSums& s = out.sums[group];
+    ContactPeaks& peak = out.peaks[group];
     const double lambda = state.lambda.normal[i], open = state.gap[i] - state.trace.normal[i];
     const double* slip = &state.trace.tangential[2 * i];
     const double* friction = &state.lambda.tangential[2 * i];
-    s.normal_product += point.mass * std::abs(lambda * open);
+    s.products += point.mass * std::abs(lambda * open);
     s.dual_work += point.mass * lambda * open;
     s.area += point.mass;
-    s.penetration = larger(s.penetration, -open);
-    s.tension = larger(s.tension, -lambda);
-    s.pressure = larger(s.pressure, std::abs(lambda));
+    const double pressure = std::hypot(lambda, friction[0], friction[1]);
+    s.square += point.mass * pressure * point.mass * pressure;
+    peak.penetration = larger(peak.penetration, -open);
+    peak.tension = larger(peak.tension, -lambda);
+    peak.pressure = larger(peak.pressure, std::abs(lambda));
+    peak.indentation =
+        larger(peak.indentation, point.mass * std::abs(lambda) / stiffness_of(rows, forces.diagonal, dim));
     // A point that is open by more than that is open, and not its own residual.
     const double unknown = rounding_of_traces * (displacement + std::abs(state.gap[i])) + point.unknown_gap;
-    if (open <= unknown) s.unknown_trace = larger(s.unknown_trace, unknown);
+    if (open <= unknown) peak.unknown_trace = larger(peak.unknown_trace, unknown);
     s.unknown_product += point.mass * std::abs(lambda) * unknown;
     if (point.tangents == 0) continue;
     const double bound = state.bound[i], length = std::hypot(friction[0], friction[1]);
     const double slid = std::hypot(slip[0], slip[1]);
     const double product = bound * slid - friction[0] * slip[0] - friction[1] * slip[1];
-    s.friction_product += point.mass * std::abs(product);
+    s.products += point.mass * std::abs(product);
     s.unknown_product += point.mass * (bound + length) * rounding_of_traces * (displacement + slid);
     s.dual_work += point.mass * product;
-    s.cone = larger(s.cone, length - bound);
-    s.pressure = larger(s.pressure, length);
+    peak.cone = larger(peak.cone, length - bound);
+    peak.pressure = larger(peak.pressure, length);
   }
-  const Communicator& ranks = traces.ranks();
-  ranks.sum_each({&s.normal_product, &s.friction_product, &s.dual_work, &s.area, &s.unknown_product});
-  s.penetration = ranks.max_all(s.penetration);
-  s.tension = ranks.max_all(s.tension);
-  s.cone = ranks.max_all(s.cone);
-  s.pressure = ranks.max_all(s.pressure);
-  s.unknown_trace = ranks.max_all(s.unknown_trace);
-  return s;
+  traces.ranks().sum_all(numbers(out.sums));
+  traces.ranks().max_all(numbers(out.peaks));
+  return out;
 }
 
-/// Sums over the unknowns: forces of the load, the obstacles and the supports, and what they work.
+/// Sums over the unknowns of one region.
+struct RegionSums {
+  Vector3 unbalanced{}, moment{};  // of the residual, about the origin
+  double residual = 0.0;           // squares of norms: of the residual, and of what acts,
+  double load = 0.0, reaction = 0.0, spring = 0.0, interface = 0.0;  // of the load but for temperature
+  double hold = 0.0;                        // Σ |force| of supports and obstacles, and
+  double all = 0.0;                         // of loads as well
+  double moved = 0.0, stiff = 0.0;          // |u|², |D∘u|²
+  double moved_all = 0.0, stiff_all = 0.0;  // Σ |u|, Σ |D∘u|
+  double softness = 0.0, unknowns = 0.0;    // Σ 1/D
+};
+
+/// Sums over the unknowns of the body.
+struct WholeSums {
+  double residual_work = 0.0, internal_work = 0.0, stiff_work = 0.0, moved = 0.0, softness = 0.0;
+  double expansion_work = 0.0;
+};
+
 struct BodySums {
-  std::array<double, 3> balance{};  // the sum of all forces
-  double all = 0.0;                 // Σ |force|
-  double residual_work = 0.0, internal_work = 0.0;
-  double residual = 0.0, reaction = 0.0, contact = 0.0, load = 0.0;  // squares of norms
-  double moved = 0.0, stiff = 0.0, stiff_work = 0.0;                 // |u|², |D∘u|², u·(D∘u)
-  double moved_all = 0.0, stiff_all = 0.0;                           // Σ |u|, Σ |D∘u|
-  double softness = 0.0;                                             // mean of 1/D
+  std::vector<RegionSums> of_region;
+  std::vector<double> largest;  ///< |u| of each region
+  WholeSums whole;
+  /// Σ |force| that a region's stresses do to nodes of a stiffer one.
+  std::map<std::array<std::int32_t, 2>, double> between;  ///< [stiffer, softer]
 };
 
 /// What supports along directions do to the body, one an unknown: the share of F − R − CᵀMλ along them, with
@@ -124,53 +187,224 @@ Vector slanting_reactions(const Part& part, std::span<const double> contact, con
   return reaction;
 }
 
-/// Over all ranks; `contact` is CᵀMλ.
-BodySums body_sums(const Part& part, std::span<const double> u, std::span<const double> contact,
-                   const BodyForces& forces) {
-  const std::size_t dim = part.dim();
-  BodySums s;
-  const Vector slanting = slanting_reactions(part, contact, forces);
-  auto loaded = forces.load.begin();
-  for (std::size_t i = 0; i < part.owned_unknowns(); ++i) {
-    const bool here = loaded != forces.load.end() && static_cast<std::size_t>(loaded->component) == i;
-    const double load = here ? (loaded++)->value : 0.0, diagonal = static_cast<double>(forces.diagonal[i]);
-    const double unbalanced = load - forces.internal[i] - contact[i], stiff = diagonal * u[i];
-    const double along = slanting.empty() ? 0.0 : slanting[i];
-    const double reaction = part.held[i] ? -unbalanced : along,
-                 residual = part.held[i] ? 0.0 : unbalanced + along;
-    s.balance[i % dim] += load - contact[i] + reaction;
-    s.all += std::abs(load) + std::abs(contact[i]) + std::abs(reaction);
-    s.residual_work += residual * u[i];
-    s.internal_work += forces.internal[i] * u[i];
-    s.residual += residual * residual;
-    s.reaction += reaction * reaction;
-    s.contact += contact[i] * contact[i];
-    s.load += load * load;
-    s.moved += u[i] * u[i];
-    s.stiff += stiff * stiff;
-    s.moved_all += std::abs(u[i]);
-    s.stiff_all += std::abs(stiff);
-    s.stiff_work += stiff * u[i];
-    s.softness += 1.0 / diagonal;
-  }
-  // Springs are supports as the balance sees them; those of a node are one.
-  for (auto spring = part.springs.begin(); spring != part.springs.end();) {
-    const std::int32_t node = spring->node;
-    if (node >= part.owned_nodes()) break;
+/// What springs do to the nodes of a part, node after node.
+class SpringForces {
+ public:
+  SpringForces(const Part& part, std::span<const double> u)
+      : part_(part), u_(u), next_(part.springs.begin()) {}
+  /// Of a node; nodes have to ascend.
+  Vector3 at(std::int32_t node) {
     Vector3 force{};
-    for (; spring != part.springs.end() && spring->node == node; ++spring)
-      force = force + spring_force(*spring, part, u);
+    for (; next_ != part_.springs.end() && next_->node == node; ++next_)
+      force = force + spring_force(*next_, part_, u_);
+    return force;
+  }
+
+ private:
+  const Part& part_;
+  std::span<const double> u_;
+  std::vector<NodeSpring>::const_iterator next_;
+};
+
+/// Over all ranks; `contact` is CᵀMλ.
+BodySums body_sums(const Part& part, const Vector& u, std::span<const double> contact,
+                   const BodyForces& forces, const StiffnessRegions& regions) {
+  const std::size_t dim = part.dim();
+  BodySums out;
+  out.of_region.resize(regions.count());
+  out.largest.resize(regions.count());
+  const Vector slanting = slanting_reactions(part, contact, forces);
+  SpringForces springs(part, u);
+  auto loaded = forces.load.begin();
+  auto side = forces.interface.begin();
+  std::map<std::array<std::int32_t, 2>, double>& between = out.between;
+  for (std::int32_t n = 0; n < part.owned_nodes(); ++n) {
+    const std::int32_t region = regions.of_node(n);
+    RegionSums& s = out.of_region[region];
+    const Vector3 spring = springs.at(n);
+    Vector3 residual{}, position{};
     for (std::size_t c = 0; c < dim; ++c) {
-      s.balance[c] += force[c];
-      s.all += std::abs(force[c]);
-      s.reaction += force[c] * force[c];
+      const std::size_t i = static_cast<std::size_t>(n) * dim + c;
+      const bool here = loaded != forces.load.end() && static_cast<std::size_t>(loaded->component) == i;
+      const double load = here ? (loaded++)->value : 0.0, diagonal = static_cast<double>(forces.diagonal[i]);
+      const double unbalanced = load - forces.internal[i] - contact[i], stiff = diagonal * u[i];
+      const double along = slanting.empty() ? 0.0 : slanting[i];
+      const double reaction = part.held[i] ? -unbalanced : along;
+      residual[c] = part.held[i] ? 0.0 : unbalanced + along;
+      position[c] = part.coordinates[i];
+      const double expansion = forces.expansion.empty() ? 0.0 : forces.expansion[i];
+      const double acting = part.held[i] ? 0.0 : load - expansion;
+      s.load += acting * acting;
+      s.reaction += reaction * reaction;
+      s.spring += spring[c] * spring[c];
+      s.residual += residual[c] * residual[c];
+      const double hold = std::abs(contact[i]) + std::abs(reaction) + std::abs(spring[c]);
+      s.hold += hold;
+      s.all += hold + std::abs(load - expansion);
+      s.moved += u[i] * u[i];
+      s.stiff += stiff * stiff;
+      s.moved_all += std::abs(u[i]);
+      s.stiff_all += std::abs(stiff);
+      s.softness += 1.0 / diagonal;
+      s.unknowns += 1.0;
+      out.largest[region] = larger(out.largest[region], std::abs(u[i]));
+      out.whole.residual_work += residual[c] * u[i];
+      out.whole.internal_work += forces.internal[i] * u[i];
+      out.whole.expansion_work += expansion * u[i];
+      out.whole.stiff_work += stiff * u[i];
+    }
+    s.unbalanced = s.unbalanced + residual;
+    s.moment = s.moment + cross(position, residual);
+    for (; side != forces.interface.end() && side->node == n; ++side) {
+      out.of_region[side->region].interface += dot(side->force, side->force);
+      if (side->region != region)
+        between[{region, side->region}] +=
+            std::abs(side->force[0]) + std::abs(side->force[1]) + std::abs(side->force[2]);
     }
   }
-  part.node_map.sum_each({&s.balance[0], &s.balance[1], &s.balance[2], &s.all, &s.residual_work,
-                          &s.internal_work, &s.residual, &s.reaction, &s.contact, &s.load, &s.moved, &s.stiff,
-                          &s.stiff_work, &s.moved_all, &s.stiff_all, &s.softness});
-  s.softness /= static_cast<double>(part.total_nodes()) * part.dim();
-  return s;
+  const IndexMap& ranks = part.node_map;
+  ranks.sum_all(numbers(out.of_region));
+  ranks.max_all(out.largest);
+  for (const RegionSums& s : out.of_region) {
+    out.whole.moved += s.moved;
+    out.whole.softness += s.softness;
+  }
+  WholeSums& w = out.whole;
+  ranks.sum_each({&w.residual_work, &w.internal_work, &w.expansion_work, &w.stiff_work});
+  w.softness /= static_cast<double>(part.total_nodes()) * part.dim();
+  if (regions.count() > 1) {
+    struct Pair {
+      std::array<std::int32_t, 2> regions;
+      double force;
+    };
+    std::vector<Pair> pairs;
+    for (const auto& [pair, force] : between) pairs.push_back({pair, force});
+    between.clear();
+    for (const Pair& pair : gathered(pairs, ranks)) between[pair.regions] += pair.force;
+  }
+  return out;
+}
+
+/// The residual that is worst together with what rounding may hide in it.
+struct Worst {
+  double residual = 0.0, unknown = 0.0;
+  void take(double r, double rounding_of_it, double scale) {
+    r /= scale, rounding_of_it /= scale;
+    if (std::isnan(r + rounding_of_it)) r = HUGE_VAL;
+    if (residual + unknown <= r + rounding_of_it) residual = r, unknown = rounding_of_it;
+  }
+};
+
+/// Harmonic mean of D over a region's unknowns, times `least_force`.
+double least_stiffness(double unknowns, double softness) {
+  return softness > 0.0 ? least_force * unknowns / softness : 0.0;
+}
+
+/// Equilibrium, region by region. `elastic`: what temperature leaves stored in the body; 0 without.
+Worst judge_equilibrium(const BodySums& body, const Contact& contact, double elastic, Residuals& out) {
+  Scales& scales = out.scales;
+  Worst worst;
+  std::vector<double> scale;
+  scales.force = scales.contact_force = HUGE_VAL;
+  for (std::size_t r = 0; r < body.of_region.size(); ++r) {
+    const RegionSums& s = body.of_region[r];
+    double weakest = HUGE_VAL, of_contact = 0.0;
+    bool touches = false;
+    for (std::size_t e = 0; e < contact.entries; ++e) {
+      const ContactSums& sums = contact.sums[r * contact.entries + e];
+      touches = touches || sums.area > 0.0;
+      of_contact += sums.square;
+      if (sums.square > 0.0) weakest = std::min(weakest, std::sqrt(sums.square));
+    }
+    const double stiffness = s.softness > 0.0 ? s.unknowns / s.softness : 0.0;
+    // A body under stress of its own has no other force: where it is one region.
+    const double own = body.of_region.size() == 1 ? 2.0 * elastic * stiffness : 0.0;
+    double force = std::sqrt(std::max({s.load, s.reaction, s.spring, s.interface, of_contact, own}));
+    const double least = least_force * stiffness * std::sqrt(s.moved),
+                 strong = std::max({force, least, tiny});
+    if (weakest < HUGE_VAL) force = weak_beside(weakest, force);
+    force = std::max(force, least);
+    scale.push_back(force);
+    if (s.unknowns == 0.0) continue;  // stiffer regions have all of its nodes
+    worst.take(std::sqrt(s.residual), rounding * std::sqrt(s.stiff), std::max(force, tiny));
+    out.unbalanced = larger(out.unbalanced, std::sqrt(s.residual) / strong);
+    scales.force = std::min(scales.force, force);
+    if (touches) scales.contact_force = std::min(scales.contact_force, force);
+  }
+  // A region in which nothing acts yet would leave the others without weight.
+  constexpr double least_weight = 1e-8;
+  scales.force = std::max(scales.force, least_weight * *std::max_element(scale.begin(), scale.end()));
+  scales.contact_force =
+      scales.contact_force == HUGE_VAL ? scales.force : std::max(scales.contact_force, scales.force);
+  if (scale.size() > 1)
+    for (const double force : scale)
+      scales.weight.push_back(force > scales.force ? scales.force / force : 1.0);
+  return worst;
+}
+
+/// The forces on each cluster, and their moments: what a cluster is left with pushes those that hold it.
+Worst judge_balance(const Part& part, const BodySums& body, const StiffnessRegions& regions) {
+  Worst worst;
+  const bool is_round = part.plane == PlaneState::axisymmetric;
+  for (const StiffnessRegions::Cluster& cluster : regions.clusters()) {
+    RegionSums s;
+    std::vector<std::uint8_t> within(regions.count(), 0);
+    for (const std::int32_t r : cluster.regions) {
+      const RegionSums& one = body.of_region[r];
+      within[r] = 1;
+      s.unbalanced = s.unbalanced + one.unbalanced;
+      s.moment = s.moment + one.moment;
+      s.hold += one.hold;
+      s.all += one.all;
+      s.moved_all += one.moved_all;
+      s.stiff_all += one.stiff_all;
+      s.softness += one.softness;
+      s.unknowns += one.unknowns;
+    }
+    for (const auto& [pair, force] : body.between)
+      if (within[pair[0]] && regions.bin(pair[1]) > cluster.bin) {
+        s.hold += force;
+        s.all += force;
+      }
+    const double least = least_stiffness(s.unknowns, s.softness) * s.moved_all;
+    const double scale = std::max({weak_beside(s.hold, s.all), least, tiny});
+    // Round an axis the first component is in balance by itself, and so are moments.
+    if (is_round) s.unbalanced[0] = 0.0;
+    const Vector3 moment = is_round ? Vector3{} : s.moment + (-1.0) * cross(cluster.centre, s.unbalanced);
+    // Equal elements that move alike are off alike: nothing averages out in a sum.
+    worst.take(norm(s.unbalanced), rounding * s.stiff_all, scale);
+    worst.take(norm(moment), rounding * s.stiff_all * cluster.radius, std::max(scale * cluster.radius, tiny));
+  }
+  return worst;
+}
+
+/// The entries of contact, each entry of the case in each region by itself. `body`: forces and displacements
+/// beside which its own may be small.
+void judge_contact(const Contact& contact, const BodySums& body, Scales& scales, Certificate& c) {
+  Worst penetration, tension, cone, complementarity;
+  scales.trace = HUGE_VAL;
+  for (std::size_t g = 0; g < contact.sums.size(); ++g) {
+    const ContactSums& sums = contact.sums[g];
+    const ContactPeaks& peak = contact.peaks[g];
+    if (!(sums.area > 0.0)) continue;
+    const std::size_t region = g / contact.entries;
+    const double largest = body.largest[region];
+    const double pressure =
+        std::max({peak.pressure, least_share * 0.5 * body.of_region[region].all / sums.area, tiny});
+    const double trace = weak_beside(peak.indentation, largest);
+    if (peak.indentation > 0.0) scales.trace = std::min(scales.trace, trace);
+    const double moved = largest > 0.0 ? 1.0 : 0.0;  // at rest, traces and gaps are exact
+    const double length = std::max(trace, tiny), product = std::max(pressure * length * sums.area, tiny);
+    penetration.take(peak.penetration, moved * peak.unknown_trace, length);
+    tension.take(peak.tension, 0.0, pressure);
+    cone.take(peak.cone, 0.0, pressure);
+    complementarity.take(sums.products, moved * sums.unknown_product, product);
+  }
+  if (scales.trace == HUGE_VAL) scales.trace = scales.displacement;
+  c.penetration = penetration.residual, c.rounding.penetration = penetration.unknown;
+  c.tension = tension.residual;
+  c.friction_cone = cone.residual;
+  c.complementarity = complementarity.residual, c.rounding.complementarity = complementarity.unknown;
 }
 
 }  // namespace
@@ -178,47 +412,42 @@ BodySums body_sums(const Part& part, std::span<const double> u, std::span<const 
 Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactState& state,
                         const BodyForces& forces) {
   const Part& part = space.part();
-  Vector contact(part.unknowns(), 0.0);
-  traces.add_force(state.lambda, 1.0, contact);
+  std::optional<StiffnessRegions> found;
+  if (forces.regions == nullptr) found.emplace(StiffnessRegions::whole(part));
+  const StiffnessRegions& regions = found ? *found : *forces.regions;
+  Vector force(part.unknowns(), 0.0);
+  traces.add_force(state.lambda, 1.0, force);
   Residuals out;
   out.energy = forces.energy;
   Scales& scales = out.scales;
-  scales.displacement = space.max_abs(state.u);
-  const ContactSums sums = contact_sums(traces, state, scales.displacement);
-  // Sums of forces: the load, the obstacles, the supports; what they work; squares of their norms.
-  const BodySums body = body_sums(part, state.u, contact, forces);
-  const double no_force = least_force / body.softness * std::sqrt(body.moved),
-               no_energy = least_force / body.softness * body.moved;
-  scales.force = std::max(std::sqrt(std::max({body.reaction, body.contact, body.load})), no_force);
-
-  const double tiny = 1e-300;
-  scales.pressure = std::max(sums.pressure, sums.area > 0.0 ? 0.5 * body.all / sums.area * 1e-3 : 0.0);
-  const double force = std::max(scales.force, tiny), displacement = std::max(scales.displacement, tiny);
-  const double pressure = std::max(scales.pressure, tiny);
   Certificate& c = out.certificate;
-  const double unknown_force = rounding * std::sqrt(body.stiff), unknown_energy = rounding * body.stiff_work;
-  const double moved = scales.displacement > 0.0 ? 1.0 : 0.0;  // at rest, traces and gaps are exact
-  c.equilibrium = std::sqrt(body.residual) / force;
-  c.rounding.equilibrium = unknown_force / force;
-  c.penetration = sums.penetration / displacement;
-  c.rounding.penetration = moved * sums.unknown_trace / displacement;
-  c.tension = sums.tension / pressure;
-  c.friction_cone = sums.cone / pressure;
-  const double most_product = std::max(pressure * displacement * sums.area, tiny);
-  c.complementarity = (sums.normal_product + sums.friction_product) / most_product;
-  c.rounding.complementarity = moved * sums.unknown_product / most_product;
-  const double all_forces = std::max({body.all, least_force / body.softness * body.moved_all, tiny});
-  const bool is_round =
-      part.plane == PlaneState::axisymmetric;  // round an axis the first is in balance by itself
-  c.force_balance =
-      std::hypot(is_round ? 0.0 : body.balance[0], body.balance[1], body.balance[2]) / all_forces;
-  // Equal elements that move alike are off alike: nothing averages out in a sum.
-  c.rounding.force_balance = rounding * body.stiff_all / all_forces;
+  scales.displacement = space.max_abs(state.u);
+  const Contact contact = sum_contact(traces, state, forces, regions, scales.displacement);
+  const BodySums body = body_sums(part, state.u, force, forces, regions);
+  const WholeSums& whole = body.whole;
+  const double no_energy = least_force / whole.softness * whole.moved;
+  const double all = std::max(forces.energy, 0.5 * std::abs(whole.internal_work));
+  // Of a body that expands freely nothing is stored but what keeps it from doing so.
+  const double elastic = forces.expansion.empty()
+                             ? all
+                             : std::max(forces.energy - whole.expansion_work + forces.expansion_energy, 0.0);
+  const double energy = std::max({weak_beside(elastic, all, least_share * least_share), no_energy, tiny});
+  const Worst equilibrium = judge_equilibrium(body, contact, forces.expansion.empty() ? 0.0 : elastic, out),
+              balance = judge_balance(part, body, regions);
+  c.equilibrium = equilibrium.residual, c.rounding.equilibrium = equilibrium.unknown;
+  c.force_balance = balance.residual, c.rounding.force_balance = balance.unknown;
+  judge_contact(contact, body, scales, c);
+
   // Primal minus dual energy. With τ = τ(u) the stored energies add up to R·u, and
   // what is left is the work of the equilibrium residual and the contact products.
-  const double all_energy = std::max({forces.energy, 0.5 * std::abs(body.internal_work), no_energy, tiny});
-  c.duality_gap = std::abs(sums.dual_work - body.residual_work) / all_energy;
-  c.rounding.duality_gap = (unknown_energy + moved * sums.unknown_product) / all_energy;
+  double dual_work = 0.0, unknown_product = 0.0;
+  for (const ContactSums& sums : contact.sums) {
+    dual_work += sums.dual_work;
+    unknown_product += sums.unknown_product;
+  }
+  const double moved = scales.displacement > 0.0 ? 1.0 : 0.0;
+  c.duality_gap = std::abs(dual_work - whole.residual_work) / energy;
+  c.rounding.duality_gap = (rounding * whole.stiff_work + moved * unknown_product) / energy;
   return out;
 }
 

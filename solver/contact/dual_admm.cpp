@@ -178,7 +178,7 @@ AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& 
     project(traces, r, state.bound, lambda, parts);
     parts.balance.finish(traces);
     result.trace_residual = parts.plus_step;
-    result.force_residual = error + traces.force_norm(parts.minus_step);
+    result.force_residual = error + options.contact_weight * traces.force_norm(parts.minus_step);
     ++result.iterations;
     if (stop_by_step) {
       const std::size_t owned = space.part().owned_unknowns();

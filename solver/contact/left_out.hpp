@@ -22,7 +22,7 @@ double left_out(const LinearProblem& problem, const Space& space, const ContactS
   subtract(trace, rest);
   space.project(rest);
   for (std::size_t i = 0; i < rest.size(); ++i) rest[i] -= work.residual[i];
-  return space.norm(rest);
+  return space.residual_norm(rest);
 }
 
 }  // namespace kacanov

@@ -34,7 +34,7 @@ GcrResult gcr(const Space& space, const Apply& apply, const Inner& inner, std::s
   };
   std::vector<Direction> kept;
   GcrResult result;
-  result.first_residual = result.residual = space.norm(residual);
+  result.first_residual = result.residual = space.residual_norm(residual);
   result.converged = result.residual <= options.absolute;
   const std::size_t n = x.size();
   while (!result.converged && result.iterations < options.max_iterations) {
@@ -56,7 +56,7 @@ GcrResult gcr(const Space& space, const Apply& apply, const Inner& inner, std::s
       residual[i] -= along / square * next.q[i];
     }
     ++result.iterations;
-    result.residual = space.norm(residual);
+    result.residual = space.residual_norm(residual);
     result.converged = result.residual <= options.absolute;
     kept.push_back(std::move(next));
   }

@@ -65,6 +65,18 @@ double Space::dot(std::span<const double> x, std::span<const double> y) const {
 
 double Space::norm(std::span<const double> x) const { return std::sqrt(dot(x, x)); }
 
+double Space::residual_norm(std::span<const double> r) const {
+  if (!weighted()) return norm(r);
+  const std::size_t dim = part_->dim();
+  double square = 0.0;
+  for (std::size_t n = 0; n < static_cast<std::size_t>(part_->owned_nodes()); ++n) {
+    double here = 0.0;
+    for (std::size_t i = n * dim; i < (n + 1) * dim; ++i) here += r[i] * r[i];
+    square += weights_->at(n) * weights_->at(n) * here;
+  }
+  return std::sqrt(sum_all(square));
+}
+
 std::array<double, 2> Space::dot2(std::span<const double> a, std::span<const double> b,
                                   std::span<const double> c, std::span<const double> d) const {
   std::array<double, 2> s{local_dot(a, b), local_dot(c, d)};
@@ -81,7 +93,7 @@ double Space::advance(double alpha, std::span<const double> p, std::span<const d
   };
   const double square = eight_sums(part_->owned_unknowns(), step);
   for (std::size_t i = part_->owned_unknowns(); i < x.size(); ++i) step(i);
-  return std::sqrt(sum_all(square));
+  return weighted() ? residual_norm(r) : std::sqrt(sum_all(square));
 }
 
 void Space::turn(double beta, std::span<const double> z, std::span<double> p) const {

@@ -15,6 +15,14 @@
 
 namespace kacanov {
 
+/// Weights of residuals, of the nodes of each region one: a soft part beside a stiff one is solved to its own
+/// forces. Without any, all count the same.
+struct ResidualWeights {
+  std::span<const std::int32_t> region;  ///< of each local node
+  std::vector<double> weight;            ///< of each region; empty: 1
+  double at(std::size_t node) const noexcept { return weight[region[node]]; }
+};
+
 /// Displacements of a part that vanish in held components and, optionally, in some directions of some nodes
 /// and in rows over several nodes (contact rows held during a spectrum or active-set solve).
 class Space {
@@ -28,6 +36,10 @@ class Space {
   /// Holds rows that share no node with these directions. Call on every rank.
   void hold(std::shared_ptr<const HeldRows> rows) { held_.rows = std::move(rows); }
 
+  /// From now on residuals are measured with these weights, which may change.
+  void weigh(std::shared_ptr<const ResidualWeights> weights) { weights_ = std::move(weights); }
+  const std::shared_ptr<const ResidualWeights>& weights() const noexcept { return weights_; }
+
   /// What is held besides held components.
   const HeldSpace& held() const noexcept { return held_; }
 
@@ -39,6 +51,9 @@ class Space {
   /// Inner product and 2-norm of consistent vectors over all ranks, each unknown once. Collective.
   double dot(std::span<const double> x, std::span<const double> y) const;
   double norm(std::span<const double> x) const;
+  /// By what residuals are measured: the 2-norm, or, where parts of the body have weights, that of w∘r.
+  /// Collective.
+  double residual_norm(std::span<const double> r) const;
   /// a·b and c·d for the price of one reduction. Collective.
   std::array<double, 2> dot2(std::span<const double> a, std::span<const double> b, std::span<const double> c,
                              std::span<const double> d) const;
@@ -46,7 +61,8 @@ class Space {
   double max_abs(std::span<const double> x) const;
   /// Over all ranks, of what each has. Collective.
   double sum_all(double share) const { return part_->node_map.sum_all(share); }
-  /// A step of conjugate gradients in one pass: x += α p, r −= α q. Returns ‖r‖. Collective.
+  /// A step of conjugate gradients in one pass: x += α p, r −= α q. Returns the residual_norm of r.
+  /// Collective.
   double advance(double alpha, std::span<const double> p, std::span<const double> q, std::span<double> x,
                  std::span<double> r) const;
   /// p = z + β p; with β = 0 the old p is not read.
@@ -54,9 +70,11 @@ class Space {
 
  private:
   HeldDirections& directions_at(std::int32_t node);
+  bool weighted() const noexcept { return weights_ != nullptr && !weights_->weight.empty(); }
   double local_dot(std::span<const double> x, std::span<const double> y) const;
 
   const Part* part_;
+  std::shared_ptr<const ResidualWeights> weights_;
   HeldSpace held_;
   std::size_t prescribed_ = 0;  ///< directions that the part holds come first, by node
 };

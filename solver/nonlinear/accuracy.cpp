@@ -16,6 +16,7 @@ AdmmOptions admm_accuracy(const SolverOptions& options, const Residuals& before,
   out.relaxation = options.relaxation.value_or(as_printed ? 1.0 : 1.7);
   out.max_iterations = options.max_contact;
   out.max_cg = options.max_cg;
+  out.contact_weight = scales.contact_weight();
   if (by_step) {
     out.step_tolerance = options.tolerance;
     out.force_tolerance = 1e-2 * options.tolerance * scales.force;
@@ -28,7 +29,7 @@ AdmmOptions admm_accuracy(const SolverOptions& options, const Residuals& before,
   const double reach = std::max(0.5 * options.tolerance, tuning.inner_reduction * worst) * share;
   out.force_tolerance = reach * scales.force;
   // With no displacement yet, any trace will do: the first step ends by its forces.
-  out.trace_tolerance = scaled ? reach * scales.displacement : HUGE_VAL;
+  out.trace_tolerance = scaled ? reach * scales.trace : HUGE_VAL;
   out.force_reduction = scales.force > 0.0 ? 0.0 : tuning.inner_reduction;
   if (options.penalty == SolverOptions::Penalty::automatic && !first)
     out.max_iterations = std::min(tuning.balancing_iterations, options.max_contact);
@@ -86,9 +87,8 @@ AugmentedAccuracy augmented_accuracy(const SolverOptions& options, const Residua
 double gap_share(const Certificate& c) {
   const double others =
       std::max({c.equilibrium, c.penetration, c.tension, c.complementarity, c.friction_cone});
-  return others > 0.0 && std::isfinite(c.duality_gap)
-             ? std::clamp(others / std::max(others, c.duality_gap), 1e-4, 1.0)
-             : 1.0;
+  const double sums = std::max(c.duality_gap, c.force_balance);
+  return others > 0.0 && std::isfinite(sums) ? std::clamp(others / std::max(others, sums), 1e-4, 1.0) : 1.0;
 }
 
 }  // namespace kacanov

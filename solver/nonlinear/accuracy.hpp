@@ -29,8 +29,9 @@ struct AugmentedAccuracy {
 AugmentedAccuracy augmented_accuracy(const SolverOptions& options, const Residuals& before,
                                      const Tuning& tuning);
 
-/// How much further than the tolerance the residuals have to fall for the duality gap to meet it, 1e-4 to 1.
-/// Where a body moves far and strains little, their work along the motion is large beside the stored energy.
+/// How much further than the tolerance the residuals have to fall for the duality gap and the balance of
+/// forces to meet it, 1e-4 to 1. Where a body moves far and strains little, their work along the motion is
+/// large beside the stored energy; where little holds a body, their sum is large beside that.
 double gap_share(const Certificate& certificate);
 
 }  // namespace kacanov

@@ -16,9 +16,11 @@ namespace {
 /// One semismooth Newton step with a line search on the way to a minimiser.
 class Descent {
  public:
-  Descent(StepContext& c, double r) : c_(c), contact_(c.traces, c.state, r), delta_(c.part.unknowns()) {}
+  Descent(StepContext& c, double r, double contact_weight)
+      : c_(c), contact_(c.traces, c.state, r), contact_weight_(contact_weight), delta_(c.part.unknowns()) {}
 
-  /// Puts F − R(u) − CᵀMp into the residual. Returns its norm; `moved`: that of CᵀM (p − λ).
+  /// Puts F − R(u) − CᵀMp into the residual. Returns its residual_norm; `moved`: that of CᵀM (p − λ),
+  /// likewise.
   double unbalanced(double& moved) {
     ContactValues p = contact_.multipliers(c_.state.trace);
     c_.body.unbalanced(c_.path, c_.work.residual);
@@ -26,8 +28,8 @@ class Descent {
     c_.space.project(c_.work.residual);
     for (std::size_t i = 0; i < p.normal.size(); ++i) p.normal[i] -= c_.state.lambda.normal[i];
     for (std::size_t i = 0; i < p.tangential.size(); ++i) p.tangential[i] -= c_.state.lambda.tangential[i];
-    moved = c_.traces.force_norm(p);
-    return c_.space.norm(c_.work.residual);
+    moved = contact_weight_ * c_.traces.force_norm(p);
+    return c_.space.residual_norm(c_.work.residual);
   }
 
   /// From the residual there is. Whether the solve gave a direction to go.
@@ -95,6 +97,7 @@ class Descent {
 
   StepContext& c_;
   AugmentedContact contact_;
+  double contact_weight_;
   Vector delta_;
   double t_ = 1.0;
 };
@@ -107,7 +110,7 @@ StepOutcome augmented_step(StepContext& c, AugmentedControl& control, const Resi
   const auto applied = c.body.op().applications();
   const AugmentedAccuracy accuracy = augmented_accuracy(c.options, before, c.tuning);
   control.advance(c.traces, c.state);
-  Descent descent(c, control.penalty());
+  Descent descent(c, control.penalty(), before.scales.contact_weight());
   const bool may_tangent = !c.body.linear() && c.options.outer != SolverOptions::Outer::kacanov;
   bool tangent = may_tangent;
   for (;;) {

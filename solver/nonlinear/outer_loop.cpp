@@ -7,7 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "linear/free_strain.hpp"
 #include "mesh/plain_stream.hpp"
 #include "nonlinear/augmented_step.hpp"
 #include "nonlinear/body_measures.hpp"
@@ -76,7 +75,7 @@ OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOp
 void OuterLoop::take_load() {
   ContactState& state = context_.state;
   context_.path.prescribe(state.u);
-  context_.body.set_free_strain(free_strain(context_.part, context_.path.thermal_pressure()));
+  context_.take_temperature();
   state.gap = context_.path.gap();
   state.evaluate(context_.traces);
   for (std::size_t i = 0; i < state.gap.size(); ++i)
@@ -194,7 +193,7 @@ StepOutcome OuterLoop::take_step(bool newton, const Residuals& before, Result& r
   const Penalty& penalty = control_.penalty.value();
   if (control_.fallback.retreating() && !control_.augmented.begun())  // after a restart
     control_.augmented.begin(penalty.normal, result.lambda_min);
-  const bool tangent = newton && control_.linearisation.takes_tangent(before.certificate.equilibrium);
+  const bool tangent = newton && control_.linearisation.takes_tangent(before.unbalanced);
   const StepOutcome step = newton ? newton_step(context_, penalty.normal, tangent, before)
                            : control_.fallback.retreating()
                                ? augmented_step(context_, control_.augmented, before)
@@ -229,8 +228,7 @@ Residuals OuterLoop::learn(const StepOutcome& step, bool newton, const Residuals
     return after;
   }
   if (step.tangent)
-    control_.linearisation.after_tangent(before.certificate.equilibrium, after.certificate.equilibrium,
-                                         step.length);
+    control_.linearisation.after_tangent(before.unbalanced, after.unbalanced, step.length);
   else
     control_.linearisation.after_secant();
   if (!control_.fallback.after_newton(worst, step.solved && !ran_away(after))) return after;

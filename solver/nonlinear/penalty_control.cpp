@@ -43,7 +43,7 @@ bool PenaltyControl::balance(std::span<const BalanceSample> samples, const Scale
     const double factor = std::exp(std::clamp(0.5 * trust * behind, -1.0, 1.0));
     return std::clamp(r * factor, tuning_.smallest_share * largest, largest);
   };
-  const auto behind = mean_behind(samples, scales.displacement, scales.force);
+  const auto behind = mean_behind(samples, scales.trace, scales.contact_force);
   value_ = {balanced(value_.normal, behind[0]), balanced(value_.tangential, behind[1])};
   return true;
 }

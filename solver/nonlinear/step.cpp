@@ -5,14 +5,19 @@
 #include <algorithm>
 #include <array>
 
+#include <kacanov/corner_dilatation.hpp>
+#include <kacanov/reference.hpp>
+
 #include "amg/make_preconditioner.hpp"
 #include "contact/active_set_step.hpp"
 #include "contact/dual_admm.hpp"
 #include "contact/held_nodes.hpp"
+#include "linear/free_strain.hpp"
 #include "nonlinear/accuracy.hpp"
 #include "nonlinear/body_measures.hpp"
 #include "nonlinear/line_search.hpp"
 #include "nonlinear/linearisation.hpp"
+#include "reference/expansion.hpp"
 
 namespace kacanov {
 namespace {
@@ -72,12 +77,17 @@ StepContext::StepContext(const Part& the_part, const SolverOptions& the_options,
       path(the_part),
       space(the_part),
       traces(the_part),
+      regions(the_part),
       body(the_part, run.threads, run.instruction_set),
       preconditioner(
           the_part, body,
           make_preconditioner(the_options, the_part, run.threads, run.instruction_set, &body.op().local()),
           the_tuning) {
   refuse_beyond_floats(part, body.diagonal());
+  if (regions.count() > 1) {
+    weights = std::make_shared<ResidualWeights>(ResidualWeights{regions.of_nodes(), {}});
+    space.weigh(weights);
+  }
   secant = {&space, &traces,
             [this](std::span<const double> x, std::span<double> y) { return body.op().apply(x, y); },
             [this](std::span<const double> r, std::span<double> z) { preconditioner.apply(r, z); }};
@@ -93,6 +103,45 @@ StepContext::StepContext(const Part& the_part, const SolverOptions& the_options,
   if (options.stop == SolverOptions::Stop::paper) volume = lumped_volume(part);
   put_to_rest(part, state);
   work.resize(part.unknowns());
+}
+
+void StepContext::take_temperature() {
+  thermal_pressure = path.thermal_pressure();
+  free_strain = kacanov::free_strain(part, thermal_pressure);
+  body.set_free_strain(free_strain);
+  expansion.clear();
+  const bool warm =
+      std::any_of(thermal_pressure.begin(), thermal_pressure.end(), [](double p) { return p != 0.0; });
+  if (!part.node_map.any(warm)) return;
+  thermal_pressure.resize(std::max(thermal_pressure.size(), part.element_count()), 0.0);
+  expansion.resize(part.unknowns());
+  expansion_energy =
+      part.node_map.sum_all(reference::expansion_force(part.body(), thermal_pressure, expansion));
+  part.node_map.sum(expansion, part.dim());
+}
+
+Residuals StepContext::certify(std::span<const double> internal, double energy,
+                               std::span<const double> dilatation) const {
+  BodyForces forces = body.forces(path);
+  forces.internal = internal;
+  forces.energy = energy;
+  forces.expansion = expansion;
+  forces.expansion_energy = expansion_energy;
+  forces.regions = &regions;
+  const bool counts = !body.linear();
+  const auto between = regions.interface_forces(
+      state.u, {thermal_pressure, counts ? std::span<const double>(free_strain) : std::span<const double>()},
+      dilatation);
+  forces.interface = between;
+  return kkt_residuals(space, traces, state, forces);
+}
+
+Residuals StepContext::certify() const {
+  const BodyForces forces = body.forces(path);
+  const Vector dilatation = regions.count() > 1 ? corner_dilatation(part, state.u) : Vector();
+  Residuals residuals = certify(forces.internal, forces.energy, dilatation);
+  if (weights) weights->weight = residuals.scales.weight;
+  return residuals;
 }
 
 void put_to_rest(const Part& part, ContactState& state) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include <kacanov/run_options.hpp>
 #include "contact/active_set.hpp"
@@ -22,15 +23,27 @@ struct StepContext {
   LoadPath path;
   Space space;
   Traces traces;
+  StiffnessRegions regions;
+  std::shared_ptr<ResidualWeights> weights;  ///< the space's; null where the body is one region
   BodyResponse body;
+  /// Of the temperature at the load there is; take_temperature() has them.
+  std::vector<double> thermal_pressure, free_strain;
+  Vector expansion;  ///< its part of F; empty: none
+  double expansion_energy = 0.0;
   ContactPreconditioner preconditioner;
   LinearProblem secant, tangent;  ///< by what `body` has frozen
   ContactState state;
   CgWork work;
   Vector volume;  ///< lumped, of each node; with the paper's stop only
 
-  /// KKT residuals of the state, by the loop's own operator (theory: kkt). Collective.
-  Residuals certify() const { return kkt_residuals(space, traces, state, body.forces(path)); }
+  /// Looks up what the load has of temperature. Collective.
+  void take_temperature();
+  /// KKT residuals of the state, by the loop's own operator (theory: kkt); the space's weights are from then
+  /// on those of this state. Collective.
+  Residuals certify() const;
+  /// The same by another operator's R(u) and energy; `dilatation`: corner_dilatation() of the state.
+  Residuals certify(std::span<const double> internal, double energy,
+                    std::span<const double> dilatation) const;
 };
 
 /// No multipliers, and the displacement to start from.

@@ -13,7 +13,9 @@
 
 #include <kacanov/error.hpp>
 #include <kacanov/index_runs.hpp>
+
 #include <kacanov/mesh.hpp>
+#include <kacanov/vector3.hpp>
 
 using namespace kacanov;
 

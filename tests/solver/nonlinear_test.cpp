@@ -36,7 +36,7 @@ T copied_by_visit(T from, T blank) {
 Residuals residuals(double worst) {
   Residuals r;
   r.certificate.equilibrium = worst;
-  r.scales = {2.0, 3.0, 1.0};
+  r.scales = {2.0, 2.0, 3.0, 3.0, {}};
   return r;
 }
 
@@ -152,7 +152,7 @@ TEST_CASE("penalties: the first one goes with 1/λ_min and the root of the mesh 
 TEST_CASE("penalties: each rule begins with its own, and only the automatic one moves") {
   SolverOptions options;
   const std::array<BalanceSample, 8> behind{BalanceSample{{1.0, 1.0}, {1e-3, 1e-3}}};
-  const Scales scales{1.0, 1.0, 1.0};
+  const Scales scales{1.0, 1.0, 1.0, 1.0, {}};
   const auto chosen = [&](SolverOptions::Penalty rule) {
     options.penalty = rule;
     options.r = 7.0;
@@ -182,7 +182,7 @@ TEST_CASE(
     "penalties: up where held rows are behind, down where free ones are, by no more than e and within "
     "bounds") {
   PenaltyControl control(SolverOptions(), 3.0, usual);
-  const Scales scales{1.0, 1.0, 1.0};
+  const Scales scales{1.0, 1.0, 1.0, 1.0, {}};
   const auto after = [&](const std::vector<BalanceSample>& samples, double lambda_min = 0.1) {
     control.choose(0.0, lambda_min);
     control.balance(samples, scales);

@@ -145,8 +145,16 @@ class CornerVolumes {
   std::map<std::pair<std::int64_t, Real>, At> corners_;
 };
 
-/// Adds what one element does.
-void add_element(const Problem& problem, std::size_t e, const std::vector<Vec>& u,
+/// Of a region, at a node.
+Vec& force_of(BodyResponse& out, Index node, std::size_t region) {
+  auto& list = out.of_region[node];
+  for (auto& [number, force] : list)
+    if (number == region) return force;
+  return list.emplace_back(region, Vec{}).second;
+}
+
+/// Adds what one element of a region does.
+void add_element(const Problem& problem, std::size_t e, std::size_t region, const std::vector<Vec>& u,
                  const CornerVolumes& corners, BodyResponse& out) {
   const Mesh& mesh = problem.mesh;
   const Indices& element = mesh.elements[e];
@@ -177,6 +185,10 @@ void add_element(const Problem& problem, std::size_t e, const std::vector<Vec>& 
     if (averaged) square = corners.mean(element, law, rule[k], true);
     const Real x = norm_of(deviator), g = law.secant(x);
     out.energy += point.volume * (law.bulk * square / 2 + 2 * law.energy(x) - warm * longer);
+    const Real expansion =
+        problem.expansion.empty() || problem.expansion[e].empty() ? 0 : problem.expansion[e][k];
+    out.expansion_energy +=
+        point.volume * expansion * expansion / (mesh.is_free_across ? expansion_stress(law) : 2 * law.bulk);
     Real moved = 0;
     for (std::size_t a = 0; a < element.size(); ++a) moved += norm(point.gradient[a]) * norm(u[element[a]]);
     out.unknown_stress = larger(out.unknown_stress, 1e-15L * 2 * g * moved);
@@ -185,11 +197,15 @@ void add_element(const Problem& problem, std::size_t e, const std::vector<Vec>& 
     for (std::size_t a = 0; a < element.size(); ++a) {
       const Vec &n = point.gradient[a], &d = divergence[a];
       const auto node = static_cast<std::size_t>(element[a]);
+      Vec& of_region = force_of(out, element[a], region);
       for (std::size_t i = 0; i < dim; ++i) {
         const Real round_axis = i == 0 ? deviator[2][2] * point.hoop[a] : 0;
-        out.internal[node][i] +=
-            point.volume * (law.bulk * trace * d[i] + 2 * g * (dot(deviator[i], n) + round_axis));
-        out.internal[node][i] += point.volume * warm * n[i];
+        const Real force = point.volume * (law.bulk * trace * d[i] +
+                                           2 * g * (dot(deviator[i], n) + round_axis) + warm * n[i]);
+        const Real expands = point.volume * expansion * point.divergence(a)[i];
+        out.internal[node][i] += force;
+        out.expansion[node][i] += expands;
+        of_region[i] += force - expands;
         out.energy += point.volume * warm * n[i] * u[node][i];
         out.diagonal[node][i] += point.volume * elastic_entry(mesh, law, point, a, i, d[i]);
       }
@@ -200,11 +216,14 @@ void add_element(const Problem& problem, std::size_t e, const std::vector<Vec>& 
 
 }  // namespace
 
-BodyResponse respond(const Problem& problem, const std::vector<Vec>& u) {
+BodyResponse respond(const Problem& problem, const Regions& regions, const std::vector<Vec>& u) {
   const std::size_t nodes = problem.mesh.nodes.size();
-  BodyResponse out{std::vector<Vec>(nodes), std::vector<Vec>(nodes), 0, 0, 0};
+  BodyResponse out;
+  out.internal.resize(nodes), out.diagonal.resize(nodes), out.expansion.resize(nodes);
+  out.of_region.resize(nodes);
   const CornerVolumes corners(problem, u);
-  for (std::size_t e = 0; e < problem.mesh.elements.size(); ++e) add_element(problem, e, u, corners, out);
+  for (std::size_t e = 0; e < problem.mesh.elements.size(); ++e)
+    add_element(problem, e, regions.of_element[e], u, corners, out);
   for (std::size_t n = 0; n < problem.springs.size(); ++n)
     for (std::size_t c = 0; c < 3; ++c) {
       const Real force = dot(problem.springs[n][c], u[n]);

@@ -2,19 +2,23 @@
 // Internal force, stored energy and the elastic diagonal, element by element in long double.
 #pragma once
 
-#include "verify/problem.hpp"
+#include "verify/regions.hpp"
 
 namespace kacanov::verify {
 
 struct BodyResponse {
   std::vector<Vec> internal;  ///< R(u), one a node
   std::vector<Vec> diagonal;  ///< of the elastic B
+  /// What the stresses of each region do to a node, with their sign changed; one a node.
+  std::vector<std::vector<std::pair<std::size_t, Vec>>> of_region;
+  std::vector<Vec> expansion;  ///< what temperature has of the load, one a node
   Real energy = 0;
-  Real most_von_mises = 0;  ///< largest mean over an element's points
-  Real unknown_stress = 0;  ///< what rounding the displacement alone may change in a stress
+  Real expansion_energy = 0;  ///< what temperature would store if nothing could expand
+  Real most_von_mises = 0;    ///< largest mean over an element's points
+  Real unknown_stress = 0;    ///< what rounding the displacement alone may change in a stress
 };
 
 /// theory: operator, b-bar, energy.
-BodyResponse respond(const Problem& problem, const std::vector<Vec>& u);
+BodyResponse respond(const Problem& problem, const Regions& regions, const std::vector<Vec>& u);
 
 }  // namespace kacanov::verify

@@ -158,6 +158,7 @@ void add_temperature(Problem& problem, const nlohmann::json& document, const nlo
   const Mesh& mesh = problem.mesh;
   const auto dim = static_cast<std::size_t>(mesh.dim());
   const Warmth warmth(mesh, entry.at("temperature"), folder);
+  problem.expansion.resize(mesh.elements.size());
   for (const std::size_t e : select_elements(mesh, entry.at("on"))) {
     const Indices& element = mesh.elements[e];
     const std::size_t law = problem.law_of_element[e];
@@ -178,12 +179,16 @@ void add_temperature(Problem& problem, const nlohmann::json& document, const nlo
       problem.free_strain.resize(mesh.elements.size());
       problem.free_strain[e] += expansion * mean;
     }
+    std::vector<Real>& expansion_of = problem.expansion[e];
+    expansion_of.resize(stiffness_rule(mesh.shape).size());
+    std::size_t number = 0;
     for (const QuadraturePoint& point : stiffness_rule(mesh.shape)) {
       const Functions f = functions(mesh.shape, point.at);
       const std::array<Vec, 3> along = along_at(mesh, element, f);
       const std::array<Vec, 3> dual{cross(along[1], along[2]), cross(along[2], along[0]),
                                     cross(along[0], along[1])};
       const Real pressure = stiffness * (mesh.shape == Shape::tet10 ? warmth.at(element, point.at) : mean);
+      expansion_of[number++] += pressure;
       for (std::size_t a = 0; a < f.value.size(); ++a) {
         Vec& load = problem.load[element[a]];
         for (std::size_t k = 0; k < dim; ++k)

@@ -43,9 +43,12 @@ struct Problem {
   Mesh mesh;
   std::vector<Law> laws;
   std::vector<std::size_t> law_of_element;
-  std::vector<Vec> load;                  ///< F, one a node
-  std::vector<std::int64_t> patch;        ///< of each node, where the result has that; else empty
-  std::vector<Real> free_strain;          ///< α ΔT of each element in plane stress; empty: none
+  std::vector<Vec> load;            ///< F, one a node
+  std::vector<std::int64_t> patch;  ///< of each node, where the result has that; else empty
+  std::vector<Real> free_strain;    ///< α ΔT of each element in plane stress; empty: none
+  /// What temperature adds to the pressure at the points of the stiffness if nothing can expand: of each
+  /// element; empty where it is not warmer.
+  std::vector<std::vector<Real>> expansion;
   std::vector<std::array<bool, 3>> held;  ///< components with a prescribed displacement
   std::vector<Vec> prescribed;
   /// Off the axes, by node: orthonormal, in free components (theory: held-directions).
