@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What temperature does to a body that cannot expand.
+// Nodal forces and energy of constrained thermal expansion.
 #pragma once
 
 #include <span>
@@ -8,9 +8,9 @@
 
 namespace kacanov::reference {
 
-/// What elements push their nodes with that press by `pressure`, ∫ p div v (overwrites f): one value an
-/// element, or 1 + corners of them, of which those at the corners count, linear in between (theory:
-/// expansion). Returns the energy that the elastic body stores where it cannot expand.
+/// Nodal forces ∫ p div v of a pressure (overwrites f): one value per element, or 1 + corners of them, of
+/// which those at the corners count, linear in between (theory: expansion). Returns the energy that the
+/// elastic body stores if it cannot expand.
 double expansion_force(const Body& body, std::span<const double> pressure, std::span<double> f);
 
 }  // namespace kacanov::reference

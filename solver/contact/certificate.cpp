@@ -44,8 +44,8 @@ namespace {
 /// Forces below this share of the harmonic mean of D times ‖u‖ are none to measure others by: of that mean,
 /// because a part as stiff as rigid would else make any force look small.
 constexpr double least_force = 3e-9;
-/// What is weak beside what acts elsewhere is measured by the geometric mean of the two, but by no less than
-/// this share of the latter (theory: kkt).
+/// A quantity that is weak beside others is measured by the geometric mean of both, but by no less than this
+/// share of the strong one (theory: kkt).
 constexpr double least_share = 1e-3;
 /// Share of D∘u, and of u·(D∘u), that the rounding of R(u) may come to: nine units of it, because a row of B
 /// is a few times its diagonal (measured: up to 5.4e-16); and of traces and gaps, which are short sums.
@@ -187,7 +187,7 @@ Vector slanting_reactions(const Part& part, std::span<const double> contact, con
   return reaction;
 }
 
-/// What springs do to the nodes of a part, node after node.
+/// Forces of springs on the nodes of a part, node after node.
 class SpringForces {
  public:
   SpringForces(const Part& part, std::span<const double> u)

@@ -11,12 +11,12 @@
 
 namespace kacanov {
 
-/// What the residuals are measured by (theory: kkt): of several regions or contacts the smallest of each.
+/// Scales of the residuals (theory: kkt): the smallest over all regions and contacts.
 struct Scales {
   double force = 0.0;          ///< ‖·‖₂ of nodal forces: of the residual of equilibrium
   double contact_force = 0.0;  ///< the same of a region that has contact points
   double displacement = 0.0;   ///< max |u|
-  double trace = 0.0;          ///< of what is open or overlaps at contact points under pressure
+  double trace = 0.0;          ///< length: of gaps and penetrations at contact points under pressure
   /// By what a region's share of the residual counts less than that of the region with the smallest scale;
   /// empty where the body is one region.
   std::vector<double> weight;
@@ -39,7 +39,7 @@ struct BodyForces {
   std::span<const double> internal;            ///< R(u), from the operator that is to be trusted
   double energy = 0.0;                         ///< stored
   std::span<const float> diagonal;             ///< of the elastic B
-  /// The part of F that temperature is, and what the body would store where it cannot expand; empty: none.
+  /// The thermal part of F, and the energy of the body if it could not expand; empty: none.
   std::span<const double> expansion = {};
   double expansion_energy = 0.0;
   const StiffnessRegions* regions = nullptr;       ///< null: the body is one

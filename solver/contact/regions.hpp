@@ -17,8 +17,8 @@ struct InterfaceForce {
   Vector3 force{};
 };
 
-/// Temperature at the load of the moment: what every element would press by if it could not expand, as
-/// LoadPath::thermal_pressure() has it, and what elements in plane stress would be longer by.
+/// Temperature at the current load: the pressure of each constrained element, as LoadPath::thermal_pressure()
+/// returns it, and the free strain of elements in plane stress.
 struct ThermalState {
   std::span<const double> pressure, free_strain;
 };
@@ -32,7 +32,7 @@ class StiffnessRegions {
     std::vector<std::int32_t> regions;
     int bin = 0;  ///< of the softest of them
     Vector3 centre{};
-    double radius = 0.0;  ///< of the box round its nodes
+    double radius = 0.0;  ///< of the box around its nodes
   };
 
   /// Collective. The part has to outlive it.

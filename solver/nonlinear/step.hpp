@@ -26,7 +26,7 @@ struct StepContext {
   StiffnessRegions regions;
   std::shared_ptr<ResidualWeights> weights;  ///< the space's; null where the body is one region
   BodyResponse body;
-  /// Of the temperature at the load there is; take_temperature() has them.
+  /// Of the temperature at the current load; set by take_temperature().
   std::vector<double> thermal_pressure, free_strain;
   Vector expansion;  ///< its part of F; empty: none
   double expansion_energy = 0.0;
@@ -36,7 +36,7 @@ struct StepContext {
   CgWork work;
   Vector volume;  ///< lumped, of each node; with the paper's stop only
 
-  /// Looks up what the load has of temperature. Collective.
+  /// Evaluates the temperature of the current load. Collective.
   void take_temperature();
   /// KKT residuals of the state, by the loop's own operator (theory: kkt); the space's weights are from then
   /// on those of this state. Collective.

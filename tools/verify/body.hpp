@@ -9,9 +9,9 @@ namespace kacanov::verify {
 struct BodyResponse {
   std::vector<Vec> internal;  ///< R(u), one a node
   std::vector<Vec> diagonal;  ///< of the elastic B
-  /// What the stresses of each region do to a node, with their sign changed; one a node.
+  /// Forces of the stresses of each region on a node, with their sign changed; one entry per node.
   std::vector<std::vector<std::pair<std::size_t, Vec>>> of_region;
-  std::vector<Vec> expansion;  ///< what temperature has of the load, one a node
+  std::vector<Vec> expansion;  ///< the thermal part of the load, one entry per node
   Real energy = 0;
   Real expansion_energy = 0;  ///< what temperature would store if nothing could expand
   Real most_von_mises = 0;    ///< largest mean over an element's points

@@ -46,8 +46,8 @@ struct Problem {
   std::vector<Vec> load;            ///< F, one a node
   std::vector<std::int64_t> patch;  ///< of each node, where the result has that; else empty
   std::vector<Real> free_strain;    ///< α ΔT of each element in plane stress; empty: none
-  /// What temperature adds to the pressure at the points of the stiffness if nothing can expand: of each
-  /// element; empty where it is not warmer.
+  /// Pressure of constrained thermal expansion at the points of the stiffness, of each element; empty where
+  /// it is not warmer.
   std::vector<std::vector<Real>> expansion;
   std::vector<std::array<bool, 3>> held;  ///< components with a prescribed displacement
   std::vector<Vec> prescribed;

@@ -29,8 +29,8 @@ Vec tangential(const Problem& problem, const ContactRow& row, const std::vector<
   return sum;
 }
 
-/// What is weak beside what acts elsewhere is measured by the geometric mean of the two, but by no less than
-/// a share of the latter.
+/// A quantity that is weak beside others is measured by the geometric mean of both, but by no less than a
+/// share of the strong one.
 Real weak_beside(Real weak, Real strong, Real least) {
   return std::min(strong, larger(std::sqrt(weak * strong), least * strong));
 }
