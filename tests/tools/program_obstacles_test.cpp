@@ -253,9 +253,15 @@ TEST_CASE("an edge in the plane of symmetry presses without a lateral force, and
   };
   const double text = pressed(R"({"surface": {"file": "blade.stl"}})");
   CHECK(pressed(R"({"surface": {"file": "binary.stl"}})") == doctest::Approx(text).epsilon(1e-5));
-  // A box that stands on its edge, as steep on both sides, and one in a groove of the body's own.
-  pressed(R"({"box": {"lower": [0.5, -1, 0.95], "upper": [0.5, 2, 2.95],
-              "frame": [[1, 0, 1], [0, 1, 0], [-1, 0, 1]]}})");
+  // A box that stands on its edge, as steep on both sides, at rest and moved down from where it only touches.
+  const auto box = [](double low) {
+    const std::string from = std::to_string(low), to = std::to_string(low + 2);
+    return R"({"box": {"lower": [0.5, -1, )" + from + R"(], "upper": [0.5, 2, )" + to +
+           R"(], "frame": [[1, 0, 1], [0, 1, 0], [-1, 0, 1]]}})";
+  };
+  const double at_rest = pressed(box(0.95));
+  input["contact"][0]["motion"] = parsed(R"({"path": [{"time": 1, "translation": [0, 0, -0.05]}]})");
+  CHECK(pressed(box(1.0)) == doctest::Approx(at_rest).epsilon(0.2));
 }
 
 TEST_CASE("a ball of triangles presses as a ball does, of second order in its facets, in every format") {
