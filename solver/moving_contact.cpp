@@ -38,8 +38,9 @@ Vector3 MovingContact::direction(const ContactEntry& entry) {
   return (1.0 / norm(d)) * d;
 }
 
-MovingContact::View MovingContact::view(const ContactEntry& entry, const Vector3& x, const Vector3& u,
+MovingContact::View MovingContact::view(const ContactEntry& entry, const SurfacePoint& at, const Vector3& u,
                                         const std::array<double, 2>& times, double travel) const {
+  const Vector3& x = at.x;
   RigidPose start, now;
   if (entry.motion) {
     start = RigidPose::at(*entry.motion, times[0]);
@@ -50,9 +51,10 @@ MovingContact::View MovingContact::view(const ContactEntry& entry, const Vector3
   // Faced anew, the node is where the step before has left it, and the obstacle where it is now; otherwise
   // both are where the case has them, and the obstacle carries what the node has found there along.
   const Vector3 seen = entry.relinearise ? now.back(x + u) : x;
+  const Vector3 outer = entry.relinearise ? now.turned(at.outer, -1.0) : at.outer;
   const Facing facing = std::visit(
       [&](const auto& kind) {
-        return kind.project({seen, Vector3{}});
+        return kind.project({seen, outer});
       },
       entry.obstacle);
   if (facing.kind == Facing::Kind::missed) return {{}, far_, {}, {}, 0.0, 1.0};
@@ -87,16 +89,20 @@ void MovingContact::face(double time, double before, std::span<const double> u) 
     local.push_back(static_cast<double>(point.entry));
     local.insert(local.end(), x.begin(), x.end());
     local.insert(local.end(), moved.begin(), moved.end());
+    // In place of the body's outer normal, which a part does not have, the direction it has had so far.
+    local.insert(local.end(), point.normal.begin(), point.normal.end());
   }
-  const std::vector<double> all = gather_contact(part_, local, 7);
+  constexpr int numbers = 10;
+  const std::vector<double> all = gather_contact(part_, local, numbers);
   std::vector<double> views;
-  for (std::size_t i = 0; 7 * i < all.size(); ++i) {
-    const double* p = &all[7 * i];
+  for (std::size_t i = 0; numbers * i < all.size(); ++i) {
+    const double* p = &all[numbers * i];
     const auto index = static_cast<std::size_t>(p[0]);
     const ContactEntry& entry = model_.contact[index];
     View v;
     if (entry.moves())
-      v = view(entry, {p[1], p[2], p[3]}, {p[4], p[5], p[6]}, {before, time}, travel_[index]);
+      v = view(entry, {{p[1], p[2], p[3]}, {p[7], p[8], p[9]}}, {p[4], p[5], p[6]}, {before, time},
+               travel_[index]);
     for (const Vector3* vector : {&v.normal, &v.carried, &v.step})
       views.insert(views.end(), vector->begin(), vector->end());
     views.insert(views.end(), {v.gap, v.unknown, v.kind});

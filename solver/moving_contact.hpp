@@ -31,8 +31,8 @@ class MovingContact {
 
  private:
   struct View;
-  View view(const ContactEntry& entry, const Vector3& x, const Vector3& u, const std::array<double, 2>& times,
-            double travel) const;
+  View view(const ContactEntry& entry, const SurfacePoint& at, const Vector3& u,
+            const std::array<double, 2>& times, double travel) const;
   /// Turns a point to the obstacle and gives its row; nothing, and a gap out of reach, where the obstacle is
   /// out of its way or the node can hardly move towards it: what there was stays then.
   std::optional<RowEntry> take(std::size_t i, const View& view, std::span<const double> u,

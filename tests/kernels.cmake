@@ -8,7 +8,7 @@ target_compile_options(kacanov_dense_algebra PRIVATE ${KACANOV_MEASURE_OPTIONS})
 kacanov_test(kernels
   SOURCES kernels/cells_test.cpp kernels/law_test.cpp kernels/reference_test.cpp kernels/operator_test.cpp
     kernels/operator_input_test.cpp kernels/point_moduli_test.cpp kernels/locking_test.cpp
-    kernels/element_maps_test.cpp kernels/mixed_test.cpp kernels/plane_test.cpp kernels/pressure_test.cpp kernels/pressure_patches_test.cpp
+    kernels/element_maps_test.cpp kernels/jacobian_sign_test.cpp kernels/mixed_test.cpp kernels/plane_test.cpp kernels/pressure_test.cpp kernels/pressure_patches_test.cpp
     kernels/row_points_test.cpp kernels/straight_test.cpp kernels/team_test.cpp kernels/threads_test.cpp
     kernels/uniaxial_test.cpp ../perf/meshes.cpp
   LIBRARIES kacanov_kernels_internal kacanov_dense_algebra)

@@ -2,12 +2,12 @@
 // Tests arrays that come from outside before a kernel trusts them.
 #include "operator/mesh_check.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <span>
 
 #include "operator/element_maps.hpp"
+#include "operator/jacobian_sign.hpp"
 
 namespace kacanov {
 namespace {
@@ -16,12 +16,14 @@ std::string element_fault(const MeshView& mesh) {
   constexpr double flat = 1e-14;  // the size of the determinant's rounding
   std::string fault;
   visit_element_maps(mesh, [&](std::size_t first, std::span<const ElementMap> maps) {
-    const auto bad =
-        std::find_if(maps.begin(), maps.end(), [](const auto& map) { return !(map.thinness > flat); });
-    if (bad == maps.end() || !fault.empty()) return;
-    fault = "element " + std::to_string(first + static_cast<std::size_t>(bad - maps.begin())) +
-            (bad->thinness < -flat ? " is inverted (nodes in the wrong order?)"
-                                   : " is degenerate: it has no volume");
+    for (std::size_t k = 0; k < maps.size() && fault.empty(); ++k) {
+      const std::string name = "element " + std::to_string(first + k);
+      if (!(maps[k].thinness > flat))
+        fault = name + (maps[k].thinness < -flat ? " is inverted (nodes in the wrong order?)"
+                                                 : " is degenerate: it has no volume");
+      else if (find_negative_jacobian(mesh, first + k))
+        fault = name + " is folded: its Jacobian is not positive everywhere (nodes in the wrong order?)";
+    }
   });
   return fault;
 }

@@ -11,7 +11,8 @@ namespace kacanov {
 
 /// What is wrong with the mesh, in words that name the first node or element at fault (from 0); empty if
 /// nothing: no node, no element, a length that is no multiple, a coordinate that is not finite, an index out
-/// of range, or an element whose map is not orientation-preserving at every quadrature point.
+/// of range, or an element whose map is not orientation-preserving at every quadrature point, or folded
+/// anywhere.
 std::string mesh_fault(const MeshView& mesh);
 
 /// The same without the elements' shapes: what has to be right before anybody reads the arrays.

@@ -10,6 +10,7 @@
 
 #include <kacanov/error.hpp>
 #include "operator/element_maps.hpp"
+#include "operator/jacobian_sign.hpp"
 
 namespace kacanov {
 namespace {
@@ -192,18 +193,35 @@ std::string element_name(const Mesh& mesh, std::size_t e) {
   return "element " + std::to_string(mesh.element_tag(e));
 }
 
+std::string size_text(const Mesh& mesh, const ElementShape& shape) {
+  return std::string(" (") + (mesh.dim() == 2 ? "area " : "volume ") + number(shape.volume) +
+         ", longest edge " + number(shape.longest_edge) + ")";
+}
+
+/// Some places are known to be negative; of others it is only known that a quadrature point is not positive.
+[[noreturn]] void refuse_folded(const Mesh& mesh, std::size_t e, const ElementShape& shape) {
+  std::string message = element_name(mesh, e) + " is folded: its Jacobian is not positive everywhere";
+  if (const auto negative = find_negative_jacobian(mesh.view(), e)) {
+    const std::size_t node =
+        static_cast<std::size_t>(nodes_per_element(mesh.type)) * e + negative->nearest_corner;
+    message += ", its determinant falls to " + number(negative->det) + " next to node " +
+               std::to_string(mesh.node_tag(static_cast<std::size_t>(mesh.elements[node])));
+  }
+  message += size_text(mesh, shape);
+  if (cell(mesh.type).order > 1)
+    message += "; are its midside nodes in the right order, and near the middle of their edges?";
+  throw InputError(message);
+}
+
 constexpr double smallest_volume = 1e-14;  // of the longest edge to the power of the dimension
 
 [[noreturn]] void refuse_element(const Mesh& mesh, std::size_t e, const ElementShape& shape) {
-  const std::string measure = mesh.dim() == 2 ? "area " : "volume ";
-  const std::string size =
-      " (" + measure + number(shape.volume) + ", longest edge " + number(shape.longest_edge) + ")";
+  const std::string size = size_text(mesh, shape);
   if (!std::isfinite(shape.scale) || !std::isfinite(shape.volume))
     throw InputError(element_name(mesh, e) + " is too large to be computed with" + size);
   if (std::abs(shape.volume) <= smallest_volume * shape.scale)
     throw InputError(element_name(mesh, e) + " is degenerate" + size);
-  if (shape.volume > 0)
-    throw InputError(element_name(mesh, e) + " is folded: its Jacobian is not positive everywhere" + size);
+  if (shape.volume > 0) refuse_folded(mesh, e, shape);
   std::size_t inverted = 0;
   visit_element_maps(mesh.view(), [&](std::size_t, std::span<const ElementMap> maps) {
     inverted += static_cast<std::size_t>(
@@ -243,8 +261,10 @@ void check_shapes(const Mesh& mesh) {
     for (std::size_t k = 0; k < maps.size(); ++k) {
       const std::size_t e = first + k;
       if (is_whole(maps[k].volume, smallest_volume_of(mesh, maps[k]),
-                   to_the_dimension(mesh, diagonal(mesh, e))))
+                   to_the_dimension(mesh, diagonal(mesh, e)))) {
+        if (find_negative_jacobian(mesh.view(), e)) refuse_folded(mesh, e, shape_of(mesh, e, maps[k]));
         continue;
+      }
       const ElementShape shape = shape_of(mesh, e, maps[k]);
       if (!is_whole(shape.volume, shape.smallest, shape.scale)) refuse_element(mesh, e, shape);
     }

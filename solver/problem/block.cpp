@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The obstacle `box`, along the axes or turned (theory: traces).
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include <kacanov/obstacle.hpp>
+#include "problem/equal_faces.hpp"
 #include "problem/model_checks.hpp"
 #include "problem/tracked.hpp"
 #include "problem/vector3.hpp"
@@ -55,6 +58,8 @@ Facing Block::project(const SurfacePoint& from) const {
     if (frame) axis = (*frame)[f / 2];
     faces[f] = box_face(from.x, f % 2 == 0 ? lower : upper, Tracked(f % 2 == 0 ? 1.0 : -1.0) * unit(axis));
   }
+  // Of points so close by, the way to an edge has no digits to tell a direction with.
+  const double equal = 1e-9 * norm(upper - lower);
   TrackedVector offset{};
   double lengths = 0.0;
   Tracked nearest = -HUGE_VAL;
@@ -65,20 +70,33 @@ Facing Block::project(const SurfacePoint& from) const {
     offset = offset + face.above * face.inwards;
     lengths += face.lengths;
   }
-  if (nearest.value() > 0.0) {
+  if (nearest.value() > equal) {
     const Tracked distance = norm(offset);
     return facing(Tracked(1.0) / distance * offset, distance, lengths);
   }
-  // Of faces that are as near, as on an edge, the one that the body looks at.
-  const double equal = 1e-9 * norm(upper - lower);
-  const BoxFace* faced = nullptr;
+  std::vector<BoxFace> candidates;
+  std::vector<Vector3> directions;
   for (std::size_t f = 0; f < count; ++f) {
     if (faces[f].above.value() < nearest.value() - equal) continue;
-    if (faced == nullptr ||
-        dot(values(faces[f].inwards), from.outer) > dot(values(faced->inwards), from.outer))
-      faced = &faces[f];
+    candidates.push_back(faces[f]);
+    directions.push_back(values(faces[f].inwards));
   }
-  return facing(faced->inwards, nearest, faced->lengths);
+  const FaceChoice choice = choose_face(directions, from.outer);
+  const BoxFace& first = candidates[choice.chosen.front()];
+  Facing found = facing(first.inwards, first.above, first.lengths);
+  if (choice.chosen.size() > 1) {
+    TrackedVector sum{};
+    double longest = 0.0;
+    for (const std::size_t k : choice.chosen) {
+      sum = sum + candidates[k].inwards;
+      longest = std::max(longest, candidates[k].lengths);
+    }
+    // Along the mean of orthogonal normals the way to all of their faces is equally long.
+    const TrackedVector mean = unit(sum);
+    found = facing(mean, first.above / dot(mean, first.inwards), longest);
+  }
+  found.chosen = choice.decides;
+  return found;
 }
 
 }  // namespace kacanov

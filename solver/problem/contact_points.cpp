@@ -158,6 +158,20 @@ void warn_of_corners(Problem& problem, const Faces& faces, std::span<const std::
   }
 }
 
+/// Nodes at which the rule for equally near faces decides (theory: equal-distance).
+void warn_of_choices(Problem& problem, std::span<const std::int32_t> nodes, const std::string& path) {
+  if (nodes.empty()) return;
+  const Mesh& mesh = problem.mesh;
+  const std::string count = std::to_string(nodes.size());
+  problem.warnings.push_back(
+      path + ": " + count + (nodes.size() == 1 ? " node is" : " nodes are") +
+      " equally near to several faces of the obstacle, the first node " +
+      std::to_string(mesh.node_tag(static_cast<std::size_t>(nodes[0]))) + " at " +
+      to_text(position(mesh, nodes[0]), mesh.dim()) +
+      ": contact there is along the normal that opposes the body's most, or the mean of those that do so "
+      "equally; give the obstacle a rounded edge, or move it, if another face is meant");
+}
+
 std::vector<ContactPoint> points_of_entry(Problem& problem, const ContactEntry& entry, std::size_t index,
                                           std::span<const std::int32_t> facets, const std::string& path) {
   const Mesh& mesh = problem.mesh;
@@ -177,6 +191,7 @@ std::vector<ContactPoint> points_of_entry(Problem& problem, const ContactEntry& 
     }
   }
   std::vector<ContactPoint> points;
+  std::vector<std::int32_t> chosen;
   std::size_t candidates = 0;
   double lengths = 0.0;
   const double size = extent(mesh).size;
@@ -205,12 +220,14 @@ std::vector<ContactPoint> points_of_entry(Problem& problem, const ContactEntry& 
     if (!narrow_row(point, freedom_of(problem, point.node), friction)) continue;
     point.gap -= closed_by_prescription(point, problem);
     points.push_back(point);
+    if (facing->chosen) chosen.push_back(nodes[k]);
   }
   if (points.empty()) {
     throw InputError(path + ": none of the " + std::to_string(candidates) +
                      " nodes can touch the obstacle: each is held by a displacement or misses it");
   }
   warn_of_reading(problem, lengths, faces.path());
+  warn_of_choices(problem, chosen, faces.path());
   return points;
 }
 

@@ -2,11 +2,14 @@
 // Obstacles in closed form: what is wrong with one, and how it is seen from a point (theory: traces).
 #include <kacanov/obstacle.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <kacanov/height_field.hpp>
 #include <kacanov/surface.hpp>
+#include "problem/equal_faces.hpp"
 #include "problem/model_checks.hpp"
 #include "problem/tracked.hpp"
 #include "problem/vector3.hpp"
@@ -28,9 +31,41 @@ Facing round(const TrackedVector& to_middle, double radius, bool inside) {
   return facing(side / distance * to_middle, side * (distance - radius), distance.value() + radius);
 }
 
-/// The closest point lies `offset` away; `distance` is what of that is outside.
-Facing towards(const Vector3& offset, double distance, double unknown) {
-  return {(1.0 / norm(offset)) * offset, distance, unknown};
+/// Of the extent of a surface. A point so close to it has no digits to tell a direction with.
+constexpr double on_surface = 1e-9;
+/// Faces whose distances differ by less are equally near: their corners are known no better in single
+/// precision.
+constexpr double equally_near = 1e-7;
+
+/// How one triangle of a surface is seen from x: by its closest point or, of a point on the surface, by its
+/// plane.
+std::optional<Facing> seen_triangle(const Surface::Closest& closest, const Vector3& x, bool touches) {
+  const Vector3 offset = closest.point - x;
+  if (touches) return Facing{-1.0 * closest.face, -dot(offset, closest.face)};
+  if (closest.normal == Vector3{}) return std::nullopt;
+  const double distance = norm(offset), along = -dot(offset, closest.normal);
+  // Beyond the border of a surface that is open there is nothing to touch.
+  if (closest.border && norm(offset + along * closest.normal) > 1e-6 * distance) return std::nullopt;
+  const double side = along >= 0.0 ? 1.0 : -1.0;
+  return Facing{side / distance * offset, side * distance};
+}
+
+/// One way of several equally long ones; along a mean of directions it is the way to the nearest of their
+/// faces' planes.
+Facing one_of(const std::vector<Facing>& equal, const FaceChoice& choice) {
+  Facing found = equal[choice.chosen.front()];
+  if (choice.chosen.size() > 1) {
+    Vector3 sum{};
+    for (const std::size_t k : choice.chosen) sum = sum + equal[k].normal;
+    found.normal = (1.0 / norm(sum)) * sum;
+    double steepest = 0.0;
+    for (const std::size_t k : choice.chosen)
+      steepest = std::max(steepest, dot(found.normal, equal[k].normal));
+    found.gap /= steepest;
+    found.unknown /= steepest;
+  }
+  found.chosen = choice.decides;
+  return found;
 }
 
 void check_sides(const std::string& path, const std::optional<Vector3>& direction, bool inside) {
@@ -159,16 +194,22 @@ void SurfaceObstacle::check(const std::string&) const {}
 
 Facing SurfaceObstacle::project(const SurfacePoint& from) const {
   const Surface::Closest closest = surface->closest(from.x);
-  const Vector3 offset = closest.point - from.x;
-  const double distance = norm(offset), along = -dot(offset, closest.normal);
-  // The closest point is computed from corners that may be as far off as the surface is large.
-  const double unknown = some_roundings * (norm(from.x) + norm(closest.point) + surface->extent());
   if (closest.normal == Vector3{}) return Facing::from_everywhere();
-  // So close by, the offset has no digits to tell a direction with.
-  if (distance <= 1e-9 * surface->extent()) return {-1.0 * closest.normal, along, unknown};
-  // Beyond the border of a surface that is open there is nothing to touch.
-  if (closest.border && norm(offset + along * closest.normal) > 1e-6 * distance) return Facing::nothing();
-  return along >= 0.0 ? towards(offset, distance, unknown) : towards(-1.0 * offset, -distance, unknown);
+  const double extent = surface->extent(), distance = norm(closest.point - from.x);
+  const bool touches = distance <= on_surface * extent;
+  const double reach = touches ? on_surface * extent : distance + equally_near * extent;
+  std::vector<Facing> equal;
+  std::vector<Vector3> directions;
+  for (const Surface::Closest& one : surface->within(from.x, reach)) {
+    std::optional<Facing> facing = seen_triangle(one, from.x, touches);
+    if (!facing) continue;
+    // The closest point is computed from corners that may be as far off as the surface is large.
+    facing->unknown = some_roundings * (norm(from.x) + norm(one.point) + extent);
+    equal.push_back(*facing);
+    directions.push_back(facing->normal);
+  }
+  if (equal.empty()) return Facing::nothing();
+  return one_of(equal, choose_face(directions, from.outer));
 }
 
 void HeightMap::check(const std::string& path) const {

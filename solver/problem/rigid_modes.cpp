@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <kacanov/error.hpp>
+#include "mesh/pieces.hpp"
 #include "mesh/plain_stream.hpp"
 #include "problem/conditions.hpp"
 #include "problem/dense.hpp"
@@ -47,37 +47,13 @@ Vector6 row(const Piece& piece, const Vector3& x, const Vector3& direction) {
   return values;
 }
 
-std::int32_t find_root(std::vector<std::int32_t>& parent, std::int32_t node) {
-  while (parent[node] != node) {
-    std::int32_t& up = parent[node];
-    up = parent[up];
-    node = up;
-  }
-  return node;
-}
-
 /// Pieces, and the piece of every node.
 std::vector<Piece> find_pieces(const Mesh& mesh, std::vector<std::int32_t>& piece_of_node) {
-  std::vector<std::int32_t> parent(mesh.node_count());
-  std::iota(parent.begin(), parent.end(), 0);
+  const MeshPieces found = connected_pieces(mesh);
+  piece_of_node = found.of_node;
+  std::vector<Piece> pieces(static_cast<std::size_t>(found.count));
+  const auto piece_of = [&](std::int32_t node) -> Piece& { return pieces[piece_of_node[node]]; };
   const std::size_t n = nodes_per_element(mesh.type);
-  for (std::size_t e = 0; e < mesh.element_count(); ++e) {
-    const std::int32_t first = find_root(parent, mesh.elements[e * n]);
-    for (std::size_t k = 1; k < n; ++k) {
-      parent[find_root(parent, mesh.elements[e * n + k])] = first;
-    }
-  }
-  std::vector<Piece> pieces;
-  piece_of_node.assign(mesh.node_count(), -1);
-  const auto piece_of = [&](std::int32_t node) -> Piece& {
-    const std::size_t root = find_root(parent, node);
-    if (piece_of_node[root] < 0) {
-      piece_of_node[root] = static_cast<std::int32_t>(pieces.size());
-      pieces.emplace_back();
-    }
-    piece_of_node[node] = piece_of_node[root];
-    return pieces[piece_of_node[root]];
-  };
   for (std::size_t e = 0; e < mesh.element_count(); ++e) {
     Piece& piece = piece_of(mesh.elements[e * n]);
     if (piece.elements++ == 0) piece.first_element = e;

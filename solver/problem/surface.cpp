@@ -181,7 +181,7 @@ std::int32_t Surface::build(std::int32_t first, std::int32_t last) {
   return place;
 }
 
-void Surface::look_at(std::int32_t f, const Vector3& x, Candidate& best) const {
+Surface::Candidate Surface::closest_on(std::int32_t f, const Vector3& x) const {
   // Which part of the triangle is nearest, by the regions of Ericson, Real-Time Collision Detection, 5.1.5.
   const Face& face = faces_[f];
   const Vector3 &a = points_[face.corner[0]], &b = points_[face.corner[1]], &c = points_[face.corner[2]];
@@ -210,38 +210,42 @@ void Surface::look_at(std::int32_t f, const Vector3& x, Candidate& best) const {
   // Rounding takes the point of a sliver out of it, and nearer to x than the tree's boxes say it can be.
   for (std::size_t k = 0; k < 3; ++k)
     point[k] = std::clamp(point[k], std::min({a[k], b[k], c[k]}), std::max({a[k], b[k], c[k]}));
-  const double squared = dot(x - point, x - point);
+  return {dot(x - point, x - point), f, feature, point};
+}
+
+void Surface::look_at(std::int32_t f, const Vector3& x, Candidate& best) const {
+  const Candidate here = closest_on(f, x);
   // Of equals the first in the order of the faces, whatever way the tree was searched.
-  if (best.face >= 0 && (squared > best.squared || (squared == best.squared && f > best.face))) return;
-  best = {squared, f, feature, point};
+  if (best.face >= 0 && (here.squared > best.squared || (here.squared == best.squared && f > best.face)))
+    return;
+  best = here;
 }
 
 Surface::Closest Surface::describe(const Candidate& found) const {
   const Face& face = faces_[found.face];
-  if (found.feature == 0) return {found.point, face.normal, false};
+  if (found.feature == 0) return {found.point, face.normal, false, face.normal};
   if (found.feature <= 3) {
     const std::size_t k = found.feature - 1;
-    return {found.point, face.edge[k], face.border[k]};
+    return {found.point, face.edge[k], face.border[k], face.normal};
   }
   const std::int32_t corner = face.corner[found.feature - 4];
-  return {found.point, corner_normals_[corner], border_points_[corner] != 0};
+  return {found.point, corner_normals_[corner], border_points_[corner] != 0, face.normal};
 }
 
-Surface::Closest Surface::closest(const Vector3& x) const {
+template <class Squared, class Visit>
+void Surface::search(const Vector3& x, const Squared& squared, const Visit& visit) const {
   struct Waiting {
     std::int32_t node;
     double squared;
   };
-  Candidate best;
-  best.squared = HUGE_VAL;
   std::vector<Waiting> stack{{0, 0.0}};
   while (!stack.empty()) {
     const Waiting next = stack.back();
     stack.pop_back();
-    if (next.squared > best.squared) continue;
+    if (next.squared > squared()) continue;
     const TreeNode& node = tree_[next.node];
     if (node.second_child < 0) {
-      for (std::int32_t f = node.first; f < node.last; ++f) look_at(f, x, best);
+      for (std::int32_t f = node.first; f < node.last; ++f) visit(f);
       continue;
     }
     const std::int32_t first = next.node + 1, second = node.second_child;
@@ -250,7 +254,30 @@ Surface::Closest Surface::closest(const Vector3& x) const {
     stack.push_back(a.squared < b.squared ? b : a);
     stack.push_back(a.squared < b.squared ? a : b);
   }
+}
+
+Surface::Closest Surface::closest(const Vector3& x) const {
+  Candidate best;
+  best.squared = HUGE_VAL;
+  search(
+      x, [&] { return best.squared; }, [&](std::int32_t f) { look_at(f, x, best); });
   return describe(best);
+}
+
+std::vector<Surface::Closest> Surface::within(const Vector3& x, double distance) const {
+  const double squared = distance * distance;
+  std::vector<Candidate> found;
+  search(
+      x, [&] { return squared; },
+      [&](std::int32_t f) {
+        const Candidate here = closest_on(f, x);
+        if (here.squared <= squared) found.push_back(here);
+      });
+  std::sort(found.begin(), found.end(),
+            [](const Candidate& a, const Candidate& b) { return a.face < b.face; });
+  std::vector<Closest> described;
+  for (const Candidate& one : found) described.push_back(describe(one));
+  return described;
 }
 
 Surface::Closest Surface::closest_of_all(const Vector3& x) const {

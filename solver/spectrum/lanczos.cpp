@@ -49,11 +49,13 @@ LanczosResult dense(const Product& product, std::span<const std::int64_t> index,
   }
   MPI_Allreduce(MPI_IN_PLACE, k.data(), static_cast<int>(k.size()), MPI_DOUBLE, MPI_SUM, comm);
   const Eigen::MatrixXd symmetric = 0.5 * (k + k.transpose());
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(symmetric, Eigen::EigenvaluesOnly);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(symmetric);
   const double asymmetry = 0.5 * (k - k.transpose()).norm();
   for (std::int64_t i = 0; i < std::min<std::int64_t>(options.wanted, rows); ++i) {
     result.values.push_back(solver.eigenvalues()(rows - 1 - i));
     result.bounds.push_back(asymmetry);
+    const Eigen::VectorXd vector = solver.eigenvectors().col(rows - 1 - i).segment(offset, mine);
+    result.vectors.emplace_back(vector.begin(), vector.end());
   }
   result.converged = true;
   return result;
@@ -112,6 +114,17 @@ LanczosResult largest_eigenvalues(const Product& product, std::span<const std::i
   for (std::size_t i = 0; i < static_cast<std::size_t>(wanted); ++i) {
     result.values.push_back(found[i].first);
     result.bounds.push_back(found[i].second);
+  }
+  if (info != 0) return result;
+  std::vector<a_int> select(static_cast<std::size_t>(basis));
+  std::vector<double> values(static_cast<std::size_t>(wanted));
+  pdseupd_c(fortran_comm, 1, "A", select.data(), values.data(), v.data(), n, 0.0, "I", n, "LA", wanted,
+            options.tolerance, residual.data(), basis, v.data(), n, parameters.data(), pointers.data(),
+            work.data(), values_work.data(), space, &info);
+  if (info != 0) throw InternalError("ARPACK pdseupd failed with info " + std::to_string(info));
+  for (std::size_t i = values.size(); i-- > 0;) {  // ascending
+    const auto first = v.begin() + static_cast<std::ptrdiff_t>(i * length);
+    result.vectors.emplace_back(first, first + static_cast<std::ptrdiff_t>(own));
   }
   return result;
 }

@@ -21,7 +21,9 @@ struct LanczosOptions {
 
 struct LanczosResult {
   std::vector<double> values;  ///< descending, `wanted` at the most
-  std::vector<double> bounds;  ///< absolute Ritz residual bounds
+  std::vector<double> bounds;  ///< absolute Ritz residual bounds: of the product as it is computed
+  /// Own entries of the unit vector of each value; none where it has not converged.
+  std::vector<std::vector<double>> vectors;
   int products = 0;
   bool converged = false;
 };

@@ -9,33 +9,82 @@
 #include <kacanov/error.hpp>
 
 namespace kacanov {
+namespace {
+
+/// Rounding error of a product, relative to the eigenvalue.
+constexpr double rounded_product = 1e-12;
+
+/// Above the largest eigenvalue, which Ritz values come up to from below.
+double bound_above(const LanczosResult& found) { return 1.2 * (found.values[0] + found.bounds[0]); }
+
+}  // namespace
 
 Spectrum::Spectrum(const Part& part, DistributedOperator& op, Preconditioner& amg, std::span<const double> g,
                    const SpectrumOptions& options)
     : part_(&part), op_(&op), amg_(&amg), g_(g), options_(options) {}
 
-CgResult Spectrum::solve(const Space& space, std::span<double> x, CgWork& work, const TraceRows* penalised,
-                         double r0) {
-  Vector rows(penalised != nullptr ? penalised->owned() : 0), image(penalised != nullptr ? x.size() : 0);
-  const auto apply = [&](std::span<const double> p, std::span<double> q) {
-    double share = op_->apply(p, q);
-    if (penalised == nullptr) return share;
-    penalised->apply(p, rows);
-    for (double& v : rows) {
-      share += r0 * v * v;
-      v *= r0;
-    }
-    penalised->transpose(rows, image);
-    for (std::size_t i = 0; i < image.size(); ++i) q[i] += image[i];
-    return share;
-  };
+double Spectrum::apply(const System& system, std::span<const double> p, std::span<double> q) {
+  double share = op_->apply(p, q);
+  if (system.penalised == nullptr) return share;
+  Vector rows(system.penalised->owned()), image(q.size());
+  system.penalised->apply(p, rows);
+  for (double& v : rows) {
+    share += system.r0 * v * v;
+    v *= system.r0;
+  }
+  system.penalised->transpose(rows, image);
+  for (std::size_t i = 0; i < image.size(); ++i) q[i] += image[i];
+  return share;
+}
+
+CgResult Spectrum::solve_to(const System& system, std::span<double> x, CgWork& work, double relative) {
+  const auto product = [&](std::span<const double> p, std::span<double> q) { return apply(system, p, q); };
   const auto precondition = [&](std::span<const double> r, std::span<double> z) { amg_->apply(r, z); };
-  // Products good to a fiftieth of what is asked of the eigenvalue.
-  const CgOptions options{0.0, std::max(1e-13, 0.02 * options_.tolerance), options_.max_cg};
-  const CgResult result = conjugate_gradients(space, apply, precondition, x, work, options);
+  const CgOptions options{0.0, relative, options_.max_cg};
+  const CgResult result = conjugate_gradients(system.space, product, precondition, x, work, options);
   cost_.cg_iterations += result.iterations;
   cost_.converged = cost_.converged && result.converged;
   return result;
+}
+
+double Spectrum::solve(const System& system, std::span<double> x, CgWork& work, Accuracy accuracy) {
+  // A product is fifty times as accurate as the eigenvalue is to be.
+  const double relative = std::max(1e-13, 0.02 * options_.tolerance);
+  if (accuracy == Accuracy::product) {
+    solve_to(system, x, work, relative);
+    return 0.0;
+  }
+  const Vector right = work.residual;
+  solve_to(system, x, work, std::max(1e-13, 0.1 * relative));
+  // The change by further iterations measures the error before them, with the rounding of the residual.
+  apply(system, x, work.image);
+  for (std::size_t i = 0; i < right.size(); ++i) work.residual[i] = right[i] - work.image[i];
+  return std::sqrt(std::max(solve_to(system, x, work, 0.01).energy, 0.0));
+}
+
+LanczosResult Spectrum::largest_of(const Product& product, const TraceRows& rows,
+                                   const LanczosOptions& options) {
+  LanczosResult found = largest_eigenvalues(product, rows.index(), mpi_of(part_->node_map), options);
+  cost_.products += found.products;
+  cost_.converged = cost_.converged && found.converged;
+  return found;
+}
+
+Eigenvalue Spectrum::bounded(const LanczosResult& found, std::size_t i, const BoundedProduct& product,
+                             double gain) {
+  if (i >= found.vectors.size()) return {found.values[i], found.bounds[i]};  // not converged
+  const std::vector<double>& v = found.vectors[i];
+  std::vector<double> y(v.size());
+  const double error = product(v, y);
+  ++cost_.products;
+  const auto dot = [&](std::span<const double> a, std::span<const double> b) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
+    return part_->node_map.sum_all(sum);
+  };
+  const double square = dot(v, v), value = dot(v, y) / square;
+  for (std::size_t k = 0; k < y.size(); ++k) y[k] -= value * v[k];
+  return {value, std::sqrt(dot(y, y) / square) + gain * error / std::sqrt(square) + rounded_product * value};
 }
 
 Eigenvalue Spectrum::largest(const TraceRows& rows, const TraceRows& held, double r0, bool loose) {
@@ -51,32 +100,38 @@ Eigenvalue Spectrum::largest(const TraceRows& rows, const TraceRows& held, doubl
   CgWork work;
   work.resize(part_->unknowns());
   Vector u(part_->unknowns());
-  const Product product = [&](std::span<const double> x, std::span<double> y) {
+  const System system{space, loose ? &rows : nullptr, r0};
+  const auto product = [&](std::span<const double> x, std::span<double> y, Accuracy accuracy) {
     rows.transpose(x, work.residual);
     std::fill(u.begin(), u.end(), 0.0);
-    solve(space, u, work, loose ? &rows : nullptr, r0);
+    const double error = solve(system, u, work, accuracy);
     rows.apply(u, y);
+    return error;
   };
   LanczosOptions options;
   options.tolerance = options_.tolerance;
   // The largest compliance is well separated: four products give it to 1e-6.
   if (options_.tolerance >= 1e-3) options.basis = 3;
-  if (!loose) {
-    const auto found = largest_eigenvalues(product, rows.index(), mpi_of(part_->node_map), options);
-    cost_.products += found.products;
-    cost_.converged = cost_.converged && found.converged;
-    if (found.values.empty()) return {};
-    return {found.values[0], found.bounds[0]};
-  }
-  options.wanted = static_cast<int>(std::min<std::int64_t>(1 + part_->loose_modes, rows.total() - 1));
+  if (loose)
+    options.wanted = static_cast<int>(std::min<std::int64_t>(1 + part_->loose_modes, rows.total() - 1));
   if (options.wanted < 1) return {};
-  const auto found = largest_eigenvalues(product, rows.index(), mpi_of(part_->node_map), options);
-  cost_.products += found.products;
-  cost_.converged = cost_.converged && found.converged;
+  const LanczosResult found =
+      largest_of([&](std::span<const double> x, std::span<double> y) { product(x, y, Accuracy::product); },
+                 rows, options);
+  if (found.values.empty()) return {};
+  // A product is C times a displacement, and no displacement of the energy norm 1 has a longer trace than
+  // this.
+  const double gain = std::sqrt(bound_above(found));
   for (std::size_t i = 0; i < found.values.size(); ++i) {
-    const double theta = r0 * found.values[i];
-    if (theta > 0.9999) continue;  // a rigid mode: λ is infinite
-    return {found.values[i] / (1.0 - theta), found.bounds[i] / ((1.0 - theta) * (1.0 - theta))};
+    if (loose && r0 * found.values[i] > 0.9999) continue;  // a rigid mode: λ is infinite
+    const Eigenvalue pair = bounded(
+        found, i,
+        [&](std::span<const double> x, std::span<double> y) { return product(x, y, Accuracy::bounded); },
+        gain);
+    if (!loose) return pair;
+    // λ = θ/(1 − r₀θ) grows with θ, faster and faster.
+    const double value = pair.value / (1.0 - r0 * pair.value), left = 1.0 - r0 * (pair.value + pair.bound);
+    return {value, left > 0.0 ? (pair.value + pair.bound) / left - value : HUGE_VAL};
   }
   return {};
 }
@@ -89,25 +144,39 @@ Eigenvalue Spectrum::smallest(const TraceRows& rows) {
   CgWork work;
   work.resize(part_->unknowns());
   Vector u(part_->unknowns()), delta(part_->unknowns()), image(part_->unknowns());
+  const System system{space};
   // K⁻¹ x: the displacement with D^½ C u = x of least energy, and the force that holds it there.
-  const Product product = [&](std::span<const double> x, std::span<double> y) {
+  const auto product = [&](std::span<const double> x, std::span<double> y, Accuracy accuracy) {
     rows.lift(x, u);
     op_->apply(u, image);
     for (std::size_t i = 0; i < image.size(); ++i) work.residual[i] = -image[i];
     std::fill(delta.begin(), delta.end(), 0.0);
-    solve(space, delta, work, nullptr, 0.0);
+    const double error = solve(system, delta, work, accuracy);
     op_->apply(delta, work.image);
     for (std::size_t i = 0; i < image.size(); ++i) image[i] += work.image[i];
     rows.lift_transpose(image, y);
+    return error;
   };
   LanczosOptions options;
   options.tolerance = options_.tolerance;
-  const auto found = largest_eigenvalues(product, rows.index(), mpi_of(part_->node_map), options);
-  cost_.products += found.products;
-  cost_.converged = cost_.converged && found.converged;
+  const LanczosResult found =
+      largest_of([&](std::span<const double> x, std::span<double> y) { product(x, y, Accuracy::product); },
+                 rows, options);
   if (found.values.empty() || !(found.values[0] > 0.0)) return {};
-  const double largest = found.values[0];
-  return {1.0 / largest, found.bounds[0] / (largest * largest)};
+  // The traces put onto the contact nodes alone have the most energy that a trace of the length 1 can have.
+  options.tolerance = 0.1;
+  const Product unrelaxed = [&](std::span<const double> x, std::span<double> y) {
+    rows.lift(x, u);
+    op_->apply(u, image);
+    rows.lift_transpose(image, y);
+  };
+  const double gain =
+      std::sqrt(bound_above(largest_eigenvalues(unrelaxed, rows.index(), mpi_of(part_->node_map), options)));
+  const Eigenvalue inverse = bounded(
+      found, 0,
+      [&](std::span<const double> x, std::span<double> y) { return product(x, y, Accuracy::bounded); }, gain);
+  const double value = 1.0 / inverse.value, left = inverse.value - inverse.bound;
+  return {value, left > 0.0 ? 1.0 / left - value : HUGE_VAL};
 }
 
 double rough_lambda_min(const Part& part, std::span<const float> diagonal, bool friction) {

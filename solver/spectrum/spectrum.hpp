@@ -27,8 +27,9 @@ struct SpectrumCost {
   bool converged = true;  ///< every solve and every Lanczos estimate
 };
 
+/// An eigenvalue lies within `bound` of the value: the Ritz residual and the error of the solve behind it.
 struct Eigenvalue {
-  double value = 0.0, bound = 0.0;  ///< bound: of the Ritz residual, absolute
+  double value = 0.0, bound = 0.0;
 };
 
 /// Extreme eigenvalues of the compliance K (theory: compliance, lanczos, lanczos-loose), units of length over
@@ -50,8 +51,26 @@ class Spectrum {
   const SpectrumCost& cost() const noexcept { return cost_; }
 
  private:
-  CgResult solve(const Space& space, std::span<double> x, CgWork& work, const TraceRows* penalised,
-                 double r0);
+  /// B, or B + r₀ CᵀDC where there are rows to penalise, in a space.
+  struct System {
+    const Space& space;
+    const TraceRows* penalised = nullptr;
+    double r0 = 0.0;
+  };
+  /// How well a product is solved: for Lanczos, or better and with a bound on the error.
+  enum class Accuracy { product, bounded };
+  double apply(const System& system, std::span<const double> p, std::span<double> q);
+  /// Adds to x the solution for the right-hand side work.residual. Returns a bound on the energy norm of the
+  /// error of x, 0 without `bounded`.
+  double solve(const System& system, std::span<double> x, CgWork& work, Accuracy accuracy);
+  CgResult solve_to(const System& system, std::span<double> x, CgWork& work, double relative);
+  /// Lanczos, its cost added.
+  LanczosResult largest_of(const Product& product, const TraceRows& rows, const LanczosOptions& options);
+  /// A product and the energy norm of the error of its solve.
+  using BoundedProduct = std::function<double(std::span<const double> x, std::span<double> y)>;
+  /// The Rayleigh quotient of pair `i` and its bound (theory: lanczos-bounds); an error of the energy norm 1
+  /// is one of at most `gain` in the product.
+  Eigenvalue bounded(const LanczosResult& found, std::size_t i, const BoundedProduct& product, double gain);
 
   const Part* part_;
   DistributedOperator* op_;

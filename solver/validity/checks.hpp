@@ -20,6 +20,10 @@ void looking_away(const Problem& problem, const Model& model, Warnings& warnings
 void inner_facets(const Problem& problem, const Model& model, Warnings& warnings);
 /// Elements thinner than a millionth of their length.
 void thin_elements(const Problem& problem, Warnings& warnings);
+/// Boundary nodes that lie at one place and are not one node: pieces that are not joined, and slits.
+void unmerged_nodes(const Problem& problem, Warnings& warnings);
+/// Boxes that cut through facets or elements, of which they take whole ones only.
+void cut_selections(const Problem& problem, const Model& model, Warnings& warnings);
 /// Elements whose B-bar form was declined where they lock.
 void locking(const Problem& problem, const Model& model, Warnings& warnings);
 
@@ -38,7 +42,7 @@ void coarse_contact(const Result& result, const Model& model, Warnings& warnings
 /// Tresca's friction where nothing presses.
 void open_friction(const Result& result, const Model& model, Warnings& warnings);
 
-/// Three significant digits, for sentences.
-std::string rounded(double value);
+/// A few significant digits, for sentences.
+std::string rounded(double value, int digits = 3);
 
 }  // namespace kacanov::validity

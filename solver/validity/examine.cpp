@@ -13,6 +13,8 @@ std::vector<std::string> examine(const Problem& problem, const Model& model) {
   validity::mixed_units(problem, model, warnings);
   validity::looking_away(problem, model, warnings);
   validity::inner_facets(problem, model, warnings);
+  validity::cut_selections(problem, model, warnings);
+  validity::unmerged_nodes(problem, warnings);
   validity::thin_elements(problem, warnings);
   validity::locking(problem, model, warnings);
   return warnings;
@@ -29,9 +31,9 @@ std::vector<std::string> examine(const Result& result, const Model& model) {
   return warnings;
 }
 
-std::string validity::rounded(double value) {
+std::string validity::rounded(double value, int digits) {
   PlainText text;
-  text.precision(3);
+  text.precision(digits);
   text << value;
   return text.str();
 }

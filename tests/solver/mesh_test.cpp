@@ -251,6 +251,19 @@ TEST_CASE("an inverted, degenerate or folded element is named by its number") {
   for (std::size_t k = 0; k < 3; ++k)
     folded.coordinates[3 * 7 + k] = 0.02;  // the highest corner pushed to the lowest
   CHECK(contains(complaint(folded), "element 1 is folded"));
+
+  // Mid-side nodes in the order of another program: det J is positive at all four quadrature points.
+  const Mesh swapped = mesh_of(ElementType::tet10, {0, 0,  0, 1, 0, 0,  0,  1,  0, 0, 0,  1,  .5, 0, 0,
+                                                    0, .5, 0, 0, 0, .5, .5, .5, 0, 0, .5, .5, .5, 0, .5},
+                               {0, 1, 2, 3, 4, 5, 6, 7, 9, 8});
+  const std::string order = complaint(swapped);
+  CHECK(contains(
+      order, "element 70 is folded: its Jacobian is not positive everywhere, its determinant falls to -"));
+  CHECK(contains(order, " next to node 10"));
+  CHECK(contains(order, "are its midside nodes in the right order"));
+  // A quadrilateral with a corner that points inwards.
+  CHECK(contains(complaint(mesh_of(ElementType::quad4, {0, 0, 1, 0, 0.45, 0.45, 0, 1}, {0, 1, 2, 3})),
+                 "next to node 102 "));
 }
 
 TEST_CASE("nodes without an element, wrong coordinates and wrong indices are named") {

@@ -2,6 +2,7 @@
 // What looks mistaken is said, check by check; what does not is not.
 #include <doctest/doctest.h>
 
+#include "problem/vector3.hpp"
 #include "support.hpp"
 #include "validity/checks.hpp"
 
@@ -104,6 +105,138 @@ TEST_CASE("facets of a group inside the body") {
   bottom->inner = 7;
   CHECK(mentions(said(validity::inner_facets, build_problem(mesh, model), model),
                  "contact[0]: 7 facets of \"bottom\" are not on the boundary of the body and are left out"));
+}
+
+namespace {
+
+/// A box behind the nodes and elements of another.
+void append(Mesh& mesh, const Mesh& other, const Vector3& shift) {
+  const auto first = static_cast<std::int32_t>(mesh.node_count());
+  for (std::size_t i = 0; i < other.coordinates.size(); ++i)
+    mesh.coordinates.push_back(other.coordinates[i] + shift[i % static_cast<std::size_t>(mesh.dim())]);
+  for (const std::int32_t node : other.elements) mesh.elements.push_back(first + node);
+  mesh.groups.clear();
+  find_boundary(mesh);
+}
+
+Problem only_mesh(Mesh mesh) {
+  Problem problem;
+  problem.mesh = std::move(mesh);
+  return problem;
+}
+
+}  // namespace
+
+TEST_CASE("nodes that lie at one place and are not one") {
+  for (const ElementType type : element_types()) {
+    CAPTURE(cell(type).name);
+    const bool flat = dimension(type) == 2;
+    const auto all_said = [](const Mesh& mesh) {
+      validity::Warnings warnings;
+      validity::unmerged_nodes(only_mesh(mesh), warnings);
+      return warnings;
+    };
+    const Mesh box = make_box({{1, 1, 1}, {2, 2, 2}, type});
+    CHECK(all_said(box).empty());
+    const std::size_t on_face = flat ? 3 : type == ElementType::tet10 ? 25 : 9;
+    for (const double gap : {0.0, 1e-8, 1e-4, 0.5}) {
+      CAPTURE(gap);
+      for (const double far : {0.0, 1000.0}) {  // float coordinates there are known to 1e-4
+        Mesh pair = box;
+        append(pair, box, {0, 1 + gap, 0});
+        for (double& x : pair.coordinates) x += far;
+        const auto warnings = all_said(pair);
+        REQUIRE(warnings.size() == (gap <= 1e-8 ? 1u : 0u));
+        if (warnings.empty()) continue;
+        CHECK(mentions(warnings[0], "the mesh is in 2 pieces, and " + std::to_string(on_face) +
+                                        " pairs of nodes lie at one place, the first nodes "));
+      }
+    }
+    // Joined along one face by the nodes themselves, slit along the other side of the second box.
+    Mesh slit = box;
+    append(slit, box, {0, 1, 0});
+    std::vector<std::int32_t> other(slit.node_count());
+    for (std::size_t n = 0; n < other.size(); ++n) {
+      other[n] = static_cast<std::int32_t>(n);
+      const Vector3 x = position(slit, static_cast<std::int32_t>(n));
+      if (n < box.node_count() || std::abs(x[1] - 1) > 1e-12 || x[0] > 0.6) continue;
+      for (std::size_t m = 0; m < box.node_count(); ++m)
+        if (norm(position(slit, static_cast<std::int32_t>(m)) - x) < 1e-12)
+          other[n] = static_cast<std::int32_t>(m);
+    }
+    for (std::int32_t& node : slit.elements) node = other[node];
+    find_boundary(slit);
+    const auto warnings = all_said(slit);
+    REQUIRE(warnings.size() == 1);
+    CHECK(mentions(warnings[0], "within one piece of the mesh "));
+    CHECK(mentions(warnings[0], "the body is slit there"));
+  }
+}
+
+TEST_CASE("a hundred thousand pairs of nodes in one plane are found in seconds") {
+  // Millions of nodes with one coordinate in common.
+  Mesh plate = make_box({{1, 1, 0.01}, {300, 300, 1}, ElementType::hex8});
+  append(plate, make_box({{1, 1, 0.01}, {300, 300, 1}, ElementType::hex8}), {0, 0, 0.01});
+  const double start = MPI_Wtime();
+  CHECK(mentions(said(validity::unmerged_nodes, only_mesh(plate)), "90601 pairs of nodes lie at one place"));
+  CHECK(MPI_Wtime() - start < 20.0);
+}
+
+TEST_CASE("boxes that cut through facets are said with both areas, those that end at their sides are not") {
+  Model model = sound_model();
+  const auto found = [&](const Mesh& mesh, const Vector3& lower, const Vector3& upper) {
+    model.boundary[1].on = box(lower, upper);
+    return said(validity::cut_selections, only_mesh(mesh), model);
+  };
+  for (const ElementType type : {ElementType::tet4, ElementType::hex8, ElementType::tet10}) {
+    CAPTURE(cell(type).name);
+    const Mesh block = make_box({{10, 10, 10}, {10, 10, 2}, type});
+    const std::string cut = found(block, {3.75, 3.75, 10}, {6.25, 6.25, 10});
+    CHECK(mentions(cut, "boundary[1].on: the box cuts through "));
+    CHECK(mentions(cut, " taken have the area 4, what lies in the box has 6.25"));
+    CHECK(found(block, {4, 4, 10}, {6, 6, 10}).empty());
+    CHECK(found(block, {4, 4, 9}, {6, 6, 11}).empty());
+    CHECK(found(block, {4 - 1e-10, 4, 9}, {6 + 1e-10, 6 + 5e-4, 11}).empty());  // a sliver
+    // Round the whole of the upper face, and some way down the sides, whose facets are taller.
+    CHECK(found(block, {-1, -1, 9}, {11, 11, 11}).empty());
+    CHECK(
+        mentions(found(block, {-1, -1, 9}, {4.5, 11, 11}), "have the area 40, what lies in the box has 45"));
+    // Both the upper face and the facets that it has on a side.
+    CHECK(mentions(found(block, {-1, -1, 3}, {11, 0, 11}), "have the area 50, what lies in the box has 70"));
+  }
+  // Lines in the plane; a body of revolution has areas.
+  for (const PlaneState plane : {PlaneState::strain, PlaneState::axisymmetric}) {
+    Mesh sheet = make_box({{4, 2, 0}, {4, 2, 0}, ElementType::quad4});
+    sheet.plane = plane;
+    const bool round = plane == PlaneState::axisymmetric;
+    CHECK(mentions(found(sheet, {-1, 2, 0}, {1.5, 2, 0}),
+                   round ? "the area 3.14, what lies in the box has 7.07"
+                         : "the length 1, what lies in the box has 1.5"));
+    CHECK(found(sheet, {1, 1.5, 0}, {3, 2.5, 0}).empty());
+  }
+}
+
+TEST_CASE("boxes that cut through elements are said with both volumes") {
+  for (const ElementType type : element_types()) {
+    CAPTURE(cell(type).name);
+    const bool flat = dimension(type) == 2;
+    const Problem problem = only_mesh(make_box({{4, 2, 2}, {4, 2, 2}, type}));
+    Model model = elastic_model();
+    const auto found = [&](const Vector3& lower, const Vector3& upper) {
+      model.materials[0].on = box(lower, upper);
+      return said(validity::cut_selections, problem, model);
+    };
+    CHECK(mentions(found({0, 0, 0}, {1.25, 2, 2}), flat ? "the area 2, what lies in the box has 2.5"
+                                                        : "the volume 4, what lies in the box has 5"));
+    CHECK(mentions(found({0, 0, 0}, {1.25, 2, 2}), "material[0].on: the box cuts through "));
+    CHECK(mentions(found({0.5, -1, -1}, {3.5, 3, 3}), flat ? "the area 4, what lies in the box has 6"
+                                                           : "the volume 8, what lies in the box has 12"));
+    CHECK(found({-1, -1, -1}, {2, 5, 5}).empty());
+    CHECK(found({1, 1, 1}, {3, 2, 2}).empty());
+    model.materials[0].on = everything();
+    model.boundary.push_back(body_force(box({0, 0, 0}, {1.25, 2, 2}), {1, 0, 0}));
+    CHECK(mentions(said(validity::cut_selections, problem, model), "boundary[0].on: the box cuts through "));
+  }
 }
 
 TEST_CASE("thin elements") {

@@ -214,6 +214,56 @@ TEST_CASE(
   CHECK(anew.error.find("contact[0].relinearise: nodes face the obstacle from where") != std::string::npos);
 }
 
+TEST_CASE("an edge in the plane of symmetry presses without a lateral force, and is verified") {
+  const Workplace place;
+  // A blade that the middle of the upper side has gone 0.05 into, of two slopes up from the line x = 0.5.
+  const std::vector<Triangle> blade{{{{0.5, -1, 0.95}, {0.2, 2, 1.05}, {0.5, 2, 0.95}}},
+                                    {{{0.5, -1, 0.95}, {0.2, -1, 1.05}, {0.2, 2, 1.05}}},
+                                    {{{0.5, -1, 0.95}, {0.5, 2, 0.95}, {0.8, 2, 1.05}}},
+                                    {{{0.5, -1, 0.95}, {0.8, 2, 1.05}, {0.8, -1, 1.05}}}};
+  place.put("blade.stl", ascii_stl(blade));
+  place.put("binary.stl", binary_stl(blade));
+  nlohmann::json input = parsed(R"({
+    "mesh": {"box": {"size": [1, 1, 1], "cells": [4, 4, 4], "element": "hex8"}},
+    "material": [{"on": "all", "young": 10, "poisson": 0.3}],
+    "boundary": [{"on": "bottom", "displacement": [0, 0, 0]}],
+    "contact": [{"on": "top", "name": "tool", "obstacle": {}}],
+    "output": {"report": false}})");
+  const auto pressed = [&](const std::string& obstacle) {
+    input["contact"][0]["obstacle"] = parsed(obstacle);
+    place.put_json("case.json", input);
+    const Outcome run = place.run("run case.json --output out");
+    CAPTURE(obstacle);
+    REQUIRE(run.exit_code == 0);
+    const Outcome verified = place.run("verify case.json --output out");
+    INFO(verified.output);
+    CHECK(verified.exit_code == 0);
+    const nlohmann::json result = place.json("out/result.json");
+    const nlohmann::json& force = result.at("contact").at("tool").at("force");
+    CHECK(std::abs(force.at(0).get<double>()) < 1e-7 * std::abs(force.at(2).get<double>()));
+    CHECK(force.at(2).get<double>() < -0.1);
+    bool warned = false;
+    for (const nlohmann::json& warning : result.at("warnings"))
+      warned = warned || warning.get<std::string>().find(
+                             "5 nodes are equally near to several faces of the "
+                             "obstacle, the first node ") != std::string::npos;
+    CHECK(warned);
+    // The line in the middle lies below the edge.
+    return force.at(2).get<double>();
+  };
+  const double text = pressed(R"({"surface": {"file": "blade.stl"}})");
+  CHECK(pressed(R"({"surface": {"file": "binary.stl"}})") == doctest::Approx(text).epsilon(1e-5));
+  // A box that stands on its edge, as steep on both sides, at rest and moved down from where it only touches.
+  const auto box = [](double low) {
+    const std::string from = std::to_string(low), to = std::to_string(low + 2);
+    return R"({"box": {"lower": [0.5, -1, )" + from + R"(], "upper": [0.5, 2, )" + to +
+           R"(], "frame": [[1, 0, 1], [0, 1, 0], [-1, 0, 1]]}})";
+  };
+  const double at_rest = pressed(box(0.95));
+  input["contact"][0]["motion"] = parsed(R"({"path": [{"time": 1, "translation": [0, 0, -0.05]}]})");
+  CHECK(pressed(box(1.0)) == doctest::Approx(at_rest).epsilon(0.2));
+}
+
 TEST_CASE("a ball of triangles presses as a ball does, of second order in its facets, in every format") {
   const Workplace place;
   const auto pressed = [&](const std::string& obstacle) {

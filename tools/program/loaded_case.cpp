@@ -34,6 +34,7 @@ Mesh load_mesh(const MeshSource& source) {
     }
   if (source.box) return mesh;
   const std::vector<std::string> warnings = mesh.warnings;
+  if (source.refine > 0) check_mesh(mesh);  // while its elements have the numbers of the file
   for (int times = 0; times < source.refine; ++times) mesh = refine(mesh);
   if (source.order > cell(mesh.type).order) mesh = raise_order(mesh);
   mesh.warnings = warnings;

@@ -39,6 +39,39 @@ Facing along_ray(const WideVec& direction, Wide a, Wide b, Wide c, Wide scale) {
   return found;
 }
 
+/// Of faces that are equally near the one whose direction is along the outer normal most; of several that
+/// are, the mean, which meets the first of their planes later by the cosine between; of directions that
+/// cancel the last by their components (theory: equal-distance).
+Facing most_opposed(const std::vector<Facing>& faces, const Vec& outer) {
+  constexpr Real same = 1e-6L;
+  const Real size = norm(outer);
+  const auto turned = [&](const Facing& face) { return size > 0 ? dot(face.normal, outer) / size : Real(0); };
+  Real best = -1;
+  for (const Facing& face : faces) best = std::max(best, turned(face));
+  std::vector<Facing> alike;
+  for (const Facing& face : faces)
+    if (turned(face) >= best - same && std::none_of(alike.begin(), alike.end(), [&](const Facing& other) {
+          return norm(other.normal - face.normal) <= same;
+        }))
+      alike.push_back(face);
+  if (alike.size() == 1) return alike[0];
+  Vec sum{};
+  for (const Facing& face : alike) sum = sum + face.normal;
+  if (norm(sum) <= same * Real(alike.size()))
+    return *std::max_element(alike.begin(), alike.end(), [&](const Facing& a, const Facing& b) {
+      std::size_t c = 0;
+      while (c < 2 && std::abs(a.normal[c] - b.normal[c]) <= same) ++c;
+      return a.normal[c] < b.normal[c];
+    });
+  Facing mean = alike[0];
+  mean.normal = unit(sum);
+  Real cosine = 0;
+  for (const Facing& face : alike) cosine = std::max(cosine, dot(mean.normal, face.normal));
+  mean.gap /= cosine;
+  mean.unknown /= cosine;
+  return mean;
+}
+
 Face plane(const json& given) {
   const WideVec nu = scaled(-1, unit(wide_vector(given.at("normal")))),
                 point = wide_vector(given.at("point"));
@@ -112,41 +145,30 @@ Face block(const json& given) {
   const bool flat = lower[2] == upper[2] && axes[2][0] == 0 && axes[2][1] == 0;
   const Real close = 1e-9L * static_cast<Real>(length(upper - lower));
   return [=](const Vec& x, const Vec& outer) {
-    Facing within{{}, -HUGE_VALL};
-    Real looked = -HUGE_VALL, unknown = 0;  // of what is outside
+    std::vector<Facing> faces;  // along each face's inner normal, negative below the face
+    Real highest = -HUGE_VALL, unknown = 0;
     WideVec way{};
-    bool outside = false;
-    std::vector<std::pair<Wide, WideVec>> faces;  // how far below the face, and its outer normal
     for (std::size_t a = 0; a < (flat ? 2 : 3); ++a)
       for (const Wide side : {Wide(-1), Wide(1)}) {
         const WideVec from = (side < 0 ? lower : upper) - wide(x);
         const Wide below = side * inner(from, axes[a]);
-        faces.emplace_back(below, scaled(side, axes[a]));
-        Real lost = 0;
+        Facing face = facing(scaled(-side, axes[a]), -below);
         for (std::size_t c = 0; c < 3; ++c)
-          lost += closed * std::abs(static_cast<Real>(from[c] * axes[a][c]));
-        if (static_cast<Real>(-below) > within.gap) {
-          within.gap = static_cast<Real>(-below);
-          within.unknown = lost;
-        }
+          face.unknown += closed * std::abs(static_cast<Real>(from[c] * axes[a][c]));
+        faces.push_back(face);
+        highest = std::max(highest, face.gap);
         if (!(below < 0)) continue;
-        outside = true;
-        unknown += lost;
+        unknown += face.unknown;
         way = way - scaled(-side * below, axes[a]);
       }
-    if (outside) {
+    if (highest > close) {
       const Wide far = length(way);
       Facing found = facing(scaled(1 / far, way), far);
       found.unknown = unknown;
       return found;
     }
-    for (const auto& [below, normal] : faces) {
-      const Real seen = -dot(narrow(normal), outer);
-      if (static_cast<Real>(below) > close - within.gap || seen <= looked) continue;
-      looked = seen;
-      within.normal = -1 * narrow(normal);
-    }
-    return within;
+    std::erase_if(faces, [&](const Facing& face) { return face.gap < highest - close; });
+    return most_opposed(faces, outer);
   };
 }
 
@@ -174,18 +196,41 @@ class Facets {
       if (edge.facets == 1) border_[ends.first] = border_[ends.second] = true;
   }
 
-  Facing face(const Vec& x) const {
-    Nearest best;
+  Facing face(const Vec& x, const Vec& outer) const {
+    Real nearest = HUGE_VALL;
     for (const Facet& facet : facets_)
-      if (norm(x - facet.middle) - facet.radius <= best.distance) look_at(facet, x, best);
-    const Vec normal = unit(best.normal), way = best.point - x;
-    const Real side = -dot(way, normal);
-    if (best.distance <= 1e-9L * norm(high_ - low_)) return {-1 * normal, side};
-    const Real beside = norm(way + side * normal);
-    Facing facing{side < 0 ? -1 / best.distance * way : 1 / best.distance * way,
-                  side < 0 ? -best.distance : best.distance, best.border && beside > 1e-6L * best.distance};
-    facing.grazing = best.border && std::abs(beside - 1e-6L * best.distance) <= 1e-9L * best.distance;
-    return facing;
+      if (norm(x - facet.middle) - facet.radius <= nearest)
+        nearest = std::min(nearest, closest_on(facet, x).distance);
+    const Real extent = norm(high_ - low_);
+    const bool touches = nearest <= 1e-9L * extent;
+    const Real reach = touches ? 1e-9L * extent : nearest + 1e-7L * extent;
+    std::vector<Facing> faces;
+    bool grazing = false;
+    for (const Facet& facet : facets_) {
+      if (norm(x - facet.middle) - facet.radius > reach) continue;
+      const Closest closest = closest_on(facet, x);
+      if (closest.distance > reach) continue;
+      const Vec way = closest.point - x;
+      if (touches) {
+        faces.push_back({-1 * facet.normal, -dot(way, facet.normal)});
+        continue;
+      }
+      if (!(norm(closest.normal) > 0)) continue;
+      const Vec normal = unit(closest.normal);
+      const Real above = -dot(way, normal), beside = norm(way + above * normal);
+      if (closest.border && std::abs(beside - 1e-6L * closest.distance) <= 1e-9L * closest.distance)
+        grazing = true;
+      if (closest.border && beside > 1e-6L * closest.distance) continue;
+      const Real side = above < 0 ? -1 : 1;
+      faces.push_back({side / closest.distance * way, side * closest.distance});
+    }
+    Facing found;
+    if (faces.empty())
+      found.missed = true;
+    else
+      found = most_opposed(faces, outer);
+    found.grazing = grazing;
+    return found;
   }
 
  private:
@@ -198,7 +243,7 @@ class Facets {
     Vec normal{};
     int facets = 0;
   };
-  struct Nearest {
+  struct Closest {
     Real distance = HUGE_VALL;
     Vec point{}, normal{};
     bool border = false;
@@ -226,26 +271,28 @@ class Facets {
   static std::pair<Vec, Vec> key(const Vec& a, const Vec& b) { return {std::min(a, b), std::max(a, b)}; }
 
   /// The foot of the perpendicular where it is within, else the nearest of the edges, else of the corners.
-  void look_at(const Facet& facet, const Vec& x, Nearest& best) const {
+  Closest closest_on(const Facet& facet, const Vec& x) const {
     const Triangle& t = facet.corner;
     const Vec foot = x - dot(x - t[0], facet.normal) * facet.normal;
     bool within = true;
     for (std::size_t k = 0; k < 3; ++k)
       within = within && dot(cross(t[(k + 1) % 3] - t[k], foot - t[k]), facet.normal) > 0;
-    if (within) return take(x, {0, foot, facet.normal, false}, best);
+    if (within) return {norm(x - foot), foot, facet.normal, false};
+    Closest best;
+    const auto take = [&](const Vec& point, const Vec& normal, bool border) {
+      if (const Real distance = norm(x - point); distance < best.distance)
+        best = {distance, point, normal, border};
+    };
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec &a = t[k], &b = t[(k + 1) % 3];
       const Real share = dot(x - a, b - a) / dot(b - a, b - a);
       if (share > 0 && share < 1) {
         const Edge& edge = edges_.at(key(a, b));
-        take(x, {0, a + share * (b - a), edge.normal, edge.facets == 1}, best);
+        take(a + share * (b - a), edge.normal, edge.facets == 1);
       }
-      take(x, {0, a, corners_.at(a), border_.contains(a)}, best);
+      take(a, corners_.at(a), border_.contains(a));
     }
-  }
-  static void take(const Vec& x, Nearest candidate, Nearest& best) {
-    candidate.distance = norm(x - candidate.point);
-    if (candidate.distance < best.distance) best = candidate;
+    return best;
   }
 
   std::vector<Facet> facets_;
@@ -259,7 +306,7 @@ Face surface(const json& given, const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / given.at("file").get<std::string>();
   const bool stl = !starts_with_dollar(file);
   const Facets facets(stl ? read_stl(file) : read_gmsh_facets(file, given.value("group", "")));
-  return [facets](const Vec& x, const Vec&) { return facets.face(x); };
+  return [facets](const Vec& x, const Vec& outer) { return facets.face(x, outer); };
 }
 
 }  // namespace

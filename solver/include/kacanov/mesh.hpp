@@ -67,8 +67,9 @@ struct Mesh {
 /// Fills `facets` and `facet_element` from the elements: the facets that belong to one element only.
 void find_boundary(Mesh& mesh);
 
-/// Throws InputError naming the first inverted, degenerate (volume ≤ 1e-14 of its longest edge cubed,
-/// squared in 2D) or non-finite element, a facet shared by three elements, or an unreferenced node.
+/// Throws InputError naming the first inverted, folded (det J < 0 at some point), degenerate (volume ≤ 1e-14
+/// of its longest edge cubed, squared in 2D) or non-finite element, a facet shared by three elements, or an
+/// unreferenced node.
 void check_mesh(const Mesh& mesh);
 
 /// Generated box [0, size]. Triangles cut squares by the diagonal from lower left to upper right, tetrahedra

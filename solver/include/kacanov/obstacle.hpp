@@ -29,6 +29,7 @@ struct Facing {
   double unknown = 0.0;  ///< what arithmetic may have left of the gap (theory: gap-rounding)
   double lengths = 0.0;  ///< of the case that the gap is a difference of, each read to double precision
   Kind kind = Kind::met;
+  bool chosen = false;  ///< of several directions in which it is equally near (theory: equal-distance)
 
   static Facing nothing() { return {{}, 0.0, 0.0, 0.0, Kind::missed}; }
   /// The obstacle is as near in several directions: an error of the input.

@@ -61,7 +61,7 @@ struct Certificate : KktResiduals {
 /// One Lanczos estimate of the spectrum of K = M^½ C B⁻¹ Cᵀ M^½, C = N or [N; T].
 struct SpectrumResult {
   double lambda_min = 0.0, lambda_max = 0.0;
-  double bound_min = 0.0, bound_max = 0.0;  ///< Ritz residual bounds, absolute, on each λ
+  double bound_min = 0.0, bound_max = 0.0;  ///< absolute (theory: lanczos-bounds)
   double r_star = 0.0;                      ///< theory: r-star
   bool converged = true;  ///< every solve and both Lanczos estimates; else λ and r* are rough
   int products = 0;       ///< products with K or K⁻¹, one solve each

@@ -24,8 +24,11 @@ class Surface {
     Vector3 point{};
     Vector3 normal{};  ///< unit pseudo-normal of the face, edge or corner it lies in; 0 where faces fold back
     bool border = false;  ///< at an edge that only one triangle has
+    Vector3 face{};       ///< unit normal of the triangle itself
   };
   Closest closest(const Vector3& x) const;
+  /// The closest points of all triangles that come within `distance`, in the order of the triangles.
+  std::vector<Closest> within(const Vector3& x, double distance) const;
   /// The same by looking at every triangle: the plain reference.
   Closest closest_of_all(const Vector3& x) const;
 
@@ -60,7 +63,12 @@ class Surface {
   void join_points(const std::vector<Vector3>& points, const std::vector<Triangle>& triangles);
   void find_normals();
   std::int32_t build(std::int32_t first, std::int32_t last);
+  Candidate closest_on(std::int32_t face, const Vector3& x) const;
   void look_at(std::int32_t face, const Vector3& x, Candidate& best) const;
+  /// Calls visit(face) for all that may be within the root of `squared()`, which may fall meanwhile, near
+  /// ones first.
+  template <class Squared, class Visit>
+  void search(const Vector3& x, const Squared& squared, const Visit& visit) const;
   Closest describe(const Candidate& found) const;
 
   std::vector<Vector3> points_;
