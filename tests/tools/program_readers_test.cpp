@@ -132,6 +132,24 @@ TEST_CASE("text in UTF-16 is named") {
     }
 }
 
+TEST_CASE("names of files that are no UTF-8 end in words") {
+  const Workplace place;
+  place.put("tr\xe4ger.inp", cube);
+  place.put("tr\xe4ger.msh", cube_msh);
+  place.put("cube.msh", cube_msh);
+  place.put("tr\xe4ger.json", cube_case);
+  for (const char* command :
+       {"init tr\xe4ger.msh a.json", "run tr\xe4ger.inp", "check cube.json --set title=tr\xe4ger",
+        "check tr\xe4ger.json --set mesh.file=tr\xe4ger.msh"}) {
+    const Outcome outcome = place.run(command);
+    INFO(command, outcome.error);
+    CHECK(outcome.exit_code == 2);
+  }
+  for (const char* command :
+       {"run tr\xe4ger.json --ranks 1 --output a", "run tr\xe4ger.json --ranks 2 --output tr\xe4ger"})
+    CHECK(place.run(command).exit_code == 0);
+}
+
 TEST_CASE("names that a terminal would obey are refused, and reach no file and no terminal") {
   for (const char* name : {"\x1b[2J", "\a",
                            "\xc2\x9b"
@@ -157,7 +175,7 @@ TEST_CASE("names that a terminal would obey are refused, and reach no file and n
   nlohmann::json input = parsed(cube_case);
   input["boundary"][0]["name"] = std::string("a\0b", 3);
   place.put_json("case.json", input);
-  CHECK(place.run("run case.json").error.find("boundary[0].name: expected a string on one line") !=
+  CHECK(place.run("run case.json").error.find("boundary[0].name: expected a string in UTF-8 on one line") !=
         std::string::npos);
   input["boundary"][0]["name"] = "Fuß ↓";  // which is tame
   place.put_json("case.json", input);
