@@ -34,7 +34,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } catch (const InputError&) {
   }
   try {
-    case_of(read_deck("fuzz.inp", text), true);
+    const DeckCase made = case_of(read_deck("fuzz.inp", text), true);
+    fuzz::expect(!made.document.dump().empty());  // whatever bytes names and titles have
   } catch (const InputError&) {
   }
   return 0;

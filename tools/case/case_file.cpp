@@ -2,6 +2,7 @@
 // The case file: one JSON object that says what to solve.
 #include "case/case_file.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
 #include <kacanov/error.hpp>
@@ -11,6 +12,7 @@
 #include "case/case_schema.hpp"
 #include "case/case_words.hpp"
 #include "case/json_node.hpp"
+#include "formats/text_bytes.hpp"
 #include "mesh/plain_stream.hpp"
 #include "problem/mistakes.hpp"
 
@@ -26,6 +28,7 @@ class CaseParser {
   explicit CaseParser(std::string folder) : folder_(std::move(folder)) {}
 
   Case parse(const nlohmann::json& document) {
+    result_.mesh.folder = folder_;
     const Node whole(document, "");
     check(whole, case_schema());
     const Object top(whole);
@@ -332,10 +335,11 @@ CaseText read_case_text(const std::string& path) {
 }
 
 Case parse_case(const CaseText& text, std::span<const std::string> overrides) {
-  const std::size_t begin = text.text.find_first_not_of(" \t\r\n");
-  if (begin != std::string::npos && text.text[begin] == '*')
+  std::string_view start = text_start(text.path, text.text);
+  start.remove_prefix(std::min(start.find_first_not_of(" \t\r\n"), start.size()));
+  if (start.starts_with('*'))
     throw InputError(text.path + ": this is a deck, expected a case; kacanov convert makes one of it");
-  if (begin != std::string::npos && text.text.compare(begin, 11, "$MeshFormat") == 0)
+  if (start.starts_with("$MeshFormat"))
     throw InputError(text.path + ": this is a mesh, expected a case; kacanov init writes one for it");
   if (text.path.ends_with(".geo"))
     throw InputError(text.path +

@@ -31,6 +31,7 @@ struct NodeValueFile {
 /// Where the mesh comes from: exactly one of file and box is set.
 struct MeshSource {
   std::optional<std::string> file;  ///< path, relative ones taken from the case file's folder
+  std::string folder = {};          ///< that one; messages show no words of files outside of it
   std::optional<BoxSpec> box;
   std::vector<std::string> coarser = {};  ///< files of the same body to solve on first, coarsest first
   int order = 1;   ///< 2: quadratic elements are made of the file's linear ones; a box has them already

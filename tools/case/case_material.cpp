@@ -118,6 +118,15 @@ void compare_slopes(const Node& node, const Law& law, std::vector<std::string>& 
   warnings.push_back(text.str());
 }
 
+/// Strains beyond 1, which the theory of small strains does not have, are mostly per cent.
+void ask_for_per_cent(const std::string& path, double strain, std::vector<std::string>& warnings) {
+  if (!(strain > 1.0)) return;
+  PlainText text;
+  text << path << ": strains above 1, up to " << strain
+       << ": are they per cent? A strain of 1 per cent is written 0.01";
+  warnings.push_back(text.str());
+}
+
 }  // namespace
 
 KeySet material_law_keys() {
@@ -176,6 +185,11 @@ Law parse_law(double young, double poisson, const Node& node, std::vector<std::s
     if (entry.name == type) law.form = entry.read(object, law);
   if (const std::string fault = validate(law); !fault.empty()) throw InputError(node.path() + "." + fault);
   compare_slopes(node, law, warnings);
+  if (const auto* table = std::get_if<laws::Table>(&law.form)) {
+    const double last = table->x.back();
+    ask_for_per_cent(node.path() + ".points", law.argument == Law::Argument::squared ? std::sqrt(last) : last,
+                     warnings);
+  }
   return law;
 }
 
@@ -183,7 +197,11 @@ Law parse_material_law(const Object& material, std::vector<std::string>& warning
   const double young = material.required("young").number();
   const double poisson = material.required("poisson").number();
   if (const auto law = material.optional("law")) return parse_law(young, poisson, *law, warnings);
-  if (const auto plastic = material.optional("plastic")) return parse_plastic(young, poisson, *plastic);
+  if (const auto plastic = material.optional("plastic")) {
+    Law law = parse_plastic(young, poisson, *plastic);
+    ask_for_per_cent(plastic->path(), plastic->entries().back().entries()[1].number(), warnings);
+    return law;
+  }
   if (material.optional("tangent_modulus")) return parse_bilinear(young, poisson, material);
   return elastic_law(young, poisson);
 }

@@ -225,7 +225,7 @@ KeySet top() {
        may("solver", solver(), "how it is solved"),
        may("probe", ListOf{vector_schema(), "a list of points"},
            "points of the body whose displacement is reported"),
-       may("output", output(), "what is written"), may("title", Text{}, "for people"),
+       may("output", output(), "what is written"), may("title", Text{true}, "for people"),
        may("$schema", Text{}, "for editors: where the schema is that kacanov schema prints")}};
 }
 

@@ -8,6 +8,7 @@
 #include <set>
 
 #include <kacanov/error.hpp>
+#include "formats/text_bytes.hpp"
 #include "problem/closest_word.hpp"
 
 namespace kacanov {
@@ -121,7 +122,9 @@ class Scanner : public nlohmann::json_sax<json> {
 
 }  // namespace
 
-json parse_json(const std::string& text, const std::string& label) {
+json parse_json(const std::string& bytes, const std::string& label) {
+  const TextBytes plain(label, bytes);
+  const std::string text(plain.text());
   if (std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isspace(c) != 0; })) {
     throw InputError(label + ": the file is empty, expected a JSON object");
   }

@@ -14,7 +14,7 @@ namespace kacanov {
 
 /// Parses one JSON object, refusing repeated keys; comments, // and /* */, are passed over. `label` (the
 /// file's name) starts every message: InputError "label:line:column: ..." for text that is no JSON.
-nlohmann::json parse_json(const std::string& text, const std::string& label);
+nlohmann::json parse_json(const std::string& bytes, const std::string& label);
 
 /// A value and its path ("contact[0].friction.tresca"). The value must outlive the node. Every accessor
 /// throws InputError "path: expected ..., got ..." when the value is something else.

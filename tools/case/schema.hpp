@@ -34,8 +34,10 @@ class Schema {
   std::string name_;
 };
 
-/// A string that is not empty.
-struct Text {};
+/// A string that is not empty, on one line and without control characters; line ends and tabs where `lines`.
+struct Text {
+  bool lines = false;
+};
 /// true or false.
 struct Flag {};
 struct Null {};

@@ -5,6 +5,7 @@
 
 #include <kacanov/error.hpp>
 #include "case/schema.hpp"
+#include "formats/printable.hpp"
 #include "problem/closest_word.hpp"
 #include "problem/mistakes.hpp"
 
@@ -45,7 +46,15 @@ struct Check {
   const Node& node;
   Mistakes& mistakes;
 
-  void operator()(const Text&) const { node.text(); }
+  void operator()(const Text& form) const {
+    std::string text = node.text();
+    if (form.lines)
+      std::replace_if(
+          text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
+    if (!is_plain_line(text))
+      node.expected(std::string("a string in UTF-8") + (form.lines ? "" : " on one line") +
+                    " without control characters");
+  }
   void operator()(const Flag&) const { node.boolean(); }
   void operator()(const Null&) const {
     if (!node.value().is_null()) node.expected("null");

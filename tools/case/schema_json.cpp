@@ -24,7 +24,12 @@ class SchemaWriter {
   /// After all has been written.
   const ordered_json& definitions() const { return definitions_; }
 
-  ordered_json operator()(const Text&) { return {{"type", "string"}, {"minLength", 1}}; }
+  ordered_json operator()(const Text& text) {
+    const std::string controls =
+        text.lines ? "\\u0000-\\u0008\\u000b\\u000c\\u000e-\\u001f" : "\\u0000-\\u001f";
+    const std::string refused = "[" + controls + "\\u007f-\\u009f\\u2028-\\u202e\\u2066-\\u2069]";
+    return {{"type", "string"}, {"minLength", 1}, {"not", {{"pattern", refused}}}};
+  }
   ordered_json operator()(const Flag&) { return type("boolean"); }
   ordered_json operator()(const Null&) { return type("null"); }
   ordered_json operator()(const Number& form) {

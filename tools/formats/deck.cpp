@@ -3,33 +3,21 @@
 #include "formats/deck.hpp"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 
 #include <kacanov/error.hpp>
 #include "formats/deck_elements.hpp"
-#include "formats/gmsh_cursor.hpp"
+#include "formats/printable.hpp"
 #include "formats/words.hpp"
 
 namespace kacanov {
 namespace {
 
-constexpr std::array harmless{"AMPLITUDE",      "CONTACTFILE",  "CONTACTOUTPUT",   "CONTACTPRINT",
-                              "CONTROLS",       "DAMPING",      "DEPVAR",          "CONDUCTIVITY",
-                              "ELFILE",         "ELPRINT",      "ELEMENTOUTPUT",   "ELEMENTFILE",
-                              "ENERGYFILE",     "ENERGYOUTPUT", "ENERGYPRINT",     "FACEPRINT",
-                              "FILEFORMAT",     "FILEOUTPUT",   "FILTER",          "FRICTION",
-                              "HEADING",        "MONITOR",      "NODEFILE",        "NODEOUTPUT",
-                              "NODEPRINT",      "ORIENTATION",  "OUTPUT",          "PHYSICALCONSTANTS",
-                              "PREPRINT",       "PRINT",        "RESTART",         "SECTIONPRINT",
-                              "SOLVERCONTROLS", "SPECIFICHEAT", "SURFACEBEHAVIOR", "SURFACEINTERACTION",
-                              "TIMEPOINTS"};
-
 /// The set of a name; names of Abaqus' one instance may stand before it.
 template <typename Set>
 const Set* find(const std::vector<Set>& sets, const std::string& instance, std::string_view name,
                 bool in_part) {
-  std::string wanted = upper_case(name);
+  std::string wanted = upper_case(printable(name));
   bool anywhere = !in_part;
   if (!instance.empty() && wanted.starts_with(instance + ".")) {
     wanted.erase(0, instance.size() + 1);
@@ -52,16 +40,19 @@ bool is_number(std::string_view field) {
 
 }  // namespace
 
-bool is_harmless(const std::string& keyword) {
-  return std::find(harmless.begin(), harmless.end(), keyword) != harmless.end();
-}
-
 std::string Deck::place_text(DeckPlace place) const {
-  return files[place.file] + ": line " + std::to_string(place.line);
+  return files[place.file].path + ": line " + std::to_string(place.line);
 }
 
 void Deck::fail(DeckPlace place, const std::string& message) const {
   throw InputError(place_text(place) + ": " + message);
+}
+
+void Deck::expect_fields(const DeckRow& row, std::size_t most, const std::string& what) const {
+  for (std::size_t f = most; f < row.fields.size(); ++f)
+    if (!row.fields[f].empty())
+      fail(row.place,
+           "expected no more than " + what + ", got " + quoted(row.place, row.fields[f]) + " as well");
 }
 
 const DeckSet* Deck::node_set(std::string_view name, bool in_part) const {
@@ -74,34 +65,46 @@ const DeckSurface* Deck::surface(std::string_view name, bool in_part) const {
   return find(surfaces, instance, name, in_part);
 }
 
-std::vector<std::int32_t> Deck::nodes_of(std::string_view field, DeckPlace place, bool in_part) const {
-  const std::string_view number = instance.empty() || !upper_case(field).starts_with(instance + ".")
-                                      ? field
-                                      : field.substr(instance.size() + 1);
-  if (!is_number(number)) {
-    if (const DeckSet* set = node_set(field, in_part)) return set->members;
-    fail(place, "there is no set of nodes " + in_quotes(field) + " above");
+namespace {
+
+/// The nodes or elements that a field of a data line names: one number, or a set.
+struct Reference {
+  const Deck& deck;
+  const char* kind;  ///< node or element
+  const std::vector<DeckSet>& sets;
+  const NodeIndex& index;
+
+  std::vector<std::int32_t> members(std::string_view field, DeckPlace place, bool in_part) const {
+    const std::string& instance = deck.instance;
+    const std::string_view number = instance.empty() || !upper_case(field).starts_with(instance + ".")
+                                        ? field
+                                        : field.substr(instance.size() + 1);
+    const auto fail = [&](const std::string& before, const std::string& behind) {
+      deck.fail(place, before + kind + behind);
+    };
+    const auto name = [&] { return deck.quoted(place, field); };
+    if (!is_number(number)) {
+      const DeckSet* set = find(sets, instance, field, in_part);
+      if (set == nullptr) fail("there is no set of ", "s " + name() + " above");
+      if (set->members.empty()) fail("the set of ", "s " + name() + " is empty");
+      return set->members;
+    }
+    std::int64_t tag = 0;
+    const auto read = std::from_chars(number.data(), number.data() + number.size(), tag);
+    const std::int32_t found = read.ec == std::errc() ? index.find(tag) : -1;
+    if (found < 0) fail("there is no ", " " + name());
+    return {found};
   }
-  std::int64_t tag = 0;
-  const auto read = std::from_chars(number.data(), number.data() + number.size(), tag);
-  const std::int32_t node = read.ec == std::errc() ? node_index.find(tag) : -1;
-  if (node < 0) fail(place, "there is no node " + std::string(number.substr(0, 30)));
-  return {node};
+};
+
+}  // namespace
+
+std::vector<std::int32_t> Deck::nodes_of(std::string_view field, DeckPlace place, bool in_part) const {
+  return Reference{*this, "node", node_sets, node_index}.members(field, place, in_part);
 }
 
 std::vector<std::int32_t> Deck::elements_of(std::string_view field, DeckPlace place, bool in_part) const {
-  const std::string_view number = instance.empty() || !upper_case(field).starts_with(instance + ".")
-                                      ? field
-                                      : field.substr(instance.size() + 1);
-  if (!is_number(number)) {
-    if (const DeckSet* set = element_set(field, in_part)) return set->members;
-    fail(place, "there is no set of elements " + in_quotes(field) + " above");
-  }
-  std::int64_t tag = 0;
-  const auto read = std::from_chars(number.data(), number.data() + number.size(), tag);
-  const std::int32_t element = read.ec == std::errc() ? element_index.find(tag) : -1;
-  if (element < 0) fail(place, "there is no element " + std::string(number.substr(0, 30)));
-  return {element};
+  return Reference{*this, "element", element_sets, element_index}.members(field, place, in_part);
 }
 
 std::vector<std::int32_t> Deck::side_nodes(DeckSide side, DeckPlace place) const {
@@ -124,23 +127,29 @@ std::int64_t deck_integer(const Deck& deck, const DeckRow& row, std::size_t fiel
   std::int64_t value = 0;
   const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
   if (text.empty() || read.ec != std::errc() || read.ptr != text.data() + text.size())
-    deck.fail(row.place,
-              std::string("expected ") + what + ", got " + (text.empty() ? "nothing" : in_quotes(text)));
+    deck.fail(row.place, std::string("expected ") + what + ", got " +
+                             (text.empty() ? "nothing" : deck.quoted(row.place, text)));
+  return value;
+}
+
+std::optional<double> deck_real(std::string_view word) {
+  std::optional<double> value = to_number(word);
+  constexpr std::size_t longest = 60;
+  if (!value && word.size() < longest) {
+    std::string fortran(word);
+    std::replace_if(
+        fortran.begin(), fortran.end(), [](char c) { return c == 'd' || c == 'D'; }, 'e');
+    value = to_number(fortran);
+  }
   return value;
 }
 
 double deck_number(const Deck& deck, const DeckRow& row, std::size_t field, const char* what) {
   const std::string_view text = field < row.fields.size() ? row.fields[field] : std::string_view();
-  std::optional<double> value = to_number(text);
-  if (!value && text.size() < 60) {
-    std::string fortran(text);
-    std::replace_if(
-        fortran.begin(), fortran.end(), [](char c) { return c == 'd' || c == 'D'; }, 'e');
-    value = to_number(fortran);
-  }
+  const std::optional<double> value = deck_real(text);
   if (!value)
-    deck.fail(row.place,
-              std::string("expected ") + what + ", got " + (text.empty() ? "nothing" : in_quotes(text)));
+    deck.fail(row.place, std::string("expected ") + what + ", got " +
+                             (text.empty() ? "nothing" : deck.quoted(row.place, text)));
   return *value;
 }
 

@@ -6,19 +6,13 @@
 #include <filesystem>
 
 #include <kacanov/error.hpp>
-#include "formats/gmsh_cursor.hpp"
+#include "formats/deck_keywords.hpp"
 #include "formats/words.hpp"
 
 namespace kacanov {
 namespace {
 
 constexpr std::size_t deepest_include = 16, most_files = 1000;
-
-std::string without_blanks(std::string_view text) {
-  std::string result(text);
-  std::erase_if(result, [](char c) { return c == ' ' || c == '\t'; });
-  return result;
-}
 
 std::string_view unquoted(std::string_view text) {
   return text.size() >= 2 && text.front() == '"' && text.back() == '"' ? text.substr(1, text.size() - 2)
@@ -37,6 +31,12 @@ std::string_view take_field(std::string_view& text) {
 
 }  // namespace
 
+std::string without_blanks(std::string_view text) {
+  std::string result(text);
+  std::erase_if(result, [](char c) { return c == ' ' || c == '\t'; });
+  return result;
+}
+
 std::string upper_case(std::string_view text) {
   std::string result(text);
   for (char& c : result)
@@ -50,11 +50,16 @@ const std::string* DeckKeyword::parameter(std::string_view wanted) const {
   return nullptr;
 }
 
-DeckLines::DeckLines(const std::string& path, std::string_view bytes, Open open)
-    : open_(std::move(open)), files_{path}, sources_{{0, 0, bytes}} {}
+std::string DeckKeyword::written(const Parameter& given) const {
+  if (!quotable) return "a parameter";
+  return given.first + (given.second.empty() ? "" : "=" + given.second);
+}
+
+DeckLines::DeckLines(const SourceFile& source, std::string_view bytes, Open open)
+    : open_(std::move(open)), files_{source}, sources_{{0, 0, bytes}} {}
 
 void DeckLines::fail(DeckPlace place, const std::string& message) const {
-  throw InputError(files_[place.file] + ": line " + std::to_string(place.line) + ": " + message);
+  throw InputError(files_[place.file].path + ": line " + std::to_string(place.line) + ": " + message);
 }
 
 bool DeckLines::peek() {
@@ -65,6 +70,7 @@ bool DeckLines::peek() {
       continue;
     }
     ++source.line;
+    before_ = source.rest;
     line_ = trimmed(take_line(source.rest));
     place_ = {source.file, source.line};
     have_ = !line_.empty() && !line_.starts_with("**");
@@ -72,14 +78,22 @@ bool DeckLines::peek() {
   return have_;
 }
 
+void DeckLines::put_back() {
+  if (!std::exchange(have_, false)) return;
+  sources_.back().rest = before_;
+  --sources_.back().line;
+}
+
 void DeckLines::take_keyword_line(DeckKeyword& keyword) {
   keyword = {};
   keyword.place = place_;
+  keyword.quotable = files_[place_.file].shown;
   std::string_view rest = line_.substr(1);
   const std::string_view name = take_field(rest);
   keyword.name = upper_case(without_blanks(name));
-  keyword.shown = "*" + std::string(name);
-  if (name.empty() || name.size() > 60) fail(place_, "expected a keyword, got " + in_quotes(line_));
+  if (name.empty() || name.size() > 60) fail(place_, "expected a keyword, got " + quoted(place_, line_));
+  const bool known = deck_rule(keyword.name) != nullptr || is_harmless(keyword.name);
+  keyword.shown = keyword.quotable || known ? "*" + std::string(name) : "this keyword";
   for (bool more = true; more;) {
     more = line_.back() == ',';
     while (!trimmed(rest).empty()) {
@@ -91,17 +105,21 @@ void DeckLines::take_keyword_line(DeckKeyword& keyword) {
       keyword.parameters.emplace_back(upper_case(without_blanks(field.substr(0, equals))), unquoted(value));
     }
     have_ = false;
-    if (!more || !peek()) break;
-    if (line_.front() == '*') break;
+    if (!more || !peek() || !continues_parameters(keyword.name, line_)) break;
     rest = line_;
   }
 }
 
 void DeckLines::include(const DeckKeyword& keyword) {
+  for (const std::string& fault : parameter_faults(keyword))
+    fail(keyword.place, keyword.shown + ": " + fault);
   const std::string* input = keyword.parameter("INPUT");
-  if (input == nullptr || input->empty()) fail(keyword.place, keyword.shown + ": expected INPUT=<file>");
-  const auto folder = std::filesystem::path(files_[keyword.place.file]).parent_path();
-  const std::string path = (folder / *input).string();
+  if (input == nullptr) fail(keyword.place, keyword.shown + ": expected INPUT=<file>");
+  put_back();
+  const auto folder_of = [&](std::int32_t file) {
+    return std::filesystem::path(files_[file].path).parent_path();
+  };
+  const std::string path = (folder_of(keyword.place.file) / *input).string();
   if (sources_.size() >= deepest_include)
     fail(keyword.place,
          "files that include each other more than " + std::to_string(deepest_include) + " deep");
@@ -113,21 +131,18 @@ void DeckLines::include(const DeckKeyword& keyword) {
   } catch (const InputError& error) {
     fail(keyword.place, error.what());
   }
-  files_.push_back(path);
+  SourceFile included = source_file(path, folder_of(0));
+  included.shown = included.shown && files_[0].shown;
+  files_.push_back(included);
   sources_.push_back({static_cast<std::int32_t>(files_.size()) - 1, 0, bytes});
 }
 
 std::optional<DeckKeyword> DeckLines::keyword() {
   while (peek()) {
-    if (line_.front() != '*') {
-      have_ = false;
-      continue;
-    }
+    if (line_.front() != '*') fail(place_, "expected a keyword, got " + quoted(place_, line_));
     DeckKeyword keyword;
     take_keyword_line(keyword);
     if (keyword.name != "INCLUDE") return keyword;
-    // The line behind has been looked at already where *INCLUDE goes on over several lines.
-    if (have_) fail(keyword.place, keyword.shown + ": expected on one line");
     include(keyword);
   }
   return std::nullopt;
@@ -136,10 +151,10 @@ std::optional<DeckKeyword> DeckLines::keyword() {
 bool DeckLines::data(DeckRow& row) {
   while (peek()) {
     if (line_.front() == '*') {
-      if (!upper_case(without_blanks(line_.substr(0, 30))).starts_with("*INCLUDE")) return false;
+      const std::string_view name = line_.substr(1, line_.find(',') - 1);
+      if (upper_case(without_blanks(name)) != "INCLUDE") return false;
       DeckKeyword keyword;
       take_keyword_line(keyword);
-      if (have_) fail(keyword.place, keyword.shown + ": expected on one line");
       include(keyword);
       continue;
     }

@@ -77,12 +77,12 @@ void tell_what_is_left_out(Deck& deck) {
     if (is_harmless(block.keyword.name)) continue;
     if (++count <= most)
       list += (list.empty() ? "" : ", ") + block.keyword.shown + " (" +
-              (block.keyword.place.file == 0 ? "" : deck.files[block.keyword.place.file] + ", ") + "line " +
-              std::to_string(block.keyword.place.line) + ")";
+              (block.keyword.place.file == 0 ? "" : deck.files[block.keyword.place.file].path + ", ") +
+              "line " + std::to_string(block.keyword.place.line) + ")";
   }
   if (count > most) list += " and " + std::to_string(count - most) + " more";
   if (count > 0)
-    deck.warnings.push_back(deck.files[0] + ": the mesh is read, and left out what is none: " + list +
+    deck.warnings.push_back(deck.files[0].path + ": the mesh is read, and left out what is none: " + list +
                             "; kacanov convert makes a case of a whole deck");
 }
 
@@ -122,7 +122,7 @@ Mesh mesh_of(Deck deck) {
   for (const DeckSet& set : deck.node_sets)
     if (!set.internal) add_points(set.members, group_name(deck.node_sets, set, deck.instance));
   grouping.finish();
-  Mesh mesh = make_mesh(deck.files[0], std::move(content));
+  Mesh mesh = make_mesh(deck.files[0].path, std::move(content));
   mesh.plane = deck.plane;
   mesh.warnings.insert(mesh.warnings.end(), deck.warnings.begin(), deck.warnings.end());
   return mesh;

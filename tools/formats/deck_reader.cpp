@@ -8,27 +8,30 @@
 #include "formats/deck.hpp"
 #include "formats/deck_elements.hpp"
 #include "formats/deck_sets.hpp"
-#include "formats/gmsh_cursor.hpp"
 #include "formats/mapped_file.hpp"
+#include "formats/text_bytes.hpp"
 
 namespace kacanov {
 namespace {
 
 /// Keywords that make nodes and elements of others, or move them.
 constexpr std::array generators{"NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "SUBMODEL"};
+constexpr std::array brackets{"PART",     "ENDPART",     "INSTANCE", "ENDINSTANCE",
+                              "ASSEMBLY", "ENDASSEMBLY", "ENDSTEP"};
 /// No element that is known has more nodes, with its number.
 constexpr std::size_t most_fields = most_nodes + 1;
 
 class Reader {
  public:
-  Reader(const std::string& path, std::string_view bytes, DeckLines::Open open)
-      : in_(path, bytes, std::move(open)) {}
+  Reader(const SourceFile& source, std::string_view bytes, DeckLines::Open open)
+      : in_(source, bytes, std::move(open)) {}
 
   Deck read() {
     while (const auto keyword = in_.keyword()) take(*keyword);
     deck_.files = in_.files();
-    if (deck_.content.node_tags.empty()) throw InputError(in_.files()[0] + ": expected nodes, *NODE");
-    if (deck_.element_tags.empty()) throw InputError(in_.files()[0] + ": expected elements, *ELEMENT");
+    const std::string& path = deck_.files[0].path;
+    if (deck_.content.node_tags.empty()) throw InputError(path + ": expected nodes, *NODE");
+    if (deck_.element_tags.empty()) throw InputError(path + ": expected elements, *ELEMENT");
     number_nodes();
     place_elements();
     resolve_sets(deck_, std::move(sets_));
@@ -36,36 +39,52 @@ class Reader {
   }
 
  private:
-  struct ElementBlock {
-    std::size_t first;  ///< of the deck's elements
-    std::size_t cell;
-  };
-
   void take(const DeckKeyword& keyword) {
     const std::string& name = keyword.name;
     if (name == "NODE") {
+      check(keyword);
       take_nodes(keyword);
     } else if (name == "ELEMENT") {
+      check(keyword);
       take_elements(keyword);
     } else if (name == "HEADING") {
+      check(keyword);
       take_title();
-    } else if (name == "PART" || name == "INSTANCE") {
-      take_part(keyword);
-    } else if (name == "ENDPART") {
-      in_part_ = false;
+    } else if (std::find(brackets.begin(), brackets.end(), name) != brackets.end()) {
+      check(keyword);
+      take_bracket(keyword);
     } else if (std::find(generators.begin(), generators.end(), name) != generators.end()) {
       in_.fail(keyword.place, keyword.shown +
                                   " makes or moves nodes or elements, which is not read: write them "
                                   "out, as with a mesh generator or Abaqus/CAE");
     } else {
-      DeckBlock block{keyword, {}, in_part_};
-      for (DeckRow row; in_.data(row);) block.rows.push_back(row);
-      const bool set = name == "NSET" || name == "ELSET" || name == "SURFACE";
-      if (set)
-        sets_.push_back({std::move(block), 0, 0});
-      else if (!name.starts_with("END") && name != "ASSEMBLY")
-        deck_.blocks.push_back(std::move(block));
+      take_block(keyword);
     }
+  }
+
+  /// Where a keyword that is read for the mesh stands, and its parameters.
+  void check(const DeckKeyword& keyword) const {
+    std::vector<std::string> faults = parameter_faults(keyword);
+    if (const std::string fault = level_fault(*deck_rule(keyword.name), level_); !fault.empty())
+      faults.insert(faults.begin(), fault);
+    if (!faults.empty()) in_.fail(keyword.place, keyword.shown + ": " + faults[0]);
+  }
+
+  void take_block(const DeckKeyword& keyword) {
+    const std::string& name = keyword.name;
+    const bool set = name == "NSET" || name == "ELSET" || name == "SURFACE";
+    if (set) check(keyword);
+    if (name == "STEP") {
+      if (in_part_) in_.fail(keyword.place, keyword.shown + ": expected *END PART before it");
+      level_ = DeckLevel::step;
+      deck_.open_step = keyword.place;
+    }
+    DeckBlock block{keyword, {}, in_part_, level_};
+    for (DeckRow row; in_.data(row);) block.rows.push_back(row);
+    if (set)
+      sets_.push_back({std::move(block), 0, 0});
+    else
+      deck_.blocks.push_back(std::move(block));
   }
 
   void take_title() {
@@ -74,34 +93,52 @@ class Reader {
         deck_.title += (deck_.title.empty() ? "" : " ") + std::string(field);
   }
 
-  /// Abaqus/CAE writes a body as one part of which there is one instance, where it was drawn.
-  void take_part(const DeckKeyword& keyword) {
-    const bool part = keyword.name == "PART";
-    if (std::exchange(part ? have_part_ : have_instance_, true))
-      in_.fail(keyword.place,
-               "a second " + keyword.shown + ": a deck of one body is read, which is one part");
-    in_part_ = part;
-    if (part) return;
-    DeckRow row;
-    if (in_.data(row))
-      in_.fail(row.place, keyword.shown + " moves the part, which is not read: place it where it belongs");
-    if (const std::string* name = keyword.parameter("NAME")) deck_.instance = upper_case(*name);
+  /// Begins or ends a part, its instance or the assembly, or ends a step. Abaqus/CAE writes each body as one
+  /// part with one instance, where it was drawn.
+  void take_bracket(const DeckKeyword& keyword) {
+    const std::string& name = keyword.name;
+    if (DeckRow row; in_.data(row))
+      in_.fail(row.place,
+               name == "INSTANCE"
+                   ? keyword.shown + " moves the part, which is not read: place it where it belongs"
+                   : keyword.shown + " has no lines of data, got " + in_.quoted(row.place, row.fields[0]));
+    if (name == "ENDSTEP") {
+      if (level_ != DeckLevel::step) in_.fail(keyword.place, keyword.shown + ": it ends no *STEP");
+      level_ = DeckLevel::behind;
+      deck_.open_step.reset();
+    } else if (name == "ASSEMBLY" || name == "PART" || name == "INSTANCE") {
+      if (in_part_) in_.fail(keyword.place, keyword.shown + ": expected *END PART before it");
+    }
+    if (name == "PART" || name == "INSTANCE") {
+      const bool part = name == "PART";
+      if (std::exchange(part ? have_part_ : have_instance_, true))
+        in_.fail(keyword.place,
+                 "a second " + keyword.shown + ": a deck of one body is read, which is one part");
+      in_part_ = part;
+      const std::string *own = keyword.parameter("NAME"), *of = keyword.parameter("PART");
+      if (!part && of != nullptr && upper_case(*of) != part_)
+        in_.fail(keyword.place, keyword.shown + ": there is no part " + in_.quoted(keyword.place, *of));
+      if (own != nullptr) (part ? part_ : deck_.instance) = upper_case(part ? *own : printable(*own));
+    } else if (name == "ENDPART") {
+      in_part_ = false;
+    }
+  }
+
+  /// The deck so far, which reads numbers of a row and names its place.
+  const Deck& deck() {
+    if (deck_.files.size() != in_.files().size()) deck_.files = in_.files();  // one more is included
+    return deck_;
   }
 
   std::int64_t number(const DeckRow& row, std::size_t field, const char* what) {
-    if (deck_.files.size() != in_.files().size()) deck_.files = in_.files();  // one more is included
-    return deck_integer(deck_, row, field, what);
+    return deck_integer(deck(), row, field, what);
   }
 
   void take_nodes(const DeckKeyword& keyword) {
-    for (const char* moves : {"SYSTEM", "INPUT"})
-      if (keyword.parameter(moves) != nullptr)
-        in_.fail(keyword.place,
-                 keyword.shown + ", " + moves + ": expected cartesian coordinates in the deck");
     MeshContent& content = deck_.content;
     const std::size_t first = content.node_tags.size();
     for (DeckRow row; in_.data(row);) {
-      if (row.fields.size() > 7) in_.fail(row.place, "expected the number of a node and three coordinates");
+      deck().expect_fields(row, 4, "the number of a node and three coordinates");
       if (content.node_tags.size() >= std::numeric_limits<std::int32_t>::max() / 3)
         in_.fail(row.place, "more nodes than 32-bit indices can number");
       const std::int64_t tag = number(row, 0, "the number of a node");
@@ -114,7 +151,7 @@ class Reader {
       node_places_.push_back(row.place);
     }
     if (keyword.parameter("NSET") != nullptr)
-      sets_.push_back({{keyword, {}, in_part_}, first, content.node_tags.size()});
+      sets_.push_back({{keyword, {}, in_part_, level_}, first, content.node_tags.size()});
   }
 
   void take_elements(const DeckKeyword& keyword) {
@@ -123,7 +160,7 @@ class Reader {
     const std::string upper = upper_case(*type);
     const auto known = deck_element_type(upper);
     if (!known)
-      in_.fail(keyword.place, "elements of the type " + in_quotes(*type) +
+      in_.fail(keyword.place, "elements of the type " + in_.quoted(keyword.place, *type) +
                                   " are not supported: " + std::string(why_not_known(upper)));
     std::size_t cell = 0;
     while (cells()[cell].name != known->cell) ++cell;
@@ -149,7 +186,7 @@ class Reader {
     }
     types_.push_back({*known, upper, keyword.place, cell});
     if (keyword.parameter("ELSET") != nullptr)
-      sets_.push_back({{keyword, {}, in_part_}, first, deck_.element_tags.size()});
+      sets_.push_back({{keyword, {}, in_part_, level_}, first, deck_.element_tags.size()});
   }
 
   void add_element(DeckPlace place, std::size_t cell, std::span<const std::int64_t> values) {
@@ -236,23 +273,28 @@ class Reader {
   std::vector<DeckPlace> node_places_, element_places_;
   std::vector<std::int64_t> raw_nodes_;
   bool in_part_ = false, have_part_ = false, have_instance_ = false;
+  std::string part_;  ///< its name in upper case
+  DeckLevel level_ = DeckLevel::model;
 };
 
 }  // namespace
 
-Deck read_deck(const std::string& path) {
+Deck read_deck(const SourceFile& source) {
   std::vector<std::shared_ptr<const MappedFile>> mapped;
+  std::vector<std::shared_ptr<const void>> bytes;
   const auto open = [&](const std::string& name) {
     mapped.push_back(std::make_shared<const MappedFile>(name));
-    return mapped.back()->bytes();
+    const auto text = std::make_shared<const TextBytes>(name, mapped.back()->bytes());
+    bytes.insert(bytes.end(), {mapped.back(), text});
+    return text->text();
   };
   const auto check = [&] {
     for (const auto& file : mapped) file->check_unchanged();
   };
   try {
-    Deck deck = Reader(path, open(path), open).read();
+    Deck deck = Reader(source, open(source.path), open).read();
     check();
-    deck.mapped = std::move(mapped);
+    deck.bytes = std::move(bytes);
     return deck;
   } catch (const InputError&) {
     check();
@@ -260,12 +302,14 @@ Deck read_deck(const std::string& path) {
   }
 }
 
-Deck read_deck(const std::string& name, std::string_view bytes) {
-  return Reader(name, bytes,
-                [](const std::string&) -> std::string_view {
-                  throw InputError("files cannot be included here");
-                })
-      .read();
+Deck read_deck(const SourceFile& name, std::string_view bytes) {
+  const auto text = std::make_shared<const TextBytes>(name.path, bytes);
+  const auto open = [](const std::string&) -> std::string_view {
+    throw InputError("files cannot be included here");
+  };
+  Deck deck = Reader(name, text->text(), open).read();
+  deck.bytes.push_back(text);
+  return deck;
 }
 
 }  // namespace kacanov

@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "formats/deck_elements.hpp"
-#include "formats/gmsh_cursor.hpp"
 #include "formats/printable.hpp"
 
 namespace kacanov {
@@ -50,12 +49,13 @@ class Resolver {
     const std::string* name = block.keyword.parameter(parameter);
     if (name == nullptr || name->empty())
       deck_.fail(block.keyword.place, block.keyword.shown + ": expected " + parameter + "=<name>");
-    if (printable(*name) != *name || name->find('\n') != std::string::npos ||
-        name->find('"') != std::string::npos)
-      deck_.fail(block.keyword.place, block.keyword.shown + ": the name " + in_quotes(*name) +
-                                          " has quotes or control characters, or is no UTF-8");
-    return *name;
+    if (name->find('"') != std::string::npos)
+      deck_.fail(block.keyword.place, block.keyword.shown + ": the name " +
+                                          quoted(block.keyword.place, *name) + " has quotes in it");
+    return printable(*name);
   }
+
+  std::string quoted(DeckPlace place, std::string_view word) const { return deck_.quoted(place, word); }
 
   template <typename Set>
   static Set& add(std::vector<Set>& sets, const std::string& name, const DeckBlock& block) {
@@ -69,9 +69,20 @@ class Resolver {
     return set;
   }
 
+  /// There is one instance of the part, if any.
+  void check_instance(const DeckKeyword& keyword) const {
+    const std::string* name = keyword.parameter("INSTANCE");
+    if (name != nullptr && upper_case(printable(*name)) != deck_.instance)
+      deck_.fail(keyword.place, keyword.shown + ": there is no instance " + quoted(keyword.place, *name));
+  }
+
   Members members(const DeckBlock& block, bool nodes) {
     Members found;
-    if (const std::string* elements = block.keyword.parameter("ELSET"); nodes && elements != nullptr)
+    check_instance(block.keyword);
+    const std::string* elements = nodes ? block.keyword.parameter("ELSET") : nullptr;
+    if (elements != nullptr && !block.rows.empty())
+      deck_.fail(block.rows[0].place, "expected no lines of data beside ELSET=, whose nodes are the set");
+    if (elements != nullptr)
       for (const std::int32_t e : deck_.elements_of(*elements, block.keyword.place, block.in_part)) {
         const Deck::Element& element = deck_.elements[e];
         const std::size_t count = cells()[element.cell].nodes;
@@ -100,6 +111,7 @@ class Resolver {
 
   /// Numbers that a range skips over are not asked for, but some have to be there.
   void add_range(const DeckRow& row, bool nodes, Members& found) {
+    deck_.expect_fields(row, 3, "the first and last number of a range, and its step");
     const std::int64_t first = deck_integer(deck_, row, 0, "the first number of a range"),
                        last = deck_integer(deck_, row, 1, "the last number of a range"),
                        step = row.fields.size() > 2 && !row.fields[2].empty()
@@ -126,13 +138,17 @@ class Resolver {
   void take_surface(const DeckBlock& block) {
     const std::string* type = block.keyword.parameter("TYPE");
     const std::string kind = type == nullptr ? "ELEMENT" : upper_case(*type);
-    if (kind != "ELEMENT" && kind != "NODE")
-      deck_.fail(block.keyword.place,
-                 block.keyword.shown + ": expected TYPE=ELEMENT or TYPE=NODE, got " + in_quotes(*type));
+    const std::size_t before = deck_.surfaces.size();
     DeckSurface& surface = add(deck_.surfaces, name_of(block, "NAME"), block);
+    if (deck_.surfaces.size() == before)
+      deck_.fail(block.keyword.place, "a second surface " + quoted(block.keyword.place, surface.name) +
+                                          ": expected all of it in one place");
     for (const DeckRow& row : block.rows) {
       if (row.fields[0].empty()) deck_.fail(row.place, "expected a set or a number");
       if (kind == "NODE") {
+        // The area that belongs to each node, which only contact asks for.
+        deck_.expect_fields(row, 2, "a node or set and an area");
+        if (row.fields.size() > 1 && !row.fields[1].empty()) deck_number(deck_, row, 1, "an area");
         const Members some = deck_.nodes_of(row.fields[0], row.place, block.in_part);
         surface.nodes.insert(surface.nodes.end(), some.begin(), some.end());
         continue;
@@ -143,10 +159,11 @@ class Resolver {
   }
 
   void add_sides(const DeckRow& row, bool in_part, DeckSurface& surface) {
+    deck_.expect_fields(row, 2, "a set or element and a side");
     const std::string label = row.fields.size() > 1 ? upper_case(row.fields[1]) : std::string();
     if (label.size() != 2 || label[0] != 'S' || label[1] < '1' || label[1] > '6')
       deck_.fail(row.place, "expected a set or element and a side S1 to S6, got " +
-                                (label.empty() ? "none" : in_quotes(label)) +
+                                (label.empty() ? "none" : quoted(row.place, label)) +
                                 ": whole sets and sides of shells are not read");
     for (const std::int32_t element : deck_.elements_of(row.fields[0], row.place, in_part)) {
       const DeckSide side{element, label[1] - '1'};

@@ -13,6 +13,7 @@ namespace kacanov {
 void DeckTemperatures::take(const DeckBlock& block, std::vector<double>& of_node) const {
   of_node.resize(deck.content.node_tags.size(), std::numeric_limits<double>::quiet_NaN());
   for (const DeckRow& row : block.rows) {
+    deck.expect_fields(row, 2, "a node or set and a temperature");
     const double value = deck_number(deck, row, 1, "a temperature");
     for (const std::int32_t node : deck.nodes_of(row.fields[0], row.place, block.in_part))
       of_node[node] = value;

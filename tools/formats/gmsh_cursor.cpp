@@ -9,7 +9,7 @@
 #include <limits>
 
 #include <kacanov/error.hpp>
-#include "formats/printable.hpp"
+#include "formats/words.hpp"
 
 namespace kacanov {
 namespace {
@@ -21,16 +21,21 @@ std::string_view without_carriage_return(std::string_view line) {
   return line;
 }
 
+/// Whether the head of the file tells that numbers are bytes.
+bool is_binary(std::string_view bytes) {
+  constexpr std::string_view blanks = " \t\r\n";
+  std::string_view rest = bytes.substr(std::min(bytes.find("$MeshFormat"), bytes.size()));
+  for (int word = 0; word < 2; ++word) take_word(rest, blanks);
+  return take_word(rest, blanks) == "1";
+}
+
 }  // namespace
 
-std::string in_quotes(std::string_view text) {
-  constexpr std::size_t longest = 40;
-  std::string result = "\"";
-  for (const char c : text.substr(0, longest)) {
-    const auto code = static_cast<unsigned char>(c);
-    result += code >= 0x20 && code < 0x7f ? c : '?';
-  }
-  return result + (text.size() > longest ? "...\"" : "\"");
+GmshCursor::GmshCursor(SourceFile source, std::string_view data)
+    : source_(std::move(source)), data_(text_start(source_.path, data)) {
+  if (is_binary(data_)) return;
+  text_ = std::make_unique<const TextBytes>(source_.path, data_);
+  data_ = text_->text();
 }
 
 void GmshCursor::fail_at(std::size_t position, const std::string& message) const {
@@ -40,7 +45,7 @@ void GmshCursor::fail_at(std::size_t position, const std::string& message) const
               : "line " + std::to_string(1 + std::count(data_.begin(),
                                                         data_.begin() + static_cast<std::ptrdiff_t>(position),
                                                         '\n'));
-  throw InputError(path_ + ": " + place + ": " + message);
+  throw InputError(source_.path + ": " + place + ": " + message);
 }
 
 void GmshCursor::fail(const std::string& message) const { fail_at(last_, message); }
@@ -51,7 +56,7 @@ void GmshCursor::fail_word(const char* expected, const char* what) const {
   const std::string_view rest = data_.substr(last_);
   if (rest[0] == '\n' || rest[0] == '\r') fail(start + "but the line ends");
   const auto end = std::find_if(rest.begin(), rest.end(), is_space);
-  fail(start + "got " + in_quotes(rest.substr(0, end - rest.begin())));
+  fail(start + "got " + quoted(rest.substr(0, end - rest.begin())));
 }
 
 std::string_view GmshCursor::line() {
@@ -100,7 +105,7 @@ double GmshCursor::text_real(const char* what) {
 void GmshCursor::text_end_of_line() {
   skip_blanks();
   const std::string_view rest = line();
-  if (!rest.empty()) fail("expected the end of the line, got " + in_quotes(rest));
+  if (!rest.empty()) fail("expected the end of the line, got " + quoted(rest));
 }
 
 std::string_view GmshCursor::text_rest() {
@@ -111,7 +116,7 @@ std::string_view GmshCursor::text_rest() {
 std::string_view GmshCursor::text_name(const std::string& of) {
   const std::string_view rest = text_rest();
   if (rest.size() < 2 || rest.front() != '"' || rest.back() != '"')
-    fail("expected the name of a physical group in double quotes, got " + in_quotes(rest));
+    fail("expected the name of a physical group in double quotes, got " + quoted(rest));
   const std::string_view name = rest.substr(1, rest.size() - 2);
   if (printable(name) != name) fail(of + ": its name is no UTF-8, or has control characters");
   return name;
@@ -148,7 +153,7 @@ void GmshCursor::end_section(std::string_view section) {
   const std::string expected = "$End" + std::string(section);
   if (!skip_blank_lines()) fail("the file ends where " + expected + " was expected");
   const std::string_view found = line();
-  if (found != expected) fail("expected " + expected + ", got " + in_quotes(found));
+  if (found != expected) fail("expected " + expected + ", got " + quoted(found));
 }
 
 void GmshCursor::skip_section(std::string_view section) {

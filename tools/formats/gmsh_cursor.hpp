@@ -5,8 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <string>
 #include <string_view>
+
+#include "formats/source_file.hpp"
+#include "formats/text_bytes.hpp"
 
 namespace kacanov {
 
@@ -15,7 +19,7 @@ namespace kacanov {
 /// or the byte (binary) at which something else was found.
 class GmshCursor {
  public:
-  GmshCursor(std::string path, std::string_view data) : path_(std::move(path)), data_(data) {}
+  GmshCursor(SourceFile source, std::string_view data);
 
   void set_binary() noexcept { binary_ = true; }
   bool binary() const noexcept { return binary_; }
@@ -51,6 +55,8 @@ class GmshCursor {
   /// Moves behind the next line `$End<section>`, wherever it is.
   void skip_section(std::string_view section);
 
+  /// A word of the file for a message.
+  std::string quoted(std::string_view word) const { return source_.quoted(word); }
   /// Throws InputError at the place of the value read last.
   [[noreturn]] void fail(const std::string& message) const;
   [[noreturn]] void fail_at(std::size_t position, const std::string& message) const;
@@ -73,14 +79,12 @@ class GmshCursor {
   [[noreturn]] void fail_word(const char* expected, const char* what) const;
   void finish_word(const char* end, const char* expected, const char* what);
 
-  std::string path_;
+  SourceFile source_;
+  std::unique_ptr<const TextBytes> text_;  // of an ASCII file
   std::string_view data_;
   std::size_t position_ = 0;
   std::size_t last_ = 0;  // where the value read last begins
   bool binary_ = false;
 };
-
-/// `text` shortened and freed of control characters, in quotes, for a message.
-std::string in_quotes(std::string_view text);
 
 }  // namespace kacanov

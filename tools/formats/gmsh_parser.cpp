@@ -20,14 +20,14 @@ constexpr std::int64_t most_groups = 256;
 
 class Parser {
  public:
-  Parser(const std::string& path, std::string_view bytes) : in_(path, bytes) {}
+  Parser(const SourceFile& source, std::string_view bytes) : in_(source, bytes) {}
 
   MeshContent parse() {
     format();
     while (in_.skip_blank_lines()) {
       const std::string_view line = in_.line();
       if (line.empty() || line[0] != '$')
-        in_.fail("expected a section such as $Nodes, got " + in_quotes(line));
+        in_.fail("expected a section such as $Nodes, got " + in_.quoted(line));
       section(std::string(line.substr(1)));
     }
     if (!have_nodes_) in_.fail("the file ends without a $Nodes section");
@@ -85,7 +85,7 @@ class Parser {
       if (!have_nodes_) in_.fail("$Elements comes before $Nodes");
       new_format_ ? element_blocks() : element_list();
     } else if (name.starts_with("End")) {
-      in_.fail(in_quotes("$" + name) + " without its beginning");
+      in_.fail(in_.quoted("$" + name) + " without its beginning");
     } else {
       in_.skip_section(name);
       return;
@@ -391,8 +391,8 @@ class Parser {
 
 }  // namespace
 
-MeshContent parse_gmsh(const std::string& path, std::string_view bytes) {
-  return Parser(path, bytes).parse();
+MeshContent parse_gmsh(const SourceFile& source, std::string_view bytes) {
+  return Parser(source, bytes).parse();
 }
 
 }  // namespace kacanov

@@ -10,10 +10,10 @@
 namespace kacanov {
 namespace {
 
-MeshContent parse_file(const std::string& path) {
-  const MappedFile file(path);
+MeshContent parse_file(const SourceFile& source) {
+  const MappedFile file(source.path);
   try {
-    MeshContent content = parse_gmsh(path, file.bytes());
+    MeshContent content = parse_gmsh(source, file.bytes());
     file.check_unchanged();
     return content;
   } catch (const InputError&) {
@@ -24,10 +24,10 @@ MeshContent parse_file(const std::string& path) {
 
 }  // namespace
 
-Mesh read_gmsh(const std::string& path) { return make_mesh(path, parse_file(path)); }
+Mesh read_gmsh(const SourceFile& source) { return make_mesh(source.path, parse_file(source)); }
 
-Mesh read_gmsh(const std::string& path, std::string_view bytes) {
-  return make_mesh(path, parse_gmsh(path, bytes));
+Mesh read_gmsh(const SourceFile& name, std::string_view bytes) {
+  return make_mesh(name.path, parse_gmsh(name, bytes));
 }
 
 }  // namespace kacanov

@@ -2,10 +2,10 @@
 // Reads a Gmsh mesh: the elements of highest dimension are the body, physical groups its named parts.
 #pragma once
 
-#include <string>
 #include <string_view>
 
 #include <kacanov/mesh.hpp>
+#include "formats/source_file.hpp"
 
 namespace kacanov {
 
@@ -15,8 +15,8 @@ namespace kacanov {
 /// lower ones node groups; a group without a name is named by its number. Elements are not yet checked: see
 /// check_mesh. Throws InputError: `path: line N: ...` (ASCII), `path: byte N: ...` (binary), or naming the
 /// element or node.
-Mesh read_gmsh(const std::string& path);
+Mesh read_gmsh(const SourceFile& source);
 /// The same from the bytes of a file; `name` takes the place of its path in messages.
-Mesh read_gmsh(const std::string& name, std::string_view bytes);
+Mesh read_gmsh(const SourceFile& name, std::string_view bytes);
 
 }  // namespace kacanov

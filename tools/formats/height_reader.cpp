@@ -5,22 +5,23 @@
 #include <charconv>
 
 #include <kacanov/error.hpp>
-#include "formats/gmsh_cursor.hpp"
 #include "formats/mapped_file.hpp"
 #include "formats/png_heights.hpp"
+#include "formats/text_bytes.hpp"
 #include "formats/words.hpp"
 
 namespace kacanov {
 namespace {
 
-[[noreturn]] void too_few(const std::string& path, const NumberGrid& grid) {
-  throw InputError(path + ": expected at least 2 × 2 heights, got " + std::to_string(grid.rows) + " × " +
-                   std::to_string(grid.columns));
+[[noreturn]] void too_few(const SourceFile& source, const NumberGrid& grid) {
+  throw InputError(source.path + ": expected at least 2 × 2 heights, got " + std::to_string(grid.rows) +
+                   " × " + std::to_string(grid.columns));
 }
 
 class CsvText {
  public:
-  CsvText(const std::string& path, std::string_view bytes) : path_(path), rest_(bytes) {}
+  CsvText(const SourceFile& source, std::string_view bytes)
+      : source_(source), bytes_(source.path, bytes), rest_(bytes_.text()) {}
 
   NumberGrid parse() {
     for (int line = 1; !rest_.empty(); ++line) {
@@ -32,7 +33,7 @@ class CsvText {
 
  private:
   [[noreturn]] void fail(int line, const std::string& message) const {
-    throw InputError(path_ + ":" + std::to_string(line) + ": " + message);
+    throw InputError(source_.path + ":" + std::to_string(line) + ": " + message);
   }
 
   void take(std::string_view text, int line) {
@@ -40,7 +41,7 @@ class CsvText {
     std::size_t found = 0;
     for (auto word = take_word(text, between); !word.empty(); word = take_word(text, between)) {
       const auto value = to_number(word);
-      if (!value) fail(line, "expected a number, got " + in_quotes(word));
+      if (!value) fail(line, "expected a number, got " + source_.quoted(word));
       grid_.values.push_back(*value);
       ++found;
     }
@@ -52,7 +53,8 @@ class CsvText {
     ++grid_.rows;
   }
 
-  const std::string& path_;
+  const SourceFile& source_;
+  TextBytes bytes_;
   std::string_view rest_;
   NumberGrid grid_;
 };
@@ -60,7 +62,7 @@ class CsvText {
 /// PBM and PGM, their numbers as text or as bytes.
 class NetPicture {
  public:
-  NetPicture(const std::string& path, std::string_view bytes) : path_(path), bytes_(bytes) {}
+  NetPicture(const SourceFile& source, std::string_view bytes) : source_(source), bytes_(bytes) {}
 
   NumberGrid parse() {
     const char kind = bytes_[1];
@@ -71,7 +73,7 @@ class NetPicture {
     grid.rows = number("the height");
     const auto values = static_cast<std::int64_t>(grid.columns) * static_cast<std::int64_t>(grid.rows);
     // Said of rows without columns before any is looked for: there may be two thousand million.
-    if (grid.rows < 2 || grid.columns < 2) too_few(path_, grid);
+    if (grid.rows < 2 || grid.columns < 2) too_few(source_, grid);
     if (values > NumberGrid::most_values) fail("expected at most 2^28 values, got " + std::to_string(values));
     const int most = bits ? 1 : number("the largest value");
     if (most < 1 || most > 65535)
@@ -90,7 +92,7 @@ class NetPicture {
 
  private:
   [[noreturn]] void fail(const std::string& message) const {
-    throw InputError(path_ + ": byte " + std::to_string(place_) + ": " + message);
+    throw InputError(source_.path + ": byte " + std::to_string(place_) + ": " + message);
   }
   [[noreturn]] void ends_early() const { fail("the file ends before the last value"); }
 
@@ -144,26 +146,26 @@ class NetPicture {
     place_ += width;
   }
 
-  const std::string& path_;
+  const SourceFile& source_;
   std::string_view bytes_;
   std::size_t place_ = 0;
 };
 
 }  // namespace
 
-NumberGrid parse_heights(const std::string& path, std::string_view bytes) {
+NumberGrid parse_heights(const SourceFile& source, std::string_view bytes) {
   const bool picture = bytes.size() > 2 && bytes[0] == 'P' &&
                        std::string_view("1245").find(bytes[1]) != std::string_view::npos;
-  const NumberGrid grid = picture         ? NetPicture(path, bytes).parse()
-                          : is_png(bytes) ? parse_png(path, bytes)
-                                          : CsvText(path, bytes).parse();
-  if (grid.rows < 2 || grid.columns < 2) too_few(path, grid);
+  const NumberGrid grid = picture         ? NetPicture(source, bytes).parse()
+                          : is_png(bytes) ? parse_png(source, bytes)
+                                          : CsvText(source, bytes).parse();
+  if (grid.rows < 2 || grid.columns < 2) too_few(source, grid);
   return grid;
 }
 
-NumberGrid read_heights(const std::string& path) {
-  const MappedFile file(path);
-  NumberGrid grid = parse_heights(path, file.bytes());
+NumberGrid read_heights(const SourceFile& source) {
+  const MappedFile file(source.path);
+  NumberGrid grid = parse_heights(source, file.bytes());
   file.check_unchanged();
   return grid;
 }

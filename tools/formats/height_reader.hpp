@@ -2,10 +2,10 @@
 // Height maps: numbers on a grid from CSV, PBM, PGM and PNG files.
 #pragma once
 
-#include <string>
 #include <string_view>
 
 #include "formats/number_grid.hpp"
+#include "formats/source_file.hpp"
 
 namespace kacanov {
 
@@ -13,7 +13,7 @@ namespace kacanov {
 /// semicolons or blanks; lines that begin with # do not count. PGM (P2, P5): 0 black to 1 white. PBM (P1,
 /// P4): its digits, 1 for black. PNG: as parse_png. Throws InputError naming the line, or the place of the
 /// value, of what is wrong.
-NumberGrid parse_heights(const std::string& path, std::string_view bytes);
-NumberGrid read_heights(const std::string& path);
+NumberGrid parse_heights(const SourceFile& source, std::string_view bytes);
+NumberGrid read_heights(const SourceFile& source);
 
 }  // namespace kacanov

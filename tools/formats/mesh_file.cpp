@@ -8,11 +8,13 @@
 #include "formats/deck.hpp"
 #include "formats/gmsh_reader.hpp"
 #include "formats/mapped_file.hpp"
+#include "formats/text_bytes.hpp"
 #include "formats/vtu_reader.hpp"
 
 namespace kacanov {
 
 MeshFormat format_of(const std::string& path, std::string_view bytes) {
+  bytes = text_start(path, bytes);
   bytes.remove_prefix(std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size()));
   const auto refuse = [&](const char* what) { throw InputError(path + ": " + what); };
   if (path.ends_with(".geo"))
@@ -29,13 +31,13 @@ MeshFormat format_of(const std::string& path, std::string_view bytes) {
   return MeshFormat::gmsh;
 }
 
-Mesh read_mesh(const std::string& path) {
+Mesh read_mesh(const SourceFile& source) {
   {
-    const MappedFile file(path);
-    const MeshFormat format = format_of(path, file.bytes());
+    const MappedFile file(source.path);
+    const MeshFormat format = format_of(source.path, file.bytes());
     if (format == MeshFormat::vtu) {
       try {
-        Mesh mesh = read_vtu(path, file.bytes());
+        Mesh mesh = read_vtu(source, file.bytes());
         file.check_unchanged();
         return mesh;
       } catch (const InputError&) {
@@ -43,13 +45,13 @@ Mesh read_mesh(const std::string& path) {
         throw;
       }
     }
-    if (format == MeshFormat::gmsh) return read_gmsh(path);
+    if (format == MeshFormat::gmsh) return read_gmsh(source);
   }
-  return mesh_of(read_deck(path));
+  return mesh_of(read_deck(source));
 }
 
-Mesh read_mesh(const std::string& name, std::string_view bytes) {
-  const MeshFormat format = format_of(name, bytes);
+Mesh read_mesh(const SourceFile& name, std::string_view bytes) {
+  const MeshFormat format = format_of(name.path, bytes);
   if (format == MeshFormat::vtu) return read_vtu(name, bytes);
   return format == MeshFormat::deck ? mesh_of(read_deck(name, bytes)) : read_gmsh(name, bytes);
 }

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include <kacanov/mesh.hpp>
+#include "formats/source_file.hpp"
 
 namespace kacanov {
 
@@ -17,8 +18,8 @@ MeshFormat format_of(const std::string& path, std::string_view bytes);
 
 /// Reads a Gmsh mesh, the mesh of an Abaqus or CalculiX deck, or the grid of a VTK file (.vtu). Throws
 /// InputError naming the file and the place in it. Elements are not yet checked: see check_mesh.
-Mesh read_mesh(const std::string& path);
+Mesh read_mesh(const SourceFile& source);
 /// The same from the bytes of a file; a deck may include no others then.
-Mesh read_mesh(const std::string& name, std::string_view bytes);
+Mesh read_mesh(const SourceFile& name, std::string_view bytes);
 
 }  // namespace kacanov

@@ -9,9 +9,9 @@
 
 #include <kacanov/cells.hpp>
 #include <kacanov/error.hpp>
-#include "formats/gmsh_cursor.hpp"
 #include "formats/mapped_file.hpp"
 #include "formats/node_index.hpp"
+#include "formats/text_bytes.hpp"
 #include "formats/words.hpp"
 
 namespace kacanov {
@@ -32,8 +32,8 @@ std::vector<std::int32_t> nodes_of_group(const Mesh& mesh, const Group& group) {
 
 class NodeValueText {
  public:
-  NodeValueText(const std::string& path, Mesh& mesh, std::optional<double> otherwise)
-      : path_(path),
+  NodeValueText(const SourceFile& source, Mesh& mesh, std::optional<double> otherwise)
+      : source_(source),
         mesh_(mesh),
         values_(mesh.node_count(), otherwise.value_or(std::numeric_limits<double>::quiet_NaN())) {
     std::vector<std::int64_t> tags = mesh.node_tags;
@@ -46,14 +46,16 @@ class NodeValueText {
   }
 
   std::vector<double> parse(std::string_view bytes) {
-    for (line_ = 1; !bytes.empty(); ++line_) {
-      const std::string_view text = trimmed(take_line(bytes));
+    const TextBytes whole(source_.path, bytes);
+    std::string_view rest = whole.text();
+    for (line_ = 1; !rest.empty(); ++line_) {
+      const std::string_view text = trimmed(take_line(rest));
       if (!text.empty() && !text.starts_with('#') && !text.starts_with("**")) take(text);
     }
     if (taken_ == 0)
-      throw InputError(path_ + ": expected lines of a node or a group and its value, got none");
+      throw InputError(source_.path + ": expected lines of a node or a group and its value, got none");
     if (unknown_ > 0)
-      mesh_.warnings.push_back(path_ + ": " + std::to_string(unknown_) +
+      mesh_.warnings.push_back(source_.path + ": " + std::to_string(unknown_) +
                                " lines are of nodes that are in no element of the mesh; the first is line " +
                                std::to_string(first_unknown_));
     set_middles();
@@ -62,17 +64,17 @@ class NodeValueText {
 
  private:
   [[noreturn]] void fail(const std::string& message) const {
-    throw InputError(path_ + ":" + std::to_string(line_) + ": " + message);
+    throw InputError(source_.path + ":" + std::to_string(line_) + ": " + message);
   }
 
   void take(std::string_view text) {
     std::size_t split = text.find_last_of(",;");
     if (split == std::string_view::npos) split = text.find_last_of(" \t");
     if (split == std::string_view::npos)
-      fail("expected a node or a group and its value, got " + in_quotes(text));
+      fail("expected a node or a group and its value, got " + source_.quoted(text));
     const std::string_view who = trimmed(text.substr(0, split)), word = trimmed(text.substr(split + 1));
     const std::optional<double> value = to_number(word);
-    if (!value) fail("expected a number, got " + in_quotes(word));
+    if (!value) fail("expected a number, got " + source_.quoted(word));
     ++taken_;
     std::int64_t tag = 0;
     const auto read = std::from_chars(who.data(), who.data() + who.size(), tag);
@@ -93,7 +95,7 @@ class NodeValueText {
   void take_group(std::string_view name, double value) {
     const auto found = groups_.find(name);
     if (found == groups_.end())
-      fail("expected the number of a node or the name of a group of the mesh, got " + in_quotes(name));
+      fail("expected the number of a node or the name of a group of the mesh, got " + source_.quoted(name));
     for (const Group* group : found->second)
       for (const std::int32_t node : nodes_of_group(mesh_, *group)) values_[node] = value;
   }
@@ -108,7 +110,7 @@ class NodeValueText {
     }
   }
 
-  const std::string& path_;
+  const SourceFile& source_;
   Mesh& mesh_;
   std::vector<double> values_;
   NodeIndex nodes_;
@@ -118,14 +120,14 @@ class NodeValueText {
 
 }  // namespace
 
-std::vector<double> parse_node_values(const std::string& path, std::string_view bytes,
+std::vector<double> parse_node_values(const SourceFile& source, std::string_view bytes,
                                       std::optional<double> otherwise, Mesh& mesh) {
-  return NodeValueText(path, mesh, otherwise).parse(bytes);
+  return NodeValueText(source, mesh, otherwise).parse(bytes);
 }
 
-std::vector<double> read_node_values(const std::string& path, std::optional<double> otherwise, Mesh& mesh) {
-  const MappedFile file(path);
-  std::vector<double> values = parse_node_values(path, file.bytes(), otherwise, mesh);
+std::vector<double> read_node_values(const SourceFile& source, std::optional<double> otherwise, Mesh& mesh) {
+  const MappedFile file(source.path);
+  std::vector<double> values = parse_node_values(source, file.bytes(), otherwise, mesh);
   file.check_unchanged();
   return values;
 }

@@ -35,12 +35,12 @@ unsigned paeth(unsigned left, unsigned above, unsigned between) {
 
 class PngPicture {
  public:
-  PngPicture(const std::string& path, std::string_view bytes) : path_(path), bytes_(bytes) {}
+  PngPicture(const SourceFile& source, std::string_view bytes) : source_(source), bytes_(bytes) {}
 
   NumberGrid parse() {
     place_ = png_signature.size();
     Chunk chunk = take_chunk();
-    if (chunk.name != "IHDR") fail("expected the chunk IHDR, got " + in_quotes(chunk.name));
+    if (chunk.name != "IHDR") fail("expected the chunk IHDR, got " + source_.quoted(chunk.name));
     take_header(chunk.data);
     std::string packed;
     for (chunk = take_chunk(); chunk.name != "IEND"; chunk = take_chunk())
@@ -58,10 +58,12 @@ class PngPicture {
   };
 
   [[noreturn]] void fail(const std::string& message) const {
-    throw InputError(path_ + ": byte " + std::to_string(place_) + ": " + message);
+    throw InputError(source_.path + ": byte " + std::to_string(place_) + ": " + message);
   }
 
-  [[noreturn]] void refuse(const std::string& message) const { throw InputError(path_ + ": " + message); }
+  [[noreturn]] void refuse(const std::string& message) const {
+    throw InputError(source_.path + ": " + message);
+  }
 
   static std::size_t four_bytes(std::string_view bytes) {
     std::size_t value = 0;
@@ -74,11 +76,12 @@ class PngPicture {
     const std::string_view rest = bytes_.substr(place_);
     if (rest.size() < 12) fail("the file ends before the chunk IEND");
     const std::size_t length = four_bytes(rest);
-    if (rest.size() - 12 < length) fail("the file ends within the chunk " + in_quotes(rest.substr(4, 4)));
+    if (rest.size() - 12 < length)
+      fail("the file ends within the chunk " + source_.quoted(rest.substr(4, 4)));
     const std::string_view checked = rest.substr(4, 4 + length);
     if (crc32_z(0, reinterpret_cast<const Bytef*>(checked.data()), checked.size()) !=
         four_bytes(rest.substr(8 + length)))
-      fail("the chunk " + in_quotes(checked.substr(0, 4)) + " is damaged: its checksum is another");
+      fail("the chunk " + source_.quoted(checked.substr(0, 4)) + " is damaged: its checksum is another");
     place_ += 12 + length;
     return {checked.substr(0, 4), checked.substr(4)};
   }
@@ -142,7 +145,7 @@ class PngPicture {
     }
   }
 
-  const std::string& path_;
+  const SourceFile& source_;
   std::string_view bytes_;
   std::size_t place_ = 0, width_ = 0, height_ = 0, samples_ = 0, bits_ = 0;
   std::vector<unsigned char> rows_;
@@ -152,10 +155,10 @@ class PngPicture {
 
 bool is_png(std::string_view bytes) { return bytes.starts_with("\x89PNG"); }
 
-NumberGrid parse_png(const std::string& path, std::string_view bytes) {
+NumberGrid parse_png(const SourceFile& source, std::string_view bytes) {
   if (!bytes.starts_with(png_signature))
-    throw InputError(path + ": byte 0: expected the eight bytes that a PNG begins with");
-  return PngPicture(path, bytes).parse();
+    throw InputError(source.path + ": byte 0: expected the eight bytes that a PNG begins with");
+  return PngPicture(source, bytes).parse();
 }
 
 }  // namespace kacanov

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Names from files on their way to a terminal: what would move its cursor, or is no UTF-8, is shown by
-// number.
+// Texts from files on their way to a terminal, a page or a message: what would move a cursor, turn the
+// direction of writing, or is no UTF-8, is shown by number.
 #pragma once
 
 #include <string>
@@ -27,16 +27,18 @@ inline std::size_t utf8_length(std::string_view text) {
   return length;
 }
 
-/// Whether a character of three bytes turns the direction of what follows: embeddings, overrides, isolates.
-inline bool turns_direction(std::string_view text) {
+/// Whether a character of three bytes ends a line, or turns the direction of what follows: separators,
+/// embeddings, overrides, isolates.
+inline bool changes_line(std::string_view text) {
   if (text[0] != '\xe2') return false;
   const auto last = static_cast<unsigned char>(text[2]);
-  return (text[1] == '\x80' && last >= 0xaa && last <= 0xae) ||
+  return (text[1] == '\x80' && last >= 0xa8 && last <= 0xae) ||
          (text[1] == '\x81' && last >= 0xa6 && last <= 0xa9);
 }
 
-/// The text with control characters other than line ends, what turns the direction of writing, and bytes that
-/// are no UTF-8, as \x1b.
+/// The text with control characters other than line feeds, what changes_line(), and bytes that are no UTF-8,
+/// as \x1b. Every text from a file goes through here on its way to a terminal, a message, a summary, a page
+/// or XML.
 inline std::string printable(std::string_view text) {
   std::string result;
   while (!text.empty()) {
@@ -45,7 +47,7 @@ inline std::string printable(std::string_view text) {
     // C1 controls, which some terminals obey, are two bytes in UTF-8: 0xc2 0x80 to 0xc2 0x9f.
     const bool control = (first < 0x20 && first != '\n') || first == 0x7f ||
                          (length == 2 && first == 0xc2 && static_cast<unsigned char>(text[1]) < 0xa0) ||
-                         (length == 3 && turns_direction(text));
+                         (length == 3 && changes_line(text));
     if (length > 0 && !control) {
       result += text.substr(0, length);
       text.remove_prefix(length);
@@ -56,6 +58,30 @@ inline std::string printable(std::string_view text) {
     text.remove_prefix(1);
   }
   return result;
+}
+
+/// Whether a text is one line that any terminal and page shows as it is: what printable() leaves alone.
+inline bool is_plain_line(std::string_view text) {
+  return text.find('\n') == std::string_view::npos && printable(text) == text;
+}
+
+/// The text up to its character that begins within `bytes`: no character is cut.
+inline std::string_view shortened(std::string_view text, std::size_t bytes) {
+  if (text.size() <= bytes) return text;
+  // A character has at most four bytes, all but the first of the form 10xxxxxx.
+  for (std::size_t k = 0; k < 3 && bytes > 0 && (text[bytes] & 0xc0) == 0x80; ++k) --bytes;
+  return text.substr(0, bytes);
+}
+
+/// `text` shortened and freed of all but ASCII, in quotes, for a message.
+inline std::string in_quotes(std::string_view text) {
+  constexpr std::size_t longest = 40;
+  std::string result = "\"";
+  for (const char c : text.substr(0, longest)) {
+    const auto code = static_cast<unsigned char>(c);
+    result += code >= 0x20 && code < 0x7f ? c : '?';
+  }
+  return result + (text.size() > longest ? "...\"" : "\"");
 }
 
 }  // namespace kacanov

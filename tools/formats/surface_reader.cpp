@@ -12,6 +12,7 @@
 #include "formats/gmsh_cursor.hpp"
 #include "formats/gmsh_parser.hpp"
 #include "formats/mapped_file.hpp"
+#include "formats/text_bytes.hpp"
 #include "formats/words.hpp"
 
 namespace kacanov {
@@ -22,7 +23,7 @@ constexpr std::size_t stl_header = 84, stl_record = 50;
 /// The words of an ASCII file, line by line.
 class StlText {
  public:
-  StlText(const std::string& path, std::string_view bytes) : path_(path), rest_(bytes) {}
+  StlText(const SourceFile& source, std::string_view bytes) : source_(source), rest_(bytes) {}
 
   /// Words of the next line that has some; empty at the end.
   std::vector<std::string_view> line() {
@@ -36,8 +37,8 @@ class StlText {
     return words;
   }
   [[noreturn]] void fail(const std::string& expected, const std::vector<std::string_view>& got) const {
-    throw InputError(path_ + ":" + std::to_string(number_) + ": expected " + expected + ", got " +
-                     (got.empty() ? "the end of the file" : in_quotes(got[0])));
+    throw InputError(source_.path + ":" + std::to_string(number_) + ": expected " + expected + ", got " +
+                     (got.empty() ? "the end of the file" : source_.quoted(got[0])));
   }
   void expect(std::initializer_list<std::string_view> words) {
     const auto got = line();
@@ -69,7 +70,7 @@ class StlText {
 
  private:
   static constexpr std::string_view blanks = " \t\r";
-  const std::string& path_;
+  const SourceFile& source_;
   std::string_view rest_;
   int number_ = 0;
 };
@@ -80,8 +81,8 @@ void add_triangle(TriangleList& list, const std::array<Vector3, 3>& corners) {
   list.triangles.push_back({first, first + 1, first + 2});
 }
 
-TriangleList parse_ascii_stl(const std::string& path, std::string_view bytes) {
-  StlText in(path, bytes);
+TriangleList parse_ascii_stl(const SourceFile& source, std::string_view bytes) {
+  StlText in(source, bytes);
   TriangleList list;
   for (auto words = in.line(); !words.empty(); words = in.line()) {
     if (!StlText::same(words[0], "solid")) in.fail("\"solid\"", words);
@@ -97,6 +98,11 @@ TriangleList parse_ascii_stl(const std::string& path, std::string_view bytes) {
   return list;
 }
 
+bool is_ascii_stl(std::string_view text) { return text.starts_with("solid") || text.starts_with("SOLID"); }
+
+/// Behind a byte order mark too, which is no reason to look at the rest of what may be a binary STL.
+bool is_gmsh(std::string_view bytes) { return bytes.starts_with("$") || bytes.starts_with("\xef\xbb\xbf$"); }
+
 TriangleList parse_binary_stl(std::string_view bytes, std::size_t count) {
   static_assert(std::endian::native == std::endian::little);
   TriangleList list;
@@ -111,20 +117,20 @@ TriangleList parse_binary_stl(std::string_view bytes, std::size_t count) {
 }
 
 /// The number that a file gives to a group of facets.
-int number_of_group(const std::string& path, const MeshContent& content, const std::string& group) {
+int number_of_group(const SourceFile& source, const MeshContent& content, const std::string& group) {
   std::string known;
   for (const auto& [key, name] : content.names) {
     if (key.first != 2) continue;
     if (name == group || (name.empty() && std::to_string(key.second) == group)) return key.second;
-    known += (known.empty() ? "" : ", ") + in_quotes(name);
+    known += (known.empty() ? "" : ", ") + source.quoted(name);
   }
-  throw InputError(path + ": expected a physical surface of the name " + in_quotes(group) +
+  throw InputError(source.path + ": expected a physical surface of the name " + in_quotes(group) +
                    ", the file has " + (known.empty() ? "none with a name" : known));
 }
 
-TriangleList facets_of_gmsh(const std::string& path, MeshContent content, const std::string& group) {
+TriangleList facets_of_gmsh(const SourceFile& source, MeshContent content, const std::string& group) {
   TriangleList list;
-  const int wanted = group.empty() ? 0 : number_of_group(path, content, group);
+  const int wanted = group.empty() ? 0 : number_of_group(source, content, group);
   for (std::size_t n = 0; n < content.coordinates.size(); n += 3)
     list.points.push_back({content.coordinates[n], content.coordinates[n + 1], content.coordinates[n + 2]});
   for (std::size_t c = 0; c < cells().size(); ++c) {
@@ -145,14 +151,14 @@ TriangleList facets_of_gmsh(const std::string& path, MeshContent content, const 
     }
   }
   if (list.triangles.empty())
-    throw InputError(path + ": expected facets of an obstacle, the file has " +
+    throw InputError(source.path + ": expected facets of an obstacle, the file has " +
                      (group.empty() ? "none" : "none in the group " + in_quotes(group)));
   return list;
 }
 
 }  // namespace
 
-TriangleList parse_stl(const std::string& path, std::string_view bytes) {
+TriangleList parse_stl(const SourceFile& source, std::string_view bytes) {
   // Binary files may begin with "solid" too; their length is what tells.
   std::uint32_t count = 0;
   if (bytes.size() >= stl_header) std::memcpy(&count, bytes.data() + stl_header - sizeof count, sizeof count);
@@ -160,35 +166,37 @@ TriangleList parse_stl(const std::string& path, std::string_view bytes) {
   TriangleList list;
   if (bytes.size() >= stl_header && bytes.size() == expected) {
     list = parse_binary_stl(bytes, count);
-  } else if (bytes.starts_with("solid") || bytes.starts_with("SOLID")) {
-    list = parse_ascii_stl(path, bytes);
+  } else if (const TextBytes text(source.path, bytes); is_ascii_stl(text.text())) {
+    list = parse_ascii_stl(source, text.text());
   } else {
     throw InputError(
-        path + ": expected an STL or Gmsh file: it begins neither with \"solid\" nor with \"$MeshFormat\"" +
+        source.path +
+        ": expected an STL or Gmsh file: it begins neither with \"solid\" nor with \"$MeshFormat\"" +
         (bytes.size() < stl_header
              ? ""
              : ", and a binary STL of " + std::to_string(count) + " triangles has " +
                    std::to_string(expected) + " bytes where this one has " + std::to_string(bytes.size())));
   }
-  if (list.triangles.empty()) throw InputError(path + ": expected at least one triangle");
+  if (list.triangles.empty()) throw InputError(source.path + ": expected at least one triangle");
   return list;
 }
 
-Surface read_surface(const std::string& path, const std::string& group) {
-  const MappedFile file(path);
+Surface read_surface(const SourceFile& source, const std::string& group) {
+  const MappedFile file(source.path);
   const std::string_view bytes = file.bytes();
   const auto read = [&] {
-    if (bytes.starts_with("$")) return facets_of_gmsh(path, parse_gmsh(path, bytes), group);
+    if (is_gmsh(bytes)) return facets_of_gmsh(source, parse_gmsh(source, bytes), group);
     if (!group.empty())
-      throw InputError(path + ": expected a Gmsh file, the only one that has a group " + in_quotes(group));
-    return parse_stl(path, bytes);
+      throw InputError(source.path + ": expected a Gmsh file, the only one that has a group " +
+                       in_quotes(group));
+    return parse_stl(source, bytes);
   };
   const TriangleList list = read();
   file.check_unchanged();
   try {
     return Surface(list.points, list.triangles);
   } catch (const InputError& error) {
-    throw InputError(path + ": " + error.what());
+    throw InputError(source.path + ": " + error.what());
   }
 }
 

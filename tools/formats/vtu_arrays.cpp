@@ -13,8 +13,8 @@
 #include <utility>
 
 #include <kacanov/error.hpp>
-#include "formats/gmsh_cursor.hpp"
 #include "formats/inflate.hpp"
+#include "formats/text_bytes.hpp"
 #include "formats/words.hpp"
 
 namespace kacanov {
@@ -88,10 +88,10 @@ XmlAttributes attributes_of(std::string_view text) {
 
 }  // namespace
 
-void VtuFile::fail(const std::string& message) const { throw InputError(path_ + ": " + message); }
+void VtuFile::fail(const std::string& message) const { throw InputError(source_.path + ": " + message); }
 
-VtuFile::VtuFile(std::string path, std::string_view bytes) : path_(std::move(path)) {
-  std::string_view rest = bytes;
+VtuFile::VtuFile(SourceFile source, std::string_view bytes) : source_(std::move(source)) {
+  std::string_view rest = text_start(source_.path, bytes);
   bool have_file = false;
   while (!rest.empty()) {
     rest.remove_prefix(std::min(rest.find('<'), rest.size()));
@@ -167,7 +167,7 @@ std::string VtuFile::decoded(const Array& array, std::size_t bytes) const {
     const auto offset = array.attributes.find("offset");
     const std::optional<std::size_t> begin = to_size(offset == array.attributes.end() ? "" : offset->second);
     if (!begin || *begin > appended_.size())
-      fail("the array " + in_quotes(array.name) + " begins beyond the file's end");
+      fail("the array " + source_.quoted(array.name) + " begins beyond the file's end");
     data = appended_.substr(*begin);
     base64 = appended_base64_;
   }
@@ -179,14 +179,16 @@ std::string VtuFile::decoded(const Array& array, std::size_t bytes) const {
   std::uint64_t told = 0;
   if (all.size() >= header) std::memcpy(&told, all.data(), header);
   if (all.size() < header + bytes || told != bytes)
-    fail("the array " + in_quotes(array.name) + ": expected " + std::to_string(bytes) + " bytes, got " +
+    fail("the array " + source_.quoted(array.name) + ": expected " + std::to_string(bytes) + " bytes, got " +
          std::to_string(all.size() < header + bytes ? all.size() - std::min(all.size(), header) : told));
   return all.substr(header);
 }
 
 std::string VtuFile::unpacked(const Array& array, std::string_view data, std::size_t bytes,
                               bool base64) const {
-  const auto damaged = [&]() { fail("the array " + in_quotes(array.name) + " is damaged or cut short"); };
+  const auto damaged = [&]() {
+    fail("the array " + source_.quoted(array.name) + " is damaged or cut short");
+  };
   const std::size_t width = long_header_ ? 8 : 4;
   const auto piece = [&](std::size_t count) {
     std::string found = base64 ? from_base64(data, count) : std::string(data.substr(0, count));
@@ -239,27 +241,29 @@ std::vector<T> VtuFile::values(const Array& array, std::size_t count) const {
       const std::optional<double> value = to_number(word);
       constexpr double most = 9e15;  // whole numbers beyond are not told apart
       if (!value || (std::is_integral_v<T> && !(std::abs(*value) < most)))
-        fail("the array " + in_quotes(array.name) + ": expected a number, got " + in_quotes(word));
+        fail("the array " + source_.quoted(array.name) + ": expected a number, got " + source_.quoted(word));
       if (result.size() == count)
-        fail("the array " + in_quotes(array.name) + " has more than " + std::to_string(count) + " numbers");
+        fail("the array " + source_.quoted(array.name) + " has more than " + std::to_string(count) +
+             " numbers");
       result.push_back(static_cast<T>(*value));
     }
     if (result.size() < count)
-      fail("the array " + in_quotes(array.name) + ": expected " + std::to_string(count) + " numbers, got " +
-           std::to_string(result.size()));
+      fail("the array " + source_.quoted(array.name) + ": expected " + std::to_string(count) +
+           " numbers, got " + std::to_string(result.size()));
     return result;
   }
   const auto convert = [&]<typename From>(From) {
     // What cannot be there is not asked for.
     if (count * sizeof(From) / most_packed > array.inline_data.size() + appended_.size())
-      fail("the array " + in_quotes(array.name) + " is damaged or cut short");
+      fail("the array " + source_.quoted(array.name) + " is damaged or cut short");
     const std::string bytes = decoded(array, count * sizeof(From));
     result.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
       From value;
       std::memcpy(&value, bytes.data() + i * sizeof(From), sizeof(From));
       if constexpr (std::is_floating_point_v<From> && std::is_integral_v<T>)
-        fail("the array " + in_quotes(array.name) + ": expected whole numbers, got " + type);
+        fail("the array " + source_.quoted(array.name) + ": expected whole numbers, got " +
+             source_.quoted(type));
       else
         result[i] = static_cast<T>(value);
     }
@@ -285,7 +289,7 @@ std::vector<T> VtuFile::values(const Array& array, std::size_t count) const {
   else if (type == "UInt8")
     convert(std::uint8_t{});
   else
-    fail("the array " + in_quotes(array.name) + " is of the unknown type " + in_quotes(type));
+    fail("the array " + source_.quoted(array.name) + " is of the unknown type " + source_.quoted(type));
   return result;
 }
 

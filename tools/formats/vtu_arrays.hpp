@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/source_file.hpp"
+
 namespace kacanov {
 
 /// The words of an XML element: NAME="value".
@@ -18,7 +20,7 @@ class VtuFile {
   /// Takes the file apart without decoding arrays. `bytes` have to stay. Throws InputError naming the file
   /// for what is no such file, and for those that are not read: several pieces, another byte order or
   /// compression.
-  VtuFile(std::string path, std::string_view bytes);
+  VtuFile(SourceFile source, std::string_view bytes);
 
   std::size_t points() const noexcept { return points_; }
   std::size_t cells() const noexcept { return cells_; }
@@ -47,7 +49,7 @@ class VtuFile {
   std::string decoded(const Array& array, std::size_t bytes) const;
   std::string unpacked(const Array& array, std::string_view data, std::size_t bytes, bool base64) const;
 
-  std::string path_;
+  SourceFile source_;
   std::size_t points_ = 0, cells_ = 0;
   bool have_piece_ = false, compressed_ = false, long_header_ = false, appended_base64_ = false;
   std::string section_;

@@ -38,7 +38,7 @@ std::size_t cell_of(const VtuFile& file, std::int64_t type, std::size_t number) 
 
 }  // namespace
 
-Mesh read_vtu(const std::string& name, std::string_view bytes) {
+Mesh read_vtu(const SourceFile& name, std::string_view bytes) {
   const VtuFile file(name, bytes);
   const std::size_t points = file.points(), count = file.cells();
   if (points == 0 || count == 0) file.fail("expected points and cells, the grid has none");
@@ -81,7 +81,7 @@ Mesh read_vtu(const std::string& name, std::string_view bytes) {
     if (added) content.physicals.push_back({static_cast<int>(group)});
     list.assign_last(set->second);
   }
-  return make_mesh(name, std::move(content));
+  return make_mesh(name.path, std::move(content));
 }
 
 }  // namespace kacanov

@@ -5,12 +5,14 @@
 #include <string>
 #include <string_view>
 
+#include "formats/printable.hpp"
+
 namespace kacanov {
 
-/// `text` with the characters escaped that XML reserves, and control characters replaced.
+/// `text` as printable() shows it, on one line, with the characters escaped that XML reserves.
 inline std::string xml_escape(std::string_view text) {
   std::string result;
-  for (const char c : text) {
+  for (const char c : printable(text)) {
     switch (c) {
       case '&': result += "&amp;"; break;
       case '<': result += "&lt;"; break;

@@ -64,38 +64,69 @@ void convert_mesh(const Command& command, const std::string& kind) {
   say_what_was_written(command.to, mesh);
 }
 
-/// Writes the case and its mesh; returns the path of the latter.
-std::filesystem::path convert_deck(const Command& command, const std::filesystem::path& to) {
+/// A case that a deck comes to, and where its files go.
+struct MadeCase {
+  DeckCase made;
+  std::filesystem::path to, mesh, temperatures;
+  std::string text;
+};
+
+MadeCase case_of_deck(const Command& command, const std::filesystem::path& to) {
   if (format_of_file(command.from) != MeshFormat::deck)
     throw InputError(
         command.from +
         ": expected an Abaqus or CalculiX deck to make a case of; kacanov init writes one for a mesh");
-  std::filesystem::path mesh_path = to;
-  mesh_path.replace_extension(".msh");
-  for (const std::filesystem::path& path : {to, mesh_path}) refuse_existing(path.string(), command.force);
-  DeckCase made = case_of(read_deck(command.from), command.leave_out);
+  MadeCase result{{}, to, to, to, {}};
+  result.mesh.replace_extension(".msh");
+  result.temperatures.replace_extension(".temperature.csv");
+  for (const std::filesystem::path& path : {to, result.mesh}) refuse_existing(path.string(), command.force);
+  DeckCase& made = result.made = case_of(read_deck(command.from), command.leave_out);
   check_mesh(made.mesh);
-  std::filesystem::path warm_path = to;
-  warm_path.replace_extension(".temperature.csv");
   if (!made.temperatures.empty()) {
-    refuse_existing(warm_path.string(), command.force);
+    refuse_existing(result.temperatures.string(), command.force);
     made.document["boundary"].push_back(
-        {{"on", "all"}, {"temperature", {{"file", warm_path.filename().string()}}}});
+        {{"on", "all"}, {"temperature", {{"file", result.temperatures.filename().string()}}}});
   }
-  made.document["mesh"] = {{"file", mesh_path.filename().string()}};
+  made.document["mesh"] = {{"file", result.mesh.filename().string()}};
   try {  // what the deck's keywords come to has to be a case
-    parse_case(nlohmann::json(made.document), to.parent_path().string());
+    const Case input = parse_case(nlohmann::json(made.document), to.parent_path().string());
+    for (const std::string& warning : input.warnings) made.remarks.push_back(made.with_line(warning));
   } catch (const InputError& error) {
-    throw InputError(command.from + ": the case that the deck comes to cannot be: " + error.what());
+    const std::string message = made.with_line(error.what());
+    throw InputError(message != error.what()
+                         ? message
+                         : command.from + ": the case that the deck comes to cannot be: " + message);
   }
   std::vector<std::string> comments{"Made by kacanov convert of " + command.from + "."};
   comments.insert(comments.end(), made.remarks.begin(), made.remarks.end());
-  write_gmsh(mesh_path.string(), made.mesh);
-  if (!made.temperatures.empty()) write_file(warm_path.string(), made.temperatures);
-  write_file(to.string(), case_text(made.document, comments));
-  for (const std::string& remark : made.remarks) print_remark(remark);
-  if (!command.quiet) say_what_was_written(mesh_path.string(), made.mesh);
-  return mesh_path;
+  result.text = case_text(made.document, comments);
+  return result;
+}
+
+/// All of its files or, where one cannot be written, none of those that were not there before.
+void write_case(const MadeCase& result) {
+  std::vector<std::filesystem::path> written;
+  const auto write = [&](const std::filesystem::path& path, const auto& writer) {
+    const bool is_new = !std::filesystem::exists(path);
+    writer(path.string());
+    if (is_new) written.push_back(path);
+  };
+  try {
+    write(result.mesh, [&](const std::string& path) { write_gmsh(path, result.made.mesh); });
+    if (!result.made.temperatures.empty())
+      write(result.temperatures,
+            [&](const std::string& path) { write_file(path, result.made.temperatures); });
+    write(result.to, [&](const std::string& path) { write_file(path, result.text); });
+  } catch (...) {
+    std::error_code ignored;
+    for (const std::filesystem::path& path : written) std::filesystem::remove(path, ignored);
+    throw;
+  }
+}
+
+void print_case(const Command& command, const MadeCase& result) {
+  for (const std::string& remark : result.made.remarks) print_remark(remark);
+  if (!command.quiet) say_what_was_written(result.mesh.string(), result.made.mesh);
 }
 
 }  // namespace
@@ -115,11 +146,13 @@ Command with_case_of_deck(Command command) {
   Command convert = command;
   convert.from = command.case_file;
   convert.force = true;  // what an earlier run made of the deck
+  const MadeCase made = case_of_deck(convert, to);
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error)
     throw InputError("--output: the folder " + folder.string() + " cannot be made: " + error.message());
-  convert_deck(convert, to);
+  write_case(made);
+  print_case(convert, made);
   if (!command.quiet) std::cout << printable(to.string()) + ": the case that the deck comes to\n";
   command.case_file = to.string();
   return command;
@@ -131,7 +164,9 @@ int convert_command(const Command& command) {
                                                       : std::filesystem::path(command.to);
   const std::string kind = to.extension().string();
   if (kind == ".json") {
-    convert_deck(command, to);
+    const MadeCase made = case_of_deck(command, to);
+    write_case(made);
+    print_case(command, made);
     std::cout << printable(to.string()) +
                      ": the case; kacanov check shows what its entries select, kacanov run solves it\n";
   } else if (kind == ".msh" || kind == ".inp" || kind == ".vtu") {

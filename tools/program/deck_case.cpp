@@ -4,24 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
-#include <numeric>
-#include <set>
-#include <utility>
+#include <optional>
 
 #include <kacanov/error.hpp>
 #include "formats/deck_names.hpp"
-#include "formats/deck_temperatures.hpp"
-#include "formats/gmsh_cursor.hpp"
+#include "formats/printable.hpp"
+#include "program/deck_conditions.hpp"
 #include "program/deck_materials.hpp"
 
 namespace kacanov {
 namespace {
-
-using Triple = std::array<double, 3>;
-
-constexpr double is_free = std::numeric_limits<double>::quiet_NaN();
 
 class Converter {
  public:
@@ -30,22 +23,23 @@ class Converter {
         deck_(std::move(deck)),
         leave_out_(leave_out),
         materials_(deck_),
-        temperatures_(deck_),
+        conditions_(deck_, [this](const DeckBlock& block, const std::string& why) { change(block, why); }),
+        dim_(conditions_.dimension()),
         names_(deck_) {
     deck_.blocks.clear();
-    for (const Deck::Element& element : deck_.elements) dim_ = std::max(dim_, cells()[element.cell].dim);
-    in_body_.resize(deck_.content.node_tags.size());
-    for (std::size_t c = 0; c < cells().size(); ++c)
-      if (cells()[c].dim == dim_)
-        for (const std::int32_t node : deck_.content.elements[c].nodes) in_body_[node] = true;
   }
 
   DeckCase convert() {
     for (const DeckBlock& block : blocks_) take(block);
-    if (!have_step_) throw InputError(deck_.files[0] + ": expected a step, *STEP: this deck is a mesh alone");
-    if (materials_.sections().empty()) throw InputError(deck_.files[0] + ": expected a *SOLID SECTION");
+    const std::string& path = deck_.files[0].path;
+    if (!step_) throw InputError(path + ": expected a step, *STEP: this deck is a mesh alone");
+    if (deck_.open_step) deck_.fail(*deck_.open_step, "this *STEP has no *END STEP: is the deck cut off?");
+    // --leave-out may have left out another procedure, such as *HEAT TRANSFER.
+    if (!have_static_ && !leave_out_) deck_.fail(*step_, "expected *STATIC in this step");
+    if (materials_.sections().empty()) throw InputError(path + ": expected a *SOLID SECTION");
     nlohmann::ordered_json document;
-    if (!deck_.title.empty()) document["title"] = deck_.title.substr(0, 200);
+    constexpr std::size_t longest_title = 200;
+    if (!deck_.title.empty()) document["title"] = printable(shortened(deck_.title, longest_title));
     document["mesh"] = nlohmann::ordered_json::object();
     if (deck_.plane != PlaneState::strain)
       document["plane"] = deck_.plane == PlaneState::stress ? "stress" : "axisymmetric";
@@ -58,6 +52,7 @@ class Converter {
     result.temperatures = add_temperatures(document);
     result.document = std::move(document);
     result.remarks = std::move(remarks_);
+    result.places = std::move(places_);
     for (const std::string& warning : deck_.warnings) result.remarks.push_back(warning);
     result.mesh = mesh_of(std::move(deck_));
     refuse_inner_sides(result.mesh);
@@ -65,33 +60,31 @@ class Converter {
   }
 
  private:
-  using Row = const DeckRow&;
+  using Triple = DeckConditions::Triple;
 
   void take(const DeckBlock& block) {
     const std::string& name = block.keyword.name;
-    if (materials_.take(block)) return;
-    if (name == "STEP") {
-      take_step(block);
-    } else if (name == "STATIC") {
-      if (block.keyword.parameter("RIKS") != nullptr) change(block, "arc length methods are not known");
-    } else if (name == "BOUNDARY") {
-      take_boundary(block);
-    } else if (name == "CLOAD" || name == "DLOAD" || name == "DSLOAD") {
-      take_load(block);
-    } else if (is_harmless(name)) {
+    if (is_harmless(name)) {
       remarks_.push_back(deck_.place_text(block.keyword.place) + ": " + block.keyword.shown +
                          " is left out, which does not change the answer");
-    } else if (name == "TEMPERATURE") {
-      take_temperatures(block, temperatures_.at_end);
-    } else if (name == "INITIALCONDITIONS") {
-      const std::string* type = block.keyword.parameter("TYPE");
-      if (type != nullptr && upper_case(*type) == "TEMPERATURE")
-        take_temperatures(block, temperatures_.at_start);
-      else
-        change(block, "it is not known here, but TYPE=TEMPERATURE");
-    } else {
-      change(block, "it is not known here");
+      return;
     }
+    const DeckKeywordRule* rule = deck_rule(name);
+    if (rule == nullptr) {
+      change(block, "it is not known here");
+      return;
+    }
+    if (const std::string fault = level_fault(*rule, block.level); !fault.empty()) {
+      change(block, fault);
+      return;
+    }
+    if (name == "STEP") note_step(block);
+    if (name == "STATIC") note_static(block);
+    for (const std::string& fault : parameter_faults(block.keyword)) change(block, fault);
+    if (name == "SOLIDSECTION" && block.keyword.parameter("ORIENTATION") != nullptr)
+      remarks_.push_back(deck_.place_text(block.keyword.place) + ": " + block.keyword.shown +
+                         ": ORIENTATION is left out, which does not change the answer of isotropic bodies");
+    if (!materials_.take(block)) conditions_.take(block);
   }
 
   /// For what would give another answer if it were left out.
@@ -103,10 +96,11 @@ class Converter {
     remarks_.push_back(deck_.place_text(block.keyword.place) + ": LEFT OUT: " + text);
   }
 
-  void take_step(const DeckBlock& block) {
-    if (std::exchange(have_step_, true))
+  void note_step(const DeckBlock& block) {
+    if (step_)
       deck_.fail(block.keyword.place,
                  "a second step: expected a deck of one, as the loads of a case go together");
+    step_ = block.keyword.place;
     const std::string* nlgeom = block.keyword.parameter("NLGEOM");
     if (nlgeom != nullptr && upper_case(*nlgeom) != "NO")
       change(block, "NLGEOM: displacements and rotations have to be small here");
@@ -114,129 +108,19 @@ class Converter {
       change(block, "PERTURBATION: nothing comes before");
   }
 
-  /// Parameters that make another condition of one.
-  void refuse_parameters(const DeckBlock& block) {
-    static const std::set<std::string> known{"OP", "REGION", "NAME"};
-    for (const auto& [name, value] : block.keyword.parameters) {
-      // What the model holds is let go; of loads there are none before the one step.
-      const bool lets_go =
-          name == "OP" && upper_case(value) == "NEW" && block.keyword.name == "BOUNDARY" && have_step_;
-      if (!known.contains(name) || lets_go)
-        change(block, name + (value.empty() ? "" : "=" + value) + " is not known here");
+  /// Increments, which do not change the answer.
+  void note_static(const DeckBlock& block) {
+    if (std::exchange(have_static_, true))
+      deck_.fail(block.keyword.place, "a second " + block.keyword.shown + " in this step");
+    if (block.keyword.parameter("RIKS") != nullptr) change(block, "RIKS: arc length methods are not known");
+    if (block.rows.size() > 1)
+      deck_.fail(block.rows[1].place, "expected one line of times, got a second one");
+    for (const DeckRow& row : block.rows) {
+      deck_.expect_fields(row, 4,
+                          "the first increment, the time of the step, the least and largest increment");
+      for (std::size_t f = 0; f < row.fields.size(); ++f)
+        if (!row.fields[f].empty()) deck_number(deck_, row, f, "a time");
     }
-  }
-
-  void take_boundary(const DeckBlock& block) {
-    refuse_parameters(block);
-    held_.resize(deck_.content.node_tags.size(), {is_free, is_free, is_free});
-    for (Row row : block.rows) {
-      const std::vector<std::int32_t> nodes = deck_.nodes_of(row.fields[0], row.place, block.in_part);
-      const std::string word = row.fields.size() > 1 ? upper_case(row.fields[1]) : std::string();
-      static const std::map<std::string, std::pair<int, int>> words{
-          {"ENCASTRE", {1, 3}}, {"PINNED", {1, 3}}, {"XSYMM", {1, 1}}, {"YSYMM", {2, 2}}, {"ZSYMM", {3, 3}}};
-      if (const auto known = words.find(word); known != words.end()) {
-        hold(nodes, known->second.first, known->second.second, 0.0);
-        continue;
-      }
-      const std::int64_t first = deck_integer(deck_, row, 1, "a degree of freedom"),
-                         last = row.fields.size() > 2 && !row.fields[2].empty()
-                                    ? deck_integer(deck_, row, 2, "the last degree of freedom")
-                                    : first;
-      const double value = row.fields.size() > 3 && !row.fields[3].empty()
-                               ? deck_number(deck_, row, 3, "a displacement")
-                               : 0.0;
-      if (first < 1 || last < first || last > 6)
-        deck_.fail(row.place,
-                   "expected degrees of freedom 1 to 3 (4 to 6, rotations, say nothing of solids), got " +
-                       std::to_string(first) + " to " + std::to_string(last));
-      if (last > dim_ && first <= 3 && dim_ == 2 && value != 0.0)
-        deck_.fail(row.place, "a plane body does not move across its plane");
-      hold(nodes, static_cast<int>(first), static_cast<int>(last), value);
-    }
-  }
-
-  /// What is said later of a node takes the place of what was said before.
-  void hold(const std::vector<std::int32_t>& nodes, int first, int last, double value) {
-    for (const std::int32_t node : nodes)
-      for (int c = first; c <= std::min(last, dim_) && in_body_[node]; ++c)
-        held_[node][static_cast<std::size_t>(c) - 1] = value;
-  }
-
-  /// Loads of a step add up, as in CalculiX.
-  void take_load(const DeckBlock& block) {
-    refuse_parameters(block);
-    for (Row row : block.rows) {
-      if (block.keyword.name == "CLOAD")
-        take_point_load(row, block.in_part);
-      else if (block.keyword.name == "DLOAD")
-        take_element_load(block, row);
-      else
-        take_surface_load(block, row);
-    }
-  }
-
-  void take_temperatures(const DeckBlock& block, std::vector<double>& of_node) {
-    static const std::set<std::string> known{"OP", "REGION", "NAME", "TYPE"};
-    for (const auto& [name, value] : block.keyword.parameters)
-      if (!known.contains(name))
-        change(block, name + (value.empty() ? "" : "=" + value) + " is not known here");
-    temperatures_.take(block, of_node);
-  }
-
-  void take_point_load(Row row, bool in_part) {
-    forces_.resize(deck_.content.node_tags.size(), Triple{});
-    const std::int64_t direction = deck_integer(deck_, row, 1, "a degree of freedom");
-    if (direction < 1 || direction > dim_)
-      deck_.fail(row.place, "expected a degree of freedom 1 to " + std::to_string(dim_) + ", got " +
-                                std::to_string(direction) + ": moments do not act on nodes of solids");
-    const double value = deck_number(deck_, row, 2, "a force");
-    for (const std::int32_t node : deck_.nodes_of(row.fields[0], row.place, in_part)) {
-      if (!in_body_[node])
-        deck_.fail(row.place, "node " + std::to_string(deck_.content.node_tags[node]) +
-                                  " is loaded and belongs to no element of the body");
-      forces_[node][static_cast<std::size_t>(direction) - 1] += value;
-    }
-  }
-
-  void take_element_load(const DeckBlock& block, Row row) {
-    const std::string label = row.fields.size() > 1 ? upper_case(row.fields[1]) : std::string();
-    std::vector<std::int32_t> elements(deck_.elements.size());
-    std::iota(elements.begin(), elements.end(), 0);
-    if (!row.fields[0].empty()) elements = deck_.elements_of(row.fields[0], row.place, block.in_part);
-    if (label.size() == 2 && label[0] == 'P' && label[1] >= '1' && label[1] <= '6') {
-      const double value = deck_number(deck_, row, 2, "a pressure");
-      for (const std::int32_t element : elements) press({element, label[1] - '1'}, row.place, value);
-    } else if (label == "GRAV") {
-      Triple direction{};
-      for (std::size_t c = 0; c < 3; ++c)
-        direction[c] = 3 + c < row.fields.size() ? deck_number(deck_, row, 3 + c, "a direction") : 0.0;
-      const double length = std::hypot(direction[0], direction[1], direction[2]);
-      if (!(length > 0.0)) deck_.fail(row.place, "expected a direction of gravity");
-      const double value = deck_number(deck_, row, 2, "an acceleration");
-      for (double& component : direction) component *= value / length;
-      gravity_.push_back({row.place, std::move(elements), direction});
-    } else {
-      change(block, "loads of the kind " + in_quotes(label) + " are not known here, but P1 to P6 and GRAV");
-    }
-  }
-
-  void take_surface_load(const DeckBlock& block, Row row) {
-    const std::string label = row.fields.size() > 1 ? upper_case(row.fields[1]) : std::string();
-    if (label != "P") {
-      change(block, "loads of the kind " + in_quotes(label) + " are not known here, but P");
-      return;
-    }
-    const DeckSurface* surface = deck_.surface(row.fields[0], block.in_part);
-    if (surface == nullptr) deck_.fail(row.place, "there is no surface " + in_quotes(row.fields[0]));
-    const double value = deck_number(deck_, row, 2, "a pressure");
-    for (const DeckSide& side : surface->sides) press(side, row.place, value);
-  }
-
-  void press(DeckSide side, DeckPlace place, double value) {
-    deck_.side_nodes(side, place);  // says so where there is none
-    Pressed& there = pressed_[{side.element, side.side}];
-    there.value += value;
-    there.place = place;
   }
 
   // What the case says.
@@ -249,15 +133,33 @@ class Converter {
         deck_.fail(section.place, "another thickness: expected one for the whole body");
       nlohmann::ordered_json entry{{"on", name_of(section)}};
       entry.update(materials_.entry(section));
+      note_places(section, "material[" + std::to_string(list.size()) + "]");
       list.push_back(std::move(entry));
     }
     return list;
   }
 
+  void note_places(const DeckSection& section, const std::string& path) {
+    const DeckMaterial& material = materials_.of(section);
+    const auto note = [&](const std::string& key, DeckPlace place) {
+      places_.emplace_back(path + key, deck_.place_text(place));
+    };
+    for (std::size_t k = 0; k < material.plastic_rows.size(); ++k)
+      note(".plastic[" + std::to_string(k) + "]", material.plastic_rows[k]);
+    if (!material.plastic_rows.empty()) note(".plastic", material.plastic_rows[0]);
+    note(".young", material.elastic_row);
+    note(".poisson", material.elastic_row);
+    note("", section.place);
+  }
+
   std::size_t index_of(const DeckSection& section) const {
     const DeckSet* set = deck_.element_set(section.elements, section.in_part);
     if (set == nullptr)
-      deck_.fail(section.place, "there is no set of elements " + in_quotes(section.elements));
+      deck_.fail(section.place,
+                 "there is no set of elements " + deck_.quoted(section.place, section.elements));
+    if (set->members.empty())
+      deck_.fail(section.place,
+                 "the set of elements " + deck_.quoted(section.place, section.elements) + " is empty");
     return static_cast<std::size_t>(set - deck_.element_sets.data());
   }
 
@@ -288,35 +190,30 @@ class Converter {
     }
     for (const auto& [known, nodes] : groups) {
       Triple value;
-      for (std::size_t c = 0; c < 3; ++c) value[c] = known[c].first ? known[c].second : is_free;
+      for (std::size_t c = 0; c < 3; ++c)
+        value[c] = known[c].first ? known[c].second : DeckConditions::is_free;
       list.push_back({{"on", names_.of(deck_.node_sets, nodes, base)}, {key, vector(value)}});
     }
   }
 
   nlohmann::ordered_json boundary() {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    add_node_entries(held_, "displacement", "held", list);
-    add_node_entries(forces_, "node_force", "loaded", list);
+    add_node_entries(conditions_.held(), "displacement", "held", list);
+    add_node_entries(conditions_.forces(), "node_force", "loaded", list);
     std::map<double, std::vector<DeckSide>> by_value;
-    for (const auto& [side, pressed] : pressed_)
+    for (const auto& [side, pressed] : conditions_.pressures())
       if (pressed.value != 0.0) by_value[pressed.value].push_back({side.first, side.second});
     for (const auto& [value, sides] : by_value) {
       const std::string name = names_.of_sides(sides);
-      pressed_names_.emplace_back(name,
-                                  deck_.place_text(pressed_.at({sides[0].element, sides[0].side}).place));
+      const DeckPlace place = conditions_.pressures().at({sides[0].element, sides[0].side}).place;
+      pressed_names_.emplace_back(name, deck_.place_text(place));
       list.push_back({{"on", name}, {"pressure", value}});
     }
-    for (const Gravity& gravity : gravity_) add_gravity(gravity, list);
+    for (const DeckConditions::Gravity& gravity : conditions_.gravity()) add_gravity(gravity, list);
     return list;
   }
 
-  struct Gravity {
-    DeckPlace place;
-    std::vector<std::int32_t> elements;
-    Triple acceleration;
-  };
-
-  void add_gravity(const Gravity& gravity, nlohmann::ordered_json& list) {
+  void add_gravity(const DeckConditions::Gravity& gravity, nlohmann::ordered_json& list) {
     const std::vector<DeckSection> sections = materials_.sections();
     for (const DeckSection& section : sections) {
       const std::vector<std::int32_t> mine = deck_.element_sets[index_of(section)].members;
@@ -326,7 +223,8 @@ class Converter {
       if (both.empty()) continue;
       const DeckMaterial& material = materials_.of(section);
       if (!material.density || !(*material.density > 0.0))
-        deck_.fail(gravity.place, "GRAV: the material " + in_quotes(material.shown) + " has no *DENSITY > 0");
+        deck_.fail(gravity.place, "GRAV: the material " + deck_.quoted(material.place, material.shown) +
+                                      " has no *DENSITY > 0");
       list.push_back({{"on", names_.of(deck_.element_sets, both, "elements")},
                       {"density", *material.density},
                       {"acceleration", vector(gravity.acceleration)}});
@@ -340,7 +238,7 @@ class Converter {
       return materials_.of(section).expansion.value_or(0.0) != 0.0;
     });
     if (!expands) return {};
-    const std::map<std::int64_t, double> rise = temperatures_.rise(in_body_);
+    const std::map<std::int64_t, double> rise = conditions_.temperature_rise();
     if (const auto even = one_value(rise); !even)
       return lines_of(rise);
     else if (*even != 0.0)
@@ -357,27 +255,28 @@ class Converter {
                            " of these sides are inside the body, expected sides of its boundary");
   }
 
-  struct Pressed {
-    double value = 0.0;
-    DeckPlace place;
-  };
-
   const std::vector<DeckBlock> blocks_;
   Deck deck_;
-  bool leave_out_, have_step_ = false;
-  int dim_ = 2;
+  bool leave_out_, have_static_ = false;
+  std::optional<DeckPlace> step_;
   DeckMaterials materials_;
-  std::vector<bool> in_body_;          ///< by node
-  std::vector<Triple> held_, forces_;  ///< by node; empty where nothing is
-  DeckTemperatures temperatures_;
-  std::map<std::pair<std::int32_t, std::int32_t>, Pressed> pressed_;
+  DeckConditions conditions_;
+  int dim_;
   std::vector<std::pair<std::string, std::string>> pressed_names_;  ///< with their places
-  std::vector<Gravity> gravity_;
+  std::vector<std::pair<std::string, std::string>> places_;
   DeckNames names_;
   std::vector<std::string> remarks_;
 };
 
 }  // namespace
+
+std::string DeckCase::with_line(const std::string& message) const {
+  for (const auto& [path, place] : places)
+    if (message.starts_with(path) &&
+        std::string_view(".:[").find(message[path.size()]) != std::string_view::npos)
+      return place + ": " + message;
+  return message;
+}
 
 DeckCase case_of(Deck deck, bool leave_out) { return Converter(std::move(deck), leave_out).convert(); }
 

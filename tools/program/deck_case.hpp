@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "formats/deck.hpp"
@@ -15,6 +16,11 @@ struct DeckCase {
   Mesh mesh;                         ///< with a group for everything that the document names
   std::string temperatures;          ///< lines of a file of nodes that "temperature" of an entry is to name
   std::vector<std::string> remarks;  ///< what was left out, or means something else here; a sentence each
+  /// "material[0].plastic[1]" and the line of the deck that it comes from, "part.inp: line 12".
+  std::vector<std::pair<std::string, std::string>> places;
+
+  /// A message about the case, which begins with the path of a key, with the line of the deck before it.
+  std::string with_line(const std::string& message) const;
 };
 
 /// Makes a case of a deck of one static step. Throws InputError "path: line N: ..." for what cannot be part

@@ -18,6 +18,8 @@ struct DeckMaterial {
   std::optional<std::array<double, 2>> elastic;  ///< Young's modulus and Poisson's ratio
   std::vector<std::array<double, 2>> plastic;    ///< stress and plastic strain
   std::optional<double> density, expansion;
+  DeckPlace elastic_row = {};
+  std::vector<DeckPlace> plastic_rows = {};
 };
 
 struct DeckSection {
@@ -42,6 +44,7 @@ class DeckMaterials {
   nlohmann::ordered_json entry(const DeckSection& section) const;
 
  private:
+  void expect_constants(const DeckRow& row, std::size_t count, const std::string& what) const;
   void take_elastic(const DeckBlock& block, DeckMaterial& material);
   void take_expansion(const DeckBlock& block, DeckMaterial& material);
   void take_plastic(const DeckBlock& block, DeckMaterial& material);

@@ -26,9 +26,10 @@ Mesh load_mesh(const MeshSource& source) {
   if (source.adapted) return *source.adapted;
   Mesh mesh = source.box       ? make_box(*source.box)
               : source.content ? read_mesh(*source.file, *source.content)
-                               : read_mesh(*source.file);
+                               : read_mesh(source_file(*source.file, source.folder));
   for (const NodeValueFile& file : source.node_values) try {
-      mesh.node_fields.push_back({file.path, read_node_values(file.name, file.otherwise, mesh)});
+      mesh.node_fields.push_back(
+          {file.path, read_node_values(source_file(file.name, source.folder), file.otherwise, mesh)});
     } catch (const InputError& error) {
       throw InputError(file.path + ".file: " + error.what());
     }

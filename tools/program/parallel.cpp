@@ -48,7 +48,7 @@ Failure current_failure() {
   try {
     throw;
   } catch (const InputError& error) {
-    return {exit_bad_input, std::string("error: ") + error.what(), error.what()};
+    return {exit_bad_input, "error: " + printable(error.what()), printable(error.what())};
   } catch (const std::bad_alloc&) {
     return {exit_failure, "internal failure: out of memory", "out of memory"};
   } catch (const std::exception& error) {

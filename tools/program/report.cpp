@@ -254,7 +254,7 @@ std::string summary(const Result& result, const RunFigures& figures, const Model
           readable_bytes(static_cast<double>(figures.peak_memory_bytes)) + ", " + count(result.ranks) +
           (result.ranks == 1 ? " rank x " : " ranks x ") + count(result.threads) +
           (result.threads == 1 ? " thread" : " threads") + " (" + result.instruction_set + ")\n";
-  return text;
+  return printable(text);
 }
 
 std::string shown(const Terminal& terminal, Status status, const std::string& summary) {

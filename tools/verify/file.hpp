@@ -2,6 +2,7 @@
 // Opens what the verifier reads.
 #pragma once
 
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -11,14 +12,29 @@
 
 namespace kacanov::verify {
 
-/// For reading from its start; throws Failure where it is no file. What waits for a writer is none.
+/// Opens a file behind its byte order mark of UTF-8, if any; throws Failure for anything but a regular file.
 inline std::ifstream open_file(const std::filesystem::path& file) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored))
     throw Failure(file.string() + ": cannot be read: no such file, or not a regular one");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw Failure(file.string() + ": cannot be read");
+  char mark[3] = {};
+  stream.read(mark, sizeof mark);
+  if (stream.gcount() == sizeof mark && std::memcmp(mark, "\xef\xbb\xbf", sizeof mark) == 0) return stream;
+  stream.clear();
+  stream.seekg(0);
   return stream;
+}
+
+/// Carriage returns without a line feed, which end lines as well, as line feeds.
+inline std::string with_line_feeds(std::string text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '\r') continue;
+    const std::size_t next = text.find_first_not_of('\r', i);
+    if (next == std::string::npos || text[next] != '\n') text[i] = '\n';
+  }
+  return text;
 }
 
 /// All that is in it.

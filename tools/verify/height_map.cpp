@@ -79,7 +79,7 @@ Face read_height_map(const nlohmann::json& given, const std::filesystem::path& f
   const bool image = text.size() > 2 && text[0] == 'P' && std::strchr("1245", text[1]) != nullptr;
   const Rows rows = image                         ? picture(text)
                     : text.starts_with("\x89PNG") ? png_rows(text)
-                                                  : comma_separated(text);
+                                                  : comma_separated(with_line_feeds(text));
   const Real scale = given.value("scale", 1.0), offset = given.value("offset", 0.0);
   const bool above = given.value("body", "above") == "above";
   std::array<Real, 2> lower{}, upper{};
@@ -126,7 +126,7 @@ std::vector<Triangle> read_stl(const std::filesystem::path& file) {
       }
     return triangles;
   }
-  std::istringstream words(text);
+  std::istringstream words(with_line_feeds(text));
   std::size_t corners = 0;
   for (std::string word; words >> word;) {
     std::transform(word.begin(), word.end(), word.begin(), [](unsigned char c) { return std::tolower(c); });

@@ -43,7 +43,7 @@ std::vector<Real> read_node_values(const std::filesystem::path& file, const nloh
   std::map<std::int64_t, Index> index;
   for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
     index[mesh.tags.empty() ? static_cast<std::int64_t>(n) + 1 : mesh.tags[n]] = static_cast<Index>(n);
-  std::istringstream lines(whole(file));
+  std::istringstream lines(with_line_feeds(whole(file)));
   for (std::string line; std::getline(lines, line);) {
     line = without_blanks(line);
     if (line.empty() || line.starts_with("#") || line.starts_with("**")) continue;
