@@ -20,6 +20,8 @@ void looking_away(const Problem& problem, const Model& model, Warnings& warnings
 void inner_facets(const Problem& problem, const Model& model, Warnings& warnings);
 /// Elements thinner than a millionth of their length.
 void thin_elements(const Problem& problem, Warnings& warnings);
+/// Coordinates so large beside elements that reading them has moved nodes.
+void far_from_origin(const Problem& problem, Warnings& warnings);
 /// Elements whose B-bar form was declined where they lock.
 void locking(const Problem& problem, const Model& model, Warnings& warnings);
 

@@ -14,6 +14,7 @@ std::vector<std::string> examine(const Problem& problem, const Model& model) {
   validity::looking_away(problem, model, warnings);
   validity::inner_facets(problem, model, warnings);
   validity::thin_elements(problem, warnings);
+  validity::far_from_origin(problem, warnings);
   validity::locking(problem, model, warnings);
   return warnings;
 }
