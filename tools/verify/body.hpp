@@ -9,6 +9,7 @@ namespace kacanov::verify {
 struct BodyResponse {
   std::vector<Vec> internal;  ///< R(u), one a node
   std::vector<Vec> diagonal;  ///< of the elastic B
+  std::vector<Real> size;     ///< sum of the magnitudes of the terms of R(u), per node
   Real energy = 0;
   Real most_von_mises = 0;  ///< largest mean over an element's points
   Real unknown_stress = 0;  ///< what rounding the displacement alone may change in a stress

@@ -2,8 +2,6 @@
 // The entries of the certificate (theory: kkt, duality-gap, rounding), and the forces, of an answer.
 #include "verify/residuals.hpp"
 
-#include "verify/body.hpp"
-
 namespace kacanov::verify {
 namespace {
 
@@ -106,12 +104,10 @@ BodySums sum_body(const Problem& problem, const Answer& answer, const BodyRespon
       s.stiff_all += std::abs(d * u);
       s.softness += 1 / d;
       s.displacement = larger(s.displacement, std::abs(u));
-      if (problem.held[n][c]) s.supports = larger(s.supports, std::abs(u - problem.prescribed[n][c]));
     }
   }
-  for (const auto& [node, given] : problem.directions)
-    for (const GivenDirection& one : given)
-      s.supports = larger(s.supports, std::abs(dot(one.direction, answer.u[node]) - one.value));
+  for (const auto& [node, supports] : problem.supports)
+    s.supports = larger(s.supports, off_supports(supports, answer.u[node], s.displacement));
   // What holds a spring at its other end.
   for (std::size_t n = 0; n < problem.springs.size(); ++n)
     for (std::size_t c = 0; c < dim; ++c) {
@@ -148,6 +144,7 @@ Findings examine(const Problem& problem, const Answer& answer) {
   const Real unknown_force = delta * std::sqrt(body.stiff);
   const Real at_all = body.displacement > 0 ? 1 : 0;
   findings.supports = body.supports / moved;
+  findings.body = response;
   Vec balance = body.balance;
   if (problem.mesh.is_round) balance[0] = 0;  // away from an axis all is in balance by itself
   findings.entries = {{"equilibrium", std::sqrt(body.residual) / force, unknown_force / force},
