@@ -75,7 +75,7 @@ struct ElementAt {
       for (std::size_t a = 0; a < E::nodes; ++a) {
         out.position[i] += point.value[a] * x[a][i];
         for (std::size_t k = 0; k < E::dim; ++k) {
-          jacobian[i][k] += x[a][i] * point.gradient[a * E::dim + k];
+          jacobian[i][k] += (x[a][i] - x[0][i]) * point.gradient[a * E::dim + k];
           along[i][k] += u[a][i] * point.gradient[a * E::dim + k];
         }
       }

@@ -43,7 +43,8 @@ struct Point {
           j[i][k] = x[at(k + 1, i)] - x[at(0, i)];
         } else {
           j[i][k] = 0.0;
-          for (int a = 0; a < E::nodes; ++a) j[i][k] += x[at(a, i)] * d[at(a, k)];
+          // By sides: a body far from the origin keeps its digits (theory: elements).
+          for (int a = 1; a < E::nodes; ++a) j[i][k] += (x[at(a, i)] - x[at(0, i)]) * d[at(a, k)];
         }
       }
     double cofactor[3][3];  // inverse = transposed cofactor / det

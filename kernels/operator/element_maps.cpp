@@ -27,11 +27,13 @@ Columns columns_at(const MeshView& mesh, std::size_t element, const double* xi) 
   constexpr std::size_t dim = E::dim;
   const auto gradients = E::gradients(xi);
   Columns column{};
-  for (std::size_t a = 0; a < E::nodes; ++a) {
+  const std::size_t first = mesh.connectivity[element * E::nodes];
+  for (std::size_t a = 1; a < E::nodes; ++a) {
     const std::size_t node = mesh.connectivity[element * E::nodes + a];
     for (std::size_t k = 0; k < dim; ++k)
       for (std::size_t i = 0; i < dim; ++i)
-        column[k][i] += mesh.coordinates[node * dim + i] * gradients[a * dim + k];
+        column[k][i] +=
+            (mesh.coordinates[node * dim + i] - mesh.coordinates[first * dim + i]) * gradients[a * dim + k];
   }
   return column;
 }

@@ -22,10 +22,10 @@ bool parallelepiped(const MeshView& mesh, const std::int32_t* node) {
     const auto [low, high] = std::minmax_element(x.begin(), x.end());
     const double along[3] = {x[1] - x[0], x[3] - x[0], x[4] - x[0]};
     for (std::size_t a = 0; a < 8; ++a) {
-      double expected = x[0];
+      double off = x[a] - x[0];
       for (std::size_t direction = 0; direction < 3; ++direction)
-        if (elements::Hex8::corner[a][direction] > 0) expected += along[direction];
-      if (std::abs(x[a] - expected) > 1e-13 * (*high - *low)) return false;
+        if (elements::Hex8::corner[a][direction] > 0) off -= along[direction];
+      if (std::abs(off) > 1e-13 * (*high - *low)) return false;
     }
   }
   return true;

@@ -68,7 +68,7 @@ void take_sides(const RowLanes (&of)[nodes][3], RowSides<nodes>& out) {
         if constexpr (nodes == 8)
           out[side][i][lane] = of[edge_ends[side][1]][i][lane] - of[edge_ends[side][0]][i][lane];
         else
-          out[side][i][lane] = of[side][i][lane];
+          out[side][i][lane] = of[side][i][lane] - of[0][i][lane];
 }
 
 /// Slopes of a component along the reference coordinates.

@@ -108,11 +108,12 @@ class Refinement {
   std::array<double, 3> position(std::span<const std::int32_t> of, const std::array<double, 3>& xi) const {
     std::array<double, most_nodes> shape{};
     type_.values(xi.data(), shape.data());
-    std::array<double, 3> x{};
+    std::array<long double, 3> x{};  // rounded once, whatever the order
     for (std::size_t a = 0; a < of.size(); ++a)
       for (std::size_t c = 0; c < dim(); ++c)
-        x[c] += shape[a] * coarse_.coordinates[static_cast<std::size_t>(of[a]) * dim() + c];
-    return x;
+        x[c] += static_cast<long double>(shape[a]) *
+                coarse_.coordinates[static_cast<std::size_t>(of[a]) * dim() + c];
+    return {static_cast<double>(x[0]), static_cast<double>(x[1]), static_cast<double>(x[2])};
   }
 
   std::array<double, 3> reference(Corners corners) const {

@@ -86,6 +86,7 @@ class Descent {
     t_ = find_step(slope,
                    [&](double t) {
                      for (std::size_t i = 0; i < u.size(); ++i) u[i] = from[i] + t * delta_[i];
+                     c_.path.prescribe(u);
                      c_.body.evaluate_and_freeze(u);
                      c_.state.evaluate(c_.traces);
                      c_.body.unbalanced(c_.path, rest);

@@ -32,6 +32,7 @@ double take_damped(StepContext& c, const ActiveSetStep& step, const HeldNodes& n
   force.assign(c.body.internal().begin(), c.body.internal().end());
   const auto go_to = [&](double t) {
     for (std::size_t i = 0; i < u.size(); ++i) u[i] = from[i] + t * delta[i];
+    c.path.prescribe(u);  // every iteration of the solve has added its rounding along held directions
     c.body.evaluate_and_freeze(u);
   };
   double t = 1.0;
@@ -173,6 +174,8 @@ StepOutcome admm_step(StepContext& c, const Penalty& penalty, const Residuals& b
   outcome.applications = c.body.op().applications() - applied;
   c.preconditioner.watch(step.cg_digits, step.cg_iterations);
   if (!step.solves_converged) c.preconditioner.factorise();
+  c.path.prescribe(c.state.u);
+  c.state.evaluate(c.traces);
   c.body.evaluate_and_freeze(c.state.u);
   outcome.method = dual ? "dual_admm" : "admm";
   outcome.contact_iterations = step.iterations;

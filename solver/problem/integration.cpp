@@ -90,10 +90,10 @@ Vector3 area_vector(const Vector3& a, const Vector3& b, const Vector3& c) {
 /// Outer normal of a facet times its area over that of the reference cell, at a point with these shapes.
 Vector3 normal_at(const Mesh& mesh, std::span<const std::int32_t> nodes, const Shapes& shapes) {
   Vector3 along{}, across{};
-  for (std::size_t k = 0; k < nodes.size(); ++k) {
-    const Vector3 x = position(mesh, nodes[k]);
-    along = along + shapes.gradient[k][0] * x;
-    across = across + shapes.gradient[k][1] * x;
+  for (std::size_t k = 1; k < nodes.size(); ++k) {
+    const Vector3 side = position(mesh, nodes[k]) - position(mesh, nodes[0]);
+    along = along + shapes.gradient[k][0] * side;
+    across = across + shapes.gradient[k][1] * side;
   }
   // In 2D the body lies to the left of the edge.
   return mesh.dim() == 2 ? Vector3{along[1], -along[0], 0.0} : cross(along, across);
@@ -103,9 +103,9 @@ Vector3 normal_at(const Mesh& mesh, std::span<const std::int32_t> nodes, const S
 std::array<Vector3, 3> jacobian_at(const Mesh& mesh, std::span<const std::int32_t> nodes,
                                    const Shapes& shapes) {
   std::array<Vector3, 3> jacobian{};
-  for (std::size_t k = 0; k < nodes.size(); ++k) {
-    const Vector3 x = position(mesh, nodes[k]);
-    for (std::size_t c = 0; c < 3; ++c) jacobian[c] = jacobian[c] + shapes.gradient[k][c] * x;
+  for (std::size_t k = 1; k < nodes.size(); ++k) {
+    const Vector3 side = position(mesh, nodes[k]) - position(mesh, nodes[0]);
+    for (std::size_t c = 0; c < 3; ++c) jacobian[c] = jacobian[c] + shapes.gradient[k][c] * side;
   }
   if (mesh.dim() == 2) jacobian[2] = {0.0, 0.0, 1.0};
   return jacobian;

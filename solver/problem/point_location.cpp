@@ -60,18 +60,20 @@ std::optional<Vector3> reference_point(const MeshView& mesh, std::span<const std
   Vector3 at{};
   if (type.simplex) at = by_corners(mesh, nodes, x);
   if (type.simplex && type.order == 1) return at;
-  const double length = norm(x - position(mesh, nodes[0]));
+  const Vector3 origin = position(mesh, nodes[0]), far = x - origin;
+  const double length = norm(far);
   for (int step = 0; step < 30; ++step) {
     if (!(norm(at) < 10.0)) return std::nullopt;
     const Shapes shapes = shapes_at(type, at);
-    Vector3 miss = x;
-    for (std::size_t k = 0; k < nodes.size(); ++k) miss = miss - shapes.value[k] * position(mesh, nodes[k]);
+    Vector3 miss = far;
+    for (std::size_t k = 1; k < nodes.size(); ++k)
+      miss = miss - shapes.value[k] * (position(mesh, nodes[k]) - origin);
     if (norm(miss) <= 1e-14 * length) return at;  // at once where all edges are straight
     Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
-    for (std::size_t k = 0; k < nodes.size(); ++k) {
-      const Vector3 node = position(mesh, nodes[k]);
+    for (std::size_t k = 1; k < nodes.size(); ++k) {
+      const Vector3 side = position(mesh, nodes[k]) - origin;
       for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) jacobian(i, j) += node[i] * shapes.gradient[k][j];
+        for (int j = 0; j < 3; ++j) jacobian(i, j) += side[i] * shapes.gradient[k][j];
     }
     if (type.dim == 2) jacobian(2, 2) = 1.0;
     const Eigen::Vector3d move = jacobian.inverse() * Eigen::Vector3d(miss[0], miss[1], miss[2]);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Given displacements: the entries of a model carried over to a mesh, by component and along directions.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -20,32 +21,55 @@ constexpr double flat_to = 1e-6, axis_to = 1e-12;
 /// What is left of a direction, where others hold its node, below which it is one of theirs.
 constexpr double dependent = 1e-8;
 
+/// Of directions that are next to parallel a difference is left: it keeps more digits than a double has.
+using LongVector = std::array<long double, 3>;
+
+long double long_dot(const LongVector& a, const LongVector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+void subtract_share(LongVector& from, long double share, const LongVector& v) {
+  for (std::size_t c = 0; c < 3; ++c) from[c] -= share * v[c];
+}
+LongVector long_unit(const LongVector& v) {
+  const long double length = std::sqrt(long_dot(v, v));
+  return {v[0] / length, v[1] / length, v[2] / length};
+}
+
 /// What an entry gives: u along a unit vector.
 struct Given {
-  Vector3 direction{};
+  LongVector direction{};
   double value = 0.0;
 };
 
+/// A direction and value given at a node; later their part across the others of the node.
+struct Slanting {
+  std::int32_t node = 0, entry = 0;
+  LongVector direction{};
+  long double value = 0.0;
+};
+
 /// The one outer normal of a group of facets.
-Vector3 normal_of(const Mesh& mesh, const std::vector<std::int32_t>& facets, const std::string& path) {
-  Vector3 sum{};
+LongVector normal_of(const Mesh& mesh, const std::vector<std::int32_t>& facets, const std::string& path) {
+  LongVector sum{};
   std::vector<Vector3> normals;
   for (const std::int32_t f : facets) {
     const FacetWeights weights = lumped_weights(mesh, f);  // of quadratic facets, those of the mid-sides
     for (std::size_t k = 0; k < mesh.facet(f).size(); ++k) {
       const double length = norm(weights.normal[k]);
       if (length == 0.0) continue;
-      sum = sum + weights.normal[k];
+      for (std::size_t c = 0; c < 3; ++c) sum[c] += weights.normal[k][c];
       normals.push_back((1.0 / length) * weights.normal[k]);
     }
   }
-  const double length = norm(sum);
+  const bool none = long_dot(sum, sum) == 0;
+  if (!none) sum = long_unit(sum);
+  const Vector3 mean{static_cast<double>(sum[0]), static_cast<double>(sum[1]), static_cast<double>(sum[2])};
   for (const Vector3& n : normals)
-    if (length == 0.0 || norm(n - (1.0 / length) * sum) > flat_to)
+    if (none || norm(n - mean) > flat_to)
       throw InputError(path +
                        ".normal: expected flat facets, whose outer normals are one; take an entry for each "
                        "plane");
-  return (1.0 / length) * sum;
+  return sum;
 }
 
 std::vector<Given> given_by(const BoundaryEntry& entry, const Mesh& mesh, const Selection& selection,
@@ -57,9 +81,12 @@ std::vector<Given> given_by(const BoundaryEntry& entry, const Mesh& mesh, const 
   } else {
     for (std::size_t c = 0; c < dim; ++c) {
       if (!(*entry.displacement)[c]) continue;
-      Vector3 axis{};
+      LongVector axis{};
       axis[c] = 1.0;
-      if (entry.frame) axis = (1.0 / norm((*entry.frame)[c])) * (*entry.frame)[c];
+      if (entry.frame) {
+        const Vector3& given_axis = (*entry.frame)[c];
+        axis = long_unit({given_axis[0], given_axis[1], given_axis[2]});
+      }
       given.push_back({axis, *(*entry.displacement)[c]});
     }
   }
@@ -67,7 +94,7 @@ std::vector<Given> given_by(const BoundaryEntry& entry, const Mesh& mesh, const 
 }
 
 /// The axis that a direction is, of either sign; none where it is off them.
-std::optional<std::size_t> axis_of(const Vector3& direction) {
+std::optional<std::size_t> axis_of(const LongVector& direction) {
   for (std::size_t c = 0; c < 3; ++c)
     if (std::abs(direction[c]) >= 1.0 - axis_to) return c;
   return std::nullopt;
@@ -116,23 +143,23 @@ class Holder {
   /// held-directions).
   void finish() {
     std::stable_sort(slanting_.begin(), slanting_.end(),
-                     [](const HeldDirection& a, const HeldDirection& b) { return a.node < b.node; });
-    for (const HeldDirection& raw : slanting_) add(raw);
+                     [](const Slanting& a, const Slanting& b) { return a.node < b.node; });
+    for (const Slanting& raw : slanting_) add(raw);
     if (!problem_.steps.empty()) problem_.holder = std::move(holder_);
   }
 
  private:
-  void add(HeldDirection d) {
-    const auto take_off = [&](double share, double value, std::int32_t by) {
-      if (share * value != 0.0 && !problem_.steps.empty() &&
+  void add(Slanting d) {
+    if (!kept_.empty() && kept_.front().node != d.node) kept_.clear();
+    const auto take_off = [&](long double share, long double value, std::int32_t by) {
+      if (share * value != 0 && !problem_.steps.empty() &&
           !same_course(problem_.steps, static_cast<std::size_t>(d.entry), static_cast<std::size_t>(by)))
         refuse(static_cast<std::size_t>(d.entry), d.node,
                "along a direction with other factors in steps than by " +
                    at("boundary", static_cast<std::size_t>(by)));
       d.value -= share * value;
     };
-    const double whole = std::abs(d.value);
-    double size = whole;
+    long double size = std::abs(d.value);
     for (std::size_t c = 0; c < dim_; ++c) {
       const std::size_t k = d.node * dim_ + c;
       if (problem_.held[k] == 0) continue;
@@ -141,22 +168,28 @@ class Holder {
       d.direction[c] = 0.0;
     }
     for (int pass = 0; pass < 2; ++pass)  // twice: orthogonal to the last digit
-      for (const HeldDirection& other : directions_of(problem_.directions, d.node)) {
-        const double share = dot(d.direction, other.direction);
+      for (const Slanting& other : kept_) {
+        const long double share = long_dot(d.direction, other.direction);
         size += std::abs(share * other.value);
         take_off(share, other.value, other.entry);
-        d.direction = d.direction - share * other.direction;
+        subtract_share(d.direction, share, other.direction);
       }
-    const double rest = norm(d.direction);
+    const long double rest = std::sqrt(long_dot(d.direction, d.direction));
     if (rest < dependent) {
       if (std::abs(d.value) > 1e-6 * size)
         refuse(static_cast<std::size_t>(d.entry), d.node,
                "a displacement that other entries do not let it have");
       return;
     }
-    d.direction = (1.0 / rest) * d.direction;
+    d.direction = long_unit(d.direction);
     d.value /= rest;
-    problem_.directions.push_back(d);
+    kept_.push_back(d);
+    const LongVector& b = d.direction;
+    problem_.directions.push_back(
+        {d.node,
+         d.entry,
+         {static_cast<double>(b[0]), static_cast<double>(b[1]), static_cast<double>(b[2])},
+         static_cast<double>(d.value)});
   }
 
   [[noreturn]] void refuse(std::size_t entry, std::int32_t node, const std::string& what) const {
@@ -168,7 +201,7 @@ class Holder {
   Problem& problem_;
   std::size_t dim_;
   std::vector<std::int32_t> holder_;
-  std::vector<HeldDirection> slanting_;
+  std::vector<Slanting> slanting_, kept_;  ///< all; of the node in hand what has been kept
 };
 
 }  // namespace

@@ -24,6 +24,8 @@ void thin_elements(const Problem& problem, Warnings& warnings);
 void unmerged_nodes(const Problem& problem, Warnings& warnings);
 /// Boxes that cut through facets or elements, of which they take whole ones only.
 void cut_selections(const Problem& problem, const Model& model, Warnings& warnings);
+/// Coordinates so large beside elements that reading them has moved nodes.
+void far_from_origin(const Problem& problem, Warnings& warnings);
 /// Elements whose B-bar form was declined where they lock.
 void locking(const Problem& problem, const Model& model, Warnings& warnings);
 

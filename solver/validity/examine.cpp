@@ -16,6 +16,7 @@ std::vector<std::string> examine(const Problem& problem, const Model& model) {
   validity::cut_selections(problem, model, warnings);
   validity::unmerged_nodes(problem, warnings);
   validity::thin_elements(problem, warnings);
+  validity::far_from_origin(problem, warnings);
   validity::locking(problem, model, warnings);
   return warnings;
 }

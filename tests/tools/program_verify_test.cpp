@@ -3,12 +3,14 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "formats/inflate.hpp"
 #include "formats/vtu_arrays.hpp"
 #include "mesh_writer.hpp"
 #include "program_runner.hpp"
+#include "turned_body.hpp"
 
 using namespace kacanov;
 using namespace kacanov::testing;
@@ -63,9 +65,9 @@ std::string with_plain_arrays(std::string text) {
   return head + text.substr(done, data - done) + arrays + "\n</AppendedData>\n</VTKFile>\n";
 }
 
-/// Adds to what a VTU file says of its third node, along x, in an array of doubles; each begins with its
-/// length.
-void change_array(const Workplace& place, const std::string& file, const std::string& name, double by) {
+/// Adds to the x component of one node in an array of doubles of a VTU file; arrays begin with their length.
+void change_array(const Workplace& place, const std::string& file, const std::string& name, double by,
+                  std::size_t node = 2) {
   std::string text = with_plain_arrays(contents(place.path(file)));
   const std::size_t at = text.find("Name=\"" + name + "\"");
   REQUIRE(at != std::string::npos);
@@ -73,7 +75,7 @@ void change_array(const Workplace& place, const std::string& file, const std::st
   const std::size_t data = text.find('_', text.find("<AppendedData")) + 1;
   const std::size_t width = name == "pressure" ? 1 : 3;
   const std::size_t place_of_number =
-      data + std::stoul(text.substr(offset)) + sizeof(std::uint64_t) + 2 * width * sizeof(double);
+      data + std::stoul(text.substr(offset)) + sizeof(std::uint64_t) + node * width * sizeof(double);
   double value = 0.0;
   std::memcpy(&value, text.data() + place_of_number, sizeof value);
   value += by;
@@ -349,4 +351,180 @@ TEST_CASE("the verifier reads every form of Gmsh's format by itself") {
       INFO(outcome.output, outcome.error);
       CHECK(outcome.exit_code == 0);
     }
+}
+
+TEST_CASE(
+    "supports in any frame are where they are prescribed, to rounding, and verify finds one that is off by "
+    "more") {
+  const Workplace place;
+  const BoxSpec box{{2, 1, 1}, {5, 3, 3}, ElementType::hex8};
+  // Turned by 0.5 about (1, 2, 2)/3; the second frame is the first but for a millionth.
+  for (const double apart : {0.7, 1e-6}) {
+    put_mesh(place, box, turned);
+    const nlohmann::json x = list(turned({1, 0, 0})), y = list(turned({0, 1, 0})),
+                         z = list(turned({0, 0, 1}));
+    const nlohmann::json near = list(turned({std::cos(apart), std::sin(apart), 0})),
+                         beside = list(turned({-std::sin(apart), std::cos(apart), 0}));
+    const nlohmann::json none;
+    nlohmann::json input = parsed(R"({
+      "mesh": {"file": "body.msh"}, "solver": {"tolerance": 1e-8, "load_steps": 3},
+      "material": [{"on": "all", "young": 200, "poisson": 0.4, "law": {"type": "power", "x0": 0.001, "n": 0.5}}],
+      "output": {"report": false}})");
+    input["boundary"] = {
+        {{"on", "left"}, {"frame", {x, y, z}}, {"displacement", {0, none, none}}},
+        {{"on", "bottom"}, {"frame", {near, beside, z}}, {"displacement", {none, none, 0.001}}},
+        {{"on", "front"}, {"frame", {near, beside, z}}, {"displacement", {none, 1e-3 * apart, none}}},
+        {{"on", "right"}, {"traction", turned({0.3, 0.05, 0.02})}}};
+    place.put_json("case.json", input);
+    REQUIRE(place.run("run case.json --output out").exit_code == 0);
+    const Outcome outcome = place.run("verify case.json --output out");
+    INFO(apart, outcome.output, outcome.error);
+    CHECK(outcome.exit_code == 0);
+
+    const std::string bytes = contents(place.path("out/body.vtu"));
+    const VtuFile file("body.vtu", bytes);
+    const std::size_t nodes = 6 * 4 * 4;
+    const auto points = file.reals("Points", "Points", 3 * nodes),
+               u = file.reals("PointData", "displacement", 3 * nodes);
+    double most = 0;
+    for (const double component : u) most = std::max(most, std::abs(component));
+    for (std::size_t n = 0; n < nodes; ++n) {
+      double along = 0;
+      const Point normal = turned({1, 0, 0});
+      for (std::size_t c = 0; c < 3; ++c) along += normal[c] * points[3 * n + c];
+      if (std::abs(along) > 1e-9) continue;  // on the left
+      change_array(place, "out/body.vtu", "displacement", 1e-13 * most, n);
+      break;
+    }
+    const Outcome changed = place.run("verify case.json --output out");
+    INFO(changed.output, changed.error);
+    CHECK(changed.exit_code == 1);
+    CHECK(changed.output.find("the supports are not where they are prescribed") != std::string::npos);
+  }
+}
+
+TEST_CASE("a body far from the origin has the numbers of the same body at the origin") {
+  // Coordinates and their shift are multiples of 2^-20, so that both bodies are the same to the bit.
+  const auto on_grid = [](double x) { return std::ldexp(std::round(std::ldexp(x, 20)), -20); };
+  for (const ElementType type : {ElementType::tet10, ElementType::hex8, ElementType::quad4}) {
+    INFO(static_cast<int>(type));
+    const bool flat = type == ElementType::quad4;
+    nlohmann::json at_origin;
+    for (const double shift : {0.0, std::ldexp(1.0, 17), std::ldexp(1.0, 30)}) {
+      const Workplace place;
+      const BoxSpec box = flat ? BoxSpec{{2, 1}, {6, 4}, type} : BoxSpec{{2, 1, 1}, {4, 2, 2}, type};
+      put_mesh(place, box, [&](const Point& x) {
+        return Point{on_grid(x[0] + 0.1 * x[1] * x[1]) + shift, on_grid(x[1] + 0.05 * x[0]) - shift,
+                     flat ? 0 : on_grid(x[2] * (1 + 0.1 * x[1])) + shift};
+      });
+      nlohmann::json input = parsed(R"({
+        "mesh": {"file": "body.msh"}, "solver": {"tolerance": 1e-9}, "output": {"report": false},
+        "material": [{"on": "all", "young": 200, "poisson": 0.3,
+                      "law": {"type": "power", "x0": 0.001, "n": 0.5}}],
+        "boundary": [{"on": "top", "displacement": [0, 0, -0.004]}, {"on": "right", "pressure": 0.1},
+                     {"on": "all", "body_force": [0, 0.05, -0.1]}],
+        "contact": [{"on": "bottom", "friction": {"coulomb": 0.3}}]})");
+      const double near = flat ? 0.0625 : 0.5;
+      nlohmann::json below = {1 + shift, -shift - 3}, point = {1 + shift, near - shift};
+      if (!flat) {
+        below = {1 + shift, 0.5 - shift, shift - 3};
+        point.push_back(0.25 + shift);
+      } else {
+        input["boundary"][0]["displacement"] = {0, -0.004};
+        input["boundary"][2]["body_force"] = {0.05, -0.1};
+      }
+      input["contact"][0]["obstacle"] = {{"sphere", {{"centre", below}, {"radius", 3}}}};
+      input["probe"] = {point};
+      place.put_json("case.json", input);
+      const Outcome run = place.run("run case.json --output out");
+      INFO(shift, run.error, run.output);
+      REQUIRE(run.exit_code == 0);
+      const Outcome outcome = place.run("verify case.json --output out");
+      INFO(outcome.output, outcome.error);
+      CHECK(outcome.exit_code == 0);
+      const nlohmann::json result = place.json("out/result.json");
+      CHECK((result["warnings"].dump().find("so far from the origin") != std::string::npos) == (shift > 1e9));
+      if (at_origin.is_null()) at_origin = result;
+      for (const char* name : {"max_von_mises", "max_contact_pressure"})
+        CHECK(result[name].get<double>() == doctest::Approx(at_origin[name].get<double>()).epsilon(1e-7));
+      const double all = at_origin["contact_force"].back();
+      for (std::size_t c = 0; c < point.size(); ++c) {
+        CHECK(std::abs(result["contact_force"][c].get<double>() -
+                       at_origin["contact_force"][c].get<double>()) <= 1e-7 * all);
+        CHECK(std::abs(result["load"]["boundary[1]"]["force"][c].get<double>() -
+                       at_origin["load"]["boundary[1]"]["force"][c].get<double>()) <= 1e-14 * all);
+        CHECK(std::abs(result["probe"][0][c].get<double>() - at_origin["probe"][0][c].get<double>()) <=
+              1e-10);
+      }
+      // Places are the user's, to the bit.
+      const std::string bytes = contents(place.path("out/body.vtu"));
+      const VtuFile file("body.vtu", bytes);
+      const std::size_t nodes = result["mesh"]["nodes"];
+      for (const double x : file.reals("Points", "Points", 3 * nodes)) CHECK(on_grid(x) == x);
+    }
+  }
+}
+
+TEST_CASE("nodes of no element are left out, as the run leaves them out") {
+  const Workplace place;
+  Mesh mesh = make_box({{2, 1, 1}, {4, 2, 2}, ElementType::hex8});
+  std::string text = gmsh_file(mesh, {.new_format = false});
+  const std::size_t count = text.find('\n', text.find("$Nodes")) + 1, end = text.find('\n', count);
+  const int nodes = std::stoi(text.substr(count, end - count));
+  text.insert(text.find("$EndNodes"), std::to_string(nodes + 1000) + " 50 50 50\n");
+  text.replace(count, end - count, std::to_string(nodes + 1));
+  place.put("cube.msh", text);
+  nlohmann::json input = cube("hex8");
+  input["mesh"] = {{"file", "cube.msh"}};
+  place.put_json("cube.json", input);
+  REQUIRE(place.run("run cube.json --output out").exit_code == 0);
+  CHECK(place.json("out/result.json")["warnings"].dump().find("belongs to no element") != std::string::npos);
+  const Outcome outcome = place.run("verify cube.json --output out");
+  INFO(outcome.output, outcome.error);
+  CHECK(outcome.exit_code == 0);
+}
+
+TEST_CASE("every total of the result is recomputed: what has been changed in one is found, by its name") {
+  const Workplace place;
+  nlohmann::json input = cube("hex8");
+  input["boundary"].push_back({{"on", "front"}, {"spring", 3}, {"name", "bed"}});
+  input["boundary"][0]["name"] = "lid";
+  input["contact"][0]["name"] = "ball";
+  input["probe"] = {{0.3, 0.4, 0.9}, {2, 1, 1}};
+  place.put_json("cube.json", input);
+  REQUIRE(place.run("run cube.json --output out").exit_code == 0);
+  const nlohmann::json result = place.json("out/result.json");
+  const Outcome right = place.run("verify cube.json --output out");
+  INFO(right.output, right.error);
+  REQUIRE(right.exit_code == 0);
+  for (const char* path :
+       {"/probe/0/2", "/probe/1/1", "/reaction/lid/force/2", "/reaction/lid/moment/0",
+        "/reaction/bed/force/1", "/load/boundary[1]/force/0", "/load/boundary[2]/moment/1",
+        "/contact/ball/force/2", "/contact/ball/normal_force/2", "/contact/ball/friction_force/0",
+        "/contact/ball/moment/1", "/contact/ball/area", "/contact/ball/max_pressure",
+        "/contact/contact[1]/force/0", "/max_displacement/value"}) {
+    INFO(path);
+    nlohmann::json changed = result;
+    nlohmann::json& number = changed.at(nlohmann::json::json_pointer(path));
+    number = number.get<double>() * (1 + 1e-7);
+    place.put_json("out/result.json", changed);
+    const Outcome outcome = place.run("verify cube.json --output out");
+    CHECK(outcome.exit_code == 1);
+    CHECK(outcome.output.find("differs") != std::string::npos);
+  }
+  for (const char* path : {"/active_nodes", "/slip_nodes", "/contact/ball/sticking", "/contact/ball/open"}) {
+    INFO(path);
+    nlohmann::json changed = result;
+    nlohmann::json& number = changed.at(nlohmann::json::json_pointer(path));
+    number = number.get<int>() + 1;
+    place.put_json("out/result.json", changed);
+    CHECK(place.run("verify cube.json --output out").exit_code == 1);
+  }
+  // Half of the load is not the load.
+  place.put_json("cube.json", input);
+  REQUIRE(place.run("run cube.json --output out --set solver.load_steps=2").exit_code == 0);
+  nlohmann::json half = place.json("out/result.json");
+  half["load_factor"] = 0.5;
+  place.put_json("out/result.json", half);
+  CHECK(place.run("verify cube.json --output out").exit_code == 1);
 }

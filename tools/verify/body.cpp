@@ -24,8 +24,10 @@ Point point_at(const Mesh& mesh, const Indices& element, const QuadraturePoint& 
   const auto dim = static_cast<std::size_t>(mesh.dim());
   Tensor along{};  // derivatives of the position
   if (dim == 2) along[2] = {0, 0, 1};
-  for (std::size_t a = 0; a < element.size(); ++a)
-    for (std::size_t k = 0; k < dim; ++k) along[k] = along[k] + f.gradient[a][k] * mesh.nodes[element[a]];
+  for (std::size_t a = 1; a < element.size(); ++a) {
+    const Vec side = mesh.nodes[element[a]] - mesh.nodes[element[0]];
+    for (std::size_t k = 0; k < dim; ++k) along[k] = along[k] + f.gradient[a][k] * side;
+  }
   const Tensor dual{cross(along[1], along[2]), cross(along[2], along[0]), cross(along[0], along[1])};
   const Real det = dot(along[0], dual[0]);
   const Real depth = mesh.depth(element, f);
@@ -190,7 +192,8 @@ void add_element(const Problem& problem, std::size_t e, std::size_t region, cons
     out.expansion_energy +=
         point.volume * expansion * expansion / (mesh.is_free_across ? expansion_stress(law) : 2 * law.bulk);
     Real moved = 0;
-    for (std::size_t a = 0; a < element.size(); ++a) moved += norm(point.gradient[a]) * norm(u[element[a]]);
+    for (std::size_t a = 0; a < element.size(); ++a)
+      moved += (norm(point.gradient[a]) + point.hoop[a]) * norm(u[element[a]]);
     out.unknown_stress = larger(out.unknown_stress, 1e-15L * 2 * g * moved);
     von_mises += point.volume * std::sqrt(Real(1.5L)) * 2 * g * x;
     volume += point.volume;
@@ -198,6 +201,8 @@ void add_element(const Problem& problem, std::size_t e, std::size_t region, cons
       const Vec &n = point.gradient[a], &d = divergence[a];
       const auto node = static_cast<std::size_t>(element[a]);
       Vec& of_region = force_of(out, element[a], region);
+      const Real terms = (law.bulk + 2 * g) * moved + std::abs(warm);
+      out.size[node] += point.volume * terms * (norm(n) + point.hoop[a]);
       for (std::size_t i = 0; i < dim; ++i) {
         const Real round_axis = i == 0 ? deviator[2][2] * point.hoop[a] : 0;
         const Real force = point.volume * (law.bulk * trace * d[i] +
@@ -220,7 +225,7 @@ BodyResponse respond(const Problem& problem, const Regions& regions, const std::
   const std::size_t nodes = problem.mesh.nodes.size();
   BodyResponse out;
   out.internal.resize(nodes), out.diagonal.resize(nodes), out.expansion.resize(nodes);
-  out.of_region.resize(nodes);
+  out.of_region.resize(nodes), out.size.resize(nodes);
   const CornerVolumes corners(problem, u);
   for (std::size_t e = 0; e < problem.mesh.elements.size(); ++e)
     add_element(problem, e, regions.of_element[e], u, corners, out);

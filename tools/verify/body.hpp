@@ -12,6 +12,7 @@ struct BodyResponse {
   /// Forces of the stresses of each region on a node, with their sign changed; one entry per node.
   std::vector<std::vector<std::pair<std::size_t, Vec>>> of_region;
   std::vector<Vec> expansion;  ///< the thermal part of the load, one entry per node
+  std::vector<Real> size;      ///< sum of the magnitudes of the terms of R(u), per node
   Real energy = 0;
   Real expansion_energy = 0;  ///< what temperature would store if nothing could expand
   Real most_von_mises = 0;    ///< largest mean over an element's points

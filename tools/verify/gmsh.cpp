@@ -283,7 +283,37 @@ class Reader {
     for (auto& [key, cells] : groups) mesh_.groups.push_back({key.second, key.first, std::move(cells)});
     if (dim == 2)
       for (Vec& x : mesh_.nodes) x[2] = 0;
+    drop_unreferenced_nodes();
     return std::move(mesh_);
+  }
+
+  /// Nodes of no element of the body, and the facets that they belong to.
+  void drop_unreferenced_nodes() {
+    std::vector<Index> place(mesh_.nodes.size(), -1);
+    for (const Indices& element : mesh_.elements)
+      for (const Index node : element) place[node] = 0;
+    Index kept = 0;
+    for (std::size_t n = 0; n < place.size(); ++n) {
+      if (place[n] < 0) continue;
+      mesh_.nodes[kept] = mesh_.nodes[n];
+      mesh_.tags[kept] = mesh_.tags[n];
+      place[n] = kept++;
+    }
+    mesh_.nodes.resize(kept);
+    mesh_.tags.resize(kept);
+    const auto renumber = [&](Indices& cell) {
+      for (Index& node : cell) node = place[node];
+    };
+    for (Indices& element : mesh_.elements) renumber(element);
+    for (NamedGroup& group : mesh_.groups) {
+      if (group.dimension == mesh_.dim()) continue;
+      for (Indices& cell : group.cells) {
+        renumber(cell);
+        const bool facet = group.dimension == mesh_.dim() - 1;
+        if (std::erase(cell, -1) > 0 && facet) cell.clear();
+      }
+      std::erase_if(group.cells, [](const Indices& cell) { return cell.empty(); });
+    }
   }
 
   Numbers in_;

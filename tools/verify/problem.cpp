@@ -9,8 +9,6 @@
 namespace kacanov::verify {
 namespace {
 
-Vec place(const Mesh& mesh, Index node) { return mesh.nodes[node]; }
-
 /// What the case's mesh in 2D is of.
 void read_plane(const nlohmann::json& document, Mesh& mesh) {
   const std::string plane = document.value("plane", "strain");
@@ -24,10 +22,15 @@ void read_plane(const nlohmann::json& document, Mesh& mesh) {
     if (mesh.is_round && std::abs(x[0]) <= reach) x[0] = 0;
 }
 
+constexpr std::size_t no_entry = static_cast<std::size_t>(-1);  // the axis itself
+
 /// Nodes on the axis stay there.
 void hold_axis(Problem& problem) {
   for (std::size_t n = 0; n < problem.mesh.nodes.size() && problem.mesh.is_round; ++n)
-    if (problem.mesh.nodes[n][0] == 0) problem.held[n][0] = true;
+    if (problem.mesh.nodes[n][0] == 0) {
+      problem.held[n][0] = true;
+      problem.supports[static_cast<Index>(n)].push_back({{1, 0, 0}, no_entry, 0, 0, true});
+    }
 }
 
 void add_surface_load(Problem& problem, const nlohmann::json& entry, Real factor) {
@@ -55,8 +58,10 @@ std::array<Vec, 3> along_at(const Mesh& mesh, const Indices& element, const Func
   const auto dim = static_cast<std::size_t>(mesh.dim());
   std::array<Vec, 3> along{};
   if (dim == 2) along[2] = {0, 0, 1};
-  for (std::size_t a = 0; a < f.value.size(); ++a)
-    for (std::size_t k = 0; k < dim; ++k) along[k] = along[k] + f.gradient[a][k] * place(mesh, element[a]);
+  for (std::size_t a = 1; a < f.value.size(); ++a) {
+    const Vec side = mesh.nodes[element[a]] - mesh.nodes[element[0]];
+    for (std::size_t k = 0; k < dim; ++k) along[k] = along[k] + f.gradient[a][k] * side;
+  }
   return along;
 }
 
@@ -80,12 +85,12 @@ void add_body_force(Problem& problem, const nlohmann::json& entry, Real factor) 
 }
 
 /// Springs, those of a bed by the weights of contact (theory: springs).
-void add_spring(Problem& problem, const nlohmann::json& entry) {
-  problem.springs.resize(problem.mesh.nodes.size());
+void add_spring(Problem& problem, const nlohmann::json& entry, std::size_t number) {
   const auto dim = static_cast<std::size_t>(problem.mesh.dim());
   const auto put = [&](Index node, Real weight, const nlohmann::json& stiffness) {
+    Spring& spring = problem.each_spring.emplace_back(Spring{node, number, {}});
     for (std::size_t c = 0; c < dim; ++c)
-      problem.springs[node][c][c] += weight * Real(stiffness.at(c).get<double>());
+      spring.stiffness[c][c] = weight * Real(stiffness.at(c).get<double>());
   };
   if (entry.contains("node_spring")) {
     for (const Index node : select_nodes(problem.mesh, entry.at("on"))) put(node, 1, entry.at("node_spring"));
@@ -103,8 +108,9 @@ void add_spring(Problem& problem, const nlohmann::json& entry) {
       const Vec& normal = weights.normal[k];
       if (norm(normal) == 0) continue;
       const Real each = Real(stiffness.get<double>()) * weights.area[k] / dot(normal, normal);
+      Spring& spring = problem.each_spring.emplace_back(Spring{facet[k], number, {}});
       for (std::size_t r = 0; r < dim; ++r)
-        for (std::size_t c = 0; c < dim; ++c) problem.springs[facet[k]][r][c] += each * normal[r] * normal[c];
+        for (std::size_t c = 0; c < dim; ++c) spring.stiffness[r][c] = each * normal[r] * normal[c];
     }
   }
 }
@@ -203,27 +209,42 @@ void add_temperature(Problem& problem, const nlohmann::json& document, const nlo
 
 /// What an entry is multiplied by: the load factor, or what the load curves have for it at that time, linear
 /// between their steps, 0 before the first that names it and 1 where none does (user guide: steps).
-Real factor_at(Real load, const nlohmann::json& document, const std::string& list, std::size_t index) {
+Factor factor_at(Real load, const nlohmann::json& document, const std::string& list, std::size_t index) {
   const auto steps = document.value("steps", nlohmann::json::array());
-  if (steps.empty()) return load;
+  if (steps.empty()) return {load, std::abs(load)};
   const std::string place = list + "[" + std::to_string(index) + "]";
   const std::string name = document.at(list).at(index).value("name", place);
   const auto names_it = [&](const nlohmann::json& step) {
     return step.at("factors").contains(name) || step.at("factors").contains(place);
   };
-  if (std::none_of(steps.begin(), steps.end(), names_it)) return 1;
-  Real before = 0, factor = 0, since = 0;
+  if (std::none_of(steps.begin(), steps.end(), names_it)) return {};
+  std::vector<std::pair<Real, Real>> curve{{0, 0}};  // times and factors
+  Real largest = 0;
   for (const auto& step : steps) {
-    const Real time = step.at("time").get<double>();
-    before = factor;
-    factor = step.at("factors").value(name, step.at("factors").value(place, static_cast<double>(before)));
-    if (load < time) return before + (load - since) / (time - since) * (factor - before);
-    since = time;
+    const auto before = static_cast<double>(curve.back().second);
+    const double factor = step.at("factors").value(name, step.at("factors").value(place, before));
+    curve.emplace_back(step.at("time").get<double>(), factor);
+    largest = larger(largest, std::abs(Real(factor)));
   }
-  return factor;
+  for (auto& [time, factor] : curve)
+    if (std::abs(factor) < 1e-15L * largest) factor = 0;
+  for (std::size_t i = 1; i < curve.size(); ++i) {
+    const auto& [since, before] = curve[i - 1];
+    const auto& [time, factor] = curve[i];
+    if (load <= time) return {before + (load - since) / (time - since) * (factor - before), largest};
+  }
+  return {curve.back().second, largest};
 }
 
 }  // namespace
+
+void add_force(Resultant& sum, const Vec& at, const Vec& force, Real size) {
+  sum.force = sum.force + force;
+  sum.moment = sum.moment + cross(at, force);
+  sum.size += size;
+  sum.arms += norm(at) * size;
+  if (size > 0) sum.nodes += 1;
+}
 
 Vec read_vector(const nlohmann::json& list) {
   Vec v{};
@@ -233,9 +254,10 @@ Vec read_vector(const nlohmann::json& list) {
 
 Vec normal_at(const Mesh& mesh, const Indices& facet, const Functions& at) {
   Vec along{}, across{};
-  for (std::size_t k = 0; k < facet.size(); ++k) {
-    along = along + at.gradient[k][0] * place(mesh, facet[k]);
-    across = across + at.gradient[k][1] * place(mesh, facet[k]);
+  for (std::size_t k = 1; k < facet.size(); ++k) {
+    const Vec side = mesh.nodes[facet[k]] - mesh.nodes[facet[0]];
+    along = along + at.gradient[k][0] * side;
+    across = across + at.gradient[k][1] * side;
   }
   return mesh.dim() == 2 ? Vec{along[1], -along[0], 0} : cross(along, across);
 }
@@ -273,11 +295,13 @@ Problem read_problem(const nlohmann::json& document, const std::filesystem::path
                             (problem.mesh.shape == Shape::quad4 || problem.mesh.shape == Shape::hex8)));
   }
   const auto boundary = document.value("boundary", nlohmann::json::array());
+  std::vector<Vec> all(nodes);
   for (std::size_t i = 0; i < boundary.size(); ++i) {
     const nlohmann::json& entry = boundary.at(i);
-    const Real factor = factor_at(problem.time, document, "boundary", i);
-    if (entry.contains("displacement") || entry.contains("normal")) hold(problem, entry, factor);
-    if (entry.contains("spring") || entry.contains("node_spring")) add_spring(problem, entry);
+    const Factor whole = factor_at(problem.time, document, "boundary", i);
+    const Real factor = whole.value;
+    if (entry.contains("displacement") || entry.contains("normal")) hold(problem, entry, i, whole);
+    if (entry.contains("spring") || entry.contains("node_spring")) add_spring(problem, entry, i);
     if (entry.contains("temperature")) add_temperature(problem, document, entry, factor, folder);
     if (entry.contains("traction") || entry.contains("total_force") || entry.contains("pressure"))
       add_surface_load(problem, entry, factor);
@@ -285,13 +309,24 @@ Problem read_problem(const nlohmann::json& document, const std::filesystem::path
       for (const Index node : select_nodes(problem.mesh, entry.at("on")))
         problem.load[node] = problem.load[node] + factor * read_vector(entry.at("node_force"));
     if (entry.contains("body_force") || entry.contains("density")) add_body_force(problem, entry, factor);
+    Resultant& applied = problem.applied.emplace_back();
+    for (std::size_t n = 0; n < nodes; ++n) {
+      add_force(applied, problem.mesh.nodes[n], problem.load[n], norm(problem.load[n]));
+      all[n] = all[n] + problem.load[n];
+    }
+    problem.load.assign(nodes, {});
   }
+  problem.load = all;
+  if (!problem.each_spring.empty()) problem.springs.resize(nodes);
+  for (const Spring& spring : problem.each_spring)
+    for (std::size_t r = 0; r < 3; ++r)
+      problem.springs[spring.node][r] = problem.springs[spring.node][r] + spring.stiffness[r];
   hold_axis(problem);
   find_directions(problem);
   const auto contact = document.value("contact", nlohmann::json::array());
   for (std::size_t i = 0; i < contact.size(); ++i) {
     const nlohmann::json& entry = contact.at(i);
-    problem.contact_factor.push_back(factor_at(problem.time, document, "contact", i));
+    problem.contact_factor.push_back(factor_at(problem.time, document, "contact", i).value);
     Vec pushed{};
     if (entry.contains("force_controlled")) {
       const std::string name = entry.value("name", "contact[" + std::to_string(i) + "]");

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <utility>
 
 #include "verify/law.hpp"
 #include "verify/mesh.hpp"
@@ -18,8 +19,9 @@ struct ContactRow {
   std::vector<Share> shares;
   Index node = 0;                    ///< that it stands for in contact.vtu
   std::vector<std::size_t> written;  ///< its places in contact.vtu: one an entry that has a part in it
-  Vec normal{};                      ///< ν
-  std::size_t entry = 0;             ///< of `contact`
+  std::vector<std::pair<std::size_t, Real>> parts;  ///< these entries, and the mass of each
+  Vec normal{};                                     ///< ν
+  std::size_t entry = 0;                            ///< of `contact`
   Real gap = 0, mass = 0, tresca = 0, coulomb = 0;
   Real closed = 0;       ///< by prescribed components, and off the gap
   Real unknown_gap = 0;  ///< what arithmetic leaves of it
@@ -33,11 +35,37 @@ struct ContactRow {
 struct GivenDirection {
   Vec direction{};
   Real value = 0;
+  std::size_t entry = 0;  ///< of `boundary`
+  Real condition = 1;     ///< by which rounding is enlarged where others of the node are next to parallel
+};
+
+/// The direction and value of an entry, before others of its node are taken off them.
+struct GivenSupport {
+  Vec direction{};
+  std::size_t entry = 0;
+  Real value = 0, largest = 0;  ///< `largest`: the value at the largest factor of the load curve
+  bool axis = false;            ///< held as a component
+  Real condition = 1;           ///< its rounding over that of long double
+  bool dependent = false;       ///< others of the node give it already
 };
 
 /// What keeps an elastic body in plane stress from getting longer, over the strain that it would have: E/(1 −
 /// ν).
 Real expansion_stress(const Law& law);
+
+/// Between a node and the ground.
+struct Spring {
+  Index node = 0;
+  std::size_t entry = 0;
+  std::array<Vec, 3> stiffness{};
+};
+
+/// A force on the body and its moment about the origin, the sums of magnitudes that they are made of, and of
+/// how many nodes.
+struct Resultant {
+  Vec force{}, moment{};
+  Real size = 0, arms = 0, nodes = 0;
+};
 
 struct Problem {
   Mesh mesh;
@@ -51,9 +79,12 @@ struct Problem {
   std::vector<std::vector<Real>> expansion;
   std::vector<std::array<bool, 3>> held;  ///< components with a prescribed displacement
   std::vector<Vec> prescribed;
+  std::map<Index, std::vector<GivenSupport>> supports;  ///< by node, in the order of the entries
   /// Off the axes, by node: orthonormal, in free components (theory: held-directions).
   std::map<Index, std::vector<GivenDirection>> directions;
   std::vector<std::array<Vec, 3>> springs;  ///< stiffness between each node and the ground; empty: none
+  std::vector<Spring> each_spring;          ///< the same, one by one
+  std::vector<Resultant> applied;           ///< loads of each boundary entry
   std::vector<Real> contact_factor;         ///< of each contact entry
   std::vector<Vec> pushed;                  ///< the travel of each contact entry that is pushed by a force
   Real time = 1;  ///< that the result has reached: of the load curves, or the load factor
@@ -69,10 +100,17 @@ struct Problem {
 Problem read_problem(const nlohmann::json& document, const std::filesystem::path& folder,
                      const nlohmann::json& result);
 
+/// The factor of an entry, and the largest one of its load curve.
+struct Factor {
+  Real value = 1, largest = 1;
+};
 /// Puts an entry with a displacement, of components or along directions, on its nodes.
-void hold(Problem& problem, const nlohmann::json& entry, Real factor);
+void hold(Problem& problem, const nlohmann::json& entry, std::size_t number, const Factor& factor);
 /// Once all entries are held: leaves of each direction what others of its node do not give.
 void find_directions(Problem& problem);
+/// How far a node is from where its supports have it, beyond what rounding leaves (theory:
+/// support-rounding). `most`: the largest displacement.
+Real off_supports(const std::vector<GivenSupport>& supports, const Vec& u, Real most);
 /// `v` of a node without what is given there.
 Vec free_part(const Problem& problem, Index node, Vec v);
 
@@ -93,5 +131,7 @@ FacetIntegrals contact_weights(const Mesh& mesh, const Indices& facet);
 Vec normal_at(const Mesh& mesh, const Indices& facet, const Functions& at);
 
 Vec read_vector(const nlohmann::json& list);
+/// Adds a force at a place, of terms of this size.
+void add_force(Resultant& sum, const Vec& at, const Vec& force, Real size);
 
 }  // namespace kacanov::verify

@@ -6,8 +6,6 @@
 #include <map>
 #include <utility>
 
-#include "verify/body.hpp"
-
 namespace kacanov::verify {
 namespace {
 
@@ -157,7 +155,6 @@ BodySums sum_body(const Problem& problem, const Regions& regions, const Answer& 
       sums.expansion_work += body.expansion[n][c] * u;
       sums.stiff_work += d * u * u;
       sums.displacement = larger(sums.displacement, std::abs(u));
-      if (problem.held[n][c]) sums.supports = larger(sums.supports, std::abs(u - problem.prescribed[n][c]));
     }
     Vec place = problem.mesh.nodes[n], residual = left;
     for (std::size_t c = dim; c < 3; ++c) place[c] = residual[c] = 0;
@@ -170,9 +167,8 @@ BodySums sum_body(const Problem& problem, const Regions& regions, const Answer& 
       }
     }
   }
-  for (const auto& [node, given] : problem.directions)
-    for (const GivenDirection& one : given)
-      sums.supports = larger(sums.supports, std::abs(dot(one.direction, answer.u[node]) - one.value));
+  for (const auto& [node, supports] : problem.supports)
+    sums.supports = larger(sums.supports, off_supports(supports, answer.u[node], sums.displacement));
   return sums;
 }
 
@@ -224,7 +220,7 @@ Worst judge_balance(const Problem& problem, const Regions& regions, const BodySu
     }
     for (const auto& [pair, force] : body.between)
       if (cluster.has[pair.first] && regions.bin[pair.second] > cluster.bin) s.hold += force, s.all += force;
-    const Real scale = weak_beside(s.hold, larger(s.all, least_stiffness(s) * s.moved_all), least_share);
+    const Real scale = larger(weak_beside(s.hold, s.all, least_share), least_stiffness(s) * s.moved_all);
     Vec moment = s.moment - cross(cluster.centre, s.unbalanced);
     // Away from an axis all is in balance by itself.
     if (problem.mesh.is_round) s.unbalanced[0] = 0, moment = {};
@@ -245,6 +241,7 @@ Findings examine(const Problem& problem, const Answer& answer) {
   findings.von_mises = response.most_von_mises;
   findings.unknown_stress = response.unknown_stress;
   findings.supports = body.supports / larger(body.displacement, tiny);
+  findings.body = response;
 
   Worst penetration, tension, complementarity, cone;
   for (const auto& [place, group] : contact.groups) {

@@ -64,6 +64,7 @@ bool joined(std::vector<ContactRow>& rows, const ContactRow& row, Real size) {
     twin.friction = twin.friction || row.friction;
     twin.mass = mass;
     twin.written.insert(twin.written.end(), row.written.begin(), row.written.end());
+    twin.parts.insert(twin.parts.end(), row.parts.begin(), row.parts.end());
     return true;
   }
   return false;
@@ -131,6 +132,7 @@ void find_rows(const nlohmann::json& contact, const std::filesystem::path& folde
       row.unknown_gap = facing.unknown + 1e-15L * norm(row.carried);
       row.grazing = facing.grazing;
       row.mass = sum.mass;
+      row.parts = {{number, sum.mass}};
       row.tresca = friction.value("tresca", 0.0);
       row.coulomb = friction.value("coulomb", 0.0);
       row.friction = row.tresca > 0 || row.coulomb > 0;
