@@ -38,7 +38,7 @@ constexpr auto rules = std::to_array<DeckKeywordRule>({
     {"NSET", any, "NSET= ELSET= GENERATE INSTANCE= INTERNAL UNSORTED"},
     {"PART", model, "NAME="},
     {"PLASTIC", model, "HARDENING="},
-    {"SOLIDSECTION", model, "ELSET= MATERIAL= ORIENTATION="},
+    {"SOLIDSECTION", model, "ELSET= MATERIAL= ORIENTATION= OFFSET=0|0.|0.0"},
     {"STATIC", step, "DIRECT? SOLVER= TIMERESET TOTALTIMEATSTART= RIKS?"},
     // How a step goes about its end does not change what is there.
     {"STEP", any, "NAME= INC= AMPLITUDE=RAMP|STEP CONVERTSDI= EXTRAPOLATION= UNSYMM= NLGEOM? PERTURBATION"},
