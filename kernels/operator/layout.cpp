@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <tuple>
 
@@ -319,6 +320,27 @@ Layout make_layout(const Body& body, Division division, int lanes, int threads,
   return std::move(builder.layout);
 }
 
+namespace {
+
+/// The first node's coordinates, along axes where those of all nodes lie between half and twice that: there
+/// differences are exact (Sterbenz). Else 0: such blocks are as large as their coordinates.
+std::array<double, 3> exact_origin(const MeshView& mesh, const std::int32_t* nodes, std::size_t count) {
+  const std::size_t dim = dimension(mesh.type);
+  std::array<double, 3> origin{};
+  for (std::size_t k = 0; k < dim && count > 0; ++k) {
+    const double first = mesh.coordinates[at(nodes[0]) * dim + k];
+    bool exact = true;
+    for (std::size_t i = 0; i < count && exact; ++i) {
+      const double x = mesh.coordinates[at(nodes[i]) * dim + k];
+      exact = x * first > 0.0 && std::abs(x) >= 0.5 * std::abs(first) && std::abs(x) <= 2.0 * std::abs(first);
+    }
+    if (exact) origin[k] = first;
+  }
+  return origin;
+}
+
+}  // namespace
+
 template <class Real>
 void fill_coordinates(const Layout& layout, const MeshView& mesh, std::span<Real> coordinates) {
   const std::size_t dim = dimension(mesh.type);
@@ -329,8 +351,9 @@ void fill_coordinates(const Layout& layout, const MeshView& mesh, std::span<Real
     for (std::size_t i = 0; i < block.count; ++i)
       for (std::size_t k = 0; k < dim; ++k)
         middle[k] += mesh.coordinates[at(nodes[i]) * dim + k] / block.count;
-    // Single precision needs the small numbers; in double the caller's own keep every bit.
-    if constexpr (std::is_same_v<Real, double>) middle = {};
+    // Single precision needs the small numbers; in double differences have to keep every bit.
+    if constexpr (std::is_same_v<Real, double>)
+      middle = exact_origin(mesh, layout.nodes.data() + block.first_node, block.count);
     for (std::size_t i = 0; i < block.count; ++i)
       for (std::size_t k = 0; k < 3; ++k)
         coordinates[4 * (block.first_record + i) + k] =
