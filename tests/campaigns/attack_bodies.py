@@ -7,7 +7,7 @@ import sys
 from dataclasses import dataclass, field
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "perf"))
-from random_bodies import CUBE, KINDS, TET_EDGES, add_middles, lattice  # noqa: E402
+from random_bodies import CUBE, KINDS, TET_EDGES, lattice  # noqa: E402
 
 POINT = 15  # Gmsh's number of an element that is a node
 FLAT = ("tri3", "quad4")
@@ -140,5 +140,3 @@ def renumbered(mesh, rng):
     rng.shuffle(order)
     return Mesh(mesh.element, mesh.nodes, elements, mesh.parts, mesh.facets, mesh.points, tags, order)
 
-
-__all__ = ["Mesh", "centre", "make", "renumbered", "shaken", "twice", "warped", "within", "add_middles"]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws the random cases of the attack: every kind of body, material, support, load, obstacle, friction, motion and step."""
+import json
 import math
 import random
 from dataclasses import dataclass, field
@@ -29,7 +30,6 @@ class Case:
 
     def write(self, folder):
         """case.json and what it refers to."""
-        import json
         document = dict(self.document)
         if self.box:
             document["mesh"] = {"box": self.box, **self.options}
@@ -587,12 +587,11 @@ def draw_case(seed, index):
     contact = draw_contact(d, mesh, case, times)
     for i, entry in enumerate(contact):
         entry["name"] = f"c{i}"
-    if "met sphere" in d.traits and d.plane == "axisymmetric":
-        pass
     for entry in boundary:
         rise = entry.pop("rise", None)
         if rise is not None and (box or options):  # numbers of such meshes are not ours
             entry["temperature"] = rise
+            d.traits.discard("warmth file")
         elif rise is not None:
             case.warmth = {n: rise * d.rng.uniform(0, 1) for n in range(len(mesh.nodes))}
     if contact:

@@ -4,12 +4,10 @@ import copy
 import itertools
 import math
 import random
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import attack_bodies as bodies
 from attack_cases import Case, random_turn
-
-KINDS = ("turned", "renumbered", "rescaled", "ranks", "restarted", "idle", "parted")
 
 
 @dataclass
@@ -22,7 +20,6 @@ class Twin:
     turn: list = None               # rows of the rotation
     length: float = 1.0
     force: float = 1.0
-    options: list = field(default_factory=list)
 
     def vector(self, v, factor):
         return [factor * c for c in (rotated(self.turn, v) if self.turn else v)]
