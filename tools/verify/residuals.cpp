@@ -12,13 +12,13 @@ namespace {
 constexpr Real tiny = 1e-300L, least_force = 3e-9L, least_share = 1e-3L, delta = 1e-15L,
                delta_of_traces = 3e-16L;
 
-/// Slip: u, less what the obstacle has moved by, in the directions that are free and orthogonal to the row's
+/// Slip: u, less what it is counted from, in the directions that are free and orthogonal to the row's
 /// normal.
 Vec tangential(const Problem& problem, const ContactRow& row, const std::vector<Vec>& u) {
   Vec sum{};
   for (const ContactRow::Share& share : row.shares) {
     const auto node = static_cast<std::size_t>(share.node);
-    const Vec free = free_part(problem, share.node, u[node] - row.carried);
+    const Vec free = free_part(problem, share.node, u[node] - row.slip_origin);
     const Vec along = 1 / norm(share.normal) * share.normal;
     // The weight of a node in a row of several is the length of its normal among theirs.
     const Real weight = row.shares.size() == 1 ? Real(1) : norm(share.normal);
@@ -61,6 +61,8 @@ Contact sum_contact(const Problem& problem, const Regions& regions, const BodyRe
   for (const Vec& u : answer.u)
     for (const Real component : u) most = larger(most, std::abs(component));
   out.force.assign(problem.mesh.nodes.size(), {});
+  for (const Vec& u : problem.point.before)
+    for (const Real component : u) most = larger(most, std::abs(component));
   for (std::size_t i = 0; i < problem.rows.size(); ++i) {
     const ContactRow& row = problem.rows[i];
     Group& group = out.groups[{regions.of_node[row.shares[0].node], row.entry}];
