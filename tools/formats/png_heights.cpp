@@ -8,6 +8,7 @@
 #include <cstdlib>
 
 #include <kacanov/error.hpp>
+#include "formats/gmsh_cursor.hpp"
 #include "formats/inflate.hpp"
 #include "formats/words.hpp"
 

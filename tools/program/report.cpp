@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <iostream>
 
+#include "formats/printable.hpp"
 #include "problem/vector3.hpp"
 
 namespace kacanov {
