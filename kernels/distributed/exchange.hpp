@@ -2,13 +2,17 @@
 // Entries from every rank to every rank.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <vector>
 
 #include <kacanov/communicator.hpp>
+#include <kacanov/error.hpp>
 
 namespace kacanov {
 
@@ -24,8 +28,10 @@ struct Received {
 
 /// Sends to[r] to rank r: plain structs and numbers. Collective.
 template <class T>
-Received<T> exchange_all(const std::vector<std::vector<T>>& to, const Communicator& comm) {
+Received<T> exchange_all(const std::vector<std::vector<T>>& to, const Communicator& comm,
+                         CallSite at = CallSite()) {
   static_assert(std::is_trivially_copyable_v<T>);
+  comm.expect_all_here(at);
   if (comm.ranks == 1) return {to[0], {0, static_cast<int>(to[0].size())}};
   std::vector<int> out;
   std::vector<T> sent;
@@ -44,8 +50,9 @@ Received<T> exchange_all(const std::vector<std::vector<T>>& to, const Communicat
 
 /// The entries of all ranks on every rank, in the order of the ranks. Collective.
 template <class T>
-std::vector<T> gathered(const std::vector<T>& mine, const Communicator& comm) {
+std::vector<T> gathered(const std::vector<T>& mine, const Communicator& comm, CallSite at = CallSite()) {
   static_assert(std::is_trivially_copyable_v<T>);
+  comm.expect_all_here(at);
   if (comm.ranks == 1) return mine;
   std::vector<int> count;
   std::size_t total = 0;
@@ -56,6 +63,16 @@ std::vector<T> gathered(const std::vector<T>& mine, const Communicator& comm) {
   std::vector<T> all(total);
   comm.transport->gather(mine.data(), all.data(), {count, sizeof(T)});
   return all;
+}
+
+/// Throws InputError on all ranks where one has a text: that of the first rank with one. Collective.
+inline void refuse_together(const std::string& text, const Communicator& comm, CallSite at = CallSite()) {
+  if (!comm.any(!text.empty(), at)) return;
+  const auto length = static_cast<std::int64_t>(text.size());
+  const std::vector<std::int64_t> lengths = gathered(std::vector<std::int64_t>{length}, comm, at);
+  const std::vector<char> all = gathered(std::vector<char>(text.begin(), text.end()), comm, at);
+  const auto first = std::find_if(lengths.begin(), lengths.end(), [](std::int64_t l) { return l > 0; });
+  throw InputError(std::string(all.data(), static_cast<std::size_t>(*first)));
 }
 
 }  // namespace kacanov

@@ -15,42 +15,42 @@ int IndexMap::owner(std::int64_t number) const noexcept {
 }
 
 template <class S>
-void IndexMap::forward(std::span<S> x, int components) const {
-  if (neighbours.empty()) return;
+void IndexMap::forward(std::span<S> x, int components, CallSite at) const {
   Scatterer<S> scatterer(*this, components);
-  scatterer.start_forward(x);
+  scatterer.start_forward(x, at);
   scatterer.finish_forward(x);
 }
 
 template <class S>
-void IndexMap::sum(std::span<S> x, int components) const {
-  if (neighbours.empty()) return;
+void IndexMap::sum(std::span<S> x, int components, CallSite at) const {
   Scatterer<S> scatterer(*this, components);
-  scatterer.start_sum(x);
+  scatterer.start_sum(x, at);
   scatterer.finish_sum(x);
 }
 
-template void IndexMap::forward(std::span<double>, int) const;
-template void IndexMap::forward(std::span<float>, int) const;
-template void IndexMap::forward(std::span<std::int32_t>, int) const;
-template void IndexMap::forward(std::span<std::int64_t>, int) const;
-template void IndexMap::sum(std::span<double>, int) const;
-template void IndexMap::sum(std::span<float>, int) const;
-template void IndexMap::sum(std::span<std::int32_t>, int) const;
-template void IndexMap::sum(std::span<std::int64_t>, int) const;
+template void IndexMap::forward(std::span<double>, int, CallSite) const;
+template void IndexMap::forward(std::span<float>, int, CallSite) const;
+template void IndexMap::forward(std::span<std::int32_t>, int, CallSite) const;
+template void IndexMap::forward(std::span<std::int64_t>, int, CallSite) const;
+template void IndexMap::sum(std::span<double>, int, CallSite) const;
+template void IndexMap::sum(std::span<float>, int, CallSite) const;
+template void IndexMap::sum(std::span<std::int32_t>, int, CallSite) const;
+template void IndexMap::sum(std::span<std::int64_t>, int, CallSite) const;
 
-std::vector<std::int64_t> number_owned(std::int64_t owned, const Communicator& comm) {
+std::vector<std::int64_t> number_owned(std::int64_t owned, const Communicator& comm, CallSite at) {
+  comm.expect_all_here(at, 1);
   if (comm.ranks == 1) return {0, owned};
   std::vector<std::int64_t> starts{0};
   for (const std::int64_t count : comm.transport->all(owned)) starts.push_back(starts.back() + count);
   return starts;
 }
 
-IndexMap make_index_map(const Communicator& comm, std::int32_t owned, std::vector<std::int64_t> ghosts) {
+IndexMap make_index_map(const Communicator& comm, std::int32_t owned, std::vector<std::int64_t> ghosts,
+                        CallSite at) {
   IndexMap map;
   static_cast<Communicator&>(map) = comm;
   map.owned = owned;
-  map.starts = number_owned(owned, comm);
+  map.starts = number_owned(owned, comm, at);
   map.ghosts = std::move(ghosts);
   if (comm.ranks == 1) return map;
   std::vector<std::vector<std::int64_t>> wanted(comm.ranks);
@@ -60,7 +60,7 @@ IndexMap make_index_map(const Communicator& comm, std::int32_t owned, std::vecto
     wanted[from].push_back(map.ghosts[i]);
     all[from].receive.push_back(owned + static_cast<std::int32_t>(i));
   }
-  const Received<std::int64_t> asked = exchange_all(wanted, comm);
+  const Received<std::int64_t> asked = exchange_all(wanted, comm, at);
   for (std::size_t r = 0; r < all.size(); ++r) {
     all[r].rank = static_cast<int>(r);
     for (const std::int64_t number : asked.from(r))

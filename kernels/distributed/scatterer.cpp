@@ -25,7 +25,8 @@ Scatterer<S>::Scatterer(const IndexMap& map, int components) : map_(&map), width
 
 /// Starts a receive for each neighbour's `incoming` indices and a send of x at its `outgoing` ones.
 template <class S>
-void Scatterer<S>::start(List outgoing, List incoming, std::span<const S> x) {
+void Scatterer<S>::start(List outgoing, List incoming, std::span<const S> x, CallSite at) {
+  map_->expect_all_here(at, map_->total() * static_cast<std::int64_t>(width_));
   std::size_t out = 0, in = 0;
   for (const auto& n : map_->neighbours) {
     out += (n.*outgoing).size() * width_;
@@ -45,8 +46,8 @@ void Scatterer<S>::start(List outgoing, List incoming, std::span<const S> x) {
 }
 
 template <class S>
-void Scatterer<S>::start_forward(std::span<const S> x) {
-  start(&IndexMap::Neighbour::send, &IndexMap::Neighbour::receive, x);
+void Scatterer<S>::start_forward(std::span<const S> x, CallSite at) {
+  start(&IndexMap::Neighbour::send, &IndexMap::Neighbour::receive, x, at);
 }
 
 template <class S>
@@ -59,8 +60,8 @@ void Scatterer<S>::finish_forward(std::span<S> x) {
 }
 
 template <class S>
-void Scatterer<S>::start_sum(std::span<const S> x) {
-  start(&IndexMap::Neighbour::shared, &IndexMap::Neighbour::shared, x);
+void Scatterer<S>::start_sum(std::span<const S> x, CallSite at) {
+  start(&IndexMap::Neighbour::shared, &IndexMap::Neighbour::shared, x, at);
 }
 
 template <class S>

@@ -166,7 +166,7 @@ void BasicOperator<Real>::block_diagonal(std::span<Real> blocks, std::span<const
 template <class Real>
 void BasicOperator<Real>::block_diagonal_deviator(std::span<Real> blocks,
                                                   std::span<const char> wanted) const {
-  if (pressures() == 0) throw std::logic_error("block_diagonal_deviator where nothing is averaged");
+  if (!data_->averages()) throw std::logic_error("block_diagonal_deviator where nothing is averaged");
   data_->sum_secant_blocks(blocks, wanted,
                            [](const Law& law, double) { return law.mean_dilatation ? 0.0 : law.bulk; });
 }

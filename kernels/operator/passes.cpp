@@ -203,6 +203,7 @@ void BasicOperator<Real>::Data::weigh_corners() {
 
 template <class Real>
 void BasicOperator<Real>::Data::find_changes(const Real* x, int vectors) {
+  if (corners.entries == 0) return;
   reserve_scratch(vectors);
   const std::size_t stride = 4 * std::size_t{layout.largest}, count = vectors;
   change.assign(corners.places * count, Real(0));
@@ -244,7 +245,7 @@ void BasicOperator<Real>::Data::apply_pressure(const Real* x, const Real* p, Rea
   mean.assign(p, p + corners.entries);
   // The loops over displacements multiply a mean by its k0.
   for (std::size_t i = 0; x != nullptr && i < mean.size(); ++i) mean[i] /= static_cast<Real>(corner_bulk[i]);
-  pass(x, y, 1, true, when_early,
+  pass(x, y, 1, corners.entries > 0, when_early,
        [&](const simd::Block<Real>& at, const Real* u, Real* f, std::size_t stride) {
          if (x != nullptr)
            kernels.apply(at, {u, f, 1, stride});
@@ -283,9 +284,8 @@ double BasicOperator<Real>::Data::dots(const simd::Block<Real>& at, const simd::
 template <class Real>
 double BasicOperator<Real>::Data::apply(const Real* x, Real* y, int vectors, bool with_dot,
                                         const WhenEarly& when_early) {
-  const bool averaged = corners.entries > 0;
-  if (averaged) find_means(x, vectors);
-  return pass(x, y, vectors, averaged, when_early,
+  if (averages()) find_means(x, vectors);
+  return pass(x, y, vectors, corners.entries > 0, when_early,
               [&](const simd::Block<Real>& at, const Real* u, Real* f, std::size_t stride) {
                 kernels.apply(at, {u, f, vectors, stride});
                 return with_dot ? dots(at, {u, f, vectors, stride}) : 0.0;
@@ -295,9 +295,8 @@ double BasicOperator<Real>::Data::apply(const Real* x, Real* y, int vectors, boo
 template <class Real>
 double BasicOperator<Real>::Data::apply_tangent(const Real* x, Real* y, int vectors, bool with_dot,
                                                 const WhenEarly& when_early) {
-  const bool averaged = corners.entries > 0;
-  if (averaged) find_means(x, vectors);
-  return pass(x, y, vectors, averaged, when_early,
+  if (averages()) find_means(x, vectors);
+  return pass(x, y, vectors, corners.entries > 0, when_early,
               [&](simd::Block<Real> at, const Real* u, Real* f, std::size_t stride) {
                 if (!tangent_secant.empty()) at.secant = tangent_secant.data() + (at.secant - secant.data());
                 kernels.apply_tangent(at, {u, f, vectors, stride});
@@ -327,8 +326,9 @@ double BasicOperator<Real>::Data::nonlinear(const Real* u, Real* f, simd::Nonlin
     detach_tangent();
   }
   // Without forces and energy the deviator alone counts.
-  const bool averaged = corners.entries > 0 && (f != nullptr || keep.sum_energy || outside.energy != nullptr);
-  const double of_volume = averaged ? find_means(u, 1) : 0.0;
+  const bool volume_counts = f != nullptr || keep.sum_energy || outside.energy != nullptr;
+  const double of_volume = averages() && volume_counts ? find_means(u, 1) : 0.0;
+  const bool averaged = corners.entries > 0 && volume_counts;
   const double energy =
       pass(u, f, 1, averaged, {}, [&](simd::Block<Real> at, const Real* local, Real* forces, std::size_t) {
         simd::Nonlinear out = keep;

@@ -50,6 +50,9 @@ struct BasicOperator<Real>::Data {
   /// Of the caller's elements × points: as the slots have them, 0 in idle lanes; null where there are none.
   const Real* by_slot(std::span<const double> values, Aligned<Real>& slots) const;
 
+  /// Whether this or another process averages tr ε around corners. Decides what all processes take part in,
+  /// in place of the entries here.
+  bool averages() const { return corners.entries > 0 || sum_corners; }
   /// change = ∫ N tr ε(x_v) round the corners, this process's share, in the places of the entries.
   void find_changes(const Real* x, int count);
   /// y = A x (theory: displacement-pressure).

@@ -10,8 +10,8 @@
 namespace kacanov {
 namespace {
 
-void expect_pressures(std::size_t count, const char* member) {
-  if (count == 0) throw std::logic_error(std::string(member) + " where nothing is averaged");
+void expect_pressures(bool averages, const char* member) {
+  if (!averages) throw std::logic_error(std::string(member) + " where nothing is averaged");
 }
 
 }  // namespace
@@ -24,7 +24,7 @@ std::size_t BasicOperator<Real>::pressures() const noexcept {
 template <class Real>
 void BasicOperator<Real>::apply_deviator(std::span<const Real> x, std::span<const Real> p, std::span<Real> y,
                                          const WhenEarly& when_early) {
-  expect_pressures(pressures(), "apply_deviator");
+  expect_pressures(data_->averages(), "apply_deviator");
   expect_size(x.size(), unknowns(), "x");
   expect_size(y.size(), unknowns(), "y");
   ++data_->applications;
@@ -36,7 +36,7 @@ void BasicOperator<Real>::apply_deviator(std::span<const Real> x, std::span<cons
 template <class Real>
 void BasicOperator<Real>::pressure_force(std::span<const Real> p, std::span<Real> y,
                                          const WhenEarly& when_early) {
-  expect_pressures(pressures(), "pressure_force");
+  expect_pressures(data_->averages(), "pressure_force");
   expect_size(p.size(), pressures(), "p");
   expect_size(y.size(), unknowns(), "y");
   data_->apply_pressure(nullptr, p.data(), y.data(), when_early);
@@ -44,7 +44,7 @@ void BasicOperator<Real>::pressure_force(std::span<const Real> p, std::span<Real
 
 template <class Real>
 void BasicOperator<Real>::volume_change(std::span<const Real> x, std::span<Real> q) {
-  expect_pressures(pressures(), "volume_change");
+  expect_pressures(data_->averages(), "volume_change");
   expect_size(x.size(), unknowns(), "x");
   expect_size(q.size(), pressures(), "q");
   data_->find_changes(x.data(), 1);

@@ -37,6 +37,7 @@ Elsewhere agree_on_exceptions(const MpiSession& mpi, const std::exception_ptr& r
   const py::gil_scoped_release release;
   const int weight = found.rank < 0 ? 0 : found.interrupt ? 2 : 1;
   int most = 0;
+  mpi.expect_all_here();
   MPI_Allreduce(&weight, &most, 1, MPI_INT, MPI_MAX, mpi.comm());
   if (most == 0) return {};
   const int candidate = weight == most ? mpi.rank() : mpi.ranks();

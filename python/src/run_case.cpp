@@ -4,7 +4,6 @@
 
 #include <pybind11/stl.h>
 
-#include <array>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -64,13 +63,6 @@ Case share_case(Given& given, const MpiSession& mpi) {
   if (mpi.ranks() > 1) {
     broadcast(mpi, given.text);
     broadcast(mpi, given.path);
-    int check = given.memory_check ? 1 : 0;
-    MPI_Bcast(&check, 1, MPI_INT, 0, mpi.comm());
-    given.memory_check = check != 0;
-    std::array<int, 2> starts{given.start ? 1 : 0, given.start ? 0 : 1};
-    MPI_Allreduce(MPI_IN_PLACE, starts.data(), 2, MPI_INT, MPI_MAX, mpi.comm());
-    if (starts[0] == 1 && starts[1] == 1)
-      throw InputError("start: expected a solution on all ranks, or on none");
   }
   Case input;
   together(mpi, [&] { input = read_case(given.text, given.path, std::move(given.mesh)); });

@@ -41,7 +41,8 @@ HYPRE_ParVector create_vector(MPI_Comm comm, HYPRE_BigInt first, HYPRE_BigInt co
 }  // namespace
 
 BoomerAmg::BoomerAmg(MPI_Comm comm, std::int64_t first, std::int64_t count, std::int64_t total)
-    : comm_(comm) {
+    : comm_(comm), ranks_(mpi_communicator(comm)) {
+  ranks_.expect_all_here();
   if (total > std::numeric_limits<HYPRE_BigInt>::max())
     throw InputError("the problem needs a matrix of " + std::to_string(total) +
                      " rows; this hypre is a 32-bit build and takes at most " +
@@ -99,6 +100,7 @@ void BoomerAmg::reach(std::span<const std::vector<double>> smooth) {
 }
 
 void BoomerAmg::finish(const BoomerAmgOptions& options, std::span<const std::vector<double>> smooth) {
+  ranks_.expect_all_here();
   check(HYPRE_IJMatrixAssemble(matrix_), "IJMatrixAssemble");
   void* object = nullptr;
   check(HYPRE_IJMatrixGetObject(matrix_, &object), "IJMatrixGetObject");
@@ -128,6 +130,7 @@ void BoomerAmg::finish(const BoomerAmgOptions& options, std::span<const std::vec
 }
 
 void BoomerAmg::apply(const double* r, double* z) {
+  ranks_.expect_all_here();
   check(HYPRE_IJVectorSetValues(right_, count_, nullptr, r), "IJVectorSetValues");
   check(HYPRE_ParVectorSetConstantValues(left_object_, 0.0), "ParVectorSetConstantValues");
   check(HYPRE_BoomerAMGSolve(solver_, object_, right_object_, left_object_), "BoomerAMGSolve");

@@ -10,6 +10,8 @@
 #include <span>
 #include <vector>
 
+#include <kacanov/mpi_communicator.hpp>
+
 namespace kacanov {
 
 /// In hypre's words.
@@ -50,6 +52,7 @@ class BoomerAmg {
   void reach(std::span<const std::vector<double>> smooth);
 
   MPI_Comm comm_;
+  Communicator ranks_;
   HYPRE_BigInt first_ = 0, count_ = 0;
   HYPRE_IJMatrix matrix_ = nullptr;
   HYPRE_ParCSRMatrix object_ = nullptr;

@@ -80,6 +80,7 @@ TraceRows::TraceRows(const Part& part, std::span<const TraceChoice> choice) : pa
     }
     if (entries.size() == 1) add_narrow(i, std::span(narrow).first(rows));
   }
+  refuse_together(crowded_, part.node_map);
   for (Group& group : groups_) invert(group);
   total_ = part.node_map.sum_all(static_cast<std::int64_t>(owned_));
   any_wide_ = part.wide_contact && part.node_map.any(!wide_rows_.empty());
@@ -97,8 +98,9 @@ void TraceRows::add_narrow(std::size_t point, std::span<const Vector3> rows) {
   if (point < static_cast<std::size_t>(part_->owned_contact)) owned_groups_ = groups_.size();
   auto& group = groups_.back();
   if (static_cast<std::size_t>(group.rows) + rows.size() > group.row.size())
-    throw InputError("contact: node " + std::to_string(part_->node_tag(node)) +
-                     " belongs to more than three contact surfaces");
+    crowded_ = "contact: node " + std::to_string(part_->node_tag(node)) +
+               " belongs to more than three contact surfaces";
+  if (!crowded_.empty()) return;
   for (const Vector3& row : rows) group.row[group.rows++] = row;
 }
 

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "contact/row_cluster.hpp"
@@ -80,6 +81,7 @@ class TraceRows {
   std::vector<std::int64_t> index_;
   std::vector<double> root_mass_;
   std::int64_t total_ = 0;
+  std::string crowded_;  ///< what is wrong with a node of too many rows; empty
 };
 
 }  // namespace kacanov

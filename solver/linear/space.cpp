@@ -59,11 +59,11 @@ double Space::local_dot(std::span<const double> x, std::span<const double> y) co
   return eight_sums(part_->owned_unknowns(), [&](std::size_t i) { return x[i] * y[i]; });
 }
 
-double Space::dot(std::span<const double> x, std::span<const double> y) const {
-  return part_->node_map.sum_all(local_dot(x, y));
+double Space::dot(std::span<const double> x, std::span<const double> y, CallSite at) const {
+  return part_->node_map.sum_all(local_dot(x, y), at);
 }
 
-double Space::norm(std::span<const double> x) const { return std::sqrt(dot(x, x)); }
+double Space::norm(std::span<const double> x, CallSite at) const { return std::sqrt(dot(x, x, at)); }
 
 double Space::residual_norm(std::span<const double> r) const {
   if (!weighted()) return norm(r);
@@ -78,9 +78,9 @@ double Space::residual_norm(std::span<const double> r) const {
 }
 
 std::array<double, 2> Space::dot2(std::span<const double> a, std::span<const double> b,
-                                  std::span<const double> c, std::span<const double> d) const {
+                                  std::span<const double> c, std::span<const double> d, CallSite at) const {
   std::array<double, 2> s{local_dot(a, b), local_dot(c, d)};
-  part_->node_map.sum_all(s);
+  part_->node_map.sum_all(s, at);
   return s;
 }
 
@@ -100,10 +100,10 @@ void Space::turn(double beta, std::span<const double> z, std::span<double> p) co
   for (std::size_t i = 0; i < p.size(); ++i) p[i] = beta == 0.0 ? z[i] : z[i] + beta * p[i];
 }
 
-double Space::max_abs(std::span<const double> x) const {
+double Space::max_abs(std::span<const double> x, CallSite at) const {
   double m = 0.0;
   for (const double v : x) m = std::max(m, std::abs(v));
-  return part_->node_map.max_all(m);
+  return part_->node_map.max_all(m, at);
 }
 
 }  // namespace kacanov

@@ -17,6 +17,7 @@ namespace {
 template <class T>
 void broadcast(std::vector<T>& values, const Communicator& ranks) {
   if (ranks.ranks == 1) return;
+  ranks.expect_all_here();
   std::uint64_t count = values.size();
   MPI_Bcast(&count, sizeof count, MPI_BYTE, 0, mpi_of(ranks));
   values.resize(count);

@@ -84,7 +84,7 @@ bool OuterLoop::stop_agreed() const {
 }
 
 void OuterLoop::keep(const Result& result) {
-  if (run_.stop_requested) {
+  if (stoppable_) {
     kept_ = Kept{context_.state, control_, result};
     if (stop_agreed()) throw Interrupted{};
   }
@@ -160,12 +160,14 @@ void OuterLoop::restore(const Checkpoint* users, Result& result) {
     double number = 0.0;
     if (here)
       number = std::is_integral_v<Value> ? static_cast<double>(from->count(name, most)) : from->number(name);
+    part.node_map.expect_all_here();
     if (part.node_map.ranks > 1) MPI_Bcast(&number, 1, MPI_DOUBLE, 0, mpi_of(part.node_map));
     value = static_cast<Value>(number);
   };
   const auto values = [&](const char* name, std::size_t entries) {
     Vector all(entries);
     if (here) all = from->field(name, entries);
+    part.node_map.expect_all_here(CallSite(), static_cast<std::int64_t>(entries));
     if (part.node_map.ranks > 1)
       MPI_Bcast(all.data(), static_cast<int>(entries), MPI_DOUBLE, 0, mpi_of(part.node_map));
     return all;

@@ -59,11 +59,12 @@ OuterLoop::OuterLoop(const Part& part, const SolverOptions& options, const RunOp
                AugmentedControl(tuning)},
       friction_(has_friction(part)),
       history_(has_slip_history(part)),
+      stoppable_(part.node_map.any(run.stop_requested != nullptr)),
       extent_(body_extent(part)),
       largest_imposed_(imposed(part)) {
   context_.path.go_to(share);
   take_load();
-  if (run.stop_requested) {
+  if (stoppable_) {
     DistributedOperator& op = context_.body.op();
     op.watch([this, &op] {
       if (op.applications() % context_.tuning.applications_per_question == 0 && stop_agreed())

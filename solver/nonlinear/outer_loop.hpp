@@ -125,6 +125,7 @@ class OuterLoop {
   bool gave_up_ = false;
   bool friction_;
   bool history_;            ///< slip of some point is counted from the load step before
+  bool stoppable_;          ///< some rank has something to ask whether to stop
   double extent_;           ///< of the body, in the unit of displacements
   double largest_imposed_;  ///< displacement
   UnitSystem units_;

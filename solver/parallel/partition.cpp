@@ -4,12 +4,15 @@
 #include <array>
 #include <cstddef>
 #include <numeric>
+#include <optional>
+#include <string>
 #include <tuple>
 #include <utility>
 
 #include <kacanov/error.hpp>
 #include <kacanov/locality.hpp>
 #include <kacanov/pressure_patches.hpp>
+#include "distributed/exchange.hpp"
 #include "parallel/long_messages.hpp"
 #include "parallel/part_fields.hpp"
 #include "parallel/sharers.hpp"
@@ -321,19 +324,23 @@ void join(Part& part, MPI_Comm comm) {
 }
 
 Part distribute(const Problem* problem, MPI_Comm comm) {
-  int rank = 0, ranks = 1;
-  MPI_Comm_rank(comm, &rank);
-  MPI_Comm_size(comm, &ranks);
+  const Communicator ranks = mpi_communicator(comm);
+  std::optional<Splitter> splitter;
+  std::string refusal;
+  if (ranks.rank == 0) try {
+      splitter.emplace(*problem, ranks.ranks);
+    } catch (const InputError& error) {
+      refusal = error.what();
+    }
+  refuse_together(refusal, ranks);
   Part part;
-  if (rank == 0) {
-    split(*problem, ranks, [&](int owner, Part&& one) {
-      if (owner == 0) {
-        part = std::move(one);
-      } else {
-        OtherRank sink{owner, comm};
-        FieldWriter{sink}(one);
-      }
-    });
+  if (ranks.rank == 0) {
+    for (int rank = 1; rank < ranks.ranks; ++rank) {
+      OtherRank sink{rank, comm};
+      Part one = splitter->part(rank);
+      FieldWriter{sink}(one);
+    }
+    part = splitter->part(0);
   } else {
     FirstRank source{comm};
     FieldReader{source}(part);

@@ -74,21 +74,29 @@ std::size_t size_of(std::int64_t count) { return static_cast<std::size_t>(count)
 
 }  // namespace
 
-std::vector<double> gather_nodal(const Part& part, std::span<const double> local, int components) {
+std::vector<double> gather_nodal(const Part& part, std::span<const double> local, int components,
+                                 CallSite at) {
+  part.node_map.expect_all_here(at, components);
   return gather(std::span(part.node_index).first(size_of(part.owned_nodes())), local, size_of(components),
                 size_of(part.total_nodes()), part.node_map);
 }
 
-std::vector<double> gather_contact(const Part& part, std::span<const double> local, int components) {
+std::vector<double> gather_contact(const Part& part, std::span<const double> local, int components,
+                                   CallSite at) {
+  part.node_map.expect_all_here(at, components);
   return gather(std::span(part.contact_index).first(size_of(part.owned_contact)), local, size_of(components),
                 size_of(part.total_contact), part.node_map);
 }
 
-std::vector<double> scatter_nodal(const Part& part, std::span<const double> all, int components) {
+std::vector<double> scatter_nodal(const Part& part, std::span<const double> all, int components,
+                                  CallSite at) {
+  part.node_map.expect_all_here(at, components);
   return scatter(part.node_index, all, size_of(components), part.node_map);
 }
 
-std::vector<double> scatter_contact(const Part& part, std::span<const double> all, int components) {
+std::vector<double> scatter_contact(const Part& part, std::span<const double> all, int components,
+                                    CallSite at) {
+  part.node_map.expect_all_here(at, components);
   return scatter(part.contact_index, all, size_of(components), part.node_map);
 }
 

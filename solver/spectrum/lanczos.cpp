@@ -12,6 +12,7 @@
 #include <string>
 
 #include <kacanov/error.hpp>
+#include <kacanov/mpi_communicator.hpp>
 
 namespace kacanov {
 namespace {
@@ -28,16 +29,9 @@ double start_entry(std::int64_t index) {
 }
 
 LanczosResult dense(const Product& product, std::span<const std::int64_t> index, std::int64_t rows,
-                    MPI_Comm comm, const LanczosOptions& options) {
+                    const Communicator& ranks, const LanczosOptions& options) {
   Eigen::MatrixXd k = Eigen::MatrixXd::Zero(rows, rows);
-  int rank = 0, ranks = 1;
-  MPI_Comm_rank(comm, &rank);
-  MPI_Comm_size(comm, &ranks);
-  std::vector<int> counts(ranks), first(ranks, 0);
-  const int mine = static_cast<int>(index.size());
-  MPI_Allgather(&mine, 1, MPI_INT, counts.data(), 1, MPI_INT, comm);
-  for (std::size_t r = 1; r < counts.size(); ++r) first[r] = first[r - 1] + counts[r - 1];
-  const auto offset = static_cast<std::int64_t>(first[rank]);
+  const std::int64_t offset = ranks.sum_below(static_cast<std::int64_t>(index.size()));
 
   LanczosResult result;
   std::vector<double> x(index.size()), y(index.size());
@@ -47,7 +41,7 @@ LanczosResult dense(const Product& product, std::span<const std::int64_t> index,
     ++result.products;
     for (std::size_t i = 0; i < y.size(); ++i) k(offset + static_cast<std::int64_t>(i), j) = y[i];
   }
-  MPI_Allreduce(MPI_IN_PLACE, k.data(), static_cast<int>(k.size()), MPI_DOUBLE, MPI_SUM, comm);
+  ranks.sum_all(std::span(k.data(), static_cast<std::size_t>(k.size())));
   const Eigen::MatrixXd symmetric = 0.5 * (k + k.transpose());
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(symmetric);
   const double asymmetry = 0.5 * (k - k.transpose()).norm();
@@ -65,12 +59,12 @@ LanczosResult dense(const Product& product, std::span<const std::int64_t> index,
 
 LanczosResult largest_eigenvalues(const Product& product, std::span<const std::int64_t> index, MPI_Comm comm,
                                   const LanczosOptions& options) {
-  std::int64_t rows = static_cast<std::int64_t>(index.size());
-  MPI_Allreduce(MPI_IN_PLACE, &rows, 1, MPI_INT64_T, MPI_SUM, comm);
+  const Communicator ranks = mpi_communicator(comm);
+  const std::int64_t rows = ranks.sum_all(static_cast<std::int64_t>(index.size()));
   LanczosResult result;
   result.converged = rows == 0;
   if (rows == 0) return result;
-  if (rows <= dense_rows) return dense(product, index, rows, comm, options);
+  if (rows <= dense_rows) return dense(product, index, rows, ranks, options);
 
   // PARPACK refuses a rank without rows: such a rank carries one row of zeros, which adds the eigenvalue 0.
   const std::size_t own = index.size();
@@ -94,6 +88,7 @@ LanczosResult largest_eigenvalues(const Product& product, std::span<const std::i
   const MPI_Fint fortran_comm = MPI_Comm_c2f(comm);
   a_int task = 0, info = 1;  // info 1: our start vector
   while (true) {
+    ranks.expect_all_here();
     pdsaupd_c(fortran_comm, &task, "I", n, "LA", wanted, options.tolerance, residual.data(), basis, v.data(),
               n, parameters.data(), pointers.data(), work.data(), values_work.data(), space, &info);
     if (task != 1 && task != -1) break;

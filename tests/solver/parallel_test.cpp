@@ -6,9 +6,13 @@
 #include <algorithm>
 #include <cstring>
 #include <numeric>
+#include <stdexcept>
+#include <string>
 
+#include <kacanov/error.hpp>
 #include <kacanov/scatterer.hpp>
 #include "../sanitized.hpp"
+#include "distributed/exchange.hpp"
 #include "linear/space.hpp"
 #include "preconditioners.hpp"
 #include "support.hpp"
@@ -310,3 +314,45 @@ TEST_CASE("progress is told on rank 0 only") {
   else
     CHECK(lines == 0);
 }
+
+TEST_CASE("what is wrong on one rank is thrown on all") {
+  const Communicator ranks = mpi_communicator(MPI_COMM_WORLD);
+  CHECK_NOTHROW(refuse_together("", ranks));
+  const std::string text = ranks.rank == ranks.ranks - 1 ? "the last one has it" : "";
+  CHECK_THROWS_WITH_AS(refuse_together(text, ranks), "the last one has it", InputError);
+}
+
+#ifdef KACANOV_CHECK_COLLECTIVES
+TEST_CASE("ranks at different collective calls all learn both places, and can continue") {
+  Part part = over_all_ranks(beam_problem(3, 3));
+  const Communicator& ranks = part.node_map;
+  if (ranks.ranks == 1) return;
+  const auto message_of = [&](const auto& first, const auto& others) -> std::string {
+    try {
+      ranks.rank == 0 ? first() : others();
+    } catch (const std::logic_error& error) {
+      return error.what();
+    }
+    return {};
+  };
+  const auto names = [](const std::string& message, int line, int other) {
+    const auto place = [](int at) { return "solver/parallel_test.cpp:" + std::to_string(at) + " "; };
+    return message.find("rank 0 is at " + place(line)) != std::string::npos &&
+           message.find("rank 1 at " + place(other)) != std::string::npos;
+  };
+  const int line = __LINE__;
+  const auto sum = [&] { ranks.sum_all(1.0); };
+  const auto largest = [&] { ranks.any(true); };
+  std::vector<double> x(part.nodes(), 1.0);
+  const auto scatter = [&] { part.node_map.forward(x, 1); };
+  CHECK(names(message_of(sum, largest), line + 1, line + 2));
+  CHECK(names(message_of(scatter, sum), line + 4, line + 1));
+  CHECK(message_of(sum, sum).empty());
+  CHECK(message_of(scatter, scatter).empty());
+  // Sums of several numbers, and of more on some ranks.
+  std::vector<double> some(ranks.rank == 0 ? 3 : 2, 1.0);
+  const auto sums = [&] { ranks.sum_all(some); };
+  CHECK(message_of(sums, sums).find("2 entries") != std::string::npos);
+  CHECK(ranks.sum_all(std::int64_t{1}) == ranks.ranks);
+}
+#endif

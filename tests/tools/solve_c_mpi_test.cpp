@@ -20,8 +20,8 @@ struct Run {
   int code = 0;
   std::string message;
   kacanov_solution* solution = nullptr;
-  Run(const char* text, const MPI_Comm* comm, kacanov_stop_callback stop = nullptr, void* data = nullptr) {
-    kacanov_solve_options options{};
+  Run(const char* text, const MPI_Comm* comm, kacanov_stop_callback stop = nullptr, void* data = nullptr,
+      kacanov_solve_options options = {}) {
     options.struct_size = sizeof options;
     options.communicator = comm;
     options.stop = stop;
@@ -83,4 +83,38 @@ TEST_CASE("what is wrong on the first process is said on all, and one process st
       block, &world, [](void* yes) { return *static_cast<int*>(yes); }, &last);
   REQUIRE(stopped.code == KACANOV_OK);
   CHECK(stopped.about().status == KACANOV_INTERRUPTED);
+}
+
+TEST_CASE("options that one process alone has: all take part in what they lead to") {
+  int rank = 0, ranks = 1;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  const MPI_Comm world = MPI_COMM_WORLD;
+  kacanov_solve_options options{};
+  options.skip_memory_check = rank == 0 ? 0 : 1;
+  int questions = 0;
+  const kacanov_stop_callback after_some = [](void* asked) {
+    return ++*static_cast<int*>(asked) > 2 ? 1 : 0;
+  };
+  const Run stopped(block, &world, rank == ranks - 1 ? after_some : nullptr, &questions, options);
+  REQUIRE(stopped.code == KACANOV_OK);
+  CHECK(stopped.about().status == KACANOV_INTERRUPTED);
+  if (ranks == 1) return;
+  const Run alone(block, nullptr);
+  options.start = rank == 0 ? alone.solution : nullptr;
+  const Run some(block, &world, nullptr, nullptr, options);
+  CHECK(some.code == KACANOV_ERROR_CASE);
+  CHECK(some.message.find("start: expected a solution on all ranks") != std::string::npos);
+}
+
+TEST_CASE("a mesh of fewer elements than processes is refused on all") {
+  int ranks = 1;
+  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  const MPI_Comm world = MPI_COMM_WORLD;
+  const Run few(R"({"mesh": {"box": {"size": [2, 1, 1], "cells": [1, 1, 1], "element": "hex8"}},
+                    "material": [{"on": "all", "young": 1.0, "poisson": 0.3}],
+                    "boundary": [{"on": "left", "displacement": [0, 0, 0]}]})",
+                &world);
+  CHECK(few.code == (ranks == 1 ? KACANOV_OK : KACANOV_ERROR_CASE));
+  if (ranks > 1) CHECK(few.message.find("cannot be split into 2 parts") != std::string::npos);
 }

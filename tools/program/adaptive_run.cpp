@@ -105,6 +105,7 @@ class Adaptation {
       entered_ = entered_elements(*problem, input_.model, u, entered_at_most * largest);
     });
     entered_count_ = static_cast<std::int64_t>(entered_.size());
+    mpi_.expect_all_here();
     MPI_Bcast(&entered_count_, 1, MPI_INT64_T, 0, mpi_.comm());
   }
 
@@ -128,6 +129,7 @@ class Adaptation {
       finer.warnings = mesh.warnings;
       input_.mesh.adapted = std::make_shared<const Mesh>(std::move(finer));
     });
+    mpi_.expect_all_here();
     MPI_Bcast(&fits, 1, MPI_INT, 0, mpi_.comm());
     return fits == 1;
   }

@@ -127,6 +127,7 @@ void solve_level(Case& input, std::size_t dim, const Coarser& coarser, bool halv
     if (mpi.first()) problem = coarse_problem(input, dim, coarser);
     fits = problem.has_value() ? 1 : 0;
   });
+  mpi.expect_all_here();
   MPI_Bcast(&fits, 1, MPI_INT, 0, mpi.comm());
   if (fits == 0) return;
   Part part = distribute(problem ? &*problem : nullptr, mpi.comm());
@@ -168,6 +169,7 @@ RunOptions silent(const RunOptions& options) {
 
 bool stop_wanted(const MpiSession& mpi, const RunOptions& options) {
   int stop = options.stop_requested && options.stop_requested() ? 1 : 0;
+  mpi.expect_all_here();
   MPI_Allreduce(MPI_IN_PLACE, &stop, 1, MPI_INT, MPI_MAX, mpi.comm());
   return stop != 0;
 }

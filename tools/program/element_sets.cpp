@@ -47,6 +47,7 @@ SetNumbers sets_of_part(const ElementSets& sets, const Part& part) {
 SetNumbers distribute_sets(const ElementSets& sets, const Part& part, const MpiSession& mpi) {
   const MPI_Comm comm = mpi.comm();
   int some = sets.names.empty() ? 0 : 1;
+  mpi.expect_all_here();
   MPI_Bcast(&some, 1, MPI_INT, 0, comm);
   if (some == 0) return {};
   if (mpi.first()) {

@@ -80,10 +80,12 @@ LoadedCase load_case(const Case& input, const MpiSession& mpi, bool memory_check
   const bool tells = phase && mpi.first();
   LoadedCase loaded;
   RankCount ranks{mpi.ranks(), 0};
-  if (memory_check) {
+  {
+    // On all ranks, whatever a host has told each; the first one's word counts.
+    mpi.expect_all_here();
     MPI_Comm machine;
     MPI_Comm_split_type(mpi.comm(), MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
-    MPI_Comm_size(machine, &ranks.here);
+    if (memory_check) MPI_Comm_size(machine, &ranks.here);
     MPI_Comm_free(&machine);
   }
   const double start = MPI_Wtime();

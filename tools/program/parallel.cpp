@@ -19,13 +19,12 @@ namespace kacanov {
 MpiSession::MpiSession() {
   int provided = 0;
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
-  MPI_Comm_size(MPI_COMM_WORLD, &ranks_);
+  all_ = mpi_communicator(comm_);
+  rank_ = all_.rank, ranks_ = all_.ranks;
 }
 
-MpiSession::MpiSession(MPI_Comm comm) : comm_(comm), hosted_(true) {
-  MPI_Comm_rank(comm, &rank_);
-  MPI_Comm_size(comm, &ranks_);
+MpiSession::MpiSession(MPI_Comm comm) : comm_(comm), hosted_(true), all_(mpi_communicator(comm)) {
+  rank_ = all_.rank, ranks_ = all_.ranks;
 }
 
 MpiSession::~MpiSession() {
@@ -71,7 +70,7 @@ namespace {
 
 }  // namespace
 
-void together(const MpiSession& mpi, const std::function<void()>& work) {
+void together(const MpiSession& mpi, const std::function<void()>& work, CallSite at) {
   Failure failure;
   try {
     work();
@@ -81,6 +80,7 @@ void together(const MpiSession& mpi, const std::function<void()>& work) {
   } catch (...) {
     failure = current_failure();
   }
+  mpi.expect_all_here(at);
   int worst = 0;
   MPI_Allreduce(&failure.exit_code, &worst, 1, MPI_INT, MPI_MAX, mpi.comm());
   if (worst == 0) return;
@@ -92,7 +92,8 @@ void together(const MpiSession& mpi, const std::function<void()>& work) {
   throw ReportedFailure{worst};
 }
 
-void broadcast(const MpiSession& mpi, std::string& text, int from) {
+void broadcast(const MpiSession& mpi, std::string& text, int from, CallSite at) {
+  mpi.expect_all_here(at);
   std::uint64_t size = text.size();
   MPI_Bcast(&size, 1, MPI_UINT64_T, from, mpi.comm());
   text.resize(size);

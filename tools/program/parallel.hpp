@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include <kacanov/mpi_communicator.hpp>
+
 namespace kacanov {
 
 /// Exit code and text of the exception being handled: 2 for InputError, else 3.
@@ -37,6 +39,8 @@ class MpiSession {
   int rank() const noexcept { return rank_; }
   int ranks() const noexcept { return ranks_; }
   bool first() const noexcept { return rank_ == 0; }
+  /// Precedes calls of MPI by hand (Communicator::expect_all_here).
+  void expect_all_here(CallSite at = CallSite()) const { all_.expect_all_here(at); }
 
   /// What else is to be done about a failure, with its text, on the rank that prints it. It must not
   /// communicate; what it throws is lost.
@@ -48,6 +52,7 @@ class MpiSession {
   MPI_Comm comm_ = MPI_COMM_WORLD;
   bool hosted_ = false;
   int rank_ = 0, ranks_ = 1;
+  Communicator all_;
   std::function<void(const std::string&)> when_failing_;
 };
 
@@ -58,10 +63,10 @@ struct ReportedFailure {
 
 /// Does `work`, which must not communicate, on every rank; where it throws on any, one message is printed and
 /// every rank throws ReportedFailure; in a host's process InputError or InternalError instead. Collective.
-void together(const MpiSession& mpi, const std::function<void()>& work);
+void together(const MpiSession& mpi, const std::function<void()>& work, CallSite at = CallSite());
 
 /// Hands the text of one rank to all. Collective.
-void broadcast(const MpiSession& mpi, std::string& text, int from = 0);
+void broadcast(const MpiSession& mpi, std::string& text, int from = 0, CallSite at = CallSite());
 
 /// Does `work`, which communicates. Where it throws, the message is printed; with several ranks the rest
 /// cannot be waited for, and the whole job ends there with its exit code.

@@ -252,6 +252,7 @@ LoadedCase load_parts(const std::filesystem::path& folder, const Case& input, co
       }
     if (mpi.first()) print_warnings(input, *loaded.problem);
   });
+  mpi.expect_all_here();
   MPI_Bcast(&first_identity, 1, MPI_UINT64_T, 0, mpi.comm());
   together(mpi, [&] {
     if (identity != first_identity) {

@@ -54,6 +54,7 @@ int dispatch(const Command& command, const Case& input, MpiSession& mpi) {
   together(mpi, [&] {
     if (mpi.first()) code = command_on_one(command, input, mpi.ranks());
   });
+  mpi.expect_all_here();
   MPI_Bcast(&code, 1, MPI_INT, 0, mpi.comm());
   return code;
 }

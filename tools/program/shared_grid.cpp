@@ -16,6 +16,7 @@ GridPlace place_of(const Grid& share, const MpiSession& mpi) {
   const std::array<std::uint64_t, 2> here{share.points.size() / static_cast<std::size_t>(share.dim),
                                           share.cells.size() / static_cast<std::size_t>(share.cell->nodes)};
   std::array<std::uint64_t, 2> all{}, before{};
+  mpi.expect_all_here();
   MPI_Allreduce(here.data(), all.data(), 2, MPI_UINT64_T, MPI_SUM, mpi.comm());
   MPI_Exscan(here.data(), before.data(), 2, MPI_UINT64_T, MPI_SUM, mpi.comm());
   if (mpi.first()) before = {};  // MPI leaves it open there

@@ -137,7 +137,11 @@ SolvedCase solve_case(const Case& given, const MpiSession& mpi, const CaseRun& r
   if (given.mesh.adapt) coarse = adapt(input, mpi, options);
   LoadedCase loaded = load_case(input, mpi, run.memory_check);
   input.mesh.adapted.reset();
-  if (run.start != nullptr)
+  const Communicator& all = loaded.part.node_map;
+  const bool starts = all.any(run.start != nullptr);
+  if (starts && all.any(run.start == nullptr))
+    throw InputError("start: expected a solution on all ranks, or on none");
+  if (starts)
     coarse.solutions = {start_of(*run.start, loaded.part.dim(), mpi)};
   else if (!given.mesh.adapt)
     coarse = solve_coarser(input, loaded.part.dim(), mpi, options);
@@ -177,14 +181,21 @@ SolvedCase solve_case(const Case& given, const MpiSession& mpi, const CaseRun& r
   figures.distribute = loaded.distribute_seconds;
   figures.output = MPI_Wtime() - solved;
   figures.total = MPI_Wtime() - begin;
-  if (mpi.first()) {
+  std::string text;
+  together(mpi, [&] {
+    if (!mpi.first()) return;
     out.problem = std::move(*loaded.problem);
     complete_messages(input, out.problem, out.result);
     out.json = result_json(out.result, figures, input, out.problem.mesh);
+<<<<<<< HEAD
   }
   std::string text = mpi.first() && mpi.ranks() > 1
                          ? out.json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
                          : std::string();
+=======
+        if (mpi.ranks() > 1) text = out.json.dump();
+      });
+>>>>>>> 425dc96
   broadcast(mpi, text);
   if (!mpi.first()) out.json = nlohmann::ordered_json::parse(text);
   return out;

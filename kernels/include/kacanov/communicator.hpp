@@ -11,24 +11,45 @@
 
 namespace kacanov {
 
+/// The place in the source that calls a collective function, as the default of that function's last argument.
+/// Builds with KACANOV_CHECK_COLLECTIVES compare it over the ranks; in others it is empty.
+struct CallSite {
+#ifdef KACANOV_CHECK_COLLECTIVES
+  explicit constexpr CallSite(const char* in_file = __builtin_FILE(), int at_line = __builtin_LINE(),
+                              const char* in_function = __builtin_FUNCTION())
+      : file(in_file), function(in_function), line(at_line) {}
+  const char *file, *function;
+  int line;
+#endif
+};
+
 /// Every function is collective and gives every rank the same bits. With one rank they return at once.
 struct Communicator {
   std::shared_ptr<const Transport> transport;  ///< null: this process is alone
   int rank = 0, ranks = 1;
 
-  double sum_all(double value) const;
-  std::int64_t sum_all(std::int64_t value) const;
+  double sum_all(double value, CallSite at = CallSite()) const;
+  std::int64_t sum_all(std::int64_t value, CallSite at = CallSite()) const;
   /// Entry by entry.
-  void sum_all(std::span<double> values) const;
+  void sum_all(std::span<double> values, CallSite at = CallSite()) const;
   /// Each of some numbers that lie apart, in one message.
-  void sum_each(std::initializer_list<double*> numbers) const;
-  double max_all(double value) const;
+  void sum_each(std::initializer_list<double*> numbers, CallSite at = CallSite()) const;
+  double max_all(double value, CallSite at = CallSite()) const;
   /// Entry by entry.
-  void max_all(std::span<double> values) const;
+  void max_all(std::span<double> values, CallSite at = CallSite()) const;
   /// Whether it holds on some rank.
-  bool any(bool here) const { return max_all(here ? 1.0 : 0.0) > 0.0; }
+  bool any(bool here, CallSite at = CallSite()) const { return max_all(here ? 1.0 : 0.0, at) > 0.0; }
   /// Sum over the ranks below this one.
-  std::int64_t sum_below(std::int64_t value) const;
+  std::int64_t sum_below(std::int64_t value, CallSite at = CallSite()) const;
+
+  /// Precedes whatever all ranks do together: each function here, and calls of MPI or hypre by hand. With
+  /// KACANOV_CHECK_COLLECTIVES it throws std::logic_error on all ranks, with the places, where they are not
+  /// at the same one with the same number of entries; otherwise it does nothing.
+#ifdef KACANOV_CHECK_COLLECTIVES
+  void expect_all_here(CallSite at = CallSite(), std::int64_t entries = 0) const;
+#else
+  void expect_all_here(CallSite = CallSite(), std::int64_t = 0) const noexcept {}
+#endif
 };
 
 }  // namespace kacanov

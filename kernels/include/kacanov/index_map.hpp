@@ -41,27 +41,29 @@ struct IndexMap : Communicator {
   /// Overwrites ghosts with their owners' values (forward scatter). x: size() × components of double, float,
   /// std::int32_t or std::int64_t. Collective.
   template <class S>
-  void forward(std::span<S> x, int components) const;
+  void forward(std::span<S> x, int components, CallSite at = CallSite()) const;
   /// Adds up what all ranks have for an index, in rank order, so that every copy ends with the same bits
   /// (reverse scatter). Collective.
   template <class S>
-  void sum(std::span<S> x, int components) const;
+  void sum(std::span<S> x, int components, CallSite at = CallSite()) const;
   // Vectors are handed over as they are.
   template <class S>
-  void forward(std::vector<S>& x, int components) const {
-    forward(std::span<S>(x), components);
+  void forward(std::vector<S>& x, int components, CallSite at = CallSite()) const {
+    forward(std::span<S>(x), components, at);
   }
   template <class S>
-  void sum(std::vector<S>& x, int components) const {
-    sum(std::span<S>(x), components);
+  void sum(std::vector<S>& x, int components, CallSite at = CallSite()) const {
+    sum(std::span<S>(x), components, at);
   }
 };
 
 /// Numbers `owned` indices a rank one rank after the other. Collective.
-std::vector<std::int64_t> number_owned(std::int64_t owned, const Communicator& comm);
+std::vector<std::int64_t> number_owned(std::int64_t owned, const Communicator& comm,
+                                       CallSite at = CallSite());
 
 /// The map of `owned` indices here and of ghosts with these numbers, ascending: finds out who wants what. Its
 /// neighbours have lists for forward scatters alone. Collective.
-IndexMap make_index_map(const Communicator& comm, std::int32_t owned, std::vector<std::int64_t> ghosts);
+IndexMap make_index_map(const Communicator& comm, std::int32_t owned, std::vector<std::int64_t> ghosts,
+                        CallSite at = CallSite());
 
 }  // namespace kacanov

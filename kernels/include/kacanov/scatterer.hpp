@@ -19,18 +19,18 @@ class Scatterer {
   Scatterer(const IndexMap& map, int components);
 
   /// Sends owned values to the ranks that have ghosts of them.
-  void start_forward(std::span<const S> x);
+  void start_forward(std::span<const S> x, CallSite at = CallSite());
   /// Overwrites the ghosts.
   void finish_forward(std::span<S> x);
 
   /// Sends x at the shared indices.
-  void start_sum(std::span<const S> x);
+  void start_sum(std::span<const S> x, CallSite at = CallSite());
   /// Adds what the others sent, in rank order. x at the shared indices must be what it was at the start.
   void finish_sum(std::span<S> x);
 
  private:
   using List = std::vector<std::int32_t> IndexMap::Neighbour::*;
-  void start(List outgoing, List incoming, std::span<const S> x);
+  void start(List outgoing, List incoming, std::span<const S> x, CallSite at);
 
   const IndexMap* map_;
   std::size_t width_;

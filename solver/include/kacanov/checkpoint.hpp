@@ -43,7 +43,9 @@ std::uint64_t hash_bytes(const void* data, std::size_t bytes, std::uint64_t seed
 /// The converse of gather_nodal and gather_contact: hands every rank its entries, ghosts included, of a field
 /// that rank 0 has in the numbering of Problem::mesh (nodes × components) or Problem::contact (points ×
 /// components); elsewhere `all` is not looked at. Collective.
-std::vector<double> scatter_nodal(const Part& part, std::span<const double> all, int components);
-std::vector<double> scatter_contact(const Part& part, std::span<const double> all, int components);
+std::vector<double> scatter_nodal(const Part& part, std::span<const double> all, int components,
+                                  CallSite at = CallSite());
+std::vector<double> scatter_contact(const Part& part, std::span<const double> all, int components,
+                                    CallSite at = CallSite());
 
 }  // namespace kacanov

@@ -116,8 +116,10 @@ Part distribute(const Problem* problem, MPI_Comm comm);
 
 /// Collects nodes × components (owned entries) on rank 0, in the numbering of Problem::mesh; empty elsewhere.
 /// Collective.
-std::vector<double> gather_nodal(const Part& part, std::span<const double> local, int components);
+std::vector<double> gather_nodal(const Part& part, std::span<const double> local, int components,
+                                 CallSite at = CallSite());
 /// Contact points × components, in the numbering of Problem::contact.
-std::vector<double> gather_contact(const Part& part, std::span<const double> local, int components);
+std::vector<double> gather_contact(const Part& part, std::span<const double> local, int components,
+                                   CallSite at = CallSite());
 
 }  // namespace kacanov

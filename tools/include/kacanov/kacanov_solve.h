@@ -62,7 +62,7 @@ typedef struct kacanov_solve_options {
   int32_t threads;    /* of each process; 0: one for small cases or beside other processes, else one a core */
   int32_t skip_memory_check;          /* 1: a run is not refused because it looks too large for the memory */
   kacanov_progress_callback progress; /* may be null */
-  kacanov_stop_callback stop;         /* may be null */
+  kacanov_stop_callback stop;         /* may be null, on some processes as well */
   void* data;                         /* handed to both */
   const void* mesh; /* content of the mesh file, where it is in memory: the file that the case names is not
                        opened then, and says by its ending what format this is */
