@@ -76,7 +76,7 @@ class Warnings(unittest.TestCase):
         found = [phrase.replace("@", "*") for row in rows for phrase in re.findall(r"\*([^*]+)\*", row)]
         self.phrases = [[part.strip() for part in phrase.split("…") if part.strip()] for phrase in found]
         self.sources = {path: path.read_text(encoding="utf-8") for room in ("solver", "tools")
-                        for path in (ROOT / room).rglob("*.[ch]pp") if "verify" not in path.parts}
+                        for path in (ROOT / room).rglob("*.[ch]pp") if "verify" not in path.relative_to(ROOT).parts}
 
     @staticmethod
     def words(code):
