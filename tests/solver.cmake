@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # The rooms of the solver, one program each, and whole solves.
 kacanov_test(problem IN solver
-  MPI SOURCES solver/obstacles_test.cpp solver/problem_contact_test.cpp solver/problem_loads_test.cpp
+  MPI SOURCES solver/obstacles_test.cpp solver/equal_faces_test.cpp solver/problem_contact_test.cpp solver/problem_loads_test.cpp
           solver/problem_rigid_modes_test.cpp solver/problem_validate_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 

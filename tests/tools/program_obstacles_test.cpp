@@ -242,13 +242,8 @@ TEST_CASE("an edge in the plane of symmetry presses without a lateral force, and
     const nlohmann::json& force = result.at("contact").at("tool").at("force");
     CHECK(std::abs(force.at(0).get<double>()) < 1e-7 * std::abs(force.at(2).get<double>()));
     CHECK(force.at(2).get<double>() < -0.1);
-    bool warned = false;
-    for (const nlohmann::json& warning : result.at("warnings"))
-      warned = warned || warning.get<std::string>().find(
-                             "5 nodes are equally near to several faces of the "
-                             "obstacle, the first node ") != std::string::npos;
-    CHECK(warned);
-    // The line in the middle lies below the edge.
+    CHECK(result.at("warnings").dump().find("5 nodes are equally near to several faces of the obstacle") !=
+          std::string::npos);
     return force.at(2).get<double>();
   };
   const double text = pressed(R"({"surface": {"file": "blade.stl"}})");
