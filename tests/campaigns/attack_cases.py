@@ -29,7 +29,7 @@ class Case:
     traits: set = field(default_factory=set)     # what twins have to know
 
     def write(self, folder):
-        """case.json and what it refers to."""
+        """Writes case.json and the files that it names."""
         document = dict(self.document)
         if self.box:
             document["mesh"] = {"box": self.box, **self.options}
@@ -281,7 +281,7 @@ def draw_materials(d, mesh):
 # Supports and loads ----------------------------------------------------------------------------------------------
 
 def draw_supports(d):
-    """What holds the body; d.gap: how far its obstacle is away, d.loaded: which sides may be loaded."""
+    """The supports; sets d.gap, the distance of the obstacle, and d.loaded, the sides for loads."""
     rng, stress = d.rng, d.strain * d.soft
     fixed, height = [0.0] * d.dim, d.size[-1]
     d.gap = rng.choice((0.0, 0.0, 0.1, 0.5, -0.3)) * d.strain * height
@@ -536,7 +536,7 @@ def draw_contact(d, mesh, case, times):
 # Steps and solver ------------------------------------------------------------------------------------------------
 
 def draw_steps(d, document, count):
-    """Load curves: factors of both signs on loads, on what is moved, and on what presses in at rest."""
+    """Load curves: factors of both signs on loads and prescribed displacements."""
     rng = d.rng
     times = sorted(rng.sample([0.25 * k for k in range(1, 13)], count))
     loads = [e["name"] for e in document["boundary"] if set(e) & {

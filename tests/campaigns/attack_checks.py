@@ -96,7 +96,7 @@ def read_grid(path):
 
 @dataclass
 class Answer:
-    """What a run has left."""
+    """Result and fields of a run."""
     status: str
     result: dict
     u: dict = field(default_factory=dict)        # displacement by node
@@ -169,7 +169,7 @@ def floor(tolerance):
 
 
 def contact_scales(case, truth, tolerance):
-    """What the force of each contact entry is measured by: itself, or a share of what the body bears behind it."""
+    """Scale of each entry's contact force: the force itself, or a share of the stress in the elements behind it."""
     scales = {}
     for entry in case.document.get("contact", []):
         said = truth.result["contact"].get(entry["name"])
@@ -304,7 +304,7 @@ class Checker:
             return first, why  # converged before
         return self.again(twin.case, place, "--restart", *options)
 
-    # What is asked ------------------------------------------------------------------------------------------------
+    # The checks ---------------------------------------------------------------------------------------------------
 
     def examine(self, case, twins, other=None):
         """Runs all; every surprise is a finding or a note."""
@@ -335,7 +335,7 @@ class Checker:
         return report
 
     def tried(self, report, check, work):
-        """What it returns, or None and a finding."""
+        """Returns the result of `work`, or None and adds a finding."""
         try:
             return work()
         except Hang as fault:
@@ -345,7 +345,7 @@ class Checker:
         return None
 
     def judge(self, report, base, tolerance):
-        """What the verifier has against a converged answer; what it has against others is a finding at once."""
+        """Returns the verifier's objection to a converged answer; other objections are findings at once."""
         done = self.verified("base")
         if done.code == 2 and any(words in done.err for words in CANNOT_TELL):
             report.notes.append("not verifiable: " + done.err.strip())
