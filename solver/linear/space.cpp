@@ -65,8 +65,8 @@ double Space::dot(std::span<const double> x, std::span<const double> y, CallSite
 
 double Space::norm(std::span<const double> x, CallSite at) const { return std::sqrt(dot(x, x, at)); }
 
-double Space::residual_norm(std::span<const double> r) const {
-  if (!weighted()) return norm(r);
+double Space::residual_norm(std::span<const double> r, CallSite at) const {
+  if (!weighted()) return norm(r, at);
   const std::size_t dim = part_->dim();
   double square = 0.0;
   for (std::size_t n = 0; n < static_cast<std::size_t>(part_->owned_nodes()); ++n) {
@@ -74,7 +74,7 @@ double Space::residual_norm(std::span<const double> r) const {
     for (std::size_t i = n * dim; i < (n + 1) * dim; ++i) here += r[i] * r[i];
     square += weights_->at(n) * weights_->at(n) * here;
   }
-  return std::sqrt(sum_all(square));
+  return std::sqrt(sum_all(square, at));
 }
 
 std::array<double, 2> Space::dot2(std::span<const double> a, std::span<const double> b,

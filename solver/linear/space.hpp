@@ -49,30 +49,20 @@ class Space {
   /// Orthogonal projection onto the space, node by node; collective where rows over several nodes are held.
   void project(std::span<double> x) const;
   /// Inner product and 2-norm of consistent vectors over all ranks, each unknown once. Collective.
-<<<<<<< HEAD
-  double dot(std::span<const double> x, std::span<const double> y) const;
-  double norm(std::span<const double> x) const;
-  /// By what residuals are measured: the 2-norm, or, where parts of the body have weights, that of w∘r.
-  /// Collective.
-  double residual_norm(std::span<const double> r) const;
-=======
   double dot(std::span<const double> x, std::span<const double> y, CallSite at = CallSite()) const;
   double norm(std::span<const double> x, CallSite at = CallSite()) const;
->>>>>>> 425dc96
+  /// By what residuals are measured: the 2-norm, or, where parts of the body have weights, that of w∘r.
+  /// Collective.
+  double residual_norm(std::span<const double> r, CallSite at = CallSite()) const;
   /// a·b and c·d for the price of one reduction. Collective.
   std::array<double, 2> dot2(std::span<const double> a, std::span<const double> b, std::span<const double> c,
                              std::span<const double> d, CallSite at = CallSite()) const;
   /// max |x_i| over all ranks. Collective.
   double max_abs(std::span<const double> x, CallSite at = CallSite()) const;
   /// Over all ranks, of what each has. Collective.
-<<<<<<< HEAD
-  double sum_all(double share) const { return part_->node_map.sum_all(share); }
+  double sum_all(double share, CallSite at = CallSite()) const { return part_->node_map.sum_all(share, at); }
   /// A step of conjugate gradients in one pass: x += α p, r −= α q. Returns the residual_norm of r.
   /// Collective.
-=======
-  double sum_all(double share, CallSite at = CallSite()) const { return part_->node_map.sum_all(share, at); }
-  /// A step of conjugate gradients in one pass: x += α p, r −= α q. Returns ‖r‖. Collective.
->>>>>>> 425dc96
   double advance(double alpha, std::span<const double> p, std::span<const double> q, std::span<double> x,
                  std::span<double> r) const;
   /// p = z + β p; with β = 0 the old p is not read.

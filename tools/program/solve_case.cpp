@@ -187,15 +187,9 @@ SolvedCase solve_case(const Case& given, const MpiSession& mpi, const CaseRun& r
     out.problem = std::move(*loaded.problem);
     complete_messages(input, out.problem, out.result);
     out.json = result_json(out.result, figures, input, out.problem.mesh);
-<<<<<<< HEAD
-  }
-  std::string text = mpi.first() && mpi.ranks() > 1
-                         ? out.json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
-                         : std::string();
-=======
-        if (mpi.ranks() > 1) text = out.json.dump();
-      });
->>>>>>> 425dc96
+    if (mpi.ranks() > 1)
+      text = out.json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  });
   broadcast(mpi, text);
   if (!mpi.first()) out.json = nlohmann::ordered_json::parse(text);
   return out;
