@@ -6,24 +6,26 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "cells/point.hpp"
 #include "cells/tet10.hpp"
 
 namespace kacanov::elements {
 
-/// Whether the nodes on edges lie in the middle of them, to rounding of the edge. By differences, which
-/// are exact: a mean of coordinates far from the origin is rounded by more.
+/// Whether the nodes on edges lie in the middle of them, to rounding of the edge and of the coordinates. By
+/// differences, which are exact.
 inline bool has_straight_sides(const Nodal<Tet10>& x) {
   for (const CellEdge& edge : Tet10::edge) {
-    double off = 0.0, side = 0.0;
+    double off = 0.0, side = 0.0, far = 0.0;
     for (int k = 0; k < 3; ++k) {
       const double a = x[Point<Tet10>::at(edge.a, k)], b = x[Point<Tet10>::at(edge.b, k)];
       const double middle = x[Point<Tet10>::at(edge.middle, k)];
       off = std::max(off, 0.5 * std::abs((middle - a) - (b - middle)));
       side = std::max(side, std::abs(a - b));
+      far = std::max({far, std::abs(a), std::abs(b)});
     }
-    if (off > 1e-13 * side) return false;
+    if (off > 1e-13 * side + std::numeric_limits<double>::epsilon() * far) return false;
   }
   return true;
 }

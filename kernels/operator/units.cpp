@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "cells/hex8.hpp"
 #include "cells/straight.hpp"
@@ -20,12 +21,14 @@ bool parallelepiped(const MeshView& mesh, const std::int32_t* node) {
     std::array<double, 8> x;
     for (std::size_t a = 0; a < 8; ++a) x[a] = mesh.coordinates[3 * static_cast<std::size_t>(node[a]) + k];
     const auto [low, high] = std::minmax_element(x.begin(), x.end());
+    const double rounding =
+        4.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(*low), std::abs(*high));
     const double along[3] = {x[1] - x[0], x[3] - x[0], x[4] - x[0]};
     for (std::size_t a = 0; a < 8; ++a) {
       double off = x[a] - x[0];
       for (std::size_t direction = 0; direction < 3; ++direction)
         if (elements::Hex8::corner[a][direction] > 0) off -= along[direction];
-      if (std::abs(off) > 1e-13 * (*high - *low)) return false;
+      if (std::abs(off) > 1e-13 * (*high - *low) + rounding) return false;
     }
   }
   return true;
