@@ -37,10 +37,15 @@ kacanov_test(program_coarser IN program
 kacanov_test(program_supports IN program
   SOURCES tools/program_supports_test.cpp tools/program_turned_box_test.cpp tools/mesh_writer.cpp
   LIBRARIES kacanov_program_runner kacanov_formats)
+find_package(Threads REQUIRED)
+add_library(kacanov_early_thread MODULE tools/early_thread.cpp)
+target_link_libraries(kacanov_early_thread PRIVATE Threads::Threads kacanov_warnings)
+target_compile_features(kacanov_early_thread PRIVATE cxx_std_20)
 target_compile_definitions(test_program PRIVATE
   KACANOV_PROGRAM="$<TARGET_FILE:kacanov>" KACANOV_MPIEXEC="${MPIEXEC_EXECUTABLE}"
+  KACANOV_EARLY_THREAD="$<TARGET_FILE:kacanov_early_thread>"
   KACANOV_HARD_CASES="${PROJECT_SOURCE_DIR}/tests/cases/hard")
-add_dependencies(test_program kacanov)
+add_dependencies(test_program kacanov kacanov_early_thread)
 
 # Small random cases, each verified from its files; perf/verify_answers draws 500 by itself.
 find_package(Python3 COMPONENTS Interpreter)
@@ -103,6 +108,8 @@ kacanov_test(files SOURCES tools/control_group_test.cpp tools/mapped_file_test.c
   LIBRARIES kacanov_program kacanov_formats kacanov_png_writer)
 
 kacanov_test(terminal SOURCES tools/terminal_test.cpp LIBRARIES kacanov_program)
+
+kacanov_test(launch SOURCES tools/launch_test.cpp LIBRARIES kacanov_program)
 
 kacanov_test(vtu SOURCES tools/vtu_test.cpp tools/vtu_reader_test.cpp LIBRARIES kacanov_formats)
 

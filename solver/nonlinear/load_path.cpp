@@ -89,6 +89,16 @@ std::vector<double> LoadPath::thermal_pressure() const {
   return sum;
 }
 
+bool LoadPath::idle() const {
+  const auto acts = [](const Part::ComponentValue& entry) { return entry.value != 0.0; };
+  bool any = std::any_of(load().begin(), load().end(), acts) ||
+             std::any_of(prescribed().begin(), prescribed().end(), acts) ||
+             std::any_of(gap_.begin(), gap_.end(), [](double gap) { return gap < 0.0; });
+  for (const HeldDirection& held : part_->directions) any = any || value_of(held) != 0.0;
+  for (const ThermalPressure& thermal : part_->thermal) any = any || factor_of(thermal.entry) != 0.0;
+  return !part_->node_map.any(any);
+}
+
 double LoadPath::growth_to(double share) const {
   if (part_->steps.empty()) return share / share_;
   const LoadFactors now = factors_at(part_->steps, share_), then = factors_at(part_->steps, share);

@@ -25,6 +25,8 @@ class LoadPath {
   double share() const noexcept { return share_; }
   /// What the loads of a boundary entry are multiplied by.
   double factor_of(std::int32_t entry) const;
+  /// Whether no load, prescribed displacement, temperature or obstacle that presses in acts. Collective.
+  bool idle() const;
   /// What the state is to be multiplied by to start at another share: with load curves 1, unless all that
   /// acts grows in proportion.
   double growth_to(double share) const;

@@ -147,6 +147,31 @@ void OuterLoop::stand_at(const Place& place, const Result& result) {
   context_.body.evaluate(context_.state.u);
 }
 
+void OuterLoop::take_rest_if_solution() {
+  const Part& part = context_.part;
+  if (!context_.path.idle()) return;
+  const ContactState before = context_.state;
+  Start rest;
+  rest.displacement = part.start;
+  rest.displacement.resize(part.unknowns(), 0.0);
+  rest.pressure.assign(part.contact.size(), 0.0);
+  rest.friction.assign(2 * part.contact.size(), 0.0);
+  take(rest);
+  context_.body.evaluate(context_.state.u);
+  if (certify().certificate.worst() > 0.0) context_.state = before;
+}
+
+void OuterLoop::open_if_at_rest(const Residuals& residuals) {
+  // Without pressure the scale of penetrations is a thousandth of the displacement (theory: kkt).
+  const bool at_rest =
+      residuals.scales.displacement == 0.0 || residuals.certificate.penetration * options_.tolerance > 1e3;
+  if ((opening_ && !adopted_) || !at_rest) return;
+  opening_ = true;
+  adopted_ = false;
+  control_.penalty.go_back_to_first();
+  context_.state.phi.tangential = context_.state.trace.tangential;
+}
+
 void OuterLoop::iterate(Result& result) {
   keep(result);
   if (!control_.penalty.chosen()) choose_first_penalty(result);
@@ -157,8 +182,10 @@ void OuterLoop::iterate(Result& result) {
                                        options_.contact == SolverOptions::Contact::active_set);
   const int before_this_call = result.outer_iterations;
   const ContactState& state = context_.state;
+  if (!opening_ || adopted_) take_rest_if_solution();
   context_.body.evaluate(state.u);
   Residuals residuals = certify();
+  open_if_at_rest(residuals);
   best_.worst = HUGE_VAL;
   bool done = false;
   Vector previous;

@@ -91,6 +91,12 @@ class OuterLoop {
   };
 
   void iterate(Result& result);
+  /// Takes the state of rest where that solves the load there is, exactly: what the state before leaves of a
+  /// load that is gone sets no scale to converge by.
+  void take_rest_if_solution();
+  /// Takes the first step as from rest where the state beside what obstacles have moved by is next to rest:
+  /// forces and displacements as small as those do not show how exactly to solve.
+  void open_if_at_rest(const Residuals& residuals);
   /// The next step, by Newton's method or ADMM, and its counts.
   StepOutcome take_step(bool newton, const Residuals& before, Result& result);
   /// From the residuals after the step; those of the state to go on from are returned.

@@ -88,6 +88,46 @@ TEST_CASE("a rank that is killed ends the run, which can go on from its checkpoi
   CHECK(place.json("out/result.json")["restarted_after"].get<int>() >= 1);
 }
 
+TEST_CASE("where TMPDIR cannot be written to a run takes another folder for Open MPI's files") {
+  const Workplace place;
+  place.put_json("beam.json", small_beam());
+  for (const char* ranks : {"1", "2"}) {
+    const Outcome outcome =
+        place.run("run beam.json --output out --ranks " + std::string(ranks), patience + " env TMPDIR=/proc");
+    INFO("error: ", outcome.error);
+    CHECK(outcome.exit_code == 0);
+    CHECK(place.json("out/result.json")["status"] == "converged");
+  }
+}
+
+TEST_CASE("where MPI cannot be started the exit code is 3, and result.json says why") {
+  const Workplace place;
+  place.put_json("beam.json", small_beam());
+  std::filesystem::create_directory(place.path("bin"));
+  place.put("bin/mpiexec", "#!/bin/sh\nexit 1\n");
+  std::filesystem::permissions(place.path("bin/mpiexec"), std::filesystem::perms::owner_all);
+  const auto check_told = [&](const std::string& ranks, const std::string& before, const std::string& text) {
+    INFO(before, " ", ranks, " ranks");
+    const Outcome outcome =
+        place.run("run beam.json --output out --ranks " + ranks, patience + " env " + before);
+    CHECK(outcome.exit_code == 3);
+    CHECK(outcome.error.find("kacanov: internal failure: " + text) != std::string::npos);
+    REQUIRE(place.has("out/result.json"));
+    const nlohmann::json result = place.json("out/result.json");
+    CHECK(result["status"] == "failed");
+    CHECK(result["message"].get<std::string>().find(text) != std::string::npos);
+    CHECK_FALSE(result.contains("probe"));  // of the run before
+  };
+  // In /proc no folder can be made.
+  const std::string closed = "OMPI_MCA_orte_tmpdir_base=/proc";
+  for (const bool again : {false, true}) {
+    check_told("1", closed, "none can be made in /proc (");
+    check_told("2", closed, "none can be made in /proc (");
+    check_told("2", "PATH=\"$PWD/bin:$PATH\"", "mpiexec failed with exit code 1");
+    if (!again) CHECK(place.run("run beam.json --output out").exit_code == 0);
+  }
+}
+
 #ifndef KACANOV_TESTS_SANITIZED  // whose shadow memory knows no limit
 TEST_CASE("where memory runs out the run says so, on one rank and when only the last of two has none") {
   const Workplace place;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Signals to a run on several ranks: a stop that is not obeyed is enforced.
+// Signals to a run: it stops in order whatever threads a library has started,
+// and a stop that is not obeyed is enforced.
 #include <doctest/doctest.h>
 
 #include <chrono>
 #include <string>
 
+#include "../sanitized.hpp"
 #include "program_runner.hpp"
 
 using namespace kacanov::testing;
@@ -12,9 +14,11 @@ using namespace kacanov::testing;
 namespace {
 
 /// Goes on until it is asked to stop, with a checkpoint after every step.
-const std::string endless_ranks =
-    "run beam.json --output out --ranks 2 --set solver.contact=admm --set solver.r=1e-6 "
-    "--set solver.max_contact=2 --set solver.max_outer=100000000";
+const std::string endless =
+    "run beam.json --output out --set solver.contact=admm --set solver.r=1e-6 "
+    "--set solver.max_contact=2 "
+    "--set solver.max_outer=100000000 --ranks ";
+const std::string endless_ranks = endless + "2";
 
 /// Starts a program of several ranks in $program, and finds them in $ranks once there is a checkpoint.
 const std::string start_ranks = R"("$@" & program=$!
@@ -25,7 +29,46 @@ ranks=$(cat /proc/$launcher/task/*/children)
 for rank in $ranks; do last=$rank; done
 )";
 
+/// Starts a program beside a thread that was there before its main(), sends it a signal after the file is
+/// there, and leaves with its exit code: early.sh SIGNAL FILE PROGRAM ARGUMENTS...
+constexpr const char* early_script = R"(signal=$1; file=$2; shift 2
+LD_PRELOAD=')" KACANOV_EARLY_THREAD R"(' "$@" & program=$!
+exec 2>/dev/null
+while [ ! -e "$file" ] && kill -0 $program; do sleep 0.02; done
+kill -s $signal $program
+wait $program
+)";
+
 }  // namespace
+
+// The preloaded library and the sanitizers do not mix.
+TEST_CASE("a signal that a thread from before main() receives stops a run in order" *
+          doctest::skip(sanitized)) {
+  const Workplace place;
+  place.put_json("beam.json", small_beam());
+  place.put("early.sh", early_script);
+  for (const char* signal : {"TERM", "HUP"})
+    for (const char* ranks : {"1", "2"}) {
+      INFO(signal, " ", ranks, " ranks");
+      const Outcome outcome = place.run(
+          endless + ranks, patience + " sh early.sh " + std::string(signal) + " out/checkpoint.kacanov");
+      CHECK(outcome.exit_code == 1);
+      CHECK(place.json("out/result.json")["status"] == "interrupted");
+      CHECK(place.run("run beam.json --output out --restart").exit_code == 0);
+    }
+}
+
+TEST_CASE("a signal that a thread from before main() receives ends METIS' work" * doctest::skip(sanitized)) {
+  const Workplace place;
+  nlohmann::json beam = small_beam();
+  beam["mesh"]["box"]["cells"] = {320, 80};
+  place.put_json("beam.json", beam);
+  place.put("early.sh", early_script);
+  const Outcome outcome = place.run("partition beam.json --ranks 20000 --output parts",
+                                    patience + " sh early.sh TERM parts/unfinished");
+  CHECK(outcome.exit_code == 143);
+  CHECK_FALSE(place.has("parts/boundary.kacanov"));
+}
 
 TEST_CASE("a run that does not stop when asked to is ended after some seconds, by itself") {
   const Workplace place;

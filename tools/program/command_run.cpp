@@ -179,6 +179,7 @@ CoarseRun adapt_or_read(const Command& command, Case& input, const MpiSession& m
   }
   RunOptions options;
   options.stop_requested = interrupt_came;
+  if (left) options.start = &*left;
   options.threads = threads_of(command);
   options.phase = phase;
   if (!command.quiet) options.progress = [](const ProgressStep&) {};
@@ -188,9 +189,26 @@ CoarseRun adapt_or_read(const Command& command, Case& input, const MpiSession& m
 }  // namespace
 
 void leave_failure(const Command& command, const Case& input, const std::string& text) {
-  const std::filesystem::path folder = output_folder(command, input), file = folder / "result.json";
-  if (std::filesystem::is_directory(folder) && !std::filesystem::exists(file))
-    write_json(file, failure_json(text));
+  const std::filesystem::path folder = output_folder(command, input);
+  const OutputFolder held(folder);
+  write_json(folder / "result.json", failure_json(text));
+}
+
+ResultMark::ResultMark(const Command& command, const Case& input)
+    : folder_(output_folder(command, input)), before_(written()) {}
+
+void ResultMark::leave(const std::string& text) const {
+  try {
+    const OutputFolder held(folder_);
+    if (written() == before_) std::filesystem::remove(folder_ / "result.json");
+    note_failure(folder_, text);
+  } catch (...) {  // the message on the standard error is all there is
+  }
+}
+
+std::filesystem::file_time_type ResultMark::written() const {
+  std::error_code none;
+  return std::filesystem::last_write_time(folder_ / "result.json", none);
 }
 
 int run_command(const Command& command, const Case& given, MpiSession& mpi) {
@@ -223,7 +241,7 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
 
   // The folder is that of all ranks, and whichever fails first can say so there. The session keeps the folder
   // held until then.
-  mpi.when_failing([folder, held](const std::string& text) { note_failure(folder, text); });
+  mpi.when_failing([folder, held](const Failure& failure) { note_failure(folder, failure.text); });
 
   RunOptions options;
   options.stop_requested = interrupt_came;
@@ -231,7 +249,6 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
     options.checkpoint_due = [&] { return file->due(); };
     options.checkpoint = [&](const Checkpoint& checkpoint) { file->write(checkpoint); };
   }
-  if (left) options.start = &*left;
   options.threads = threads_of(command);
   options.phase = phase;
   History history;

@@ -3,6 +3,8 @@
 // ReportedFailure.
 #pragma once
 
+#include <filesystem>
+
 #include "case/case_file.hpp"
 #include "program/command.hpp"
 #include "program/parallel.hpp"
@@ -10,9 +12,25 @@
 namespace kacanov {
 
 int run_command(const Command& command, const Case& input, MpiSession& mpi);
-/// Leaves a result.json that says why a run broke down, for a run of which no process was left to do so.
-/// Where there is one, it stays.
+/// Writes into the output folder, made if missing, a result.json with why a run broke down, unless another
+/// run is writing there. For what happens before run_command() has the folder to itself.
 void leave_failure(const Command& command, const Case& input, const std::string& text);
+
+/// The result.json there is before a run.
+class ResultMark {
+ public:
+  ResultMark(const Command& command, const Case& input);
+  /// The same as leave_failure(), for a run of which no process is left: the numbers that it has written stay
+  /// beside the message, those of a run before it do not.
+  void leave(const std::string& text) const;
+
+ private:
+  std::filesystem::file_time_type written() const;
+
+  std::filesystem::path folder_;
+  std::filesystem::file_time_type before_;
+};
+
 int spectrum_command(const Command& command, const Case& input, const MpiSession& mpi);
 /// Not converged means here that no penalty led to convergence.
 int sweep_command(const Command& command, const Case& input, const MpiSession& mpi);

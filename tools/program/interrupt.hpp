@@ -10,9 +10,8 @@ namespace kacanov {
 /// that would make mpiexec kill them.
 constexpr int stop_signal = SIGUSR1;
 
-/// From now on SIGINT, SIGTERM, SIGHUP (unless they are ignored) and stop_signal go to a thread of their own
-/// and end the process as before. METIS, which makes a failure of its own of a SIGTERM, does not see them. To
-/// be called before there is any other thread.
+/// From now on a thread watches for SIGINT, SIGTERM, SIGHUP (unless they are ignored) and stop_signal, and
+/// ends the process by the first one.
 void take_signals();
 
 /// From now on they only ask for a stop. One more than a second later, stop_signal apart, ends the process
@@ -25,9 +24,5 @@ void stop_came_in_time() noexcept;
 
 /// Whether one has come.
 bool interrupt_came() noexcept;
-
-/// Fit for signal handlers: whether this signal comes as a second request. `timeout` and terminals may send
-/// one request twice within moments.
-bool asks_again(timespec& first) noexcept;
 
 }  // namespace kacanov

@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <sched.h>
+#include <sys/auxv.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -20,8 +21,11 @@
 #include <cstring>
 #include <filesystem>
 #include <iostream>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <set>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -31,6 +35,7 @@
 #include "program/control_group.hpp"
 #include "program/interrupt.hpp"
 #include "program/mpi_folder.hpp"
+#include "program/signal_pipe.hpp"
 #include "program/terminal.hpp"
 
 namespace kacanov {
@@ -41,34 +46,68 @@ constexpr const char* started_mark = "KACANOV_STARTED_BY_ITSELF";
 /// Added to exit codes other than 0 on the way through mpiexec.
 constexpr int code_offset = 80;
 
-/// mpiexec's process while it runs, for the signal handler, and the signal that came.
-volatile std::sig_atomic_t running_child = 0;
-volatile std::sig_atomic_t caught_signal = 0;
-
-timespec first_caught{};
-volatile std::sig_atomic_t insisting = 0;  // seconds since it was asked for again
-
-/// Asks the ranks to stop, through mpiexec and once a second: it or they may not listen yet. Asked again,
-/// mpiexec ends them; where it has not within some seconds, it is ended itself, and the ranks with it.
-extern "C" void pass_on(int signal) {
-  constexpr int patience = 5;  // seconds
-  if (signal != SIGALRM) {
-    caught_signal = signal;
-    if (asks_again(first_caught) && insisting == 0) insisting = 1;
-  } else if (insisting > 0) {
-    insisting = insisting + 1;
+/// Passes the signals that come while mpiexec runs on to it, in a thread of its own.
+class PassedSignals {
+ public:
+  static std::shared_ptr<PassedSignals> to(pid_t mpiexec) {
+    auto passed = std::make_shared<PassedSignals>();
+    passed->mpiexec_ = mpiexec;
+    std::thread([passed] { passed->watch(); }).detach();
+    return passed;
   }
-  const int next = insisting == 0 ? stop_signal : insisting <= patience ? SIGTERM : SIGKILL;
-  if (running_child > 0) kill(static_cast<pid_t>(running_child), next);
-  alarm(1);
-}
 
-/// Stops the ranks, which are not of the terminal's foreground group, and then this process; later the
-/// converse.
-extern "C" void pause_with_ranks(int signal) {
-  if (running_child > 0) kill(static_cast<pid_t>(running_child), signal);
-  if (signal == SIGTSTP) raise(SIGSTOP);
-}
+  /// mpiexec has ended. The last signal that asked for an end; 0: none.
+  int finish() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    mpiexec_ = 0;
+    return last_;
+  }
+
+ private:
+  void watch() {
+    constexpr int a_while = 200;  // milliseconds between two looks at the clock
+    for (bool asked = false;;) {
+      const int signal = next_signal(asked ? a_while : -1);
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (signal != 0) take(signal);
+      asked = last_ != 0 && mpiexec_ != 0;
+      if (asked) repeat();
+    }
+  }
+
+  void take(int signal) {
+    if (signal == SIGTSTP || signal == SIGCONT) {
+      // mpiexec is not of the terminal's foreground group: its ranks stop first, then this process.
+      if (mpiexec_ != 0) kill(mpiexec_, signal);
+      if (signal == SIGTSTP) raise(SIGSTOP);
+      return;
+    }
+    if (mpiexec_ == 0) end_by(signal);
+    last_ = signal;
+    if (asks_again(first_) && insisting_ == 0) insisting_ = 1;
+    send();
+  }
+
+  /// Once more after each second: mpiexec or the ranks may not listen yet. Where mpiexec has not ended within
+  /// some seconds of a second request, it is killed, and the ranks with it.
+  void repeat() {
+    if (seconds_since(sent_) < 1.0) return;
+    if (insisting_ > 0) ++insisting_;
+    send();
+  }
+
+  void send() {
+    constexpr int patience = 5;  // seconds
+    kill(mpiexec_, insisting_ == 0 ? stop_signal : insisting_ <= patience ? SIGTERM : SIGKILL);
+    clock_gettime(CLOCK_MONOTONIC, &sent_);
+  }
+
+  std::mutex mutex_;
+  pid_t mpiexec_ = 0;  ///< 0 once it has ended
+  int last_ = 0;
+  int insisting_ = 0;  ///< seconds since the second request
+  timespec first_{}, sent_{};
+};
 
 /// Open MPI that cannot map its libraries and shared memory crashes with a trace, or hangs.
 void refuse_narrow_limit() {
@@ -239,60 +278,59 @@ int coded_exit(int exit_code) {
 
 CaseText case_text_handed_down(const std::string& path) {
   if (std::getenv(started_mark) == nullptr) return read_case_text(path);
-  return {path, read_case_text("/dev/stdin").text};
+  std::string text;
+  std::array<char, 1 << 16> piece{};
+  for (ssize_t size = 1; size != 0;) {
+    size = read(STDIN_FILENO, piece.data(), piece.size());
+    if (size < 0 && errno != EINTR)
+      throw InternalError(std::string("the case that mpiexec hands down cannot be read: ") +
+                          std::strerror(errno));
+    text.append(piece.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0)));
+  }
+  return {path, text};
 }
 
-int run_under_mpiexec(const std::string& mpiexec, Shape shape, const std::string& case_text,
-                      std::span<const char* const> arguments) {
+std::string own_executable(const char* link) {
+  std::error_code error;
+  const std::filesystem::path file = std::filesystem::read_symlink(link, error);
+  if (!error) return file.string();
+  const auto* started = reinterpret_cast<const char*>(getauxval(AT_EXECFN));
+  return std::filesystem::absolute(started != nullptr ? started : "kacanov").string();
+}
+
+int run_under_mpiexec(const std::string& mpiexec, Shape shape, const HandedDown& handed) {
   refuse_narrow_limit();
-  std::vector<std::string> words{mpiexec,
-                                 "--quiet",
-                                 "--oversubscribe",
-                                 "--bind-to",
-                                 "none",
-                                 "-n",
-                                 std::to_string(shape.ranks),
-                                 std::filesystem::read_symlink("/proc/self/exe").string()};
-  for (const char* argument : arguments.subspan(1)) words.emplace_back(argument);
-  std::optional<MpiFolder> folder(std::in_place);
+  std::vector<std::string> words{mpiexec, "--quiet", "--oversubscribe",           "--bind-to",
+                                 "none",  "-n",      std::to_string(shape.ranks), own_executable()};
+  for (const char* argument : handed.arguments.subspan(1)) words.emplace_back(argument);
+  std::optional<MpiFolder> folder(std::in_place, handed.folder);
   set_mpi_environment();
   setenv(started_mark, "1", 1);
   hand_terminal_down();
 
-  struct sigaction action {
-  }, before{};
-  action.sa_handler = pass_on;
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    // What was to be ignored, as under nohup, still is.
-    if (sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
-      sigaction(signal, &action, nullptr);
-  }
-  sigaction(SIGALRM, &action, nullptr);
-  action.sa_handler = pause_with_ranks;
-  action.sa_flags = SA_RESTART;
-  for (const int signal : {SIGTSTP, SIGCONT}) sigaction(signal, &action, nullptr);
-  const int input = nameless_file(case_text);
+  catch_signals({SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGCONT});
+  const int input = nameless_file(handed.case_text);
   int channel[2];
   if (pipe2(channel, O_CLOEXEC) != 0)
     throw InternalError(std::string("cannot start mpiexec: ") + std::strerror(errno));
   const pid_t child = fork();
   if (child < 0) throw InternalError(std::string("cannot start mpiexec: ") + std::strerror(errno));
-  if (child == 0) become_mpiexec(words, input, channel[1]);
+  if (child == 0) {
+    folder->hand_down();  // the ranks may outlive this process by some seconds
+    become_mpiexec(words, input, channel[1]);
+  }
   close(input);
   close(channel[1]);
-  running_child = child;
-  if (caught_signal != 0) kill(child, stop_signal);
+  const std::shared_ptr<PassedSignals> signals = PassedSignals::to(child);
   const int status = wait_and_pass_on(child, channel[0]);
+  const int signal = signals->finish();
   close(channel[0]);
-  running_child = 0;
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   if (code == 0) return 0;
   if (code > code_offset && code <= code_offset + exit_failure) return code - code_offset;
-  if (caught_signal != 0) {  // it came when there was nothing yet to stop in order
-    const int signal = caught_signal;
+  if (signal != 0) {  // it came when there was nothing yet to stop in order
     folder.reset();
-    std::signal(signal, SIG_DFL);
-    std::raise(signal);
+    end_by(signal);
   }
   std::string reason = "mpiexec failed with exit code " + std::to_string(code);
   if (code > 128)

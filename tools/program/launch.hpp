@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -33,12 +34,20 @@ std::int64_t estimate_unknowns(const MeshSource& mesh);
 /// Path of mpiexec on PATH; empty where there is none.
 std::string find_mpiexec();
 
-/// Runs this program with the same arguments (argv, the program's own name first) on several ranks under
-/// mpiexec and waits for it; the first rank finds the case in its standard input. Returns the program's exit
-/// code. A signal that ends this process ends the others as well. Throws InternalError where a process died,
+/// The file of this program. `link`: what /proc says; without it, the file as the system started it.
+std::string own_executable(const char* link = "/proc/self/exe");
+
+/// What run_under_mpiexec gives to the ranks.
+struct HandedDown {
+  std::span<const char* const> arguments;  ///< of this program, its own name first
+  std::string case_text;                   ///< the first rank finds it in its standard input
+  std::filesystem::path folder;            ///< for Open MPI's files where no temporary folder can be written
+};
+
+/// Runs this program on several ranks under mpiexec and waits for it. Returns the program's exit code. A
+/// signal that ends this process ends the others as well. Throws InternalError where a process died,
 /// InputError where a limit on the address space is too narrow for MPI to start.
-int run_under_mpiexec(const std::string& mpiexec, Shape shape, const std::string& case_text,
-                      std::span<const char* const> arguments);
+int run_under_mpiexec(const std::string& mpiexec, Shape shape, const HandedDown& handed);
 
 /// The case for the first rank: what run_under_mpiexec has sent, or the file where somebody else started the
 /// ranks. Throws as read_case_text.

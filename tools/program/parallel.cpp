@@ -16,7 +16,8 @@
 
 namespace kacanov {
 
-MpiSession::MpiSession() {
+MpiSession::MpiSession(std::function<void(const Failure&)> when_failing)
+    : when_failing_(std::move(when_failing)) {
   int provided = 0;
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
   all_ = mpi_communicator(comm_);
@@ -38,7 +39,7 @@ MpiSession::~MpiSession() {
 void MpiSession::report(const Failure& failure) const {
   print_failure(failure);
   try {
-    if (when_failing_) when_failing_(failure.text);
+    if (when_failing_) when_failing_(failure);
   } catch (...) {  // with a full disk, or no memory, there is no more to be done
   }
 }

@@ -26,7 +26,8 @@ void print_failure(const Failure& failure);
 /// MPI_Init to MPI_Finalize; or, within a host that sees to these itself, some ranks of its own.
 class MpiSession {
  public:
-  MpiSession();
+  /// `when_failing` as below.
+  explicit MpiSession(std::function<void(const Failure&)> when_failing = {});
   /// Of a host's process: whoever is handed the session prints nothing, and together() throws on every rank
   /// what went wrong on one.
   explicit MpiSession(MPI_Comm comm);
@@ -42,9 +43,9 @@ class MpiSession {
   /// Precedes calls of MPI by hand (Communicator::expect_all_here).
   void expect_all_here(CallSite at = CallSite()) const { all_.expect_all_here(at); }
 
-  /// What else is to be done about a failure, with its text, on the rank that prints it. It must not
-  /// communicate; what it throws is lost.
-  void when_failing(std::function<void(const std::string&)> work) { when_failing_ = std::move(work); }
+  /// What else is to be done about a failure, on the rank that prints it. It must not communicate; what it
+  /// throws is lost.
+  void when_failing(std::function<void(const Failure&)> work) { when_failing_ = std::move(work); }
   /// Prints a failure and does that.
   void report(const Failure& failure) const;
 
@@ -53,7 +54,7 @@ class MpiSession {
   bool hosted_ = false;
   int rank_ = 0, ranks_ = 1;
   Communicator all_;
-  std::function<void(const std::string&)> when_failing_;
+  std::function<void(const Failure&)> when_failing_;
 };
 
 /// Thrown on all ranks once the cause has been printed.

@@ -19,6 +19,7 @@
 #include "program/interrupt.hpp"
 #include "program/launch.hpp"
 #include "program/mpi_folder.hpp"
+#include "program/output_folder.hpp"
 #include "program/parallel.hpp"
 #include "program/part_files.hpp"
 
@@ -62,9 +63,12 @@ int dispatch(const Command& command, const Case& input, MpiSession& mpi) {
 /// Within MPI, with the ranks there are.
 int run_here(const Command& command, const std::optional<Case>& known) {
   take_signals();
-  MpiSession mpi;
+  std::optional<Case> input = known;
+  MpiSession mpi([&](const Failure& failure) {
+    if (failure.exit_code == exit_failure && input && command.kind == Command::Kind::run)
+      leave_failure(command, *input, failure.text);
+  });
   try {
-    std::optional<Case> input = known;
     CaseText text{command.case_file, {}};
     together(mpi, [&] {
       if (!needs_one(command) && command.ranks && *command.ranks != mpi.ranks()) {
@@ -115,15 +119,23 @@ std::optional<int> ranks_asked_for(const Command& command, const Case& input) {
   return parts;
 }
 
-/// Under mpiexec; where a process was killed, the others went with it, and only this one can still say so.
-int run_on_ranks(const std::string& mpiexec, Shape shape, const Command& command, const Case& input,
-                 const CaseText& text, std::span<const char* const> words) {
-  try {
-    return run_under_mpiexec(mpiexec, shape, text.text, words);
-  } catch (const InternalError&) {
-    if (command.kind == Command::Kind::run) leave_failure(command, input, current_failure().text);
-    throw;
+/// Alone or under mpiexec, on as many ranks as the case and the command line ask for.
+int run_on_ranks(const Command& command, const Case& input, const CaseText& text,
+                 std::span<const char* const> words) {
+  const Shape shape = choose_shape(input, ranks_asked_for(command, input), command.threads, usable_cores());
+  const std::filesystem::path folder = output_folder(command, input);
+  if (shape.ranks > 1) {
+    const std::string mpiexec = find_mpiexec();
+    if (!mpiexec.empty()) return run_under_mpiexec(mpiexec, shape, {words, text.text, folder});
+    if (command.ranks)
+      throw InputError(
+          "--ranks: mpiexec is not on the PATH; without it there "
+          "is only one rank");
+    std::cerr << "kacanov: note: mpiexec is not on the PATH; running on one rank\n";
   }
+  const MpiFolder mpi_folder(folder);
+  set_mpi_environment();
+  return run_here(command, input);
 }
 
 /// Started by hand: validates what is quickly validated, then goes on alone or under mpiexec.
@@ -140,22 +152,21 @@ int run_alone(const Command& given, int argc, const char* const* argv) {
   }
   const CaseText text = read_case_text(command.case_file);
   const Case input = parse_case(text, command.overrides);
-  Shape shape = choose_shape(input, needs_one(command) ? command.ranks : ranks_asked_for(command, input),
-                             command.threads, usable_cores());
   if (needs_one(command)) {
     take_signals();
+    const Shape shape = choose_shape(input, command.ranks, command.threads, usable_cores());
     return command_on_one(command, input, shape.ranks);
   }
-  if (shape.ranks > 1) {
-    const std::string mpiexec = find_mpiexec();
-    if (!mpiexec.empty()) return run_on_ranks(mpiexec, shape, command, input, text, words);
-    if (command.ranks)
-      throw InputError("--ranks: mpiexec is not on the PATH; without it there is only one rank");
-    std::cerr << "kacanov: note: mpiexec is not on the PATH; running on one rank\n";
+  if (command.kind != Command::Kind::run) return run_on_ranks(command, input, text, words);
+  const ResultMark before(command, input);
+  try {
+    return run_on_ranks(command, input, text, words);
+  } catch (...) {
+    // Where a process was killed, the others went with it, and only this one can still write why.
+    const Failure failure = current_failure();
+    if (failure.exit_code == exit_failure) before.leave(failure.text);
+    throw;
   }
-  const MpiFolder folder;
-  set_mpi_environment();
-  return run_here(command, input);
 }
 
 /// Whether what it has to say goes to files, and to the standard output only beside them.
