@@ -7,6 +7,7 @@
 #include <string>
 
 #include <kacanov/error.hpp>
+#include "distributed/exchange.hpp"
 #include "problem/dense.hpp"
 
 namespace kacanov {

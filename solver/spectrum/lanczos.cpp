@@ -48,7 +48,8 @@ LanczosResult dense(const Product& product, std::span<const std::int64_t> index,
   for (std::int64_t i = 0; i < std::min<std::int64_t>(options.wanted, rows); ++i) {
     result.values.push_back(solver.eigenvalues()(rows - 1 - i));
     result.bounds.push_back(asymmetry);
-    const Eigen::VectorXd vector = solver.eigenvectors().col(rows - 1 - i).segment(offset, mine);
+    const Eigen::VectorXd vector =
+        solver.eigenvectors().col(rows - 1 - i).segment(offset, static_cast<Eigen::Index>(index.size()));
     result.vectors.emplace_back(vector.begin(), vector.end());
   }
   result.converged = true;
