@@ -65,9 +65,9 @@ HEADER_ROOMS = {
 }
 
 PLAIN_STREAMS = "solver/mesh/plain_stream.hpp"
-MOST_LINES = 400
+MOST_LINES = 800
 # Files that are longer, and why. An entry that is not needed any more is an error.
-LONGER = {"kernels/include/kacanov/kacanov.h": "hosts in C include one header, most of it words"}
+LONGER = {}
 # Arrows that still run back: (room, included room). An entry that is not needed any more is an error.
 KNOWN_BACKWARD = set()
 
