@@ -164,7 +164,7 @@ struct Inflated {
   double weight = 0.0;      ///< of the held half
 };
 
-Pressed press(const Inflated& by, double overlap, double tolerance) {
+Pressed press(const Inflated& by, double overlap, double accuracy) {
   Model model;
   MaterialEntry held{everything(), elastic_law(1.0, 0.3)},
       end{box({2, 0, 0}, {4, 1, 0}), elastic_law(by.ratio, 0.4)};
@@ -187,7 +187,7 @@ Pressed press(const Inflated& by, double overlap, double tolerance) {
   model.probes.push_back({4, 0.5, 0});
   const double free = run_alone(mesh, model).probe()[0];
   model.contact.push_back(on_plane(box({4, 0, 0}, {4, 1, 0}), {4.0 + free - overlap, 0, 0}, {-1, 0, 0}));
-  model.solver.tolerance = tolerance;
+  model.solver.tolerance = accuracy;
   const Run run = run_alone(mesh, model);
   return {run.result().status, length(run.result().contact_force), run.result().operator_applications};
 }

@@ -179,7 +179,6 @@ CoarseRun adapt_or_read(const Command& command, Case& input, const MpiSession& m
   }
   RunOptions options;
   options.stop_requested = interrupt_came;
-  if (left) options.start = &*left;
   options.threads = threads_of(command);
   options.phase = phase;
   if (!command.quiet) options.progress = [](const ProgressStep&) {};
@@ -249,6 +248,7 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
     options.checkpoint_due = [&] { return file->due(); };
     options.checkpoint = [&](const Checkpoint& checkpoint) { file->write(checkpoint); };
   }
+  if (left) options.start = &*left;
   options.threads = threads_of(command);
   options.phase = phase;
   History history;
