@@ -26,7 +26,7 @@ Mesh beam_mesh(ElementType type, int across) {
 }
 
 /// Clamped on the left, pressed on a floor with friction, beyond yield.
-Model beam(int dim, const Friction& friction) {
+Model rubbing_beam(int dim, const Friction& friction) {
   Vector3 load{}, up{};
   load[dim - 1] = -0.03;
   load[0] = 0.005;
@@ -82,7 +82,7 @@ TEST_CASE("a point is found in an element that has it, with its reference coordi
 TEST_CASE("a linear field and constant tractions are carried over exactly") {
   for (const ElementType type : element_types()) {
     CAPTURE(cell(type).name);
-    const Model model = beam(dimension(type), {0.01, 0.0});
+    const Model model = rubbing_beam(dimension(type), {0.01, 0.0});
     const Problem coarse = build_problem(beam_mesh(type, 2), model);
     const Problem fine = build_problem(beam_mesh(type, 3), model);
     const Part from = distribute(&coarse, MPI_COMM_SELF), to = distribute(&fine, MPI_COMM_SELF);
@@ -113,7 +113,7 @@ TEST_CASE("a start from a coarser mesh leads to the same answer in fewer iterati
     for (const Friction& friction : {Friction{0.01, 0.0}, Friction{0.0, 0.3}}) {
       CAPTURE(cell(type).name);
       CAPTURE(friction.coulomb);
-      const Model model = beam(dimension(type), friction);
+      const Model model = rubbing_beam(dimension(type), friction);
       const int across = type == ElementType::tri3 ? 16 : 4;
       const Run coarse = run_alone(beam_mesh(type, across / 2), model);
       const Run alone = run_alone(beam_mesh(type, across), model);
@@ -133,7 +133,7 @@ TEST_CASE("a start from a coarser mesh leads to the same answer in fewer iterati
 TEST_CASE("load steps start each from its own on a coarser mesh, with the same answers in fewer iterations") {
   for (const auto reference : {Friction::Reference::start, Friction::Reference::step}) {
     CAPTURE(static_cast<int>(reference));
-    Model model = beam(3, {0.0, 0.3, reference});
+    Model model = rubbing_beam(3, {0.0, 0.3, reference});
     model.solver.load_steps = {0.3, 0.7, 1.0};
     std::vector<CoarseSolution> from;
     RunOptions options;

@@ -51,7 +51,7 @@ int iterations(const Part& part, double stretch, const char* preconditioner = "m
   return solve.iterations;
 }
 
-Part beam(int cells, double length, ElementType type) {
+Part long_beam(int cells, double length, ElementType type) {
   int rank = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   Model model = elastic_model();
@@ -111,7 +111,7 @@ TEST_CASE("the first coarse matrix is Galerkin's, summed once or again") {
   SUBCASE("by the plain loop") { set = "plain"; }
   for (const ElementType type : element_types()) {
     CAPTURE(static_cast<int>(type));
-    const Part part = beam(dimension(type) == 2 ? 12 : 4, 3.0, type);
+    const Part part = long_beam(dimension(type) == 2 ? 12 : 4, 3.0, type);
     const std::size_t dim = part.dim();
     Vector g(part.body().secant_count(), 1.0);
     const auto check = [&]<int M>(std::integral_constant<int, M>) {
@@ -239,19 +239,19 @@ TEST_CASE("iterations hardly depend on the mesh: size, element, stretch, contras
     CAPTURE(static_cast<int>(type));
     const bool grids = dimension(type) == 3;
     const int fine = type == ElementType::tri3 ? 40 : 12;
-    const int small = iterations(beam(fine / 2, 3.0, type), 1.0),
-              large = iterations(beam(fine, 3.0, type), 1.0);
+    const int small = iterations(long_beam(fine / 2, 3.0, type), 1.0),
+              large = iterations(long_beam(fine, 3.0, type), 1.0);
     CHECK(small <= (grids ? 20 : 40));
     CHECK(large <= 1.5 * small);
-    CHECK(iterations(beam(fine / 2, 30.0, type), 1.0) <= (grids ? 100 : 6 * small));
-    CHECK(iterations(beam(fine / 2, 3.0, type), 0.1) <= 3 * small);
+    CHECK(iterations(long_beam(fine / 2, 30.0, type), 1.0) <= (grids ? 100 : 6 * small));
+    CHECK(iterations(long_beam(fine / 2, 3.0, type), 0.1) <= 3 * small);
   }
 }
 
 TEST_CASE("a fine level with other blocks is as one made anew") {
   for (const ElementType type : {ElementType::hex8, ElementType::tet4, ElementType::tri3}) {
     CAPTURE(static_cast<int>(type));
-    const Part part = beam(dimension(type) == 2 ? 8 : 3, 3.0, type);
+    const Part part = long_beam(dimension(type) == 2 ? 8 : 3, 3.0, type);
     const std::size_t dim = part.dim();
     const Space space(part);
     Vector g(part.body().secant_count());
@@ -282,7 +282,7 @@ TEST_CASE("a fine level with other blocks is as one made anew") {
 TEST_CASE("a factor takes what flow leaves of shear beside the bulk modulus") {
   for (const auto type : {ElementType::hex8, ElementType::tri3}) {
     CAPTURE(static_cast<int>(type));
-    CHECK(iterations(beam(4, 3.0, type), 1e-7, "factor") <= 3);
+    CHECK(iterations(long_beam(4, 3.0, type), 1e-7, "factor") <= 3);
   }
 }
 
