@@ -23,7 +23,7 @@ target_link_libraries(test_program PRIVATE kacanov_png_writer)
 kacanov_test(program_crafted IN program
   SOURCES tools/program_crafted_test.cpp
   LIBRARIES kacanov_program_runner kacanov_program kacanov_solver_internal)
-# What ranks decide together: one world of eight, of which as many work as a case asks for. All mixes, some twenty
+# Collective decisions on up to eight ranks of one world. All mixes, more than twenty
 # minutes: mpiexec -n 8 test_collective --no-skip
 kacanov_test(collective MPI SOURCES tools/collective_test.cpp LIBRARIES kacanov_program RANKS 8)
 kacanov_test(program_hard IN program NUMBERS

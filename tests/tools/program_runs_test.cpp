@@ -234,17 +234,17 @@ TEST_CASE("spectrum prints r* with its bounds, as text and as JSON") {
   CHECK(text.exit_code == 0);
   CHECK(text.output.find("[N; T]") != std::string::npos);
   CHECK(text.output.find("lambda_min") != std::string::npos);
-  const Outcome outcome = place.run("spectrum beam.json --json --tolerance 1e-8");
+  const Outcome outcome = place.run("spectrum beam.printed --printed --tolerance 1e-8");
   REQUIRE(outcome.exit_code == 0);
-  const nlohmann::json json = parsed(outcome.output);
-  REQUIRE(json["spectrum"].size() == 2);
-  for (const nlohmann::json& entry : json["spectrum"]) {
+  const nlohmann::json printed = parsed(outcome.output);
+  REQUIRE(printed["spectrum"].size() == 2);
+  for (const nlohmann::json& entry : printed["spectrum"]) {
     const double low = entry["lambda_min"], high = entry["lambda_max"], r = entry["r_star"];
     CHECK(r == doctest::Approx(1.0 / std::sqrt(low * high)));
     CHECK(entry["lambda_min_bound"].get<double>() <= 1e-6 * low);
   }
-  CHECK(json["spectrum"][1]["lambda_max"].get<double>() >= json["spectrum"][0]["lambda_max"].get<double>());
-  CHECK(json["r_star"] == json["spectrum"][1]["r_star"]);
+  CHECK(printed["spectrum"][1]["lambda_max"].get<double>() >= printed["spectrum"][0]["lambda_max"].get<double>());
+  CHECK(printed["r_star"] == printed["spectrum"][1]["r_star"]);
   CHECK_FALSE(place.has("results"));
 }
 

@@ -85,7 +85,7 @@ TEST_CASE("what is wrong on the first process is said on all, and one process st
   CHECK(stopped.about().status == KACANOV_INTERRUPTED);
 }
 
-TEST_CASE("options that one process alone has: all take part in what they lead to") {
+TEST_CASE("options of one process alone: all processes take part in the calls that follow from them") {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   MPI_Comm_size(MPI_COMM_WORLD, &ranks);
