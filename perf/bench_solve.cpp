@@ -190,8 +190,8 @@ int main(int argc, char** argv) {
   if (!started_by_mpi()) {
     const int ranks = options.ranks > 0 ? options.ranks : usable_cores();
     if (ranks > 1)
-      return run_under_mpiexec(find_mpiexec(), {ranks, options.threads}, "",
-                               {argv, static_cast<std::size_t>(argc)});
+      return run_under_mpiexec(find_mpiexec(), {ranks, options.threads},
+                               {{argv, static_cast<std::size_t>(argc)}, "", std::filesystem::current_path()});
     set_mpi_environment();
   }
   const MpiSession mpi;

@@ -234,7 +234,7 @@ TEST_CASE("spectrum prints r* with its bounds, as text and as JSON") {
   CHECK(text.exit_code == 0);
   CHECK(text.output.find("[N; T]") != std::string::npos);
   CHECK(text.output.find("lambda_min") != std::string::npos);
-  const Outcome outcome = place.run("spectrum beam.printed --printed --tolerance 1e-8");
+  const Outcome outcome = place.run("spectrum beam.json --json --tolerance 1e-8");
   REQUIRE(outcome.exit_code == 0);
   const nlohmann::json printed = parsed(outcome.output);
   REQUIRE(printed["spectrum"].size() == 2);
@@ -243,7 +243,8 @@ TEST_CASE("spectrum prints r* with its bounds, as text and as JSON") {
     CHECK(r == doctest::Approx(1.0 / std::sqrt(low * high)));
     CHECK(entry["lambda_min_bound"].get<double>() <= 1e-6 * low);
   }
-  CHECK(printed["spectrum"][1]["lambda_max"].get<double>() >= printed["spectrum"][0]["lambda_max"].get<double>());
+  CHECK(printed["spectrum"][1]["lambda_max"].get<double>() >=
+        printed["spectrum"][0]["lambda_max"].get<double>());
   CHECK(printed["r_star"] == printed["spectrum"][1]["r_star"]);
   CHECK_FALSE(place.has("results"));
 }
@@ -318,9 +319,9 @@ TEST_CASE("a spectrum whose solves are cut short says so and ends with exit code
   const Outcome table = place.run("spectrum beam.json" + cut);
   CHECK(table.exit_code == 1);
   CHECK(table.output.find("NOT CONVERGED") != std::string::npos);
-  const Outcome json = place.run("spectrum beam.json --json" + cut);
-  CHECK(json.exit_code == 1);
-  const nlohmann::json spectrum = parsed(json.output)["spectrum"];
+  const Outcome as_json = place.run("spectrum beam.json --json" + cut);
+  CHECK(as_json.exit_code == 1);
+  const nlohmann::json spectrum = parsed(as_json.output)["spectrum"];
   for (const nlohmann::json& entry : spectrum) CHECK(entry["converged"] == false);
   CHECK(place.run("spectrum beam.json").output.find("NOT CONVERGED") == std::string::npos);
 }
