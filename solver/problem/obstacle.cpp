@@ -52,7 +52,7 @@ std::optional<Facing> seen_triangle(const Surface::Closest& closest, const Vecto
 
 /// One way of several equally long ones; along a mean of directions it is the way to the nearest of their
 /// faces' planes.
-Facing one_of(const std::vector<Facing>& equal, const FaceChoice& choice) {
+Facing facing_of_choice(const std::vector<Facing>& equal, const FaceChoice& choice) {
   Facing found = equal[choice.chosen.front()];
   if (choice.chosen.size() > 1) {
     Vector3 sum{};
@@ -209,7 +209,7 @@ Facing SurfaceObstacle::project(const SurfacePoint& from) const {
     directions.push_back(facing->normal);
   }
   if (equal.empty()) return Facing::nothing();
-  return one_of(equal, choose_face(directions, from.outer));
+  return facing_of_choice(equal, choose_face(directions, from.outer));
 }
 
 void HeightMap::check(const std::string& path) const {
