@@ -39,8 +39,10 @@ std::string explain_stop(const OuterLoop& loop, const OuterLoop::Place& last, do
                          const OuterLoop::Place& failed, const std::string& why) {
   PlainText text;
   text.precision(4);
-  if (last.share == 0.0) {
-    text << "no state of balance is found, not even under a small part of the load: " << why;
+  if (last.at_rest) {
+    text << "no state of balance is found, not even under a small part of the load";
+    if (last.share > 0.0) text << " of this step";
+    text << ": " << why;
     return text.str();
   }
   constexpr double collapsing = 2.0;
@@ -76,10 +78,16 @@ std::string reason(const OuterLoop& loop, const Result& result) {
   return result.message.empty() ? what_is_unsettled(loop) : result.message;
 }
 
-/// Brings the loop, which stands at `target`, there; where it gives up, from `before` (none: from rest) in
-/// parts: each is halved until it converges, and from the second that does what follows is twice as long.
-/// False: the run was asked to stop.
-bool reach(OuterLoop& loop, const std::optional<OuterLoop::Place>& before, double target, Result& result) {
+/// A load step: its shares of the load, and the end of the one before (none: it begins at rest).
+struct Reach {
+  double from = 0.0, target = 1.0;
+  const std::optional<OuterLoop::Place>& before;
+};
+
+/// Brings the loop, which stands at the target, there; where it gives up, from its start in parts: each is
+/// halved until it converges, and from the second that does what follows is twice as long. False: the run was
+/// asked to stop.
+bool reach(OuterLoop& loop, const Reach& step, Result& result) {
   bool finished = true;
   if (arrives(loop, finished, result) || !finished || !loop.gave_up()) return finished;
   if (result.cg_iterations == 0) {
@@ -90,7 +98,8 @@ bool reach(OuterLoop& loop, const std::optional<OuterLoop::Place>& before, doubl
         "the worst element";
     return true;
   }
-  const OuterLoop::Place start = before ? *before : loop.rest(), whole = loop.place();
+  const OuterLoop::Place start = step.before ? *step.before : loop.rest(step.from), whole = loop.place();
+  const double target = step.target;
   OuterLoop::Place failed = whole, last = start;
   std::string why = reason(loop, result);
   double over = 0.0;  // of the way from the start
@@ -112,7 +121,7 @@ bool reach(OuterLoop& loop, const std::optional<OuterLoop::Place>& before, doubl
     failed = loop.place();
   }
   result.message = explain_stop(loop, last, target, failed, why);
-  loop.stand_at(last.share > 0.0 ? last : whole, result);
+  loop.stand_at(last.at_rest ? whole : last, result);
   return true;
 }
 
@@ -120,11 +129,13 @@ bool reach(OuterLoop& loop, const std::optional<OuterLoop::Place>& before, doubl
 
 bool run_load_steps(OuterLoop& loop, std::span<const double> shares, Result& result,
                     const LoadStepCalls& calls) {
-  std::optional<OuterLoop::Place> start;  // none: from rest
+  std::optional<OuterLoop::Place> start;
   for (;;) {
     const std::size_t over = result.load_steps.size();
     if (calls.begins) calls.begins(over);
-    const bool finished = reach(loop, start, shares[over], result);
+    const std::vector<LoadFactors>& curves = loop.context().part.steps;
+    const double from = over > 0 ? shares[over - 1] : curves.empty() ? 0.0 : curves.front().time;
+    const bool finished = reach(loop, {from, shares[over], start}, result);
     if (!finished || over + 1 == shares.size() || !worth_going_on(loop, result)) return finished;
     result.load_steps.push_back(line_now(loop, shares[over], result));
     if (calls.over) calls.over();

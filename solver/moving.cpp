@@ -67,23 +67,26 @@ class Chain {
       const double time = curves_[k].time;
       // Between the two the load is cut, where that has to be.
       part_.steps = {still(curves_[k - 1]), still(curves_[k])};
-      part_.steps[0].time = 0.0;
       if (curves_.size() > 2)
         tell(load_step_name(k - 1, curves_.size() - 1, !model_.steps_are_factors, time));
       contact_.face(time, curves_[k - 1].time, u_);
       const int outer = last_.result.outer_iterations;
       const std::int64_t cg = last_.result.cg_iterations;
-      push_all(curves_[k].contact);
+      const bool arrived = push_all(curves_[k].contact);
       u_ = last_.displacement;
       const Result& result = last_.result;
       if (!result.load_steps.empty()) {
         LoadStep line = result.load_steps.back();
         line.outer_iterations = result.outer_iterations - outer;
         line.cg_iterations = result.cg_iterations - cg;
+        for (const ContactTotals& contact : result.contact) line.travel.push_back(contact.travel);
         lines.push_back(line);
       }
-      if (result.status == Status::converged || result.load_reached > 0.0) reached = result.load_reached;
-      if (result.status != Status::converged) {
+      if (arrived)
+        reached = time;
+      else if (!pushes_ && result.load_reached > 0.0)  // by a part of the step
+        reached = result.load_reached;
+      if (!arrived) {
         end_early(k, time);
         break;
       }
@@ -144,26 +147,40 @@ class Chain {
     return dot(last_.result.contact[entry].total.force, MovingContact::direction(model_.contact[entry]));
   }
 
-  /// One obstacle after the other, until all have their forces at once (theory: force-control).
-  void push_all(const std::vector<double>& factors) {
+  /// Whether a next solve can start from the last one: its residuals meet the tolerance, or are rounding.
+  bool settled() const {
+    const Result& result = last_.result;
+    return result.status == Status::converged || (result.status == Status::limited_by_rounding &&
+                                                  result.certificate.exhausted(model_.solver.tolerance));
+  }
+
+  /// One obstacle after the other, until all have their forces at once (theory: force-control). Whether they
+  /// have, and the last solve is settled.
+  bool push_all(const std::vector<double>& factors) {
     constexpr int most_rounds = 100;
     for (Pushed& pushed : pushed_) begin(pushed, factors[pushed.entry]);
     std::vector<Pushed*> acting;
     for (Pushed& pushed : pushed_)
       if (pushed.search.force > 0.0) acting.push_back(&pushed);
-    if (acting.empty()) solve_once();
-    bool going = !acting.empty();
+    pushes_ = !acting.empty();
+    if (!pushes_) {
+      solve_once();
+      return settled();
+    }
+    bool going = true, all_have = false;
     for (int round = 0; going && round < most_rounds; ++round) {
       for (Pushed* pushed : acting) going = going && push(*pushed);
-      going = going && !std::all_of(acting.begin(), acting.end(), [&](const Pushed* pushed) {
-                return pushed->search.meets(force_on(pushed->entry));
-              });
+      all_have = going && std::all_of(acting.begin(), acting.end(), [&](const Pushed* pushed) {
+                   return pushed->search.meets(force_on(pushed->entry));
+                 });
+      going = going && !all_have;
     }
     for (const Pushed* pushed : acting) last_.result.contact[pushed->entry].travel = pushed->search.travel;
-    if (!going || acting.empty()) return;
+    if (!going) return all_have;
     last_.result.status = Status::not_converged;
     last_.result.message = "the obstacles that are pushed act on each other, and after " +
                            std::to_string(most_rounds) + " rounds have not all the forces that are asked for";
+    return false;
   }
 
   /// Puts it where its search begins.
@@ -174,7 +191,7 @@ class Chain {
     search.tolerance = std::min(10.0 * model_.solver.tolerance, 0.1);
     search.touch = contact_.touch(pushed.entry);
     // Not there yet, or no longer.
-    if (search.force <= 0.0) return contact_.push(pushed.entry, search.touch - extent_);
+    if (search.force <= 0.0) return contact_.withdraw(pushed.entry);
     search.scale = search.force / part_.laws[0].secant(0.0);
     search.scale /= part_.dim() == 3 || part_.plane == PlaneState::axisymmetric ? extent_ : part_.thickness;
     if (!std::isfinite(search.travel)) search.travel = search.touch + search.scale;
@@ -190,21 +207,32 @@ class Chain {
       place << entry_name(model_.contact[pushed.entry], pushed.entry) << " pushed by " << travel;
       tell(place.str());
       solve_once();
-      if (last_.result.status != Status::converged) return std::nullopt;
+      if (!settled()) return std::nullopt;
       return force_on(pushed.entry);
     });
     pushed.search.travel = outcome.travel;
-    if (outcome.reached || last_.result.status != Status::converged) return outcome.reached;
-    last_.result.status = Status::not_converged;
+    if (outcome.reached) return true;
     PlainText text;
     text << "the obstacle of " << entry_name(model_.contact[pushed.entry], pushed.entry) << " is pushed by "
-         << pushed.search.force << ", and no travel is found at which the body bears that; at "
-         << outcome.travel << " it bears " << outcome.force;
+         << pushed.search.force << ", and ";
+    const bool stopped = !settled();
+    text << (stopped ? "the search for its travel has stopped; at "
+                     : "no travel is found at which the body bears that; at ")
+         << outcome.travel << " it bears " << force_on(pushed.entry);
+    if (stopped) text << ": " << last_.result.message;
+    if (!stopped) last_.result.status = Status::not_converged;
     last_.result.message = text.str();
     return false;
   }
 
   void end_early(std::size_t step, double time) {
+    const bool moves = std::any_of(model_.contact.begin(), model_.contact.end(),
+                                   [](const ContactEntry& entry) { return entry.motion.has_value(); });
+    if (moves && last_.result.load_factor != time) {
+      PlainText place;
+      place << "; obstacles with a motion are where they are at " << time;
+      last_.result.message += place.str();
+    }
     if (curves_.size() == 2) return;
     last_.result.message = load_step_name(step - 1, curves_.size() - 1, !model_.steps_are_factors, time) +
                            ": " + last_.result.message;
@@ -217,6 +245,7 @@ class Chain {
   std::vector<LoadFactors> curves_;
   double extent_;  ///< of the body
   std::vector<Pushed> pushed_;
+  bool pushes_ = false;    ///< some of them in this load step
   std::vector<double> u_;  ///< at the end of the load step before
   Start start_;
   decltype(RunOptions::load_step_over) over_;
@@ -236,7 +265,7 @@ Model with_curves(Model model) {
     for (std::size_t i = 0; i < model.boundary.size(); ++i)
       if (!model.boundary[i].is_spring()) stage.factors[entry_name(model.boundary[i], i)] = share;
     for (std::size_t i = 0; i < model.contact.size(); ++i)
-      if (!model.contact[i].motion && !model.contact[i].relinearise)
+      if (!model.contact[i].motion && (!model.contact[i].relinearise || model.contact[i].force_controlled))
         stage.factors[entry_name(model.contact[i], i)] = share;
     model.steps.push_back(stage);
   }

@@ -27,6 +27,7 @@ struct MovingContact::View {
 MovingContact::MovingContact(Part& part, const Model& model)
     : part_(part),
       model_(model),
+      there_(part.contact),
       far_(10.0 * body_extent(part)),
       travel_(model.contact.size()),
       faced_at_(model.contact.size()),
@@ -38,8 +39,9 @@ Vector3 MovingContact::direction(const ContactEntry& entry) {
   return (1.0 / norm(d)) * d;
 }
 
-MovingContact::View MovingContact::view(const ContactEntry& entry, const Vector3& x, const Vector3& u,
+MovingContact::View MovingContact::view(const ContactEntry& entry, const SurfacePoint& node, const Vector3& u,
                                         const std::array<double, 2>& times, double travel) const {
+  const Vector3& x = node.x;
   RigidPose start, now;
   if (entry.motion) {
     start = RigidPose::at(*entry.motion, times[0]);
@@ -52,7 +54,7 @@ MovingContact::View MovingContact::view(const ContactEntry& entry, const Vector3
   const Vector3 seen = entry.relinearise ? now.back(x + u) : x;
   const Facing facing = std::visit(
       [&](const auto& kind) {
-        return kind.project({seen, Vector3{}});
+        return kind.project({seen, now.turned(node.outer, -1.0)});
       },
       entry.obstacle);
   if (facing.kind == Facing::Kind::missed) return {{}, far_, {}, {}, 0.0, 1.0};
@@ -81,22 +83,27 @@ void MovingContact::face(double time, double before, std::span<const double> u) 
     for (std::size_t c = 0; c < dim; ++c) v[c] = values[node * dim + c];
     return v;
   };
+  constexpr std::size_t numbers = 10;
   std::vector<double> local;
   for (const ContactPoint& point : part_.contact) {
     const Vector3 x = at(part_.coordinates, point.node), moved = at(u, point.node);
     local.push_back(static_cast<double>(point.entry));
     local.insert(local.end(), x.begin(), x.end());
     local.insert(local.end(), moved.begin(), moved.end());
+    // Of two faces that are equally near, the one that the case has.
+    const Vector3& outer = there_[local.size() / numbers].normal;
+    local.insert(local.end(), outer.begin(), outer.end());
   }
-  const std::vector<double> all = gather_contact(part_, local, 7);
+  const std::vector<double> all = gather_contact(part_, local, numbers);
   std::vector<double> views;
-  for (std::size_t i = 0; 7 * i < all.size(); ++i) {
-    const double* p = &all[7 * i];
+  for (std::size_t i = 0; numbers * i < all.size(); ++i) {
+    const double* p = &all[numbers * i];
     const auto index = static_cast<std::size_t>(p[0]);
     const ContactEntry& entry = model_.contact[index];
     View v;
     if (entry.moves())
-      v = view(entry, {p[1], p[2], p[3]}, {p[4], p[5], p[6]}, {before, time}, travel_[index]);
+      v = view(entry, {{p[1], p[2], p[3]}, {p[7], p[8], p[9]}}, {p[4], p[5], p[6]}, {before, time},
+               travel_[index]);
     for (const Vector3* vector : {&v.normal, &v.carried, &v.step})
       views.insert(views.end(), vector->begin(), vector->end());
     views.insert(views.end(), {v.gap, v.unknown, v.kind});
@@ -110,22 +117,34 @@ void MovingContact::face(double time, double before, std::span<const double> u) 
     throw InputError("contact[" + std::to_string(static_cast<int>(lost) - 1) +
                      "].obstacle: a node has come to lie where no direction leads out of the obstacle");
   faced_at_ = travel_;
-  // Rows are made anew: those that are there cannot be written.
+  // Rows are built again: those that are there cannot be written.
   ConstraintRows rows;
   part_.slip_origin.assign(2 * points, 0.0);
   for (std::size_t i = 0; i < points; ++i) {
     const double* p = &views[View::numbers * i];
     const View v{{p[0], p[1], p[2]}, p[9], {p[3], p[4], p[5]}, {p[6], p[7], p[8]}, p[10], p[11]};
-    ContactPoint point = part_.contact[i];
-    const auto row = model_.contact[point.entry].moves() ? take(i, v, u, point) : std::nullopt;
+    ContactPoint there = there_[i], point = there;
+    const bool moves = model_.contact[point.entry].moves();
+    if (!moves && point.since_step) count_from(i, u);
+    const auto row = moves ? take(i, v, u, point) : std::nullopt;
+    if (moves) there.tresca = 0.0;  // out of reach there is no film either
     if (row)
       rows.push_back(point, {&*row, 1});
     else
-      rows.push_back(part_.contact[i], part_.contact.entries(i));
+      rows.push_back(there, there_.entries(i));
   }
   part_.contact = std::move(rows);
   for (std::size_t e = 0; e < model_.contact.size(); ++e)
     if (model_.contact[e].moves()) push(e, travel_[e]);
+}
+
+void MovingContact::count_from(std::size_t i, std::span<const double> u) {
+  const std::size_t dim = part_.dim();
+  for (const RowEntry& entry : there_.entries(i))
+    for (std::size_t k = 0; k < 2; ++k)
+      for (std::size_t c = 0; c < dim; ++c)
+        part_.slip_origin[2 * i + k] +=
+            entry.tangent[k][c] * u[static_cast<std::size_t>(entry.node) * dim + c];
 }
 
 std::optional<RowEntry> MovingContact::take(std::size_t i, const View& view, std::span<const double> u,
@@ -170,6 +189,15 @@ void MovingContact::push(std::size_t entry, double travel) {
     for (int k = 0; k < point.tangents; ++k)
       part_.slip_origin[2 * i + static_cast<std::size_t>(k)] = dot(point.tangent[k], origin_[i] + way);
   }
+}
+
+void MovingContact::withdraw(std::size_t entry) {
+  for (std::size_t i = 0; i < part_.contact.size(); ++i)
+    if (static_cast<std::size_t>(part_.contact[i].entry) == entry) {
+      gap_[i] = far_;
+      part_.contact[i].tresca = 0.0;
+    }
+  push(entry, 0.0);
 }
 
 double MovingContact::touch(std::size_t entry) const {

@@ -23,6 +23,9 @@ class MovingContact {
   void face(double time, double before, std::span<const double> u);
   /// Where an entry that is pushed has gone along its direction, counted from where the case has it.
   void push(std::size_t entry, double travel);
+  /// Moves a pushed entry, whose force is 0 in this load step, out of the body's way. The next step counts
+  /// its travel from where the case has it.
+  void withdraw(std::size_t entry);
   /// The least travel with which a pushed entry, as it is faced, reaches a node at u = 0; 0 where none is in
   /// its way.
   double touch(std::size_t entry) const;
@@ -31,15 +34,18 @@ class MovingContact {
 
  private:
   struct View;
-  View view(const ContactEntry& entry, const Vector3& x, const Vector3& u, const std::array<double, 2>& times,
-            double travel) const;
+  View view(const ContactEntry& entry, const SurfacePoint& node, const Vector3& u,
+            const std::array<double, 2>& times, double travel) const;
+  /// Counts the slip of a point whose obstacle stays from u, the end of the load step before.
+  void count_from(std::size_t i, std::span<const double> u);
   /// Turns a point to the obstacle and gives its row; nothing, and a gap out of reach, where the obstacle is
-  /// out of its way or the node can hardly move towards it: what there was stays then.
+  /// out of its way or the node can hardly move towards it: it keeps the row that it has in the case then.
   std::optional<RowEntry> take(std::size_t i, const View& view, std::span<const double> u,
                                ContactPoint& point);
 
   Part& part_;
   const Model& model_;
+  const ConstraintRows there_;  ///< as the case has them
   double far_;
   std::vector<double> travel_, faced_at_;  ///< one an entry of the model: now, and when it was faced
   std::vector<double> gap_;                ///< one a point: as it was faced

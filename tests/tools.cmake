@@ -14,7 +14,7 @@ target_compile_features(kacanov_png_writer PUBLIC cxx_std_20)
 target_link_libraries(kacanov_png_writer PUBLIC ZLIB::ZLIB PRIVATE kacanov_warnings)
 # The program as its users start it. Most runs are of one rank, and ranks that wait give way: two tests at a time take
 # two thirds of the time that they take one after the other.
-foreach(area conditions decks errors failures files memory meshes mixed obstacles partition restart runs series signals temperature)
+foreach(area conditions decks errors failures files history memory meshes mixed obstacles partition restart runs series signals temperature)
   kacanov_test(program_${area} IN program SOURCES tools/program_${area}_test.cpp LIBRARIES kacanov_program_runner)
 endforeach()
 kacanov_test(program_warm_plate IN program

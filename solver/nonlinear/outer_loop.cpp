@@ -86,10 +86,11 @@ void OuterLoop::take_load() {
   follow_pressure(context_.part, state.lambda.normal, state.bound);
 }
 
-OuterLoop::Place OuterLoop::rest() const {
-  Place place;
-  place.state = context_.state;
+OuterLoop::Place OuterLoop::rest(double share) const {
+  Place place{context_.state, share, true};
   put_to_rest(context_.part, place.state);
+  // After a restart that is where the step before has ended, which the part does not have.
+  place.state.origin = context_.state.origin;
   return place;
 }
 
@@ -100,7 +101,7 @@ OuterLoop::Place OuterLoop::next_start() const {
 }
 
 void OuterLoop::go_from(const Place& place, double share, const Result& result) {
-  opening_ = place.share == 0.0;
+  opening_ = place.at_rest;
   adopted_ = false;
   double ratio = 1.0;
   if (opening_) {

@@ -36,13 +36,15 @@ class OuterLoop {
   /// result. Where the run is to stop, state and result are those after the last whole outer step, and false
   /// is returned.
   bool run(Result& result);
-  /// A state that the loop can go on from; at no share of the load: at rest.
+  /// A state that the loop can start from. `at_rest`: u = 0, which is not in balance.
   struct Place {
     ContactState state;
     double share = 0.0;
+    bool at_rest = false;
   };
   Place place() const { return {context_.state, context_.path.share()}; }
-  Place rest() const;
+  /// Rest, for a load step that begins at this share of the load; slip keeps its origin.
+  Place rest(double share) const;
   /// Where the next load step begins: here, with its slip counted from here.
   Place next_start() const;
   /// Another share of the load: starts from the same multiple of that state (theory: load-path), or, with

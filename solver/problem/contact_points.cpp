@@ -74,9 +74,13 @@ double closed_by_prescription(const ContactPoint& point, const Problem& problem)
   return closed;
 }
 
+bool different_reference(const ContactPoint& a, const ContactPoint& b) {
+  return a.tangents > 0 && b.tangents > 0 && a.since_step != b.since_step;
+}
+
 /// Joins points of one node that face the same way at the same gap: masses add up, bounds are averaged by
 /// mass; the smaller gap counts, and by what they differ it is unknown. What was joined is in `shares`.
-/// Obstacles that move stay alone.
+/// Obstacles that move stay alone, and so do points whose slip is counted from different times.
 std::vector<ContactPoint> merge_equal(const std::vector<ContactPoint>& points, const Model& model,
                                       double size, std::vector<PointShare>& shares) {
   std::vector<ContactPoint> merged;
@@ -84,7 +88,7 @@ std::vector<ContactPoint> merge_equal(const std::vector<ContactPoint>& points, c
     ContactPoint* twin = nullptr;
     const auto moves = [&](const ContactPoint& p) { return model.contact[p.entry].moves(); };
     for (std::size_t k = merged.size(); k-- > 0 && merged[k].node == point.node;) {
-      if (moves(point) || moves(merged[k])) continue;
+      if (moves(point) || moves(merged[k]) || different_reference(point, merged[k])) continue;
       if (norm(merged[k].normal - point.normal) < 1e-9 && std::abs(merged[k].gap - point.gap) < 1e-9 * size) {
         twin = &merged[k];
       }

@@ -133,6 +133,18 @@ class CornerValues {
   std::map<std::int32_t, Sums> corners_;
 };
 
+/// Whether a contact point is one of the entry, alone or with others.
+bool is_of(const Problem& problem, std::ptrdiff_t point, std::size_t entry) {
+  const auto index = static_cast<std::int32_t>(point), number = static_cast<std::int32_t>(entry);
+  if (problem.contact[static_cast<std::size_t>(point)].entry == number) return true;
+  const auto& shares = problem.contact_shares;
+  auto share = std::lower_bound(shares.begin(), shares.end(), index,
+                                [](const PointShare& s, std::int32_t p) { return s.point < p; });
+  for (; share != shares.end() && share->point == index; ++share)
+    if (share->entry == number) return true;
+  return false;
+}
+
 DrawnSurface contact_surface(const Problem& problem, const Model& model, const ContactFields& fields) {
   const Mesh& mesh = problem.mesh;
   const std::size_t dim = mesh.dim();
@@ -153,7 +165,7 @@ DrawnSurface contact_surface(const Problem& problem, const Model& model, const C
       // The entry's own point, or the one it was merged with.
       auto chosen = problem.contact.end();
       for (auto p = point; p != problem.contact.end() && p->node == node; ++p) {
-        if (chosen == problem.contact.end() || p->entry == static_cast<std::int32_t>(entry)) chosen = p;
+        if (chosen == problem.contact.end() || is_of(problem, p - problem.contact.begin(), entry)) chosen = p;
       }
       const bool there = chosen != problem.contact.end();
       const std::size_t i = chosen - problem.contact.begin();

@@ -164,6 +164,9 @@ ordered_json result_json(const Result& result, const RunFigures& figures, const 
                       {"worst_residual", step.worst_residual},
                       {"probe", ordered_json::array()}};
     for (const Vector3& u : step.probe) line["probe"].push_back(entries(u, dim));
+    for (std::size_t e = 0; e < step.travel.size(); ++e)
+      if (input.model.contact[e].force_controlled)
+        line["travel"][entry_name(input.model.contact[e], e)] = step.travel[e];
     json["load_steps"].push_back(line);
   }
   json["mesh"] = mesh_json(result, input.mesh, mesh);

@@ -255,9 +255,10 @@ FacetIntegrals consistent(const Mesh& mesh, const Indices& facet) {
 }
 
 Problem read_problem(const nlohmann::json& document, const std::filesystem::path& folder,
-                     const nlohmann::json& result) {
+                     const LoadPoint& point) {
   Problem problem;
-  problem.time = result.at("load_factor").get<double>();
+  problem.point = point;
+  problem.time = point.load;
   problem.mesh = load_mesh(document.at("mesh"), folder);
   read_plane(document, problem.mesh);
   const std::size_t nodes = problem.mesh.nodes.size();
@@ -289,21 +290,11 @@ Problem read_problem(const nlohmann::json& document, const std::filesystem::path
   hold_axis(problem);
   find_directions(problem);
   const auto contact = document.value("contact", nlohmann::json::array());
-  for (std::size_t i = 0; i < contact.size(); ++i) {
-    const nlohmann::json& entry = contact.at(i);
+  for (std::size_t i = 0; i < contact.size(); ++i)
     problem.contact_factor.push_back(factor_at(problem.time, document, "contact", i));
-    Vec pushed{};
-    if (entry.contains("force_controlled")) {
-      const std::string name = entry.value("name", "contact[" + std::to_string(i) + "]");
-      const Vec way = read_vector(entry.at("force_controlled").at("direction"));
-      pushed = Real(result.at("contact").at(name).at("travel").get<double>()) / norm(way) * way;
-    }
-    problem.pushed.push_back(pushed);
-  }
-  find_rows(contact, folder, problem);
   if (document.contains("solver")) problem.tolerance = document.at("solver").value("tolerance", 1e-6);
-  for (const auto& point : document.value("probe", nlohmann::json::array()))
-    problem.probes.push_back(read_vector(point));
+  for (const auto& probe : document.value("probe", nlohmann::json::array()))
+    problem.probes.push_back(read_vector(probe));
   return problem;
 }
 

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "verify/law.hpp"
+#include "verify/load_point.hpp"
 #include "verify/mesh.hpp"
 
 namespace kacanov::verify {
@@ -23,10 +24,11 @@ struct ContactRow {
   Real gap = 0, mass = 0, tresca = 0, coulomb = 0;
   Real closed = 0;       ///< by prescribed components, and off the gap
   Real unknown_gap = 0;  ///< what arithmetic leaves of it
-  Vec carried{};         ///< how far the obstacle has moved where the node faces it
+  Vec slip_origin{};     ///< displacement that slip is counted from (theory: slip-history, moving-obstacles)
   bool friction = false;
-  bool alone = false;    ///< an obstacle that moves is joined to none
-  bool grazing = false;  ///< whether it meets the sphere is a matter of rounding
+  bool since_step = false;  ///< that includes the displacement at the end of the load step before
+  bool alone = false;       ///< an obstacle that moves is joined to none
+  bool grazing = false;     ///< whether it meets the sphere is a matter of rounding
 };
 
 /// u along a unit vector, as it is given.
@@ -55,19 +57,18 @@ struct Problem {
   std::map<Index, std::vector<GivenDirection>> directions;
   std::vector<std::array<Vec, 3>> springs;  ///< stiffness between each node and the ground; empty: none
   std::vector<Real> contact_factor;         ///< of each contact entry
-  std::vector<Vec> pushed;                  ///< the travel of each contact entry that is pushed by a force
-  Real time = 1;  ///< that the result has reached: of the load curves, or the load factor
+  Real time = 1;  ///< that the state has reached: of the load curves, or the load factor
+  LoadPoint point;
   std::vector<ContactRow> rows;
   std::vector<std::int64_t> surface_tags;  ///< numbers of the nodes in contact.vtu, in its order
   std::vector<Vec> probes;
   Real tolerance = 1e-6L;
 };
 
-/// Of a case that the program has accepted; throws Failure for what the verifier does not know. `folder`:
-/// where relative paths start; result: what the run says, for the load it has reached
-/// and the travel of obstacles that are pushed.
+/// Of a case that the program has accepted, at the end of a load step; throws Failure for what the verifier
+/// does not know. `folder`: where relative paths start. find_rows() adds the contact rows.
 Problem read_problem(const nlohmann::json& document, const std::filesystem::path& folder,
-                     const nlohmann::json& result);
+                     const LoadPoint& point);
 
 /// Puts an entry with a displacement, of components or along directions, on its nodes.
 void hold(Problem& problem, const nlohmann::json& entry, Real factor);
@@ -76,7 +77,7 @@ void find_directions(Problem& problem);
 /// `v` of a node without what is given there.
 Vec free_part(const Problem& problem, Index node, Vec v);
 
-/// Finds the contact rows of a problem whose supports are known.
+/// Finds the contact rows of a problem whose supports and load point are known.
 void find_rows(const nlohmann::json& contact, const std::filesystem::path& folder, Problem& problem);
 
 /// ∫ Nᵢ dS and ∫ Nᵢ n dS of a facet, one a node (theory: loads).

@@ -14,13 +14,13 @@ namespace {
 constexpr Real tiny = 1e-300L, least_force = 3e-9L, least_share = 1e-3L, delta = 1e-15L,
                delta_of_traces = 3e-16L;
 
-/// Slip: u, less what the obstacle has moved by, in the directions that are free and orthogonal to the row's
+/// Slip: u, less what it is counted from, in the directions that are free and orthogonal to the row's
 /// normal.
 Vec tangential(const Problem& problem, const ContactRow& row, const std::vector<Vec>& u) {
   Vec sum{};
   for (const ContactRow::Share& share : row.shares) {
     const auto node = static_cast<std::size_t>(share.node);
-    const Vec free = free_part(problem, share.node, u[node] - row.carried);
+    const Vec free = free_part(problem, share.node, u[node] - row.slip_origin);
     const Vec along = 1 / norm(share.normal) * share.normal;
     // The weight of a node in a row of several is the length of its normal among theirs.
     const Real weight = row.shares.size() == 1 ? Real(1) : norm(share.normal);

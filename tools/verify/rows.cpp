@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "verify/load_point.hpp"
 #include "verify/obstacle.hpp"
 #include "verify/problem.hpp"
 
@@ -23,12 +24,32 @@ FacetIntegrals contact_weights(const Mesh& mesh, const Indices& facet) {
 
 namespace {
 
-/// How far a point of an obstacle has come by a time (theory: moving-obstacles).
-Vec carried(const nlohmann::json& entry, Real time, const Vec& point) {
+/// Where a rigid obstacle has been moved to (theory: moving-obstacles).
+struct Pose {
+  Vec centre{}, shift{}, turn{};
+
+  /// (R − 1) v.
+  Vec swept(const Vec& v, Real sign = 1) const {
+    const Real angle = norm(turn);
+    if (!(angle > 0)) return {};
+    const Vec axis = 1 / angle * turn, across = cross(axis, v);
+    return sign * std::sin(angle) * across + (1 - std::cos(angle)) * cross(axis, across);
+  }
+  /// How far a point of the obstacle has come.
+  Vec carried(const Vec& point) const { return shift + swept(point - centre); }
+  Vec turned(const Vec& v) const { return v + swept(v); }
+  Vec turned_back(const Vec& v) const { return v + swept(v, -1); }
+  /// Where the point of the obstacle that is at y now is in its own place.
+  Vec back(const Vec& y) const { return centre + turned_back(y - shift - centre); }
+};
+
+/// Of a motion at a time; at rest without one.
+Pose pose_at(const nlohmann::json& entry, Real time) {
   if (!entry.contains("motion")) return {};
   const nlohmann::json& motion = entry.at("motion");
   Real from = 0;
-  Vec shift{}, turn{};
+  Pose pose;
+  Vec &shift = pose.shift, &turn = pose.turn;
   for (const auto& pose : motion.at("path")) {
     const Real to = pose.at("time").get<double>();
     const Vec next = pose.contains("translation") ? read_vector(pose.at("translation")) : Vec{};
@@ -43,25 +64,25 @@ Vec carried(const nlohmann::json& entry, Real time, const Vec& point) {
     turn = turn + share * (angle - turn);
     from = to;
   }
-  const Vec centre = motion.contains("centre") ? read_vector(motion.at("centre")) : Vec{};
-  const Vec arm = point - centre;
-  const Real angle = norm(turn);
-  if (!(angle > 0)) return shift;
-  const Vec axis = 1 / angle * turn, across = cross(axis, arm);
-  return shift + std::sin(angle) * across + (1 - std::cos(angle)) * cross(axis, across);
+  if (motion.contains("centre")) pose.centre = read_vector(motion.at("centre"));
+  return pose;
 }
 
 /// Joins a row to one of the same node that faces the same way at the same gap.
 bool joined(std::vector<ContactRow>& rows, const ContactRow& row, Real size) {
   for (ContactRow& twin : rows) {
-    if (twin.alone || norm(twin.normal - row.normal) >= 1e-9L || std::abs(twin.gap - row.gap) >= 1e-9L * size)
-      continue;
+    if (twin.alone || (twin.friction && row.friction && twin.since_step != row.since_step)) continue;
+    if (norm(twin.normal - row.normal) >= 1e-9L || std::abs(twin.gap - row.gap) >= 1e-9L * size) continue;
     const Real mass = twin.mass + row.mass;
     twin.unknown_gap = larger(twin.unknown_gap, row.unknown_gap) + std::abs(twin.gap - row.gap);
     twin.gap = std::min(twin.gap, row.gap);
     twin.tresca = (twin.mass * twin.tresca + row.mass * row.tresca) / mass;
     twin.coulomb = (twin.mass * twin.coulomb + row.mass * row.coulomb) / mass;
-    twin.friction = twin.friction || row.friction;
+    if (!twin.friction) {
+      twin.friction = row.friction;
+      twin.since_step = row.since_step;
+      twin.slip_origin = row.slip_origin;
+    }
     twin.mass = mass;
     twin.written.insert(twin.written.end(), row.written.begin(), row.written.end());
     return true;
@@ -69,10 +90,80 @@ bool joined(std::vector<ContactRow>& rows, const ContactRow& row, Real size) {
   return false;
 }
 
+/// One contact entry: its obstacle, where that is at the end of the load step, and where it began.
+struct Obstacle {
+  Obstacle(const nlohmann::json& contact, std::size_t number, const std::filesystem::path& folder,
+           const Problem& problem)
+      : entry(contact.at(number)),
+        face(read_obstacle(entry.at("obstacle"), folder)),
+        pushed(entry.contains("force_controlled")),
+        anew(entry.value("relinearise", false)),
+        withdrawn(pushed && !(problem.contact_factor[number] > 0)),
+        since_step(counts_from_step(entry)),
+        start(pose_at(entry, problem.point.begin)),
+        now(pose_at(entry, problem.point.end)) {
+    if (!pushed) return;
+    const Vec way = read_vector(entry.at("force_controlled").at("direction"));
+    const Real travel = problem.point.travel[number], before = problem.point.travel_before[number];
+    start.shift = now.shift = before / norm(way) * way;
+    further = (travel - before) / norm(way) * way;
+  }
+  bool moves() const { return entry.contains("motion") || pushed || anew; }
+
+  const nlohmann::json& entry;
+  Face face;
+  bool pushed, anew, withdrawn, since_step;
+  Pose start, now;
+  Vec further{};  ///< pushed on in this load step
+};
+
+/// Turns a row, which faces the obstacle as the case has it, to where that is now, from where the load step
+/// before has left the node. False: the obstacle is out of its way.
+bool follow(const Obstacle& obstacle, Facing facing, const Vec& x, const Vec& before, ContactRow& row) {
+  if (obstacle.withdrawn) return false;
+  Vec seen = x;
+  if (obstacle.anew) {
+    seen = obstacle.now.back(x + before);
+    facing = obstacle.face(seen, obstacle.now.turned_back(row.normal));
+  }
+  if (facing.missed) return false;
+  const Vec foot = seen + facing.gap * facing.normal;
+  const Vec carried = obstacle.now.carried(foot), since = carried - obstacle.start.carried(foot);
+  row.unknown_gap = facing.unknown + 1e-15L * (norm(carried) + norm(obstacle.further));
+  row.normal = facing.normal;
+  row.grazing = facing.grazing;
+  row.gap = facing.gap;
+  if (obstacle.anew) {
+    row.unknown_gap += 1e-15L * (norm(x) + norm(before) + norm(obstacle.now.centre));
+    row.normal = obstacle.now.turned(facing.normal);
+    row.gap += dot(row.normal, before);
+  } else {
+    row.gap += dot(row.normal, carried);
+  }
+  row.gap += dot(row.normal, obstacle.further);
+  row.slip_origin = (obstacle.since_step ? before + since : carried) + obstacle.further;
+  return true;
+}
+
+/// The longest side of the box around the nodes.
+Real longest_side(const Mesh& mesh) {
+  Vec low = mesh.nodes.at(0), high = low;
+  Real longest = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (const Vec& x : mesh.nodes) {
+      low[c] = std::min(low[c], x[c]);
+      high[c] = std::max(high[c], x[c]);
+    }
+    longest = larger(longest, high[c] - low[c]);
+  }
+  return longest;
+}
+
 /// Leaves the free components in the row and takes from the gap what prescribed ones close; false where none
 /// are left.
 bool restrict_to_free(const Problem& problem, ContactRow& row) {
   const auto node = static_cast<std::size_t>(row.node);
+  row.closed = 0;
   for (std::size_t c = 0; c < 3; ++c)
     if (problem.held[node][c]) row.closed += row.normal[c] * problem.prescribed[node][c];
   if (const auto there = problem.directions.find(row.node); there != problem.directions.end())
@@ -86,7 +177,7 @@ bool restrict_to_free(const Problem& problem, ContactRow& row) {
 
 void find_rows(const nlohmann::json& contact, const std::filesystem::path& folder, Problem& problem) {
   const Mesh& mesh = problem.mesh;
-  const Real size = mesh.size();
+  const Real size = mesh.size(), far = 10 * longest_side(mesh);
   std::map<Index, std::vector<ContactRow>> rows;
   for (std::size_t number = 0; number < contact.size(); ++number) {
     const nlohmann::json& entry = contact.at(number);
@@ -104,16 +195,7 @@ void find_rows(const nlohmann::json& contact, const std::filesystem::path& folde
       }
     }
     const nlohmann::json friction = entry.value("friction", nlohmann::json::object());
-    if (friction.value("reference", "start") != "start")
-      throw Failure("contact[" + std::to_string(number) +
-                    "].friction.reference: slip counts from the end of a load "
-                    "step that no file holds, so that the verifier cannot tell it");
-    const Face face = read_obstacle(entry.at("obstacle"), folder);
-    if (entry.value("relinearise", false))
-      throw Failure("contact[" + std::to_string(number) +
-                    "].relinearise: nodes face the obstacle from where the load step before has left them, "
-                    "which no file holds");
-    const bool moves = entry.contains("motion") || entry.contains("force_controlled");
+    const Obstacle obstacle(contact, number, folder, problem);
     for (const auto& [node, sum] : sums) {
       ContactRow row;
       row.node = node;
@@ -121,30 +203,39 @@ void find_rows(const nlohmann::json& contact, const std::filesystem::path& folde
       row.written = {problem.surface_tags.size()};
       problem.surface_tags.push_back(mesh.tags[node]);
       if (!(sum.mass > 0)) continue;
-      const Facing facing = face(mesh.nodes[node], sum.outer);
-      if (facing.missed) continue;
-      row.normal = facing.normal;
+      const Vec before = problem.point.before.empty() ? Vec{} : problem.point.before[node];
+      const Facing facing = obstacle.face(mesh.nodes[node], sum.outer);
+      // A later load step may meet an obstacle that the node misses in the case.
+      if (facing.missed && !(obstacle.anew && norm(sum.outer) > 0)) continue;
+      row.normal = facing.missed ? 1 / norm(sum.outer) * sum.outer : facing.normal;
       row.gap = facing.gap;
-      row.carried = carried(entry, problem.time, mesh.nodes[node] + facing.gap * facing.normal) +
-                    problem.pushed[number];
-      row.gap += dot(row.normal, row.carried);
-      row.unknown_gap = facing.unknown + 1e-15L * norm(row.carried);
+      row.unknown_gap = facing.unknown;
       row.grazing = facing.grazing;
+      row.since_step = obstacle.since_step;
+      if (row.since_step) row.slip_origin = before;
       row.mass = sum.mass;
       row.tresca = friction.value("tresca", 0.0);
       row.coulomb = friction.value("coulomb", 0.0);
       row.friction = row.tresca > 0 || row.coulomb > 0;
       if (!restrict_to_free(problem, row)) continue;
-      row.alone = moves;
-      if (moves || !joined(rows[node], row, size)) rows[node].push_back(row);
+      row.alone = obstacle.moves();
+      if (row.alone) {
+        ContactRow now = row;
+        if (follow(obstacle, facing, mesh.nodes[node], before, now) && restrict_to_free(problem, now)) {
+          row = now;
+        } else {
+          row.gap = far;
+          row.tresca = 0;
+        }
+      }
+      if (row.alone || !joined(rows[node], row, size)) rows[node].push_back(row);
     }
   }
   // Where an obstacle presses in, the share of its deepest indentation that is lacking.
   std::vector<Real> depth(problem.contact_factor.size());
   for (auto& [node, of_node] : rows)
     for (ContactRow& row : of_node) {
-      if (!contact.at(row.entry).contains("motion") && !contact.at(row.entry).contains("force_controlled"))
-        depth[row.entry] = larger(depth[row.entry], -row.gap);
+      if (!row.alone) depth[row.entry] = larger(depth[row.entry], -row.gap);
       problem.rows.push_back(std::move(row));
     }
   for (ContactRow& row : problem.rows)

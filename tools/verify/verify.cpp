@@ -64,17 +64,25 @@ bool hang_together(const Mesh& mesh, const std::vector<std::int64_t>& patch) {
   return true;
 }
 
+/// The files of fields of the end of a load step.
+struct FieldFiles {
+  std::filesystem::path folder;
+  std::string mark;  ///< behind "body" and "contact"; empty: the end of the run
+
+  std::filesystem::path named(const char* field) const { return folder / (field + mark + ".vtu"); }
+};
+
 /// The displacement of every node, from all pieces; copies have to agree. `patch`: the patches of nodes,
 /// where the file has those.
-std::vector<Vec> read_displacement(const std::filesystem::path& folder, const Mesh& mesh,
+std::vector<Vec> read_displacement(const FieldFiles& files, const Mesh& mesh,
                                    std::vector<std::int64_t>& patch) {
   std::map<std::int64_t, std::size_t> index;
   for (std::size_t n = 0; n < mesh.tags.size(); ++n) index[mesh.tags[n]] = n;
-  const std::string file = (folder / "body.vtu").string();
+  const std::string file = files.named("body").string();
   std::vector<Vec> u(mesh.nodes.size());
   std::vector<bool> known(u.size(), false);
   const Real slack = 1e-14L * mesh.size();
-  for (const auto& piece : read_body(folder)) {
+  for (const auto& piece : read_body(files.folder, files.mark)) {
     const Array &ids = array_of(piece, "node_id", 1, file), &points = array_of(piece, "Points", 3, file, ids),
                 &values = array_of(piece, "displacement", 3, file, ids);
     const bool patches = piece.count("pressure_patch") > 0;
@@ -102,9 +110,9 @@ std::vector<Vec> read_displacement(const std::filesystem::path& folder, const Me
   return u;
 }
 
-void read_multipliers(const std::filesystem::path& folder, Problem& problem, Answer& answer) {
+void read_multipliers(const FieldFiles& files, Problem& problem, Answer& answer) {
   if (problem.rows.empty()) return;
-  const std::string file = (folder / "contact.vtu").string();
+  const std::string file = files.named("contact").string();
   const auto arrays = read_point_data(file);
   const Array &ids = array_of(arrays, "node_id", 1, file),
               &pressure = array_of(arrays, "pressure", 1, file, ids),
@@ -144,6 +152,15 @@ Real share_of_force(const Problem& problem, const Answer& answer, const json& en
   }
   return dot(force, way) / norm(way) /
          (problem.contact_factor[index] * Real(entry.at("force_controlled").at("force").get<double>()));
+}
+
+/// The largest relative error of the forces of entries that are pushed.
+Real off_forces(const Problem& problem, const Answer& answer, const json& contact) {
+  Real worst = 0;
+  for (std::size_t i = 0; i < contact.size(); ++i)
+    if (contact[i].contains("force_controlled") && problem.contact_factor[i] > 0)
+      worst = larger(worst, std::abs(share_of_force(problem, answer, contact[i], i) - 1));
+  return worst;
 }
 
 /// The table, and whether what the result says is what is found.
@@ -198,8 +215,8 @@ class Comparison {
     agrees_ = agrees_ && agrees;
   }
 
-  const json& result_;
-  Real tolerance_;  ///< of the run
+  const json& result_;  ///< or a line of its `load_steps`
+  Real tolerance_;      ///< of the run
   std::string text_;
   bool agrees_ = true;
 };
@@ -210,6 +227,82 @@ std::string scientific(Real value) {
   return text.data();
 }
 
+/// The state at the end of a load step, as its files have it.
+struct State {
+  Problem problem;
+  Answer answer;
+};
+
+State read_state(const json& document, const std::filesystem::path& folder, const LoadPoint& point,
+                 const FieldFiles& files) {
+  State state{read_problem(document, folder, point), {}};
+  Problem& problem = state.problem;
+  find_rows(document.value("contact", json::array()), folder, problem);
+  state.answer.u = read_displacement(files, problem.mesh, problem.patch);
+  if (problem.mesh.shape == Shape::tet4 && problem.patch.empty() &&
+      std::any_of(problem.laws.begin(), problem.laws.end(), [](const Law& law) { return law.mixed; }))
+    throw Failure(files.named("body").string() + ": expected an array pressure_patch: tet4 is mixed");
+  read_multipliers(files, problem, state.answer);
+  return state;
+}
+
+/// Describes the fault of a load step before the last; empty without one. `line`: of the result's
+/// `load_steps`.
+std::string fault_of_step(const State& state, const json& document, const json& line, std::string& table) {
+  const Problem& problem = state.problem;
+  const Findings found = examine(problem, state.answer);
+  Real worst = 0;
+  bool small = true;
+  for (const Entry& entry : found.entries) {
+    worst = larger(worst, entry.residual);
+    // The run continues after a step whose residuals are rounding.
+    small = small && (entry.residual <= problem.tolerance || entry.residual <= entry.rounding);
+  }
+  Comparison comparison(line, problem.tolerance);
+  if (!problem.rows.empty()) {
+    comparison.vector("contact_force", found.contact_force, found.force);
+    comparison.vector("friction_force", found.friction_force, found.force);
+    comparison.number("max_contact_pressure", found.pressure, 0);
+  }
+  const Real pushed = off_forces(problem, state.answer, document.value("contact", json::array()));
+  std::string fault;
+  if (found.supports > 1e-14L)
+    fault = "the supports are not where they are prescribed, by " + scientific(found.supports) +
+            " of the displacement";
+  else if (!small)
+    fault = "the answer does not meet its tolerance " + scientific(problem.tolerance) +
+            ": the worst residual is " + scientific(worst);
+  else if (pushed > 11 * problem.tolerance)
+    fault = "the force of an obstacle that is pushed is off by " + scientific(pushed);
+  else if (!comparison.agrees())
+    fault = "the result says something else than is found";
+  const std::string name = "load step " + std::to_string(problem.point.step + 1);
+  table += "  " + name + ": the worst residual is " + scientific(worst) + "\n";
+  if (!comparison.agrees()) table += comparison.text();
+  return fault.empty() ? fault : name + ": " + fault;
+}
+
+/// Verifies the load steps before the last, each from the one before it, and gives each point the
+/// displacement before it. Returns the first fault: the steps after it cannot be verified.
+std::string verify_history(const json& document, const std::filesystem::path& folder,
+                           const std::filesystem::path& output, std::vector<LoadPoint>& points,
+                           std::string& table) {
+  const json result = read_result(output / "result.json");
+  for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+    const FieldFiles files{output, "_step_" + std::to_string(k + 1)};
+    if (!std::filesystem::exists(files.named("body")))
+      throw Failure(
+          files.named("body").string() +
+          ": is missing; the verifier needs the fields of each load step where slip counts from the "
+          "step before or nodes face obstacles from where it has left them (output.steps)");
+    const State state = read_state(document, folder, points[k], files);
+    std::string fault = fault_of_step(state, document, result.at("load_steps").at(k), table);
+    if (!fault.empty()) return fault;
+    points[k + 1].before = state.answer.u;
+  }
+  return {};
+}
+
 }  // namespace
 
 Verdict verify(json document, const std::filesystem::path& folder, const std::filesystem::path& output) {
@@ -217,13 +310,14 @@ Verdict verify(json document, const std::filesystem::path& folder, const std::fi
   // A mesh that the run has adapted is beside its fields.
   if (document.at("mesh").contains("adapt"))
     document["mesh"] = {{"file", std::filesystem::absolute(output / "mesh.msh").string()}};
-  Problem problem = read_problem(document, folder, result);
-  Answer answer;
-  answer.u = read_displacement(output, problem.mesh, problem.patch);
-  if (problem.mesh.shape == Shape::tet4 && problem.patch.empty() &&
-      std::any_of(problem.laws.begin(), problem.laws.end(), [](const Law& law) { return law.mixed; }))
-    throw Failure((output / "body.vtu").string() + ": expected an array pressure_patch: tet4 is mixed");
-  read_multipliers(output, problem, answer);
+  Verdict verdict;
+  std::vector<LoadPoint> points = load_points(document, result);
+  if (has_history(document))
+    verdict.sentence = verify_history(document, folder, output, points, verdict.table);
+  if (!verdict.sentence.empty()) return verdict;
+  const State state = read_state(document, folder, points.back(), {output, ""});
+  const Problem& problem = state.problem;
+  const Answer& answer = state.answer;
   const Findings found = examine(problem, answer);
 
   Comparison comparison(result, problem.tolerance);
@@ -238,18 +332,13 @@ Verdict verify(json document, const std::filesystem::path& folder, const std::fi
     comparison.vector("friction_force", found.friction_force, found.force);
     comparison.number("max_contact_pressure", found.pressure, 0);
   }
-  Real pushed = 0;
-  const json contact = document.value("contact", json::array());
-  for (std::size_t i = 0; i < contact.size(); ++i)
-    if (contact[i].contains("force_controlled") && problem.contact_factor[i] > 0)
-      pushed = larger(pushed, std::abs(share_of_force(problem, answer, contact[i], i) - 1));
+  const Real pushed = off_forces(problem, answer, document.value("contact", json::array()));
   comparison.number("max_von_mises", found.von_mises, found.unknown_stress);
   comparison.count("unknowns", problem.mesh.nodes.size() * problem.mesh.dim());
   comparison.count("elements", problem.mesh.elements.size());
   comparison.count("contact_nodes", problem.rows.size());
 
-  Verdict verdict;
-  verdict.table = comparison.text();
+  verdict.table += comparison.text();
   const std::string status = result.value("status", ""), limit = scientific(problem.tolerance);
   const bool held = found.supports <= 1e-14L, small = worst <= problem.tolerance,
              borne = pushed <= 11 * problem.tolerance, known = unknown <= problem.tolerance;

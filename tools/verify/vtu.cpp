@@ -134,10 +134,12 @@ std::map<std::string, Array> read_point_data(const std::filesystem::path& file) 
   return arrays;
 }
 
-std::vector<std::map<std::string, Array>> read_body(const std::filesystem::path& folder) {
-  if (!std::filesystem::exists(folder / "body.pvtu")) return {read_point_data(folder / "body.vtu")};
+std::vector<std::map<std::string, Array>> read_body(const std::filesystem::path& folder,
+                                                    const std::string& mark) {
+  const std::filesystem::path pieced = folder / ("body" + mark + ".pvtu");
+  if (!std::filesystem::exists(pieced)) return {read_point_data(folder / ("body" + mark + ".vtu"))};
   std::vector<std::map<std::string, Array>> pieces;
-  for_tags(whole(folder / "body.pvtu"), "Piece", [&](const std::string& tag) {
+  for_tags(whole(pieced), "Piece", [&](const std::string& tag) {
     pieces.push_back(read_point_data(folder / attribute(tag, "Source")));
   });
   return pieces;

@@ -17,7 +17,9 @@ struct Array {
 /// Point data by name, and the points themselves as "Points". Throws Failure for a file that is none.
 std::map<std::string, Array> read_point_data(const std::filesystem::path& file);
 
-/// Those of body.vtu, or of all pieces that body.pvtu names, which older versions left.
-std::vector<std::map<std::string, Array>> read_body(const std::filesystem::path& folder);
+/// Those of body.vtu, or of all pieces that body.pvtu names, which older versions left. `mark`: of a load
+/// step, behind "body".
+std::vector<std::map<std::string, Array>> read_body(const std::filesystem::path& folder,
+                                                    const std::string& mark);
 
 }  // namespace kacanov::verify

@@ -83,6 +83,7 @@ struct LoadStep {
   std::int64_t plastic_elements = 0;
   double worst_residual = 0.0;  ///< of the certificate, by the operator of the loop
   std::vector<Vector3> probe;
+  std::vector<double> travel;  ///< one a contact entry, 0 unless it is pushed; empty where nothing moves
 };
 
 /// How far the numbers are, by estimates, from those of a mesh without end (theory: error-estimate).
