@@ -162,7 +162,48 @@ def add_conditions(case, d, rng):
     return " ".join(kinds)
 
 
-def oracle_case(seed, index, conditions=False):
+def add_history(case, d, rng):
+    """Several load steps with slip references, and obstacles that move, are pushed or faced again, by dice of their own."""
+    count = rng.randint(2, 4)
+    flat = case.get("plane") == "axisymmetric"
+    steps, displacement = [], 0.0
+    for k in range(count):
+        displacement = rng.choice((1.0, rng.uniform(-0.3, 1.0)))
+        steps.append({"time": k + 1, "factors": {}})
+        for i, entry in enumerate(case["boundary"]):
+            if "spring" not in entry and "node_spring" not in entry:
+                held = "displacement" in entry or "normal" in entry
+                steps[-1]["factors"][f"boundary[{i}]"] = displacement if held else rng.uniform(0.2, 1.0)
+    words = []
+    for i, entry in enumerate(case.get("contact", [])):
+        if rng.random() < 0.8:
+            entry["friction"] = rng.choice(({"coulomb": rng.uniform(0.05, 0.6)},
+                                            {"tresca": d.strain * d.young * rng.uniform(0.01, 0.3)}))
+            entry["friction"]["reference"] = rng.choice(("start", "step", "step"))
+        reach = d.strain * d.size[-1]
+        aside = 0.0 if flat else rng.uniform(-0.5, 0.5)
+        movement = "rest" if "gap" in entry["obstacle"] else rng.choice(("rest", "rest", "motion", "pushed"))
+        if movement == "motion":
+            entry["motion"] = {"path": [{"time": time, "translation": d.vector(aside * reach * time / count, reach * rng.uniform(-0.5, 1.0))}
+                                        for time in sorted({1, count})]}
+            if d.dim == 2 and not flat and rng.random() < 0.3:
+                entry["motion"]["path"][-1]["rotation"] = d.strain * rng.uniform(-1, 1)
+        if movement == "pushed":
+            side = d.vector(-1.0, aside) if entry["on"] == "right" else d.vector(aside, 1.0)
+            entry["force_controlled"] = {"force": d.strain * d.young * d.size[0] ** (d.dim - 1) * rng.uniform(0.01, 0.3), "direction": side}
+            for step in steps:
+                step["factors"][f"contact[{i}]"] = rng.choice((0.0, 1.0, 1.0, rng.uniform(0.3, 1.0)))
+            steps[0]["factors"][f"contact[{i}]"] = 1.0
+        if "gap" not in entry["obstacle"] and rng.random() < 0.3:
+            entry["relinearise"] = True
+            movement += "+relinearise"
+        words.append(movement + " " + entry.get("friction", {}).get("reference", "frictionless"))
+    case["solver"].pop("load_steps", None)
+    case["steps"] = steps
+    return f"{count} steps: " + ", ".join(words)
+
+
+def oracle_case(seed, index, conditions=False, history=False):
     """Name, case, and a body to be written as a mesh file or None; the same for the same seed and index."""
     d = Draw(seed, index)
     kind = d.rng.choice((clamped, clamped, pressed, guided) if d.obstacle in ("plane", "gap") else (clamped, pressed)
@@ -190,6 +231,8 @@ def oracle_case(seed, index, conditions=False):
     name += (" " + add_plane(case, d, body, random.Random(f"{seed} {index} plane"))).rstrip()
     if conditions:
         name += " " + add_conditions(case, d, random.Random(f"{seed} {index} conditions"))
+    if history:
+        name += " " + add_history(case, d, random.Random(f"{seed} {index} history"))
     return name, case, body
 
 

@@ -59,6 +59,10 @@ if(Python3_FOUND)
     COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/perf/verify_answers" $<TARGET_FILE:kacanov>
       --count $<IF:$<BOOL:${KACANOV_SANITIZE}>,12,30> --conditions)
   kacanov_test_properties(verified_conditions 1)
+  add_test(NAME verified_history
+    COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/perf/verify_answers" $<TARGET_FILE:kacanov>
+      --count $<IF:$<BOOL:${KACANOV_SANITIZE}>,12,40> --history)
+  kacanov_test_properties(verified_history 1)
 endif()
 
 # What a small run does where files, memory or the power fail, and when it is killed: places far apart here,

@@ -47,6 +47,9 @@ constexpr double least_force = 3e-9;
 /// A quantity that is weak beside others is measured by the geometric mean of both, but by no less than this
 /// share of the strong one (theory: kkt).
 constexpr double least_share = 1e-3;
+/// Of the nodal forces of temperature, which balance themselves where a body expands freely: noise by which
+/// nothing else can be measured.
+constexpr double least_expansion = 1e-6;
 /// Share of D∘u, and of u·(D∘u), that the rounding of R(u) may come to: nine units of it, because a row of B
 /// is a few times its diagonal (measured: up to 5.4e-16); and of traces and gaps, which are short sums.
 constexpr double rounding = 1e-15, rounding_of_traces = 3e-16;
@@ -148,11 +151,12 @@ struct RegionSums {
   Vector3 unbalanced{}, moment{};  // of the residual, about the origin
   double residual = 0.0;           // squares of norms: of the residual, and of what acts,
   double load = 0.0, reaction = 0.0, spring = 0.0, interface = 0.0;  // of the load but for temperature
-  double hold = 0.0;                        // Σ |force| of supports and obstacles, and
-  double all = 0.0;                         // of loads as well
-  double moved = 0.0, stiff = 0.0;          // |u|², |D∘u|²
-  double moved_all = 0.0, stiff_all = 0.0;  // Σ |u|, Σ |D∘u|
-  double softness = 0.0, unknowns = 0.0;    // Σ 1/D
+  double hold = 0.0;                            // Σ |force| of supports and obstacles, and
+  double all = 0.0;                             // of loads as well
+  double moved = 0.0, stiff = 0.0;              // |u|², |D∘u|²
+  double moved_all = 0.0, stiff_all = 0.0;      // Σ |u|, Σ |D∘u|
+  double softness = 0.0, unknowns = 0.0;        // Σ 1/D
+  double expansion = 0.0, expansion_all = 0.0;  // |F_T|², Σ |F_T|
 };
 
 /// Sums over the unknowns of the body.
@@ -235,6 +239,8 @@ BodySums body_sums(const Part& part, const Vector& u, std::span<const double> co
       const double expansion = forces.expansion.empty() ? 0.0 : forces.expansion[i];
       const double acting = part.held[i] ? 0.0 : load - expansion;
       s.load += acting * acting;
+      s.expansion += expansion * expansion;
+      s.expansion_all += std::abs(expansion);
       s.reaction += reaction * reaction;
       s.spring += spring[c] * spring[c];
       s.residual += residual[c] * residual[c];
@@ -320,8 +326,9 @@ Worst judge_equilibrium(const BodySums& body, const Contact& contact, double ela
     // A body under stress of its own has no other force: where it is one region.
     const double own = body.of_region.size() == 1 ? 2.0 * elastic * stiffness : 0.0;
     double force = std::sqrt(std::max({s.load, s.reaction, s.spring, s.interface, of_contact, own}));
-    const double least = least_force * stiffness * std::sqrt(s.moved),
-                 strong = std::max({force, least, tiny});
+    const double least =
+        std::max(least_force * stiffness * std::sqrt(s.moved), least_expansion * std::sqrt(s.expansion));
+    const double strong = std::max({force, least, tiny});
     if (weakest < HUGE_VAL) force = weak_beside(weakest, force);
     force = std::max(force, least);
     scale.push_back(force);
@@ -360,13 +367,15 @@ Worst judge_balance(const Part& part, const BodySums& body, const StiffnessRegio
       s.stiff_all += one.stiff_all;
       s.softness += one.softness;
       s.unknowns += one.unknowns;
+      s.expansion_all += one.expansion_all;
     }
     for (const auto& [pair, force] : body.between)
       if (within[pair[0]] && regions.bin(pair[1]) > cluster.bin) {
         s.hold += force;
         s.all += force;
       }
-    const double least = least_stiffness(s.unknowns, s.softness) * s.moved_all;
+    const double least =
+        std::max(least_stiffness(s.unknowns, s.softness) * s.moved_all, least_expansion * s.expansion_all);
     const double scale = std::max({weak_beside(s.hold, s.all), least, tiny});
     // Round an axis the first component is in balance by itself, and so are moments.
     if (is_round) s.unbalanced[0] = 0.0;

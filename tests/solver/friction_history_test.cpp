@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "half_space.hpp"
+#include "nonlinear/outer_loop.hpp"
 
 using namespace kacanov;
 using namespace kacanov::testing;
@@ -59,6 +60,13 @@ TEST_CASE("a film's friction runs through a loop where slip is counted from the 
       RunOptions rest;
       if (part.node_map.rank == 0) rest.start = &all[all.size() / 2];
       solution = solve(part, model.solver, rest);
+      // A step that is cut after a restart counts slip as it did before.
+      OuterLoop loop(part, model.solver, rest, 1.0);
+      Result result;
+      loop.restore(rest.start, result);
+      const Vector& origin = loop.state().origin;
+      CHECK(part.node_map.any(std::any_of(origin.begin(), origin.end(), [](double v) { return v != 0.0; })));
+      CHECK(loop.rest(1.0).state.origin == origin);
     }
     CHECK(solution.result.status == Status::converged);
     CHECK(solution.result.by_time);

@@ -155,6 +155,56 @@ TEST_CASE("an obstacle that drags along by friction: slip counts from where it h
   }
 }
 
+TEST_CASE("slip of an entry at rest counts from its reference, whatever moves beside it") {
+  for (const auto reference : {Friction::Reference::start, Friction::Reference::step}) {
+    Model model = over(Plane{{0, 0, 0}, {0, 0, 1}});
+    model.boundary[0] = moved(named("top"), 3, {0.004, 0, 0});
+    model.boundary.push_back(traction(named("left"), {0.2, 0, -0.1}));
+    model.contact[0].friction = Friction{0.0, 0.3, reference};
+    model.contact[0].obstacle = Plane{{0, 0, 0.002}, {0, 0, 1}};
+    model.contact.push_back({named("right"), Plane{{9, 0, 0}, {-1, 0, 0}}, std::nullopt});
+    model.steps = {{1.0, {{"boundary[0]", 0.0}, {"boundary[1]", 1.0}, {"contact[0]", 1.0}}},
+                   {2.0, {{"boundary[0]", 1.0}}},
+                   {3.0, {{"boundary[0]", 0.4}, {"boundary[1]", 0.5}}}};
+    const Run still = run_still(slab(), model);
+    model.contact[1].motion = lift(0.01);
+    agree(run_moving(slab(), model), still, 1e-5);
+    model.contact[1].motion.reset();
+    model.contact[1].relinearise = true;
+    agree(run_moving(slab(), model), still, 1e-5);
+  }
+}
+
+TEST_CASE("a load step that is cut beside an obstacle that moves ends at a time of the step") {
+  Model model;
+  model.materials.push_back({everything(), elastic_law(1.0, 0.3)});
+  model.materials[0].law.form = laws::Saturating{0.002, 2.0};
+  // ‖dev τ‖ = √(2/3) σ at uniaxial stress, 2 μ x₀ at yield; it bears three times that.
+  const double limit = 3.0 * std::sqrt(1.5) * 2.0 * model.materials[0].law.shear * 0.002;
+  model.boundary.push_back(roller(named("left"), 0));
+  model.boundary.push_back(roller(named("front"), 1));
+  model.boundary.push_back(roller(named("bottom"), 2));
+  model.boundary.push_back(traction(named("right"), {limit, 0, 0}));
+  model.contact.push_back({named("top"), Plane{{0, 0, 9}, {0, 0, -1}}, std::nullopt});
+  model.steps = {{1.0, {{"boundary[3]", 0.1}}}, {2.0, {{"boundary[3]", 1.4}}}};
+  const Mesh cube = make_box({{1, 1, 1}, {2, 2, 2}, ElementType::hex8});
+  const Run still = run_still(cube, model);
+  REQUIRE(still.result().status == Status::not_converged);
+  model.contact[0].motion = lift(0.01);
+  const Run run = run_moving(cube, model);
+  CHECK(run.result().status == Status::not_converged);
+  CHECK(run.result().load_reached > 1.0);
+  CHECK(run.result().load_reached < 2.0);
+  CHECK(run.result().load_reached == doctest::Approx(still.result().load_reached).epsilon(1.0 / 32));
+  CHECK(run.result().load_factor == run.result().load_reached);
+  CHECK(run.result().load[0].total.force[0] ==
+        doctest::Approx(limit * (0.1 + 1.3 * (run.result().load_factor - 1.0))).epsilon(1e-9));
+  // Without hardening it bears the limit, at 1 + 0.9/1.3.
+  CHECK(run.result().load_reached < 1.001 + 0.9 / 1.3);
+  CHECK(run.result().load_reached > 0.97 + 0.9 / 1.3);
+  CHECK(run.result().message.find("obstacles with a motion are where they are at 2") != std::string::npos);
+}
+
 TEST_CASE("a tool with friction that has not come yet leaves the body at rest") {
   Model model = over(Sphere{{1.1, 0.4, -3.0}, 2.0, {}});  // ν slants: the way has a part along the surface
   model.contact[0].motion = lift(1.01);

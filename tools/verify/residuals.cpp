@@ -9,8 +9,8 @@
 namespace kacanov::verify {
 namespace {
 
-constexpr Real tiny = 1e-300L, least_force = 3e-9L, least_share = 1e-3L, delta = 1e-15L,
-               delta_of_traces = 3e-16L;
+constexpr Real tiny = 1e-300L, least_force = 3e-9L, least_share = 1e-3L, least_expansion = 1e-6L,
+               delta = 1e-15L, delta_of_traces = 3e-16L;
 
 /// Slip: u, less what it is counted from, in the directions that are free and orthogonal to the row's
 /// normal.
@@ -112,7 +112,8 @@ Contact sum_contact(const Problem& problem, const Regions& regions, const BodyRe
 struct RegionSums {
   Vec unbalanced{}, moment{};
   Real residual = 0, load = 0, reaction = 0, spring = 0, interface = 0, hold = 0, all = 0;
-  Real moved = 0, stiff = 0, moved_all = 0, stiff_all = 0, softness = 0, unknowns = 0, largest = 0;
+  Real moved = 0, stiff = 0, moved_all = 0, stiff_all = 0, softness = 0, unknowns = 0, largest = 0,
+       expansion = 0, expansion_all = 0;
 };
 
 struct BodySums {
@@ -140,6 +141,8 @@ BodySums sum_body(const Problem& problem, const Regions& regions, const Answer& 
       s.unbalanced[c] += residual;
       s.residual += residual * residual;
       s.load += problem.held[n][c] ? Real(0) : load * load;
+      s.expansion += body.expansion[n][c] * body.expansion[n][c];
+      s.expansion_all += std::abs(body.expansion[n][c]);
       s.reaction += reaction * reaction;
       s.spring += spring * spring;
       const Real hold = std::abs(contact[n][c]) + std::abs(reaction) + std::abs(spring);
@@ -201,7 +204,8 @@ Worst judge_equilibrium(const Contact& contact, const BodySums& body, Real elast
     const Real outer = larger(larger(s.load, s.reaction), larger(s.spring, square));
     Real force = std::sqrt(larger(outer, larger(s.interface, own)));
     if (weakest < HUGE_VALL) force = weak_beside(weakest, force, least_share);
-    force = larger(force, least_stiffness(s) * std::sqrt(s.moved));
+    force = larger(force,
+                   larger(least_stiffness(s) * std::sqrt(s.moved), least_expansion * std::sqrt(s.expansion)));
     if (s.unknowns > 0) worst.take(std::sqrt(s.residual), delta * std::sqrt(s.stiff), force);
   }
   return worst;
@@ -219,10 +223,12 @@ Worst judge_balance(const Problem& problem, const Regions& regions, const BodySu
       s.hold += one.hold, s.all += one.all;
       s.moved_all += one.moved_all, s.stiff_all += one.stiff_all;
       s.softness += one.softness, s.unknowns += one.unknowns;
+      s.expansion_all += one.expansion_all;
     }
     for (const auto& [pair, force] : body.between)
       if (cluster.has[pair.first] && regions.bin[pair.second] > cluster.bin) s.hold += force, s.all += force;
-    const Real scale = larger(weak_beside(s.hold, s.all, least_share), least_stiffness(s) * s.moved_all);
+    const Real scale = larger(weak_beside(s.hold, s.all, least_share),
+                              larger(least_stiffness(s) * s.moved_all, least_expansion * s.expansion_all));
     Vec moment = s.moment - cross(cluster.centre, s.unbalanced);
     // Away from an axis all is in balance by itself.
     if (problem.mesh.is_round) s.unbalanced[0] = 0, moment = {};
