@@ -99,7 +99,7 @@ TEST_CASE("meshes and cases of any line ends, with a byte order mark, are read a
     const std::string more =
         R"( --set 'contact=[{"on":{"box":[[0,0,0],[1,1,0]]},"obstacle":{"height_map":{"file":"heights.csv","lower":[-2,-2],"upper":[3,3]}}},)"
         R"({"on":{"box":[[0,0,0],[1,1,0]]},"obstacle":{"surface":{"file":"floor.stl"}}}]')"
-        R"( --set 'material[0].expansion=1e-5' --set 'boundary=[{"on":{"box":[[0,0,0],[1,1,0]]},"displacement":[0,0,0]},)"
+        R"( --set 'material[0].expansion=1e-5' --set 'boundary=[{"on":{"box":[[0,0,1],[1,1,1]]},"displacement":[0,0,0]},)"
         R"({"on":"all","temperature":{"file":"warm.csv"}}]')";
     const Outcome run = place.run("run cube.json --output warm" + more);
     INFO(run.error);
