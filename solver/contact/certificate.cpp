@@ -49,7 +49,7 @@ constexpr double least_force = 3e-9;
 constexpr double least_share = 1e-3;
 /// Of the nodal forces of temperature, which balance themselves where a body expands freely: noise by which
 /// nothing else can be measured.
-constexpr double least_expansion = 1e-6;
+constexpr double least_expansion = 1e-3;
 /// Share of D∘u, and of u·(D∘u), that the rounding of R(u) may come to: nine units of it, because a row of B
 /// is a few times its diagonal (measured: up to 5.4e-16); and of traces and gaps, which are short sums.
 constexpr double rounding = 1e-15, rounding_of_traces = 3e-16;
@@ -440,7 +440,7 @@ Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactS
   const double elastic = forces.expansion.empty()
                              ? all
                              : std::max(forces.energy - whole.expansion_work + forces.expansion_energy, 0.0);
-  const double energy = std::max({weak_beside(elastic, all, least_share * least_share), no_energy, tiny});
+  const double energy = std::max({weak_beside(elastic, all), no_energy, tiny});
   const Worst equilibrium = judge_equilibrium(body, contact, forces.expansion.empty() ? 0.0 : elastic, out),
               balance = judge_balance(part, body, regions);
   c.equilibrium = equilibrium.residual, c.rounding.equilibrium = equilibrium.unknown;

@@ -210,8 +210,8 @@ TEST_CASE(
           "steps[0].factors[\"tool\"]: expected no factor of an obstacle");
   REQUIRE(place.run("run brick.json --output out --set contact[0].relinearise=true").exit_code == 0);
   const Outcome anew = place.run("verify brick.json --output out --set contact[0].relinearise=true");
-  CHECK(anew.exit_code == 2);
-  CHECK(anew.error.find("contact[0].relinearise: nodes face the obstacle from where") != std::string::npos);
+  INFO(anew.error, anew.output);
+  CHECK(anew.exit_code == 0);
 }
 
 TEST_CASE("an edge in the plane of symmetry presses without a lateral force, and is verified") {

@@ -9,7 +9,7 @@
 namespace kacanov::verify {
 namespace {
 
-constexpr Real tiny = 1e-300L, least_force = 3e-9L, least_share = 1e-3L, least_expansion = 1e-6L,
+constexpr Real tiny = 1e-300L, least_force = 3e-9L, least_share = 1e-3L, least_expansion = 1e-3L,
                delta = 1e-15L, delta_of_traces = 3e-16L;
 
 /// Slip: u, less what it is counted from, in the directions that are free and orthogonal to the row's
@@ -271,7 +271,7 @@ Findings examine(const Problem& problem, const Answer& answer) {
   const bool warm = response.expansion_energy > 0;
   const Real elastic =
       warm ? larger(response.energy - body.expansion_work + response.expansion_energy, 0) : all_energy;
-  const Real energy = larger(weak_beside(elastic, all_energy, least_share * least_share),
+  const Real energy = larger(weak_beside(elastic, all_energy, least_share),
                              larger(least_stiffness(whole) * whole.moved, tiny));
   const Real moved = body.displacement > 0 ? 1 : 0;
   const Worst equilibrium = judge_equilibrium(contact, body, warm ? elastic : Real(0)),
