@@ -31,41 +31,52 @@ class Done:
 
 
 def members(session):
-    """Process, whether it is running or wants to, and the seconds that it has computed, of all in a session."""
+    """Process, state, and the seconds that it has computed, of all in a session."""
     for stat in pathlib.Path("/proc").glob("[0-9]*/stat"):
         try:
             words = stat.read_text().rsplit(")", 1)[1].split()
         except OSError:
             continue  # it has ended
         if int(words[3]) == session:
-            yield int(stat.parent.name), words[0] == "R", (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
+            yield int(stat.parent.name), words[0], (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def starved(session, limit):
-    """Whether it still wants to compute and has had little of the time: others keep the machine busy."""
+    """Whether others keep it from computing: it is stopped, or ready to run and has had little of the time."""
     found = list(members(session))
-    return any(running for _, running, _ in found) and sum(seconds for *_, seconds in found) < limit / 2
+    states = {state for _, state, _ in found}
+    return "T" in states or ("R" in states and sum(seconds for *_, seconds in found) < limit / 2)
+
+
+def end(process):
+    """Kills a command and the ranks that it has started; returns the seconds that they have computed."""
+    used = 0.0
+    for pid, _, seconds in list(members(process.pid)):
+        used += seconds
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(pid, signal.SIGKILL)
+    process.wait()
+    return used
 
 
 def call(program, *arguments, folder, limit):
     """Runs the program in a session of its own, whose processes end with it."""
     process = subprocess.Popen([str(program), *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                text=True, env={**os.environ, "TMPDIR": str(folder)}, start_new_session=True, cwd=folder)
-    for turn in range(10):
-        try:
-            out, err = process.communicate(timeout=limit)
-            return Done(process.returncode, out, err)
-        except subprocess.TimeoutExpired:
-            if turn < 9 and starved(process.pid, limit):
-                continue
-        used = 0.0
-        for pid, _, seconds in list(members(process.pid)):
-            used += seconds
-            with contextlib.suppress(ProcessLookupError):
-                os.kill(pid, signal.SIGKILL)
-        process.communicate()
-        break
-    raise Hang(f"{' '.join(map(str, arguments))}: no end after {(turn + 1) * limit:g} s, {used:.1f} of them computing")
+    try:
+        for turn in range(10):
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                out, err = process.communicate(timeout=limit)
+                return Done(process.returncode, out, err)
+            if not starved(process.pid, limit):
+                break
+        states = "".join(sorted(state for _, state, _ in members(process.pid)))
+        used = end(process)
+        raise Hang(f"{' '.join(map(str, arguments))}: no end after {(turn + 1) * limit:g} s, {used:.1f} of them computing, "
+                   f"processes in the states {states}")
+    finally:
+        if process.poll() is None:
+            end(process)
 
 
 # Fields ----------------------------------------------------------------------------------------------------------
@@ -168,6 +179,14 @@ def floor(tolerance):
     return 10 * math.sqrt(tolerance)
 
 
+def least(case, tolerance):
+    """Scales of force, displacement and stress that rounding alone leaves where nothing acts."""
+    extent = max(max(map(abs, x)) for x in case.mesh.nodes)
+    young = max(m["young"] for m in case.document["material"])
+    share = 1e-14 / math.sqrt(tolerance)
+    return share * young * extent ** 2, share * extent, share * young
+
+
 def contact_scales(case, truth, tolerance):
     """Scale of each entry's contact force: the force itself, or a share of the stress in the elements behind it."""
     scales = {}
@@ -179,7 +198,7 @@ def contact_scales(case, truth, tolerance):
         near = [s for element, s in truth.stress.items() if not nodes or nodes & element]
         own = max(size(said["normal_force"]), size(said["friction_force"]), 0.1 * said["area"] * said["max_pressure"])
         behind = max(near, default=0.0) * surface_area(case, entry["on"])
-        scales[entry["name"]] = max(own, floor(tolerance) * behind, 1e-300)
+        scales[entry["name"]] = max(own, floor(tolerance) * behind)
     return scales
 
 
@@ -196,6 +215,7 @@ def compare(case, truth, answer, tolerance, twin=None):
     map_vector = twin.vector if twin else (lambda v, factor: v)
     force, length = (twin.force, twin.length) if twin else (1.0, 1.0)
     off = {}
+    least_force, least_move, least_stress = least(case, tolerance)
 
     def note(what, value):
         off[what] = max(off.get(what, 0.0), value if math.isfinite(value) else math.inf)
@@ -203,22 +223,23 @@ def compare(case, truth, answer, tolerance, twin=None):
     for name, scale in contact_scales(case, truth, tolerance).items():
         for key in ("normal_force", "friction_force"):
             there = map_vector(truth.result["contact"][name][key], force)
-            note("contact", math.dist(there, answer.result["contact"][name][key]) / (force * scale))
+            there = math.dist(there, answer.result["contact"][name][key])
+            note("contact", there / (force * max(scale, least_force)))
     held = truth.result.get("reaction", {})
     most = max(size(e["force"]) for kind in ("reaction", "load", "contact") for e in truth.result.get(kind, {}).values())
     for name, said in held.items():
         there = map_vector(said["force"], force)
-        scale = force * max(size(said["force"]), floor(tolerance) * most, 1e-300)
+        scale = force * max(size(said["force"]), floor(tolerance) * most, least_force)
         note("reaction", math.dist(there, answer.result["reaction"][name]["force"]) / scale)
     if set(truth.u) == set(answer.u):
         for nodes, elements in parts_of(case, truth):
-            moved = max(size(truth.u[n]) for n in nodes)
+            moved = max(least_move, *(size(truth.u[n]) for n in nodes))
             far = max(math.dist(map_vector(truth.u[n], length), answer.u[n]) for n in nodes) / length
-            note("displacement", far / moved if moved > 0 else far)
-            stress = max(truth.stress[e] for e in elements)
+            note("displacement", far / moved)
+            stress = max(least_stress, *(truth.stress[e] for e in elements))
             factor = force / length ** 2
             differs = max(abs(truth.stress[e] - answer.stress.get(e, math.inf) / factor) for e in elements)
-            note("stress", differs / stress if stress > 0 else differs)
+            note("stress", differs / stress)
     elif not case.options:
         note("displacement", math.inf)
     return off

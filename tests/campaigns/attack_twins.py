@@ -238,13 +238,20 @@ def idle(case, rng):
 
 def draw_twins(case, seed, index):
     """All twins that the case has, by kind."""
-    rng = random.Random(f"{seed} {index} twins")
-    most = min(4, len(case.mesh.elements))  # no rank is empty
+    def dice(kind):
+        return random.Random(f"{seed} {index} {kind}")
+
+    def ranks(kind, *numbers):  # none of them empty
+        return min(dice(kind).choice(numbers), len(case.mesh.elements))
+
     traits, options = case.traits, case.options
-    twins = {"renumbered": None if options or "mixed tet4" in traits else renumbered(case, rng),
-             "turned": None if options or "mixed tet4" in traits else turned(case, rng),
-             "rescaled": rescaled(case, rng), "idle": idle(case, rng),
-             "ranks": Twin("ranks", case, ranks=min(rng.randint(2, 4), most)),
-             "restarted": None if "moving" in traits else Twin("restarted", case, cut=rng.randint(1, 6), ranks=min(rng.choice((1, 1, 2)), most)),
-             "parted": None if "adapt" in options else Twin("parted", case, ranks=min(rng.randint(1, 3), most))}
+    same_mesh = not options and "mixed tet4" not in traits  # however it is numbered
+    twins = {"renumbered": renumbered(case, dice("renumbered")) if same_mesh else None,
+             "turned": turned(case, dice("turned")) if same_mesh else None,
+             "rescaled": rescaled(case, dice("rescaled")),
+             "idle": idle(case, dice("idle")),
+             "ranks": Twin("ranks", case, ranks=ranks("ranks", 2, 3, 4)),
+             "restarted": None if "moving" in traits else Twin(
+                 "restarted", case, cut=dice("cut").randint(1, 6), ranks=ranks("restarted", 1, 1, 2)),
+             "parted": None if "adapt" in options else Twin("parted", case, ranks=ranks("parted", 1, 2, 3))}
     return {kind: twin for kind, twin in twins.items() if twin}
