@@ -195,6 +195,10 @@ TEST_CASE("loads count in a step, what makes the model before it, and nothing be
   }
   CHECK(refusal(plain + "*NODE FILE\nU\n") == "(accepted)");
   CHECK(made(plain + "*BOUNDARY\n5,1,1,0.5\n", true).document == made(plain).document);
+  const DeckCase without = made(model + begin + held + "*CLOAD,FOO=1,BAR\nTOP,3,-2.5\n" + end, true);
+  REQUIRE(without.remarks.size() == 2);
+  CHECK(contains(without.remarks[0], "LEFT OUT: *CLOAD changes the answer: FOO=1"));
+  CHECK(contains(without.remarks[1], "LEFT OUT: *CLOAD changes the answer: BAR"));
   CHECK(
       contains(made(plain + "*BOUNDARY\n5,1,1,0.5\n", true).remarks.back(), "line 27: LEFT OUT: *BOUNDARY"));
 }

@@ -81,8 +81,8 @@ TEST_CASE(
 }
 
 TEST_CASE("meshes and cases of any line ends, with a byte order mark, are read and verified") {
-  for (const auto& change : {with_mark, with_returns}) {
-    const auto changed = [&](const std::string& text) { return change(text); };
+  for (const bool mark : {true, false}) {
+    const auto changed = [&](const std::string& text) { return mark ? with_mark(text) : with_returns(text); };
     const Workplace place;
     place.put("cube.msh", changed(cube_msh));
     place.put("cube.json", changed(cube_case));
@@ -91,15 +91,18 @@ TEST_CASE("meshes and cases of any line ends, with a byte order mark, are read a
     INFO(verified.error, verified.output);
     CHECK(verified.exit_code == 0);
     // Two heights a line, two lines; two temperatures; a triangle.
-    place.put("heights.csv", changed("-1,-1\n-1,-1\n"));
+    place.put("heights.csv", changed("2,2\n2,2\n"));
     place.put("warm.csv", changed("1, 10\n2, 20\n3, 10\n4, 10\n5, 10\n6, 10\n7, 10\n8, 10\n"));
-    place.put("floor.stl",
-              changed("solid a\nfacet normal 0 0 1\nouter loop\nvertex -9 -9 -1\nvertex 9 -9 -1\nvertex 0 9 "
-                      "-1\nendloop\nendfacet\nendsolid a\n"));
+    place.put(
+        "floor.stl",
+        changed("solid a\nfacet normal -1 0 0\nouter loop\nvertex 2 -9 -9\nvertex 2 0 9\nvertex 2 9 -9\n"
+                "endloop\nendfacet\nendsolid a\n"));
     const std::string more =
-        R"( --set 'contact=[{"on":{"box":[[0,0,0],[1,1,0]]},"obstacle":{"height_map":{"file":"heights.csv","lower":[-2,-2],"upper":[3,3]}}},)"
-        R"({"on":{"box":[[0,0,0],[1,1,0]]},"obstacle":{"surface":{"file":"floor.stl"}}}]')"
-        R"( --set 'material[0].expansion=1e-5' --set 'boundary[2]={"on":"all","temperature":{"file":"warm.csv"}}')";
+        R"( --set 'contact=[{"on":{"box":[[0,0,1],[1,1,1]]},"obstacle":{"height_map":{"file":"heights.csv",)"
+        R"("body":"below","lower":[-2,-2],"upper":[3,3]}}},)"
+        R"({"on":{"box":[[1,0,0],[1,1,1]]},"obstacle":{"surface":{"file":"floor.stl"}}}]')"
+        R"( --set 'material[0].expansion=1e-5' --set 'boundary=[{"on":{"box":[[0,0,0],[1,1,0]]},"displacement":[0,0,0]},)"
+        R"({"on":"all","temperature":{"file":"warm.csv"}}]')";
     const Outcome run = place.run("run cube.json --output warm" + more);
     INFO(run.error);
     CHECK(run.exit_code == 0);
@@ -132,6 +135,27 @@ TEST_CASE("text in UTF-16 is named") {
     }
 }
 
+TEST_CASE("names of files that are no UTF-8 end in words") {
+  const Workplace place;
+  place.put("tr\xe4ger.inp", cube);
+  place.put("tr\xe4ger.msh", cube_msh);
+  place.put("cube.msh", cube_msh);
+  place.put("tr\xe4ger.json", cube_case);
+  place.put("cube.json", cube_case);
+  for (const char* command :
+       {"init tr\xe4ger.msh a.json", "run tr\xe4ger.inp", "check cube.json --set title=tr\xe4ger",
+        "check tr\xe4ger.json --set mesh.file=tr\xe4ger.msh"}) {
+    const Outcome outcome = place.run(command);
+    INFO(command, outcome.error);
+    CHECK(outcome.exit_code == 2);
+  }
+  for (const char* command :
+       {"run tr\xe4ger.json --ranks 1 --output a",
+        "run tr\xe4ger.json --ranks 2 --output tr\xe4ger "
+        "--set 'mesh={\"box\":{\"size\":[1,1,1],\"cells\":[2,2,2],\"element\":\"hex8\"}}'"})
+    CHECK(place.run(command).exit_code == 0);
+}
+
 TEST_CASE("names that a terminal would obey are refused, and reach no file and no terminal") {
   for (const char* name : {"\x1b[2J", "\a",
                            "\xc2\x9b"
@@ -157,7 +181,7 @@ TEST_CASE("names that a terminal would obey are refused, and reach no file and n
   nlohmann::json input = parsed(cube_case);
   input["boundary"][0]["name"] = std::string("a\0b", 3);
   place.put_json("case.json", input);
-  CHECK(place.run("run case.json").error.find("boundary[0].name: expected a string on one line") !=
+  CHECK(place.run("run case.json").error.find("boundary[0].name: expected a string in UTF-8 on one line") !=
         std::string::npos);
   input["boundary"][0]["name"] = "Fuß ↓";  // which is tame
   place.put_json("case.json", input);
@@ -183,13 +207,13 @@ TEST_CASE("messages show no words of files outside of the case's folder") {
       place.put("case/cube.inp",
                 cube_mesh + "*NSET,NSET=MORE\n*INCLUDE,INPUT=" + file + "\n" + cube_material + cube_step);
       const std::string contact = R"( --set 'contact=[{"on":{"box":[[0,0,0],[1,1,0]]},"obstacle":)";
-      for (const std::string& command :
-           {"convert case/cube.inp a.json", "check case/cube.json --set 'mesh.file=" + file + "'",
-            R"(check case/cube.json --set 'boundary[2]={"on":"all","temperature":{"file":")" + file +
-                R"("}}')",
-            "check case/cube.json" + contact + R"({"surface":{"file":")" + file + R"("}}}]')",
-            "check case/cube.json" + contact + R"({"height_map":{"lower":[0,0],"upper":[1,1],"file":")" +
-                file + R"("}}}]')"}) {
+      for (const std::string& command : std::initializer_list<std::string>{
+               "convert case/cube.inp a.json", "check case/cube.json --set 'mesh.file=" + file + "'",
+               R"(check case/cube.json --set 'boundary[1]={"on":"all","temperature":{"file":")" + file +
+                   R"("}}')",
+               "check case/cube.json" + contact + R"({"surface":{"file":")" + file + R"("}}}]')",
+               "check case/cube.json" + contact + R"({"height_map":{"lower":[0,0],"upper":[1,1],"file":")" +
+                   file + R"("}}}]')"}) {
         const Outcome outcome = place.run(command + " ");
         INFO(start, command, outcome.error);
         CHECK(outcome.exit_code == 2);
@@ -246,7 +270,7 @@ TEST_CASE("plastic strains above 1 are asked about, in cases and with the line i
   std::string deck = cube;
   deck.insert(deck.find("*SOLID"), "*PLASTIC\n250,0\n400,10\n");
   place.put("cube.inp", deck);
-  CHECK(asks("convert cube.inp").find("cube.inp: line 20: material[0].plastic: " + words) !=
+  CHECK(asks("convert cube.inp --force").find("cube.inp: line 20: material[0].plastic: " + words) !=
         std::string::npos);
   deck.replace(deck.find("400,10"), 6, "200,10");
   place.put("cube.inp", deck);

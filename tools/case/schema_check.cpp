@@ -52,8 +52,8 @@ struct Check {
       std::replace_if(
           text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r' || c == '\t'; }, ' ');
     if (!is_plain_line(text))
-      node.expected("a string " + std::string(form.lines ? "" : "on one line ") +
-                    "without control characters");
+      node.expected(std::string("a string in UTF-8") + (form.lines ? "" : " on one line") +
+                    " without control characters");
   }
   void operator()(const Flag&) const { node.boolean(); }
   void operator()(const Null&) const {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "formats/printable.hpp"
 #include "formats/words.hpp"
@@ -37,7 +38,7 @@ constexpr auto rules = std::to_array<DeckKeywordRule>({
     {"NSET", any, "NSET= ELSET= GENERATE INSTANCE= INTERNAL UNSORTED"},
     {"PART", model, "NAME="},
     {"PLASTIC", model, "HARDENING="},
-    {"SOLIDSECTION", model, "ELSET= MATERIAL= ORIENTATION="},
+    {"SOLIDSECTION", model, "ELSET= MATERIAL= ORIENTATION= OFFSET=0|0.|0.0"},
     {"STATIC", step, "DIRECT? SOLVER= TIMERESET TOTALTIMEATSTART= RIKS?"},
     // How a step goes about its end does not change what is there.
     {"STEP", any, "NAME= INC= AMPLITUDE=RAMP|STEP CONVERTSDI= EXTRAPOLATION= UNSYMM= NLGEOM? PERTURBATION"},
@@ -113,26 +114,31 @@ bool continues_parameters(std::string_view keyword, std::string_view line) {
          (rule != nullptr && find_parameter(rule->parameters, name).has_value());
 }
 
-std::string parameter_fault(const DeckKeyword& keyword) {
+std::vector<std::string> parameter_faults(const DeckKeyword& keyword) {
   const DeckKeywordRule* rule = deck_rule(keyword.name);
-  if (rule == nullptr) return {};
-  for (auto at = keyword.parameters.begin(); at != keyword.parameters.end(); ++at) {
+  std::vector<std::string> faults;
+  for (auto at = keyword.parameters.begin(); rule != nullptr && at != keyword.parameters.end(); ++at) {
     const auto& [name, value] = *at;
     const std::string shown = keyword.written(*at);
     const std::optional<Parameter> known = find_parameter(rule->parameters, name);
-    if (!known) return shown + " is not known here, but " + names_of(rule->parameters);
-    if (std::any_of(keyword.parameters.begin(), at, [&](const auto& before) { return before.first == name; }))
-      return shown + ": this parameter is there twice";
-    if (known->kind == ' ' && !value.empty()) return shown + ": " + name + " has no value";
-    if (known->kind == '=' && value.empty()) return "expected " + name + "=<value>";
-    if (!known->values.empty() && !has_value(known->values, upper_case(without_blanks(value)))) {
+    const bool twice =
+        std::any_of(keyword.parameters.begin(), at, [&](const auto& before) { return before.first == name; });
+    if (!known) {
+      faults.push_back(shown + " is not known here, but " + names_of(rule->parameters));
+    } else if (twice) {
+      faults.push_back(shown + ": this parameter is there twice");
+    } else if (known->kind == ' ' && !value.empty()) {
+      faults.push_back(shown + ": " + name + " has no value");
+    } else if (known->kind == '=' && value.empty()) {
+      faults.push_back("expected " + name + "=<value>");
+    } else if (!known->values.empty() && !has_value(known->values, upper_case(without_blanks(value)))) {
       std::string values(known->values);
       for (std::size_t bar = 0; (bar = values.find('|', bar)) != std::string::npos;)
         values.replace(bar, 1, " or ");
-      return shown + " is not known here, but " + name + "=" + values;
+      faults.push_back(shown + " is not known here, but " + name + "=" + values);
     }
   }
-  return {};
+  return faults;
 }
 
 std::string level_fault(const DeckKeywordRule& rule, DeckLevel stands) {

@@ -4,6 +4,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "formats/deck_lines.hpp"
 
@@ -34,8 +35,9 @@ bool is_harmless(std::string_view keyword);
 /// parameter of the keyword.
 bool continues_parameters(std::string_view keyword, std::string_view line);
 
-/// Describes a parameter of the keyword that is not read or has a value that is not; empty if all are read.
-std::string parameter_fault(const DeckKeyword& keyword);
+/// Describes each parameter of the keyword that is not read or has a value that is not; empty if all are
+/// read.
+std::vector<std::string> parameter_faults(const DeckKeyword& keyword);
 
 /// Describes why a keyword cannot stand there; empty if it can.
 std::string level_fault(const DeckKeywordRule& rule, DeckLevel stands);

@@ -111,7 +111,7 @@ void DeckLines::take_keyword_line(DeckKeyword& keyword) {
 }
 
 void DeckLines::include(const DeckKeyword& keyword) {
-  if (const std::string fault = parameter_fault(keyword); !fault.empty())
+  for (const std::string& fault : parameter_faults(keyword))
     fail(keyword.place, keyword.shown + ": " + fault);
   const std::string* input = keyword.parameter("INPUT");
   if (input == nullptr) fail(keyword.place, keyword.shown + ": expected INPUT=<file>");

@@ -64,9 +64,10 @@ class Reader {
 
   /// Where a keyword that is read for the mesh stands, and its parameters.
   void check(const DeckKeyword& keyword) const {
-    std::string fault = level_fault(*deck_rule(keyword.name), level_);
-    if (fault.empty()) fault = parameter_fault(keyword);
-    if (!fault.empty()) in_.fail(keyword.place, keyword.shown + ": " + fault);
+    std::vector<std::string> faults = parameter_faults(keyword);
+    if (const std::string fault = level_fault(*deck_rule(keyword.name), level_); !fault.empty())
+      faults.insert(faults.begin(), fault);
+    if (!faults.empty()) in_.fail(keyword.place, keyword.shown + ": " + faults[0]);
   }
 
   void take_block(const DeckKeyword& keyword) {

@@ -100,6 +100,10 @@ int init_command(const Command& command) {
   const std::filesystem::path to = command.to.empty() ? std::filesystem::path(from.stem().string() + ".json")
                                                       : std::filesystem::path(command.to);
   if (to.extension() != ".json") throw InputError(to.string() + ": expected a name that ends with .json");
+  if (!is_plain_line(command.from))
+    throw InputError(
+        command.from +
+        ": expected a name in UTF-8 without control characters, as a case cannot hold another one");
   refuse_existing(to.string(), command.force);
   const Mesh mesh = read_mesh(command.from);
   check_mesh(mesh);

@@ -80,7 +80,7 @@ class Converter {
     }
     if (name == "STEP") note_step(block);
     if (name == "STATIC") note_static(block);
-    if (const std::string fault = parameter_fault(block.keyword); !fault.empty()) change(block, fault);
+    for (const std::string& fault : parameter_faults(block.keyword)) change(block, fault);
     if (name == "SOLIDSECTION" && block.keyword.parameter("ORIENTATION") != nullptr)
       remarks_.push_back(deck_.place_text(block.keyword.place) + ": " + block.keyword.shown +
                          ": ORIENTATION is left out, which does not change the answer of isotropic bodies");

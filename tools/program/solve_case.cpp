@@ -182,7 +182,9 @@ SolvedCase solve_case(const Case& given, const MpiSession& mpi, const CaseRun& r
     complete_messages(input, out.problem, out.result);
     out.json = result_json(out.result, figures, input, out.problem.mesh);
   }
-  std::string text = mpi.first() && mpi.ranks() > 1 ? out.json.dump() : std::string();
+  std::string text = mpi.first() && mpi.ranks() > 1
+                         ? out.json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
+                         : std::string();
   broadcast(mpi, text);
   if (!mpi.first()) out.json = nlohmann::ordered_json::parse(text);
   return out;
