@@ -91,15 +91,17 @@ TEST_CASE("meshes and cases of any line ends, with a byte order mark, are read a
     INFO(verified.error, verified.output);
     CHECK(verified.exit_code == 0);
     // Two heights a line, two lines; two temperatures; a triangle.
-    place.put("heights.csv", changed("-1,-1\n-1,-1\n"));
+    place.put("heights.csv", changed("2,2\n2,2\n"));
     place.put("warm.csv", changed("1, 10\n2, 20\n3, 10\n4, 10\n5, 10\n6, 10\n7, 10\n8, 10\n"));
-    place.put("floor.stl",
-              changed("solid a\nfacet normal 0 0 1\nouter loop\nvertex -9 -9 -1\nvertex 9 -9 -1\nvertex 0 9 "
-                      "-1\nendloop\nendfacet\nendsolid a\n"));
+    place.put(
+        "floor.stl",
+        changed("solid a\nfacet normal -1 0 0\nouter loop\nvertex 2 -9 -9\nvertex 2 0 9\nvertex 2 9 -9\n"
+                "endloop\nendfacet\nendsolid a\n"));
     const std::string more =
-        R"( --set 'contact=[{"on":{"box":[[0,0,0],[1,1,0]]},"obstacle":{"height_map":{"file":"heights.csv","lower":[-2,-2],"upper":[3,3]}}},)"
-        R"({"on":{"box":[[0,0,0],[1,1,0]]},"obstacle":{"surface":{"file":"floor.stl"}}}]')"
-        R"( --set 'material[0].expansion=1e-5' --set 'boundary=[{"on":{"box":[[0,0,1],[1,1,1]]},"displacement":[0,0,0]},)"
+        R"( --set 'contact=[{"on":{"box":[[0,0,1],[1,1,1]]},"obstacle":{"height_map":{"file":"heights.csv",)"
+        R"("body":"below","lower":[-2,-2],"upper":[3,3]}}},)"
+        R"({"on":{"box":[[1,0,0],[1,1,1]]},"obstacle":{"surface":{"file":"floor.stl"}}}]')"
+        R"( --set 'material[0].expansion=1e-5' --set 'boundary=[{"on":{"box":[[0,0,0],[1,1,0]]},"displacement":[0,0,0]},)"
         R"({"on":"all","temperature":{"file":"warm.csv"}}]')";
     const Outcome run = place.run("run cube.json --output warm" + more);
     INFO(run.error);
@@ -148,7 +150,9 @@ TEST_CASE("names of files that are no UTF-8 end in words") {
     CHECK(outcome.exit_code == 2);
   }
   for (const char* command :
-       {"run tr\xe4ger.json --ranks 1 --output a", "run tr\xe4ger.json --ranks 2 --output tr\xe4ger"})
+       {"run tr\xe4ger.json --ranks 1 --output a",
+        "run tr\xe4ger.json --ranks 2 --output tr\xe4ger "
+        "--set 'mesh={\"box\":{\"size\":[1,1,1],\"cells\":[2,2,2],\"element\":\"hex8\"}}'"})
     CHECK(place.run(command).exit_code == 0);
 }
 
