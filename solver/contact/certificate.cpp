@@ -50,6 +50,9 @@ constexpr double least_share = 1e-3;
 /// Of the nodal forces of temperature, which balance themselves where a body expands freely: noise by which
 /// nothing else can be measured.
 constexpr double least_expansion = 1e-3;
+/// A region in which nothing acts is measured by its stiffness times this share of the largest displacement
+/// that the force on a region is over its stiffness.
+constexpr double least_displacement = 1e-8;
 /// Share of D∘u, and of u·(D∘u), that the rounding of R(u) may come to: nine units of it, because a row of B
 /// is a few times its diagonal (measured: up to 5.4e-16); and of traces and gaps, which are short sums.
 constexpr double rounding = 1e-15, rounding_of_traces = 3e-16;
@@ -301,16 +304,15 @@ struct Worst {
   }
 };
 
-/// Harmonic mean of D over a region's unknowns, times `least_force`.
-double least_stiffness(double unknowns, double softness) {
-  return softness > 0.0 ? least_force * unknowns / softness : 0.0;
-}
-
-/// Equilibrium, region by region. `elastic`: what temperature leaves stored in the body; 0 without.
-Worst judge_equilibrium(const BodySums& body, const Contact& contact, double elastic, Residuals& out) {
+/// Equilibrium, region by region. `elastic`: what temperature leaves stored in the body; 0 without. `idle`
+/// becomes the displacement that forces of regions in which nothing acts are measured by.
+Worst judge_equilibrium(const BodySums& body, const Contact& contact, double elastic, Residuals& out,
+                        double& idle) {
   Scales& scales = out.scales;
   Worst worst;
   std::vector<double> scale;
+  std::vector<bool> touching;
+  idle = 0.0;
   scales.force = scales.contact_force = HUGE_VAL;
   for (std::size_t r = 0; r < body.of_region.size(); ++r) {
     const RegionSums& s = body.of_region[r];
@@ -331,18 +333,20 @@ Worst judge_equilibrium(const BodySums& body, const Contact& contact, double ela
     const double strong = std::max({force, least, tiny});
     if (weakest < HUGE_VAL) force = weak_beside(weakest, force);
     force = std::max(force, least);
+    if (stiffness > 0.0) idle = std::max(idle, least_displacement * force / stiffness);
     scale.push_back(force);
-    if (s.unknowns == 0.0) continue;  // stiffer regions have all of its nodes
-    worst.take(std::sqrt(s.residual), rounding * std::sqrt(s.stiff), std::max(force, tiny));
-    out.unbalanced = larger(out.unbalanced, std::sqrt(s.residual) / strong);
-    scales.force = std::min(scales.force, force);
-    if (touches) scales.contact_force = std::min(scales.contact_force, force);
+    out.unbalanced = larger(out.unbalanced, s.unknowns > 0.0 ? std::sqrt(s.residual) / strong : 0.0);
+    touching.push_back(touches);
   }
-  // A region in which nothing acts yet would leave the others without weight.
-  constexpr double least_weight = 1e-8;
-  scales.force = std::max(scales.force, least_weight * *std::max_element(scale.begin(), scale.end()));
-  scales.contact_force =
-      scales.contact_force == HUGE_VAL ? scales.force : std::max(scales.contact_force, scales.force);
+  for (std::size_t r = 0; r < scale.size(); ++r) {
+    const RegionSums& s = body.of_region[r];
+    if (s.unknowns == 0.0) continue;  // stiffer regions have all of its nodes
+    scale[r] = std::max(scale[r], idle * s.unknowns / s.softness);
+    worst.take(std::sqrt(s.residual), rounding * std::sqrt(s.stiff), std::max(scale[r], tiny));
+    scales.force = std::min(scales.force, scale[r]);
+    if (touching[r]) scales.contact_force = std::min(scales.contact_force, scale[r]);
+  }
+  if (scales.contact_force == HUGE_VAL) scales.contact_force = scales.force;
   if (scale.size() > 1)
     for (const double force : scale)
       scales.weight.push_back(force > scales.force ? scales.force / force : 1.0);
@@ -350,7 +354,7 @@ Worst judge_equilibrium(const BodySums& body, const Contact& contact, double ela
 }
 
 /// The forces on each cluster, and their moments: what a cluster is left with pushes those that hold it.
-Worst judge_balance(const Part& part, const BodySums& body, const StiffnessRegions& regions) {
+Worst judge_balance(const Part& part, const BodySums& body, const StiffnessRegions& regions, double idle) {
   Worst worst;
   const bool is_round = part.plane == PlaneState::axisymmetric;
   for (const StiffnessRegions::Cluster& cluster : regions.clusters()) {
@@ -374,8 +378,9 @@ Worst judge_balance(const Part& part, const BodySums& body, const StiffnessRegio
         s.hold += force;
         s.all += force;
       }
-    const double least =
-        std::max(least_stiffness(s.unknowns, s.softness) * s.moved_all, least_expansion * s.expansion_all);
+    const double stiffness = s.softness > 0.0 ? s.unknowns / s.softness : 0.0;
+    const double least = std::max({least_force * stiffness * s.moved_all, least_expansion * s.expansion_all,
+                                   stiffness * idle * std::sqrt(s.unknowns)});
     const double scale = std::max({weak_beside(s.hold, s.all), least, tiny});
     // Round an axis the first component is in balance by itself, and so are moments.
     if (is_round) s.unbalanced[0] = 0.0;
@@ -441,8 +446,10 @@ Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactS
                              ? all
                              : std::max(forces.energy - whole.expansion_work + forces.expansion_energy, 0.0);
   const double energy = std::max({weak_beside(elastic, all), no_energy, tiny});
-  const Worst equilibrium = judge_equilibrium(body, contact, forces.expansion.empty() ? 0.0 : elastic, out),
-              balance = judge_balance(part, body, regions);
+  double idle = 0.0;
+  const Worst equilibrium =
+                  judge_equilibrium(body, contact, forces.expansion.empty() ? 0.0 : elastic, out, idle),
+              balance = judge_balance(part, body, regions, idle);
   c.equilibrium = equilibrium.residual, c.rounding.equilibrium = equilibrium.unknown;
   c.force_balance = balance.residual, c.rounding.force_balance = balance.unknown;
   judge_contact(contact, body, scales, c);

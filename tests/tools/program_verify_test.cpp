@@ -526,5 +526,5 @@ TEST_CASE("every total of the result is recomputed: what has been changed in one
   nlohmann::json half = place.json("out/result.json");
   half["load_factor"] = 0.5;
   place.put_json("out/result.json", half);
-  CHECK(place.run("verify cube.json --output out").exit_code == 1);
+  CHECK(place.run("verify cube.json --output out").exit_code != 0);
 }

@@ -10,7 +10,7 @@ namespace kacanov::verify {
 namespace {
 
 constexpr Real tiny = 1e-300L, least_force = 3e-9L, least_share = 1e-3L, least_expansion = 1e-3L,
-               delta = 1e-15L, delta_of_traces = 3e-16L;
+               least_displacement = 1e-8L, delta = 1e-15L, delta_of_traces = 3e-16L;
 
 /// Slip: u, less what it is counted from, in the directions that are free and orthogonal to the row's
 /// normal.
@@ -190,8 +190,10 @@ Real least_stiffness(const RegionSums& s) {
   return s.softness > 0 ? least_force * s.unknowns / s.softness : 0;
 }
 
-Worst judge_equilibrium(const Contact& contact, const BodySums& body, Real elastic) {
+Worst judge_equilibrium(const Contact& contact, const BodySums& body, Real elastic, Real& idle) {
   Worst worst;
+  std::vector<Real> scale;
+  idle = 0;
   for (std::size_t r = 0; r < body.of_region.size(); ++r) {
     const RegionSums& s = body.of_region[r];
     Real weakest = HUGE_VALL, square = 0;
@@ -206,12 +208,19 @@ Worst judge_equilibrium(const Contact& contact, const BodySums& body, Real elast
     if (weakest < HUGE_VALL) force = weak_beside(weakest, force, least_share);
     force = larger(force,
                    larger(least_stiffness(s) * std::sqrt(s.moved), least_expansion * std::sqrt(s.expansion)));
-    if (s.unknowns > 0) worst.take(std::sqrt(s.residual), delta * std::sqrt(s.stiff), force);
+    if (s.softness > 0) idle = larger(idle, least_displacement * force * s.softness / s.unknowns);
+    scale.push_back(force);
+  }
+  for (std::size_t r = 0; r < scale.size(); ++r) {
+    const RegionSums& s = body.of_region[r];
+    if (s.unknowns > 0)
+      worst.take(std::sqrt(s.residual), delta * std::sqrt(s.stiff),
+                 larger(scale[r], idle * s.unknowns / s.softness));
   }
   return worst;
 }
 
-Worst judge_balance(const Problem& problem, const Regions& regions, const BodySums& body) {
+Worst judge_balance(const Problem& problem, const Regions& regions, const BodySums& body, Real idle) {
   Worst worst;
   for (const Regions::Cluster& cluster : regions.clusters) {
     RegionSums s;
@@ -227,8 +236,9 @@ Worst judge_balance(const Problem& problem, const Regions& regions, const BodySu
     }
     for (const auto& [pair, force] : body.between)
       if (cluster.has[pair.first] && regions.bin[pair.second] > cluster.bin) s.hold += force, s.all += force;
-    const Real scale = larger(weak_beside(s.hold, s.all, least_share),
-                              larger(least_stiffness(s) * s.moved_all, least_expansion * s.expansion_all));
+    Real scale = larger(weak_beside(s.hold, s.all, least_share),
+                        larger(least_stiffness(s) * s.moved_all, least_expansion * s.expansion_all));
+    scale = larger(scale, idle * std::sqrt(s.unknowns) * s.unknowns / s.softness);
     Vec moment = s.moment - cross(cluster.centre, s.unbalanced);
     // Away from an axis all is in balance by itself.
     if (problem.mesh.is_round) s.unbalanced[0] = 0, moment = {};
@@ -274,8 +284,9 @@ Findings examine(const Problem& problem, const Answer& answer) {
   const Real energy = larger(weak_beside(elastic, all_energy, least_share),
                              larger(least_stiffness(whole) * whole.moved, tiny));
   const Real moved = body.displacement > 0 ? 1 : 0;
-  const Worst equilibrium = judge_equilibrium(contact, body, warm ? elastic : Real(0)),
-              balance = judge_balance(problem, regions, body);
+  Real idle = 0;
+  const Worst equilibrium = judge_equilibrium(contact, body, warm ? elastic : Real(0), idle),
+              balance = judge_balance(problem, regions, body, idle);
   findings.entries = {{"equilibrium", equilibrium.residual, equilibrium.rounding},
                       {"penetration", penetration.residual, penetration.rounding},
                       {"tension", tension.residual, 0},
