@@ -161,9 +161,8 @@ TEST_CASE("what cannot be part of a case is refused with file and line, and left
   check_deck_refused(
       bar_nodes + held + steel + section + "*STEP\n*STATIC\n*DLOAD\nBar, GRAV, 1., 0, 0, 1\n*END STEP\n",
       "deck.inp: line 35: GRAV: the material \"Steel\" has no *DENSITY > 0");
-  check_deck_refused(
-      bar_nodes + held + steel + "*PLASTIC\n250., 0.\n200., 0.1\n" + section + step,
-      "deck.inp: line 33: material[0].plastic[1]: expected a stress not below");
+  check_deck_refused(bar_nodes + held + steel + "*PLASTIC\n250., 0.\n200., 0.1\n" + section + step,
+                     "deck.inp: line 33: material[0].plastic[1]: expected a stress not below");
   const std::string contact =
       bar_nodes + held + steel + section + "*CONTACT PAIR, INTERACTION=I\nA, B\n" + step;
   check_deck_refused(
