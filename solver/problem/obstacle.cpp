@@ -37,10 +37,10 @@ constexpr double on_surface = 1e-9;
 /// precision.
 constexpr double equally_near = 1e-7;
 
-/// How one triangle of a surface is seen from x: by its closest point or, of a point on the surface, by its
+/// How one triangle of a surface is seen: by its closest point or, of a point on the surface, by its
 /// plane.
-std::optional<Facing> seen_triangle(const Surface::Closest& closest, const Vector3& x, bool touches) {
-  const Vector3 offset = closest.point - x;
+std::optional<Facing> seen_triangle(const Surface::Closest& closest, bool touches) {
+  const Vector3& offset = closest.way;
   if (touches) return Facing{-1.0 * closest.face, -dot(offset, closest.face)};
   if (closest.normal == Vector3{}) return std::nullopt;
   const double distance = norm(offset), along = -dot(offset, closest.normal);
@@ -50,7 +50,7 @@ std::optional<Facing> seen_triangle(const Surface::Closest& closest, const Vecto
   return Facing{side / distance * offset, side * distance};
 }
 
-/// One way of several equally long ones; along a mean of directions it is the way to the nearest of their
+/// One way of several about equally long ones; along a mean of directions it is the way to the first of their
 /// faces' planes.
 Facing facing_of_choice(const std::vector<Facing>& equal, const FaceChoice& choice) {
   Facing found = equal[choice.chosen.front()];
@@ -58,11 +58,12 @@ Facing facing_of_choice(const std::vector<Facing>& equal, const FaceChoice& choi
     Vector3 sum{};
     for (const std::size_t k : choice.chosen) sum = sum + equal[k].normal;
     found.normal = (1.0 / norm(sum)) * sum;
-    double steepest = 0.0;
-    for (const std::size_t k : choice.chosen)
-      steepest = std::max(steepest, dot(found.normal, equal[k].normal));
-    found.gap /= steepest;
-    found.unknown /= steepest;
+    found.gap = HUGE_VAL;
+    for (const std::size_t k : choice.chosen) {
+      const double cosine = dot(found.normal, equal[k].normal);
+      if (const double gap = equal[k].gap / cosine; gap < found.gap)
+        found.gap = gap, found.unknown = equal[k].unknown / cosine;
+    }
   }
   found.chosen = choice.decides;
   return found;
@@ -195,20 +196,22 @@ void SurfaceObstacle::check(const std::string&) const {}
 Facing SurfaceObstacle::project(const SurfacePoint& from) const {
   const Surface::Closest closest = surface->closest(from.x);
   if (closest.normal == Vector3{}) return Facing::from_everywhere();
-  const double extent = surface->extent(), distance = norm(closest.point - from.x);
+  const double extent = surface->extent(), distance = norm(closest.way);
   const bool touches = distance <= on_surface * extent;
   const double reach = touches ? on_surface * extent : distance + equally_near * extent;
   std::vector<Facing> equal;
-  std::vector<Vector3> directions;
   for (const Surface::Closest& one : surface->within(from.x, reach)) {
-    std::optional<Facing> facing = seen_triangle(one, from.x, touches);
+    std::optional<Facing> facing = seen_triangle(one, touches);
     if (!facing) continue;
     // The closest point is computed from corners that may be as far off as the surface is large.
     facing->unknown = some_roundings * (norm(from.x) + norm(one.point) + extent);
     equal.push_back(*facing);
-    directions.push_back(facing->normal);
   }
   if (equal.empty()) return Facing::nothing();
+  std::stable_sort(equal.begin(), equal.end(),
+                   [](const Facing& a, const Facing& b) { return a.gap < b.gap; });
+  std::vector<Vector3> directions;
+  for (const Facing& one : equal) directions.push_back(one.normal);
   return facing_of_choice(equal, choose_face(directions, from.outer));
 }
 

@@ -23,6 +23,23 @@ constexpr double largest_coordinate = 1e70;
 /// 0 where lengths are so small that nothing is left of their products.
 double share(double part, double whole) { return whole > 0.0 ? part / whole : 0.0; }
 
+/// Ways to points close by are shorter than double's rounding of coordinates can tell the direction of.
+using Wide = std::array<long double, 3>;
+Wide difference(const Vector3& a, const Vector3& b) {
+  return {static_cast<long double>(a[0]) - b[0], static_cast<long double>(a[1]) - b[1],
+          static_cast<long double>(a[2]) - b[2]};
+}
+long double wide_dot(const Wide& a, const Wide& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Wide wide_cross(const Wide& a, const Wide& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+/// a + share b
+Vector3 rounded_sum(const Wide& a, long double share, const Wide& b) {
+  Vector3 sum;
+  for (std::size_t c = 0; c < 3; ++c) sum[c] = static_cast<double>(a[c] + share * b[c]);
+  return sum;
+}
+
 double angle_between(const Vector3& a, const Vector3& b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
 
 /// Numbers points so that those within `reach` of an earlier one are that one.
@@ -221,15 +238,31 @@ void Surface::look_at(std::int32_t f, const Vector3& x, Candidate& best) const {
   best = here;
 }
 
-Surface::Closest Surface::describe(const Candidate& found) const {
+Vector3 Surface::way_to(const Candidate& found, const Vector3& x) const {
+  const Triangle& corner = faces_[found.face].corner;
+  const auto along_edge = [&](std::size_t k) {
+    const Vector3 &a = points_[corner[k]], &b = points_[corner[(k + 1) % 3]];
+    const Wide edge = difference(b, a), way = difference(a, x);
+    return rounded_sum(way, -wide_dot(way, edge) / wide_dot(edge, edge), edge);
+  };
+  if (found.feature > 3) return points_[corner[found.feature - 4]] - x;
+  if (found.feature > 0) return along_edge(found.feature - 1);
+  const Wide way = difference(points_[corner[0]], x),
+             normal = wide_cross(difference(points_[corner[1]], points_[corner[0]]),
+                                 difference(points_[corner[2]], points_[corner[0]]));
+  return rounded_sum({}, wide_dot(way, normal) / wide_dot(normal, normal), normal);
+}
+
+Surface::Closest Surface::describe(const Candidate& found, const Vector3& x) const {
   const Face& face = faces_[found.face];
-  if (found.feature == 0) return {found.point, face.normal, false, face.normal};
+  const Vector3 way = way_to(found, x);
+  if (found.feature == 0) return {found.point, way, face.normal, false, face.normal};
   if (found.feature <= 3) {
     const std::size_t k = found.feature - 1;
-    return {found.point, face.edge[k], face.border[k], face.normal};
+    return {found.point, way, face.edge[k], face.border[k], face.normal};
   }
   const std::int32_t corner = face.corner[found.feature - 4];
-  return {found.point, corner_normals_[corner], border_points_[corner] != 0, face.normal};
+  return {found.point, way, corner_normals_[corner], border_points_[corner] != 0, face.normal};
 }
 
 template <class Squared, class Visit>
@@ -261,7 +294,7 @@ Surface::Closest Surface::closest(const Vector3& x) const {
   best.squared = HUGE_VAL;
   search(
       x, [&] { return best.squared; }, [&](std::int32_t f) { look_at(f, x, best); });
-  return describe(best);
+  return describe(best, x);
 }
 
 std::vector<Surface::Closest> Surface::within(const Vector3& x, double distance) const {
@@ -276,14 +309,14 @@ std::vector<Surface::Closest> Surface::within(const Vector3& x, double distance)
   std::sort(found.begin(), found.end(),
             [](const Candidate& a, const Candidate& b) { return a.face < b.face; });
   std::vector<Closest> described;
-  for (const Candidate& one : found) described.push_back(describe(one));
+  for (const Candidate& one : found) described.push_back(describe(one, x));
   return described;
 }
 
 Surface::Closest Surface::closest_of_all(const Vector3& x) const {
   Candidate best;
   for (std::size_t f = 0; f < faces_.size(); ++f) look_at(static_cast<std::int32_t>(f), x, best);
-  return describe(best);
+  return describe(best, x);
 }
 
 }  // namespace kacanov

@@ -194,6 +194,20 @@ TEST_CASE("a tree finds what looking at every triangle finds, to the bit; a face
   }
 }
 
+TEST_CASE("the way to a surface close by has more digits than the coordinates") {
+  // On x + 2 y + 2 z = 0.
+  const std::vector<Vector3> points{{0, 1000, -1000}, {2000, 0, -1000}, {-2000, 1000, 0}};
+  const SurfaceObstacle tilted{
+      std::make_shared<const Surface>(points, std::vector<Surface::Triangle>{{0, 1, 2}})};
+  for (const double height : {1.0, 1e-2, 1e-4}) {
+    const Vector3 x{height, 700 + 2 * height, -700 + 2 * height};
+    const Facing found = tilted.project({x, {}});
+    INFO("height ", height);
+    for (std::size_t c = 0; c < 3; ++c)
+      CHECK(std::abs(std::abs(found.normal[c]) - (c == 0 ? 1.0 : 2.0) / 3) < 4e-16);
+  }
+}
+
 TEST_CASE("beyond the border of an open surface there is nothing; folds and bad triangles are said") {
   const std::vector<Vector3> points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   const auto square =

@@ -40,12 +40,14 @@ Facing along_ray(const WideVec& direction, Wide a, Wide b, Wide c, Wide scale) {
 }
 
 /// Of faces that are equally near the one whose direction is along the outer normal most; of several that
-/// are, the mean, which meets the first of their planes later by the cosine between; of directions that
-/// cancel the last by their components (theory: equal-distance).
-Facing most_opposed(const std::vector<Facing>& faces, const Vec& outer) {
+/// are, the mean, up to the first of their planes; of directions that cancel the last by their components
+/// (theory: equal-distance).
+Facing most_opposed(std::vector<Facing> faces, const Vec& outer) {
   constexpr Real same = 1e-6L;
   const Real size = norm(outer);
   const auto turned = [&](const Facing& face) { return size > 0 ? dot(face.normal, outer) / size : Real(0); };
+  std::stable_sort(faces.begin(), faces.end(),
+                   [](const Facing& a, const Facing& b) { return a.gap < b.gap; });
   Real best = -1;
   for (const Facing& face : faces) best = std::max(best, turned(face));
   std::vector<Facing> alike;
@@ -65,10 +67,12 @@ Facing most_opposed(const std::vector<Facing>& faces, const Vec& outer) {
     });
   Facing mean = alike[0];
   mean.normal = unit(sum);
-  Real cosine = 0;
-  for (const Facing& face : alike) cosine = std::max(cosine, dot(mean.normal, face.normal));
-  mean.gap /= cosine;
-  mean.unknown /= cosine;
+  mean.gap = HUGE_VALL;
+  for (const Facing& face : alike) {
+    const Real cosine = dot(mean.normal, face.normal);
+    if (const Real gap = face.gap / cosine; gap < mean.gap)
+      mean.gap = gap, mean.unknown = face.unknown / cosine;
+  }
   return mean;
 }
 

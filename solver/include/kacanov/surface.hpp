@@ -22,6 +22,7 @@ class Surface {
 
   struct Closest {
     Vector3 point{};
+    Vector3 way{};     ///< from x to the point, with the digits of a way far shorter than the coordinates
     Vector3 normal{};  ///< unit pseudo-normal of the face, edge or corner it lies in; 0 where faces fold back
     bool border = false;  ///< at an edge that only one triangle has
     Vector3 face{};       ///< unit normal of the triangle itself
@@ -69,7 +70,8 @@ class Surface {
   /// ones first.
   template <class Squared, class Visit>
   void search(const Vector3& x, const Squared& squared, const Visit& visit) const;
-  Closest describe(const Candidate& found) const;
+  Closest describe(const Candidate& found, const Vector3& x) const;
+  Vector3 way_to(const Candidate& found, const Vector3& x) const;
 
   std::vector<Vector3> points_;
   std::vector<Vector3> corner_normals_;  ///< one a point, weighted by angle
