@@ -3,7 +3,6 @@
 #include "load_steps.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <string>
 
 #include <kacanov/corner_dilatation.hpp>
@@ -78,50 +77,58 @@ std::string reason(const OuterLoop& loop, const Result& result) {
   return result.message.empty() ? what_is_unsettled(loop) : result.message;
 }
 
-/// A load step: its shares of the load, and the end of the one before (none: it begins at rest).
-struct Reach {
-  double from = 0.0, target = 1.0;
-  const std::optional<OuterLoop::Place>& before;
-};
-
-/// Brings the loop, which stands at the target, there; where it gives up, from its start in parts: each is
-/// halved until it converges, and from the second that does what follows is twice as long. False: the run was
-/// asked to stop.
-bool reach(OuterLoop& loop, const Reach& step, Result& result) {
-  bool finished = true;
-  if (arrives(loop, finished, result) || !finished || !loop.gave_up()) return finished;
-  if (result.cg_iterations == 0) {
-    result.message =
-        "no linear problem could be solved: elements that are next to flat, parts far stiffer than others, "
-        "or a Poisson's ratio next to 0.5, leave no definite operator in this arithmetic; kacanov check "
-        "names "
-        "the worst element";
-    return true;
+/// Brings the loop, which stands at `target`, there; where it gives up, from loop.parts.start in parts: each
+/// is halved until it converges, and from the second that does what follows is twice as long. Continues a
+/// part that a restart has left. False: the run was asked to stop.
+bool reach(OuterLoop& loop, double target, Result& result) {
+  OuterLoop::StepParts& parts = loop.parts;
+  bool finished = true, under_way = parts.cut;
+  if (!under_way) {
+    if (arrives(loop, finished, result) || !finished || !loop.gave_up()) return finished;
+    if (result.cg_iterations == 0) {
+      result.message =
+          "no linear problem could be solved: elements that are next to flat, parts far stiffer than others, "
+          "or a Poisson's ratio next to 0.5, leave no definite operator in this arithmetic; kacanov check "
+          "names the worst element";
+      return true;
+    }
+    parts.cut = true;
+    parts.whole = loop.place();
+    parts.last = parts.start ? *parts.start : loop.rest();
+    parts.over = 0.0;
+    parts.part = 0.5;
   }
-  const OuterLoop::Place start = step.before ? *step.before : loop.rest(step.from), whole = loop.place();
-  const double target = step.target;
-  OuterLoop::Place failed = whole, last = start;
-  std::string why = reason(loop, result);
-  double over = 0.0;  // of the way from the start
-  for (double part = 0.5; part >= loop.context().tuning.smallest_part; part *= 0.5) {
-    ++result.load_cuts;
-    for (bool again = false; over < 1.0; again = true) {
-      const double next = std::min(over + part, 1.0);
-      part = next - over;  // what fails is halved, not what it was meant to be
-      loop.go_from(last, next == 1.0 ? target : start.share + next * (target - start.share), result);
+  const double from = loop.step_begin();
+  OuterLoop::Place failed = parts.whole;
+  std::string why = under_way ? std::string() : reason(loop, result);
+  for (; parts.part >= loop.context().tuning.smallest_part; parts.part *= 0.5) {
+    if (!under_way) {
+      ++result.load_cuts;
+      parts.again = false;
+    }
+    while (parts.over < 1.0) {
+      if (!under_way) {
+        parts.next = std::min(parts.over + parts.part, 1.0);
+        parts.part = parts.next - parts.over;  // what fails is halved, not what it was meant to be
+        loop.go_from(parts.last, parts.next == 1.0 ? target : from + parts.next * (target - from), result);
+      }
+      under_way = false;
       const bool arrived = arrives(loop, finished, result);
       if (!finished) return false;
       if (!arrived) break;
-      over = next;
-      last = loop.place();
-      if (again) part *= 2.0;  // what has just been halved would fail once more
+      parts.over = parts.next;
+      parts.last = loop.place();
+      if (parts.again) parts.part *= 2.0;  // what has just been halved would fail once more
+      parts.again = true;
     }
-    if (over == 1.0) return true;
+    if (parts.over == 1.0) break;
     why = reason(loop, result);
     failed = loop.place();
   }
-  result.message = explain_stop(loop, last, target, failed, why);
-  loop.stand_at(last.at_rest ? whole : last, result);
+  parts.cut = false;
+  if (parts.over == 1.0) return true;
+  result.message = explain_stop(loop, parts.last, target, failed, why);
+  loop.stand_at(parts.last.at_rest ? parts.whole : parts.last, result);
   return true;
 }
 
@@ -129,21 +136,19 @@ bool reach(OuterLoop& loop, const Reach& step, Result& result) {
 
 bool run_load_steps(OuterLoop& loop, std::span<const double> shares, Result& result,
                     const LoadStepCalls& calls) {
-  std::optional<OuterLoop::Place> start;
   for (;;) {
     const std::size_t over = result.load_steps.size();
     if (calls.begins) calls.begins(over);
-    const std::vector<LoadFactors>& curves = loop.context().part.steps;
-    const double from = over > 0 ? shares[over - 1] : curves.empty() ? 0.0 : curves.front().time;
-    const bool finished = reach(loop, {from, shares[over], start}, result);
+    const bool finished = reach(loop, shares[over], result);
     if (!finished || over + 1 == shares.size() || !worth_going_on(loop, result)) return finished;
     result.load_steps.push_back(line_now(loop, shares[over], result));
     if (calls.over) calls.over();
-    start = loop.next_start();
+    loop.parts = OuterLoop::StepParts();
+    loop.parts.start = loop.next_start();
     if (calls.coarse)
-      loop.go_along(*start, shares[over + 1], calls.coarse(over + 1), result);
+      loop.go_along(*loop.parts.start, shares[over + 1], calls.coarse(over + 1), result);
     else
-      loop.go_from(*start, shares[over + 1], result);
+      loop.go_from(*loop.parts.start, shares[over + 1], result);
   }
 }
 

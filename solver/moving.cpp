@@ -13,6 +13,7 @@
 #include "load_steps.hpp"
 #include "mesh/plain_stream.hpp"
 #include "moving_contact.hpp"
+#include "nonlinear/checkpoint_reader.hpp"
 #include "parallel/body_extent.hpp"
 #include "problem/vector3.hpp"
 #include "pushed_obstacle.hpp"
@@ -37,6 +38,23 @@ void add(Result& result, const Result& before) {
     if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end())
       warnings.push_back(std::move(warning));
   result.warnings = std::move(warnings);
+  if (result.restarted_after >= 0)
+    result.restarted_after += before.outer_iterations;
+  else
+    result.restarted_after = before.restarted_after;
+}
+
+/// Of the counts above, those of a checkpoint.
+template <class R, class Visitor>
+void visit_sums(R& result, Visitor&& entry) {
+  entry("before_outer", result.outer_iterations);
+  entry("before_cg", result.cg_iterations);
+  entry("before_contact", result.contact_iterations);
+  entry("before_unsolved", result.unsolved_steps);
+  entry("before_cuts", result.load_cuts);
+  entry("before_applications", result.operator_applications);
+  entry("before_spectrum", result.spectrum_applications);
+  entry("before_contact_applications", result.contact_applications);
 }
 
 /// The solves of a run, each from the end of the one before.
@@ -49,10 +67,9 @@ class Chain {
         contact_(part, model),
         curves_(part.steps),
         extent_(body_extent(part)) {
-    run_.checkpoint = nullptr;
     over_ = std::move(run_.load_step_over);
     run_.load_step_over = nullptr;
-    run_.start = nullptr;
+    checkpoints_ = part.node_map.any(static_cast<bool>(run_.checkpoint));
     if (!run_.coarse.empty() && !run_.coarse[0].at_rest()) start_ = interpolate(run_.coarse[0], part);
     run_.coarse = {};
     u_.assign(part.unknowns(), 0.0);
@@ -61,44 +78,52 @@ class Chain {
   }
 
   Solution run() {
-    std::vector<LoadStep> lines;
-    double reached = 0.0;
-    for (std::size_t k = 1; k < curves_.size(); ++k) {
+    step_ = 1;
+    resumes_ = part_.node_map.any(part_.node_map.rank == 0 && run_.start != nullptr);
+    if (resumes_) resume();
+    for (; step_ < curves_.size(); ++step_) {
+      const std::size_t k = step_;
       const double time = curves_[k].time;
       // Between the two the load is cut, where that has to be.
       part_.steps = {still(curves_[k - 1]), still(curves_[k])};
       if (curves_.size() > 2)
         tell(load_step_name(k - 1, curves_.size() - 1, !model_.steps_are_factors, time));
       contact_.face(time, curves_[k - 1].time, u_);
-      const int outer = last_.result.outer_iterations;
-      const std::int64_t cg = last_.result.cg_iterations;
+      if (forces_.empty()) {
+        outer_ = last_.result.outer_iterations;
+        cg_ = last_.result.cg_iterations;
+        searched_from_.clear();
+        for (const Pushed& pushed : pushed_) searched_from_.push_back(pushed.search.travel);
+      }
       const bool arrived = push_all(curves_[k].contact);
+      forces_.clear();
+      told_ = 0;
       u_ = last_.displacement;
       const Result& result = last_.result;
       if (!result.load_steps.empty()) {
         LoadStep line = result.load_steps.back();
-        line.outer_iterations = result.outer_iterations - outer;
-        line.cg_iterations = result.cg_iterations - cg;
+        line.outer_iterations = result.outer_iterations - outer_;
+        line.cg_iterations = result.cg_iterations - cg_;
         for (const ContactTotals& contact : result.contact) line.travel.push_back(contact.travel);
-        lines.push_back(line);
+        lines_.push_back(line);
       }
       if (arrived)
-        reached = time;
+        reached_ = time;
       else if (!pushes_ && result.load_reached > 0.0)  // by a part of the step
-        reached = result.load_reached;
+        reached_ = result.load_reached;
       if (!arrived) {
         end_early(k, time);
         break;
       }
       if (over_ && k + 1 < curves_.size()) {
-        last_.result.load_steps = lines;
+        last_.result.load_steps = lines_;
         last_.result.by_time = !model_.steps_are_factors;
         over_(part_, last_);
       }
     }
-    last_.result.load_steps = std::move(lines);
+    last_.result.load_steps = std::move(lines_);
     last_.result.by_time = !model_.steps_are_factors;
-    last_.result.load_reached = reached;
+    last_.result.load_reached = reached_;
     return std::move(last_);
   }
 
@@ -116,9 +141,23 @@ class Chain {
 
   /// Solves from where the last solve has ended; counts, times and warnings go on.
   void solve_once() {
+    // After a restart the search begins again and is told what the solves before that have found.
+    if (told_ < forces_.size()) {
+      ++told_;
+      return;
+    }
     const Result before = std::move(last_.result);
     RunOptions run = run_;
     run.from = start_.displacement.empty() ? nullptr : &start_;
+    if (!resumes_) run.start = nullptr;
+    resumes_ = false;
+    const Checkpoint own = checkpoints_ ? checkpoint(before) : Checkpoint();
+    if (run_.checkpoint)
+      run.checkpoint = [&](Checkpoint all) {
+        all.numbers.insert(own.numbers.begin(), own.numbers.end());
+        all.fields.insert(own.fields.begin(), own.fields.end());
+        run_.checkpoint(all);
+      };
     if (run_.progress)
       run.progress = [&](ProgressStep step) {
         step.outer += before.outer_iterations;
@@ -135,6 +174,62 @@ class Chain {
         start_.friction[2 * i + static_cast<std::size_t>(k)] =
             -dot(last_.traction[i], part_.contact[i].tangent[k]);
     start_.lambda_max = last_.result.lambda_max;
+    forces_.emplace_back();
+    for (const Pushed& pushed : pushed_)
+      forces_.back().push_back(dot(last_.result.contact[pushed.entry].total.force,
+                                   MovingContact::direction(model_.contact[pushed.entry])));
+    told_ = forces_.size();
+  }
+
+  /// The load steps and solves behind the one under way, which follows those that `before` counts; on the
+  /// first rank. Collective.
+  Checkpoint checkpoint(const Result& before) const {
+    Checkpoint out;
+    const auto put = [&](const char* name, const auto& value) {
+      out.numbers[name] = static_cast<double>(value);
+    };
+    visit_sums(before, put);
+    put("moving_step", step_);
+    put("moving_reached", reached_);
+    put("moving_outer", outer_);
+    put("moving_cg", cg_);
+    put("moving_steps_over", lines_.size());
+    put("moving_solves", forces_.size());
+    for (const std::vector<double>& force : forces_)
+      out.fields["moving_forces"].insert(out.fields["moving_forces"].end(), force.begin(), force.end());
+    if (forces_.empty()) out.fields["moving_forces"] = {};
+    out.fields["moving_searched_from"] = searched_from_;
+    out.fields["moving_faced_at"] = {contact_.faced_at().begin(), contact_.faced_at().end()};
+    out.fields["moving_load_steps"] = numbers_of(lines_);
+    out.fields["before_r"] = before.r;
+    out.fields["moving_displacement"] = gather_nodal(part_, u_, part_.dim());
+    return out;
+  }
+
+  /// The converse. Collective.
+  void resume() {
+    const CheckpointReader get(part_, run_.start);
+    Result& before = last_.result;
+    visit_sums(before, get);
+    before.r = get.values("before_r", static_cast<std::size_t>(before.outer_iterations));
+    before.status = Status::converged;
+    step_ = get.length("moving_step", static_cast<std::int64_t>(curves_.size()) - 1);
+    if (step_ == 0) throw InputError("the checkpoint's number \"moving_step\" is 0, expected one from 1");
+    get("moving_reached", reached_);
+    get("moving_outer", outer_);
+    get("moving_cg", cg_);
+    lines_ = get.load_steps("moving_load_steps",
+                            get.length("moving_steps_over", static_cast<std::int64_t>(curves_.size()) - 1),
+                            model_.contact.size());
+    const std::size_t most = most_rounds * pushed_.size() * static_cast<std::size_t>(PushedObstacle{}.most);
+    forces_.resize(get.length("moving_solves", static_cast<std::int64_t>(std::max<std::size_t>(most, 1))));
+    const std::vector<double> forces = get.values("moving_forces", forces_.size() * pushed_.size());
+    for (std::size_t k = 0; k < forces_.size(); ++k)
+      forces_[k].assign(&forces[k * pushed_.size()], &forces[k * pushed_.size()] + pushed_.size());
+    searched_from_ = get.values("moving_searched_from", pushed_.size());
+    for (std::size_t i = 0; i < pushed_.size(); ++i) pushed_[i].search.travel = searched_from_[i];
+    contact_.resume(get.values("moving_faced_at", model_.contact.size()));
+    u_ = get.nodal("moving_displacement");
   }
 
   /// A contact entry that is pushed by a force, in this load step.
@@ -143,8 +238,11 @@ class Chain {
     PushedObstacle search;
   };
 
+  /// By the last solve.
   double force_on(std::size_t entry) const {
-    return dot(last_.result.contact[entry].total.force, MovingContact::direction(model_.contact[entry]));
+    std::size_t i = 0;
+    while (pushed_[i].entry != entry) ++i;
+    return forces_[told_ - 1][i];
   }
 
   /// Whether a next solve can start from the last one: its residuals meet the tolerance, or are rounding.
@@ -157,7 +255,6 @@ class Chain {
   /// One obstacle after the other, until all have their forces at once (theory: force-control). Whether they
   /// have, and the last solve is settled.
   bool push_all(const std::vector<double>& factors) {
-    constexpr int most_rounds = 100;
     for (Pushed& pushed : pushed_) begin(pushed, factors[pushed.entry]);
     std::vector<Pushed*> acting;
     for (Pushed& pushed : pushed_)
@@ -238,9 +335,13 @@ class Chain {
                            ": " + last_.result.message;
   }
 
+  static constexpr int most_rounds = 100;
+
   Part& part_;
   const Model& model_;
   RunOptions run_;
+  bool checkpoints_ = false;  ///< are written
+  bool resumes_ = false;      ///< the next solve begins at a checkpoint
   MovingContact contact_;
   std::vector<LoadFactors> curves_;
   double extent_;  ///< of the body
@@ -249,6 +350,14 @@ class Chain {
   std::vector<double> u_;  ///< at the end of the load step before
   Start start_;
   decltype(RunOptions::load_step_over) over_;
+  std::size_t step_ = 1;         ///< under way; a place in curves_
+  std::vector<LoadStep> lines_;  ///< of those that are over
+  double reached_ = 0.0;
+  int outer_ = 0;  ///< iterations when it began
+  std::int64_t cg_ = 0;
+  std::vector<double> searched_from_;        ///< travels of pushed_ then
+  std::vector<std::vector<double>> forces_;  ///< on pushed_, of each solve since
+  std::size_t told_ = 0;                     ///< of these; all but right after a restart
   Solution last_;  ///< its counts, times and warnings are those of all solves so far
 };
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include <kacanov/checkpoint.hpp>
 #include <kacanov/error.hpp>
 #include "parallel/body_extent.hpp"
 #include "problem/contact_points.hpp"
@@ -154,11 +153,7 @@ std::optional<RowEntry> MovingContact::take(std::size_t i, const View& view, std
   gap_[i] = far_;
   origin_[i] = {};
   if (view.kind != 0.0) return std::nullopt;
-  NodeFreedom freedom;
-  for (std::size_t c = 0; c < dim; ++c) freedom.free[c] = part_.held[base + c] == 0;
-  freedom.held = directions_of(part_.directions, point.node);
-  point.normal = view.normal;
-  const auto row = narrow_row(point, freedom, point.tresca > 0.0 || point.coulomb > 0.0);
+  const auto row = row_along(view.normal, point);
   if (!row) return std::nullopt;
   gap_[i] = view.gap;
   point.unknown_gap = view.unknown;
@@ -168,6 +163,15 @@ std::optional<RowEntry> MovingContact::take(std::size_t i, const View& view, std
     for (std::size_t c = 0; c < dim; ++c) origin_[i][c] += u[base + c];
   }
   return row;
+}
+
+std::optional<RowEntry> MovingContact::row_along(const Vector3& normal, ContactPoint& point) const {
+  const std::size_t dim = part_.dim(), base = point.node * dim;
+  NodeFreedom freedom;
+  for (std::size_t c = 0; c < dim; ++c) freedom.free[c] = part_.held[base + c] == 0;
+  freedom.held = directions_of(part_.directions, point.node);
+  point.normal = normal;
+  return narrow_row(point, freedom, point.tresca > 0.0 || point.coulomb > 0.0);
 }
 
 void MovingContact::push(std::size_t entry, double travel) {

@@ -32,6 +32,11 @@ class MovingContact {
 
   static Vector3 direction(const ContactEntry& entry);
 
+  /// For a checkpoint: how far each entry had been pushed when it was faced last, and its converse, for
+  /// face() to be called as it was then.
+  std::span<const double> faced_at() const noexcept { return faced_at_; }
+  void resume(std::span<const double> faced_at) { travel_.assign(faced_at.begin(), faced_at.end()); }
+
  private:
   struct View;
   View view(const ContactEntry& entry, const SurfacePoint& at, const Vector3& u,
@@ -42,6 +47,8 @@ class MovingContact {
   /// out of its way or the node can hardly move towards it: it keeps the row that it has in the case then.
   std::optional<RowEntry> take(std::size_t i, const View& view, std::span<const double> u,
                                ContactPoint& point);
+
+  std::optional<RowEntry> row_along(const Vector3& normal, ContactPoint& point) const;
 
   Part& part_;
   const Model& model_;

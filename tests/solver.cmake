@@ -30,7 +30,7 @@ kacanov_test(parallel IN solver
   RANKS 1 2 3 4)
 
 kacanov_test(checkpoint IN solver
-  MPI SOURCES solver/checkpoint_test.cpp
+  MPI SOURCES solver/checkpoint_test.cpp solver/restart_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal
   RANKS 1 2)
 

@@ -14,6 +14,7 @@ struct Multigrid::Hierarchy {
   virtual void rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space) = 0;
   virtual void apply(std::span<const double> r, std::span<double> z, const Factors& factors) = 0;
   virtual void secant(std::span<double> g) const = 0;
+  virtual int kind() const noexcept { return 0; }
   virtual int levels() const noexcept = 0;
   virtual std::size_t bytes() const noexcept = 0;
 };

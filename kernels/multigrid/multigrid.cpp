@@ -54,6 +54,7 @@ class ChosenHierarchy final : public Multigrid::Hierarchy {
     const std::size_t points = points_per_element(body_.body.mesh.type);
     for (std::size_t i = 0; i < g.size(); ++i) g[i] = body_.body.law(i / points).secant(0.0);
   }
+  int kind() const noexcept override { return static_cast<int>(kind_); }
   int levels() const noexcept override { return chosen_ ? chosen_->levels() : 1; }
   std::size_t bytes() const noexcept override { return chosen_ ? chosen_->bytes() : 0; }
 
@@ -110,6 +111,8 @@ void Multigrid::secant(std::span<double> g) const { hierarchy_->secant(g); }
 void Multigrid::apply(std::span<const double> r, std::span<double> z, const Factors& factors) {
   hierarchy_->apply(r, z, factors);
 }
+
+int Multigrid::kind() const noexcept { return hierarchy_->kind(); }
 
 int Multigrid::levels() const noexcept { return hierarchy_->levels(); }
 

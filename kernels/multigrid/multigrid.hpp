@@ -77,6 +77,8 @@ class Multigrid {
   /// The g of the last build, in single precision; mu before the first.
   void secant(std::span<double> g) const;
 
+  /// Changes where a build replaces the levels that later builds keep; they follow from its g.
+  int kind() const noexcept;
   /// The fine level included.
   int levels() const noexcept;
   std::size_t bytes() const noexcept;

@@ -21,6 +21,7 @@ class PartMultigrid final : public Preconditioner {
       : multigrid_(multigrid_body(part, like), options) {}
   void apply(std::span<const double> r, std::span<double> z) override { multigrid_.apply(r, z); }
   void secant(std::span<double> g) const override { multigrid_.secant(g); }
+  int kind() const noexcept override { return multigrid_.kind(); }
 
  private:
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) override {

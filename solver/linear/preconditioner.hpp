@@ -25,6 +25,9 @@ class Preconditioner {
   /// The g of the last setup, in single precision at the least; mu before the first.
   virtual void secant(std::span<double> g) const = 0;
 
+  /// Changes where a setup replaces the parts that later setups keep, such as aggregates.
+  virtual int kind() const noexcept { return 0; }
+
   /// Wall time of all setups so far, on this rank.
   double setup_seconds() const noexcept { return seconds_; }
 

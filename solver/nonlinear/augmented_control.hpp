@@ -2,7 +2,9 @@
 // Penalty and multipliers of the method of multipliers, from one of its rounds to the next.
 #pragma once
 
+#include <algorithm>
 #include <deque>
+#include <string>
 
 #include "contact/contact_state.hpp"
 #include "nonlinear/tuning.hpp"
@@ -26,6 +28,29 @@ class AugmentedControl {
   void advance(const Traces& traces, ContactState& state);
   /// Newton steps that the last round took.
   void learn(int iterations);
+
+  /// Entries of a checkpoint: numbers, and multipliers as rounds have them, first the normal ones of all
+  /// points, then the tangential ones.
+  template <class Numbers, class Multipliers>
+  void visit(const Numbers& number, const Multipliers& multipliers) {
+    number("augmented_penalty", penalty_);
+    number("augmented_most", most_);
+    number("augmented_rounds", rounds_);
+    number("augmented_last_size", last_size_);
+    int changes = static_cast<int>(changes_.size());
+    number("augmented_changes", changes);
+    changes = std::clamp(changes, 0, tuning_.augmented_memory);
+    changes_.resize(static_cast<std::size_t>(changes));
+    if (rounds_ > 0) multipliers("augmented_from", from_);
+    if (rounds_ > 1) {
+      multipliers("augmented_rest", last_.rest);
+      multipliers("augmented_image", last_.image);
+    }
+    for (int k = 0; k < changes; ++k) {
+      multipliers("augmented_rest_" + std::to_string(k), changes_[static_cast<std::size_t>(k)].rest);
+      multipliers("augmented_image_" + std::to_string(k), changes_[static_cast<std::size_t>(k)].image);
+    }
+  }
 
  private:
   Tuning tuning_;

@@ -51,6 +51,14 @@ void BodyResponse::evaluate_and_freeze(std::span<const double> u) {
   elastic_ = linear_;
 }
 
+void BodyResponse::resume(std::span<const double> u, const Frozen& frozen) {
+  if (frozen.here)
+    evaluate_and_freeze(u);
+  else
+    evaluate(u);
+  elastic_ = frozen.elastic;
+}
+
 bool BodyResponse::freeze_elastic() {
   if (elastic_) return false;
   const Vector rest(part_->unknowns(), 0.0);

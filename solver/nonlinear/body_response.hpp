@@ -36,6 +36,15 @@ class BodyResponse {
   void freeze_tangent(std::span<const double> u);
   void forget_tangent() noexcept { op_.forget_tangent(); }
 
+  /// The state that the operator is frozen at, for a checkpoint.
+  struct Frozen {
+    bool here = true;  ///< at the u of R(u)
+    bool elastic = true;
+  };
+  Frozen frozen() const noexcept { return {current_, elastic_}; }
+  /// Restores R(u), the energy and the frozen operator of the loop that returned `frozen`. Collective.
+  void resume(std::span<const double> u, const Frozen& frozen);
+
   /// f = F − R(u).
   void unbalanced(const LoadPath& path, std::span<double> f) const;
   /// The same at any u; leaves R(u) and the operator as they are. Collective.

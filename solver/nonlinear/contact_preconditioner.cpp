@@ -19,47 +19,31 @@ ContactPreconditioner::ContactPreconditioner(const Part& part, const BodyRespons
       body_(&body),
       inner_(std::move(inner)),
       tuning_(tuning),
+      memory_{PreconditionerSchedule(tuning), {}, nullptr, false},
       schedule_(tuning),
       friction_(has_friction(part)) {}
 
 void ContactPreconditioner::set_up(const Penalty& penalty) {
-  build(true, penalty_blocks(penalty), Space(*part_));
-  schedule_.built_for(penalty);
+  build(true, {PreconditionedRows::Kind::penalised_all, penalty, ActiveSet()});
 }
 
 void ContactPreconditioner::prepare(const Penalty& penalty, bool first) {
   const bool again = first ? schedule_.stale() : worn();
   if (!again && (first || !schedule_.penalty_moved(penalty, friction_))) return;
-  build(again, penalty_blocks(penalty), Space(*part_));
-  schedule_.built_for(penalty);
+  build(again, {PreconditionedRows::Kind::penalised_all, penalty, ActiveSet()});
 }
 
 void ContactPreconditioner::prepare(const ActiveSet& set, double digits) {
   make_room(2 * sizeof(double) * part_->body().secant_count());  // g of now and then
   const bool again = worn(digits);
   if (!again && !part_->node_map.any(schedule_.set_moved(set))) return;
-  const TraceRows rows(*part_, set.held);
-  Space space(*part_);
-  rows.hold_in(space);
-  auto blocks = rows.pinning_blocks(body_->diagonal());
-  const auto slip = slip_blocks(*part_, set);
-  blocks.insert(blocks.end(), slip.begin(), slip.end());
-  build(again, blocks, space);
-  schedule_.built_for(set);
+  build(again, {PreconditionedRows::Kind::pinned, {}, set});
 }
 
 void ContactPreconditioner::prepare(const ActiveSet& set, double penalty, double loose) {
   const bool again = worn();
   if (!again && !part_->node_map.any(schedule_.set_moved(set, penalty))) return;
-  auto blocks = TraceRows(*part_, set.held).penalty_blocks(penalty);
-  const auto slip = slip_blocks(*part_, set);
-  blocks.insert(blocks.end(), slip.begin(), slip.end());
-  if (loose > 0.0) {
-    const auto all = penalty_blocks({loose, loose});
-    blocks.insert(blocks.end(), all.begin(), all.end());
-  }
-  build(again, blocks, Space(*part_));
-  schedule_.built_for(set, penalty);
+  build(again, {PreconditionedRows::Kind::penalised, {penalty, loose}, set});
 }
 
 void ContactPreconditioner::watch(double digits, std::int64_t iterations) {
@@ -77,8 +61,15 @@ bool ContactPreconditioner::factorise() {
   return true;
 }
 
+Preconditioner& ContactPreconditioner::lend() {
+  note_first(single_precision_secant());
+  kind_ = made_elsewhere;
+  schedule_.mark_stale();
+  return *inner_;
+}
+
 bool ContactPreconditioner::worn(double digits) const {
-  if (schedule_.stale(digits)) return true;
+  if (schedule_.stale(digits) || memory_.rows.size() > tuning_.most_changes) return true;
   if (body_->linear()) return false;
   const Vector now = body_->secant();
   Vector then(now.size());
@@ -92,10 +83,134 @@ bool ContactPreconditioner::worn(double digits) const {
   return schedule_.drifted(sums[0], sums[1]);
 }
 
-void ContactPreconditioner::build(bool worn, std::span<const NodeBlock> blocks, const Space& space) {
-  if (!worn) return current().setup_again(blocks, space);
-  current().setup(body_->secant(), blocks, space);
-  schedule_.built();
+void ContactPreconditioner::build(bool worn, PreconditionedRows rows) {
+  const auto kept_rows = std::make_shared<const PreconditionedRows>(std::move(rows));
+  if (worn) {
+    if (may_roll_back_ && !replaced_ && had_factor_ == (factor_ != nullptr)) replaced_ = last_secant();
+    memory_.rows.clear();
+    set_up_with(single_precision_secant(), *kept_rows);
+    schedule_.built();
+  } else {
+    change_to(*kept_rows);
+  }
+  memory_.rows.push_back(kept_rows);
+  if (kept_rows->kind == PreconditionedRows::Kind::penalised_all)
+    schedule_.built_for(kept_rows->penalty);
+  else
+    schedule_.built_for(kept_rows->set, kept_rows->penalty.normal);
+}
+
+void ContactPreconditioner::set_up_with(std::span<const double> g, const PreconditionedRows& rows) {
+  Space space(*part_);
+  const std::vector<NodeBlock> blocks = blocks_for(rows, space);
+  current().setup(g, blocks, space);
+  if (!factor_) note_first(g);
+}
+
+void ContactPreconditioner::change_to(const PreconditionedRows& rows) {
+  Space space(*part_);
+  const std::vector<NodeBlock> blocks = blocks_for(rows, space);
+  current().setup_again(blocks, space);
+}
+
+std::vector<NodeBlock> ContactPreconditioner::blocks_for(const PreconditionedRows& rows, Space& space) const {
+  if (rows.kind == PreconditionedRows::Kind::penalised_all) return penalty_blocks(rows.penalty);
+  const TraceRows held(*part_, rows.set.held);
+  std::vector<NodeBlock> blocks;
+  const auto add = [&](const std::vector<NodeBlock>& more) {
+    blocks.insert(blocks.end(), more.begin(), more.end());
+  };
+  if (rows.kind == PreconditionedRows::Kind::pinned) {
+    held.hold_in(space);
+    add(held.pinning_blocks(body_->diagonal()));
+  } else {
+    add(held.penalty_blocks(rows.penalty.normal));
+  }
+  add(slip_blocks(*part_, rows.set));
+  if (const double loose = rows.penalty.tangential; loose > 0.0) add(penalty_blocks({loose, loose}));
+  return blocks;
+}
+
+/// As a checkpoint has it: a restart sets up with the same bits.
+Vector ContactPreconditioner::single_precision_secant() const {
+  Vector g = body_->secant();
+  for (double& value : g) value = static_cast<double>(static_cast<float>(value));
+  return g;
+}
+
+/// Collective.
+ContactPreconditioner::Secant ContactPreconditioner::kept(std::span<const double> g) const {
+  if (body_->linear()) return {};
+  const Vector elastic = full({});
+  if (!part_->node_map.any(!std::equal(g.begin(), g.end(), elastic.begin()))) return {};
+  return {g.begin(), g.end()};
+}
+
+Vector ContactPreconditioner::full(const Secant& kept) const {
+  if (!kept.empty()) return {kept.begin(), kept.end()};
+  const Body body = part_->body();
+  const std::size_t points = points_per_element(body.mesh.type);
+  Vector g(body.secant_count());
+  for (std::size_t i = 0; i < g.size(); ++i)
+    g[i] = static_cast<double>(static_cast<float>(body.law(i / points).secant(0.0)));
+  return g;
+}
+
+void ContactPreconditioner::note_first(std::span<const double> g) {
+  const int kind = inner_->kind();
+  if (!memory_.first || (kind != kind_ && kind_ != made_elsewhere))
+    memory_.first = std::make_shared<const Secant>(kept(g));
+  kind_ = kind;
+}
+
+ContactPreconditioner::Memory ContactPreconditioner::describe() const {
+  Memory memory = memory_;
+  memory.schedule = schedule_;
+  memory.factorised = factor_ != nullptr;
+  return memory;
+}
+
+ContactPreconditioner::Memory ContactPreconditioner::memory() {
+  may_roll_back_ = true;
+  had_factor_ = factor_ != nullptr;
+  replaced_.reset();
+  return describe();
+}
+
+void ContactPreconditioner::roll_back(const Memory& memory) {
+  memory_ = memory;
+  schedule_ = memory.schedule;
+  if (!memory.factorised) factor_.reset();
+}
+
+ContactPreconditioner::Secant ContactPreconditioner::last_secant() const {
+  if (replaced_) return *replaced_;
+  if (memory_.rows.empty()) return {};
+  Vector g(part_->body().secant_count());
+  current().secant(g);
+  return kept(g);
+}
+
+void ContactPreconditioner::repeat(Memory memory, const Secant& last) {
+  const bool to_come = memory.schedule.stale(0.0);  // whatever is done here, the next step sets it up
+  if (memory.first && !(memory.first->empty() && body_->linear()))
+    inner_->setup(full(*memory.first), {}, Space(*part_));
+  memory_.first = memory.first;
+  kind_ = inner_->kind();
+  if (memory.factorised) {
+    factor_ = std::make_unique<Factorised>(*part_);
+    if (memory.rows.size() > 1) memory.rows.erase(memory.rows.begin(), memory.rows.end() - 1);
+  }
+  for (std::size_t k = 0; k < memory.rows.size() && !to_come; ++k) {
+    if (k == 0)
+      set_up_with(full(last), *memory.rows[k]);
+    else
+      change_to(*memory.rows[k]);
+  }
+  schedule_ = memory.schedule;
+  if (!memory.rows.empty() && memory.rows.back()->kind != PreconditionedRows::Kind::penalised_all)
+    schedule_.built_for(memory.rows.back()->set, memory.rows.back()->penalty.normal);
+  memory_.rows = std::move(memory.rows);
 }
 
 std::vector<NodeBlock> ContactPreconditioner::penalty_blocks(const Penalty& penalty) const {

@@ -4,12 +4,23 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "linear/preconditioner.hpp"
 #include "nonlinear/body_response.hpp"
 #include "nonlinear/preconditioner_schedule.hpp"
 
 namespace kacanov {
+
+/// The contact rows that a preconditioner is set up for.
+struct PreconditionedRows {
+  enum class Kind { penalised_all, pinned, penalised };
+  Kind kind = Kind::penalised_all;
+  /// Of all rows; where the rows of the set are penalised, theirs, and as `tangential` that of all.
+  Penalty penalty;
+  ActiveSet set;  ///< its held rows, slip stiffness and slip direction
+};
 
 /// For B + r CᵀMC of ADMM, or B with held rows pinned (theory: multigrid, pinning). Calls are collective.
 class ContactPreconditioner {
@@ -38,22 +49,47 @@ class ContactPreconditioner {
   void mark_stale() noexcept { schedule_.mark_stale(); }
 
   /// For what sets it up by itself, such as an estimate of the spectrum: it is stale then.
-  Preconditioner& lend() noexcept {
-    schedule_.mark_stale();
-    return *inner_;
-  }
+  Preconditioner& lend();
   /// As it stands.
   Preconditioner& inner() noexcept { return *inner_; }
   double setup_seconds() const noexcept {
     return inner_->setup_seconds() + (factor_ ? factor_->setup_seconds() : 0.0);
   }
 
+  /// g of a setup, in single precision; of an elastic body empty.
+  using Secant = std::vector<float>;
+  /// The inputs of its setups, but for the g of the last one.
+  struct Memory {
+    PreconditionerSchedule schedule;
+    /// Of the last setup with g, and of every change since.
+    std::vector<std::shared_ptr<const PreconditionedRows>> rows;
+    std::shared_ptr<const Secant> first;  ///< the g that aggregates or grids are made of; null: none are
+    bool factorised = false;
+  };
+  /// Of now. roll_back() to it is possible until the next call.
+  Memory memory();
+  /// Describes what it was; it is of no other use from then on.
+  void roll_back(const Memory& memory);
+  /// For a checkpoint: memory() without leave to roll back, and the g of the last setup.
+  Memory describe() const;
+  Secant last_secant() const;
+  /// Becomes what another one was that is described by these, on as many ranks to the bit. Before any other
+  /// call. Collective.
+  void repeat(Memory memory, const Secant& last);
+
  private:
-  /// Whether the g of now pays for a new setup.
+  /// Whether the g of now, or how often rows have changed, pays for a new setup.
   bool worn(double digits = HUGE_VAL) const;
   /// With the g of now if that of the last setup is worn, else with that.
-  void build(bool worn, std::span<const NodeBlock> blocks, const Space& space);
+  void build(bool worn, PreconditionedRows rows);
+  void set_up_with(std::span<const double> g, const PreconditionedRows& rows);
+  void change_to(const PreconditionedRows& rows);
+  std::vector<NodeBlock> blocks_for(const PreconditionedRows& rows, Space& space) const;
   std::vector<NodeBlock> penalty_blocks(const Penalty& penalty) const;
+  Vector single_precision_secant() const;
+  Secant kept(std::span<const double> g) const;
+  Vector full(const Secant& kept) const;
+  void note_first(std::span<const double> g);
   Preconditioner& current() const noexcept { return factor_ ? *factor_ : *inner_; }
 
   const Part* part_;
@@ -61,8 +97,14 @@ class ContactPreconditioner {
   std::unique_ptr<Preconditioner> inner_;
   std::unique_ptr<Preconditioner> factor_;  ///< in its place, once that has failed
   Tuning tuning_;
+  Memory memory_;  ///< but for its schedule and `factorised`
+  static constexpr int made_elsewhere = -1;
+  int kind_ = 0;  ///< of `inner_`, when `first` was taken
   PreconditionerSchedule schedule_;
   bool friction_;
+  bool may_roll_back_ = false, had_factor_ = false;
+  std::optional<Secant> replaced_;  ///< the last g at the time of memory(),
+                                    ///< where there is another now
 };
 
 }  // namespace kacanov

@@ -34,6 +34,7 @@ class Linearisation {
   template <class Visitor>
   void visit(Visitor&& entry) {
     entry("reach", reach_);
+    entry("cut_short", cut_short_);
   }
 
  private:

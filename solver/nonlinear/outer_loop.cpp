@@ -87,8 +87,14 @@ void OuterLoop::take_load() {
   follow_pressure(context_.part, state.lambda.normal, state.bound);
 }
 
-OuterLoop::Place OuterLoop::rest(double share) const {
-  Place place{context_.state, share, true};
+double OuterLoop::step_begin() const {
+  if (parts.start) return parts.start->share;
+  const std::vector<LoadFactors>& curves = context_.part.steps;
+  return curves.empty() ? 0.0 : curves.front().time;
+}
+
+OuterLoop::Place OuterLoop::rest() const {
+  Place place{context_.state, step_begin(), true};
   put_to_rest(context_.part, place.state);
   // After a restart that is where the step before has ended, which the part does not have.
   place.state.origin = context_.state.origin;
@@ -120,6 +126,7 @@ void OuterLoop::go_from(const Place& place, double share, const Result& result) 
   control_.linearisation.start_again();
   control_.fallback.start_again();
   first_outer_ = result.outer_iterations;
+  within_ = false;
 }
 
 void OuterLoop::take(const Start& start) {
@@ -173,6 +180,8 @@ void OuterLoop::open_if_at_rest(const Residuals& residuals) {
 }
 
 void OuterLoop::iterate(Result& result) {
+  const bool goes_on = std::exchange(resumes_, false) && within_;
+  within_ = goes_on;
   keep(result);
   if (!control_.penalty.chosen()) choose_first_penalty(result);
   gave_up_ = false;
@@ -182,11 +191,15 @@ void OuterLoop::iterate(Result& result) {
                                        options_.contact == SolverOptions::Contact::active_set);
   const int before_this_call = result.outer_iterations;
   const ContactState& state = context_.state;
-  if (!opening_ || adopted_) take_rest_if_solution();
-  context_.body.evaluate(state.u);
+  if (!goes_on) {
+    if (!opening_ || adopted_) take_rest_if_solution();
+    context_.body.evaluate(state.u);
+  }
   Residuals residuals = certify();
-  open_if_at_rest(residuals);
-  best_.worst = HUGE_VAL;
+  if (!goes_on) {
+    open_if_at_rest(residuals);
+    best_.worst = HUGE_VAL;
+  }
   bool done = false;
   Vector previous;
   while (!done && result.outer_iterations - first_outer_ < options_.max_outer) {
@@ -200,6 +213,7 @@ void OuterLoop::iterate(Result& result) {
     residuals = certify();
     if (!step.balance.empty()) move_penalty(step, before, residuals, result);
     opening_ = false;
+    within_ = true;
     report(step, residuals, result);
     result.message = hopeless(residuals, newton);
     gave_up_ = !result.message.empty();

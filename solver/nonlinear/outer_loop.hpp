@@ -43,8 +43,10 @@ class OuterLoop {
     bool at_rest = false;
   };
   Place place() const { return {context_.state, context_.path.share()}; }
-  /// Rest, for a load step that begins at this share of the load; slip keeps its origin.
-  Place rest(double share) const;
+  /// Rest, where the load step begins; slip keeps its origin.
+  Place rest() const;
+  /// The share of the load at which the load step under way begins.
+  double step_begin() const;
   /// Where the next load step begins: here, with its slip counted from here.
   Place next_start() const;
   /// Another share of the load: starts from the same multiple of that state (theory: load-path), or, with
@@ -66,6 +68,19 @@ class OuterLoop {
   void restore(const Checkpoint* from, Result& result);
   /// What restore() needs, on rank 0.
   Checkpoint checkpoint(const Result& result) const;
+
+  /// How far a load step has come that may have to be taken in parts; whoever moves the load keeps it, and a
+  /// checkpoint has it.
+  struct StepParts {
+    std::optional<Place> start = {};  ///< of the load step; none: rest
+    bool cut = false;                 ///< into parts: the rest has a meaning
+    Place last;                       ///< the end of the last part that has converged
+    Place whole;                      ///< where the attempt at the whole step has left off
+    double over = 0.0, part = 0.5;    ///< of the way from `start`: what lies behind, the part under way
+    double next = 0.5;                ///< the end of that
+    bool again = false;               ///< a part of this length has converged before
+  };
+  StepParts parts;
 
   const StepContext& context() const noexcept { return context_; }
   const ContactState& state() const noexcept { return context_.state; }
@@ -116,6 +131,8 @@ class OuterLoop {
   void take(const Start& start);
   /// Prescribed components, gaps, traces and bounds of the load there is.
   void take_load();
+  void restore_penalty(double rule, Penalty penalty, const Result& result);
+  void stand_in_parts();
   void keep(const Result& result);
   bool stop_agreed() const;
 
@@ -128,6 +145,8 @@ class OuterLoop {
   bool adopted_ = false;            ///< a coarser mesh has given the state
   double coarse_lambda_max_ = 0.0;  ///< and this
   bool opening_ = true;             ///< the next step is the first from rest
+  bool within_ = false;             ///< steps have been taken since run() began, before a restart or after
+  bool resumes_ = false;            ///< run() has not been called since restore()
   bool gave_up_ = false;
   bool friction_;
   bool history_;            ///< slip of some point is counted from the load step before
@@ -150,7 +169,12 @@ class OuterLoop {
     ContactState state;
     Control control;
     Result result;
+    ContactPreconditioner::Memory preconditioner;
+    BodyResponse::Frozen frozen;
+    bool opening = true, adopted = false;
   };
+  BodyResponse::Frozen frozen() const { return stopped_ ? kept_->frozen : context_.body.frozen(); }
+  bool stopped_ = false;      ///< by a request; the state is that of kept_
   std::optional<Kept> kept_;  ///< after the last whole outer step; only where a run may be stopped
 };
 

@@ -40,6 +40,17 @@ class PreconditionerSchedule {
   /// do; one that needs more than that by what a setup is worth makes it stale.
   void watch(double digits, std::int64_t iterations);
 
+  /// Entries of a checkpoint; the set that it was built for is told by built_for().
+  template <class Visitor>
+  void visit(Visitor&& entry) {
+    entry("setup_stale", stale_);
+    entry("setup_digits_per_cg", digits_per_cg_);
+    entry("setup_lost_per_digit", lost_per_digit_);
+    entry("setup_penalty_normal", penalty_.normal);
+    entry("setup_penalty_tangential", penalty_.tangential);
+    entry("setup_held_by", held_by_);
+  }
+
  private:
   bool far(double now, double then) const;
 

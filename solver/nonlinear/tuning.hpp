@@ -92,6 +92,9 @@ struct Tuning {
   /// instead of 212).
   double penalty_worth = 3.0;
 
+  /// Changes of the held rows between two setups with g: what a restart repeats, and a checkpoint holds.
+  std::size_t most_changes = 64;
+
   /// A solve of so many CG iterations asks for a factor, or of as many as a factor takes the time of:
   /// `factor_iterations` for a body of `factor_unknowns`, growing with this power of them (3,000 for 9,800),
   /// in a body of at most `most_factorised` unknowns.

@@ -36,6 +36,11 @@ class Hash {
 
 }  // namespace
 
+bool Checkpoint::begun() const {
+  const auto before = numbers.find("before_outer");
+  return number("outer_iterations") > 0.0 || (before != numbers.end() && before->second > 0.0);
+}
+
 double Checkpoint::number(const std::string& name) const {
   const auto found = numbers.find(name);
   if (found == numbers.end()) throw InputError("the checkpoint has no number \"" + name + "\"");

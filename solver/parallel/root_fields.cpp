@@ -70,6 +70,12 @@ std::vector<double> scatter(std::span<const Index> index, std::span<const double
   return mine;
 }
 
+std::vector<Index> elements_of(const Part& part) {
+  std::vector<Index> index(part.element_count());
+  for (std::size_t e = 0; e < index.size(); ++e) index[e] = part.element_index[e];
+  return index;
+}
+
 std::size_t size_of(std::int64_t count) { return static_cast<std::size_t>(count); }
 
 }  // namespace
@@ -98,6 +104,16 @@ std::vector<double> scatter_contact(const Part& part, std::span<const double> al
                                     CallSite at) {
   part.node_map.expect_all_here(at, components);
   return scatter(part.contact_index, all, size_of(components), part.node_map);
+}
+
+std::vector<double> gather_elements(const Part& part, std::span<const double> local, int each, CallSite at) {
+  part.node_map.expect_all_here(at, each);
+  return gather(elements_of(part), local, size_of(each), size_of(part.total_elements), part.node_map);
+}
+
+std::vector<double> scatter_elements(const Part& part, std::span<const double> all, int each, CallSite at) {
+  part.node_map.expect_all_here(at, each);
+  return scatter(elements_of(part), all, size_of(each), part.node_map);
 }
 
 }  // namespace kacanov

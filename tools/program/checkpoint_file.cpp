@@ -13,7 +13,7 @@
 namespace kacanov {
 namespace {
 
-constexpr std::string_view magic = "kacanov checkpoint 4\n";
+constexpr std::string_view magic = "kacanov checkpoint 5\n";
 constexpr double share_of_time = 0.02;
 /// The sections of a case that have to be the same; solver options may change, but for the path of the load.
 constexpr const char* sections[] = {"plane", "thickness", "mesh", "material", "boundary", "contact", "steps"};

@@ -224,9 +224,6 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
   std::optional<CheckpointFile> file;
   std::optional<Checkpoint> left;
   together(mpi, [&] {
-    if (command.restart && any_moves(input.model))
-      throw InputError(
-          "--restart: expected a case whose obstacles stay, as runs with others leave no checkpoint");
     if (!mpi.first()) return;
     file.emplace(folder, input, loaded.print);
     if (command.restart) left = file->read();
@@ -244,11 +241,10 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
 
   RunOptions options;
   options.stop_requested = interrupt_came;
-  if (mpi.first() && input.output.checkpoint && !any_moves(input.model)) {
+  if (mpi.first() && input.output.checkpoint) {
     options.checkpoint_due = [&] { return file->due(); };
     options.checkpoint = [&](const Checkpoint& checkpoint) { file->write(checkpoint); };
   }
-  if (left) options.start = &*left;
   options.threads = threads_of(command);
   options.phase = phase;
   History history;
@@ -258,7 +254,13 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
     if (!command.quiet) table(step);
   };
   if (!command.quiet) options.stage = [&](const std::string& name) { table.stage(name); };
-  if (!command.restart && !given.mesh.adapt) {
+  // A run that was stopped before its first step starts again. Load steps to come start from the coarser
+  // meshes after other restarts too.
+  const bool begins = !loaded.part.node_map.any(left && left->begun());
+  if (begins) left.reset();
+  options.start = left ? &*left : nullptr;
+  const bool by_steps = input.model.solver.load_steps.size() > 1 || input.model.steps.size() > 1;
+  if (!given.mesh.adapt && (begins || by_steps)) {
     RunOptions before = options;
     if (command.quiet) before.progress = nullptr;
     coarse = solve_coarser(input, loaded.part.dim(), mpi, before);

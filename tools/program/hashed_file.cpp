@@ -42,6 +42,11 @@ HashedReader::HashedReader(const std::string& path, std::string_view magic, cons
   if (!stream_) throw InputError(path + ": cannot be read");
   std::string front(magic.size(), '\0');
   if (size_ >= magic.size()) take(front.data(), front.size());
+  const std::string_view without_number = magic.substr(0, magic.rfind(' ') + 1);
+  if (front != magic && std::string_view(front).starts_with(without_number))
+    throw InputError(path + ": this " + kind +
+                     " was written by another version of kacanov, and not in a form " +
+                     "that this version reads");
   if (front != magic)
     throw InputError(path + ": this is no " + kind + " that this version of kacanov can read");
   std::uint64_t length = 0;

@@ -18,6 +18,8 @@ struct Checkpoint {
   std::map<std::string, double> numbers;
   std::map<std::string, std::vector<double>> fields;
 
+  /// Whether any outer step lies behind it.
+  bool begun() const;
   /// Throw InputError naming what is missing, or what it is and should be.
   double number(const std::string& name) const;
   /// A number that has to be whole and from 0 to `most`.
@@ -47,5 +49,11 @@ std::vector<double> scatter_nodal(const Part& part, std::span<const double> all,
                                   CallSite at = CallSite());
 std::vector<double> scatter_contact(const Part& part, std::span<const double> all, int components,
                                     CallSite at = CallSite());
+
+/// `each` numbers per element, in the numbering of Problem::mesh on rank 0, and back. Collective.
+std::vector<double> gather_elements(const Part& part, std::span<const double> local, int each,
+                                    CallSite at = CallSite());
+std::vector<double> scatter_elements(const Part& part, std::span<const double> all, int each,
+                                     CallSite at = CallSite());
 
 }  // namespace kacanov

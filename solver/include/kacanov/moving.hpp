@@ -17,7 +17,7 @@ Model with_curves(Model model);
 /// - part: of the problem that build_problem() makes of with_curves(model). Its contact rows and load curves
 ///   are left as the last load step had them.
 /// - model: with_curves() of it; its obstacles' data are needed on rank 0 alone.
-/// - run: without checkpoint and start, which are not looked at.
+/// - run: as for solve(); a checkpoint holds the solve under way and the load steps before it.
 /// Returns what solve() does, with counts over all steps. Throws InputError where an obstacle leaves a node
 /// no direction, on all ranks alike. Collective.
 Solution solve_moving(Part& part, const Model& model, RunOptions run);
