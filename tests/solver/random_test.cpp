@@ -108,9 +108,9 @@ Obstacle random_obstacle(Dice& dice, int dim, std::size_t axis, double side, con
 Sample random_problem(unsigned seed) {
   Dice dice(seed);
   Sample sample;
-  constexpr std::array types{ElementType::tri3, ElementType::quad4, ElementType::tet4, ElementType::hex8,
-                             ElementType::tet10};
-  const ElementType type = types[seed % 5];
+  constexpr std::array element_types{ElementType::tri3, ElementType::quad4, ElementType::tet4,
+                                     ElementType::hex8, ElementType::tet10};
+  const ElementType type = element_types[seed % 5];
   const int dim = dimension(type);
   const std::size_t up = dim - 1;
   BoxSpec spec;
