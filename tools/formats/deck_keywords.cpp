@@ -118,7 +118,7 @@ std::vector<std::string> parameter_faults(const DeckKeyword& keyword) {
   const DeckKeywordRule* rule = deck_rule(keyword.name);
   std::vector<std::string> faults;
   for (auto at = keyword.parameters.begin(); rule != nullptr && at != keyword.parameters.end(); ++at) {
-    const auto& [name, value] = *at;
+    const std::string &name = at->first, &value = at->second;
     const std::string shown = keyword.written(*at);
     const std::optional<Parameter> known = find_parameter(rule->parameters, name);
     const bool twice =
