@@ -38,7 +38,7 @@ class Hash {
 
 bool Checkpoint::begun() const {
   const auto before = numbers.find("before_outer");
-  return number("outer_iterations") > 0.0 || (before != numbers.end() && before->second > 0.0);
+  return number("outer_iterations") != 0.0 || (before != numbers.end() && before->second != 0.0);
 }
 
 double Checkpoint::number(const std::string& name) const {

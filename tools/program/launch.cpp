@@ -112,12 +112,10 @@ class PassedSignals {
 /// Open MPI that cannot map its libraries and shared memory crashes with a trace, or hangs.
 void refuse_narrow_limit() {
   constexpr rlim_t megabyte = 1 << 20, least = 512;  // mpiexec and one rank have 200 to 300
-  rlimit limit{};
-  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY ||
-      limit.rlim_cur >= least * megabyte)
-    return;
+  const std::optional<std::uintmax_t> limit = address_space_limit();
+  if (!limit || *limit >= least * megabyte) return;
   throw InputError("several ranks cannot be started: the address space of a process is limited to " +
-                   std::to_string(limit.rlim_cur / megabyte) + " MiB (ulimit -v), and MPI needs " +
+                   std::to_string(*limit / megabyte) + " MiB (ulimit -v), and MPI needs " +
                    std::to_string(least));
 }
 
@@ -233,6 +231,12 @@ Shape choose_shape(const Case& input, std::optional<int> ranks, std::optional<in
   const bool small = estimate_unknowns(input.mesh) < small_problem;
   shape.ranks = ranks.value_or(small ? 1 : std::max(1, cores / shape.threads));
   return shape;
+}
+
+std::optional<std::uintmax_t> address_space_limit() {
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::nullopt;
+  return limit.rlim_cur;
 }
 
 std::string find_mpiexec() {

@@ -31,6 +31,9 @@ Shape choose_shape(const Case& input, std::optional<int> ranks, std::optional<in
 /// Unknowns of the case: exact for a generated box, from the size of the file otherwise. Reads nothing.
 std::int64_t estimate_unknowns(const MeshSource& mesh);
 
+/// Bytes that this process may map (ulimit -v); nothing where there is no limit.
+std::optional<std::uintmax_t> address_space_limit();
+
 /// Path of mpiexec on PATH; empty where there is none.
 std::string find_mpiexec();
 

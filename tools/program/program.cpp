@@ -6,6 +6,7 @@
 #include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <iostream>
@@ -205,9 +206,7 @@ int say(const ParsedCommand& parsed) {
   return parsed.exit_code;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run_program(int argc, char** argv) {
   std::set_terminate(end_at_once);
   std::set_new_handler(note_lack_of_memory);
   // A file beyond the limit of its size is an error like a full disk; who no longer reads what is printed
@@ -230,4 +229,15 @@ int main(int argc, char** argv) {
     print_failure(failure);
     return failure.exit_code;
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int code = run_program(argc, argv);
+  if (!address_space_limit()) return code;
+  // Threads of OpenBLAS that find no room try again for ever, and exit() waits for them.
+  std::cout.flush();
+  std::fflush(nullptr);
+  std::_Exit(code);
 }
