@@ -95,11 +95,13 @@ void GridHierarchy::change(std::span<const NodeBlock> blocks) {
 void GridHierarchy::correct(std::span<const float> force, std::span<const double> change, std::span<float> u,
                             std::span<double> p) {
   Level& first = levels_.front();
+  // Of a vertex the three components of the displacement, then the pressure. A rank may have none.
+  const auto from_pressure = [](auto values) { return values.empty() ? values : values.subspan(3); };
   nodes_->restrict_to(force, 3, std::span(first.b), grid_width);
-  if (rows_) rows_->restrict_to(change, 1, std::span(first.b).subspan(3), grid_width);
+  if (rows_) rows_->restrict_to(change, 1, from_pressure(std::span(first.b)), grid_width);
   cycle(0);
   nodes_->prolong(std::span<const float>(first.x), grid_width, 3, u);
-  if (rows_) rows_->prolong(std::span<const float>(first.x).subspan(3), grid_width, 1, p);
+  if (rows_) rows_->prolong(from_pressure(std::span<const float>(first.x)), grid_width, 1, p);
 }
 
 /// x of a level from its b, from zero.
