@@ -400,3 +400,23 @@ TEST_CASE("spheres that touch at the same place press as a plane does, or say wh
   }
   CHECK(statuses == "cccclllrr");
 }
+
+TEST_CASE("a load step in which nothing touches costs nothing, and leaves no scale to the next") {
+  const Workplace place;
+  place.put_json("disc.json", parsed(R"({
+    "mesh": {"box": {"size": [1, 1], "cells": [24, 24], "element": "quad4"}}, "plane": "axisymmetric",
+    "material": [{"on": "all", "young": 1000, "poisson": 0.3}],
+    "boundary": [{"on": "bottom", "displacement": [0, 0]}],
+    "contact": [{"on": "top",
+      "obstacle": {"sphere": {"centre": [0, 1.51], "radius": 0.5, "direction": [0, 1]}},
+      "motion": {"path": [{"time": 1, "translation": [0, -0.009]}, {"time": 2, "translation": [0, -0.02]}]}}],
+    "steps": [{"time": 1, "factors": {}}, {"time": 2, "factors": {}}], "output": {"report": false}
+  })"));
+  REQUIRE(place.run("run disc.json --output out").exit_code == 0);
+  const nlohmann::json steps = place.json("out/result.json")["load_steps"];
+  CHECK(steps[0]["cg_iterations"] == 0);
+  CHECK(steps[0]["contact_force"] == nlohmann::json{0.0, 0.0});
+  // As much as a solve to the tolerance takes, and not one to the rounding of what was there before: 2,029.
+  CHECK(steps[1]["cg_iterations"] < 100);
+  CHECK(place.run("verify disc.json --output out").exit_code == 0);
+}

@@ -129,9 +129,7 @@ int run_on_ranks(const Command& command, const Case& input, const CaseText& text
     const std::string mpiexec = find_mpiexec();
     if (!mpiexec.empty()) return run_under_mpiexec(mpiexec, shape, {words, text.text, folder});
     if (command.ranks)
-      throw InputError(
-          "--ranks: mpiexec is not on the PATH; without it there "
-          "is only one rank");
+      throw InputError("--ranks: mpiexec is not on the PATH; without it there is only one rank");
     std::cerr << "kacanov: note: mpiexec is not on the PATH; running on one rank\n";
   }
   const MpiFolder mpi_folder(folder);
