@@ -213,6 +213,18 @@ def contact_scales(case, truth, tolerance):
     return scales
 
 
+def joined_entries(case):
+    """Lists of contact entries. Those in one list meet at nodes that friction may hold: the share of each is undetermined."""
+    lists = []
+    for entry in case.document.get("contact", []):
+        nodes, rubs = set(case.mesh.surface(entry["on"])), "friction" in entry
+        met = [(names, others, rough) for names, others, rough in lists if nodes & others and (rubs or rough)]
+        lists = [old for old in lists if old not in met]
+        lists.append(([n for names, _, _ in met for n in names] + [entry["name"]],
+                      nodes.union(*(others for _, others, _ in met)), rubs or any(rough for _, _, rough in met)))
+    return [names for names, _, _ in lists]
+
+
 def parts_of(case, truth):
     """Nodes and elements of each part, or of all where the mesh is not the case's."""
     if case.options:
@@ -231,11 +243,13 @@ def compare(case, truth, answer, tolerance, twin=None):
     def note(what, value):
         off[what] = max(off.get(what, 0.0), value if math.isfinite(value) else math.inf)
 
-    for name, scale in contact_scales(case, truth, tolerance).items():
-        for key in ("normal_force", "friction_force"):
-            there = map_vector(truth.result["contact"][name][key], force)
-            there = math.dist(there, answer.result["contact"][name][key])
-            note("contact", there / (force * max(scale, least_force)))
+    scales = contact_scales(case, truth, tolerance)
+    for names in joined_entries(case):
+        names = [name for name in names if name in scales]
+        for key in ("normal_force", "friction_force") if len(names) == 1 else ("force",) if names else ():
+            there, here = ([sum(c) for c in zip(*(a.result["contact"][name][key] for name in names))] for a in (truth, answer))
+            scale = max(least_force, *(scales[name] for name in names))
+            note("contact", math.dist(map_vector(there, force), here) / (force * scale))
     acting = {kind: max((size(e["force"]) for e in truth.result.get(kind, {}).values()), default=0.0)
               for kind in ("reaction", "load", "contact")}
     places = {e["name"]: e["on"] for e in case.document["boundary"]}
