@@ -7,7 +7,7 @@
 
 #include "contact/certificate.hpp"
 #include "linear/distributed_operator.hpp"
-#include "nonlinear/load_path.hpp"
+#include "linear/load_path.hpp"
 
 namespace kacanov {
 

@@ -11,7 +11,7 @@
 #include "nonlinear/augmented_step.hpp"
 #include "nonlinear/body_measures.hpp"
 #include "nonlinear/friction_bounds.hpp"
-#include "parallel/body_extent.hpp"
+#include "partition/body_extent.hpp"
 #include "spectrum/spectrum.hpp"
 
 namespace kacanov {

@@ -13,7 +13,7 @@
 #include "nonlinear/linearisation.hpp"
 #include "nonlinear/penalty_control.hpp"
 #include "nonlinear/step.hpp"
-#include "parallel/unit_system.hpp"
+#include "partition/nondimensionalisation.hpp"
 
 namespace kacanov {
 

@@ -11,7 +11,8 @@ namespace {
 
 /// Unit vectors and cosines as near to each other as this are the same.
 constexpr double same_direction = 1e-6;
-/// Cosine with the outer normal above which a face looks at the body: that of looking_away, the other way.
+/// Cosine with the outer normal above which a face looks at the body: that of facet_orientation, the other
+/// way.
 constexpr double looks_at_body = 0.05;
 
 bool same(const Vector3& a, const Vector3& b) { return norm(a - b) <= same_direction; }

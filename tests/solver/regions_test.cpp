@@ -10,7 +10,7 @@
 
 #include <kacanov/corner_dilatation.hpp>
 #include "linear/free_strain.hpp"
-#include "nonlinear/load_path.hpp"
+#include "linear/load_path.hpp"
 #include "problem/vector3.hpp"
 #include "reference/expansion.hpp"
 #include "support.hpp"
