@@ -9,7 +9,6 @@
 #include <string>
 
 #include "amg/make_preconditioner.hpp"
-#include "linear/free_strain.hpp"
 #include "linear/springs.hpp"
 #include "mesh/plain_stream.hpp"
 #include "nonlinear/convergence_diagnosis.hpp"

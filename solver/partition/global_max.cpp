@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The largest value over all ranks, and the node or element that has it.
+// The largest value over all ranks with the node or element that has it, and the extent of the body.
 #include "partition/global_max.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "problem/vector3.hpp"
 
@@ -44,6 +45,20 @@ Extreme agree_on_element(const Part& part, const GlobalMax& here) {
   return agree(
       part, here, [&](std::size_t e) { return middle(part, e); },
       [&](std::size_t e) { return part.element_tag(e); });
+}
+
+double body_extent(const Part& part) {
+  const std::size_t dim = part.dim();
+  double extent = 0.0;
+  for (std::size_t c = 0; c < dim; ++c) {
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (std::size_t i = c; i < part.coordinates.size(); i += dim) {
+      low = std::min(low, part.coordinates[i]);
+      high = std::max(high, part.coordinates[i]);
+    }
+    extent = std::max(extent, part.node_map.max_all(high) + part.node_map.max_all(-low));
+  }
+  return extent;
 }
 
 }  // namespace kacanov

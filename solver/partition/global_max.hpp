@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The largest value over all ranks, and the node or element that has it.
+// The largest value over all ranks with the node or element that has it, and the extent of the body.
 #pragma once
 
 #include <cstddef>
@@ -37,5 +37,8 @@ inline Vector3 node_position(const Part& part, std::size_t node) {
 /// The largest of all ranks, of owned nodes or of elements. Collective.
 Extreme agree_on_node(const Part& part, const GlobalMax& here);
 Extreme agree_on_element(const Part& part, const GlobalMax& here);
+
+/// Longest side of the body's bounding box, over all ranks. Collective.
+double body_extent(const Part& part);
 
 }  // namespace kacanov

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <variant>
 
-#include "partition/body_extent.hpp"
+#include "partition/global_max.hpp"
 
 namespace kacanov {
 namespace {
@@ -106,10 +106,6 @@ namespace {
 
 void scale(Vector3& vector, double factor) {
   for (double& value : vector) value *= factor;
-}
-
-void scale(std::vector<double>& values, double factor) {
-  for (double& value : values) value *= factor;
 }
 
 /// Of what a part has of forces: the whole thickness.

@@ -3,22 +3,110 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <map>
 #include <numeric>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
+#include <kacanov/constraint_rows.hpp>
 #include <kacanov/error.hpp>
 #include <kacanov/locality.hpp>
+#include <kacanov/mesh.hpp>
 #include <kacanov/pressure_patches.hpp>
 #include "distributed/exchange.hpp"
 #include "partition/long_messages.hpp"
 #include "partition/part_fields.hpp"
-#include "partition/sharers.hpp"
 #include "problem/rigid_modes.hpp"
 
 namespace kacanov {
+
+/// Which ranks have each node, ascending: by its elements (compressed rows), and a few by wide contact
+/// points.
+struct Sharers {
+  std::vector<std::size_t> start;
+  std::vector<int> rank;
+  std::map<std::size_t, std::set<int>> more;  ///< ranks without an element there
+  std::span<const int> by_elements(std::size_t node) const {
+    return std::span(rank).subspan(start[node], start[node + 1] - start[node]);
+  }
+  std::vector<int> of(std::size_t node) const {
+    const auto s = by_elements(node);
+    std::vector<int> all(s.begin(), s.end());
+    if (const auto found = more.find(node); found != more.end()) {
+      all.insert(all.end(), found->second.begin(), found->second.end());
+      std::sort(all.begin(), all.end());
+    }
+    return all;
+  }
+  bool is_shared(std::size_t node) const { return by_elements(node).size() > 1 || more.contains(node); }
+  bool has(std::size_t node, int who) const {
+    const auto s = by_elements(node);
+    if (std::binary_search(s.begin(), s.end(), who)) return true;
+    if (more.empty()) return false;
+    const auto found = more.find(node);
+    return found != more.end() && found->second.contains(who);
+  }
+  /// Shared nodes are dealt out in turn, so that no rank owns a whole interface.
+  int owner(std::size_t node) const {
+    const auto s = by_elements(node);
+    return s[node % s.size()];
+  }
+  /// Every rank gets the nodes of the wide points it owns.
+  void widen(const ConstraintRows& contact) {
+    for (std::size_t i = 0; i < contact.size(); ++i) {
+      if (!contact.is_wide(i)) continue;
+      const int rank_of_point = owner(contact[i].node);
+      for (const RowEntry& entry : contact.entries(i)) {
+        const std::size_t node = entry.node;
+        if (!has(node, rank_of_point)) more[node].insert(rank_of_point);
+      }
+    }
+  }
+};
+
+/// Of elements that belong to these ranks.
+Sharers find_sharers(const Mesh& mesh, std::span<const std::uint16_t> part, int ranks);
+
+Sharers find_sharers(const Mesh& mesh, std::span<const std::uint16_t> part, int ranks) {
+  Sharers sharers;
+  const std::size_t nodes = mesh.node_count();
+  const std::size_t npe = nodes_per_element(mesh.type);
+  sharers.start.assign(nodes + 1, 0);
+  if (ranks == 1) {
+    std::iota(sharers.start.begin(), sharers.start.end(), std::size_t{0});
+    sharers.rank.assign(nodes, 0);
+    return sharers;
+  }
+  // A first pass tells the inner nodes, which are most, by their only rank; the few others have lists.
+  constexpr int none = -1, several = -2;
+  std::vector<int> only(nodes, none);
+  for (std::size_t k = 0; k < mesh.elements.size(); ++k) {
+    int& rank = only[mesh.elements[k]];
+    const int here = part[k / npe];
+    if (rank == none) rank = here;
+    if (rank != here) rank = several;
+  }
+  std::map<std::size_t, std::set<int>> lists;
+  for (std::size_t k = 0; k < mesh.elements.size(); ++k) {
+    const std::size_t n = mesh.elements[k];
+    if (only[n] == several) lists[n].insert(part[k / npe]);
+  }
+  for (std::size_t n = 0; n < nodes; ++n) {
+    if (only[n] == several)
+      sharers.rank.insert(sharers.rank.end(), lists[n].begin(), lists[n].end());
+    else
+      sharers.rank.push_back(only[n]);
+    sharers.start[n + 1] = sharers.rank.size();
+  }
+  return sharers;
+}
+
 namespace {
 
 using Index = std::int32_t;

@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "linear/free_strain.hpp"
+#include "linear/springs.hpp"
 #include "recovery/spr_patches.hpp"
 
 namespace kacanov {

@@ -13,7 +13,7 @@
 #include "cells/hex8.hpp"
 #include "cells/tet10.hpp"
 #include "cells/tet4.hpp"
-#include "linear/free_strain.hpp"
+#include "linear/springs.hpp"
 #include "problem/shapes.hpp"
 #include "recovery/element_batch.hpp"
 #include "reference/element_points.hpp"

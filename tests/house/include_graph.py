@@ -59,6 +59,7 @@ HEADER_ROOMS = {
     "constraint_rows.hpp": "solver/problem",
     "result.hpp": "solver/problem",
     "totals.hpp": "solver/problem",
+    "corner_dilatation.hpp": "solver/linear",
     "index_runs.hpp": "solver/partition",
     "part.hpp": "solver/partition",
     "rules.hpp": "solver/problem",

@@ -10,10 +10,8 @@
 
 #include "linear/load_path.hpp"
 #include "nonlinear/accuracy.hpp"
-#include "nonlinear/fallback.hpp"
 #include "nonlinear/friction_bounds.hpp"
-#include "nonlinear/linearisation.hpp"
-#include "nonlinear/penalty_control.hpp"
+#include "nonlinear/loop_control.hpp"
 
 using namespace kacanov;
 

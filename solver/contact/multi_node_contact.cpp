@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The nodes of wide contact points, whose forces have to be added up over the ranks.
-#include "contact/wide_nodes.hpp"
+#include "contact/multi_node_contact.hpp"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The contact nodes of one active set: how they close, and which reactions a nodal force stands for.
-#include "contact/held_nodes.hpp"
+#include "contact/active_constraints.hpp"
 
 #include <algorithm>
 #include <cmath>

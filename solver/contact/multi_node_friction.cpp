@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Coulomb friction of points that slide at the nodes of wide rows (theory: coulomb-newton).
-#include "contact/wide_sliding.hpp"
+#include "contact/multi_node_friction.hpp"
 
 #include <Eigen/Sparse>
 #include <Eigen/SparseLU>

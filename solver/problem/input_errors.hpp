@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All that is wrong with an input, said in one go.
+// All that is wrong with an input, said in one go, and what a mistyped word was meant to be.
 #pragma once
 
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,5 +68,8 @@ void naming_file(const std::string& file, const Work& work) {
     throw InputErrors(errors.mistakes(), file.empty() ? "the case" : file);
   }
 }
+
+/// The candidate closest to a mistyped word, or an empty string when none is near.
+std::string closest_word(const std::string& word, std::span<const std::string> candidates);
 
 }  // namespace kacanov

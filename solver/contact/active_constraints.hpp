@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "contact/active_set.hpp"
-#include "contact/wide_sliding.hpp"
+#include "contact/multi_node_friction.hpp"
 
 namespace kacanov {
 

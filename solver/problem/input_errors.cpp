@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Guesses what a mistyped word was meant to be.
-#include "problem/closest_word.hpp"
+#include "problem/input_errors.hpp"
 
 #include <algorithm>
 #include <numeric>
