@@ -278,6 +278,7 @@ void add_springs(Problem& problem, const Model& model, const Selection& selectio
     if (!entry.is_spring()) continue;
     const std::string path = at("boundary", i);
     std::map<std::int32_t, std::array<Vector3, 3>> nodes;
+    const auto facets = entry.node_spring ? std::vector<std::int32_t>() : selection.facets(entry.on, path);
     const auto add_axes = [&](std::int32_t node, double weight, const Vector3& stiffness) {
       auto& block = nodes[node];
       for (std::size_t c = 0; c < dim; ++c) block[c][c] += weight * stiffness[c];
@@ -286,7 +287,7 @@ void add_springs(Problem& problem, const Model& model, const Selection& selectio
       for (const std::int32_t node : selection.nodes(entry.on, path))
         add_axes(node, 1.0 / mesh.thickness, *entry.node_spring);
     else
-      for (const std::int32_t f : selection.facets(entry.on, path)) {
+      for (const std::int32_t f : facets) {
         const FacetWeights weights = lumped_weights(mesh, f);
         const auto facet = mesh.facet(f);
         for (std::size_t k = 0; k < facet.size(); ++k) {
@@ -301,6 +302,7 @@ void add_springs(Problem& problem, const Model& model, const Selection& selectio
           for (std::size_t r = 0; r < 3; ++r) block[r] = block[r] + (scale * n[r]) * n;
         }
       }
+    if (nodes.empty() && !facets.empty()) nodes[mesh.facet(facets[0])[0]];  // on the axis; its reaction is 0
     for (const auto& [node, stiffness] : nodes)
       problem.springs.push_back({node, static_cast<std::int32_t>(i), stiffness});
   }

@@ -37,17 +37,61 @@ constexpr double on_surface = 1e-9;
 /// precision.
 constexpr double equally_near = 1e-7;
 
-/// How one triangle of a surface is seen: by its closest point or, of a point on the surface, by its
+/// Directions and cosines that are nearer to each other are one.
+constexpr double one_direction = 1e-6;
+
+/// How one triangle of a surface is seen.
+struct SeenTriangle {
+  Facing facing;
+  bool by_plane = false;  ///< along its normal
+};
+
+/// By the closest point or, of a point that is on the surface or above the inside of the triangle, by the
 /// plane.
-std::optional<Facing> seen_triangle(const Surface::Closest& closest, bool touches) {
+std::optional<SeenTriangle> seen_triangle(const Surface::Closest& closest, bool touches) {
   const Vector3& offset = closest.way;
-  if (touches) return Facing{-1.0 * closest.face, -dot(offset, closest.face)};
+  const double above = -dot(offset, closest.face), distance = norm(offset);
+  if (touches) return SeenTriangle{{-1.0 * closest.face, above}, true};
   if (closest.normal == Vector3{}) return std::nullopt;
-  const double distance = norm(offset), along = -dot(offset, closest.normal);
+  const double along = -dot(offset, closest.normal);
   // Beyond the border of a surface that is open there is nothing to touch.
-  if (closest.border && norm(offset + along * closest.normal) > 1e-6 * distance) return std::nullopt;
+  if (closest.border && norm(offset + along * closest.normal) > one_direction * distance) return std::nullopt;
   const double side = along >= 0.0 ? 1.0 : -1.0;
-  return Facing{side / distance * offset, side * distance};
+  if (norm(offset + above * closest.face) <= one_direction * distance)
+    return SeenTriangle{{(above >= 0.0 ? -side : side) * closest.face, side * distance}, true};
+  return SeenTriangle{{side / distance * offset, side * distance}, false};
+}
+
+/// One of each direction, that with the least gap; along the mean of the planes' normals where there are
+/// some. Which of equal triangles comes first is an accident of rounding.
+std::vector<Facing> one_of_each_direction(std::vector<SeenTriangle> seen) {
+  std::stable_sort(seen.begin(), seen.end(),
+                   [](const SeenTriangle& a, const SeenTriangle& b) { return a.facing.gap < b.facing.gap; });
+  struct Group {
+    SeenTriangle first;
+    Vector3 sum;
+  };
+  std::vector<Group> groups;
+  for (const SeenTriangle& one : seen) {
+    const Vector3& normal = one.facing.normal;
+    const auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& other) {
+      return norm(other.first.facing.normal - normal) <= one_direction;
+    });
+    if (group == groups.end()) {
+      groups.push_back({one, normal});
+    } else if (one.by_plane && !group->first.by_plane) {
+      group->first.by_plane = true;
+      group->sum = normal;
+    } else if (one.by_plane == group->first.by_plane) {
+      group->sum = group->sum + normal;
+    }
+  }
+  std::vector<Facing> out;
+  for (Group& group : groups) {
+    group.first.facing.normal = (1.0 / norm(group.sum)) * group.sum;
+    out.push_back(group.first.facing);
+  }
+  return out;
 }
 
 /// One way of several about equally long ones; along a mean of directions it is the way to the first of their
@@ -199,17 +243,16 @@ Facing SurfaceObstacle::project(const SurfacePoint& from) const {
   const double extent = surface->extent(), distance = norm(closest.way);
   const bool touches = distance <= on_surface * extent;
   const double reach = touches ? on_surface * extent : distance + equally_near * extent;
-  std::vector<Facing> equal;
+  std::vector<SeenTriangle> seen;
   for (const Surface::Closest& one : surface->within(from.x, reach)) {
-    std::optional<Facing> facing = seen_triangle(one, touches);
-    if (!facing) continue;
+    std::optional<SeenTriangle> triangle = seen_triangle(one, touches);
+    if (!triangle) continue;
     // The closest point is computed from corners that may be as far off as the surface is large.
-    facing->unknown = some_roundings * (norm(from.x) + norm(one.point) + extent);
-    equal.push_back(*facing);
+    triangle->facing.unknown = some_roundings * (norm(from.x) + norm(one.point) + extent);
+    seen.push_back(*triangle);
   }
-  if (equal.empty()) return Facing::nothing();
-  std::stable_sort(equal.begin(), equal.end(),
-                   [](const Facing& a, const Facing& b) { return a.gap < b.gap; });
+  if (seen.empty()) return Facing::nothing();
+  const std::vector<Facing> equal = one_of_each_direction(std::move(seen));
   std::vector<Vector3> directions;
   for (const Facing& one : equal) directions.push_back(one.normal);
   return facing_of_choice(equal, choose_face(directions, from.outer));

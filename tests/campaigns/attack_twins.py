@@ -242,7 +242,7 @@ def draw_twins(case, seed, index):
         return random.Random(f"{seed} {index} {kind}")
 
     def ranks(kind, *numbers):  # none of them empty
-        return min(dice(kind).choice(numbers), len(case.mesh.elements))
+        return min(dice(kind).choice(numbers), max(1, len(case.mesh.elements) // 2))
 
     traits, options = case.traits, case.options
     same_mesh = not options and "mixed tet4" not in traits  # however it is numbered

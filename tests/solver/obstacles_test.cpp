@@ -208,6 +208,32 @@ TEST_CASE("the way to a surface close by has more digits than the coordinates") 
   }
 }
 
+TEST_CASE(
+    "above an edge or a corner of coplanar triangles the direction is the plane's, the gap the way to it") {
+  // Eight triangles about the middle of a square of x + 2 y + 2 z = 0, in two orders.
+  const Vector3 u{2.0 / 3, 1.0 / 3, -2.0 / 3}, v{-2.0 / 3, 2.0 / 3, -1.0 / 3}, n{1.0 / 3, 2.0 / 3, 2.0 / 3};
+  std::vector<Vector3> points;
+  for (const double s : {-1.0, 0.0, 1.0})
+    for (const double t : {-1.0, 0.0, 1.0}) points.push_back(1000.0 * s * u + 1000.0 * t * v);
+  std::vector<Surface::Triangle> triangles;
+  for (const std::int32_t a : {0, 1, 3, 4}) {
+    triangles.push_back({a, a + 3, a + 4});
+    triangles.push_back({a, a + 4, a + 1});
+  }
+  for (const bool turned : {false, true}) {
+    if (turned) std::reverse(triangles.begin(), triangles.end());
+    const SurfaceObstacle square{std::make_shared<const Surface>(points, triangles)};
+    for (const double height : {1.0, 1e-3, -1e-3})
+      for (const double along : {0.0, 1e-13, -1e-13, 500.0}) {
+        const Facing found = square.project({points[4] + along * u + height * n, n});
+        INFO(turned, " ", height, " ", along);
+        CHECK(found.kind == Facing::Kind::met);
+        CHECK(norm(found.normal + n) < 1e-15);
+        CHECK(std::abs(found.gap - height) < 1e-12);
+      }
+  }
+}
+
 TEST_CASE("beyond the border of an open surface there is nothing; folds and bad triangles are said") {
   const std::vector<Vector3> points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   const auto square =

@@ -39,23 +39,50 @@ Facing along_ray(const WideVec& direction, Wide a, Wide b, Wide c, Wide scale) {
   return found;
 }
 
+/// Directions that are nearer to each other are one.
+constexpr Real one_direction = 1e-6L;
+
+/// One of several faces that are equally near.
+struct NearFace : Facing {
+  bool plane = false;  ///< the direction is the normal of a plane, and not the way to a point
+};
+
+/// One of each direction, with its least gap; along the mean of its planes' normals where there are some.
+std::vector<Facing> by_direction(std::vector<NearFace> faces) {
+  std::stable_sort(faces.begin(), faces.end(),
+                   [](const Facing& a, const Facing& b) { return a.gap < b.gap; });
+  std::vector<NearFace> kept;
+  std::vector<Vec> sums;
+  for (const NearFace& face : faces) {
+    std::size_t k = 0;
+    while (k < kept.size() && norm(kept[k].normal - face.normal) > one_direction) ++k;
+    if (k == kept.size()) {
+      kept.push_back(face);
+      sums.push_back(face.normal);
+    } else if (face.plane == kept[k].plane) {
+      sums[k] = sums[k] + face.normal;
+    } else if (face.plane) {
+      kept[k].plane = true;
+      sums[k] = face.normal;
+    }
+  }
+  for (std::size_t k = 0; k < kept.size(); ++k) kept[k].normal = unit(sums[k]);
+  return {kept.begin(), kept.end()};
+}
+
 /// Of faces that are equally near the one whose direction is along the outer normal most; of several that
 /// are, the mean, up to the first of their planes; of directions that cancel the last by their components
 /// (theory: equal-distance).
-Facing most_opposed(std::vector<Facing> faces, const Vec& outer) {
-  constexpr Real same = 1e-6L;
+Facing most_opposed(std::vector<NearFace> faces, const Vec& outer) {
+  constexpr Real same = one_direction;
   const Real size = norm(outer);
   const auto turned = [&](const Facing& face) { return size > 0 ? dot(face.normal, outer) / size : Real(0); };
-  std::stable_sort(faces.begin(), faces.end(),
-                   [](const Facing& a, const Facing& b) { return a.gap < b.gap; });
+  const std::vector<Facing> distinct = by_direction(std::move(faces));
   Real best = -1;
-  for (const Facing& face : faces) best = std::max(best, turned(face));
+  for (const Facing& face : distinct) best = std::max(best, turned(face));
   std::vector<Facing> alike;
-  for (const Facing& face : faces)
-    if (turned(face) >= best - same && std::none_of(alike.begin(), alike.end(), [&](const Facing& other) {
-          return norm(other.normal - face.normal) <= same;
-        }))
-      alike.push_back(face);
+  for (const Facing& face : distinct)
+    if (turned(face) >= best - same) alike.push_back(face);
   if (alike.size() == 1) return alike[0];
   Vec sum{};
   for (const Facing& face : alike) sum = sum + face.normal;
@@ -149,7 +176,7 @@ Face block(const json& given) {
   const bool flat = lower[2] == upper[2] && axes[2][0] == 0 && axes[2][1] == 0;
   const Real close = 1e-9L * static_cast<Real>(length(upper - lower));
   return [=](const Vec& x, const Vec& outer) {
-    std::vector<Facing> faces;  // along each face's inner normal, negative below the face
+    std::vector<NearFace> faces;  // along each face's inner normal, negative below the face
     Real highest = -HUGE_VALL, unknown = 0;
     WideVec way{};
     for (std::size_t a = 0; a < (flat ? 2 : 3); ++a)
@@ -159,7 +186,7 @@ Face block(const json& given) {
         Facing face = facing(scaled(-side, axes[a]), -below);
         for (std::size_t c = 0; c < 3; ++c)
           face.unknown += closed * std::abs(static_cast<Real>(from[c] * axes[a][c]));
-        faces.push_back(face);
+        faces.push_back({face, true});
         highest = std::max(highest, face.gap);
         if (!(below < 0)) continue;
         unknown += face.unknown;
@@ -208,7 +235,7 @@ class Facets {
     const Real extent = norm(high_ - low_);
     const bool touches = nearest <= 1e-9L * extent;
     const Real reach = touches ? 1e-9L * extent : nearest + 1e-7L * extent;
-    std::vector<Facing> faces;
+    std::vector<NearFace> faces;
     bool grazing = false;
     for (const Facet& facet : facets_) {
       if (norm(x - facet.middle) - facet.radius > reach) continue;
@@ -216,7 +243,7 @@ class Facets {
       if (closest.distance > reach) continue;
       const Vec way = closest.point - x;
       if (touches) {
-        faces.push_back({-1 * facet.normal, -dot(way, facet.normal)});
+        faces.push_back({{-1 * facet.normal, -dot(way, facet.normal)}, true});
         continue;
       }
       if (!(norm(closest.normal) > 0)) continue;
@@ -226,7 +253,11 @@ class Facets {
         grazing = true;
       if (closest.border && beside > 1e-6L * closest.distance) continue;
       const Real side = above < 0 ? -1 : 1;
-      faces.push_back({side / closest.distance * way, side * closest.distance});
+      const Real over = -dot(way, facet.normal);
+      if (norm(way + over * facet.normal) <= one_direction * closest.distance)
+        faces.push_back({{(over < 0 ? side : -side) * facet.normal, side * closest.distance}, true});
+      else
+        faces.push_back({{side / closest.distance * way, side * closest.distance}, false});
     }
     Facing found;
     if (faces.empty())
