@@ -9,17 +9,15 @@
 #include <string>
 
 #include "amg/make_preconditioner.hpp"
-#include "collect.hpp"
-#include "entry_totals.hpp"
-#include "linear/free_strain.hpp"
 #include "linear/springs.hpp"
-#include "load_steps.hpp"
 #include "mesh/plain_stream.hpp"
+#include "nonlinear/convergence_diagnosis.hpp"
 #include "nonlinear/friction_bounds.hpp"
-#include "parallel/own_units.hpp"
+#include "nonlinear/load_steps.hpp"
+#include "partition/nondimensionalisation.hpp"
+#include "results/collect.hpp"
+#include "results/reactions.hpp"
 #include "spectrum/spectrum.hpp"
-#include "unsettled.hpp"
-#include "users_units.hpp"
 
 namespace kacanov {
 namespace {
@@ -115,17 +113,17 @@ void end_load_steps(const std::vector<double>& shares, bool finished, Result& re
 
 /// Shows the caller where the loop stands at the end of a load step.
 void hand_out_step(const StepContext& context, const Result& result, const RunOptions& run,
-                   InOwnUnits& scaled) {
+                   Nondimensionalised& scaled) {
   Solution now;
   now.displacement = context.state.u;
   now.thermal = context.path.thermal_pressure();
   now.corner_dilatation = corner_dilatation(context.part, context.state.u);
   collect_contact(context.part, context.state, context.options.tolerance, now);
-  to_users_units(now, scaled.units());
+  redimensionalise(now, scaled.units());
   now.result.load_steps = result.load_steps;
   now.result.by_time = result.by_time;
   now.result.load_factor = context.path.share();
-  const InUsersUnits back(scaled);
+  const Redimensionalised back(scaled);
   run.load_step_over(context.part, now);
 }
 
@@ -151,8 +149,8 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   std::optional<Start> start;
   if (!restart && !run.coarse.empty() && !run.coarse[0].at_rest()) start = interpolate(run.coarse[0], part);
   if (!restart && run.from != nullptr) start = *run.from;
-  InOwnUnits scaled(part);
-  if (start) to_own_units(*start, scaled.units());
+  Nondimensionalised scaled(part);
+  if (start) nondimensionalise(*start, scaled.units());
   SolverOptions options = users_options;
   options.r /= scaled.units().penalty();
   Solution solution;
@@ -180,10 +178,10 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
     calls.coarse = [&](std::size_t step) {
       Start at;
       {
-        const InUsersUnits back(scaled);
+        const Redimensionalised back(scaled);
         at = interpolate(run.coarse[step], part);
       }
-      to_own_units(at, scaled.units());
+      nondimensionalise(at, scaled.units());
       return at;
     };
   const bool finished = !part.no_equilibrium.empty() || run_load_steps(loop, shares, result, calls);
@@ -215,11 +213,11 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   collect_contact(part, context.state, options.tolerance, solution);
   collect_totals(part, context.state, solution);
   collect_entries(part, context.state, context.path, response.internal, solution);
-  to_users_units(solution, scaled.units());
+  redimensionalise(solution, scaled.units());
   if (result.message.empty()) {
     result.message = verdict(result, options);
     if (result.status == Status::not_converged && options.stop != SolverOptions::Stop::paper)
-      result.message += "; " + what_is_unsettled(loop);
+      result.message += "; " + diagnose_convergence(loop);
   }
   if (shares.size() > 1 || result.by_time) end_load_steps(shares, finished, result);
   if (result.softening_elements > 0) result.message += softening_message(result.softening_elements);
@@ -251,7 +249,7 @@ Solution solve(const Part& part, const SolverOptions& options, const RunOptions&
 std::vector<SpectrumResult> analyse_spectrum(Part& part, const SolverOptions& options,
                                              const RunOptions& run) {
   validate(options);
-  const InOwnUnits scaled(part);
+  const Nondimensionalised scaled(part);
   DistributedOperator op(part, run.threads, run.instruction_set);
   const auto amg = make_preconditioner(options, part, run.threads, run.instruction_set, &op.local());
   std::vector<double> secant(part.body().secant_count());
@@ -263,7 +261,7 @@ std::vector<SpectrumResult> analyse_spectrum(Part& part, const SolverOptions& op
   if (has_friction(part))
     results.push_back(
         estimate_spectrum(part, op, *amg, secant, true, {options.spectrum_tolerance, options.max_cg}));
-  for (SpectrumResult& result : results) to_users_units(result, scaled.units());
+  for (SpectrumResult& result : results) redimensionalise(result, scaled.units());
   return results;
 }
 
@@ -276,7 +274,7 @@ std::vector<SpectrumResult> analyse_spectrum(const Part& part, const SolverOptio
 ActivePenalty active_penalty(Part& part, const Solution& solution, const SolverOptions& options,
                              const RunOptions& run) {
   validate(options);
-  const InOwnUnits scaled(part);
+  const Nondimensionalised scaled(part);
   std::vector<double> displacement = solution.displacement;
   for (double& u : displacement) u /= scaled.units().displacement;
   std::vector<double> pressure = solution.thermal;

@@ -39,7 +39,7 @@ kacanov_test(coarse_start IN numbers
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 kacanov_test(load_steps IN solver
-  MPI SOURCES solver/load_steps_test.cpp solver/unsettled_test.cpp
+  MPI SOURCES solver/load_steps_test.cpp solver/convergence_diagnosis_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 kacanov_test(entry_totals IN solver
@@ -48,11 +48,11 @@ kacanov_test(entry_totals IN solver
   RANKS 1 2 3)
 
 kacanov_test(validity IN solver
-  MPI SOURCES solver/validity_test.cpp solver/uniaxial_bar_test.cpp
+  MPI SOURCES solver/warnings_test.cpp solver/uniaxial_bar_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 kacanov_test(nodal_stress IN solver
-  MPI SOURCES solver/nodal_stress_test.cpp solver/discretisation_test.cpp solver/abreast_fields_test.cpp solver/abreast_errors_test.cpp
+  MPI SOURCES solver/nodal_stress_test.cpp solver/discretisation_test.cpp solver/batched_fields_test.cpp solver/batched_errors_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal
   RANKS 1 2 3)
 

@@ -77,7 +77,7 @@ class RigidLevel {
   /// Chebyshev::smooth's step on owned rows, with D the block diagonal.
   void relax(const ChebyshevStep<double>& weights, std::span<const double> b, std::span<const double> image,
              std::span<double> step, std::span<double> x) const;
-  /// Largest eigenvalue of D⁻¹A, somewhat from above (kacanov::largest_eigenvalue). Collective.
+  /// GlobalMax eigenvalue of D⁻¹A, somewhat from above (kacanov::largest_eigenvalue). Collective.
   double largest_eigenvalue();
 
   /// Local number of a row: owned ones first, then the other ranks' rows they couple to; −1 for others.

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "amg/assembly.hpp"
+#include "amg/boomer_amg.hpp"
 #include "linear/preconditioner.hpp"
 
 namespace kacanov {

@@ -2,8 +2,7 @@
 // The choice of a preconditioner.
 #include "amg/make_preconditioner.hpp"
 
-#include "amg/coarse_amg.hpp"
-#include "amg/elasticity_amg.hpp"
+#include "amg/boomer_amg.hpp"
 #include "amg/part_multigrid.hpp"
 
 namespace kacanov {

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "contact/held_nodes.hpp"
-#include "contact/left_out.hpp"
+#include "contact/active_constraints.hpp"
+#include "contact/linearisation_error.hpp"
 #include "linear/gcr.hpp"
 
 namespace kacanov {

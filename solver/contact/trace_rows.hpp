@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "contact/multi_node_contact.hpp"
 #include "contact/row_cluster.hpp"
-#include "contact/wide_nodes.hpp"
 #include "linear/preconditioner.hpp"
 #include "linear/space.hpp"
 

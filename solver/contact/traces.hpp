@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "contact/wide_nodes.hpp"
+#include "contact/multi_node_contact.hpp"
 #include "linear/space.hpp"
 
 namespace kacanov {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The body's answer to a displacement: internal force, energy, and the operator frozen there.
+// Forces and energy of the body at a displacement, its secant or tangent, and what is known of both.
 #pragma once
 
 #include <span>
@@ -7,9 +7,19 @@
 
 #include "contact/certificate.hpp"
 #include "linear/distributed_operator.hpp"
-#include "nonlinear/load_path.hpp"
+#include "linear/load_path.hpp"
+#include "linear/space.hpp"
 
 namespace kacanov {
+
+/// Volume of each node of this rank, a share of those of its elements on all ranks; in 2D an area.
+/// Collective.
+Vector lumped_volume(const Part& part);
+
+/// Throws InputError, on all ranks alike, where stiffnesses (`diagonal`: of the elastic B) or the forces that
+/// loads and prescribed displacements come to lie beyond what the preconditioner's single precision holds.
+/// Collective.
+void refuse_beyond_floats(const Part& part, std::span<const float> diagonal);
 
 /// R(u), the stored energy and the secant or tangent at the u it was last asked about. What takes a
 /// displacement is collective; vectors are consistent over ranks.

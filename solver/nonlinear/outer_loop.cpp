@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "mesh/plain_stream.hpp"
-#include "nonlinear/augmented_step.hpp"
-#include "nonlinear/body_measures.hpp"
+#include "nonlinear/body_response.hpp"
 #include "nonlinear/friction_bounds.hpp"
-#include "parallel/body_extent.hpp"
+#include "nonlinear/step.hpp"
+#include "partition/global_max.hpp"
 #include "spectrum/spectrum.hpp"
 
 namespace kacanov {

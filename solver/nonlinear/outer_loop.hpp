@@ -8,12 +8,9 @@
 #include <kacanov/coarse_solution.hpp>
 
 #include "nonlinear/augmented_control.hpp"
-#include "nonlinear/contact_changes.hpp"
-#include "nonlinear/fallback.hpp"
-#include "nonlinear/linearisation.hpp"
-#include "nonlinear/penalty_control.hpp"
+#include "nonlinear/loop_control.hpp"
 #include "nonlinear/step.hpp"
-#include "parallel/unit_system.hpp"
+#include "partition/nondimensionalisation.hpp"
 
 namespace kacanov {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One step of the outer loop: ADMM on the secant, or semismooth Newton on secant or tangent.
+// One step of the outer loop: ADMM on the secant, semismooth Newton, or its augmented form.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 
 #include <kacanov/run_options.hpp>
 #include "contact/active_set.hpp"
+#include "nonlinear/augmented_control.hpp"
 #include "nonlinear/contact_preconditioner.hpp"
 
 namespace kacanov {
@@ -68,5 +69,11 @@ StepOutcome admm_step(StepContext& c, const Penalty& penalty, const Residuals& b
 /// A semismooth Newton step (theory: active-set), damped (theory: damping), by the tangent or the secant.
 /// `penalty`: that of N, which decides the set. Where it is not solved, the state stays. Collective.
 StepOutcome newton_step(StepContext& c, double penalty, bool tangent, const Residuals& before);
+
+/// Minimises stored energy, load and what contact adds at the multipliers and bounds of the state
+/// (theory: augmented-newton), by semismooth Newton steps with a line search: each lowers it, wherever it
+/// starts. The multipliers move on at the end. R(u) and the secant have to be those of the state, and are
+/// afterwards. Collective.
+StepOutcome augmented_step(StepContext& c, AugmentedControl& control, const Residuals& before);
 
 }  // namespace kacanov

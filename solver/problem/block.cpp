@@ -6,9 +6,9 @@
 #include <vector>
 
 #include <kacanov/obstacle.hpp>
-#include "problem/equal_faces.hpp"
+#include "problem/error_tracking_double.hpp"
+#include "problem/faces.hpp"
 #include "problem/model_checks.hpp"
-#include "problem/tracked.hpp"
 #include "problem/vector3.hpp"
 
 namespace kacanov {

@@ -9,9 +9,9 @@
 
 #include <kacanov/height_field.hpp>
 #include <kacanov/surface.hpp>
-#include "problem/equal_faces.hpp"
+#include "problem/error_tracking_double.hpp"
+#include "problem/faces.hpp"
 #include "problem/model_checks.hpp"
-#include "problem/tracked.hpp"
 #include "problem/vector3.hpp"
 
 namespace kacanov {

@@ -8,7 +8,7 @@
 
 #include <kacanov/error.hpp>
 #include "mesh/plain_stream.hpp"
-#include "problem/closest_word.hpp"
+#include "problem/input_errors.hpp"
 #include "problem/vector3.hpp"
 
 namespace kacanov {

@@ -8,8 +8,8 @@
 #include <kacanov/error.hpp>
 #include <kacanov/model.hpp>
 #include <kacanov/rules.hpp>
+#include "problem/input_errors.hpp"
 #include "problem/load_curves.hpp"
-#include "problem/mistakes.hpp"
 #include "problem/model_checks.hpp"
 #include "problem/vector3.hpp"
 

@@ -6,8 +6,8 @@
 
 #include <kacanov/error.hpp>
 #include "bytes.hpp"
-#include "parallel/check_part.hpp"
-#include "parallel/part_fields.hpp"
+#include "partition/check_part.hpp"
+#include "partition/part_fields.hpp"
 #include "small_problem.hpp"
 
 using namespace kacanov;

@@ -245,7 +245,7 @@ TEST_CASE("elements that go through an obstacle between their nodes are found, a
     model.contact.push_back(entry);
     const Problem problem = build_problem(mesh, model);
     std::vector<double> u(problem.mesh.coordinates.size(), 0.0);
-    const std::vector<std::int32_t> entered = entered_elements(problem, model, u, 0.0);
+    const std::vector<std::int32_t> entered = penetrated_elements(problem, model, u, 0.0);
     REQUIRE(entered.size() == 1);
     const std::size_t nodes = nodes_per_element(type);
     double lower = HUGE_VAL, upper = -HUGE_VAL, highest = -HUGE_VAL;
@@ -259,11 +259,11 @@ TEST_CASE("elements that go through an obstacle between their nodes are found, a
     CHECK(upper >= 0.3);
     CHECK(highest == doctest::Approx(height));
     // It lies 0.01 deep at most, and nothing does once the body has gone down by more than that.
-    CHECK(entered_elements(problem, model, u, 0.0101).empty());
+    CHECK(penetrated_elements(problem, model, u, 0.0101).empty());
     for (std::size_t i = up; i < u.size(); i += dim) u[i] = -0.0101;
-    CHECK(entered_elements(problem, model, u, 0.0).empty());
+    CHECK(penetrated_elements(problem, model, u, 0.0).empty());
     model.contact[0].relinearise = true;
     std::fill(u.begin(), u.end(), 0.0);
-    CHECK(entered_elements(problem, model, u, 0.0).empty());
+    CHECK(penetrated_elements(problem, model, u, 0.0).empty());
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Parts and checkpoints whose fields do not fit each other: refused by the name of the field.
-#include "parallel/check_part.hpp"
+#include "partition/check_part.hpp"
 
 #include <doctest/doctest.h>
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "contact/held_nodes.hpp"
+#include "contact/active_constraints.hpp"
 #include "linear/gcr.hpp"
 #include "support.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "finer_rule.hpp"
+#include "recovery/error_quadrature.hpp"
 #include "support.hpp"
 
 using namespace kacanov;

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "problem/rigid_balance.hpp"
+#include "problem/rigid_modes.hpp"
 #include "support.hpp"
 
 using namespace kacanov;

@@ -6,8 +6,7 @@
 
 #include <kacanov/moving.hpp>
 #include "half_space.hpp"
-#include "pushed_obstacle.hpp"
-#include "rigid_pose.hpp"
+#include "moving/obstacle_motion.hpp"
 
 using namespace kacanov;
 using namespace kacanov::testing;

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "law_batches.hpp"
+#include "recovery/spr_patches.hpp"
 #include "support.hpp"
 
 using namespace kacanov;

@@ -8,12 +8,10 @@
 #include <map>
 #include <string>
 
+#include "linear/load_path.hpp"
 #include "nonlinear/accuracy.hpp"
-#include "nonlinear/fallback.hpp"
 #include "nonlinear/friction_bounds.hpp"
-#include "nonlinear/linearisation.hpp"
-#include "nonlinear/load_path.hpp"
-#include "nonlinear/penalty_control.hpp"
+#include "nonlinear/loop_control.hpp"
 
 using namespace kacanov;
 

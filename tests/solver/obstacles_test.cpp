@@ -8,7 +8,7 @@
 
 #include <kacanov/height_field.hpp>
 #include <kacanov/surface.hpp>
-#include "problem/tracked.hpp"
+#include "problem/error_tracking_double.hpp"
 #include "problem/vector3.hpp"
 #include "problem_models.hpp"
 

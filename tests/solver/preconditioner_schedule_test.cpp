@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "nonlinear/preconditioner_schedule.hpp"
+#include "nonlinear/contact_preconditioner.hpp"
 
 using namespace kacanov;
 

@@ -9,8 +9,8 @@
 #include <random>
 
 #include <kacanov/corner_dilatation.hpp>
-#include "linear/free_strain.hpp"
-#include "nonlinear/load_path.hpp"
+#include "linear/load_path.hpp"
+#include "linear/springs.hpp"
 #include "problem/vector3.hpp"
 #include "reference/expansion.hpp"
 #include "support.hpp"

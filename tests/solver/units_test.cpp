@@ -3,7 +3,7 @@
 // rounding leaves.
 #include <doctest/doctest.h>
 
-#include "parallel/own_units.hpp"
+#include "partition/nondimensionalisation.hpp"
 #include "support.hpp"
 
 using namespace kacanov;

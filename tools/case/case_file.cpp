@@ -14,7 +14,7 @@
 #include "case/json_node.hpp"
 #include "formats/text_bytes.hpp"
 #include "mesh/plain_stream.hpp"
-#include "problem/mistakes.hpp"
+#include "problem/input_errors.hpp"
 
 namespace kacanov {
 namespace {

@@ -9,7 +9,7 @@
 
 #include <kacanov/error.hpp>
 #include "formats/text_bytes.hpp"
-#include "problem/closest_word.hpp"
+#include "problem/input_errors.hpp"
 
 namespace kacanov {
 namespace {

@@ -6,8 +6,7 @@
 #include <kacanov/error.hpp>
 #include "case/schema.hpp"
 #include "formats/printable.hpp"
-#include "problem/closest_word.hpp"
-#include "problem/mistakes.hpp"
+#include "problem/input_errors.hpp"
 
 namespace kacanov {
 namespace {

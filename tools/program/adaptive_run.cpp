@@ -89,7 +89,7 @@ class Adaptation {
     run_.take(solution, std::move(before), part, whole, began);
     run_.levels.back().error = error.relative;
     if (solution.result.status == Status::converged)
-      find_entered(whole, gather_nodal(part, solution.displacement, part.dim()));
+      find_penetrated(whole, gather_nodal(part, solution.displacement, part.dim()));
     std::vector<double> all(static_cast<std::size_t>(part.total_elements), 0.0);
     for (std::size_t e = 0; e < error.element.size(); ++e) all[part.element_index[e]] = error.element[e];
     part.node_map.sum_all(all);
@@ -97,12 +97,12 @@ class Adaptation {
   }
 
   /// `u`: of the whole mesh, on the first rank as the problem is.
-  void find_entered(const Problem* problem, const std::vector<double>& u) {
+  void find_penetrated(const Problem* problem, const std::vector<double>& u) {
     together(mpi_, [&] {
       if (problem == nullptr) return;
       double largest = 0.0;
       for (const double component : u) largest = std::max(largest, std::abs(component));
-      entered_ = entered_elements(*problem, input_.model, u, entered_at_most * largest);
+      entered_ = penetrated_elements(*problem, input_.model, u, entered_at_most * largest);
     });
     entered_count_ = static_cast<std::int64_t>(entered_.size());
     mpi_.expect_all_here();

@@ -7,7 +7,7 @@
 #include "case/case_schema.hpp"
 #include "formats/printable.hpp"
 #include "mesh/plain_stream.hpp"
-#include "problem/closest_word.hpp"
+#include "problem/input_errors.hpp"
 #include "program/command_line.hpp"
 
 namespace kacanov {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "parallel/long_messages.hpp"
+#include "partition/long_messages.hpp"
 
 namespace kacanov {
 namespace {

@@ -16,7 +16,7 @@
 #include "formats/mesh_file.hpp"
 #include "formats/node_values.hpp"
 #include "formats/printable.hpp"
-#include "problem/mistakes.hpp"
+#include "problem/input_errors.hpp"
 #include "program/memory_model.hpp"
 #include "program/obstacle_files.hpp"
 

@@ -6,8 +6,8 @@
 
 #include <kacanov/error.hpp>
 #include "mesh/plain_stream.hpp"
-#include "parallel/check_part.hpp"
-#include "parallel/part_fields.hpp"
+#include "partition/check_part.hpp"
+#include "partition/part_fields.hpp"
 #include "program/case_identity.hpp"
 #include "program/check_boundary.hpp"
 #include "program/hashed_file.hpp"

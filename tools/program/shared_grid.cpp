@@ -7,7 +7,7 @@
 #include <exception>
 #include <optional>
 
-#include "parallel/long_messages.hpp"
+#include "partition/long_messages.hpp"
 
 namespace kacanov {
 namespace {

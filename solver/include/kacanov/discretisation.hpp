@@ -49,7 +49,7 @@ std::optional<double> error_of_last(std::span<const double> values);
 /// - problem: of `model`, whole; model: with its obstacles' data.
 /// - u: nodes × dim of problem.mesh; least: a length.
 /// Not collective.
-std::vector<std::int32_t> entered_elements(const Problem& problem, const Model& model,
-                                           std::span<const double> u, double least);
+std::vector<std::int32_t> penetrated_elements(const Problem& problem, const Model& model,
+                                              std::span<const double> u, double least);
 
 }  // namespace kacanov

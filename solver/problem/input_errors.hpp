@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// All that is wrong with an input, said in one go, and what a mistyped word was meant to be.
+#pragma once
+
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <kacanov/error.hpp>
+
+namespace kacanov {
+
+/// Several mistakes: the message has a line for each of the first ten.
+class InputErrors : public InputError {
+ public:
+  /// `where`: what has them, as a file's name.
+  explicit InputErrors(std::vector<std::string> mistakes, const std::string& where = "the case")
+      : InputError(text(mistakes, where)), mistakes_(std::move(mistakes)) {}
+  const std::vector<std::string>& mistakes() const noexcept { return mistakes_; }
+
+ private:
+  static std::string text(const std::vector<std::string>& mistakes, const std::string& where) {
+    constexpr std::size_t most = 10;
+    std::string all = where + " has " + std::to_string(mistakes.size()) + " mistakes";
+    all += mistakes.size() > most ? ", of which the first " + std::to_string(most) + " are:" : ":";
+    for (std::size_t i = 0; i < mistakes.size() && i < most; ++i) all += "\n  " + mistakes[i];
+    return all;
+  }
+
+  std::vector<std::string> mistakes_;
+};
+
+/// Checks go on where one of them throws an InputError.
+class Mistakes {
+ public:
+  template <class Check>
+  void in(const Check& check) {
+    try {
+      check();
+    } catch (const InputErrors& errors) {
+      for (const std::string& mistake : errors.mistakes()) note(mistake);
+    } catch (const InputError& error) {
+      note(error.what());
+    }
+  }
+  void note(const std::string& mistake) {
+    for (const std::string& other : all_)
+      if (other == mistake) return;
+    all_.push_back(mistake);
+  }
+  /// Throws an InputError where there is one, InputErrors where there are several.
+  void raise() const {
+    if (all_.size() == 1) throw InputError(all_[0]);
+    if (!all_.empty()) throw InputErrors(all_);
+  }
+
+ private:
+  std::vector<std::string> all_;
+};
+
+/// Several mistakes are those of this file.
+template <class Work>
+void naming_file(const std::string& file, const Work& work) {
+  try {
+    work();
+  } catch (const InputErrors& errors) {
+    throw InputErrors(errors.mistakes(), file.empty() ? "the case" : file);
+  }
+}
+
+/// The candidate closest to a mistyped word, or an empty string when none is near.
+std::string closest_word(const std::string& word, std::span<const std::string> candidates);
+
+}  // namespace kacanov
