@@ -1,22 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// hypre's BoomerAMG on the assembled body, and on a coarse level of the multigrid.
+// hypre's BoomerAMG, and the preconditioner of the assembled body.
 #include "amg/boomer_amg.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cstddef>
-#include <cstdint>
 #include <limits>
-#include <numeric>
-#include <span>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include <kacanov/error.hpp>
-#include <kacanov/mpi_communicator.hpp>
-#include "multigrid/rigid_motion.hpp"
-#include "reference/element_stiffness.hpp"
 
 namespace kacanov {
 namespace {
@@ -147,71 +137,6 @@ void BoomerAmg::apply(const double* r, double* z) {
   check(HYPRE_IJVectorGetValues(left_, count_, nullptr, z), "IJVectorGetValues");
 }
 
-std::size_t NodeGraph::position(std::int32_t row, std::int32_t column_node) const {
-  const auto first = column.begin() + start[row];
-  const auto last = column.begin() + start[static_cast<std::size_t>(row) + 1];
-  return static_cast<std::size_t>(std::lower_bound(first, last, column_node) - column.begin());
-}
-
-NodeGraph node_graph(const MeshView& mesh) {
-  const std::size_t npe = nodes_per_element(mesh.type);
-  const std::size_t nodes = mesh.node_count(), elements = mesh.element_count();
-
-  std::vector<std::int64_t> first(nodes + 1, 0);
-  for (const std::int32_t n : mesh.connectivity) ++first[static_cast<std::size_t>(n) + 1];
-  std::partial_sum(first.begin(), first.end(), first.begin());
-  std::vector<std::int32_t> element_of(mesh.connectivity.size());
-  auto at = first;
-  for (std::size_t e = 0; e < elements; ++e)
-    for (std::size_t a = 0; a < npe; ++a)
-      element_of[at[mesh.connectivity[e * npe + a]]++] = static_cast<std::int32_t>(e);
-
-  NodeGraph graph;
-  graph.start.reserve(nodes + 1);
-  graph.start.push_back(0);
-  std::vector<std::int32_t> row;
-  for (std::size_t n = 0; n < nodes; ++n) {
-    row.assign(1, static_cast<std::int32_t>(n));
-    for (auto k = first[n]; k < first[n + 1]; ++k) {
-      const std::size_t e = element_of[k];
-      const auto element = mesh.connectivity.subspan(e * npe, npe);
-      row.insert(row.end(), element.begin(), element.end());
-    }
-    std::sort(row.begin(), row.end());
-    graph.column.insert(graph.column.end(), row.begin(), std::unique(row.begin(), row.end()));
-    graph.start.push_back(static_cast<std::int64_t>(graph.column.size()));
-  }
-  return graph;
-}
-
-std::vector<double> assemble_blocks(const Body& body, std::span<const double> g, const NodeGraph& graph) {
-  const auto& mesh = body.mesh;
-  const std::size_t npe = nodes_per_element(mesh.type);
-  const std::size_t points = points_per_element(mesh.type);
-  const std::size_t dim = dimension(mesh.type);
-  const std::size_t width = npe * dim;
-  std::vector<double> value(graph.column.size() * dim * dim, 0.0), local(width * width);
-  for (std::size_t e = 0; e < mesh.element_count(); ++e) {
-    element_stiffness(body, e, g.subspan(e * points, points), local);
-    const auto element = mesh.connectivity.subspan(e * npe, npe);
-    for (std::size_t a = 0; a < npe; ++a)
-      for (std::size_t b = 0; b < npe; ++b) {
-        double* to = &value[graph.position(element[a], element[b]) * dim * dim];
-        for (std::size_t i = 0; i < dim; ++i)
-          for (std::size_t j = 0; j < dim; ++j) to[i * dim + j] += local[(a * dim + i) * width + b * dim + j];
-      }
-  }
-  return value;
-}
-
-void kept_secant(const Part& part, std::span<const double> kept, std::span<double> g) {
-  const Body body = part.body();
-  if (kept.empty())
-    for (std::size_t i = 0; i < g.size(); ++i) g[i] = body.law(i / (g.size() / part.element_count())).shear;
-  else
-    std::copy(kept.begin(), kept.end(), g.begin());
-}
-
 ElasticityAmg::ElasticityAmg(const Part& part)
     : part_(part),
       amg_(mpi_of(part.node_map), part.node_map.first() * part.dim(),
@@ -274,92 +199,6 @@ void ElasticityAmg::secant(std::span<double> g) const { kept_secant(part_, g_, g
 void ElasticityAmg::apply(std::span<const double> r, std::span<double> z) {
   amg_.apply(r.data(), z.data());
   part_.node_map.forward(z, part_.dim());
-}
-
-namespace {
-
-/// What rotations of the whole body about its middle are on the owned rows. Collective.
-template <int M>
-std::vector<std::vector<double>> rotations(const CoarseMatrix& matrix) {
-  std::array<double, 4> sum{};
-  for (const Vector3& c : matrix.centres) sum[0] += c[0], sum[1] += c[1], sum[2] += c[2], sum[3] += 1.0;
-  matrix.map->sum_all(std::span<double>(sum));
-  std::vector<std::vector<double>> all;
-  for (int turn = RigidMotion<M>::dim; turn < M; ++turn) {
-    std::array<double, M> motion{};
-    motion[static_cast<std::size_t>(turn)] = 1.0;
-    std::vector<double> rows(matrix.centres.size() * M, 0.0);
-    for (std::size_t i = 0; i < matrix.centres.size(); ++i) {
-      const Vector3& c = matrix.centres[i];
-      const Vector3 d{c[0] - sum[0] / sum[3], c[1] - sum[1] / sum[3], c[2] - sum[2] / sum[3]};
-      RigidMotion<M>::add_to_part(motion.data(), d.data(), 1.0 / matrix.length, &rows[i * M]);
-    }
-    all.push_back(std::move(rows));
-  }
-  return all;
-}
-
-/// The largest entry of the diagonal over all ranks.
-double largest_diagonal(const CoarseMatrix& matrix) {
-  const std::size_t motions = matrix.motions;
-  double largest = 0.0;
-  for (std::size_t k = 0; k < matrix.row.size(); ++k)
-    for (std::size_t m = 0; m < motions && matrix.row[k] == matrix.column[k]; ++m)
-      largest = std::max(largest, matrix.block[(k * motions + m) * motions + m]);
-  return matrix.map->max_all(largest);
-}
-
-class CoarseAmg final : public CoarseSolver {
- public:
-  explicit CoarseAmg(const CoarseMatrix& matrix);
-  void solve(std::span<const double> b, std::span<double> x) override { amg_.apply(b.data(), x.data()); }
-
- private:
-  BoomerAmg amg_;
-};
-
-CoarseAmg::CoarseAmg(const CoarseMatrix& matrix)
-    : amg_(mpi_of(*matrix.map), matrix.map->first() * matrix.motions,
-           static_cast<std::int64_t>(matrix.centres.size()) * matrix.motions,
-           matrix.map->total() * matrix.motions) {
-  const std::size_t motions = matrix.motions;
-  const std::int64_t first = matrix.map->first();
-  std::vector<HYPRE_Int> sizes(matrix.centres.size() * motions, 0);
-  for (const std::int64_t row : matrix.row)
-    for (std::size_t m = 0; m < motions; ++m)
-      sizes[static_cast<std::size_t>(row - first) * motions + m] += matrix.motions;
-  amg_.begin(sizes);
-  std::vector<HYPRE_BigInt> columns(motions);
-  std::vector<double> values(motions);
-  const auto global = [&](std::int64_t row, std::size_t motion) {
-    return static_cast<HYPRE_BigInt>(row * matrix.motions + static_cast<std::int64_t>(motion));
-  };
-  // Motions that boundary conditions have emptied, and rounding: a shift far below anything that moves.
-  const double largest = largest_diagonal(matrix), shift = largest > 0.0 ? 1e-10 * largest : 1.0;
-  for (std::size_t k = 0; k < matrix.row.size(); ++k)
-    for (std::size_t m = 0; m < motions; ++m) {
-      for (std::size_t n = 0; n < motions; ++n) {
-        columns[n] = global(matrix.column[k], n);
-        values[n] = matrix.block[(k * motions + m) * motions + n];
-      }
-      if (matrix.row[k] == matrix.column[k]) values[m] += shift;
-      amg_.add_row(global(matrix.row[k], m), columns, values);
-    }
-  // Measured with tet4 at g varying by 100, 107,163 unknowns: 229 iterations with the unknowns apart and no
-  // rotations, 166 with nodes together and rotations, 153 from a quarter on instead of a half, 140 there and
-  // back, 112 with two cycles; 90 with this project's levels (experiments: coarse-amg).
-  const BoomerAmgOptions options{.functions = matrix.motions,
-                                 .strong_threshold = 0.25,
-                                 .nodes_together = true,
-                                 .both_ways = true,
-                                 .cycles = 2};
-  amg_.finish(options, matrix.motions == 6 ? rotations<6>(matrix) : rotations<3>(matrix));
-}
-
-}  // namespace
-
-std::unique_ptr<CoarseSolver> make_coarse_amg(const CoarseMatrix& matrix) {
-  return std::make_unique<CoarseAmg>(matrix);
 }
 
 }  // namespace kacanov

@@ -1,48 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// hypre's BoomerAMG: a matrix of nodal blocks in hypre, the cycle on it, and two uses: for the assembled
-// body, and for a coarse level of the multigrid.
+// hypre's BoomerAMG: a matrix of nodal blocks in hypre, the cycle on it, and the preconditioner of the
+// assembled body.
 #pragma once
 
 #include <HYPRE.h>
 #include <HYPRE_IJ_mv.h>
 #include <HYPRE_parcsr_ls.h>
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <vector>
 
 #include <kacanov/mpi_communicator.hpp>
-#include <kacanov/part.hpp>
-#include <kacanov/reference.hpp>
+#include "amg/assembly.hpp"
 #include "linear/preconditioner.hpp"
-#include "multigrid/coarse_solver.hpp"
 
 namespace kacanov {
-
-/// Which local nodes share an element: compressed rows, columns ascending, the diagonal included.
-struct NodeGraph {
-  std::vector<std::int64_t> start;  ///< nodes + 1
-  std::vector<std::int32_t> column;
-
-  std::size_t rows() const noexcept { return start.size() - 1; }
-  /// Entries of a row.
-  std::size_t row_size(std::size_t row) const noexcept {
-    return static_cast<std::size_t>(start[row + 1] - start[row]);
-  }
-  /// Where (row, column) stands; it must be in the graph.
-  std::size_t position(std::int32_t row, std::int32_t column_node) const;
-};
-
-/// The graph of a rank's elements. Not collective.
-NodeGraph node_graph(const MeshView& mesh);
-
-/// Sum of the element matrices for frozen g (elements × points, a stress): one dim × dim block (row-major) an
-/// entry of the graph, which is node_graph() of this body. Rows of shared nodes hold this rank's
-/// contributions only. Not collective.
-std::vector<double> assemble_blocks(const Body& body, std::span<const double> g, const NodeGraph& graph);
-
-/// g = `kept`, what a preconditioner was set up with; mu where that is none.
-void kept_secant(const Part& part, std::span<const double> kept, std::span<double> g);
 
 /// In hypre's words.
 struct BoomerAmgOptions {
@@ -112,10 +84,5 @@ class ElasticityAmg final : public Preconditioner {
   std::vector<double> g_;
   BoomerAmg amg_;
 };
-
-/// Two V-cycles of BoomerAMG on a level over rigid motions (theory: coarse-amg): systems of six unknowns
-/// (three in 2D), coarsened row by row, with rotations of the whole body within the interpolation's reach.
-/// Throws InputError where hypre cannot number the unknowns. Collective.
-std::unique_ptr<CoarseSolver> make_coarse_amg(const CoarseMatrix& matrix);
 
 }  // namespace kacanov

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "amg/boomer_amg.hpp"
+#include "amg/assembly.hpp"
 #include "linear/preconditioner.hpp"
 
 namespace kacanov {

@@ -3,6 +3,7 @@
 #include "amg/make_preconditioner.hpp"
 
 #include "amg/boomer_amg.hpp"
+#include "amg/coarse_amg.hpp"
 #include "amg/part_multigrid.hpp"
 
 namespace kacanov {

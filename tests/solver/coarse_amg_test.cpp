@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "amg/boomer_amg.hpp"
+#include "amg/coarse_amg.hpp"
 #include "amg/part_multigrid.hpp"
 #include "chain.hpp"
 #include "linear/distributed_operator.hpp"
