@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The C interface's calls on a handle: arguments checked, then the work is Operator's or the reference's.
+// The C interface's calls on a handle: they check the arguments, then call Operator or the reference.
 #include <kacanov/kacanov.h>
 
 #include <algorithm>

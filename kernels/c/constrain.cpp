@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The C interface's constraints and penalties.
+// Constraints and penalties of the C interface.
 #include <kacanov/kacanov.h>
 
 #include <algorithm>
@@ -47,7 +47,7 @@ int kacanov_constrain(kacanov_operator* op, size_t count, const int32_t* unknown
     std::vector<std::int32_t> list;
     for (std::size_t i = 0; i < count; ++i) {
       require_index(unknown[i], op->unknowns(), "unknown[" + std::to_string(i) + "]");
-      // Rows of the identity as they are.
+      // Their rows are those of the identity already.
       const auto node = static_cast<std::int32_t>(unknown[i] / k::dimension(op->mesh.type));
       if (!std::binary_search(op->unit_nodes.begin(), op->unit_nodes.end(), node)) list.push_back(unknown[i]);
     }

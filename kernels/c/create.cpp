@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The C interface's making and unmaking of handles.
+// Creation and destruction of the C interface's handles.
 #include <kacanov/kacanov.h>
 
 #include <algorithm>
@@ -17,7 +17,8 @@ using namespace kacanov::c_api;
 
 namespace {
 
-/// Below this a thread costs more than it brings: it wakes and waits for some 5 µs.
+/// Minimum number of unknowns per thread: with fewer, waking and waiting (about 5 µs) costs more than it
+/// saves.
 constexpr std::size_t unknowns_a_thread = 3000;
 
 k::PlaneState plane_state(std::int32_t plane) {
@@ -66,7 +67,7 @@ void check_description(const kacanov_description& d) {
   check_count(d.elements, !empty, most / 10, "elements");
 }
 
-/// Fills the mesh of the handle with copies, or with the caller's arrays where they are borrowed.
+/// Fills the mesh of the handle with copies, or with the caller's arrays if they are borrowed.
 void take_mesh(const kacanov_description& d, kacanov_operator& op) {
   const k::ElementType type = element_type(d.element);
   const std::size_t dim = k::dimension(type);
@@ -103,7 +104,7 @@ void take_mesh(const kacanov_description& d, kacanov_operator& op) {
   if (d.turn_inverted != 0 && k::arrays_fault(op.mesh).empty()) turn_inverted(op.mesh, op.connectivity);
 }
 
-/// What the caller wants of nodes of no element.
+/// Applies the caller's option for nodes that belong to no element.
 void take_orphans(std::int32_t wanted, kacanov_operator& op) {
   if (wanted == KACANOV_ORPHANS_ZERO) return;
   op.unit_nodes = orphans(op.mesh);
@@ -113,7 +114,7 @@ void take_orphans(std::int32_t wanted, kacanov_operator& op) {
                                         std::to_string(op.unit_nodes.size() - 1) + " others");
 }
 
-/// Gives the handle `count` laws and makes the operator; the handle changes only if all goes well.
+/// Gives the handle `count` laws and creates the operator; on an error the handle is unchanged.
 void take_laws(kacanov_operator& op, std::size_t count, const kacanov_law* laws,
                const std::uint16_t* law_of_element, bool borrow) {
   std::vector<k::Law> checked = checked_laws(count, laws);
@@ -148,7 +149,7 @@ void take_laws(kacanov_operator& op, std::size_t count, const kacanov_law* laws,
   op.options.instruction_set = op.instruction_set;
   op.laws.swap(checked);
   op.own_laws.swap(own_laws);
-  op.own_law_of_element.swap(own);  // keeps the address `of_element` may point to
+  op.own_law_of_element.swap(own);  // keeps the address to which `of_element` may point
   op.law_of_element = of_element;
   op.single = std::move(single);
   op.single_is_current = true;  // both start with g = mu

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The C interface's application for hosts of many processes: what others wait for comes first.
+// The C interface's product for parallel hosts: interface values are computed first.
 #include <kacanov/kacanov.h>
 
 #include "c/handle.hpp"

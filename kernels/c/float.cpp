@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The C interface's calls in single precision.
+// Single-precision calls of the C interface.
 #include <kacanov/kacanov.h>
 
 #include <vector>
@@ -20,7 +20,7 @@ void require_single(const kacanov_operator& op, std::size_t n) {
   require_size(n, op.unknowns(), "n");
 }
 
-/// Runs `work` on the operator in single precision, whose g it first brings up to date.
+/// Runs `work` on the single-precision operator after updating its g.
 template <class Work>
 int on_single(kacanov_operator* op, std::size_t n, Work&& work) noexcept {
   return on(op, [&](k::Operator& fast) {
@@ -35,7 +35,7 @@ int on_single(kacanov_operator* op, std::size_t n, Work&& work) noexcept {
   });
 }
 
-/// The same with the tangent.
+/// The same for the tangent.
 template <class Work>
 int on_single_tangent(kacanov_operator* op, std::size_t n, Work&& work) noexcept {
   return on(op, [&](k::Operator& fast) {

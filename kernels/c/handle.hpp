@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The handle of the C interface, and how its functions check arguments and report faults.
+// The handle of the C interface, with checks of arguments and error reports.
 #pragma once
 
 #include <atomic>
@@ -23,38 +23,38 @@
 #include "multigrid/node_block.hpp"
 #include "reference/matrix.hpp"
 
-/// Everything a handle holds. The mesh stays for the recovery of stress and for new laws.
+/// The contents of a handle. It keeps the mesh for the recovery of stress and for new laws.
 struct kacanov_operator {
   kacanov::MeshView mesh;  ///< of the vectors below, or of the caller's arrays
   std::vector<double> coordinates;
   std::vector<std::int32_t> connectivity;
   std::vector<kacanov::Law> laws;
-  std::vector<kacanov::c_api::OwnLaw> own_laws;  ///< one a law
+  std::vector<kacanov::c_api::OwnLaw> own_laws;  ///< one per law
   std::vector<std::uint16_t> own_law_of_element;
   std::span<const std::uint16_t> law_of_element;
-  std::vector<std::int32_t> early;  ///< nodes whose values are wanted first
+  std::vector<std::int32_t> early;  ///< nodes whose values are needed first
   kacanov::OperatorOptions options;
-  std::string instruction_set;            ///< what options.instruction_set points to: as asked, then as got
+  std::string instruction_set;            ///< of options.instruction_set: as requested, later as chosen
   std::optional<kacanov::Operator> fast;  ///< empty until there are laws
-  std::optional<kacanov::FloatOperator> single;  ///< where asked for, as soon as there are laws
+  std::optional<kacanov::FloatOperator> single;  ///< created with the laws, if requested
   bool wants_single = false;
-  bool split_vectors = false;      ///< the caller's vectors have one array a component
-  bool single_is_current = false;  ///< its g is that of `fast`
+  bool split_vectors = false;      ///< the caller's vectors have one array per component
+  bool single_is_current = false;  ///< its g equals that of `fast`
   bool has_tangent = false;
-  bool single_has_tangent = false;         ///< that of `fast`
-  std::vector<std::int32_t> unit_nodes;    ///< nodes of no element whose rows are those of the identity
+  bool single_has_tangent = false;         ///< its tangent equals that of `fast`
+  std::vector<std::int32_t> unit_nodes;    ///< nodes that belong to no element and have rows of the identity
   std::vector<std::int32_t> constrained;   ///< unknowns, ascending
   std::vector<kacanov::NodeBlock> blocks;  ///< added to B and B_T
-  std::uint64_t laws_set = 0;              ///< how often
+  std::uint64_t laws_set = 0;              ///< number of times that laws were set
   std::atomic<int> owners = 1;             ///< the caller and the multigrids
-  kacanov::reference::NodeGraph graph;     ///< of the matrix; empty until it is asked for
-  std::vector<double> image;               ///< of kacanov_apply_add; empty until it is called
-  std::atomic<bool> busy = false;          ///< a call is at work
+  kacanov::reference::NodeGraph graph;     ///< of the matrix; empty until needed
+  std::vector<double> image;               ///< of kacanov_apply_add; empty until needed
+  std::atomic<bool> busy = false;          ///< true during a call
   char message[512] = "";
 
   std::size_t unknowns() const noexcept { return mesh.coordinates.size(); }
   kacanov::Body body() const noexcept { return {mesh, laws, law_of_element}; }
-  /// Whether the operator's own members know all laws.
+  /// Whether the callbacks of user-defined laws are needed.
   bool has_own_laws() const noexcept {
     for (const auto& own : own_laws)
       if (own.evaluate != nullptr) return true;
@@ -68,12 +68,12 @@ inline void copy_message(const char* text, char* to, std::size_t size) noexcept 
   if (to != nullptr && size > 0) std::snprintf(to, size, "%s", text);
 }
 
-/// Frees the handle once nobody has it any more: it lives as long as its multigrids.
+/// Releases one owner, and frees the handle after the last one: it lives as long as its multigrids.
 inline void let_go(kacanov_operator* op) noexcept {
   if (op != nullptr && op->owners.fetch_sub(1, std::memory_order_acq_rel) == 1) delete op;
 }
 
-/// Runs `work`; what it throws becomes a code and a message.
+/// Runs `work`; converts exceptions to a code and a message.
 template <class Work>
 int guarded(char* message, std::size_t size, Work&& work) noexcept {
   try {
@@ -113,7 +113,7 @@ inline void require_size(std::size_t got, std::size_t expected, const char* name
                                         std::to_string(got));
 }
 
-/// Runs `work` unless a call is at work on the handle; see guarded(). The message is left to that call.
+/// Runs `work` with guarded() unless another call is using the handle, whose message is then left alone.
 template <class Handle, class Work>
 int alone(Handle* op, Work&& work) noexcept {
   if (op == nullptr) return KACANOV_ERROR_NULL;
@@ -132,7 +132,7 @@ inline void require_tangent(const kacanov_operator& op) {
     throw Fault(KACANOV_ERROR_STATE, "no tangent is frozen yet: kacanov_update_tangent first");
 }
 
-/// The same on a handle that has laws.
+/// The same for a handle with laws.
 template <class Work>
 int on(kacanov_operator* op, Work&& work) noexcept {
   return alone(op, [&] {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From the laws of the C interface to ours, checked.
+// Checks laws of the C interface and converts them to Law.
 #include "c/laws.hpp"
 
 #include <cstdint>
@@ -24,7 +24,7 @@ Law::Form form_of(const kacanov_law& from, const std::string& where) {
     case KACANOV_SATURATING: return laws::Saturating{from.x0, from.q};
     case KACANOV_TABLE: return table_of(from, where);
     case KACANOV_RAMBERG_OSGOOD: return laws::RambergOsgood{from.x0, from.q, from.n};
-    case KACANOV_USER: return laws::Linear{};  // what it is until the callback is asked
+    case KACANOV_USER: return laws::Linear{};  // until the callback is called
   }
   throw Fault(KACANOV_ERROR_LAW, where + "kind: there is no law " + std::to_string(from.kind));
 }

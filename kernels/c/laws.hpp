@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From the laws of the C interface to ours, checked.
+// Checks laws of the C interface and converts them to Law.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 
 namespace kacanov::c_api {
 
-/// A bad argument: the code to return, and the message.
+/// An invalid argument: the code to return, and the message.
 class Fault : public std::runtime_error {
  public:
   Fault(kacanov_code code, const std::string& message) : std::runtime_error(message), code_(code) {}
@@ -24,22 +24,22 @@ class Fault : public std::runtime_error {
   kacanov_code code_;
 };
 
-/// `count` laws one after another, each of the size the first says it has. Throws Fault that names the law by
-/// its index and the parameter at fault.
+/// Converts `count` consecutive laws, each of the size given by the first one. Throws Fault, which names the
+/// index of the law and the invalid parameter.
 std::vector<Law> checked_laws(std::size_t count, const kacanov_law* laws);
 
-/// What a law of the caller's own is besides k0 and μ; of the others `evaluate` is null.
+/// The part of a user-defined law besides k0 and μ; `evaluate` is null for other laws.
 struct OwnLaw {
   kacanov_law_callback evaluate = nullptr;
   void* data = nullptr;
   bool parallel = false;
-  double yield = 0.0;  ///< strain beyond which it is plastic; 0: never
+  double yield = 0.0;  ///< strain beyond which it is plastic; 0: none
 };
 
-/// One a law of an array that checked_laws() has passed.
+/// One per law of an array that checked_laws() has accepted.
 std::vector<OwnLaw> own_laws(std::size_t count, const kacanov_law* laws);
 
-/// Throws Fault for the first element whose law does not exist.
+/// Throws Fault for the first element with an invalid law.
 void check_law_of_element(std::span<const std::uint16_t> law_of_element, std::size_t laws);
 
 }  // namespace kacanov::c_api

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The C interface's matrix: the plain assembly, with blocks and rows of the identity where they are asked
-// for.
+// The C interface's matrix: plain assembly, with node blocks and rows of the identity.
 #include <kacanov/kacanov.h>
 
 #include <algorithm>
@@ -20,12 +19,12 @@ std::size_t entries(kacanov_operator& op) {
   return static_cast<std::size_t>(k::reference::entries(op.graph, k::dimension(op.mesh.type)));
 }
 
-/// Adds the blocks to the values, and makes rows and columns of the identity.
+/// Adds the node blocks to the values, and sets rows and columns of the identity.
 void matrix_rows(const kacanov_operator& op, std::span<double> value) {
   const std::size_t dim = k::dimension(op.mesh.type);
   const auto& [first, neighbour] = op.graph;
   std::vector<double> diagonal(op.unknowns() * dim, 0.0);
-  block_rows(op, diagonal);  // what is added, and ones
+  block_rows(op, diagonal);  // added blocks, and ones
   std::vector<char> unit(op.unknowns(), 0);
   each_unit_row(op, [&](std::size_t i) { unit[i] = 1; });
   for (std::size_t node = 0; node + 1 < first.size(); ++node) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Orders of the table of cells; a mirror image swaps the first two reference coordinates.
+// Node orders from the table of cells; inverted elements are reflected by swapping two reference coordinates.
 #include "c/mesh_input.hpp"
 
 #include <algorithm>
@@ -42,7 +42,7 @@ std::vector<std::int8_t> node_order(const char* name, ElementType type) {
       throw Fault(KACANOV_ERROR_VALUE,
                   "node_order: deal.II's cells have their vertices only, not the nodes of " +
                       std::string(facts.name));
-    return list(facts.basix_order);  // lexicographic, both of them
+    return list(facts.basix_order);  // both are lexicographic
   }
   throw Fault(KACANOV_ERROR_VALUE, "node_order: expected gmsh, vtk, basix or dealii, got '" +
                                        std::string(wanted.substr(0, 40)) + "'");

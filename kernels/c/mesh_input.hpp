@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From the caller's element nodes, in whatever order and sense, to ours; and the nodes of no element.
+// Conversion of the caller's element nodes, in any order and orientation; and nodes that belong to no
+// element.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +12,14 @@
 
 namespace kacanov::c_api {
 
-/// The caller's node k of an element is ours of number order[k]; empty where they are the same. Throws Fault
-/// for a name that is none, and for an order that the element does not have.
+/// Returns the permutation of nodes: the caller's node k of an element is node order[k] here; empty for the
+/// identity. Throws Fault for an unknown name, and for an order that does not exist for the element.
 std::vector<std::int8_t> node_order(const char* name, ElementType type);
 
-/// Renumbers the nodes of elements that are the wrong way round everywhere. Indices have been checked.
+/// Renumbers the nodes of elements that are inverted at all points. Indices must have been checked.
 void turn_inverted(const MeshView& mesh, std::span<std::int32_t> connectivity);
 
-/// Nodes of no element, ascending.
+/// Nodes that belong to no element, ascending.
 std::vector<std::int32_t> orphans(const MeshView& mesh);
 
 }  // namespace kacanov::c_api

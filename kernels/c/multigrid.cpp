@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The C interface's multigrid: the solver's, for one process.
+// The C interface's multigrid: that of the solver, for one process.
 #include "c/multigrid.hpp"
 
 #include <kacanov/kacanov.h>
@@ -20,7 +20,7 @@ using namespace kacanov::c_api;
 
 namespace {
 
-/// Nodes of no element couple to nothing, and would be aggregates of their own.
+/// Leaves out nodes that belong to no element: without couplings, each would become an aggregate.
 void take_mesh(kacanov_multigrid& multigrid) {
   const k::MeshView& mesh = multigrid.op->mesh;
   const std::size_t dim = k::dimension(mesh.type);
@@ -64,7 +64,7 @@ k::MultigridBody body_of(const kacanov_multigrid& multigrid) {
           multigrid.used.empty() ? &*multigrid.op->fast : nullptr};
 }
 
-/// Constraints, in the multigrid's numbering, and where z = r.
+/// Sets constraints in the multigrid's numbering, and the unknowns with z = r.
 void take_constraints(kacanov_multigrid& multigrid) {
   const kacanov_operator& op = *multigrid.op;
   const std::size_t dim = k::dimension(op.mesh.type);
@@ -81,7 +81,7 @@ void take_constraints(kacanov_multigrid& multigrid) {
   }
 }
 
-/// For what the operator is now. The caller has both handles.
+/// Sets up for the present operator. The caller must have locked both handles.
 void set_up(kacanov_multigrid& multigrid) {
   const kacanov_operator& op = *multigrid.op;
   const std::size_t dim = k::dimension(op.mesh.type);
@@ -133,7 +133,7 @@ void k::c_api::apply_multigrid(kacanov_multigrid& multigrid, std::span<const dou
     most[share] = largest;
   });
   const double largest = *std::max_element(most.begin(), most.end());
-  // Powers of two, which cost no digit: single precision has few exponents.
+  // Powers of two are exact; single precision has a small exponent range.
   const bool usual = largest > 1e-290 && largest < 1e290;
   const double in = usual ? std::exp2(-std::ilogb(largest)) : 1.0, out = 1.0 / in / multigrid.unit;
   if (multigrid.used.empty()) {

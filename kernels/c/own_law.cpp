@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Laws of the caller's own: what their callbacks say at the points of a handle's body.
+// User-defined laws: values from their callbacks at the points of a handle's body.
 #include "c/own_law.hpp"
 
 #include <algorithm>
@@ -13,10 +13,10 @@
 namespace kacanov::c_api {
 namespace {
 
-/// Points of a batch: what it holds stays in a core's own cache.
+/// Number of points per batch: its arrays fit in a core's own cache.
 constexpr std::size_t most_points = 4096;
 
-/// The points of the elements of one law, counted from 0 on.
+/// The points of the elements of one law, numbered from 0.
 class PointsOfLaw {
  public:
   PointsOfLaw(const kacanov_operator& op, std::size_t law)
@@ -32,7 +32,7 @@ class PointsOfLaw {
     return all_ ? static_cast<std::int32_t>(k / points_) : elements_[k / points_];
   }
   std::int32_t point(std::size_t k) const { return static_cast<std::int32_t>(k % points_); }
-  /// Its place among the points of all elements.
+  /// Index among the points of all elements.
   std::size_t place(std::size_t k) const { return element(k) * points_ + k % points_; }
 
  private:
@@ -41,7 +41,7 @@ class PointsOfLaw {
   std::vector<std::int32_t> elements_;
 };
 
-/// The arrays that a callback sees.
+/// The arrays of one callback call.
 struct Batch {
   std::vector<double> x, g, slope, energy;
   std::vector<std::int32_t> element, point;
@@ -64,7 +64,7 @@ void check(const Batch& batch, std::size_t law, const PointValues& wanted) {
   }
 }
 
-/// Asks the callback for the points begin … end − 1 of its law.
+/// Calls the callback for the points begin … end − 1 of its law.
 void ask(const OwnLaw& own, std::size_t law, const PointsOfLaw& points, std::size_t begin, std::size_t end,
          PointValues& values) {
   const std::size_t count = end - begin;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Laws of the caller's own: what their callbacks say at the points of a handle's body.
+// User-defined laws: values from their callbacks at the points of a handle's body.
 #pragma once
 
 #include <span>
@@ -11,7 +11,7 @@ struct kacanov_operator;
 
 namespace kacanov::c_api {
 
-/// What the laws say at a displacement, elements × points.
+/// Values of the laws at a displacement, elements × points.
 struct PointValues {
   std::vector<double> x, secant, derivative, energy;
   PointModuli moduli() const { return {secant, derivative, energy}; }
@@ -21,8 +21,8 @@ struct WantedValues {
   bool derivative = false, energy = false;
 };
 
-/// Asks every law, own or not, at u. Throws Fault where a callback says that it has failed, or says what no
-/// modulus can be.
+/// Evaluates every law, user-defined or not, at u. Throws Fault if a callback returns an error or an invalid
+/// modulus.
 PointValues ask_laws(kacanov_operator& op, std::span<const double> u, WantedValues wanted);
 
 }  // namespace kacanov::c_api

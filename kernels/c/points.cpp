@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The C interface's quadrature points: where they are, strains there, and means over the elements.
+// The C interface's quadrature points: positions, strains, and averages over elements.
 #include <kacanov/kacanov.h>
 
 #include <algorithm>
@@ -15,13 +15,13 @@ using namespace kacanov::c_api;
 
 namespace {
 
-/// An array of the caller's; empty where it is left out.
+/// An optional array of the caller; empty if it is null.
 template <class T>
 std::span<T> optional_span(T* data, std::size_t size) {
   return {data, data == nullptr ? 0 : size};
 }
 
-/// An element of a law of the caller's own is plastic where any of its points is beyond the strain he named.
+/// Marks an element of a user-defined law as plastic if any of its points is beyond the law's x0.
 void mark_plastic(const kacanov_operator& op, const PointValues& values, std::span<std::uint8_t> plastic) {
   const std::size_t points = k::points_per_element(op.mesh.type);
   const k::Body body = op.body();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the caller has made of the operator's rows: the identity where it is constrained or a node belongs to
-// no element, blocks of nodes added elsewhere.
+// The caller's changes to the operator's rows: the identity at constraints and at nodes without elements, and
+// added node blocks.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace kacanov::c_api {
 
-/// Calls each(i) for every unknown whose row is that of the identity.
+/// Calls each(i) for every unknown with a row of the identity.
 template <class Each>
 void each_unit_row(const kacanov_operator& op, Each&& each) {
   const std::size_t dim = dimension(op.mesh.type);
@@ -20,8 +20,7 @@ void each_unit_row(const kacanov_operator& op, Each&& each) {
   for (const std::int32_t unknown : op.constrained) each(static_cast<std::size_t>(unknown));
 }
 
-/// `vectors` input vectors that are zero where the operator is constrained: x itself, or else a copy that
-/// `room` holds.
+/// Returns `vectors` input vectors with zeros at constrained unknowns: x itself, or a copy in `room`.
 template <class Real>
 std::span<const Real> unconstrained(const kacanov_operator& op, std::span<const Real> x,
                                     std::vector<Real>& room) {
@@ -36,7 +35,7 @@ std::span<const Real> unconstrained(const kacanov_operator& op, std::span<const 
   return room;
 }
 
-/// y += blocks · x; returns what that adds to xᵀ y.
+/// y += blocks · x; returns the contribution to xᵀ y.
 template <class Real>
 double add_blocks(const kacanov_operator& op, std::span<const Real> x, std::span<Real> y) {
   const std::size_t dim = dimension(op.mesh.type);
@@ -53,8 +52,8 @@ double add_blocks(const kacanov_operator& op, std::span<const Real> x, std::span
   return sum;
 }
 
-/// y = A x for one or more vectors; `product(x, y)` has y = B x or B_T x, and returns xᵀ y if that is asked
-/// for, which then is returned for all of A (of one vector).
+/// y = A x for one or more vectors; `product(x, y)` computes y = B x or B_T x and may return xᵀ y, for one
+/// vector. Returns that value for all of A.
 template <class Real, class Product>
 double apply_rows(const kacanov_operator& op, std::span<const Real> x, std::span<Real> y,
                   const Product& product) {
@@ -65,7 +64,7 @@ double apply_rows(const kacanov_operator& op, std::span<const Real> x, std::span
   for (std::size_t v = 0; v < x.size(); v += n) {
     dot += add_blocks(op, in.subspan(v, n), y.subspan(v, n));
     each_unit_row(op, [&](std::size_t i) {
-      // What the product and the blocks have there is not of A.
+      // Replaces the contribution of product and blocks by that of the identity.
       dot += (static_cast<double>(x[v + i]) * static_cast<double>(x[v + i])) -
              static_cast<double>(in[v + i]) * static_cast<double>(y[v + i]);
       y[v + i] = x[v + i];

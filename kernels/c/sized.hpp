@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Structs of callers built against other versions of the header: read and written by the size they say they
-// have.
+// Reads and writes structs of callers built with other versions of the header, by their struct_size.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +11,8 @@
 
 namespace kacanov::c_api {
 
-/// Throws Fault unless `size`, the first field of a caller's struct, is at least that of the first version
-/// that made the promise.
+/// Throws Fault unless `size`, the first field of a caller's struct, is at least the size in the first
+/// version with struct_size.
 inline void require_struct_size(std::size_t size, std::size_t least, const std::string& where,
                                 const char* type) {
   if (size < least)
@@ -25,8 +24,8 @@ inline void require_struct_size(std::size_t size, std::size_t least, const std::
                 where + "struct_size: expected sizeof(" + type + "), got " + std::to_string(size));
 }
 
-/// The caller's struct at `from`: what it lacks is zero. Throws Fault for the sizes above, and where a newer
-/// caller asks for something by a field that is not known here.
+/// Returns the caller's struct at `from`, with zeros in missing fields. Throws Fault for the sizes above, and
+/// if a newer caller sets a field that is unknown here.
 template <class Struct>
 Struct read_sized(const void* from, std::size_t least, const std::string& where, const char* type) {
   const auto* bytes = static_cast<const unsigned char*>(from);
@@ -43,8 +42,8 @@ Struct read_sized(const void* from, std::size_t least, const std::string& where,
   return to;
 }
 
-/// Writes as much of `from` as the caller's struct has room for; the caller's size stays, and what a newer
-/// caller's struct has beyond is set to zero.
+/// Writes `from` to the caller's struct, as far as its size allows; keeps that size, and sets fields of a
+/// newer caller beyond this version to zero.
 template <class Struct>
 void write_sized(const Struct& from, Struct* to, std::size_t least, const std::string& where,
                  const char* type) {
@@ -56,15 +55,14 @@ void write_sized(const Struct& from, Struct* to, std::size_t least, const std::s
   if (size > sizeof(Struct)) std::memset(bytes + sizeof(Struct), 0, size - sizeof(Struct));
 }
 
-// What the structs of version 0.2 had, the first with struct_size: fields that come later are not counted
-// here.
+// Sizes of the structs in version 0.2, the first with struct_size; fields added later are not included.
 constexpr std::size_t law_bytes = offsetof(kacanov_law, reserved) + sizeof(std::int32_t),
                       description_bytes = offsetof(kacanov_description, orphans) + sizeof(std::int32_t),
                       fields_bytes = offsetof(kacanov_fields, plastic) + sizeof(std::uint8_t*),
                       information_bytes =
                           offsetof(kacanov_information, instruction_set) + sizeof(const char*);
 
-// Likewise of those that came later.
+// The same for structs added later.
 constexpr std::size_t multigrid_options_bytes =
                           offsetof(kacanov_multigrid_options, aggregate) + sizeof(double),
                       multigrid_information_bytes =

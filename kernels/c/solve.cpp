@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The C interface's conjugate gradients: the solver's, on the threads of one process.
+// The C interface's conjugate gradients: those of the solver, on the threads of one process.
 #include <kacanov/kacanov.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ using namespace kacanov::c_api;
 
 namespace {
 
-/// Vectors that are zero where rows are those of the identity; see conjugate_gradients().
+/// Space of vectors that are zero at rows of the identity; see conjugate_gradients().
 class FreeUnknowns {
  public:
   explicit FreeUnknowns(const kacanov_operator& op) : threads_(op.options.threads) {
@@ -85,7 +85,7 @@ Wanted wanted_of(const kacanov_cg_options* options) {
   return wanted;
 }
 
-/// 1 / diagonal, and 1 where that is no positive number.
+/// Returns 1 / diagonal, and 1 where the diagonal is not a positive number.
 std::vector<double> inverse_diagonal(const kacanov_operator& op, bool tangent) {
   std::vector<double> d(op.unknowns());
   if (tangent)
@@ -111,7 +111,7 @@ void solve(kacanov_operator& op, kacanov_multigrid* multigrid, std::span<const d
     for (std::size_t i = begin; i < end; ++i) work.residual[i] = b[i] - work.residual[i];
   });
   each_unit_row(op, [&](std::size_t i) { x[i] = b[i]; });
-  // Directions are zero where rows are those of the identity: nothing has to be made so.
+  // Directions are already zero at rows of the identity.
   const auto apply = [&](std::span<const double> p, std::span<double> q) {
     const double dot = product(p, q);
     return dot + add_blocks(op, p, q);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Vectors that come in through the C interface: of the right length, finite where they are displacements.
+// Vectors passed to the C interface: checks of length and, for displacements, of finite values.
 #pragma once
 
 #include <cmath>
@@ -19,8 +19,8 @@ inline void require_finite(std::span<const double> values, const char* name) {
       throw Fault(KACANOV_ERROR_VALUE, std::string(name) + "[" + std::to_string(i) + "] is not finite");
 }
 
-/// The vectors of one call: the caller's arrays where they are, or, if he has one array a component, copies
-/// that are interleaved. What comes out is handed to him when it ends.
+/// The vectors of one call: the caller's arrays in place, or interleaved copies if the caller has one array
+/// per component. The destructor copies outputs back.
 class CallVectors {
  public:
   explicit CallVectors(const kacanov_operator& op) : op_(op) {}
@@ -31,7 +31,7 @@ class CallVectors {
   CallVectors(const CallVectors&) = delete;
   CallVectors& operator=(const CallVectors&) = delete;
 
-  /// `size` is that of one vector or of several, one after another.
+  /// `size`: total length of one or more consecutive vectors.
   template <class Real>
   std::span<const Real> in(const Real* data, std::size_t size, const char* name) {
     const auto given = input(data, size, name);
@@ -46,7 +46,7 @@ class CallVectors {
     room.values.resize(size);
     return room.values;
   }
-  /// The same for a vector that is read, too.
+  /// The same for a vector that is also read.
   template <class Real>
   std::span<Real> in_out(Real* data, std::size_t size, const char* name) {
     const auto given = output(data, size, name);
@@ -55,7 +55,7 @@ class CallVectors {
     rooms(data).back().to = given;
     return {rooms(data).back().values.data(), values.size()};
   }
-  /// A displacement: of the right length and finite.
+  /// Returns a displacement after checking its length and that its entries are finite.
   std::span<const double> state(std::size_t n, const double* u) {
     require_size(n, op_.unknowns(), "n");
     const auto given = input(u, n, "u");
@@ -67,7 +67,7 @@ class CallVectors {
   template <class Real>
   struct Room {
     std::vector<Real> values;  ///< interleaved
-    std::span<Real> to;        ///< the caller's array; empty for what only comes in
+    std::span<Real> to;        ///< the caller's array; empty for inputs
   };
   template <class Real>
   std::deque<Room<Real>>& rooms(const Real*) {
@@ -76,7 +76,7 @@ class CallVectors {
     else
       return floats_;
   }
-  /// Calls each(interleaved, split) for the places of every entry of vectors of this total size.
+  /// Calls each(interleaved, split) with the two indices of each entry of vectors with this total size.
   template <class Each>
   void for_entries(std::size_t size, const Each& each) const {
     const std::size_t dim = dimension(op_.mesh.type), nodes = op_.mesh.node_count(), n = nodes * dim;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The run-time table of cells, made of the structs of their files.
+// The run-time table of cells, built from the cell structs.
 #include <kacanov/cells.hpp>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 using elements::Bodies;
 using elements::Others;
 
-/// `rows` with each one padded by zeros.
+/// `rows` padded by zeros.
 template <std::size_t dim, std::size_t rows>
 constexpr auto padded(const std::array<std::array<double, dim>, rows>& from) {
   std::array<std::array<double, 3>, rows> to{};
@@ -30,7 +30,7 @@ constexpr auto in_a_row(const std::array<std::array<std::int8_t, width>, rows>& 
   return to;
 }
 
-/// Arrays that a struct gives in another form than the table; empty where it gives none.
+/// Arrays that the struct stores in another form than the table; empty if it has none.
 template <class E>
 struct Arrays {
   static constexpr auto reference = [] {
@@ -69,7 +69,7 @@ void copy_gradients(const double* xi, double* d) {
   std::ranges::copy(E::gradients(xi), d);
 }
 
-/// The place of E in the table.
+/// Index of E in the table.
 template <class E, std::size_t i = 0>
 constexpr std::size_t place() {
   using Cells = decltype(std::tuple_cat(Bodies{}, Others{}));

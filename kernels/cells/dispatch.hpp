@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The list of element types, and the way from a type known at run time to its struct.
+// The list of element types, and the dispatch from a run-time type to its struct.
 #pragma once
 
 #include <tuple>
@@ -13,12 +13,12 @@
 
 namespace kacanov::elements {
 
-/// What bodies can be made of, in the order of ElementType.
+/// Cells of bodies, in the order of ElementType.
 using Bodies = std::tuple<Tri3, Tet4, Tet10, Hex8, Quad4>;
-/// What else meshes hold.
+/// Other cells in mesh files.
 using Others = std::tuple<Point1, Line2, Line3, Tri6>;
 
-/// Calls `function(E{})` with the struct of `type`. Throws std::invalid_argument for a number that is none.
+/// Calls `function(E{})` with the struct of `type`. Throws std::invalid_argument for an invalid number.
 template <std::size_t i = 0, class Function>
 decltype(auto) dispatch(ElementType type, Function&& function) {
   using E = std::tuple_element_t<i, Bodies>;

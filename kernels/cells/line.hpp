@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Points and lines: facets of flat bodies, and what mesh files hold besides bodies.
+// Points and lines: facets of 2D bodies, and other cells in mesh files.
 #pragma once
 
 #include "cells/tensor.hpp"
@@ -24,7 +24,7 @@ struct Line2 {
   static constexpr auto node() { return tensor_points<Line2>(1.0); }
 };
 
-/// Boundary of flat pieces in files of quadratic tetrahedra: its nodes count, nothing else.
+/// Boundary of flat pieces in files of quadratic tetrahedra; only its node count matters.
 struct Line3 {
   static constexpr std::string_view name = "line3", basix = "interval";
   static constexpr int gmsh = 8, vtk = 21, dim = 1, order = 2, nodes = 3, corners = 2;

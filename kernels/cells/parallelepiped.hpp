@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hexahedra that are parallelepipeds: one Jacobian serves all their points.
+// Hexahedra that are parallelepipeds: one Jacobian for all their points.
 #pragma once
 
 #include <array>
@@ -9,10 +9,10 @@
 
 namespace kacanov::elements {
 
-/// Products of the slopes of hex8 by ξ.
+/// Products of the derivatives of hex8's shape functions with respect to ξ.
 namespace hex8_slopes {
 
-/// Upper triangles by rows, of all nodes.
+/// Upper triangles, row by row, for all nodes.
 using Products = std::array<std::array<double, 6>, 8>;
 constexpr std::array<double, 6> product_of(const double* d) {
   return {d[0] * d[0], d[0] * d[1], d[0] * d[2], d[1] * d[1], d[1] * d[2], d[2] * d[2]};
@@ -32,7 +32,7 @@ inline constexpr Products of_all = [] {
       for (std::size_t k = 0; k < 6; ++k) sum[a][k] += here[a][k];
   return sum;
 }();
-/// Of means over the points, counted at each of them.
+/// Products of the averages over the points, times the number of points.
 inline constexpr Products of_mean = [] {
   Products all{};
   for (std::size_t a = 0; a < 8; ++a) {
@@ -70,11 +70,11 @@ struct Parallelepiped {
       for (double& v : row) v *= scale;
   }
 
-  /// Adds what Point::add_diagonal_block() does for all nodes and points_of(), the points' g given.
+  /// Adds the sum of Point::add_diagonal_block() over points_of(), for all nodes; `g`: one value per point.
   void add_diagonal_blocks(double bulk, bool mean_dilatation, const std::array<double, 8>& g,
                            double (&block)[8][9]) const {
     for (std::size_t a = 0; a < 8; ++a) {
-      // Σ g ∂N ∂Nᵀ by ξ, and of what k0 is to see.
+      // Σ g ∂N ∂Nᵀ in ξ, and the products that k0 multiplies.
       std::array<double, 6> shear{}, volumetric{};
       for (std::size_t q = 0; q < 8; ++q)
         for (std::size_t k = 0; k < 6; ++k) shear[k] += g[q] * hex8_slopes::of_point[q][a][k];
@@ -88,7 +88,7 @@ struct Parallelepiped {
   }
 
  private:
-  /// volume times inverse m inverseᵀ.
+  /// Returns volume times inverse m inverseᵀ.
   std::array<double, 6> in_space(const std::array<double, 6>& m) const {
     double half[3][3];
     for (std::size_t i = 0; i < 3; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One quadrature point of an element in space: gradients of its shape functions and its volume.
+// One quadrature point of an element in space: shape function gradients and volume.
 #pragma once
 
 #include <array>
@@ -27,9 +27,9 @@ Nodal<E> coordinates_of(const MeshView& mesh, std::size_t element) {
 template <class E>
 struct Point {
   double gradient[E::nodes][E::dim];
-  double dilatation[E::nodes][E::dim];  ///< of k0 and tr ε: their derivatives, or the means of these (B-bar)
-  double hoop[E::nodes];                ///< N/r in an axisymmetric body: ε_zz of u_x; 0 in others
-  double volume;  ///< that belongs to the point; not positive where the element is inverted
+  double dilatation[E::nodes][E::dim];  ///< the same of the tr ε that k0 acts on: element averages with B-bar
+  double hoop[E::nodes];                ///< N/r in an axisymmetric body, ε_zz per u_x; 0 in others
+  double volume;                        ///< volume of the point; not positive where the element is inverted
 
   Point() = default;
   /// theory: axisymmetry
@@ -43,7 +43,8 @@ struct Point {
           j[i][k] = x[at(k + 1, i)] - x[at(0, i)];
         } else {
           j[i][k] = 0.0;
-          // By sides: a body far from the origin keeps its digits (theory: elements).
+          // Differences of coordinates keep their digits if the body lies far from the origin (theory:
+          // elements).
           for (int a = 1; a < E::nodes; ++a) j[i][k] += (x[at(a, i)] - x[at(0, i)]) * d[at(a, k)];
         }
       }
@@ -77,11 +78,11 @@ struct Point {
       if (plane == PlaneState::axisymmetric) turn_round(x, q);
   }
 
-  /// tr ε of a unit displacement of node a along i, at the point.
+  /// tr ε at the point for a unit displacement of node a along i.
   double trace(int a, int i) const { return gradient[a][i] + (i == 0 ? hoop[a] : 0.0); }
 
-  /// Adds the block (dim × dim) node a has on the diagonal of B: volume [k0 ∇ᵢ∇ⱼ + g (∇ᵢ∇ⱼ/3 + |∇|² δᵢⱼ)],
-  /// and what its hoop strain adds.
+  /// Adds the dim × dim diagonal block of node a in B: volume [k0 ∇ᵢ∇ⱼ + g (∇ᵢ∇ⱼ/3 + |∇|² δᵢⱼ)], with the
+  /// terms of the hoop strain.
   template <class Real>
   void add_diagonal_block(int a, double bulk, double g, Real* block) const {
     const double *d = gradient[a], *mean = dilatation[a], k = volume * bulk, s = volume * g,
@@ -92,7 +93,7 @@ struct Point {
       for (int j = 0; j < E::dim; ++j)
         block[i * E::dim + j] +=
             static_cast<Real>(k * mean[i] * mean[j] + third * d[i] * d[j] + (i == j ? s * square : 0.0));
-    if constexpr (E::dim == 2) {  // 2 g ε:ε − 2/3 g (tr ε)² of the strains with h = N/r besides
+    if constexpr (E::dim == 2) {  // adds the terms with h = N/r of 2 g ε:ε − 2/3 g (tr ε)²
       const double h = hoop[a];
       block[0] += static_cast<Real>(s * h * (4.0 / 3.0 * h - 4.0 / 3.0 * d[0]));
       block[1] -= static_cast<Real>(2.0 * third * h * d[1]);
@@ -100,8 +101,8 @@ struct Point {
     }
   }
 
-  /// Adds what the tangent's rank-one term `factor` d ⊗ d gives node a on the diagonal: volume factor
-  /// (d∇)(d∇)ᵀ. `d` is symmetric, without trace: xx yy zz xy yz zx.
+  /// Adds the diagonal block of node a in the tangent's rank-one term `factor` d ⊗ d: volume factor
+  /// (d∇)(d∇)ᵀ. `d` is symmetric and traceless: xx yy zz xy yz zx.
   template <class Real>
   void add_rank_one_block(int a, double factor, const std::array<double, 6>& d, Real* block) const {
     constexpr int entry[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
@@ -130,7 +131,7 @@ struct Point {
 };
 
 /// All points of an element. With `mean_dilatation` (the selective B-bar method of Hughes, 1980) tr ε is its
-/// mean over the element, so that k0 puts one condition on it instead of one a point.
+/// average over the element, so that k0 imposes one condition per element instead of one per point.
 template <class E>
 std::array<Point<E>, E::points> points_of(const Nodal<E>& x, bool mean_dilatation,
                                           PlaneState plane = PlaneState::strain) {

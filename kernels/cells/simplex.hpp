@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shape functions of simplices from barycentric coordinates, and what all cells' files are written with.
+// Shape functions of simplices from barycentric coordinates, and small types shared by all cells.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ namespace kacanov::elements {
 
 using Triple = std::array<std::int8_t, 3>;
 
-/// Nodes as they come.
+/// The identity permutation of the nodes.
 template <int nodes>
 inline constexpr auto in_order = [] {
   std::array<std::int8_t, nodes> order{};
@@ -41,7 +41,7 @@ constexpr std::array<double, (dim + 1) * dim> barycentric_slopes() {
   return d;
 }
 
-/// Lₐ(2Lₐ − 1) at the corners, 4 LₐL_b at the middle of edge ab.
+/// Lₐ(2Lₐ − 1) at the corners, 4 LₐL_b at the midpoint of edge ab.
 template <class E>
 constexpr std::array<double, E::nodes> quadratic_values(const double* xi) {
   const auto l = barycentric<E::dim>(xi);
@@ -67,7 +67,7 @@ constexpr std::array<double, E::nodes * E::dim> quadratic_gradients(const double
   return d;
 }
 
-/// Corners at the origin and the unit points, then the middles of the edges.
+/// Corners at the origin and the unit points, then the midpoints of the edges.
 template <class E>
 constexpr std::array<std::array<double, E::dim>, E::nodes> simplex_nodes() {
   std::array<std::array<double, E::dim>, E::nodes> x{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tetrahedra with straight sides: one Jacobian serves all their points.
+// Tetrahedra with straight edges: one Jacobian for all their points.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace kacanov::elements {
 
-/// Whether the nodes on edges lie in the middle of them, to rounding of the edge and of the coordinates. By
-/// differences, which are exact.
+/// Returns whether the mid-side nodes are the midpoints of their edges, up to rounding of the edge and of the
+/// coordinates. Computed from differences, which are exact.
 inline bool has_straight_sides(const Nodal<Tet10>& x) {
   for (const CellEdge& edge : Tet10::edge) {
     double off = 0.0, side = 0.0, far = 0.0;
@@ -31,7 +31,7 @@ inline bool has_straight_sides(const Nodal<Tet10>& x) {
 }
 inline bool has_straight_sides(const Nodal<Tet4>&) { return true; }
 
-/// Of the corners' functions: linear ones of tetrahedra; hexahedra have one function of them all.
+/// Shape functions of the corners: linear for tetrahedra; a hexahedron has one constant for all corners.
 template <class E>
 std::array<double, E::corners> corner_shares(const double* xi) {
   if constexpr (E::simplex) {
@@ -48,7 +48,7 @@ struct StraightSides {
   double gradient[4][3];
   double volume;
 
-  /// Of the element's nodes the corners alone are read.
+  /// Reads only the corners of the element's nodes.
   explicit StraightSides(const double* x) {
     double side[3][3];
     for (std::size_t k = 0; k < 3; ++k)
@@ -87,7 +87,7 @@ struct StraightSides {
     }
   }
 
-  /// Adds what Point::add_diagonal_block() does for all nodes and points, the points' g given.
+  /// Adds the sum of Point::add_diagonal_block() over the points, for all nodes; `g`: one value per point.
   void add_diagonal_blocks(double bulk, const std::array<double, 1>& g, double (&block)[4][9]) const {
     const double shear = volume * g[0], volumetric = volume * bulk + shear * (1.0 / 3.0);
     for (std::size_t a = 0; a < 4; ++a) {
@@ -100,7 +100,7 @@ struct StraightSides {
   }
   void add_diagonal_blocks(double bulk, const std::array<double, 4>& g, double (&block)[10][9]) const {
     constexpr double far = Tet10::far, near = Tet10::near;
-    // Sums of f L_a L_b over the points, f 1 or g: L_a is `near` at its point and `far` at others.
+    // Sums over the points of f L_a L_b with f = 1 or g: L_a is `near` at its own point, `far` at the others.
     constexpr double both = far * far, one = far * (near - far), square = near * near - far * far;
     const double v = 0.25 * volume, sum = g[0] + g[1] + g[2] + g[3];
     for (std::size_t a = 0; a < 4; ++a) {  // ∇N = (4 L_a − 1) ∇L_a
@@ -135,7 +135,7 @@ struct StraightSides {
   }
 };
 
-/// Over an element: ∫ L_c ∂_k N_a, and ∫ L_c, of its corners' linear functions L.
+/// Element integrals ∫ L_c ∂_k N_a and ∫ L_c with the corners' linear functions L.
 template <class E>
 struct CornerIntegrals {
   std::array<std::array<std::array<double, 3>, E::corners>, E::nodes> change{};

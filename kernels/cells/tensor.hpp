@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shape functions and Gauss points of lines, quadrilaterals and hexahedra as products of linear ones.
+// Shape functions and Gauss points of lines, quadrilaterals and hexahedra as tensor products of linear ones.
 #pragma once
 
 #include "cells/simplex.hpp"
@@ -8,7 +8,7 @@ namespace kacanov::elements {
 
 inline constexpr double gauss2 = 0.57735026918962576;  ///< 1/√3
 
-/// Π (1 + c_k ξ_k)/2 over the coordinates c of each corner.
+/// Π (1 + c_k ξ_k)/2 with the coordinates c of each corner.
 template <class E>
 constexpr std::array<double, E::nodes> tensor_values(const double* xi) {
   std::array<double, E::nodes> n{};
@@ -32,7 +32,7 @@ constexpr std::array<double, E::nodes * E::dim> tensor_gradients(const double* x
   return d;
 }
 
-/// The corners, moved towards the middle by `factor`.
+/// The corners, scaled towards the centre by `factor`.
 template <class E>
 constexpr std::array<std::array<double, E::dim>, E::nodes> tensor_points(double factor) {
   std::array<std::array<double, E::dim>, E::nodes> p{};

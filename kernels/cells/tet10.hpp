@@ -14,7 +14,7 @@ struct Tet10 {
   static constexpr bool simplex = true, mean_dilatation = false, corner_dilatation = true;
   static constexpr std::array<CellEdge, 6> edge{
       {{0, 1, 4}, {1, 2, 5}, {2, 0, 6}, {3, 0, 7}, {3, 2, 8}, {3, 1, 9}}};
-  /// VTK has the edges 13 and 23 the other way round.
+  /// VTK swaps the midpoints of the edges 13 and 23.
   static constexpr std::array<std::int8_t, 10> vtk_order{0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
   static constexpr std::array<std::int8_t, 10> basix_order{0, 1, 2, 3, 8, 9, 5, 7, 6, 4};
   using Facet = Tri6;

@@ -8,8 +8,8 @@
 
 namespace kacanov::elements {
 
-/// The cube as six tetrahedra round its diagonal from lowest to highest corner, one for each path along the
-/// axes between them; odd permutations turn the other way.
+/// The cube as six tetrahedra around its diagonal from the lowest to the highest corner, one per path along
+/// the axes between these corners; for odd permutations two corners are swapped to keep the orientation.
 inline constexpr std::array<Triple, 24> six_tetrahedra = [] {
   constexpr std::size_t path[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
   std::array<Triple, 24> corners{};

@@ -17,7 +17,7 @@ struct Tri3 {
   static constexpr std::array<std::array<std::int8_t, 2>, 3> facet{{{0, 1}, {1, 2}, {2, 0}}};
   static constexpr std::array<std::array<double, 2>, 1> point{{{1.0 / 3.0, 1.0 / 3.0}}};
   static constexpr double weight = 0.5;  ///< of each point, on the reference element
-  /// The square, cut from lower left to upper right.
+  /// The square, split from lower left to upper right.
   static constexpr std::array<Triple, 6> box() { return {{{0, 0}, {1, 0}, {1, 1}, {0, 0}, {1, 1}, {0, 1}}}; }
 
   /// Shape functions at ξ.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The ranks that work together, and reductions over them.
+// The communicator: the ranks that work together, and reductions over them.
 #include <kacanov/communicator.hpp>
 
 #ifdef KACANOV_CHECK_COLLECTIVES
@@ -19,14 +19,14 @@ namespace kacanov {
 void Communicator::expect_all_here(CallSite at, std::int64_t entries) const {
   if (ranks == 1) return;
   using Place = std::array<char, 160>;
-  // The end of a path tells files apart, and two builds in different folders agree on it.
+  // The last two parts of a path identify a file, and are the same in builds in different folders.
   std::string_view file = at.file;
   if (const auto slash = file.rfind('/'); slash != file.npos && slash > 0)
     if (const auto folder = file.rfind('/', slash - 1); folder != file.npos) file.remove_prefix(folder + 1);
   Place here{};
   std::snprintf(here.data(), here.size(), "%.*s:%d (%s, %lld entries)", static_cast<int>(file.size()),
                 file.data(), at.line, at.function, static_cast<long long>(entries));
-  // One number is cheaper than a text, and mostly it is enough.
+  // Compare a hash first: it is cheaper than a text and usually enough.
   const auto hash = static_cast<std::int64_t>(std::hash<std::string_view>()(here.data()));
   const std::vector<std::int64_t> hashes = transport->all(hash);
   if (std::count(hashes.begin(), hashes.end(), hash) == ranks) return;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Entries from every rank to every rank.
+// All-to-all exchange of entries between ranks.
 #pragma once
 
 #include <algorithm>
@@ -16,17 +16,17 @@
 
 namespace kacanov {
 
-/// What came, in the order of the ranks.
+/// Received entries, in the order of the ranks.
 template <class T>
 struct Received {
   std::vector<T> entries;
-  std::vector<int> starts;  ///< ranks + 1
+  std::vector<int> starts;  ///< size ranks + 1
   std::span<const T> from(std::size_t rank) const {
     return std::span(entries).subspan(starts[rank], starts[rank + 1] - starts[rank]);
   }
 };
 
-/// Sends to[r] to rank r: plain structs and numbers. Collective.
+/// Sends to[r] to rank r; T: plain structs and numbers. Collective.
 template <class T>
 Received<T> exchange_all(const std::vector<std::vector<T>>& to, const Communicator& comm,
                          CallSite at = CallSite()) {
@@ -48,7 +48,7 @@ Received<T> exchange_all(const std::vector<std::vector<T>>& to, const Communicat
   return received;
 }
 
-/// The entries of all ranks on every rank, in the order of the ranks. Collective.
+/// Returns the entries of all ranks on every rank, in rank order. Collective.
 template <class T>
 std::vector<T> gathered(const std::vector<T>& mine, const Communicator& comm, CallSite at = CallSite()) {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -65,7 +65,7 @@ std::vector<T> gathered(const std::vector<T>& mine, const Communicator& comm, Ca
   return all;
 }
 
-/// Throws InputError on all ranks where one has a text: that of the first rank with one. Collective.
+/// Throws InputError on all ranks if any rank has a text: that of the first such rank. Collective.
 inline void refuse_together(const std::string& text, const Communicator& comm, CallSite at = CallSite()) {
   if (!comm.any(!text.empty(), at)) return;
   const auto length = static_cast<std::int64_t>(text.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which indices a rank owns, which it has copies of, and who has the others.
+// Index map: the indices that a rank owns, its ghosts, and their owners.
 #include <kacanov/index_map.hpp>
 
 #include <algorithm>

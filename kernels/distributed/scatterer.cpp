@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scatters between owners and ghosts in two halves.
+// Split-phase scatters between owners and ghosts.
 #include <kacanov/scatterer.hpp>
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace kacanov {
 namespace {
 
-/// Copies x at `indices` to `to` and returns where that ends.
+/// Copies x at `indices` to `to` and returns the end of the copy.
 template <class S>
 S* pack(std::span<const std::int32_t> indices, std::size_t width, std::span<const S> x, S* to) {
   for (const std::int32_t i : indices)
@@ -23,7 +23,7 @@ Scatterer<S>::Scatterer(const IndexMap& map, int components) : map_(&map), width
   if (!map.neighbours.empty()) messages_ = map.transport->messages();
 }
 
-/// Starts a receive for each neighbour's `incoming` indices and a send of x at its `outgoing` ones.
+/// Starts a receive for each neighbour's `incoming` indices and a send of x at its `outgoing` indices.
 template <class S>
 void Scatterer<S>::start(List outgoing, List incoming, std::span<const S> x, CallSite at) {
   map_->expect_all_here(at, map_->total() * static_cast<std::int64_t>(width_));

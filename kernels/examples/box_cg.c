@@ -8,7 +8,7 @@
 
 #include <kacanov/kacanov.h>
 
-/* A bar nx by n by n cells of side 1/n, each cut into six tetrahedra. */
+/* A bar of nx by n by n cells with edge 1/n, each split into six tetrahedra. */
 typedef struct Bar {
   size_t nodes, elements;
   double* coordinates;
@@ -25,7 +25,7 @@ static void* allocate(size_t count, size_t size) {
 }
 
 static Bar make_bar(int nx, int n) {
-  static const int path[6][2] = {{1, 3}, {3, 2}, {2, 6}, {6, 4}, {4, 5}, {5, 1}}; /* round the diagonal 0-7 */
+  static const int path[6][2] = {{1, 3}, {3, 2}, {2, 6}, {6, 4}, {4, 5}, {5, 1}}; /* around diagonal 0-7 */
   const size_t cells = (size_t)nx * (size_t)n * (size_t)n;
   Bar bar = {(size_t)(nx + 1) * (size_t)(n + 1) * (size_t)(n + 1), 6 * cells, NULL, NULL};
   bar.coordinates = allocate(3 * bar.nodes, sizeof(double));
@@ -114,20 +114,20 @@ int main(void) {
   /* Kacanov: freeze g at u, solve, repeat until the true internal force balances f. */
   double residual = 1.0, energy = 0.0, functional_before = HUGE_VAL;
   for (int step = 1; step <= 100 && residual > 1e-7; ++step) {
-    /* Of an elastic step's g at first, then of the last one's. */
+    /* The first multigrid has the g of an elastic step, later ones that of the previous step. */
     if (step > 1 && kacanov_multigrid_update(multigrid) != KACANOV_OK) {
       fprintf(stderr, "kacanov: %s\n", kacanov_multigrid_message(multigrid));
       return EXIT_FAILURE;
     }
     kacanov_cg_options options = {0};
     options.struct_size = sizeof options;
-    options.relative = 1e-3; /* of a residual that falls from step to step */
+    options.relative = 1e-3; /* of a residual that decreases from step to step */
     kacanov_cg_result solve = {0};
     solve.struct_size = sizeof solve;
     check(kacanov_cg(op, multigrid, &options, unknowns, f, u, &solve), op);
     check(kacanov_residual_energy_update(op, unknowns, u, inner, &energy), op);
     double square = 0.0;
-    for (size_t i = 0; i < held_count; ++i) inner[held[i]] = 0.0; /* forces of the support */
+    for (size_t i = 0; i < held_count; ++i) inner[held[i]] = 0.0; /* support forces */
     for (size_t i = 0; i < unknowns; ++i) square += (f[i] - inner[i]) * (f[i] - inner[i]);
     residual = sqrt(square / dot(unknowns, f, f));
     const double functional = energy - dot(unknowns, f, u);

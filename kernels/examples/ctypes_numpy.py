@@ -43,7 +43,7 @@ class Operator:
 
     def __init__(self, library, points, tetrahedra, young, poisson, threads=1):
         self.library, self.handle = library, ct.c_void_p()
-        # A caller's own layout: one array a component, as numpy often has it.
+        # A caller's own layout: one array per component, as is common in numpy.
         columns = np.ascontiguousarray(points.T, dtype=np.float64)
         tetrahedra = np.ascontiguousarray(tetrahedra, dtype=np.int32)
         law = Law(struct_size=ct.sizeof(Law))
@@ -63,7 +63,7 @@ class Operator:
         self.library.kacanov_destroy(self.handle)
 
     def call(self, name, *arrays):
-        """kacanov_NAME(handle, n, array...)"""
+        """Calls kacanov_NAME(handle, n, array...); raises ValueError with its message."""
         for a in arrays:
             if a.dtype != np.float64 or not a.flags.c_contiguous:
                 raise TypeError("expected contiguous float64 arrays")
@@ -89,7 +89,7 @@ class Operator:
 
 
 class Multigrid:
-    """z = M r for the operator as it is now: `apply` is what scipy's LinearOperator or PETSc's PCSHELL want."""
+    """z = M r for the present operator: `apply` fits scipy's LinearOperator and PETSc's PCSHELL."""
 
     def __init__(self, op):
         self.op, self.library, self.handle = op, op.library, ct.c_void_p()
@@ -108,7 +108,7 @@ class Multigrid:
         return z
 
     def solve(self, b):
-        """The library's own conjugate gradients: x and the iterations."""
+        """Solves with the library's conjugate gradients; returns x and the number of iterations."""
         x, result = np.zeros_like(b), CgResult(struct_size=ct.sizeof(CgResult))
         if self.library.kacanov_cg(self.op.handle, self.handle, None, ct.c_size_t(b.size), b.ctypes.data_as(Doubles),
                                    x.ctypes.data_as(Doubles), ct.byref(result)):
@@ -130,7 +130,7 @@ def load(path):
 
 
 def unit_cube(n):
-    """Points and tetrahedra of n^3 cubes, six tetrahedra each."""
+    """Returns the points and tetrahedra of n^3 cubes, six tetrahedra per cube."""
     side = np.linspace(0.0, 1.0, n + 1)
     z, y, x = np.meshgrid(side, side, side, indexing="ij")
     points = np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
@@ -159,14 +159,14 @@ def main():
     assert np.abs(force[inside]).max() < 1e-14 * np.abs(force).max() * 100
     assert abs(u @ force.ravel() - 2 * exact) < 1e-12 * exact
 
-    # Symmetric, and blind to rigid motion.
+    # Symmetry, and zero response to rigid motions.
     rng = np.random.default_rng(0)
     a, b = rng.standard_normal((2, op.size))
     assert abs(a @ op.apply(b) - b @ op.apply(a)) < 1e-10 * abs(a @ op.apply(a))
     rotation = np.cross([0.3, -0.2, 0.5], points).ravel()
     assert np.abs(op.apply(rotation)).max() < 1e-13
 
-    # Held at the bottom, pulled at the top: with multigrid, in the library and, where it is there, in scipy.
+    # Fixed at the bottom, pulled at the top: with multigrid, in the library and, if installed, in scipy.
     op.constrain(np.flatnonzero(np.repeat(points[:, 2] == 0, 3)))
     pull = np.zeros_like(points)
     pull[points[:, 2] == 1, 2] = 1e-4
@@ -184,7 +184,7 @@ def main():
                             M=LinearOperator(shape, matvec=multigrid.apply))
         assert code == 0 and np.abs(by_scipy - x).max() < 1e-4 * np.abs(x).max()
 
-    # Errors come as exceptions with the library's own words.
+    # Errors are exceptions with the library's message.
     try:
         op.energy(np.full(op.size, np.nan))
     except ValueError as error:

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A deal.II mesh refined towards a corner: hanging nodes and the boundary are deal.II's AffineConstraints,
-// round our operator.
+// A deal.II mesh refined towards a corner, with deal.II's AffineConstraints for hanging nodes and boundary
+// around the library's operator.
 //
 // With P from the free unknowns to all of them, SolverCG solves PᵀBP v = Pᵀf: distribute() is P, condense()
-// is Pᵀ. The preconditioner is our multigrid of the mesh as it is, in which hanging nodes are free: their
-// values are left out of what it returns. They stay near those of the nodes they hang between, because cells
-// hold on to both, so that it takes about twice the iterations that it takes on a mesh without, of any size.
+// is Pᵀ. The preconditioner is the library's multigrid on the unconstrained mesh, in which hanging nodes are
+// free; their values in its result are discarded. They stay close to those of the adjacent nodes, because
+// cells connect both, so that it takes about twice the iterations of a mesh without hanging nodes, for any
+// size.
 //
-// usage: dealii_hanging [CYCLES [HALVINGS]]; checked are a linear displacement prescribed on the boundary,
-// which the solution has to be inside too, and a load, whose solution is that of deal.II's own condensed
+// usage: dealii_hanging [CYCLES [HALVINGS]]; checks a linear displacement prescribed on the boundary, which
+// the solution must reproduce inside, and a load, whose solution must equal that of deal.II's own condensed
 // matrix.
 #include <deal.II/base/function.h>
 #include <deal.II/base/point.h>
@@ -34,7 +35,7 @@ namespace {
 using Constraints = dealii::AffineConstraints<double>;
 using DoFs = dealii::DoFHandler<3>;
 
-/// The unit cube, halved so often along each axis, and each cycle once more near a corner.
+/// The unit cube, halved `halvings` times along each axis; each cycle then refines near a corner.
 void refine(dealii::Triangulation<3>& mesh, int cycles, unsigned halvings) {
   dealii::GridGenerator::hyper_cube(mesh);
   mesh.refine_global(halvings);
@@ -45,7 +46,7 @@ void refine(dealii::Triangulation<3>& mesh, int cycles, unsigned halvings) {
   }
 }
 
-/// Nodes are numbered as deal.II does: unknowns 3 i, 3 i + 1, 3 i + 2 are those of node i.
+/// Uses deal.II's numbering: unknowns 3 i, 3 i + 1, 3 i + 2 belong to node i.
 Operator make_operator(const DoFs& dofs, const kacanov_law& law) {
   std::vector<std::int32_t> connectivity;
   std::vector<dealii::Point<3>> points(dofs.n_dofs() / 3);
@@ -72,7 +73,7 @@ Operator make_operator(const DoFs& dofs, const kacanov_law& law) {
   return Operator(body);
 }
 
-/// PᵀBP, and the identity where constrained.
+/// PᵀBP, and the identity at constrained unknowns.
 class Condensed {
  public:
   Condensed(const Operator& op, const Constraints& constraints) : op_(op), constraints_(constraints) {}
@@ -91,7 +92,7 @@ class Condensed {
   mutable Vector all_;
 };
 
-/// The multigrid, without the values of hanging nodes.
+/// The multigrid, with zero at hanging nodes.
 class Preconditioner {
  public:
   Preconditioner(const Multigrid& multigrid, const Constraints& hanging)
@@ -169,7 +170,7 @@ int run(int cycles, unsigned halvings) {
   all.condense(load);
 
   const Matrix matrix(op, exact.size(),
-                      &all);  // before our operator knows of the boundary, as it is deal.II's here
+                      &all);  // before op gets the boundary constraints, which deal.II applies here
   dealii::PreconditionJacobi<> jacobi;
   jacobi.initialize(matrix.get());
   op.constrain(held);

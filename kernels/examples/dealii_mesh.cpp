@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A deal.II program: its mesh of a ball is handed over as arrays, its SolverCG solves with our operator and
-// multigrid. With a linear displacement prescribed on the boundary, the solution inside is that same field.
+// A deal.II program: it passes its mesh of a ball as arrays, and its SolverCG solves with the library's
+// operator and multigrid. With a linear displacement prescribed on the boundary, the solution inside is the
+// same field.
 //
-// usage: dealii_mesh [REFINEMENTS [with_matrix]]; with_matrix: deal.II's SparseMatrix and Jacobi beside it,
-// and one thread; seconds are those of the processor.
+// usage: dealii_mesh [REFINEMENTS [with_matrix]]; with_matrix: compares with deal.II's SparseMatrix and
+// Jacobi, on one thread; times are processor seconds.
 #include <deal.II/base/point.h>
 #include <deal.II/grid/grid_generator.h>
 #include <deal.II/grid/tria.h>
@@ -23,7 +24,7 @@
 
 namespace {
 
-/// Of the mesh's vertices where they lie.
+/// Uses the mesh's vertices in place.
 Operator make_operator(const dealii::Triangulation<3>& mesh, const kacanov_law& law, int threads) {
   std::vector<std::int32_t> connectivity;
   for (const auto& cell : mesh.active_cell_iterators())
@@ -35,7 +36,7 @@ Operator make_operator(const dealii::Triangulation<3>& mesh, const kacanov_law& 
   body.node_order = "dealii";
   body.threads = threads;
   body.nodes = mesh.n_vertices();
-  body.coordinates = &mesh.get_vertices()[0][0];  // one dealii::Point a node
+  body.coordinates = &mesh.get_vertices()[0][0];  // one dealii::Point per node
   body.node_stride = sizeof(dealii::Point<3>) / sizeof(double);
   body.elements = mesh.n_active_cells();
   body.connectivity = connectivity.data();
@@ -44,10 +45,10 @@ Operator make_operator(const dealii::Triangulation<3>& mesh, const kacanov_law& 
   return Operator(body);
 }
 
-/// Of the processor.
+/// Processor time.
 double seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// Solves with what `make` gives, says what that took, and returns the largest relative error.
+/// Solves with `solve`, prints the cost, and returns the largest relative error.
 template <class Solve>
 double report(const std::string& name, const Vector& lifted, const Vector& exact, const Solve& solve) {
   Vector v(exact.size());
@@ -86,7 +87,7 @@ int run(unsigned refinements, bool with_matrix) {
   std::vector<std::int32_t> held;
   for (unsigned i = 0; i < exact.size(); ++i)
     if (on_boundary[i / 3]) held.push_back(static_cast<std::int32_t>(i));
-  // u = lifted + v, with v = 0 where held and B v = −B lifted elsewhere.
+  // u = lifted + v, with v = 0 at constrained unknowns and B v = −B lifted elsewhere.
   Vector lifted(exact.size()), right(exact.size());
   for (const std::int32_t i : held) lifted[static_cast<unsigned>(i)] = exact[static_cast<unsigned>(i)];
   op.vmult(right, lifted);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Our operator and multigrid as what deal.II's solvers want of a matrix and of a preconditioner, and the
-// operator as deal.II's own matrix.
+// Adapters that let deal.II's solvers use the operator and the multigrid, and the operator as a deal.II
+// matrix.
 #pragma once
 
 #include <deal.II/lac/affine_constraints.h>
@@ -17,7 +17,7 @@
 
 using Vector = dealii::Vector<double>;
 
-/// How a unique_ptr lets go of a handle.
+/// Deleter of a handle for unique_ptr.
 template <auto free>
 struct FreeWith {
   template <class Handle>
@@ -40,7 +40,7 @@ class Operator {
   void vmult(Vector& y, const Vector& x) const {
     check(kacanov_apply(op_.get(), x.size(), x.begin(), y.begin()));
   }
-  /// From here on the rows of these unknowns are those of the identity.
+  /// Replaces the rows of these unknowns by those of the identity.
   void constrain(const std::vector<std::int32_t>& held) {
     check(kacanov_constrain(op_.get(), held.size(), held.data()));
   }
@@ -53,7 +53,7 @@ class Operator {
   std::unique_ptr<kacanov_operator, FreeWith<kacanov_destroy>> op_;
 };
 
-/// Near the inverse of B(g) with its constraints.
+/// Approximates the inverse of B(g) with its constraints.
 class Multigrid {
  public:
   explicit Multigrid(const Operator& op) {
@@ -70,7 +70,7 @@ class Multigrid {
   std::unique_ptr<kacanov_multigrid, FreeWith<kacanov_multigrid_destroy>> multigrid_;
 };
 
-/// The operator as deal.II's own matrix of n rows, condensed by deal.II's constraints where there are some.
+/// The operator as a deal.II matrix of n rows, condensed by `constraints` unless that is null.
 class Matrix {
  public:
   Matrix(const Operator& op, std::size_t n, const dealii::AffineConstraints<double>* constraints = nullptr) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A PETSc program: the operator as a MatShell, solved by KSP's conjugate gradients with the
- * library's multigrid as a shell preconditioner. A bar of
- * trilinear hexahedra on rollers is pulled along x, for which the exact displacement is known and linear. */
+/* A PETSc program: the operator as a MatShell, solved by KSP's conjugate gradients with the library's
+ * multigrid as a shell preconditioner. A bar of trilinear hexahedra on rollers is pulled along x; the exact
+ * displacement is known and linear. */
 #include <petscksp.h>
 
 #include <kacanov/kacanov.h>
@@ -83,7 +83,7 @@ int main(int argc, char** argv) {
   for (int k = 0, at = 0; k < n; ++k)
     for (int j = 0; j < n; ++j)
       for (int i = 0; i < nx; ++i)
-        for (int layer = 0; layer < 2; ++layer) { /* Gmsh's order: round the bottom, then round the top */
+        for (int layer = 0; layer < 2; ++layer) { /* Gmsh's order: around the bottom, then around the top */
           const int32_t corner = ((k + layer) * (n + 1) + j) * (nx + 1) + i;
           connectivity[at++] = corner;
           connectivity[at++] = corner + 1;
@@ -104,7 +104,7 @@ int main(int argc, char** argv) {
   body.connectivity = connectivity;
   body.laws = 1;
   body.law = &law;
-  body.borrow = 1; /* the arrays live as long as the operator */
+  body.borrow = 1; /* the arrays outlive the operator */
   Shell shell = {NULL, NULL, unknowns};
   char message[256];
   if (kacanov_create(&body, &shell.op, message, sizeof message) != KACANOV_OK)

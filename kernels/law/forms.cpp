@@ -12,7 +12,7 @@
 namespace kacanov::laws {
 namespace {
 
-/// e^z E₁(z) for z > 0, E₁(z) = ∫_z^∞ e^-t/t dt: never over- or underflows where e^z and E₁ would.
+/// e^z E₁(z) for z > 0, E₁(z) = ∫_z^∞ e^-t/t dt, without overflow or underflow of its factors.
 double scaled_exponential_integral(double z) {
   if (z < 1.0) return -std::exp(z) * std::expint(-z);
   // Continued fraction 1/(z+1-1/(z+3-4/(z+5-...))), Lentz's algorithm.
@@ -31,24 +31,24 @@ double scaled_exponential_integral(double z) {
   return value;
 }
 
-/// A straight piece of a table: s = start_s + slope (a − start_a).
+/// A linear segment of a table: s = start_s + slope (a − start_a).
 struct Piece {
   double start_a, start_s, slope;
 };
 
-/// The piece that ends at point i ≥ 1.
+/// The segment that ends at point i ≥ 1.
 Piece piece_to(const Table& table, std::size_t i) {
   const double a = table.x[i - 1], s = table.s[i - 1];
   return {a, s, (table.s[i] - s) / (table.x[i] - a)};
 }
 
-/// Calls visit(piece, its length up to a) for the pieces beyond the first.
+/// Calls visit(segment, its length up to a) for all segments beyond the first.
 template <class Visit>
 void for_pieces_beyond_first(const Table& table, double a, Visit&& visit) {
   const std::size_t last = table.x.size() - 1;
   for (std::size_t i = std::min<std::size_t>(2, last); i <= last; ++i) {
     Piece piece = piece_to(table, i);
-    if (i == 1)  // a table of one piece, which goes on
+    if (i == 1)  // a table with one segment, extrapolated
       piece = {table.x[1], table.s[1], piece.slope};
     const double length = (i == last ? a : std::min(a, table.x[i])) - piece.start_a;
     if (length <= 0.0) break;
@@ -88,7 +88,7 @@ double Logarithmic::plain_energy(double mu, double a) const {
 
 std::string LinearHardening::fault() const {
   const std::string fault = positive("x0", x0);
-  // At 0 the displacement would not be unique.
+  // With gamma = 0 the displacement would not be unique.
   return fault.empty() ? fraction("gamma", gamma) : fault;
 }
 
@@ -154,7 +154,7 @@ std::string Table::fault() const {
       return refusal(at(i, 0), "a strain above that of the point before", x[i]);
     if (!(s[i] > s[i - 1]) || !std::isfinite(s[i]))
       return refusal(at(i, 1), "a stress above that of the point before", s[i]);
-    // A straight line through the origin, written with rounded numbers, is no increase.
+    // Collinear points with rounded numbers do not count as an increase.
     if (i > 1 && s[i] / x[i] > s[i - 1] / x[i - 1] * (1.0 + 1e-9))
       return refusal(at(i, -1), "a secant s/x not above that of the point before", s[i] / x[i]);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A law of any form, for both arguments, and what makes one valid.
+// Evaluation and validation of a law of any form, for both arguments.
 #include <kacanov/law.hpp>
 
 #include <algorithm>

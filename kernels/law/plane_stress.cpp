@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The local equation of plane stress, and its tangent.
+// Plane stress: the local equation for the transverse strain, and the condensed tangent.
 #include "law/plane_stress.hpp"
 
 #include <algorithm>
@@ -12,9 +12,9 @@ double transverse_strain(const Law& law, double xx, double yy, double xy) {
   const double plane = xx + yy;
   double z = -transverse_ratio(law.bulk, law.secant(0.0)) * plane;
   if (plane == 0.0) return 0.0;
-  // The stress across grows with z, and changes its sign between the elastic answer and that of a fluid.
+  // The transverse stress grows with z and changes sign between the elastic solution and incompressibility.
   double low = std::min(z, -plane), high = std::max(z, -plane);
-  constexpr int most_steps = 200;  // halving alone ends within
+  constexpr int most_steps = 200;  // bisection alone needs fewer
   for (int step = 0; step < most_steps; ++step) {
     const double third = (plane + z) / 3.0, across = z - third;
     const double a = xx - third, b = yy - third;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hencky's laws where no stress acts across the plane (theory: plane-stress).
+// Hencky laws in plane stress (theory: plane-stress).
 #pragma once
 
 #include <array>
@@ -8,26 +8,25 @@
 
 namespace kacanov {
 
-/// How much of tr ε within the plane the strain across it takes back, at the secant modulus g.
+/// −(transverse strain) / (in-plane tr ε) in plane stress, at the secant modulus g.
 inline double transverse_ratio(double bulk, double g) {
   return (3.0 * bulk - 2.0 * g) / (3.0 * bulk + 4.0 * g);
 }
-/// The bulk modulus with which τ = k tr ε I + 2 g dev ε, of strains within the plane alone, is the stress
-/// there.
+/// Bulk modulus k with which τ = k tr ε I + 2 g dev ε of the in-plane strain alone gives the in-plane stress.
 inline double plane_stress_bulk(double bulk, double g) {
   return 4.0 * g * (6.0 * bulk - g) / (3.0 * (3.0 * bulk + 4.0 * g));
 }
-/// The stress within the plane of an elastic body that is kept from getting longer in it, over the strain
-/// that it would have in all directions: E / (1 − ν).
+/// In-plane stress of a constrained elastic body divided by its free strain, equal in all directions: E / (1
+/// − ν).
 inline double plane_stress_expansion(const Law& law) {
   const double shear = law.secant(0.0);
   return 2.0 * plane_stress_bulk(law.bulk, shear) + 2.0 / 3.0 * shear;
 }
-/// The strain across the plane that leaves no stress there; strains are components, not shears of engineers.
+/// Transverse strain with zero transverse stress; strains are tensor components, not engineering shears.
 double transverse_strain(const Law& law, double xx, double yy, double xy);
 
-/// What of the tangent's term factor · d ⊗ d, d = dev ε, is left within the plane, where d is (xx, yy, zz,
-/// xy).
+/// In-plane part of the tangent's term factor · d ⊗ d, d = dev ε, after static condensation; d is (xx, yy,
+/// zz, xy).
 struct PlaneTerm {
   double factor = 0.0;
   double xx = 0.0, yy = 0.0, xy = 0.0;

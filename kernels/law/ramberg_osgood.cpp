@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The Ramberg–Osgood law: strain is given by stress, so that g is found by Newton's method (theory:
+// The Ramberg–Osgood law gives strain as a function of stress; Newton's method finds g (theory:
 // law-ramberg-osgood).
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace kacanov::laws {
 namespace {
 
-/// t of t + a tⁿ = strain. From above, on a convex function that grows, Newton's method falls steadily.
+/// Solves t + a tⁿ = strain. The function is convex and increasing: from above, Newton's method is monotone.
 double stress(double a, double n, double strain) {
   double t = std::min(strain, std::pow(strain / a, 1.0 / n));
   for (int i = 0; i < 60; ++i) {
@@ -36,7 +36,7 @@ std::string RambergOsgood::fault() const {
 }
 
 double RambergOsgood::yield() const {
-  // Up to here g differs from μ by less than rounding.
+  // Up to this strain g differs from μ by less than rounding.
   constexpr double nothing = 1e-17;
   return x0 * std::pow(nothing / a, 1.0 / (n - 1.0));
 }

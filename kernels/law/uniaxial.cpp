@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From what tests in tension say to Hencky laws (theory: uniaxial).
+// Hencky laws from tensile test data (theory: uniaxial).
 #include <algorithm>
 #include <cmath>
 
@@ -27,7 +27,7 @@ laws::Table plastic_table(const Law& elastic, std::span<const std::array<double,
   laws::Table table{{0.0}, {0.0}};
   for (const auto& [stress, plastic_strain] : rows) {
     const double s = deviator(stress), x = s / slope + std::sqrt(1.5) * plastic_strain;
-    // A plateau; where the stress grows it grows by more.
+    // Lower bound of the stress: a plateau with a small slope.
     const double least =
         table.x.size() > 1 ? table.s.back() + plateau_slope * slope * (x - table.x.back()) : 0.0;
     table.x.push_back(x);

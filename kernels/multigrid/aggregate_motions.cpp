@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Galerkin's matrix over rigid motions, and the way between nodes and motions.
+// Galerkin matrix over rigid motions, and the transfer between nodes and motions.
 #include "multigrid/aggregate_motions.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace kacanov {
 template <int M>
 void AggregateMotions<M>::sum(std::span<const double> g, const Held& held, RigidLevel<M>& level) const {
   level.clear();
-  // Every thread adds to rows of its own, so that their number changes no bit.
+  // Every thread adds only to its own rows, so that results do not depend on the number of threads.
   const int threads = aggregates_.threads();
   std::vector<BlockSums<M>> others(threads);
   in_team(threads, [&](int t) {
@@ -34,7 +34,7 @@ template <int M>
 void AggregateMotions<M>::change(std::span<const double> g, const Held& before, const Held& after,
                                  RigidLevel<M>& level) const {
   const MeshView& mesh = body().body.mesh;
-  std::vector<std::uint8_t> moved(body().nodes(), 0);  // nodes whose held directions are others
+  std::vector<std::uint8_t> moved(body().nodes(), 0);  // nodes whose held directions differ
   std::unordered_map<std::int32_t, const HeldDirections*> gone;
   for (const auto& entry : before.space.directions) gone.emplace(entry.node, &entry);
   for (const auto& entry : after.space.directions) {

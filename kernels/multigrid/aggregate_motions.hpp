@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The first coarse space: rigid motions of aggregates of nodes, and B(g) on it.
+// The first coarse space: rigid motions of node aggregates, with the Galerkin matrix of B(g) on it.
 #pragma once
 
 #include <span>
@@ -11,36 +11,36 @@
 
 namespace kacanov {
 
-/// Aggregates are made once, along strong couplings; which of them couple depends on them alone. What changes
-/// from setup to setup is summed into the same blocks.
+/// Aggregates are formed once, along strong couplings, and alone determine the sparsity pattern. Values that
+/// change between setups are summed into the same blocks.
 template <int M>
 class AggregateMotions {
  public:
-  /// g: elements × points, a stress. What the body points to has to outlive it. Collective.
+  /// `g`: elements × points, a stress. The arrays that the body points to must outlive it. Collective.
   AggregateMotions(const MultigridBody& body, std::span<const double> g, const MultigridOptions& options)
       : aggregates_(body, g, options), add_products_(simd::motion_products<M>(options.instruction_set)) {
     share_out();
   }
 
   std::size_t bytes() const noexcept { return aggregates_.bytes(); }
-  /// Aggregates'.
+  /// Length scale of the aggregates' rotations.
   double length() const noexcept { return aggregates_.length(); }
   RigidLevel<M> make_level() { return aggregates_.make_level(); }
-  /// What a setup holds and adds: the motions of the nodes are projected onto the space.
+  /// Inputs of a setup besides g: node blocks to add, and the space onto which node motions are projected.
   struct Held {
     std::span<const NodeBlock> blocks;
     const HeldSpace& space;
   };
-  /// Galerkin's matrix of B(g) + blocks on the motions, into the level that make_level gave; g is rounded to
-  /// single precision. Collective.
+  /// Sums the Galerkin matrix of B(g) + blocks on the motions into the level from make_level(); g is rounded
+  /// to single precision. Collective.
   void sum(std::span<const double> g, const Held& held, RigidLevel<M>& level) const;
-  /// What `sum` gave with `before` becomes what it gives with `after` and the same g, from the elements of
-  /// nodes whose held directions are others. Collective.
+  /// Changes the result of sum() with `before` to that with `after` and the same g, using the elements of
+  /// nodes whose held directions differ. Collective.
   void change(std::span<const double> g, const Held& before, const Held& after, RigidLevel<M>& level) const;
 
-  /// b = what forces on the owned nodes do on the motions of owned aggregates.
+  /// b = the forces on the owned nodes, restricted to the motions of owned aggregates.
   void restrict_forces(std::span<const float> force, std::span<double> b) const;
-  /// u = the displacements of the owned nodes by `gain` times the motions x; zero elsewhere.
+  /// u = `gain` times the displacements of the owned nodes in the motions x; zero elsewhere.
   void prolong(std::span<const double> x, double gain, std::span<float> u) const;
 
  private:
@@ -48,7 +48,7 @@ class AggregateMotions {
   const MultigridBody& body() const noexcept { return aggregates_.body(); }
   void share_out();
 
-  /// The aggregates of a thread in restrict_forces, and the nodes among which they all are.
+  /// A thread's aggregates in restrict_forces, and the range that contains their nodes.
   struct Share {
     std::int32_t begin = 0, end = 0;
     std::size_t first_node = 0, last_node = 0;

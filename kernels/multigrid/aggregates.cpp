@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Centres and numbers of aggregates, and the level of the motions they can make.
+// Centres and numbers of aggregates, and the level of their motions.
 #include "multigrid/aggregates.hpp"
 
 #include <algorithm>
@@ -44,7 +44,7 @@ RigidLevel<M> Aggregates<M>::make_level() {
   const MeshView& mesh = body_.body.mesh;
   first_ = nodes.sum_below(owned_);
 
-  // Centre and number of the aggregate of every local node, ghosts from their owners.
+  // Centre and number of the aggregate of every local node; ghosts get them from their owners.
   const std::size_t owned_nodes = group_.size();
   std::vector<std::int64_t> number(body_.nodes());
   std::vector<double> centre(dim * body_.nodes());
@@ -56,8 +56,7 @@ RigidLevel<M> Aggregates<M>::make_level() {
   nodes.forward(number, 1);
   nodes.forward(centre, static_cast<int>(dim));
 
-  // A thread's elements follow those of the thread before it, and so do the blocks they are the first to
-  // name.
+  // A thread's elements follow those of the previous thread, and so do the blocks that they create.
   const std::size_t npe = nodes_per_element(mesh.type), elements = mesh.element_count(), team = threads_;
   std::vector<BlockSums<M>> couplings(team);
   in_team(threads_, [&](int t) {
@@ -82,7 +81,7 @@ RigidLevel<M> Aggregates<M>::make_level() {
 
   group_.resize(body_.nodes());
   std::unordered_map<std::int64_t, std::int32_t>
-      unknown;  // to the level: no element here ties them to an owned one
+      unknown;  // not in the level: no element here couples them to an owned one
   number_ = level.map().ghosts;
   centre_.resize(centre_.size() + number_.size());
   const auto known = static_cast<std::int32_t>(centre_.size());

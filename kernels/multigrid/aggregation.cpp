@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Groups of strongly coupled nodes, by pairwise matching.
+// Aggregation of strongly coupled nodes by pairwise matching.
 #include "multigrid/aggregation.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace kacanov {
 namespace {
 
-/// Elements with a node in each of the sections first[c] … first[c + 1], compressed rows.
+/// Elements with a node in each of the sections first[c] … first[c + 1], in compressed row storage.
 struct ElementsOfSections {
   std::vector<std::size_t> start;
   std::vector<std::int32_t> element;
@@ -22,7 +22,7 @@ struct ElementsOfSections {
   ElementsOfSections(const MeshView& mesh, std::span<const std::int32_t> first) : start(first.size(), 0) {
     const auto visit = [&](auto&& in_section) {
       const std::size_t npe = nodes_per_element(mesh.type);
-      std::vector<std::int32_t> last(first.size() - 1, -1);  // element seen last
+      std::vector<std::int32_t> last(first.size() - 1, -1);  // last element of each section
       for (std::size_t k = 0; k < mesh.connectivity.size(); ++k) {
         if (mesh.connectivity[k] >= first.back()) continue;
         const auto c =
@@ -42,9 +42,9 @@ struct ElementsOfSections {
 };
 
 constexpr std::int32_t none = -1;
-constexpr float weak = 0.2F;  ///< of a row's heaviest edge
+constexpr float weak = 0.2F;  ///< relative to a row's heaviest edge
 
-/// Rows in first-in-first-out queues by a small number; a row can be taken out of the middle.
+/// First-in-first-out queues of rows, indexed by a small number; rows can be removed from the middle.
 class Queues {
  public:
   Queues(std::int32_t rows, std::int32_t queues)
@@ -63,7 +63,7 @@ class Queues {
     (previous_[r] == none ? first_[q] : next_[previous_[r]]) = next_[r];
     (next_[r] == none ? last_[q] : previous_[next_[r]]) = previous_[r];
   }
-  /// The first row of the lowest queue, `none` if all are empty.
+  /// The first row of the lowest nonempty queue, or `none`.
   std::int32_t front() {
     while (lowest_ < first_.size() && first_[lowest_] == none) ++lowest_;
     return lowest_ < first_.size() ? first_[lowest_] : none;
@@ -75,13 +75,13 @@ class Queues {
 };
 
 /// Group of each row: it and its partner along its heaviest edge, or itself. Small rows choose first, and
-/// among them those with the fewest strong neighbours left to choose from (Notay 2010): few are left over,
-/// whatever the numbering.
+/// among them those with the fewest free strong neighbours (Notay 2010), so that few are left over for any
+/// numbering.
 std::vector<std::int32_t> match(const WeightedGraph& graph, std::span<const std::int32_t> size) {
   const std::int32_t rows = graph.rows();
   constexpr std::int32_t most_choices = 63;
   std::vector<std::int32_t> group(rows, none), choices(group.size(), 0);
-  std::vector<float> strong(group.size(), 0.0F);  // edges heavier than this
+  std::vector<float> strong(group.size(), 0.0F);  // only heavier edges are strong
   const auto begin = [&](std::int32_t i) { return static_cast<std::size_t>(graph.start[i]); };
   const auto end = [&](std::int32_t i) {
     return static_cast<std::size_t>(graph.start[static_cast<std::size_t>(i) + 1]);
@@ -115,7 +115,7 @@ std::vector<std::int32_t> match(const WeightedGraph& graph, std::span<const std:
       if (waits(i)) queues.push(i, queue_of(i));
     for (std::int32_t i = queues.front(); i != none; i = queues.front()) {
       std::int32_t best = none;
-      // A row whose strong neighbours are all taken waits for the next round.
+      // A row whose strong neighbours are all taken waits for the next pass.
       float heaviest = strong[i];
       for (auto k = begin(i); k < end(i); ++k)
         if (group[graph.column[k]] == none && graph.weight[k] > heaviest) {
@@ -127,7 +127,7 @@ std::vector<std::int32_t> match(const WeightedGraph& graph, std::span<const std:
       ++groups;
     }
   }
-  // Numbered by first rows.
+  // Numbers groups by their first rows.
   std::vector<std::int32_t> number(groups, none);
   std::int32_t next = 0;
   for (std::int32_t& g : group) {
@@ -257,7 +257,7 @@ std::vector<std::int32_t> aggregate_nodes(const Body& body, std::span<const doub
 }
 
 std::vector<std::int32_t> aggregate(WeightedGraph graph, double size) {
-  // Of a state that has broken down; what is no number would not be counted as it is compared.
+  // Weights of a diverged state may be NaN, for which comparisons would fail.
   for (float& weight : graph.weight)
     if (!std::isfinite(weight)) weight = 0.0F;
   const std::int32_t rows = graph.rows();
@@ -265,8 +265,8 @@ std::vector<std::int32_t> aggregate(WeightedGraph graph, double size) {
   std::iota(result.begin(), result.end(), 0);
   std::vector<std::int32_t> members(result.size(), 1);
   std::int32_t before = rows;
-  // The mean is of what can be joined: with the rows that have no neighbour here, at the edge of a part, the
-  // others would be joined until next to nothing was left of them.
+  // Averages only over groups that can still be joined: rows without a neighbour here, at the boundary of a
+  // part, would otherwise cause the others to be joined down to almost nothing.
   const auto too_small = [&] {
     std::int32_t lone_groups = 0, lone_rows = 0;
     for (std::int32_t i = 0; i < before; ++i)

@@ -15,8 +15,8 @@
 namespace kacanov {
 namespace {
 
-/// Edge of the first grid over the spacing of the nodes, the degree of the fine smoother and its range: 3, 4
-/// and 15 or 5, 6 and 30 take the same time within a twentieth (docs/experiments.md#background-cycle).
+/// Edge of the first grid over the node spacing, degree and range of the fine smoother: 3, 4 and 15 or 5, 6
+/// and 30 take the same time within 5 % (docs/experiments.md#background-cycle).
 constexpr double first_grid = 4.0;
 constexpr int fine_degree = 5;
 constexpr double fine_range = 20.0;
@@ -71,10 +71,10 @@ class BackgroundHierarchy final : public Multigrid::Hierarchy {
   }
 
  private:
-  /// What a body with cuts can do without.
+  /// Data that are not needed if the grid does not fit the body.
   void prepare() {
     fine_.emplace(body_, options_);
-    body_.like = nullptr;  // it may go
+    body_.like = nullptr;  // may be destroyed
     for (auto* v : {&b_, &x_, &image_, &step_}) v->resize(body_.unknowns());
   }
 

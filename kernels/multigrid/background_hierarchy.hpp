@@ -8,13 +8,13 @@
 
 namespace kacanov {
 
-/// Chebyshev's iteration on the operator, the displacement–pressure form on background grids below (theory:
-/// background-cycle). Null where the first grid does not fit the body (GridFit). For bodies in 3D.
+/// Chebyshev iteration on the operator, with the displacement–pressure form on background grids below
+/// (theory: background-cycle). Null if the first grid does not fit the body (GridFit). For bodies in 3D.
 /// Collective.
 std::unique_ptr<Multigrid::Hierarchy> make_background_hierarchy(const MultigridBody& body,
                                                                 const MultigridOptions& options);
 
-/// The mean of k0/g over all points; g: elements × points. Collective.
+/// Average of k0/g over all points; `g`: elements × points. Collective.
 double mean_contrast(const MultigridBody& body, std::span<const double> g);
 
 }  // namespace kacanov

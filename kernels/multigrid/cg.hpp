@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Preconditioned conjugate gradients over anything that can be applied.
+// Preconditioned conjugate gradients for any linear operator.
 #pragma once
 
 #include <algorithm>
@@ -15,30 +15,30 @@ namespace kacanov {
 struct CgResult {
   int iterations = 0;
   double first_residual = 0.0, residual = 0.0;  ///< ‖r‖ in the space
-  double energy = 0.0;  ///< δᵀA δ = δᵀr₀ of what the solve has added to x, the δ of CG
+  double energy = 0.0;  ///< δᵀA δ = δᵀr₀ of the correction δ that the solve has added to x
   bool converged = false;
 };
 
-/// When a solve stops (theory: cg).
+/// Stopping criteria of a solve (theory: cg).
 struct CgOptions {
   double absolute = 0.0;   ///< stop at ‖r‖ ≤ absolute ...
   double relative = 1e-8;  ///< ... or at ‖r‖ ≤ relative · ‖r₀‖
   int max_iterations = 2000;
-  double most = std::numeric_limits<double>::infinity();  ///< ‖r‖ that `relative` alone may not leave
-  double reach = 1.0;  ///< a solve that would stop within this factor of `absolute` goes on to there
+  double most = std::numeric_limits<double>::infinity();  ///< maximum of ‖r‖ after a stop by `relative`
+  double reach = 1.0;  ///< a solve that would stop within this factor of `absolute` continues to `absolute`
 
-  /// The residual that the linear problem leaves out of a nonlinear one, at the x of the moment (theory:
-  /// left-out); ‖r‖ has no need to fall below `share` of it. Asked for once, at ‖r‖ ≤ asked · ‖r₀‖, where
-  /// the target looks to be as many as `worth` iterations away.
+  /// Linearisation error at the present x: the residual of the nonlinear problem that the linear one neglects
+  /// (theory: left-out); ‖r‖ need not fall below `share` of it. Called once, when ‖r‖ ≤ asked · ‖r₀‖ and the
+  /// target is estimated to be at least `worth` iterations away.
   std::function<double()> left_out = {};
   double asked = 1.0, share = 1.0, worth = 0.0;
 
-  /// ‖r‖ at which a solve stops that starts with `first`.
+  /// ‖r‖ at which a solve with the initial residual `first` stops.
   double target(double first) const {
     const double wanted = std::min(relative * first, most);
     return wanted <= reach * absolute ? absolute : wanted;
   }
-  /// Whether a solve that has come so far asks for what is left out.
+  /// Whether a solve in this state calls left_out().
   bool asks(const CgResult& sofar, double target) const {
     if (sofar.residual <= target || sofar.residual > asked * sofar.first_residual) return false;
     const double rate = std::log(sofar.first_residual / sofar.residual) / sofar.iterations;
@@ -48,24 +48,24 @@ struct CgOptions {
 
 /// Work vectors, kept between solves.
 struct CgWork {
-  Vector residual, direction, image;  // image: A p, and before it M⁻¹ r
+  Vector residual, direction, image;  // image: A p, and before that M⁻¹ r
   void resize(std::size_t n) {
     for (Vector* v : {&residual, &direction, &image}) *v = Vector(n);
   }
 };
 
-/// Solves P A P δ = P r for the correction of x. On entry `work.residual` holds b − A x (projected here); on
-/// exit the residual of the new x. `apply(p, q)`: q = A p, consistent, not projected; it returns this rank's
-/// share of pᵀq, which it has at hand. `precondition(r, z)`: z ≈ A⁻¹ r, symmetric positive definite,
-/// consistent. A breakdown (pᵀAp not positive: the operator has lost its definiteness) ends the loop
-/// unconverged. All vectors have the unknowns of the space, which is anything that does what the solver's
-/// Space does: project, dot, residual_norm, sum_all, advance, turn. Collective where these are.
+/// Solves P A P δ = P r for the correction δ of x. On entry `work.residual` holds b − A x (projected here),
+/// on exit the residual of the new x. `apply(p, q)`: q = A p, consistent, not projected; returns this rank's
+/// part of pᵀq. `precondition(r, z)`: z ≈ A⁻¹ r, symmetric positive definite, consistent. A breakdown (pᵀAp
+/// not positive: the operator is not definite) ends the loop unconverged. All vectors have the unknowns of
+/// the space, a class with the interface of the solver's Space: project, dot, residual_norm, sum_all,
+/// advance, turn. Collective if these are.
 template <class InnerSpace, class Apply, class Precondition>
 CgResult conjugate_gradients(const InnerSpace& space, const Apply& apply, const Precondition& precondition,
                              std::span<double> x, CgWork& work, const CgOptions& options) {
   CgResult result;
   auto& [r, p, q] = work;
-  auto& z = q;  // wanted one after the other
+  auto& z = q;  // used one after the other
   space.project(r);
   result.first_residual = result.residual = space.residual_norm(r);
   double target = options.target(result.first_residual);
@@ -76,7 +76,7 @@ CgResult conjugate_gradients(const InnerSpace& space, const Apply& apply, const 
     precondition(r, z);
     space.project(z);
     const double rz_new =
-        space.dot(r, z);  // not before: of a residual of rounding errors, nothing is left in the space
+        space.dot(r, z);  // only after the projection, which removes residuals that are only rounding errors
     if (!(rz_new > 0.0) || !std::isfinite(rz_new)) return result;
     space.turn(result.iterations == 0 ? 0.0 : rz_new / rz, z, p);
     rz = rz_new;

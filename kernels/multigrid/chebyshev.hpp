@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Chebyshev smoothing with whatever multiplies by A and by D⁻¹.
+// Chebyshev smoothing with any products by A and D⁻¹.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@ namespace kacanov {
 template <class S>
 struct ChebyshevStep {
   S keep, add;
-  bool from_zero;  ///< x is taken as zero, and A x with it; `step` and x may then be one vector
-  bool first;      ///< `step` is taken as zero
+  bool from_zero;  ///< x, and with it A x, counts as zero; `step` and x may then be the same vector
+  bool first;      ///< `step` counts as zero
 
   /// Calls loop<from_zero, first>().
   template <class Loop>
@@ -24,7 +24,7 @@ struct ChebyshevStep {
     else
       loop.template operator()<false, false>();
   }
-  /// What becomes of an entry of `step` and x; `scaled`: of D⁻¹(b − A x).
+  /// Updates an entry of `step` and x; `scaled`: its entry of D⁻¹(b − A x).
   template <bool zero, bool no_step>
   void take(S scaled, S& step, S& x) const {
     step = no_step ? add * scaled : keep * step + add * scaled;
@@ -32,21 +32,21 @@ struct ChebyshevStep {
   }
 };
 
-/// The vectors of a smoother, of one length: the input b, what is smoothed, and scratch.
+/// The vectors of a smoother, of equal length: input b, iterate x, and scratch.
 template <class S>
 struct SmootherVectors {
   std::span<const S> b;
   std::span<S> x, step, image;
 };
 
-/// Damps the eigenvectors of D⁻¹A with eigenvalues in [lower, upper]; a symmetric smoother, the same
-/// polynomial in D⁻¹A every time.
+/// Damps the eigenvectors of D⁻¹A with eigenvalues in [lower, upper]. A symmetric smoother: a fixed
+/// polynomial in D⁻¹A.
 struct Chebyshev {
   int degree = 2;
   double lower = 0.1, upper = 1.1;
 
-  /// With `from_zero` x is taken as zero, whatever it holds. `multiply(x, y)`: y = A x; `relax(weights, b,
-  /// image, step, x)`: the step above in one pass, `image` A x. Collective where these are.
+  /// If `from_zero`, x counts as zero and its content is ignored. `multiply(x, y)`: y = A x; `relax(weights,
+  /// b, image, step, x)`: the step above in one pass, with image = A x. Collective if these are.
   template <class S, class Multiply, class Relax>
   void smooth(bool from_zero, const SmootherVectors<S>& on, const Multiply& multiply,
               const Relax& relax) const {

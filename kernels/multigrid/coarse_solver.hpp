@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A level over rigid motions handed to a solver from elsewhere.
+// Interface for external solvers of a level of rigid motions.
 #pragma once
 
 #include <cstddef>
@@ -14,30 +14,30 @@
 
 namespace kacanov {
 
-/// The symmetric matrix of a level over rigid motions, as a list of blocks. Motions that nothing moves have
-/// zero rows.
+/// The symmetric matrix of a level of rigid motions, as a list of blocks. Rows of motions that move no node
+/// are zero.
 struct CoarseMatrix {
-  int motions = 6;                        ///< of a row: translations, then rotations; 3 in 2D
-  const IndexMap* map = nullptr;          ///< of the rows; this rank has the owned ones
+  int motions = 6;                        ///< per row: translations, then rotations; 3 in 2D
+  const IndexMap* map = nullptr;          ///< of the rows; this rank provides the owned ones
   std::span<const Vector3> centres;       ///< of the owned rows' aggregates
   double length = 1.0;                    ///< a rotation θ moves x by θ × (x − centre) / length
-  std::vector<std::int64_t> row, column;  ///< of a block, numbered over all ranks; all of the owned rows
-  std::vector<double> block;              ///< motions × motions each, by rows
+  std::vector<std::int64_t> row, column;  ///< of each block, global numbers; all blocks of the owned rows
+  std::vector<double> block;              ///< motions × motions entries per block, row-major
 };
 
-/// Solves in place of the levels below the one whose matrix it was made of.
+/// Replaces the levels below the one whose matrix it was made from.
 class CoarseSolver {
  public:
   virtual ~CoarseSolver() = default;
-  /// x ≈ A⁻¹ b on owned rows, `motions` entries each: symmetric, positive definite, fixed, and no longer than
-  /// A⁻¹ b in the energy of A. Collective.
+  /// x ≈ A⁻¹ b on owned rows, `motions` entries per row: symmetric, positive definite, constant, and not
+  /// longer than A⁻¹ b in the energy norm of A. Collective.
   virtual void solve(std::span<const double> b, std::span<double> x) = 0;
 };
 
-/// What makes one of a matrix, which goes when it returns, but for its map and centres. Collective.
+/// Creates a solver from a matrix, of which only map and centres outlive the call. Collective.
 using MakeCoarseSolver = std::function<std::unique_ptr<CoarseSolver>(const CoarseMatrix&)>;
 
-/// The matrix of a level.
+/// Copies the matrix of a level.
 template <int M>
 CoarseMatrix coarse_matrix(const RigidLevel<M>& level, double length) {
   CoarseMatrix all{M, &level.map(), level.centres(), length, {}, {}, {}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The last level of the multigrid, solved directly.
+// Direct solve of the last level of the multigrid.
 #pragma once
 
 #include <Eigen/SparseCholesky>
@@ -12,11 +12,11 @@
 
 namespace kacanov {
 
-/// A sparse factor of the last level, the same on every rank.
+/// A sparse factorisation of the last level, the same on every rank.
 template <int M>
 class DirectSolve {
  public:
-  /// Throws InternalError where the matrix is not definite. The level has to outlive it. Collective.
+  /// Throws InternalError if the matrix is not definite. The level must outlive it. Collective.
   explicit DirectSolve(const RigidLevel<M>& level) : level_(&level) {
     const auto size = static_cast<Eigen::Index>(level.total()) * M;
     std::vector<Eigen::Triplet<double>> triplets;
@@ -30,8 +30,8 @@ class DirectSolve {
           triplets.emplace_back(row, column, v);
           if (row == column) diagonal[row] += v;
         }
-    // Modes that boundary conditions have emptied, and rounding: a shift far below anything that moves,
-    // unless penalties so large that they swamp the body ask for more.
+    // For modes that boundary conditions remove, and for rounding: a shift far below all stiffnesses, unless
+    // penalties that dominate the body's stiffness require a larger one.
     const double largest = diagonal.empty() ? 1.0 : *std::max_element(diagonal.begin(), diagonal.end());
     Eigen::SparseMatrix<double> matrix(size, size), unit(size, size);
     matrix.setFromTriplets(triplets.begin(), triplets.end());
@@ -46,7 +46,7 @@ class DirectSolve {
     return static_cast<std::size_t>(factor_.matrixL().nestedExpression().nonZeros()) *
            (sizeof(double) + sizeof(int));
   }
-  /// x = A⁻¹ b on owned rows, M entries each. Collective.
+  /// x = A⁻¹ b on owned rows, M entries per row. Collective.
   void solve(std::span<const double> b, std::span<double> x) const {
     Eigen::VectorXd all = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(level_->total()) * M);
     const auto at = static_cast<Eigen::Index>(level_->first()) * M;

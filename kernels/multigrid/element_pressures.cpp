@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pressures of elements that average tr ε each by itself (B-bar), as those of corners are held.
+// Pressures of elements that average tr ε element by element (B-bar), in the format of corner pressures.
 #include "multigrid/element_pressures.hpp"
 
 #include <algorithm>

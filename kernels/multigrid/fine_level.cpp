@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fine level of the multigrid: B(g) and node blocks in single precision, with its block diagonal.
+// The fine level of the multigrid: B(g) and node blocks in single precision, with block Jacobi.
 #include "multigrid/fine_level.hpp"
 
 #include <Eigen/Dense>
@@ -22,7 +22,7 @@ FloatOperator make_operator(const MultigridBody& body, const OperatorOptions& op
                               : FloatOperator(body.body, options);
 }
 
-/// Without the stiffness that pressures stand for.
+/// The laws without the volumetric part that pressures represent.
 std::vector<Law> without_means(std::span<const Law> laws) {
   std::vector<Law> rest(laws.begin(), laws.end());
   for (Law& law : rest)
@@ -42,7 +42,7 @@ FineLevel::FineLevel(const MultigridBody& body, const MultigridOptions& options,
       op_(make_operator(laws_.empty() ? body : with_laws(body, laws_),
                         {options.threads, options.instruction_set, body.node_map->shared})),
       sum_(*body.node_map, static_cast<int>(body.dim())) {
-  body_.like = nullptr;  // it may go
+  body_.like = nullptr;  // may be destroyed
   if (!laws_.empty()) body_.body.laws = laws_, of_elements_.emplace(body.body, *means, threads_);
   if (body.node_map->ranks > 1 && !corner_moduli(body.body).empty())
     op_.set_corner_sum(CornerSum<float>(means != nullptr ? *means : corner_means(body.body), *body.node_map));
@@ -70,7 +70,7 @@ void FineLevel::rebuild(std::span<const NodeBlock> blocks, const HeldSpace& spac
   take_diagonal(diagonal, touched);
 }
 
-/// A flag a node, on every rank that has it.
+/// One flag per node, on every rank that has the node.
 std::vector<char> FineLevel::touched_by(std::span<const NodeBlock> blocks) const {
   std::vector<std::int32_t> flag(body_.nodes(), 0);
   for (const NodeBlock& b : blocks) flag[b.node] = 1;
@@ -88,7 +88,7 @@ void FineLevel::take_blocks(std::span<const NodeBlock> blocks, const HeldSpace& 
   shared_blocks_ = static_cast<std::size_t>(rest - blocks_.begin());
 }
 
-/// This rank's share of the operator's own.
+/// This rank's contribution to the operator's own diagonal blocks.
 std::vector<float> FineLevel::node_blocks(std::span<const char> wanted) const {
   std::vector<float> blocks(body_.nodes() * body_.dim() * body_.dim());
   if (part_ == FinePart::deviator && !of_elements_)
@@ -98,7 +98,8 @@ std::vector<float> FineLevel::node_blocks(std::span<const char> wanted) const {
   return blocks;
 }
 
-/// D and what follows from it at the renewed nodes, all where none is named, of their own blocks.
+/// Updates D and dependent data, from the nodes' own blocks, at the renewed nodes or, if none is named, at
+/// all.
 void FineLevel::take_diagonal(std::span<float> blocks, std::span<const char> renewed) {
   const std::size_t dim = body_.dim(), packed = dim * (dim + 1) / 2;
   for (const auto& b : blocks_)
@@ -126,7 +127,7 @@ void FineLevel::take_diagonal(std::span<float> blocks, std::span<const char> ren
   });
 }
 
-/// Of blocks without what is added to them.
+/// From blocks without additions.
 void FineLevel::take_own_stiffness(std::span<const float> blocks) {
   const std::size_t dim = body_.dim();
   own_stiffness_.assign(body_.nodes(), 0.0F);
@@ -146,7 +147,7 @@ void FineLevel::add_blocks(std::span<const NodeBlock> blocks, std::span<const fl
   }
 }
 
-/// y = what apply(when_early) leaves in it and the blocks' forces, over all ranks; without x no blocks.
+/// y = result of apply(when_early) plus the blocks' forces, over all ranks; without x no blocks.
 template <class Apply>
 void FineLevel::product(const Apply& apply, std::span<const float> x, std::span<float> y) {
   const auto blocks = x.empty() ? std::span<NodeBlock>() : std::span(blocks_);
@@ -217,7 +218,7 @@ void FineLevel::add_scaled(float factor, std::span<const float> b, std::span<con
 
 void FineLevel::relax(const ChebyshevStep<float>& weights, std::span<const float> b,
                       std::span<const float> image, std::span<float> step, std::span<float> x) const {
-  // In pieces that stay in the first-level cache between the three loops.
+  // Pieces that stay in the first-level cache during the three loops.
   constexpr std::size_t piece = 128;
   const std::size_t dim = body_.dim();
   weights.visit([&]<bool zero, bool first>() {

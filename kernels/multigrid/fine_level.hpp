@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fine level of the multigrid: B(g) and node blocks in single precision, with its block diagonal.
+// The fine level of the multigrid: B(g) and node blocks in single precision, with block Jacobi.
 #pragma once
 
 #include <array>
@@ -20,59 +20,59 @@ namespace kacanov {
 
 struct MultigridOptions;
 
-/// What of B(g) a fine level is of: all of it, or A, without k0 where tr ε is averaged (theory:
+/// The part of B(g) in a fine level: all of it, or A, without k0 where tr ε is averaged (theory:
 /// displacement-pressure).
 enum class FinePart { whole, deviator };
 
-/// A = B(g) + blocks on free components, in single precision, never stored. Directions that the space of the
-/// setup holds are held by stiff blocks here, so that the smoother stays definite in the spaces of later
-/// solves; corrections from below are projected. Vectors have the body's unknowns and are consistent;
-/// blocks are of owned nodes, g has elements × points, stresses. build, rebuild, multiply, project and
+/// A = B(g) + blocks on free components, matrix-free in single precision. Directions that the setup's space
+/// holds are held by stiff blocks here, so that the smoother stays definite in the spaces of later solves;
+/// coarse corrections are projected. Vectors have the body's unknowns and are consistent; blocks belong to
+/// owned nodes; g has elements × points entries, stresses. build, rebuild, multiply, project and
 /// choose_smoother are collective.
 class FineLevel {
  public:
-  /// g = μ and no blocks until build(). What the body points to has to outlive it. `means`: those of the
-  /// body's PressureRows; null if it is not the deviator of elements that average over themselves.
+  /// g = μ and no blocks until build(). The arrays that the body points to must outlive it. `means`: those of
+  /// the body's PressureRows; may be null except for the deviator of elements that average over themselves.
   FineLevel(const MultigridBody& body, const MultigridOptions& options, FinePart part = FinePart::whole,
             const CornerMeans* means = nullptr);
-  /// Freezes g and takes the blocks and the space over; D follows.
+  /// Freezes g, copies the blocks and the space, and updates D.
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space);
-  /// With the g and the held components of the last build: D changes where there are blocks, or were some.
+  /// Keeps g and the held components of the last build; updates D at nodes that have or had blocks.
   void rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space);
-  /// What it was built with.
+  /// Inputs of the last build or rebuild.
   std::span<const NodeBlock> blocks() const noexcept { return blocks_; }
   const HeldSpace& space() const noexcept { return space_; }
-  /// g as it is held: in single precision.
+  /// g as stored, in single precision.
   void secant(std::span<double> g) const { op_.secant(g); }
   /// y = A x for x that is zero in held components.
   void multiply(std::span<const float> x, std::span<float> y);
-  /// Chebyshev::smooth's step, with D the dim × dim diagonal blocks of A.
+  /// The step of Chebyshev::smooth, with D the dim × dim diagonal blocks of A.
   void relax(const ChebyshevStep<float>& weights, std::span<const float> b, std::span<const float> image,
              std::span<float> step, std::span<float> x) const;
-  /// x += factor D⁻¹ (b − image), without an image x += factor D⁻¹ b.
+  /// x += factor D⁻¹ (b − image), or, without an image, x += factor D⁻¹ b.
   void add_scaled(float factor, std::span<const float> b, std::span<const float> image,
                   std::span<float> x) const;
-  /// y = A x + Bᵀ p of the deviator's A; p has an entry for each of the means. Collective.
+  /// y = A x + Bᵀ p with A of the deviator; p has one entry per average. Collective.
   void multiply(std::span<const float> x, std::span<const float> p, std::span<float> y);
   /// y = Bᵀ p. Collective.
   void pressure_force(std::span<const float> p, std::span<float> y);
-  /// q = B x, this rank's share.
+  /// q = B x, the contribution of this rank.
   void volume_change(std::span<const float> x, std::span<float> q);
-  /// D⁻¹, nodes × 6: the upper triangles of the inverse blocks, by rows; 3 in 2D.
+  /// D⁻¹, nodes × 6: the upper triangles of the inverse blocks, by rows; nodes × 3 in 2D.
   std::span<const float> inverse() const noexcept { return inverse_; }
-  /// Of held components, which keep their blocks' entries: D's diagonal.
+  /// D's diagonal at held components, where the blocks keep their entries.
   std::span<const float> held_stiffness() const noexcept { return held_stiffness_; }
-  /// Of every node, the mean of its block's diagonal without what is added.
+  /// Average diagonal entry of each node's block, without added blocks.
   std::span<const float> own_stiffness() const noexcept { return own_stiffness_; }
   std::span<const std::int32_t> held() const noexcept { return held_; }
-  /// Λ, of D⁻¹A; choose_smoother has worked it out.
+  /// Λ, the largest eigenvalue of D⁻¹A, from choose_smoother().
   double largest() const noexcept { return smoother_.upper; }
-  /// Zero in held components.
+  /// Sets held components to zero.
   void hold(std::span<float> x) const;
-  /// Onto the space of the setup.
+  /// Projects onto the space of the setup.
   void project(std::span<float> x) const;
-  /// Estimates the largest eigenvalue of D⁻¹A for a polynomial of this degree on [Λ/range, Λ] (theory:
-  /// chebyshev). It serves for later blocks as well: they are part of both D and A, and take their share of Λ
+  /// Estimates the largest eigenvalue Λ of D⁻¹A for a polynomial of this degree on [Λ/range, Λ] (theory:
+  /// chebyshev). It remains valid for later blocks: they are part of both D and A, and move their share of Λ
   /// towards 1.
   void choose_smoother(int degree, double range);
   const Chebyshev& smoother() const noexcept { return smoother_; }
@@ -95,15 +95,15 @@ class FineLevel {
   MultigridBody body_;
   int threads_;
   FinePart part_;
-  std::vector<Law> laws_;  ///< where elements average over themselves: the body's without what has pressures
-  std::optional<ElementChanges> of_elements_;  ///< B of these, which the operator does not have by itself
+  std::vector<Law> laws_;  ///< if elements average over themselves: laws without the part with pressures
+  std::optional<ElementChanges> of_elements_;  ///< B of these elements, which the operator does not provide
   FloatOperator op_;
   Scatterer<float> sum_;
   std::vector<std::int32_t> held_;  ///< components
   std::vector<float> held_stiffness_, own_stiffness_;
   HeldSpace space_;
   std::vector<NodeBlock> blocks_;
-  std::size_t shared_blocks_ = 0;  ///< the first of them belong to nodes that other ranks have too
+  std::size_t shared_blocks_ = 0;  ///< number of leading blocks of nodes shared with other ranks
   std::vector<float> inverse_;  ///< nodes × 6 (3 in 2D): the upper triangles of the inverse blocks, by rows
   Chebyshev smoother_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether a background grid fits a body.
+// Criteria for the fit of a background grid to a body.
 #include "multigrid/grid_fit.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace kacanov {
 namespace {
 
-/// Sets of indices that are joined one by one.
+/// Disjoint sets of indices (union–find).
 class Joined {
  public:
   explicit Joined(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
@@ -31,12 +31,12 @@ class Joined {
 
 using Pair = std::array<std::int32_t, 2>;
 
-/// Of all ranks, the same on each: sets of a rank's nodes in one leaf that its elements join there, and which
-/// of these elements or common nodes join across leaves and ranks.
+/// Connected sets of a rank's nodes within one leaf, and the pairs of them that elements or common nodes
+/// connect across leaves and ranks; gathered from all ranks, the same on each.
 struct Fragments {
   std::vector<std::int32_t> leaf;
   std::vector<double> nodes;
-  std::vector<Pair> joined;  ///< both ways, ascending
+  std::vector<Pair> joined;  ///< both directions, ascending
 };
 
 Fragments fragments_of(std::span<const std::int32_t> cell, const MultigridBody& body) {
@@ -61,13 +61,13 @@ Fragments fragments_of(std::span<const std::int32_t> cell, const MultigridBody& 
       fragment[n] = static_cast<std::int32_t>(leaf.size());
       leaf.push_back(cell[n]), nodes.push_back(0.0);
     }
-    fragment[n] = fragment[root];  // roots come first
+    fragment[n] = fragment[root];  // roots have the lowest numbers
     if (n < body.owned_nodes()) nodes[fragment[n]] += 1.0;
   }
   const auto first = static_cast<std::int32_t>(map.sum_below(static_cast<std::int64_t>(leaf.size())));
   for (std::int32_t& f : fragment) f += first;
   std::vector<Pair> joined;
-  std::vector<Pair> lately(1024, Pair{-1, -1});  // most of them come again and again
+  std::vector<Pair> lately(1024, Pair{-1, -1});  // cache of recent pairs: most repeat many times
   const auto join = [&](std::int32_t f, std::int32_t g) {
     const Pair pair{std::min(f, g), std::max(f, g)};
     Pair& same =
@@ -92,7 +92,7 @@ Fragments fragments_of(std::span<const std::int32_t> cell, const MultigridBody& 
   return all;
 }
 
-/// Nodes of a function with these fragments, and how many of them are not in its largest piece.
+/// Number of nodes of a function with these fragments, and number of those outside its largest piece.
 std::array<double, 2> pieces(const Fragments& fragments, std::span<const std::int32_t> of) {
   Joined sets(of.size());
   for (std::size_t i = 0; i < of.size(); ++i) {
@@ -112,7 +112,7 @@ std::array<double, 2> pieces(const Fragments& fragments, std::span<const std::in
   return {total, total - *std::max_element(nodes.begin(), nodes.end())};
 }
 
-/// Whether some function moves nodes of both leaves.
+/// Whether a function moves nodes of both leaves.
 bool share_rows(const GridVertices& vertices, std::int32_t a, std::int32_t b) {
   for (std::size_t i = 0; i < 8; ++i)
     for (const auto& one : vertices.corner(a, i))
@@ -122,11 +122,11 @@ bool share_rows(const GridVertices& vertices, std::int32_t a, std::int32_t b) {
   return false;
 }
 
-/// Where a slot runs along a bar it is 0.09 to 0.12, and takes 2 to 4 times the iterations of modes; in a
-/// hook with its mouth 0.013, and half of them.
+/// A slot along a bar has 0.09 to 0.12, and 2 to 4 times the iterations of aggregates; a hook with its gap
+/// has 0.013, and half the iterations.
 constexpr double most_cut_off = 0.03;
-/// From there on elements are more than some seven times as long as they are wide, and cubes between their
-/// nodes empty.
+/// Beyond this, elements are more than about seven times as long as wide, and cubes between their nodes are
+/// empty.
 constexpr double most_apart = 0.01;
 
 }  // namespace

@@ -19,7 +19,7 @@ constexpr PressureSteps coarse_pressures{4, 8.0};
 GridHierarchy::GridHierarchy(const MultigridBody& body, const PressureRows* pressures, double edge,
                              int threads)
     : body_(body), volume_(pressures != nullptr ? VolumeOf::averaging : VolumeOf::all), threads_(threads) {
-  body_.like = nullptr;  // it may go
+  body_.like = nullptr;  // may be destroyed
   const IndexMap& map = *body.node_map;
   const std::span<const double> coordinates = body.body.mesh.coordinates;
   tree_.emplace(GridTree::Nodes{coordinates, node_spacings(body.body, map), body.owned_nodes()}, edge, map);
@@ -95,7 +95,7 @@ void GridHierarchy::change(std::span<const NodeBlock> blocks) {
 void GridHierarchy::correct(std::span<const float> force, std::span<const double> change, std::span<float> u,
                             std::span<double> p) {
   Level& first = levels_.front();
-  // Of a vertex the three components of the displacement, then the pressure. A rank may have none.
+  // A vertex has three displacement components, then the pressure. A rank may have no vertices.
   const auto from_pressure = [](auto values) { return values.empty() ? values : values.subspan(3); };
   nodes_->restrict_to(force, 3, std::span(first.b), grid_width);
   if (rows_) rows_->restrict_to(change, 1, from_pressure(std::span(first.b)), grid_width);
@@ -104,7 +104,7 @@ void GridHierarchy::correct(std::span<const float> force, std::span<const double
   if (rows_) rows_->prolong(from_pressure(std::span<const float>(first.x)), grid_width, 1, p);
 }
 
-/// x of a level from its b, from zero.
+/// x of a level from its b, starting from zero.
 void GridHierarchy::cycle(std::size_t k) {
   Level& level = levels_[k];
   if (k + 1 == levels_.size()) return direct_->solve(level.b, level.x);
@@ -125,7 +125,7 @@ void GridHierarchy::choose_cycle() {
   if (twice_ && !settles(1)) twice_ = false;
 }
 
-/// Whether a level's cycle, repeated, takes an error down.
+/// Whether repeated cycles of a level reduce an error.
 bool GridHierarchy::settles(std::size_t k) {
   constexpr int steps = 8, last = 3;
   Level& level = levels_[k];
@@ -133,7 +133,7 @@ bool GridHierarchy::settles(std::size_t k) {
   std::vector<float> error = scattered<float>(level.matrix->map(), grid_width);
   const std::vector<float> nothing(level.b.size(), 0.0F);
   const auto square = [&] {
-    const auto term = [&](std::size_t i) {  // of displacements
+    const auto term = [&](std::size_t i) {  // only of displacements
       return i % grid_width < 3 ? static_cast<double>(error[i]) * static_cast<double>(error[i]) : 0.0;
     };
     return body_.node_map->sum_all(eight_sums(size, term));

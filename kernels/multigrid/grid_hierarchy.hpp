@@ -15,22 +15,22 @@
 
 namespace kacanov {
 
-/// Grids, each twice as coarse as the one before, the last one solved directly. What depends on the mesh
-/// alone is made once.
+/// Grids, each twice as coarse as the previous one, the last one solved directly. Data that depend only on
+/// the mesh are computed once.
 class GridHierarchy {
  public:
-  /// `edge` of the first one over the spacing of the nodes. Without `pressures` grids have one of
-  /// their own all over the body, with them one where these are. Collective.
+  /// `edge`: edge length of the first grid's cubes divided by the node spacing. Without `pressures` the grids
+  /// have a pressure in the whole body, otherwise where these are. Collective.
   GridHierarchy(const MultigridBody& body, const PressureRows* pressures, double edge, int threads);
-  /// Of the first grid. Collective.
+  /// Fit of the first grid. Collective.
   GridFit fit() const { return grid_fit(levels_.front().vertices, cell_, body_); }
 
-  /// For frozen g, elements × points, and stiffnesses of local nodes. Collective.
+  /// `g`: frozen, elements × points; `blocks`: stiffnesses of local nodes. Collective.
   void build(std::span<const double> g, std::span<const NodeBlock> blocks);
-  /// The same with other stiffnesses. Collective.
+  /// Replaces only the stiffnesses. Collective.
   void change(std::span<const NodeBlock> blocks);
-  /// Adds a correction for what is left of forces on nodes and of volume changes at rows of the pressures, if
-  /// there are any: `u` of the nodes this rank owns, `p` of its rows. Collective.
+  /// Adds a correction for residual forces on nodes and residual volume changes at pressure rows, if there
+  /// are any: `u` for the nodes that this rank owns, `p` for its rows. Collective.
   void correct(std::span<const float> force, std::span<const double> change, std::span<float> u,
                std::span<double> p);
 
@@ -41,9 +41,9 @@ class GridHierarchy {
   struct Level {
     GridVertices vertices;
     GridLeaves leaves;
-    std::optional<GridTransfer> down;  ///< to the next; none on the last
+    std::optional<GridTransfer> down;  ///< to the next level; empty on the last
     std::optional<GridLevel> matrix;   ///< likewise
-    std::vector<float> b, x, rest;     ///< four values a row
+    std::vector<float> b, x, rest;     ///< four values per row
   };
   void cycle(std::size_t k);
   void choose_cycle();
@@ -53,12 +53,12 @@ class GridHierarchy {
   VolumeOf volume_;
   int threads_;
   std::optional<GridTree> tree_;
-  std::vector<std::int32_t> cell_;  ///< the deepest, of every local node
+  std::vector<std::int32_t> cell_;  ///< deepest cell of every local node
   std::deque<Level> levels_;
   std::optional<GridTransfer> nodes_, rows_;
   LevelMoments last_moments_;
   std::optional<PressureDirect> direct_;
-  /// Two corrections of a level by the next one, C of K: 2C − CKC, definite as long as CK < 2.
+  /// Two coarse corrections C of K per cycle: 2C − CKC, definite as long as CK < 2.
   bool twice_ = false;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One level of displacements and pressures on a background grid: its matrix and its smoother.
+// One level of displacements and pressures on a background grid: matrix and smoother.
 #include "multigrid/grid_level.hpp"
 
 #include <Eigen/Dense>
@@ -15,10 +15,10 @@ namespace {
 
 const SmootherWeights grid_smoothing = chebyshev_weights(2, 6.0);
 
-/// Without what has no stiffness: what no node moves with stays where it is.
+/// Pseudoinverse: directions without stiffness, which move no node, get no displacement.
 Eigen::Matrix3d inverse_of_stiff(const Eigen::Matrix3d& d) {
   const double largest = d.diagonal().maxCoeff();
-  // No eigenvalue is below a ninth of the determinant over the square of the largest.
+  // The smallest eigenvalue is at least a ninth of the determinant over the squared largest entry.
   if (d.determinant() > 1e-4 * largest * largest * largest) return d.inverse();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(d);
   Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
@@ -28,7 +28,7 @@ Eigen::Matrix3d inverse_of_stiff(const Eigen::Matrix3d& d) {
   return inverse;
 }
 
-/// Where a row has its own column.
+/// Index of a row's diagonal entry.
 std::size_t own_entry(const simd::GridRow& row, std::size_t i) {
   std::size_t k = row.begin;
   while (static_cast<std::size_t>(row.column[k]) != i) ++k;
@@ -40,7 +40,7 @@ std::size_t own_entry(const simd::GridRow& row, std::size_t i) {
 GridLevel::GridLevel(const GridVertices& vertices, const GridLeaves& leaves, const Communicator& comm,
                      int threads)
     : threads_(threads) {
-  // Small matrices: a leaf's corners, or what these hang on.
+  // Element matrices: a leaf's corners, or the vertices that constrain them.
   std::vector<std::int64_t> number(vertices.starts().back());
   std::iota(number.begin(), number.end(), 0);
   std::vector<std::size_t> first{0};
@@ -91,7 +91,7 @@ void GridLevel::change(const GridTree& tree, const GridLeaves& leaves, const Lev
     kept += count;
   }
   keep_rows(stiffness);
-  // What is in other ranks' rows they have already.
+  // The owners of these rows already have their old values.
   std::fill(force_.begin() + 12 * pattern_->start()[rows()], force_.end(), 0.0F);
   const LeafMoments no_moments;
   add_forms(leaves.cell.size(), [&](std::size_t leaf) {
@@ -105,7 +105,7 @@ void GridLevel::change(const GridTree& tree, const GridLeaves& leaves, const Lev
   find_scales();
 }
 
-/// Those of this rank that it or another may add stiffnesses to.
+/// Stores this rank's rows to which this or another rank may add stiffnesses.
 void GridLevel::keep_rows(const LevelStiffness& stiffness) {
   std::vector<char> touched(pattern_->rows(), 0);
   for (std::size_t leaf = 0; leaf < stiffness.stiff.size(); ++leaf)
@@ -123,7 +123,7 @@ void GridLevel::keep_rows(const LevelStiffness& stiffness) {
   }
 }
 
-/// form_of(leaf) of all leaves that have one.
+/// Adds form_of(leaf) of all leaves that have one.
 template <class FormOf>
 void GridLevel::add_forms(std::size_t leaves, const FormOf& form_of) {
   in_shares(threads_, pattern_->rows(), [&](std::size_t begin, std::size_t end) {
@@ -137,7 +137,7 @@ void GridLevel::add_forms(std::size_t leaves, const FormOf& form_of) {
   });
 }
 
-/// To rows in [begin, end).
+/// Adds to rows in [begin, end).
 void GridLevel::add(const LeafForm& form, std::size_t leaf, std::int32_t begin, std::int32_t end) {
   const auto shares = [&](std::size_t corner) {
     const std::size_t at = 8 * leaf + corner;
@@ -253,7 +253,7 @@ void GridLevel::smooth(bool down, const PressureSteps& with, std::span<const flo
   for (std::size_t s = 0; s < steps; ++s) {
     const bool from_zero = down && s == 0;
     const auto weight = static_cast<float>(grid_smoothing.weight[down ? steps - 1 - s : s]);
-    // What moves: t − ωÂ⁻¹Bᵀp, t = u + ωÂ⁻¹(b − A u).
+    // moved_ = t − ωÂ⁻¹Bᵀp with t = u + ωÂ⁻¹(b − A u).
     if (!from_zero) fill(x);
     each_row([&](std::size_t i) {
       simd::FourFloats left = simd::load_four(&b[grid_width * i]);

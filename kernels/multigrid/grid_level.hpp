@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One level of displacements and pressures on a background grid: its matrix and its smoother.
+// One level of displacements and pressures on a background grid: matrix and smoother.
 #pragma once
 
 #include <cstdint>
@@ -15,25 +15,25 @@
 
 namespace kacanov {
 
-/// Values a row of a grid's vectors: a displacement and a pressure, or what acts on them.
+/// Values per row in a grid's vectors: a displacement and a pressure, or a force and a volume change.
 inline constexpr std::size_t grid_width = 4;
 
-/// K = [A Bᵀ; B −C] over the rows of a grid, distributed by rows, and the inexact smoother of Braess and
-/// Sarazin on it (theory: pressure-smoothing). Vectors have four values a row; where they are multiplied
-/// there is room for ghosts, of map().
+/// K = [A Bᵀ; B −C] over the rows of a grid, distributed by rows, with the inexact Braess–Sarazin smoother
+/// (theory: pressure-smoothing). Vectors have four values per row; those to be multiplied also have room for
+/// ghosts of map().
 class GridLevel {
  public:
-  /// The pattern. `leaves` of the level of the vertices. Collective.
+  /// Builds the sparsity pattern. `leaves`: of the level of the vertices. Collective.
   GridLevel(const GridVertices& vertices, const GridLeaves& leaves, const Communicator& comm, int threads);
-  /// The matrix. Collective.
+  /// Builds the matrix. Collective.
   void build(const GridTree& tree, const GridLeaves& leaves, const LevelMoments& moments);
-  /// The same with other stiffnesses of nodes. Collective.
+  /// Replaces only the stiffnesses of nodes. Collective.
   void change(const GridTree& tree, const GridLeaves& leaves, const LevelStiffness& stiffness);
 
   std::size_t rows() const noexcept { return pattern_->owned_rows(); }
   const IndexMap& map() const noexcept { return pattern_->columns(); }
 
-  /// Steps on x for the input b: on a cycle's way down they begin at zero. Collective.
+  /// Smoothing steps on x for the input b; on the way down of a cycle they start from zero. Collective.
   void smooth(bool down, const PressureSteps& with, std::span<const float> b, std::vector<float>& x);
   /// r = b − K x on owned rows. Collective.
   void residual(std::span<const float> b, std::vector<float>& x, std::span<float> r);
@@ -63,23 +63,23 @@ class GridLevel {
   void each_row(const Work& work) const {
     each_in_shares(threads_, rows(), work);
   }
-  /// y = Â⁻¹Bᵀp and −C p in its fourth lane, on owned rows; fills p's ghosts.
+  /// y = Â⁻¹Bᵀp with −C p in the fourth lane, on owned rows; fills p's ghosts.
   void lift(std::span<float> p, std::span<float> y);
   /// q = S p.
   void schur(std::span<float> p, std::span<float> q);
 
   int threads_;
   std::optional<SummedPattern> pattern_;
-  std::vector<std::size_t> first_;  ///< leaves × 8 + 1, into
-  std::vector<Share> shares_;       ///< what the leaves' corners are made of
-  /// An entry: the three columns of A with B's entries below, Bᵀ's column with −C's entry below, and B's
-  /// once more.
+  std::vector<std::size_t> first_;  ///< size leaves × 8 + 1, index into shares_
+  std::vector<Share> shares_;       ///< rows and weights of the leaves' corners
+  /// Per entry: the three columns of A with B's entries below, Bᵀ's column with −C's entry below, and B's
+  /// entries again.
   std::vector<float> force_, pressure_, divergence_;
-  /// Rows of A that stiffnesses add to, as they are without.
+  /// Rows of A that stiffnesses change, and their values without stiffnesses.
   std::vector<std::int32_t> kept_row_;
   std::vector<float> kept_;
-  std::vector<float> inverse_;        ///< of Â: local rows × three columns of four
-  std::vector<float> schur_inverse_;  ///< of S's diagonal
+  std::vector<float> inverse_;        ///< of Â: local rows × three columns of four values
+  std::vector<float> schur_inverse_;  ///< inverse of S's diagonal
   PressureSolve solve_;
   std::optional<Scatterer<float>> fill_, fill_p_;
   std::vector<float> p_, lifted_, moved_;  ///< scratch

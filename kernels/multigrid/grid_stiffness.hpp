@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What holds nodes, as background grids have it.
+// Supports of nodes for background grids.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace kacanov {
 
-/// Of the nodes this rank owns: the fine level's blocks, held components with its diagonal, and held
-/// directions with a few times what their node's elements have there in place of the stiff blocks that pin
+/// Stiffnesses of the nodes that this rank owns: the fine level's blocks; at held components its diagonal; in
+/// held directions a few times the stiffness of their node's elements, instead of the stiff blocks that fix
 /// them (theory: background-grid). For bodies in 3D.
 std::vector<NodeBlock> grid_stiffnesses(const FineLevel& fine, std::size_t owned_nodes);
 

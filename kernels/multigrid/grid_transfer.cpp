@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The way between points, be they nodes or rows of a finer grid, and the trilinear functions on a tree.
+// Transfer between points (nodes or rows of a finer grid) and the trilinear functions on a tree.
 #include "multigrid/grid_transfer.hpp"
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 namespace kacanov {
 namespace {
 
-/// For reverse scatters, too: what one has of the other and the other way round, the lower rank's first.
-/// Ghosts end with what is of no use.
+/// Completes a map for reverse scatters: shared indices are those sent and received, the lower rank's own
+/// ones first. Ghosts receive partial sums, which are not used.
 void add_sums(IndexMap& map) {
   for (IndexMap::Neighbour& n : map.neighbours) {
     const auto& [first, second] =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The way between points, be they nodes or rows of a finer grid, and the trilinear functions on a tree.
+// Transfer between points (nodes or rows of a finer grid) and the trilinear functions on a tree.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace kacanov {
 
-/// Values of this rank's points by those of rows, wherever these live, and the transpose of that.
+/// Interpolates values of rows, on any rank, at this rank's points, and restricts by the transpose.
 class GridTransfer {
  public:
   /// A point in a leaf.
@@ -20,15 +20,15 @@ class GridTransfer {
     std::int32_t leaf;
     Vector3 within;
   };
-  /// What is passed may go afterwards. Collective.
+  /// The arguments need not outlive it. Collective.
   GridTransfer(const GridVertices& vertices, std::vector<Place> points, const Communicator& comm,
                int threads);
 
-  /// Adds values there to x, `count` a point: of the rows, `stride` values each, those from the first on that
-  /// the span begins with. `rows` has this rank's. Collective.
+  /// Adds interpolated values to x, `count` per point. `rows`: this rank's rows with `stride` values each, of
+  /// which the first `count` are used from the beginning of the span on. Collective.
   template <class Real>
   void prolong(std::span<const float> rows, std::size_t stride, std::size_t count, std::span<Real> x);
-  /// rows = the transpose of that; other values of the rows stay. Collective.
+  /// rows = the transpose applied to x; other values of the rows are unchanged. Collective.
   template <class Real>
   void restrict_to(std::span<const Real> x, std::size_t count, std::span<float> rows, std::size_t stride);
 
@@ -36,20 +36,20 @@ class GridTransfer {
 
  private:
   struct Share {
-    std::int32_t row;  ///< local: this rank's, then others'
+    std::int32_t row;  ///< local: this rank's rows, then others'
     float weight;
   };
   std::span<const Share> shares(std::size_t corner) const {
     return std::span(shares_).subspan(first_share_[corner], first_share_[corner + 1] - first_share_[corner]);
   }
   int threads_;
-  std::unique_ptr<const IndexMap> map_;   ///< of the rows that the points here need
-  std::vector<std::size_t> first_share_;  ///< leaves × 8 + 1
+  std::unique_ptr<const IndexMap> map_;   ///< of the rows that these points need
+  std::vector<std::size_t> first_share_;  ///< size leaves × 8 + 1
   std::vector<Share> shares_;
-  std::vector<std::size_t> first_point_;  ///< leaves + 1
-  std::vector<std::int32_t> point_;       ///< leaf by leaf
+  std::vector<std::size_t> first_point_;  ///< size leaves + 1
+  std::vector<std::int32_t> point_;       ///< sorted by leaf
   std::vector<std::array<float, 3>> within_;
-  std::vector<float> local_, corner_;  ///< scratch: values of local rows, of the leaves' corners
+  std::vector<float> local_, corner_;  ///< scratch: values of local rows and of the leaves' corners
 };
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A tree of cubes round the nodes of a body, whose trilinear functions are a coarse space.
+// Octree around the nodes of a body, whose trilinear functions form a coarse space.
 #include "multigrid/grid_tree.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ GridTree::GridTree(const Nodes& nodes, double ratio, const Communicator& comm) {
   comm.sum_all(sums);
   double extent = 0.0;
   for (std::size_t k = 0; k < 3; ++k) extent = std::max(extent, reach[k] + reach[3 + k]);
-  // Cubes of a uniform mesh end with just the size that is asked for.
+  // Chosen so that the cubes of a uniform mesh end with exactly the requested size.
   double length = ratio * (sums[1] > 0.0 ? sums[0] / sums[1] : 1.0);
   while (length < 1.001 * extent) length *= 2.0;
   unit_ = length / side;
@@ -34,10 +34,10 @@ GridTree::GridTree(const Nodes& nodes, double ratio, const Communicator& comm) {
 }
 
 void GridTree::split(const Nodes& nodes, double ratio, const Communicator& comm) {
-  std::vector<std::int32_t> at(nodes.owned, 0);  // the cell of every node
+  std::vector<std::int32_t> at(nodes.owned, 0);  // cell of every node
   std::vector<std::int32_t> active{0};
   for (int depth = 0; depth < deepest && !active.empty(); ++depth) {
-    // Nodes, and the sum of their spacings, of every active cell's children.
+    // Number of nodes, and the sum of their spacings, in the children of every active cell.
     std::vector<std::int32_t> place(cells_.size(), -1);
     for (std::size_t i = 0; i < active.size(); ++i) place[active[i]] = static_cast<std::int32_t>(i);
     std::vector<double> sums(16 * active.size(), 0.0);
@@ -59,7 +59,7 @@ void GridTree::split(const Nodes& nodes, double ratio, const Communicator& comm)
       const std::int32_t parent = active[i];
       double count = 0.0, spacing = 0.0;
       for (std::size_t c = 0; c < 8; ++c) count += sums[16 * i + 2 * c], spacing += sums[16 * i + 2 * c + 1];
-      // Between one size and the next: √2 times what is asked for.
+      // Threshold between two sizes: √2 times the requested one.
       if (count < 2.0 || length(cells_[parent]) * count < 1.42 * ratio * spacing) continue;
       for (std::size_t c = 0; c < 8; ++c) {
         if (sums[16 * i + 2 * c] == 0.0) continue;
@@ -104,7 +104,7 @@ void GridTree::find_owners(const Nodes& nodes, const Communicator& comm) {
 GridTree::Position GridTree::lattice(const double* node) const {
   Position p{};
   for (std::size_t k = 0; k < 3; ++k) {
-    // A node on the face between two cubes is in the same one, however its coordinate was rounded.
+    // The offset puts nodes on the face between two cubes into the same one despite rounding.
     const double at = std::floor((node[k] - origin_[k]) / unit_ + 0.37);
     p[k] = static_cast<std::int32_t>(std::clamp(at, 0.0, side - 1.0));
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The corners of a tree's leaves, numbered over the ranks, and what hangs on others.
+// Vertices of an octree's leaves: global numbering and hanging-node constraints.
 #include "multigrid/grid_vertices.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ bool is_corner(const GridTree::Cell& cell, const Position& at) {
   return true;
 }
 
-/// Calls visit(leaf) for the leaves that a position is in or at the border of, some of them more than once.
+/// Calls visit(leaf) for the leaves that contain a position inside or on the boundary, possibly repeatedly.
 template <class Visit>
 void visit_round(const GridTree& tree, int level, const Position& at, const Visit& visit) {
   for (std::int32_t k = 0; k < 8; ++k)
@@ -74,8 +74,8 @@ GridVertices::GridVertices(const GridTree& tree, int level, int ranks) : tree_(&
   }
 }
 
-/// The largest leaf that has a position inside, or at its border but not at a corner; −1 where it is a corner
-/// of all.
+/// The largest leaf with a position inside, or on its boundary but not at a corner; −1 if it is a corner of
+/// all leaves.
 std::int32_t GridVertices::larger_leaf(const Position& at) const {
   const auto cells = tree_->cells();
   std::int32_t largest = -1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The projection onto a space.
+// Projection onto a constrained space.
 #include "multigrid/held_space.hpp"
 
 namespace kacanov {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a space of displacements holds at zero besides held components: directions of nodes, rows over
-// several.
+// Constraints of a displacement space besides held components: directions at nodes, and rows over several
+// nodes.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace kacanov {
 
-/// Rows over several nodes that a space holds at zero.
+/// Constraint rows over several nodes.
 class HeldRows {
  public:
   virtual ~HeldRows() = default;
@@ -22,7 +22,7 @@ class HeldRows {
   virtual void project(std::span<double> x) const = 0;
 };
 
-/// Directions held at one local node besides its held components.
+/// Directions held at one local node, besides its held components.
 struct HeldDirections {
   std::int32_t node = 0;
   int count = 0;
@@ -33,7 +33,7 @@ struct HeldSpace {
   std::vector<HeldDirections> directions;
   std::shared_ptr<const HeldRows> rows;  ///< may be null; they share no node with the directions
 
-  /// Orthogonal projection of a vector of `dim` components a node, node by node; collective where there are
+  /// Orthogonal projection of a vector with `dim` components per node, node by node; collective if there are
   /// rows.
   void project(std::size_t dim, std::span<double> x) const;
   void project(std::size_t dim, std::span<float> x) const;

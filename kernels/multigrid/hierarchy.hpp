@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What every kind of hierarchy does for the multigrid.
+// Interface of all hierarchies of the multigrid.
 #pragma once
 
 #include "multigrid/multigrid.hpp"
 
 namespace kacanov {
 
-/// The members of Multigrid, whatever the levels are made of.
+/// The members of Multigrid, independent of the kind of levels.
 struct Multigrid::Hierarchy {
   virtual ~Hierarchy() = default;
   virtual void build(std::span<const double> g, std::span<const NodeBlock> blocks,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The largest eigenvalue of D⁻¹A, for the smoothers.
+// Largest eigenvalue of D⁻¹A, for the smoothers.
 #pragma once
 
 #include <Eigen/Eigenvalues>
@@ -13,7 +13,7 @@
 
 namespace kacanov {
 
-/// A number in [−1, 1] that looks random, the same for the same index wherever it lives.
+/// Returns a pseudorandom number in [−1, 1] that depends only on the index.
 inline float scatter(std::uint64_t index) {
   std::uint64_t z = (index + 1) * 0x9e3779b97f4a7c15U;  // splitmix64
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
@@ -21,7 +21,7 @@ inline float scatter(std::uint64_t index) {
   return static_cast<float>(static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1.0);
 }
 
-/// A start for largest_eigenvalue: scatter()ed entries, `components` for every index of the map.
+/// Start vector for largest_eigenvalue: `components` scatter()ed entries per index of the map.
 template <class S>
 std::vector<S> scattered(const IndexMap& map, std::size_t components) {
   std::vector<S> x(map.size() * components);
@@ -31,10 +31,10 @@ std::vector<S> scattered(const IndexMap& map, std::size_t components) {
   return x;
 }
 
-/// Λ (theory: chebyshev): Lanczos' estimate after ten steps of conjugate gradients preconditioned by D, a
-/// tenth added since it comes from below; 1 where the start is zero. `r` holds the start and is used
-/// up. `multiply(x, y)`: y = A x; `scale(x, y)`: y = D⁻¹ x, on vectors as long as r;
-/// `dot` sums over what this process owns and all ranks. Collective where these are.
+/// Λ (theory: chebyshev): Lanczos' estimate after ten steps of conjugate gradients preconditioned by D, plus
+/// a tenth because it is a lower bound; 1 if the start is zero. `r` holds the start and is overwritten.
+/// `multiply(x, y)`: y = A x; `scale(x, y)`: y = D⁻¹ x, on vectors of r's length; `dot` sums over owned
+/// entries and all ranks. Collective if these are.
 template <class S, class Multiply, class Scale, class Dot>
 double largest_eigenvalue(std::vector<S>& r, const Multiply& multiply, const Scale& scale, const Dot& dot) {
   constexpr int steps = 10;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The displacement–pressure form on the trilinear functions of a leaf, from its moments.
+// The displacement–pressure form on the trilinear functions of a leaf, computed from its moments.
 #include "multigrid/leaf_form.hpp"
 
 #include <algorithm>
@@ -7,13 +7,12 @@
 namespace kacanov {
 namespace {
 
-/// Sums of moments that integrals of two trilinear functions are: along each axis the product of their
-/// values (l₀², l₀l₁, l₁²), the value of one of them where the other is derived (l₀, l₁), and 1 where both
-/// are.
+/// Sums of moments that are integrals of two trilinear functions: along each axis the product of their values
+/// (l₀², l₀l₁, l₁²), the value of one where the other is differentiated (l₀, l₁), and 1 where both are.
 using Products = std::array<double, 216>;
 
 Products products_of(const Moments& moments) {
-  // Of l₀², l₀l₁, l₁²: what they stand for; l₀ = l₀² + l₀l₁, l₁ = l₀l₁ + l₁²; l₀² + 2 l₀l₁ + l₁² = 1.
+  // From l₀², l₀l₁, l₁²: l₀ = l₀² + l₀l₁, l₁ = l₀l₁ + l₁²; l₀² + 2 l₀l₁ + l₁² = 1.
   const auto spread = [](double a, double b, double c) {
     return std::array<double, 6>{a, b, c, a + b, b + c, a + 2.0 * b + c};
   };
@@ -38,8 +37,8 @@ Products products_of(const Moments& moments) {
   return of;
 }
 
-/// Which of the products the integral of corner functions i and j is, derived along a and b (3: not at all),
-/// and its sign, of derivatives by ξ.
+/// Index in Products of the integral of corner functions i and j, differentiated along a and b (3: not), and
+/// its sign, for derivatives with respect to ξ.
 struct Term {
   std::uint8_t at = 0;
   std::int8_t sign = 1;
@@ -63,9 +62,9 @@ constexpr auto leaf_terms = [] {
   return all;
 }();
 
-/// Of corners i and j.
+/// The terms of corners i and j.
 struct Pair {
-  const Term* terms;  ///< 4 × 4: derived along a, b
+  const Term* terms;  ///< 4 × 4: differentiated along a, b
   Pair(std::size_t i, std::size_t j) : terms(&leaf_terms[(8 * i + j) << 4]) {}
   double operator()(const Products& of, std::size_t a, std::size_t b) const {
     const Term& term = terms[4 * a + b];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The displacement–pressure form on the trilinear functions of a leaf, from its moments (theory:
+// The displacement–pressure form on the trilinear functions of a leaf, computed from its moments (theory:
 // background-grid).
 #pragma once
 
@@ -11,9 +11,9 @@
 namespace kacanov {
 
 /// [A Bᵀ; B −C] of a leaf's eight corner functions: blocks of three displacements and the pressure, rows of
-/// four. To −C belongs what closes pressures that swing from corner to corner, which no trilinear
-/// displacement sees: beside p²/k0 they store (p − p̄)²/2g, p̄ and g the leaf's means (Dohrmann and Bochev,
-/// Int. J. Numer. Meth. Fluids 46 (2004) 183–201).
+/// four. −C includes a stabilisation of pressures that alternate between corners, which trilinear
+/// displacements do not see: besides p²/k0 they store (p − p̄)²/2g, p̄ and g averaged over the leaf (Dohrmann
+/// and Bochev, Int. J. Numer. Meth. Fluids 46 (2004) 183–201).
 class LeafForm {
  public:
   using Block = std::array<double, 16>;

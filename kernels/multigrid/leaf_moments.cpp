@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the displacement–pressure form on a tree's leaves is made of.
+// Moments of a tree's leaves, from which the displacement–pressure form is computed.
 #include "multigrid/leaf_moments.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace kacanov {
 namespace {
 
-/// Of a weight of one at a point of the leaf.
+/// Moments of a unit weight at a point of the leaf.
 Moments moments_at(const Vector3& xi) {
   std::array<std::array<double, 3>, 3> l;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -31,8 +31,9 @@ void add_scaled(Moments& to, double weight, const Moments& m) {
   for (std::size_t k = 0; k < m.size(); ++k) to[k] += weight * m[k];
 }
 
-/// As moments of the cube twice as large that has the leaf as its octant (bit i: the upper half along axis
-/// i). Below, L₀ = l₀ + l₁/2 and L₁ = l₁/2; above, the other way round.
+/// Converts moments to those of the cube twice as large in which the leaf is this octant (bit i: the upper
+/// half along axis i). In the lower half, L₀ = l₀ + l₁/2 and L₁ = l₁/2; in the upper half the other way
+/// around.
 Moments in_larger(Moments m, std::size_t octant) {
   for (std::size_t axis = 0, stride = 9; axis < 3; ++axis, stride /= 3)
     for (std::size_t k = 0; k < 9; ++k) {
@@ -48,13 +49,13 @@ void add_raised(Moments& to, const Moments& m, int octant) {
   add_scaled(to, 1.0, octant < 0 ? m : in_larger(m, static_cast<std::size_t>(octant)));
 }
 
-/// Which of a cell's children another one is, −1 if it is the cell itself.
+/// Octant of `child` in its parent `cell`, −1 if it is the cell itself.
 int octant_of(const GridTree::Cell& cell, std::int32_t child) {
   const auto at = std::find(cell.child.begin(), cell.child.end(), child);
   return at == cell.child.end() ? -1 : static_cast<int>(at - cell.child.begin());
 }
 
-/// Of a cell: which of the leaves it is.
+/// Index of each cell among the leaves.
 std::vector<std::int32_t> places_of(const GridTree& tree, const GridLeaves& leaves) {
   std::vector<std::int32_t> place(tree.cells().size(), -1);
   for (std::size_t l = 0; l < leaves.cell.size(); ++l) place[leaves.cell[l]] = static_cast<std::int32_t>(l);
@@ -71,7 +72,7 @@ bool straight_sides(const elements::Nodal<E>& x) {
   return false;
 }
 
-/// Integrals over an element, `of_nodes` of them for each of its nodes.
+/// Integrals over an element, divided by its number of nodes.
 template <class E>
 NodeMeasure element_measure(const Body& body, std::span<const double> g, VolumeOf volume, std::size_t e) {
   const elements::Nodal<E> x = elements::coordinates_of<E>(body.mesh, e);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the displacement–pressure form on a tree's leaves is made of (theory: background-grid).
+// Moments of a tree's leaves, from which the displacement–pressure form is computed (theory:
+// background-grid).
 #pragma once
 
 #include <array>
@@ -13,42 +14,42 @@
 
 namespace kacanov {
 
-/// Whose volume changes have pressures: those of elements that average tr ε, or of all.
+/// Elements whose volume changes have pressures: those that average tr ε, or all.
 enum class VolumeOf { averaging, all };
 
-/// What a node stands for: integrals over its shares of the elements here. `bulk`: of k0 where there is no
-/// pressure; where there is one, of 1 (`volume`) and of 1/k0 (`compliance`).
+/// Integrals over a node's shares of the elements on this rank: of g (`shear`) and, where there is no
+/// pressure, of k0 (`bulk`); where there is one, of 1 (`volume`) and of 1/k0 (`compliance`).
 struct NodeMeasure {
   double shear = 0.0, bulk = 0.0, volume = 0.0, compliance = 0.0;
 };
 
-/// Of every node, elements shared evenly among their nodes; g: elements × points.
+/// Measures of every node; elements are divided equally among their nodes; `g`: elements × points.
 std::vector<NodeMeasure> node_measures(const Body& body, std::span<const double> g, VolumeOf volume,
                                        int threads);
 
-/// Integrals over a leaf of l₀², l₀l₁, l₁² along each axis times a weight, l₀ = 1 − ξ and l₁ = ξ: of their
-/// sums all products of two trilinear functions and their derivatives consist.
+/// Integrals over a leaf of a weight times l₀², l₀l₁, l₁² along each axis, l₀ = 1 − ξ and l₁ = ξ: all
+/// products of two trilinear functions and their derivatives are sums of them.
 using Moments = std::array<double, 27>;
 
 struct LeafMoments {
   Moments shear{}, bulk{}, volume{}, compliance{};
 };
 
-/// Of stiffnesses: xx, xy, xz, yy, yz, zz.
+/// Moments of stiffnesses: xx, xy, xz, yy, yz, zz.
 using StiffnessMoments = std::array<Moments, 6>;
 
 /// The leaves of one level of a tree that have nodes of this rank in them.
 struct GridLeaves {
   std::vector<std::int32_t> cell;   ///< ascending
-  std::vector<std::int32_t> above;  ///< on the next level: which leaf each one is part of
+  std::vector<std::int32_t> above;  ///< per leaf: index of the leaf on the next level that contains it
 };
 
-/// Level by level, up to `last`; `cell`: the deepest, of every node.
+/// Leaves of all levels up to `last`; `cell`: deepest leaf of every node.
 std::vector<GridLeaves> leaves_of_levels(const GridTree& tree, std::span<const std::int32_t> cell, int last);
 
-/// Stiffnesses of nodes, of a level's leaves.
+/// Stiffnesses of nodes in the leaves of a level.
 struct LevelStiffness {
-  std::vector<std::int32_t> stiff;  ///< of every leaf: which of `stiffness` it has, −1 for none
+  std::vector<std::int32_t> stiff;  ///< per leaf: index into `stiffness`, −1 for none
   std::vector<StiffnessMoments> stiffness;
 };
 
@@ -57,22 +58,22 @@ struct LevelMoments : LevelStiffness {
   std::vector<LeafMoments> leaf;
 };
 
-/// The nodes of this rank and where in the deepest leaves they are.
+/// The nodes of this rank and the deepest leaves that contain them.
 struct NodesInTree {
   std::span<const double> coordinates;  ///< nodes × 3
-  std::span<const std::int32_t> cell;   ///< of every node
+  std::span<const std::int32_t> cell;   ///< per node
 };
 
-/// Of the deepest leaves; `blocks` are stiffnesses of nodes.
+/// Moments of the deepest leaves; `blocks`: stiffnesses of nodes.
 LevelMoments level_moments(const GridTree& tree, const GridLeaves& leaves, const NodesInTree& nodes,
                            std::span<const NodeMeasure> measures, std::span<const NodeBlock> blocks,
                            int threads);
 
-/// The same without the elements.
+/// Moments of the stiffnesses only.
 LevelStiffness level_stiffness(const GridTree& tree, const GridLeaves& leaves, const NodesInTree& nodes,
                                std::span<const NodeBlock> blocks);
 
-/// Of the next level, `coarse`.
+/// Moments of the next level, `coarse`.
 LevelMoments raised(const GridTree& tree, const GridLeaves& fine, const GridLeaves& coarse,
                     const LevelMoments& moments);
 LevelStiffness raised(const GridTree& tree, const GridLeaves& fine, const GridLeaves& coarse,

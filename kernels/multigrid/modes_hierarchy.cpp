@@ -21,12 +21,12 @@
 namespace kacanov {
 namespace {
 
-/// A coarse level with its smoother, its vectors and the way down.
+/// A coarse level with its smoother, its vectors and the transfer to the next level.
 template <int M>
 struct Stage {
   RigidLevel<M> level;
-  std::vector<std::int32_t> group;  ///< of each owned row in the next level; empty on the last
-  std::vector<Vector3> offset;      ///< of each owned row from the centre of its group
+  std::vector<std::int32_t> group;  ///< of each owned row, in the next level; empty on the last
+  std::vector<Vector3> offset;      ///< of each owned row, from the centre of its group
   Chebyshev smoother;
   Vector b, x, step, image;
 
@@ -112,7 +112,7 @@ class ModesHierarchy final : public Multigrid::Hierarchy {
     coarse_.reset();
   }
 
-  /// Everything below the first coarse level, and the smoothers of these levels.
+  /// Sets up all levels below the first coarse one, and the smoothers of these levels.
   void complete() {
     while (stages_.back().level.total() > direct_rows) {
       auto& stage = stages_.back();
@@ -136,14 +136,14 @@ class ModesHierarchy final : public Multigrid::Hierarchy {
       stages_.emplace_back(std::move(next));
     }
     if (!coarse_) direct_.emplace(stages_.back().level);
-    for (std::size_t k = 0; k + 1 < stages_.size(); ++k) {  // the last one needs none
+    for (std::size_t k = 0; k + 1 < stages_.size(); ++k) {  // the last level needs no smoother
       const double largest = stages_[k].level.largest_eigenvalue();
       stages_[k].smoother = {options_.coarse_degree, largest / options_.coarse_range, largest};
     }
     for (auto* v : {&b_, &x_, &step_, &image_}) v->resize(body_.unknowns());
   }
 
-  /// stages_[k].x = a cycle from zero on stages_[k].b.
+  /// stages_[k].x = a cycle, starting from zero, on stages_[k].b.
   void cycle(std::size_t k) {
     Stage<M>& stage = stages_[k];
     const std::size_t owned = stage.level.owned_size();
@@ -192,8 +192,8 @@ class ModesHierarchy final : public Multigrid::Hierarchy {
   MultigridOptions options_;
   FineLevel fine_;
   std::optional<AggregateMotions<M>> motions_;
-  std::vector<Stage<M>> stages_;          ///< the first one lives as long as the aggregates do
-  std::optional<DirectSolve<M>> direct_;  ///< of the last stage, unless that is handed to `coarse_`
+  std::vector<Stage<M>> stages_;          ///< the first stage lives as long as the aggregates
+  std::optional<DirectSolve<M>> direct_;  ///< of the last stage, unless `coarse_` solves it
   std::unique_ptr<CoarseSolver> coarse_;
   std::vector<float> b_, x_, step_, image_;
 };

@@ -8,7 +8,7 @@
 
 namespace kacanov {
 
-/// Chebyshev's iteration on the operator, Galerkin matrices over the rigid motions of aggregates below
+/// Chebyshev iteration on the operator, with Galerkin matrices over the rigid motions of aggregates below
 /// (theory: aggregation, over-correction). Collective.
 std::unique_ptr<Multigrid::Hierarchy> make_modes_hierarchy(const MultigridBody& body,
                                                            const MultigridOptions& options);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The element loop of Galerkin's matrix over rigid motions (theory: aggregation).
+// Element loop for the Galerkin matrix over rigid motions (theory: aggregation).
 #pragma once
 
 #include <Eigen/Dense>
@@ -17,8 +17,8 @@
 
 namespace kacanov {
 
-/// Sums of elements and blocks over the motions of aggregates, into a level or, without one, into blocks of
-/// their own.
+/// Sums elements and node blocks over the motions of aggregates, into a level or, without one, into separate
+/// blocks.
 template <int M>
 class MotionSums {
   static constexpr std::size_t dim = Aggregates<M>::dim;
@@ -26,8 +26,7 @@ class MotionSums {
   using Rows = typename simd::MotionPoint<M>::Rows;
 
  public:
-  /// g: elements × points, rounded to single precision; `level` may be null. What is passed has to outlive
-  /// it.
+  /// `g`: elements × points, rounded to single precision; `level` may be null. The arguments must outlive it.
   MotionSums(const Aggregates<M>& aggregates, simd::AddMotionProducts<M> add_products,
              std::span<const double> g, RigidLevel<M>* level)
       : aggregates_(aggregates),
@@ -37,14 +36,14 @@ class MotionSums {
         g_(g),
         level_(level) {}
 
-  /// Only the rows of this share of all; all of them unless this is called.
+  /// Restricts the sums to the rows of this share; without this call all rows are summed.
   void take_share(int share, int shares) {
     const std::int64_t rows = aggregates_.size();
     first_row_ = static_cast<std::int32_t>(rows * share / shares);
     last_row_ = static_cast<std::int32_t>(rows * (share + 1) / shares);
   }
 
-  /// Whose directions the next sums respect, and by what they are multiplied.
+  /// Sets the held directions and the factor of the next sums.
   void choose(const HeldSpace& space, double sign) {
     sign_ = sign;
     projector_.clear();
@@ -62,7 +61,7 @@ class MotionSums {
       if (held_[i] != 0) bound_[i / dim] = 1;
   }
 
-  /// Adds number(0), …, number(count − 1).
+  /// Adds the elements number(0), …, number(count − 1).
   void add_elements(std::size_t count, const auto& number) {
     elements::dispatch(body_.mesh.type, [&]<class E>(E) {
       if constexpr (static_cast<std::size_t>(E::dim) == dim) {
@@ -85,11 +84,11 @@ class MotionSums {
       }
   }
 
-  /// What is not in the level.
+  /// Sums of blocks outside the level.
   BlockSums<M>& others() { return others_; }
 
  private:
-  /// Displacement of a node for each motion of its aggregate, in the space.
+  /// Displacement of a node for each motion of its aggregate, projected onto the space.
   Rows rows(std::int32_t node) const {
     const std::size_t n = node;
     const auto motion = RigidMotion<M>::rows(aggregates_.offset(n).data(), 1.0 / aggregates_.length());
@@ -116,7 +115,7 @@ class MotionSums {
   bool is_in_level(std::int32_t a, std::int32_t b) const {
     return level_ != nullptr && (aggregates_.is_owned(a) || aggregates_.is_owned(b));
   }
-  /// Whether block (a, b) is the one that is kept, not (b, a).
+  /// Whether block (a, b) is stored, not (b, a).
   bool in_order(std::int32_t a, std::int32_t b) const {
     return is_in_level(a, b) ? a <= b : aggregates_.number(a) <= aggregates_.number(b);
   }
@@ -124,15 +123,15 @@ class MotionSums {
     return is_in_level(a, b) ? level_->block(a, b) : others_.at(aggregates_.number(a), aggregates_.number(b));
   }
 
-  /// One within a single aggregate strains nothing, unless some node is bound or the body is axisymmetric.
-  /// (To take the diagonal blocks from the others, as a motion of the whole strains nothing, saves half of
-  /// the products and loses too many digits on stretched meshes.)
+  /// A rigid motion does not strain an element within a single aggregate, unless a node is bound or the body
+  /// is axisymmetric. (Deriving the diagonal blocks from the others, because a global motion strains nothing,
+  /// would save half of the products but loses too many digits on stretched meshes.)
   template <class E>
   void add_element(std::size_t e) {
     constexpr std::size_t npe = E::nodes;
     const std::int32_t* node = body_.mesh.connectivity.data() + e * npe;
-    std::array<std::int32_t, npe> which{};  // the aggregates it touches
-    std::array<std::size_t, npe> local{};   // that of each node
+    std::array<std::int32_t, npe> which{};  // the aggregates of its nodes
+    std::array<std::size_t, npe> local{};   // index of each node's aggregate in `which`
     std::size_t count = 0;
     bool rigid = body_.mesh.plane != PlaneState::axisymmetric;
     for (std::size_t a = 0; a < npe; ++a) {

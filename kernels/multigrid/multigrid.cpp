@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Multigrid without a matrix on the fine level.
+// Matrix-free multigrid: choice of the hierarchy.
 #include "multigrid/multigrid.hpp"
 
 #include <utility>
@@ -15,12 +15,12 @@ namespace kacanov {
 
 namespace {
 
-/// Beyond that a cycle with pressures of elements solves so well with S that modes take no more time.
+/// Beyond this, cycles with element pressures need such accurate solves with S that aggregates are as fast.
 constexpr double most_element_contrast = 1e5;
 
-/// Which of the three it is shows in a build: background grids as long as shear is not far below bulk and
-/// they fit the body, modes of aggregates until pressures pay, then these for good. Where elements average
-/// over themselves, pressures that are no use any more, or do not fit, are not asked for again.
+/// build() selects one of three hierarchies: background grids while shear is not far below bulk and they fit
+/// the body; aggregates until pressures pay; then pressures for good. With averages over elements, pressures
+/// that no longer pay, or do not fit, are not tried again.
 class ChosenHierarchy final : public Multigrid::Hierarchy {
  public:
   ChosenHierarchy(const MultigridBody& body, const MultigridOptions& options)
@@ -72,7 +72,7 @@ class ChosenHierarchy final : public Multigrid::Hierarchy {
     if (kind_ == Kind::pressures) kind_ = Kind::none;
   }
 
-  /// Unless there is none.
+  /// Installs the hierarchy, unless it is null.
   bool take(Kind kind, std::unique_ptr<Multigrid::Hierarchy> hierarchy) {
     if (!hierarchy) return false;
     kind_ = kind, chosen_ = std::move(hierarchy);

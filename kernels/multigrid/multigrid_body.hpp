@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A body, or a rank's part of one, as the multigrid sees it.
+// A body, or a rank's part of one, as input of the multigrid.
 #pragma once
 
 #include <cstddef>
@@ -12,14 +12,14 @@
 
 namespace kacanov {
 
-/// Elements are split over the ranks without overlap; vectors are consistent: every copy of a shared entry
-/// holds the same bits. All that is pointed to has to outlive who uses it.
+/// Elements are distributed over the ranks without overlap; vectors are consistent: every copy of a shared
+/// entry has the same bits. All arrays must outlive their users.
 struct MultigridBody {
   Body body;
-  const IndexMap* node_map = nullptr;  ///< of the nodes
-  std::span<const std::uint8_t> held;  ///< nodes × dim: components that are zero
-  /// An operator of this mesh and its laws of elements, or null: how it divides them is taken over, at once
-  /// or, in 3D, in some build.
+  const IndexMap* node_map = nullptr;  ///< index map of the nodes
+  std::span<const std::uint8_t> held;  ///< nodes × dim: nonzero for components held at zero
+  /// An operator of this mesh and law_of_element, or null: its partitioning is reused, immediately or, in 3D,
+  /// in a later build.
   const Operator* like = nullptr;
 
   std::size_t dim() const noexcept { return dimension(body.mesh.type); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is added to an operator node by node.
+// Stiffness blocks added to an operator at nodes.
 #pragma once
 
 #include <array>
@@ -7,8 +7,8 @@
 
 namespace kacanov {
 
-/// A dim × dim block added to the diagonal of a node: a contact penalty, a slip stiffness, or a direction
-/// held.
+/// A dim × dim block added to the diagonal block of a node: a contact penalty, a slip stiffness, or a held
+/// direction.
 struct NodeBlock {
   std::int32_t node = 0;
   std::array<double, 9> value{};  ///< dim × dim, row-major

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far apart the nodes of a body are.
+// Node spacing of a body.
 #include "multigrid/node_spacing.hpp"
 
 #include <cmath>
@@ -7,7 +7,7 @@
 namespace kacanov {
 namespace {
 
-/// Nodes of a body over its elements, far from its surface.
+/// Ratio of nodes to elements in a body, far from its surface.
 double nodes_an_element(ElementType type) {
   switch (type) {
     case ElementType::tet4: return 1.0 / 6.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far apart the nodes of a body are.
+// Node spacing of a body.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace kacanov {
 
-/// The distance of neighbours round every local node, in the unit of the coordinates: by the volumes of the
-/// elements there and of how many nodes such elements have in a body they fill. `nodes`: their map.
+/// Distance between neighbours around every local node, in the unit of the coordinates, from the volumes of
+/// its elements and the number of nodes per element inside a body. `nodes`: index map of the nodes.
 /// Collective.
 std::vector<double> node_spacings(const Body& body, const IndexMap& nodes);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The last grid of displacements and pressures, solved directly.
+// Direct solve on the last grid of displacements and pressures.
 #pragma once
 
 #include <Eigen/SparseCholesky>
@@ -13,12 +13,12 @@
 
 namespace kacanov {
 
-/// A factor L D Lᵀ of [A Bᵀ; B −C], the same on every rank: with A and C definite there is one for any order
-/// of the unknowns (Vanderbei, SIAM J. Optim. 5 (1995) 100–113).
+/// A factorisation L D Lᵀ of [A Bᵀ; B −C], the same on every rank: with A and C definite it exists for any
+/// order of the unknowns (Vanderbei, SIAM J. Optim. 5 (1995) 100–113).
 class PressureDirect {
  public:
-  /// `leaves` of the level of the vertices. Throws InternalError where there is none. The communicator has to
-  /// outlive it. Collective.
+  /// `leaves`: of the level of the vertices. Throws InternalError if the factorisation fails. The
+  /// communicator must outlive it. Collective.
   PressureDirect(const GridVertices& vertices, const GridLeaves& leaves, const LevelMoments& moments,
                  const Communicator& comm)
       : comm_(&comm),
@@ -46,7 +46,7 @@ class PressureDirect {
       double& scale = i % 4 < 3 ? stiffest : softest;
       scale = std::max(scale, std::abs(matrix.coeff(i, i)));
     }
-    // What no node moves with, and rounding: shifts far below anything else, towards definiteness.
+    // For unknowns that move no node, and for rounding: shifts far below all entries, towards definiteness.
     for (Eigen::Index i = 0; i < size; ++i)
       matrix.coeffRef(i, i) += i % 4 < 3 ? 1e-10 * stiffest : -1e-10 * softest;
     factor_.compute(matrix);
@@ -54,7 +54,7 @@ class PressureDirect {
       throw InternalError("the coarsest matrix of the preconditioner has no factor");
   }
 
-  /// x of b, four values a row. Collective.
+  /// Solves for x with the right-hand side b, four values per row. Collective.
   void solve(std::span<const float> b, std::span<float> x) const {
     Eigen::VectorXd all = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(4 * total_));
     for (std::size_t i = 0; i < 4 * rows_; ++i)
@@ -75,7 +75,7 @@ class PressureDirect {
     LeafMoments moments;
     StiffnessMoments stiffness;
   };
-  /// All leaves of the level, with what all ranks have.
+  /// All leaves of the level, summed over all ranks.
   static std::vector<WholeLeaf> whole_leaves(const GridVertices& vertices, const GridLeaves& leaves,
                                              const LevelMoments& moments, const Communicator& comm) {
     std::vector<WholeLeaf> all;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The hierarchy of bodies whose volume change is averaged.
+// The hierarchy for bodies whose volume change is averaged.
 #include "multigrid/pressure_hierarchy.hpp"
 
 #include <algorithm>
@@ -19,16 +19,15 @@ namespace kacanov {
 namespace {
 
 const SmootherWeights fine_smoothing = chebyshev_weights(4, 4.0);
-/// Edge of the first grid over the spacing of the nodes: 2.6 has 1.5 times the entries, and takes as many
-/// iterations.
+/// Edge of the first grid over the node spacing: 2.6 has 1.5 times the entries, and needs as many iterations.
 constexpr double first_pressure_grid = 3.0;
 
 struct Solves {
   PressureSteps between, at_ends;
 };
 
-/// What is left of a volume change where the pressure is let go counts `contrast`, the largest k0/g, times:
-/// the first and the last step of a cycle solve better than those between.
+/// A residual volume change is amplified by `contrast`, the largest k0/g, when the pressure is discarded: the
+/// first and the last step of a cycle therefore solve more accurately than those between.
 Solves round_corners(double contrast, double strength) {
   constexpr double range = 40.0;
   const double sigma = (range + 1.0) / (range - 1.0);
@@ -38,8 +37,8 @@ Solves round_corners(double contrast, double strength) {
   return {{middle, 2.0 * middle + 2.0}, {ends, range}};
 }
 
-/// Pressures that swing from element to element hardly move anything, so that S has eigenvalues λ down to
-/// C's. Of these a polynomial of degree 2√range leaves so much that contrast λ times it is 1 or less.
+/// Pressures that alternate between elements move almost nothing, so that S has eigenvalues λ down to those
+/// of C. A polynomial of degree 2√range reduces them so far that contrast λ times the residual is at most 1.
 Solves over_elements(double contrast, double strength) {
   const double range = strength * strength * std::max(20.0, contrast / (2.0 * std::exp(1.0)));
   const int ends = static_cast<int>(std::ceil(2.0 * std::sqrt(range)));
@@ -56,10 +55,10 @@ class PressureHierarchy final : public Multigrid::Hierarchy {
         pressures_(body_),
         fine_(body_, options, FinePart::deviator, &pressures_.means()),
         grids_(body_, &pressures_, first_pressure_grid, options.threads) {
-    body_.like = nullptr;  // it may go
+    body_.like = nullptr;  // may be destroyed
   }
 
-  /// Where elements average over themselves modes may do better.
+  /// With averages over elements, aggregates may be better.
   bool pays() const { return !averages_over_elements(body_.body) || grids_.fit().pays(); }
 
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space) override {
@@ -111,7 +110,7 @@ class PressureHierarchy final : public Multigrid::Hierarchy {
                    [&](std::size_t i) { z[i] = factors.out * static_cast<double>(x_[i]); });
   }
 
-  /// rᵀ z: negative where the cycle is not definite.
+  /// rᵀ z: negative if the cycle is not definite.
   double work(std::span<const double> r, std::span<const double> z) const {
     return body_.node_map->sum_all(
         sum_shares(options_.threads, body_.owned_unknowns(), [&](std::size_t begin, std::size_t end) {
@@ -125,7 +124,7 @@ class PressureHierarchy final : public Multigrid::Hierarchy {
     return (averages_over_elements(body_.body) ? over_elements : round_corners)(contrast_, strength_);
   }
 
-  /// Solves with S better from now on; false where that has gone as far as it may.
+  /// Solves with S more accurately from now on; returns false at the limit.
   bool strengthen() {
     if (strength_ > 3.0) return false;
     strength_ *= 1.5;
@@ -133,7 +132,7 @@ class PressureHierarchy final : public Multigrid::Hierarchy {
     return true;
   }
 
-  /// What depends on the mesh alone.
+  /// Data that depend only on the mesh.
   void prepare() {
     schur_.emplace(body_, pressures_, options_.threads);
     for (auto* v : {&b_, &x_, &image_}) v->resize(body_.unknowns());
@@ -144,8 +143,7 @@ class PressureHierarchy final : public Multigrid::Hierarchy {
 
   std::vector<NodeBlock> stiffnesses() const { return grid_stiffnesses(fine_, body_.owned_nodes()); }
 
-  /// A step of Braess and Sarazin's smoother: with t = x + ωÂ⁻¹(b − A x), p by (ω (S − C) + C) p = B t,
-  /// x = t − ωÂ⁻¹Bᵀ p.
+  /// One Braess–Sarazin step: t = x + ωÂ⁻¹(b − A x); solve (ω (S − C) + C) p = B t for p; x = t − ωÂ⁻¹Bᵀ p.
   void smooth(bool from_zero, const PressureSteps& with, double weight) {
     const auto scale = static_cast<float>(weight * scale_);
     if (from_zero) {
@@ -168,12 +166,13 @@ class PressureHierarchy final : public Multigrid::Hierarchy {
     fine_.add_scaled(-scale, image_, {}, x_);
   }
 
-  /// What ω S p has to be for (ω (S − C) + C) p = B t.
+  /// The required value of ω S p for (ω (S − C) + C) p = B t.
   double wanted(std::size_t r, double weight) const {
     return change_[r] + (weight - 1.0) * pressures_.compliance()[r] * p_[r];
   }
 
-  /// By the grids: of forces b − A x − Bᵀp, and of volume changes what the last step has left, S p − q.
+  /// Grid correction for the residual forces b − A x − Bᵀp and the residual volume changes S p − q of the
+  /// last step.
   void correct() {
     fine_.multiply(x_, entries_, image_);
     each_in_shares(options_.threads, image_.size(), [&](std::size_t i) { image_[i] = b_[i] - image_[i]; });

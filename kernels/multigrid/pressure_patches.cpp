@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The patches of nodes over which linear tetrahedra average their volume change.
+// Node patches over which linear tetrahedra average their volume change.
 #include <kacanov/pressure_patches.hpp>
 
 #include <algorithm>
@@ -20,14 +20,14 @@
 namespace kacanov {
 namespace {
 
-/// Edge of a cube over the distance of nodes: with 2 tet4 is stiffer, with 4 its pressures are coarse.
+/// Edge of a cube over the node spacing: with 2 tet4 is stiffer, with 4 its pressures are coarse.
 constexpr double patch_width = 2.6;
-/// Nodes of a patch: a cube of a regular mesh has 8 to 27 of them, less where it is cut by the surface. The
-/// inf-sup constant falls with patches of one to three nodes along edges and at corners.
+/// Minimum number of nodes of a patch. A cube of a regular mesh has 8 to 27, fewer at the surface. The
+/// inf-sup constant decreases with patches of one to three nodes along edges and at corners.
 constexpr std::int64_t least_nodes = 4;
 
-/// The node a patch is named after, the one nearest to the middle of its cube, and how far off that is,
-/// squared; or how far a node is from the head it might follow. Ties must not depend on numbers.
+/// The head of a patch, its node nearest to the centre of its cube, whose number names it; `off`: squared
+/// distance from that centre, or from a node to the head it may follow. Ties must not depend on numbering.
 struct Head {
   double off;
   Vector3 at;
@@ -35,7 +35,7 @@ struct Head {
   bool operator<(const Head& other) const { return std::tie(off, at) < std::tie(other.off, other.at); }
 };
 
-/// How many nodes a patch has, as some rank knows.
+/// Number of nodes of a patch on some rank.
 struct Count {
   std::int64_t node, count;
 };
@@ -50,7 +50,7 @@ class PatchMaker {
       cube_.push_back(tree.leaf_of(&x[3 * n], 0));
       double off = 0.0;
       for (const double xi : tree.within(tree.cells()[cube_[n]], &x[3 * n])) off += (xi - 0.5) * (xi - 0.5);
-      constexpr double grain = 1e6;  // rounding must not decide
+      constexpr double grain = 1e6;  // rounding errors must not decide
       head_.push_back({std::round(grain * off) / grain, position(n), nodes.number(n)});
     }
   }
@@ -85,7 +85,7 @@ class PatchMaker {
     }
   }
 
-  /// The pieces of this rank's nodes that hang together within a cube: all of one follow the same head.
+  /// Connected pieces of this rank's nodes within a cube: all nodes of a piece follow the same head.
   void find_pieces() {
     piece_.resize(head_.size());
     std::iota(piece_.begin(), piece_.end(), std::size_t{0});
@@ -101,14 +101,14 @@ class PatchMaker {
     for (std::size_t n = 0; n < piece_.size(); ++n) piece_[n] = root_of(n);
   }
 
-  /// Of the best head that one of its nodes knows.
+  /// Gives each piece the best head of its nodes.
   void tell_pieces() {
     for (std::size_t n = 0; n < head_.size(); ++n)
       if (head_[n] < head_[piece_[n]]) head_[piece_[n]] = head_[n];
     for (std::size_t n = 0; n < head_.size(); ++n) head_[n] = head_[piece_[n]];
   }
 
-  /// The least of all ranks at every node; whether this one learns something.
+  /// Takes the minimum over all ranks at every node; returns whether a head of this rank has changed.
   bool tell_ranks(std::vector<Head>& heads) const {
     if (nodes_.ranks == 1) return false;
     std::vector<std::vector<Head>> to(nodes_.ranks);
@@ -124,9 +124,9 @@ class PatchMaker {
     return news;
   }
 
-  /// Nodes of each node's patch.
+  /// Number of nodes in each node's patch.
   std::vector<std::int64_t> sizes() const {
-    std::vector<std::int64_t> size(head_.size(), 0);  // at the first node of each piece, at last at all
+    std::vector<std::int64_t> size(head_.size(), 0);  // first per piece, finally per node
     for (std::size_t n = 0; n < static_cast<std::size_t>(nodes_.owned); ++n) ++size[piece_[n]];
     std::map<std::int64_t, std::int64_t> here;
     for (std::size_t n = 0; n < head_.size(); ++n)
@@ -145,7 +145,7 @@ class PatchMaker {
     return size;
   }
 
-  /// Nodes of small patches follow the nearest head of a neighbour, if they have one.
+  /// Nodes of small patches follow the nearest head of a neighbour, if there is one.
   void join_small_ones() {
     const std::vector<std::int64_t> size = sizes();
     std::vector<char> settled(head_.size());
@@ -178,9 +178,9 @@ class PatchMaker {
 
   const Body& body_;
   const IndexMap& nodes_;
-  std::vector<std::int32_t> cube_;  ///< of a node
-  std::vector<std::size_t> piece_;  ///< likewise: its first node
-  std::vector<Head> head_;          ///< the best known in its patch
+  std::vector<std::int32_t> cube_;  ///< per node
+  std::vector<std::size_t> piece_;  ///< per node: first node of its piece
+  std::vector<Head> head_;          ///< per node: best head found in its patch
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pressures of what averages tr ε, as rows over the ranks.
+// Pressures of averaged tr ε, as distributed rows.
 #include "multigrid/pressure_rows.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pressures of what averages tr ε, as rows over the ranks.
+// Pressures of averaged tr ε, as distributed rows.
 #pragma once
 
 #include <cstdint>
@@ -14,28 +14,28 @@
 
 namespace kacanov {
 
-/// The rows of CornerRows. An operator has entries (CornerMeans), with copies on all ranks that have elements
+/// The rows of CornerRows. An operator has entries (CornerMeans), with copies on all ranks with elements
 /// there.
 class PressureRows {
  public:
   /// Collective.
   explicit PressureRows(const MultigridBody& body);
 
-  /// This rank's.
+  /// Number of rows of this rank.
   std::size_t rows() const noexcept { return rows_->node.size(); }
-  /// Local node of a row: where it is, or near the middle of its patch.
+  /// Local node of a row: its position, or a node near the centre of its patch.
   std::int32_t node(std::size_t row) const { return rows_->node[row]; }
-  /// Ranks + 1: where the numbers of each one's rows begin.
+  /// ranks + 1 entries: first global number of each rank's rows.
   std::span<const std::int64_t> starts() const noexcept { return rows_->map.starts; }
-  /// Number over all ranks of an entry's row.
+  /// Global number of an entry's row.
   std::int64_t number(std::size_t entry) const { return rows_->map.number(rows_->of_entry[entry]); }
   const CornerMeans& means() const noexcept { return means_; }
-  /// Volume over k0 of a row: C's diagonal.
+  /// Volume over k0 of each row: C's diagonal.
   std::span<const double> compliance() const noexcept { return compliance_; }
 
-  /// rows = the sums over all ranks of their shares of the entries. Collective.
+  /// rows = sums of the entries over all ranks. Collective.
   void sum(std::span<const float> entries, std::span<double> rows);
-  /// The entries of rows. Collective.
+  /// Copies the values of rows to the entries. Collective.
   void spread(std::span<const double> rows, std::span<float> entries);
   std::size_t bytes() const noexcept;
 

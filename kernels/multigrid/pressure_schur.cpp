@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The Schur complement of the pressures, as a matrix.
+// The assembled Schur complement of the pressures.
 #include "multigrid/pressure_schur.hpp"
 
 #include <algorithm>
@@ -23,8 +23,8 @@ std::vector<int> owners(const MultigridBody& body) {
   return owner;
 }
 
-/// All nodes but those in the middle of an edge with an end that the same rank owns: the end moves all rows
-/// that the middle does, and couples them.
+/// All nodes except mid-side nodes of an edge with an end that the same rank owns: the end contributes to all
+/// rows of the mid-side node, and couples them.
 std::vector<char> coupling_nodes(const MultigridBody& body, const PressureRows& pressures) {
   std::vector<char> coupling(body.nodes(), 1);
   const auto& mesh = body.body.mesh;
@@ -43,7 +43,8 @@ std::vector<char> coupling_nodes(const MultigridBody& body, const PressureRows& 
   return coupling;
 }
 
-/// The same one of `parts` on all ranks for each of the body's nodes, about as many nodes of a rank in each.
+/// Assigns each of the body's nodes to one of `parts`, the same on all ranks, with about equal numbers per
+/// rank.
 std::vector<char> parts_of(const MultigridBody& body, std::int64_t parts) {
   const IndexMap& map = *body.node_map;
   const std::vector<int> owner = owners(body);
@@ -56,7 +57,7 @@ std::vector<char> parts_of(const MultigridBody& body, std::int64_t parts) {
   return part;
 }
 
-/// A node that changes a row, and the how many-eth of the node's rows it is.
+/// A node that changes a row, and the index of the row among the node's rows.
 struct Use {
   std::int32_t node, place;
 };
@@ -70,7 +71,7 @@ PressureSchur::PressureSchur(const MultigridBody& body, const PressureRows& pres
   const std::span<const std::int64_t> starts = pressures.starts();
   VolumeChanges b = changed_pressures(body, pressures, coupling_nodes(body, pressures), threads);
   std::vector<std::size_t> first_coupling(b.first.begin(), b.first.end());
-  // A row for every pressure, even one that no node moves.
+  // Every pressure has a row, even if no node moves it.
   for (std::int64_t n = starts[map.rank]; n < starts[map.rank + 1]; ++n) {
     b.row.push_back(static_cast<std::int32_t>(b.number.size()));
     b.number.push_back(n);
@@ -109,14 +110,14 @@ void PressureSchur::change(std::span<const float> before, std::span<const float>
   for (std::size_t n = 0; n < changed.size(); ++n)
     if (!std::equal(&before[6 * n], &before[6 * n] + 6, &inverse[6 * n])) changed[n] = 1;
   if (!body_->node_map->any(std::find(changed.begin(), changed.end(), 1) != changed.end())) return;
-  // Of other ranks' rows what changes is told, not what they are.
+  // For other ranks' rows only the changes are sent.
   std::fill(value_.begin() + pattern_->start()[pattern_->owned_rows()], value_.end(), 0.0F);
   add(volume_changes(*body_, *pressures_, changed, threads_), inverse, before);
   pattern_->complete(value_, 1);
   take_diagonal();
 }
 
-/// What these nodes give, row by row.
+/// Adds the contribution of these nodes, row by row.
 void PressureSchur::add(const VolumeChanges& b, std::span<const float> inverse,
                         std::span<const float> before) {
   std::vector<std::int32_t> row, column;

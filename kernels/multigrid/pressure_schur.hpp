@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The Schur complement of the pressures, as a matrix.
+// The assembled Schur complement of the pressures.
 #pragma once
 
 #include <cstdint>
@@ -15,22 +15,22 @@
 
 namespace kacanov {
 
-/// S = B Â⁻¹ Bᵀ + C over the rows of PressureRows, Â of node blocks (theory: pressure-smoothing). B
-/// depends on the mesh alone, but would take four times S's memory: it is found part by part whenever it is
+/// S = B Â⁻¹ Bᵀ + C over the rows of PressureRows, with Â of node blocks (theory: pressure-smoothing). B
+/// depends only on the mesh, but needs four times S's memory: it is recomputed in parts whenever it is
 /// needed.
 class PressureSchur {
  public:
-  /// Finds which rows couple. B is found for so many nodes at once, or for an eighth of a rank's if that is
-  /// more: every part looks through all elements. What is passed has to outlive it. Collective.
+  /// Finds the sparsity pattern. B is computed for this many nodes at a time, or for an eighth of a rank's if
+  /// that is more: every part loops over all elements. The arguments must outlive it. Collective.
   PressureSchur(const MultigridBody& body, const PressureRows& pressures, int threads,
                 std::int64_t nodes_at_once = 1 << 15);
 
-  /// For Â⁻¹ = factor times blocks of local nodes, packed as FineLevel::inverse; held components give
-  /// nothing. Collective.
+  /// For Â⁻¹ = factor times blocks of local nodes, packed as in FineLevel::inverse; held components
+  /// contribute nothing. Collective.
   void build(std::span<const float> inverse, double factor);
-  /// For other blocks with the factor of the last build, which were `before`. Collective.
+  /// Updates S from the blocks `before` of the last build to `inverse`, with the same factor. Collective.
   void change(std::span<const float> before, std::span<const float> inverse);
-  /// p += S⁻¹ rest, nearly; of this rank's rows. Collective.
+  /// p += S⁻¹ rest, approximately; for this rank's rows. Collective.
   void improve(const PressureSteps& steps, std::span<const double> rest, std::span<double> p);
   /// y = S p; p has room for size() entries. Collective.
   void multiply(std::span<double> p, std::span<double> y);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pressures by Chebyshev's iteration on the Schur complement, from one side (theory: pressure-smoothing).
+// Pressures by Chebyshev iteration on the Schur complement, with one-sided error (theory:
+// pressure-smoothing).
 #pragma once
 
 #include <cmath>
@@ -12,18 +13,19 @@
 
 namespace kacanov {
 
-/// A smoother takes steps with Â/ω: the weights ω of Chebyshev's polynomial on [Λ/range, Λ], Λ the largest
-/// eigenvalue of D⁻¹A. A cycle takes them in one order on its way down and in the other on its way back.
+/// A smoother takes steps with Â/ω, where ω are the weights of Chebyshev's polynomial on [Λ/range, Λ] and Λ
+/// is the largest eigenvalue of D⁻¹A. A cycle takes them in one order on its way down and in reverse on its
+/// way up.
 struct SmootherWeights {
-  double damping;              ///< Â = this times Λ D
-  std::vector<double> weight;  ///< 1 or more
+  double damping;              ///< Â = damping Λ D
+  std::vector<double> weight;  ///< at least one
 };
 
-/// S is that of the smallest weight, which is 1: others' is ω (S − C) + C ≤ ω S. It comes first, then the
-/// rest falling.
+/// S belongs to the smallest weight, 1; for other weights it is ω (S − C) + C ≤ ω S. The smallest is first,
+/// then the rest in descending order.
 inline SmootherWeights chebyshev_weights(int steps, double range) {
   const double middle = (1.0 + 1.0 / range) / 2.0, half = (1.0 - 1.0 / range) / 2.0;
-  const auto root = [&](int k) {  // in units of Λ, falling
+  const auto root = [&](int k) {  // in units of Λ, descending
     return middle + half * std::cos((2.0 * k + 1.0) * std::numbers::pi / (2.0 * steps));
   };
   SmootherWeights all{root(0), {1.0}};
@@ -31,26 +33,26 @@ inline SmootherWeights chebyshev_weights(int steps, double range) {
   return all;
 }
 
-/// How well S is solved with: a polynomial of this degree in D⁻¹S on [Λ/range, Λ].
+/// Accuracy of solves with S: a polynomial of this degree in D⁻¹S on [Λ/range, Λ].
 struct PressureSteps {
   int degree = 3;
   double range = 8.0;
 };
 
-/// P(S) ≈ S⁻¹, never above it: what it stands for is S or more, so that the smoother it is part of stays
-/// definite. In single precision: what it works on is what is left of something.
+/// P(S) ≈ S⁻¹ with P(S) ≤ S⁻¹, so that the inverse of P(S) is at least S and the smoother stays definite.
+/// Single precision suffices because it acts on residuals.
 class PressureSolve {
  public:
-  double largest = 1.0;  ///< Λ, of D⁻¹S
+  double largest = 1.0;  ///< Λ, the largest eigenvalue of D⁻¹S
 
-  /// `owned` rows; vectors of `size` entries, with room for ghosts, are multiplied.
+  /// `owned`: rows; vectors to be multiplied have `size` entries, with room for ghosts.
   void resize(std::size_t owned, std::size_t size) {
     residual_.resize(owned), step_.resize(owned), image_.resize(owned), x_.resize(size);
   }
-  /// What is left, for the caller to fill: an entry a row.
+  /// The residual, to be filled by the caller: one entry per row.
   std::span<float> residual() noexcept { return residual_; }
 
-  /// P(S) times what is left. `multiply(x, y)`: y = S x; `inverse`: D⁻¹. Collective where that is.
+  /// Returns P(S) times the residual. `multiply(x, y)`: y = S x; `inverse`: D⁻¹. Collective if that is.
   template <class Multiply>
   std::span<const float> solve(const PressureSteps& steps, std::span<const float> inverse, int threads,
                                const Multiply& multiply) {
@@ -68,7 +70,7 @@ class PressureSolve {
             });
           });
         });
-    // The polynomial's error swings between ±1/T(σ) on the interval.
+    // The polynomial's error oscillates between ±1/T(σ) on the interval.
     const double sigma = (steps.range + 1.0) / (steps.range - 1.0);
     const auto below = static_cast<float>(1.0 / (1.0 + 1.0 / std::cosh(steps.degree * std::acosh(sigma))));
     each_in_shares(threads, x.size(), [&](std::size_t i) { x[i] *= below; });

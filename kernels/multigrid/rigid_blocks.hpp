@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The dense blocks of a level of the hierarchy as Eigen's matrices.
+// Dense blocks of a rigid-motion level as Eigen matrices.
 #pragma once
 
 #include <Eigen/Dense>

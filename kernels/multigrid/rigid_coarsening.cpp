@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The way from a level of the hierarchy to the next: which rows couple, and Galerkin's matrix over groups.
+// Coarsening of a rigid-motion level: couplings, and the Galerkin matrix over groups.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace kacanov {
 namespace {
 
-/// Takes coefficients of a group's motion to those of an aggregate in it.
+/// Maps coefficients of a group's motion to those of an aggregate in it.
 template <int M>
 Dense<M> prolongation(const double* offset, double inverse_length) {
   Dense<M> p;
@@ -42,7 +42,7 @@ RigidLevel<M> RigidLevel<M>::coarsened(std::span<const std::int32_t> group, doub
   for (std::size_t i = 0; i < centre.size(); ++i)
     for (double& c : centre[i]) c /= members[i];
 
-  // Of every row, ghosts included: its group over all ranks and where it lies in it.
+  // For every row, ghosts included: global number of its group, and its position in the group.
   const std::int64_t first_group = map_->sum_below(groups);
   std::vector<std::int64_t> group_of(map_->size());
   std::vector<double> offset(3 * map_->size());
@@ -61,7 +61,7 @@ RigidLevel<M> RigidLevel<M>::coarsened(std::span<const std::int32_t> group, doub
       const std::int64_t here = group_of[i], other = group_of[j];
       const bool with_transpose = j != i && j < centres_.size();
       const Dense<M> product = row * dense<M>(block_[k]) * prolongation<M>(&offset[3 * j], inverse_length);
-      if (here <= other) {  // else the owner of the column's row has it
+      if (here <= other) {  // otherwise the owner of the column's row has it
         auto& sum = sums.at(here, other);
         for (std::size_t e = 0; e < sum.size(); ++e) sum[e] += product.data()[e];
       }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One level of the hierarchy: a symmetric block matrix over the rigid motions of aggregates, its rows spread
-// over the ranks.
+// One level of the hierarchy: a distributed symmetric block matrix over the rigid motions of aggregates.
 #include "multigrid/rigid_level.hpp"
 
 #include <Eigen/Dense>
@@ -20,7 +19,7 @@ template <int M>
 RigidLevel<M>::RigidLevel(std::vector<Vector3> centres, BlockSums<M> sums, const Communicator& comm,
                           int threads)
     : centres_(std::move(centres)), threads_(threads) {
-  IndexMap owned;  // without ghosts yet: whose rows are whose
+  IndexMap owned;  // still without ghosts: only the ownership of rows
   static_cast<Communicator&>(owned) = comm;
   owned.owned = rows();
   owned.starts = number_owned(rows(), comm);
@@ -33,7 +32,7 @@ RigidLevel<M>::RigidLevel(std::vector<Vector3> centres, BlockSums<M> sums, const
   invert_diagonal();
 }
 
-/// Each thread rows with as many blocks as the others have.
+/// Gives the threads rows with equal numbers of blocks.
 template <int M>
 void RigidLevel<M>::share_out() {
   constexpr std::size_t worth = 4096;  // blocks
@@ -71,7 +70,7 @@ void RigidLevel<M>::send_to_owners(BlockSums<M>& sums) const {
   }
 }
 
-/// What the other ranks have for rows of this one, in exchange for theirs.
+/// Exchanges contributions to rows of other ranks; returns those to this rank's rows.
 template <int M>
 std::vector<typename BlockSums<M>::Entry> RigidLevel<M>::exchanged(const BlockSums<M>& sums) const {
   std::vector<std::vector<typename BlockSums<M>::Entry>> to(map_->ranks);
@@ -128,7 +127,7 @@ void RigidLevel<M>::add(const BlockSums<M>& sums) {
   invert_diagonal();
 }
 
-/// Of an entry with a row or a column of this rank.
+/// Adds an entry whose row or column is on this rank.
 template <int M>
 void RigidLevel<M>::add_to_rows(const typename BlockSums<M>::Entry& entry) {
   const std::int32_t row = local(entry.row), column = local(entry.column);
@@ -138,7 +137,7 @@ void RigidLevel<M>::add_to_rows(const typename BlockSums<M>::Entry& entry) {
   for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += add[k];
 }
 
-/// Rows of other ranks that owned ones couple to.
+/// Rows of other ranks that owned rows couple to.
 template <int M>
 std::vector<std::int64_t> RigidLevel<M>::ghosts_of(const BlockSums<M>& sums) const {
   std::vector<std::int64_t> ghosts;
@@ -187,7 +186,7 @@ void RigidLevel<M>::invert_diagonal() {
       Dense<M> d = Dense<M>::Zero();
       for (auto k = start_[i]; k < start_[i + 1]; ++k)
         if (column_[k] == static_cast<std::int32_t>(i)) d = dense<M>(block_[k]);
-      // Motions that boundary conditions leave no node for have no stiffness: they stay where they are.
+      // Motions that boundary conditions leave without a node have no stiffness and get no displacement.
       const double largest = d.diagonal().maxCoeff();
       Eigen::SelfAdjointEigenSolver<Dense<M>> solver(d);
       Dense<M> inverse = Dense<M>::Zero();
@@ -222,7 +221,7 @@ inline void add_transposed(const double* block, const double* x, double* y) {
 
 }  // namespace
 
-/// y of the thread's rows, but for what the threads before it and the ghosts add.
+/// y on the thread's rows, without the contributions of earlier threads and of ghosts.
 template <int M>
 void RigidLevel<M>::multiply_share(int t, std::span<const double> x, std::span<double> y) {
   Share& mine = shares_[t];

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One level of the hierarchy: a symmetric block matrix over the rigid motions of aggregates, its rows spread
-// over the ranks.
+// One level of the hierarchy: a distributed symmetric block matrix over the rigid motions of aggregates.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +16,8 @@
 
 namespace kacanov {
 
-/// Sums of blocks (row, column), rows numbered over all ranks; only row ≤ column is kept, the rest follows by
-/// symmetry.
+/// Sums of blocks (row, column), with global row numbers; only blocks with row ≤ column are stored, the
+/// others follow by symmetry.
 template <int M>
 class BlockSums {
  public:
@@ -27,7 +26,7 @@ class BlockSums {
     std::int64_t row = 0, column = 0;
     Block block{};
   };
-  /// The sum at (row, column), zero at first; it stays where it is. row ≤ column < 2³².
+  /// Reference to the sum at (row, column), initially zero; it remains valid. row ≤ column < 2³².
   Block& at(std::int64_t row, std::int64_t column) {
     const auto key = static_cast<std::uint64_t>(row) << 32 | static_cast<std::uint64_t>(column);
     const auto [place, fresh] = index_.try_emplace(key, static_cast<std::uint32_t>(entries_.size()));
@@ -50,39 +49,39 @@ typename BlockSums<M>::Block transposed(const typename BlockSums<M>::Block& bloc
 }
 
 /// A Galerkin matrix over rigid motions, distributed by rows: M × M blocks, symmetric (theory: multigrid).
-/// Vectors have M entries a row; those handed to multiply have room for the ghosts behind the owned rows. All
-/// is double: a long body bends with 1e-8 of the energy that the entries suggest, which single precision
-/// rounds away.
+/// Vectors have M entries per row; those passed to multiply have room for the ghosts behind the owned rows.
+/// Double precision is needed: bending of a slender body has 1e-8 of the energy that its entries suggest,
+/// which single precision would round away.
 template <int M>
 class RigidLevel {
  public:
   using Block = typename BlockSums<M>::Block;
 
-  /// This rank owns rows first … first + rows − 1, the motions of aggregates with these centres. `sums` are
-  /// its contributions to any rows; they are sent to their owners. Collective.
+  /// This rank owns rows first … first + rows − 1, the motions of aggregates with these centres. `sums`: its
+  /// contributions to any rows, which are sent to their owners. Collective.
   RigidLevel(std::vector<Vector3> centres, BlockSums<M> sums, const Communicator& comm, int threads = 1);
 
   std::int32_t rows() const noexcept { return static_cast<std::int32_t>(centres_.size()); }
-  /// Of the rows; ghosts are the other ranks' rows that owned ones couple to, ascending.
+  /// Index map of the rows; ghosts are the other ranks' rows that owned ones couple to, ascending.
   const IndexMap& map() const noexcept { return *map_; }
   std::int64_t first() const noexcept { return map_->first(); }
   std::int64_t total() const noexcept { return map_->total(); }
   std::span<const Vector3> centres() const noexcept { return centres_; }
-  std::size_t size() const noexcept { return map_->size() * M; }  ///< of a vector
+  std::size_t size() const noexcept { return map_->size() * M; }  ///< length of a vector
   std::size_t owned_size() const noexcept { return centres_.size() * M; }
   std::size_t bytes() const noexcept;
 
   /// y = A x on owned rows; fills x's ghosts. Collective.
   void multiply(std::span<double> x, std::span<double> y);
-  /// Chebyshev::smooth's step on owned rows, with D the block diagonal.
+  /// The step of Chebyshev::smooth on owned rows, with D the block diagonal.
   void relax(const ChebyshevStep<double>& weights, std::span<const double> b, std::span<const double> image,
              std::span<double> step, std::span<double> x) const;
-  /// GlobalMax eigenvalue of D⁻¹A, somewhat from above (kacanov::largest_eigenvalue). Collective.
+  /// Upper estimate of the largest eigenvalue of D⁻¹A (kacanov::largest_eigenvalue). Collective.
   double largest_eigenvalue();
 
-  /// Local number of a row: owned ones first, then the other ranks' rows they couple to; −1 for others.
+  /// Local number of a row: owned rows first, then rows of other ranks that they couple to; −1 for others.
   std::int32_t local(std::int64_t row) const;
-  /// Calls f(row, column, block) for what is stored of every owned row.
+  /// Calls f(row, column, block) for the stored blocks of every owned row.
   template <class F>
   void visit(F&& f) const {
     for (std::int32_t i = 0; i < rows(); ++i)
@@ -90,7 +89,7 @@ class RigidLevel {
            ++k)
         f(i, column_[k], block_[k]);
   }
-  /// Calls f(row, column, block) for all blocks of the owned rows, numbered over all ranks.
+  /// Calls f(row, column, block) with global numbers for all blocks of the owned rows.
   template <class F>
   void visit_rows(F&& f) const {
     visit([&](std::int32_t i, std::int32_t j, const Block& here) {
@@ -98,18 +97,18 @@ class RigidLevel {
       if (j < rows() && j != i) f(first() + j, first() + i, transposed<M>(here));
     });
   }
-  /// To sum the matrix anew with the couplings it has: clear, add to blocks, complete.
+  /// To sum the matrix again with the same couplings: clear(), add to block(), complete().
   void clear();
-  /// Of an owned row and a local one, which if owned is not before it. They have to couple.
+  /// Block of an owned row and a local column, which must couple; column ≥ row if the column is owned.
   Block& block(std::int32_t row, std::int32_t column);
-  /// Adds what the ranks have summed for each other's rows, in their blocks with ghosts and `outside` of
-  /// these. Collective.
+  /// Adds the ranks' contributions to each other's rows: blocks with ghosts, and `outside` for the rest.
+  /// Collective.
   void complete(BlockSums<M> outside);
   /// Adds this rank's contributions to any rows that couple. Collective.
   void add(const BlockSums<M>& sums);
 
-  /// The next level: `group` of each owned row, groups numbered from 0; `length` makes rotations comparable
-  /// to translations, as on this one. Collective.
+  /// The next level. `group`: group of each owned row, numbered from 0; `length` makes rotations comparable
+  /// to translations, as on this level. Collective.
   RigidLevel coarsened(std::span<const std::int32_t> group, double length) const;
   /// Couplings between owned rows, for grouping.
   struct WeightedGraph couplings() const;
@@ -128,24 +127,23 @@ class RigidLevel {
   void share_out();
   void multiply_share(int t, std::span<const double> x, std::span<double> y);
 
-  std::unique_ptr<const IndexMap> map_;  ///< stays where it is when the level moves
+  std::unique_ptr<const IndexMap> map_;  ///< at a fixed address when the level moves
   std::vector<Vector3> centres_;
-  /// Of owned row i: entries whose column is i, a later owned row (which the symmetric one follows from), or,
-  /// behind these, a ghost.
+  /// Entries of owned row i: columns i, then later owned rows (stored once), then ghosts.
   std::vector<std::int32_t> start_, column_;
   std::vector<Block> block_, inverse_diagonal_;
   struct Edge {
-    std::int32_t row = 0, first = 0;  ///< where its ghosts' entries begin
+    std::int32_t row = 0, first = 0;  ///< first entry with a ghost
   };
   std::vector<Edge> edge_;  ///< rows with ghosts
   int threads_ = 1;
-  /// A thread's rows, and its sums for rows of the threads behind it, as far as its columns reach.
+  /// A thread's rows, and its sums for rows of later threads that its columns reach.
   struct Share {
     std::size_t begin = 0, end = 0, reach = 0;
     std::vector<double> beyond;
   };
   std::vector<Share> shares_;
-  std::optional<Scatterer<double>> fill_;  ///< of the ghosts of a vector
+  std::optional<Scatterer<double>> fill_;  ///< for the ghosts of a vector
 };
 
 extern template class RigidLevel<3>;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rigid motions of an aggregate, and the small dense blocks that act on them.
+// Rigid motions of an aggregate, and their displacements and forces.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ struct RigidMotion {
   static constexpr int modes = M;
   static constexpr int dim = M == 6 ? 3 : 2;
 
-  /// Displacement of the point x − centre = d for each motion: the matrix of add_motion.
+  /// Displacement at x − centre = d for each motion: the matrix of add_motion.
   using Rows = std::array<std::array<double, static_cast<std::size_t>(M)>, static_cast<std::size_t>(dim)>;
   static Rows rows(const double* d, double inverse_length) {
     const double x = d[0] * inverse_length, y = d[1] * inverse_length;
@@ -28,7 +28,7 @@ struct RigidMotion {
     }
   }
 
-  /// u += the motion with coefficients q at x − centre = d.
+  /// u += displacement at x − centre = d of the motion with coefficients q.
   template <class S>
   static void add_motion(const S* q, const double* d, double inverse_length, S* u) {
     if constexpr (M == 6) {
@@ -43,7 +43,7 @@ struct RigidMotion {
       u[1] += q[1] + q[2] * x;
     }
   }
-  /// q += what the force f at x − centre = d does on the motions: the transpose of add_motion.
+  /// q += generalised forces of the force f at x − centre = d: the transpose of add_motion.
   template <class S>
   static void add_force(const S* f, const double* d, double inverse_length, S* q) {
     if constexpr (M == 6) {
@@ -63,14 +63,13 @@ struct RigidMotion {
     }
   }
 
-  /// q += the coefficients that the motion `from` of a larger aggregate has in a part of it, whose centre
-  /// lies at d.
+  /// q += coefficients, in a part with its centre at d, of the motion `from` of a larger aggregate.
   template <class S>
   static void add_to_part(const S* from, const double* d, double inverse_length, S* q) {
     add_motion(from, d, inverse_length, q);
     for (int m = dim; m < M; ++m) q[m] += from[m];
   }
-  /// Its transpose: q += what the forces `f` on the motions of the part do on those of the larger aggregate.
+  /// The transpose: q += generalised forces on the larger aggregate from those on the part, `f`.
   template <class S>
   static void add_from_part(const S* f, const double* d, double inverse_length, S* q) {
     add_force(f, d, inverse_length, q);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A body's laws as a preconditioner in single precision takes them.
+// Limits the bulk modulus of laws for preconditioners in single precision.
 #pragma once
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 
 namespace kacanov {
 
-/// Laws with at most 1e5 times the shear modulus for bulk modulus: of an entry's seven digits in single
-/// precision, shear keeps two (theory: softened-bulk).
+/// Limits the bulk modulus to 1e5 times the shear modulus: of an entry's seven digits in single precision,
+/// shear keeps two (theory: softened-bulk).
 inline std::vector<Law> softened(std::span<const Law> laws) {
   constexpr double stiffest_bulk = 1e5;
   std::vector<Law> soft(laws.begin(), laws.end());

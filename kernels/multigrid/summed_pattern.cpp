@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which entries a sparse matrix has that is summed of small full ones, its rows spread over the ranks.
+// Sparsity pattern of a distributed matrix assembled from dense element matrices.
 #include "multigrid/summed_pattern.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace kacanov {
 namespace {
 
-/// Lists one after the other.
+/// Concatenated lists.
 struct Lists {
   std::vector<std::int64_t> start;
   std::vector<std::int32_t> entry;
@@ -21,7 +21,7 @@ struct Lists {
   }
 };
 
-/// list(i)'s entries of lists 0 … n − 1, turned round: for each of 0 … count − 1 the lists with it.
+/// Transposes lists 0 … n − 1 with entries list(i): for each of 0 … count − 1 the lists that contain it.
 template <class List>
 Lists turned(std::size_t n, std::size_t count, const List& list) {
   Lists result;
@@ -36,7 +36,7 @@ Lists turned(std::size_t n, std::size_t count, const List& list) {
   return result;
 }
 
-/// The numbers that are not this rank's, ascending.
+/// The numbers outside [begin, end), ascending and unique.
 std::vector<std::int64_t> not_in(std::vector<std::int64_t> numbers, std::int64_t begin, std::int64_t end) {
   std::erase_if(numbers, [&](std::int64_t n) { return n >= begin && n < end; });
   std::sort(numbers.begin(), numbers.end());
@@ -44,7 +44,7 @@ std::vector<std::int64_t> not_in(std::vector<std::int64_t> numbers, std::int64_t
   return numbers;
 }
 
-/// Of indices that matrices have.
+/// Numbers of the indices that element matrices use.
 std::vector<std::int64_t> used_numbers(const MatrixSide& side) {
   std::vector<char> used(side.number.size(), 0);
   for (const std::int32_t i : side.index) used[i] = 1;
@@ -54,14 +54,14 @@ std::vector<std::int64_t> used_numbers(const MatrixSide& side) {
   return numbers;
 }
 
-/// Finds the columns of rows.
+/// Computes the columns of rows.
 struct RowCollector {
-  const Lists& matrices;  ///< of a row
-  const Lists& more;      ///< columns that others have said of a row
+  const Lists& matrices;  ///< per row
+  const Lists& more;      ///< columns from other ranks, per row
   std::span<const std::size_t> first;
   std::span<const std::int32_t> index, column;
 
-  /// Columns of a row, each once, in any order; `seen` has the last row that had a column.
+  /// Calls `call` once for each column of a row, in any order; `seen`: last row that had the column.
   template <class Visit>
   void visit(std::size_t row, std::vector<std::int32_t>& seen, const Visit& call) const {
     const auto mark = static_cast<std::int32_t>(row);
@@ -129,7 +129,7 @@ SummedPattern::SummedPattern(const MatrixSide& rows, const MatrixSide& columns, 
   more.start.assign(this->rows() + 1, 0);
   const RowCollector collector{matrices, more, columns.first, columns.index, column_of};
 
-  // Of other ranks' rows, these are told.
+  // Entries of other ranks' rows, which are sent to their owners.
   struct Place {
     std::int64_t row, column;
   };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Vectors of unknowns, and sums over them that a compiler can vectorise.
+// Vectors of unknowns, and vectorisable sums over them.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@ namespace kacanov {
 
 using Vector = std::vector<double>;
 
-/// Σ term(i) over i < n, as eight sums: the compiler may not reorder one.
+/// Σ term(i) over i < n with eight partial sums: the compiler may not reorder a single sum.
 template <class Term>
 double eight_sums(std::size_t n, const Term& term) {
   std::array<double, 8> s{};

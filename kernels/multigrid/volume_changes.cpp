@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How displacements of nodes change averaged volumes.
+// Averaged volume changes as functions of nodal displacements.
 #include "multigrid/volume_changes.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace kacanov {
 namespace {
 
-/// The elements here that average and have a wanted node: these nodes, and entries of the pressures.
+/// Averaging elements on this rank with a wanted node: their wanted nodes and pressure entries.
 struct AveragingElements {
   std::vector<std::size_t> element, first_node{0}, first_entry{0};
   std::vector<std::int32_t> node, entry;
@@ -35,14 +35,14 @@ AveragingElements averaging_elements(const Body& body, const PressureRows& press
     all.element.push_back(e);
     all.entry.insert(all.entry.end(), entry, entry + E::corners);
     std::sort(all.entry.end() - E::corners, all.entry.end());
-    // Corners of one patch have an entry together.
+    // Corners of one patch share an entry.
     all.entry.erase(std::unique(all.entry.end() - E::corners, all.entry.end()), all.entry.end());
     all.first_node.push_back(all.node.size()), all.first_entry.push_back(all.entry.size());
   }
   return all;
 }
 
-/// An element's corners in the order of their columns.
+/// An element's corners, in the order of their columns.
 template <class E>
 std::array<std::size_t, E::corners> by_column(const std::int32_t* entry,
                                               std::span<const std::int32_t> column) {
@@ -53,7 +53,7 @@ std::array<std::size_t, E::corners> by_column(const std::int32_t* entry,
   return corners;
 }
 
-/// 3 values for each entry of the pattern, of the elements here.
+/// 3 values per entry of the pattern, summed over the elements on this rank.
 template <class E>
 std::vector<float> summed_changes(const SummedPattern& b, const AveragingElements& elements, const Body& body,
                                   const PressureRows& pressures, std::span<const std::int32_t> row,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How displacements of nodes change averaged volumes.
+// Averaged volume changes as functions of nodal displacements.
 #pragma once
 
 #include <cstdint>
@@ -10,19 +10,19 @@
 
 namespace kacanov {
 
-/// B of some of this rank's nodes. Held components change nothing.
+/// B for some of this rank's nodes. Held components contribute nothing.
 struct VolumeChanges {
-  std::vector<std::int64_t> first;   ///< owned nodes + 1, into
-  std::vector<std::int32_t> row;     ///< that a node's displacement changes, as an index of `number`
-  std::vector<float> change;         ///< by so much: 3 for each of those
-  std::vector<std::int64_t> number;  ///< over all ranks, of rows of PressureRows
+  std::vector<std::int64_t> first;   ///< size owned nodes + 1, index into row
+  std::vector<std::int32_t> row;     ///< rows that a node's displacement changes, as indices into `number`
+  std::vector<float> change;         ///< the change per displacement: 3 values per row
+  std::vector<std::int64_t> number;  ///< global numbers of rows of PressureRows
 };
 
-/// Of the nodes that are `wanted`: for each of the body's nodes, the same on all ranks that have it.
+/// B of the `wanted` nodes: one flag per node of the body, the same on all ranks that have the node.
 /// Collective.
 VolumeChanges volume_changes(const MultigridBody& body, const PressureRows& pressures,
                              std::span<const char> wanted, int threads);
-/// The same without `change`, which stays empty.
+/// Only the pattern: `change` stays empty.
 VolumeChanges changed_pressures(const MultigridBody& body, const PressureRows& pressures,
                                 std::span<const char> wanted, int threads);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Arrays that begin on a cache line.
+// Arrays aligned to cache lines.
 #pragma once
 
 #include <cstddef>

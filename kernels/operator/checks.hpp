@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the operators check before they start, in either precision.
+// Input checks of the operators, in either precision.
 #pragma once
 
 #include <cstddef>
@@ -8,13 +8,13 @@
 
 namespace kacanov {
 
-/// Throws std::invalid_argument unless `actual` is `wanted`; `what` is named.
+/// Throws std::invalid_argument, with the name `what`, unless `actual` equals `wanted`.
 void expect_size(std::size_t actual, std::size_t wanted, const char* what);
 
-/// Returns the body, or throws std::invalid_argument naming what is wrong with it or with the options.
+/// Returns the body, or throws std::invalid_argument with the error in it or in the options.
 const Body& checked(const Body& body, const OperatorOptions& options);
 
-/// What of that is not about the mesh.
+/// The checks that do not concern the mesh.
 void check_options(const Body& body, const OperatorOptions& options);
 void check_laws(const Body& body);
 

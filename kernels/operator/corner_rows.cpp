@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The means round corners over several ranks: a row for each, owned by the rank that has its node.
+// Corner averages over several ranks: one row per average, owned by the rank that owns its node.
 #include "operator/corner_rows.hpp"
 
 #include <algorithm>
@@ -11,13 +11,13 @@
 namespace kacanov {
 namespace {
 
-/// Number of a node, and a modulus.
+/// Global number of a node, and a modulus.
 struct Key {
   std::int64_t node, modulus;
   auto operator<=>(const Key&) const = default;
 };
 
-/// Number of a row, and a rank that has it, too.
+/// Number of a row, and another rank that has it.
 struct Sharer {
   std::int64_t row, rank;
 };
@@ -49,7 +49,8 @@ CornerRows make_corner_rows(const CornerMeans& means, const IndexMap& nodes) {
   static_cast<Communicator&>(map) = nodes;
   map.owned = static_cast<std::int32_t>(own.size());
   map.starts = number_owned(map.owned, nodes);
-  // Whoever asked is told the number, and who else has the row: its owner always.
+  // Replies to each requesting rank with the row's number and the other ranks that have it, the owner
+  // included.
   const std::size_t ranks = nodes.ranks, me = nodes.rank;
   std::vector<std::vector<std::size_t>> sharers(own.size(), {me});
   for (std::size_t r = 0; r < ranks; ++r)
@@ -75,7 +76,7 @@ CornerRows make_corner_rows(const CornerMeans& means, const IndexMap& nodes) {
     const auto at = std::lower_bound(map.ghosts.begin(), map.ghosts.end(), row);
     return map.owned + static_cast<std::int32_t>(at - map.ghosts.begin());
   };
-  // Answers come in the order of the questions.
+  // Replies are in the order of the requests.
   std::vector<std::size_t> next(number.starts.begin(), number.starts.end() - 1);
   for (std::size_t i = 0; i < means.size(); ++i)
     rows.of_entry.push_back(local(number.entries[next[nodes.owner(number_of(i))]++]));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The means round corners over several ranks: a row for each, owned by the rank that has its node.
+// Corner averages over several ranks: one row per average, owned by the rank that owns its node.
 #pragma once
 
 #include <cstdint>
@@ -10,16 +10,16 @@
 
 namespace kacanov {
 
-/// A row for every place and bulk modulus that some rank averages, on the rank that owns the node of that
-/// number, ascending by both.
+/// One row per place and bulk modulus that some rank averages, on the rank that owns the node with the number
+/// of the place; sorted by place, then by modulus.
 struct CornerRows {
-  IndexMap map;                        ///< of the rows; every rank has a copy of those of its entries
-  std::vector<std::int32_t> of_entry;  ///< local index
-  std::vector<std::int32_t> node;      ///< of an owned row: local node
-  std::vector<std::int32_t> modulus;   ///< of an owned row: which of `moduli`
+  IndexMap map;                        ///< of the rows; every rank has copies of the rows of its entries
+  std::vector<std::int32_t> of_entry;  ///< per entry: local index of its row
+  std::vector<std::int32_t> node;      ///< per owned row: local node
+  std::vector<std::int32_t> modulus;   ///< per owned row: index into `moduli`
 };
 
-/// `nodes`: the map of the nodes. All ranks have to have the same `moduli`. Collective.
+/// `nodes`: index map of the nodes. All ranks must have the same `moduli`. Collective.
 CornerRows make_corner_rows(const CornerMeans& means, const IndexMap& nodes);
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sums over processes of what belongs to the corners round which tr ε is averaged.
+// Sums over processes of quantities at the corners around which tr ε is averaged.
 #include "operator/corner_sum.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sums over processes of what belongs to the corners round which tr ε is averaged.
+// Sums over processes of quantities at the corners around which tr ε is averaged.
 #pragma once
 
 #include <memory>
@@ -11,23 +11,24 @@
 
 namespace kacanov {
 
-/// What BasicOperator::set_corner_sum() wants, for `Real` float or double. Copies share their buffers.
+/// The function that BasicOperator::set_corner_sum() expects, for `Real` float or double. Copies share
+/// buffers.
 template <class Real>
 class CornerSum {
  public:
-  /// `nodes`: the map of the nodes. All processes have to have the same `moduli`. Collective.
+  /// `nodes`: index map of the nodes. All processes must have the same `moduli`. Collective.
   CornerSum(const CornerMeans& means, const IndexMap& nodes);
-  /// Adds up what all processes have for an entry. Collective.
+  /// Sums each entry over all processes. Collective.
   void operator()(std::span<Real> entries);
 
  private:
   struct State {
     explicit State(CornerRows all);
     CornerRows rows;
-    std::vector<Real> values;  ///< of the rows; those without an entry here stay zero
+    std::vector<Real> values;  ///< of the rows; zero in rows without an entry on this rank
     Scatterer<Real> scatterer;
   };
-  std::shared_ptr<State> state_;  ///< null: there is one process
+  std::shared_ptr<State> state_;  ///< null with one process
 };
 
 }  // namespace kacanov

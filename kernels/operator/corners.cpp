@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where blocks have the corners round which tr ε is averaged.
+// Finds the corners around which tr ε is averaged in the blocks.
 #include "operator/corners.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ CornerLayout make_corner_layout(const Body& body, const CornerMeans& means, cons
   const std::size_t lanes = layout.lanes, corners = type.corners, element_nodes = type.nodes,
                     element_points = type.points.size();
   const Units units{body.mesh.type, {}, {}, {}};
-  std::vector<std::int32_t> entry(layout.largest, -1);  // of a block's local node
+  std::vector<std::int32_t> entry(layout.largest, -1);  // per local node of a block
   out.first.push_back(0);
   for (const BlockRange& range : layout.blocks) {
     for (std::size_t i = 0; i < range.group_count; ++i) {
@@ -40,7 +40,7 @@ CornerLayout make_corner_layout(const Body& body, const CornerMeans& means, cons
         const std::size_t element = at(point[k]) / element_points;
         const std::int32_t* of = &means.of_element[element * corners];
         if (of[0] < 0) continue;
-        // A unit turns its elements: which corner a node is, the mesh knows.
+        // A unit reorders its elements' nodes: the mesh defines the corner of a node.
         const std::int32_t* first = &body.mesh.connectivity[element * element_nodes];
         for (std::uint32_t a = 0; a < corners; ++a) {
           const std::size_t node =
@@ -55,7 +55,7 @@ CornerLayout make_corner_layout(const Body& body, const CornerMeans& means, cons
       if (const std::int32_t e = std::exchange(entry[node], -1); e >= 0) out.corners.push_back({node, e, e});
     out.first.push_back(out.corners.size());
   }
-  // Who adds to an entry: a thread, or −2 for several.
+  // The thread that adds to an entry; −2 for several, −1 for none.
   std::vector<std::int32_t> owner(means.size(), -1);
   const std::size_t threads = layout.share.size() - 1;
   const auto of_thread = [&](std::size_t t) {
@@ -68,7 +68,7 @@ CornerLayout make_corner_layout(const Body& body, const CornerMeans& means, cons
       std::int32_t& of = owner[corner.entry];
       of = of == -1 || of == thread ? thread : -2;
     }
-  std::vector<std::pair<std::int32_t, std::int32_t>> shared;  // entry, place: threads one after another
+  std::vector<std::pair<std::int32_t, std::int32_t>> shared;  // entry, place: thread after thread
   std::vector<std::int32_t> place(means.size(), -1);
   for (std::size_t t = 0; t < threads; ++t) {
     const std::size_t begin = shared.size();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The corners round which an operator averages tr ε: where blocks have them, and the sums of its threads.
+// The corners around which an operator averages tr ε: their place in the blocks, and the sums of the threads.
 #pragma once
 
 #include <cstddef>
@@ -12,15 +12,16 @@
 
 namespace kacanov {
 
-/// A corner of a block: its local node, the entry its mean comes from, and where its volume change is added,
-/// which is the entry's own place, or one of a thread's own behind all entries where several threads add.
+/// A corner of a block: its local node, the entry of its average, and the place that accumulates its volume
+/// change: the entry's own, or, if several threads add to the entry, a private place of the thread behind all
+/// entries.
 struct BlockCorner {
   std::uint32_t node;
   std::int32_t entry, place;
 };
 
 struct CornerLayout {
-  std::size_t entries = 0, places = 0;  ///< places: entries, then those of threads
+  std::size_t entries = 0, places = 0;  ///< places: entries, then the threads' private places
   std::vector<std::size_t> first;       ///< corners of block b: first[b] … first[b+1]
   std::vector<BlockCorner> corners;
   /// Places to add to an entry: shared_first[i] … [i+1] of shared_place belong to shared_entry[i].
@@ -35,10 +36,10 @@ struct CornerLayout {
 
 CornerLayout make_corner_layout(const Body& body, const CornerMeans& means, const Layout& layout);
 
-/// ∫ N over the elements of every corner or patch, as reference::corner_changes() has it.
+/// ∫ N over the elements of each corner or patch, as in reference::corner_changes().
 std::vector<double> corner_volumes(const Body& body, const CornerMeans& means);
 
-/// Cuts blocks whose corners would have several entries, so that each has one.
+/// Splits blocks in which a corner has several entries, so that each corner has one entry per block.
 void separate_moduli(const Body& body, Division& division);
 
 }  // namespace kacanov

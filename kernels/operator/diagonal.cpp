@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The diagonals and diagonal blocks of secant and tangent, from the data that their loops read.
+// Diagonals and diagonal blocks of secant and tangent, from the data of their loops.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,9 +19,9 @@
 
 namespace kacanov {
 
-/// Finds the elements of the slots again in their batches. Calls visit(nodal coordinates, the caller's nodes,
-/// law, slot of the first point) for each that has a wanted node; slots of an element's points are `lanes`
-/// apart.
+/// Reconstructs the elements from the slots of the batches. Calls visit(nodal coordinates, the caller's
+/// nodes, law, slot of the first point) for each element with a wanted node; slots of an element's points are
+/// `lanes` apart.
 template <class Real>
 template <class E, class Visit>
 void BasicOperator<Real>::Data::visit_elements(const BlockRange& range, const simd::Group& group,
@@ -30,11 +30,11 @@ void BasicOperator<Real>::Data::visit_elements(const BlockRange& range, const si
   const std::size_t lanes = layout.lanes;
   const Units units{type, {}, {}, {}};
   const std::uint32_t nodes = units.nodes_of(group.shape, group.length),
-                      count = units.points_of(group.shape, group.length);  // of points
+                      count = units.points_of(group.shape, group.length);  // number of points
   const std::uint16_t* index = layout.index.data() + range.first_index + group.first_index;
   const Real* records = coordinates.data() + 4 * range.first_record;
   const Law& law = laws[group.law];
-  std::vector<std::uint32_t> node_of;  // of a unit, element by element
+  std::vector<std::uint32_t> node_of;  // nodes of a unit, element by element
   for (std::uint32_t p = 0; p < count; p += E::points)
     for (std::uint32_t a = 0; a < E::nodes; ++a)
       node_of.push_back(units.node_of(group.shape, group.length, p / E::points, a));
@@ -45,7 +45,7 @@ void BasicOperator<Real>::Data::visit_elements(const BlockRange& range, const si
       for (std::uint32_t p = 0; p < count; p += E::points) {
         const std::size_t slot = range.first_slot + group.first_slot + (batch * count + p) * lanes + lane;
         if (layout.element_point[slot] < 0) continue;
-        std::array<std::size_t, E::nodes> at;  // of their records
+        std::array<std::size_t, E::nodes> at;  // of the node records
         bool asked = wanted.empty();
         for (std::size_t k = 0; k < at.size(); ++k) {
           at[k] = index[(batch * nodes + node_of[p / E::points * E::nodes + k]) * lanes + lane];
@@ -56,7 +56,7 @@ void BasicOperator<Real>::Data::visit_elements(const BlockRange& range, const si
         for (int a = 0; a < E::nodes; ++a) {
           const std::size_t record = at[static_cast<std::size_t>(a)];
           for (int c = 0; c < E::dim; ++c) x[Point<E>::at(a, c)] = static_cast<double>(records[record + c]);
-          // Radii count as they are, not from the middle of the block.
+          // Radii are absolute, not relative to the centre of the block.
           if (plane == PlaneState::axisymmetric)
             x[Point<E>::at(a, 0)] = static_cast<double>(records[record + 2]);
         }
@@ -65,9 +65,9 @@ void BasicOperator<Real>::Data::visit_elements(const BlockRange& range, const si
     }
 }
 
-/// Sums blocks: add(type, nodal coordinates, whether its map is affine, law, slot of its first point,
-/// blocks) adds those of an element's nodes. Threads have sums of their own for nodes where they meet, which
-/// are added in their order.
+/// Sums blocks: add(type, nodal coordinates, whether the map is affine, law, slot of its first point, blocks)
+/// adds those of one element's nodes. Threads have private sums for shared nodes, which are added in thread
+/// order.
 template <class Real>
 template <class Add>
 void BasicOperator<Real>::Data::sum_blocks(std::span<Real> blocks, std::span<const char> wanted,
@@ -112,7 +112,7 @@ void BasicOperator<Real>::Data::sum_blocks(std::span<Real> blocks, std::span<con
 
 namespace {
 
-/// add(point, a, slot, block) for every node and point of an element.
+/// Calls add(point, a, slot, block) for every node and point of an element.
 template <class E, class Add>
 void over_points(const std::array<elements::Point<E>, E::points>& points, std::size_t slot, std::size_t lanes,
                  double (&blocks)[E::nodes][E::dim * E::dim], const Add& add) {
@@ -120,7 +120,7 @@ void over_points(const std::array<elements::Point<E>, E::points>& points, std::s
     for (std::size_t q = 0; q < E::points; ++q) add(points[q], a, slot + q * lanes, blocks[a]);
 }
 
-/// d[i]: entry i % dim of row i of the blocks.
+/// Copies the diagonals of the blocks: d[i] is entry i % dim of row i.
 template <class Real>
 void take_diagonal(std::span<const Real> blocks, std::size_t dim, std::span<Real> d) {
   for (std::size_t i = 0; i < d.size(); ++i) d[i] = blocks[i * dim + i % dim];
@@ -128,7 +128,7 @@ void take_diagonal(std::span<const Real> blocks, std::size_t dim, std::span<Real
 
 }  // namespace
 
-/// Of the secant, the volume change counted bulk(law, g) times.
+/// Blocks of the secant, with the volumetric part for the modulus bulk(law, g).
 template <class Real>
 template <class Bulk>
 void BasicOperator<Real>::Data::sum_secant_blocks(std::span<Real> blocks, std::span<const char> wanted,
@@ -192,7 +192,7 @@ void BasicOperator<Real>::block_diagonal_tangent(std::span<Real> blocks) const {
                        [&](const auto& point, int a, std::size_t at, double* block) {
                          const auto secant = static_cast<double>(g[at]);
                          point.add_diagonal_block(a, data.bulk_at(law, secant), secant, block);
-                         // √|2 g'/x| dev ε, component by component over the lanes; see material.hpp.
+                         // √|2 g'/x| dev ε, components strided by the lanes; see material.hpp.
                          const std::size_t lane = at % lanes;
                          const float* t = data.tangent.data() + simd::tangent_floats * (at - lane) + lane;
                          const auto kept = [&](std::size_t k) { return static_cast<double>(t[k * lanes]); };

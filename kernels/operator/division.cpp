@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Units, and parts of the mesh with theirs; or both as an operator has them.
+// Partitions a body into blocks of units, or reuses the partitioning of an operator.
 #include "operator/division.hpp"
 
 #include <algorithm>
@@ -13,13 +13,13 @@
 namespace kacanov {
 namespace {
 
-/// 16-bit offsets of records of four values; those of idle lanes are behind the block's own.
+/// Limit from 16-bit offsets of records of four values; records of idle lanes follow those of the block.
 constexpr std::size_t most_records = (std::size_t{1} << 16) / 4 - 16;
 
-/// Bytes of records a block works on: coordinates, displacement and force.
+/// Bytes of node records per block: coordinates, displacement and force.
 constexpr std::size_t cache_bytes = 400 * 1024;
 
-/// Cuts lists of units until each piece's nodes can be addressed by 16 bits.
+/// Splits lists of units until 16 bits address the nodes of each piece.
 class Cutter {
  public:
   Cutter(const Units& units, std::size_t nodes) : units_(units), seen_(nodes, 0) {}
@@ -43,11 +43,12 @@ class Cutter {
   }
 
   const Units& units_;
-  std::vector<std::uint32_t> seen_;  ///< the list a node was met in last
+  std::vector<std::uint32_t> seen_;  ///< per node: the last list that contained it
   std::uint32_t list_ = 0;
 };
 
-/// Units of each part, in the locality order of their first node. A unit belongs where most of its nodes do.
+/// Units of each part, in locality order of their first node. A unit belongs to the part with most of its
+/// nodes.
 std::vector<std::vector<std::uint32_t>> assign_units(const Division& division, int parts,
                                                      std::span<const std::int32_t> part) {
   const Units& units = division.units;
@@ -71,12 +72,12 @@ std::vector<std::vector<std::uint32_t>> assign_units(const Division& division, i
   return members;
 }
 
-/// Takes a layout's lanes apart again.
+/// Recovers units from a layout's lanes.
 class Reader {
  public:
   Reader(const Layout& from, ElementType type) : from_(from) { units_.type = type; }
 
-  /// The pieces of fans that a block's lanes work on are units of their own from here on.
+  /// Pieces of fans in a block's lanes become separate units.
   std::vector<std::uint32_t> read_block(const BlockRange& block) {
     std::vector<std::uint32_t> members;
     for (std::size_t i = 0; i < block.group_count; ++i) {
@@ -96,7 +97,7 @@ class Reader {
   Units take() { return std::move(units_); }
 
  private:
-  /// Adds what a lane of a batch has to the units; false where it is idle.
+  /// Adds the unit in a lane of a batch; returns false if the lane is idle.
   bool read_lane(const BlockRange& block, const simd::Group& group, std::size_t batch, std::size_t lane) {
     const std::size_t lanes = from_.lanes, per_element = points_per_element(units_.type);
     const std::uint32_t points = units_.points_of(group.shape, group.length);
@@ -130,7 +131,8 @@ Division divide(const Body& body, int threads, std::size_t record_bytes) {
   const std::size_t per_block = cache_bytes / (3 * record_bytes);
   const std::size_t nodes = body.mesh.connectivity.empty() ? 0 : body.mesh.node_count();
   const std::size_t wanted = (nodes + per_block - 1) / per_block;
-  // A multiple of the threads, and each block worth its surface, but a block for every thread where possible.
+  // A multiple of the threads, with blocks large compared to their surface; at least one per thread if
+  // possible.
   const std::size_t team = threads;
   const int parts = wanted == 0 ? 1 : static_cast<int>((wanted + team - 1) / team * team);
   Cutter cutter(division.units, body.mesh.node_count());
@@ -152,7 +154,7 @@ Division divided_as(const Layout& like, const Body& body, std::size_t joined) {
   division.units = reader.take();
   Cutter cutter(division.units, body.mesh.node_count());
   for (auto& list : lists) cutter.cut(std::move(list), division.blocks);
-  // By the blocks, and as these have them.
+  // Numbers nodes in the order of the blocks and of the nodes in them.
   division.rank.assign(body.mesh.node_count(), -1);
   std::int32_t next = 0;
   const std::size_t met = like.blocks.empty() ? 0 : like.blocks.back().first_node + like.blocks.back().count;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How a body is divided: units, and which of them make a block.
+// Partitioning of a body: units, grouped into blocks.
 #pragma once
 
 #include <cstddef>
@@ -13,19 +13,19 @@ namespace kacanov {
 
 struct Layout;
 
-/// What does not depend on lanes, and little on the size of a number.
+/// The part of the layout that does not depend on the number of lanes, and little on the precision.
 struct Division {
   Units units;
-  std::vector<std::vector<std::uint32_t>> blocks;  ///< units of each, in the order of their places
-  std::vector<std::int32_t> rank;                  ///< of a node: near ones have near numbers
+  std::vector<std::vector<std::uint32_t>> blocks;  ///< units of each block, in locality order
+  std::vector<std::int32_t> rank;                  ///< per node: locality number, close for close nodes
 };
 
-/// Blocks that work in a core's second-level cache where a record of a node has `record_bytes`, at least one
-/// a thread where the body allows it.
+/// Makes blocks that fit in a core's second-level cache with `record_bytes` per node record, at least one per
+/// thread if the body is large enough.
 Division divide(const Body& body, int threads, std::size_t record_bytes);
 
-/// That of an operator of the same mesh and the same laws of elements, with `joined` of its blocks a block:
-/// no cover, no METIS, no curve, which take four fifths of the time.
+/// Reuses the partitioning of an operator with the same mesh and law_of_element, merging `joined` of its
+/// blocks into one. Skips the fan cover, METIS and the Hilbert curve, which take four fifths of the time.
 Division divided_as(const Layout& like, const Body& body, std::size_t joined);
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Maps from the reference element, one by one and some abreast.
+// Maps from the reference element, one by one or several at a time.
 #include "operator/element_maps.hpp"
 
 #include <algorithm>
@@ -79,7 +79,7 @@ class MapRows {
     for (std::size_t q = 0; q < E::point.size(); ++q) slopes_[q] = E::gradients(E::point[q].data());
   }
 
-  /// Elements from `first` on, the last one again where there are no more.
+  /// Elements from `first` on; the last element fills the remaining lanes.
   void work_out(std::size_t first, std::array<ElementMap, simd::row_lanes>& out) {
     const std::size_t last = mesh_.element_count() - 1;
     for (std::size_t lane = 0; lane < simd::row_lanes; ++lane) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Greedy cover: edges in the order of the tetrahedra left round them, by a bucket queue.
+// Greedy fan cover: edges in the order of the uncovered tetrahedra around them, by a bucket queue.
 #include "operator/fans.hpp"
 
 #include <algorithm>
@@ -14,13 +14,14 @@ namespace {
 
 using Index = std::int32_t;
 
-/// Local edges of a tetrahedron (p, q), and the other two nodes so that (p, q, a, b) is oriented like it.
+/// Local edges of a tetrahedron (p, q), and the other two nodes a, b such that (p, q, a, b) keeps its
+/// orientation.
 constexpr std::array<std::array<std::uint8_t, 4>, 6> edges{
     {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}}};
 
-/// Edges of the mesh and the tetrahedra round each, as 8 × element + local edge.
+/// Edges of the mesh and the tetrahedra around each edge, as 8 × element + local edge.
 struct EdgeTable {
-  std::vector<std::uint32_t> first;  ///< of edge i in `around`; one more entry than edges
+  std::vector<std::uint32_t> first;  ///< index into `around` of each edge; one more entry than edges
   std::vector<std::uint32_t> around;
 
   std::size_t size() const { return first.size() - 1; }
@@ -29,14 +30,14 @@ struct EdgeTable {
   }
 };
 
-/// The nodes of each tetrahedron, where loops keep them at hand.
+/// The nodes of each tetrahedron, from local copies of pointer and stride.
 class Tetrahedra {
  public:
   explicit Tetrahedra(const MeshView& mesh)
       : nodes_(mesh.connectivity.data()), stride_(static_cast<std::size_t>(nodes_per_element(mesh.type))) {}
 
   const Index* operator[](std::size_t element) const { return nodes_ + element * stride_; }
-  /// The lower and the higher end of a local edge, as in EdgeTable::around.
+  /// Lower and higher end node of a local edge, numbered as in EdgeTable::around.
   std::pair<Index, Index> ends(std::uint32_t place) const {
     const Index* node = (*this)[place / 8];
     const auto& edge = edges[place % 8];
@@ -49,8 +50,8 @@ class Tetrahedra {
   std::size_t stride_;
 };
 
-/// Sorts the local edges of all tetrahedra by their higher end and then, where they stand, by the lower one:
-/// two passes of counting, as both are numbers of nodes.
+/// Sorts the local edges of all tetrahedra by their higher and then, in place, by their lower end node: two
+/// counting sorts, because both keys are node numbers.
 EdgeTable make_edges(const MeshView& mesh) {
   const Tetrahedra tetrahedra(mesh);
   std::vector<std::uint32_t> low_start(mesh.node_count() + 1, 0), high_start(low_start);
@@ -79,8 +80,8 @@ EdgeTable make_edges(const MeshView& mesh) {
   return table;
 }
 
-/// Edges that are the longest of every tetrahedron round them. Taken first among equals they keep a cover
-/// regular: in a box cut along its diagonals the diagonals' fans of six tile it.
+/// Edges that are the longest of every tetrahedron around them. Preferred among equals, they keep a cover
+/// regular: in a box split along its diagonals, fans of six around the diagonals tile it.
 std::vector<bool> longest_of_all(const MeshView& mesh, const EdgeTable& table) {
   const Tetrahedra tetrahedra(mesh);
   std::vector<std::uint8_t> longest(mesh.element_count());
@@ -109,7 +110,7 @@ struct Cover {
   const MeshView& mesh;
   Units result;
 
-  /// One tetrahedron round the edge, as the arc from ring node `a` to ring node `b`.
+  /// One tetrahedron around the edge, as the arc from ring node `a` to ring node `b`.
   struct Arc {
     Index a, b, element;
     std::uint16_t law;
@@ -154,7 +155,7 @@ struct Cover {
     }
   }
 
-  /// Splits the arcs round (p, q) into chains of one law, longest possible, and adds them.
+  /// Splits the arcs around (p, q) into the longest possible chains of one law, and adds them.
   void split(Index p, Index q) {
     std::vector<Arc> chain;
     const auto follow = [&](Index from, std::uint16_t law_index) -> Arc* {
@@ -167,7 +168,7 @@ struct Cover {
         return !other.used && &other != &arc && other.b == arc.a && other.law == arc.law;
       });
     };
-    for (const bool rings : {false, true})  // chains with a beginning first; what remains are rings
+    for (const bool rings : {false, true})  // open chains first; the rest are closed rings
       for (Arc& arc : arcs) {
         if (arc.used || (!rings && has_one_before(arc))) continue;
         chain.clear();
@@ -203,7 +204,7 @@ Units cover_by_fans(const Body& body, std::vector<bool> taken) {
   };
   for (std::uint32_t edge = 0; edge < table.size(); ++edge)
     enqueue(edge, static_cast<std::uint32_t>(table.of(edge).size()));
-  // Counts only fall, so an edge found in too high a bucket goes down to the one where it belongs.
+  // Counts only decrease: an edge in too high a bucket moves down to its present count.
   for (std::size_t bucket = queue.size(); bucket-- > 2;) {
     for (std::size_t i = 0; i < queue[bucket].size(); ++i) {
       const std::uint32_t edge = queue[bucket][i];

@@ -6,7 +6,7 @@
 
 namespace kacanov {
 
-/// Every element that is not in `left_out` lies in exactly one fan; the elements of a fan share one law.
+/// Each element that is not in `left_out` is in exactly one fan; the elements of a fan share one law.
 Units cover_by_fans(const Body& body, std::vector<bool> left_out);
 
 }  // namespace kacanov

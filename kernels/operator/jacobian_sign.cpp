@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether the Jacobian determinant of an element is positive all over it, by its Bézier coefficients.
+// Checks by Bézier coefficients whether det J is positive in the whole element.
 #include "operator/jacobian_sign.hpp"
 
 #include <algorithm>
@@ -12,10 +12,10 @@ namespace kacanov {
 namespace jacobian_sign {
 namespace {
 
-/// Of the largest Bézier coefficient: a determinant that negative may be 0 in exact coordinates, as at the
-/// tip of quarter-point elements, and be rounded in a file.
+/// Relative to the largest Bézier coefficient: smaller negative determinants may be 0 in exact coordinates,
+/// as at the tip of quarter-point elements, and negative through rounding in a file.
 constexpr double rounded_to_zero = 1e-6;
-/// Subdomains after which a determinant that touches 0 counts as not negative.
+/// After this many subdomains a determinant that touches 0 counts as not negative.
 constexpr std::size_t most_subdomains = 4096;
 
 using Point = std::array<double, 3>;
@@ -33,9 +33,9 @@ double determinant(const Point& a, const Point& b, const Point& c) {
 }
 Point middle_of(const Point& a, const Point& b) { return 0.5 * (a + b); }
 
-/// Columns of J and reference coordinates at the corners of a subdomain; both are linear between the corners
-/// of a simplex, multilinear between those of a box, whose corner k lies at the upper end along axis i where
-/// bit i of k is set.
+/// Columns of J and reference coordinates at the corners of a subdomain; linear between the corners of a
+/// simplex, multilinear between those of a box. Corner k of a box lies at the upper end along axis i if bit i
+/// of k is set.
 template <std::size_t corners>
 struct Subdomain {
   std::array<std::array<Point, corners>, 3> column{};
@@ -59,7 +59,7 @@ struct Range {
   }
 };
 
-/// A coefficient of the product of three linear functions is the mean of all products that belong to it.
+/// A coefficient of the product of three linear functions is the average of all products with its index.
 template <std::size_t count>
 class Coefficients {
  public:
@@ -79,9 +79,9 @@ class Coefficients {
   std::array<int, count> products_{};
 };
 
-/// Of degree 3 on a tetrahedron: det J of tet10.
+/// Degree 3 on a tetrahedron: det J of tet10.
 Range coefficients(const Subdomain<4>& part) {
-  Coefficients<64> all;  // by how often each corner but the first takes part, of which 20 are possible
+  Coefficients<64> all;  // indexed by the multiplicities of all corners but the first; 20 are used
   constexpr std::array<std::size_t, 4> place{0, 1, 4, 16};
   for (std::size_t q = 0; q < 4; ++q)
     for (std::size_t r = 0; r < 4; ++r) {
@@ -92,7 +92,7 @@ Range coefficients(const Subdomain<4>& part) {
   return all.range();
 }
 
-/// Of degree 2 along each axis of a cube: det J of hex8. A column does not vary along its own axis.
+/// Degree 2 along each axis of a cube: det J of hex8. A column does not vary along its own axis.
 Range coefficients(const Subdomain<8>& part) {
   Coefficients<27> all;
   const auto along = [](std::size_t corner, std::size_t axis) { return corner >> axis & 1; };
@@ -149,7 +149,7 @@ std::array<Subdomain<8>, 8> split(const Subdomain<8>& whole) {
   return parts;
 }
 
-/// The same without the coefficients: det J is positive where the columns vary by little.
+/// Sufficient condition without coefficients: det J is positive if the columns vary little.
 template <std::size_t corners>
 bool varies_little(const Subdomain<corners>& whole) {
   std::array<Point, 3> mean{};
@@ -164,7 +164,7 @@ bool varies_little(const Subdomain<corners>& whole) {
   return determinant(mean[0], mean[1], mean[2]) > most - lengths;
 }
 
-/// The corner where det J is least.
+/// The corner with the smallest det J.
 template <std::size_t corners>
 std::size_t worst_corner(const Subdomain<corners>& part) {
   std::size_t worst = 0;
@@ -179,7 +179,7 @@ struct Found {
   Point xi{};
 };
 
-/// Coefficients bound det J from below, and corners from above: subdomains between the two are divided.
+/// Coefficients bound det J from below, corner values from above: subdomains between the bounds are split.
 template <std::size_t corners>
 std::optional<Found<corners>> search(const Subdomain<corners>& whole) {
   if (varies_little(whole)) return std::nullopt;
@@ -204,7 +204,8 @@ Point node_position(const MeshView& mesh, std::size_t element, std::size_t node)
   return {x[0], x[1], dim == 3 ? x[2] : 0.0};
 }
 
-/// ∂x/∂Lₐ at corner p is 3 x_p for a = p, else 4 times the mid-side node less xₐ; ξ_k is L_{k+1} − L₀.
+/// ∂x/∂Lₐ at corner p is 3 x_p for a = p, else 4 times the mid-side node minus xₐ; ∂/∂ξ_k = ∂/∂L_{k+1} −
+/// ∂/∂L₀.
 Subdomain<4> quadratic_tetrahedron(const MeshView& mesh, std::size_t element) {
   Subdomain<4> whole;
   std::array<std::array<Point, 4>, 4> slope;  // corner, barycentric coordinate
@@ -225,7 +226,7 @@ Subdomain<4> quadratic_tetrahedron(const MeshView& mesh, std::size_t element) {
   return whole;
 }
 
-/// Corners of a square or cube [−1, 1]^dim by bits; a square is extended to a prism of height 2.
+/// Corners of a square or cube [−1, 1]^dim as bits; a square is extended to a prism of height 2.
 Subdomain<8> multilinear(const MeshView& mesh, std::size_t element) {
   const Cell& type = cell(mesh.type);
   Subdomain<8> whole;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether the Jacobian determinant of an element is positive all over it, by its Bézier coefficients.
+// Checks by Bézier coefficients whether det J is positive in the whole element.
 #pragma once
 
 #include <array>
@@ -16,8 +16,9 @@ struct NegativeJacobian {
   std::size_t nearest_corner = 0;
 };
 
-/// Finds one in an element whose map is not affine; nothing where det J ≥ 0 all over, up to the rounding of
-/// coordinates in files (theory: folded-elements). Indices have been checked, coordinates are finite.
+/// Returns such a point for an element whose map is not affine; empty if det J ≥ 0 everywhere, up to the
+/// rounding of coordinates in files (theory: folded-elements). Indices must have been checked, coordinates
+/// must be finite.
 std::optional<NegativeJacobian> find_negative_jacobian(const MeshView& mesh, std::size_t element);
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From units to blocks, groups, batches and the sums that threads share.
+// Builds blocks, groups and batches from units, and the sums that threads share.
 #include "operator/layout.hpp"
 
 #include <algorithm>
@@ -15,15 +15,15 @@ namespace {
 
 using simd::Shape;
 
-/// Idle lanes work on these records, whose elements have a volume and no displacement.
+/// Records for idle lanes: an element with positive volume and no displacement.
 std::vector<std::array<double, 3>> idle_positions(ElementType type) {
   if (type == ElementType::tet4) return {{0, 0, 0}, {1, 1, 1}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const auto nodes = cell(type).reference;
   return {nodes.begin(), nodes.end()};
 }
 
-/// The idle record node k of a lane stands on. A fan's ring goes to and fro between two positions; the third
-/// ends a closed ring of odd length.
+/// Idle record of node k of a lane. The ring of a fan alternates between two positions; the third one ends a
+/// closed ring of odd length.
 std::uint32_t idle_record(ElementType type, Shape shape, std::uint32_t length, std::uint32_t k) {
   if (shape != Shape::open_fan && shape != Shape::closed_fan) return k;
   if (type == ElementType::tet10) {
@@ -35,7 +35,7 @@ std::uint32_t idle_record(ElementType type, Shape shape, std::uint32_t length, s
   return odd_end ? 4 : 2 + k % 2;
 }
 
-/// A piece of a unit as a lane takes it: a fan may be cut so that batches fill.
+/// A unit, or a part of a fan, in one lane: fans may be split to fill batches.
 struct Piece {
   std::uint32_t unit;
   std::uint8_t from;  ///< first element of the fan
@@ -44,16 +44,16 @@ struct Piece {
 struct Builder {
   const Body& body;
   const Units& units;
-  std::span<const std::int32_t> rank;  ///< of a node
+  std::span<const std::int32_t> rank;  ///< locality number per node
   Layout layout;
-  std::vector<std::int32_t> local;  ///< of a node in the current block, −1
+  std::vector<std::int32_t> local;  ///< local number per node in the current block, −1 if absent
 
   using Key = std::tuple<std::uint16_t, Shape, std::uint8_t>;  ///< law, shape, length
   using Classes = std::map<Key, std::vector<Piece>>;
 
   const std::int32_t* unit_nodes(std::uint32_t u) const { return units.nodes_begin(u); }
 
-  /// Node k of a piece of shape and length. A ring cut open ends where it began.
+  /// Node k of a piece of this shape and length. A closed ring opened into a chain ends at its first node.
   std::int32_t piece_node(const Piece& piece, Shape shape, std::uint32_t k) const {
     const std::int32_t* nodes = unit_nodes(piece.unit);
     if (shape != Shape::open_fan || k < 2) return nodes[k];
@@ -62,8 +62,8 @@ struct Builder {
     return nodes[2 + (piece.from + k - 2) % ring];
   }
 
-  /// Sorts a block's units into classes. What would leave a batch less than half full is opened (closed fans)
-  /// or halved (open ones) and joins a shorter class.
+  /// Sorts a block's units into classes. Units that would fill less than half of a batch move to a shorter
+  /// class: closed fans are opened, open fans halved.
   Classes classify(std::span<const std::uint32_t> members) const {
     Classes classes;
     for (const std::uint32_t u : members) {
@@ -103,9 +103,9 @@ struct Builder {
     return classes;
   }
 
-  /// Numbers the block's nodes: new to the thread, met before, shared with other threads; of each those whose
-  /// coordinates are read come first, in the locality order. `state` of a node: 1 if this thread has met it,
-  /// else 0; `slot`: its place in the thread's private sums where it is shared, else −1.
+  /// Numbers the block's nodes: new to the thread, already used, shared with other threads; in each kind
+  /// nodes with coordinates come first, in locality order. `state` of a node: 1 if this thread has used it,
+  /// else 0; `slot`: its place in the thread's private sums if it is shared, else −1.
   void number_nodes(std::span<const std::uint32_t> members, std::vector<std::int32_t>& state,
                     std::span<const std::int32_t> slot, BlockRange& range) {
     std::vector<std::int32_t> found;
@@ -113,7 +113,7 @@ struct Builder {
       for (std::uint32_t k = 0; k < units.node_count(u); ++k) {
         const std::int32_t node = unit_nodes(u)[k];
         if (local[node] < 0) found.push_back(node);
-        // 1 for those that are nowhere placed, until the numbers are there
+        // 1 marks nodes without coordinates until they are numbered
         const std::int32_t seen = local[node] < 0 ? 1 : local[node];
         local[node] = units.is_placed(units.units[u].shape, k) ? 0 : seen;
       }
@@ -137,8 +137,8 @@ struct Builder {
     layout.nodes.insert(layout.nodes.end(), found.begin(), found.end());
   }
 
-  /// The caller's number of a point of a piece. In fans of tet10 elements begin with other corners than the
-  /// caller's have, and each point stays beside its corner.
+  /// The caller's number of a point of a piece. Fans of tet10 reorder the corners of elements; each point
+  /// stays next to its corner.
   std::int32_t point_of(const Piece& piece, Shape shape, std::uint32_t length, std::uint32_t point) const {
     const auto per_element = static_cast<std::uint32_t>(points_per_element(units.type));
     const std::uint32_t i = point / per_element;
@@ -152,7 +152,7 @@ struct Builder {
     return static_cast<std::int32_t>(element * per_element + q);
   }
 
-  /// Batches of one class, appended to the index and to the slots.
+  /// Appends the batches of one class to the index and to the slots.
   void add_group(const Key& key, std::span<const Piece> pieces, BlockRange& range) {
     const auto [law, shape, length] = key;
     const std::size_t lanes = layout.lanes;
@@ -161,7 +161,8 @@ struct Builder {
     layout.groups.push_back({units.type, shape, length, law, static_cast<std::uint32_t>(batches),
                              static_cast<std::uint32_t>(layout.index.size() - range.first_index),
                              static_cast<std::uint32_t>(layout.element_point.size() - range.first_slot)});
-    // Neighbouring tet10 share up to six nodes, whose sums wait for each other: their lanes work far apart.
+    // Neighbouring tet10 share up to six nodes, and their sums depend on each other: put them in distant
+    // lanes.
     const bool apart = cell(units.type).order == 2;
     const auto piece_of = [&](std::size_t batch, std::size_t lane) {
       return apart ? lane * batches + batch : batch * lanes + lane;
@@ -206,13 +207,13 @@ struct Builder {
   }
 };
 
-/// Contiguous shares of blocks with nearly equal numbers of points.
+/// Contiguous shares of blocks with nearly equal cost.
 std::vector<std::size_t> share_blocks(const Units& units, std::span<const std::vector<std::uint32_t>> blocks,
                                       int threads) {
   std::vector<double> cost(blocks.size() + 1, 0.0);
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     cost[b + 1] = cost[b];
-    for (const std::uint32_t u : blocks[b])  // nodes cost about as much as tetrahedra
+    for (const std::uint32_t u : blocks[b])  // a node costs about as much as a tetrahedron
       cost[b + 1] += units.node_count(u) + units.points_of(units.units[u].shape, units.units[u].length);
   }
   std::vector<std::size_t> share{0};
@@ -226,7 +227,7 @@ std::vector<std::size_t> share_blocks(const Units& units, std::span<const std::v
   return share;
 }
 
-/// Moves the blocks of a share that have early nodes to its front.
+/// Moves the blocks with early nodes to the front of their share.
 void put_early_first(const Builder& builder, Layout& layout, std::span<const char> is_early,
                      std::span<std::vector<std::uint32_t>> blocks) {
   const auto has_early = [&](const std::vector<std::uint32_t>& members) {
@@ -243,7 +244,7 @@ void put_early_first(const Builder& builder, Layout& layout, std::span<const cha
   }
 }
 
-/// Finds the nodes of several threads. Returns each thread's slot of every node, −1 where it is alone.
+/// Finds the nodes of several threads. Returns each thread's slot of every node, −1 if it is not shared.
 std::vector<std::vector<std::int32_t>> find_interface(const Builder& builder, Layout& layout,
                                                       std::span<const char> is_early,
                                                       std::span<const std::vector<std::uint32_t>> blocks) {
@@ -322,8 +323,8 @@ Layout make_layout(const Body& body, Division division, int lanes, int threads,
 
 namespace {
 
-/// The first node's coordinates, along axes where those of all nodes lie between half and twice that: there
-/// differences are exact (Sterbenz). Else 0: such blocks are as large as their coordinates.
+/// The first node's coordinate along each axis where those of all nodes lie between half and twice it:
+/// differences are exact there (Sterbenz). Else 0: such blocks are as large as their coordinates.
 std::array<double, 3> exact_origin(const MeshView& mesh, const std::int32_t* nodes, std::size_t count) {
   const std::size_t dim = dimension(mesh.type);
   std::array<double, 3> origin{};
@@ -351,14 +352,14 @@ void fill_coordinates(const Layout& layout, const MeshView& mesh, std::span<Real
     for (std::size_t i = 0; i < block.count; ++i)
       for (std::size_t k = 0; k < dim; ++k)
         middle[k] += mesh.coordinates[at(nodes[i]) * dim + k] / block.count;
-    // Single precision needs the small numbers; in double differences have to keep every bit.
+    // Single precision needs small numbers; in double precision the subtraction must be exact.
     if constexpr (std::is_same_v<Real, double>)
       middle = exact_origin(mesh, layout.nodes.data() + block.first_node, block.count);
     for (std::size_t i = 0; i < block.count; ++i)
       for (std::size_t k = 0; k < 3; ++k)
         coordinates[4 * (block.first_record + i) + k] =
             k < dim ? static_cast<Real>(mesh.coordinates[at(nodes[i]) * dim + k] - middle[k]) : Real(0);
-    // The place that 2D leaves has the radius, which does not count from the middle.
+    // In 2D the third component holds the absolute radius.
     for (std::size_t i = 0; i < block.count && mesh.plane == PlaneState::axisymmetric; ++i)
       coordinates[4 * (block.first_record + i) + 2] = static_cast<Real>(mesh.coordinates[at(nodes[i]) * dim]);
     for (std::size_t i = 0; i < idle.size(); ++i)

@@ -13,7 +13,7 @@
 
 namespace kacanov {
 
-/// A block: units whose nodes' records fit in a core's second-level cache. Ranges refer to Layout's arrays.
+/// A block: units whose node records fit in a core's second-level cache. Ranges refer to Layout's arrays.
 struct BlockRange {
   std::size_t first_group, group_count;
   std::size_t first_index, first_slot;
@@ -22,22 +22,22 @@ struct BlockRange {
   std::uint32_t first, again, count, placed[3];  ///< as in simd::Block
 };
 
-/// Everything but values of the material, for batches of `lanes` lanes and `shares` threads.
+/// All data except material values, for batches of `lanes` lanes and `shares` threads.
 struct Layout {
   int lanes = 1;
   std::vector<BlockRange> blocks;
   std::vector<std::size_t> share;  ///< blocks of thread t: share[t] … share[t+1]
-  std::vector<std::size_t> early;  ///< of these, share[t] … early[t] are all that have early nodes
+  std::vector<std::size_t> early;  ///< share[t] … early[t]: the blocks of thread t with early nodes
   std::vector<simd::Group> groups;
   std::vector<std::uint16_t> index;
-  std::vector<std::int32_t> nodes;          ///< of the blocks, in the caller's numbering
+  std::vector<std::int32_t> nodes;          ///< per block, in the caller's numbering
   std::vector<std::int32_t> element_point;  ///< slot → element × points + point, −1 for idle lanes
   std::vector<std::int32_t> shared;         ///< see simd::Block
-  std::uint32_t padding = 0;                ///< records behind each block's own
+  std::uint32_t padding = 0;                ///< records behind those of each block
   std::uint32_t largest = 0;                ///< records of the largest block, padding included
 
-  /// Nodes that more than one thread adds to: contributions `interface_first[i]` … `[i+1]` belong to
-  /// interface_node[i], each a slot in the private sums of a thread.
+  /// Nodes to which several threads add: contributions `interface_first[i]` … `[i+1]` belong to
+  /// interface_node[i]; each is a slot in a thread's private sums.
   struct Contribution {
     std::int32_t thread, slot;
   };
@@ -46,9 +46,9 @@ struct Layout {
   std::vector<std::uint32_t> interface_first;
   std::vector<Contribution> contributions;
   std::vector<std::int32_t> slots_of_thread;
-  std::vector<std::int32_t> lonely;  ///< nodes of no element
+  std::vector<std::int32_t> lonely;  ///< nodes that belong to no element
 
-  std::size_t records() const noexcept;  ///< over all blocks
+  std::size_t records() const noexcept;  ///< in all blocks
   std::size_t bytes() const noexcept;
 };
 
@@ -56,7 +56,7 @@ struct Layout {
 Layout make_layout(const Body& body, Division division, int lanes, int threads,
                    std::span<const std::int32_t> early);
 
-/// Records of local nodes, coordinates relative to the middle of their block, for `layout`.
+/// Records of local nodes for `layout`, with coordinates relative to the centre of the block.
 template <class Real>
 void fill_coordinates(const Layout& layout, const MeshView& mesh, std::span<Real> coordinates);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tests arrays that come from outside before a kernel trusts them.
+// Checks of mesh arrays from outside before a kernel uses them.
 #include "operator/mesh_check.hpp"
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace kacanov {
 namespace {
 
 std::string element_fault(const MeshView& mesh) {
-  constexpr double flat = 1e-14;  // the size of the determinant's rounding
+  constexpr double flat = 1e-14;  // size of the determinant's rounding error
   std::string fault;
   visit_element_maps(mesh, [&](std::size_t first, std::span<const ElementMap> maps) {
     for (std::size_t k = 0; k < maps.size() && fault.empty(); ++k) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tests arrays that come from outside before a kernel trusts them.
+// Checks of mesh arrays from outside before a kernel uses them.
 #pragma once
 
 #include <cstddef>
@@ -9,16 +9,15 @@
 
 namespace kacanov {
 
-/// What is wrong with the mesh, in words that name the first node or element at fault (from 0); empty if
-/// nothing: no node, no element, a length that is no multiple, a coordinate that is not finite, an index out
-/// of range, or an element whose map is not orientation-preserving at every quadrature point, or folded
-/// anywhere.
+/// Returns an error message that names the first invalid node or element (from 0); empty if the mesh is
+/// valid. Errors: no node, no element, an incorrect array length, a coordinate that is not finite, an index
+/// out of range, an element that is inverted or degenerate at a quadrature point, or folded anywhere.
 std::string mesh_fault(const MeshView& mesh);
 
-/// The same without the elements' shapes: what has to be right before anybody reads the arrays.
+/// The same without the elements' shapes: the conditions for reading the arrays at all.
 std::string arrays_fault(const MeshView& mesh);
 
-/// Whether the element's map turns the wrong way round at every quadrature point. Indices have been checked.
+/// Returns whether det J is negative at every quadrature point. Indices must have been checked.
 bool is_inverted(const MeshView& mesh, std::size_t element);
 
 }  // namespace kacanov

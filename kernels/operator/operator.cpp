@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The operator's members: what they are given is checked here, the work is that of the passes.
+// The operator's members: they check the arguments and call the passes.
 #include <kacanov/operator.hpp>
 
 #include <stdexcept>
@@ -12,7 +12,7 @@
 namespace kacanov {
 namespace {
 
-/// Calls some(done, step) for steps of 4, 2 or 1 of the vectors, the numbers that the loops take at once.
+/// Calls some(done, step) in steps of 4, 2 or 1 vectors, as the loops process them.
 template <class Some>
 void in_steps(int vectors, const Some& some) {
   for (int done = 0; done < vectors;) {
@@ -22,8 +22,8 @@ void in_steps(int vectors, const Some& some) {
   }
 }
 
-/// Their answers at the points are not asked for while the strain across the plane is sought, and outside of
-/// plane strain the loops do not ask for them at all.
+/// User-defined laws cannot be evaluated while the transverse strain of plane stress is sought, and only the
+/// loops for plane strain and 3D support them.
 void expect_plane_strain(PlaneState plane) {
   if (plane != PlaneState::strain)
     throw std::logic_error("laws of the caller's own are for plane strain and 3D");
@@ -184,7 +184,7 @@ void BasicOperator<Real>::take_tangent(const BasicOperator<double>& from) {
   data.has_tangent = true;
   data.tangent.assign(simd::tangent_floats * data.secant.size(), 0.0F);
   data.tangent_secant.assign(data.secant.size(), Real(0));
-  // Of a vector of points; the lanes of an instruction set differ between the precisions.
+  // Position in the tangent; the number of lanes differs between the precisions.
   const auto place = [](std::size_t slot, std::size_t lanes) {
     return simd::tangent_floats * (slot - slot % lanes) + slot % lanes;
   };

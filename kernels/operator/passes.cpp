@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Passes over the blocks: every thread its share, private sums where threads meet, always in the same order.
+// Passes over the blocks: a share per thread, private sums at shared nodes, always in the same order.
 #include "operator/passes.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ double across(const void* law, double xx, double yy, double xy) {
   return transverse_strain(*static_cast<const Law*>(law), xx, yy, xy);
 }
 
-/// Calls run(t) for every t < threads and then, all runs done, finish(t).
+/// Calls run(t) for every t < threads and then, after all of them, finish(t).
 template <class Run, class Finish>
 void in_parallel(int threads, Run&& run, Finish&& finish) {
   in_team(threads, run);
@@ -174,7 +174,7 @@ double BasicOperator<Real>::Data::pass(const Real* x, Real* y, int vectors, bool
     const std::size_t team = scratch.size(), size = end - begin;
     if (y != nullptr) add_interface(y, vectors, begin + size * t / team, begin + size * (t + 1) / team);
   };
-  // The same blocks in the same order with and without the pause, so the same bits.
+  // The blocks have the same order with and without the early step: the results have the same bits.
   const std::size_t interface_size = layout.interface_node.size();
   if (when_early) {
     in_parallel(
@@ -234,7 +234,7 @@ template <class Real>
 void BasicOperator<Real>::Data::apply_deviator(const Real* x, Real* y, const WhenEarly& when_early) {
   pass(x, y, 1, false, when_early,
        [&](const simd::Block<Real>& at, const Real* u, Real* f, std::size_t stride) {
-         kernels.apply(at, {u, f, 1, stride});  // gathering leaves means of zero
+         kernels.apply(at, {u, f, 1, stride});  // gather sets the averages to zero
          return 0.0;
        });
 }
@@ -243,7 +243,7 @@ template <class Real>
 void BasicOperator<Real>::Data::apply_pressure(const Real* x, const Real* p, Real* y,
                                                const WhenEarly& when_early) {
   mean.assign(p, p + corners.entries);
-  // The loops over displacements multiply a mean by its k0.
+  // The loops over displacements multiply averages by k0.
   for (std::size_t i = 0; x != nullptr && i < mean.size(); ++i) mean[i] /= static_cast<Real>(corner_bulk[i]);
   pass(x, y, 1, corners.entries > 0, when_early,
        [&](const simd::Block<Real>& at, const Real* u, Real* f, std::size_t stride) {
@@ -325,7 +325,7 @@ double BasicOperator<Real>::Data::nonlinear(const Real* u, Real* f, simd::Nonlin
   } else if (keep.keep_secant) {
     detach_tangent();
   }
-  // Without forces and energy the deviator alone counts.
+  // Without forces and energy only the deviator matters.
   const bool volume_counts = f != nullptr || keep.sum_energy || outside.energy != nullptr;
   const double of_volume = averages() && volume_counts ? find_means(u, 1) : 0.0;
   const bool averaged = corners.entries > 0 && volume_counts;

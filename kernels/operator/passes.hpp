@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an operator holds, and the passes of its threads over its blocks: every thread its share, private sums
-// where threads meet, always in the same order.
+// The operator's data, and the passes of its threads over the blocks: each thread does its share, with
+// private sums at nodes of several threads, always in the same order.
 #pragma once
 
 #include <cstddef>
@@ -21,22 +21,23 @@ namespace kacanov {
 template <class Real>
 struct BasicOperator<Real>::Data {
   struct Scratch {
-    Aligned<Real> u, f;      ///< records of the block at hand, for up to four input vectors
-    std::vector<Real> sums;  ///< private sums on the interface, three values a slot
+    Aligned<Real> u, f;      ///< records of the current block, for up to four input vectors
+    std::vector<Real> sums;  ///< private sums on the interface, three values per slot
   };
 
-  /// `like`: how an operator in double of the same mesh has divided it; null: afresh.
+  /// `like`: layout of a double-precision operator of the same mesh, whose partitioning is reused; null:
+  /// none.
   Data(const Body& body, const OperatorOptions& options, const Layout* like);
-  // The views of the laws point into it.
+  // Not copyable: the views of the laws point into it.
   Data(const Data&) = delete;
   Data& operator=(const Data&) = delete;
 
   std::size_t dim() const { return dimension(type); }
-  /// The bulk modulus that strains within the plane meet.
+  /// The bulk modulus for in-plane strains.
   double bulk_at(const Law& law, double g) const;
   simd::Block<Real> block(std::size_t b);
   void reserve_scratch(int count);
-  /// To be called before g changes: the tangent frozen last keeps the g it was frozen with.
+  /// Must be called before g changes: a frozen tangent keeps its g.
   void detach_tangent();
 
   /// y_v = B x_v for `count` vectors (1, 2 or 4), one after another in x and y. Returns Σ x_vᵀ y_v if
@@ -45,28 +46,31 @@ struct BasicOperator<Real>::Data {
   double apply_tangent(const Real* x, Real* y, int count, bool with_dot, const WhenEarly& when_early = {});
   /// Σ x_vᵀ y_v over the block.
   double dots(const simd::Block<Real>& at, const simd::Vectors<Real>& vectors);
-  /// Internal force at u into f, unless that is null; what to keep. Returns the energy if that is summed.
+  /// Internal force at u into f, unless that is null; `keep` selects the outputs. Returns the energy if it is
+  /// summed.
   double nonlinear(const Real* u, Real* f, simd::Nonlinear keep, const simd::Outside<Real>& outside = {});
-  /// Of the caller's elements × points: as the slots have them, 0 in idle lanes; null where there are none.
+  /// Copies caller values (elements × points) to slots, with 0 in idle lanes; null if `values` is empty.
   const Real* by_slot(std::span<const double> values, Aligned<Real>& slots) const;
 
-  /// Whether this or another process averages tr ε around corners. Decides what all processes take part in,
-  /// in place of the entries here.
+  /// Whether this or another process averages tr ε around corners. Collective operations depend on this, not
+  /// on the entries of this process.
   bool averages() const { return corners.entries > 0 || sum_corners; }
-  /// change = ∫ N tr ε(x_v) round the corners, this process's share, in the places of the entries.
+  /// change = ∫ N tr ε(x_v) around the corners, the contribution of this process, at the places of the
+  /// entries.
   void find_changes(const Real* x, int count);
   /// y = A x (theory: displacement-pressure).
   void apply_deviator(const Real* x, Real* y, const WhenEarly& when_early);
-  /// y = A x + Bᵀ p, or Bᵀ p where x is null (theory: displacement-pressure).
+  /// y = A x + Bᵀ p, or Bᵀ p if x is null (theory: displacement-pressure).
   void apply_pressure(const Real* x, const Real* p, Real* y, const WhenEarly& when_early);
-  /// Means of tr ε(x_v) round the corners, from here and from other processes, into `mean`. Returns the
-  /// energy that k0 stores in those of the first vector, this process's share.
+  /// Computes the averages of tr ε(x_v) around the corners over all processes into `mean`. Returns this
+  /// process's part of the energy that k0 stores in those of the first vector.
   double find_means(const Real* x, int count);
-  /// Works out `weight`, with what other processes have.
+  /// Computes `weight` from the volumes of all processes.
   void weigh_corners();
 
-  /// Calls loops(block, u, f, stride) between gathering x and scattering y, and adds up what it returns.
-  /// `averaged`: find_means() has found those of x. Where x is null the records of u hold means alone.
+  /// Calls loops(block, u, f, stride) between gathering x and scattering y, and sums its return values.
+  /// `averaged`: find_means() has computed the averages of x. If x is null, the records of u hold only
+  /// averages.
   template <class LoopsOnBlock>
   double pass(const Real* x, Real* y, int count, bool averaged, const WhenEarly& when_early,
               LoopsOnBlock&& loops);
@@ -93,13 +97,13 @@ struct BasicOperator<Real>::Data {
   Aligned<Real> secant;  ///< by slot
   bool has_tangent = false;
   Aligned<float> tangent;
-  Aligned<Real> tangent_secant;  ///< g of the tangent, where it is no longer `secant`
-  Aligned<Real> free_strain;     ///< by slot; empty: none
-  Aligned<Real> strain, outside_secant, outside_slope, outside_energy;  ///< empty until they are asked for
+  Aligned<Real> tangent_secant;  ///< g of the tangent if it differs from `secant`
+  Aligned<Real> free_strain;     ///< by slot; empty: zero
+  Aligned<Real> strain, outside_secant, outside_slope, outside_energy;  ///< empty until needed
   CornerLayout corners;
-  std::vector<double> corner_bulk, corner_volume;  ///< of the entries; volumes of this process
-  std::vector<Real> weight, change, mean;  ///< of the entries (or places): 1 over all volume; by vector
-  std::function<void(std::span<Real>)> sum_corners;  ///< over processes; null: there is one
+  std::vector<double> corner_bulk, corner_volume;  ///< per entry; volumes of this process
+  std::vector<Real> weight, change, mean;  ///< per entry (or place): 1 / total volume; the others per vector
+  std::function<void(std::span<Real>)> sum_corners;  ///< over processes; null with one process
   std::vector<Scratch> scratch;
   int scratch_vectors = 0;
   std::uint64_t applications = 0;

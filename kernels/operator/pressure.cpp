@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parts of an operator that averages tr ε round corners: deviator, volume changes, forces of pressures.
+// Parts of an operator that averages tr ε around corners: deviator, volume changes, forces of pressures.
 #include <algorithm>
 #include <stdexcept>
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A thread and its helpers, which wait for work for some microseconds awake and then asleep.
+// A team of helper threads that spin for some microseconds while they wait for work, and then sleep.
 #include "operator/team.hpp"
 
 #include <pthread.h>
@@ -12,8 +12,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A few times what it takes to wake a thread, and what is left of that where it does not help. On two free
-// cores a multigrid of 56,355 unknowns takes 0.09 s with 100 us, 0.10 s with 20, 0.14 s with none.
+// Maximum: a few times the wake-up time of a thread; minimum: the remainder where spinning does not help. On
+// two free cores a multigrid of 56,355 unknowns takes 0.09 s with 100 us, 0.10 s with 20, 0.14 s with none.
 constexpr std::chrono::nanoseconds most_patience = std::chrono::microseconds(100);
 constexpr std::chrono::nanoseconds least_patience = std::chrono::microseconds(5);
 
@@ -25,7 +25,8 @@ void pause_for_a_moment() noexcept {
 #endif
 }
 
-/// Signals are for the host's own threads; those of a thread's own faults are left, and the profiler's.
+/// Helpers block signals, which the host's threads should get, except those of the thread's own faults and
+/// SIGPROF.
 class NoSignals {
  public:
   NoSignals() {
@@ -54,8 +55,8 @@ void Patience::has_waited(std::chrono::nanoseconds time) noexcept {
   now_ = time <= most_ ? most_ : std::min(most_, std::max(now_ / 2, least_patience));
 }
 
-// All accesses that may wake or sleep are in one order: either who sets the number sees the sleeper, or the
-// sleeper sees the number.
+// All accesses that may wake or sleep are sequentially consistent: either the thread that sets the number
+// sees the sleeper, or the sleeper sees the number.
 
 void Awaited::wake() noexcept {
   if (sleepers_.load() == 0) return;
@@ -102,7 +103,7 @@ Team::Team(int shares) : patience_(shares), shares_(static_cast<std::size_t>(sha
   const NoSignals while_they_start;
   try {
     for (int number = 1; number < shares; ++number) helpers_.emplace_back([this, number] { help(number); });
-  } catch (...) {  // their shares are done by the others
+  } catch (...) {  // the other threads do their shares
   }
 }
 
@@ -123,8 +124,8 @@ void Team::run(int shares, Call call, void* job) noexcept {
   left_.wait(patience_, [](unsigned left) { return left == 0; });
 }
 
-/// Those of the round that nobody has begun with, from one on that is nobody else's first. In a round that is
-/// over there is none that was taken last in the round before it: who comes late takes nothing.
+/// Takes shares of the round that no thread has started, beginning with one that is no other thread's first.
+/// A late thread takes nothing: in a finished round every share is marked with this round.
 void Team::do_shares(int first, unsigned round) noexcept {
   const int count = most_shares();
   for (int i = 0; i < count; ++i) {

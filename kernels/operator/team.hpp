@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A thread and its helpers, which wait for work for some microseconds awake and then asleep.
+// A team of helper threads that spin for some microseconds while they wait for work, and then sleep.
 #pragma once
 
 #include <atomic>
@@ -11,11 +11,11 @@
 
 namespace kacanov {
 
-/// How long a thread waits awake before it sleeps. Other programs want the cores, too, and the one waited for
-/// may need this very core: who has waited for long is less patient the next time.
+/// How long a waiting thread spins before it sleeps. Spinning takes cores from other programs and perhaps
+/// from the awaited thread itself; therefore after a long wait the next spin is shorter.
 class Patience {
  public:
-  /// Of one in a team of `threads`; none where these are more than the cores.
+  /// For a thread in a team of `threads`; no spinning if there are more threads than cores.
   explicit Patience(int threads);
 
   std::chrono::nanoseconds now() const noexcept { return now_; }
@@ -30,10 +30,10 @@ class Awaited {
  public:
   unsigned value() const noexcept { return value_.load(std::memory_order_acquire); }
   void set(unsigned value) noexcept;
-  /// One less. Only zero wakes those who sleep.
+  /// Decrements the number. Wakes sleeping threads only at zero.
   void count_down() noexcept;
 
-  /// Waits until there(value), and returns that value.
+  /// Waits until there(value) is true, and returns that value.
   template <class There>
   unsigned wait(Patience& patience, const There& there);
 
@@ -48,13 +48,13 @@ class Awaited {
   std::condition_variable changed_;
 };
 
-/// The thread that makes it, and helpers. Every share of a job is done once, by whoever comes first: helpers
-/// that the system lets wait are not waited for, unless they are in the middle of a share.
+/// The calling thread and helpers. Each share of a job is executed once, by the first thread that takes it;
+/// run() does not wait for helpers that the system has not scheduled, unless they are executing a share.
 class Team {
  public:
   using Call = void (*)(void* job, int share);
 
-  /// With as many of `shares` − 1 helpers as the system grants. They take no signals.
+  /// Starts `shares` − 1 helpers, or as many as the system grants. Helpers block signals.
   explicit Team(int shares);
   ~Team();
   Team(const Team&) = delete;
@@ -62,24 +62,24 @@ class Team {
 
   int threads() const noexcept { return static_cast<int>(helpers_.size()) + 1; }
   int most_shares() const noexcept { return static_cast<int>(shares_.size()); }
-  /// call(job, t), which must not throw, for every t < shares ≤ most_shares(). By the thread that has made
-  /// the team, and not from within a share.
+  /// Executes call(job, t), which must not throw, for every t < shares ≤ most_shares(). Only on the thread
+  /// that created the team, and not from within a share.
   void run(int shares, Call call, void* job) noexcept;
 
  private:
-  /// The last round in which it was taken; padded, so that taking one costs the others nothing.
+  /// The last round in which the share was taken; padded against false sharing.
   struct alignas(64) Share {
     std::atomic<unsigned> round = 0;
   };
   void do_shares(int first, unsigned round) noexcept;
   void help(int number) noexcept;
 
-  Patience patience_;  ///< of the thread that has made it
+  Patience patience_;  ///< of the thread that created the team
   std::vector<Share> shares_;
   Call call_ = nullptr;
   void* job_ = nullptr;
   alignas(64) Awaited round_;
-  alignas(64) Awaited left_;  ///< shares of this round that are not done
+  alignas(64) Awaited left_;  ///< unfinished shares of this round
   std::atomic<bool> over_ = false;
   std::vector<std::thread> helpers_;
 };

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Threads as a guest in somebody's process: whose they are, whether they can be had, and what becomes of them
-// after fork().
+// Thread teams of a library inside a host process: own threads or OpenMP's, availability, and fork().
 #include "operator/threads.hpp"
 
 #include <omp.h>
@@ -25,7 +24,7 @@
 namespace kacanov {
 namespace {
 
-/// Whose threads do the work, as said where the last operator was made.
+/// Source of the threads, as chosen when the last operator was created.
 enum class Workers { not_asked, own, openmp };
 std::atomic<Workers> chosen_workers = Workers::not_asked;
 
@@ -44,7 +43,7 @@ Workers workers() {
 }
 
 std::atomic<bool> forked = false;
-thread_local bool within_share = false;  ///< whose own work is not divided further
+thread_local bool within_share = false;  ///< true while executing a share, whose work is not divided again
 thread_local bool thread_ends = false;
 
 void watch_forks() {
@@ -52,13 +51,13 @@ void watch_forks() {
   if (registered != 0) throw std::system_error(registered, std::generic_category(), "pthread_atfork");
 }
 
-/// The team of a thread of the host's, which ends with it.
+/// The team of a host thread, which ends with it.
 struct OwnTeam {
   std::unique_ptr<Team> team;
 
   ~OwnTeam() {
     thread_ends = true;
-    if (is_forked_child()) static_cast<void>(team.release());  // its helpers are the parent's
+    if (is_forked_child()) static_cast<void>(team.release());  // its helpers belong to the parent
   }
   Team& of(int shares) {
     if (!team || team->most_shares() < shares) make(shares);
@@ -81,8 +80,8 @@ OwnTeam& own_team() {
       "threads: only " + std::to_string(there) + " of " + std::to_string(threads) + " could be started");
 }
 
-/// How many of so many threads, the caller's included, the system grants: they are started, are there at the
-/// same time, and end.
+/// Number of threads, the caller's included, that the system grants at the same time, up to `threads`: starts
+/// them and lets them end.
 int granted_threads(int threads) {
   std::mutex mutex;
   std::condition_variable leave;
@@ -95,7 +94,7 @@ int granted_threads(int threads) {
         std::unique_lock lock(mutex);
         leave.wait(lock, [&] { return all_there; });
       });
-  } catch (const std::system_error&) {  // those that are there are the answer
+  } catch (const std::system_error&) {  // those that were started are the result
   }
   {
     const std::lock_guard lock(mutex);
@@ -105,8 +104,8 @@ int granted_threads(int threads) {
   return static_cast<int>(guests.size()) + 1;
 }
 
-/// For how many threads a thread of the host's has asked on OpenMP's behalf, and how many there were.
-/// OpenMP's runtime would end the process if it were not granted its threads.
+/// Number of OpenMP threads that a host thread has requested, and the number available. OpenMP's runtime
+/// would terminate the process if it could not get its threads.
 struct OpenMPTeam {
   int asked = 1, there = 1;
 
@@ -115,7 +114,7 @@ struct OpenMPTeam {
     return std::min(threads, there);
   }
   void ask(int threads) {
-    there = std::max(there, granted_threads(threads));  // the runtime keeps those it had
+    there = std::max(there, granted_threads(threads));  // the runtime keeps its threads
     asked = threads;
   }
 };
@@ -140,7 +139,7 @@ struct Job {
   }
 };
 
-/// Each share by the thread of its number, where the runtime grants that many.
+/// Thread t executes share t, if the runtime grants that many threads.
 void do_shares_with_openmp(int shares, int threads, Job& job) {
 #pragma omp parallel num_threads(threads)
   for (int t = omp_get_thread_num(); t < shares; t += omp_get_num_threads()) job.do_share(t);
@@ -153,12 +152,12 @@ void start_team(int threads) {
   if (is_alone(threads)) return;
   watch_forks();
   if (who == Workers::openmp) {
-    if (openmp_team.of(threads) < threads) openmp_team.ask(threads);  // the system may grant more by now
+    if (openmp_team.of(threads) < threads) openmp_team.ask(threads);  // the system may grant more now
     if (openmp_team.there < threads) throw_too_few(openmp_team.there, threads);
     return in_team(threads, [](int) {});
   }
   OwnTeam& own = own_team();
-  if (own.of(threads).threads() < threads) own.make(threads);  // the system may grant more by now
+  if (own.of(threads).threads() < threads) own.make(threads);  // the system may grant more now
   if (own.team->threads() < threads) throw_too_few(own.team->threads(), threads);
 }
 

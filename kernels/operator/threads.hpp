@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Threads as a guest in somebody's process: whose they are, whether they can be had, and what becomes of them
-// after fork().
+// Thread teams of a library inside a host process: own threads or OpenMP's, availability, and fork().
 #pragma once
 
 #include <cstddef>
@@ -9,23 +8,23 @@
 
 namespace kacanov {
 
-/// Starts the calling thread's team of `threads` threads, which the passes then find waiting: the library's
-/// own, or, where the environment variable KACANOV_THREADS says "openmp", OpenMP's, from now on in all of the
-/// process. Throws std::invalid_argument for other values than that and "own", std::system_error where the
-/// system does not grant so many threads.
+/// Starts the calling thread's team of `threads` threads, so that passes find it running. The threads are the
+/// library's own, or OpenMP's if the environment variable KACANOV_THREADS is "openmp"; the choice then holds
+/// for the whole process. Throws std::invalid_argument for values other than "openmp" and "own",
+/// std::system_error if the system does not grant this many threads.
 void start_team(int threads);
 
-/// Whether this process is a child made by fork() after an operator: the threads of its parent's teams are
-/// not there.
+/// Returns whether this process was created by fork() after an operator: the threads of its parent's teams do
+/// not exist in it.
 bool is_forked_child() noexcept;
 
-/// Calls run(t) once for every t < threads, on the calling thread and its team: one after another where there
-/// is none, as within such a call. Which thread calls which does not matter to the results. What one of them
-/// throws is thrown once all are done.
+/// Calls run(t) once for every t < threads, on the calling thread and its team: sequentially if there is no
+/// team, as within such a call. Results do not depend on the assignment of calls to threads. An exception is
+/// rethrown after all calls have finished.
 void in_team(int threads, const std::function<void(int)>& run);
 
-/// Calls work(begin, end) for the shares of the threads in 0 … n − 1; at once where these are not worth
-/// waking anybody.
+/// Calls work(begin, end) for the threads' shares of 0 … n − 1; directly if n is too small to wake other
+/// threads.
 template <class Work>
 void in_shares(int threads, std::size_t n, const Work& work) {
   constexpr std::size_t worth = 2048;
@@ -36,7 +35,7 @@ void in_shares(int threads, std::size_t n, const Work& work) {
   });
 }
 
-/// Calls work(i) for every i < n, in the shares of the threads.
+/// Calls work(i) for every i < n, divided into the shares of the threads.
 template <class Work>
 void each_in_shares(int threads, std::size_t n, const Work& work) {
   in_shares(threads, n, [&](std::size_t begin, std::size_t end) {
@@ -44,7 +43,7 @@ void each_in_shares(int threads, std::size_t n, const Work& work) {
   });
 }
 
-/// Σ part(begin, end) over the shares, in their order.
+/// Returns Σ part(begin, end) over the shares, in their order.
 template <class Part>
 double sum_shares(int threads, std::size_t n, const Part& part) {
   std::vector<double> sums(threads, 0.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Units of single elements; fans.cpp has those of several.
+// Units of single elements; fans.cpp makes those of several.
 #include "operator/units.hpp"
 
 #include <algorithm>
@@ -14,8 +14,8 @@
 namespace kacanov {
 namespace {
 
-/// Whether a hex8 is one: each edge is that of the first corner along its direction, to rounding
-/// of the element's own extent along each axis.
+/// Whether a hex8 is a parallelepiped: each edge equals the first corner's edge in its direction, up to
+/// rounding of the element's extent along each axis.
 bool parallelepiped(const MeshView& mesh, const std::int32_t* node) {
   for (std::size_t k = 0; k < 3; ++k) {
     std::array<double, 8> x;
@@ -34,8 +34,8 @@ bool parallelepiped(const MeshView& mesh, const std::int32_t* node) {
   return true;
 }
 
-/// Nodes of an element of a fan of tet10 whose r_i is the first of all rings, and of how many the next one is
-/// ahead; p, q and their middle are all elements'.
+/// Nodes of the first element in a tet10 fan, and the offset to those of the next element; p, q and their
+/// midpoint belong to all elements.
 constexpr std::uint32_t quadratic_fan_nodes[10] = {0, 1, 3, 7, 2, 5, 4, 8, 6, 9};
 constexpr std::uint32_t quadratic_fan_step = 4;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Volume changes summed to the corners of tetrahedra, or to patches of them.
+// Volume changes summed at the corners of tetrahedra, or over patches of corners.
 #include <kacanov/corner_means.hpp>
 
 #include <algorithm>
@@ -28,12 +28,12 @@ CornerMeans corner_means(const Body& body) {
   if (means.moduli.empty()) return means;
   const std::size_t elements = body.mesh.element_count(), width = means.moduli.size();
   const std::size_t nodes = nodes_per_element(body.mesh.type), corners = cell(body.mesh.type).corners;
-  std::vector<std::ptrdiff_t> of_law;  // which modulus, −1 where it does not average
+  std::vector<std::ptrdiff_t> of_law;  // index of the modulus, −1 for laws that do not average
   for (const Law& law : body.laws) {
     const auto at = std::lower_bound(means.moduli.begin(), means.moduli.end(), law.bulk);
     of_law.push_back(averages_at_corners(law, body.mesh.type) ? at - means.moduli.begin() : -1);
   }
-  // Calls visit(element × corners, node × moduli) for what averages.
+  // Calls visit(element × corners, node × moduli) for elements that average.
   const auto each = [&](const auto& visit) {
     for (std::size_t e = 0; e < elements; ++e) {
       const std::ptrdiff_t m = of_law[body.law_index(e)];
@@ -51,7 +51,7 @@ CornerMeans corner_means(const Body& body) {
     return std::pair(means.has_patches ? body.pressure_patch[node] : static_cast<std::int64_t>(node),
                      static_cast<std::int32_t>(k % width));
   };
-  // Nodes one after another often have a patch in common, and without patches none is like another.
+  // Consecutive nodes often share a patch; without patches all keys differ.
   for (std::size_t k = 0; k < entry.size(); ++k)
     if (entry[k] >= 0 && (keys.empty() || keys.back() != key(k))) keys.push_back(key(k));
   if (!std::is_sorted(keys.begin(), keys.end())) std::sort(keys.begin(), keys.end());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The reference's walk over elements and their points, with the strain that a law sees there.
+// Loops of the reference over elements and points, with the strain that enters the law there.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ using elements::Nodal;
 using elements::Point;
 using elements::points_of;
 
-/// What the law says at point q of element e, or who speaks in its place.
+/// Moduli at point q of element e, from the law or from Body::moduli.
 template <class E>
 Moduli moduli_at(const Body& body, std::size_t e, std::size_t q, double x) {
   if (body.moduli == nullptr) return body.law(e).moduli(x);
@@ -37,16 +37,16 @@ Gradient gradient_at(const Point<E>& point, const Nodal<E>& u) {
   return h;
 }
 
-/// Means of tr ε round the corners of elements, at some displacement.
+/// Averages of tr ε around the corners of elements, at some displacement.
 class CornerDilatation {
  public:
-  /// Of u, or, unless that is empty, what is `known` of it (Body::corner_dilatation, which has to outlive
-  /// it).
+  /// Averages of u, or `known` if that is not empty (Body::corner_dilatation, which must outlive this
+  /// object).
   CornerDilatation(const Body& body, std::span<const double> u, std::span<const double> known);
   CornerDilatation(const CornerDilatation&) = delete;
   CornerDilatation& operator=(const CornerDilatation&) = delete;
 
-  /// Replaces the trace of a strain at point q, where the element's law has it so.
+  /// Replaces the trace of the strain at point q if the element's law averages it.
   template <class E>
   void put(const Law& law, std::size_t e, std::size_t q, Strain& strain) const {
     if constexpr (E::corner_dilatation)
@@ -67,7 +67,7 @@ class CornerDilatation {
   std::span<const double> values_;
 };
 
-/// In plane stress without the strain across the plane: across() has it.
+/// The strain at a point; in plane stress without the transverse strain, which across() adds.
 template <class E>
 Strain strain_at(const Point<E>& point, const Nodal<E>& u) {
   const Gradient h = gradient_at<E>(point, u);
@@ -80,15 +80,16 @@ Strain strain_at(const Point<E>& point, const Nodal<E>& u) {
   return s;
 }
 
-/// With the strain z across the plane that leaves no stress there. Near ν = ½ the trace is a small difference
-/// that the bulk modulus makes large again: it is taken from what says that nothing acts across.
+/// Adds the transverse strain z at which the transverse stress vanishes. Near ν = ½ the trace is a small
+/// difference that the bulk modulus amplifies: it is computed from the condition of zero transverse stress
+/// instead.
 inline Strain relaxed(const Law& law, double g, const Strain& plane, double z) {
   Strain whole = stretched(plane, z);
   if (law.bulk > g) whole.trace = -2.0 * g / law.bulk * whole.dev[2];
   return whole;
 }
 
-/// As strain_at, whole in plane stress too, where it is that of the frozen g.
+/// strain_at() with the transverse strain of the frozen g in plane stress.
 inline Strain across(const Body& body, const Law& law, double g, const Strain& strain) {
   if (body.mesh.plane != PlaneState::stress) return strain;
   return relaxed(law, g, strain, 3.0 * transverse_ratio(law.bulk, g) * strain.dev[2]);
@@ -98,14 +99,14 @@ inline double free_strain_of(const Body& body, std::size_t e) {
   return body.free_strain.empty() ? 0.0 : body.free_strain[e];
 }
 
-/// The same strain within the plane in both directions: `strain` has none across.
+/// Adds the same strain in both in-plane directions, without transverse strain.
 inline Strain widened(Strain strain, double by) {
   strain.trace += 2.0 * by;
   strain.dev[0] += by / 3.0, strain.dev[1] += by / 3.0, strain.dev[2] -= 2.0 / 3.0 * by;
   return strain;
 }
 
-/// The same for the true law, or for what is said in its place, without the free strain.
+/// strain_at() minus the free strain, with the transverse strain of the true law or of Body::moduli.
 template <class E>
 Strain across(const Body& body, std::size_t e, std::size_t q, const Strain& total) {
   if (body.mesh.plane != PlaneState::stress) return total;
@@ -113,7 +114,7 @@ Strain across(const Body& body, std::size_t e, std::size_t q, const Strain& tota
   if (body.moduli != nullptr)
     return across(body, body.law(e), body.moduli->secant[e * E::points + q], strain);
   const Law& law = body.law(e);
-  const double third = -strain.dev[2];  // of the trace: there is no strain across yet
+  const double third = -strain.dev[2];  // of the trace: the transverse strain is still zero
   const double z = transverse_strain(law, strain.dev[0] + third, strain.dev[1] + third, strain.dev[3]);
   return relaxed(law, law.secant(stretched(strain, z).norm()), strain, z);
 }
@@ -131,7 +132,7 @@ Nodal<E> gather(const Body& body, std::size_t element, std::span<const double> v
   return local;
 }
 
-/// Calls visit(element, law, point index, point, strain of `u` as strain_at has it) for every point.
+/// Calls visit(element, law, point index, point, strain_at() of `u`) for every point.
 template <class E, class Visit>
 void for_each_plain_point(const Body& body, std::span<const double> u, Visit&& visit) {
   for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
@@ -143,7 +144,7 @@ void for_each_plain_point(const Body& body, std::span<const double> u, Visit&& v
   }
 }
 
-/// The same with means round the corners where laws have them; `known` of them as CornerDilatation has it.
+/// The same with averages around the corners where laws use them; `known` as in CornerDilatation.
 template <class E, class Visit>
 void for_each_point(const Body& body, std::span<const double> u, std::span<const double> known,
                     Visit&& visit) {

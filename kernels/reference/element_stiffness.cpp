@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Element matrices in closed form, for those who assemble: multigrid setups.
+// Element stiffness matrices in closed form, for multigrid setups.
 #include "reference/element_stiffness.hpp"
 
 #include <algorithm>

@@ -9,8 +9,8 @@
 namespace kacanov::reference {
 
 /// Nodal forces ∫ p div v of a pressure (overwrites f): one value per element, or 1 + corners of them, of
-/// which those at the corners count, linear in between (theory: expansion). Returns the energy that the
-/// elastic body stores if it cannot expand.
+/// which only those at the corners are used, with linear interpolation (theory: expansion). Returns the
+/// energy that the elastic body stores if it cannot expand.
 double expansion_force(const Body& body, std::span<const double> pressure, std::span<double> f);
 
 }  // namespace kacanov::reference

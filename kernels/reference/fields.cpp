@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What elements and their points have at a displacement: stress, strain, volume, place.
+// Stress, strain, volume and position of elements and their points at a displacement.
 #include <kacanov/reference.hpp>
 
 #include <algorithm>

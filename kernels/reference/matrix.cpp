@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Assembly on the node graph.
+// Matrix assembly on the node graph.
 #include "reference/matrix.hpp"
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 namespace kacanov::reference {
 namespace {
 
-/// Adds a matrix of one element, rows and columns of a node together.
+/// Adds the matrix of one element, in which the components of a node are contiguous.
 void add(const Body& body, const NodeGraph& graph, std::size_t element, std::span<const double> matrix,
          std::span<double> value) {
   const std::size_t dim = dimension(body.mesh.type), nodes = nodes_per_element(body.mesh.type);
@@ -43,7 +43,7 @@ NodeGraph node_graph(const MeshView& mesh) {
   NodeGraph graph{{0}, {}};
   for (std::size_t i = 0; i < of.size(); ++i) {
     auto& list = of[i];
-    if (list.empty()) list.push_back(static_cast<std::int32_t>(i));  // of no element
+    if (list.empty()) list.push_back(static_cast<std::int32_t>(i));  // belongs to no element
     graph.neighbour.insert(graph.neighbour.end(), list.begin(), list.end());
     graph.first.push_back(static_cast<std::int64_t>(graph.neighbour.size()));
     list = {};

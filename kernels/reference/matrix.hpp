@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The operator as a matrix in compressed rows, for those who want one: assembled plainly, element by element.
+// The operator as a matrix in compressed row storage, assembled element by element.
 #pragma once
 
 #include <cstdint>
@@ -10,22 +10,22 @@
 
 namespace kacanov::reference {
 
-/// Which nodes share an element with a node, itself included: those of node i from first[i] on, ascending.
+/// Nodes that share an element with a node, itself included: those of node i begin at first[i], ascending.
 struct NodeGraph {
   std::vector<std::int64_t> first;  ///< nodes + 1
   std::vector<std::int32_t> neighbour;
 };
 NodeGraph node_graph(const MeshView& mesh);
 
-/// Compressed rows of an unknown each, columns ascending. What is empty is left out.
+/// Compressed row storage, one row per unknown, columns ascending. Empty spans are skipped.
 struct MatrixRows {
   std::span<std::int64_t> first;   ///< unknowns + 1
   std::span<std::int32_t> column;  ///< entries(graph, dim)
-  std::span<double> value;         ///< likewise
+  std::span<double> value;         ///< entries(graph, dim)
 };
 std::int64_t entries(const NodeGraph& graph, int dim);
 
-/// Fills `rows` with B(g), or, where `u` is not empty, with the consistent tangent at u.
+/// Fills `rows` with B(g), or, if `u` is not empty, with the consistent tangent at u.
 void assemble(const Body& body, const NodeGraph& graph, std::span<const double> g, std::span<const double> u,
               const MatrixRows& rows);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The displacement–pressure form: linear pressure under linear or quadratic displacements.
+// The displacement–pressure form: linear pressure with linear or quadratic displacements.
 #include "reference/mixed.hpp"
 
 #include <algorithm>
@@ -20,7 +20,8 @@ struct Local {
   std::array<double, E::corners> p{};
 };
 
-/// f += forces of the stress 2g dev ε(x) + p I, q += tr ε(x) at the corners, both of one point.
+/// Adds the contribution of one point: f += forces of the stress 2g dev ε(x) + p I, q += tr ε(x) at the
+/// corners.
 template <class E>
 void add_point(const elements::Point<E>& point, double g, const Local<E>& x, std::span<const double> shape,
                Local<E>& y) {

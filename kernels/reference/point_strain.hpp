@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Strain and stress at one point, as the reference has them.
+// Strain and stress at one point, as the reference computes them.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace kacanov::reference {
 /// Symmetric 3×3 tensor, components (not engineering shears) xx yy zz xy yz zx.
 using Sym = std::array<double, 6>;
 
-/// A 3×3 view of it; plane strain uses the upper left 2×2.
+/// Component (i, j) of the tensor; plane strain uses the upper left 2×2 block.
 inline double component(const Sym& s, int i, int j) {
   constexpr int index[3][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}};
   return s[index[i][j]];
@@ -27,7 +27,7 @@ inline double inner(const Sym& a, const Sym& b) {
 
 struct Strain {
   double trace = 0.0;
-  double square = 0.0;  ///< mean square of the means round corners that `trace` is one of; else unused
+  double square = 0.0;  ///< weighted mean square of the corner averages that give `trace`; otherwise unused
   Sym dev{};
   double norm() const { return std::sqrt(inner(dev, dev)); }
 };
@@ -43,7 +43,7 @@ inline Sym stress(const Law& law, double g, const Strain& strain) {
 /// ∂u_i/∂x_k.
 using Gradient = std::array<std::array<double, 3>, 3>;
 
-/// The largest magnitude of an eigenvalue of the symmetric part, by Cardano's formulas.
+/// Largest magnitude of an eigenvalue of the symmetric part, by Cardano's formulas.
 inline double largest_principal(const Gradient& h) {
   const double mean = (h[0][0] + h[1][1] + h[2][2]) / 3.0;
   const double a = h[0][0] - mean, b = h[1][1] - mean, c = h[2][2] - mean;
@@ -61,14 +61,14 @@ inline double rotation_angle(const Gradient& h) {
   return 0.5 * std::hypot(h[2][1] - h[1][2], h[0][2] - h[2][0], h[1][0] - h[0][1]);
 }
 
-/// With the strain z across the plane besides.
+/// Adds the transverse strain z.
 inline Strain stretched(Strain strain, double z) {
   strain.trace += z;
   strain.dev[0] -= z / 3.0, strain.dev[1] -= z / 3.0, strain.dev[2] += 2.0 / 3.0 * z;
   return strain;
 }
 
-/// Tangent stress of the increment `strain` at the state `at`.
+/// Tangent stress of the increment `strain` at the strain `at`.
 inline Sym tangent_stress(const Law& law, const Moduli& moduli, const Strain& at, const Strain& strain) {
   Sym tau = stress(law, moduli.secant, strain);
   const double slope = moduli.derivative;

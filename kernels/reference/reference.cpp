@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The operator as one plain loop an element, the same for every element type.
+// The operator as one plain loop per element, the same for every element type.
 #include <kacanov/reference.hpp>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace kacanov::reference {
 namespace {
 
-/// The same of an increment as strain_at has it; in plane stress nothing acts across the plane.
+/// Tangent stress of the increment strain_at(), condensed in plane stress.
 Sym tangent_stress(const Body& body, const Law& law, const Moduli& moduli, const Strain& at,
                    const Strain& strain) {
   const Sym tau = tangent_stress(law, moduli, at, strain);
@@ -20,7 +20,7 @@ Sym tangent_stress(const Body& body, const Law& law, const Moduli& moduli, const
   return tangent_stress(law, moduli, at, stretched(strain, -tau[2] / of_unit[2]));
 }
 
-/// f += the forces of the stress τ at this point.
+/// f += nodal forces of the stress τ at this point.
 template <class E>
 void add_force(const Point<E>& point, const Sym& tau, Nodal<E>& f) {
   const double mean = (tau[0] + tau[1] + tau[2]) / 3.0;
@@ -40,12 +40,12 @@ void scatter_add(const Body& body, std::size_t element, const Nodal<E>& local, s
     for (int i = 0; i < E::dim; ++i) values[Point<E>::at(node[a], i)] += local[Point<E>::at(a, i)];
 }
 
-/// The bulk modulus that strains within the plane meet.
+/// Bulk modulus for in-plane strains.
 double bulk_at(const Body& body, const Law& law, double g) {
   return body.mesh.plane == PlaneState::stress ? plane_stress_bulk(law.bulk, g) : law.bulk;
 }
 
-/// y = Σ forces of stress_of(element, law, point index, point, strain of x); `known` as for_each_point.
+/// y = Σ forces of stress_of(element, law, point index, point, strain of x); `known` as in for_each_point.
 template <class E, class StressOf>
 void assemble(const Body& body, std::span<const double> x, std::span<const double> known, std::span<double> y,
               StressOf&& stress_of) {
@@ -60,7 +60,7 @@ void assemble(const Body& body, std::span<const double> x, std::span<const doubl
       });
 }
 
-/// At a point, of its strain as across() has it.
+/// Energy stored at a point, from the strain as across() returns it.
 template <class E>
 double stored(const Body& body, std::size_t e, std::size_t q, const Point<E>& point, const Strain& strain) {
   const Law& law = body.law(e);
@@ -71,7 +71,7 @@ double stored(const Body& body, std::size_t e, std::size_t q, const Point<E>& po
   return point.volume * (0.5 * law.bulk * square + 2.0 * shear);
 }
 
-/// Columns of an element matrix: the forces of unit displacements. stress_of(point index, point, strain).
+/// Columns of an element matrix: forces of unit displacements. stress_of(point index, point, strain).
 template <class E, class StressOf>
 void fill_matrix(const Body& body, std::size_t element, std::span<double> matrix, StressOf&& stress_of) {
   const Nodal<E> x = gather<E>(body, element, body.mesh.coordinates);

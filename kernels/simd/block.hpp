@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an element loop sees of a block: plain arrays, so that code built for one instruction set shares no
-// inline function with code built for another.
+// Input of the element loops for a block: plain arrays, so that code compiled for one instruction set shares
+// no inline function with code compiled for another.
 #pragma once
 
 #include <cstddef>
@@ -10,39 +10,40 @@
 
 namespace kacanov::simd {
 
-/// What a lane holds: an open or closed fan of tetrahedra, or one element, be it an affine image of the
-/// reference element (a tet10 with straight sides, a hex8 that is a parallelepiped) or not.
+/// The unit in a lane: an open or closed fan of tetrahedra, or one element, which may be an affine image of
+/// the reference element (a tet10 with straight edges, a hex8 that is a parallelepiped) or not.
 enum class Shape : std::uint8_t { open_fan, closed_fan, affine, general };
 
-/// The law of a group, as far as the loops evaluate it themselves.
+/// The law of a group: the part that the loops evaluate themselves, and callbacks for the rest.
 struct LawView {
   double bulk;           ///< k0
   double shear;          ///< g up to `elastic`
   double elastic;        ///< strain norm up to which g is constant
-  bool mean_dilatation;  ///< k0 sees the element's mean of tr ε, or those round its corners
-  const void* law;       ///< handed back to `evaluate`
-  /// g and dg/dx at the strain norm x, and G unless `energy` is null.
+  bool mean_dilatation;  ///< k0 acts on an average of tr ε, over the element or around its corners
+  const void* law;       ///< argument of `evaluate`
+  /// Computes g and dg/dx at the strain norm x, and G unless `energy` is null.
   void (*evaluate)(const void* law, double x, double* g, double* slope, double* energy);
-  /// The strain across the plane that leaves no stress there (theory: plane-stress).
+  /// Transverse strain at which the transverse stress vanishes (theory: plane-stress).
   double (*across)(const void* law, double xx, double yy, double xy);
 };
 
-/// Batches of one shape, length and law, one unit a lane.
+/// Batches of one shape, length and law, with one unit per lane.
 struct Group {
   ElementType type;
   Shape shape;
-  std::uint8_t length;  ///< tetrahedra of a fan; 1 for elements
+  std::uint8_t length;  ///< number of tetrahedra of a fan; 1 for elements
   std::uint16_t law;    ///< index of its LawView
   std::uint32_t batches;
-  std::uint32_t first_index;  ///< in Block::index
-  std::uint32_t first_slot;   ///< in Block::secant
+  std::uint32_t first_index;  ///< index into Block::index
+  std::uint32_t first_slot;   ///< index into Block::secant
 };
 
-/// What the tangent keeps of a point besides g.
+/// Number of floats per point that the tangent stores besides g.
 inline constexpr int tangent_floats = 5;
 
-/// What the nonlinear pass leaves to others, all as `secant` below: where `strain` is not null it leaves
-/// ‖dev ε‖ there and no stress; where `secant` is not null g, dg/dx and G are these and no law is asked.
+/// Data that the nonlinear pass exchanges with user-defined laws, laid out like Block::secant. If `strain` is
+/// not null, the pass writes ‖dev ε‖ there and computes no stress; if `secant` is not null, it takes g, dg/dx
+/// and G from these arrays and evaluates no law.
 template <class Real>
 struct Outside {
   Real* strain = nullptr;
@@ -50,18 +51,18 @@ struct Outside {
   const Real* slope = nullptr;   ///< null: 0
   const Real* energy = nullptr;  ///< null: 0
 
-  /// The same from a later place in the arrays on.
+  /// The same arrays, shifted by an offset.
   Outside from(std::size_t offset) const {
     const auto later = [offset](auto* array) { return array == nullptr ? nullptr : array + offset; };
     return {later(strain), later(secant), later(slope), later(energy)};
   }
 };
 
-/// Local nodes are records of four values, the last one unused, but for corners round which tr ε is averaged:
-/// there the mean goes in, and the volume change comes out (theory: displacement-pressure); of axisymmetric
-/// coordinates the third is the radius. `index` holds, batch by batch, node by node, lane by lane, the offset
-/// of a record (four times the local node). `secant` holds, batch by batch, point by point, lane by lane, g;
-/// `tangent` as many vectors (xx yy xy yz zx, see material.hpp) as tangent_floats for each.
+/// Local nodes are records of four values. The last one is unused except at corners around which tr ε is
+/// averaged: input is the average, output the volume change (theory: displacement-pressure). The third
+/// coordinate is the radius in axisymmetric bodies. `index`: offset of each record (four times the local
+/// node) by batch, node and lane. `secant`: g by batch, point and lane. `tangent`: likewise, tangent_floats
+/// vectors per point (xx yy xy yz zx, see material.hpp).
 template <class Real>
 struct Block {
   const Group* groups;
@@ -71,30 +72,30 @@ struct Block {
   const Real* coordinates;
   Real* secant;
   float* tangent;
-  const std::int32_t* nodes;   ///< the caller's number of every local node; `nodes_ahead` more may be read
+  const std::int32_t* nodes;   ///< the caller's number of each local node; readable for `nodes_ahead` more
   const std::int32_t* shared;  ///< slot in the thread's private sums, for nodes from `again` on
-  std::uint32_t first;         ///< local nodes [0, first) are met for the first time by this thread
-  std::uint32_t again;         ///< [first, again) were met before, [again, count) are other threads' too
+  std::uint32_t first;         ///< local nodes [0, first): used for the first time by this thread
+  std::uint32_t again;         ///< [first, again): used before; [again, count): shared with other threads
   std::uint32_t count;
-  std::uint32_t placed[3];  ///< how many of these three, from the beginning of each, have coordinates read
-  std::uint32_t padding;    ///< records behind `count` that lanes without a unit work on
+  std::uint32_t placed[3];  ///< nodes at the start of each of the three ranges whose coordinates are read
+  std::uint32_t padding;    ///< records behind `count` for lanes without a unit
   PlaneState plane = PlaneState::strain;
-  const Real* free_strain = nullptr;  ///< as `secant`, in plane stress; null: 0
+  const Real* free_strain = nullptr;  ///< like `secant`, in plane stress; null: 0
   Outside<Real> outside = {};
 };
 
-/// How far the copies between vectors and records fetch ahead.
+/// Prefetch distance, in nodes, of the copies between vectors and records.
 inline constexpr int nodes_ahead = 64;
 
-/// Tetrahedra of the longest fan: the loops keep the geometry of a batch of them.
+/// Maximum number of tetrahedra of a fan: the loops store the geometry of a batch of fans.
 inline constexpr int longest_fan = 16;
 
-/// What the nonlinear pass leaves behind, besides forces.
+/// Outputs of the nonlinear pass besides forces.
 struct Nonlinear {
   bool keep_secant = false;
   bool keep_tangent = false;
   bool sum_energy = false;
-  /// Added to, lane by lane: one number that lanes were added to in turn made each wait for the one before.
+  /// Sums per lane: with a single sum each lane's addition waited for the previous one.
   alignas(64) double energies[16] = {};
 
   double energy() const {
@@ -104,8 +105,8 @@ struct Nonlinear {
   }
 };
 
-/// Input vectors on the records of a block and, for each, what is added to: `count` of them (1, 2 or 4),
-/// `stride` values apart in u and in f.
+/// `count` (1, 2 or 4) input vectors u on the records of a block and their output vectors f, `stride` values
+/// apart in u and in f.
 template <class Real>
 struct Vectors {
   const Real* u;
@@ -114,19 +115,19 @@ struct Vectors {
   std::size_t stride = 0;
 };
 
-/// The loops of one instruction set. `u` and `f` are records of local nodes; `dim` 2 or 3.
+/// The loops of one instruction set. `u` and `f` are records of local nodes; `dim` is 2 or 3.
 template <class Real>
 struct Kernels {
   int lanes;
   /// u = x at the block's nodes, f = 0.
   void (*gather)(const Block<Real>&, int dim, const Real* x, Real* u, Real* f);
-  /// y = f or y += f at the block's nodes, private sums += f for shared ones.
+  /// y = f or y += f at the block's nodes; for shared nodes, private sums += f.
   void (*scatter)(const Block<Real>&, int dim, const Real* f, Real* y, Real* sums);
   /// Σ uᵀ f over the block's local nodes.
   double (*dot)(const Block<Real>&, const Real* u, const Real* f);
-  /// The last places of f += ∫ N tr ε(u) at corners round which tr ε is averaged.
+  /// Last entry of f += ∫ N tr ε(u) at corners around which tr ε is averaged.
   void (*corner_changes)(const Block<Real>&, const Vectors<Real>&);
-  /// f += ∫ p ∇N of the p in the last places of u at corners round which tr ε is averaged: the transpose.
+  /// The transpose: f += ∫ p ∇N with p in the last entries of u at these corners.
   void (*corner_forces)(const Block<Real>&, const Vectors<Real>&);
   /// f += B u.
   void (*apply)(const Block<Real>&, const Vectors<Real>&);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any element, one a lane, by the isoparametric map at its quadrature points, with B-bar where it has that.
+// Loop for any element type, one element per lane, with the isoparametric map at its points and B-bar if it
+// has it.
 #pragma once
 
 #include "cells/tet10.hpp"
@@ -8,7 +9,7 @@
 
 namespace {
 
-/// ∂N/∂ξ at a point, nodes × dim, in the precision of the lanes: a constant of the element.
+/// ∂N/∂ξ at the points, nodes × dim each, in the precision of the lanes; constant for the element type.
 template <class E, class Real>
 struct ReferenceGradients {
   Real at[E::points][E::nodes][E::dim];
@@ -25,7 +26,7 @@ constexpr ReferenceGradients<E, Real> reference_gradients() {
   return table;
 }
 
-/// N at a point, points × nodes.
+/// N at the points, points × nodes.
 template <class E, class Real>
 struct ReferenceValues {
   Real at[E::points][E::nodes];
@@ -41,7 +42,8 @@ constexpr ReferenceValues<E, Real> reference_values() {
   return table;
 }
 
-/// Of the corners at a point, points × corners: their barycentric coordinates, where elements average there.
+/// Corner weights at the points, points × corners: barycentric coordinates, for elements that average at
+/// corners.
 template <class E, class Real>
 struct CornerShares {
   Real at[E::points][E::corners];
@@ -58,7 +60,7 @@ constexpr CornerShares<E, Real> corner_shares() {
   return table;
 }
 
-/// ∫ N tr ε over the elements of every corner, of elements that average there.
+/// ∫ N tr ε around each corner, for elements that average at corners.
 template <class L, class Real, class E>
 inline void element_changes(const Block<Real>& block, const Group& group, Vectors<Real> vectors) {
   using V = typename L::V;
@@ -102,7 +104,7 @@ inline void element_loop(const Block<Real>& block, const Group& group, const Mat
   static constexpr auto gradients = reference_gradients<E, Real>();
   [[maybe_unused]] static constexpr auto values = reference_values<E, Real>();
   [[maybe_unused]] static constexpr auto shares = corner_shares<E, Real>();
-  bool mean = false;  // B-bar, or round corners
+  bool mean = false;  // B-bar, or averages at corners
   constexpr bool has_mean = E::mean_dilatation || E::corner_dilatation;
   if constexpr (has_mean) mean = block.laws[group.law].mean_dilatation;
   const auto choose = [&]() -> decltype(auto) {
@@ -118,7 +120,7 @@ inline void element_loop(const Block<Real>& block, const Group& group, const Mat
     fetch_ahead(at, E::nodes * width);
     material.fetch_ahead(point, E::points * width);
     V c[E::points][3][3], det[E::points], w[E::points];  // c: det ∇ξ_k
-    // The full circle's length, and det/r: the hoop strain is u_x/r.
+    // Circumference of the full circle, and det/r: the hoop strain is u_x/r.
     [[maybe_unused]] V circle[E::points], hoop[E::points];
     {
       V x[E::nodes][3];
@@ -159,7 +161,7 @@ inline void element_loop(const Block<Real>& block, const Group& group, const Mat
           h[8] = along * hoop[q];
         }
       };
-      [[maybe_unused]] V pressure{};  // weight times that of the mean dilatation
+      [[maybe_unused]] V pressure{};  // weight times the pressure of the mean dilatation
       if constexpr (E::mean_dilatation)
         if (mean) {
           V change{}, volume{};
@@ -174,7 +176,7 @@ inline void element_loop(const Block<Real>& block, const Group& group, const Mat
           pressure = Real(E::weight) * material.bulk() * change / volume;
           material.add_energy(Real(0.5) * pressure * change);
         }
-      [[maybe_unused]] V at_corner[E::corners] = {};  // weight times the pressures of the means there
+      [[maybe_unused]] V at_corner[E::corners] = {};  // weight times the pressures of the corner averages
       if constexpr (E::corner_dilatation)
         for (int a = 0; mean && a < E::corners; ++a)
           at_corner[a] = Real(E::weight) * material.bulk() * L::load_last(vectors.u + offset, at + a * width);

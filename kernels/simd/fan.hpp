@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fans of linear tetrahedra: p, q and a ring r_0 … r_n, tetrahedra (p, q, r_i, r_{i+1}), a fan a lane.
+// Fans of linear tetrahedra, one per lane: p, q and a ring r_0 … r_n, tetrahedra (p, q, r_i, r_{i+1}).
 #pragma once
 
 #include "simd/material.hpp"
@@ -18,28 +18,28 @@ KACANOV_INLINE inline V inner(const V* a, const V* b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// Adds each lane's value to the last place of its record, one after another: lanes may share it.
+/// Adds each lane's value to the last entry of its record, lane by lane because lanes may share a record.
 template <class L, class Real>
 KACANOV_INLINE inline void add_last(Real* base, const std::uint16_t* at, typename L::V value) {
   for (int l = 0; l < L::width; ++l) base[at[l] + 3] += value[l];
 }
 
-/// e_i × e_{i+1}, the point's weight over the determinant, and that.
+/// e_i × e_{i+1}, the point's weight divided by the determinant, and the determinant.
 template <class V>
 struct Wedge {
   V c[3], w, det;
 };
 
-/// The geometry of a batch of fans, with edges e_i = r_i − p and e_q = q − p: e_q × e_i for every ring node,
-/// a wedge for every tetrahedron.
+/// Geometry of a batch of fans with edges e_i = r_i − p and e_q = q − p: spoke e_q × e_i for each ring node,
+/// one wedge for each tetrahedron.
 template <class V>
 struct FanGeometry {
   V spoke[longest_fan + 1][3];
   Wedge<V> wedge[longest_fan];
 };
 
-/// Where the ring begins among the nodes of a fan and how far apart its corners are, what a point weighs, and
-/// by what the loop wants all products of edges multiplied.
+/// Index of the first ring node in a fan and stride of the ring nodes; weight of a point; factor by which the
+/// loop scales all products of edges.
 struct LinearFan {
   static constexpr int ring = 2, step = 1;
   static constexpr double weight = 1.0 / 6.0, scale = 1.0;
@@ -76,7 +76,7 @@ KACANOV_INLINE inline void measure_fan(const Real* coordinates, const std::uint1
   if constexpr (closed) measure(e, first, geometry.wedge[length - 1]);
 }
 
-/// The material itself, or without the bulk modulus where that acts on means.
+/// The material, without the bulk modulus if that acts on averages.
 template <bool averaged, class Material>
 KACANOV_INLINE inline decltype(auto) choose_bulk(const Material& material) {
   if constexpr (averaged)
@@ -85,16 +85,16 @@ KACANOV_INLINE inline decltype(auto) choose_bulk(const Material& material) {
     return (material);
 }
 
-/// Where a batch of fans stands: its indices, its first point, and how many tetrahedra each fan has.
+/// Position of a batch of fans: its indices, its first point, and the number of tetrahedra per fan.
 struct FanPlace {
   const std::uint16_t* at;
   std::size_t point;
   int length;
 };
 
-/// Forces of one input vector. p takes minus the sum of all others. A ring node's force is stored one step
-/// late, when it has long been ready. `averaged`: tr ε is the mean of those round the corners, in the last
-/// places of their records.
+/// Forces of one input vector. p gets minus the sum of all others. A ring node's force is stored one step
+/// late, to hide its latency. `averaged`: tr ε is the mean of the corner averages, the last entries of the
+/// corners' records.
 template <class L, class Real, bool closed, bool averaged, class Material, class V = typename L::V>
 KACANOV_INLINE inline void load_fan(const Material& material, const FanGeometry<V>& geometry,
                                     const FanPlace& fan, const Real* u, Real* f) {
@@ -107,7 +107,7 @@ KACANOV_INLINE inline void load_fan(const Material& material, const FanGeometry<
   L::load3(u, at + L::width, dq);
   L::load3(u, ring, d);
   for (int k = 0; k < 3; ++k) dq[k] -= p[k], d[k] -= p[k], first[k] = d[k];
-  // k0/24 of the means: of p and q together, of r_i and r_0.
+  // k0/24 times the averages: sum of p and q, r_i, and r_0.
   [[maybe_unused]] const V bulk = Real(LinearFan::weight / 4.0) * material.bulk();
   [[maybe_unused]] V of_edge{}, of_ring{}, of_first{};
   if constexpr (averaged) {
@@ -164,10 +164,10 @@ KACANOV_INLINE inline void load_fan(const Material& material, const FanGeometry<
   L::add3(f, at, sum);
 }
 
-/// Geometry first, kept in the first-level cache, then every input vector: the divisions no longer hold up
-/// the stresses behind them (a processor looks ahead some 60 vector operations, less than one tetrahedron),
-/// which took the loop from 149 to 113 cycles for 8 tetrahedra (Zen 4; 81 multiply-adds are the floor). A
-/// `fixed` length above zero unrolls the ring, worth 15 %.
+/// Computes the geometry first, in the first-level cache, then every input vector, so that stresses do not
+/// wait for divisions (the processor looks ahead about 60 vector operations, less than one tetrahedron): 113
+/// instead of 149 cycles per 8 tetrahedra (Zen 4; minimum: 81 multiply-adds). A `fixed` length > 0 unrolls
+/// the ring: 15 % faster.
 template <class L, class Real, bool closed, bool averaged, int fixed, class Material>
 inline void fan_loop(const Block<Real>& block, const Group& group, const Material& material,
                      Vectors<Real> vectors) {
@@ -189,8 +189,8 @@ inline void fan_loop(const Block<Real>& block, const Group& group, const Materia
   }
 }
 
-/// The lengths that make up most of a mesh have loops of their own; several input vectors and the true law,
-/// which are bound by other things, do with one for all.
+/// The most frequent lengths have their own loops; several input vectors and the true law, which have other
+/// bottlenecks, share one loop for all lengths.
 template <class L, class Real, bool closed, bool averaged, class Material>
 inline void fan_loop_of_length(const Block<Real>& block, const Group& group, const Material& material,
                                Vectors<Real> vectors) {
@@ -210,7 +210,7 @@ inline void fan_loop_of_length(const Block<Real>& block, const Group& group, con
   run.template operator()<0>();
 }
 
-/// Calls work<closed>(), as the fans of the group are.
+/// Calls work<closed>(), depending on the shape of the group's fans.
 template <class Work>
 inline void closed_or_open(const Group& group, const Work& work) {
   if (group.shape == kacanov::simd::Shape::open_fan)
@@ -237,8 +237,8 @@ inline void over_batches(const Block<Real>& block, const Group& group, Vectors<R
   }
 }
 
-/// ∫ N tr ε over the elements of every corner: a quarter of each element's change of volume. That is of
-/// u_q · wedge − u_i · spoke_{i+1} + u_{i+1} · spoke_i, displacements from p's.
+/// ∫ N tr ε around each corner: a quarter of each element's volume change. With displacements relative to p,
+/// that is u_q · wedge − u_i · spoke_{i+1} + u_{i+1} · spoke_i.
 template <class L, class Real, bool closed>
 inline void linear_fan_changes(const Block<Real>& block, const Group& group, Vectors<Real> vectors) {
   using V = typename L::V;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows of the displacement–pressure matrix of a grid times vectors in single precision, what belongs to a row
-// in four lanes.
+// Products of rows of the displacement–pressure matrix of a grid with single-precision vectors; a row takes
+// four lanes.
 #pragma once
 
 #include <cstddef>
@@ -18,19 +18,19 @@ inline FourFloats load_four(const float* from) {
 }
 inline void store_four(float* to, const FourFloats& v) { std::memcpy(to, &v, sizeof v); }
 
-/// M x for a matrix of three columns, four values each.
+/// M x for a matrix M of three columns with four values each.
 inline FourFloats times_three(const float* columns, const float* x) {
   return load_four(columns) * x[0] + load_four(columns + 4) * x[1] + load_four(columns + 8) * x[2];
 }
 
-/// The entries of a row: columns, and what they have in each array of values.
+/// The entries of a row: their columns, and their range in the arrays of values.
 struct GridRow {
   const std::int32_t* column;
   std::size_t begin, end;
 };
 
-/// Σ_j M_j x_j, of the first three of x's four values a row: `columns` has, an entry, the three columns of M,
-/// four values each.
+/// Σ_j M_j x_j for the first three of x's four values per node. `columns`: per entry the three columns of M
+/// with four values each.
 inline FourFloats times_blocks(const GridRow& row, const float* columns, const float* x) {
   FourFloats first{}, second{}, third{};
   for (std::size_t k = row.begin; k < row.end; ++k) {
@@ -41,7 +41,7 @@ inline FourFloats times_blocks(const GridRow& row, const float* columns, const f
   return first + second + third;
 }
 
-/// Σ_j g_j p_j of vectors with four values an entry; p: `stride` values a row, the first of which counts.
+/// Σ_j g_j p_j for vectors with four values per entry; p has `stride` values per node and the first is used.
 template <std::size_t stride = 1>
 FourFloats times_vectors(const GridRow& row, const float* vectors, const float* p) {
   FourFloats even{}, odd{};
@@ -67,7 +67,7 @@ inline float dot_vectors(const GridRow& row, const float* vectors, const float* 
   return (even[0] + even[1]) + (even[2] + even[3]);
 }
 
-/// Σ_j c_j p_j, as four sums.
+/// Σ_j c_j p_j, with four partial sums.
 inline float times_numbers(const GridRow& row, const float* numbers, const float* p) {
   FourFloats sum{};
   std::size_t k = row.begin;

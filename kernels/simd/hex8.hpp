@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trilinear hexahedra, one a lane: derivatives at the 2×2×2 points by sums and differences.
+// Trilinear hexahedra, one per lane: derivatives at the 2×2×2 points by sums and differences.
 #pragma once
 
 #include <array>
@@ -26,11 +26,11 @@ constexpr std::array<std::uint8_t, 8> hex_corner = [] {
   return corner;
 }();
 
-// A trilinear function is a sum of eight modes: 1, ξ, η, ξη, ζ, ξζ, ηζ, ξηζ, by the bits of their index. Sums
-// of nodal values times ±1 give them (times eight); derivatives know nothing of the first.
+// A trilinear function has eight modes: 1, ξ, η, ξη, ζ, ξζ, ηζ, ξηζ, in the order of the bits of their index.
+// Sums of nodal values times ±1 compute them (times eight); the first one does not affect derivatives.
 
-/// From values at the eight places to modes and, since the map is symmetric but for the sign of bits, back.
-/// Additions only.
+/// Transforms values at the eight places to modes. The inverse is the same except for the sign of bits. Only
+/// additions.
 template <class V>
 KACANOV_INLINE inline void hex_modes(V* v) {
 #pragma GCC unroll 3
@@ -44,7 +44,7 @@ KACANOV_INLINE inline void hex_modes(V* v) {
       }
 }
 
-/// The mode `none`, first or last, is taken to be zero.
+/// Transforms modes to values. The mode `none`, first or last, counts as zero.
 template <int none, class V>
 KACANOV_INLINE inline void hex_values(V* m) {
 #pragma GCC unroll 3
@@ -59,7 +59,7 @@ KACANOV_INLINE inline void hex_values(V* m) {
       }
 }
 
-/// Modes of a nodal field, components last; those of several bits shrink as the Gauss points move in.
+/// Modes of a nodal field, components last; modes of several bits are scaled to the Gauss points.
 template <class L, class Real, class V = typename L::V>
 KACANOV_INLINE inline void hex_load(const Real* values, const std::uint16_t* at, V (&m)[3][8]) {
   at = read_anew(at);
@@ -77,7 +77,7 @@ KACANOV_INLINE inline void hex_load(const Real* values, const std::uint16_t* at,
   }
 }
 
-/// The transpose: nodal forces from those of the modes.
+/// The transpose: nodal forces from modal forces.
 template <class L, class Real, class V = typename L::V>
 KACANOV_INLINE inline void hex_add(V (&m)[3][8], const std::uint16_t* at, Real* f) {
   at = read_anew(at);
@@ -94,8 +94,8 @@ KACANOV_INLINE inline void hex_add(V (&m)[3][8], const std::uint16_t* at, Real* 
   }
 }
 
-/// Eight times the derivatives along ξ, η, ζ at the points. That along direction k does not depend on ξ_k:
-/// four values, by the upper sides in the other two directions.
+/// Eight times the derivatives along ξ, η, ζ at the points. The derivative along direction k does not depend
+/// on ξ_k: four values, indexed by the upper sides in the other two directions.
 template <class V>
 struct HexSlopes {
   V along[3][4][3];
@@ -110,7 +110,8 @@ struct HexSlopes {
   }
 };
 
-/// Modes of the derivative along a direction: itself, and with the other two directions' bits.
+/// Modes of u in its derivative along a direction: the direction's bit alone and with the bits of the other
+/// two.
 constexpr int hex_slope_modes[3][4] = {{1, 3, 5, 7}, {2, 3, 6, 7}, {4, 5, 6, 7}};
 
 template <class V>
@@ -153,7 +154,7 @@ KACANOV_INLINE inline void hex_gather(const HexSlopes<V>& t, V (&m)[3][8]) {
   }
 }
 
-/// det ∇ξ_k, det and weight/det at a point, of the slopes of the coordinates.
+/// det ∇ξ_k, det and weight/det at a point, from the derivatives of the coordinates.
 template <class V>
 struct HexPoint {
   V c[3][3], det, w;
@@ -169,7 +170,7 @@ KACANOV_INLINE inline void hex_measure(const HexSlopes<V>& j, int place, HexPoin
   point.w = Real(1.0 / 512.0) / point.det;
 }
 
-/// det ε with doubled shears of the slopes at a point.
+/// det ε at a point from its derivatives, with doubled shears.
 template <class V>
 KACANOV_INLINE inline Sym<V> hex_strain(const V* a, const V* b, const V* d, const V (&c)[3][3]) {
   const auto shear = [&](int i, int k) __attribute__((always_inline)) {
@@ -182,7 +183,7 @@ KACANOV_INLINE inline Sym<V> hex_strain(const V* a, const V* b, const V* d, cons
   return {stretch(0), stretch(1), stretch(2), shear(0, 1), shear(1, 2), shear(2, 0)};
 }
 
-/// Slopes are eight times too large, so determinants are 512 times: the weight takes that back.
+/// Derivatives are scaled by 8, hence determinants by 512; the weight compensates for this.
 template <class L, class Real, class Material>
 inline void hex_loop(const Block<Real>& block, const Group& group, const Material& material,
                      Vectors<Real> vectors) {
@@ -209,7 +210,7 @@ inline void hex_loop(const Block<Real>& block, const Group& group, const Materia
         hex_load<L>(vectors.u + offset, at, m);
         hex_slopes(m, slopes);
       }
-      V pressure{};  // weight times that of the mean dilatation
+      V pressure{};  // weight times the pressure of the mean dilatation
       if (mean) {
         V change{}, volume{};
 #pragma GCC unroll 8
@@ -246,8 +247,8 @@ inline void hex_loop(const Block<Real>& block, const Group& group, const Materia
   }
 }
 
-/// From the modes of deviatoric strains (xx yy xy yz zx, shears doubled) to those of half the stresses (of
-/// the stresses, for shears). For g alone each component goes its own way, in registers.
+/// Transforms modes of deviatoric strains (xx yy xy yz zx, shears doubled) to modes of half the stresses
+/// (full stresses for shears). With g alone each component is independent and stays in registers.
 template <class L, class Real, class V>
 KACANOV_INLINE inline void affine_stress(const SecantMaterial<L, Real>& material, std::size_t point,
                                          V (&e)[5][8]) {
@@ -282,21 +283,21 @@ KACANOV_INLINE inline void affine_stress(const TangentMaterial<L, Real>& materia
   for (int n = 0; n < 5; ++n) hex_modes(e[n]);
 }
 
-/// Parallelepipeds: det ∇ξ_k is the same at all points, so strains are taken mode by mode before they are
-/// spread to the points, and stresses are gathered into modes before they become forces. What k0 adds is
-/// diagonal in the modes. Some 350 multiplications and 390 additions a batch.
+/// Parallelepipeds: det ∇ξ_k is the same at all points; strains are computed per mode before they are
+/// evaluated at the points, and stresses are reduced to modes before they become forces. The k0 term is
+/// diagonal in the modes. About 350 multiplications and 390 additions per batch.
 template <class L, class Real, class Material>
 inline void affine_hex_loop(const Block<Real>& block, const Group& group, const Material& material,
                             Vectors<Real> vectors) {
   using V = typename L::V;
   const std::uint16_t* at = block.index + group.first_index;
   const V bulk = Real(8) * material.bulk();
-  const V higher = block.laws[group.law].mean_dilatation ? V{} : bulk;  // the mean is the first mode
+  const V higher = block.laws[group.law].mean_dilatation ? V{} : bulk;  // the first mode is the mean
   std::size_t point = 0;
   for (std::uint32_t batch = 0; batch < group.batches; ++batch) {
     fetch_ahead(at, 8 * L::width);
     material.fetch_ahead(point, 8 * L::width);
-    V c[3][3], w;  // c: of the edges, and thus four times too small; det is so eight times
+    V c[3][3], w;  // c: from the edges, hence four times too small, and det eight times too small
     {
       V o[3], x[3][3];
       const std::uint16_t* from = read_anew(at);
@@ -315,7 +316,7 @@ inline void affine_hex_loop(const Block<Real>& block, const Group& group, const 
       hex_load<L>(vectors.u + offset, at, m);
 #pragma GCC unroll 8
       for (int s = 0; s < 7; ++s) {
-        // ∂u/∂ξ_k has a mode for each of u that has bit k, without that bit.
+        // ∂u/∂ξ_k contains each mode of u that has bit k, with that bit cleared.
         const auto sum = [&](int i, int k) __attribute__((always_inline)) {
           V value{};
 #pragma GCC unroll 3

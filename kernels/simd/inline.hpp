@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Everything inside an element loop has to be part of it: a call would spill some thirty vector registers.
-// Left to itself the compiler made calls, at twice the time.
+// Forced inlining in element loops: a call would spill about thirty vector registers. Without it the compiler
+// emitted calls, and the loops took twice the time.
 #pragma once
 
-// Under the address sanitizer, whose checks multiply with every copy, compiling that takes minutes: there
-// calls do.
+// Under the address sanitizer, whose checks multiply with every inlined copy, compilation would take minutes:
+// use calls there.
 #ifdef __SANITIZE_ADDRESS__
 #define KACANOV_INLINE
 #else
@@ -15,7 +15,7 @@
 
 namespace {
 
-/// Keeps the compiler from holding indices it has read before: it would spill them.
+/// Makes the compiler reload indices that it has already read, because keeping them would cause spills.
 KACANOV_INLINE inline const std::uint16_t* read_anew(const std::uint16_t* at) {
   __asm__("" : "+r"(at));
   return at;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Asks the processor what it has and finds the loops built for it.
+// Detects the processor's instruction sets and selects the loops built for one.
 #include "simd/instruction_set.hpp"
 
 #include <cstdlib>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which instruction set the loops use, decided at run time.
+// Choice of the loops' instruction set at run time.
 #pragma once
 
 #include <string_view>
@@ -10,8 +10,9 @@ namespace kacanov::simd {
 
 enum class InstructionSet { plain, avx2, avx512 };
 
-/// `wanted`, or the environment variable KACANOV_INSTRUCTION_SET if that is empty, or the best there is.
-/// Throws std::invalid_argument for names that do not exist or that this processor or build does not have.
+/// Returns `wanted`, or, if that is empty, the environment variable KACANOV_INSTRUCTION_SET, or the best
+/// available one. Throws std::invalid_argument for unknown names and those that this processor or build does
+/// not support.
 InstructionSet choose_instruction_set(std::string_view wanted);
 
 std::string_view name(InstructionSet set) noexcept;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The tables of loops there are; instruction_set.hpp chooses between them.
+// The tables of loops, one per instruction set; instruction_set.hpp chooses between them.
 #pragma once
 
 #include "simd/block.hpp"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The table of loops of one instruction set, built from its `Lanes`. Included once by each of its sources.
+// The table of loops of one instruction set, built on its `Lanes`. Each instruction set's source includes it
+// once.
 #pragma once
 
 #include "simd/element.hpp"
@@ -37,9 +38,9 @@ struct Loops {
       p[0] = record[0], p[1] = record[1];
   }
 
-  /// Everything the block takes from memory is asked for here and in scatter, in bursts. Fetching it little
-  /// by little beside the arithmetic instead slowed that down by more than a burst takes: a line under way
-  /// costs the loads that miss the first-level cache about 3 ns (Zen 5).
+  /// gather and scatter fetch all memory of a block in bursts. Prefetching it gradually during the arithmetic
+  /// cost more than the burst: a pending cache line costs loads that miss the first-level cache about 3 ns
+  /// (Zen 5).
   template <int dim>
   static void gather_in(const Block<Real>& block, const Real* x, Real* u, Real* f) {
     const std::int32_t* nodes = block.nodes;
@@ -91,7 +92,7 @@ struct Loops {
   }
 
   static double dot(const Block<Real>& block, const Real* u, const Real* f) {
-    double sum[4] = {};  // one for each place of a record; the last place of f is zero
+    double sum[4] = {};  // one per entry of a record; the last entry of f is zero
     for (std::size_t i = 0; i < block.count; ++i)
       for (std::size_t k = 0; k < 3; ++k) sum[k] += double(u[4 * i + k]) * double(f[4 * i + k]);
     return sum[0] + sum[1] + sum[2];
@@ -140,7 +141,7 @@ struct Loops {
     }
   }
 
-  /// The same of meshes in 2D that are not of plane strain.
+  /// sweep() for plane stress and axisymmetric meshes.
   template <bool round, class MakeMaterial>
   static void sweep_plane(const Block<Real>& block, const Vectors<Real>& vectors, MakeMaterial&& make) {
     for (std::size_t i = 0; i < block.group_count; ++i) {
@@ -188,7 +189,7 @@ struct Loops {
             [&](const Group& group) { return NonlinearMaterial<L, Real, false>(block, group, *out); });
   }
 
-  /// Calls linear(group), quadratic(group) or curved(group) for those that average round their corners.
+  /// Calls linear(group), quadratic(group) or curved(group) for the groups that average around corners.
   template <class Linear, class Quadratic, class Curved>
   static void over_averaged(const Block<Real>& block, const Linear& linear, const Quadratic& quadratic,
                             const Curved& curved) {

@@ -48,7 +48,7 @@ KACANOV_INLINE inline void subtract_product(const Sym<V>& s, const V* n, V* v) {
   v[2] = v[2] - s.zx * n[0] - s.yz * n[1] - s.zz * n[2];
 }
 
-/// v, turned round in the lanes where `sign` has its sign bit set.
+/// v with its sign flipped in the lanes where the sign bit of `sign` is set.
 template <class V>
 KACANOV_INLINE inline V turned(V v, V sign) {
   typedef decltype(v < v) Bits;
@@ -56,22 +56,21 @@ KACANOV_INLINE inline V turned(V v, V sign) {
   return (V)((Bits)v ^ ((Bits)sign & (Bits{} + std::numeric_limits<Lane>::min())));
 }
 
-/// Fetches what a stream will bring some 2 KiB on: processors do so themselves, but stop at every page.
+/// Prefetches a stream about 2 KiB ahead: hardware prefetchers stop at page boundaries.
 template <class T>
 KACANOV_INLINE inline void fetch_ahead(const T* stream, int count) {
   constexpr int line = 64 / sizeof(T);
   for (int i = 0; i < count; i += line) __builtin_prefetch(stream + 32 * line + i);
 }
 
-// A material turns the strain at one point of each lane, times det and with doubled shears, into weight·τ:
+// A material converts the strain at one point per lane, scaled by det and with doubled shears, to weight·τ;
 // forces are that times det ∇N. `weight` is the point's on the reference element, `w` = weight/det. `point`
 // counts vectors of points from the start of the group.
 //
-// The tangent's rank-one term 2 g' x d dᵀ, d = dev ε/x, is kept as the vector √|2 g' x| d, whose trace is
-// zero: five floats. Which way it points makes no difference to the product, so its first component says by
-// its sign bit that g' is positive.
+// The tangent's rank-one term 2 g' x d dᵀ, d = dev ε/x, is stored as the traceless vector √|2 g' x| d: five
+// floats. Its sign does not affect the product; the sign bit of its first component is set if g' > 0.
 
-/// That strain from h[3 i + j] = det ∂u_i/∂x_j.
+/// Strain (scaled by det) from h[3 i + j] = det ∂u_i/∂x_j.
 template <class V>
 KACANOV_INLINE inline Sym<V> strain_of(const V* h) {
   return {h[0], h[4], h[8], h[1] + h[3], h[5] + h[7], h[2] + h[6]};
@@ -84,13 +83,13 @@ KACANOV_INLINE inline Sym<V> frozen_stress(const Sym<V>& e, V g, V bulk, V w) {
   return {gg2 * e.xx + mean, gg2 * e.yy + mean, gg2 * e.zz + mean, gg * e.xy, gg * e.yz, gg * e.zx};
 }
 
-/// plane_stress_bulk() of the lanes.
+/// plane_stress_bulk() in each lane.
 template <class L, class Real, class V = typename L::V>
 KACANOV_INLINE inline V bulk_in_plane(V bulk, V g) {
   return g * Real(4.0 / 3.0) * (Real(6) * bulk - g) / (Real(3) * bulk + Real(4) * g);
 }
 
-// With `in_plane` no stress acts across the plane (theory: plane-stress), and strains have no zz.
+// With `in_plane` the transverse stress is zero (theory: plane-stress), and strains have no zz.
 
 template <class L, class Real, bool in_plane = false>
 struct SecantMaterial {
@@ -114,7 +113,7 @@ struct SecantMaterial {
     else
       return k0;
   }
-  /// Energies of the mean dilatation count in the true law only.
+  /// Only the true law counts energies of the mean dilatation.
   void add_energy(V) const {}
 
   KACANOV_INLINE void fetch_ahead(std::size_t point, int count) const {
@@ -156,7 +155,7 @@ struct TangentMaterial {
     const float* t = tangent + tangent_floats * point * L::width;
     const V xx = L::widen(t), yy = L::widen(t + L::width), xy = L::widen(t + 2 * L::width),
             yz = L::widen(t + 3 * L::width), zx = L::widen(t + 4 * L::width);
-    const V zz = xx + yy;  // the negative of it, the trace is zero
+    const V zz = xx + yy;  // −zz, from the zero trace
     const V along = turned(w, xx) * (xx * e.xx + yy * e.yy - zz * e.zz + xy * e.xy + yz * e.yz + zx * e.zx);
     s.xx -= along * xx, s.yy -= along * yy, s.zz += along * zz;
     s.xy -= along * xy, s.yz -= along * yz, s.zx -= along * zx;
@@ -164,8 +163,8 @@ struct TangentMaterial {
   }
 };
 
-/// With `by_others` the law is asked elsewhere (Block::outside): built apart, as the mere question whether it
-/// is costs the others a fifth of a hex8's residual.
+/// With `by_others` the moduli come from outside (Block::outside). Compiled separately, because a run-time
+/// check would cost the other laws a fifth of a hex8's residual.
 template <class L, class Real, bool by_others, bool in_plane = false>
 struct NonlinearMaterial {
   static constexpr bool frozen = false;
@@ -199,7 +198,7 @@ struct NonlinearMaterial {
   }
 
   KACANOV_INLINE void fetch_ahead(std::size_t, int) const {}
-  /// `weight` is a number, or one a lane in axisymmetric bodies.
+  /// `weight` is a number, or one value per lane in axisymmetric bodies.
   template <class Weight>
   KACANOV_INLINE Sym<V> stress(const Sym<V>& total, V det, V w, Weight weight, std::size_t point) const {
     Sym<V> e = total;
@@ -248,7 +247,7 @@ struct NonlinearMaterial {
     }
   }
 
-  /// The strain across the plane that leaves no stress there.
+  /// Transverse strain at which the transverse stress vanishes.
   V across(V xx, V yy, V xy) const {
     const auto ratio = Real((3.0 * k0 - 2.0 * law.shear) / (3.0 * k0 + 4.0 * law.shear));
     const V plane = xx + yy, mean = plane * ((Real(1) - ratio) * Real(1.0 / 3.0));
@@ -261,7 +260,7 @@ struct NonlinearMaterial {
     return zz;
   }
 
-  /// As keep(), of what plane stress leaves of the term within the plane: condensed() of the lanes.
+  /// keep() for the in-plane part of the term in plane stress: condensed() in each lane.
   struct At {
     V g, slope;
   };
@@ -280,7 +279,7 @@ struct NonlinearMaterial {
     }
   }
 
-  /// √|2 g' x| dev ε/x, turned so that its first component has the sign bit of g' < 0; zero where g' is.
+  /// √|2 g' x| dev ε/x, with the sign bit of its first component set if g' > 0; zero if g' = 0.
   static void keep(const Sym<V>& dev, V x, V slope, float* t) {
     const V values[tangent_floats] = {dev.xx, dev.yy, dev.xy, dev.yz, dev.zx};
     typedef decltype(x < x) Bits;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The products of strains and stresses of rigid motions, one vector for all motions of an aggregate. Included
-// once for each instruction set, with its flags.
+// Products of strains and stresses of rigid motions, with one vector for all motions of an aggregate.
+// Included once per instruction set, with its compiler flags.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t most_nodes = 10;
 
-/// GCC's vectors: whatever the target has, it takes as many registers as they need.
+/// GCC vectors: the compiler splits them into registers of the target.
 template <int M>
 struct Motions {
   using Vector [[gnu::vector_size(motion_lanes<M> * sizeof(double))]] = double;
@@ -22,8 +22,8 @@ template <int M>
 void add_products(const MotionPoint<M>& point, const MotionPair* pairs, std::size_t count) {
   using Vector = typename Motions<M>::Vector;
   constexpr std::size_t dim = MotionPoint<M>::dim;
-  // Strains xx, yy, zz, √2 xy, √2 yz, √2 zx, so that the product of two is that of the tensors (zz is zero in
-  // 2D unless bodies are axisymmetric), and the dilatation that k0 acts on.
+  // Strains xx, yy, zz, √2 xy, √2 yz, √2 zx, so that dot products equal tensor products (zz is zero in 2D
+  // unless the body is axisymmetric), and the dilatation that k0 acts on.
   Vector strain[most_nodes][7], stress[most_nodes][7];
   for (std::size_t k = 0; k < point.groups; ++k)
     for (std::size_t c = 0; c < 7; ++c) strain[k][c] = Vector{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Finds the products of rigid motions built for an instruction set.
+// Selects the products of rigid motions built for an instruction set.
 #include "simd/motion_products.hpp"
 
 #include "simd/instruction_set.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Small symmetric blocks of nodes times vectors, for smoothers.
+// Products of small symmetric node blocks with vectors, for smoothers.
 #pragma once
 
 #include <cstddef>
@@ -7,8 +7,8 @@
 
 namespace kacanov::simd {
 
-/// z = D⁻¹ r at `nodes` nodes of `dim` (2 or 3) components, D⁻¹ as packed upper triangles by rows; one more
-/// entry of z than they have is written to.
+/// z = D⁻¹ r at `nodes` nodes with `dim` (2 or 3) components, D⁻¹ as packed upper triangles by rows.
+/// Overwrites one entry of z behind the last node.
 inline void scale_by_blocks(int dim, const float* inverse, const float* r, std::size_t nodes, float* z) {
   if (dim == 2) {
     for (std::size_t n = 0; n < nodes; ++n, inverse += 3, r += 2, z += 2) {
@@ -17,8 +17,8 @@ inline void scale_by_blocks(int dim, const float* inverse, const float* r, std::
     }
     return;
   }
-  // The columns of a block, each in four lanes the last of which is idle, times the entries of r: three
-  // quarters of the scalar loop's time.
+  // The columns of a block, in four lanes of which the last is idle, times the entries of r: three quarters
+  // of the scalar loop's time.
   using Four = float __attribute__((vector_size(16)));
   const auto load = [](const float* from) {
     Four v;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Forces of pressures at the corners of tetrahedra: linear and quadratic fans, curved ones.
+// Forces of pressures at the corners of tetrahedra: linear and quadratic fans, curved elements.
 #pragma once
 
 #include "cells/tet10.hpp"
@@ -9,9 +9,9 @@
 
 namespace {
 
-/// The transpose of add_changes: ∫ p ∇N with p linear between its values in the last places of the corners'
-/// records. With c_a = det ∇λ_a and P the sum of p, (4 p_a − P) c_a at vertex a and (4 p_b + 4 P) c_a +
-/// (4 p_a + 4 P) c_b in the middle of a and b, all over 120.
+/// The transpose of add_changes: ∫ p ∇N with p linear between the last entries of the corners' records. With
+/// c_a = det ∇λ_a and P the sum of p: (4 p_a − P) c_a at vertex a and (4 p_b + 4 P) c_a + (4 p_a + 4 P) c_b
+/// at the midpoint of a and b, all divided by 120.
 template <class L, class Real, class V = typename L::V>
 KACANOV_INLINE inline void add_pressures(const FanGeometry<V>& geometry, const FanPlace& fan, const Real* u,
                                          Real* f) {
@@ -65,7 +65,7 @@ inline void quadratic_fan_pressures(const Block<Real>& block, const Group& group
       });
 }
 
-/// The transpose of linear_fan_changes: the mean of four pressures, once for each tetrahedron.
+/// The transpose of linear_fan_changes: the average of four pressures, once per tetrahedron.
 template <class L, class Real, bool closed>
 inline void linear_fan_pressures(const Block<Real>& block, const Group& group, Vectors<Real> vectors) {
   using V = typename L::V;
@@ -105,7 +105,7 @@ inline void linear_fan_pressures(const Block<Real>& block, const Group& group, V
       });
 }
 
-/// The transpose of element_changes, of any element that averages there.
+/// The transpose of element_changes, for any element that averages at corners.
 template <class L, class Real, class E>
 inline void element_pressures(const Block<Real>& block, const Group& group, Vectors<Real> vectors) {
   using V = typename L::V;

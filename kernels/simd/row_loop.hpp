@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The loops over elements in a row. Included once for each instruction set, with its flags.
+// Loops over consecutive elements. Included once per instruction set, with its compiler flags.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ constexpr std::size_t vector_bytes = 32;
 #else
 constexpr std::size_t vector_bytes = 16;
 #endif
-/// Left to lanes that are numbers, compilers made no vectors of loops as long as these.
+/// Explicit vectors: compilers do not vectorise scalar loops of this length.
 using Pack [[gnu::vector_size(vector_bytes)]] = double;
 constexpr std::size_t pack_lanes = vector_bytes / sizeof(double);
 
@@ -38,7 +38,7 @@ void take_roots(RowLanes& squares) {
   for (double& square : squares) square = std::sqrt(square);
 }
 
-/// Of a strain xx yy zz xy yz zx. The norm is left squared.
+/// Splits a strain xx yy zz xy yz zx into deviator, trace and squared norm.
 KACANOV_INLINE inline void split(const Pack (&strain)[6], std::size_t first, RowStrain& out) {
   const Pack trace = strain[0] + strain[1] + strain[2], third = trace * (1.0 / 3.0);
   Pack square{};
@@ -53,7 +53,7 @@ KACANOV_INLINE inline void split(const Pack (&strain)[6], std::size_t first, Row
   store(square, first, out.norm);
 }
 
-/// Ends of the edges of a hexahedron in the order of its sides, four along each reference coordinate.
+/// End nodes of the edges of a hexahedron, four along each reference coordinate.
 constexpr std::size_t edge_ends[12][2] = {{0, 1}, {3, 2}, {4, 5}, {7, 6}, {0, 3}, {1, 2},
                                           {4, 7}, {5, 6}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
 
@@ -71,7 +71,7 @@ void take_sides(const RowLanes (&of)[nodes][3], RowSides<nodes>& out) {
           out[side][i][lane] = of[side][i][lane] - of[0][i][lane];
 }
 
-/// Slopes of a component along the reference coordinates.
+/// Derivatives of a component along the reference coordinates.
 template <std::size_t nodes>
 KACANOV_INLINE inline void add_slopes(const double* slopes, const RowSides<nodes>& of, std::size_t i,
                                       std::size_t first, Pack (&sum)[3]) {
@@ -88,7 +88,7 @@ KACANOV_INLINE inline void add_slopes(const double* slopes, const RowSides<nodes
   }
 }
 
-/// j = ∂x/∂ξ; the adjugate is det j times the inverse. Returns det j.
+/// Computes j = ∂x/∂ξ and the adjugate, det j times the inverse. Returns det j.
 template <std::size_t nodes>
 KACANOV_INLINE inline Pack map_at(const double* slopes, const RowSides<nodes>& x, std::size_t first,
                                   Pack (&j)[3][3], Pack (&adjugate)[3][3]) {
@@ -158,8 +158,8 @@ void strain_of_row(const double* slopes, const RowSides<nodes>& x, const RowSide
   take_roots(out.strain.norm);
 }
 
-/// cos(φ/3) of z = sin²(φ/8), 0 ≤ φ ≤ π: the series of F(a, −a; ½; sin² y) = cos(2 a y) (Abramowitz and
-/// Stegun, 15.1.17) with a = 4/3. z is at most 0.147, so that these terms leave no more than rounding.
+/// cos(φ/3) as a function of z = sin²(φ/8), 0 ≤ φ ≤ π: the series of F(a, −a; ½; sin² y) = cos(2 a y)
+/// (Abramowitz and Stegun, 15.1.17) with a = 4/3. z ≤ 0.147, so that the truncation error is below rounding.
 constexpr auto third_of_angle = [] {
   constexpr double a = 4.0 / 3.0;
   std::array<double, 19> term{1.0};
@@ -170,7 +170,7 @@ constexpr auto third_of_angle = [] {
   return term;
 }();
 
-/// cos(φ/3) from half of 1 + cos φ.
+/// Computes cos(φ/3) from (1 + cos φ)/2.
 void take_thirds(RowLanes& angle) {
   take_roots(angle);  // cos(φ/2)
   for (double& lane : angle) lane = 0.5 * (1.0 + lane);
@@ -183,7 +183,7 @@ void take_thirds(RowLanes& angle) {
   }
 }
 
-/// Principal strains as reference::largest_principal(), without its calls of cosines.
+/// Principal strains as reference::largest_principal() computes them, without calls of cosine functions.
 void raise_to_largest(const RowPoint& to, RowLanes& strain, RowLanes& rotation) {
   RowLanes mean, half_length, upper, lower, turn;
   for (std::size_t first = 0; first < row_lanes; first += pack_lanes) {

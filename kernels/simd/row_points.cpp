@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Finds the loops over elements in a row built for an instruction set.
+// Selects the loops over consecutive elements built for an instruction set.
 #include "simd/row_points.hpp"
 
 #include "simd/instruction_set.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Strains at the points of elements in a row, side by side, and of polynomials round their corners; built for
-// several instruction sets.
+// Strains at the points of consecutive elements, one element per lane, and of polynomials around their
+// corners; compiled for several instruction sets.
 #pragma once
 
 #include <array>
@@ -9,70 +9,69 @@
 
 namespace kacanov::simd {
 
-/// Elements that are worked on side by side.
+/// Number of elements processed together.
 inline constexpr std::size_t row_lanes = 16;
 using RowLanes = std::array<double, row_lanes>;
 
-/// Strains of a point of each element.
+/// Strains at one point of each element.
 struct RowStrain {
   RowLanes dev[6];  ///< xx yy zz xy yz zx
   RowLanes trace, norm;
 };
 
-/// What elements in a row have at a point.
+/// Displacement gradient, determinant and strain at one point of each element.
 struct RowPoint {
   RowLanes h[3][3];  ///< ∂u_i/∂x_k
   RowLanes det;      ///< of ∂x/∂ξ
   RowStrain strain;
 };
 
-/// ∂x/∂ξ at a point of each element: its determinant, and how thin it makes them (see ElementMap).
+/// ∂x/∂ξ at one point of each element: its determinant and thinness (see ElementMap).
 struct RowMap {
   RowLanes det, thinness;
 };
 
-/// A polynomial of six values round a corner of each element: `terms` monomials 1, x_i and x_i x_j of what
-/// lies between a place and the centre, times the scale.
+/// A polynomial of six values around a corner of each element: `terms` monomials 1, x_i and x_i x_j of the
+/// distance from the centre times the scale.
 template <std::size_t terms>
 struct RowPolynomial {
   RowLanes centre[3], scale;
   RowLanes coefficient[terms][6];
 };
 
-/// The difference of two strains of each element, with their secant moduli.
+/// Two strains of each element with their secant moduli, for their difference.
 struct RowDifference {
   const RowStrain &a, &b;
   const RowLanes &ga, &gb, &bulk;
 };
 
-/// Of elements in space with so many nodes: 4 and 8 are linear, 10 quadratic tetrahedra.
+/// For 3D elements with this many nodes: 4 and 8 are linear, 10 quadratic tetrahedra.
 template <std::size_t nodes>
 struct RowLoops {
   static constexpr std::size_t corners = nodes == 8 ? 8 : 4, terms = nodes == 10 ? 10 : 4;
   using Nodal = RowLanes[nodes][3];
-  /// What slopes are taken of: of hexahedra, whose shape functions have opposite slopes at both ends of an
-  /// edge, the differences along the four edges of each direction; of tetrahedra the nodal values themselves.
+  /// Input of derivatives. Hexahedra, whose shape functions have opposite slopes at both ends of an edge:
+  /// differences along the four edges of each direction. Tetrahedra: the nodal values.
   static constexpr std::size_t sides = nodes == 8 ? 12 : nodes;
   using Sides = RowLanes[sides][3];
   using Polynomials = RowPolynomial<terms>[corners];
 
   void (*take_sides)(const Nodal& of, Sides& out);
-  /// With `slopes` of the shape functions along reference coordinates, nodes × 3.
+  /// `slopes`: derivatives of the shape functions along reference coordinates, nodes × 3.
   void (*strain)(const double* slopes, const Sides& x, const Sides& u, RowPoint& out);
-  /// Raises both to what the points have: the largest magnitude of a principal strain, and the angle of
-  /// rotation.
+  /// Raises both to the maximum with this point: largest magnitude of a principal strain, and rotation angle.
   void (*raise)(const RowPoint& to, RowLanes& strain, RowLanes& rotation);
   void (*map)(const double* slopes, const Sides& x, RowMap& out);
-  /// With `shape` functions' values.
+  /// `shape`: values of the shape functions.
   void (*position)(const double* shape, const Nodal& x, RowLanes (&out)[3]);
-  /// The polynomials of the corners, each with its `share`.
+  /// Sums the corners' polynomials, each times its `share`.
   void (*smooth)(const double* share, const Polynomials& of_corner, const RowLanes (&position)[3],
                  RowStrain& out);
-  /// sum += weight · ½ (τ(a) − τ(b)) : (a − b), which is taken for 0 where it is negative.
+  /// sum += weight · ½ max(0, (τ(a) − τ(b)) : (a − b)).
   void (*add_work)(const RowDifference& of, const RowLanes& weight, RowLanes& sum);
 };
 
-/// The loops for the instruction set of that name, as choose_instruction_set() takes it. nodes: 4, 8, 10.
+/// Returns the loops for the named instruction set, as for choose_instruction_set(). nodes: 4, 8, 10.
 template <std::size_t nodes>
 const RowLoops<nodes>& row_loops(std::string_view instruction_set);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The loops over elements in a row built for AVX2 with FMA.
+// The loops over consecutive elements built for AVX2 with FMA.
 #include "simd/row_loop.hpp"
 
 namespace kacanov::simd {

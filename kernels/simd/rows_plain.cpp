@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The loops over elements in a row built for the compiler's baseline.
+// The loops over consecutive elements built for the compiler's baseline.
 #include "simd/row_loop.hpp"
 
 namespace kacanov::simd {

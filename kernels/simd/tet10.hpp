@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Quadratic tetrahedra with straight sides in fans round an edge pq, a fan a lane: their strain is linear,
+// Fans of quadratic tetrahedra with straight edges around an edge pq, one per lane: the strain is linear,
 // given by its vertex values.
 #pragma once
 
@@ -8,20 +8,20 @@
 
 namespace {
 
-/// Nodes of a fan: p, q, their middle; r_0, its middles to p and q; then for every tetrahedron
-/// (p, q, r_i, r_{i+1}) the middle of its ring edge, r_{i+1}, and the middles of that to p and q. All
-/// products of edges by 4 `rest`: a displacement counts that much at the point next to its vertex.
+/// Nodes of a fan: p, q, their midpoint; r_0, its midpoints to p and q; then for each tetrahedron (p, q, r_i,
+/// r_{i+1}) the midpoint of its ring edge, r_{i+1}, and the midpoints from that to p and q. Products of edges
+/// are scaled by 4 `rest`, the factor of a displacement at the point next to its vertex.
 struct QuadraticFan {
   static constexpr double far = kacanov::elements::Tet10::far;
   static constexpr double rest = kacanov::elements::Tet10::near - far;
   static constexpr int ring = 3, step = 4;
   static constexpr double weight = kacanov::elements::Tet10::weight, scale = 4.0 * rest;
-  static constexpr int before = 6;  ///< nodes before those of the first tetrahedron
+  static constexpr int before = 6;  ///< number of nodes before those of the first tetrahedron
   static constexpr int nodes(int length, bool = false) { return before + step * length; }
 };
 
-/// A value at the nodes of a tetrahedron: of the edge or, where i = j, the vertex. Vertices are p, q, r_i and
-/// r_{i+1}.
+/// A value at the nodes of a tetrahedron: at[i][j] is the midpoint of an edge or, for i = j, a vertex.
+/// Vertices are p, q, r_i and r_{i+1}.
 template <class V>
 struct TetNodes {
   V* at[4][4];
@@ -33,8 +33,8 @@ struct TetNodes {
            {ahead[1], ahead[2], ring, ahead[0]}} {}
 };
 
-/// det ∇λ of the vertices, but that of p and r_i turned round. That of p is there once it is asked for: kept
-/// from the start it cost the strains 2 to 5 % by spills.
+/// det ∇λ of the vertices, with opposite sign for p and r_i. find_p() computes that of p when it is needed:
+/// storing it from the start made the strains 2 to 5 % slower by spills.
 template <class V>
 struct TetSlopes {
   V p[3];
@@ -54,7 +54,7 @@ struct TetSlopes {
   }
 };
 
-/// e += the strain of r ⊗ n.
+/// e += strain of r ⊗ n.
 template <class V>
 KACANOV_INLINE inline void add_strain(const V* r, const V* n, Sym<V>& e) {
   e.xx += r[0] * n[0], e.yy += r[1] * n[1], e.zz += r[2] * n[2];
@@ -68,7 +68,7 @@ KACANOV_INLINE inline void subtract_strain(const V* r, const V* n, Sym<V>& e) {
   e.xy -= r[1] * n[0], e.yz -= r[2] * n[1], e.zx -= r[0] * n[2];
 }
 
-/// e += the strain whose displacements are `value` of the vertices.
+/// e += strain of the displacement with `value` at the vertices.
 template <class V>
 KACANOV_INLINE inline void add_strain_of(const V* const* value, const TetSlopes<V>& slopes, Sym<V>& e) {
   V r[3];
@@ -82,16 +82,16 @@ KACANOV_INLINE inline void add_strain_of(const V* const* value, const TetSlopes<
   }
 }
 
-/// a + f b.
+/// Returns a + f b.
 template <class V, class Real>
 KACANOV_INLINE inline Sym<V> plus(const Sym<V>& a, Real f, const Sym<V>& b) {
   return {a.xx + f * b.xx, a.yy + f * b.yy, a.zz + f * b.zz,
           a.xy + f * b.xy, a.yz + f * b.yz, a.zx + f * b.zx};
 }
 
-/// ∂u/∂λ_i at vertex j is 4 u_ij − u_i with u_jj = u_j, and a point's value of a linear function `rest` times
-/// that at its vertex plus `far` times the sum of all four: so at point j it is `scale` times u_ij + m_i,
-/// m_i = far/rest Σ_(j≠i) u_ij − u_i/4 the same at all points. The forces are the transpose of that.
+/// ∂u/∂λ_i at vertex j is 4 u_ij − u_i with u_jj = u_j, and a linear function at a point is `rest` times its
+/// vertex value plus `far` times the sum of all four. So at point j it is `scale` times u_ij + m_i, with m_i
+/// = far/rest Σ_(j≠i) u_ij − u_i/4 at all points. The forces are the transpose.
 template <class L, class Real, bool averaged, class Material, class V = typename L::V>
 KACANOV_INLINE inline void load_quadratic_fan(const Material& material, const FanGeometry<V>& geometry,
                                               const FanPlace& fan, const Real* u, Real* f) {
@@ -102,7 +102,7 @@ KACANOV_INLINE inline void load_quadratic_fan(const Material& material, const Fa
   V edge_force[3][3] = {}, behind_force[3][3] = {}, ahead_force[3][3], ring_force[3];
   for (int a = 0; a < 3; ++a) L::load3(u, at + a * width, edge[a]);
   for (int a = 0; a < 3; ++a) L::load3(u, at + (3 + a) * width, behind[a]);
-  // k0/24 of what is averaged round the vertices.
+  // k0/24 times the averages around the vertices.
   [[maybe_unused]] const V bulk = Real(QuadraticFan::weight) * material.bulk();
   [[maybe_unused]] V mean[4];
   if constexpr (averaged) {
@@ -183,8 +183,8 @@ KACANOV_INLINE inline void load_quadratic_fan(const Material& material, const Fa
   for (int a = 0; a < 3; ++a) L::add3(f, at + a * width, edge_force[a]);
 }
 
-/// Fans in place of single tetrahedra halve loads and additions of records, which were most of the time.
-/// `averaged`: tr ε is the mean of those round the corners, in the last places of their records.
+/// Fans instead of single tetrahedra halve the loads and additions of records, which took most of the time.
+/// `averaged`: tr ε is the mean of the corner averages, the last entries of the corners' records.
 template <class L, class Real, bool averaged, class Material>
 inline void quadratic_fan_loop(const Block<Real>& block, const Group& group, const Material& material,
                                Vectors<Real> vectors) {
@@ -206,9 +206,9 @@ inline void quadratic_fan_loop(const Block<Real>& block, const Group& group, con
   }
 }
 
-/// ∫ N tr ε over the elements of every corner. At vertex j det tr ε is Σ_i ∂u/∂λ_i · c_i, c_i = det ∇λ_i, so
-/// with m_ij = u_ij · c_i of the mid-side nodes 4 Σ_(i≠j) m_ij − Σ_i u_i · c_i + 4 u_j · c_j; the integral of
-/// a linear function and N takes the corner's value and the sum of all, times det/120.
+/// ∫ N tr ε around each corner. At vertex j det tr ε is Σ_i ∂u/∂λ_i · c_i, c_i = det ∇λ_i; with m_ij = u_ij ·
+/// c_i of the mid-side nodes this is 4 Σ_(i≠j) m_ij − Σ_i u_i · c_i + 4 u_j · c_j. The integral of a linear
+/// function times N is (corner value + sum of all values) times det/120.
 template <class L, class Real, class V = typename L::V>
 KACANOV_INLINE inline void add_changes(const FanGeometry<V>& geometry, const FanPlace& fan, const Real* u,
                                        Real* f) {

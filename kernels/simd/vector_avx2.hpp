@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// AVX2 lanes: 4 doubles or 8 floats, and the transposed access to node records.
+// AVX2 lanes: 4 doubles or 8 floats, and transposed access to node records.
 #pragma once
 
 #include <immintrin.h>
@@ -27,7 +27,7 @@ struct Lanes<double> {
     return _mm256_movemask_pd(_mm256_cmp_pd((__m256d)v, (__m256d)limit, _CMP_GT_OQ)) != 0;
   }
 
-  // A row is three values of the caller's, a record four aligned ones of a block.
+  // A row is three values of the caller's vector, a record four aligned values of a block.
   typedef double Record __attribute__((vector_size(32)));
   KACANOV_INLINE static Record load_row(const double* p) {
     return (Record)_mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(p)), _mm_load_sd(p + 2), 1);
@@ -39,7 +39,7 @@ struct Lanes<double> {
   KACANOV_INLINE static Record load_record(const double* p) { return (Record)_mm256_load_pd(p); }
   KACANOV_INLINE static void store_record(double* p, Record r) { _mm256_store_pd(p, (__m256d)r); }
 
-  /// The halves of two records: an insertion from memory costs a load and a blend, no shuffle.
+  /// Two half records: insertion from memory costs a load and a blend, no shuffle.
   KACANOV_INLINE static __m256d halves(const double* low, const double* high) {
     return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_load_pd(low)), _mm_load_pd(high), 1);
   }
@@ -51,7 +51,7 @@ struct Lanes<double> {
     v[1] = (V)_mm256_unpackhi_pd(xy02, xy13);
     v[2] = (V)_mm256_unpacklo_pd(z02, z13);
   }
-  /// The last places alone.
+  /// Loads only the last entries.
   KACANOV_INLINE static V load_last(const double* base, const std::uint16_t* at) {
     const double *p0 = base + at[0], *p1 = base + at[1], *p2 = base + at[2], *p3 = base + at[3];
     return (V)_mm256_unpackhi_pd(halves(p0 + 2, p2 + 2), halves(p1 + 2, p3 + 2));
@@ -87,7 +87,7 @@ struct Lanes<float> {
   typedef float Record __attribute__((vector_size(16)));
   KACANOV_INLINE static Record load_row(const float* p) {
     const __m128 xy =
-        _mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i_u*>(p)));  // aligned to a float only
+        _mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i_u*>(p)));  // aligned like a float
     return (Record)_mm_movelh_ps(xy, _mm_load_ss(p + 2));
   }
   KACANOV_INLINE static void store_row(float* p, Record r) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// AVX-512 lanes: 8 doubles or 16 floats, and the transposed access to node records.
+// AVX-512 lanes: 8 doubles or 16 floats, and transposed access to node records.
 #pragma once
 
 #include <immintrin.h>
@@ -13,9 +13,9 @@ namespace {
 template <class Real>
 struct Lanes;
 
-// Records are fetched by plain loads with a masked broadcast into the upper half, which costs a blend and no
-// shuffle; gather instructions took twice as long where measured (Zen 4). Two records share a register so
-// that lanes come out in order.
+// Records are read by plain loads with a masked broadcast into the upper half, which costs a blend and no
+// shuffle; gather instructions took twice the time (Zen 4). Two records share a register so that the lanes
+// are in order.
 template <>
 struct Lanes<double> {
   typedef double V __attribute__((vector_size(64)));
@@ -30,7 +30,7 @@ struct Lanes<double> {
     return _mm512_cmp_pd_mask((__m512d)v, (__m512d)limit, _CMP_GT_OQ) != 0;
   }
 
-  // A row is three values of the caller's, a record four aligned ones of a block.
+  // A row is three values of the caller's vector, a record four aligned values of a block.
   typedef double Record __attribute__((vector_size(32)));
   KACANOV_INLINE static Record load_row(const double* p) { return (Record)_mm256_maskz_loadu_pd(7, p); }
   KACANOV_INLINE static void store_row(double* p, Record r) { _mm256_mask_storeu_pd(p, 7, (__m256d)r); }
@@ -49,7 +49,7 @@ struct Lanes<double> {
     v[2] = (V)_mm512_shuffle_f64x2(ab, cd, 0xDD);
     v[1] = (V)_mm512_shuffle_f64x2(_mm512_unpackhi_pd(a, b), _mm512_unpackhi_pd(c, d), 0x88);
   }
-  /// The last places alone.
+  /// Loads only the last entries.
   KACANOV_INLINE static V load_last(const double* base, const std::uint16_t* at) {
     const __m512d a = pair(base, at[0], at[2]), b = pair(base, at[1], at[3]);
     const __m512d c = pair(base, at[4], at[6]), d = pair(base, at[5], at[7]);

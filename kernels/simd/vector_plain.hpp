@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Portable lanes of 16 bytes: what every compiler target has, one by one where records are concerned.
+// Portable lanes of 16 bytes for any target, with scalar access to records.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ struct Lanes {
     return v;
   }
 
-  // A row is three values of the caller's, a record four aligned ones of a block.
+  // A row is three values of the caller's vector, a record four aligned values of a block.
   struct Record {
     Real at[4];
     Real operator[](int i) const { return at[i]; }
@@ -57,7 +57,7 @@ struct Lanes {
       v[k] = load(lane);
     }
   }
-  /// The last places alone.
+  /// Loads only the last entries.
   KACANOV_INLINE static V load_last(const Real* base, const std::uint16_t* at) {
     Real lane[width];
     for (int l = 0; l < width; ++l) lane[l] = base[at[l] + 3];

@@ -18,17 +18,17 @@ struct Moduli {
   double secant, derivative;
 };
 
-/// The forms that g can take beyond the proportional range, each a struct of its parameters with
+/// The forms of g beyond the proportional range, each a struct of its parameters with
 ///
 ///   name                  its `type` in case files
 ///   parameters(f, visit)  calls visit(parameter) for each parameter of the form f
-///   fault()               what is wrong with the parameters, as validate() says it; empty if nothing
+///   fault()               error message about the parameters, as in validate(); empty if they are valid
 ///   yield()               the argument a up to which g is constant
-///   initial(mu)           g there
+///   initial(mu)           g up to yield()
 ///   moduli(mu, a)         g and dg/da for a > yield()
 ///   energy(mu, a)         ∫ g a da from yield() to a > yield()
-///   plain_energy(mu, a)   ∫ g da from yield() to a > yield(); a form without it does not take squares
-///   proof()               the argument that counts as plastic where it is not yield(); else left out
+///   plain_energy(mu, a)   ∫ g da from yield() to a > yield(); forms without it do not support squares
+///   proof()               the argument beyond which a point counts as plastic; forms without it use yield()
 ///
 /// for the shear modulus mu and the argument a, a strain or its square: see Law::Argument.
 namespace laws {
@@ -47,7 +47,7 @@ struct Linear {
 
 /// theory: law-logarithmic
 struct Logarithmic {
-  double x0 = 0.0;  ///< yield strain, > 0, compared with the argument
+  double x0 = 0.0;  ///< yield strain, > 0, in terms of the argument
 
   static constexpr std::string_view name = "logarithmic";
   static void parameters(auto& f, auto&& visit) { visit(f.x0); }
@@ -62,7 +62,7 @@ struct Logarithmic {
 /// theory: law-linear-hardening
 struct LinearHardening {
   double x0 = 0.0;     ///< as above
-  double gamma = 1.0;  ///< 0 < γ ≤ 1: the part of μ that is left in the end
+  double gamma = 1.0;  ///< 0 < γ ≤ 1: limit of g/μ at large strain
 
   static constexpr std::string_view name = "linear_hardening";
   static void parameters(auto& f, auto&& visit) { visit(f.x0), visit(f.gamma); }
@@ -92,7 +92,7 @@ struct Power {
 /// theory: law-saturating
 struct Saturating {
   double x0 = 0.0;  ///< as above
-  double q = 1.0;   ///< > 0: the stress tends to 1 + q times that at x0
+  double q = 1.0;   ///< > 0: the stress tends to (1 + q) times that at x0
 
   static constexpr std::string_view name = "saturating";
   static void parameters(auto& f, auto&& visit) { visit(f.x0), visit(f.q); }
@@ -104,7 +104,7 @@ struct Saturating {
   double plain_energy(double mu, double a) const;
 };
 
-/// theory: law-table. At least two points from (0, 0); the last piece goes on.
+/// theory: law-table. At least two points, from (0, 0); the last segment is extrapolated.
 struct Table {
   std::vector<double> x;  ///< arguments, increasing
   std::vector<double> s;  ///< 2 g a = ‖dev τ‖ there, increasing, s/x not increasing
@@ -121,8 +121,8 @@ struct Table {
 
 /// theory: law-ramberg-osgood. x/x0 = t + a tⁿ, t = s/(2μ x0).
 struct RambergOsgood {
-  double x0 = 0.0;  ///< > 0: the elastic strain at the reference stress
-  double a = 0.0;   ///< > 0: plastic over elastic strain there
+  double x0 = 0.0;  ///< > 0: elastic strain at the reference stress
+  double a = 0.0;   ///< > 0: ratio of plastic to elastic strain at the reference stress
   double n = 2.0;   ///< > 1
 
   static constexpr std::string_view name = "ramberg_osgood";
@@ -142,20 +142,20 @@ struct RambergOsgood {
 struct Law {
   using Form = std::variant<laws::Linear, laws::Logarithmic, laws::LinearHardening, laws::Power,
                             laws::Saturating, laws::Table, laws::RambergOsgood>;
-  /// What the form is fed with: x or x² (theory: squared-argument).
+  /// The argument of the form: x or x² (theory: squared-argument).
   enum class Argument : std::uint8_t { norm, squared };
 
   Form form;
   Argument argument = Argument::norm;
   double bulk = 0.0;   ///< k0
-  double shear = 0.0;  ///< μ = g(0); a table has its own
-  /// k0 sees a mean of tr ε: the element's (theory: b-bar), or that round its corners (theory:
-  /// displacement-pressure), as Cell says
+  double shear = 0.0;  ///< μ = g(0); tables have their own
+  /// k0 acts on an average of tr ε: over the element (theory: b-bar) or around its corners (theory:
+  /// displacement-pressure), depending on Cell.
   bool mean_dilatation = false;
 
-  /// True for the form whose g is constant.
+  /// True if g is constant.
   bool linear() const noexcept { return std::holds_alternative<laws::Linear>(form); }
-  /// g and dg/dx at once.
+  /// Computes g and dg/dx.
   Moduli moduli(double x) const;
   /// Secant modulus g.
   double secant(double x) const;
@@ -163,35 +163,37 @@ struct Law {
   double secant_derivative(double x) const;
   /// G(x) = ∫₀ˣ g(s) s ds; the energy density of a point is k0/2 tr² + 2 G(x) (theory: energy).
   double energy(double x) const;
-  /// The norm up to which g is constant; infinite for linear ones.
+  /// The norm up to which g is constant; infinite for linear laws.
   double yield_strain() const;
-  /// The norm beyond which plastic(): the yield strain, or that of the reference stress where g falls from
-  /// the first.
+  /// The norm beyond which plastic() is true: the yield strain, or the strain at the reference stress for
+  /// laws whose g decreases from zero strain on.
   double proof_strain() const;
-  /// True where stress falls with strain, d(g x)/dx < 0 (possible with the squared argument only).
+  /// True where stress decreases with strain, d(g x)/dx < 0 (possible with the squared argument only).
   bool softens(double x) const;
   /// True beyond the proof strain.
   bool plastic(double x) const;
 };
 
-/// What is wrong with a law, in the words of the case file, such as "gamma: expected a number > 0 and ≤ 1,
-/// got 0"; empty if nothing is. Whether the body's elements have a B-bar form is another question.
+/// Returns an error message in the terms of the case file, such as "gamma: expected a number > 0 and ≤ 1, got
+/// 0"; empty if the law is valid. Does not check whether the body's elements have a B-bar form.
 std::string validate(const Law& law);
 
-/// k0 = E / (3 (1 − 2ν)), μ = E / (2 (1 + ν)) of Young's modulus and Poisson's ratio, which are not checked.
+/// k0 = E / (3 (1 − 2ν)), μ = E / (2 (1 + ν)) from Young's modulus and Poisson's ratio, which are not
+/// checked.
 Law elastic_law(double young, double poisson);
-/// Young's modulus, from k0 and μ.
+/// Young's modulus from k0 and μ.
 double young_modulus(const Law& law);
 
-// Laws from what a test in tension says (theory: uniaxial), with the elastic constants of `elastic`.
+// Laws from tensile test data (theory: uniaxial), with the elastic constants of `elastic`.
 
-/// Of the slope 2μ: what a curve gets where its stress does not grow, as beyond the last row of a table, so
-/// that the displacement is unique.
+/// Slope of a stress plateau, such as beyond the last row of a table, relative to 2μ. It keeps the
+/// displacement unique.
 inline constexpr double plateau_slope = 1e-4;
-/// Rows of (stress, plastic strain): the first strain 0, strains growing, stresses not falling. Beyond the
-/// last row the stress grows by plateau_slope. Empty rows, and what else validate() refuses, are not checked.
+/// `rows`: (stress, plastic strain), first strain 0, strains increasing, stresses not decreasing. Beyond the
+/// last row the stress has the slope plateau_slope. Empty rows and errors that validate() reports are not
+/// checked.
 laws::Table plastic_table(const Law& elastic, std::span<const std::array<double, 2>> rows);
-/// Bilinear: `tangent` of stress over total strain beyond the yield stress, 0 < tangent < E.
+/// Bilinear: `tangent` is the slope of stress over total strain beyond the yield stress, 0 < tangent < E.
 laws::LinearHardening bilinear(const Law& elastic, double yield_stress, double tangent);
 /// ε = σ/E + alpha (sigma0/E) (σ/sigma0)ⁿ.
 laws::RambergOsgood ramberg_osgood(const Law& elastic, double sigma0, double alpha, double n);

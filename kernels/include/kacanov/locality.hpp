@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Orders of nodes and elements that keep neighbours close in memory.
+// Orderings of nodes and elements that keep neighbours close in memory.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +15,13 @@ struct LocalityOrder {
   std::vector<std::int32_t> elements;  ///< entry i: the old number of new element i
 };
 
-/// Nodes along a space-filling (Hilbert) curve over coordinates scaled by the mean element's extents, so that
-/// flat or stretched elements keep their neighbours; elements by their first node on it. A mesh renumbered
-/// like this is what the operator likes best: its copies to and from the caller's vectors become nearly
-/// sequential.
+/// Orders nodes along a Hilbert curve over coordinates scaled by the average extents of an element, so that
+/// flat or stretched elements keep their neighbours; orders elements by their first node on the curve. The
+/// operator is fastest on a mesh renumbered this way: its copies to and from the caller's vectors become
+/// nearly sequential.
 LocalityOrder locality_order(const MeshView& mesh);
 
-/// The node part of it.
+/// The `nodes` part of locality_order().
 std::vector<std::int32_t> node_order(const MeshView& mesh);
 
 /// Splits nodes into `parts` compact sets with METIS, which works on groups of nodes consecutive in `order`

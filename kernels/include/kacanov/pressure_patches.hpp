@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The patches of nodes over which linear tetrahedra average their volume change.
+// Node patches over which linear tetrahedra average their volume change.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,11 @@
 
 namespace kacanov {
 
-/// Body::pressure_patch of a body of tet4, or of this rank's part of one: nodes that lie in one cube of a
-/// tree some 2.6 of their distances wide, and hang together by elements within it (theory: pressure-patches).
-/// It depends on where nodes are, not on their numbers or on who has them, but for rounding of coordinates.
-/// Empty where no law averages, and for other elements. `nodes`: their map. Collective.
+/// Computes Body::pressure_patch for a body of tet4, or for this rank's part of one. A patch holds the nodes
+/// in one octree cube, whose edge is about 2.6 node spacings, that are connected by elements within the cube
+/// (theory: pressure-patches). Apart from rounding of coordinates, the patches depend on node positions only,
+/// not on numbering or ownership. Empty where no law averages, and for other element types. `nodes`: index
+/// map of the nodes. Collective.
 std::vector<std::int64_t> pressure_patches(const Body& body, const IndexMap& nodes);
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scatters between owners and ghosts in two halves, for what can be computed while messages travel.
+// Split-phase scatters between owners and ghosts, to overlap communication with computation.
 #pragma once
 
 #include <memory>
@@ -10,12 +10,12 @@
 
 namespace kacanov {
 
-/// IndexMap's scatters of vectors with the same number of components an index: start, compute, finish. Keeps
-/// its buffers. S: double, float, std::int32_t, std::int64_t. One scatter at a time.
+/// Scatters of an IndexMap for vectors with a fixed number of components per index: start, compute, finish.
+/// Keeps its buffers. S: double, float, std::int32_t, std::int64_t. One scatter at a time.
 template <class S>
 class Scatterer {
  public:
-  /// The map has to outlive it.
+  /// The map must outlive it.
   Scatterer(const IndexMap& map, int components);
 
   /// Sends owned values to the ranks that have ghosts of them.
@@ -25,7 +25,8 @@ class Scatterer {
 
   /// Sends x at the shared indices.
   void start_sum(std::span<const S> x, CallSite at = CallSite());
-  /// Adds what the others sent, in rank order. x at the shared indices must be what it was at the start.
+  /// Adds the values of the other ranks, in rank order. x at the shared indices must not change after the
+  /// start.
   void finish_sum(std::span<S> x);
 
  private:
@@ -35,7 +36,7 @@ class Scatterer {
   const IndexMap* map_;
   std::size_t width_;
   std::vector<S> send_, receive_, own_;
-  std::unique_ptr<Messages> messages_;  ///< null where there is nobody to send to
+  std::unique_ptr<Messages> messages_;  ///< null without neighbours
 };
 
 extern template class Scatterer<double>;

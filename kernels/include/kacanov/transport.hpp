@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What carries messages between processes: an interface, so that who computes with several need not know MPI.
+// Interface that carries messages between processes, so that parallel code does not depend on MPI.
 #pragma once
 
 #include <cstddef>
@@ -10,40 +10,42 @@
 
 namespace kacanov {
 
-/// Messages under way between pairs of ranks: arrays of entries of `width` = 4 or 8 bytes. Messages between
-/// two ranks arrive in the order they were sent. The arrays have to stay until wait() is over.
+/// Point-to-point messages in flight: arrays of entries of `width` = 4 or 8 bytes. Messages between two ranks
+/// arrive in the order in which they were sent. The arrays must stay valid until wait() returns.
 class Messages {
  public:
   virtual ~Messages() = default;
   virtual void receive(void* to, std::size_t count, std::size_t width, int rank) = 0;
   virtual void send(const void* from, std::size_t count, std::size_t width, int rank) = 0;
-  /// Until all that was started is done.
+  /// Returns when all started messages have completed.
   virtual void wait() = 0;
 };
 
-/// Every function is collective and gives every rank the same bits.
+/// Every function is collective and returns the same bits on every rank.
 class Transport {
  public:
   virtual ~Transport() = default;
-  /// Entry by entry, over all ranks.
+  /// Element-wise, over all ranks.
   virtual void sum(std::span<double> values) const = 0;
   virtual void sum(std::span<std::int64_t> values) const = 0;
   virtual void max(std::span<double> values) const = 0;
-  /// Sum over the ranks below this one; on rank 0 zero.
+  /// Returns the sum over the ranks below this one; 0 on rank 0.
   virtual std::int64_t sum_below(std::int64_t value) const = 0;
-  /// What each rank has, on all of them: an entry a rank.
+  /// Returns the values of all ranks, one entry per rank.
   virtual std::vector<std::int64_t> all(std::int64_t value) const = 0;
-  /// An entry to each rank in exchange for one from each.
+  /// Sends one entry to each rank and returns one from each.
   virtual std::vector<int> exchange(std::span<const int> to) const = 0;
 
-  /// Entries of `width` bytes that lie one rank's after the other's, `count` of each rank.
+  /// Contiguous pieces of `count` entries of `width` bytes, one piece per rank, in rank order.
   struct Pieces {
     std::span<const int> count;
     std::size_t width = 1;
   };
-  /// Pieces `out` of `from` to the ranks, theirs as pieces `in` into `to`; of one width.
+  /// Sends piece r of `from` (layout `out`) to rank r and receives its piece into `to` (layout `in`), of the
+  /// same width.
   virtual void exchange(const void* from, const Pieces& out, void* to, const Pieces& in) const = 0;
-  /// `from`, which has this rank's count, and what the others have, as pieces `in` into `to`.
+  /// Gathers `from`, which has this rank's count of entries, of all ranks into `to` on every rank (layout
+  /// `in`).
   virtual void gather(const void* from, void* to, const Pieces& in) const = 0;
   virtual std::unique_ptr<Messages> messages() const = 0;
 };

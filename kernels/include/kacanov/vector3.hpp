@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A point or a direction, of whatever dimension the body has.
+// A point or a direction in 2D or 3D.
 #pragma once
 
 #include <array>
