@@ -76,7 +76,7 @@ struct ContactSums {
   double unknown_product = 0.0;     // what rounding leaves of Σ M λ times a gap
 };
 
-/// GlobalMax values, likewise.
+/// Largest values, likewise.
 struct ContactPeaks {
   double penetration = 0.0, tension = 0.0, cone = 0.0, pressure = 0.0;
   double indentation = 0.0;    // M λ_n over the stiffness of the nodes

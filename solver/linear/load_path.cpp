@@ -45,7 +45,7 @@ LoadPath::LoadPath(const Part& part) : part_(&part) {
                                              [](const HeldDirection& held) { return held.value; }));
     entries = std::max(entries, part.contact[i].entry + 1);
   }
-  // GlobalMax indentation, one a contact entry.
+  // Largest indentation, one a contact entry.
   std::vector<double> depth(static_cast<std::size_t>(part.node_map.max_all(entries)), 0.0);
   for (std::size_t i = 0; i < gap_.size(); ++i) {
     double& deepest = depth[part.contact[i].entry];

@@ -28,7 +28,7 @@ LoadStep line_now(const OuterLoop& loop, double share, const Result& result) {
   return line;
 }
 
-/// GlobalMax displacement over the body, of a state at a share of the load, for a whole one.
+/// Largest displacement over the body, of a state at a share of the load, for a whole one.
 double stretched(const OuterLoop& loop, const OuterLoop::Place& place) {
   return loop.context().space.max_abs(place.state.u) / place.share;
 }

@@ -65,7 +65,7 @@ struct Tuning {
 
   // The method of multipliers (theory: augmented-newton).
 
-  /// GlobalMax penalty over 1/λ_min.
+  /// Largest penalty over 1/λ_min.
   double augmented_penalty = 10.0;
   /// It grows by so much where a round takes so few Newton steps, and falls by it where it takes so many.
   double augmented_change = 3.0;

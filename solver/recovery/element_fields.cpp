@@ -490,7 +490,7 @@ void put_stress(const Row<Element>& row, const reference::ElementFields& out) {
           (stress[c][lane] + (c < 3 ? row.law[lane]->bulk * trace[lane] : 0.0)) / row.volume[lane];
 }
 
-/// GlobalMax values of the points.
+/// Largest values of the points.
 template <class Element>
 void put_largest(const Row<Element>& row, const reference::ElementFields& out) {
   Lanes strain{}, rotation{};

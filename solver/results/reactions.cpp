@@ -22,7 +22,7 @@ struct ContactSums {
 };
 static_assert(sizeof(ContactSums) == 15 * sizeof(double));
 
-/// GlobalMax values, likewise: minima are there with their signs changed.
+/// Largest values, likewise: minima are there with their signs changed.
 struct ContactPeaks {
   double pressure = 0.0;
   double closed = -std::numeric_limits<double>::max(), first_closed = closed;

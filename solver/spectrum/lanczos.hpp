@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// GlobalMax eigenvalues of a distributed symmetric operator: ARPACK in reverse communication.
+// Largest eigenvalues of a distributed symmetric operator: ARPACK in reverse communication.
 #pragma once
 
 #include <mpi.h>

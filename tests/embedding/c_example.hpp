@@ -99,7 +99,7 @@ inline Vector applied(const Handle& op, const Vector& x) {
   return y;
 }
 
-/// GlobalMax difference over largest entry of b; not a number if any entry is none.
+/// Largest difference over largest entry of b; not a number if any entry is none.
 inline double distance(const Vector& a, const Vector& b) {
   REQUIRE(a.size() == b.size());
   double difference = 0.0, size = 0.0;

@@ -40,7 +40,7 @@ MemoryShares memory_shares(const ProblemSize& size);
 /// % from some 10,000 nodes on (measured). What `may_flow` is taken as not flowing that far.
 double estimated_memory(const ProblemSize& size, int ranks);
 
-/// GlobalMax resident memory of this process so far, in bytes. 0: unknown.
+/// Largest resident memory of this process so far, in bytes. 0: unknown.
 std::uint64_t peak_memory();
 
 /// Bytes that a new process could have: what the system calls available, less where a control group allows
