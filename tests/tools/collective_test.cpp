@@ -20,9 +20,8 @@ using nlohmann::json;
 
 namespace {
 
-constexpr unsigned most_seconds =
-    240;              ///< limit per solve; a solve takes one second, but machines may be busy
-std::string at_work;  ///< the current solve, for the message about a hang
+constexpr unsigned most_seconds = 240;  ///< limit per solve, which takes one: machines may be busy
+std::string at_work;                    ///< the current solve, for the message about a hang
 
 void say_what_hangs(int) {
   for (const char* text : {"no end of: ", at_work.c_str(), "\n"})

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A library to be preloaded into the program: makes the n-th file operation fail, or simulates a power
-// failure.
+// A library to be preloaded into the program: makes the n-th file operation fail, or cuts the power.
 //
 // It counts these operations below the folder KACANOV_FAULT_FOLDER in one process: open, write, flush, sync,
-// close,
-// truncate, rename and remove. The other variables are numbers:
+// close, truncate, rename and remove. The other variables are numbers:
 // KACANOV_FAULT_AT      the n-th operation fails with the error KACANOV_FAULT_ERRNO (default: no space left);
 // KACANOV_FAULT_STAYS   all later operations fail too;
-// KACANOV_FAULT_CUT     power fails before the n-th operation: files lose unsynced data, folders unsynced
-// names;
+// KACANOV_FAULT_CUT     power fails before the n-th operation: unsynced data and names are lost;
 // KACANOV_FAULT_NAMES   names survive the power failure, so that a renamed file exists without its content;
 // KACANOV_FAULT_NEW     the n-th `new` after the first counted operation (reading the case is one) throws;
 // KACANOV_FAULT_LOG     a file that gets one line per operation, and at the end the number of calls of `new`.

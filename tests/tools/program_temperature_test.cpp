@@ -154,7 +154,7 @@ TEST_CASE("a mesh of a file may be refined, raised and adapted: its nodes' tempe
 }
 
 TEST_CASE("a strip of two metals bends as Timoshenko's does") {
-  // Plane strain: replace α by (1 + ν) α and E by E/(1 − ν²). Equal thickness and stiffness: κ = 3 Δα ΔT/2h.
+  // Plane strain: replace α by (1 + ν) α and E by E/(1 − ν²). Equal thickness, stiffness: κ = 3 Δα ΔT/(2 h).
   const json input = parsed(R"({
     "mesh": {"box": {"size": [20, 1], "cells": [160, 16], "element": "quad4"}},
     "material": [{"on": {"box": [[0, 0], [20, 0.5]]}, "young": 200, "poisson": 0.25, "expansion": 1e-5, "bbar": true},
