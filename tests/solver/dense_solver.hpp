@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Dense reference solver for small problems; it shares only the list of loads and contact points with the
-// solver under test. It assembles its own dense matrices and solves sequential quadratic programs, their
-// duals by projected Gauss–Seidel on the dense compliance of the contact points (Jean and Moreau), with a
-// line search on the energy.
+// Dense reference solver for small problems, which shares only the lists of loads and contact points with the
+// solver. It assembles its own matrices and solves quadratic programs with an energy line search, their duals
+// by projected Gauss–Seidel on the dense compliance of the contact points (Jean and Moreau).
 #pragma once
 
 #include <Eigen/Dense>

@@ -113,10 +113,9 @@ Punch punch(int n) {
   return {middle / exact(0.0), profile_error(run, 0.8, found, exact)};
 }
 
-/// Cattaneo–Mindlin, tangential part only. With the friction bound μp over |x| < 1, p = p₀ √(1 − x²), a
-/// tangential force Q leaves |x| < c = √(1 − Q/(μP)) sticking, with tractions μp₀ (√(1 − x²) − c √(1 −
-/// x²/c²)) there. Bounds are prescribed per node, which excludes load history and normal–tangential coupling
-/// (ν < ½).
+/// Cattaneo–Mindlin, tangential part only: with the friction bound μp₀ √(1 − x²) on |x| < 1, given per node,
+/// a force Q leaves |x| < c = √(1 − Q/(μP)) sticking, with tractions μp₀ (√(1 − x²) − c √(1 − x²/c²)) there.
+/// This excludes load history and the coupling of normal and tangential directions (ν < ½).
 struct Mindlin {
   double ratio;            ///< Q / μP
   double radius, profile;  ///< computed c / c, error of the tractions
