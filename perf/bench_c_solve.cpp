@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The solve of bench_solve through the C interface: one process, its threads, no MPI.
+// The solve of bench_solve through the C interface: one process with threads, no MPI.
 #include <kacanov/kacanov.h>
 
 #include <CLI/CLI.hpp>
@@ -23,7 +23,7 @@ struct Options {
   PressedBeam beam;
   double jump = 1.0, tolerance = 1e-8;
   int threads = 1, repeat = 1;
-  std::string preconditioner = "multigrid";  ///< csr: an assembled matrix, and its diagonal
+  std::string preconditioner = "multigrid";  ///< csr: an assembled matrix and its diagonal
   bool json = false;
 };
 
@@ -37,7 +37,7 @@ void check(int code, const char* message) {
   if (code != KACANOV_OK) throw std::runtime_error(message);
 }
 
-/// The part, numbered as the operator likes it, as a caller's arrays.
+/// Creates the operator from the part, renumbered for locality, as arrays of a caller.
 kacanov_operator* create(const kacanov::Part& part, const Options& options) {
   kacanov_law law{};
   law.struct_size = sizeof law;
@@ -68,7 +68,7 @@ Json entry_of(const Options& options, std::size_t n, const kacanov_cg_result& re
           {"converged", result.converged != 0}};
 }
 
-/// The same solve with the operator as a matrix.
+/// The same solve with an assembled matrix.
 Json measure_csr(kacanov_operator* op, const kacanov::Part& part, const Options& options) {
   const std::size_t n = part.unknowns();
   std::vector<double> b(n, 0.0), x(n, 0.0);

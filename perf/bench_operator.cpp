@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Unknowns a second of the operator against assembled matrices, all in one run, as JSON or as a table.
+// Benchmarks the operator against assembled matrices, in unknowns per second and in one run, as JSON or as a
+// table.
 #include <CLI/CLI.hpp>
 #include <Eigen/Sparse>
 #include <algorithm>
@@ -48,7 +49,8 @@ std::vector<std::string> all_elements() {
   return names;
 }
 
-/// Nodes and elements in the operator's order; the matrices gain from it too.
+/// Returns the mesh with nodes and elements in the operator's preferred order, from which matrices profit
+/// too.
 meshes::OwnedMesh in_order(const meshes::OwnedMesh& mesh) {
   const std::size_t dim = dimension(mesh.type);
   const LocalityOrder order = locality_order(mesh.view());
@@ -69,7 +71,7 @@ meshes::OwnedMesh in_order(const meshes::OwnedMesh& mesh) {
 }
 
 #ifdef KACANOV_BENCH_GMSH
-/// The body of a Gmsh file; the program says what is wrong with one that is not usable.
+/// Returns the body of a Gmsh file; an unusable file is an error with a message.
 meshes::OwnedMesh read_mesh(const std::string& path) {
   Mesh mesh = read_gmsh(path);
   return in_order({mesh.type, std::move(mesh.coordinates), std::move(mesh.elements)});
@@ -80,7 +82,7 @@ meshes::OwnedMesh read_mesh(const std::string& path) {
 }
 #endif
 
-/// A beam 4 × 1 × 1 (4 × 1 in 2D) with about this many unknowns.
+/// Returns a beam 4 × 1 × 1 (4 × 1 in 2D) with about this many unknowns.
 meshes::OwnedMesh make_mesh(ElementType type, std::size_t unknowns, bool irregular) {
   const std::size_t dim = dimension(type);
   const double nodes = static_cast<double>(unknowns / dim);
@@ -102,7 +104,7 @@ struct Timed {
   double seconds = std::numeric_limits<double>::max();
 };
 
-/// Runs all in turn, so that a noisy moment hits each alike, and keeps the best time of each.
+/// Runs all in turn, so that disturbances affect them alike, and keeps the best time of each.
 void time_interleaved(std::vector<Timed>& all, int rounds) {
   for (Timed& timed : all) timed.run();
   for (int round = 0; round < rounds; ++round)
@@ -113,13 +115,13 @@ void time_interleaved(std::vector<Timed>& all, int rounds) {
     }
 }
 
-/// Bytes an application has to move at least: x and y once, coordinates, g, indices.
+/// Returns the bytes that one application must move at least: x and y once, coordinates, g, indices.
 double traffic(const Body& body, std::size_t held, double real) {
   return static_cast<double>(held) + 3.0 * real * static_cast<double>(body.unknowns());
 }
 
-/// Fused multiply-adds and other operations of a tetrahedron in a long fan, of a quadrature point elsewhere;
-/// divisions count as one.
+/// Returns fused multiply-adds and other operations per element, for a tetrahedron in a long fan, otherwise
+/// for all its quadrature points; a division counts as one.
 double flops_an_element(ElementType type) {
   return points_per_element(type) * (dimension(type) == 2 ? 80.0 : type == ElementType::tet4 ? 155.0 : 190.0);
 }
@@ -143,7 +145,7 @@ json measure(const meshes::OwnedMesh& mesh, const std::string& kind, const Setti
   if (settings.threads > 1) teams.push_back(settings.threads);
   std::vector<Operator> doubles;
   std::vector<FloatOperator> floats;
-  std::vector<std::size_t> held;  // bytes of each double operator, no tangent yet
+  std::vector<std::size_t> held;  // bytes of each double-precision operator without tangent
   double setup = 0.0;
   for (const int threads : teams) {
     const double start = perf::now();
@@ -225,7 +227,7 @@ json measure(const meshes::OwnedMesh& mesh, const std::string& kind, const Setti
     add("apply", "double", teams[i], timed[next++].seconds, traffic(body, held[i], 8), flops);
   for (std::size_t i = 0; i < floats.size(); ++i)
     add("apply", "float", teams[i], timed[next++].seconds, traffic(body, floats[i].bytes(), 4), flops);
-  // Several right sides count with the time of one of them.
+  // Several right-hand sides count with the time of one of them.
   const std::vector<std::pair<std::string, double>> forms{
       {"tangent", 1},          {"apply_dot", 1},    {"two_right_sides", 2},
       {"four_right_sides", 4}, {"residual", 1},     {"residual_power", 1},

@@ -107,7 +107,7 @@ Json measure(const Part& part, DistributedOperator& op, const std::string& kind,
       {"threads", options.threads},
       {"iterations", cg.iterations},
       {"converged", cg.converged},
-      {"make_seconds", start - begin},  // once a run: the operator in single precision
+      {"make_seconds", start - begin},  // once per run: the operator in single precision
       {"setup_seconds", ready - start},
       {"solve_seconds", seconds},
       {"total_seconds", ready - start + seconds},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What sharing a small piece of work among threads takes where other programs want the cores, and where none
-// does: on the kernels' own threads and on OpenMP's.
+// Overhead of distributing small work over threads, on busy and on idle machines: the kernels' own threads
+// and OpenMP's.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
@@ -22,19 +22,19 @@ using Clock = std::chrono::steady_clock;
 
 struct Options {
   int threads = 2, regions = 300, busy = static_cast<int>(std::thread::hardware_concurrency());
-  double work = 0.25;  ///< milliseconds a thread
+  double work = 0.25;  ///< milliseconds per thread
   bool json = false;
 };
 
 double milliseconds(Clock::duration time) { return std::chrono::duration<double, std::milli>(time).count(); }
 
-/// So many steps of a chain that a compiler cannot shorten.
+/// Computes `steps` dependent operations that a compiler cannot shorten.
 double chain(long steps, double x) {
   for (long i = 0; i < steps; ++i) x = 1.0 / (0.5 + x);
   return x;
 }
 
-/// How many steps take that long on a core: the quickest of some tries.
+/// Returns the number of steps that take `time` milliseconds on a core, from the fastest of several tries.
 long steps_in(double time) {
   constexpr long tried = 20000;
   double best = 1e300, x = 0.3;
@@ -46,7 +46,7 @@ long steps_in(double time) {
   return std::max(1L, static_cast<long>(tried * time / best * (x > 0 ? 1.0 : 0.0)));
 }
 
-/// Programs that want the cores, as threads of this one.
+/// Competing programs, simulated by threads of this one.
 class Others {
  public:
   explicit Others(int count) {
@@ -67,7 +67,7 @@ class Others {
   std::vector<std::jthread> threads_;
 };
 
-/// As the kernels apply an operator: every thread its share, then, all shares done, a little more.
+/// Like an operator application: every thread computes its share, and after a barrier a little more.
 class Region {
  public:
   Region(int threads, long steps) : threads_(threads), steps_(steps), sums_(8 * threads, 0.3) {}
@@ -88,11 +88,11 @@ class Region {
 };
 
 struct Times {
-  double mean = 0.0, median = 0.0, slow = 0.0;  ///< slow: one in a hundred takes longer
+  double mean = 0.0, median = 0.0, slow = 0.0;  ///< slow: 99th percentile
 };
 
 Times measure(const Options& options, const std::function<void()>& region) {
-  std::this_thread::sleep_for(std::chrono::milliseconds(100));  // whoever still waits awake goes to sleep
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));  // threads that still spin go to sleep
   std::vector<double> times;
   for (int i = 0; i < options.regions; ++i) {
     const auto start = Clock::now();

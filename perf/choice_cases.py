@@ -18,7 +18,7 @@ def plane(dim, gap, friction, on):
 
 
 def beam(dim, n, gap, friction, kind):
-    """The paper's beam, h = 1/n; in 3D of depth 1."""
+    """Returns the paper's beam with h = 1/n; in 3D of depth 1."""
     size, cells = ([4, 1], [4 * n, n]) if dim == 2 else ([4, 1, 1], [4 * n, n, n])
     top = [[2, 1], [4, 1]] if dim == 2 else [[2, 0, 1], [4, 1, 1]]
     return {"mesh": {"box": {"size": size, "cells": cells, "element": "tri3" if dim == 2 else "tet4"}},
@@ -29,7 +29,7 @@ def beam(dim, n, gap, friction, kind):
 
 
 def rocker(gap, friction, kind):
-    """tools/examples/rocker.msh; pushed aside as well where there is friction."""
+    """Returns the case of tools/examples/rocker.msh; with friction it is also pushed sideways."""
     push = [0.004, 0.003, -0.02] if friction else [0, 0, -0.02]
     return {"mesh": {"file": str(EXAMPLES / "rocker.msh")},
             "material": [{"on": "all", "young": 1.0, "poisson": 0.3, "law": law(kind, 0.005)}],
@@ -38,8 +38,8 @@ def rocker(gap, friction, kind):
 
 
 def half_ball(n, gap, friction, kind, folder):
-    """Hertz: a half ball of radius 1, its flat face pressed down by 0.05 (and aside by 0.005 with friction) on a
-    plane that is `gap` away."""
+    """Returns Hertz's problem: a half ball of radius 1, its flat face pressed down by 0.05 (and sideways by 0.005 with
+    friction) on a plane at distance `gap`."""
     mesh = pathlib.Path(folder) / f"half_ball_{n}.msh"
     if not mesh.exists():
         mesh.write_text(half_ball_mesh(n))
@@ -50,7 +50,7 @@ def half_ball(n, gap, friction, kind, folder):
 
 
 def step42(n):
-    """deal.II's step-42: a rigid sphere in a cube with linear hardening, gamma = 0.01."""
+    """Returns deal.II's step-42: a rigid sphere pressed into a cube with linear hardening, gamma = 0.01."""
     sides = [{"on": name, "displacement": [0, 0, None]} for name in ("left", "right", "front", "back")]
     x0 = 400.0 / (2 * 2e5 / 2.6)
     return {"mesh": {"box": {"size": [1, 1, 1], "cells": [n, n, n], "element": "hex8"}},
@@ -62,9 +62,10 @@ def step42(n):
 
 
 def half_ball_mesh(n):
-    """Gmsh 2.2: 2n × 2n × n hexahedra in the lower half of the unit ball round (0, 0, 1), finer towards (0, 0, 0).
+    """Returns a Gmsh 2.2 mesh: 2n × 2n × n hexahedra in the lower half of the unit ball around (0, 0, 1), finer towards
+    the origin.
 
-    The box [-1, 1]² × [-1, 0] is mapped by x sqrt(1 - y²/2 - z²/2 + y²z²/3) and so on, which is smooth.
+    The box [-1, 1]² × [-1, 0] is mapped by the smooth map x sqrt(1 - y²/2 - z²/2 + y²z²/3) and its permutations.
     """
     across = [math.copysign(abs(i / n - 1) ** 1.5, i - n) for i in range(2 * n + 1)]
     down = [(k / n) ** 1.5 - 1 for k in range(n + 1)]
@@ -96,7 +97,7 @@ def half_ball_mesh(n):
 
 
 def suite(folder):
-    """{name: case}. Meshes that are generated go to `folder`."""
+    """Returns {name: case}; generated meshes are written to `folder`."""
     cases = {}
 
     def add(name, gap, friction, kind, case):

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a code does that has a matrix: compressed rows, conjugate gradients, the diagonal.
+// Linear solve with an assembled matrix, for comparison: compressed rows, conjugate gradients, Jacobi
+// preconditioner.
 #include "csr_solve.hpp"
 
 #include <cmath>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a code does that has a matrix: compressed rows, conjugate gradients, the diagonal.
+// Linear solve with an assembled matrix, for comparison: compressed rows, conjugate gradients, Jacobi
+// preconditioner.
 #pragma once
 
 #include <cstdint>
@@ -7,11 +8,11 @@
 #include <vector>
 
 struct CsrMatrix {
-  std::vector<std::int64_t> first;  ///< rows + 1
+  std::vector<std::int64_t> first;  ///< rows + 1 entries
   std::vector<std::int32_t> column;
   std::vector<double> value;
 };
 
-/// Solves A x = b from zero to |r| ≤ relative |b| on OpenMP's threads. Returns the iterations.
+/// Solves A x = b from x = 0 to |r| ≤ relative |b| on OpenMP's threads. Returns the number of iterations.
 int solve_by_diagonal(const CsrMatrix& matrix, std::span<const double> b, std::span<double> x,
                       double relative, int threads);

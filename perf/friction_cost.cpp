@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What Coulomb friction costs beside Tresca's with the bound that Coulomb's solution has at each node.
+// Cost of Coulomb friction relative to Tresca friction with the bound of Coulomb's solution at each node.
 #include <mpi.h>
 
 #include <CLI/CLI.hpp>
@@ -20,7 +20,7 @@ namespace {
 using namespace kacanov;
 
 struct Cost {
-  double coulomb = 0.0, tresca = 0.0;  ///< operator applications; 0: did not converge
+  double coulomb = 0.0, tresca = 0.0;  ///< operator applications; 0: not converged
 };
 
 double applications(const Solution& solution) {
@@ -29,7 +29,7 @@ double applications(const Solution& solution) {
              : 0.0;
 }
 
-/// Of a case with Coulomb friction; of any other nothing.
+/// Returns the cost of a case with Coulomb friction, zeros for any other case.
 Cost cost_of(const std::string& file) {
   const Case input = parse_case(read_case_text(file), {});
   const Problem problem = build_problem(load_mesh(input.mesh), input.model);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hardware counters of this process and the threads and processes it starts, where the kernel offers them.
+// Hardware counters of this process and the threads and processes that it starts, where the kernel supports
+// them.
 #include "hardware_counters.hpp"
 
 #include <linux/perf_event.h>
@@ -22,7 +23,7 @@ int open_event(std::uint64_t config) {
   attributes.config = config;
   attributes.disabled = 1;
   attributes.inherit = 1;
-  attributes.exclude_kernel = 1;  // allowed to more users, and the kernel's share is not ours
+  attributes.exclude_kernel = 1;  // fewer rights needed, and kernel time is not measured
   attributes.exclude_hv = 1;
   attributes.read_format = PERF_FORMAT_TOTAL_TIME_ENABLED | PERF_FORMAT_TOTAL_TIME_RUNNING;
   const long file = syscall(SYS_perf_event_open, &attributes, 0, -1, -1, PERF_FLAG_FD_CLOEXEC);

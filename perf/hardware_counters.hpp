@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hardware counters of this process and the threads and processes it starts, where the kernel offers them.
+// Hardware counters of this process and the threads and processes that it starts, where the kernel supports
+// them.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +11,9 @@
 
 namespace kacanov::perf {
 
-/// Counts through perf_event_open, in user space only, what runs between start() and stop(): in this process,
-/// and in threads and children made after construction. Virtual machines and containers often offer nothing:
-/// then available() is false and why() is one sentence for the user.
+/// Counts user-space events by perf_event_open between start() and stop(), in this process and in threads and
+/// children created after construction. Virtual machines and containers often have no counters: then
+/// available() is false and why() returns one sentence for the user.
 class HardwareCounters {
  public:
   HardwareCounters();
@@ -28,10 +29,10 @@ class HardwareCounters {
 
   struct Count {
     std::string_view name;
-    /// Events, scaled up where the counter had to be shared; none if this one is not offered or never ran.
+    /// Number of events, scaled up if the counter was shared; empty if it is not supported or never ran.
     std::optional<double> value;
   };
-  /// "cycles", "instructions", "cache_references", "cache_misses", "branch_misses", in this order.
+  /// Returns "cycles", "instructions", "cache_references", "cache_misses", "branch_misses", in this order.
   std::vector<Count> read() const;
 
  private:

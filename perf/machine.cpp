@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Triad and fused multiply-add loops, best of several.
+// Triad and fused multiply-add loops; the best of several measurements counts.
 #include "machine.hpp"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ constexpr int vector_bytes = 16;
 #endif
 typedef double V __attribute__((vector_size(vector_bytes)));
 
-/// Makes the compiler believe that `v` is used and changed here, in its register.
+/// Makes the compiler assume that `v` is read and written here, in its register.
 [[gnu::always_inline]] inline void keep(V& v) {
 #if defined(__AVX512F__)
   asm volatile("" : "+v"(v));
@@ -59,13 +59,13 @@ double triad_bytes_per_second(int threads) {
 }
 
 double fma_flops_per_second(int threads) {
-  constexpr int chains = 12, rounds = 10'000'000;  // two units of latency four want eight
+  constexpr int chains = 12, rounds = 10'000'000;  // two units of latency four need eight
   const double seconds = best_of(5, [&] {
 #pragma omp parallel num_threads(threads)
     {
       const V factor = 0.999 - V{}, term = 1e-9 - V{};
-      // Named one by one, the chains stay in registers; an array would be stored and fetched each round, and
-      // that would be what is measured.
+      // Separate variables keep the chains in registers; an array would be stored and loaded in each round,
+      // and the loop would measure that.
       V a0{}, a1{}, a2{}, a3{}, a4{}, a5{}, a6{}, a7{}, a8{}, a9{}, a10{}, a11{};
       const auto step = [&](auto&... a) __attribute__((always_inline)) {
         static_assert(sizeof...(a) == chains);

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the machine can do: the two ceilings of a roofline, measured.
+// Measures the two ceilings of the roofline model: memory bandwidth and peak floating-point performance.
 #pragma once
 
 namespace kacanov::perf {
 
-/// Seconds since some moment.
+/// Returns the seconds since an arbitrary fixed moment.
 double now();
 
-/// Bytes a second of a = b + s c over arrays far beyond the caches (24 bytes an entry), `threads` threads.
+/// Returns bytes per second of a = b + s c over arrays far larger than the caches (24 bytes per entry).
 double triad_bytes_per_second(int threads);
 
-/// Double precision operations a second of independent fused multiply-adds in registers, `threads` threads.
+/// Returns double-precision operations per second of independent fused multiply-adds in registers.
 double fma_flops_per_second(int threads);
 
 }  // namespace kacanov::perf

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Assembly on the node graph; the block product keeps a row's sums in registers.
+// Assembly on the node graph; the block product keeps the sums of a row in registers.
 #include "matrices.hpp"
 
 #include <algorithm>

@@ -10,21 +10,21 @@
 
 namespace kacanov::perf {
 
-/// Block CSR, dim × dim blocks stored by columns, and CSR made from it.
+/// A block CSR matrix with dim × dim blocks stored by columns, and the CSR matrix made from it.
 struct Matrices {
   int dim = 3;
-  std::vector<std::int32_t> block_first, block_column;  ///< rows + 1, blocks
+  std::vector<std::int32_t> block_first, block_column;  ///< rows + 1; blocks
   std::vector<double> block;                            ///< blocks × dim²
   std::vector<std::int32_t> first, column;              ///< of the CSR matrix
   std::vector<double> value;
 
-  /// y = A x by blocks.
+  /// Computes y = A x by blocks.
   void apply_blocks(std::span<const double> x, std::span<double> y, int threads) const;
   double bytes_of_blocks() const;
   double bytes_of_csr() const;
 };
 
-/// B(g) of the body, element matrix by element matrix.
+/// Assembles B(g) of the body from element matrices.
 Matrices assemble(const Body& body, std::span<const double> g);
 
 }  // namespace kacanov::perf

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mesh generators: nothing but loops over a grid, random moves and random flips.
+// Mesh generators: loops over a grid, random perturbations and random flips.
 #include "meshes.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ Vec node(const OwnedMesh& mesh, Index i) {
   return {mesh.coordinates[3 * at(i)], mesh.coordinates[3 * at(i) + 1], mesh.coordinates[3 * at(i) + 2]};
 }
 
-/// Six times the volume of tetrahedron abcd.
+/// Returns six times the volume of tetrahedron abcd.
 double determinant(const OwnedMesh& mesh, Index a, Index b, Index c, Index d) {
   const Vec o = node(mesh, a), p = node(mesh, b), q = node(mesh, c), r = node(mesh, d);
   const Vec u{p[0] - o[0], p[1] - o[1], p[2] - o[2]}, v{q[0] - o[0], q[1] - o[1], q[2] - o[2]},
@@ -32,7 +32,7 @@ double determinant(const OwnedMesh& mesh, Index a, Index b, Index c, Index d) {
          u[2] * (v[0] * w[1] - v[1] * w[0]);
 }
 
-/// Linear connectivity and coordinates to quadratic, a new node on every edge.
+/// Converts a linear mesh to a quadratic one, with a new node on every edge.
 void raise_order(OwnedMesh& mesh) {
   const Cell& type = cell(mesh.type);
   const auto dim = at(type.dim), corners_of = at(type.corners);
@@ -56,7 +56,7 @@ struct Flipper {
   OwnedMesh& mesh;
   std::mt19937 random;
   std::map<std::array<Index, 3>, std::vector<Index>> sides;  ///< sorted face → its elements
-  double least;                                              ///< smallest determinant a flip may make
+  double least;                                              ///< smallest determinant allowed after a flip
 
   Index* tet(Index e) { return &mesh.connectivity[4 * at(e)]; }
 
@@ -80,7 +80,7 @@ struct Flipper {
     attach(e);
   }
 
-  /// Two tetrahedra on one face become three round the edge between their apexes.
+  /// Replaces two tetrahedra on one face by three around the edge between their apexes.
   void two_to_three(Index e, int opposite) {
     const auto f = face(tet(e), opposite);
     const auto& both = sides[f];
@@ -101,9 +101,10 @@ struct Flipper {
     for (std::size_t i = 0; i < 3; ++i) set(target[i], below, apex, r[i], r[(i + 1) % 3]);
   }
 
-  /// Three tetrahedra round the edge (p, q) of element e become two. Returns an element that is left over.
+  /// Replaces three tetrahedra around the edge (p, q) of element e by two. Returns the number of the element
+  /// left over.
   Index three_to_two(Index e, Index p, Index q) {
-    std::vector<Index> ring{e};  // walk round the edge over the faces that hold it
+    std::vector<Index> ring{e};  // walk around the edge over the faces that contain it
     std::vector<Index> others;
     for (int a = 0; a < 4; ++a)
       if (tet(e)[a] != p && tet(e)[a] != q) others.push_back(tet(e)[a]);
@@ -175,7 +176,7 @@ OwnedMesh box(ElementType type, std::array<int, 3> cells, std::array<double, 3> 
 void jitter(OwnedMesh& mesh, double amount, unsigned seed) {
   const std::size_t dim = dimension(mesh.type);
   const std::size_t nodes = nodes_per_element(mesh.type);
-  std::array<double, 3> step;  // the extent of the smallest element along each axis
+  std::array<double, 3> step;  // extent of the smallest element along each axis
   step.fill(std::numeric_limits<double>::max());
   for (std::size_t e = 0; e < mesh.connectivity.size() / nodes; ++e)
     for (std::size_t k = 0; k < dim; ++k) {

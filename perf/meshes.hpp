@@ -13,27 +13,27 @@ namespace kacanov::meshes {
 struct OwnedMesh {
   ElementType type = ElementType::tet4;
   std::vector<double> coordinates;         ///< nodes × dim
-  std::vector<std::int32_t> connectivity;  ///< elements × nodes an element
+  std::vector<std::int32_t> connectivity;  ///< elements × nodes per element
 
   MeshView view() const noexcept { return {type, coordinates, connectivity}; }
 };
 
-/// A box of `cells` cubes (squares in 2D, third entry ignored), each cut as Cell::box says. Quadratic
-/// elements get straight sides.
+/// Returns a box of `cells` cubes (squares in 2D, third entry ignored), each cut as by Cell::box. Quadratic
+/// elements have straight sides.
 OwnedMesh box(ElementType type, std::array<int, 3> cells, std::array<double, 3> size);
 
-/// Moves every node, mid-side ones too, by up to `amount` × the smallest extent an element has along each
+/// Moves every node, mid-side nodes too, by up to `amount` times the smallest extent of an element along each
 /// axis.
 void jitter(OwnedMesh& mesh, double amount, unsigned seed);
 
-/// Puts the mid-side nodes, if any, halfway between their vertices.
+/// Moves the mid-side nodes, if any, halfway between their vertices.
 void straighten(OwnedMesh& mesh);
 
-/// Random 2–3 and 3–2 flips of a tet4 mesh: the irregular connectivity of an unstructured mesh. `rounds`
-/// sweeps over the elements; every tetrahedron keeps a positive volume.
+/// Applies random 2–3 and 3–2 flips to a tet4 mesh, which give it the connectivity of an unstructured mesh,
+/// in `rounds` sweeps over the elements; every tetrahedron keeps a positive volume.
 void flip(OwnedMesh& mesh, int rounds, unsigned seed);
 
-/// Shuffles nodes and elements: the worst numbering a caller can have.
+/// Shuffles nodes and elements: the worst numbering that a caller can have.
 void shuffle(OwnedMesh& mesh, unsigned seed);
 
 }  // namespace kacanov::meshes

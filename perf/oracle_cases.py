@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The small cases of verify_answers: every law, element, obstacle and friction, in all units, and what strains the arithmetic."""
+"""The small cases of verify_answers: every law, element, obstacle and friction, all units, and ill-conditioned
+cases."""
 import math
 import random
 
@@ -13,11 +14,11 @@ POISSON = (0.0, 0.2, 0.3, 0.3, 0.3, 0.45, 0.499, -0.4)
 
 
 class Draw:
-    """One case's dice. All lengths are multiples of `length`, all stresses of `stress`."""
+    """Random generator of one case. All lengths are multiples of `length`, all stresses of `stress`."""
 
     def __init__(self, seed, index):
         self.rng = rng = random.Random(f"{seed} {index}")
-        # The first of every kind come round in turn, so that few cases have all of them.
+        # These cycle with the index, so that few cases cover all of them.
         self.element = ELEMENTS[index % len(ELEMENTS)]
         self.law = LAWS[index // 2 % len(LAWS)]
         self.obstacle = OBSTACLES[index // 3 % len(OBSTACLES)]
@@ -25,7 +26,7 @@ class Draw:
         self.dim = 2 if self.element in ("tri3", "quad4") else 3
         self.length = 10 ** rng.uniform(-3, 3)
         self.young = 10 ** rng.uniform(-2, 11)
-        self.strain = 10 ** rng.uniform(-5, -2.3)  # that the loads would make in a bar
+        self.strain = 10 ** rng.uniform(-5, -2.3)  # strain that the loads would cause in a bar
         self.size = [self.length * rng.uniform(*limits) for limits in ((1.0, 3.0), (0.5, 1.5), (0.5, 1.5))][:self.dim]
         self.poisson = rng.choice(POISSON)
         self.bbar = self.element in ("quad4", "hex8") and rng.random() < 0.5
@@ -41,7 +42,7 @@ class Draw:
         shear = self.young / (2 * (1 + self.poisson))
         law = {"type": self.law}
         squared = self.law != "linear" and rng.random() < 0.2
-        if squared:  # far from the range where it softens
+        if squared:  # far from the softening range
             law["argument"], x0 = "squared", (3 * x0) ** 2
         if self.law == "table":
             law["points"] = [[0, 0]] + [[x * x0, 2 * shear * s * x0] for x, s in ((1, 1), (2, 1.7), (5, 3.0), (50, 8.0))]
@@ -59,7 +60,7 @@ class Draw:
         return entry
 
     def contact(self, on, gap):
-        """An obstacle under the body's bottom, `gap` away."""
+        """Returns an obstacle under the body's bottom, at distance `gap`."""
         height = self.size[-1]
         middle = self.vector(*[0.5 * self.size[0], 0.0], *([0.5 * self.size[1]] if self.dim == 3 else []))
         radius = self.length * self.rng.uniform(1.0, 5.0)
@@ -81,7 +82,7 @@ class Draw:
 
 
 def clamped(d):
-    """Clamped at the left, pushed down on its obstacle."""
+    """Clamped at the left, pressed down onto its obstacle."""
     stress, rng = d.strain * d.young, d.rng
     bend = stress * (d.size[-1] / d.size[0]) ** 2
     boundary = [{"on": "left", "displacement": [0.0] * d.dim}]
@@ -96,7 +97,7 @@ def clamped(d):
 
 
 def pressed(d):
-    """Moved by its top on to its obstacle, and along it."""
+    """Moved by its top onto its obstacle, and along it."""
     down = d.strain * d.size[-1]
     gap = d.rng.choice((0.0, 0.0, 1.0, 100.0)) * down
     aside = d.rng.uniform(-0.5, 0.5) * down
@@ -104,7 +105,7 @@ def pressed(d):
 
 
 def guided(d):
-    """Under pressure between guides: what stands on contact alone, along its normal."""
+    """Under pressure between guides: only contact supports it in the normal direction."""
     stress = d.strain * d.young
     boundary = [{"on": "top", "traction": d.vector(0.0, -stress)}, {"on": "left", "displacement": [0.0] + [None] * (d.dim - 1)}]
     if d.dim == 3:
@@ -113,18 +114,18 @@ def guided(d):
 
 
 def add_plane(case, d, body, rng):
-    """What a mesh in 2D is of, by dice of its own."""
+    """Draws plane state and thickness of a 2D case from a separate generator."""
     if d.dim == 3:
         return ""
     plane = rng.choice(("strain", "stress", "axisymmetric"))
-    if plane == "axisymmetric" and body and min(x[0] for x in body.nodes) < 0:  # it leans over the axis
+    if plane == "axisymmetric" and body and min(x[0] for x in body.nodes) < 0:  # the body extends beyond the axis
         plane = "stress"
     if plane != "strain":
         case["plane"] = plane
     if plane == "stress":
         case["material"][0].pop("bbar", None)
     if plane == "axisymmetric":
-        for entry in case["boundary"]:  # nodes on the axis stay there
+        for entry in case["boundary"]:  # fix nodes on the axis
             if entry["on"] == "top" and "displacement" in entry:
                 entry["displacement"][0] = 0.0
     elif rng.random() < 0.5:
@@ -133,7 +134,7 @@ def add_plane(case, d, body, rng):
 
 
 def add_conditions(case, d, rng):
-    """Springs and temperature besides, by dice of their own: the rest of the case stays what it is without."""
+    """Adds springs and temperature from a separate generator, so that the rest of the case does not change."""
     stiffness = d.young / d.size[-1]
     kinds = rng.sample(("bed", "normal bed", "node springs", "warmth", "warm part", "slant"), rng.randint(1, 3))
     for kind in kinds:
@@ -142,7 +143,7 @@ def add_conditions(case, d, rng):
                 stiffness * rng.choice((0.0, 0.01, 1.0, 30.0)) for _ in d.size[1:]] + [stiffness * 0.1]})
         elif kind == "normal bed":
             case["boundary"].append({"on": rng.choice(("right", "top", "all")), "spring": stiffness * 10 ** rng.uniform(-2, 2)})
-        elif kind == "slant":  # of what holds nothing else there
+        elif kind == "slant":  # oblique support, only with no other on the top
             turn = rng.uniform(0.1, 1.4)
             c, s = math.cos(turn), math.sin(turn)
             frame = [[c, s], [-s, c]] if d.dim == 2 else [[c, 0.6 * s, 0.8 * s], [-s, 0.6 * c, 0.8 * c], [0.0, -0.8, 0.6]]
@@ -163,7 +164,7 @@ def add_conditions(case, d, rng):
 
 
 def add_history(case, d, rng):
-    """Several load steps with slip references, and obstacles that move, are pushed or faced again, by dice of their own."""
+    """Adds load steps with slip references and moving, pushed or relinearised obstacles, from a separate generator."""
     count = rng.randint(2, 4)
     flat = case.get("plane") == "axisymmetric"
     steps, displacement = [], 0.0
@@ -204,7 +205,7 @@ def add_history(case, d, rng):
 
 
 def oracle_case(seed, index, conditions=False, history=False):
-    """Name, case, and a body to be written as a mesh file or None; the same for the same seed and index."""
+    """Returns name, case, and a body to be written as a mesh file or None; the same for the same seed and index."""
     d = Draw(seed, index)
     kind = d.rng.choice((clamped, clamped, pressed, guided) if d.obstacle in ("plane", "gap") else (clamped, pressed)
                         if d.obstacle != "none" else (clamped,))
@@ -237,7 +238,7 @@ def oracle_case(seed, index, conditions=False, history=False):
 
 
 def beam(element, **changes):
-    """A clamped bar bent on to a floor."""
+    """A clamped bar bent onto a floor."""
     dim = 2 if element in ("tri3", "quad4") else 3
     size, cells = ([4, 1], [8, 3]) if dim == 2 else ([4, 1, 1], [6, 2, 2])
     down = [0.0] * dim
@@ -264,7 +265,8 @@ def graded(element, ratio, rng_seed=1):
 
 
 def straining_cases():
-    """Name, case, body or None, and whether rounding may stop it: stiffness ratios, Poisson's ratios, graded meshes."""
+    """Yields name, case, body or None, and whether rounding may limit it: stiffness and Poisson's ratios, graded
+    meshes."""
     for element in ELEMENTS:
         dim = 2 if element in ("tri3", "quad4") else 3
         half = {"box": [[2.0] + [0.0] * (dim - 1), [4.0] + [1.0] * (dim - 1)]}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A power law twice, on handles of the C interface: built in, and as a law of the caller's own.
+// A power law on handles of the C interface: built in, and as a user-defined law.
 #include "own_law.hpp"
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A power law twice, on handles of the C interface: built in, and as a law of the caller's own.
+// A power law on handles of the C interface: built in, and as a user-defined law.
 #pragma once
 
 #include <memory>
@@ -10,10 +10,10 @@
 
 namespace kacanov::perf {
 
-/// The body whose points are all beyond yield at displacements of the size of an element.
+/// A body whose points are all beyond yield at displacements of the size of an element.
 class PowerLawBody {
  public:
-  /// `mesh` has to outlive it. `own`: the law comes as a callback, which all threads may ask.
+  /// `mesh` must outlive this object. With `own` the law is a callback, which all threads may call.
   PowerLawBody(const meshes::OwnedMesh& mesh, bool own, int threads);
   void residual(std::span<const double> u, std::span<double> f);
   void update_tangent(std::span<const double> u);

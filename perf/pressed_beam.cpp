@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The body of the benchmarks of solves.
+// The body of the benchmarks of solves: a pressed beam.
 #include "pressed_beam.hpp"
 
 #include <cmath>

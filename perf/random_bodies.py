@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Bodies for the random cases of hard_cases: lattices of cells, bent into shape, cut into elements, written for Gmsh."""
+"""Bodies for the random cases of hard_cases: lattices of cells, deformed, divided into elements, written for Gmsh."""
 import itertools
 import math
 from dataclasses import dataclass, field
@@ -14,7 +14,7 @@ KINDS = {"tri3": (2, 1), "quad4": (3, 1), "tet4": (4, 2), "tet10": (11, 9), "hex
 class Body:
     element: str
     nodes: list = field(default_factory=list)     # coordinates
-    elements: list = field(default_factory=list)  # node numbers from 0
+    elements: list = field(default_factory=list)  # zero-based node numbers
     facets: dict = field(default_factory=dict)    # name: lists of node numbers
 
     @property
@@ -22,7 +22,7 @@ class Body:
         return 2 if self.element in FLAT else 3
 
     def write(self, path):
-        """Gmsh 2.2."""
+        """Writes Gmsh 2.2."""
         kind, facet_kind = KINDS[self.element]
         names = sorted(self.facets)
         lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", str(len(names) + 1)]
@@ -42,8 +42,9 @@ def determinant(rows):
 
 
 def lattice(cells, element, place, keep=lambda *cell: True, name=None):
-    """A body of the cells that `keep` keeps; `place` maps a lattice point in [0, 1]^dim to its position. Facets are
-    named left, right, front, back, bottom, top, those that a missing cell has laid bare `inner` and that name;
+    """Returns a body of the cells for which `keep` returns true; `place` maps a lattice point in [0, 1]^dim to its
+    position.
+    Facets are named left, right, front, back, bottom, top, and `inner` plus that name if a missing cell exposes them;
     `name` renames them."""
     dim = len(cells)
     body, number = Body(element), {}
@@ -82,7 +83,7 @@ def lattice(cells, element, place, keep=lambda *cell: True, name=None):
             side = sides[axis][end] if outer else f"inner {sides[axis][end]}"
             offsets = [o for o in itertools.product((0, 1), repeat=dim) if o[axis] == end]
             if dim == 3:
-                offsets[2], offsets[3] = offsets[3], offsets[2]  # round the square
+                offsets[2], offsets[3] = offsets[3], offsets[2]  # counter-clockwise
             around = [corner(*o) for o in offsets]
             facets = [around] if dim == 2 or element == "hex8" else [around[:3], [around[0], *around[2:]]]
             body.facets.setdefault(name(side) if name else side, []).extend(facets)
@@ -107,7 +108,7 @@ def add_middles(body):
 
 
 def join(first, second):
-    """Two pieces as one mesh; the names of the second get a prime."""
+    """Returns two pieces as one mesh; the names of the second get a prime."""
     offset = len(first.nodes)
     joined = Body(first.element, first.nodes + second.nodes,
                   first.elements + [[n + offset for n in e] for e in second.elements], dict(first.facets))
@@ -117,7 +118,7 @@ def join(first, second):
 
 
 def cells_for(size, element, most, rng):
-    """Cells along each side, about as long as wide, so that there are at most about `most` nodes."""
+    """Returns the cells along each side, about as long as wide, for at most about `most` nodes."""
     per_cell = {"tri3": 1, "quad4": 1, "tet4": 1, "hex8": 1, "tet10": 8}[element]
     target = rng.uniform(0.25, 1.0) * most / per_cell
     h = (math.prod(size) / target) ** (1 / len(size))
@@ -125,7 +126,7 @@ def cells_for(size, element, most, rng):
 
 
 def block(size, element, most, rng, distorted=False):
-    """A box; distorted: leaning, tapered, its inner lines waved. The bottom stays what it is."""
+    """Returns a box; distorted: sheared, tapered, with wavy inner lines. The bottom does not change."""
     cells = cells_for(size, element, most, rng)
     lean, taper, wave = (rng.uniform(-0.25, 0.25) for _ in range(3)) if distorted else (0.0, 0.0, 0.0)
 
@@ -138,7 +139,7 @@ def block(size, element, most, rng, distorted=False):
 
 
 def half_ball(radius, element, most, rng):
-    """Lowest point at the origin; facets `round` and `flat`. Half a disc in 2D."""
+    """Returns half a ball (half a disc in 2D), lowest point at the origin; facets `round` and `flat`."""
     dim = 2 if element in FLAT else 3
     n = cells_for([2.0] * (dim - 1) + [1.0], element, most, rng)
     n = [max(2, c + c % 2) for c in n[:-1]] + [n[-1]]
@@ -159,7 +160,8 @@ def half_ball(radius, element, most, rng):
 
 
 def wedge(width, height, depth, slope, element, most, rng):
-    """A trapezium, symmetric to x = 0, `width` wide at its bottom and wider by `slope` times the height each side above."""
+    """Returns a trapezium symmetric about x = 0, `width` wide at its bottom, wider by `slope` per height on each side
+    above."""
     size = [width, height] if element in FLAT else [width, depth, height]
     cells = cells_for(size, element, most, rng)
 
@@ -170,7 +172,7 @@ def wedge(width, height, depth, slope, element, most, rng):
 
 
 def bracket(size, element, most, rng):
-    """An L: a foot along x and an upright at x = 0, each a third of the size thick."""
+    """Returns an L: a foot along x and an upright at x = 0, each a third of the size thick."""
     cells = cells_for(size, element, most * 1.8, rng)
     for axis in (0, -1):
         cells[axis] = max(3, round(cells[axis] / 3) * 3)
@@ -179,7 +181,8 @@ def bracket(size, element, most, rng):
 
 
 def hook(radius, thickness, element, most, rng):
-    """Part of a ring about the origin from straight up (`end`) over the right side; facets `inside`, `outside`, `tip`."""
+    """Returns part of a ring about the origin, from the top (`end`) over the right; facets `inside`, `outside`,
+    `tip`."""
     angle = rng.uniform(0.6, 1.3) * math.pi
     size = [radius * angle, thickness] if element in FLAT else [radius * angle, rng.uniform(0.5, 1.5) * thickness, thickness]
     cells = cells_for(size, element, most, rng)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The random cases of hard_cases: what engineers do with friction, in sizes that are solved in a blink."""
+"""The random cases of hard_cases: typical friction problems of engineers, small enough to be solved instantly."""
 import math
 import random
 
@@ -12,7 +12,7 @@ STEEL = 250.0  # yield stress
 
 
 def laws(unit):
-    """Eight laws; those of unit bodies yield at a stress of 1 with a Young's modulus of 800."""
+    """Returns eight laws; those of unit bodies yield at a stress of 1 with a Young's modulus of 800."""
     stress = 1.0 if unit else STEEL
     scale = stress / STEEL
     return {
@@ -28,29 +28,29 @@ def laws(unit):
 
 
 class Draw:
-    """One case's dice, and the parts that its kinds share."""
+    """Random generator of one case, with the parts that its kinds share."""
 
     def __init__(self, seed):
         self.rng = rng = random.Random(seed)
         self.element = rng.choice(ELEMENTS)
         self.dim = 2 if self.element == "tri3" else 3
-        if self.dim == 2:  # dice of its own: those of earlier seeds stay what they were
+        if self.dim == 2:  # a separate generator, so that cases of earlier seeds do not change
             self.element = random.Random(f"{seed} element").choice(("tri3", "quad4"))
         self.unit = rng.random() < 0.3
         self.scale = 1.0 if self.unit else rng.choice((1.0, 10.0, 40.0))
         self.stress = 1.0 if self.unit else STEEL
         self.young = 800.0 if self.unit else 210000.0
         self.law = rng.choice(sorted(laws(self.unit)))
-        self.load = self.stress * 0.5 * 12 ** rng.random()  # half to six times what yields
+        self.load = self.stress * 0.5 * 12 ** rng.random()  # half to six times the yield load
         self.mu = 0.0 if rng.random() < 0.15 else rng.choice((0.05, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0, 1.5))
         self.tresca = rng.random() < 0.12 and self.mu > 0
 
     def vector(self, along, up, across=0.0):
-        """x, (y,) z."""
+        """Returns x, (y,) z."""
         return [along, up] if self.dim == 2 else [along, across, up]
 
     def size(self, *slenderness):
-        """Length and height, each between its limits; a depth in 3D."""
+        """Returns length and height, each between its limits; and a depth in 3D."""
         length, height = (self.scale * self.rng.uniform(*limits) for limits in slenderness)
         return [length, height] if self.dim == 2 else [length, self.scale * self.rng.uniform(0.4, 1.2), height]
 
@@ -58,12 +58,12 @@ class Draw:
         return [0.0] * self.dim
 
     def only(self, **given):
-        """A displacement with these components given."""
+        """Returns a displacement with these components prescribed."""
         names = "xz" if self.dim == 2 else "xyz"
         return [given.get(name) for name in names]
 
     def gap(self, size):
-        """None in half of the cases, else up to the body's size."""
+        """Returns 0 in half of the cases, otherwise up to the body's size."""
         return 0.0 if self.rng.random() < 0.5 else size * 10 ** self.rng.uniform(-3, 0)
 
     def contact(self, on, point, normal, mu=None):
@@ -80,12 +80,13 @@ class Draw:
         return entry
 
     def guides(self):
-        """What holds a frictionless body in the tangential directions, on sides that are free to slide up and down."""
+        """Returns guides that support a frictionless body tangentially, on sides that may slide up and down."""
         guides = [{"on": "left", "displacement": self.only(x=0.0)}]
         return guides + ([{"on": "front", "displacement": self.only(y=0.0)}] if self.dim == 3 else [])
 
     def sideways(self, most, size):
-        """Shear traction over pressure: mostly what friction holds (the last of it is hardest), and no tipping over."""
+        """Returns shear over pressure: mostly what friction can carry (values near the limit are hardest), without
+        tipping over."""
         share = self.rng.choice((0.0, 0.3, 0.6, 0.9, 0.97))
         if self.rng.random() < 0.06:
             share = self.rng.uniform(1.05, 2.0)
@@ -93,7 +94,7 @@ class Draw:
 
 
 def press(d):
-    """A body on the floor that only friction holds, under pressure and shear."""
+    """A body on the floor that only friction supports, under pressure and shear."""
     size = d.size((0.8, 3.0), (0.3, 1.2))
     body = bodies.block(size, d.element, MOST_NODES, d.rng, distorted=d.rng.random() < 0.5)
     p, turn = d.load, d.rng.uniform(0, 2 * math.pi)
@@ -105,7 +106,7 @@ def press(d):
 
 
 def press_distant(d):
-    """Pushed or pressed on to a floor some way off, along guides or by its top."""
+    """Pushed or pressed onto a floor at a distance, along guides or by its top."""
     size = d.size((0.6, 3.0), (0.4, 1.5))
     body = bodies.block(size, d.element, MOST_NODES, d.rng, distorted=d.rng.random() < 0.3)
     gap = d.gap(size[-1])
@@ -138,7 +139,7 @@ def ball_on_floor(d):
 
 
 def cantilever(d):
-    """Clamped at the left, bent on to a floor or lying on it, pulled and pushed along."""
+    """Clamped at the left, bent onto a floor or lying on it, pulled and pushed along."""
     size = d.size((2.0, 6.0), (0.4, 1.0))
     body = bodies.block(size, d.element, MOST_NODES, d.rng, distorted=d.rng.random() < 0.3)
     length, height = size[0], size[-1]
@@ -194,7 +195,7 @@ def notch(d):
 
 
 def bracket(d):
-    """An L on its foot, its back to the wall, the upright or the foot's end pulled."""
+    """An L on its foot, its back to the wall, pulled at the upright or at the foot's end."""
     size = d.size((1.2, 2.5), (1.2, 2.5))
     body = bodies.bracket(size, d.element, MOST_NODES, d.rng)
     q = d.load * d.rng.choice((0.05, 0.2))
@@ -272,7 +273,7 @@ KINDS = {press: 6, press_distant: 5, ball_on_floor: 4, cantilever: 5, corner: 6,
 
 
 def random_case(seed, index):
-    """Name, case without the mesh's file, body; the same for the same seed and index."""
+    """Returns name, case without the mesh's file, body; the same for the same seed and index."""
     d = Draw(f"{seed} {index}")
     kind = d.rng.choices(list(KINDS), list(KINDS.values()))[0]
     body, boundary, contact = kind(d)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tables of the benchmarks as they are printed."""
+"""Text tables of the benchmarks."""
 
 
 def text(value, form="{:.2f}"):
@@ -7,7 +7,7 @@ def text(value, form="{:.2f}"):
 
 
 def table(header, rows):
-    """Markdown, columns aligned."""
+    """Returns a Markdown table with aligned columns."""
     rows = [[text(cell) for cell in row] for row in rows]
     widths = [max(len(header[i]), *(len(row[i]) for row in rows)) if rows else len(header[i]) for i in range(len(header))]
     def line(cells):

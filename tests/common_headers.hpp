@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What most tests include, to be parsed once for all where headers are precompiled. No test relies on it.
+// Headers that most tests include, for precompilation. No test relies on it.
 #pragma once
 
 #include <doctest/doctest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Eigen's decompositions, for tests.
+// Dense decompositions by Eigen, for tests.
 #include "dense_algebra.hpp"
 
 #include <Eigen/Dense>

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The kernels against their plain references.
+# Tests of the kernels against their reference implementations.
 add_library(kacanov_dense_algebra STATIC dense_algebra.cpp)
 target_link_libraries(kacanov_dense_algebra PUBLIC Eigen3::Eigen PRIVATE kacanov_warnings)
 target_compile_features(kacanov_dense_algebra PUBLIC cxx_std_20)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Entry of the tests that need MPI: a failure on any rank is a failure of all.
+// Entry point of the tests with MPI: a failure on any rank fails all ranks.
 #include <mpi.h>
 #define DOCTEST_CONFIG_IMPLEMENT
 #include <doctest/doctest.h>

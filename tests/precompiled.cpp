@@ -1,2 +1,2 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nothing: a target with a source is what headers are precompiled in.
+// An empty source file: CMake needs a target with a source to precompile headers.

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The Python package's own tests, on the package in the build's folder: ctest -L python. The gate runs them on a wheel.
-file(GLOB petsc4py "/usr/lib/petscdir/*/*-real/lib/python3/dist-packages")  # where Debian has it without its -dev package
+# Tests of the Python package in the build folder: ctest -L python. CI runs them on a wheel.
+file(GLOB petsc4py "/usr/lib/petscdir/*/*-real/lib/python3/dist-packages")  # Debian's place without the -dev package
 if(petsc4py)
   list(GET petsc4py 0 petsc4py)
 endif()

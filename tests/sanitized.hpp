@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether tests are built with the address sanitizer, whose shadow memory knows no limit and takes its time.
+// The constant `sanitized`: true in builds with the address sanitizer, which need much more memory and time.
 #pragma once
 
 #if defined(__SANITIZE_ADDRESS__)  // GCC
@@ -12,8 +12,8 @@
 
 namespace kacanov::testing {
 
-/// For `* doctest::skip(sanitized)` behind the name of a case that is about numbers or times of larger
-/// bodies: others go through the same code. The test program runs it all the same with --no-skip.
+/// For `* doctest::skip(sanitized)` on cases about the accuracy or speed of larger bodies, whose code other
+/// cases cover. With --no-skip the test program runs them anyway.
 #ifdef KACANOV_TESTS_SANITIZED
 inline constexpr bool sanitized = true;
 #else

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The rooms of the solver, one program each, and whole solves.
+# Tests of the solver: one program per module, and whole solves.
 kacanov_test(problem IN solver
   MPI SOURCES solver/obstacles_test.cpp solver/equal_faces_test.cpp solver/problem_contact_test.cpp solver/problem_loads_test.cpp
           solver/problem_rigid_modes_test.cpp solver/problem_validate_test.cpp
@@ -56,7 +56,7 @@ kacanov_test(nodal_stress IN solver
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal
   RANKS 1 2 3)
 
-# The second solver.
+# The dense reference solver, independent of the solver under test.
 add_library(kacanov_dense_solver STATIC solver/dense_body.cpp solver/dense_laws.cpp solver/dense_solver.cpp)
 target_link_libraries(kacanov_dense_solver PUBLIC kacanov_solver_internal kacanov_kernels_internal Eigen3::Eigen
   PRIVATE kacanov_warnings)
@@ -138,7 +138,7 @@ kacanov_test(pressure_multigrid IN solver
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal
   RANKS 1 2 3)
 
-# Whole runs.
+# Whole runs against reference values.
 if(KACANOV_SLOW_TESTS)
   find_package(nlohmann_json REQUIRED)
   kacanov_test(reference_cases

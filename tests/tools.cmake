@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Case files, file formats, pictures, and the program as its users start it.
+# Tests of case files, file formats, pictures, and the program as users run it.
 find_package(nlohmann_json REQUIRED)
 kacanov_test(case
   SOURCES tools/case_errors_test.cpp tools/case_values_test.cpp
@@ -12,8 +12,8 @@ find_package(ZLIB REQUIRED)
 add_library(kacanov_png_writer OBJECT tools/png_writer.cpp)
 target_compile_features(kacanov_png_writer PUBLIC cxx_std_20)
 target_link_libraries(kacanov_png_writer PUBLIC ZLIB::ZLIB PRIVATE kacanov_warnings)
-# The program as its users start it. Most runs are of one rank, and ranks that wait give way: two tests at a time take
-# two thirds of the time that they take one after the other.
+# Tests of the program as users run it. Most runs use one rank, and waiting ranks yield: two tests at a time take two
+# thirds of the sequential time.
 foreach(area conditions decks errors failures files history memory meshes mixed obstacles partition readers restart runs series signals temperature)
   kacanov_test(program_${area} IN program SOURCES tools/program_${area}_test.cpp LIBRARIES kacanov_program_runner)
 endforeach()
@@ -23,8 +23,8 @@ target_link_libraries(test_program PRIVATE kacanov_png_writer)
 kacanov_test(program_crafted IN program
   SOURCES tools/program_crafted_test.cpp
   LIBRARIES kacanov_program_runner kacanov_program kacanov_solver_internal)
-# Collective decisions on up to eight ranks of one world. All mixes, more than twenty
-# minutes: mpiexec -n 8 test_collective --no-skip
+# Collective decisions on up to eight ranks of one communicator. All combinations, which take more than twenty minutes:
+# mpiexec -n 8 test_collective --no-skip
 kacanov_test(collective MPI SOURCES tools/collective_test.cpp LIBRARIES kacanov_program RANKS 8)
 kacanov_test(program_hard IN program NUMBERS
   SOURCES tools/program_hard_test.cpp LIBRARIES kacanov_program_runner)
@@ -47,10 +47,10 @@ target_compile_definitions(test_program PRIVATE
   KACANOV_HARD_CASES="${PROJECT_SOURCE_DIR}/tests/cases/hard")
 add_dependencies(test_program kacanov kacanov_early_thread)
 
-# Small random cases, each verified from its files; perf/verify_answers draws 500 by itself.
+# Small random cases, each verified from its files; perf/verify_answers draws 500 by default.
 find_package(Python3 COMPONENTS Interpreter)
 if(Python3_FOUND)
-  if(NOT KACANOV_SANITIZE)  # where those with more conditions do
+  if(NOT KACANOV_SANITIZE)  # under the sanitizers verified_conditions covers this
     add_test(NAME verified_answers
       COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/perf/verify_answers" $<TARGET_FILE:kacanov> --count 60)
     kacanov_test_properties(verified_answers 1)
@@ -65,8 +65,8 @@ if(Python3_FOUND)
   kacanov_test_properties(verified_history 1)
 endif()
 
-# What a small run does where files, memory or the power fail, and when it is killed: places far apart here,
-# every one with perf/endure by itself. The preloaded library and the sanitizers do not mix.
+# Small runs with failing files, memory or power, or killed: at few places here, at every place with perf/endure. The
+# preloaded library cannot be combined with the sanitizers.
 add_library(kacanov_faults MODULE tools/faults.cpp)
 target_link_libraries(kacanov_faults PRIVATE ${CMAKE_DL_LIBS} kacanov_warnings)
 target_compile_features(kacanov_faults PRIVATE cxx_std_20)
@@ -77,7 +77,7 @@ if(Python3_FOUND AND NOT KACANOV_SANITIZE)
   kacanov_test_properties(endured_faults 1)
 endif()
 
-# The front door in C; its C client, as it is, is what consumes an installation, too.
+# The solve interface in C; its C client is also the one that consumes an installation.
 kacanov_test(solve_c SOURCES tools/solve_c_test.cpp LIBRARIES kacanov_program_runner kacanov_solve)
 add_dependencies(test_solve_c kacanov)
 kacanov_test(host_locale SOURCES tools/host_locale_test.cpp LIBRARIES kacanov_program_runner kacanov_solve)
@@ -91,7 +91,7 @@ if(KACANOV_SANITIZE)
 endif()
 add_test(NAME solve_c_client COMMAND solve_client)
 kacanov_test_properties(solve_c_client 1)
-set_tests_properties(solve_c_client PROPERTIES FAIL_REGULAR_EXPRESSION ".")  # nothing is printed
+set_tests_properties(solve_c_client PROPERTIES FAIL_REGULAR_EXPRESSION ".")  # the client prints nothing
 if(Python3_FOUND AND CMAKE_NM AND NOT KACANOV_SANITIZE)
   add_test(NAME solve_c_symbols COMMAND "${Python3_EXECUTABLE}" "${CMAKE_CURRENT_SOURCE_DIR}/embedding/symbols.py"
     $<TARGET_FILE:kacanov_solve> "${PROJECT_SOURCE_DIR}/tools/include/kacanov/kacanov_solve.h")
@@ -119,14 +119,14 @@ kacanov_test(vtu SOURCES tools/vtu_test.cpp tools/vtu_reader_test.cpp LIBRARIES 
 
 kacanov_test(picture SOURCES tools/picture_test.cpp LIBRARIES kacanov_pictures)
 
-# The schema of case files, wherever a validator is (Debian: python3-jsonschema), else what can be said without.
+# The schema of case files, with a validator if there is one (Debian: python3-jsonschema), otherwise without.
 if(Python3_FOUND)
   set(python "${Python3_EXECUTABLE}")
   execute_process(COMMAND /usr/bin/python3 -c "import jsonschema" RESULT_VARIABLE without OUTPUT_QUIET ERROR_QUIET)
   if(NOT without)
     set(python /usr/bin/python3)
   endif()
-  if(NOT KACANOV_SANITIZE)  # hundreds of cases, which tests/fuzz has there
+  if(NOT KACANOV_SANITIZE)  # hundreds of cases; tests/fuzz covers them there
     add_test(NAME case_schema
       COMMAND "${python}" -B "${CMAKE_CURRENT_SOURCE_DIR}/tools/schema_test.py" $<TARGET_FILE:kacanov> "${PROJECT_SOURCE_DIR}")
     kacanov_test_properties(case_schema 1)
@@ -138,7 +138,7 @@ endif()
 
 kacanov_test(report_data SOURCES tools/report_page_test.cpp LIBRARIES kacanov_program)
 
-# report.html as HTML, and in a browser wherever there is one (Debian: chromium).
+# report.html as HTML, and in a browser if there is one (Debian: chromium).
 if(Python3_FOUND)
   find_program(KACANOV_CHROMIUM chromium)
   mark_as_advanced(KACANOV_CHROMIUM)
@@ -150,19 +150,19 @@ if(Python3_FOUND)
       COMMAND "${Python3_EXECUTABLE}" -B "${CMAKE_CURRENT_SOURCE_DIR}/tools/report_test.py" $<TARGET_FILE:kacanov>
         "${KACANOV_CHROMIUM}")
     kacanov_test_properties(report_in_browser 1)
-    set_tests_properties(report_in_browser PROPERTIES COST 2)  # the longest: it starts early
+    set_tests_properties(report_in_browser PROPERTIES COST 2)  # the longest test starts early
   endif()
 endif()
-if(Python3_FOUND AND NOT KACANOV_SANITIZE)  # what it tests is how good the numbers are
+if(Python3_FOUND AND NOT KACANOV_SANITIZE)  # a test of accuracy
   add_test(NAME first_part
     COMMAND "${Python3_EXECUTABLE}" -B "${CMAKE_CURRENT_SOURCE_DIR}/tools/first_part_test.py" $<TARGET_FILE:kacanov>
       "${PROJECT_SOURCE_DIR}")
   kacanov_test_properties(first_part 1)
 endif()
 
-# What other people's readers make of our files, where there are any (Debian: python3-meshio, python3-vtk9).
+# Output files read by other programs' readers, if installed (Debian: python3-meshio, python3-vtk9).
 set(libraries meshio vtk)
-if(KACANOV_SANITIZE)  # what writes them is tested there by our own readers
+if(KACANOV_SANITIZE)  # the sanitizers run the writers with our own readers
   set(libraries "")
 endif()
 foreach(library IN LISTS libraries)

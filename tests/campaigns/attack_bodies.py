@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Meshes of the random cases: boxes of cells, bent into shape, with groups, written for Gmsh in any numbering."""
+"""Meshes of the random cases: boxes of cells, deformed, with groups, written for Gmsh with arbitrary numbering."""
 import itertools
 import math
 import pathlib
@@ -9,21 +9,21 @@ from dataclasses import dataclass, field
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "perf"))
 from random_bodies import CUBE, KINDS, TET_EDGES, lattice  # noqa: E402
 
-POINT = 15  # Gmsh's number of an element that is a node
+POINT = 15  # Gmsh's number of the element that is a node
 FLAT = ("tri3", "quad4")
 
 
 @dataclass
 class Mesh:
-    """Nodes and elements by place; groups of elements (one per element), facets and nodes by name."""
+    """Nodes and elements by index; named groups of elements (one per element), of facets and of nodes."""
     element: str
     nodes: list
     elements: list
-    parts: dict                                  # name: places of elements
-    facets: dict                                 # name: lists of places of nodes
-    points: dict = field(default_factory=dict)   # name: places of nodes
+    parts: dict                                  # name: indices of elements
+    facets: dict                                 # name: lists of node indices
+    points: dict = field(default_factory=dict)   # name: node indices
     node_tags: list = None
-    element_order: list = None                   # the order in which elements are written
+    element_order: list = None                   # order in which elements are written
 
     @property
     def dim(self):
@@ -33,7 +33,7 @@ class Mesh:
         return self.node_tags or list(range(1, len(self.nodes) + 1))
 
     def write(self, path):
-        """Gmsh 2.2; elements that two groups have are written once per group."""
+        """Writes Gmsh 2.2; elements of two groups are written once per group."""
         tag, dim = self.tags(), self.dim
         kind, facet_kind = KINDS[self.element]
         groups = [(dim, name, kind, [(i, self.elements[i]) for i in places]) for name, places in self.parts.items()]
@@ -54,12 +54,12 @@ class Mesh:
         path.write_text("\n".join(lines) + "\n$EndElements\n")
 
     def surface(self, name):
-        """Places of the nodes of a group of facets."""
+        """Returns the node indices of a group of facets."""
         return sorted({n for facet in self.facets[name] for n in facet})
 
 
 def make(size, cells, element, keep=lambda *cell: True):
-    """The box [0, size] of lattice cells, those that `keep` keeps."""
+    """Returns the box [0, size] of those lattice cells for which `keep` returns true."""
     body = lattice(cells, element, lambda *s: [c * length for c, length in zip(s, size)], keep=keep)
     return Mesh(element, body.nodes, body.elements, {}, dict(body.facets))
 
@@ -75,7 +75,7 @@ def within(mesh, nodes, lower, upper, slack):
 
 
 def twice(mesh, offset):
-    """The mesh and a copy of it beside it, in the same groups."""
+    """Returns the mesh with a copy of it beside it, in the same groups."""
     count = len(mesh.nodes)
     copies = [tuple(a + b for a, b in zip(x, offset)) for x in mesh.nodes]
     def moved(lists):
@@ -89,7 +89,7 @@ def warped(mesh, move):
 
 
 def shaken(mesh, by, rng):
-    """Moves the corners off the boundary at random, by at most `by` along each axis; middles follow."""
+    """Moves interior corners randomly, by at most `by` along each axis; mid-side nodes follow."""
     still = {n for facets in mesh.facets.values() for f in facets for n in f}
     quadratic = mesh.element == "tet10"
     corners = {n for e in mesh.elements for n in e[:4]} if quadratic else set(range(len(mesh.nodes)))
@@ -103,7 +103,7 @@ def shaken(mesh, by, rng):
 
 
 def turns_of_cube():
-    """The orders of a hexahedron's corners that are rotations of it."""
+    """Returns the orders of a hexahedron's corners that are rotations of it."""
     def number(x):
         return CUBE.index(tuple(int(c > 0) for c in x))
     found = []
@@ -116,7 +116,7 @@ def turns_of_cube():
 
 
 def reordered(element, nodes, rng):
-    """The same element with its corners in another order of the same orientation."""
+    """Returns the same element with its corners in another order of the same orientation."""
     if element in ("tri3", "quad4"):
         k = rng.randrange(len(nodes))
         return nodes[k:] + nodes[:k]
@@ -133,7 +133,7 @@ def reordered(element, nodes, rng):
 
 
 def renumbered(mesh, rng):
-    """The same mesh: other tags with gaps between them, elements and their corners in another order."""
+    """Returns the same mesh with other tags with gaps, and with elements and their corners in another order."""
     tags = rng.sample(range(1, 3 * len(mesh.nodes) + 1), len(mesh.nodes))
     elements = [reordered(mesh.element, e, rng) for e in mesh.elements]
     order = list(range(len(elements)))

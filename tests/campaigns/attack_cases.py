@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws the random cases of the attack: every kind of body, material, support, load, obstacle, friction, motion and step."""
+"""Draws the random cases of the attack: all kinds of body, material, support, load, obstacle, friction, motion and
+step."""
 import json
 import math
 import random
@@ -16,17 +17,17 @@ HOLDS = ("clamped", "clamped", "clamped", "slanted", "pressed", "pressed", "guid
 
 @dataclass
 class Case:
-    """A case without its mesh section, the mesh, and the files beside it."""
+    """A case without its mesh section, the mesh, and further files."""
     name: str
     document: dict
     mesh: bodies.Mesh
-    box: dict = None                             # of a generated mesh, else the mesh is written
-    regions: dict = field(default_factory=dict)  # box selectors by the names that `on` has, for generated meshes
+    box: dict = None                             # box of a generated mesh, otherwise the mesh is written
+    regions: dict = field(default_factory=dict)  # box selectors by group name, for generated meshes
     options: dict = field(default_factory=dict)  # refine, order, adapt
-    triangles: list = None                       # of the obstacle that is a surface
-    heights: dict = None                         # rows, first and last corner of the one that is a height map
-    warmth: dict = None                          # temperature by place of node
-    traits: set = field(default_factory=set)     # what twins have to know
+    triangles: list = None                       # of a surface obstacle
+    heights: dict = None                         # rows, first and last corner of a height map
+    warmth: dict = None                          # temperature by node index
+    traits: set = field(default_factory=set)     # properties that twins depend on
 
     def write(self, folder):
         """Writes case.json and the files that it names."""
@@ -53,7 +54,7 @@ class Case:
 
 
 class Draw:
-    """One case's dice. All lengths are multiples of `length`, all stresses of `young`."""
+    """Random generator of one case. All lengths are multiples of `length`, all stresses of `young`."""
 
     def __init__(self, seed, index):
         self.rng = rng = random.Random(f"{seed} {index}")
@@ -61,7 +62,7 @@ class Draw:
         self.dim = 2 if self.element in bodies.FLAT else 3
         self.length = 10 ** rng.uniform(-3, 3)
         self.young = 10 ** rng.uniform(-2, 8)
-        self.strain = 10 ** rng.uniform(-5, -2.3)  # that the loads would make in a bar
+        self.strain = 10 ** rng.uniform(-5, -2.3)  # strain that the loads would cause in a bar
         self.size = [self.length * rng.uniform(*limits) for limits in ((1.0, 4.0), (0.5, 1.5), (0.5, 1.5))][:self.dim]
         if self.dim == 2:
             self.size = self.size[:1] + [self.length * rng.uniform(0.5, 1.5)]
@@ -80,7 +81,7 @@ class Draw:
 
 
 def axis_turn(d, about, angle):
-    """Rows: the coordinate axes, turned about one of them."""
+    """Returns a rotation about a coordinate axis as rows."""
     c, s = math.cos(angle), math.sin(angle)
     if d.dim == 2:
         return [[c, s], [-s, c]]
@@ -91,7 +92,7 @@ def axis_turn(d, about, angle):
 
 
 def random_turn(dim, rng):
-    """A random rotation as rows."""
+    """Returns a random rotation as rows."""
     if dim == 2:
         a = rng.uniform(0, 2 * math.pi)
         return [[math.cos(a), -math.sin(a)], [math.sin(a), math.cos(a)]]
@@ -106,9 +107,10 @@ def random_turn(dim, rng):
 # The body --------------------------------------------------------------------------------------------------------
 
 def draw_body(d, case_options):
-    """The mesh with groups left, right, …, its parts A, B, C, `patch` and `spot`; the box of a generated one; regions."""
+    """Returns the mesh with groups left, right, …, A, B, C, `patch` and `spot`; the box of a generated mesh;
+    regions."""
     rng, element = d.rng, d.element
-    tiny = d.chance(0.12)  # what is refined or adapted begins with a few elements
+    tiny = d.chance(0.12)  # meshes to be refined or adapted start with few elements
     most = {"tri3": (10, 6), "quad4": (10, 6), "tet4": (6, 4, 4), "tet10": (3, 2, 2), "hex8": (6, 3, 3)}[element]
     if tiny:
         most = tuple(min(m, 3) for m in most)
@@ -126,7 +128,7 @@ def draw_body(d, case_options):
     if "top" not in mesh.facets or "right" not in mesh.facets or "bottom" not in mesh.facets:
         shape, mesh = "box", bodies.make(d.size, cells, element)
     slack = 1e-6 * d.length
-    # Parts: by places of cells along x, or layers upwards.
+    # Parts: ranges of cells along x, or layers.
     parts = rng.choice((1, 1, 2, 2, 3))
     axis = rng.choice((0, d.dim - 1))
     parts = min(parts, cells[axis])
@@ -140,7 +142,7 @@ def draw_body(d, case_options):
         lower, upper = [-d.length] * d.dim, [2 * s for s in d.size]
         lower[axis], upper[axis] = low, high
         regions[name] = {"box": [lower, upper]}
-    # Half of the top along x, at whole cells.
+    # The half of the top with larger x, at cell boundaries.
     half = [d.size[0] * (cells[0] // 2) / cells[0], *[-d.length] * (d.dim - 2), d.size[-1]]
     ends = [2 * d.size[0], *[2 * s for s in d.size[1:-1]], d.size[-1]]
     patch = [f for f in mesh.facets["top"] if bodies.within(mesh, f, half, ends, slack)]
@@ -171,7 +173,7 @@ def second_piece(d, mesh):
     offset = [1.5 * d.size[0], *[0.0] * (d.dim - 1)]
     parts = mesh.parts
     both = bodies.twice(mesh, offset)
-    split = len(parts) == 1 and d.chance(0.5)  # each piece of a material of its own
+    split = len(parts) == 1 and d.chance(0.5)  # each piece has its own material
     both.parts = {name: places + ([] if split else [i + count for i in places]) for name, places in parts.items()}
     if split:
         both.parts["B"] = list(range(count, 2 * count))
@@ -179,7 +181,7 @@ def second_piece(d, mesh):
 
 
 def bend(d, mesh, warp, cells):
-    """Bends the box; the plane x = 0 and, but for domes, z = 0 stay what they are."""
+    """Deforms the box; x = 0 does not change, nor does z = 0 except for domes."""
     rng = d.rng
     if warp == "shake":
         bodies.shaken(mesh, 0.12 * min(s / c for s, c in zip(d.size, cells)), rng)
@@ -216,7 +218,7 @@ def draw_options(d, options):
         if d.element == "tet4" and d.chance(0.3):
             options["order"] = 2
     if options:
-        d.traits.add("other mesh")  # nodes that the case's mesh does not have
+        d.traits.add("other mesh")  # has nodes that the case's mesh lacks
 
 
 # Materials -------------------------------------------------------------------------------------------------------
@@ -243,7 +245,7 @@ def draw_law(d, young, poisson):
         if kind in extra:
             key, low, high = extra[kind]
             law[key] = rng.uniform(low, high)
-        if "x0" in law and rng.random() < 0.1:  # far from where it softens
+        if "x0" in law and rng.random() < 0.1:  # far from the softening range
             law["argument"], law["x0"] = "squared", (4 * x0) ** 2
     return {"law": law}
 
@@ -281,14 +283,14 @@ def draw_materials(d, mesh):
 # Supports and loads ----------------------------------------------------------------------------------------------
 
 def draw_supports(d):
-    """The supports; sets d.gap, the distance of the obstacle, and d.loaded, the sides for loads."""
+    """Returns the supports; sets d.gap, the distance of the obstacle, and d.loaded, the sides for loads."""
     rng, stress = d.rng, d.strain * d.soft
     fixed, height = [0.0] * d.dim, d.size[-1]
     d.gap = rng.choice((0.0, 0.0, 0.1, 0.5, -0.3)) * d.strain * height
     d.loaded, bed = ["top", "patch", "right"], d.soft / d.length
     straight = d.traits & {"none", "dome"}
     if d.hold == "clamped":
-        if straight and d.plane != "axisymmetric" and d.chance(0.2):  # by planes of symmetry and a bed
+        if straight and d.plane != "axisymmetric" and d.chance(0.2):  # symmetry planes and springs
             d.traits.add("flat supports")
             sides = ["left"] + (["front"] if d.dim == 3 else [])
             return [{"on": s, "normal": 0} for s in sides] + [
@@ -328,7 +330,7 @@ def draw_supports(d):
 
 
 def draw_loads(d, mesh):
-    """One to three loads; the first presses the body on to its obstacle."""
+    """Returns one to three loads; the first presses the body onto its obstacle."""
     rng, entries = d.rng, []
     if d.hold in ("pressed", "guided", "loose"):
         count = rng.choice((0, 0, 1)) if d.hold == "pressed" else 0
@@ -355,7 +357,7 @@ def draw_loads(d, mesh):
             entries.append({"on": on, "total_force": d.vector(0.2 * push * area, -push * area)})
         elif "spot" in mesh.points:
             entries.append({"on": "spot", "node_force": d.vector(0.0, -0.3 * push * area)})
-    if count and d.chance(0.12):  # two that cancel, or all but
+    if count and d.chance(0.12):  # two loads that cancel, exactly or almost
         on = rng.choice([s for s in d.loaded if s in mesh.facets])
         large, left = stress * 10 ** rng.uniform(0, 4), rng.choice((0.0, 1e-3))
         entries += [{"on": on, "traction": d.vector(large, -0.5 * large)},
@@ -387,7 +389,7 @@ def draw_temperature(d):
 # Contact ---------------------------------------------------------------------------------------------------------
 
 def draw_obstacle(d, mesh, case):
-    """An obstacle under the bottom, d.gap away from its lowest point where that is in its middle."""
+    """Returns an obstacle under the bottom, at distance d.gap from its lowest point if that is in the middle."""
     rng, gap = d.rng, d.gap
     nodes = [mesh.nodes[n] for n in mesh.surface("bottom")]
     low = min(nodes, key=lambda x: x[-1])[-1]
@@ -483,7 +485,7 @@ def draw_friction(d, slow):
 
 
 def draw_motion(d, times):
-    """Up to the body and into it, then along it and perhaps round."""
+    """Moves up to the body and into it, then along it, possibly with a rotation."""
     rng, deep = d.rng, d.strain * d.size[-1]
     path = [{"time": times[0], "translation": d.up(max(d.gap, 0.0) + deep * rng.uniform(0.1, 0.8))}]
     if len(times) > 1:
@@ -536,7 +538,7 @@ def draw_contact(d, mesh, case, times):
 # Steps and solver ------------------------------------------------------------------------------------------------
 
 def draw_steps(d, document, count):
-    """Load curves: factors of both signs on loads and prescribed displacements."""
+    """Returns load curves: factors of both signs on loads and prescribed displacements."""
     rng = d.rng
     times = sorted(rng.sample([0.25 * k for k in range(1, 13)], count))
     loads = [e["name"] for e in document["boundary"] if set(e) & {
@@ -567,7 +569,7 @@ def draw_solver(d):
 
 
 def draw_case(seed, index):
-    """The case of this seed and index, the same whatever else is drawn."""
+    """Returns the case of this seed and index, independent of all other draws."""
     d = Draw(seed, index)
     options = {}
     mesh, box, regions = draw_body(d, options)
@@ -589,7 +591,7 @@ def draw_case(seed, index):
         entry["name"] = f"c{i}"
     for entry in boundary:
         rise = entry.pop("rise", None)
-        if rise is not None and (box or options):  # numbers of such meshes are not ours
+        if rise is not None and (box or options):  # node numbers of these meshes are not known here
             entry["temperature"] = rise
             d.traits.discard("warmth file")
         elif rise is not None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs a case and its twins, and compares: verifier, tighter tolerance, twins."""
+"""Runs a case and its twins, and checks the answers by the verifier, a tighter tolerance and the twins."""
 import contextlib
 import json
 import math
@@ -15,7 +15,7 @@ from array import array
 from dataclasses import dataclass, field
 
 TIGHT = 1e-9
-CANNOT_TELL = ("relinearise", "load step before", "file of temperatures", "reference")  # what verify says it cannot check
+CANNOT_TELL = ("relinearise", "load step before", "file of temperatures", "reference")  # messages of verify
 ENTRIES = ("equilibrium", "penetration", "complementarity", "force_balance", "duality_gap")
 
 
@@ -31,7 +31,7 @@ class Done:
 
 
 def members(session):
-    """Process, state, and the seconds that it has computed, of all in a session."""
+    """Yields id, state and CPU seconds of every process in a session."""
     for stat in pathlib.Path("/proc").glob("[0-9]*/stat"):
         try:
             words = stat.read_text().rsplit(")", 1)[1].split()
@@ -42,14 +42,14 @@ def members(session):
 
 
 def starved(session, limit):
-    """Whether others keep it from computing: it is stopped, or ready to run and has had little of the time."""
+    """Returns whether the session lacks CPU time: stopped, or ready to run with less than half of `limit` used."""
     found = list(members(session))
     states = {state for _, state, _ in found}
     return "T" in states or ("R" in states and sum(seconds for *_, seconds in found) < limit / 2)
 
 
 def end(process):
-    """Kills a command and the ranks that it has started; returns the seconds that they have computed."""
+    """Kills a command and the ranks that it started; returns their CPU seconds."""
     used = 0.0
     for pid, _, seconds in list(members(process.pid)):
         used += seconds
@@ -60,8 +60,8 @@ def end(process):
 
 
 def call(program, *arguments, folder, limit):
-    """Runs the program in a session of its own, whose processes end with it."""
-    # Open MPI's files of runs at the same time are kept apart, also where ctest has named a folder for them.
+    """Runs the program in its own session, whose processes end with the call."""
+    # Separates Open MPI's files of concurrent runs, also if ctest has set a folder for them.
     environment = {**os.environ, "TMPDIR": str(folder), "OMPI_MCA_orte_tmpdir_base": str(folder)}
     process = subprocess.Popen([str(program), *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                text=True, env=environment, start_new_session=True, cwd=folder)
@@ -87,7 +87,7 @@ TYPES = {"Float64": "d", "Int64": "q", "Int32": "i", "UInt8": "B"}
 
 
 def read_grid(path):
-    """Arrays of a file of the program: raw appended data, packed by zlib."""
+    """Reads the arrays of a file of the program: raw appended data, compressed by zlib."""
     data = path.read_bytes()
     begin = data.index(b"_", data.index(b"<AppendedData")) + 1
     arrays = {}
@@ -113,14 +113,14 @@ class Answer:
     status: str
     result: dict
     u: dict = field(default_factory=dict)        # displacement by node
-    stress: dict = field(default_factory=dict)   # von Mises stress by the nodes of an element
+    stress: dict = field(default_factory=dict)   # von Mises stress by the set of an element's nodes
 
     @property
     def applications(self):
         return self.result.get("operator_applications", 0)
 
     def worst(self):
-        """The largest residual with what rounding may hide in it."""
+        """Returns the largest residual including the uncertainty due to rounding."""
         said = self.result["certificate"]
         rounding = said.get("rounding", {})
         return max((v if isinstance(v, (int, float)) else math.inf) + rounding.get(k, 0.0)
@@ -128,7 +128,7 @@ class Answer:
 
 
 def node_names(case, grid):
-    """Places in the case's mesh of the nodes of a run, or their numbers where the mesh is another."""
+    """Returns the indices of a run's nodes in the case's mesh, or their numbers if the run has another mesh."""
     ids = grid["node_id"]
     if case.options:
         return ids
@@ -162,7 +162,7 @@ def size(v):
 
 
 def surface_area(case, name):
-    """Of a group of facets, roughly."""
+    """Returns the approximate area of a group of facets."""
     mesh, total = case.mesh, 0.0
     for facet in mesh.facets.get(name, []):
         x = [mesh.nodes[n] for n in facet[:{"tet10": 3}.get(mesh.element, len(facet))]]
@@ -177,12 +177,13 @@ def surface_area(case, name):
 
 
 def floor(tolerance):
-    """The share of what acts below which a force is measured by what acts: the certificate's residuals are relative to that."""
+    """Returns the fraction of the acting forces that is the smallest scale for a force, as in the certificate's
+    residuals."""
     return 10 * math.sqrt(tolerance)
 
 
 def section(case):
-    """Area of a cut through the body, roughly."""
+    """Returns extent and approximate cross-sectional area of the body."""
     extent = max(max(map(abs, x)) for x in case.mesh.nodes)
     plane = case.document.get("plane", "strain")
     depth = extent if case.mesh.dim == 3 else 2 * math.pi * extent if plane == "axisymmetric" else \
@@ -191,7 +192,7 @@ def section(case):
 
 
 def least(case, tolerance):
-    """Scales of force, displacement and stress that rounding alone leaves where nothing acts."""
+    """Returns the scales of force, displacement and stress due to rounding where nothing acts."""
     extent, area = section(case)
     share = 1e-14 / math.sqrt(tolerance)
     young = max(m["young"] for m in case.document["material"])
@@ -199,7 +200,8 @@ def least(case, tolerance):
 
 
 def contact_scales(case, truth, tolerance):
-    """Scale of each entry's contact force: the force itself, or a share of the stress in the elements behind it."""
+    """Returns each entry's scale of the contact force: the force, or a fraction of the stress in the elements behind
+    it."""
     scales = {}
     for entry in case.document.get("contact", []):
         said = truth.result["contact"].get(entry["name"])
@@ -226,7 +228,7 @@ def joined_entries(case):
 
 
 def parts_of(case, truth):
-    """Nodes and elements of each part, or of all where the mesh is not the case's."""
+    """Returns nodes and elements of each part, or of the whole body if the mesh is not the case's."""
     if case.options:
         return [(set(truth.u), set(truth.stress))]
     return [({n for i in places for n in case.mesh.elements[i]}, {frozenset(case.mesh.elements[i]) for i in places})
@@ -234,7 +236,7 @@ def parts_of(case, truth):
 
 
 def compare(case, truth, answer, tolerance, twin=None):
-    """How far the answer of a case or its twin is from the truth, by quantity; relative."""
+    """Returns the relative errors of a case's or twin's answer, by quantity."""
     map_vector = twin.vector if twin else (lambda v, factor: v)
     force, length = (twin.force, twin.length) if twin else (1.0, 1.0)
     off = {}
@@ -263,7 +265,7 @@ def compare(case, truth, answer, tolerance, twin=None):
             moved = max(least_move, *(size(truth.u[n]) for n in nodes))
             far = max(math.dist(map_vector(truth.u[n], length), answer.u[n]) for n in nodes) / length
             note("displacement", far / moved)
-            put_on = floor(tolerance) * acting["load"] / section(case)[1]  # which a spring may bear where it acts
+            put_on = floor(tolerance) * acting["load"] / section(case)[1]  # share that a spring may carry where it acts
             stress = max(least_stress, put_on, *(truth.stress[e] for e in elements))
             factor = force / length ** 2
             differs = max(abs(truth.stress[e] - answer.stress.get(e, math.inf) / factor) for e in elements)
@@ -288,20 +290,20 @@ class Report:
     status: str
     applications: int = 0
     findings: list = field(default_factory=list)
-    off: dict = field(default_factory=dict)        # by check and quantity, over the limit
-    notes: list = field(default_factory=list)      # what is no finding
+    off: dict = field(default_factory=dict)        # error over limit, by check and quantity
+    notes: list = field(default_factory=list)      # observations that are not findings
     other: tuple = None                            # status and applications of the other program
     seconds: float = 0.0
 
 
 class Checker:
-    """Everything that is asked of one case, in one folder."""
+    """All checks of one case, in one folder."""
 
     def __init__(self, program, folder, limit):
         self.program, self.folder, self.limit = program, folder, limit
 
     def run(self, case, name, *options, program=None):
-        """The answer, or None and why the case is refused."""
+        """Returns the answer, or None and the reason for rejecting the case."""
         place = self.folder / name
         shutil.rmtree(place, ignore_errors=True)
         place.mkdir(parents=True)
@@ -320,7 +322,7 @@ class Checker:
         return call(self.program, "verify", "case.json", "--output", "out", *options, folder=self.folder / name, limit=self.limit)
 
     def truth(self, case, base, tolerance):
-        """The answer at the tightest tolerance that rounding admits, at the load of the first run; or None."""
+        """Returns the answer at the tightest tolerance that rounding admits, at the first run's load; or None."""
         for wanted in (TIGHT, 1e-8, 1e-7):
             if wanted > 0.11 * tolerance:
                 return None
@@ -333,7 +335,7 @@ class Checker:
         return None
 
     def twin(self, twin):
-        """The twin's answer."""
+        """Returns the twin's answer."""
         options = ["--ranks", twin.ranks] if twin.ranks > 1 else []
         if twin.kind == "parted":
             place = self.folder / twin.kind
@@ -350,13 +352,13 @@ class Checker:
         first, why = self.run(twin.case, twin.kind, "--set", f"solver.max_outer={twin.cut}")
         place = self.folder / twin.kind
         if not first or not (place / "out" / "checkpoint.kacanov").exists():
-            return first, why  # converged before
+            return first, why  # converged before the cut
         return self.again(twin.case, place, "--restart", *options)
 
     # The checks ---------------------------------------------------------------------------------------------------
 
     def examine(self, case, twins, other=None):
-        """Runs all; every surprise is a finding or a note."""
+        """Runs all checks; every unexpected result is a finding or a note."""
         report = Report(case.name, "refused")
         base = self.tried(report, "run", lambda: self.run(case, "base"))
         if not base or not base[0]:
@@ -409,7 +411,8 @@ class Checker:
         return ""
 
     def decide(self, report, case, check, off, tolerance, answer=None, twin=None):
-        """Notes how far an answer is off, over what is allowed; whether that is a finding."""
+        """Records the errors of an answer relative to their limits, and adds a finding or a note if one exceeds
+        them."""
         report.off[check] = {what: value / allowed(what, tolerance) for what, value in off.items()}
         worst = max(report.off[check], key=report.off[check].get, default=None)
         if worst is None or report.off[check][worst] <= 1:
@@ -421,7 +424,7 @@ class Checker:
             report.findings.append(Finding("wrong", check, text))
 
     def is_another(self, case, answer, twin, tolerance):
-        """Whether a tight run of the same start ends where this answer is: friction of Coulomb's may have several ends."""
+        """Returns whether a tight run of the twin ends at this answer: Coulomb friction may have several equilibria."""
         if not twin or not answer:
             return False
         name = "twin tight"
@@ -432,7 +435,7 @@ class Checker:
 
     def compare_twin(self, report, case, truth, twin, base, tolerance):
         answer, why = self.twin(twin)
-        if not answer and "cannot be split into" in why:  # so few elements
+        if not answer and "cannot be split into" in why:  # too few elements
             report.notes.append(f"{twin.kind}: too small for its ranks")
             return
         if not answer:
@@ -446,7 +449,8 @@ class Checker:
 
 
 def unlimited(base, table, tolerance):
-    """Whether the verifier's rounding does not say why a run was limited by it: its arithmetic has more digits."""
+    """Returns whether the verifier's rounding does not explain `limited_by_rounding`: its arithmetic has more
+    digits."""
     lines = [line.split() for line in table.splitlines()]
     told = base.result["certificate"]["rounding"]
     found = [float(w[1]) + max(float(w[3]), told[w[0]]) for w in lines if len(w) > 3 and w[0] in ENTRIES]
@@ -454,5 +458,5 @@ def unlimited(base, table, tolerance):
 
 
 def allowed(what, tolerance):
-    """By how much a quantity may be off: the certificate's duality gap bounds the energy of the error by the tolerance."""
+    """Returns the allowed relative error: the certificate's duality gap bounds the energy error by the tolerance."""
     return math.sqrt(tolerance) * {"stress": 3.0}.get(what, 1.0)

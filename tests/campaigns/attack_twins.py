@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Twins of a case: the same problem turned, renumbered, in other units, with idle entries, on other ranks, restarted."""
+"""Twins of a case: the same problem rotated, renumbered, in other units, with idle entries, on other ranks,
+restarted."""
 import copy
 import itertools
 import math
@@ -12,7 +13,7 @@ from attack_cases import Case, random_turn
 
 @dataclass
 class Twin:
-    """A case with how it is run, and what maps the first case's numbers to its own."""
+    """A case, how it is run, and the map from the original case's numbers to its own."""
     kind: str
     case: Case
     ranks: int = 1
@@ -30,7 +31,7 @@ def rotated(turn, v):
 
 
 def axis_turns(dim):
-    """Rotations that take axes to axes."""
+    """Returns the rotations that map axes to axes."""
     found = []
     for axes in itertools.permutations(range(dim)):
         for signs in itertools.product((1.0, -1.0), repeat=dim):
@@ -41,7 +42,7 @@ def axis_turns(dim):
 
 
 class Turning:
-    """Turns and shifts a case."""
+    """Rotates and shifts a case."""
 
     def __init__(self, turn, shift):
         self.turn, self.shift = turn, shift
@@ -53,7 +54,7 @@ class Turning:
         return [a + b for a, b in zip(rotated(self.turn, x), self.shift)]
 
     def along(self, v):
-        """Values of each axis, none of which has a sign: those of springs under rotations that take axes to axes."""
+        """Rotates unsigned values per axis, such as springs under rotations that map axes to axes."""
         return [sum(abs(a) * b for a, b in zip(row, v)) for row in self.turn]
 
     def case(self, case):
@@ -116,7 +117,8 @@ class Turning:
 
 
 def turned(case, rng):
-    """Turned at random and shifted; by right angles where springs have axes, only shifted where heights or an axis have."""
+    """Rotated randomly and shifted; by right angles if springs have axes, only shifted with heights or an axis of
+    revolution."""
     dim = case.mesh.dim
     springs = [e[k] for e in case.document["boundary"] for k in ("spring", "node_spring") if isinstance(e.get(k), list)]
     still = [[float(i == j) for j in range(dim)] for i in range(dim)]
@@ -146,7 +148,7 @@ def renumbered(case, rng):
     return Twin("renumbered", made)
 
 
-POWERS = {  # of length and force that a value of each key has
+POWERS = {  # exponents of length and force in the unit of each key
     "young": (-2, 1), "yield_stress": (-2, 1), "sigma0": (-2, 1), "tangent_modulus": (-2, 1),
     "traction": (-2, 1), "pressure": (-2, 1), "body_force": (-3, 1), "total_force": (0, 1), "node_force": (0, 1),
     "density": (-3, 1), "displacement": (1, 0), "normal": (1, 0), "node_spring": (-1, 1), "spring": (-3, 1),
@@ -216,7 +218,7 @@ def rescaled(case, rng):
 
 
 def idle(case, rng):
-    """With entries that change nothing: loads that cancel, a load of nothing, an obstacle far away that may move."""
+    """With entries without effect: cancelling loads, a zero load, a distant obstacle that may move."""
     made = copy.deepcopy(case)
     document, dim = made.document, case.mesh.dim
     held = {e["on"] for e in document["boundary"] if "displacement" in e or "normal" in e}
@@ -237,15 +239,15 @@ def idle(case, rng):
 
 
 def draw_twins(case, seed, index):
-    """All twins that the case has, by kind."""
+    """Returns all twins of the case, by kind."""
     def dice(kind):
         return random.Random(f"{seed} {index} {kind}")
 
-    def ranks(kind, *numbers):  # none of them empty
+    def ranks(kind, *numbers):  # no rank is empty
         return min(dice(kind).choice(numbers), max(1, len(case.mesh.elements) // 2))
 
     traits, options = case.traits, case.options
-    same_mesh = not options and "mixed tet4" not in traits  # however it is numbered
+    same_mesh = not options and "mixed tet4" not in traits  # results independent of the numbering
     twins = {"renumbered": renumbered(case, dice("renumbered")) if same_mesh else None,
              "turned": turned(case, dice("turned")) if same_mesh else None,
              "rescaled": rescaled(case, dice("rescaled")),

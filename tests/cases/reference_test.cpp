@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whole runs against the values of an independent implementation (reference/README.md).
+// Whole runs, compared with the values of an independent implementation (reference/README.md).
 #include <doctest/doctest.h>
 
 #include <fstream>
@@ -86,7 +86,7 @@ void check_spectrum(const SpectrumResult& found, double low, double high, double
   check_near(found.r_star, 1.0 / std::sqrt(low * high), tolerance);
 }
 
-/// N, then [N; T]: by the default tolerance to 1 %, by a tight one to 6 digits.
+/// Checks the spectra of N and of [N; T]: to 1 % with the default tolerance, to 6 digits with a tight one.
 void check_spectra(const Part& part, bool tight, double low, double high, double low_both, double high_both) {
   SolverOptions options;
   if (tight) options.spectrum_tolerance = 1e-9;
@@ -118,13 +118,13 @@ TEST_CASE("spectra of the beam in 2D, and the growth of r*") {
     const json& both = mesh.at("elastic_normal_and_tangential");
     const Part part = distribute(&problem, MPI_COMM_SELF);
     for (const bool tight : {false, true}) {
-      if (tight && n > 16) continue;  // the third mesh would add ten seconds and nothing new
+      if (tight && n > 16) continue;  // the third mesh would add ten seconds and no information
       check_spectra(part, tight, normal.at("lambda_min"), normal.at("lambda_max"), both.at("lambda_min"),
                     both.at("lambda_max"));
     }
     r_star.push_back(analyse_spectrum(part, {}, {}).at(0).r_star);
   }
-  // h^-½ in the limit.
+  // In the limit r* grows as h^-½.
   for (std::size_t i = 1; i < r_star.size(); ++i)
     CHECK(r_star[i] / r_star[i - 1] == doctest::Approx(std::sqrt(2.0)).epsilon(0.03));
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the documents say of each other and of the code: links, anchors, labels of the theory, tables of figures.
+"""Checks the documents against each other and the code: links, anchors, labels of the theory, tables of figures.
 
 usage: documents_test.py FOLDER-OF-THE-PROJECT
 """
@@ -21,7 +21,7 @@ ROOMS = ("kernels", "solver", "tools", "tests", "perf", "python")
 
 
 def prose(path):
-    """The text without code blocks and spans."""
+    """Returns the text without code blocks and code spans."""
     text = re.sub(r"^```.*?^```", "", path.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
     return re.sub(r"`[^`\n]*`", "", text)
 
@@ -67,7 +67,7 @@ STRING = re.compile(r'"((?:\\.|[^"\\])*)"')
 
 
 class Warnings(unittest.TestCase):
-    """Every warning has a row of its own words in the user guide."""
+    """Every warning has its own row in the user guide."""
 
     def setUp(self):
         guide = (DOCS / "user-guide" / "results.md").read_text(encoding="utf-8")
@@ -83,12 +83,12 @@ class Warnings(unittest.TestCase):
         return "".join(STRING.findall(code)).replace('\\"', '"')
 
     def body_of(self, function):
-        """Of its definition, in whichever file that is."""
+        """Returns the body of the function's definition, from the file that has it."""
         definition = re.compile(rf"std::string {function}\([^)]*\) {{(.*?)\n}}\n", re.DOTALL)
         return next(found[1] for text in self.sources.values() if (found := definition.search(text)))
 
     def warnings(self):
-        """The words of each warning, by the place that makes it."""
+        """Yields pairs of the place that issues a warning and the warning's text."""
         made = re.compile(r'(?:warnings|remarks_)\.push_back\((.*?)\);\n|"kacanov: (?:warning|note): .*?;\n', re.DOTALL)
         passed_on = re.compile(r"[\w:.+ ()]*\b(?:warning|what\(\)|remark)\b\)*", re.DOTALL)
         for path, text in self.sources.items():

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The promise of the C interface's structs: clients of other versions, with shorter and longer ones.
+// ABI compatibility of the C interface: clients of other versions whose structs are shorter or longer.
 #include <cstddef>
 #include <cstring>
 
@@ -7,7 +7,7 @@
 
 namespace {
 
-/// A struct of this header as a client of another version has it: `more` bytes longer.
+/// A struct of this header as a newer client declares it, with `more` appended.
 template <class Struct>
 struct Longer {
   Struct known{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The C interface: the same numbers as the reference, every way to hand over arrays.
+// The C interface: the same numbers as the reference, with every way of passing arrays.
 #include <doctest/doctest.h>
 
 #include <thread>
@@ -29,7 +29,7 @@ TEST_CASE("every element type gives the numbers of the reference") {
     REQUIRE(kacanov_inspect(op.get(), &information) == KACANOV_OK);
     CHECK(information.unknowns == n);
     CHECK(information.elements == mesh.elements());
-    CHECK(information.threads == 1);  // far too small for two
+    CHECK(information.threads == 1);  // too small for two
     CHECK(information.bytes > 0);
     CHECK(std::string(information.instruction_set) != "");
     const std::size_t points = mesh.elements() * static_cast<std::size_t>(information.points_per_element);
@@ -62,7 +62,7 @@ TEST_CASE("every element type gives the numbers of the reference") {
     REQUIRE(kacanov_update_tangent(op.get(), n, u.data()) == KACANOV_OK);
     REQUIRE(kacanov_apply_tangent(op.get(), n, x.data(), y.data()) == KACANOV_OK);
     kacanov::reference::apply_tangent(body, u, x, want);
-    CHECK(distance(y, want) < 1e-6);  // its rank-one term is kept in single precision
+    CHECK(distance(y, want) < 1e-6);  // the rank-one term is stored in single precision
     REQUIRE(kacanov_block_diagonal_tangent(op.get(), blocks.size(), blocks.data()) == KACANOV_OK);
     kacanov::reference::block_diagonal_tangent(body, u, want_blocks);
     CHECK(distance(blocks, want_blocks) < 1e-6);
@@ -75,7 +75,7 @@ TEST_CASE("every element type gives the numbers of the reference") {
     kacanov::reference::residual(body, u, want);
     CHECK(distance(y, want) < 1e-12);
     CHECK(energy == doctest::Approx(kacanov::reference::energy(body, u)));
-    // Away from u and back, in one pass.
+    // Update at zero, then back to u in one pass.
     REQUIRE(kacanov_update(op.get(), n, Vector(n, 0.0).data()) == KACANOV_OK);
     double again = 0.0;
     REQUIRE(kacanov_residual_energy_update(op.get(), n, u.data(), y.data(), &again) == KACANOV_OK);
@@ -149,13 +149,13 @@ TEST_CASE("every law arrives with its parameters") {
       REQUIRE(kacanov_stress(op.get(), example.n(), u.data(), &fields) == KACANOV_OK);
       REQUIRE(kacanov_update(op.get(), example.n(), u.data()) == KACANOV_OK);
       REQUIRE(kacanov_secant(op.get(), elements, g.data()) == KACANOV_OK);
-      for (std::size_t e = 0; e < elements; e += 2)  // odd ones follow the linear law
+      for (std::size_t e = 0; e < elements; e += 2)  // odd elements follow the linear law
         CHECK(g[e] == doctest::Approx(want.secant(strain[e])).epsilon(1e-12));
     }
 }
 
 #if defined(__x86_64__)
-// What a binding in another language mirrors: examples/ctypes_numpy.py does.
+// Sizes that bindings in other languages rely on, for example examples/ctypes_numpy.py.
 static_assert(sizeof(kacanov_law) == 120);
 static_assert(sizeof(kacanov_description) == 168);
 #endif
@@ -188,7 +188,7 @@ TEST_CASE("coordinates and connectivity may lie in any regular order") {
     plain.description.element_stride = 7;
     plain.description.index_base = 1;
     const Handle op = plain.create();
-    std::fill(rows.begin(), rows.end(), -5);  // nothing refers to them any more
+    std::fill(rows.begin(), rows.end(), -5);  // the handle must not refer to them any more
     CHECK(applied(op, x) == want);
   }
   SUBCASE("copied arrays may go, and cost memory") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The C interface: every bad input has a code and a message, and does no harm.
+// Invalid input to the C interface: every case returns a code with a message and does no harm.
 #include <doctest/doctest.h>
 
 #include <cstring>
@@ -93,7 +93,7 @@ TEST_CASE("tables are checked point by point") {
     return result;
   };
   CHECK(code({0, 1, 2}, {0, 2, 3}) == KACANOV_OK);
-  CHECK(code({0, 1, 2}, {0, 2, 2}) == KACANOV_ERROR_LAW);  // a plateau: no unique displacement
+  CHECK(code({0, 1, 2}, {0, 2, 2}) == KACANOV_ERROR_LAW);  // a plateau: the displacement is not unique
   CHECK(code({0}, {0}) == KACANOV_ERROR_LAW);
   CHECK(code({1, 2}, {1, 2}) == KACANOV_ERROR_LAW);
   CHECK(code({0, 1, 1}, {0, 2, 3}) == KACANOV_ERROR_LAW);
@@ -105,7 +105,7 @@ TEST_CASE("tables are checked point by point") {
 TEST_CASE("a hexahedron inverted at one point only is found") {
   Example example(KACANOV_HEX8, 1);
   for (std::size_t c = 0; c < 3; ++c)
-    example.mesh.coordinates[3 * 7 + c] = 0.2;  // far corner beyond the middle
+    example.mesh.coordinates[3 * 7 + c] = 0.2;  // a corner moved beyond the centre of the element
   std::string text;
   CHECK(example.fault(text) == KACANOV_ERROR_MESH);
   CHECK(text.find("element 0 is inverted") != std::string::npos);
@@ -121,7 +121,7 @@ TEST_CASE("meshes of any size, place and direction are accepted, their mirror im
         Example example(element);
         const std::size_t dim = example.mesh.dim;
         for (std::size_t i = 0; i < example.n(); i += dim)
-          for (std::size_t c = 0; c + 1 < dim; ++c) {  // turned about z, then about x
+          for (std::size_t c = 0; c + 1 < dim; ++c) {  // rotate about z, then about x
             double &p = example.mesh.coordinates[i + c], &q = example.mesh.coordinates[i + c + 1];
             const double turned = p * std::cos(angle) - q * std::sin(angle);
             q = p * std::sin(angle) + q * std::cos(angle);

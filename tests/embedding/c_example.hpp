@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A small body for the tests of the C interface, and what they do with its handle.
+// A small body for the tests of the C interface, its handle, and helpers for products and distances.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -23,7 +23,7 @@ struct Destroy {
 };
 using Handle = std::unique_ptr<kacanov_operator, Destroy>;
 
-/// A struct of the C interface: its size, and zeros.
+/// Returns a zeroed struct of the C interface with its struct_size set.
 template <class Struct>
 Struct sized() {
   Struct made{};
@@ -39,7 +39,7 @@ inline kacanov_law logarithmic() {
   return law;
 }
 
-/// A mesh, two laws (log law and linear) that alternate, and the description of both.
+/// A mesh with two alternating laws (logarithmic and linear), and the description of both.
 struct Example {
   SmallMesh mesh;
   std::vector<kacanov_law> laws;
@@ -74,9 +74,9 @@ struct Example {
     return Handle(op);
   }
 
-  /// The code; the message goes to `text`.
+  /// Creates an operator that must fail; returns the code and writes the message to `text`.
   int fault(std::string& text) const {
-    auto* op = reinterpret_cast<kacanov_operator*>(&text);  // must be overwritten by null
+    auto* op = reinterpret_cast<kacanov_operator*>(&text);  // creation must overwrite this with null
     char message[256];
     const int code = kacanov_create(&description, &op, message, sizeof message);
     CHECK(op == nullptr);
@@ -99,7 +99,7 @@ inline Vector applied(const Handle& op, const Vector& x) {
   return y;
 }
 
-/// Largest difference over largest entry of b; not a number if any entry is none.
+/// Returns max |a − b| / max |b|, or NaN if any entry is NaN.
 inline double distance(const Vector& a, const Vector& b) {
   REQUIRE(a.size() == b.size());
   double difference = 0.0, size = 0.0;

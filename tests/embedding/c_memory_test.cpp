@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The C interface where memory runs out: a code, and not a word printed, by METIS neither.
+// The C interface when memory runs out: it returns a code, and neither it nor METIS prints anything.
 #include <doctest/doctest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -20,7 +20,8 @@ struct End {
   std::string printed;
 };
 
-/// Does work that gives a code in a process of its own, with no more than `room` bytes beyond what it has.
+/// Runs `work` in a child process whose address space may grow by at most `room` bytes; returns its code and
+/// output.
 End do_within(rlim_t room, const std::function<int()>& work) {
   int channel[2];
   REQUIRE(pipe(channel) == 0);
@@ -48,7 +49,7 @@ End do_within(rlim_t room, const std::function<int()>& work) {
   return end;
 }
 
-/// More and more room, until the work is done.
+/// Repeats the work with growing memory limits until it succeeds.
 void check_silence(const std::function<int()>& work) {
   bool lacked = false, made = false;
   for (rlim_t room = 1 << 16; !made && room < rlim_t{1} << 30; room += std::max<rlim_t>(1 << 16, room / 24)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Plane stress and bodies of revolution in the C interface.
+// Plane stress and axisymmetry in the C interface.
 #include <cstddef>
 
 #include <kacanov/reference.hpp>
@@ -7,7 +7,7 @@
 
 namespace {
 
-/// The example's body from r = 0.5 on, and its reference.
+/// The example's body, shifted to start at r = 0.5, and its reference.
 struct PlaneExample : Example {
   std::vector<kacanov::Law> reference_laws{2, kacanov::elastic_law(2.0, 0.3)};
 

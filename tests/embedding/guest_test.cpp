@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The C interface as a guest in somebody's process: its random numbers, its threads, its forks.
+// The C interface as a guest in the host's process: random numbers, threads and forks of the host.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,7 +11,7 @@
 
 namespace {
 
-/// Large enough for two threads.
+/// A body large enough for two threads.
 struct Guest : Example {
   Guest() : Example(KACANOV_TET4, 14) { description.threads = 2; }
 };
@@ -22,7 +22,7 @@ std::vector<int> drawn(int count) {
   return numbers;
 }
 
-/// The exit status of a child that runs `work`, or −1 if it takes longer than ten seconds.
+/// Returns the exit status of a child process that runs `work`, or −1 after ten seconds.
 template <class Work>
 int in_child(const Work& work) {
   const pid_t child = fork();
@@ -93,7 +93,7 @@ TEST_CASE("a call on a handle in use is refused, and right where it is not") {
   CHECK(wrong == 0);
   CHECK(done + refused == 400);
   CHECK(done > 0);
-  CHECK(applied(op, x) == want);  // and the handle is free again
+  CHECK(applied(op, x) == want);  // the handle is free again
 }
 
 TEST_CASE("small bodies use fewer threads than they may") {

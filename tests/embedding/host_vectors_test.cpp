@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What hosts of many processes and of other layouts want: early nodes, no elements, one array a component.
+// Options for distributed hosts and other layouts: interface nodes, empty parts, one array per component.
 #include "c_example.hpp"
 
 namespace {
 
-/// What a host sees at its early nodes, and what it makes of it.
+/// A callback that records the values at the interface nodes and then changes them.
 struct Early {
   std::vector<std::int32_t> nodes;
   Vector seen;
@@ -125,7 +125,7 @@ TEST_CASE("a process may have no elements where it says so, and no nodes") {
 
 namespace {
 
-/// Interleaved vectors as one array a component, or back.
+/// Converts interleaved vectors to one array per component, or back.
 template <class Real>
 std::vector<Real> split(const std::vector<Real>& x, std::size_t dim, std::size_t n, bool back = false) {
   std::vector<Real> out(x.size());
@@ -151,7 +151,7 @@ TEST_CASE("vectors may have one array a component") {
     const Handle other = example.create();
     const std::size_t n = example.n(), dim = example.mesh.dim;
     const Vector u = random_vector(n, 2, 0.02), x = random_vector(3 * n, 3);
-    // What a call makes of the same numbers, on both handles, interleaved.
+    // Checks that a call gives the same numbers on both handles, compared in interleaved form.
     const auto same = [&](const Vector& in, const auto& call) {
       Vector want(in.size(), 0.5), got(in.size());
       REQUIRE(call(plain.get(), in.data(), want.data()) == KACANOV_OK);

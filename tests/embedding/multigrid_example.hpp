@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The small body of the tests of the C interface with constraints, penalties and a multigrid.
+// The small body of the tests of the C interface, with constraints, penalty blocks and a multigrid.
 #pragma once
 
 #include "c_example.hpp"
@@ -17,7 +17,7 @@ inline MultigridHandle multigrid_of(const Handle& op) {
   return MultigridHandle(made);
 }
 
-/// The nodes of the lowest z (y in 2D) held.
+/// Returns the unknowns of the nodes at the bottom (lowest z, or y in 2D), which are constrained.
 inline std::vector<std::int32_t> bottom(const SmallMesh& mesh) {
   std::vector<std::int32_t> list;
   for (std::size_t i = 0; i < mesh.unknowns(); ++i)
@@ -26,7 +26,7 @@ inline std::vector<std::int32_t> bottom(const SmallMesh& mesh) {
   return list;
 }
 
-/// Nodes with blocks: a stiff spring in a slanting direction, at one node twice.
+/// Nodes with penalty blocks: a stiff spring in an oblique direction, added twice at one node.
 struct Springs {
   std::vector<std::int32_t> node;
   Vector block;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What constraints, multigrid and solves of the C interface say of bad input.
+// Invalid input to constraints, multigrid and solves of the C interface.
 #include "multigrid_example.hpp"
 
 TEST_CASE("bad input of constraints, multigrid and solves is named") {

@@ -18,7 +18,7 @@ double dot(const Vector& x, const Vector& y) {
   return sum;
 }
 
-/// The operator as a dense matrix, by the plain assembly.
+/// Returns the operator as a dense matrix, from the assembled compressed rows.
 std::vector<Vector> dense(const Handle& op, std::size_t n, const double* u) {
   std::size_t entries = 0;
   REQUIRE(kacanov_matrix_entries(op.get(), n, &entries) == KACANOV_OK);
@@ -32,7 +32,7 @@ std::vector<Vector> dense(const Handle& op, std::size_t n, const double* u) {
   return a;
 }
 
-/// Gauss without pivots: for positive definite matrices.
+/// Gaussian elimination without pivoting, for positive definite matrices.
 Vector solved(std::vector<Vector> a, Vector b) {
   const std::size_t n = b.size();
   for (std::size_t k = 0; k < n; ++k)
@@ -100,7 +100,7 @@ TEST_CASE("constraints and blocks are in every form of the operator") {
       const auto apply = tangent ? kacanov_apply_tangent : kacanov_apply;
       const auto apply_dot = tangent ? kacanov_apply_tangent_dot : kacanov_apply_dot;
       REQUIRE(apply(op.get(), n, x.data(), got.data()) == KACANOV_OK);
-      CHECK(distance(got, y) < 1e-6);  // the tangent's direction is in single precision
+      CHECK(distance(got, y) < 1e-6);  // the direction in the tangent's rank-one term is in single precision
       if (!tangent) CHECK(distance(got, y) < 1e-13);
       REQUIRE(apply_dot(op.get(), n, x.data(), got.data(), &product) == KACANOV_OK);
       CHECK(product == doctest::Approx(dot(x, got)).epsilon(1e-12));
@@ -172,7 +172,7 @@ TEST_CASE("a cycle is symmetric and positive, is the solver's, and does not mind
     const auto held = bottom(example.mesh);
     for (const std::int32_t i : held) CHECK(z[i] == r[i]);
 
-    // As the solver's room makes it of the same body.
+    // The same multigrid, built directly with the kernels' C++ classes.
     std::vector<kacanov::Law> laws(2);
     for (kacanov::Law& law : laws) law = kacanov::elastic_law(2.0, 0.3);
     kacanov::IndexMap map;
@@ -203,7 +203,7 @@ TEST_CASE("a cycle is symmetric and positive, is the solver's, and does not mind
     for (const std::int32_t i : held) expected[i] = r[i];
     CHECK(distance(z, expected) < 1e-4);
 
-    // Pascal instead of exapascal, and forces of a feather.
+    // The same problem in other units: moduli times 1e18, forces times 1e-60.
     for (kacanov_law& law : example.laws) {
       law.bulk *= 1e18;
       law.shear *= 1e18;
@@ -219,7 +219,7 @@ TEST_CASE("a cycle is symmetric and positive, is the solver's, and does not mind
     Vector in_units = preconditioned(multigrid_of(stiff), small);
     for (double& v : in_units) v *= 1e78;
     for (const std::int32_t i : held) in_units[i] = z[i];
-    CHECK(distance(in_units, z) < 1e-4);  // moduli are rounded otherwise
+    CHECK(distance(in_units, z) < 1e-4);  // scaled moduli round differently
   }
 }
 
@@ -264,7 +264,7 @@ TEST_CASE("a multigrid follows its operator when it is updated, and not before")
   REQUIRE(kacanov_constrain(op.get(), 6, bottom(example.mesh).data()) == KACANOV_OK);
   CHECK(preconditioned(multigrid, r) == first);
   REQUIRE(kacanov_multigrid_update(multigrid.get()) == KACANOV_OK);
-  // Aggregates are those of the first g: near, and not the same.
+  // The aggregates remain those of the first g, so the result is close to a new multigrid's but differs.
   const Vector second = preconditioned(multigrid, r);
   CHECK(second != first);
   Vector x(n, 0.0), y(n, 0.0);
@@ -272,7 +272,7 @@ TEST_CASE("a multigrid follows its operator when it is updated, and not before")
             anew = solve(op, multigrid_of(op), r, y, 1e-8).iterations;
   CHECK(kept <= anew + 5);
   CHECK(distance(x, y) < 1e-5);
-  // Other laws, and fewer of them: all is made anew.
+  // Other laws, and fewer of them: the update rebuilds everything.
   REQUIRE(kacanov_set_laws(op.get(), 1, &example.laws[1], example.mesh.elements(), nullptr) == KACANOV_OK);
   CHECK(preconditioned(multigrid, r) == second);
   REQUIRE(kacanov_multigrid_update(multigrid.get()) == KACANOV_OK);
@@ -296,7 +296,7 @@ TEST_CASE("handles may be destroyed in any order") {
 TEST_CASE("nodes of no element do not disturb a multigrid") {
   Example example(KACANOV_TET4, 3);
   const std::size_t n = example.n(), lone = 5;
-  auto coordinates = example.mesh.coordinates;  // lone nodes before and behind
+  auto coordinates = example.mesh.coordinates;  // unreferenced nodes before and after
   coordinates.insert(coordinates.begin(), {9, 9, 9, 8, 8, 8});
   coordinates.insert(coordinates.end(), {7, 7, 7, 6, 6, 6, 5, 5, 5});
   auto connectivity = example.mesh.connectivity;
@@ -310,7 +310,7 @@ TEST_CASE("nodes of no element do not disturb a multigrid") {
   const Handle op = example.create();
   auto list = bottom(example.mesh);
   for (std::int32_t& i : list) i += 6;
-  list.push_back(1);  // of a node that has rows of the identity anyway
+  list.push_back(1);  // an unreferenced node, whose row is the identity anyway
   Springs springs(example.mesh);
   for (std::int32_t& node : springs.node) node += 2;
   REQUIRE(kacanov_constrain(op.get(), list.size(), list.data()) == KACANOV_OK);

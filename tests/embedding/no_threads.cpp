@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A host that may not start threads: making an operator for two of them is an error there, not the end of the
-// host, and one that is there already works on any thread, with the same bits.
+// A host that may not start threads: creating an operator for two threads returns an error instead of ending
+// the host, and an existing operator works on any thread with bitwise the same results.
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -47,14 +47,14 @@ int main() {
   const std::vector<double> want = product(op, n);
   std::vector<double> got;
   std::atomic<bool> limited = false;
-  // Not a jthread, which the early return below would wait for.
+  // Not a std::jthread, for which the early return below would wait.
   std::thread other([&] {
     limited.wait(false);
     got = product(op, n);
   });
 
   const rlimit none{1, 1};
-  constexpr uid_t nobody = 65534;  // to root the limit means nothing
+  constexpr uid_t nobody = 65534;  // the limit does not apply to root
   if (setrlimit(RLIMIT_NPROC, &none) != 0 || (getuid() == 0 && setuid(nobody) != 0)) {
     std::perror("the limit could not be set");
     std::_Exit(77);
@@ -69,8 +69,7 @@ int main() {
   const int code = kacanov_create(&body, &op, message, sizeof message);
   std::printf("%s: %s\n", kacanov_code_text(code), message);
   const char* whose = std::getenv("KACANOV_THREADS");
-  const bool kept =
-      whose != nullptr && std::string(whose) == "openmp";  // the one that the first operator had
+  const bool kept = whose != nullptr && std::string(whose) == "openmp";  // the team of the first operator
   const std::string want_message = kept ? "threads: only 2 of 3" : "threads: only 1 of 3";
   if (code != KACANOV_ERROR_MEMORY || std::string(message).find(want_message) == std::string::npos) return 1;
   body.threads = 1;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A client built against the header of version 0.2 and run with the library of today: stretches one
+/* A client built against the header of version 0.2 and run with the current library: stretches one
  * tetrahedron. */
 #include "kacanov-0.2.h"
 

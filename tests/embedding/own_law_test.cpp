@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Laws of the caller's own beside the same ones built in, and the points that they are asked at.
+// User-defined laws, compared with the same built-in laws, and the points at which they are evaluated.
 #include <atomic>
 #include <map>
 #include <mutex>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double yield = 0.01, exponent = 0.3;
 
-/// A host's power law, and what it sees.
+/// A host's power law that records the points at which it is evaluated.
 struct PowerLaw {
   double shear = 0.0;
   std::mutex mutex;
@@ -58,13 +58,13 @@ kacanov_law own(PowerLaw& host) {
   return law;
 }
 
-/// A vector and a number that a call returns.
+/// The vector and the number that a call returns.
 struct Answer {
   Vector vector;
   double number = 0.0;
 };
 
-/// Everything that depends on the law, at u.
+/// Returns everything that depends on the law, at the displacement u.
 std::map<std::string, Answer> answers(const Handle& op, const Vector& u, const Vector& p) {
   const std::size_t n = u.size();
   kacanov_information about = sized<kacanov_information>();
@@ -135,7 +135,7 @@ TEST_CASE("a power law of the caller's own does what the built-in one does") {
       CAPTURE(dilatation);
       Example example(element, 3);
       example.description.single = 1;
-      example.laws[1] = power();  // the other one stays logarithmic
+      example.laws[1] = power();  // the other law stays logarithmic
       for (kacanov_law& law : example.laws) law.mean_dilatation = dilatation;
       const Vector u = random_vector(example.n(), 3, 0.02), p = random_vector(example.n(), 4);
       const auto built_in = answers(example.create(), u, p);
@@ -145,7 +145,7 @@ TEST_CASE("a power law of the caller's own does what the built-in one does") {
       const Handle op = example.create();
       check_same(built_in, answers(op, u, p));
 
-      // It was asked for its own elements, for each of their points, at the strain that is there.
+      // It was evaluated for its own elements only, at each of their points, with the current strain.
       kacanov_information about = sized<kacanov_information>();
       REQUIRE(kacanov_inspect(op.get(), &about) == KACANOV_OK);
       const std::size_t points = about.points_per_element, count = about.elements * points;
@@ -258,7 +258,7 @@ TEST_CASE("points: weights add up to volumes, and each lies next to its corner")
     REQUIRE(kacanov_points(op.get(), count, position.data(), weight.data()) == KACANOV_OK);
     CHECK(kacanov_points(op.get(), count + 1, position.data(), weight.data()) == KACANOV_ERROR_SIZE);
 
-    // u = x: twice the energy is the bulk modulus (here the plane one) times the volume, whatever the mesh.
+    // u = x: twice the energy is the bulk modulus (in 2D the plane one) times the volume, for any mesh.
     kacanov_law law = logarithmic();
     const Vector& u = example.mesh.coordinates;
     Vector f(u.size());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What other codes bring and want: their node orders, inverted elements, lonely nodes, sums, a matrix.
+// Conventions of other codes: node orders, inverted elements, unreferenced nodes, y = αBx + βy, an assembled
+// matrix.
 #include "c_example.hpp"
 
 #include <kacanov/cells.hpp>
@@ -10,7 +11,7 @@ const kacanov::Cell& facts(std::int32_t element) {
   return kacanov::cell(static_cast<kacanov::ElementType>(element));
 }
 
-/// The example's elements with their node k moved to place to[k].
+/// Moves node k of every `every`-th element to position to[k].
 void reorder(Example& example, const std::vector<int>& to, std::size_t every = 1) {
   const std::size_t nodes = to.size();
   auto& connectivity = example.mesh.connectivity;
@@ -77,8 +78,8 @@ TEST_CASE("inverted elements are turned where that is asked for") {
     CAPTURE(element);
     Example plain(element);
     const Vector x = random_vector(plain.n(), 2), want = applied(plain.create(), x);
-    // The mirror images of what the library itself swaps: corners 1 and 2 of simplices, 1 and 3 of the
-    // others.
+    // Reflected node orders. The library repairs an inverted element by swapping corners 1 and 2 of
+    // simplices, and 1 and 3 of the other types.
     const std::map<std::int32_t, std::vector<int>> mirror{{KACANOV_TRI3, {0, 2, 1}},
                                                           {KACANOV_TET4, {1, 0, 2, 3}},
                                                           {KACANOV_TET10, {0, 2, 1, 3, 6, 5, 4, 7, 9, 8}},
@@ -147,7 +148,7 @@ TEST_CASE("the matrix is the operator's and the tangent's, and sums are what the
     CHECK(distance(product(op, nullptr, x), y) < 1e-12);
     Vector tangent(n), sum = z;
     REQUIRE(kacanov_apply_tangent(op.get(), n, x.data(), tangent.data()) == KACANOV_OK);
-    CHECK(distance(product(op, u.data(), x), tangent) < 1e-6);  // its direction is kept in floats
+    CHECK(distance(product(op, u.data(), x), tangent) < 1e-6);  // direction in single precision
     REQUIRE(kacanov_apply_add(op.get(), n, 2.0, x.data(), -0.5, sum.data()) == KACANOV_OK);
     for (std::size_t i = 0; i < n; ++i) CHECK(sum[i] == 2.0 * y[i] - 0.5 * z[i]);
     Vector unread(n, nan_value);
@@ -178,7 +179,7 @@ TEST_CASE("the tangent on several vectors and in single precision is the tangent
       Vector at = u;
       for (double& v : at) v *= size;
       REQUIRE(kacanov_update_tangent(op.get(), n, at.data()) == KACANOV_OK);
-      // Another g afterwards is none of the tangent's business.
+      // A later update of g does not change the frozen tangent.
       REQUIRE(kacanov_update(op.get(), n, Vector(n, 0.0).data()) == KACANOV_OK);
       REQUIRE(kacanov_apply_tangent_many(op.get(), n, 7, x.data(), many.data()) == KACANOV_OK);
       REQUIRE(kacanov_apply_tangent_many_float(op.get(), n, 7, small.data(), image.data()) == KACANOV_OK);

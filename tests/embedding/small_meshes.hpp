@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Small crooked boxes of every element type, as plain arrays.
+// Small distorted boxes of every element type, as plain arrays.
 #pragma once
 
 #include <algorithm>
@@ -16,15 +16,15 @@
 struct SmallMesh {
   std::int32_t element = KACANOV_TET4;
   std::size_t dim = 3, per_element = 4;
-  std::vector<double> coordinates;         ///< interleaved
-  std::vector<std::int32_t> connectivity;  ///< from 0
+  std::vector<double> coordinates;         ///< interleaved components
+  std::vector<std::int32_t> connectivity;  ///< zero-based
 
   std::size_t nodes() const { return coordinates.size() / dim; }
   std::size_t elements() const { return connectivity.size() / per_element; }
   std::size_t unknowns() const { return coordinates.size(); }
 };
 
-/// A box of n cells a side; every node is moved by up to a tenth of a cell.
+/// A box of n cells per side; every node is moved by up to a tenth of a cell.
 inline SmallMesh small_mesh(std::int32_t element, std::size_t n) {
   SmallMesh mesh;
   mesh.element = element;

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whether a C library shows the functions of its header and nothing else, and those of the released one still.
+"""Checks that a C library exports exactly the functions of its header, and those of the released header too.
 
 usage: symbols.py LIBRARY HEADER [RELEASED_HEADER]
 """

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The bytes of a fuzzer's input, taken one value after the other; zeros once they are used up.
+// A reader of a fuzzer's input bytes as a sequence of values; returns zeros after the end.
 #pragma once
 
 #include <algorithm>
@@ -27,9 +27,10 @@ class Bytes {
     left_ = left_.subspan(size);
     return value;
   }
-  /// A number below `end`; 0 where that is 0.
+  /// Returns a number below `end`, or 0 if `end` is 0.
   std::size_t below(std::size_t end) { return end == 0 ? 0 : take<std::uint16_t>() % end; }
-  /// Half of them small and ordinary, the others what arithmetic trips over, or any bits.
+  /// Returns a number: mostly small and ordinary, sometimes a special or extreme value, sometimes arbitrary
+  /// bits.
   double number() {
     constexpr double inf = std::numeric_limits<double>::infinity();
     constexpr std::array<double, 14> odd{std::numeric_limits<double>::quiet_NaN(),
@@ -60,7 +61,7 @@ class Bytes {
   std::span<const std::uint8_t> left_;
 };
 
-/// Ends the fuzzer with its input where something that has to hold does not.
+/// Aborts, so that the fuzzer reports its input, if a required condition does not hold.
 inline void expect(bool holds) {
   if (!holds) std::abort();
 }

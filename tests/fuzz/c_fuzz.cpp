@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The C interface on damaged bodies and odd numbers: every call ends with a code that is not that of a
-// defect.
+// The C interface on damaged bodies and extreme numbers: no call may return the code of an internal error.
 #include <kacanov/kacanov.h>
 
 #include <cmath>
@@ -22,7 +21,8 @@ void damage(SmallMesh& mesh, Bytes& in) {
     mesh.connectivity[in.below(mesh.connectivity.size())] = in.take<std::int32_t>();
 }
 
-/// A law of the host's own: g = 1/(1 + x), or what `data` points to, at every seventh point.
+/// A user-defined law, g = 1/(1 + x), except at every seventh point, where g is the number that `data` points
+/// to.
 int own_law(void* data, const kacanov_law_points* points) {
   const double odd = *static_cast<const double*>(data);
   for (std::size_t i = 0; i < points->count; ++i) {
@@ -57,7 +57,7 @@ kacanov_law some_law(Bytes& in, const std::vector<double>& x, const std::vector<
   return law;
 }
 
-/// A vector of the asked length; now and then one entry is odd.
+/// Returns a vector of length n; up to two entries are replaced by special numbers.
 std::vector<double> some_vector(Bytes& in, std::size_t n) {
   std::vector<double> v(n);
   for (std::size_t i = 0; i < n; ++i) v[i] = 1e-3 * static_cast<double>((i * 7) % 11);
@@ -170,7 +170,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   description.struct_size = sizeof description;
   description.element = in.below(16) == 0 ? in.take<std::int32_t>() : mesh.element;
   description.threads = static_cast<std::int32_t>(in.below(3));
-  // Fewer than the arrays hold is fine; more is the caller's crime.
+  // The counts may be smaller than the arrays, never larger, which would be the caller's fault.
   description.nodes = in.below(4) == 0 ? in.below(mesh.nodes() + 1) : mesh.nodes();
   description.elements = in.below(4) == 0 ? in.below(mesh.elements() + 1) : mesh.elements();
   description.coordinates = in.below(32) == 0 ? nullptr : mesh.coordinates.data();
@@ -185,7 +185,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   description.law_of_element = in.below(2) == 0 ? law_of_element.data() : nullptr;
   constexpr std::array<const char*, 4> sets{nullptr, "plain", "avx2", "sse9"};
   description.instruction_set = sets[in.below(sets.size())];
-  // Another element type in the same arrays must not ask for more than they hold.
+  // Another element type in the same arrays could read beyond their end.
   if (description.element != mesh.element && description.element >= 0 && description.element < 5) return 0;
 
   kacanov_operator* op = nullptr;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any bytes as a case file: refused in words, or a case; on a small box, a problem too.
+// Arbitrary bytes as a case file: rejected with a message, or a valid case; with a small box also a valid
+// problem.
 #include <kacanov/error.hpp>
 #include <kacanov/problem.hpp>
 #include "bytes.hpp"
@@ -9,7 +10,7 @@ using namespace kacanov;
 
 namespace {
 
-/// Larger ones say nothing more and take longer.
+/// Larger boxes add no coverage and take longer.
 bool is_small(const BoxSpec& box) {
   double cells = 1.0;
   for (int c = 0; c < dimension(box.type); ++c) cells *= box.cells[c];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A checkpoint whose entries were changed and whose hash is right all the same: refused in words, or gone on
-// from without harm; and any bytes as its file.
+// A checkpoint with changed entries and a matching hash: rejected with a message, or a safe restart. Also
+// arbitrary bytes as a checkpoint file.
 #include <fstream>
 
 #include <kacanov/error.hpp>
@@ -50,7 +50,7 @@ void change(Checkpoint& checkpoint, fuzz::Bytes& in) {
   }
 }
 
-/// Some bytes as a checkpoint's file. The case and the problem are any.
+/// Reads the bytes as a checkpoint file; the case and the problem do not matter.
 void read_file(std::string_view bytes) {
   static const std::filesystem::path folder = [] {
     char name[] = "/tmp/kacanov_fuzz_XXXXXX";

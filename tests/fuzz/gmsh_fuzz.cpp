@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any bytes as a Gmsh file: refused in words, or a mesh whose every index is there.
+// Arbitrary bytes as a Gmsh file: rejected with a message, or a mesh whose indices are all valid.
 #include <algorithm>
 
 #include <kacanov/error.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any bytes as a height map: refused in words, or a full grid of finite numbers.
+// Arbitrary bytes as a height map: rejected with a message, or a full grid of finite numbers.
 #include <algorithm>
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any bytes as an Abaqus or CalculiX deck: refused in words, or a mesh whose every index is there;
-// and made a case of.
+// Arbitrary bytes as an Abaqus or CalculiX deck: rejected with a message, or a mesh whose indices are all
+// valid; then converted to a case.
 #include <algorithm>
 
 #include <kacanov/error.hpp>
@@ -35,7 +35,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   try {
     const DeckCase made = case_of(read_deck("fuzz.inp", text), true);
-    fuzz::expect(!made.document.dump().empty());  // whatever bytes names and titles have
+    fuzz::expect(!made.document.dump().empty());  // for any bytes in names and titles
   } catch (const InputError&) {
   }
   return 0;

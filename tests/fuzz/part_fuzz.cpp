@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A part whose fields were changed and whose hash is right all the same: refused in words, or solved without
-// harm.
+// A part with changed fields and a matching hash: rejected with a message, or solved safely.
 #include <stdexcept>
 #include <string>
 
@@ -47,8 +46,8 @@ const std::string& good_part() {
   return bytes;
 }
 
-/// Overwrites, takes away or puts in some bytes; places are a share of the whole, so that inputs keep their
-/// sense when fields are added.
+/// Overwrites, removes or inserts bytes; positions are fractions of the length, so that seeds stay meaningful
+/// when fields are added.
 void change(std::string& bytes, fuzz::Bytes& in) {
   const std::size_t at = bytes.size() * in.take<std::uint16_t>() / 65536 + in.take<std::uint8_t>() % 16;
   const auto put = [&](const auto& value) {
@@ -82,8 +81,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const Solution solution = solve(part, fuzz::small_case().model.solver, {});
     fuzz::expect(solution.displacement.size() == part.unknowns());
   } catch (const InputError&) {
-  } catch (const InternalError&) {          // of a library beneath, for numbers that no body has
-  } catch (const std::invalid_argument&) {  // of an operator, for elements that are none
+  } catch (const InternalError&) {          // from a library, for numbers that no body has
+  } catch (const std::invalid_argument&) {  // from an operator, for degenerate elements
   }
   return 0;
 }

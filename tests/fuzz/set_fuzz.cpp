@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any lines as arguments of --set, on a case that has every kind of entry.
+// Arbitrary lines as arguments of --set, applied to a case with every kind of entry.
 #include <kacanov/error.hpp>
 #include <vector>
 

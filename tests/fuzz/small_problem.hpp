@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A small problem with every kind of field in its part, for what is read from files.
+// A small problem whose part has every kind of field, for targets that read files.
 #pragma once
 
 #include <mpi.h>
@@ -9,8 +9,8 @@
 
 namespace kacanov::fuzz {
 
-/// MPI from here to the end of the process; one rank. Leaks of its plugins cannot be named: the targets that
-/// call it run without looking for leaks.
+/// Initialises MPI on one rank until the process ends. Leaks of its plugins cannot be suppressed by name:
+/// targets that call this run without leak detection.
 inline void start_mpi() { MPI_Init(nullptr, nullptr); }
 
 inline const Case& small_case() {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any bytes as the case of kacanov_solve: refused in words, or solved until its host stops it, with fields as
-// long as they are said to be.
+// Arbitrary bytes as the case of kacanov_solve: rejected with a message, or solved until the host stops it,
+// with fields of the documented lengths.
 #include <kacanov/kacanov_solve.h>
 
 #include <array>
@@ -16,8 +16,8 @@ using kacanov::fuzz::expect;
 
 namespace {
 
-/// Whether it is a case of a box of few cells, or none at all: larger ones say nothing more and take longer,
-/// and files are what other targets read.
+/// Returns true for an invalid case and for a box of few cells: larger boxes add no coverage and take longer,
+/// and other targets cover mesh files.
 bool is_small(const std::string& text) {
   try {
     const kacanov::Case input = kacanov::parse_case(kacanov::CaseText{"case.json", text}, {});
@@ -38,9 +38,9 @@ int stop(void* data) { return ++static_cast<Host*>(data)->asked > 200 ? 1 : 0; }
 
 void tell(void*, const kacanov_progress* step) { expect(step->phase != nullptr && step->outer >= 0); }
 
-volatile double read_last;  ///< so that every value is read
+volatile double read_last;  ///< makes the compiler keep every read
 
-/// Every field has the length that the header says.
+/// Checks that every field has the length that the header documents.
 void check_fields(const kacanov_solution* solution) {
   kacanov_solution_information about{};
   about.struct_size = sizeof about;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any bytes as an STL file: refused in words, or a surface whose tree finds the closest point.
+// Arbitrary bytes as an STL file: rejected with a message, or a surface whose tree finds the closest point.
 #include <cmath>
 
 #include <kacanov/error.hpp>

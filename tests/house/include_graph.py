@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws which room of the house includes which, and fails where an arrow runs back.
+"""Computes the include graph of the source folders ("rooms") and fails where an include points upwards.
 
 usage: include_graph.py ROOT [--dot FILE]
 
-A room may include the rooms of the levels before its own, and itself. Also checked, file by file: that public
-headers include public headers only, that what is included exists, the SPDX line, the sentence that says what the
-file is for, the number of lines, and that streams in what a host loads have no locale of the host's.
+A room may include itself and the rooms of the levels before its own. Also checks, file by file: that public
+headers include public headers only, that included files exist, the SPDX line, the sentence that describes the
+file, the number of lines, and that streams in code loaded by a host do not depend on the host's locale.
 """
 import argparse
 import pathlib
@@ -15,9 +15,9 @@ import re
 import statistics
 import sys
 
-# From the ground up; the rooms of one level do not know each other.
+# From the lowest level up; rooms of one level do not include each other.
 LEVELS = [
-    ["kernels/cells", "tools/verify"],  # which may know nothing of what it verifies
+    ["kernels/cells", "tools/verify"],  # which must not include anything that it verifies
     ["kernels/law"],
     ["kernels/reference", "kernels/simd", "kernels/distributed"],
     ["kernels/operator"],
@@ -44,10 +44,10 @@ LEVELS = [
     ["tests"],
 ]
 PUBLIC = ["kernels/include/kacanov", "solver/include/kacanov", "tools/include/kacanov"]
-# Where "room/file.hpp" is looked for, after the folder of the file itself.
+# Folders searched for "room/file.hpp", after the including file's own folder.
 INCLUDE_FOLDERS = ["kernels", "solver", "tools", "tests/solver"]
 
-# Public headers live with the source file of their name; these have none, or one of another name.
+# A public header belongs to the room of the source file with its name; these have none, or one of another name.
 HEADER_ROOMS = {
     "kacanov.h": "kernels/c",
     "kacanov_solve.h": "tools/embedding",
@@ -69,16 +69,16 @@ HEADER_ROOMS = {
 
 PLAIN_STREAMS = "solver/mesh/plain_stream.hpp"
 MOST_LINES = 800
-# Files that are longer, and why. An entry that is not needed any more is an error.
+# Files above the limit on lines, with the reason. An unnecessary entry is an error.
 LONGER = {}
-# Arrows that still run back: (room, included room). An entry that is not needed any more is an error.
+# Upward includes that still exist: (room, included room). An unnecessary entry is an error.
 KNOWN_BACKWARD = set()
 
 CODE = {".cpp", ".hpp", ".h", ".c", ".py"}
 
 
 def source_files(root):
-    """Every file of the house that somebody wrote as code: what is built, and the scripts."""
+    """Returns the project's source files: everything that is compiled, build files and scripts."""
     tops = sorted({room.split("/")[0] for level in LEVELS for room in level})
     found = [root / "CMakeLists.txt", root / ".ci/run"]
     for top in tops:
@@ -93,7 +93,7 @@ def source_files(root):
 
 
 def room_of(path):
-    """The room of a file, by its path relative to the root; public headers as their table or source file says."""
+    """Returns the room of a file from its path relative to the root."""
     parts = path.split("/")
     if parts[0] in ("perf", "python", "tests"):
         return parts[0]
@@ -103,7 +103,7 @@ def room_of(path):
 
 
 def rooms_of_files(files):
-    """The room of each of the paths, and complaints about public headers that have none."""
+    """Returns the room of each path, and complaints about public headers without a room."""
     sources = {}
     for path in files:
         if path.endswith(".cpp") and path.startswith(("kernels/", "solver/")):
@@ -127,7 +127,7 @@ def rooms_of_files(files):
 
 
 def included_files(path, text, files):
-    """What the file includes of the project's own: pairs of the words in the #include and the file, or None."""
+    """Yields pairs of the name in each #include of the project's files and the included file, or None."""
     for bracket, name in re.findall(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', text, re.MULTILINE):
         if bracket == "<":
             candidates = [f"{top}/include/{name}" for top in ("kernels", "solver", "tools")]
@@ -140,7 +140,8 @@ def included_files(path, text, files):
 
 
 def draw(texts):
-    """Arrows between rooms, each with the includes that make it, and complaints, of paths with their texts."""
+    """Returns arrows between rooms, each with the includes behind it, and complaints; `texts` maps paths to
+    contents."""
     rooms, complaints = rooms_of_files(texts)
     arrows = {}
     for path, text in texts.items():
@@ -157,7 +158,7 @@ def draw(texts):
 
 
 def backward(arrows):
-    """Complaints about arrows to a room that is not of a lower level, and about exceptions without need."""
+    """Returns complaints about includes of rooms that are not on a lower level, and about unnecessary exceptions."""
     level_of = {room: number for number, level in enumerate(LEVELS) for room in level}
     complaints, met = [], set()
     for (room, target), includes in arrows.items():
@@ -173,7 +174,7 @@ def backward(arrows):
 
 
 def opening(text):
-    """The comment below the SPDX line, in plain words."""
+    """Returns the comment below the SPDX line as plain text."""
     lines = text.splitlines()
     if lines and lines[0].startswith("#!"):
         lines = lines[1:]
@@ -186,7 +187,7 @@ def opening(text):
 
 
 def file_complaints(path, text):
-    """What the head and the length of one file lack."""
+    """Yields complaints about the first lines and the length of one file."""
     lines = text.splitlines()
     head = lines[1:2] if lines and lines[0].startswith("#!") else lines[:1]
     if not head or "SPDX-License-Identifier: BSD-3-Clause" not in head[0]:

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The drawing of the rooms finds what it is there to find, in made-up houses of a few files."""
+"""Tests include_graph.py on made-up projects of a few files."""
 import unittest
 
 import include_graph as graph
@@ -10,7 +10,7 @@ TABLE["kernels/include/kacanov/kacanov.h"] = ""
 
 
 def complaints(files):
-    """What is said of these files about arrows, without the exceptions of the real house."""
+    """Returns the complaints about the includes of these files, without the real project's exceptions."""
     arrows, found = graph.draw(TABLE | files)
     return found + [c for c in graph.backward(arrows) if not c.startswith("KNOWN_BACKWARD")]
 

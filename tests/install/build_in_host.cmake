@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The test of add_subdirectory, run by cmake -P: a host in C that wants shared libraries and absolute folders, then
-# the same with C++; what the C library shows; and what pkg-config says of an installation from there.
+# Test of add_subdirectory, run by cmake -P: a host in C with shared libraries and absolute folders, then the same with
+# C++; the exported symbols of the C library; and pkg-config for an installation from there.
 include("${CMAKE_CURRENT_LIST_DIR}/consuming.cmake")
 
 set(absolute "${WORK}/absolute")
 file(REMOVE_RECURSE "${WORK}/host" "${absolute}")
-# Joined files compile in half the time, and the plain kernels serve.
+# A unity build compiles in half the time, and the plain kernels suffice.
 set(arguments -DCMAKE_UNITY_BUILD=ON -DKACANOV_VECTOR_KERNELS=OFF "-DKACANOV=${SOURCE}" -DKACANOV_INSTALL=ON -DBUILD_SHARED_LIBS=ON "-DCMAKE_INSTALL_PREFIX=${absolute}/else"
   "-DCMAKE_INSTALL_LIBDIR=${absolute}/libraries" "-DCMAKE_INSTALL_INCLUDEDIR=${absolute}/headers" ${forbidden_to_build})
 configure(host "${HOST}" ${arguments})

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# What the tests of installing share: run a command, configure and build a consumer, consume by pkg-config.
+# Functions of the installation tests: run a command, configure and build a consumer, consume by pkg-config.
 find_program(PKG_CONFIG pkg-config REQUIRED)
 
 function(run)
@@ -10,14 +10,14 @@ function(run)
   endif()
 endfunction()
 
-# Configures a project of these tests in a folder of that name; cmake arguments may follow.
+# Configures a project of these tests in a folder of this name; accepts further cmake arguments.
 function(configure name source)
   run("${CMAKE_COMMAND}" -S "${source}" -B "${WORK}/${name}" -G "${GENERATOR}"
     "-DCMAKE_C_COMPILER=${C_COMPILER}" "-DCMAKE_CXX_COMPILER=${CXX_COMPILER}" ${ARGN})
 endfunction()
 
-# The consumer that uses the given components (separated by commas) of the installation in `prefix`; cmake
-# arguments may follow.
+# Builds and runs the consumer with the given components (separated by commas) of the installation in `prefix`; accepts
+# further cmake arguments.
 function(consume name components)
   file(REMOVE_RECURSE "${WORK}/${name}")
   configure(${name} "${CONSUMER}" "-DCMAKE_BUILD_TYPE=${CONFIGURATION}" "-DCMAKE_PREFIX_PATH=${prefix}"
@@ -29,8 +29,8 @@ function(consume name components)
   endforeach()
 endfunction()
 
-# Builds a source file with a compiler and what pkg-config says of a package in the library folder, and runs it with
-# that folder's shared library; more flags may follow.
+# Compiles a source file with the flags that pkg-config returns for a package in the library folder, and runs it with
+# that folder's shared library; accepts further flags.
 function(consume_by_pkg_config package libraries compiler source)
   execute_process(
     COMMAND "${CMAKE_COMMAND}" -E env "PKG_CONFIG_PATH=${libraries}/pkgconfig" "${PKG_CONFIG}" --cflags --libs ${package}
@@ -40,8 +40,8 @@ function(consume_by_pkg_config package libraries compiler source)
   run("${CMAKE_COMMAND}" -E env "LD_LIBRARY_PATH=${libraries}" "${WORK}/by_pkg_config")
 endfunction()
 
-# Neither building nor using the kernels may even look for what only the solver needs; using them, not for Eigen, whose
-# headers they are built with.
+# Neither building nor using the kernels may search for the solver's dependencies; using them may not search for Eigen,
+# whose headers only the build needs.
 set(forbidden_to_build MPI HYPRE PARPACK)
 set(forbidden ${forbidden_to_build} Eigen3)
 foreach(list forbidden forbidden_to_build)

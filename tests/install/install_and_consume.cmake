@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# The test of installing, run by cmake -P: install, move, configure and build a consumer of each component, run it.
+# Test of installing, run by cmake -P: install, relocate, then configure, build and run a consumer of each component.
 include("${CMAKE_CURRENT_LIST_DIR}/consuming.cmake")
 
 file(REMOVE_RECURSE "${WORK}/first" "${WORK}/moved prefix")
@@ -8,7 +8,7 @@ file(GLOB_RECURSE foreign "${WORK}/first/*solve*" "${WORK}/first/*HYPRE*" "${WOR
 if(foreign)
   message(FATAL_ERROR "not of the kernels: ${foreign}")
 endif()
-# An installed tree has to work wherever it is put, also where there is a space.
+# An installed tree has to work at any place, also where the path contains a space.
 set(prefix "${WORK}/moved prefix")
 file(RENAME "${WORK}/first" "${prefix}")
 consume(embed c,kernels ${forbidden})
@@ -16,8 +16,8 @@ consume(no_component "" ${forbidden} -DCMAKE_DISABLE_FIND_PACKAGE_Threads=ON -DC
   -DCMAKE_DISABLE_FIND_PACKAGE_METIS=ON)
 run("${WORK}/no_component/use_c")
 
-# The same through pkg-config, and an example as its README says. What is installed in a folder with a space is
-# linked by its plain name, as users would.
+# The same through pkg-config, and an example as its README describes. A symbolic link gives the installation a path
+# without a space, as users would do.
 file(CREATE_LINK "${prefix}" "${WORK}/plain" SYMBOLIC)
 file(GLOB_RECURSE package_file "${prefix}/*/kacanov.pc")
 cmake_path(GET package_file PARENT_PATH libraries)

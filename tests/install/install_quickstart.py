@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""install_quickstart.py SOURCE BUILD: `cmake --install` finds all it installs after `tools/quickstart run`: everything
-that is built and installed is among what the target of quickstart builds."""
+"""install_quickstart.py SOURCE BUILD: checks that `cmake --install` works after `tools/quickstart run`: the
+quickstart's
+target builds everything that is both built and installed."""
 import re
 import subprocess
 import sys
@@ -23,7 +24,7 @@ def main():
     installed = set()
     for script in build.rglob("cmake_install.cmake"):
         installed.update(re.findall(rf'"({re.escape(str(build))}/[^"]+)"', script.read_text()))
-    # What is there once the project is configured is no target.
+    # Files that exist right after configuring are not targets.
     made = sorted(name for name in (str(Path(file).relative_to(build)) for file in installed) if name in targets)
     missing = [name for name in made if name not in built and str(build / name) not in built]
     if missing:

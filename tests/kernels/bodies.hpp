@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bodies for the kernels' tests: a mesh with its materials, random vectors and how vectors are compared.
+// Fixtures of the kernels' tests: meshes with materials, random vectors, comparison of vectors.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace kacanov::test {
 
 inline const std::span<const ElementType> all_types = element_types();
 
-/// One law of every kind that stays monotone, E = 1, nu = 0.3.
+/// One law of each kind, all with monotone stress, E = 1, nu = 0.3.
 inline std::vector<Law> every_law() {
   std::vector<Law> all(6, elastic_law(1.0, 0.3));
   all[1].form = laws::Logarithmic{0.01};
@@ -29,7 +29,7 @@ inline std::vector<Law> every_law() {
   return all;
 }
 
-/// A material that stiffens: g' > 0.
+/// A stiffening material: g' > 0.
 inline Law stiffening_law() {
   Law law = elastic_law(1.0, 0.3);
   law.form = laws::Table{{0.0, 0.01, 0.02, 0.05}, {0.0, 0.02 * law.shear, 0.05 * law.shear, 0.2 * law.shear}};
@@ -47,7 +47,7 @@ struct OwnedBody {
     view.pressure_patch = pressure_patch;
     return view;
   }
-  /// Over which its laws average, where it is of tet4.
+  /// Computes the pressure patches over which the laws of tet4 elements average the dilatation.
   void make_patches() {
     IndexMap alone;
     alone.owned = static_cast<std::int32_t>(mesh.view().node_count());
@@ -58,8 +58,8 @@ struct OwnedBody {
 
 inline OwnedBody with_one_law(meshes::OwnedMesh mesh, const Law& law) { return {std::move(mesh), {law}, {}}; }
 
-/// Every law of `every_law` and the stiffening one, scattered over the elements; every second one
-/// with its mean dilatation where the element has that, round corners with two bulk moduli; tet4 over
+/// A body with every law of `every_law` and the stiffening one, distributed over the elements. Every second
+/// law averages the dilatation if the element supports that: at corners with two bulk moduli, for tet4 over
 /// patches.
 inline OwnedBody with_every_law(meshes::OwnedMesh mesh, unsigned seed) {
   OwnedBody body{std::move(mesh), every_law(), {}};
@@ -82,14 +82,14 @@ inline std::vector<double> random_vector(std::size_t size, unsigned seed, double
   return v;
 }
 
-/// Frozen g between 0.1 and 0.4 at every point.
+/// Frozen secant moduli g between 0.1 and 0.4, one per quadrature point.
 inline std::vector<double> some_secant(const Body& body, unsigned seed) {
   std::vector<double> g = random_vector(body.secant_count(), seed, 0.15);
   for (double& value : g) value += 0.25;
   return g;
 }
 
-/// max |a − b| / max |b|.
+/// Returns max |a − b| / max |b|.
 template <class A, class B>
 double difference(const A& a, const B& b) {
   double worst = 0.0, largest = 0.0;
@@ -107,7 +107,7 @@ inline double dot(std::span<const double> a, std::span<const double> b) {
   return sum;
 }
 
-/// A small perturbed box with displacements that take about half of its points beyond yield.
+/// A small perturbed box whose displacements take about half of its quadrature points beyond yield.
 inline OwnedBody small_body(ElementType type, unsigned seed) {
   meshes::OwnedMesh mesh = meshes::box(type, {3, 2, 2}, {1.5, 1.0, 1.0});
   meshes::jitter(mesh, cell(type).order == 2 ? 0.04 : 0.12, seed);

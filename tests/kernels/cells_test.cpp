@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The table of cells against what other programs define and what geometry demands.
+// The table of cells, checked against the conventions of other programs and against geometry.
 #include <kacanov/cells.hpp>
 
 #include <doctest/doctest.h>
@@ -21,7 +21,7 @@ using Position = std::array<double, 3>;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// Σ N_a(ξ) x_a of nodes given by their numbers among `nodes`.
+/// Returns Σ N_a(ξ) x_a for the node coordinates `nodes`.
 Position interpolate(const Cell& cell, const Position& xi, std::span<const Position> nodes) {
   std::array<double, most_nodes> n{};
   cell.values(xi.data(), n.data());
@@ -31,7 +31,7 @@ Position interpolate(const Cell& cell, const Position& xi, std::span<const Posit
   return x;
 }
 
-/// Columns ∂x/∂ξ_k of the map from ξ.
+/// Returns the columns ∂x/∂ξ_k of the map's Jacobian at ξ.
 std::array<Position, 3> jacobian(const Cell& cell, const Position& xi, std::span<const Position> nodes) {
   std::array<double, 3 * most_nodes> d{};
   cell.gradients(xi.data(), d.data());
@@ -54,7 +54,7 @@ Position middle(const Position& a, const Position& b) {
 }
 double volume(int dim) { return dim == 2 ? 4.0 : 8.0; }
 
-/// Cells with shape functions.
+/// Returns the cells that have shape functions.
 std::vector<const Cell*> shaped() {
   std::vector<const Cell*> result;
   for (const Cell& cell : cells())
@@ -141,7 +141,7 @@ TEST_CASE("facets are whole, close the cell and look outwards") {
       for (std::size_t k = 0; k < 3; ++k) closed[k] += normal[k];
     }
     for (const double sum : closed) CHECK(sum == doctest::Approx(0.0));
-    // Every edge belongs to as many facets as meet there.
+    // Each edge has two facets in 3D and is one facet in 2D.
     for (const CellEdge& edge : body.edges) {
       int meeting = 0;
       for (int f = 0; f < body.facets(); ++f) {
@@ -213,7 +213,8 @@ TEST_CASE("nodes in the orders of VTK and Basix") {
       REQUIRE(sorted.size() == at(cell.nodes));
       for (std::size_t k = 0; k < sorted.size(); ++k) CHECK(sorted[k] == static_cast<std::int8_t>(k));
     }
-  // Of cells with nodes on edges both give the edges by their ends; Basix lists them from the last ones on.
+  // For mid-edge nodes VTK and Basix both name edges by their end nodes; Basix orders the edges from the last
+  // corners.
   struct Edges {
     ElementType type;
     std::vector<std::array<int, 2>> vtk, basix;
@@ -231,7 +232,7 @@ TEST_CASE("nodes in the orders of VTK and Basix") {
                      middle(corner(basix[e][0]), corner(basix[e][1]))) == 0.0);
     }
   }
-  // Basix runs through tensor cells with the first coordinate fastest.
+  // Basix numbers the nodes of tensor-product cells with the first coordinate running fastest.
   for (const Cell* cell : shaped()) {
     if (cell->simplex) continue;
     for (std::size_t k = 0; k < at(cell->nodes); ++k)

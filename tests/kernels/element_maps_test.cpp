@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is known of the maps from the reference element, one by one and some abreast.
+// Maps from the reference element (volume, range of det J, thinness), batched and one by one.
 #include "operator/element_maps.hpp"
 
 #include <doctest/doctest.h>
@@ -16,7 +16,7 @@ namespace {
 constexpr ElementType every_type[] = {ElementType::tri3, ElementType::quad4, ElementType::tet4,
                                       ElementType::tet10, ElementType::hex8};
 
-/// Elements of their own nodes, each the reference element somewhere else, mapped.
+/// Elements that share no nodes: each is the reference element with its nodes moved by `map(element, node)`.
 struct Elements {
   std::vector<double> coordinates;
   std::vector<std::int32_t> connectivity;

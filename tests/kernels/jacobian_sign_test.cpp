@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Folded elements: the sign of det J all over an element against many samples of it.
+// Detection of folded elements: the sign of det J over the whole element, compared with many samples.
 #include "operator/jacobian_sign.hpp"
 
 #include <doctest/doctest.h>
@@ -48,10 +48,10 @@ struct OneElement {
 
 struct Sampled {
   double least = HUGE_VAL, most = -HUGE_VAL;
-  bool at_corner = false;  ///< a corner is as low as anything
+  bool at_corner = false;  ///< the minimum is attained at a corner
 };
 
-/// On a grid of the reference element, corners and edges included.
+/// Samples det J on a grid over the reference element, corners and edges included.
 Sampled sample(const OneElement& element) {
   constexpr int cells = 12;
   const Cell& c = cell(element.type);
@@ -88,7 +88,8 @@ TEST_CASE("an element is folded exactly where some sample of its Jacobian is neg
       for (double& x : element.coordinates) x += size * some(bits);
       const Sampled seen = sample(element);
       const bool found = is_folded(element);
-      // Samples may miss what is negative between them, never the other way round.
+      // Samples can miss a negative det J between them, so a negative sample implies a folded element, not
+      // vice versa.
       if (seen.least < -1e-6 * seen.most) {
         REQUIRE(found);
         ++folded;
@@ -97,7 +98,7 @@ TEST_CASE("an element is folded exactly where some sample of its Jacobian is neg
       } else if (!found) {
         ++valid;
       }
-      // Curved, and clear of 0 between the samples as well: never refused.
+      // Curved, but det J stays well above 0 between the samples too: the check must accept the element.
       if (seen.least > 0.2 * seen.most) CHECK_FALSE(found);
     }
     CAPTURE(cell(type).name);
@@ -111,7 +112,7 @@ TEST_CASE("an element is folded exactly where some sample of its Jacobian is neg
 TEST_CASE("mid-side nodes in another order are found, all over as at the corner they name") {
   OneElement element(ElementType::tet10);
   CHECK_FALSE(is_folded(element));
-  // Those of the edges 12 and 20, and of 30 and 32, the other way round, as another program numbers them.
+  // Swap the mid-side nodes of edges 12 and 20, and of 30 and 32, as another program numbers them.
   std::swap(element.connectivity[5], element.connectivity[6]);
   CHECK(is_folded(element));
   std::swap(element.connectivity[7], element.connectivity[8]);
@@ -121,7 +122,7 @@ TEST_CASE("mid-side nodes in another order are found, all over as at the corner 
 }
 
 TEST_CASE("elements whose Jacobian falls to zero at a corner or an edge are valid") {
-  // Quarter-point nodes around corner 0, as at the tip of a crack, and with the rounding of six digits.
+  // Quarter-point nodes around corner 0, as at a crack tip, also with the rounding error of six digits.
   for (const double off : {0.0, 1e-7, -1e-7}) {
     OneElement tip(ElementType::tet10);
     for (const CellEdge& edge : cell(tip.type).edges)
@@ -129,13 +130,13 @@ TEST_CASE("elements whose Jacobian falls to zero at a corner or an edge are vali
         for (std::size_t c = 0; c < 3; ++c) tip.coordinates[3 * edge.middle + c] *= 0.5 * (1.0 + off);
     CHECK(tip.det_at({0, 0, 0}) == doctest::Approx(0.0).epsilon(1e-6));
     CHECK_FALSE(is_folded(tip));
-    // Beyond a quarter the map turns round.
+    // Moved closer to the corner than a quarter of the edge, the nodes fold the map.
     for (const CellEdge& edge : cell(tip.type).edges)
       if (edge.a == 0 || edge.b == 0)
         for (std::size_t c = 0; c < 3; ++c) tip.coordinates[3 * edge.middle + c] *= 0.9;
     CHECK(is_folded(tip));
   }
-  // A hexahedron that is a wedge: two edges of its upper face are one.
+  // A hexahedron degenerated to a wedge: two edges of its upper face coincide.
   OneElement wedge(ElementType::hex8);
   for (std::size_t c = 0; c < 3; ++c) {
     wedge.coordinates[3 * 7 + c] = wedge.coordinates[3 * 4 + c];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The laws against their own definitions: derivative, energy, monotony, limits.
+// The material laws, checked against their definitions: derivative, energy, monotonicity, limits.
 #include <kacanov/law.hpp>
 
 #include <doctest/doctest.h>
@@ -23,7 +23,7 @@ std::vector<Law> both_arguments() {
   return laws;
 }
 
-/// Strains on both sides of the yield strain, kinks (x0 and the table's points) avoided.
+/// Strains on both sides of the yield strain that avoid the kinks (x0 and the points of the table).
 std::vector<double> strains(const Law& law) {
   std::vector<double> x;
   for (double a = 1.07e-4; a < 1.0; a *= 1.37)
@@ -64,7 +64,7 @@ TEST_CASE("the energy is the integral of g x") {
     CHECK(law.energy(0.0) == 0.0);
     double integral = 0.0, from = 0.0;
     for (const double x : strains(law)) {
-      const int pieces = 4000;  // midpoint rule; exact enough across the kinks
+      const int pieces = 4000;  // midpoint rule, accurate enough across the kinks
       for (int i = 0; i < pieces; ++i) {
         const double s = from + (x - from) * (i + 0.5) / pieces;
         integral += law.secant(s) * s * (x - from) / pieces;
@@ -83,7 +83,7 @@ TEST_CASE("stress grows with strain where the argument is the norm") {
     for (double x = 1e-5; x < 10.0; x *= 1.05) {
       CAPTURE(x);
       CHECK_FALSE(law.softens(x));
-      if (x > 0.1) continue;  // the saturating law has reached its limit to the last digit
+      if (x > 0.1) continue;  // the saturating law has reached its limit to machine precision
       CHECK(law.secant(x) * x > last);
       last = law.secant(x) * x;
     }
@@ -131,8 +131,8 @@ TEST_CASE("a saturating law with a sharp knee stays finite") {
   Law law = test::every_law()[4];
   law.argument = Law::Argument::squared;
   law.form = laws::Saturating{x0, 1e-4};
-  const double x = 0.2;  // argument 4 x0: e^{1/q} alone would overflow
-  // g a → mu x0 (1 + q) at once, so ½∫ g da ≈ ½ mu x0 (1 + (1 + q) ln 4).
+  const double x = 0.2;  // argument 4 x0, for which e^{1/q} alone would overflow
+  // g a quickly approaches mu x0 (1 + q), so ½∫ g da ≈ ½ mu x0 (1 + (1 + q) ln 4).
   CHECK(law.energy(x) == doctest::Approx(0.5 * law.shear * x0 * (1 + 1.0001 * std::log(4.0))).epsilon(1e-6));
 }
 

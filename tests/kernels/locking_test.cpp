@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// B-bar against volumetric locking: the thick cylinder of MacNeal and Harder (1985), nearly incompressible by
-// its elasticity, and with an ordinary elasticity but deep in plastic flow.
+// B-bar against volumetric locking in the thick cylinder of MacNeal and Harder (1985): nearly incompressible
+// elasticity, and compressible elasticity deep in plastic flow.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -17,12 +17,12 @@ namespace {
 
 constexpr double inner_radius = 3.0, outer_radius = 9.0, young = 1000.0;
 
-constexpr int steps = 9;  ///< elements of the quarter
+constexpr int steps = 9;  ///< elements along the quarter arc
 constexpr double half_step = std::numbers::pi / (4 * steps);
-constexpr double facet = 2.0 * inner_radius;  ///< of the inner surface: times sin(half_step)
+constexpr double facet = 2.0 * inner_radius;  ///< length of an inner facet, divided by sin(half_step)
 
-/// Solves A u = r on the unknowns that are not held, from u = 0, by conjugate gradients with the given
-/// diagonal.
+/// Solves A u = r on the unconstrained unknowns by conjugate gradients from u = 0, preconditioned by the
+/// given diagonal.
 template <class Apply>
 std::vector<double> solve(Apply&& apply, std::span<const double> diagonal, std::span<const char> held,
                           std::vector<double> r) {
@@ -47,15 +47,16 @@ std::vector<double> solve(Apply&& apply, std::span<const double> diagonal, std::
   return u;
 }
 
-/// A quarter of the cylinder, five elements thick, ten degrees each, in plane strain: one layer in space.
+/// A quarter of the cylinder in plane strain: five elements through the thickness, ten degrees each, one
+/// layer in 3D.
 struct Cylinder {
   meshes::OwnedMesh mesh;
   std::size_t dim;
-  double layers;           ///< of nodes
-  std::vector<char> held;  ///< by symmetry and plane strain
+  double layers;           ///< of nodes along the axis
+  std::vector<char> held;  ///< constrained by symmetry or plane strain
   std::vector<double>
-      load;  ///< of a unit pressure inside, a quarter of each facet to each of its nodes; not tet10's
-  std::vector<double> inner_normal;  ///< the unit radius at nodes of the inner surface, 0 elsewhere
+      load;  ///< nodal forces of a unit inner pressure, a quarter of each facet per node; not valid for tet10
+  std::vector<double> inner_normal;  ///< radial unit vector at nodes of the inner surface, 0 elsewhere
 
   explicit Cylinder(ElementType type)
       : mesh(meshes::box(type, {5, steps, 1}, {5, steps, 1})),
@@ -67,7 +68,7 @@ struct Cylinder {
     constexpr double radius[6] = {inner_radius, 3.5, 4.2, 5.2, 6.75, outer_radius};
     for (std::size_t i = 0; i < held.size(); i += dim) {
       double* x = &mesh.coordinates[i];
-      const auto ring = static_cast<std::size_t>(x[0]);  // mid-sides of tet10 lie between two, on the arcs
+      const auto ring = static_cast<std::size_t>(x[0]);  // mid-sides of tet10: on the arc between rings
       const double between = x[0] - static_cast<double>(ring), step = x[1], angle = 2.0 * half_step * step;
       const double r = radius[ring] + (between > 0.0 ? between * (radius[ring + 1] - radius[ring]) : 0.0);
       x[0] = r * std::cos(angle), x[1] = r * std::sin(angle);
@@ -83,7 +84,7 @@ struct Cylinder {
     }
   }
 
-  /// Radial displacement of the inner surface under pressure over the exact one, linear elasticity.
+  /// Radial displacement of the inner surface under pressure, divided by the exact one of linear elasticity.
   double displacement(double poisson, bool mean_dilatation) const {
     Law law = elastic_law(young, poisson);
     law.mean_dilatation = mean_dilatation;
@@ -100,9 +101,9 @@ struct Cylinder {
     return 0.0;
   }
 
-  /// Pressure inside over the exact one of an incompressible body, where the inner surface is moved outward
-  /// until its strain is `strain` (in units of x0): logarithmic law, nu = 0.3, Newton with the energy never
-  /// allowed to rise.
+  /// Inner pressure divided by the exact one of an incompressible body, for an inner surface displaced
+  /// outward until its strain is `strain` x0: logarithmic law, nu = 0.3, Newton with a line search that never
+  /// lets the energy rise.
   double plastic_pressure(double strain, bool mean_dilatation) const {
     Law law = elastic_law(young, 0.3);
     constexpr double x0 = 1e-6;
@@ -112,7 +113,7 @@ struct Cylinder {
     owned.make_patches();
     Operator op(owned.body());
     const std::size_t n = op.unknowns();
-    // Outside u = C/r, x = √2 C/r²; inside the surface everything starts from that.
+    // On the inner surface u = C/r, x = √2 C/r² is prescribed; inside the body it is the initial guess.
     const double c = strain * x0 * inner_radius * inner_radius / std::numbers::sqrt2;
     std::vector<double> u(n, 0.0), f(n), diagonal(n);
     std::vector<char> fixed(held);
@@ -142,11 +143,11 @@ struct Cylinder {
       u = next, energy = next_energy;
     }
     CHECK(unbalanced() <= 1e-8);
-    // The pressure does the reaction's work on the volume that the inner surface sweeps.
+    // The pressure does the same work as the reactions, on the volume swept by the inner surface.
     const bool curved = cell(mesh.type).order == 2;
     const double swept = curved ? 0.5 * std::numbers::pi * inner_radius
                                 : steps * facet * std::sin(half_step) * std::cos(half_step);
-    const auto h = [&](double x) {  // ∫ g
+    const auto h = [&](double x) {  // antiderivative of g
       const double l = std::log(x / x0);
       return law.shear * (l < 0.0 ? x : x0 * (1.0 + l + 0.5 * l * l));
     };
@@ -178,15 +179,16 @@ TEST_CASE("means round the corners do not lock in plastic flow") {
                  mixed = cylinder.plastic_pressure(strain, true);
     CAPTURE(plain);
     CAPTURE(mixed);
-    // The exact pressure is that of an incompressible body, which it is not quite at ten yield strains yet.
-    // The cylinder is two nodes thick: patches of tet4 reach through it.
+    // The exact pressure is that of an incompressible body; at ten yield strains the body is still slightly
+    // compressible. The cylinder is two nodes thick, so that the patches of tet4 extend through its whole
+    // thickness.
     const double coarse = type == ElementType::tet4 ? 0.02 : 0.005;
     CHECK(mixed == doctest::Approx(1.0).epsilon(strain > 100.0 ? coarse : 0.02));
     if (type == ElementType::tet4 && strain > 100.0) CHECK(plain > 2.0);
   }
 }
 
-// In plastic flow g falls and k0 stays, so that every body becomes nearly incompressible.
+// In plastic flow g falls while k0 stays constant, so every body becomes nearly incompressible.
 TEST_CASE("B-bar does not lock in plastic flow either") {
   ElementType type = ElementType::hex8;
   SUBCASE("hex8") {}

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The displacement–pressure form against matrices by hand, the displacement form and its inf-sup condition.
+// The displacement–pressure formulation: matrices computed by hand, the displacement form, the inf-sup
+// condition.
 #include "reference/mixed.hpp"
 
 #include <doctest/doctest.h>
@@ -32,7 +33,7 @@ Fields product(const Body& body, std::span<const double> g, const Fields& x) {
   return y;
 }
 
-/// u = H x and p = k0 tr H, k0 that of the first law.
+/// Returns u = H x and p = k0 tr H, with k0 of the first law.
 Fields linear(const Body& body, const double (&h)[3][3]) {
   const std::size_t dim = dimension(body.mesh.type);
   Fields x{std::vector<double>(body.unknowns(), 0.0), {}};
@@ -46,13 +47,14 @@ Fields linear(const Body& body, const double (&h)[3][3]) {
 
 constexpr ElementType simplices[] = {ElementType::tri3, ElementType::tet4, ElementType::tet10};
 
-/// The smallest eigenvalues of B A⁻¹Bᵀ q = λ (mass / 2g) q, B and mass without a bulk modulus.
+/// Smallest eigenvalues λ of B A⁻¹Bᵀ q = λ (mass / 2g) q, with B and the mass matrix free of the bulk
+/// modulus.
 struct InfSup {
-  double bare, stabilised;  ///< of pressures at corners, and with the stabilisation beside B A⁻¹Bᵀ
-  double patches;           ///< of pressures over patches
+  double bare, stabilised;  ///< pressures at corners: without and with the stabilisation added to B A⁻¹Bᵀ
+  double patches;           ///< pressures on patches
 };
 
-/// Of a jittered cube held on one side.
+/// Computes them for a perturbed cube that is fixed on one side.
 InfSup inf_sup(ElementType type, int cells) {
   auto mesh = meshes::box(type, {cells, cells, cells}, {1.0, 1.0, 1.0});
   meshes::jitter(mesh, type == ElementType::tet4 ? 0.15 : 0.05, 3);
@@ -91,7 +93,7 @@ InfSup inf_sup(ElementType type, int cells) {
   }
   Fields grow = linear(body, {{1.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}});
   grow.p.assign(grow.p.size(), 0.0);
-  const Fields volume = product(body, g, grow);  // tr ε = 1: the corners' shares of the volume
+  const Fields volume = product(body, g, grow);  // tr ε = 1: the volume lumped to the corners
   Eigen::VectorXd mass(corners.size());
   for (std::size_t i = 0; i < corners.size(); ++i) mass[i] = volume.p[corners[i]] / (2.0 * law.shear);
   const Eigen::MatrixXd schur = testing::schur_complement(a, b);
@@ -189,7 +191,7 @@ TEST_CASE("over patches of nodes pressures have no pattern that displacements do
   CAPTURE(fine.patches);
   CAPTURE(fine.bare);
   CHECK(coarse.patches > 0.1);
-  CHECK(fine.patches > 0.1);  // 0.13 to 0.4 with 6 to 11 cells
+  CHECK(fine.patches > 0.1);  // measured: 0.13 to 0.4 with 6 to 11 cells
   CHECK(fine.bare < 1e-6 * fine.patches);
 }
 
@@ -210,7 +212,7 @@ TEST_CASE(
   reference::apply(body, g, z, w);
   CHECK(dot(x, w) == doctest::Approx(dot(z, y)).epsilon(1e-12));
 
-  Body plain = body;  // the volume at the points
+  Body plain = body;  // dilatation at the quadrature points
   std::vector<Law> plain_laws = owned.laws;
   for (Law& law : plain_laws) law.mean_dilatation = false;
   plain.laws = plain_laws;

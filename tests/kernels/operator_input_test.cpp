@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the fast operator refuses, and the order of nodes and elements that it likes.
+// Input that the fast operator rejects, and the ordering of nodes and elements for locality.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -72,7 +72,7 @@ TEST_CASE("the locality order is a renumbering that brings neighbours together")
   CHECK(is_permutation(order.elements, mesh.view().element_count()));
   std::vector<double> rank(order.nodes.size());
   for (std::size_t i = 0; i < rank.size(); ++i) rank[order.nodes[i]] = static_cast<double>(i);
-  double before = 0.0, after = 0.0;  // mean distance of an element's first two nodes
+  double before = 0.0, after = 0.0;  // mean distance between the numbers of an element's first two nodes
   for (std::size_t e = 0; e < mesh.view().element_count(); ++e) {
     const auto a = mesh.connectivity[4 * e], b = mesh.connectivity[4 * e + 1];
     before += std::abs(static_cast<double>(a - b));
@@ -83,7 +83,7 @@ TEST_CASE("the locality order is a renumbering that brings neighbours together")
 
 namespace {
 
-/// Hilbert index of a point of a 2^20 grid, as Skilling (2004) has it, bit by bit.
+/// Returns the Hilbert index of a point of a 2^20 grid, computed bit by bit as in Skilling (2004).
 std::uint64_t plain_hilbert(std::array<std::uint32_t, 3> x) {
   for (std::uint32_t q = 1u << 19; q > 1; q >>= 1)
     for (std::size_t i = 0; i < 3; ++i) {
@@ -110,7 +110,7 @@ std::uint64_t plain_hilbert(std::array<std::uint32_t, 3> x) {
 TEST_CASE("the locality order follows the Hilbert curve") {
   auto mesh = meshes::box(ElementType::tet4, {9, 9, 9}, {1, 1, 1});
   meshes::shuffle(mesh, 62);
-  // Cells are cubes, and the mesh is: the curve's grid is that of the coordinates.
+  // The mesh is a cube of cubes, so the grid of the curve matches the coordinates.
   std::vector<std::pair<std::uint64_t, std::int32_t>> expected;
   for (std::size_t n = 0; n < mesh.view().node_count(); ++n) {
     std::array<std::uint32_t, 3> x{};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fast operator against the reference: every element, instruction set, thread count and kind of mesh.
+// The fast operator against the reference, for every element type, instruction set, thread count and kind of
+// mesh.
 #include <kacanov/operator.hpp>
 
 #include <doctest/doctest.h>
@@ -16,7 +17,7 @@ using test::OwnedBody;
 
 namespace {
 
-/// The instruction sets this processor and build have.
+/// Returns the instruction sets that this build and this processor support.
 std::vector<std::string> instruction_sets() {
   meshes::OwnedMesh mesh{ElementType::tri3, {0, 0, 1, 0, 0, 1}, {0, 1, 2}};
   const auto body = test::with_one_law(mesh, elastic_law(1, 0.3));
@@ -28,11 +29,11 @@ std::vector<std::string> instruction_sets() {
     } catch (const std::invalid_argument&) {
     }
   }
-  if (testing::sanitized && sets.size() > 2) sets.erase(sets.begin() + 1);  // the ends of what blocks may be
+  if (testing::sanitized && sets.size() > 2) sets.erase(sets.begin() + 1);  // smallest and largest blocks
   return sets;
 }
 
-/// The first `count` elements of a shuffled mesh: pieces that hang together loosely, and nodes of no element.
+/// The first `count` elements of a shuffled mesh: loosely connected pieces, and nodes without elements.
 meshes::OwnedMesh some_elements(meshes::OwnedMesh mesh, std::size_t count, unsigned seed) {
   meshes::shuffle(mesh, seed);
   mesh.connectivity.resize(count * static_cast<std::size_t>(nodes_per_element(mesh.type)));
@@ -44,7 +45,7 @@ void stretch(meshes::OwnedMesh& mesh, double factor) {
   for (std::size_t i = 0; i < mesh.coordinates.size(); i += dim) mesh.coordinates[i] *= factor;
 }
 
-/// Meshes of 1 to some hundred elements, perturbed, irregular and stretched.
+/// Meshes of one to a few hundred elements: perturbed, irregular and stretched.
 std::vector<OwnedBody> bodies(ElementType type) {
   std::vector<OwnedBody> all;
   const double amount = cell(type).order == 2 ? 0.04 : 0.12;
@@ -55,7 +56,7 @@ std::vector<OwnedBody> bodies(ElementType type) {
     if (size <= count)
       all.push_back(test::with_one_law(some_elements(whole, size, unsigned(size)), test::every_law()[1]));
   all.push_back(test::with_every_law(whole, 2));
-  auto sheared = meshes::box(type, {7, 4, 3}, {1, 1, 1});  // hex8: parallelepipeds, and others further below
+  auto sheared = meshes::box(type, {7, 4, 3}, {1, 1, 1});  // hex8: parallelepipeds, some distorted below
   const std::size_t dim = dimension(type);
   for (std::size_t i = 0; i < sheared.coordinates.size(); i += dim) {
     double* x = &sheared.coordinates[i];
@@ -63,7 +64,7 @@ std::vector<OwnedBody> bodies(ElementType type) {
     if (dim == 3 && x[2] < 0.4) x[2] *= 1.0 + 0.2 * x[0] * x[1];
   }
   all.push_back(test::with_every_law(sheared, 6));
-  if (testing::sanitized) return all;  // what follows differs in its numbers, not in the code it goes through
+  if (testing::sanitized) return all;  // the remaining meshes differ in their numbers, not in the code paths
   stretch(sheared, 1000.0);
   all.push_back(test::with_one_law(sheared, test::every_law()[3]));
   auto long_box = meshes::box(type, {9, 4, 4}, {4, 1, 1});
@@ -83,7 +84,7 @@ std::vector<double> some_secant(std::size_t count) {
   return g;
 }
 
-/// Calls check(operator) for everything an operator of that body can be.
+/// Calls check(operator) for every instruction set and thread count.
 template <class AnyOperator = Operator, class Check>
 void for_every_operator(const Body& body, Check&& check) {
   for (const std::string& set : instruction_sets())
@@ -98,18 +99,18 @@ void for_every_operator(const Body& body, Check&& check) {
     }
 }
 
-/// Calls check(body) for every element and kind of mesh: what is expected there is worked out once for all
-/// operators.
+/// Calls check(body) for every element type and kind of mesh, so that expected values are computed once per
+/// body and serve all operators.
 template <class Check>
 void for_every_body(Check&& check) {
   for (const ElementType type : test::all_types)
     for (const OwnedBody& owned : bodies(type)) check(owned.body());
 }
 
-/// How many cells thick the meshes of many blocks are: where each takes ten times as long, fewer blocks do.
+/// Cells across the meshes that fill many blocks; fewer under the sanitizers, which run ten times slower.
 constexpr int thick = testing::sanitized ? 12 : 24;
 
-/// Displacements that take some points beyond yield, on a stretched mesh too.
+/// Displacements that take some points beyond yield, also on a stretched mesh.
 std::vector<double> some_state(const Body& body, unsigned seed) {
   double longest = 0.0;
   for (const double x : body.mesh.coordinates) longest = std::max(longest, std::abs(x));
@@ -183,9 +184,9 @@ TEST_CASE("residual, energy, new g and tangent at a state") {
       const double xy = op.apply_tangent_dot(x, y);
       CHECK(xy == doctest::Approx(test::dot(x, y)).epsilon(1e-12));
       op.apply_tangent(x, y);
-      CHECK(difference(y, expected_tangent) < 3e-7);  // the rank-one term is kept in single precision
+      CHECK(difference(y, expected_tangent) < 3e-7);  // the rank-one term is stored in single precision
       const auto first = y;
-      op.update(zero);  // the tangent stays what it was frozen as
+      op.update(zero);  // the frozen tangent does not change
       op.apply_tangent(x, y);
       CHECK(y == first);
     });
@@ -215,9 +216,9 @@ TEST_CASE("diagonals") {
         if (wanted[i / (dim * dim)] != 0) CHECK(some[i] == blocks[i]);
       CHECK_THROWS_AS(op.block_diagonal_tangent(blocks), std::logic_error);
       op.update_tangent(u);
-      op.set_secant(g);  // the tangent stays what it was frozen as
+      op.set_secant(g);  // the frozen tangent does not change
       op.block_diagonal_tangent(blocks);
-      CHECK(difference(blocks, expected_tangent) < 3e-7);  // the rank-one term is kept in single precision
+      CHECK(difference(blocks, expected_tangent) < 3e-7);  // the rank-one term is stored in single precision
       op.diagonal_tangent(actual);
       for (std::size_t i = 0; i < n; ++i) CHECK(actual[i] == blocks[i * dim + i % dim]);
     });
@@ -300,7 +301,7 @@ TEST_CASE("early nodes are done when they are said to be, and nothing else chang
   auto mesh = meshes::box(ElementType::tet4, {36, 18, 18}, {2, 1, 1});
   meshes::jitter(mesh, 0.1, 71);
   meshes::shuffle(mesh, 72);
-  // What another process might share: one end, and a node anywhere.
+  // Interface nodes as another process might share them: one end of the mesh, and one node elsewhere.
   std::vector<std::int32_t> early{17};
   for (std::size_t node = 0; node < mesh.view().node_count(); ++node)
     if (mesh.coordinates[3 * node] < 0.1) early.push_back(static_cast<std::int32_t>(node));
@@ -315,7 +316,7 @@ TEST_CASE("early nodes are done when they are said to be, and nothing else chang
     for (const int threads : with && !testing::sanitized ? std::vector{1, 2, 3} : std::vector{2}) {
       CAPTURE(with);
       CAPTURE(threads);
-      // Without early nodes the call comes before anything else: it still has to come.
+      // Without interface nodes the callback comes first, and must still come.
       const OperatorOptions options{
           threads, {}, with ? std::span<const std::int32_t>(early) : std::span<const std::int32_t>{}};
       Operator op(body, options);
@@ -343,7 +344,7 @@ TEST_CASE("early nodes are done when they are said to be, and nothing else chang
         CHECK(ready == (with ? 3 * early.size() : 0));
         std::size_t rest = 0;
         for (std::size_t i = 0; i < y.size(); ++i) rest += seen[i] != whole[i] ? 1 : 0;
-        CHECK(rest > y.size() / 8);  // most of the body is worked out later
+        CHECK(rest > y.size() / 8);  // most of the body is computed after the callback
         apply([&] { y[51] += 1; });
         CHECK(y[51] == (with ? whole[51] + 1 : whole[51]));
       };

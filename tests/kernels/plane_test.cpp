@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Plane stress and axisymmetric bodies: energy, force and tangent belong together, and the fast operator does
-// what the reference does.
+// Plane stress and axisymmetry: consistency of energy, force and tangent, and the fast operator against the
+// reference.
 #include <kacanov/operator.hpp>
 
 #include <doctest/doctest.h>
@@ -24,11 +24,11 @@ namespace {
 constexpr std::array planes{PlaneState::stress, PlaneState::axisymmetric};
 constexpr std::array flat_types{ElementType::tri3, ElementType::quad4};
 
-/// A body in 2D with every law, at the axis or away from it.
+/// A body in 2D with every law, touching the axis or away from it.
 struct PlaneBody {
   OwnedBody owned;
   PlaneState plane;
-  std::size_t elements = 0;  ///< the first so many; 0: all
+  std::size_t elements = 0;  ///< only the first ones; 0: all
 
   Body body() const {
     Body body = owned.body();
@@ -81,7 +81,7 @@ void for_every_plane_operator(const Body& body, Check&& check) {
       try {
         op = std::make_unique<AnyOperator>(body, OperatorOptions{threads, set});
       } catch (const std::invalid_argument&) {
-        continue;  // a processor without that
+        continue;  // the processor lacks this instruction set
       }
       check(*op);
     }
@@ -92,7 +92,7 @@ std::vector<Real> as(const std::vector<double>& v) {
   return {v.begin(), v.end()};
 }
 
-/// All actions of a fast operator beside the reference's, within `tolerance`.
+/// Compares every product of a fast operator with the reference, within `tolerance`.
 template <class Real>
 void compare(const Body& body, double tolerance) {
   const std::size_t n = body.unknowns();
@@ -116,7 +116,7 @@ void compare(const Body& body, double tolerance) {
     op.apply(sx, out);
     CHECK(difference(out, y) < tolerance);
     op.apply_tangent(sx, out);
-    CHECK(difference(out, t) < std::max(tolerance, 1e-6));  // its rank-one term is in single precision
+    CHECK(difference(out, t) < std::max(tolerance, 1e-6));  // the rank-one term is stored in single precision
     op.residual(su, out);
     CHECK(difference(out, f) < tolerance);
     CHECK(op.energy(su) == doctest::Approx(energy).epsilon(tolerance));
@@ -134,7 +134,7 @@ void compare(const Body& body, double tolerance) {
   });
 }
 
-/// All nodes moved by the same.
+/// A unit translation of all nodes along `axis`.
 std::vector<double> translation(const Body& body, std::size_t axis) {
   std::vector<double> u(body.unknowns(), 0.0);
   for (std::size_t i = axis; i < u.size(); i += 2) u[i] = 1.0;
@@ -170,12 +170,14 @@ TEST_CASE("in plane stress and round an axis force is the energy's derivative an
       reference::residual(body, back, f_back);
       for (std::size_t i = 0; i < n; ++i) f_ahead[i] = (f_ahead[i] - f_back[i]) / (2.0 * h);
       reference::apply_tangent(body, u, x, t);
-      CHECK(difference(t, f_ahead) < 1e-4);  // laws have kinks
-      // The frozen operator at u has the same force there, so that Kačanov's method rests where R(u) = F.
+      CHECK(difference(t, f_ahead) < 1e-4);  // the laws have kinks
+      // The operator frozen at u has the same force there, so that solutions of R(u) = F are fixed points of
+      // Kačanov's method.
       reference::secant(body, u, g);
       reference::apply(body, g, u, y);
       CHECK(difference(y, f) < 1e-12);
-      // It majorises: 2 (E(v) − E(u)) ≤ vᵀ B v − uᵀ B u, so that every step of it descends.
+      // The frozen energy is a majorant: 2 (E(v) − E(u)) ≤ vᵀ B v − uᵀ B u, so every step decreases the
+      // energy.
       reference::apply(body, g, ahead, y);
       const double frozen = test::dot(y, ahead) - test::dot(f, u);
       CHECK(2.0 * (reference::energy(body, ahead) - reference::energy(body, u)) <=
@@ -240,7 +242,7 @@ TEST_CASE(
       op.residual(u, out);
       CHECK(difference(out, f) > 1e-3);
     });
-    // A body that is as long as it wants to be has no stress, and strains that are that.
+    // A body strained by exactly its free strain has no stress, and its total strain is the free strain.
     const std::vector<double> same(longer.size(), 0.03);
     body.free_strain = same;
     std::vector<double> grown(body.mesh.coordinates.begin(), body.mesh.coordinates.end());
@@ -252,7 +254,7 @@ TEST_CASE(
     reference::strains(body, grown, strain);
     for (std::size_t i = 0; i < strain.size(); ++i)
       CHECK(std::abs(strain[i] - (i % 6 < 3 ? 0.03 : 0.0)) < 1e-15);
-    // Of the elastic body it is a load.
+    // In the elastic body the free strain acts as a load.
     std::vector<Law> linear(of.owned.laws.size(), elastic_law(1.0, 0.3));
     body.laws = linear;
     reference::residual(body, u, f);
@@ -279,12 +281,12 @@ TEST_CASE("in plane stress nothing is lost where the material is nearly incompre
       reference::secant(body, std::vector<double>(n, 0.0), g);
       reference::diagonal(body, g, d);
       for (double& entry : d) entry *= 1e-15;
-      const double known = std::sqrt(test::dot(d, d));  // theory: rounding
+      const double known = std::sqrt(test::dot(d, d));  // scale of rounding errors
       for (const std::size_t axis : {0, 1}) {
         reference::residual(body, translation(body, axis), f);
         CHECK(std::sqrt(test::dot(f, f)) < known);
       }
-      // Neither by the true law nor by the frozen one.
+      // No digits are lost with the true law or with the frozen one.
       const auto u = test::random_vector(n, 5);
       Operator op(body);
       op.apply(u, y);
@@ -324,7 +326,7 @@ TEST_CASE("across plane stress no stress acts, and the uniaxial curve is that of
         const double g = law.secant(std::sqrt(a * a + b * b + c * c + 2.0 * xy * xy));
         const double mean = law.bulk * (xx + yy + zz), size = law.bulk * std::abs(xx);
         CHECK(std::abs(mean + 2.0 * g * c) < 1e-14 * size);
-        // The form with a bulk modulus of its own.
+        // The same stress, written with the effective bulk modulus of plane stress.
         const double bulk = plane_stress_bulk(law.bulk, g), plane = xx + yy;
         CHECK(std::abs(bulk * plane + 2.0 * g * (xx - plane / 3.0) - mean - 2.0 * g * a) < 1e-13 * size);
       }

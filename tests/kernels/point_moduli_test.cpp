@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Strains for a law of the caller's own, and what the operator makes of the moduli that he brings.
+// User-defined material laws: strains at the points, and operators with moduli that the caller computes.
 #include <kacanov/operator.hpp>
 
 #include <doctest/doctest.h>
@@ -17,7 +17,7 @@ using test::OwnedBody;
 
 namespace {
 
-/// Crooked, of several laws, with nodes in no order.
+/// A perturbed body of several laws with shuffled nodes.
 OwnedBody crooked_body(ElementType type) {
   auto mesh = meshes::box(type, {7, 4, 4}, {2, 1, 1});
   meshes::jitter(mesh, cell(type).order == 2 ? 0.04 : 0.12, 1);
@@ -25,7 +25,7 @@ OwnedBody crooked_body(ElementType type) {
   return test::with_every_law(mesh, 3);
 }
 
-/// An operator of that instruction set, where there is one.
+/// Returns an operator with this instruction set, or nothing where the processor or build lacks it.
 template <class AnyOperator = Operator>
 std::optional<AnyOperator> make(const Body& body, int threads, const std::string& set) {
   try {
@@ -35,7 +35,7 @@ std::optional<AnyOperator> make(const Body& body, int threads, const std::string
   }
 }
 
-/// Moduli that are no law's.
+/// Arbitrary moduli that belong to no law.
 struct SomeModuli {
   std::vector<double> secant, derivative, energy;
   explicit SomeModuli(std::size_t points)
@@ -47,7 +47,7 @@ struct SomeModuli {
   PointModuli view() const { return {secant, derivative, energy}; }
 };
 
-/// Calls check(body, operator) for every element, instruction set and number of threads.
+/// Calls check(body, operator) for every element type, instruction set and number of threads.
 template <class Check>
 void for_every_operator(const Check& check) {
   for (const ElementType type : test::all_types) {
@@ -106,12 +106,12 @@ TEST_CASE("residual, energy and tangent are those of the moduli that are given")
     CHECK(op.residual_energy(u, moduli, {}) == energy);
     CHECK(op.residual_energy(u, {some.secant}, f) == 0.0);
     op.apply(first, y);
-    CHECK(y == before);  // the frozen g has played no part
+    CHECK(y == before);  // the frozen g does not enter
 
     op.update_tangent(u, moduli);
     op.apply_tangent(first, y);
     reference::apply_tangent(given, u, first, expected);
-    CHECK(difference(y, expected) < 3e-7);  // the rank-one term is kept in single precision
+    CHECK(difference(y, expected) < 3e-7);  // the rank-one term is stored in single precision
     op.block_diagonal_tangent(blocks);
     reference::block_diagonal_tangent(given, u, expected_blocks);
     CHECK(difference(blocks, expected_blocks) < 3e-7);

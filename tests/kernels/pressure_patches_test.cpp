@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Patches of nodes: what they are made of, and that numbers of nodes have no part in them.
+// Patches of nodes for pressures: composition, and independence of the node numbering.
 #include <kacanov/pressure_patches.hpp>
 
 #include <doctest/doctest.h>
@@ -78,7 +78,7 @@ TEST_CASE("the nodes of a patch hang together by edges") {
   const auto owned = patched(std::move(mesh));
   const std::vector<std::int64_t>& patch = owned.pressure_patch;
   std::vector<std::size_t> least(
-      patch.size());  // of the numbers of the nodes that a node hangs together with
+      patch.size());  // smallest node number in the node's connected component within its patch
   for (std::size_t n = 0; n < least.size(); ++n) least[n] = n;
   for (bool more = true; std::exchange(more, false);)
     for (std::size_t k = 0; k < owned.mesh.connectivity.size(); ++k)
@@ -92,7 +92,7 @@ TEST_CASE("the nodes of a patch hang together by edges") {
 }
 
 TEST_CASE("patches do not reach across a slit") {
-  // Two slabs one above the other, closer than their nodes are, that share none.
+  // Two slabs above each other that share no nodes, with a gap smaller than the mesh size.
   auto mesh = meshes::box(ElementType::tet4, {6, 6, 3}, {6, 6, 3});
   const std::size_t coordinates = mesh.coordinates.size(), connectivity = mesh.connectivity.size();
   const auto nodes = static_cast<std::int32_t>(coordinates / 3);

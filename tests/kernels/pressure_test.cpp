@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parts of an operator that averages tr ε round corners, against the plain displacement–pressure form.
+// Parts of an operator with tr ε averaged at corners, compared with the reference displacement–pressure form.
 #include <doctest/doctest.h>
 
 #include <stdexcept>
@@ -77,7 +77,7 @@ TEST_CASE("deviator, forces of pressures and volume changes are those of the pla
         try {
           check_parts<double>(owned, {threads, set}, 1e-12);
           check_parts<float>(owned, {threads, set}, 2e-5);
-        } catch (const std::invalid_argument&) {  // not on this processor
+        } catch (const std::invalid_argument&) {  // not supported by this processor
         }
       }
   }

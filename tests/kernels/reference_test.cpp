@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The reference operator against what mechanics says of it.
+// The reference operator, checked against mechanics: symmetry, rigid motions, derivatives, exact stresses.
 #include <kacanov/reference.hpp>
 
 #include <doctest/doctest.h>
@@ -78,7 +78,7 @@ TEST_CASE("the unit tetrahedron by hand") {
   std::vector<double> volume(1);
   reference::volumes(body, volume);
   CHECK(volume[0] == doctest::Approx(1.0 / 6.0));
-  // Node 1 moves by 1 along x: eps = xx, tau = diag(k0 + 4/3 mu, k0 - 2/3 mu, k0 - 2/3 mu) = diag(1.2, 0.4,
+  // Node 1 moves by 1 along x: eps = xx, tau = diag(k0 + 4/3 mu, k0 − 2/3 mu, k0 − 2/3 mu) = diag(1.2, 0.4,
   // 0.4).
   std::vector<double> u(12, 0.0), f(12), g(1, 0.4);
   u[3] = 1.0;
@@ -128,7 +128,7 @@ TEST_CASE("patch test: a linear field is in equilibrium inside a perturbed mesh"
     auto mesh = meshes::box(type, {4, 4, 4}, {1, 1, 1});
     const auto original = mesh.coordinates;
     meshes::jitter(mesh, 0.15, 5);
-    meshes::straighten(mesh);  // the rule is not exact on curved ones
+    meshes::straighten(mesh);  // the quadrature rule is not exact on curved elements
     const auto owned = test::with_one_law(std::move(mesh), test::every_law()[1]);
     const Body body = owned.body();
     const auto u = linear_field(owned, {{0.02, 0.01, 0}, {0.003, -0.01, 0.02}, {0.01, 0, 0.005}});
@@ -168,7 +168,7 @@ TEST_CASE("residual is the gradient of the energy, the tangent that of the resid
     reference::residual(body, minus, down);
     for (std::size_t i = 0; i < u.size(); ++i) up[i] = (up[i] - down[i]) / (2 * h);
     reference::apply_tangent(body, u, v, tangent);
-    CHECK(difference(up, tangent) < 1e-4);  // laws have kinks: a point on one spoils a few digits
+    CHECK(difference(up, tangent) < 1e-4);  // the laws have kinks: a point on one costs a few digits
   }
 }
 
@@ -197,7 +197,7 @@ TEST_CASE("element matrices sum to the operator, and the diagonals are theirs") 
   for (const ElementType type : test::all_types) {
     CAPTURE(static_cast<int>(type));
     auto owned = test::small_body(type, 11);
-    // An element's own points are all its matrix knows of.
+    // An element matrix cannot include averages over corners, which couple neighbouring elements.
     for (Law& law : owned.laws) law.mean_dilatation &= !cell(type).corner_dilatation;
     const Body body = owned.body();
     const auto g = test::some_secant(body, 12);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The loops over elements in a row: the same for every instruction set.
+// The loops over rows of elements: every instruction set gives the same results.
 #include "simd/row_points.hpp"
 
 #include <doctest/doctest.h>
@@ -13,7 +13,7 @@ using namespace kacanov::simd;
 
 namespace {
 
-/// Numbers without a pattern: of sines every Jacobian would be singular.
+/// Random numbers; regular values such as sines would make every Jacobian singular.
 struct Numbers {
   std::minstd_rand draw;
   double operator()() { return std::uniform_real_distribution<double>(-1.0, 1.0)(draw); }
@@ -98,7 +98,7 @@ TEST_CASE("loops over elements in a row do the same on every instruction set") {
     try {
       (void)row_loops<4>(set);
     } catch (const std::invalid_argument&) {
-      continue;  // this processor or build has none
+      continue;  // not supported by this processor or build
     }
     compare_with_plain<4>(set);
     compare_with_plain<8>(set);
@@ -134,7 +134,7 @@ TEST_CASE("principal strains of simple states are known") {
   loops.raise(point, strain, rotation);
   for (std::size_t lane = 0; lane < row_lanes; ++lane) {
     CAPTURE(lane);
-    // Where two principal strains are equal, rounding of their invariants leaves half of the digits.
+    // Where two principal strains coincide, rounding errors of the invariants leave half of the digits.
     CHECK(strain[lane] == doctest::Approx(states[lane % 8].strain).epsilon(1e-7));
     CHECK(rotation[lane] == doctest::Approx(states[lane % 8].rotation).epsilon(1e-12));
   }

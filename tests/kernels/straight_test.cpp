@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What elements have in closed form whose map is affine, against sums over their points.
+// Closed-form integrals over affine elements, compared with sums over their quadrature points.
 #include <doctest/doctest.h>
 
 #include "bodies.hpp"

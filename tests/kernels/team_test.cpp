@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Threads that share work: everything is done once, whoever does it, and who waits leaves the cores to
-// others.
+// Teams of threads that share work: each share is done exactly once, and waiting threads release their cores.
 #include "operator/team.hpp"
 
 #include <doctest/doctest.h>
@@ -19,7 +18,7 @@ using namespace kacanov;
 
 namespace {
 
-/// How often each share has been done.
+/// Counts how often each share has been done.
 struct Counts {
   std::vector<int> of;
   static void count(void* counts, int share) { ++static_cast<Counts*>(counts)->of[share]; }
@@ -27,7 +26,7 @@ struct Counts {
 
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
-/// Sums of shares in two rounds, of which the second reads what the first has written.
+/// Sums in two parallel regions, the second of which reads the results of the first.
 double sum_in_two_rounds(int threads, int n) {
   std::vector<double> parts(threads), sums(threads);
   in_team(threads, [&](int t) { parts[t] = t + n; });
@@ -95,7 +94,7 @@ TEST_CASE("threads that wait take no time of the cores") {
   team.run(3, Counts::count, &counts);
   const double before = cpu_seconds();
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  CHECK(cpu_seconds() - before < 0.1);  // 0.6 s if the two of them did not sleep
+  CHECK(cpu_seconds() - before < 0.1);  // 0.6 s if the two helpers spun instead of sleeping
 }
 
 TEST_CASE("who has waited for long waits less long awake, and no longer than before where it helps") {

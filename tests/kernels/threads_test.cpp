@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whose threads do the work: the library's own or OpenMP's, as the environment says, with the same results.
+// Choice of threads by the environment (the library's own or OpenMP's), with identical results.
 #include "operator/threads.hpp"
 
 #include <doctest/doctest.h>
@@ -17,7 +17,7 @@ using namespace kacanov;
 
 namespace {
 
-/// KACANOV_THREADS with another value, until this goes: then with the one it had, which is the choice again.
+/// Sets KACANOV_THREADS for the lifetime of the object, then restores its value and the choice of threads.
 class ChoiceOfThreads {
  public:
   explicit ChoiceOfThreads(const char* value) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Laws from curves in tension: at a point under uniaxial stress they give these curves back.
+// Laws from curves of tension tests: under uniaxial stress a point reproduces its curve.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -12,7 +12,8 @@ namespace {
 
 constexpr double young = 210e3;
 
-/// Strain along a uniaxial stress by the law: ε = tr ε/3 + dev ε, found from x by bisection.
+/// Returns the axial strain of a uniaxial stress under the law, ε = tr ε/3 + dev ε, with x found by
+/// bisection.
 double strain_of(const Law& law, double stress) {
   double low = 0.0, high = 10.0;
   for (int i = 0; i < 200; ++i) {

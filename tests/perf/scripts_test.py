@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The comparison of two builds, the roofline picture and the cost of the solver's choices, on made-up results.
+"""Tests compare_builds, roofline, bench_choices and bench_run on made-up results.
 
 usage: scripts_test.py FOLDER-OF-THE-SCRIPTS
 """
@@ -36,7 +36,7 @@ class Compare(unittest.TestCase):
         self.addCleanup(self.folder.cleanup)
 
     def build(self, name, entries_of_run):
-        """A build whose benchmark prints the n-th of the given results at its n-th run."""
+        """Returns a build whose benchmark prints the n-th given result in its n-th run."""
         build = pathlib.Path(self.folder.name) / name
         (build / "perf").mkdir(parents=True)
         (build / "runs").write_text(json.dumps([result(*entries) for entries in entries_of_run]))
@@ -53,7 +53,7 @@ print(json.dumps(first))
         return build
 
     def compare(self, factor, noise, rounds=10):
-        """The verdict when speeds drift together by half, scatter by `noise`, and differ by `factor`."""
+        """Returns the verdict for speeds that drift together by half, scatter by `noise` and differ by `factor`."""
         rng = random.Random(4)
         drift = [1.5 if i > rounds / 2 else 1.0 for i in range(rounds)]
         speeds = [[[entry(unknowns_per_second=1e8 * f * d * (1 + noise * rng.uniform(-1, 1)))] for d in drift]
@@ -105,7 +105,7 @@ class Roofline(unittest.TestCase):
         self.assertEqual(everything.stdout.count("<title>"), 4)
 
     def test_a_point_on_the_roof_lies_on_the_roof(self):
-        # All of the peak at the intensity of the ridge: the marker is where the two parts of the roof meet.
+        # At the peak and at the ridge's intensity, the marker lies where the two parts of the roof meet.
         done = run("roofline", text=json.dumps(result(entry(share_of_triad=1.0, share_of_fma_peak=1.0))))
         picture = xml.etree.ElementTree.fromstring(done.stdout)
         marker = next(picture.iter("{http://www.w3.org/2000/svg}circle"))
@@ -121,7 +121,7 @@ class Roofline(unittest.TestCase):
 
 
 class Choices(unittest.TestCase):
-    """bench_choices with a program that knows the answers: Newton is cheap, `dual_admm` fails."""
+    """bench_choices with a stub of the program: Newton is cheap, `dual_admm` fails."""
 
     PROGRAM = """#!{python}
 import json, pathlib, sys
@@ -169,7 +169,7 @@ if isinstance(r, float):  # a sweep
 
 
 class Runs(unittest.TestCase):
-    """bench_run with a program that knows the answers, and fails for the linear beam."""
+    """bench_run with a stub of the program that fails for the linear beam."""
 
     PROGRAM = """#!{python}
 import json, pathlib, sys
@@ -205,7 +205,7 @@ else:
         first = [c.strip() for c in done.stdout.splitlines()[2].split("|")[1:-1]]
         self.assertEqual(first[3:6] + [first[7], first[8], first[10]], ["3", "9", "20", "2.0", "25 %", "100"])
         titles, _, *rows = [[c.strip() for c in line.split("|")[1:-1]] for line in done.stdout.split("an unknown:\n\n")[1].splitlines()]
-        self.assertEqual(len(rows), 2)  # what failed has no phases
+        self.assertEqual(len(rows), 2)  # failed runs have no phases
         phases = dict(zip(titles, rows[0]))
         self.assertEqual([phases[k] for k in ("read", "coarser meshes", "solve", "setups in it")], ["0.00", "0.30", "1.00", "0.50"])
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Projections, spaces, CG and multigrid, each against what defines it.
+// Projections, constrained spaces, CG and multigrid, each checked against its defining property.
 #include <doctest/doctest.h>
 
 #include <Eigen/Core>
@@ -27,7 +27,7 @@ Vector random_vector(std::size_t n, unsigned seed) {
   return x;
 }
 
-/// A fixed 3D block whose side rolls: some nodes are held, some in part.
+/// A 3D block with one fixed side and one side on rollers: some nodes are fixed, others in one component.
 Part held_block() {
   Model model = elastic_model();
   model.boundary.push_back(moved(named("left"), 3));
@@ -40,7 +40,7 @@ Part held_block() {
 }  // namespace
 
 TEST_CASE("the normal step solves its one-point problem") {
-  // φ minimises λ(w − φ) + r/2 (w − φ)² over φ ≤ gap, and λ₊ = λ + r(w − φ) is its multiplier.
+  // φ minimises λ(w − φ) + r/2 (w − φ)² subject to φ ≤ gap, and λ₊ = λ + r(w − φ) is the multiplier.
   std::mt19937 engine(1);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   for (int i = 0; i < 1000; ++i) {
@@ -67,7 +67,7 @@ TEST_CASE("the tangential step projects on a disc") {
     CHECK(size <= bound * (1 + 1e-14));
     for (int k = 0; k < 2; ++k)
       CHECK(step.lambda[k] == doctest::Approx(lambda[k] + r * (w[k] - step.phi[k])).epsilon(1e-12));
-    // Slip only at the bound, and along the force: ψ|φ| = λ·φ.
+    // Slip occurs only at the bound, along the friction force: ψ|φ| = λ·φ.
     CHECK(bound * slip ==
           doctest::Approx(step.lambda[0] * step.phi[0] + step.lambda[1] * step.phi[1]).epsilon(1e-12));
   }
@@ -85,7 +85,7 @@ TEST_CASE("the tangential bound is a disc, not a box") {
 TEST_CASE("a space's projection is orthogonal") {
   const Part part = held_block();
   Space space(part);
-  // Directions of one node that depend on each other, and one that is held already.
+  // Linearly dependent directions at one node, and a node that is fixed already.
   for (const auto& point : part.contact) {
     space.hold(point.node, point.normal);
     space.hold(point.node, {2 * point.normal[0], 2 * point.normal[1], 2 * point.normal[2]});
@@ -142,7 +142,7 @@ TEST_CASE("traces: force is the transpose of evaluation, penalty their product")
   Vector penalty(part.unknowns(), 0.0);
   traces.add_penalty({1.0, 1.0}, u, penalty);
   for (std::size_t i = 0; i < penalty.size(); ++i) CHECK(std::abs(penalty[i] - force[i]) < 1e-14);
-  // The underside is 2×1; the nodes at x = 0 are held and take half a cell's length along.
+  // The bottom has area 2×1; the fixed nodes at x = 0 take away half a cell's width.
   double area = 0.0;
   for (const auto& point : part.contact) area += point.mass;
   CHECK(area == doctest::Approx(2.0 - 0.25).epsilon(1e-12));
@@ -153,7 +153,7 @@ TEST_CASE("multigrid is a symmetric positive definite map, and CG solves with it
   Vector g(part.body().secant_count());
   Operator op(part.body());
   op.secant(g);
-  // A contact penalty on every contact node, as the solver puts it there.
+  // A contact penalty at every contact node, as the solver adds it.
   const Traces traces(part);
   const double r = 3.0;
   std::vector<NodeBlock> blocks;
@@ -176,7 +176,7 @@ TEST_CASE("multigrid is a symmetric positive definite map, and CG solves with it
     Vector mx(x.size()), my(y.size());
     amg->apply(x, mx);
     amg->apply(y, my);
-    // Multigrid works in single precision.
+    // Multigrid uses single precision.
     const double rounding = std::string(kind) == "multigrid" ? 1e-5 : 1e-10;
     CHECK(std::abs(space.dot(mx, y) - space.dot(x, my)) <=
           rounding * std::sqrt(space.dot(mx, x) * space.dot(my, y)));
@@ -237,7 +237,7 @@ TEST_CASE("CG stops at what its problem leaves out, and asks for that once") {
     options.asked = first_asked, options.share = share, options.worth = 2.0;
     options.left_out = [&] {
       ++asked;
-      std::fill(work.image.begin(), work.image.end(), 1e300);  // is free to be written to
+      std::fill(work.image.begin(), work.image.end(), 1e300);  // the callback may overwrite the work vector
       return left_out * space.norm(pull);
     };
     return conjugate_gradients(
@@ -257,7 +257,7 @@ TEST_CASE("CG stops at what its problem leaves out, and asks for that once") {
   left_out = 1.0;
   const CgResult at_once = solve(1e-8);
   CHECK(at_once.residual <= first_asked * at_once.first_residual);
-  // Where the target is next door, nobody asks.
+  // With an easy target CG never calls back.
   CHECK(solve(0.5).converged);
   CHECK(asked == 0);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The method of multipliers: its potential of the contact, its line search, and where it comes to.
+// The augmented Lagrangian method: its contact potential, its line search, and its converged solution.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// Some open, some pressed, some sticking, some slipping: the same at every call.
+/// A state with open, closed, sticking and slipping points, the same on every call.
 ContactState some_state(const Part& part) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> value(-1, 1);
@@ -76,7 +76,8 @@ TEST_CASE("multipliers are the derivative of what contact adds, and the stiffnes
 }
 
 TEST_CASE("a step is found where the slope of a convex function is gone, whatever its scales") {
-  // Falls until `wall`, and rises a million times as steeply behind it; or like a power.
+  // Slopes that vanish at `wall` and rise a million times as steeply beyond; below, slopes that follow a
+  // power.
   for (const double wall : {0.9, 0.1, 1e-3}) {
     CAPTURE(wall);
     int asked = 0;
@@ -91,7 +92,7 @@ TEST_CASE("a step is found where the slope of a convex function is gone, whateve
   }
   CHECK(find_step(-1.0, [](double t) { return std::pow(t, 0.02) - 1.5; }) == 1.0);
   CHECK(find_step(-1.0, [](double t) { return 0.1 * t; }) == 1.0);
-  // As far as it may go on, and no further than the slope asks for.
+  // Extrapolation reaches `longest` at most, and goes no further than the slope requires.
   CHECK(find_step(-1.0, [](double t) { return std::pow(t, 0.02) - 1.9; }, {.longest = 100.0}) == 100.0);
   for (const double far : {3.0, 50.0, 7e3}) {
     CAPTURE(far);
@@ -108,7 +109,7 @@ TEST_CASE("the method of multipliers alone comes to the answer of the others") {
     model.solver.tolerance = 1e-7;
     const Run other = run_alone(beam_mesh(3, 2), model);
     REQUIRE(other.result().status == Status::converged);
-    Tuning tuning;  // every Newton step is a stall, and no retreat ends
+    Tuning tuning;  // every Newton step counts as a stall, and no retreat ends
     tuning.patience = 1;
     tuning.progress = 0.0;
     tuning.retreat_gain = 0.0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The estimate of the mesh's error some elements abreast: that of the plain loop, for any number of elements,
-// curved ones too, and any laws; and beside the recovered stress what it is alone.
+// The batched error estimator against the loop over single elements, for any number of elements, curved
+// elements and all laws, alone and in one pass with the stress recovery.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// A bent block of two materials, of which the softer one has all it can of means of tr ε.
+/// A bent block of two materials; with `means` the softer one uses B-bar or the mixed formulation.
 Problem bent_block(ElementType type, bool means) {
   Mesh mesh = box_mesh(type, {2.0, 1.0, 1.0}, 3);
   map_nodes(mesh, [](const Vector3& x) {

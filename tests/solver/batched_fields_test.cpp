@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fields of tet4, tet10 and hex8 some elements abreast: those of the reference, for any number of elements
-// and any law.
+// Batched element fields of tet4, tet10 and hex8 against the reference, for any number of elements and any
+// law.
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Local refinement: what comes out fits together, keeps its shapes, groups and curves, and is fine where
-// asked.
+// Local refinement by bisection: conforming meshes, bounded element quality, preserved groups and curved
+// boundaries, refinement at marked elements.
 #include <kacanov/bisect.hpp>
 
 #include <doctest/doctest.h>
@@ -32,7 +32,7 @@ Mesh split_block(ElementType type, int cells = 2) {
   return make_box({{2.0, 1.0, 1.5}, {2 * cells, cells, cells}, type});
 }
 
-/// Twice the area, or six times the volume, of the straight element.
+/// Returns twice the area, or six times the volume, of the straight element.
 double size_of(const Mesh& mesh, std::size_t e) {
   const std::size_t n = nodes_per_element(mesh.type);
   const auto corner = [&](std::size_t a) { return position(mesh, mesh.elements[e * n + a]); };
@@ -41,7 +41,7 @@ double size_of(const Mesh& mesh, std::size_t e) {
   return dot(cross(a, b), corner(3) - corner(0));
 }
 
-/// Of its longest edge to the power of the dimension: 0 for a flat element.
+/// Returns size_of divided by the longest edge to the power of the dimension: 0 for a degenerate element.
 double quality(const Mesh& mesh, std::size_t e) {
   const std::size_t n = nodes_per_element(mesh.type);
   const int corners = cell(mesh.type).corners;
@@ -76,13 +76,14 @@ std::vector<std::int32_t> some(const Mesh& mesh, double share, std::mt19937& ran
 }  // namespace
 
 TEST_CASE("a marked triangle, by hand") {
-  // Two triangles that share their longest edge, 0–3 (the diagonal): the other one is halved there.
+  // Two triangles that share their longest edge, the diagonal 0–3, so that the neighbour is bisected there
+  // too.
   const Mesh mesh = make_box({{1.0, 1.0, 0.0}, {1, 1, 0}, ElementType::tri3});
   REQUIRE(mesh.element_count() == 2);
   const std::vector<std::int32_t> first{0};
   const Mesh fine = bisect(mesh, first);
   CHECK_NOTHROW(check_mesh(fine));
-  CHECK(fine.element_count() == 6);  // four of the first, two of the other
+  CHECK(fine.element_count() == 6);  // four from the marked one, two from its neighbour
   CHECK(fine.node_count() == 7);
   CHECK(total_size(fine) == doctest::Approx(2.0));
 }
@@ -149,7 +150,7 @@ TEST_CASE("curves stay: new nodes lie where the element's own map takes them") {
   Mesh mesh = split_block(ElementType::tet10);
   for (std::size_t n = 0; n < mesh.node_count(); ++n) {
     double* x = &mesh.coordinates[3 * n];
-    x[2] += 0.1 * x[0] * x[0];  // a parabola, which quadratic edges follow exactly
+    x[2] += 0.1 * x[0] * x[0];  // a parabola, which quadratic edges represent exactly
   }
   std::mt19937 random(3);
   const Mesh fine = bisect(bisect(mesh, some(mesh, 0.2, random)), std::vector<std::int32_t>{0, 5, 11});
@@ -233,7 +234,7 @@ TEST_CASE("elements that go through an obstacle between their nodes are found, a
     const Mesh mesh = split_block(type);
     const std::size_t dim = mesh.dim(), up = dim - 1;
     const double height = dim == 2 ? 1.0 : 1.5;
-    // A small ball that stands over one place of the top, a tenth of its facets wide.
+    // A small ball over one point of the top, a tenth as wide as a facet.
     Vector3 centre{0.3, dim == 2 ? 0.0 : 0.1, 0.0};
     centre[up] = height + 0.04;
     Model model = testing::elastic_model();
@@ -258,7 +259,8 @@ TEST_CASE("elements that go through an obstacle between their nodes are found, a
     CHECK(lower <= 0.3);
     CHECK(upper >= 0.3);
     CHECK(highest == doctest::Approx(height));
-    // It lies 0.01 deep at most, and nothing does once the body has gone down by more than that.
+    // The ball penetrates by 0.01; with this tolerance, or with the body lower by more, no element is
+    // reported.
     CHECK(penetrated_elements(problem, model, u, 0.0101).empty());
     for (std::size_t i = up; i < u.size(); i += dim) u[i] = -0.0101;
     CHECK(penetrated_elements(problem, model, u, 0.0).empty());

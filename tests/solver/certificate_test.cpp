@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The certificate sees every way a state can be wrong, and no run is called converged that is not.
+// The certificate detects every kind of error in a state, and no run is reported as converged that is not.
 #include "contact/certificate.hpp"
 
 #include <doctest/doctest.h>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr double tolerance = 1e-9;
 
-/// A solved problem whose state can be spoilt and certified again.
+/// A solved problem whose state a test can perturb and certify again.
 struct Solved {
   Run run;
   Space space;
@@ -50,7 +50,7 @@ struct Solved {
     const double energy = reference::energy(run.part.body(), state.u);
     return kkt_residuals(space, traces, state, {run.part.load, internal, energy, stiffness}).certificate;
   }
-  /// A contact point under pressure that sticks, one that slips, or an open one.
+  /// Returns a contact point with this status, under pressure or not.
   std::size_t find(ContactStatus status, bool pressed) const {
     std::size_t i = 0;
     while (run.solution.contact_status[i] != status || (run.solution.pressure[i] > 1e-3) != pressed) ++i;
@@ -94,7 +94,7 @@ TEST_CASE("each fault shows in its entry") {
     const Certificate c = beam.certify();
     double largest = 0.0;
     for (const double u : beam.state.u) largest = std::max(largest, std::abs(u));
-    // By no more than the largest displacement, and no less than a thousandth of it.
+    // Its scale is at most the largest displacement, and at least a thousandth of it.
     CHECK(c.penetration >= 0.999e-3 / largest);
     CHECK(c.penetration <= 1.001 / largest);
     CHECK(c.complementarity > 1e-6);
@@ -118,7 +118,7 @@ TEST_CASE("each fault shows in its entry") {
     CHECK(beam.certify().friction_cone == doctest::Approx(0.5 * 0.01 / pressure).epsilon(1e-3));
   }
   SUBCASE("friction along the slip") {
-    // Where the way is longest, most work is wrong.
+    // The error in the work is largest where the slip is longest.
     const auto& slips = beam.state.trace.tangential;
     const std::size_t most = std::max_element(slips.begin(), slips.end(),
                                               [](double a, double b) { return std::abs(a) < std::abs(b); }) -
@@ -170,7 +170,7 @@ TEST_CASE("the paper's stop by steps with its r* ends far from the solution, and
   CHECK(early.result().status == Status::not_converged);
   CHECK(early.result().certificate.worst() > 10 * model.solver.tolerance);
   CHECK(mentions(early.result().message, "the step was small, the error is not"));
-  // The same iteration, judged by residuals, is far longer and right.
+  // The same iteration with the residual-based stop takes far longer and is correct.
   model.solver.stop = SolverOptions::Stop::kkt;
   model.solver.tolerance = 1e-6;
   model.solver.relaxation = 1.0;
@@ -200,14 +200,14 @@ TEST_CASE("a body moved without strain, short of the obstacle, is certified") {
 
 namespace {
 
-/// A beam clamped at one end, on a plane, whose free half has `ratio` times the stiffness of the other.
+/// A beam clamped at one end, on a plane, whose free half has `ratio` times the stiffness of the other half.
 Run half_stiffened(double ratio, double soft = 1.0) {
   Model model = beam(3, elastic_law(soft, 0.3), 1e-4 * soft);
   MaterialEntry stiff{Selector{}, elastic_law(ratio * soft, 0.3)};
   stiff.on.kind = Selector::Kind::box;
   stiff.on.lower = {2, 0, 0};
   stiff.on.upper = {4, 1, 1};
-  model.boundary[1].on.lower[0] = 0.0;  // the soft half bends, and the stiff one is tilted on its edge
+  model.boundary[1].on.lower[0] = 0.0;  // the soft half bends, and the stiff half tilts on its edge
   model.materials.push_back(stiff);
   return run_alone(make_box({{4, 1, 1}, {8, 2, 2}, ElementType::tet4}), model);
 }
@@ -222,7 +222,7 @@ TEST_CASE("a part as stiff as rigid makes no wrong state look right") {
     INFO(ratio);
     const Run run = half_stiffened(ratio);
     const Certificate& c = run.result().certificate;
-    // From 1e7 on nothing changes any more but by the inverse of the ratio.
+    // Beyond a ratio of 1e7 results change only by the inverse of the ratio.
     if (run.result().status == Status::converged)
       CHECK(distance(run.result().contact_force, rigid) <= 1e-5 * length(rigid));
     else
@@ -258,7 +258,7 @@ TEST_CASE("maxima keep what is no number, and rounding counts as much as the res
   c.rounding.equilibrium = 1e-4;
   CHECK_FALSE(c.meets(1e-6));
   CHECK(c.exhausted(1e-6));
-  CHECK_FALSE(c.meets(1e-4));  // the true residual may be above
+  CHECK_FALSE(c.meets(1e-4));  // the true residual may exceed it
   CHECK(c.meets(1.1e-4 * (1 + 1e-15)));
   c.penetration = 1e-5;
   CHECK_FALSE(c.exhausted(1e-6));

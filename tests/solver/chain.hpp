@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A level over rigid motions that needs no body, and sums over its ranks.
+// A level of rigid-body modes that needs no body, with sums over its ranks.
 #pragma once
 
 #include <mpi.h>
@@ -14,7 +14,8 @@
 
 namespace kacanov::testing {
 
-/// A chain of `rows` springs a rank, joined across the ranks, each block 6 × 6 positive definite.
+/// A chain of springs with `rows` rows per rank, connected across the ranks; each block is 6 × 6 and positive
+/// definite.
 inline RigidLevel<6> chain(std::int32_t rows) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
@@ -27,7 +28,7 @@ inline RigidLevel<6> chain(std::int32_t rows) {
     centres.push_back({static_cast<double>(i), 0.1 * static_cast<double>(i % 3), 0.0});
     for (std::size_t k = 0; k < 6; ++k) {
       sums.at(i, i)[7 * k] += 2.5 + 0.1 * static_cast<double>(k);
-      // Each rank also adds to rows of the next.
+      // Each rank also adds to rows of the next rank.
       if (i + 1 < total) sums.at(i, i + 1)[7 * k] -= 1.0;
       if (i + 1 < total) sums.at(i + 1, i + 1)[7 * k] += 0.25;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Parts and checkpoints whose fields do not fit each other: refused by the name of the field.
+// Parts and checkpoints with inconsistent fields: the error message names the field.
 #include "partition/check_part.hpp"
 
 #include <doctest/doctest.h>
@@ -15,7 +15,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// What check_part says of a part after a change; empty where it accepts it.
+/// Returns the message of check_part for a changed part, empty if it accepts the part.
 std::string complaint(Part part, const std::function<void(Part&)>& change) {
   const int rank = part.node_map.rank, ranks = part.node_map.ranks;
   change(part);

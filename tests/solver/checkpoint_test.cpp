@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Checkpoints: a run that was stopped goes on to the same answer, on any number of ranks.
+// Checkpoints: a stopped run continues to the same answer on any number of ranks.
 #include <doctest/doctest.h>
 
 #include "support.hpp"
@@ -19,10 +19,10 @@ Part part_of(const Mesh& mesh, const Model& model, MPI_Comm comm) {
 
 struct Ending {
   Result result;
-  std::vector<double> displacement;  ///< on rank 0, the user's numbering
+  std::vector<double> displacement;  ///< on rank 0, in the user's numbering
 };
 
-/// Runs, or goes on from `start` (rank 0).
+/// Runs from the beginning, or continues from `start` (rank 0).
 Ending run(Part& part, const Model& model, RunOptions options = {}, const Checkpoint* start = nullptr) {
   options.start = start;
   const Solution solution = solve(part, model.solver, options);
@@ -63,7 +63,7 @@ TEST_CASE("a run goes on from any of its checkpoints to the same answer, on othe
     if (first) options.checkpoint = [&](const Checkpoint& c) { checkpoints.push_back(c); };
     const Ending whole = run(together, each, options);
     REQUIRE(whole.result.status == Status::converged);
-    // One after each step but the last.
+    // One checkpoint after each step but the last.
     const int steps = whole.result.outer_iterations;
     if (first) REQUIRE(static_cast<int>(checkpoints.size()) == steps - 1);
     for (const int at : {1, steps / 2, steps - 1}) {
@@ -101,7 +101,7 @@ TEST_CASE("a stop leaves the last whole step, on all ranks, wherever it comes") 
     Checkpoint left;
     int asked = 0, written = 0;
     RunOptions options;
-    // The signal reaches one rank only.
+    // Only one rank receives the signal.
     options.stop_requested = [&] { return last && asked++ >= patience; };
     options.checkpoint_due = [] { return false; };
     options.checkpoint = [&](const Checkpoint& c) {

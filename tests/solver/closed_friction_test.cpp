@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coulomb's friction against statics and beam theory: a block on an incline, a wedge between two planes, a
-// ring pressed on its foot or between planes; turned, in m and mm, on any number of ranks.
+// Coulomb friction against statics and beam theory: a block on an incline, a wedge between two planes, a ring
+// pressed on its foot or between planes; rotated, in m and mm, on any number of ranks.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// Turned by an odd angle, in a unit of length; stresses stay.
+/// A rotation and a unit of length; stresses do not change.
 struct Frame {
   Rotation turn;
   double unit;
@@ -22,15 +22,15 @@ struct Frame {
 
 double product(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// A ring of mean radius 1 and thickness `thick` of quadrilaterals, with the upper half of its outer side and
-/// the lower one and its lowest facet as groups.
+/// A ring of quadrilaterals with mean radius 1 and thickness `thick`; groups for the upper half of its outer
+/// side, the lower half, and the lowest facet.
 Mesh ring(int round, int across, double thick, const Frame& frame) {
   Mesh mesh;
   mesh.type = ElementType::quad4;
   std::vector<double> height;
   for (int k = 0; k <= across; ++k)
     for (int i = 0; i < round; ++i) {
-      // A node between top and side, so that no node is right at either.
+      // Nodes at half steps, so that none lies exactly between top and side.
       const double angle = 2 * std::numbers::pi * (i + 0.5) / round, r = 1 + thick * (1.0 * k / across - 0.5);
       const Vector3 x = frame.place({r * std::cos(angle), r * std::sin(angle), 0});
       mesh.coordinates.insert(mesh.coordinates.end(), {x[0], x[1]});
@@ -99,13 +99,13 @@ TEST_CASE("a wedge pressed between two planes: friction that slides on both take
         y[0] = (x[0] - 1) * (0.5 + x[up] * std::tan(alpha));
         return frame.place(y);
       });
-      // The sides' normals as the body sees them, and points on the planes.
+      // Normals of the planes that point into the body, and points on the planes.
       Vector3 left{}, right{}, above{}, load{};
       left[0] = std::cos(alpha), right[0] = -std::cos(alpha), left[up] = right[up] = std::sin(alpha);
       above[up] = 1.0;
       load[up] = -1e-3;
       Model model = elastic_model();
-      if (dim == 3) {  // plane strain
+      if (dim == 3) {  // with ν = 0, which makes 3D plane strain
         model.materials[0].law = elastic_law(1.0, 0.0);
       }
       model.boundary.push_back(traction(named("top"), frame.turn(load)));
@@ -113,7 +113,7 @@ TEST_CASE("a wedge pressed between two planes: friction that slides on both take
           on_plane(named("left"), frame.place({-0.5, 0, 0}), frame.turn(left), 0.0, coulomb));
       model.contact.push_back(
           on_plane(named("right"), frame.place({0.5, 0, 0}), frame.turn(right), 0.0, coulomb));
-      if (dim == 3 && coulomb == 0.0) continue;  // nothing would hold it along the groove
+      if (dim == 3 && coulomb == 0.0) continue;  // nothing would fix it along the groove
       Part part;
       const Solution solution = solve_everywhere(build_problem(mesh, model), model, part);
       CHECK(solution.result.status == Status::converged);
@@ -122,14 +122,14 @@ TEST_CASE("a wedge pressed between two planes: friction that slides on both take
       const double width = 2 * (0.5 + std::tan(alpha)),
                    force = 1e-3 * width * (dim == 3 ? unit * unit : unit);
       CHECK(normal + friction == doctest::Approx(force).epsilon(1e-5));
-      // All that touches slides in: N = F / (2 (sin α + μ cos α)).
+      // All closed points slide inwards: N = F / (2 (sin α + μ cos α)).
       CHECK(solution.result.slip_nodes >= (coulomb > 0.0 ? solution.result.active_nodes : 0));
       CHECK(normal ==
             doctest::Approx(force / (1 + coulomb / std::tan(alpha))).epsilon(dim == 2 ? 1e-4 : 1e-2));
     }
 }
 
-/// Bending, stretch and shear of a thin ring (Timoshenko), change of the diameter over the force.
+/// Change of the diameter per force of a thin ring by bending, stretching and shear (Timoshenko).
 double ring_compliance(double thick, double poisson) {
   const double modulus = 1.0 / (1 - poisson * poisson), inertia = thick * thick * thick / 12,
                shear = 1.0 / (2 * (1 + poisson)), pi = std::numbers::pi;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Problems with an answer in closed form.
+// Problems with closed-form solutions.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -12,14 +12,14 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// Strain under given principal stresses (three of them, the last one unknown in plane strain, where ε_zz =
-/// 0).
+/// Returns the strain under given principal stresses; in plane strain the third stress is unknown and ε_zz =
+/// 0.
 Vector3 strain_under(const Law& law, int dim, Vector3 stress) {
   const auto principal = [&](const Vector3& t) {
     const double mean = (t[0] + t[1] + t[2]) / 3.0;
     const Vector3 d{t[0] - mean, t[1] - mean, t[2] - mean};
     const double s = length(d);
-    // ‖dev τ‖ = 2 g(x) x grows with x.
+    // ‖dev τ‖ = 2 g(x) x is monotone in x.
     double low = 0.0, high = 1.0;
     for (int i = 0; i < 100; ++i) {
       const double x = 0.5 * (low + high);
@@ -38,7 +38,7 @@ Vector3 strain_under(const Law& law, int dim, Vector3 stress) {
   return principal(stress);
 }
 
-/// Greatest distance of the nodal displacements from a field.
+/// Returns the largest distance between nodal displacements and an exact field.
 double largest_error(const Run& run, const std::function<Vector3(const Vector3&)>& exact) {
   const std::size_t dim = run.part.dim();
   double worst = 0.0;
@@ -116,7 +116,7 @@ TEST_CASE("contact patch, turned: a block held by nothing but three planes") {
       CHECK(run.result().status == Status::converged);
       const Vector3 strain = strain_under(law, dim, stress);
       CHECK(largest_error(run, [&](const Vector3& x) {
-              // Back to the axes of the block, strained, and turned again.
+              // Rotate back to the axes of the block, strain, rotate again.
               Vector3 y{};
               for (std::size_t i = 0; i < 3; ++i)
                 for (std::size_t j = 0; j < 3; ++j) y[i] += turn.row[j][i] * x[j];
@@ -128,7 +128,7 @@ TEST_CASE("contact patch, turned: a block held by nothing but three planes") {
 }
 
 TEST_CASE("confined block: gap, indentation and prescribed displacement in one dimension") {
-  // Sides roll, so that the only strain is along the height: pressure = (k0 + 4μ/3) × closing / height.
+  // The sides are on rollers, so that only the height changes: pressure = (k0 + 4μ/3) × closing / height.
   const Law law = elastic_law(2.0, 0.25);
   const double stiffness = law.bulk + 4.0 / 3.0 * law.shear;
   struct Case {

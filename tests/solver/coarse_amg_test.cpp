@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Levels over aggregates handed to BoomerAMG: the whole matrix, a contraction, a cycle CG can have.
+// Aggregation levels whose coarse matrix BoomerAMG solves: the distributed matrix, contraction, use within
+// CG.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -28,8 +29,8 @@ Part block(ElementType type) {
   return distribute(&problem, MPI_COMM_WORLD);
 }
 
-/// Small aggregates, so that a small body has enough of them not to be factorised; `handed_over` counts those
-/// that BoomerAMG gets, which without it gets none.
+/// Small aggregates, so that even a small body has a coarse matrix too large to factorise. `handed_over`
+/// counts the matrices given to BoomerAMG; null: BoomerAMG is not used.
 MultigridOptions aggregates(int* handed_over) {
   MultigridOptions options;
   options.fine_size = 4.0;
@@ -128,7 +129,7 @@ TEST_CASE("a cycle with BoomerAMG below the aggregates is symmetric, definite an
     CHECK(copy == mx);
     CHECK(iterations(part, free, g, handed) <= 2 * iterations(part, free, g, own));
 
-    // Nodes that are held on the way: the hierarchy follows.
+    // Constraints added later: the hierarchy is set up again.
     Space held(part);
     for (std::size_t n = 0; n < part.nodes(); ++n)
       if (part.node_index[n] % 9 == 0) held.hold(static_cast<std::int32_t>(n), Vector3{0.6, 0.8, 0.0});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Points are found in their elements, and a start from a coarser mesh leads to the same answer in fewer
+// Location of points in elements, and initial guesses from a coarser mesh: the same answer in fewer
 // iterations.
 #include <doctest/doctest.h>
 
@@ -51,7 +51,7 @@ TEST_CASE("a point is found in an element that has it, with its reference coordi
     CAPTURE(cell(type).name);
     Mesh mesh = beam_mesh(type, 3);
     const std::size_t dim = mesh.dim(), npe = nodes_per_element(type);
-    for (double& x : mesh.coordinates) x += (cell(type).order == 1 ? 1.0 : 0.5) * shift(random);  // or curved
+    for (double& x : mesh.coordinates) x += (cell(type).order == 1 ? 1.0 : 0.5) * shift(random);  // or curves
     const PointLocator locator(mesh.view());
     for (int trial = 0; trial < 200; ++trial) {
       const Vector3 x{0.1 + 3.8 * at(random), 0.1 + 0.8 * at(random),
@@ -68,7 +68,7 @@ TEST_CASE("a point is found in an element that has it, with its reference coordi
         CHECK(sum == doctest::Approx(x[c]).epsilon(1e-9));
       }
     }
-    // Outside the body: the element at the nearest end.
+    // A point outside the body: the nearest element, at that end.
     const PointLocator::Place end = locator.find({4.5, 0.5, dim == 3 ? 0.5 : 0.0});
     double most = 0.0;
     for (std::size_t a = 0; a < npe; ++a) {

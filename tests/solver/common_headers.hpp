@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What most tests of the solver include, to be parsed once for all where headers are precompiled.
+// Headers that most tests of the solver include, for precompilation.
 #pragma once
 
 #include <Eigen/Dense>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Signorini and friction laws on solved problems: what must hold at every contact point, whatever the answer.
+// Signorini and friction conditions of solved problems, which must hold at every contact point.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// Displacement of a contact point's node.
+/// Returns the displacement of a contact point's node.
 Vector3 displacement_at(const Run& run, const ContactPoint& point) {
   const std::size_t dim = run.part.dim();
   const double* u = &run.solution.displacement[static_cast<std::size_t>(point.node) * dim];
@@ -24,7 +24,7 @@ Vector3 displacement_at(const Run& run, const ContactPoint& point) {
 
 double inner(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// Gap, pressure and their product; the friction bound; slip against the friction force.
+/// Checks gap, pressure and their product; the friction bound; and slip against the friction force.
 void check_contact_laws(const Run& run, double tolerance) {
   const Solution& solution = run.solution;
   const double pressure = std::max(run.result().max_contact_pressure, 1e-300);
@@ -48,7 +48,7 @@ void check_contact_laws(const Run& run, double tolerance) {
     const double force = length(solution.traction[i]);
     CHECK(force <= bound + tolerance * pressure);
     CHECK(std::abs(inner(solution.traction[i], point.normal)) < 1e-12);
-    // The friction force opposes the slip with all its bound: ψ|u_t| = −force·u_t.
+    // The friction force opposes the slip at its bound: ψ|u_t| = −force·u_t.
     CHECK(std::abs(bound * length(slip) + inner(solution.traction[i], slip)) <
           3 * tolerance * pressure * moved_most);
     if (solution.contact_status[i] == ContactStatus::stick) CHECK(length(slip) < tolerance * moved_most);
@@ -56,7 +56,7 @@ void check_contact_laws(const Run& run, double tolerance) {
   }
 }
 
-/// Mesh, model: a block on the plane z = 0, its top moved.
+/// Model of a block on the plane z = 0 whose top is displaced.
 Model dragged_block(const Vector3& top, double tresca, double coulomb) {
   Model model = elastic_model();
   model.boundary.push_back(moved(named("top"), 3, top));
@@ -85,12 +85,12 @@ TEST_CASE("a sphere pressed into a block") {
       const Run run = run_alone(make_box({{1, 1, 1}, {4, 4, 4}, type}), model);
       CHECK(run.result().status == Status::converged);
       check_contact_laws(run, 1e-6);
-      // The middle node is pressed in by the overlap; the rim is free.
+      // The obstacle presses the middle node inwards; the rim is free.
       CHECK(run.result().active_nodes > 0);
       CHECK(run.result().active_nodes < run.result().contact_nodes);
       CHECK(run.result().contact_force[2] < 0.0);
       if (given_direction) CHECK(std::abs(run.result().contact_force[0]) < 1e-12);
-      // Held at the bottom: the reaction there, F − R, balances the obstacle's force.
+      // The reaction at the fixed bottom, F − R, balances the obstacle's force.
       CHECK(run.result().certificate.force_balance < 1e-6);
     }
 }
@@ -105,7 +105,7 @@ TEST_CASE("the beam, with and without friction") {
       const Run run = run_alone(beam_mesh(dim, dim == 2 ? 8 : 3), model);
       CHECK(run.result().status == Status::converged);
       check_contact_laws(run, 1e-6);
-      // A bound of 10 is never reached: everything that touches sticks.
+      // A bound of 10 is never reached: all closed points stick.
       if (tresca > 1.0) CHECK(run.result().slip_nodes == 0);
     }
 }
@@ -116,7 +116,7 @@ TEST_CASE("Tresca: a dragged block slides with all the force there is, straight 
   CHECK(run.result().status == Status::converged);
   check_contact_laws(run, 1e-6);
   CHECK(run.result().slip_nodes == run.result().contact_nodes);
-  // Area 2; the bottom does not follow evenly, so directions differ a little from node to node.
+  // Area 2; the bottom does not move uniformly, so directions differ slightly between nodes.
   CHECK(length(run.result().friction_force) == doctest::Approx(2 * tresca).epsilon(0.01));
   CHECK(run.result().friction_force[0] == doctest::Approx(-2 * tresca * 0.6).epsilon(0.02));
   CHECK(run.result().friction_force[1] == doctest::Approx(-2 * tresca * 0.8).epsilon(0.02));
@@ -124,7 +124,7 @@ TEST_CASE("Tresca: a dragged block slides with all the force there is, straight 
 }
 
 TEST_CASE("a bound that is never reached holds like glue") {
-  // Same block, its bottom clamped: same displacements.
+  // The same block with its bottom clamped has the same displacements.
   Model glued = elastic_model();
   const Vector3 top{0.003, 0.004, -0.02};
   glued.boundary.push_back(moved(named("top"), 3, top));
@@ -154,9 +154,9 @@ TEST_CASE("Coulomb: the laws hold, and the solution is Tresca's with the bound i
       CAPTURE(dim);
       CAPTURE(coefficient);
       Model model = beam(dim, logarithmic_law(0.01), 0.05);
-      if (dim == 3) (*model.boundary[1].traction)[1] = 0.004;  // askew, so that slip turns
+      if (dim == 3) (*model.boundary[1].traction)[1] = 0.004;  // oblique, so that the slip direction rotates
       model.contact[0].friction = Friction{0.0, coefficient};
-      model.solver.tolerance = 1e-10;  // so far that the last step moves the bound by little, too
+      model.solver.tolerance = 1e-10;  // so tight that even the last step hardly changes the bound
       const Run run = run_alone(beam_mesh(dim, dim == 2 ? 8 : 3), model);
       model.solver.tolerance = 1e-8;
       CHECK(run.result().status == Status::converged);
@@ -222,8 +222,8 @@ TEST_CASE("Coulomb friction by Newton steps alone: no retreat to ADMM, and its a
 
 TEST_CASE("friction far beyond what a yielding body carries does not throw it about" *
           doctest::skip(sanitized)) {
-  // Moved along its obstacle by its top; to slip, the bottom would have to stretch the body by its e⁶⁵-fold
-  // yield strain.
+  // The top drags the body along its obstacle; to slip, the bottom would have to strain the body to e⁶⁵ times
+  // its yield strain.
   Model model;
   model.materials.push_back({everything(), logarithmic_law(1e-4, 200.0)});
   model.boundary.push_back(moved(named("top"), 3, {0.1, 0.0, -0.02}));
@@ -242,7 +242,7 @@ TEST_CASE("friction far beyond what a yielding body carries does not throw it ab
 }
 
 TEST_CASE("where the tangent has gone too far the secant leads on until half the residual is left") {
-  // A block dragged up a slope, to strains of thousands of yield strains.
+  // A block dragged up a slope, to thousands of yield strains.
   Model model;
   model.materials.push_back({everything(), logarithmic_law(1e-4, 200.0)});
   model.boundary.push_back(moved(named("top"), 3, {0.6, 0.2, -0.2}));
@@ -270,7 +270,7 @@ TEST_CASE("an obstacle out of reach changes nothing") {
   model.solver.tolerance = 1e-9;
   Model free = model;
   free.contact.clear();
-  // Far below, and with friction that has nothing to act on: Coulomb's bound vanishes with the pressure.
+  // Far below, and with Coulomb friction, whose bound vanishes with the pressure.
   model.contact[0] = on_plane(model.contact[0].on, {0, -5, 0}, {0, 1, 0}, 0.0, 0.3);
   const Run without = run_alone(beam_mesh(2, 4), free), out_of_reach = run_alone(beam_mesh(2, 4), model);
   CHECK(without.result().status == Status::converged);
@@ -318,7 +318,7 @@ TEST_CASE("every choice of the contact method and of r leads to the same answer"
 }
 
 TEST_CASE("a penalty that an approach has lowered is the first one again once there is contact") {
-  // A column pushed against a wall a third of its length away.
+  // A column pushed against a wall at a third of its length.
   const Mesh column = make_box({{9, 1, 1}, {18, 2, 1}, ElementType::tri3});
   Model model;
   model.materials.push_back({everything(), logarithmic_law(0.01)});
@@ -343,7 +343,7 @@ TEST_CASE("a penalty that an approach has lowered is the first one again once th
 }
 
 TEST_CASE("the two tangents of a turned plane are as good as any") {
-  // A solution in 3D, turned with everything that belongs to it.
+  // A 3D solution, rotated together with all its data.
   const Rotation turn(3, 0.9);
   const auto solve_turned = [](const std::function<Vector3(const Vector3&)>& map) {
     Mesh mesh = box_mesh(ElementType::tet4);

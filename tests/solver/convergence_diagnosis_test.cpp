@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A run that does not converge says who goes to and fro, and where.
+// Diagnosis of runs that do not converge: which contact nodes keep changing their state.
 #include <doctest/doctest.h>
 
 #include <sstream>
@@ -12,7 +12,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// A block that is pressed on the floor with friction.
+/// A block pressed on the floor with friction.
 Model pressed() {
   Model model;
   model.materials.push_back({everything(), elastic_law(210e3, 0.3)});
@@ -35,9 +35,9 @@ TEST_CASE("the node that changes most is named with its place in the user's unit
   ContactChanges changes;
   const std::size_t first = 3, second = 5;
   for (int step = 0; step < 12; ++step) {
-    state.lambda.normal[first] = step % 2;  // with its bound: open, or it sticks
+    state.lambda.normal[first] = step % 2;  // with its bound: open, or sticking
     state.bound[first] = 0.3 * (step % 2);
-    state.lambda.tangential[2 * second] = step % 4 < 2 ? 0.0 : 0.3;  // sticks, slips
+    state.lambda.tangential[2 * second] = step % 4 < 2 ? 0.0 : 0.3;  // sticks, then slips
     changes.note(part.contact.points(), state);
   }
   CHECK(changes.count(first) == 11);
@@ -50,7 +50,7 @@ TEST_CASE("the node that changes most is named with its place in the user's unit
         << 2.0 * part.coordinates[3 * node + 1] << ", 0)";
   CHECK(mentions(said, place.str()));
   CHECK(mentions(said, "in 11 of the last 16 steps, and 1 contact points more"));
-  // What settles again is forgotten.
+  // Points that stop changing are forgotten.
   for (int step = 0; step < ContactChanges::window; ++step) changes.note(part.contact.points(), state);
   CHECK(who_cycles(part, changes, 1.0).empty());
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coulomb friction inside the Newton step: its operator, nodes of several entries, and what it solves.
+// Coulomb friction in the Newton step: its operator, nodes with several contact points, and the solved
+// system.
 #include <doctest/doctest.h>
 
 #include <Eigen/Dense>
@@ -16,7 +17,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// A cube in the corner of floor and wall, both with friction; `across`: also against a wall at y = 0.
+/// A cube in the corner of floor and wall, both with friction; with `across` also against a wall at y = 0.
 Model cube_in_corner(const Vector3& load, double coulomb, bool across = false) {
   Model model = elastic_model();
   model.boundary.push_back(traction(named("top"), load));
@@ -31,7 +32,7 @@ Mesh cube(int cells, ElementType type = ElementType::tet4) {
   return make_box({{1, 1, 1}, {cells, cells, cells}, type});
 }
 
-/// Everything that touches held, slipping in a direction of its own where `slips`.
+/// An active set of all points, sticking, or with `slips` slipping in a fixed direction.
 ActiveSet touching(const Part& part, bool slips) {
   const std::size_t points = part.contact.size();
   ActiveSet set;
@@ -48,7 +49,7 @@ ActiveSet touching(const Part& part, bool slips) {
   return set;
 }
 
-/// Some state, the same at every call.
+/// A state, the same on every call.
 ContactState some_state(const Part& part, const Traces& traces) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> value(-1, 1);
@@ -112,7 +113,7 @@ TEST_CASE(
       if (!slips) CHECK(std::hypot(trace.tangential[2 * i], trace.tangential[2 * i + 1]) < 1e-12);
     }
 
-    // A force of reactions comes back as such: C of what remains is nothing.
+    // Forces in the range of the reactions are recovered: the remainder has zero trace.
     Vector force = state.u;
     nodes.subtract_sliding(force);
     ContactValues lambda(part.contact.size());
@@ -128,7 +129,7 @@ TEST_CASE(
     for (std::size_t i = 0; i < part.contact.size(); ++i) {
       CHECK(std::abs(left.normal[i]) < 1e-10);
       if (!slips) CHECK(std::hypot(left.tangential[2 * i], left.tangential[2 * i + 1]) < 1e-10);
-      // In the edge of two entries only the direction of the edge is left to friction.
+      // At the edge of two obstacles friction acts along the edge only.
       std::size_t entries = 0;
       Vector3 traction{}, other{};
       for (std::size_t j = 0; j < part.contact.size(); ++j)

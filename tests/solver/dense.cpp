@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stiffness, traces and spectrum of small parts, as dense matrices.
+// Dense stiffness, traces and spectrum of small parts.
 #include "dense.hpp"
 
 #include <cmath>

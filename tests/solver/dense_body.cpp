@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The body of the second solver: elements assembled to dense forces and matrices.
+// The body of the dense reference solver: elements assembled into dense forces and matrices.
 #include "dense_body.hpp"
 
 #include <cmath>
@@ -12,12 +12,13 @@ namespace {
 
 using Matrix = DenseBody::Matrix;
 
-/// Shape functions' gradients in the reference element: nodes × dim.
+/// Returns the gradients of the shape functions in the reference element: nodes × dim.
 Matrix reference_gradients(ElementType type, const Eigen::Vector3d& x) {
   if (type == ElementType::tri3) return (Matrix(3, 2) << -1, -1, 1, 0, 0, 1).finished();
   if (type == ElementType::tet4) return (Matrix(4, 3) << -1, -1, -1, 1, 0, 0, 0, 1, 0, 0, 0, 1).finished();
   if (type == ElementType::tet10) {
-    // Products of the barycentric coordinates of the ends: vertices (2λ − 1)λ, then the middles of edges.
+    // Barycentric coordinates λ: corners (2λ − 1) λ, then products of the ends' coordinates for mid-edge
+    // nodes.
     constexpr int ends[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {2, 3}, {1, 3}};
     const Eigen::Vector4d l(1.0 - x.sum(), x(0), x(1), x(2));
     const Matrix corners = (Matrix(4, 3) << -1, -1, -1, 1, 0, 0, 0, 1, 0, 0, 0, 1).finished();
@@ -28,7 +29,7 @@ Matrix reference_gradients(ElementType type, const Eigen::Vector3d& x) {
           4.0 * (l(ends[e][0]) * corners.row(ends[e][1]) + l(ends[e][1]) * corners.row(ends[e][0]));
     return gradients;
   }
-  // quad4 and hex8 on [−1, 1]², [−1, 1]³, the lower face counter-clockwise first.
+  // quad4 on [−1, 1]² and hex8 on [−1, 1]³, the lower face first, counter-clockwise.
   constexpr int corner[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
                                 {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
   const int dim = type == ElementType::quad4 ? 2 : 3, nodes = 1 << dim;
@@ -43,7 +44,7 @@ Matrix reference_gradients(ElementType type, const Eigen::Vector3d& x) {
   return gradients;
 }
 
-/// Points of the reference element and their weights.
+/// Returns the quadrature points of the reference element with their weights.
 std::vector<std::pair<Eigen::Vector3d, double>> quadrature(ElementType type) {
   std::vector<std::pair<Eigen::Vector3d, double>> rule;
   if (type == ElementType::hex8) {

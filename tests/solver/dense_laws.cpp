@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Material laws of the second solver, from the formulas of the case file.
+// Material laws of the dense reference solver, from the formulas in the documentation of case files.
 #include "dense_laws.hpp"
 
 #include <cmath>
@@ -8,7 +8,7 @@
 namespace kacanov::testing {
 namespace {
 
-/// The table's stress at x by its straight pieces, the last one going on.
+/// Evaluates a table of stress at x: piecewise linear, the last piece extrapolated.
 LawValues evaluate_table(const laws::Table& table, double x) {
   double energy = 0.0;
   for (std::size_t i = 1;; ++i) {
@@ -21,7 +21,7 @@ LawValues evaluate_table(const laws::Table& table, double x) {
     if (here) return {0.5 * stress / x, 0.5 * (rise - stress / x) / x, energy};
   }
 }
-/// The table with the squared argument a = x²: g = s(a)/2a, so ∫ g x dx = ∫ s/4a da.
+/// Evaluates a table with the squared argument a = x²: g = s(a)/2a, so ∫ g x dx = ∫ s/4a da.
 LawValues evaluate_squared_table(const laws::Table& table, double x) {
   const double a = x * x;
   double energy = 0.0;
@@ -46,7 +46,7 @@ double yield(const Law& law) {
       },
       law.form);
 }
-/// The squared argument.
+/// Evaluates a law with the squared argument.
 LawValues evaluate_squared(const Law& law, double x) {
   if (const auto* table = std::get_if<laws::Table>(&law.form)) return evaluate_squared_table(*table, x);
   const double mu = law.shear, x0 = yield(law), a = x * x;
@@ -68,7 +68,7 @@ LawValues evaluate_squared(const Law& law, double x) {
   }
   if (const auto* form = std::get_if<laws::Saturating>(&law.form)) {
     const double q = form->q;
-    // ∫ e^-b/qx₀ / b db from x₀ to a is E₁(1/q) − E₁(a/qx₀), E₁(z) = −Ei(−z).
+    // ∫ e^-b/qx₀ / b db from x₀ to a equals E₁(1/q) − E₁(a/qx₀), where E₁(z) = −Ei(−z).
     const double decay = std::exp(-(a - x0) / (q * x0)), g = mu * x0 / a * (1.0 + q * (1.0 - decay));
     const double faded = std::exp(1.0 / q) * (std::expint(-a / (q * x0)) - std::expint(-1.0 / q));
     return {g, 2.0 * x * (mu * decay - g) / a, 0.5 * mu * x0 * (1.0 + (1.0 + q) * l - q * faded)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The second solver's way to contact, friction and equilibrium.
+// The dense reference solver's iteration for contact, friction and equilibrium.
 #include "dense_solver.hpp"
 
 #include <array>
@@ -38,7 +38,7 @@ DenseSolver::Defects DenseSolver::defects(const Vector& u, const Vector& lambda)
   for (Eigen::Index i = 0; i < u.size(); ++i)
     if (problem_.held[i]) free_contact(i) = 0.0;
   Defects out;
-  // What the rounding of the forces themselves comes to is no defect.
+  // Rounding errors of the forces themselves do not count as a residual.
   out.equilibrium = std::max(0.0, residual.norm() - 1e-6 * rounding) /
                     std::max({load_.norm(), reaction.norm(), free_contact.norm(), rounding, 1e-300});
   const double size = std::max(u.cwiseAbs().maxCoeff(), 1e-300);
@@ -70,7 +70,7 @@ DenseSolver::Answer DenseSolver::solve() {
   answer.u = Eigen::Map<const Vector>(problem_.prescribed.data(), load_.size());
   for (const auto i : free_) answer.u(i) = 0.0;
   answer.forces = Vector::Zero(rows_.rows());
-  // Coulomb: the bound of the pressure before, until it stays.
+  // Coulomb: bounds from the previous pass's pressure, until they no longer change.
   for (int pass = 0; pass < (coulomb ? 300 : 1); ++pass) {
     answer.converged = minimise(bound, pass == 0, answer);
     if (!answer.converged) break;
@@ -90,7 +90,7 @@ DenseSolver::Answer DenseSolver::solve() {
   return answer;
 }
 
-/// Rows of [N; T], point after point: one for the normal, then those of the tangents.
+/// Fills the rows of [N; T], point by point: one row for the normal, then those of the tangents.
 void DenseSolver::find_rows() {
   Eigen::Index count = 0;
   for (const ContactPoint& point : problem_.contact) {
@@ -110,7 +110,7 @@ void DenseSolver::find_rows() {
   free_rows_ = rows_(Eigen::all, free_);
 }
 
-/// J(u) = stored energy − work of the loads + friction.
+/// Returns J(u) = stored energy − work of the loads + friction.
 double DenseSolver::energy(const Vector& u, const Vector& bound) const {
   double sum = body_.stored_energy(u) - load_.dot(u);
   const Vector trace = rows_ * u;
@@ -120,8 +120,8 @@ double DenseSolver::energy(const Vector& u, const Vector& bound) const {
   return sum;
 }
 
-/// Projected Gauss–Seidel: forces f with v = start − W f, v_n ≤ gap ⊥ f_n ≥ 0 and f_t on its disc along
-/// v_t.
+/// Projected Gauss–Seidel sweep for forces f with v = start − W f, v_n ≤ gap ⊥ f_n ≥ 0, and f_t in its disc
+/// along v_t.
 void DenseSolver::sweep_forces(const Matrix& w, const Vector& start, const Vector& bound, Vector& f) const {
   Vector v = start - w * f;
   const auto change_by = [&](Eigen::Index row, double delta) {
@@ -172,7 +172,7 @@ bool DenseSolver::minimise(const Vector& bound, bool from_rest, Answer& answer) 
     Vector d = Vector::Zero(u.size());
     d(free_) = free_step - lifted * answer.forces;
     const double size = (u + d).cwiseAbs().maxCoeff();
-    // The start may lie within an obstacle, and has to leave it whatever the energy says.
+    // The start may penetrate an obstacle and has to leave it, even if the energy rises.
     double t = 1.0;
     if (!elastic) {
       const double before = energy(u, bound), noise = 1e-13 * (std::abs(before) + std::abs(load_.dot(u)));

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A second solver for small problems that shares no line with the first but the list of loads and contact
-// points: dense matrices, elements assembled here, sequential quadratic programs whose duals are solved by
-// projected Gauss–Seidel on the dense compliance of the contact points (Jean and Moreau's way), energy line
-// search.
+// Dense reference solver for small problems, which shares only the lists of loads and contact points with the
+// solver. It assembles its own matrices and solves quadratic programs with an energy line search, their duals
+// by projected Gauss–Seidel on the dense compliance of the contact points (Jean and Moreau).
 #pragma once
 
 #include <Eigen/Dense>
@@ -18,20 +17,19 @@ class DenseSolver {
   using Matrix = Eigen::MatrixXd;
   using Vector = Eigen::VectorXd;
 
-  /// `problem` has to outlive it.
+  /// `problem` must outlive this object.
   explicit DenseSolver(const Problem& problem);
 
   struct Answer {
     Vector u;
-    Vector forces;  ///< contact forces, a row each: M λ_n, M λ_t
+    Vector forces;  ///< contact forces, one entry per row: M λ_n, M λ_t
     bool converged = false;
-    double softest = 0.0;      ///< smallest eigenvalue of the tangent in free components, without contact
-    double force_scale = 0.0;  ///< ‖·‖₂ of loads, reactions or contact forces, the largest
+    double softest = 0.0;      ///< smallest eigenvalue of the tangent on free components, without contact
+    double force_scale = 0.0;  ///< largest ‖·‖₂ among loads, reactions and contact forces
   };
 
-  /// The conditions of the problem for any displacement and contact pressures and tractions (λ_n and λ_t, the
-  /// force of the body on the obstacle): how far they are from being met, relative to what the state itself
-  /// sets.
+  /// Relative residuals of the problem's conditions for a given displacement and given contact pressures and
+  /// tractions (λ_n and λ_t, the force of the body on the obstacle); the scales come from that state itself.
   struct Defects {
     double equilibrium = 0.0, penetration = 0.0, tension = 0.0, cone = 0.0, products = 0.0;
     double worst() const { return std::max({equilibrium, penetration, tension, cone, products}); }

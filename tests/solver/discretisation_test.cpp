@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The estimate of the mesh's error: nothing where the element has the answer, the error itself where it has
-// not, on any number of ranks.
+// The discretisation error estimate: zero where the element is exact, otherwise the true error, on any number
+// of ranks.
 #include <kacanov/discretisation.hpp>
 
 #include <doctest/doctest.h>
@@ -13,7 +13,8 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// A block held at its left end whose right end is pushed down; energies are those of the strains alone then.
+/// A block fixed at its left end with its right end displaced downwards, so that the energy is the strain
+/// energy alone.
 Model bent_model(int dim, const Law& law) {
   Model model;
   model.materials.push_back({everything(), law});
@@ -32,7 +33,7 @@ TEST_CASE("the finer rules integrate what they should") {
     CAPTURE(cell(type).name);
     const Cell& shape = cell(type);
     const int degree = 2 * shape.order;
-    // ∫ x^p over the reference cell: p! dim! .../(p + dim)! of a simplex, by axes of a cube.
+    // ∫ x^p over the reference cell: p! dim!/(p + dim)! of a simplex's volume; by axes for a cube.
     for (int p = 0; p <= degree; ++p) {
       double sum = 0.0, expected = 1.0;
       for (const QuadraturePoint& point : finer_rule(shape)) {
@@ -65,9 +66,8 @@ TEST_CASE("no error is seen where strains are even") {
 }
 
 TEST_CASE("linear strains of straight elements: their known distance from even ones") {
-  // u = (0, x²/2) strains by ε_xy = x/2; what elements make of its nodal values is known on each of them.
-  // On quad4 and hex8 of width h it is (x_left + h/2)/2, so that ∫ 4 μ (ε − ε_h)² is μ h²/12 a unit of
-  // volume.
+  // u = (0, x²/2) has the strain ε_xy = x/2; its interpolant's strain is known on each element: (x_left +
+  // h/2)/2 on quad4 and hex8 of width h, so that ∫ 4 μ (ε − ε_h)² is μ h²/12 per unit of volume.
   for (const ElementType type : {ElementType::quad4, ElementType::hex8}) {
     CAPTURE(cell(type).name);
     const int cells = 8;
@@ -107,11 +107,11 @@ TEST_CASE("any number of ranks estimates the same") {
 TEST_CASE("errors of numbers from meshes of falling width") {
   CHECK(!error_of_last(std::vector<double>{1.0}).has_value());
   CHECK(*error_of_last(std::vector<double>{1.0, 1.0}) == 0.0);
-  // 2 + 3 h²: a third of the last difference; with three numbers the order is seen.
+  // 2 + 3 h²: the error is a third of the last difference; three values determine the order.
   CHECK(*error_of_last(std::vector<double>{5.0, 2.75}) == doctest::Approx(0.75));
   CHECK(*error_of_last(std::vector<double>{5.0, 2.75, 2.1875}) == doctest::Approx(0.1875));
   // 2 + 3 h: first order.
   CHECK(*error_of_last(std::vector<double>{5.0, 3.5, 2.75}) == doctest::Approx(0.75));
-  // What does not fall is not believed.
+  // Differences that do not decrease give no extrapolation; the last difference is the estimate.
   CHECK(*error_of_last(std::vector<double>{1.0, 1.1, 1.3}) == doctest::Approx(0.2));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The dual form is ADMM without over-relaxation: the same iterates, step by step (theory: dual-admm).
+// The dual form is ADMM without over-relaxation: the same iterates in every step (theory: dual-admm).
 #include "contact/dual_admm.hpp"
 
 #include <doctest/doctest.h>
@@ -14,7 +14,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// The elastic beam with everything the contact loops ask for.
+/// The elastic beam with everything that the contact loops need.
 struct Setting {
   Problem problem;
   Part part;
@@ -47,12 +47,12 @@ struct Setting {
   static Problem make(int dim, double gap, double tresca) {
     Model model = beam(dim, elastic_law(1.0, 0.3), 0.05, tresca);
     std::get<Plane>(model.contact[0].obstacle).point[dim - 1] = -gap;
-    // A prescribed displacement that lifts the clamped end: it must go through both loops alike.
+    // A prescribed displacement that lifts the clamped end, which both loops must treat alike.
     (*model.boundary[0].displacement)[dim - 1] = 0.002;
     return build_problem(beam_mesh(dim, dim == 2 ? 6 : 2), model);
   }
 
-  /// u with its prescribed components, and multipliers that may be none.
+  /// Returns the state with prescribed components of u, and multipliers that need not be zero.
   ContactState start(double pressure) const {
     ContactState state;
     const std::size_t points = part.contact.size();
@@ -70,7 +70,7 @@ struct Setting {
     return state;
   }
 
-  /// F − B u − CᵀMλ, as the loops want it on entry.
+  /// Computes F − B u − CᵀMλ, which the loops expect on entry.
   void residual(const ContactState& state, CgWork& work) {
     work.resize(part.unknowns());
     op.apply(state.u, work.image);
@@ -112,7 +112,7 @@ TEST_CASE("every iterate of the dual form is that of ADMM, with exact and with i
             options.r = r;
             options.max_iterations = iterations;
             if (exact) {
-              options.step_tolerance = 1e-300;  // solves to 1e-12, and no end before max_iterations
+              options.step_tolerance = 1e-300;  // solves to 1e-12, and never stops before max_iterations
               options.volume = volume;
             }
             ContactState one = setting.start(pressure), two = one;
@@ -129,7 +129,8 @@ TEST_CASE("every iterate of the dual form is that of ADMM, with exact and with i
             CHECK(difference(one.phi.tangential, two.phi.tangential) < 1e-8 * u);
             CHECK(difference(one.lambda.normal, two.lambda.normal) < 1e-8 * p);
             CHECK(difference(one.lambda.tangential, two.lambda.tangential) < 1e-8 * p);
-            // The same solves; rounding moves the end of one, over a hundred iterations long, by one or two.
+            // The same solves, each over a hundred iterations long, whose length rounding changes by one or
+            // two.
             CHECK(std::abs(static_cast<double>(second.cg_iterations - first.cg_iterations)) <=
                   0.02 * static_cast<double>(first.cg_iterations));
             CHECK(second.trace_residual == doctest::Approx(first.trace_residual).epsilon(1e-6).scale(u));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The estimated error of the mesh beside the true one.
+// Effectivity of the error estimate: estimated against true discretisation error.
 #include <kacanov/discretisation.hpp>
 
 #include <doctest/doctest.h>
@@ -11,7 +11,8 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// A block held at its left end whose right end is pushed down: its potential energy is that of its strains.
+/// A block fixed at its left end with its right end displaced downwards: the potential energy is the strain
+/// energy.
 Run bent(ElementType type, int cells, const Law& law) {
   const int dim = dimension(type);
   Model model;
@@ -31,7 +32,7 @@ double stored_energy(const Run& run) { return reference::energy(run.part.body(),
 TEST_CASE("the estimate is the error, within a half and twice, elastic and beyond yield") {
   for (const Law& law : {elastic_law(1.0, 0.3), logarithmic_law(0.002)})
     for (const int dim : {2, 3}) {
-      // What the energies of finer meshes of the best element run to.
+      // Richardson extrapolation of the energies of finer meshes of the best element.
       const ElementType best = dim == 2 ? ElementType::quad4 : ElementType::tet10;
       const int fine = dim == 2 ? 64 : 8;
       const double half = stored_energy(bent(best, fine / 2, law)),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pressures of hexahedra that average tr ε each by itself, and the cycle with them.
+// Element-wise pressures of hexahedra with averaged tr ε, and the multigrid cycle with them.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ using namespace kacanov::testing;
 TEST_CASE("of elements that average over themselves A and the pressures of B u make the operator") {
   int rank = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  // Of every three elements one has another bulk modulus, and one averages nothing.
+  // Of every three elements, one has another bulk modulus and one has no averaging.
   Model model = elastic_model();
   model.boundary.push_back(moved(named("left"), 3));
   model.materials[0].formulation = MaterialEntry::Formulation::mixed;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Forces and moments of every entry, on any number of ranks: they balance, and are those of closed solutions.
+// Forces and moments of every boundary and contact entry, on any number of ranks: balance and closed-form
+// values.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -88,7 +89,7 @@ TEST_CASE("loads, supports and obstacles are in balance, in force and moment, ho
     const Resultant sum = sum_of(run.result(), largest);
     CHECK(norm(sum.force) <= 1e-8 * largest);
     CHECK(norm(sum.moment) <= 1e-8 * largest);
-    // Each of them is also what one rank finds.
+    // Each total equals that of a run on one rank.
     const Run alone = run_alone(mesh, model);
     REQUIRE(run.result().contact.size() == 2);
     REQUIRE(run.result().reaction.size() == 2);
@@ -97,7 +98,7 @@ TEST_CASE("loads, supports and obstacles are in balance, in force and moment, ho
       check_same(run.result().contact[i].total, alone.result().contact[i].total, 1e-6 * largest);
       check_same(run.result().reaction[i].total, alone.result().reaction[i].total, 1e-6 * largest);
     }
-    // The old totals are sums of the new ones.
+    // The totals of all contact are the sums over the entries.
     Vector3 normal{}, friction{};
     for (const ContactTotals& contact : run.result().contact) {
       normal = normal + contact.normal_force;
@@ -129,7 +130,7 @@ TEST_CASE("loads have the force and moment of what is put on") {
     const Run run = run_on_all(mesh, model);
     const auto& load = run.result().load;
     REQUIRE(load.size() == 3);
-    const double z = dim == 3 ? 0.25 : 0.0;  // of the middle
+    const double z = dim == 3 ? 0.25 : 0.0;  // of the mid-plane
     const Vector3 pushed{-3.0 * depth, 0.0, 0.0}, weight{0.0, -4.0 * depth, 0.0}, hook{0.0, 5.0, 0.0};
     check_same(load[0].total, {pushed, cross({2.0, 0.5, z}, pushed)}, 1e-13);
     check_same(load[1].total, {weight, cross({1.0, 0.5, z}, weight)}, 1e-13);
@@ -164,7 +165,7 @@ TEST_CASE("loads are those of the share, or of the load curves, that was reached
 }
 
 TEST_CASE("a reaction of several entries is divided among them evenly, component by component") {
-  // Pulled along x between rollers; the left side is held twice, and a third entry holds only its y.
+  // Tension along x between rollers; two entries fix the left side, and a third fixes only the bottom's z.
   const Mesh mesh = box_mesh(ElementType::hex8, {2.0, 1.0, 1.0});
   Model model = elastic_model();
   model.boundary.push_back(roller(named("left"), 0));
@@ -182,7 +183,7 @@ TEST_CASE("a reaction of several entries is divided among them evenly, component
 TEST_CASE("two entries of one floor bear each what stands on them") {
   for (const ElementType type : types) {
     CAPTURE(static_cast<int>(type));
-    if (type == ElementType::tet10) continue;  // its lumped facets have no even nodal pressure
+    if (type == ElementType::tet10) continue;  // uniform pressure has unequal nodal values
     const Mesh mesh = box_mesh(type, {2.0, 1.0, 1.0});
     const int dim = mesh.dim();
     const std::size_t up = dim - 1;
@@ -209,7 +210,7 @@ TEST_CASE("two entries of one floor bear each what stands on them") {
     CHECK(left.open == 0);
     CHECK(left.sticking == 0);
     CHECK(std::abs(left.least_gap) <= 1e-9);
-    // The nodes between them count in both.
+    // Both entries count the nodes between them.
     const auto between = static_cast<std::int64_t>(dim == 3 ? 3 : 1);
     CHECK(left.slipping + right.slipping == run.result().contact_nodes + between);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Points that an obstacle is equally near to in several directions: ridges, grooves, edges and corners.
+// Points equally near to an obstacle in several directions: ridges, grooves, edges and corners.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -15,7 +15,7 @@ using namespace kacanov;
 
 namespace {
 
-/// Two slopes that meet in a ridge along y, down at z = 0 (or up, of a groove), as steep as each other.
+/// Two equally steep slopes that meet along y at z = 0: a ridge that points down, or a groove open below.
 Surface ridge(double slope, bool groove = false) {
   const double side = groove ? -1.0 : 1.0;
   const std::vector<Vector3> points{
@@ -24,7 +24,7 @@ Surface ridge(double slope, bool groove = false) {
   return Surface(points, {{0, 3, 1}, {0, 2, 3}, {0, 1, 5}, {0, 5, 4}});
 }
 
-/// The same after a rotation about an oblique axis.
+/// Rotates a vector about an oblique axis.
 Vector3 turned(const Vector3& v) {
   constexpr double c = 0.6, s = 0.8;
   const Vector3 once{c * v[0] - s * v[1], s * v[0] + c * v[1], v[2]};
@@ -44,26 +44,26 @@ TEST_CASE(
       CAPTURE(slope);
       CAPTURE(groove);
       const SurfaceObstacle blade{std::make_shared<const Surface>(ridge(slope, groove))};
-      // Within the ridge, below the groove; where the feet are on the slopes.
+      // Inside the ridge or below the groove, where both nearest points lie on the slopes.
       const double height = groove ? -0.1 : 0.1;
       for (const double y : {-0.3, 0.0, 0.21}) {
         const Facing found = blade.project({{0, y, height}, {0, 0, 1}});
         CHECK(found.chosen);
         CHECK(norm(found.normal - Vector3{0, 0, 1}) < 1e-12);
         CHECK(found.gap == doctest::Approx(-height).epsilon(1e-12));
-        // Turned to one side, the body is faced by that slope.
+        // A body tilted to one side faces the slope on that side.
         for (const double to : {-1.0, 1.0}) {
           const Facing one = blade.project({{0, y, height}, {0.3 * to, 0, 1}});
           CHECK(one.normal[0] * to > 0.0);
           CHECK(std::abs(one.gap) == doctest::Approx(0.1 / std::hypot(1.0, slope)).epsilon(1e-12));
         }
       }
-      // At the ridge itself, by the planes of both slopes.
+      // On the ridge itself, by the planes of both slopes.
       const Facing at_ridge = blade.project({{0, 0.1, 0}, {0, 0, 1}});
       CHECK(norm(at_ridge.normal - Vector3{0, 0, 1}) < 1e-12);
       CHECK(std::abs(at_ridge.gap) < 1e-14);
       CHECK(blade.project({{0, 0.1, 0}, {0.2, 0, 1}}).normal[0] > 0.0);
-      // Elsewhere one slope is nearer, and no rule is asked.
+      // Elsewhere one slope is nearer, and no rule applies.
       CHECK_FALSE(blade.project({{0.01, 0.1, height}, {0, 0, 1}}).chosen);
     }
 }
@@ -76,7 +76,7 @@ TEST_CASE("at edges and corners of a box the face that opposes the body most is 
     if (is_turned) block.frame = frame;
     const auto look = [&](const Vector3& x, const Vector3& outer) {
       Facing found = look_from(block, place(x), place(outer));
-      Vector3 nu{};  // in the box's own axes
+      Vector3 nu{};  // in the axes of the box
       for (std::size_t c = 0; c < 3; ++c) {
         Vector3 axis{};
         axis[c] = 1.0;
@@ -86,7 +86,7 @@ TEST_CASE("at edges and corners of a box the face that opposes the body most is 
       return found;
     };
     const double half = std::sqrt(0.5), third = std::sqrt(1.0 / 3.0);
-    // On the edge above x = 1, and within it as far from both faces, for a body above.
+    // On the edge x = z = 1, and inside it at equal distance from both faces.
     for (const double depth : {0.0, 0.25, 1e-12}) {
       CAPTURE(depth);
       const Vector3 edge{1 - depth, 0.2, 1 - depth}, corner{1 - depth, 1 - depth, 1 - depth};
@@ -101,10 +101,10 @@ TEST_CASE("at edges and corners of a box the face that opposes the body most is 
       CHECK(look(corner, {-1, -1, -1}).gap == doctest::Approx(-depth / third));
       CHECK(norm(look(corner, {-1, -1, 0}).normal - Vector3{-half, -half, 0}) < 1e-9);
     }
-    // Beside the edge by rounding alone, a node does not face the side of the box.
+    // A node beside the edge by rounding error alone must not face the side of the box.
     for (const double off : {5e-17, 1e-15, -1e-15, 3e-11})
       CHECK(norm(look({1 + off, 0.2, 1}, {0, 0, -1}).normal - Vector3{0, 0, -1}) < 1e-9);
-    // Between opposite faces, neither of which opposes the body: one of them, the same always.
+    // Between opposite faces, neither of which opposes the body: always the same one of them.
     const Facing between = look({0, 0, 0}, {0, 0, 0});
     CHECK(norm(between.normal) == doctest::Approx(1.0));
     CHECK(between.gap == doctest::Approx(-1.0));

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the facets of a group measure.
+// Length or area of a group of facets.
 #pragma once
 
 #include "problem/vector3.hpp"
 
 namespace kacanov::testing {
 
-/// Length or area of the straight facets of a group.
+/// Returns the total length or area of a group of straight facets.
 inline double measure(const Mesh& mesh, const Group& group) {
   double sum = 0.0;
   for (const std::int32_t f : group.members) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Slip counted from the load step before, and load curves: hysteresis, Cattaneo and Mindlin with unloading.
+// Slip relative to the previous load step, and load curves: hysteresis, Cattaneo–Mindlin with unloading.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -13,7 +13,8 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// A slab sheared by its top over a floor whose film bears ψ; its sides bear the shear that goes with it.
+/// A slab whose top shears it over a floor with friction bound ψ; its sides carry the corresponding shear
+/// stress.
 Model sheared_slab(Friction::Reference reference) {
   Model model;
   model.materials.push_back({everything(), elastic_law(2.5, 0.25)});  // μ = 1
@@ -34,7 +35,7 @@ Model sheared_slab(Friction::Reference reference) {
 
 TEST_CASE("a film's friction runs through a loop where slip is counted from the step before") {
   const Mesh mesh = make_box({{1, 1, 0.5}, {3, 3, 2}, ElementType::hex8});
-  // γ = 0.02 d/0.01, stress γ to ±4e-3; there, back to 0, beyond, and there again.
+  // Stress 0.02 d/0.01, limited to ±4e-3: forwards, back to 0, beyond, and forwards again.
   const std::vector<double> moves{0.1, 0.5, 0.4, 0.0, -0.5, 0.5};
   std::vector<double> expected;
   double slid = 0.0;
@@ -56,11 +57,11 @@ TEST_CASE("a film's friction runs through a loop where slip is counted from the 
     options.checkpoint = [&](const Checkpoint& c) { all.push_back(c); };
     Solution solution = solve(part, model.solver, options);
     if (restart) {
-      // In the middle of the loop.
+      // Restart in the middle of the loop.
       RunOptions rest;
       if (part.node_map.rank == 0) rest.start = &all[all.size() / 2];
       solution = solve(part, model.solver, rest);
-      // A step that is cut after a restart counts slip as it did before.
+      // A load step that is cut after a restart still measures slip from the same origin.
       OuterLoop loop(part, model.solver, rest, 1.0);
       Result result;
       loop.restore(rest.start, result);
@@ -77,7 +78,7 @@ TEST_CASE("a film's friction runs through a loop where slip is counted from the 
       CHECK(solution.result.load_steps[i].friction_force[0] == doctest::Approx(expected[i]).epsilon(1e-6));
     }
   }
-  // From the start there is no loop.
+  // Slip relative to the start has no hysteresis.
   Model model = sheared_slab(Friction::Reference::start);
   model.steps = {{1.0, {{"boundary[0]", 0.0}, {"boundary[1]", 0.0}, {"boundary[4]", 0.5}}},
                  {2.0, {{"boundary[4]", 0.0}}}};

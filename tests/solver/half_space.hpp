@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bodies that stand for elastic half-spaces: blocks whose meshes are fine near the contact and grow outwards.
+// Bodies that approximate elastic half-spaces: blocks with meshes that are fine near the contact and coarsen
+// outwards.
 #pragma once
 
 #include <algorithm>
@@ -10,9 +11,9 @@
 
 namespace kacanov::testing {
 
-/// The body fills y > 0 (z > 0 in 3D) up to `extent`; lengths are in units of the contact's. Up to `fine` the
-/// cells measure 1/n; beyond, as many as n of them grow exponentially, and smoothly, so that meshes of
-/// different n are a family.
+/// The body fills y > 0 (z > 0 in 3D) up to `extent`; the unit of length is that of the contact. Up to `fine`
+/// the cells have size 1/n; beyond, n cells grow exponentially and smoothly, so that
+/// meshes of different n form a family.
 struct HalfSpace {
   int n = 8;
   double extent = 10.0;
@@ -23,18 +24,18 @@ struct HalfSpace {
   double coordinate(double index) const {
     const double beyond = (index - fine_cells()) / n;
     if (beyond <= 0.0) return index / n;
-    // The first cell beyond measures 1/n too.
+    // The first cell beyond `fine` has size 1/n too.
     const double growth = growth_rate();
     return fine + (extent - fine) * std::expm1(growth * beyond) / std::expm1(growth);
   }
-  /// β of β / (e^β − 1) = 1 / (extent − fine).
+  /// Returns β with β / (e^β − 1) = 1 / (extent − fine).
   double growth_rate() const {
     double beta = 1.0;
     for (int i = 0; i < 100; ++i) beta = std::log1p(beta * (extent - fine));
     return beta;
   }
 
-  /// Both halves x < 0 and x > 0; sides left, right, top; the surface is bottom.
+  /// Returns both halves x < 0 and x > 0; groups left, right, top; the surface is bottom.
   Mesh plane() const {
     Mesh mesh = make_box({{2.0 * cells(), 1.0 * cells(), 0.0}, {2 * cells(), cells(), 1}, ElementType::tri3});
     map_nodes(mesh, [&](const Vector3& x) {
@@ -44,7 +45,7 @@ struct HalfSpace {
     return mesh;
   }
 
-  /// The quarter x, y > 0; symmetry at left and front; the surface is bottom.
+  /// Returns the quarter x, y > 0 with symmetry planes left and front; the surface is bottom.
   Mesh quarter(ElementType type = ElementType::hex8) const {
     const double m = cells();
     Mesh mesh = make_box({{m, m, m}, {cells(), cells(), cells()}, type});
@@ -55,7 +56,7 @@ struct HalfSpace {
     return mesh;
   }
 
-  /// The half y > 0; symmetry at front; the surface is bottom.
+  /// Returns the half y > 0 with symmetry plane front; the surface is bottom.
   Mesh half() const {
     const double m = cells();
     Mesh mesh = make_box({{2 * m, m, m}, {2 * cells(), cells(), cells()}, ElementType::hex8});
@@ -66,7 +67,7 @@ struct HalfSpace {
     return mesh;
   }
 
-  /// Nodes in the middle of edges go back there.
+  /// Moves mid-edge nodes back to the middle of their straight edge.
   static void straighten(Mesh& mesh) {
     const Cell& type = cell(mesh.type);
     const auto npe = static_cast<std::size_t>(type.nodes);
@@ -81,7 +82,7 @@ struct HalfSpace {
   }
 };
 
-/// Boussinesq: displacement of the half-space z > 0 under a force F in z at its origin.
+/// Boussinesq: returns the displacement of the half-space z > 0 under a force F along z at its origin.
 inline Vector3 boussinesq(const Law& law, double force, const Vector3& x) {
   const double nu = (3 * law.bulk - 2 * law.shear) / (6 * law.bulk + 2 * law.shear);
   const double r = std::hypot(x[0], x[1]), rho = std::hypot(r, x[2]), factor = force / (4 * M_PI * law.shear);
@@ -89,7 +90,8 @@ inline Vector3 boussinesq(const Law& law, double force, const Vector3& x) {
   return {along * x[0], along * x[1], factor * (x[2] * x[2] / std::pow(rho, 3) + 2 * (1 - nu) / rho)};
 }
 
-/// Far from where it is pressed a body feels a point force: far sides move as under that.
+/// Prescribes the displacement under a point force on the far sides, which is what a pressed body feels
+/// there.
 inline void prescribe_far_field(const HalfSpace& space, const Law& law, double force, Problem& problem) {
   for (std::size_t i = 0; i < problem.mesh.node_count(); ++i) {
     const double* x = &problem.mesh.coordinates[3 * i];
@@ -100,13 +102,14 @@ inline void prescribe_far_field(const HalfSpace& space, const Law& law, double f
   }
 }
 
-/// E / (1 − ν²).
+/// Returns E / (1 − ν²).
 inline double plane_modulus(const Law& law) {
   const double nu = (3 * law.bulk - 2 * law.shear) / (6 * law.bulk + 2 * law.shear);
   return 2 * law.shear * (1 + nu) / (1 - nu * nu);
 }
 
-/// A ball that sits in the surface of a quarter by `depth` at rest, without friction; far sides are held.
+/// A ball that penetrates the surface of a quarter by `depth` initially, without friction; far sides are
+/// fixed.
 inline Model pressed_ball(const Law& law, double radius, double depth) {
   Model model;
   model.materials.push_back({everything(), law});
@@ -121,8 +124,8 @@ inline Model pressed_ball(const Law& law, double radius, double depth) {
   return model;
 }
 
-/// Builds the problem, lets `change` rewrite what a case file cannot say (values that vary from node to
-/// node), solves.
+/// Builds the problem, lets `change` modify what a case file cannot express (values that vary from node to
+/// node), and solves it.
 inline Run run_changed(Mesh mesh, const Model& model, const std::function<void(Problem&)>& change) {
   Run run;
   run.problem = build_problem(std::move(mesh), model);

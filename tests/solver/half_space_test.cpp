@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Contact problems of the half-space with an answer in closed form: Hertz, Cattaneo and Mindlin, the flat
-// punch.
+// Contact problems of the half-space with closed-form solutions: Hertz, Cattaneo–Mindlin, flat punch.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -14,10 +13,10 @@ namespace {
 
 double order(double coarse, double fine) { return std::log2(std::abs(coarse / fine)); }
 
-/// What a mesh says.
+/// Results of one mesh.
 struct Hertz {
-  double force;         ///< over the exact one; of the cylinder the exact half-width under the force found
-  double radius, peak;  ///< over the exact ones
+  double force;         ///< relative to the exact one; cylinder: exact half-width under the computed force
+  double radius, peak;  ///< relative to the exact ones
   double profile;       ///< relative error of the pressure in L²
 };
 
@@ -45,7 +44,7 @@ Hertz ball(int n) {
           run.solution.pressure[0] / peak, std::sqrt(error / size)};
 }
 
-/// Half-plane whose outer sides move by `shift`; contact on |x| ≤ width.
+/// Half-plane whose outer sides are displaced by `shift`; contact on |x| ≤ width.
 Model half_plane(const Law& law, const Vector3& shift, double width, const Obstacle& obstacle,
                  std::optional<Friction> friction = std::nullopt) {
   Model model;
@@ -55,7 +54,7 @@ Model half_plane(const Law& law, const Vector3& shift, double width, const Obsta
   return model;
 }
 
-/// ‖pressure − exact‖ / ‖exact‖ in L², over |x| < width.
+/// Returns ‖pressure − exact‖ / ‖exact‖ in L² over |x| < width.
 double profile_error(const Run& run, double width, const std::function<double(std::size_t)>& found,
                      const std::function<double(double)>& exact) {
   double error = 0.0, size = 0.0;
@@ -68,11 +67,11 @@ double profile_error(const Run& run, double width, const std::function<double(st
   return std::sqrt(error / size);
 }
 
-/// Hertz's half-width and pressure under the force that is found, for a cylinder of radius 50.
+/// Hertz's half-width and pressure under the computed force, for a cylinder of radius 50.
 Hertz cylinder(int n) {
   const Law law = elastic_law(1.0, 0.3);
   const double radius = 50.0, modulus = plane_modulus(law);
-  // The half-plane sinks by any amount, for its extent decides; this one makes a contact of about a = 1.
+  // The approach of a half-plane depends on its extent; this value gives a contact half-width of about a = 1.
   Sphere round;
   round.radius = radius;
   round.centre = {0.0, -radius, 0.0};
@@ -95,8 +94,8 @@ Hertz cylinder(int n) {
   return {a, width / (2 * a), found_peak / peak, error};
 }
 
-/// Rigid flat punch of half-width 1: the force that is found, and the pressure in the middle and over |x| <
-/// 0.8 against P / (π √(1 − x²)).
+/// Rigid flat punch of half-width 1: the pressure under the computed force P, in the middle and over |x| <
+/// 0.8, relative to P / (π √(1 − x²)).
 struct Punch {
   double middle, profile;
 };
@@ -114,13 +113,12 @@ Punch punch(int n) {
   return {middle / exact(0.0), profile_error(run, 0.8, found, exact)};
 }
 
-/// Cattaneo and Mindlin: the tangential half of the problem. Where a normal pressure μp over |x| < 1 bounds
-/// the friction, p = p₀ √(1 − x²), a tangential force Q leaves |x| < c = √(1 − Q/(μP)) sticking, with the
-/// tractions μp₀ (√(1 − x²) − c √(1 − x²/c²)) there. The bounds are prescribed node by node, so that history
-/// and the coupling of normal and tangential directions (ν < ½) do not enter.
+/// Cattaneo–Mindlin, tangential part only: with the friction bound μp₀ √(1 − x²) on |x| < 1, given per node,
+/// a force Q leaves |x| < c = √(1 − Q/(μP)) sticking, with tractions μp₀ (√(1 − x²) − c √(1 − x²/c²)) there.
+/// This excludes load history and the coupling of normal and tangential directions (ν < ½).
 struct Mindlin {
   double ratio;            ///< Q / μP
-  double radius, profile;  ///< c found / c, error of the tractions
+  double radius, profile;  ///< computed c / c, error of the tractions
 };
 Mindlin tangential(int n, double shift) {
   const Law law = elastic_law(1.0, 0.3);
@@ -151,10 +149,9 @@ Mindlin tangential(int n, double shift) {
   return {ratio, stick / (2 * c), error};
 }
 
-/// The whole of it with Coulomb's law: a cylinder pressed and dragged at once. ν → ½ decouples the
-/// directions; then the slip of the final state points where Mindlin's increments do, and history makes no
-/// difference. With ν = 0.45 and μ = 1 what is left of the coupling moves the edge of the sticking zone by 2
-/// % (with ν = 0.3 by 12 %).
+/// The whole problem with Coulomb's law: a cylinder pressed and dragged at once. As ν → ½ the directions
+/// decouple, and the final slip agrees with Mindlin's increments, so that history does not matter. With ν =
+/// 0.45 and μ = 1 the remaining coupling moves the edge of the stick zone by 2 % (with ν = 0.3 by 12 %).
 struct Dragged {
   double ratio;            ///< Q / μP
   double stick, expected;  ///< half-widths

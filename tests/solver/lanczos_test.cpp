@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lanczos on matrices with known eigenvalues, their rows spread over the ranks in any way.
+// Lanczos on matrices with known eigenvalues, their rows distributed arbitrarily over the ranks.
 #include "spectrum/lanczos.hpp"
 
 #include <doctest/doctest.h>
@@ -14,7 +14,8 @@ using testing::with_eigenvalues;
 
 namespace {
 
-/// Rows first_own … of the matrix are this rank's; ranks named in `idle` have none.
+/// Returns the largest eigenvalues of k, its rows distributed over the ranks; with `first_rank_idle` rank 0
+/// has none.
 LanczosResult largest(const Eigen::MatrixXd& k, const LanczosOptions& options, bool first_rank_idle) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
@@ -33,7 +34,8 @@ LanczosResult largest(const Eigen::MatrixXd& k, const LanczosOptions& options, b
   return largest_eigenvalues(product, index, MPI_COMM_WORLD, options);
 }
 
-/// The largest eigenvalues within their tolerance and, up to rounding, within their own bounds.
+/// Checks that the largest eigenvalues are within the tolerance and, up to rounding, within their error
+/// bounds.
 void check_largest(const Eigen::VectorXd& values, int wanted, double tolerance) {
   const Eigen::MatrixXd k = with_eigenvalues(values);
   Eigen::VectorXd sorted = values;
@@ -48,7 +50,7 @@ void check_largest(const Eigen::VectorXd& values, int wanted, double tolerance) 
     for (int i = 0; i < expected; ++i) {
       const std::size_t at = i;
       CHECK(found.values[at] == doctest::Approx(sorted(i)).epsilon(tolerance + 1e-12));
-      // Every Ritz value lies within its bound of some eigenvalue.
+      // Every Ritz value lies within its bound of an eigenvalue.
       const double nearest = (values.array() - found.values[at]).abs().minCoeff();
       CHECK(nearest <= found.bounds[at] + 1e-12 * sorted(0));
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Load steps: the way to the full load does not change where it ends, and every step is the solution of its
-// own problem.
+// Load steps: the solution does not depend on the path to the full load, and every step solves its own
+// problem.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// A block pressed by a prescribed displacement, a load and a ball that sits in it by 0.03 at rest.
+/// A block pressed by a prescribed displacement, a load, and a ball that penetrates it by 0.03 initially.
 Model pressed_block(int dim, const Law& law) {
   const std::size_t up = dim - 1;
   Vector3 load{}, under{};
@@ -59,7 +59,7 @@ TEST_CASE("the answer does not depend on the load steps") {
       CAPTURE(dim);
       CAPTURE(law.form.index());
       Model model = pressed_block(dim, law);
-      // Nothing prescribed on the left of the top where it is held already.
+      // No prescribed displacement on the left of the top, which is fixed already.
       model.boundary[1].on = box({0.5, 0.0, 0.0}, {2.0, 1.0, 0.5});
       if (dim == 2) std::get<Sphere>(model.contact[0].obstacle).centre[2] = 0.0;
       model.boundary[1].on.lower[dim - 1] = dim == 2 ? 1.0 : 0.5;
@@ -142,14 +142,15 @@ TEST_CASE("a run goes on in the middle of its load steps") {
 
 namespace {
 
-/// A cube on the floor pulled along x, its stress uniform: `share` of what a law bears without hardening.
+/// A cube on the floor pulled along x with uniform stress: `share` times the limit load of the law without
+/// hardening.
 Model pulled(const Law& law, double share) {
   Model model;
   model.materials.push_back({everything(), law});
   model.boundary.push_back(roller(named("left"), 0));
   model.boundary.push_back(roller(named("front"), 1));
   model.contact.push_back(on_plane(named("bottom"), {}, {0, 0, 1}));
-  // ‖dev τ‖ = √(2/3) σ at uniaxial stress, 2 μ x₀ at yield.
+  // Uniaxial stress has ‖dev τ‖ = √(2/3) σ, which at yield is 2 μ x₀.
   const double yield = std::sqrt(1.5) * 2.0 * law.shear * 0.002;
   const auto* saturating = std::get_if<laws::Saturating>(&law.form);
   const double limit = yield * (saturating ? 1.0 + saturating->q : 1.0);
@@ -173,7 +174,7 @@ TEST_CASE("beyond a limit load the run ends with the factor that it has reached,
   CHECK(beyond.result().load_cuts > 0);
   CHECK(beyond.result().load_cuts <= 7);
   CHECK(beyond.result().outer_iterations <= 150);
-  // Within a part of a load step of the limit, and with the state that belongs to it.
+  // Within a fraction of a load step of the limit, and with the corresponding state.
   CHECK(beyond.result().load_reached < 1.001 / 1.05);
   CHECK(beyond.result().load_reached > 0.97 / 1.05);
   CHECK(mentions(beyond.result().message, "plastic collapse: the body carries the load factor 0.9"));
@@ -183,8 +184,8 @@ TEST_CASE("beyond a limit load the run ends with the factor that it has reached,
 TEST_CASE("strains of orders of magnitude beyond the yield strain take few steps") {
   Law flat = elastic_law(1.0, 0.3);
   flat.form = laws::Power{0.002, 0.1};
-  // 3¹⁰ times the yield strain; Kačanov's steps alone would take hundreds. The contact bears 3e-5 of the
-  // load, and its force is right as well.
+  // 3¹⁰ times the yield strain; Kačanov steps alone would take hundreds. The contact force is only 3e-5 of
+  // the load and is accurate as well.
   const Run run = run_alone(make_box({{1, 1, 1}, {2, 2, 2}, ElementType::hex8}), pulled(flat, 3.0));
   CHECK(run.result().status == Status::converged);
   CHECK(run.result().load_cuts == 0);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bodies that contact alone holds: whether their loads can be in balance, where they start, what is said.
+// Bodies that only contact supports: whether their loads can be balanced, their initial position, the
+// messages.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -14,7 +15,7 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// A block of size 2 × 1 × 0.5 on the plane z = 0, under its weight and so much friction.
+/// A block of size 2 × 1 × 0.5 on the plane z = 0, under its weight and with this friction.
 Model block_under(const Vector3& weight, double coulomb, double tresca = 0.0) {
   Model model = elastic_model();
   model.boundary.push_back(body_force(everything(), weight));
@@ -22,13 +23,13 @@ Model block_under(const Vector3& weight, double coulomb, double tresca = 0.0) {
   return model;
 }
 
-/// The weight of a block on an incline of this slope, seen by the block.
+/// Returns the weight of a block on an incline of this slope, in the block's frame.
 Vector3 on_incline(double slope, double turn) {
   const double angle = std::atan(slope), along = 1e-3 * std::sin(angle);
   return {along * std::cos(turn), along * std::sin(turn), -1e-3 * std::cos(angle)};
 }
 
-/// A cube of side one, guided at two sides, this far above a plane, with a pressure on its top.
+/// A unit cube, guided at two sides, at height `gap` above a plane, with a pressure on its top.
 Model guided_cube(double gap, double push) {
   Model model = elastic_model();
   model.boundary.push_back(roller(named("left"), 0));
@@ -60,7 +61,7 @@ TEST_CASE("a block on an incline slides as soon as the slope is beyond its frict
 
 TEST_CASE("Tresca's friction on its own area balances what it can") {
   const Mesh mesh = box_mesh(ElementType::tet4);
-  // Volume 1, area 2: the shear is half the force.
+  // Volume 1, area 2: the friction stress needed is half the force.
   const auto slides = [&](double force) {
     return build_problem(mesh, block_under({force, 0, -1e-3}, 0.0, 1e-4)).no_equilibrium;
   };
@@ -76,7 +77,7 @@ TEST_CASE("what tips over is lifted, and no friction helps") {
   model.contact.push_back(on_plane(named("bottom"), {}, {0, 0, 1}, 0.0, 0.9));
   const std::string message = build_problem(mesh, model).no_equilibrium;
   CHECK(mentions(message, "lifts the body off what alone holds it (rotation about y through (1"));
-  // Half as much, and it stands.
+  // With half of the load it does not slide.
   model.boundary[0].traction = Vector3{0.1e-3, 0, -1e-3};
   CHECK(build_problem(mesh, model).no_equilibrium == "");
 }
@@ -146,7 +147,7 @@ TEST_CASE("a body that nothing loads and nothing touches is at rest, and that is
 }
 
 TEST_CASE("rigid balance: reactions in a cone") {
-  // Motions x and z; one point with μ 0.5.
+  // Motions along x and z; one contact point with μ = 0.5.
   RigidContact point;
   point.normal = Eigen::Vector2d(0, -1);
   point.tangent = {Eigen::Vector2d(1, 0)};
@@ -155,13 +156,13 @@ TEST_CASE("rigid balance: reactions in a cone") {
   CHECK(balance({point}, Eigen::Vector2d(0.499999, -1)).exists);
   const RigidBalance slides = balance({point}, Eigen::Vector2d(0.6, -1));
   CHECK_FALSE(slides.exists);
-  // The load drives the motion, and it leaves the cone: −z no faster than half of x.
+  // The load does work on the motion, which leaves the cone: −z at most half of x.
   CHECK(slides.motion.dot(Eigen::Vector2d(0.6, -1)) > 0.0);
   CHECK(slides.motion(1) == doctest::Approx(0.5 * slides.motion(0)));
   CHECK(friction_needed({point}, Eigen::Vector2d(0.6, -1)) == doctest::Approx(1.2));
   CHECK_FALSE(std::isfinite(friction_needed({point}, Eigen::Vector2d(0, 1))));
   CHECK(balance({point}, Eigen::Vector2d(0, 0)).exists);
-  // On springs of 4 it sinks by load / stiffness below its gap.
+  // On springs of stiffness 4 it sinks by load / stiffness beyond its gap.
   point.gap = 0.7;
   const Eigen::VectorXd rest = rest_on_springs({point}, Eigen::Vector2d(0.1, -1), 4.0);
   CHECK(rest(1) == doctest::Approx(-0.7 - 0.25));

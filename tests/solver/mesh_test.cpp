@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Boundary, checks and generated boxes: closed surfaces, volumes by the divergence theorem, errors that name
-// elements.
+// the elements.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ Vector3 at(const Mesh& mesh, std::int32_t node) {
   return x;
 }
 
-/// Area times outward normal of a flat facet, from its corners.
+/// Returns area times outward normal of a flat facet, from its corners.
 Vector3 area_vector(const Mesh& mesh, std::size_t facet) {
   const auto n = mesh.facet(facet);
   if (mesh.dim() == 2) {
@@ -56,7 +56,7 @@ Vector3 area_vector(const Mesh& mesh, std::size_t facet) {
 
 double length_of(const Vector3& v) { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
 
-/// What check_mesh says, empty if nothing.
+/// Returns the message of check_mesh, empty if it accepts the mesh.
 std::string complaint(const Mesh& mesh) {
   try {
     check_mesh(mesh);
@@ -66,7 +66,7 @@ std::string complaint(const Mesh& mesh) {
   return "";
 }
 
-/// A mesh from its parts, with numbers that differ from the indices.
+/// A mesh from its parts, with node numbers that differ from the indices.
 Mesh mesh_of(ElementType type, std::vector<double> coordinates, std::vector<std::int32_t> elements) {
   Mesh mesh;
   mesh.type = type;
@@ -80,7 +80,7 @@ Mesh mesh_of(ElementType type, std::vector<double> coordinates, std::vector<std:
   return mesh;
 }
 
-/// Five points: two tetrahedra 0123 and 0214 on both sides of the triangle 012.
+/// Five points: tetrahedra 0123 and 0214 on the two sides of the triangle 012.
 const std::vector<double> two_tetrahedra{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, -1};
 
 bool contains(const std::string& text, const std::string& part) {
@@ -244,15 +244,15 @@ TEST_CASE("an inverted, degenerate or folded element is named by its number") {
   flat[14] = -1e-15;
   CHECK(contains(complaint(mesh_of(ElementType::tet4, flat, {0, 1, 2, 3, 0, 2, 1, 4})),
                  "element 71 is degenerate"));
-  flat[14] = -1e-10;  // thin, but far from rounding
+  flat[14] = -1e-10;  // thin, but far above rounding errors
   CHECK(complaint(mesh_of(ElementType::tet4, flat, {0, 1, 2, 3, 0, 2, 1, 4})).empty());
 
   Mesh folded = make_box({{1, 1, 1}, {1, 1, 1}, ElementType::hex8});
   for (std::size_t k = 0; k < 3; ++k)
-    folded.coordinates[3 * 7 + k] = 0.02;  // the highest corner pushed to the lowest
+    folded.coordinates[3 * 7 + k] = 0.02;  // pushes the highest corner to the lowest
   CHECK(contains(complaint(folded), "element 1 is folded"));
 
-  // Mid-side nodes in the order of another program: det J is positive at all four quadrature points.
+  // Mid-side nodes in another program's order: det J is positive at all four quadrature points.
   const Mesh swapped = mesh_of(ElementType::tet10, {0, 0,  0, 1, 0, 0,  0,  1,  0, 0, 0,  1,  .5, 0, 0,
                                                     0, .5, 0, 0, 0, .5, .5, .5, 0, 0, .5, .5, .5, 0, .5},
                                {0, 1, 2, 3, 4, 5, 6, 7, 9, 8});
@@ -261,7 +261,7 @@ TEST_CASE("an inverted, degenerate or folded element is named by its number") {
       order, "element 70 is folded: its Jacobian is not positive everywhere, its determinant falls to -"));
   CHECK(contains(order, " next to node 10"));
   CHECK(contains(order, "are its midside nodes in the right order"));
-  // A quadrilateral with a corner that points inwards.
+  // A quadrilateral with a re-entrant corner.
   CHECK(contains(complaint(mesh_of(ElementType::quad4, {0, 0, 1, 0, 0.45, 0.45, 0, 1}, {0, 1, 2, 3})),
                  "next to node 102 "));
 }
@@ -289,7 +289,7 @@ TEST_CASE("elements that overlap or do not fit are named") {
   CHECK(contains(twice, "elements 70"));
   CHECK(contains(twice, "overlaps itself"));
   auto above = two_tetrahedra;
-  above[14] = 2;  // the fifth point on the same side as the fourth
+  above[14] = 2;  // moves the fifth point to the side of the fourth
   const std::string same = complaint(mesh_of(ElementType::tet4, above, {0, 1, 2, 3, 0, 1, 2, 4}));
   CHECK(contains(same, "elements 70 and 71 lie on the same side"));
 
@@ -319,5 +319,5 @@ TEST_CASE("impossible boxes are refused before anything is allocated") {
   CHECK(refused({{1, 1, 1}, {1, 1, 0}, ElementType::tet4}, "cells[2]"));
   CHECK(refused({{1, 1, 1}, {2000, 2000, 2000}, ElementType::tet4}, "32-bit"));
   CHECK(refused({{1, 1, 1}, {2147483647, 2147483647, 2147483647}, ElementType::tet10}, "32-bit"));
-  CHECK(make_box({{1, 1, 0}, {1, 1, 0}, ElementType::tri3}).element_count() == 2);  // 2D has no third entry
+  CHECK(make_box({{1, 1, 0}, {1, 1, 0}, ElementType::tri3}).element_count() == 2);  // third entry ignored
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Obstacles that move, are faced anew, are pushed: against obstacles that stay, and closed solutions.
+// Obstacles that move, are relinearised or are pushed, against fixed obstacles and closed-form solutions.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ Run run_still(const Mesh& mesh, const Model& model) {
 
 Mesh slab() { return make_box({{2, 1, 0.5}, {10, 5, 3}, ElementType::hex8}); }
 
-/// A slab held at its top, over an obstacle.
+/// A slab fixed at its top, over an obstacle.
 Model over(const Obstacle& obstacle) {
   Model model;
   model.materials.push_back({everything(), elastic_law(200.0, 0.3)});
@@ -91,7 +91,7 @@ TEST_CASE("a plane that turns about an axis carries its points along; a path goe
   const Run turned = run_moving(slab(), model);
   REQUIRE(turned.result().status == Status::converged);
   CHECK(turned.result().load_steps.front().contact_force[2] > 0);
-  // Heights of the turned plane's points: (x − 1) sin.
+  // Heights of points on the rotated plane: (x − 1) sin.
   for (std::size_t i = 0; i < turned.part.contact.size(); ++i) {
     const double x = node_of(turned, i)[0];
     CHECK(turned.part.contact[i].gap == doctest::Approx(-(x - 1) * std::sin(angle)).epsilon(1e-12));
@@ -106,7 +106,8 @@ TEST_CASE("faced anew, a ball rolls along under a slab as if it had been put the
   const Run rolled = run_moving(slab(), model);
   const Run there = run_still(slab(), over(Sphere{{1.5, 0.5, -1.99}, 2.0, {}}));
   REQUIRE(rolled.result().status == Status::converged);
-  // What differs is where each node faces the ball from: by its displacement, one in a hundred.
+  // Runs differ in the position from which each node is projected onto the ball: the displacement, one per
+  // cent.
   const Vector3 a = rolled.result().contact_force, b = there.result().contact_force;
   CHECK(distance(a, b) < 0.03 * length(b));
   const Vector3 middle = rolled.result().load_steps.front().contact_force;
@@ -114,7 +115,8 @@ TEST_CASE("faced anew, a ball rolls along under a slab as if it had been put the
 }
 
 TEST_CASE("faced anew where it has come to, a node sits on the true obstacle") {
-  // A large indentation: frozen, a node is kept off a tangent plane; faced anew, off the ball itself.
+  // A large indentation: without relinearisation a node is kept off a tangent plane, with it off the ball
+  // itself.
   std::vector<double> distances;
   for (const bool anew : {false, true}) {
     Model model = over(Sphere{{1, 0.5, -0.75}, 0.75, {}});
@@ -142,12 +144,12 @@ TEST_CASE("an obstacle that drags along by friction: slip counts from where it h
   const double drag = 0.004;
   for (const bool by_step : {false, true}) {
     Model model = over(Plane{{0, 0, 0.002}, {0, 0, 1}});
-    model.contact[0].friction = Friction{0.0, 10.0};  // all stick
+    model.contact[0].friction = Friction{0.0, 10.0};  // all points stick
     if (by_step) model.contact[0].friction->reference = Friction::Reference::step;
     Model pulled = model;
     model.contact[0].motion = Motion{{}, {{1.0, {drag, 0, 0}, {}}}};
     model.solver.load_steps = by_step ? std::vector{0.25, 1.0} : std::vector{1.0};
-    // The same seen from the obstacle: it stays, and the top goes the other way.
+    // The same in the obstacle's frame: it is fixed, and the top moves the other way.
     pulled.boundary[0] = moved(named("top"), 3, {-drag, 0, 0});
     pulled.contact[0].friction->reference = Friction::Reference::start;
     agree(run_moving(slab(), model), run_still(slab(), pulled), 1e-4);
@@ -178,7 +180,7 @@ TEST_CASE("a load step that is cut beside an obstacle that moves ends at a time 
   Model model;
   model.materials.push_back({everything(), elastic_law(1.0, 0.3)});
   model.materials[0].law.form = laws::Saturating{0.002, 2.0};
-  // ‖dev τ‖ = √(2/3) σ at uniaxial stress, 2 μ x₀ at yield; it bears three times that.
+  // Uniaxial stress has ‖dev τ‖ = √(2/3) σ, which at yield is 2 μ x₀; the limit is three times that.
   const double limit = 3.0 * std::sqrt(1.5) * 2.0 * model.materials[0].law.shear * 0.002;
   model.boundary.push_back(roller(named("left"), 0));
   model.boundary.push_back(roller(named("front"), 1));
@@ -198,14 +200,14 @@ TEST_CASE("a load step that is cut beside an obstacle that moves ends at a time 
   CHECK(run.result().load_factor == run.result().load_reached);
   CHECK(run.result().load[0].total.force[0] ==
         doctest::Approx(limit * (0.1 + 1.3 * (run.result().load_factor - 1.0))).epsilon(1e-9));
-  // Without hardening it bears the limit, at 1 + 0.9/1.3.
+  // Without hardening, the limit load is reached at 1 + 0.9/1.3.
   CHECK(run.result().load_reached < 1.001 + 0.9 / 1.3);
   CHECK(run.result().load_reached > 0.97 + 0.9 / 1.3);
   CHECK(run.result().message.find("obstacles with a motion are where they are at 2") != std::string::npos);
 }
 
 TEST_CASE("a tool with friction that has not come yet leaves the body at rest") {
-  Model model = over(Sphere{{1.1, 0.4, -3.0}, 2.0, {}});  // ν slants: the way has a part along the surface
+  Model model = over(Sphere{{1.1, 0.4, -3.0}, 2.0, {}});  // an oblique normal: the path has a tangential part
   model.contact[0].motion = lift(1.01);
   model.contact[0].friction = Friction{0.0, 0.3};
   model.solver.load_steps = {0.5, 0.9, 1.0};
@@ -230,7 +232,7 @@ TEST_CASE("a ball that is pushed goes as deep as Hertz says of its force, and be
   REQUIRE(pushed.result().status == Status::converged);
   CHECK(pushed.result().contact_force[2] == doctest::Approx(force / 4).epsilon(1.1e-5));
   const double travel = pushed.result().contact[0].travel;
-  // The far sides are held and no half-space, which makes it stiffer by what the point force does there.
+  // Fixed far sides make the body stiffer than a half-space, by the point force's displacement there.
   CHECK(travel == doctest::Approx(depth).epsilon(0.12));
   CHECK(travel < depth);
   agree(pushed, run_still(space.quarter(), pressed_ball(law, radius, travel)), 1e-5);
@@ -261,9 +263,9 @@ TEST_CASE("the search for a travel: few solves for smooth forces, and an honest 
     CHECK(found.travel == doctest::Approx(1.0 + std::pow(2.0, 1 / power)).epsilon(1e-8));
     CHECK(found.solves < 16);
   }
-  pushed.travel = 9.0;  // from beyond
+  pushed.travel = 9.0;  // start from beyond the solution
   CHECK(find_travel(pushed, [](double d) { return std::max(d - 1.0, 0.0); }).reached);
-  // A body that bears no more, and a solve that fails.
+  // A body that reaches its limit load, and a solve that fails.
   CHECK_FALSE(find_travel(pushed, [](double d) { return std::min(std::max(d - 1.0, 0.0), 1.5); }).reached);
   CHECK_FALSE(find_travel(pushed, [](double) { return std::nullopt; }).reached);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Aggregates, Galerkin levels over the ranks, and what the whole cycle is for: few iterations on any mesh.
+// Aggregates, distributed Galerkin levels, and the purpose of the cycle: few iterations on any mesh.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -22,7 +22,8 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// Of CG to 1e-8 with every seventh element `stretch` times as stiff in shear as the others.
+/// Returns the CG iterations to 1e-8 with every seventh element `stretch` times as stiff in shear as the
+/// others.
 int iterations(const Part& part, double stretch, const char* preconditioner = "multigrid") {
   const Space space(part);
   Operator op(part.body());
@@ -65,8 +66,8 @@ Part long_beam(int cells, double length, ElementType type) {
 
 namespace {
 
-/// Whether xᵀ A y on the aggregates is (Z x)ᵀ (B + blocks) (Z y) on the nodes for random motions x, y, Z into
-/// the space.
+/// Checks that xᵀ A y on the aggregates equals (Z x)ᵀ (B + blocks) (Z y) on the nodes for random x and y,
+/// where Z prolongs rigid-body motions into the constrained space.
 template <int M>
 void check_galerkin(const Part& part, std::span<const double> g, std::span<const NodeBlock> blocks,
                     const Space& space, const AggregateMotions<M>& motions, RigidLevel<M>& level) {
@@ -106,7 +107,7 @@ void check_galerkin(const Part& part, std::span<const double> g, std::span<const
 }  // namespace
 
 TEST_CASE("the first coarse matrix is Galerkin's, summed once or again") {
-  std::string set;  // the best there is
+  std::string set;  // the best available set
   SUBCASE("by the best loop") {}
   SUBCASE("by the plain loop") { set = "plain"; }
   for (const ElementType type : element_types()) {
@@ -120,7 +121,7 @@ TEST_CASE("the first coarse matrix is Galerkin's, summed once or again") {
       const Space free(part);
       motions.sum(g, {{}, free.held()}, level);
       check_galerkin<M>(part, g, {}, free, motions, level);
-      // Other moduli, a direction held at some nodes, and blocks.
+      // Other moduli, a constrained direction at some nodes, and penalty blocks.
       for (std::size_t e = 0; e < g.size(); ++e) g[e] = 0.2 + static_cast<double>(e % 5);
       std::vector<NodeBlock> blocks;
       Space space(part);
@@ -133,7 +134,7 @@ TEST_CASE("the first coarse matrix is Galerkin's, summed once or again") {
       }
       motions.sum(g, {blocks, space.held()}, level);
       check_galerkin<M>(part, g, blocks, space, motions, level);
-      // Some of these let go, others held: the same matrix as summed anew.
+      // Release some constraints and add others: the update gives the same matrix as a new sum.
       Space later(part);
       for (std::size_t n = 0; n < part.nodes(); ++n) {
         if (part.node_index[n] % 14 == 0) later.hold(static_cast<std::int32_t>(n), Vector3{0.6, 0.8, 0.0});
@@ -160,7 +161,7 @@ TEST_CASE("the first coarse matrix is Galerkin's, summed once or again") {
 }
 
 TEST_CASE("aggregates follow the strong couplings and leave nobody out") {
-  // Cells ten times longer than wide: aggregates lie across.
+  // Cells ten times longer than wide: aggregates lie in the cross-sections.
   const Mesh mesh = make_box({{30, 1, 1}, {30, 10, 10}, ElementType::tet4});
   const std::vector<Law> laws{Law{}};
   const std::vector<std::uint16_t> law(mesh.element_count(), 0);
@@ -188,7 +189,7 @@ TEST_CASE("aggregates follow the strong couplings and leave nobody out") {
 }
 
 TEST_CASE("rows without neighbours do not make the groups of the others grow") {
-  // A chain, and a third as many rows at the edge of a part, whose neighbours are all of other ranks.
+  // A chain, and a third as many isolated rows, such as rows whose neighbours all belong to other ranks.
   constexpr std::int32_t joined = 3000, lone = 1000;
   WeightedGraph graph;
   graph.start.push_back(0);
@@ -287,7 +288,7 @@ TEST_CASE("a factor takes what flow leaves of shear beside the bulk modulus") {
 }
 
 TEST_CASE("the smoother damps eigenvectors by Chebyshev's polynomial") {
-  // A diagonal A and D = 2: from x with b = 0, T_k((θ − a/2)/δ)/T_k(θ/δ) of every entry is left.
+  // Diagonal A and D = 2, b = 0: the error is reduced by T_k((θ − a/2)/δ)/T_k(θ/δ) in every entry.
   const std::vector<double> a{0.02, 0.3, 0.9, 1.4, 2.2};
   const std::vector<double> zero(a.size(), 0.0);
   for (const int degree : {1, 2, 3, 5}) {
@@ -313,7 +314,7 @@ TEST_CASE("the smoother damps eigenvectors by Chebyshev's polynomial") {
       return chebyshev((0.6 - entry / 2.0) / 0.5) / chebyshev(0.6 / 0.5);
     };
     for (std::size_t i = 0; i < a.size(); ++i) CHECK(x[i] == doctest::Approx(left(a[i])).epsilon(1e-12));
-    // From zero, whatever x and step hold: A⁻¹ b, less what is left of it.
+    // From zero, whatever x and step contain: A⁻¹ b minus the remaining error.
     std::vector<double> b(a.size(), 3.0);
     smoother.smooth<double>(true, {b, x, step, image}, multiply, relax);
     for (std::size_t i = 0; i < a.size(); ++i)

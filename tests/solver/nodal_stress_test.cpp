@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Recovered nodal stress: exact for the polynomials it fits, right at a notch, the same on any number of
-// ranks.
+// Recovered nodal stress: exact for the polynomials of the fit, accurate at a notch, independent of the
+// number of ranks.
 #include <kacanov/nodal_stress.hpp>
 
 #include <doctest/doctest.h>
@@ -26,7 +26,8 @@ Problem stress_block(ElementType type, const std::vector<MaterialEntry>& materia
 
 constexpr double half_width = 20.0;
 
-/// A quarter of a square plate with a hole of radius 1, 24 elements a turn, as wide at the hole as long.
+/// A quarter of a square plate with a hole of radius 1: 24 elements per turn, of aspect ratio one at the
+/// hole.
 Mesh plate_with_hole() {
   Mesh mesh = make_box({{1.0, 1.0, 0.3}, {11, 6, 1}, ElementType::tet10});
   map_nodes(mesh, [](const Vector3& x) {
@@ -107,7 +108,7 @@ TEST_CASE("laws of a batch share no node, on any rank, and are few batches") {
       for (std::size_t a = 0; a < 8; ++a)
         elements[part.elements[8 * e + a]] += batch[part.law_of_element[e]] == b ? 1 : 0;
     part.node_map.sum(elements, 1);
-    CHECK(*std::max_element(elements.begin(), elements.end()) <= 1);  // and an element has a law of its own
+    CHECK(*std::max_element(elements.begin(), elements.end()) <= 1);  // each element has its own law
   }
 }
 
@@ -125,15 +126,15 @@ TEST_CASE("a hole in a plate in tension: three times the stress, within 3 %") {
   const Solution solution = solve(part, model.solver, {});
   REQUIRE(solution.result.status == Status::converged);
   const NodalStress found = recover_stress(part, solution.displacement);
-  // Heywood: 2 + (1 − d/W)³ of the net stress, for d/W = 0.05.
+  // Heywood: 2 + (1 − d/W)³ times the net stress, for d/W = 0.05.
   const double net = 1.0 / 0.95, expected = (2.0 + std::pow(0.95, 3)) * net;
   CHECK(found.max_von_mises.value / 0.001 == doctest::Approx(expected).epsilon(0.03));
   CHECK(distance({0, 1, found.max_von_mises.at[2]}, found.max_von_mises.at) < 1e-9);
-  // Means of elements are far from it.
+  // Element means are far from it.
   CHECK(solution.result.max_von_mises / 0.001 < 2.8);
   MESSAGE("stress concentration ", found.max_von_mises.value / 0.001, ", of elements ",
           solution.result.max_von_mises / 0.001);
-  // The same bits in every copy, and what one rank finds.
+  // All copies are bitwise equal, and agree with a run on one rank.
   const Run alone = run_alone(mesh, model);
   CHECK(recover_stress(alone.part, alone.solution.displacement).max_von_mises.value ==
         doctest::Approx(found.max_von_mises.value).epsilon(1e-6));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers at nodes, which finer meshes take over.
+// Nodal fields given as numbers, and their interpolation to refined meshes.
 #include <doctest/doctest.h>
 
 #include <algorithm>

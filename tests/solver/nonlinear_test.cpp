@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the outer loop is made of, each alone with made-up numbers: no body, no solve.
+// The parts of the outer loop, each alone with made-up numbers: no body, no solve.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -20,7 +20,7 @@ namespace {
 const Tuning usual;
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-/// What a checkpoint would hold of it, and back.
+/// Copies an object through the numbers that a checkpoint stores.
 template <class T>
 T copied_by_visit(T from, T blank) {
   std::map<std::string, double> numbers;
@@ -75,7 +75,7 @@ TEST_CASE(
   CHECK(*shorter_step(0.5, 3.01, 2.0) == doctest::Approx(0.5 * 2.0 / 3.01));
   CHECK(*shorter_step(1.0, 1e9, 2.0) == doctest::Approx(0.1));
   CHECK(*shorter_step(1.0, not_a_number, 2.0) == doctest::Approx(0.1));
-  // A body of stiffness 1 near the start and 100 beyond: δ = 1 by the soft model.
+  // A body of stiffness 1 near the start and 100 beyond: the soft model predicts δ = 1.
   const auto work = [](double t) { return t < 0.01 ? t : 0.01 + 100.0 * (t - 0.01); };
   double t = 1.0;
   int trials = 0;
@@ -108,7 +108,7 @@ TEST_CASE("fallback: a stall, a failed solve and a breakdown retreat, each time 
     expected *= 2;
     CHECK(fallback.after_newton(worst, std::isinf(worst)));
   }
-  // Longest of all.
+  // The longest retreat.
   for (int i = 0; i < 20; ++i) fallback.after_newton(1.0, false);
   int steps = 0;
   for (; fallback.retreating(); ++steps) fallback.after_admm(1e3);
@@ -186,20 +186,20 @@ TEST_CASE(
     control.balance(samples, scales);
     return control.value();
   };
-  // Held rows of N are behind, free ones of T.
+  // Closed rows of N lag in the primal residual, open rows of T in the dual one.
   const BalanceSample sample{{4e-3, 1e-3}, {1e-3, 4e-3}};
   const Penalty many = after(std::vector<BalanceSample>(6, sample));
   CHECK(many.normal > 3.0);
   CHECK(many.tangential < 3.0);
   CHECK(many.normal == doctest::Approx(3.0 * 2.0));
-  // Fewer iterations say less.
+  // Fewer iterations carry less weight.
   const Penalty one = after({sample});
   CHECK(one.normal > 3.0);
   CHECK(one.normal < many.normal);
-  // Nothing on the free side.
+  // No residual on the other side.
   const Penalty most = after(std::vector<BalanceSample>(6, BalanceSample{{1.0, 1.0}, {0.0, 0.0}}));
   CHECK(most.normal == doctest::Approx(3.0 * std::exp(1.0)));
-  // Bounds, and nothing to be learnt.
+  // Bounds, and no samples.
   CHECK(after(std::vector<BalanceSample>(6, sample), 10.0).normal ==
         doctest::Approx(usual.largest_penalty / 10.0));
   CHECK(after({}).normal == 3.0);
@@ -219,7 +219,7 @@ TEST_CASE("accuracy: ADMM is solved below the residuals before it, but not far b
   const AdmmOptions later = admm_accuracy(options, residuals(1e-2), false, usual);
   CHECK(later.trace_tolerance / 3.0 == doctest::Approx(later.force_tolerance / 2.0));
   CHECK(later.max_iterations == usual.balancing_iterations);
-  // The opening: a guess for Newton steps, where they follow.
+  // The opening phase provides a start for Newton steps, if these follow.
   const AdmmOptions opening = admm_accuracy(options, residuals(1e-2), true, usual);
   CHECK(opening.max_iterations == usual.opening_iterations);
   CHECK(opening.sticking);
@@ -231,12 +231,12 @@ TEST_CASE("accuracy: ADMM is solved below the residuals before it, but not far b
   options.contact = SolverOptions::Contact::automatic;
   options.max_contact = 2;
   CHECK(admm_accuracy(options, residuals(1e-2), false, usual).max_iterations == 2);
-  // Nothing sets a scale yet: by the forces that appear.
+  // No scale yet: accuracy relative to the first forces.
   Residuals rest;
   const AdmmOptions at_rest = admm_accuracy(options, rest, true, usual);
   CHECK(at_rest.force_reduction == usual.inner_reduction);
   CHECK(std::isinf(at_rest.trace_tolerance));
-  // The paper's stop, and what is relaxed.
+  // The paper's stopping criterion and its relaxation.
   CHECK(at_rest.relaxation == 1.7);
   options.penalty = SolverOptions::Penalty::paper;
   CHECK(admm_accuracy(options, rest, true, usual).relaxation == 1.0);
@@ -284,8 +284,8 @@ TEST_CASE("accuracy: residuals fall further where the duality gap is behind them
 
 namespace {
 
-/// Two plane nodes: one on an obstacle that sits in the body by 0.3, pushed towards it by 0.1; one 0.5 away
-/// from another obstacle.
+/// Two nodes in 2D: one on an obstacle that penetrates the body by 0.3 and pushed towards it by 0.1, one at
+/// distance 0.5 from another obstacle.
 Part two_nodes() {
   Part part;
   part.type = ElementType::tri3;
@@ -297,7 +297,7 @@ Part two_nodes() {
   part.prescribed = {{1, -0.1}};
   ContactPoint in, away;
   in.normal = away.normal = {0.0, -1.0, 0.0};
-  in.gap = -0.3 - 0.1;  // as build_problem leaves it: what is prescribed taken off
+  in.gap = -0.3 - 0.1;  // as in build_problem, which subtracts the prescribed displacement
   in.mass = away.mass = 1.0;
   away.node = 1;
   away.entry = 1;
@@ -344,7 +344,7 @@ TEST_CASE("load path: a share of forces, displacements and indentation; open gap
     CHECK(f[1] == 1.0);
     CHECK(f[2] == doctest::Approx(1.0 - 6.0 * share));
     CHECK(u == std::vector<double>{1.0, -0.1 * share, 1.0, 1.0});
-    // At none of the load the first obstacle just touches.
+    // At zero load the first obstacle just touches.
     CHECK(path.gap()[0] == doctest::Approx(-0.4 * share));
     CHECK(path.gap()[1] == 0.5);
   }

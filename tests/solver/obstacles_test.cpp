@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Obstacles seen from random points: signed distances, their normals, rays, the tree of a surface.
+// Obstacles seen from random points: signed distances and their normals, rays, the bounding-volume tree of a
+// surface.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -21,7 +22,7 @@ Facing look(const Obstacle& obstacle, const Vector3& x) {
   return std::visit([&](const auto& kind) { return kind.project({x, {0, 0, 1}}); }, obstacle);
 }
 
-/// Of axes of any length, right-handed.
+/// Right-handed axes of arbitrary length.
 constexpr std::array<Vector3, 3> slanting_frame{Vector3{1, 0.2, 0.5}, Vector3{-0.2, 1, 0},
                                                 Vector3{-0.5, -0.1, 1.04}};
 
@@ -35,7 +36,7 @@ class PointDice {
   std::uniform_real_distribution<double> uniform_{0.0, 1.0};
 };
 
-/// A ball of triangles: an icosahedron refined `times`, corners on the unit sphere, outwards.
+/// A triangulated ball: an icosahedron refined `times`, corners on the unit sphere, oriented outwards.
 Surface faceted_ball(int times) {
   const double g = (1 + std::sqrt(5.0)) / 2;
   std::vector<Vector3> points;
@@ -110,10 +111,11 @@ TEST_CASE("an obstacle without direction is a signed distance: ν is its slope, 
       REQUIRE(here.kind == Facing::Kind::met);
       CHECK(norm(here.normal) == doctest::Approx(1.0).epsilon(1e-14));
       CHECK(std::abs(look(obstacle, x + here.gap * here.normal).gap) < 1e-13);
-      // No distance changes faster than the point moves.
+      // Distances are Lipschitz continuous with constant 1.
       const Vector3 step = 0.1 * dice.vector();
       CHECK(std::abs(look(obstacle, x + step).gap - here.gap) <= norm(step) * (1 + 1e-12));
-      // On the way there it falls as the way is long: where x is outside, for within it may bend.
+      // Towards the nearest point the gap falls by the distance moved; only outside, because inside it may
+      // have a kink.
       if (here.gap > 0)
         CHECK(look(obstacle, x + 0.3 * here.gap * here.normal).gap ==
               doctest::Approx(0.7 * here.gap).epsilon(1e-11));
@@ -136,7 +138,7 @@ TEST_CASE("along a direction the gap is the way to the surface, from outside and
         CAPTURE(k);
         const Facing ray = look(seen[k], x);
         if (ray.kind != Facing::Kind::met) {
-          // A ray that misses is outside all the way.
+          // A ray that misses stays outside.
           for (int i = -40; i <= 40 && k < 2; ++i) CHECK(look(plain[k], x + (0.1 * i) * unit_way).gap > 0);
           continue;
         }
@@ -189,13 +191,13 @@ TEST_CASE("a tree finds what looking at every triangle finds, to the bit; a face
       worst = std::max(worst, std::abs(found.gap - (norm(x) - 1)));
       if (trial == 20) break;
     }
-    // The sagitta of the circle round a triangle.
+    // The sagitta of a triangle's circumscribed circle.
     CHECK(worst <= 1.01 * (1 - std::sqrt(1 - edge * edge / 3)));
   }
 }
 
 TEST_CASE("the way to a surface close by has more digits than the coordinates") {
-  // On x + 2 y + 2 z = 0.
+  // On the plane x + 2 y + 2 z = 0.
   const std::vector<Vector3> points{{0, 1000, -1000}, {2000, 0, -1000}, {-2000, 1000, 0}};
   const SurfaceObstacle tilted{
       std::make_shared<const Surface>(points, std::vector<Surface::Triangle>{{0, 1, 2}})};
@@ -210,7 +212,7 @@ TEST_CASE("the way to a surface close by has more digits than the coordinates") 
 
 TEST_CASE(
     "above an edge or a corner of coplanar triangles the direction is the plane's, the gap the way to it") {
-  // Eight triangles about the middle of a square of x + 2 y + 2 z = 0, in two orders.
+  // Eight triangles around the centre of a square in x + 2 y + 2 z = 0, in two orders.
   const Vector3 u{2.0 / 3, 1.0 / 3, -2.0 / 3}, v{-2.0 / 3, 2.0 / 3, -1.0 / 3}, n{1.0 / 3, 2.0 / 3, 2.0 / 3};
   std::vector<Vector3> points;
   for (const double s : {-1.0, 0.0, 1.0})
@@ -293,7 +295,7 @@ TEST_CASE(
     "gaps of obstacles that are far larger than the body keep their digits, or say which they have lost") {
   PointDice dice;
   for (double size = 1.0; size < 1e31; size *= 8.0) {
-    // All touch the plane z = 0 at the origin, and are as flat as it but for terms of 1/size.
+    // All touch the plane z = 0 at the origin and deviate from it by terms of order 1/size.
     const std::vector<std::pair<Obstacle, double>> obstacles{
         {Plane{{size, -3 * size, 0}, {0, 0, 1}}, 0.0},
         {Sphere{{0, 0, -size}, size, {}}, 1.0},
@@ -317,11 +319,11 @@ TEST_CASE(
       REQUIRE(found.kind == Facing::Kind::met);
       CHECK(found.unknown >= 0.0);
       CHECK(found.unknown < 1e-29 * size + 1e-15);
-      // Beside z there are terms of the order of (x² + y²)/size.
+      // The gap is z plus terms of order (x² + y²)/size.
       CHECK(std::abs(found.gap - x[2]) <= std::abs(bend) / size + found.unknown + 1e-16);
     }
   }
-  // 45 degrees are known to long double only.
+  // The tangent of 45 degrees is accurate to long double only.
   for (double size = 1.0; size < 1e31; size *= 8.0) {
     const Facing found = look(Cone{{-size, 0, -size}, {1, 0, 0}, 45.0, {}}, {0, 0.1, 0.2});
     CHECK(found.unknown >= 1e-20 * size);
@@ -332,7 +334,7 @@ TEST_CASE(
 TEST_CASE("numbers of twice the precision hold their bounds") {
   PointDice dice;
   for (int trial = 0; trial < 1000; ++trial) {
-    // (a + b)² − a² − b² = 2ab, and a root squared, by numbers of any size.
+    // (a + b)² − a² − b² = 2ab, and the square of a root, for numbers of any size.
     const double a = std::ldexp(dice.number(), static_cast<int>(dice.number(-60, 60)));
     const double b = std::ldexp(dice.number(), static_cast<int>(dice.number(-60, 60)));
     const Tracked sum = Tracked(a) + b, square = sum * sum - Tracked(a) * a - Tracked(b) * b;
@@ -346,7 +348,7 @@ TEST_CASE("numbers of twice the precision hold their bounds") {
     CHECK(std::abs(whole.value()) <= whole.error());
     CHECK(whole.error() <= 0x1p-99 * std::abs(a));
   }
-  // Nothing is known of a number that is divided by what may be zero.
+  // Division by a number that may be zero has an unbounded error.
   const Tracked nothing = sqrt(Tracked(2.0)) * sqrt(Tracked(2.0)) - 2.0;
   CHECK_FALSE((Tracked(1.0) / nothing).error() < 1e300);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The outer loop: energy along Kacanov's steps, and answers that do not depend on how the mesh is written
-// down.
+// The outer loop: decrease of the energy in Kačanov's method, and answers that do not depend on the numbering
+// of the mesh.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// Stored energy less the work of the loads.
+/// Returns stored energy minus the work of the loads.
 double total_energy(const Run& run) {
   double work = 0.0;
   for (const auto& entry : run.part.load) work += entry.value * run.solution.displacement[entry.component];
@@ -27,7 +27,7 @@ std::vector<Law> curved_laws() {
   return {logarithmic_law(0.01), hardening_law(0.01, 0.1), power, saturating};
 }
 
-/// The mesh with nodes, elements and the corners within an element written down in another order.
+/// Returns the mesh with nodes, elements and the corners of each element in another order.
 Mesh shuffled(const Mesh& mesh, unsigned seed) {
   std::mt19937 engine(seed);
   const std::size_t dim = mesh.dim();
@@ -47,7 +47,7 @@ Mesh shuffled(const Mesh& mesh, unsigned seed) {
     std::vector<std::int32_t> corners;
     for (std::size_t a = 0; a < npe; ++a)
       corners.push_back(node[mesh.elements[static_cast<std::size_t>(e) * npe + a]]);
-    std::rotate(corners.begin(), corners.begin() + 1, corners.begin() + 3);  // even: the orientation stays
+    std::rotate(corners.begin(), corners.begin() + 1, corners.begin() + 3);  // preserves orientation
     other.elements.insert(other.elements.end(), corners.begin(), corners.end());
   }
   find_boundary(other);
@@ -164,14 +164,14 @@ TEST_CASE("softening of the squared argument is reported") {
 
 namespace {
 
-/// deal.II's step-42: a cube whose top a rigid sphere is pressed into by 0.01, linear hardening with γ =
-/// 0.01.
+/// The problem of deal.II's step-42: a rigid sphere is pressed by 0.01 into the top of a cube, linear
+/// hardening with γ = 0.01.
 Model indented_cube() {
   const double mu = 2e5 / 2.6;
   Law law = elastic_law(2e5, 0.3);
   law.form = laws::LinearHardening{400.0 / (2 * mu), 0.01};
   Model model;
-  model.materials.push_back({everything(), law, false});  // step-42's elements are plain ones
+  model.materials.push_back({everything(), law, false});  // step-42 uses standard displacement elements
   model.boundary.push_back(moved(named("bottom"), 3));
   for (const char* side : {"left", "right", "front", "back"})
     model.boundary.push_back(displacement(named(side), {0.0, 0.0, std::nullopt}));
@@ -197,7 +197,7 @@ TEST_CASE("step-42 of deal.II: its force, in at most 12 steps on any mesh") {
 }
 
 TEST_CASE("a first step that nothing but a penetration sets the scale of comes to an end") {
-  // No load, no prescribed displacement: at u = 0 there is no force to measure residuals by.
+  // No load and no prescribed displacement: at u = 0 there is no force to scale residuals with.
   for (const auto contact : {SolverOptions::Contact::admm, SolverOptions::Contact::dual_admm}) {
     Model model = indented_cube();
     model.solver.outer = SolverOptions::Outer::kacanov;

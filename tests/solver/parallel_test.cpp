@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any number of ranks: partition, scatters and gathers by what they must do, and the same answer as on one
-// rank.
+// Any number of ranks: partitioning, scatter and gather against their definitions, and the same answer as on
+// one rank.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ Problem beam_problem(int dim, int n, double tresca = 0.0) {
   return build_problem(beam_mesh(dim, n), beam(dim, logarithmic_law(0.01), 0.05, tresca));
 }
 
-/// A value that belongs to a node of the mesh, wherever it is kept.
+/// A value that identifies a node of the mesh, wherever it is stored.
 double signature(std::int64_t node, int component) {
   return std::sin(static_cast<double>(node)) + 10.0 * component;
 }
@@ -85,7 +85,7 @@ TEST_CASE("owned nodes are numbered on through the ranks, and ghosts know their 
 
 TEST_CASE("a map made from ghosts' numbers finds their owners, numbers beyond 2^53 included") {
   const Communicator world = mpi_communicator(MPI_COMM_WORLD);
-  // Each rank owns three more than the one before, and wants the first and last of every other rank.
+  // Each rank owns three more than the previous one and requests the first and last of every other rank.
   const std::int32_t owned = 3 * world.rank + 2;
   const std::vector<std::int64_t> starts = number_owned(owned, world);
   std::vector<std::int64_t> ghosts;
@@ -101,7 +101,7 @@ TEST_CASE("a map made from ghosts' numbers finds their owners, numbers beyond 2^
     const int owner = map.owner(map.number(i));
     CHECK((owner == world.rank) == (i < static_cast<std::size_t>(owned)));
   }
-  constexpr std::int64_t large = (std::int64_t{1} << 60) + 1;  // no double
+  constexpr std::int64_t large = (std::int64_t{1} << 60) + 1;  // not representable as a double
   std::vector<std::int64_t> value(2 * map.size(), -1);
   for (std::size_t i = 0; i < 2 * static_cast<std::size_t>(owned); ++i)
     value[i] = large + 2 * map.first() + static_cast<std::int64_t>(i);
@@ -135,7 +135,7 @@ TEST_CASE("a sum in two halves is the whole one, whatever happens elsewhere in b
 TEST_CASE("sums over shared nodes count the ranks that share a node, with the same bits on each") {
   const Problem problem = beam_problem(3, 2);
   Part part = over_all_ranks(problem);
-  // Each rank adds a number that rounds: a sum in another order would differ in its last bits.
+  // Each rank adds a number that is rounded: another order of summation would change the last bits.
   std::vector<double> x(2 * part.nodes());
   for (std::size_t i = 0; i < part.nodes(); ++i) {
     x[2 * i] = 1.0;
@@ -220,7 +220,7 @@ TEST_CASE("multigrid over the ranks is symmetric, positive definite and consiste
     amg->setup(g, {}, space);
     amg->apply(x, mx);
     amg->apply(y, my);
-    // Multigrid works in single precision.
+    // Multigrid uses single precision.
     const double rounding = std::string(kind) == "multigrid" ? 1e-5 : 1e-10;
     CHECK(std::abs(space.dot(mx, y) - space.dot(x, my)) <=
           rounding * std::sqrt(space.dot(mx, x) * space.dot(my, y)));
@@ -294,7 +294,7 @@ TEST_CASE("the answer does not depend on the partition or on threads") {
       CHECK(std::abs(result.plastic_elements - reference.result.plastic_elements) <= 1);
       CHECK(result.elements == reference.result.elements);
       CHECK(result.unknowns == reference.result.unknowns);
-      // Every copy of a shared displacement holds the same bits.
+      // All copies of a shared displacement are bitwise equal.
       std::vector<double> copy = solution.displacement;
       all.node_map.forward(copy, each.dim);
       CHECK(std::memcmp(copy.data(), solution.displacement.data(), copy.size() * sizeof(double)) == 0);
@@ -349,7 +349,7 @@ TEST_CASE("ranks at different collective calls all learn both places, and can co
   CHECK(names(message_of(scatter, sum), line + 4, line + 1));
   CHECK(message_of(sum, sum).empty());
   CHECK(message_of(scatter, scatter).empty());
-  // Sums of several numbers, and of more on some ranks.
+  // Sums of several numbers, with a different count on one rank.
   std::vector<double> some(ranks.rank == 0 ? 3 : 2, 1.0);
   const auto sums = [&] { ranks.sum_all(some); };
   CHECK(message_of(sums, sums).find("2 entries") != std::string::npos);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Plane stress and bodies of revolution against closed solutions.
+// Plane stress and axisymmetry against closed-form solutions.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -25,7 +25,7 @@ Model model_of(PlaneState plane, const Law& law) {
   return model;
 }
 
-/// A section of cells n × m from (inner, 0) on.
+/// A section of n × m cells that starts at (inner, 0).
 Mesh section(ElementType type, double inner, const std::array<double, 2>& size, int n, int m) {
   Mesh mesh = make_box({{size[0], size[1], 0}, {n, m, 1}, type});
   map_nodes(mesh, [&](const Vector3& x) { return Vector3{x[0] + inner, x[1], 0}; });
@@ -89,7 +89,7 @@ TEST_CASE("plane stress is that of a thin plate in 3D, beyond yield") {
 }
 
 TEST_CASE("round an axis is as a wedge in 3D, beyond yield") {
-  constexpr double half = 0.02;  // its angle, halved
+  constexpr double half = 0.02;  // half of the wedge's angle
   const Law law = hardening_law(0.005, 0.3);
   BoundaryEntry pressure;
   pressure.on = named("left");
@@ -124,7 +124,7 @@ TEST_CASE("round an axis is as a wedge in 3D, beyond yield") {
 }
 
 TEST_CASE("plane stress: a hole in a wide plate raises the stress threefold") {
-  // A quarter: angles along the first axis, radii that grow evenly along the second.
+  // A quarter: angles along the first axis, radii that grow geometrically along the second.
   constexpr int turns = 24, rings = 40;
   constexpr double outer = 30.0;
   Mesh mesh = make_box({{1, 1, 0}, {turns, rings, 1}, ElementType::quad4});
@@ -132,7 +132,7 @@ TEST_CASE("plane stress: a hole in a wide plate raises the stress threefold") {
     const double r = std::pow(outer, x[1]), angle = 0.5 * pi * (1.0 - x[0]);
     return Vector3{r * std::cos(angle), r * std::sin(angle), 0};
   });
-  // Far away the stress is even: its tractions there, by cells.
+  // The remote stress is uniform: prescribe its tractions on the outer boundary, cell by cell.
   Model model = model_of(PlaneState::stress, elastic_law(1.0, 0.3));
   model.boundary = {roller(named("left"), 0), roller(named("right"), 1)};
   for (int k = 0; k < turns; ++k) {
@@ -255,7 +255,7 @@ TEST_CASE("round an axis: a sphere pressed into a block is Hertz's") {
   model.boundary = {moved(named("top"), 2), moved(named("right"), 2)};
   ContactEntry entry;
   entry.on = named("bottom");
-  // The block is above; far away it would still give way, by F (1 − ν²)/(π E r).
+  // The block lies above the ball; beyond its extent a half-space would still give way by F (1 − ν²)/(π E r).
   const double far = force / (pi * stiff * space.extent);
   entry.obstacle = Sphere{{0, depth - far - radius, 0}, radius, Vector3{0, -1, 0}};
   model.contact = {entry};
@@ -264,7 +264,7 @@ TEST_CASE("round an axis: a sphere pressed into a block is Hertz's") {
   const double found = run.result().contact_force[1];
   MESSAGE("force over Hertz's ", found / force);
   CHECK(std::abs(found / force - 1.0) < 0.03);
-  // Of the force that there is, whatever is far away.
+  // For the computed force, independent of the far field.
   const double width = std::cbrt(0.75 * found * radius / stiff);
   CHECK(run.result().max_contact_pressure ==
         doctest::Approx(1.5 * found / (pi * width * width)).epsilon(0.02));

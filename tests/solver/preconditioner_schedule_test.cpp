@@ -15,7 +15,7 @@ TEST_CASE(
   CHECK(schedule.stale());
   schedule.built();
   CHECK(!schedule.stale());
-  schedule.watch(2.0, 20);  // ten iterations a digit are what it can do
+  schedule.watch(2.0, 20);  // the reference: ten iterations per digit
   CHECK(!schedule.stale());
   schedule.watch(0.0, 0);
   schedule.watch(2.0, 20 + static_cast<int>(defaults.setup_worth));
@@ -23,10 +23,9 @@ TEST_CASE(
   schedule.watch(1.0, 11 + static_cast<int>(defaults.setup_worth));
   CHECK(schedule.stale());
   CHECK(schedule.stale(1.0));
-  CHECK(!schedule.stale(0.9 * defaults.setup_worth /
-                        (defaults.setup_worth + 1.0)));  // too little is left to gain
+  CHECK(!schedule.stale(0.9 * defaults.setup_worth / (defaults.setup_worth + 1.0)));  // too little to gain
   schedule.built();
-  schedule.watch(2.0, 40);  // a new measure
+  schedule.watch(2.0, 40);  // a new reference
   CHECK(!schedule.stale());
   schedule.mark_stale();
   CHECK(schedule.stale(0.0));
@@ -60,7 +59,7 @@ TEST_CASE("preconditioner: what it was built for, and what has moved since") {
   other = set;
   other.slip_stiffness[1] = 0.1;
   CHECK(schedule.set_moved(other));
-  schedule.built_for(Penalty{2.0, 1.0});  // pins nothing
+  schedule.built_for(Penalty{2.0, 1.0});  // sets a penalty, no active set
   CHECK(schedule.set_moved(set));
   CHECK(!schedule.drifted(0.9 * defaults.drift_worth * 8.0, 8.0));
   CHECK(schedule.drifted(1.1 * defaults.drift_worth * 8.0, 8.0));

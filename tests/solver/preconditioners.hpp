@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every preconditioner of the solver by a name.
+// Creates every preconditioner of the solver by name.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@
 
 namespace kacanov::testing {
 
-/// `multigrid`, `elasticity` or `factor`. Collective.
+/// Returns the preconditioner `multigrid`, `elasticity` or `factor`. Collective.
 inline std::unique_ptr<Preconditioner> preconditioner_named(const std::string& name, const Part& part) {
   if (name == "factor") return std::make_unique<Factorised>(part);
   SolverOptions options;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Obstacles whose answer is known in closed form: cone, cylinder from both sides, bore, block.
+// Obstacles with closed-form solutions: cone, cylinder from both sides, bore, block.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// Sneddon's cone, pressed in until the contact's radius is 1: F over the exact 2/π E* δ² tan α.
+/// Sneddon's cone, pressed in until the contact radius is 1: F relative to the exact 2/π E* δ² tan α.
 double cone(int n) {
   const HalfSpace space{n};
   const Law law = elastic_law(1.0, 0.3);
@@ -28,10 +28,10 @@ double cone(int n) {
 }
 
 struct Line {
-  double force, width, peak;  ///< width and peak over Hertz's under that force
+  double force, width, peak;  ///< width and peak relative to Hertz's under that force
 };
 
-/// What a half-plane that comes down by `sinks` tells of Hertz's line contact with R = 50.
+/// Hertz's line contact with R = 50 from a half-plane that is lowered by `sinks`.
 Line line_contact(Mesh mesh, const Obstacle& obstacle, std::size_t up = 1) {
   const Law law = elastic_law(1.0, 0.3);
   const std::size_t dim = mesh.dim();
@@ -74,7 +74,7 @@ TEST_CASE("a cylinder on a plane from both sides: the rigid cylinder, and the ri
   const int n = 8;
   const Mesh flat = HalfSpace{n, 20.0}.plane();
   const Line disc = line_contact(flat, Sphere{{0, -50, 0}, 50.0, Vector3{0, -1, 0}});
-  // The elastic body is the round one: its surface is a parabola, which fades with the height.
+  // Here the elastic body is the round one: its surface is a parabola that flattens with the height.
   Mesh round = flat;
   map_nodes(round, [](const Vector3& x) {
     const double inner = std::min(std::abs(x[0]), 2.0);
@@ -119,7 +119,7 @@ TEST_CASE("a cylinder of the axis y pressed into a slice is the disc in the plan
 TEST_CASE("a shaft in a bore that is too narrow: p = 2 (λ + μ) e / R, from a cylinder seen from within") {
   const int n = 8;
   Mesh mesh = make_box({{1, 1, 0.25}, {n, n, 1}, ElementType::hex8});
-  map_nodes(mesh, [](const Vector3& x) {  // squares to circles
+  map_nodes(mesh, [](const Vector3& x) {  // maps squares to circles
     const double far = std::hypot(x[0], x[1]), grow = far > 0 ? std::max(x[0], x[1]) / far : 0;
     return Vector3{x[0] * grow, x[1] * grow, x[2]};
   });

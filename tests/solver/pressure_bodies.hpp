@@ -16,8 +16,8 @@
 
 namespace kacanov::testing {
 
-/// A bar of tet10 with its volume by corners, or of hex8 with B-bar, held at one end; `graded`: cells ever
-/// wider along its axes.
+/// A bar of tet10 with dilatation averaged at corners, or of hex8 with B-bar, fixed at one end; with `graded`
+/// the cells widen along the axes.
 inline Part bar(int cells, bool graded, ElementType type = ElementType::tet10) {
   int rank = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
@@ -34,7 +34,7 @@ inline Part bar(int cells, bool graded, ElementType type = ElementType::tet10) {
   return distribute(&problem, MPI_COMM_WORLD);
 }
 
-/// g of a bent bar: it falls by `jump` towards the upper and lower side near the support.
+/// Returns g of a bent bar: it falls by the factor `jump` towards the upper and lower side near the support.
 inline Vector bent(const Part& part, double jump) {
   const Body body = part.body();
   Vector at(3 * body.secant_count()), volume(body.secant_count()), g(body.secant_count());
@@ -47,8 +47,8 @@ inline Vector bent(const Part& part, double jump) {
   return g;
 }
 
-/// CG's, for eight digits of a force all over the body; `contrast`: from which k0/g on there are pressures, 0
-/// for always.
+/// Returns the number of CG iterations that reduce the residual of a distributed force by eight digits.
+/// Elements with k0/g above `contrast` get pressures; 0: always.
 inline int iterations(const Part& part, double jump, double contrast = 0.0) {
   const Space space(part);
   Operator op(part.body());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Background grids, and the cycle on displacements and pressures: its count does not grow with k0/g.
+// Background octree grids and the multigrid cycle on displacements and pressures: iterations independent of
+// k0/g.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -41,7 +42,7 @@ struct Grids {
   }
 };
 
-/// 1 + x − 2y + 3z at a point.
+/// Returns 1 + x − 2y + 3z.
 double linear(const Vector3& x) { return 1.0 + x[0] - 2.0 * x[1] + 3.0 * x[2]; }
 
 double sum_all(double v) {
@@ -108,7 +109,7 @@ TEST_CASE("trilinear functions are linear ones' exactly, next to larger cells an
         const double* x = &part.body().mesh.coordinates[3 * n];
         CHECK(at[n] == doctest::Approx(linear({x[0], x[1], x[2]})).epsilon(1e-5));
       }
-      // The way down is the transpose of the way up.
+      // Restriction is the transpose of prolongation.
       Vector force(at.size());
       std::vector<float> down(rows.size());
       for (std::size_t n = 0; n < force.size(); ++n) force[n] = std::sin(static_cast<double>(n) + rank);
@@ -131,7 +132,7 @@ TEST_CASE("grids' matrices are blind to rigid motions, have uniform strain's ene
   const auto leaves = leaves_of_levels(grids.tree, cells, last);
   const Vector g(body.secant_count(), 0.5);
   const NodesInTree nodes{body.mesh.coordinates, cells};
-  // Springs of 2 along the first axis and 3 along the second, which sees the first.
+  // Springs of 2 along the first axis and 3 along the second, coupled.
   std::vector<NodeBlock> springs;
   for (std::int32_t n = 0; n < part.owned_nodes(); n += 7)
     springs.push_back({n, {2.0, 1.0, 0.0, 1.0, 3.0, 0.0, 0.0, 0.0, 0.0}});
@@ -142,7 +143,7 @@ TEST_CASE("grids' matrices are blind to rigid motions, have uniform strain's ene
   for (const int threads : {1, 2})
     for (const bool changed : {false, true})
       for (const bool held : {false, true}) {
-        // Changed: built with other springs, and these in their place.
+        // With `changed`, the level is built with other springs, which are then replaced.
         const auto of = held ? std::span<const NodeBlock>(springs) : std::span<const NodeBlock>();
         LevelMoments moments =
             level_moments(grids.tree, leaves[0], nodes, node_measures(body, g, VolumeOf::averaging, threads),
@@ -249,7 +250,7 @@ TEST_CASE(
     Problem problem;
     if (rank == 0) {
       Mesh mesh = make_box({{2, 1, 1}, {16, 8, 8}, ElementType::hex8});
-      // Beyond x = 0.5 what is above the middle has nodes of its own there.
+      // For x > 0.5 the elements above the middle get their own nodes there, which makes a slot.
       std::vector<std::int32_t> twin(mesh.node_count(), -1);
       const std::size_t nodes = mesh.node_count();
       for (std::size_t n = 0; kind == Kind::slot && n < nodes; ++n) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The Schur complement of the pressures, what it is summed by, and the weights of the steps round it.
+// The Schur complement of the pressures, its sparse assembly, and the Chebyshev weights of its smoother.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ TEST_CASE("matrices summed of small ones have whole rows on their ranks, whoever
   }
   std::iota(row_number.begin(), row_number.end(), 0);
   std::iota(column_number.begin(), column_number.end(), 0);
-  // Matrices of three rows and two columns; the last row of all belongs to none.
+  // Element matrices of three rows and two columns; the last row of the matrix stays empty.
   std::vector<std::int32_t> row, column;
   std::vector<std::size_t> first_row{0}, first_column{0};
   for (std::size_t m = 0; m < 9; ++m) {
@@ -90,7 +90,7 @@ TEST_CASE(
         fine.build(bent(part, 100.0), {}, HeldSpace());
         PressureSchur schur(body, pressures, threads, nodes_at_once);
         schur.build(fine.inverse(), factor);
-        // Without springs, with some, and without them again.
+        // Without springs, with springs, and without them again.
         for (const bool sprung : {false, true, false}) {
           CAPTURE(threads);
           CAPTURE(nodes_at_once);

@@ -13,7 +13,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// Bottom against a plane a little below, clamped at the top.
+/// The bottom faces a plane slightly below; the top is clamped.
 Model on_a_plane(int dim, double gap = 0.1) {
   Model model = elastic_model();
   const auto last = dim == 3 ? std::optional<double>(0.0) : std::nullopt;

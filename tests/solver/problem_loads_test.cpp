@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Loads, held displacements, materials and probes on meshes of all element types.
+// Loads, prescribed displacements, materials and probes on meshes of all element types.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -101,7 +101,7 @@ TEST_CASE("a body force sums to itself times the volume, and acts in its centre"
     const double volume = flat ? 2.0 : 1.0;
     check_equal(sum.force, volume * b);
     check_equal(sum.moment, cross({1.0, 0.5, flat ? 0.0 : 0.25}, volume * b));
-    // A part of the body, chosen by a box of elements.
+    // A part of the body, selected by a box of elements.
     model.boundary.back().on = box({0.0, 0.0, 0.0}, {1.0, 1.0, 1.0});
     check_equal(resultant(build_problem(mesh, model)).force, 0.5 * volume * b);
   }

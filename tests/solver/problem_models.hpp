@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Small meshes and models that the tests of build_problem share.
+// Small meshes and models shared by the tests of build_problem.
 #pragma once
 
 #include <string>
@@ -67,7 +67,7 @@ inline Mesh box_mesh(ElementType type, const std::array<double, 3>& size = {2.0,
   return make_box({size, {2 * cells, cells, cells}, type});
 }
 
-/// The message build_problem refuses with; empty where it does not.
+/// Returns the message with which build_problem rejects the model, empty if it accepts it.
 inline std::string refusal(const Mesh& mesh, const Model& model) {
   try {
     build_problem(mesh, model);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rigid modes that nothing holds are found and named; unknown parts too.
+// Unconstrained rigid-body modes are detected and named; unknown groups too.
 #include <doctest/doctest.h>
 
 #include "problem_models.hpp"
@@ -11,7 +11,7 @@ namespace {
 
 constexpr auto none = std::nullopt;
 
-/// Two copies of a mesh side by side, sharing no node.
+/// Two copies of a mesh side by side that share no node.
 Mesh twice(const Mesh& one, double offset) {
   Mesh two = one;
   const std::size_t dim = one.dim();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Callers of the library hear of what makes no sense in the words that the case file is answered with.
+// Validation of models passed through the library: the messages use the terms of the case file.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// One entry of each kind.
+/// A model with one entry of each kind.
 Model sample() {
   Model model;
   model.materials.push_back({everything(), elastic_law(1.0, 0.3)});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Contact of quadratic facets: even pressure and shear are exact on an uneven mesh, and Hertz's pressure
-// converges.
+// Contact of quadratic facets: uniform pressure and shear are exact on an irregular mesh, and Hertz's
+// pressure converges.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// The uneven cube, of side `unit`, turned.
+/// The irregular cube with side `unit`, rotated.
 Mesh uneven_cube(double unit, const Rotation& turn) {
   Mesh mesh = read_gmsh(KACANOV_UNEVEN_CUBE);
   find_boundary(mesh);
@@ -26,8 +26,8 @@ double order(double coarse, double fine, double ratio) {
   return std::log(std::abs(coarse / fine)) / std::log(ratio);
 }
 
-/// A ball of radius 50 pressed in by 1/50 with cells of 1/n: the largest pressure and the force over Hertz's
-/// under the force that is found, where the contact's radius is `radius`.
+/// A ball of radius 50 pressed in by 1/50 with cells of size 1/n: largest pressure and contact radius
+/// relative to Hertz's under the computed force.
 struct Hertz {
   double peak, radius;
 };
@@ -76,7 +76,7 @@ TEST_CASE("tet10: an even shear under its bound sticks everywhere, and is exact"
     for (const Vector3& shear : {Vector3{1e-3, 0, 0}, Vector3{-0.6e-3, 0.7e-3, 0}}) {
       CAPTURE(coulomb);
       CAPTURE(shear[1]);
-      // σ = [[0, 0, sx], [0, 0, sy], [sx, sy, −p]], so that every side has its traction.
+      // σ = [[0, 0, sx], [0, 0, sy], [sx, sy, −p]], so that every side carries its traction.
       const double push = 1e-2;
       Model model;
       model.materials.push_back({everything(), elastic_law(1.0, 0.3)});
@@ -85,7 +85,7 @@ TEST_CASE("tet10: an even shear under its bound sticks everywhere, and is exact"
       model.boundary.push_back(traction(named("left"), turn({0, 0, -shear[0]})));
       model.boundary.push_back(traction(named("back"), turn({0, 0, shear[1]})));
       model.boundary.push_back(traction(named("front"), turn({0, 0, -shear[1]})));
-      model.materials[0].law = elastic_law(1.0, 0.0);  // nothing to hold across the pressure
+      model.materials[0].law = elastic_law(1.0, 0.0);  // ν = 0: no lateral stress
       model.contact.push_back(
           on_plane(named("bottom"), {}, turn({0, 0, 1}), coulomb ? 0.0 : 1.2e-3, coulomb ? 0.12 : 0.0));
       model.solver.tolerance = 1e-11;

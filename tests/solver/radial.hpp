@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Thick cylinder and thick sphere under inner pressure: the radial equation by shooting, for any law and
-// Poisson ratio.
+// Reference solution for thick cylinders and spheres under inner pressure: the radial equation by shooting,
+// for any law and Poisson's ratio.
 #pragma once
 
 #include <algorithm>
@@ -11,13 +11,14 @@
 
 namespace kacanov::testing {
 
-/// τ_r' + m (τ_r − τ_θ)/r = 0 on [a, b] with ε_r = u', ε_θ = u/r; m = 1 for the cylinder in plane strain, 2
-/// for the sphere; τ_r(a) = −p, τ_r(b) = 0. The state is (u, τ_r); u' follows from τ_r, which grows with it.
+/// Solves τ_r' + m (τ_r − τ_θ)/r = 0 on [a, b] with ε_r = u', ε_θ = u/r, τ_r(a) = −p, τ_r(b) = 0; m = 1 for
+/// the cylinder in plane strain, 2 for the sphere. The state is (u, τ_r); u' follows from τ_r, which is
+/// monotone in u'.
 class RadialSolution {
  public:
   RadialSolution(const Law& law, int m, double a, double b, double pressure, int steps = 2000)
       : law_(law), m_(m), a_(a), step_((b - a) / steps), u_(static_cast<std::size_t>(steps) + 1) {
-    // τ_r(b) grows with u(a): bisect on it.
+    // τ_r(b) is monotone in u(a): bisection.
     double low = 0.0, high = 1e-6 * a;
     while (shoot(high, pressure) < 0.0) high *= 2.0;
     for (int i = 0; i < 60; ++i) {
@@ -27,7 +28,7 @@ class RadialSolution {
     shoot(high, pressure);
   }
 
-  /// Radial displacement at r.
+  /// Returns the radial displacement at r.
   double operator()(double r) const {
     const double at = std::clamp((r - a_) / step_, 0.0, static_cast<double>(u_.size()) - 1.000001);
     const auto i = static_cast<std::size_t>(at);
@@ -46,7 +47,7 @@ class RadialSolution {
   Stress stress(const Strain& e) const {
     const double third = (e.radial + m_ * e.hoop) / 3.0;
     const double dr = e.radial - third, dt = e.hoop - third, dz = -third;
-    // In plane strain the third strain is 0, on the sphere it is a second hoop strain.
+    // The third strain is 0 in plane strain, and a second hoop strain on the sphere.
     const double x = std::sqrt(dr * dr + dt * dt + (m_ == 1 ? dz * dz : dt * dt));
     const double g = law_.secant(x), mean = 3.0 * law_.bulk * third;
     return {mean + 2 * g * dr, mean + 2 * g * dt, x};
@@ -66,7 +67,7 @@ class RadialSolution {
     const double du = radial_strain(s.u / r, s.tau);
     return {du, -m_ * (s.tau - stress({du, s.u / r}).hoop) / r};
   }
-  /// τ_r(b) for given u(a), by the midpoint rule of Runge; fills u_.
+  /// Returns τ_r(b) for a given u(a), by Runge's midpoint rule; fills u_.
   double shoot(double u_inner, double pressure) {
     State s{u_inner, -pressure};
     u_[0] = u_inner;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Thick cylinders and spheres under pressure, against the radial equation solved as an ordinary one.
+// Thick cylinders and spheres under pressure, against the radial ordinary differential equation.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double inner = 1.0, outer = 2.0;
 
-/// The facets all of whose nodes satisfy a condition, as a named part.
+/// Makes a group of the facets all of whose nodes satisfy a condition.
 void name_facets(Mesh& mesh, const std::string& name, const std::function<bool(const Vector3&)>& here) {
   const std::size_t dim = mesh.dim();
   Group group{name, mesh.dim() - 1, {}};
@@ -30,7 +30,7 @@ void name_facets(Mesh& mesh, const std::string& name, const std::function<bool(c
   mesh.groups.push_back(group);
 }
 
-/// A quarter of a thick cylinder, an octant of a thick sphere: the shell of cubes with ½ ≤ max x ≤ 1 blown up
+/// A quarter of a thick cylinder or an octant of a thick sphere: the shell of cubes with ½ ≤ max x ≤ 1 mapped
 /// to a round one, n cells through the wall.
 Mesh round_shell(int dim, int n) {
   BoxSpec spec;
@@ -44,7 +44,7 @@ Mesh round_shell(int dim, int n) {
   std::map<std::int32_t, std::int32_t> kept;
   for (std::size_t e = 0; e < cube.element_count(); ++e) {
     const auto nodes = std::span(cube.elements).subspan(e * npe, npe);
-    double mean = 0.0;  // of the largest coordinate: below ½ only inside the hole
+    double mean = 0.0;  // mean of the largest coordinate: below ½ only inside the hole
     for (const auto node : nodes) {
       const double* x = &cube.coordinates[static_cast<std::size_t>(node) * d];
       mean += *std::max_element(x, x + d) / static_cast<double>(npe);
@@ -60,7 +60,7 @@ Mesh round_shell(int dim, int n) {
   }
   map_nodes(mesh, [&](Vector3 x) {
     const double level = std::max({x[0], x[1], x[2]}), r = inner + (outer - inner) * (2 * level - 1);
-    for (double& v : x) v = std::tan(0.25 * M_PI * v / level);  // even angles
+    for (double& v : x) v = std::tan(0.25 * M_PI * v / level);  // uniform angles
     const double size = length(x);
     return Vector3{r * x[0] / size, r * x[1] / size, r * x[2] / size};
   });
@@ -73,7 +73,7 @@ Mesh round_shell(int dim, int n) {
   return mesh;
 }
 
-/// L² error of the displacement relative to its norm, by the edge-midpoint (2D) or the four-point (3D) rule.
+/// Returns the relative L² error of the displacement, by the edge-midpoint (2D) or four-point (3D) rule.
 double displacement_error(const Run& run, const RadialSolution& exact) {
   const Part& part = run.part;
   const auto dim = static_cast<std::size_t>(part.dim()), npe = dim + 1;
@@ -115,7 +115,7 @@ void check_order(int dim, const std::vector<int>& cells, double pressure_inside,
                  PlaneState plane = PlaneState::strain, Formulation formulation = Formulation::displacement) {
   CAPTURE(dim);
   for (const Law& law : {elastic_law(1.0, 0.3), logarithmic_law(0.01)}) {
-    // A quarter of a disc that goes round an axis is half a sphere.
+    // A quarter of a disc, rotated about an axis, is half a sphere.
     const int m = plane == PlaneState::axisymmetric ? 2 : dim - 1;
     const RadialSolution exact(law, m, inner, outer, pressure_inside, 500);
     if (!law.linear()) CHECK(exact.largest_dev_strain() > 3 * law.yield_strain());
@@ -184,7 +184,7 @@ TEST_CASE("thick sphere far beyond yield: mixed tet4 bears the exact pressure, p
   constexpr double x0 = 1e-3;
   const Law law = logarithmic_law(x0);
   const auto bore = [&](double load) { return RadialSolution(law, 2, inner, outer, load, 200)(inner); };
-  // The pressure whose exact solution opens the bore by this.
+  // The pressure whose exact solution opens the bore by u.
   const auto pressure_for = [&](double u) {
     double low = 0.0, high = 1.0;
     for (int i = 0; i < 24; ++i) (bore(0.5 * (low + high)) < u ? low : high) = 0.5 * (low + high);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Random small problems, solved by the program and by an independent dense solver: not one may be called
+// Random small problems, solved by the solver and by the independent dense solver: no run may be reported as
 // converged that is not.
 #include <doctest/doctest.h>
 
@@ -16,7 +16,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// Draws that are the same with every standard library.
+/// A random generator whose numbers are the same with every standard library.
 class Dice {
  public:
   explicit Dice(unsigned seed) : engine_(seed) {
@@ -54,8 +54,8 @@ Law random_law(Dice& dice, double modulus, double strain) {
   double gamma = dice.decades(-1.5, -0.1);
   double n = dice.uniform(0.2, 0.9);
   const double q = dice.decades(0.0, 1.5);
-  // Where stress still grows with strain: always for these n, γ and tables, up to √e times the yield strain
-  // for law-logarithmic, about as far or further for a law that saturates.
+  // Parameters for which stress still increases with strain: always for these n, γ and tables, up to √e times
+  // the yield strain for law-logarithmic, about as far or further for saturating laws.
   const bool squared = dice.chance(0.3);
   if (squared) {
     law.argument = Law::Argument::squared;
@@ -73,7 +73,7 @@ Law random_law(Dice& dice, double modulus, double strain) {
     double slope = 2.0 * law.shear;
     for (std::size_t i = 1; i < table->x.size(); ++i) {
       table->s.push_back(table->s.back() + slope * (table->x[i] - table->x[i - 1]));
-      // With the squared argument stress is s/x, and grows while the slope is at least half of s/a.
+      // With the squared argument the stress is s/x, which increases while the slope is at least half of s/a.
       slope *= squared ? dice.uniform(0.75, 0.95) : dice.uniform(0.1, 0.9);
     }
   }
@@ -82,7 +82,8 @@ Law random_law(Dice& dice, double modulus, double strain) {
 
 Vector3 times(double factor, const Vector3& v) { return {factor * v[0], factor * v[1], factor * v[2]}; }
 
-/// An obstacle below (c = the upright axis) or to the right (c = 0) of the body, roughly at `gap`.
+/// An obstacle below (axis: the vertical one) or to the right (axis 0) of the body, at a distance of about
+/// `gap`.
 Obstacle random_obstacle(Dice& dice, int dim, std::size_t axis, double side, const Vector3& size,
                          double gap) {
   const int kind = dice.whole(0, 3);
@@ -121,7 +122,7 @@ Sample random_problem(unsigned seed) {
     spec.size[c] = dice.uniform(0.5, 2.0);
   }
   sample.mesh = make_box(spec);
-  double cell = 1e9;  // between nodes
+  double cell = 1e9;  // node spacing
   for (std::size_t c = 0; c < static_cast<std::size_t>(dim); ++c)
     cell = std::min(cell, spec.size[c] / spec.cells[c]);
   if (type == ElementType::tet10) cell *= 0.5;
@@ -141,7 +142,7 @@ Sample random_problem(unsigned seed) {
     if (spec.cells[0] >= 3) model.materials.push_back({box(low, high), law});
   }
 
-  // Held so that the dense matrix is definite without contact.
+  // Supports that make the dense matrix definite without contact.
   const bool from_above = dice.chance(0.4);
   if (from_above) {
     Vector3 shift{};
@@ -194,7 +195,7 @@ int environment(const char* name, int otherwise) {
 
 constexpr int usual_count = sanitized ? 40 : 500;
 
-/// The program's state in the order of the problem and of the dense solver's rows.
+/// The solver's state in the order of the problem and of the dense solver's rows.
 struct State {
   Eigen::VectorXd u, lambda;
 };
@@ -219,7 +220,7 @@ State state_of(const Run& run, const DenseSolver& dense) {
 
 struct Tally {
   int solved = 0, unconverged = 0, limited = 0, undecided = 0, softened = 0;
-  double worst_defect = 0.0, worst_error = 0.0;  ///< over the tolerance, over the bound
+  double worst_defect = 0.0, worst_error = 0.0;  ///< relative to the tolerance, relative to the bound
 };
 
 void compare(int seed, const Sample& sample, Tally& tally) {
@@ -231,8 +232,8 @@ void compare(int seed, const Sample& sample, Tally& tally) {
   const double tolerance = sample.model.solver.tolerance;
   const DenseSolver::Answer answer = dense.solve();
   const double error = (state.u - answer.u).norm();
-  // A residual of the tolerance moves the softest mode by that over its stiffness, and every other mode by
-  // less.
+  // A residual equal to the tolerance moves the softest mode by that residual over its stiffness, and every
+  // other mode by less.
   const double bound = tolerance * (answer.force_scale / answer.softest + answer.u.norm());
   const DenseSolver::Defects defects = dense.defects(state.u, state.lambda);
   if (std::getenv("KACANOV_RANDOM_VERBOSE") != nullptr)
@@ -243,15 +244,15 @@ void compare(int seed, const Sample& sample, Tally& tally) {
               << error / answer.u.norm() << " = " << error / bound << " of its bound; "
               << run.result().message << "\n";
   ++tally.solved;
-  // Not monotone there: solutions need be neither one nor any.
+  // The problem is not monotone there: a solution need not exist or be unique.
   const bool softened = run.result().softening_elements > 0;
   tally.softened += softened;
   tally.undecided += !answer.converged && !softened;
   const bool limited = run.result().status == Status::limited_by_rounding;
   tally.limited += limited;
-  // Nor may there be any beyond a limit load, where the dense solver does not settle either.
+  // Beyond a limit load no solution exists either, and the dense solver does not converge.
   tally.unconverged += !converged && !limited && !softened && answer.converged;
-  // Moved without strain, or to a tolerance that nobody can keep: right all the same.
+  // A rigid motion, or a tolerance below the rounding errors: the answer must still be right.
   if (limited) {
     const Certificate& c = run.result().certificate;
     CHECK(c.worst() + c.rounding.worst() > tolerance);
@@ -265,7 +266,7 @@ void compare(int seed, const Sample& sample, Tally& tally) {
   CHECK(error <= 4.0 * bound);
 }
 
-/// Seeds of a test case; KACANOV_RANDOM_FIRST and KACANOV_RANDOM_COUNT choose others.
+/// Calls `use` for the seeds of a test case; KACANOV_RANDOM_FIRST and KACANOV_RANDOM_COUNT select others.
 template <class Use>
 void for_seeds(int count, const Use& use) {
   const int first = environment("KACANOV_RANDOM_FIRST", 1);
@@ -287,14 +288,13 @@ TEST_CASE("random problems: what is called converged is the solution of the dens
   for_seeds(usual_count, [&](int seed, const Sample& sample) { compare(seed, sample, tally); });
   report(tally);
   CHECK(tally.unconverged <= tally.solved / 500);
-  CHECK(tally.limited <= 2 + tally.solved / 50);  // few are drawn under the sanitizers
+  CHECK(tally.limited <= 2 + tally.solved / 50);  // the sanitizers draw few problems
   CHECK(tally.undecided <= tally.solved / 50);
   CHECK(tally.softened <= 3 + tally.solved / 20);
 }
 
 TEST_CASE("the dense solver sees what is not a solution") {
-  for (const int seed :
-       {1, 2, 4, 5, 6, 7, 9, 13}) {  // every element; no softening, no body that just moves along
+  for (const int seed : {1, 2, 4, 5, 6, 7, 9, 13}) {  // every element type; no softening, no rigid motion
     CAPTURE(seed);
     Sample sample = random_problem(static_cast<unsigned>(seed));
     sample.model.solver.tolerance = 1e-8;

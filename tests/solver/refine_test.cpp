@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Uniform refinement: a refined box is the box with half the cells' size, curves and groups are kept.
+// Uniform refinement: a refined box is the box with half the cell size; curves and groups are preserved.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ BoxSpec box_of(ElementType type, std::array<int, 3> cells) {
   return spec;
 }
 
-/// Coordinates on a fine grid of whole numbers, so that equal points compare equal.
+/// Returns coordinates as integers on a fine grid, so that equal points compare equal.
 std::set<std::array<long, 3>> points(const Mesh& mesh) {
   std::set<std::array<long, 3>> all;
   for (std::size_t n = 0; n < mesh.node_count(); ++n) {
@@ -66,7 +66,7 @@ TEST_CASE("edges keep their curves: new nodes lie where the element's own map ta
   Mesh mesh = make_box(box_of(ElementType::tet10, {2, 2, 2}));
   for (std::size_t n = 0; n < mesh.node_count(); ++n) {
     double* x = &mesh.coordinates[3 * n];
-    x[2] += 0.1 * x[0] * x[0];  // a parabola, which quadratic edges follow exactly
+    x[2] += 0.1 * x[0] * x[0];  // a parabola, which quadratic edges represent exactly
   }
   const Mesh fine = refine(refine(mesh));
   CHECK_NOTHROW(check_mesh(fine));
@@ -120,7 +120,7 @@ TEST_CASE("named points and lines, tags and materials are taken over") {
   Mesh solid = make_box(box_of(ElementType::hex8, {1, 1, 1}));
   solid.groups.push_back({"edge", 1, {0, 1}});
   const Group edge = refine(solid).groups.back();
-  CHECK(edge.members.size() == 3);  // its ends and what is between
+  CHECK(edge.members.size() == 3);  // its ends and the new node between them
 }
 
 TEST_CASE("a raised box has the nodes, the elements and the sides of a quadratic one") {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Regions of like stiffness, what acts on them, and certificates that nothing inflates.
+// Regions of similar stiffness, the forces on them, and certificates whose scales are not inflated by large
+// forces elsewhere.
 #include "contact/regions.hpp"
 
 #include <doctest/doctest.h>
@@ -20,7 +21,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// A bar [0,4]×[0,1](×[0,1]) of three lengths with these moduli, warm, its left end held.
+/// A heated bar [0,4]×[0,1](×[0,1]) of three segments with these moduli, fixed at its left end.
 Model three_lengths(int dim, const std::array<double, 3>& young, double rise, bool mixed = false) {
   Model model;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -149,7 +150,7 @@ TEST_CASE("regions: temperature alone presses with the load that the problem has
 
 namespace {
 
-/// Force and state of a run of a bar whose softer free end is pressed on a plane by `overlap`.
+/// Force and status of a run of a bar whose softer free end is pressed on a plane by `overlap`.
 struct Pressed {
   Status status;
   double force;
@@ -157,11 +158,11 @@ struct Pressed {
 };
 
 struct Inflated {
-  double ratio = 1.0;       ///< of the free end's modulus to the other's
-  double rise = 0.0;        ///< of temperature
-  double moved = 0.0;       ///< of the held end
+  double ratio = 1.0;       ///< modulus of the free half relative to the fixed half
+  double rise = 0.0;        ///< of the temperature
+  double moved = 0.0;       ///< displacement of the fixed end
   double cancelling = 0.0;  ///< stress of two loads on opposite sides
-  double weight = 0.0;      ///< of the held half
+  double weight = 0.0;      ///< of the fixed half
 };
 
 Pressed press(const Inflated& by, double overlap, double accuracy) {
@@ -181,7 +182,7 @@ Pressed press(const Inflated& by, double overlap, double accuracy) {
   weight.on = box({0, 0, 0}, {2, 1, 0});
   weight.body_force = Vector3{0, -by.weight, 0};
   model.boundary.push_back(weight);
-  // Where the end would come to without the obstacle, plane strain and all, from the same problem.
+  // The position of the free end without the obstacle, computed from the same problem.
   const Mesh mesh = make_box({{4, 1, 1}, {16, 4, 1}, ElementType::quad4});
   model.solver.tolerance = 1e-12;
   model.probes.push_back({4, 0.5, 0});
@@ -211,7 +212,7 @@ TEST_CASE("a contact force that is certified is right, however much larger all e
 }
 
 TEST_CASE("pieces are judged one by one: what is lacking on a small one is not lost beside a large one") {
-  // Two bars, one pressed a million times as hard; the weak one's contact force is right to its own digits.
+  // Two bars, one pressed a million times as hard; the other's contact force is accurate to its own digits.
   Model model;
   Mesh mesh = make_box({{4, 1, 1}, {8, 2, 1}, ElementType::quad4});
   const std::size_t nodes = mesh.node_count(), cells = mesh.elements.size();
@@ -229,7 +230,7 @@ TEST_CASE("pieces are judged one by one: what is lacking on a small one is not l
   model.contact.push_back(on_plane(box({4, 2, 0}, {4, 3, 0}), {4.0 - weak, 0, 0}, {-1, 0, 0}));
   const Run run = run_alone(mesh, model);
   REQUIRE(run.result().status == Status::converged);
-  // The same body, linear: the forces are as the indentations.
+  // The same linear body: forces are proportional to indentations.
   const double expected = length(run.result().contact[0].total.force) * weak / strong;
   CHECK(length(run.result().contact[1].total.force) == doctest::Approx(expected).epsilon(1e-4));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A restart on as many ranks takes the steps that the run would have taken: to the last bit, wherever it was
-// cut.
+// A restart on the same number of ranks repeats the steps of the uninterrupted run bitwise, wherever the run
+// was stopped.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -30,7 +30,7 @@ Solution solved(const NamedProblem& given, RunOptions options) {
   return any_moves(model) ? solve_moving(part, model, options) : solve(part, model.solver, options);
 }
 
-/// Of this rank.
+/// Compares this rank's fields.
 void check_same_bits(const Solution& a, const Solution& b) {
   CHECK(a.result.status == b.result.status);
   CHECK(a.result.outer_iterations == b.result.outer_iterations);
@@ -94,7 +94,7 @@ std::vector<NamedProblem> problems() {
   all.push_back(named_problem("slip counted by load steps", 2, logarithmic_law(0.01), 0.0, 0.3));
   all.back().model.solver.load_steps = {0.5, 1.0};
   all.back().model.contact[0].friction->reference = Friction::Reference::step;
-  // The load is more than the beam bears: load steps are cut.
+  // The load exceeds the limit load: load steps are cut.
   all.push_back(named_problem("cut load steps", 2, saturating(0.002), 0.0, 0.0));
   all.back().model.solver.load_steps = {0.2, 1.0};
   all.push_back(slab_over_ball());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// λ_min, λ_max and r* against dense eigenvalues, where everything is easy and where Lanczos breaks down.
+// λ_min, λ_max and r* against dense eigenvalues, in ordinary cases and where Lanczos breaks down.
 #include "spectrum/spectrum.hpp"
 
 #include <doctest/doctest.h>
@@ -19,7 +19,7 @@ SolverOptions with_tolerance(double tolerance) {
   return options;
 }
 
-/// Both spectra of a problem against the dense ones, at the default tolerance, a loose and a tight one.
+/// Compares both spectra of a problem with the dense ones, at the default tolerance, a loose and a tight one.
 void compare(const Problem& problem, bool friction) {
   const Part part = distribute(&problem, MPI_COMM_SELF);
   for (const double tolerance : {0.2, 1e-2, 1e-9}) {
@@ -34,7 +34,7 @@ void compare(const Problem& problem, bool friction) {
       CHECK(entry.lambda_min == doctest::Approx(low).epsilon(std::max(tolerance, 1e-7)));
       CHECK(entry.lambda_max == doctest::Approx(high).epsilon(std::max(tolerance, 1e-7)));
       CHECK(entry.r_star == doctest::Approx(1.0 / std::sqrt(low * high)).epsilon(std::max(tolerance, 1e-7)));
-      // Within the bounds, but for the rounding of the dense eigenvalues.
+      // Within the error bounds, up to the rounding of the dense eigenvalues.
       CHECK(std::abs(entry.lambda_min - low) <= entry.bound_min + 1e-11 * low);
       CHECK(std::abs(entry.lambda_max - high) <= entry.bound_max + 1e-11 * high);
       CHECK(entry.bound_min <= 2 * tolerance * entry.lambda_min);
@@ -43,7 +43,7 @@ void compare(const Problem& problem, bool friction) {
   }
 }
 
-/// A box of random size, sheared, rotated and jittered inside.
+/// A box of random size, sheared, rotated and perturbed inside.
 Mesh random_box(int dim, std::mt19937& engine, Rotation& rotation, Vector3& shear) {
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   BoxSpec spec;
@@ -104,7 +104,7 @@ TEST_CASE("two contact entries that meet at an edge") {
     const Vector3 up = dim == 2 ? Vector3{0, 1, 0} : Vector3{0, 0, 1};
     model.contact.push_back(on_plane(named("bottom"), {}, up, 0.1));
     model.contact.push_back(on_plane(named("right"), {2, 0, 0}, {-1, 0.2, 0}, 0.1));
-    // At the edge the rows of [N; T] depend on each other: zero eigenvalues that must not be found.
+    // At the edge the rows of [N; T] are linearly dependent: zero eigenvalues that must not be returned.
     compare(build_problem(box_mesh(type, {2, 1, 0.5}, 3), model), true);
   }
 }
@@ -145,8 +145,8 @@ TEST_CASE("one and two contact nodes") {
 }
 
 TEST_CASE("K = c·I, beyond the size that is solved densely") {
-  // Triangles apart from each other, two corners held, one in contact: every contact node has the same
-  // compliance.
+  // Separate triangles, each with two fixed corners and one in contact, so that all contact nodes have the
+  // same compliance.
   constexpr std::int32_t count = 40;
   Mesh mesh;
   mesh.type = ElementType::tri3;
@@ -159,7 +159,7 @@ TEST_CASE("K = c·I, beyond the size that is solved densely") {
   Model model = elastic_model();
   model.boundary.push_back(moved(everything(), 2));
   model.contact.push_back(on_plane(everything(), {}, {0, 1, 0}));
-  // Free the first corners again: hold the others by name.
+  // Release the first corners again: fix the others by a group.
   Group others{"others", 0, {}};
   for (std::int32_t i = 0; i < count; ++i)
     others.members.insert(others.members.end(), {3 * i + 1, 3 * i + 2});
@@ -171,8 +171,8 @@ TEST_CASE("K = c·I, beyond the size that is solved densely") {
 }
 
 TEST_CASE("rigid modes that only the contact holds have no eigenvalue") {
-  // The block may sink and turn until it touches: λ_max is the largest finite eigenvalue. As 1/μ of the
-  // generalised problem S v = μ M v, zero μ left out.
+  // The block may sink and rotate until it touches: λ_max is the largest finite eigenvalue, computed as 1/μ
+  // of the generalised problem S v = μ M v without μ = 0.
   for (const ElementType type : {ElementType::tri3, ElementType::tet4}) {
     const int dim = dimension(type);
     Model model = elastic_model();

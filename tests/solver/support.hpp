@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Runs of small problems, and what the solver's tests ask of their results.
+// Runs of small problems, and helpers that evaluate their results.
 #pragma once
 
 #include <mpi.h>
@@ -17,7 +17,7 @@
 
 namespace kacanov::testing {
 
-/// A problem, its one part, and the solution.
+/// A problem, its single part, and the solution.
 struct Run {
   Problem problem;
   Part part;
@@ -41,13 +41,13 @@ inline Part over_all_ranks(const Problem& problem) {
   return distribute(rank == 0 ? &problem : nullptr, MPI_COMM_WORLD);
 }
 
-/// Divides the problem, known on every rank, and solves it on all of them; `part` is this rank's.
+/// Distributes a problem that every rank has and solves it on all ranks; `part` becomes this rank's part.
 inline Solution solve_everywhere(const Problem& problem, const Model& model, Part& part) {
   part = distribute(&problem, MPI_COMM_WORLD);
   return solve(part, model.solver, {});
 }
 
-/// Displacements of the part's nodes by their positions.
+/// Returns nodal displacements of a part from a function of position.
 template <class Field>
 std::vector<double> nodal_field(const Part& part, const Field& field) {
   const std::size_t dim = part.dim();
@@ -82,14 +82,14 @@ inline ContactEntry on_plane(Selector on, const Vector3& point, const Vector3& n
   return entry;
 }
 
-/// Roller: one component is zero.
+/// Roller: one displacement component is zero.
 inline BoundaryEntry roller(Selector on, std::size_t component) {
   std::array<std::optional<double>, 3> value{};
   value[component] = 0.0;
   return displacement(std::move(on), value);
 }
 
-/// All components given; the third one is left out in 2D.
+/// Prescribes all displacement components; the third is omitted in 2D.
 inline BoundaryEntry moved(Selector on, int dim, const Vector3& u = {}) {
   std::array<std::optional<double>, 3> value{u[0], u[1], std::nullopt};
   if (dim == 3) value[2] = u[2];
@@ -97,7 +97,7 @@ inline BoundaryEntry moved(Selector on, int dim, const Vector3& u = {}) {
 }
 
 /// The paper's beam [0,4]×[0,1] (×[0,1] in 3D, z up): fixed at x = 0, loaded by f on the far half of its top,
-/// its underside on a plane. Everything is selected by boxes, so that it fits any mesh of the beam.
+/// its bottom on a plane. All selections are boxes, so that they fit any mesh of the beam.
 inline Model beam(int dim, const Law& law, double f, double tresca = 0.0) {
   const std::size_t up = dim - 1;
   Vector3 normal{}, load{}, far{4, 1, dim == 3 ? 1.0 : 0.0}, under = far, end = far, top{2, 0, 0}, tip = far;
@@ -124,7 +124,7 @@ inline Mesh beam_mesh(int dim, int n) {
   return make_box(spec);
 }
 
-/// Moves every node; the boundary and the named parts stay what they are.
+/// Moves every node; the boundary and the groups do not change.
 inline void map_nodes(Mesh& mesh, const std::function<Vector3(const Vector3&)>& map) {
   const std::size_t dim = mesh.dim();
   for (std::size_t i = 0; i < mesh.node_count(); ++i) {
@@ -134,7 +134,7 @@ inline void map_nodes(Mesh& mesh, const std::function<Vector3(const Vector3&)>& 
   }
 }
 
-/// Rotation by some angle about some axis (in 2D about z).
+/// Rotation by a fixed angle about a fixed axis (about z in 2D).
 struct Rotation {
   std::array<Vector3, 3> row{};
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bars of materials given by tests in tension, against Hencky's equations in stresses, which share nothing
-// with laws in strains.
+// Bars of materials given by tension tests, against Hencky's equations in stresses, which are independent of
+// the laws in strains.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double young = 210e3, poisson = 0.3, yield = 250.0;
 
-/// Equivalent plastic strain at an equivalent stress.
+/// Equivalent plastic strain as a function of the equivalent stress.
 using Curve = double (*)(double stress);
 
 double rows_curve(double stress) {
@@ -57,7 +57,7 @@ Vector3 strain(const Vector3& stress, Curve curve) {
   return out;
 }
 
-/// σ_z that keeps ε_z = 0 under σ_x, σ_y.
+/// Returns the σ_z that keeps ε_z = 0 under σ_x and σ_y.
 double plane_strain_stress(double x, double y, Curve curve) {
   double low = -1e4, high = 1e4;
   for (int i = 0; i < 200; ++i) {
@@ -67,7 +67,8 @@ double plane_strain_stress(double x, double y, Curve curve) {
   return low;
 }
 
-/// Displacement of the corner that is free in all directions, of a block 2 × 1 (× 0.5) on rollers.
+/// Returns the displacement of the corner that is free in all directions, of a block 2 × 1 (× 0.5) on
+/// rollers.
 Vector3 corner_under(ElementType type, const Law& law, const Vector3& stress) {
   const int dim = dimension(type);
   Model model;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A problem in other units has the same answer: to the bit where they are powers of two, else to what
-// rounding leaves.
+// A problem in other units has the same answer: bitwise for powers of two, otherwise up to rounding errors.
 #include <doctest/doctest.h>
 
 #include "partition/nondimensionalisation.hpp"
@@ -11,7 +10,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// One unit of length and one of moduli in those of another problem.
+/// Units of length and modulus relative to those of another problem.
 struct Scale {
   double length = 1.0, modulus = 1.0;
 };
@@ -25,7 +24,7 @@ void scale(Selector& on, double factor) {
   scale(on.upper, factor);
 }
 
-/// The model with lengths and moduli in other units: strains are the same.
+/// Returns the model with lengths and moduli in other units: strains do not change.
 Model in_units(Model model, const Scale& s) {
   for (MaterialEntry& entry : model.materials) {
     scale(entry.on, s.length);
@@ -92,7 +91,7 @@ std::vector<Model> models(int dim) {
   return all;
 }
 
-/// Every number of a result that has a unit, divided by it.
+/// Returns every number of a result that has a unit, divided by that unit.
 std::vector<double> numbers(const Run& run, const Scale& s, int dim) {
   const double area = dim == 2 ? s.length : s.length * s.length, force = s.modulus * area;
   std::vector<double> all;
@@ -143,7 +142,7 @@ TEST_CASE("in units that are powers of two of others, results are the same bits"
 TEST_CASE("in any units results are the same numbers") {
   for (const int dim : {2, 3})
     for (Model model : models(dim)) {
-      model.solver.tolerance = 2e-12;  // rounding leaves up to 6.8e-13 of one of them
+      model.solver.tolerance = 2e-12;  // rounding errors reach 6.8e-13 in one of them
       const Run plain = solved(dim, model, {});
       INFO(plain.result().message);
       REQUIRE(plain.result().status == Status::converged);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What looks mistaken is said, check by check; what does not is not.
+// Warnings about likely mistakes in a model, check by check, and none for sound models.
 #include <doctest/doctest.h>
 
 #include "problem/vector3.hpp"
@@ -11,7 +11,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// Steel in N and mm, held on the left and pressed on a floor.
+/// Steel in N and mm, fixed on the left and pressed on a floor.
 Model sound_model() {
   Model model;
   model.materials.push_back({everything(), elastic_law(210e3, 0.3)});
@@ -64,7 +64,7 @@ TEST_CASE("units that do not go together") {
   CHECK(mentions(found(), "material[0]"));
   law.form = ramberg_osgood(law, 250.0, 0.4, 5.0);
   CHECK(found().empty());
-  model.boundary[1].traction = Vector3{0, 0, -20e3};  // kN for N
+  model.boundary[1].traction = Vector3{0, 0, -20e3};  // kN instead of N
   CHECK(mentions(found(), "boundary[1]: it comes to a stress of 2e+04, 80 times the stress 250 at which"));
   model.boundary[1].traction = Vector3{0, 0, -20e6};
   model.boundary[1].name = "lid";
@@ -91,7 +91,7 @@ TEST_CASE("facets that look away from their obstacle") {
   CHECK(mentions(found(), "look away"));
   CHECK(mentions(likely_cause({"something else", found()}), "look away"));
   CHECK(likely_cause({"something else"}).empty());
-  // All of the boundary: the gap tells.
+  // The whole boundary: the gap decides.
   model.contact[0] = on_plane(everything(), {}, {0, 0, 1});
   CHECK(found().empty());
 }
@@ -109,7 +109,7 @@ TEST_CASE("facets of a group inside the body") {
 
 namespace {
 
-/// A box behind the nodes and elements of another.
+/// Appends the nodes and elements of another mesh.
 void append(Mesh& mesh, const Mesh& other, const Vector3& shift) {
   const auto first = static_cast<std::int32_t>(mesh.node_count());
   for (std::size_t i = 0; i < other.coordinates.size(); ++i)
@@ -141,7 +141,7 @@ TEST_CASE("nodes that lie at one place and are not one") {
     const std::size_t on_face = flat ? 3 : type == ElementType::tet10 ? 25 : 9;
     for (const double gap : {0.0, 1e-8, 1e-4, 0.5}) {
       CAPTURE(gap);
-      for (const double far : {0.0, 1000.0}) {  // float coordinates there are known to 1e-4
+      for (const double far : {0.0, 1000.0}) {  // single-precision coordinates there are accurate to 1e-4
         Mesh pair = box;
         append(pair, box, {0, 1 + gap, 0});
         for (double& x : pair.coordinates) x += far;
@@ -152,7 +152,7 @@ TEST_CASE("nodes that lie at one place and are not one") {
                                         " pairs of nodes lie at one place, the first nodes "));
       }
     }
-    // Joined along one face by the nodes themselves, slit along the other side of the second box.
+    // Shared nodes along one part of the face, duplicate nodes along the rest: a slit.
     Mesh slit = box;
     append(slit, box, {0, 1, 0});
     std::vector<std::int32_t> other(slit.node_count());
@@ -174,7 +174,7 @@ TEST_CASE("nodes that lie at one place and are not one") {
 }
 
 TEST_CASE("a hundred thousand pairs of nodes in one plane are found in seconds") {
-  // Millions of nodes with one coordinate in common.
+  // Many nodes with one coordinate in common.
   Mesh plate = make_box({{1, 1, 0.01}, {300, 300, 1}, ElementType::hex8});
   append(plate, make_box({{1, 1, 0.01}, {300, 300, 1}, ElementType::hex8}), {0, 0, 0.01});
   const double start = MPI_Wtime();
@@ -197,14 +197,14 @@ TEST_CASE("boxes that cut through facets are said with both areas, those that en
     CHECK(found(block, {4, 4, 10}, {6, 6, 10}).empty());
     CHECK(found(block, {4, 4, 9}, {6, 6, 11}).empty());
     CHECK(found(block, {4 - 1e-10, 4, 9}, {6 + 1e-10, 6 + 5e-4, 11}).empty());  // a sliver
-    // Round the whole of the upper face, and some way down the sides, whose facets are taller.
+    // Around the upper face and part of the way down the sides, whose facets are taller than the box.
     CHECK(found(block, {-1, -1, 9}, {11, 11, 11}).empty());
     CHECK(
         mentions(found(block, {-1, -1, 9}, {4.5, 11, 11}), "have the area 40, what lies in the box has 45"));
-    // Both the upper face and the facets that it has on a side.
+    // The upper face together with its facets on one side.
     CHECK(mentions(found(block, {-1, -1, 3}, {11, 0, 11}), "have the area 50, what lies in the box has 70"));
   }
-  // Lines in the plane; a body of revolution has areas.
+  // Lengths in plane strain; areas in axisymmetry.
   for (const PlaneState plane : {PlaneState::strain, PlaneState::axisymmetric}) {
     Mesh sheet = make_box({{4, 2, 0}, {4, 2, 0}, ElementType::quad4});
     sheet.plane = plane;
@@ -266,7 +266,7 @@ TEST_CASE("B-bar is taken where elements lock without it, and asked for where it
   model.materials[0].law = elastic_law(1.0, 0.49);
   CHECK(taken(ElementType::hex8));
   CHECK_FALSE(taken(ElementType::tet10));
-  // 0.45 is on the one side of the bound, whatever the units.
+  // 0.45 is on the same side of the bound in all units.
   for (double young = 1e-3; young < 1e12; young *= 1.7) {
     model.materials[0].law = elastic_law(young, 0.45);
     CHECK_FALSE(taken(ElementType::hex8));

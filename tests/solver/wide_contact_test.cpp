@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Contact rows over several nodes: facets pressed on a plane by their means, on any number of ranks, against
-// dense solves.
+// Contact rows over several nodes: mean displacements of facets pressed on a plane, on any number of ranks,
+// against dense solves.
 #include <doctest/doctest.h>
 
 #include <Eigen/Dense>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::array row_types{ElementType::tri3, ElementType::tet4, ElementType::tet10, ElementType::hex8};
 
-/// A second producer of rows: a facet's mean displacement, weighted by shares of its area, against a plane.
+/// A second source of contact rows: a facet's mean displacement, weighted by area, against a plane.
 void press_facet(const Problem& problem, std::int32_t facet, const Plane& plane, double tresca,
                  ConstraintRows& rows) {
   const Mesh& mesh = problem.mesh;
@@ -61,8 +61,8 @@ struct WideSample {
   Model model;
 };
 
-/// A block, clamped at its left end and pressed on a plane a little below. Facets left of `narrow_from` touch
-/// by their means, the nodes right of it one by one.
+/// A block clamped at its left end and pressed on a plane slightly below. Left of `narrow_from` facets are in
+/// contact by their means, right of it single nodes.
 WideSample pressed_block(ElementType type, double narrow_from, double tresca, double load = 0.15) {
   WideSample sample;
   const Mesh mesh = box_mesh(type);
@@ -106,7 +106,7 @@ double sign_of(std::int64_t node, std::size_t c) {
   return std::sin(1.3 * static_cast<double>(node) + 0.7 * static_cast<double>(c));
 }
 
-/// A consistent vector that does not depend on the partition, zero where displacements are given.
+/// A consistent vector that does not depend on the partitioning, zero at prescribed displacements.
 Vector some_vector(const Part& part, double turn) {
   const std::size_t dim = part.dim();
   Vector x(part.unknowns());
@@ -141,7 +141,7 @@ TEST_CASE("wide rows: forces are the transpose of traces on any number of ranks,
       const double m = part.contact[i].mass;
       product += m * nu.normal[i] * nv.normal[i];
       for (std::size_t k = 2 * i; k < 2 * i + 2; ++k) product += m * nu.tangential[k] * nv.tangential[k];
-      // The row alone, from the problem's own numbering.
+      // The row alone, in the problem's numbering.
       const auto index = part.contact_index[i];
       const auto at =
           static_cast<std::size_t>(std::find(whole.contact_index.begin(), whole.contact_index.end(), index) -
@@ -165,7 +165,7 @@ TEST_CASE("wide rows: forces are the transpose of traces on any number of ranks,
 TEST_CASE("wide rows are held by an orthogonal projection, and lifted by a pseudo-inverse") {
   for (const ElementType type : row_types) {
     CAPTURE(static_cast<int>(type));
-    // Means over the triangles of tet4 depend on each other.
+    // Means over the triangles of tet4 are linearly dependent.
     const WideSample sample = pressed_block(type, 1.0, 0.01);
     const Part part = distribute(on_first(sample.problem), MPI_COMM_WORLD);
     const TraceRows rows(part, std::vector<TraceChoice>(part.contact.size(), {true, true}));
@@ -187,14 +187,14 @@ TEST_CASE("wide rows are held by an orthogonal projection, and lifted by a pseud
     const double size = norm(x);
     rows.apply(pu, x);
     CHECK(norm(x) < 1e-11 * size);
-    // What is left out lies in the span of the rows: u − Pu = C⁺ C u.
+    // The projected-out part lies in the span of the rows: u − Pu = C⁺ C u.
     rows.apply(u, x);
     Vector lifted(part.unknowns());
     rows.lift(x, lifted);
     check_copies(part, lifted);
     for (std::size_t i = 0; i < u.size(); ++i)
       CHECK(u[i] - pu[i] == doctest::Approx(lifted[i]).epsilon(1e-9).scale(1.0));
-    // (C⁺)ᵀ: x·((C⁺)ᵀ v) = (C⁺ x)·v, with the same bits on ghosts.
+    // (C⁺)ᵀ: x·((C⁺)ᵀ v) = (C⁺ x)·v, bitwise the same on ghosts.
     Vector back(rows.local()), owned(rows.owned());
     rows.lift_transpose(v, back);
     rows.lift_transpose(v, owned);
@@ -204,7 +204,7 @@ TEST_CASE("wide rows are held by an orthogonal projection, and lifted by a pseud
       product += x[i] * owned[i];
     }
     CHECK(part.node_map.sum_all(product) == doctest::Approx(free.dot(lifted, v)).epsilon(1e-10));
-    // Node blocks are the diagonal of r CᵀDC.
+    // Node blocks are the block diagonal of r CᵀDC.
     Vector diagonal(part.unknowns(), 0.0), unit(part.unknowns(), 0.0), image(part.unknowns());
     const std::size_t dim = part.dim();
     for (const NodeBlock& block : rows.penalty_blocks(2.0))
@@ -229,7 +229,7 @@ TEST_CASE("wide rows: every contact method finds what a dense solver finds, on a
   int ranks = 1;
   MPI_Comm_size(MPI_COMM_WORLD, &ranks);
   for (const ElementType type : row_types)
-    for (const double narrow_from : {1.0, 5.0})  // both kinds side by side, wide ones alone
+    for (const double narrow_from : {1.0, 5.0})  // both kinds together, wide rows alone
       for (const double tresca : {0.0, 0.01}) {
         WideSample sample = pressed_block(type, narrow_from, tresca);
         DenseSolver dense(sample.problem);
@@ -238,7 +238,7 @@ TEST_CASE("wide rows: every contact method finds what a dense solver finds, on a
         CHECK(answer.forces.maxCoeff() > 0.0);
         for (const Contact contact :
              {Contact::admm, Contact::automatic, Contact::dual_admm, Contact::active_set}) {
-          // Ranks on the same cores wait for each other most of the time.
+          // Ranks that share cores mostly wait for each other, so test fewer cases.
           const bool distributed = contact == Contact::admm || contact == Contact::automatic;
           if (ranks > 1 && (!distributed || tresca == 0.0)) continue;
           CAPTURE(static_cast<int>(type));
@@ -250,7 +250,7 @@ TEST_CASE("wide rows: every contact method finds what a dense solver finds, on a
           const Solution solution = solve(part, sample.model.solver, {});
           CAPTURE(solution.result.message);
           CHECK(solution.result.status == Status::converged);
-          // As many as with narrow rows: pinning leaves the preconditioner what wide rows leave free.
+          // As many as with narrow rows: the constraints do not harm the preconditioner.
           if (contact == Contact::automatic) CHECK(solution.result.cg_iterations < 200);
           const std::vector<double> u = gather_nodal(part, solution.displacement, part.dim());
           if (part.node_map.rank > 0) continue;
@@ -263,7 +263,7 @@ TEST_CASE("wide rows: every contact method finds what a dense solver finds, on a
 TEST_CASE("wide rows: Coulomb friction follows the pressure inside the Newton step") {
   int ranks = 1;
   MPI_Comm_size(MPI_COMM_WORLD, &ranks);
-  // Means over the triangles of tet4 depend on each other: their pressures, and so the bounds, are not
+  // Means over the triangles of tet4 are linearly dependent: their pressures, and so the bounds, are not
   // unique.
   for (const ElementType type : {ElementType::tri3, ElementType::tet10, ElementType::hex8})
     for (const double narrow_from : {1.0, 5.0}) {
@@ -276,7 +276,8 @@ TEST_CASE("wide rows: Coulomb friction follows the pressure inside the Newton st
       CAPTURE(solution.result.message);
       CHECK(solution.result.status == Status::converged);
       CHECK(solution.result.slip_nodes > 0);
-      // With friction of the pressure before 10 to 12, and 17 to 19 with narrow points beside the wide ones.
+      // With bounds from the previous pressure: 10 to 12, and 17 to 19 with narrow points beside the wide
+      // ones.
       CHECK(solution.result.outer_iterations <= (narrow_from > 2.0 ? 8 : 32));
       if (ranks > 1) continue;
       sample.model.solver.contact = SolverOptions::Contact::admm;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every mistake in a case file is named by its path, with what was expected.
+// Errors in case files: each message names the path and the expected value.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
     const char* message;
   };
   const std::vector<Row> rows{
-      // Unknown keys, with a guess where one is near.
+      // Unknown keys, with a suggestion where a known key is similar.
       {"solver.tolerence=1",
        "solver.tolerence: unknown key (did you mean \"tolerance\"?); known here: tolerance,"},
       {"meterial=1", "meterial: unknown key (did you mean \"material\"?)"},
@@ -66,7 +66,7 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
       {"output.fields=vtk",
        "output.fields: expected \"vtu\" or \"none\", got \"vtk\" (did you mean \"vtu\"?)"},
       {"probe=[1,2,3]", "probe[0]: expected a list of 2 or 3 numbers, got 1"},
-      // Ranges.
+      // Values out of range.
       {"material[0].young=0", "material[0].young: expected a number > 0, got 0"},
       {"material[0].young=-1", "material[0].young: expected a number > 0, got -1"},
       {"material[0].poisson=0.5", "material[0].poisson: expected a number above -1 and below 0.5, got 0.5"},
@@ -123,7 +123,7 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
        "boundary[1].on.box: expected a lower corner that is below the upper one"},
       {"boundary[0].displacement=[null,null,null]",
        "boundary[0].displacement: expected at least one component that is not null"},
-      // Missing, and one of several.
+      // Missing keys, and one of several alternatives.
       {"boundary[1]={\"traction\":[0,0,1]}", "boundary[1].on: this key is missing"},
       {"boundary[1]={\"on\":\"left\"}",
        "boundary[1]: expected one of the keys displacement, traction, pressure, body_force"},
@@ -157,7 +157,7 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
        "boundary[3].acceleration: expected this key beside density alone"},
       {"boundary[1]={\"on\":\"left\",\"total_force\":3}",
        "boundary[1].total_force: expected a list of 2 or 3 numbers, got 3"},
-      // Materials by tests in tension.
+      // Materials from tension tests.
       {"material[0].plastic=[[250,0]]",
        "material[0]: expected only one of the keys law, plastic, tangent_modulus"},
       {"material[0].yield_stress=1",
@@ -185,7 +185,7 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
        "material[0].law.points[2][1]: expected a stress above that of the point before"},
       {"material[0].law={\"type\":\"table\",\"points\":[[0,0],[1,1],[2,3]]}",
        "material[0].law.points[2]: expected a secant s/x not above that of the point before"},
-      // What the solver does not offer.
+      // Combinations that the solver does not offer.
       {"solver.contact=active_set",
        "solver.contact: \"active_set\" together with the stop \"paper\" is not available"},
       {"solver.outer=newton", "solver.outer: \"newton\" together with the stop \"paper\" is not available"},
@@ -218,7 +218,7 @@ TEST_CASE("several mistakes are all said, each once, of ten at most") {
   INFO(all);
   CHECK(all.rfind("the case has 7 mistakes:\n  material[0].youngs: unknown key (did you mean \"young\"?)",
                   0) == 0);
-  // What is misspelt is not missing too.
+  // A misspelt key is not reported as missing too.
   CHECK(all.find("young: this key is missing") == std::string::npos);
   CHECK(all.find("boundary[1]: expected one of") == std::string::npos);
   for (const char* part :
@@ -229,7 +229,7 @@ TEST_CASE("several mistakes are all said, each once, of ten at most") {
         "\n  solver.tolerance: expected a number above 0",
         "\n  probe[0]: expected a list of 2 or 3 numbers, got 1"})
     CHECK(all.find(part) != std::string::npos);
-  // What is known only once all is read.
+  // Errors that need the whole case.
   document = complete_case();
   apply_override(document, "contact[0].obstacle.plane.normal=[0,0,0]");
   apply_override(document, "contact[0].name=same");
@@ -243,7 +243,7 @@ TEST_CASE("several mistakes are all said, each once, of ten at most") {
   INFO(many);
   CHECK(many.rfind("the case has 14 mistakes, of which the first 10 are:\n", 0) == 0);
   CHECK(std::count(many.begin(), many.end(), '\n') == 10);
-  // The file is named.
+  // The message names the file.
   try {
     parse_case(CaseText{"some/beam.json", document.dump()}, {});
     CHECK(false);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A case to start from, and what parsing a changed one says.
+// A complete sample case, and the error messages of changed copies.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace kacanov::testing {
 
-/// A case that has every kind of entry.
+/// A case with every kind of entry.
 inline nlohmann::json complete_case() {
   return parse_json(R"({
     "mesh": {"box": {"size": [4, 1, 1], "cells": [8, 2, 2], "element": "tet4"}},
@@ -31,7 +31,7 @@ inline nlohmann::json complete_case() {
                     "sample.json");
 }
 
-/// What parse_case says of the sample after one change; empty where it accepts it.
+/// Returns the error message of parse_case for the sample after one change, empty if it accepts the case.
 inline std::string complaint(const std::string& change) {
   nlohmann::json document = complete_case();
   try {

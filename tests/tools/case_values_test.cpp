@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a case file says arrives in the model, defaults included.
+// Values of a case file and their defaults arrive in the model.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -118,7 +118,7 @@ TEST_CASE("a yield stress becomes the strain at which the norm of the deviator r
         doctest::Approx(norm).epsilon(1e-14));
   const Law squared = law_of(R"({"type":"saturating","yield_stress":0.02,"q":2,"argument":"squared"})");
   CHECK(squared.yield_strain() == doctest::Approx(norm).epsilon(1e-14));
-  // Uniaxial stress sigma has ‖dev tau‖ = sqrt(2/3) sigma: the law leaves its elastic range right there.
+  // Uniaxial stress sigma has ‖dev tau‖ = sqrt(2/3) sigma: the law yields exactly there.
   CHECK(squared.plastic(norm * 1.000001));
   CHECK_FALSE(squared.plastic(norm * 0.999999));
   CHECK(2.0 * squared.secant(norm) * norm == doctest::Approx(std::sqrt(2.0 / 3.0) * stress));

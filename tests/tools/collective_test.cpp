@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cases of which one rank has what another lacks, on 1 to 8 ranks: the same answer, and nobody waits for
-// ever.
+// Cases with features that only some ranks have, on 1 to 8 ranks: the same answer, and no deadlock.
 #include <doctest/doctest.h>
 #include <mpi.h>
 #include <unistd.h>
@@ -21,8 +20,8 @@ using nlohmann::json;
 
 namespace {
 
-constexpr unsigned most_seconds = 240;  ///< of one solve, which takes one: machines may be busy
-std::string at_work;                    ///< what is solved, for whoever has to say where it hangs
+constexpr unsigned most_seconds = 240;  ///< limit per solve, which takes one: machines may be busy
+std::string at_work;                    ///< the current solve, for the message about a hang
 
 void say_what_hangs(int) {
   for (const char* text : {"no end of: ", at_work.c_str(), "\n"})
@@ -32,7 +31,7 @@ void say_what_hangs(int) {
 
 bool is_flat(const std::string& element) { return element == "tri3" || element == "quad4"; }
 
-/// A bar of which the right end is loaded; what a mix adds lies on one side of the middle.
+/// A bar loaded at its right end; additions are on one side of its middle.
 json bar(const std::string& element, bool small = false) {
   json input = json::parse(R"({
     "mesh": {"box": {"size": [1.2, 1, 1], "cells": [6, 2, 2]}},
@@ -57,7 +56,7 @@ json bar(const std::string& element, bool small = false) {
 
 bool is_flat(const json& input) { return is_flat(input["mesh"]["box"]["element"].get<std::string>()); }
 
-/// What a mix may add to the bar, each on one side.
+/// An optional feature of the bar, on one side of its middle.
 struct Addition {
   const char* name;
   void (*to)(json& input);
@@ -115,13 +114,13 @@ const std::vector<Addition> others{
     {"load steps", [](json& input) { input["solver"]["load_steps"] = 2; }},
 };
 
-/// What two runs have to agree on, on the first rank.
+/// Results that must agree between two runs, on the first rank.
 struct Answer {
   std::string status;
   std::vector<double> displacement, von_mises, pressure;
 };
 
-/// On every rank the status; "refused" where there are fewer elements than that takes.
+/// Solves the case on the ranks of `comm`; the status is "refused" if there are too few elements.
 Answer solve_on(const json& input, MPI_Comm comm) {
   const MpiSession mpi(comm);
   try {
@@ -143,7 +142,7 @@ double distance(const std::vector<double>& a, const std::vector<double>& b) {
   return off / std::max(largest, 1e-300);
 }
 
-/// The first ranks of all, the others sleep meanwhile: waiting ranks would take the cores.
+/// Runs `work` on the first ranks while the others sleep, because waiting ranks would occupy the cores.
 template <class Work>
 void on_first(int ranks, const Work& work) {
   int rank = 0;
@@ -169,7 +168,7 @@ bool is_first() {
   return rank == 0;
 }
 
-/// Compares what these ranks make of a case with what one makes of it.
+/// Compares the answer of a case on several numbers of ranks with that on one rank.
 void check_ranks(const std::string& name, const json& input, const std::vector<int>& numbers, bool small) {
   INFO(name);
   signal(SIGALRM, say_what_hangs);
@@ -213,7 +212,7 @@ void check_mix(const std::string& element, std::size_t formulation, std::size_t 
 }  // namespace
 
 TEST_CASE("mixes of formulations with all else on one side, on some numbers of ranks") {
-  // Each formulation with each element that has it, and each addition, once or twice.
+  // Each formulation with each element type that supports it, and each addition, once or twice.
   check_mix("tet10", 1, 0, {2, 3, 4, 5});
   check_mix("tet10", 2, 1, {4});
   check_mix("tet10", 3, 3, {8});
@@ -234,7 +233,7 @@ TEST_CASE("all mixes on all numbers of ranks" * doctest::skip()) {
     for (const char* element : {"tet4", "tet10", "hex8", "tri3", "quad4"})
       for (std::size_t formulation = 0; formulation < formulations.size(); ++formulation)
         for (std::size_t other = 0; other < others.size(); ++other) {
-          if (std::string(element) == "tri3" && formulation % 2 == 1) continue;  // there is no mixed one
+          if (std::string(element) == "tri3" && formulation % 2 == 1) continue;  // has no mixed formulation
           check_mix(element, formulation, other, {2, 3, 4, 5, 6, 7, 8}, small);
         }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Limits of control groups, from files as Linux has them in either version.
+// Limits of control groups, from files as in Linux's versions 1 and 2.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -46,7 +46,7 @@ TEST_CASE("version 2: the narrowest of the groups above counts, and what can be 
   const ControlGroupLimits found = limits(folder, "0::/a/b\n");
   CHECK(found.cores == doctest::Approx(1.5));
   CHECK(found.memory == doctest::Approx(650000));
-  // Of another container's group only what is mounted here is seen: the root.
+  // Of another container's group only the mounted root is visible.
   CHECK(std::isinf(limits(folder, "0::/elsewhere\n").cores));
 }
 

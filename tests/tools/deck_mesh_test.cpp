@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is made of an Abaqus or CalculiX deck as a mesh, and what is said of one that cannot be used.
+// Meshes from Abaqus and CalculiX decks, and the error messages for unusable decks.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -44,7 +44,7 @@ std::vector<std::int32_t> members(const Mesh& mesh, const std::string& name, int
   return found->members;
 }
 
-/// The one value of a coordinate that all nodes of a group of one facet have.
+/// Returns the coordinate that all nodes of a group's single facet share.
 double plane_of(const Mesh& mesh, const std::string& name, std::size_t coordinate) {
   const auto facets = members(mesh, name, mesh.dim() - 1);
   REQUIRE(facets.size() == 1);
@@ -76,7 +76,7 @@ TEST_CASE("the sides S1 to S6 of a hexahedron are those of the manual") {
 }
 
 TEST_CASE("quadratic tetrahedra have their mid-sides where the manual has them, and their sides") {
-  // Nodes 5 to 10 in the middle of the edges 12, 23, 31, 14, 24, 34, over two lines.
+  // Nodes 5 to 10 are the midpoints of the edges 12, 23, 31, 14, 24, 34, on two lines.
   const Mesh mesh = read(
       "*NODE\n1,0,0,0\n2,2,0,0\n3,0,2,0\n4,0,0,2\n5,1,0,0\n6,1,1,0\n7,0,1,0\n8,0,0,1\n9,1,0,1\n10,0,1,1\n"
       "*ELEMENT, TYPE=C3D10\n1, 1,2,3,4,5,6,7,\n8,9,10\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nothing of a deck is dropped or added in silence: parameters, fields, lines, places, second definitions.
+// Decks are read without silent changes: parameters, fields, lines, positions, repeated definitions.
 #include <doctest/doctest.h>
 
 #include <sstream>
@@ -15,7 +15,7 @@ using namespace kacanov;
 
 namespace {
 
-/// A deck with every keyword that is read.
+/// A deck with every supported keyword.
 const std::string everything =
     "*HEADING\nA cube\n*PART, NAME=P\n*NODE, "
     "NSET=NALL\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n"
@@ -69,7 +69,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-/// The text with `more` behind line `which`, from 0.
+/// Returns the text with `more` appended to line `which`, counted from 0.
 std::string with(const std::vector<std::string>& lines, std::size_t which, const std::string& more) {
   std::string text;
   for (std::size_t i = 0; i < lines.size(); ++i) text += lines[i] + (i == which ? more : "") + "\n";
@@ -105,13 +105,14 @@ TEST_CASE("a field too many is refused by line, whatever the keyword") {
     if (lines[i][0] == '*' || lines[i] == "A cube" || lines[i] == "its title" || lines[i] == "U") continue;
     CAPTURE(lines[i]);
     for (const char* more : {",,,,,,,3", ",3,3,3,3,3,3,3", ",,,,,,,x"}) {
-      // Of sets, numbers are more members; a surface of nodes has more of the first field alone.
+      // More numbers in a set are further members; for a surface of nodes only the first field may be
+      // followed by others.
       if (lines[i] == "5,6,7,8" && more[7] != 'x') continue;
       const std::string message = refusal(with(lines, i, more));
       CAPTURE(message);
       CHECK(message.starts_with("a.inp: line " + std::to_string(i + 1) + ": "));
     }
-    CHECK(document(with(lines, i, ",")) == document(everything));  // which says that nothing follows
+    CHECK(document(with(lines, i, ",")) == document(everything));  // a trailing comma, which adds no field
   }
   CHECK(refusal(model + begin + held + "*CLOAD\nTOP,3,3,-2.5\n" + end) ==
         "a.inp: line 25: expected no more than a node or set, a degree of freedom and a force, got \"-2.5\" "
@@ -296,7 +297,7 @@ TEST_CASE("names and titles in another encoding are escaped, and stay apart") {
   const DeckCase apart = made(mesh + two + steel + section + begin +
                               "*BOUNDARY\nR\xe4,1,3\nR\xf6,1\n*CLOAD\nr\xf6,3,-2.5\n" + end);
   CHECK(apart.document["boundary"].size() == 3);
-  // A character of two bytes where the title is cut.
+  // A two-byte character at the position where the title is cut.
   const DeckCase cut = made("*HEADING\n" + std::string(199, 'x') + "\xc3\xa4\xc3\xa4\n" + plain);
   CHECK(cut.document["title"] == std::string(199, 'x'));
 }

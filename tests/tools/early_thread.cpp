@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A library to be preloaded into the program: starts a thread before main(), as
-// OpenBLAS does. Such a thread blocks no signal, and the system may hand it any.
+// A library to be preloaded into the program: starts a thread before main(), as OpenBLAS does. This thread
+// blocks no signal, so the system may deliver any signal to it.
 #include <unistd.h>
 
 #include <thread>

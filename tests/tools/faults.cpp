@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A library to be preloaded into the program: makes the n-th operation on files fail, or the power go.
+// A library to be preloaded into the program: makes the n-th file operation fail, or cuts the power.
 //
-// Counted are, below the folder KACANOV_FAULT_FOLDER and in one process: open, write, flush, sync, close,
-// truncate, rename and remove. Of the variables, all numbers:
-// KACANOV_FAULT_AT      the n-th fails, with the error KACANOV_FAULT_ERRNO (default: no space left);
-// KACANOV_FAULT_STAYS   and so do all after it;
-// KACANOV_FAULT_CUT     before the n-th the power goes: files lose what was not synced, and folders names;
-// KACANOV_FAULT_NAMES   names are kept then, so that a renamed file stands there without its content;
-// KACANOV_FAULT_NEW     the n-th `new` after the first such operation (reading the case is one) throws;
-// KACANOV_FAULT_LOG     a file that gets a line an operation, and at the end how often `new` was called.
+// It counts these operations below the folder KACANOV_FAULT_FOLDER in one process: open, write, flush, sync,
+// close, truncate, rename and remove. The other variables are numbers:
+// KACANOV_FAULT_AT      the n-th operation fails with the error KACANOV_FAULT_ERRNO (default: no space left);
+// KACANOV_FAULT_STAYS   all later operations fail too;
+// KACANOV_FAULT_CUT     power fails before the n-th operation: unsynced data and names are lost;
+// KACANOV_FAULT_NAMES   names survive the power failure, so that a renamed file exists without its content;
+// KACANOV_FAULT_NEW     the n-th `new` after the first counted operation (reading the case is one) throws;
+// KACANOV_FAULT_LOG     a file that gets one line per operation, and at the end the number of calls of `new`.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -39,7 +39,7 @@ long number_of(const char* variable) {
 
 bool given(const char* variable) { return std::getenv(variable) != nullptr; }
 
-thread_local bool busy = false;  // within this library
+thread_local bool busy = false;  // inside this library
 long count = 0, news = 0, failing_new = 0;
 bool counting_news = false;
 
@@ -66,11 +66,11 @@ std::string path_of(int handle) {
   return size > 0 ? std::string(target, static_cast<std::size_t>(size)) : std::string();
 }
 
-/// A change of names that the folder has not been synced for; `kept`: a second name of what stood there.
+/// A change of a name that its folder has not synced; `kept` is a second name of the previous content.
 struct Change {
   std::string path, kept;
 };
-/// A file with data that is not on the disk.
+/// A file with unsynced data.
 struct Dirty {
   ino_t inode;
   std::string path;
@@ -121,7 +121,7 @@ struct AtEnd {
   _exit(137);
 }
 
-/// Whether this operation is to fail; ends the process where the power goes.
+/// Counts an operation and returns whether it has to fail; ends the process at the simulated power failure.
 bool fails(const char* what, const std::string& path) {
   failing_new = number_of("KACANOV_FAULT_NEW");
   counting_news = true;
@@ -143,7 +143,7 @@ void written(int handle) {
   dirty().push_back({status.st_ino, path_of(handle)});
 }
 
-/// Keeps what stands under a name, for the case that the change is lost.
+/// Keeps the current content of a name, in case the change is lost.
 void keep(const std::string& path) {
   if (!cutting()) return;
   Change change{path, ""};
@@ -155,7 +155,7 @@ void keep(const std::string& path) {
   changes().push_back(change);
 }
 
-/// Opens a stream as fopen does, for the two names it has.
+/// Opens a stream like fopen, for both of its symbols.
 template <class Real>
 std::FILE* open_stream(Real real, const char* path, const char* mode) {
   if (busy) return real(path, mode);
@@ -168,7 +168,7 @@ std::FILE* open_stream(Real real, const char* path, const char* mode) {
   return real(path, mode);
 }
 
-/// Takes a name away, for the two functions that do.
+/// Removes a name, for the two functions that do so.
 template <class Real>
 int take_away(Real real, const char* path) {
   if (busy) return real(path);
@@ -285,7 +285,7 @@ int rename(const char* from, const char* to) {
   keep(name);
   for (Dirty& file : dirty())
     if (file.path == old) file.path = name;
-  // The temporary name was as new: undone, it stands nowhere.
+  // The temporary name was new too: undoing the rename must not restore it.
   std::erase_if(changes(), [&](const Change& change) { return change.path == old && change.kept.empty(); });
   return real(from, to);
 }

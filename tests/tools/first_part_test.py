@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the first page of the user guide says of the ball on a block: that the run gives it, and that Hertz does.
+"""Checks the numbers of the ball on a block on the user guide's first page against a run and against Hertz.
 
 usage: first_part_test.py PROGRAM FOLDER-OF-THE-PROJECT
 """

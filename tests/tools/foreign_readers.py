@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Do other readers open what a run writes, and does the program read what they write?
+"""Checks that other readers open the files of a run, and that the program reads the files that they write.
 
 usage: foreign_readers.py PROGRAM meshio|vtk
 
 Runs a small block on a plane, on one rank and on two; opens body.vtu and contact.vtu; compares points, cells and
-displacements with what result.json says. With meshio the body comes back as a mesh, in every format that the program
-reads, and every number is read from files of small bodies, where offsets of arrays may be taken for each other.
+displacements with result.json. With meshio it also writes the body as a mesh in every format that the program
+reads, and reads every number from files of small bodies, in which offsets of arrays can be confused.
 """
 import json
 import os
@@ -33,7 +33,7 @@ CONTACT = {"gap": 1, "pressure": 1, "tangential_traction": 3, "normal": 3, "disp
 
 
 def by_meshio(path):
-    import meshio  # here, because only one of the two may be installed
+    import meshio  # imported here because only one of the two may be installed
     grid = meshio.read(path)
     return (grid.points, sum(len(block.data) for block in grid.cells), grid.point_data,
             {name: values[0] for name, values in grid.cell_data.items()})
@@ -53,7 +53,7 @@ def by_vtk(path):
 
 
 def plainly(path):
-    """Bytes of every array by its name, found by their offsets."""
+    """Returns the bytes of every array by name, located by their offsets."""
     raw = path.read_bytes()
     head = raw[:raw.index(b"<AppendedData")]
     data = raw.index(b"_", len(head)) + 1
@@ -106,7 +106,7 @@ def check_fields(reader, folder, result):
 
 
 def read_back(program, folder, result):
-    """meshio writes the body in each format; the program finds the same points and cells."""
+    """Writes the body in each format with meshio and checks that the program finds the same points and cells."""
     import meshio
     grid = meshio.read(folder / "out" / "body.vtu")
     plain = meshio.Mesh(grid.points, grid.cells)
@@ -122,7 +122,7 @@ def read_back(program, folder, result):
 
 
 def read_small(program, folder):
-    """Bodies of which meshio would take one array for another if they came in the order of the XML."""
+    """Reads bodies for which meshio would confuse arrays if they were in the order of the XML."""
     for cells in ([1, 1], [1, 2], [2, 3], [3, 5], [7, 2]):
         case = {"mesh": {"box": {"size": [2, 1], "cells": cells, "element": "tri3"}}, "material": CASE["material"],
                 "boundary": [{"on": "left", "displacement": [0, 0]}, {"on": "top", "traction": [0.01, -0.1]}]}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hosts that write numbers with a comma: what is read and what is said does not depend on it.
+// Hosts that write numbers with a decimal comma: input and output must not depend on the locale.
 #include <doctest/doctest.h>
 #include <kacanov/kacanov_solve.h>
 
@@ -19,7 +19,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// What a solve tells its host, but for what the clock and the machine say.
+/// Everything that a solve returns to its host, except times and machine data.
 struct Told {
   int code = -1;
   std::string message;
@@ -60,14 +60,14 @@ Told told(const std::string& text, const std::string& folder) {
   return out;
 }
 
-/// 1234567.5 is "1.234.567,5" to streams that ask the global locale.
+/// With this facet streams in the global locale print 1234567.5 as "1.234.567,5".
 class Commas : public std::numpunct<char> {
   char do_decimal_point() const override { return ','; }
   char do_thousands_sep() const override { return '.'; }
   std::string do_grouping() const override { return "\3"; }
 };
 
-/// The global locale of C++, and that of C where `name` is one, until the block ends.
+/// Sets the global locale of C++, and that of C if `name` is one, until the end of the scope.
 class HostLocale {
  public:
   explicit HostLocale(const char* name)
@@ -87,7 +87,7 @@ class HostLocale {
   std::locale cpp_;
 };
 
-/// Whether the C library has a German locale here: one that is installed, or one made in `place`.
+/// Returns whether the C library has a German locale: an installed one, or one made in `place`.
 bool has_german(const Workplace& place) {
   const auto found = [] {
     const std::string before = std::setlocale(LC_ALL, nullptr);
@@ -106,7 +106,7 @@ bool has_german(const Workplace& place) {
 struct Sample {
   const char* what;
   nlohmann::json input;
-  const char* part;  ///< of the message, or of the result where there is no error; empty: none
+  const char* part;  ///< expected part of the error message, or of the result without an error; may be empty
 };
 
 nlohmann::json block() {

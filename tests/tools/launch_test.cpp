@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the program needs before MPI is there: its own file, and a folder for
-// Open MPI.
+// Preparations before MPI starts: the path of the program's own file, and a folder for Open MPI.
 #include <doctest/doctest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -16,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// In /proc nobody can make a folder, not even root.
+/// Not even root can make a folder in /proc.
 const fs::path closed = "/proc";
 
 fs::path made_in(const fs::path& base) {
@@ -24,7 +23,7 @@ fs::path made_in(const fs::path& base) {
   return LockedFolder(bases).path();
 }
 
-/// Where a process that was killed has had its folder.
+/// Returns the folder left behind by a process that was killed.
 fs::path left_over(const fs::path& base) {
   const pid_t child = fork();
   if (child == 0) {
@@ -74,9 +73,9 @@ TEST_CASE("folders go with their process, those of killed processes with the nex
   const std::array bases{base};
   const LockedFolder live(bases);
   CHECK_FALSE(fs::exists(old));
-  CHECK(fs::exists(foreign) == root);  // of another user
+  CHECK(fs::exists(foreign) == root);  // owned by another user
   CHECK(fs::exists(link));
-  CHECK(fs::exists(other));  // nothing says that its process is gone
+  CHECK(fs::exists(other));  // no evidence that its process has ended
   const fs::path second = made_in(base);
   CHECK(second != live.path());
   CHECK(fs::is_directory(live.path()));

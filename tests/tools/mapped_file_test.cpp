@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mapped file that somebody shortens while it is read, and files that are written under a trap.
+// A mapped file that is truncated while it is read, and atomic files whose temporary name is a symbolic link.
 #include <doctest/doctest.h>
 
 #include <unistd.h>

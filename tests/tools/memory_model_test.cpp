@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The memory model adds up what the arrays hold: its terms against their sizes.
+// The memory model: its terms against the sizes of the arrays.
 #include <doctest/doctest.h>
 
 #include <kacanov/operator.hpp>
@@ -15,7 +15,7 @@ double bytes_of(const Arrays&... arrays) {
   return (0.0 + ... + static_cast<double>(sizeof(arrays[0]) * arrays.size()));
 }
 
-/// Held at one end.
+/// A body fixed at one end.
 Model clamped() {
   Model model;
   MaterialEntry all;
@@ -29,7 +29,7 @@ Model clamped() {
   return model;
 }
 
-/// Large enough for its surface not to matter.
+/// A box large enough for its surface not to matter.
 BoxSpec box_of(ElementType type) {
   const int n = dimension(type) == 2 ? 100 : type == ElementType::tet10 ? 12 : 24;
   return {{1, 1, 1}, {n, n, n}, type};
@@ -120,7 +120,7 @@ TEST_CASE("a run that would not fit if it flowed is told so, and not refused") {
   CHECK_FALSE(may_outgrow(size, 1, 1));
   const double available = available_memory();
   REQUIRE(available > 0.0);
-  // A tenth less than there is.
+  // Needs a tenth less than the available memory.
   const double factor = 0.9 * available / estimated_memory(size, 1);
   size.nodes *= factor, size.elements *= factor;
   CHECK_NOTHROW(refuse_what_cannot_fit(size, 1, 1));
@@ -147,7 +147,7 @@ TEST_CASE("the estimate is the largest sum at one time, and each rank adds what 
                four = estimated_memory(size, 4);
   CHECK(two > one);
   CHECK(four > two);
-  // Handing out needs the mesh beside one part; later the work is divided, and nothing is there twice.
+  // Distribution needs the mesh beside one part; the solve is divided among the ranks without duplicates.
   CHECK(four < 2.0 * one);
   size.nodes *= 2.0;
   size.elements *= 2.0;

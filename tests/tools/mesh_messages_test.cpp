@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the reader makes of groups, and what it says of files it cannot use.
+// Groups of Gmsh files, and the error messages for unusable files.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ std::string elements(const std::vector<std::string>& lines) {
 
 Mesh read_text(const std::string& bytes) { return read_gmsh("a.msh", bytes); }
 
-/// The message, without the name in front.
+/// Returns the error message without the leading file name.
 std::string refusal(const std::string& bytes) {
   try {
     read_text(bytes);
@@ -123,7 +123,7 @@ TEST_CASE("quadrilaterals make a body in 2D, their sides its boundary") {
   CHECK(sheet.element_count() == 2);
   CHECK(sheet.facet_count() == 6);
   CHECK(group(sheet, "7", 1).members.size() == 1);
-  CHECK(group(sheet, "8", 1).members.empty());  // between the two
+  CHECK(group(sheet, "8", 1).members.empty());  // interior facet
   CHECK(group(sheet, "9", 2).members.size() == 2);
   CHECK_NOTHROW(check_mesh(sheet));
 }
@@ -277,7 +277,7 @@ TEST_CASE("elements and nodes that cannot be used are named by their number") {
 }
 
 TEST_CASE("nodes that no element of the body has are left out, with a warning") {
-  // The first node and the fourth; a point and a side refer to them.
+  // The first node and the fourth belong to no element; a point and a side refer to them.
   const Mesh mesh = read_text(
       format22 + "$Nodes\n5\n7 9 9 0\n8 0 0 0\n9 1 0 0\n10 5 5 0\n11 0 1 0\n$EndNodes\n" +
       elements({"1 15 2 1 1 7", "2 15 2 1 1 11", "3 1 2 2 1 8 9", "4 1 2 2 1 9 10", "5 2 2 3 1 8 9 11"}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mesh written in every form of Gmsh's format comes back as it was; a corrupt one is refused or harmless.
+// Round trips of a mesh through every variant of Gmsh's format; corrupt files are rejected or harmless.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -41,7 +41,7 @@ void check_equal(const Mesh& a, const Mesh& b) {
   }
 }
 
-/// A box whose groups overlap, in every dimension, with elements and facets that are in none.
+/// A box with overlapping groups in every dimension, and with elements and facets without a group.
 Mesh grouped_box(ElementType type) {
   Mesh mesh = make_box({{2, 1, 1}, {2, 2, 1}, type});
   const auto elements = static_cast<std::int32_t>(mesh.element_count());
@@ -50,7 +50,7 @@ Mesh grouped_box(ElementType type) {
   for (std::int32_t e = elements / 4; e < 3 * elements / 4; ++e) middle.members.push_back(e);
   mesh.groups.push_back(first);
   mesh.groups.push_back(middle);
-  mesh.groups.push_back({"left", mesh.dim(), {0}});  // the name of a side again, in another dimension
+  mesh.groups.push_back({"left", mesh.dim(), {0}});  // the name of a side, used again in another dimension
   mesh.groups.push_back({"some nodes", 0, {1, 3, 4}});
   mesh.groups.push_back({"corner", 0, {0, 3}});
   mesh.groups.push_back({"nothing", mesh.dim() - 1, {}});
@@ -58,11 +58,11 @@ Mesh grouped_box(ElementType type) {
   for (std::size_t f = 0; f + 1 < mesh.facet_count(); ++f)
     most.members.push_back(static_cast<std::int32_t>(f));
   mesh.groups.push_back(most);
-  mesh.groups.erase(mesh.groups.begin() + 1);  // the right side keeps one name only, or none
+  mesh.groups.erase(mesh.groups.begin() + 1);  // the right side keeps at most one name
   return mesh;
 }
 
-/// Sparse, unordered numbers.
+/// Gives the mesh sparse, unordered numbers.
 void renumber(Mesh& mesh, std::int64_t spread, unsigned seed) {
   mesh.node_tags.resize(mesh.node_count());
   for (std::size_t i = 0; i < mesh.node_tags.size(); ++i)
@@ -73,7 +73,7 @@ void renumber(Mesh& mesh, std::int64_t spread, unsigned seed) {
     mesh.element_tags[e] = 900 - static_cast<std::int64_t>(e);
 }
 
-/// The mesh in a file with these bytes, or nothing if it is refused.
+/// Returns the mesh in a file with these bytes, or nothing if the reader rejects it.
 std::optional<Mesh> read_if_valid(const std::string& bytes) {
   try {
     return read_gmsh("a.msh", bytes);
@@ -83,7 +83,7 @@ std::optional<Mesh> read_if_valid(const std::string& bytes) {
   }
 }
 
-/// Whether every index is in range, so that nothing later can go astray.
+/// Returns whether every index is in range, so that later code can rely on it.
 bool consistent(const Mesh& mesh) {
   const auto below = [](const std::vector<std::int32_t>& indices, std::size_t limit) {
     return std::all_of(indices.begin(), indices.end(),
@@ -147,7 +147,7 @@ TEST_CASE("a truncated file is refused, wherever it ends") {
   for (const GmshForm& form : all_forms) {
     const std::string small = gmsh_file(mesh, form);
     std::size_t accepted = 0;
-    // The last line may lack its end.
+    // The last line may lack its line end.
     const std::size_t ends = form.carriage_returns ? 2 : 1;
     for (std::size_t length = 0; length < small.size() - ends; length += 7)
       accepted += read_if_valid(small.substr(0, length)).has_value();

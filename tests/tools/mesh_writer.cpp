@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The writers of formats 2.2 and 4.1, ASCII and binary alike.
+// Writers of Gmsh formats 2.2 and 4.1, ASCII and binary.
 #include "mesh_writer.hpp"
 
 #include <algorithm>
@@ -55,7 +55,7 @@ class Out {
   std::string bytes_;
 };
 
-/// Elements of one dimension in a row that have the same groups: a Gmsh entity.
+/// A Gmsh entity: consecutive elements of one dimension with the same groups.
 struct Entity {
   int dimension = 0;
   int type = 0;
@@ -81,7 +81,7 @@ class Writer {
   void collect() {
     const std::size_t n = nodes_per_element(mesh_.type);
     for (int dimension = 0; dimension <= mesh_.dim(); ++dimension) {
-      std::map<std::int32_t, std::vector<int>> physicals;  // of every member
+      std::map<std::int32_t, std::vector<int>> physicals;  // groups of each member
       if (dimension == mesh_.dim())
         for (std::size_t e = 0; e < mesh_.element_count(); ++e) physicals[static_cast<std::int32_t>(e)];
       for (std::size_t g = 0; g < mesh_.groups.size(); ++g)
@@ -157,7 +157,7 @@ class Writer {
     for (std::size_t k = 0; k < 3; ++k) out_.real(k < dim ? mesh_.coordinates[node * dim + k] : 0.125);
   }
 
-  /// Two blocks, the first of an entity of dimension 2.
+  /// Writes the nodes in two blocks, the first in an entity of dimension 2.
   void node_blocks() {
     const std::size_t nodes = mesh_.node_count(), half = nodes / 2;
     out_.begin("Nodes");
@@ -225,7 +225,7 @@ class Writer {
     for (const Entity& e : entities_)
       for (std::size_t k = 0; k < e.tags.size(); ++k)
         for (std::size_t p = 0; p < std::max<std::size_t>(1, e.physicals.size()); ++p) {
-          // Gmsh numbers the repetitions; the first keeps the element's own number.
+          // Gmsh numbers the repetitions; the first one keeps the element's own number.
           const std::int64_t tag = p == 0 ? e.tags[k] : next_++;
           if (form_.binary) {
             for (const int v : {e.type, 1, 2}) out_.tag(v);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes a mesh in every form of Gmsh's format that the reader has to read.
+// Writes meshes in every variant of Gmsh's format that the reader supports.
 #pragma once
 
 #include <string>
@@ -9,14 +9,14 @@
 namespace kacanov::testing {
 
 struct GmshForm {
-  bool new_format = true;  ///< 4.1, else 2.2
+  bool new_format = true;  ///< 4.1, otherwise 2.2
   bool binary = false;
-  bool parametric = false;        ///< 4.1: nodes with parameters
+  bool parametric = false;        ///< 4.1: nodes with parametric coordinates
   bool carriage_returns = false;  ///< ASCII: Windows line ends
 };
 
-/// Elements, facets and nodes that belong to groups are written as Gmsh does: in 4.1 under entities with all
-/// their groups, in 2.2 once for every group. Elements come without a group too, facets and nodes do not.
+/// Returns the mesh as a Gmsh file. Elements, facets and nodes of groups are written as by Gmsh: in 4.1 under
+/// entities with all their groups, in 2.2 once per group. Only elements may be without a group.
 std::string gmsh_file(const Mesh& mesh, const GmshForm& form);
 
 }  // namespace kacanov::testing

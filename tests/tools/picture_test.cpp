@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pictures: well-formed XML, areas that are kept, marks in their place, images that can be decoded.
+// The pictures: well-formed XML, preserved areas, positions of marks, images that can be decoded.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -26,7 +26,7 @@ std::size_t count(const std::string& text, const std::string& part) {
   return found;
 }
 
-/// Whether tags nest, attributes are quoted and nothing unescaped is left between.
+/// Returns whether tags nest, attributes are quoted and the text between is escaped.
 bool well_formed(const std::string& text) {
   std::vector<std::string> open;
   for (std::size_t at = text.find("?>") + 2; at < text.size();) {
@@ -55,7 +55,7 @@ bool finite(const std::string& svg) {
   return svg.find("nan") == std::string::npos && svg.find("inf") == std::string::npos;
 }
 
-/// Area of the closed polygons in the paths of SVG text, by the shoelace formula.
+/// Returns the area of the closed polygons in SVG paths, by the shoelace formula.
 double polygon_area(const std::string& svg) {
   double area = 0;
   for (std::size_t at = 0; (at = svg.find('M', at)) != std::string::npos;) {
@@ -78,7 +78,7 @@ double polygon_area(const std::string& svg) {
   return area;
 }
 
-/// Decodes deflate data with the fixed code, the only one the writer uses.
+/// Decodes deflate data with the fixed Huffman code, the only one that the writer uses.
 class Inflate {
  public:
   explicit Inflate(const std::string& data) : data_(data) {}
@@ -156,7 +156,7 @@ struct Bent {
   }
 };
 
-/// A box bent down, with a stress that grows along it.
+/// A box bent downwards, with a stress that increases along it.
 Bent bent_box(const BoxSpec& spec, double amount) {
   Bent bent{make_box(spec), {}, {}};
   const std::size_t dim = bent.mesh.dim();
@@ -196,7 +196,7 @@ TEST_CASE("supports, loads and obstacles are drawn where they are seen, and told
   const Bent plane = bent_box({{4, 1, 0}, {8, 2, 0}, ElementType::tri3}, 0.5);
   DeformedPicture picture = plane.picture();
   CHECK(deformed_svg(picture).find("blue: held") == std::string::npos);
-  // Nodes 0 and 1 are half a unit apart, and the same node twice is drawn once.
+  // Nodes 0 and 1 are half a unit apart, and a repeated node is drawn once.
   for (const std::int32_t node : {0, 1, 1}) picture.marks.push_back({Mark::Kind::support, node, {}});
   picture.marks.push_back({Mark::Kind::load, 8, {0, -1, 0}});
   picture.obstacles.push_back({{{{0, -1, 0}, {4, -1, 0}, {4, -1, 0}}}, {0, 1, 0}});
@@ -205,7 +205,7 @@ TEST_CASE("supports, loads and obstacles are drawn where they are seen, and told
   CHECK(count(svg, "l-4.5 8h9Z") == 2);
   CHECK(svg.find("blue: held; red: loads") != std::string::npos);
   CHECK(svg.find("springs") == std::string::npos);
-  // The arrow points down: it begins above its tip.
+  // The arrow points down: it starts above its tip.
   const std::size_t fill = svg.find("fill=\"#d91a1a\""), path = svg.rfind("d=\"M", fill);
   double x = 0, y = 0, to_x = 0, to_y = 0;
   REQUIRE(std::sscanf(svg.c_str() + path, "d=\"M%lf %lfL%lf %lf", &x, &y, &to_x, &to_y) == 4);
@@ -216,13 +216,13 @@ TEST_CASE("supports, loads and obstacles are drawn where they are seen, and told
   picture = block.picture();
   for (std::int32_t node = 0; node < 15; ++node) picture.marks.push_back({Mark::Kind::support, node, {}});
   picture.view = {0, 0, 2};
-  CHECK(count(deformed_svg(picture), "l-4.5 8h9Z") == 0);  // all below
+  CHECK(count(deformed_svg(picture), "l-4.5 8h9Z") == 0);  // all on the hidden side
   picture.view = {0, 0, -2};
   CHECK(count(deformed_svg(picture), "l-4.5 8h9Z") == 15);
   picture.view = {1, -1, -1};
   CHECK(well_formed(deformed_svg(picture)));
 
-  Bent disc = plane;  // the axis of revolution, unless it is far away
+  Bent disc = plane;  // shows the axis of revolution, unless it is far away
   disc.mesh.plane = PlaneState::axisymmetric;
   for (const std::size_t axes : {1, 1, 0}) {
     CHECK(count(deformed_svg(disc.picture()), "x1=\"36\" y1=\"52\" x2=\"36\"") == axes);
@@ -256,14 +256,14 @@ TEST_CASE("a large mesh becomes an image, and the file stays small") {
 }
 
 TEST_CASE("bands of colour cover the body exactly once") {
-  const Bent bent = bent_box({{4, 1, 0}, {32, 8, 0}, ElementType::tri3}, 0.5);  // shearing keeps the area
+  const Bent bent = bent_box({{4, 1, 0}, {32, 8, 0}, ElementType::tri3}, 0.5);  // shearing preserves the area
   const View view = View::of(bent.mesh);
   const VisibleSurface surface = visible_surface(bent.mesh, view, bent.displacement, 1, bent.stress);
   const ColourScale colours(bent.stress);
   const Frame frame{10, 20, 400, 150, 0, 1, 100};
   CHECK(surface.faces.size() == bent.mesh.element_count());
   std::string paths = draw_as_paths(surface, colours, frame, true);
-  paths.resize(paths.find("</g>"));  // lines of elements follow
+  paths.resize(paths.find("</g>"));  // element lines follow
   CHECK(polygon_area(paths) == doctest::Approx(4 * 100 * 100).epsilon(0.01));
 }
 
@@ -282,7 +282,7 @@ TEST_CASE("of a convex body, the visible faces project onto its shadow once") {
     }
     CHECK(area ==
           doctest::Approx(2 * std::abs(view.eye[0]) + 3 * std::abs(view.eye[1]) + 6 * std::abs(view.eye[2])));
-    // Twelve edges of the box in the outline, three of them hidden.
+    // The outline has the twelve edges of the box without three hidden ones.
     double length = 0, seen = 0;
     for (const Segment& s : surface.outline)
       length += std::hypot(s.to[0] - s.from[0], s.to[1] - s.from[1], s.to[2] - s.from[2]);
@@ -306,7 +306,7 @@ TEST_CASE("the colour scale covers the values in bands of equal, round width") {
       CHECK((v <= scale.edge(b + 1) * (1 + 1e-9) || scale.open()));
     }
     double before = -1;
-    for (int b = 0; b < scale.bands(); ++b) {  // viridis grows lighter throughout
+    for (int b = 0; b < scale.bands(); ++b) {  // viridis is monotone in lightness
       const Rgb c = scale.colour(b, 1);
       const double light = 0.21 * c[0] + 0.72 * c[1] + 0.07 * c[2];
       CHECK(light > before);
@@ -377,11 +377,11 @@ TEST_CASE("a sweep shows every run, its marks in order, and the runs that failed
   CHECK(well_formed(svg));
   CHECK(finite(svg));
   CHECK(count(svg, "r=\"3\"") == 2 * 15);
-  CHECK(count(svg, "r=\"4.5\"") == 2 * 5 + 1);  // and the legend
+  CHECK(count(svg, "r=\"4.5\"") == 2 * 5 + 1);  // plus one in the legend
   CHECK(svg.find("not converged") != std::string::npos);
   for (const char* label : {">10⁻¹<", ">10⁰<", ">10²<"}) CHECK(svg.find(label) != std::string::npos);
   CHECK(svg.find(">none<") == std::string::npos);
-  // The lines of the marks, from left to right.
+  // Positions of the marked lines, from left to right.
   std::vector<double> places;
   for (std::size_t at = 0; (at = svg.find("#8e44ad\" stroke-width", at)) != std::string::npos; ++at)
     places.push_back(std::stod(svg.substr(svg.rfind("x1=\"", at) + 4)));

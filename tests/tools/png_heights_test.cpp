@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// PNG height maps: every kind of grey, what is refused.
+// PNG height maps: every kind of grey image, and rejected files.
 #include <doctest/doctest.h>
 
 #include <random>
@@ -78,7 +78,7 @@ TEST_CASE("a PNG that holds no heights is refused with the reason") {
   std::string damaged = whole;
   damaged[19] = 4;  // the width
   refuses(damaged, "byte 8: the chunk \"IHDR\" is damaged");
-  // A few bytes that say they are a thousand million pixels.
+  // A few bytes that declare a thousand million pixels.
   const std::string signature = whole.substr(0, 8), end = testing::png_chunk("IEND", "");
   const auto header = [](const char* size) {
     return testing::png_chunk("IHDR", std::string(size, 8) + std::string("\x08\0\0\0\0", 5));

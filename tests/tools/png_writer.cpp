@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// PNG files of any kind for tests: filters, packs and sums.
+// PNG files of all kinds for tests: filters, compression and checksums.
 #include "png_writer.hpp"
 
 #include <zlib.h>

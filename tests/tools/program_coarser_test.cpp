@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// mesh.files: coarser meshes of the same body, which the case names, to start from.
+// mesh.files: start from coarser meshes of the same body that the case names.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ using nlohmann::json;
 
 namespace {
 
-/// A box with its inner nodes moved about, so that nodes of one mesh are not among those of another.
+/// A box with perturbed inner nodes, so that the meshes are not nested.
 Mesh moved_box(ElementType type, int cells) {
   const BoxSpec box{{1.0, 1.0, 1.0}, {cells, cells, cells}, type};
   Mesh mesh = make_box(box);
@@ -69,7 +69,7 @@ TEST_CASE("a run starts from coarser meshes of the same body that the case names
     CHECK(result["nested"][0]["unknowns"] == 3 * 5 * 5 * 5);
     CHECK(result["nested"][1]["unknowns"] == 3 * 8 * 8 * 8);
     CHECK(result["outer_iterations"] < one["outer_iterations"]);
-    CHECK(result["discretisation"]["meshes"] == 1);  // they are no halves of each other
+    CHECK(result["discretisation"]["meshes"] == 1);  // the meshes are not nested refinements
     for (std::size_t c = 0; c < 3; ++c)
       CHECK(result["contact_force"][c].get<double>() ==
             doctest::Approx(one["contact_force"][c].get<double>()).epsilon(1e-4).scale(0.01));

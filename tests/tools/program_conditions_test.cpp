@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Springs and temperature in cases: closed solutions, on any ranks, each verified from its files; bad input.
+// Springs and temperature in cases: closed-form solutions on any number of ranks, verified from the files;
+// bad input.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -13,7 +14,7 @@ using nlohmann::json;
 
 namespace {
 
-/// 1 × 1 × 2 with rollers on three sides, a probe in the corner that is free; no load.
+/// A bar of 1 × 1 × 2 with rollers on three sides and a probe in its free corner; no load.
 json bar(const std::string& element, double poisson) {
   json bar = parsed(R"({
     "mesh": {"box": {"size": [1, 1, 2], "cells": [2, 2, 4]}},
@@ -86,7 +87,7 @@ TEST_CASE("a body that springs alone hold moves as a whole where its load acts o
 }
 
 TEST_CASE("a clamped strip on Winkler's bed") {
-  // EI w'''' + k w = q; quadratic tetrahedra, slender enough for the theory of beams.
+  // Elastic foundation, EI w'''' + k w = q; quadratic tetrahedra, slender enough for beam theory.
   const double l = 10, h = 0.5, young = 200, k = 0.05, q = 0.001;
   json input = bar("tet10", 0.0);
   input["mesh"]["box"] = parsed(R"({"size": [20, 0.5, 0.5], "cells": [40, 1, 1], "element": "tet10"})");
@@ -227,7 +228,7 @@ TEST_CASE("forces of a plane body are those of its thickness, in and out") {
   CHECK(thick["load"]["down"]["force"][1].get<double>() == doctest::Approx(-0.5 * 2 * thickness));
   CHECK(thick["mesh"]["volume"].get<double>() == doctest::Approx(2 * thickness));
   CHECK(thick["contact"]["floor"]["area"].get<double>() == doctest::Approx(2 * thickness));
-  // The same body of a thickness of 1 under an eighth of the forces.
+  // The same body with thickness 1 under an eighth of the forces.
   input.erase("thickness");
   input["boundary"][1]["total_force"] = {4 / thickness, 0};
   input["boundary"][3]["node_spring"] = {0, 0.5 / thickness};
@@ -240,7 +241,7 @@ TEST_CASE("forces of a plane body are those of its thickness, in and out") {
           CHECK(thickness * entry[key][c].get<double>() ==
                 doctest::Approx(thick[list][name][key][c].get<double>()).epsilon(1e-9));
   CHECK(thin["max_von_mises"] == thick["max_von_mises"]);
-  // An obstacle that is pushed, in plane strain.
+  // A force-controlled obstacle in plane strain.
   input["thickness"] = thickness;
   input["plane"] = "strain";
   input["boundary"] = parsed(R"([{"on": "bottom", "name": "base", "displacement": [0, 0]}])");
@@ -265,7 +266,7 @@ TEST_CASE("forces of a plane body are those of its thickness, in and out") {
 }
 
 TEST_CASE("several obstacles are pushed, and each has its own force") {
-  // Two balls side by side on a block, and a jaw at either end of it; friction between.
+  // Two balls side by side on a block, and a jaw at each end of it; with friction.
   json input = parsed(R"({
     "mesh": {"box": {"size": [4, 1], "cells": [16, 4], "element": "quad4"}},
     "material": [{"on": "all", "young": 200, "poisson": 0.3}],

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Checkpoints and boundaries whose hash is right and whose content is not: refused by file and entry.
+// Checkpoints and boundaries with a correct hash and wrong content: rejected with file and entry.
 #include <doctest/doctest.h>
 
 #include <bit>
@@ -16,7 +16,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// What stands in a checkpoint's file, to be changed and written anew with the hash that belongs to it.
+/// The content of a checkpoint file, which tests change and write back with a matching hash.
 struct RawCheckpoint {
   nlohmann::json header;
   std::map<std::string, std::vector<double>> fields;
@@ -44,7 +44,7 @@ void change_checkpoint(const std::string& file, const std::function<void(RawChec
   writer.commit();
 }
 
-/// A square of two triangles with contact at its bottom, as it is kept beside the parts.
+/// A square of two triangles with contact at its bottom, as stored beside the parts.
 Problem small_boundary(std::vector<std::int32_t>& nodes, Part& whole) {
   Model model;
   model.materials.push_back({Selector{}, elastic_law(1.0, 0.3)});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whole decks as cases, meshes from one format to another, and cases to start from.
+// Whole decks as cases, conversions of meshes between formats, and templates of cases.
 #include <doctest/doctest.h>
 
 #include "verified_run.hpp"
@@ -8,18 +8,18 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// A bar of 2 × 1 × 1 of two cubes along x; what comes behind its elements is left to the test.
+/// A bar of 2 × 1 × 1 of two cubes along x; each test adds what follows the elements.
 const std::string bar_nodes =
     "*HEADING\nBar in tension\n*NODE, "
     "NSET=Nall\n1,0,0,0\n2,1,0,0\n3,2,0,0\n4,0,1,0\n5,1,1,0\n6,2,1,0\n7,0,0,1\n"
     "8,1,0,1\n9,2,0,1\n10,0,1,1\n11,1,1,1\n12,2,1,1\n*ELEMENT, TYPE=C3D8, ELSET=Bar\n"
     "1, 1,2,5,4,7,8,11,10\n2, 2,3,6,5,8,9,12,11\n*NSET, NSET=Left\n1,4,7,10\n*NSET, NSET=Right\n3,6,9,12\n";
-/// Held so that it may grow thinner.
+/// Supports that allow lateral contraction.
 const std::string held = "*BOUNDARY\nLeft, 1\n1, 2, 3\n7, 2\n4, 3\n";
 const std::string steel = "*MATERIAL, NAME=Steel\n*ELASTIC\n200000., 0.3\n";
 const std::string section = "*SOLID SECTION, ELSET=Bar, MATERIAL=STEEL\n";
 
-/// What a deck comes to, solved, verified by the program's own verifier; in the place's folder.
+/// Returns the result of a deck, solved and verified by the program's own verifier in the folder of `place`.
 nlohmann::json solved_deck(const Workplace& place, const std::string& deck, const std::string& more = "") {
   place.put("deck.inp", deck);
   const Outcome made = place.run("convert deck.inp --force");
@@ -88,14 +88,14 @@ TEST_CASE("a deck is run at once, to the numbers of the case that convert makes 
   CHECK(refused.exit_code == 2);
   CHECK(refused.error.find("deck.inp: line 39: a second step") != std::string::npos);
   place.put("deck.inp", deck + "*STEP\n*HEAT TRANSFER\n");
-  CHECK(place.run("run deck.inp --leave-out").exit_code == 2);  // two steps, whatever is left out
+  CHECK(place.run("run deck.inp --leave-out").exit_code == 2);  // two load steps, whatever is omitted
   place.put("result.inp", deck);
   CHECK(place.run("run result.inp").error.find("expected another name") != std::string::npos);
 }
 
 TEST_CASE("the curve of *PLASTIC is that of a bar in tension") {
   const Workplace place;
-  const double stress = 300.0, strain = stress / 200000.0 + 0.005;  // half way from 250 to 350
+  const double stress = 300.0, strain = stress / 200000.0 + 0.005;  // half-way between 250 and 350
   const nlohmann::json result =
       solved_deck(place, bar_nodes + held + steel + "*PLASTIC\n250., 0.\n350., 0.01\n" + section +
                              "*STEP\n*STATIC\n0.1, 1.\n*CLOAD\nRight, 1, 75.\n*NODE FILE\nU\n*END STEP\n");
@@ -181,7 +181,7 @@ TEST_CASE("what cannot be part of a case is refused with file and line, and left
 
 TEST_CASE(
     "decks of plane stress, plane strain and round an axis: the plane, the thickness, forces of all of it") {
-  // 2 × 1 of two squares, held so that it may grow thinner; 3 thick.
+  // 2 × 1, two squares, thickness 3, with supports that allow lateral contraction.
   const auto flat = [](const std::string& type) {
     return "*NODE\n1,0,0\n2,1,0\n3,2,0\n4,0,1\n5,1,1\n6,2,1\n*ELEMENT, TYPE=" + type +
            ", ELSET=Bar\n1,1,2,5,4\n2,2,3,6,5\n*NSET, NSET=Left\n1,4\n*NSET, NSET=Lower\n1,2,3\n" + steel +
@@ -241,7 +241,7 @@ TEST_CASE("a deck's temperatures: what the nodes are warmer by than at the start
                              "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNall, 20.\n" + step +
                              "*TEMPERATURE\nNall, 70.\nRight, 270.\nLeft, 20.\n*END STEP\n");
   CHECK(contents(place.path("deck.temperature.csv")).find("\n2, 50\n3, 250\n") != std::string::npos);
-  // 0, 50 and 250 at the nodes: 150 in the mean of the warmer element, and nothing moves.
+  // 0, 50 and 250 at the nodes: the warmer element's mean is 150, and nothing moves.
   CHECK(result["max_von_mises"].get<double>() < 1e-9 * pressure);
   const Outcome again = place.run("run deck.inp --output at_once --set solver.tolerance=1e-10");
   INFO(again.error);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bad input given to the real program: exit code 2, one message, nothing written.
+// Bad input to the real program: exit code 2, one message, no files written.
 #include <doctest/doctest.h>
 
 #include <vector>
@@ -10,7 +10,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// Exit code 2, nothing on standard output, one line that starts like this, and no results.
+/// Checks for exit code 2, nothing on standard output, one line that starts with `start`, and no results.
 void check_refused(const Workplace& place, const Outcome& outcome, const std::string& start) {
   INFO("error: ", outcome.error);
   CHECK(outcome.exit_code == 2);
@@ -74,7 +74,7 @@ TEST_CASE("bad cases are refused alike by run and check, alone and on two ranks"
   for (const Row& row : rows) {
     const Workplace place;
     nlohmann::json document = changed(row.pointer, row.value);
-    // Friction would hold the beam on rollers.
+    // Friction would support the beam on rollers.
     if (std::string(row.pointer) == "/boundary/0/displacement") document["contact"][0].erase("friction");
     place.put_json("beam.json", document);
     check_refused(place, place.run("run beam.json"), row.start);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What breaks a run of the real program from outside: a rank that is killed, no memory, a full disk. One
-// message, no hang, exit code 3.
+// External failures during a run of the real program: a killed rank, no memory, a full disk. Each gives one
+// message and exit code 3, without hanging.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -12,8 +12,8 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// Starts a program of several ranks, kills the last of them once the file is there, and leaves with the
-/// program's exit code: kill_rank.sh FILE PROGRAM ARGUMENTS...
+/// kill_rank.sh FILE PROGRAM ARGUMENTS... starts a program of several ranks, kills the last rank once the
+/// file exists, and exits with the program's exit code.
 constexpr const char* kill_script = R"(file=$1; shift
 "$@" & program=$!
 while [ ! -e "$file" ] && kill -0 $program 2>/dev/null; do sleep 0.02; done
@@ -23,8 +23,8 @@ kill -s KILL $rank
 wait $program
 )";
 
-/// Starts a program, sends it SIGTERM once the file is there, and leaves with its exit code: signal.sh FILE
-/// PROGRAM ARGUMENTS... What the shell itself says of the signal is not wanted.
+/// signal.sh FILE PROGRAM ARGUMENTS... starts a program, sends it SIGTERM once the file exists, and exits
+/// with its exit code; the shell's own message about the signal is suppressed.
 constexpr const char* signal_script = R"(file=$1; shift
 "$@" & program=$!
 exec 2>/dev/null
@@ -33,11 +33,11 @@ kill -s TERM $program
 wait $program
 )";
 
-/// Starts a program with a limit: limited.sh "-v KILOBYTES" PROGRAM ARGUMENTS... A file that grows too large
-/// is then an error like a full disk.
+/// limited.sh "-v KILOBYTES" PROGRAM ARGUMENTS... starts a program with a limit. With a limit on file sizes a
+/// file that grows too large is an error like a full disk.
 constexpr const char* limit_script = "ulimit $1\nshift\nexec \"$@\"\n";
 
-/// Exit code 3 and one line with this text; result.json, where it is due, has it too.
+/// Checks for exit code 3 and one line with this text, which result.json contains too if it must exist.
 void check_failed(const Workplace& place, const Outcome& outcome, const std::string& text) {
   INFO("error: ", outcome.error);
   CHECK(outcome.exit_code == 3);
@@ -50,13 +50,13 @@ void check_failed(const Workplace& place, const Outcome& outcome, const std::str
   CHECK(result["message"].get<std::string>().find(text) != std::string::npos);
 }
 
-/// No file under a temporary name.
+/// Checks that no file under a temporary name is left.
 void check_nothing_half(const Workplace& place) {
   for (const auto& entry : std::filesystem::directory_iterator(place.path("out")))
     CHECK(entry.path().string().find(".part") == std::string::npos);
 }
 
-/// Needs some 250 MB more than the program does for nothing; no contact, so that a step is a solve.
+/// Needs some 250 MB more than the idle program; without contact, so that a step is one solve.
 [[maybe_unused]] nlohmann::json large_block() {
   return parsed(R"({
     "mesh": {"box": {"size": [2, 1, 1], "cells": [100, 50, 50], "element": "hex8"}},
@@ -66,7 +66,7 @@ void check_nothing_half(const Workplace& place) {
   })");
 }
 
-/// Two ranks under mpiexec, of which the last one has a limit.
+/// Two ranks under mpiexec, of which only the last has a limit.
 std::string last_rank_limited(const std::string& limit, const std::string& arguments) {
   return arguments + " : -n 1 sh limited.sh '" + limit + "' '" KACANOV_PROGRAM "' " + arguments;
 }
@@ -117,9 +117,9 @@ TEST_CASE("where MPI cannot be started the exit code is 3, and result.json says 
     const nlohmann::json result = place.json("out/result.json");
     CHECK(result["status"] == "failed");
     CHECK(result["message"].get<std::string>().find(text) != std::string::npos);
-    CHECK_FALSE(result.contains("probe"));  // of the run before
+    CHECK_FALSE(result.contains("probe"));  // of the previous run
   };
-  // In /proc no folder can be made.
+  // No folder can be made in /proc.
   const std::string closed = "OMPI_MCA_orte_tmpdir_base=/proc";
   for (const bool again : {false, true}) {
     check_told("1", closed, "none can be made in /proc (");
@@ -129,13 +129,13 @@ TEST_CASE("where MPI cannot be started the exit code is 3, and result.json says 
   }
 }
 
-#ifndef KACANOV_TESTS_SANITIZED  // whose shadow memory knows no limit
+#ifndef KACANOV_TESTS_SANITIZED  // the shadow memory of the sanitizers exceeds any limit
 TEST_CASE("where memory runs out the run says so, on one rank and when only the last of two has none") {
   const Workplace place;
   place.put_json("beam.json", small_beam());
   place.put_json("block.json", large_block());
   place.put("limited.sh", limit_script);
-  // What the program and MPI need for nothing depends on the machine: the least with which a small case is
+  // The base memory of the program and MPI depends on the machine: find the least with which a small case is
   // solved.
   const auto least = [&](int kilobytes, const auto& run) {
     while (kilobytes < 4 << 20 && run("-v " + std::to_string(kilobytes)).exit_code != 0)
@@ -150,11 +150,11 @@ TEST_CASE("where memory runs out the run says so, on one rank and when only the 
   CHECK(alone.exit_code == 3);
   CHECK(alone.error == "kacanov: internal failure: out of memory\n");
 
-  // Open MPI starts on a few hundred megabytes or hangs: not to be tried below what it has here.
+  // With a few hundred megabytes Open MPI starts or hangs: never try less than it needs here.
   const int two = least(300 << 10, [&](const std::string& limit) {
     return place.run(last_rank_limited(limit, "run beam.json --output small"), two_ranks);
   });
-  // Enough for the part, not for solving: the first rank is within the solver when the other one fails.
+  // Enough for the part, not for solving: the first rank is inside the solver when the other one fails.
   const std::string limit = "-v " + std::to_string(two + (32 << 10));
   check_failed(place, place.run(last_rank_limited(limit, "run block.json --output out"), two_ranks),
                "out of memory");
@@ -179,7 +179,7 @@ TEST_CASE("a signal while METIS is at work ends the program, without a failure o
   beam["mesh"]["box"]["cells"] = {320, 80};
   place.put_json("beam.json", beam);
   place.put("signal.sh", signal_script);
-  // As many parts as take METIS seconds; their folder is made right before.
+  // So many parts that METIS takes seconds; their folder is made just before.
   const Outcome outcome = place.run("partition beam.json --ranks 20000 --output parts",
                                     patience + " sh signal.sh parts/unfinished");
   CHECK(outcome.exit_code == 143);
@@ -195,8 +195,7 @@ TEST_CASE("a full disk: what was written stays whole, nothing half is left") {
   place.put("limited.sh", limit_script);
   REQUIRE(place.run("run beam.json --output out --set solver.max_outer=1").exit_code == 1);
   const std::string before = contents(place.path("out/checkpoint.kacanov"));
-  // A limit on the size of files stands for the full disk: the fields are larger, result.json and the
-  // checkpoint smaller.
+  // A limit on file sizes simulates a full disk: the fields exceed it, result.json and the checkpoint do not.
   const std::uintmax_t fields = std::filesystem::file_size(place.path("out/body.vtu"));
   REQUIRE(before.size() < fields / 2);
   const std::string limit = "sh limited.sh '-f " + std::to_string(fields / 2 / 512) + "'";
@@ -212,7 +211,7 @@ TEST_CASE("a full disk: what was written stays whole, nothing half is left") {
 TEST_CASE("a full disk on several ranks, of which the first one writes" * doctest::skip(sanitized)) {
   const Workplace place;
   nlohmann::json beam = small_beam();
-  // A body larger than what MPI itself writes: four megabytes of shared memory a rank.
+  // A file larger than any that MPI itself writes: four megabytes of shared memory per rank.
   beam["mesh"]["box"]["cells"] = {400, 100};
   beam["material"][0].erase("law");
   beam["solver"] = {{"tolerance", 1e-3}, {"max_outer", 1}};
@@ -253,7 +252,7 @@ TEST_CASE("a full disk leaves the parts of the split before") {
   check_full();
   CHECK(place.run("run beam.json --parts parts").exit_code == 0);
   CHECK(place.json("results/beam/result.json")["ranks"] == 3);
-  // What a partition that was killed has left is no harm, and goes with the next one.
+  // The remains of a killed partition do no harm, and the next one removes them.
   std::filesystem::create_directory(place.path("parts/unfinished"));
   place.put("parts/unfinished/part_7.kacanov", "half");
   REQUIRE(place.run("partition beam.json --ranks 2 --output parts").exit_code == 0);

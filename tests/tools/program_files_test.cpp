@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nothing lost, nothing mixed: two runs in one folder, links and strange names, cases that come through
-// pipes, outputs that nobody takes, runs that are paused.
+// Files of runs are neither lost nor mixed: two runs in one folder, links and unusual names, cases from
+// pipes, closed output pipes, paused runs.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -11,18 +11,18 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// A run that goes on until it is asked to stop.
+/// A run that continues until it is told to stop.
 const std::string endless =
     "run beam.json --output out --set solver.contact=admm --set solver.r=1e-6 "
     "--set solver.max_contact=2 --set solver.max_outer=100000000";
 
-/// Runs a script with sh, the program being $PROGRAM.
+/// Runs a script with sh; $PROGRAM is the program.
 Outcome script(const Workplace& place, const std::string& text) {
   place.put("script.sh", "PROGRAM=$1\n" + text);
   return place.run("", patience + " sh script.sh");
 }
 
-/// Waits until a file is there, for a minute at most.
+/// Shell commands that wait until a file exists, for a minute at most.
 std::string await(const std::string& file) {
   return "n=0; until [ -e " + file + " ] || [ $n = 600 ]; do sleep 0.1; n=$((n+1)); done\n";
 }
@@ -41,7 +41,7 @@ TEST_CASE("a folder serves one run at a time, and is free again however that end
     CHECK(second.exit_code == 2);
     CHECK(second.error.find("--output: another run (process ") != std::string::npos);
     CHECK(count_lines(second.error) == 1);
-    // The ranks of the one that was killed need a moment to notice.
+    // The ranks of the killed run need a moment to notice.
     const Outcome third = script(place,
                                  "n=0; until $PROGRAM run beam.json --output out --restart >/dev/null || "
                                  "[ $n = 50 ]; do sleep 0.2; n=$((n+1)); done\n[ $n -lt 50 ]\n");
@@ -146,13 +146,13 @@ TEST_CASE("what a name has of a terminal's language does not get there") {
 TEST_CASE("numbers come first, and no picture takes them away") {
   const Workplace place;
   place.put_json("beam.json", small_beam());
-  // A folder where the picture is to be: it cannot be written.
+  // A folder in the place of the picture, which makes it impossible to write.
   std::filesystem::create_directories(place.path("out/deformed.svg/in the way"));
   Outcome outcome = place.run("run beam.json --output out");
-  CHECK(outcome.exit_code == 2);  // clearing an old picture away is not to take what is no picture
+  CHECK(outcome.exit_code == 2);  // removing an old picture must not remove anything else
   CHECK(place.has("out/deformed.svg/in the way"));
   std::filesystem::remove_all(place.path("out"));
-  // Fields that do not fit: the run has failed, and its numbers are there.
+  // Fields that exceed the limit: the run has failed, but its numbers exist.
   place.put("limited.sh", "ulimit -f $1\nshift\nexec \"$@\"\n");
   outcome = place.run("run beam.json --output out --set mesh.box.cells=[64,16] --set output.checkpoint=false",
                       patience + " sh limited.sh 40");
@@ -175,14 +175,14 @@ TEST_CASE("a run whose words nobody reads writes all its files and leaves with i
       CHECK(place.json("out/result.json")["status"] == "converged");
       CHECK(place.has("out/summary.txt"));
     }
-  // Where printing is all there is to do, it has not been done.
+  // If printing is the only task, failing to print is an error.
   CHECK(place.run("check beam.json", "sh -c '\"$0\" \"$@\" >/dev/full'").exit_code == 3);
 }
 
 TEST_CASE("a run of several ranks pauses and goes on with its terminal") {
   const Workplace place;
   place.put_json("beam.json", small_beam());
-  // Ranks that are stopped write no checkpoints; those that go on do.
+  // Stopped ranks write no checkpoints; resumed ranks do.
   const Outcome outcome = script(place, "$PROGRAM " + endless + " --ranks 2 >/dev/null 2>&1 & run=$!\n" +
                                             await("out/checkpoint.kacanov") +
                                             "kill -TSTP $run; sleep 0.5\nrm out/checkpoint.kacanov; sleep 1\n"
@@ -215,7 +215,7 @@ TEST_CASE("each run keeps Open MPI's files in a folder of its own, and leaves no
   place.put_json("beam.json", small_beam());
   std::filesystem::create_directory(place.path("tmp"));
   for (const char* ranks : {"1", "2"}) {
-    // What is in the folder while the ranks are at work: a session each.
+    // The folder while the ranks work: one session each.
     const Outcome outcome =
         script(place, std::string("export TMPDIR=$PWD/tmp\n$PROGRAM ") + endless + " --ranks " + ranks +
                           " >/dev/null 2>&1 & run=$!\n" + await("out/checkpoint.kacanov") +
@@ -224,7 +224,7 @@ TEST_CASE("each run keeps Open MPI's files in a folder of its own, and leaves no
     CHECK(outcome.output.find("ompi.") != std::string::npos);
     CHECK(std::filesystem::is_empty(place.path("tmp")));
   }
-  // Where somebody says where, it is there.
+  // A folder set by the user is used.
   std::filesystem::create_directory(place.path("mine"));
   const Outcome told =
       script(place, "export TMPDIR=$PWD/tmp OMPI_MCA_orte_tmpdir_base=$PWD/mine\n$PROGRAM " + endless +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Small cases of friction, gaps and loose bodies that earlier versions failed on, run as users run them.
+// Small cases of friction, gaps and unsupported bodies on which earlier versions failed, run as by users.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ struct Run {
   int count(const char* key) const { return result.at(key); }
 };
 
-/// The case of that name in tests/cases/hard, at default settings.
+/// Runs the case of this name from tests/cases/hard with default settings.
 Run run(const std::string& name) {
   const Workplace place;
   const Outcome outcome = place.run("run " KACANOV_HARD_CASES "/" + name + ".json --ranks 1 --output " +
@@ -70,13 +70,13 @@ TEST_CASE("quadratic facets: an even pressure reads as one, a shear below its bo
 
 TEST_CASE("a bracket on its foot, the rest held by friction") {
   const Run bracket = converged("bracket_linear_coulomb", 20, 200);
-  // The tip's area is 0.3, its load (10, 0, −50).
+  // The tip has area 0.3 and load (10, 0, −50).
   CHECK(bracket.number("contact_force", 2) == doctest::Approx(15.0).epsilon(1e-4));
   CHECK(bracket.count("slip_nodes") > 0);
 }
 
 TEST_CASE("nodes in the edge between floor and wall belong to both") {
-  // The load is what floor and wall bear together.
+  // Floor and wall together carry the load.
   const Run cube = converged("cube_in_corner_coulomb", 15, 150);
   CHECK(cube.number("contact_force", 0) + cube.number("friction_force", 0) == doctest::Approx(50.0));
   CHECK(cube.number("contact_force", 2) + cube.number("friction_force", 2) == doctest::Approx(100.0));
@@ -119,7 +119,7 @@ TEST_CASE("nothing is tried for long where slivers leave a larger body no operat
 }
 
 TEST_CASE("bodies fall on to their obstacles") {
-  // A width of 2 under 10; and what hangs on a pin without friction.
+  // A width of 2 under 10; then a body hanging on a pin without friction.
   CHECK(converged("fall_through_gap", 15, 300).number("contact_force", 1) == doctest::Approx(20.0));
   const Run hook = converged("hook_on_pin_frictionless", 30, 6000);
   CHECK(hook.number("contact_force", 2) == doctest::Approx(-3.8334).epsilon(1e-4));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Slip counted from the load step before, beside entries at rest, moving, pushed and faced again; and what
-// the verifier finds of such runs.
+// Slip relative to the previous load step, with fixed, moving, force-controlled and relinearised obstacles,
+// and errors that the verifier must find in such runs.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// Two plane blocks that do not touch, the second one at x = 5: lines "<name> bottom" and "<name> top".
+/// Two blocks in 2D that do not touch, the second one at x = 5: groups "<name> bottom" and "<name> top".
 std::string two_blocks() {
   std::ostringstream nodes, cells;
   int node = 0, cell = 0;
@@ -45,7 +45,7 @@ std::string two_blocks() {
   return text.str();
 }
 
-/// A slab that is pressed on a floor, dragged along and let halfway back; the other block is held above a
+/// A slab that is pressed on a floor, dragged along and moved halfway back; the other block is fixed above a
 /// plane.
 nlohmann::json slab_and_block(const std::string& reference) {
   nlohmann::json input = parsed(R"({
@@ -72,7 +72,7 @@ double friction(const nlohmann::json& result, const char* name) {
 constexpr const char* lift = R"({"path": [{"time": 3, "translation": [0.004, 0.012]}]})";
 constexpr const char* push = R"({"force": 3, "direction": [0.1, 1]})";
 
-/// What moves an entry, in all combinations.
+/// All combinations of relinearisation, motion and force control of a contact entry.
 std::vector<nlohmann::json> movements() {
   std::vector<nlohmann::json> all;
   for (const char* one : {"{}", R"({"relinearise": true})"}) {
@@ -200,7 +200,7 @@ TEST_CASE("an obstacle that is pushed, withdrawn and pushed again") {
       continue;
     }
     CHECK(double(contact["travel"]) == 0);
-    CHECK(double(contact["friction_force"][0]) == 0);  // a film is withdrawn with its obstacle
+    CHECK(double(contact["friction_force"][0]) == 0);  // the film is removed with its obstacle
     CHECK(double(result["max_displacement"]["value"]) < 1e-9);
   }
 }
@@ -221,12 +221,12 @@ TEST_CASE("the verifier finds what is wrong of a history, in every load step") {
       INFO(outcome.error, outcome.output);
       return outcome.exit_code;
     };
-    // Another reference than that of the run.
+    // Another friction reference than that of the run.
     nlohmann::json changed = input;
     changed["contact"][0]["friction"]["reference"] = "start";
     place.put_json("changed.json", changed);
     CHECK(verified("changed.json") == 1);
-    // Fields of another step in place of those before, and none.
+    // Fields of another load step in place of the right ones, then missing fields.
     const std::string step = contents(place.path("out/body_step_1.vtu")),
                       end = contents(place.path("out/body_step_2.vtu"));
     place.put("out/body_step_1.vtu", end);
@@ -235,7 +235,7 @@ TEST_CASE("the verifier finds what is wrong of a history, in every load step") {
     CHECK(verified("case.json") == 2);
     place.put("out/body_step_1.vtu", step);
     CHECK(verified("case.json") == 0);
-    // Numbers of a step before the last.
+    // Changed numbers of an earlier load step.
     const nlohmann::json result = place.json("out/result.json");
     nlohmann::json false_result = result;
     false_result["load_steps"][1]["friction_force"][0] =
@@ -243,7 +243,7 @@ TEST_CASE("the verifier finds what is wrong of a history, in every load step") {
     place.put_json("out/result.json", false_result);
     CHECK(verified("case.json") == 1);
   }
-  // A run whose slip counts from the start, presented as one that counts from the step before.
+  // A run with slip relative to the start, presented as one relative to the previous step.
   nlohmann::json input = slab_and_block("start");
   solved(place, input);
   place.put_json("case.json", slab_and_block("step"));
@@ -260,7 +260,7 @@ TEST_CASE("a force that is not found is not reached") {
                  "force_controlled": {"force": 1, "direction": [0, 1]}}],
     "output": {"report": false}})");
   for (const bool first : {true, false}) {
-    // So far away that a small force is less than the travel's rounding makes of it.
+    // So far away that a small force is below the effect of rounding errors in the travel.
     input["steps"] = parsed(R"([{"time": 2, "factors": {"tool": 1e-7}}])");
     if (!first)
       input["steps"] =

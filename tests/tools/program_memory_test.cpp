@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What `kacanov check` and `run` refuse for want of memory.
+// Cases that `kacanov check` and `run` refuse for lack of memory.
 #include <doctest/doctest.h>
 
 #include "program_runner.hpp"
@@ -27,7 +27,7 @@ TEST_CASE("what cannot fit is refused before it starts, with both numbers") {
     const Outcome outcome = place.run(std::string(command) + " beam.json --ranks 1");
     CAPTURE(outcome.error);
     CHECK(outcome.exit_code == 2);
-    // Some 315 bytes an unknown, 3.15e9 of them.
+    // About 315 bytes per unknown, 3.15e9 unknowns.
     const std::string before = "this case needs about ";
     const std::size_t at = outcome.error.find(before);
     REQUIRE(at != std::string::npos);

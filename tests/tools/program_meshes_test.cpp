@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whole runs on meshes of every source: boxes, files, refined ones, quadratic ones, from coarser ones on.
+// Whole runs on meshes of every source: boxes, files, refined and quadratic meshes, nested starts from
+// coarser meshes.
 #include <doctest/doctest.h>
 
 #include "../sanitized.hpp"
@@ -9,7 +10,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// A sphere pressed into a block, its mesh refined where the error is.
+/// A sphere pressed into a block whose mesh is refined where the error is large.
 nlohmann::json press() {
   return nlohmann::json::parse(R"({
     "mesh": {"box": {"size": [1, 1, 1], "cells": [3, 3, 3], "element": "tet10"}, "adapt": {"error": 0.12}},
@@ -179,9 +180,9 @@ TEST_CASE("a first mesh that does not see the obstacle is refined until it does"
   const nlohmann::json result = place.json("results/needle/result.json");
   CHECK(result["contact_force"][2].get<double>() < 0.0);
   CHECK(result["discretisation"]["energy"] <= 0.2);
-  CHECK_FALSE(result["nested"][0].contains("error"));  // nothing strains the body there
+  CHECK_FALSE(result["nested"][0].contains("error"));  // the body is unstrained there
   CHECK(result["warnings"].dump().find("nothing says where") == std::string::npos);
-  // Where that may not be, it is said.
+  // A message reports that the limit prevents it.
   needle["mesh"]["adapt"]["most_unknowns"] = 100;
   place.put_json("needle.json", needle);
   CHECK(place.run("run needle.json").exit_code == 0);
@@ -197,7 +198,7 @@ TEST_CASE("an adapted mesh stays below the unknowns allowed, and a run that was 
   CHECK(place.json("less/result.json")["unknowns"] <= 2000);
   CHECK(place.json("less/result.json")["warnings"].dump().find("mesh.adapt.most_unknowns = 2000: ") !=
         std::string::npos);
-  // A run that is stopped goes on with the mesh that it had.
+  // A stopped run continues on its refined mesh.
   CHECK(place.run("run press.json --output less --set solver.max_outer=1 --set mesh.adapt.most_unknowns=2000")
             .exit_code == 1);
   CHECK(place

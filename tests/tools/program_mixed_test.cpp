@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tetrahedra with their volume averaged round corners or over patches: verified by an assembly of its own, on
-// any number of ranks.
+// Tetrahedra with dilatation averaged at corners or over patches, verified by an independent assembly, on any
+// number of ranks.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -12,7 +12,7 @@ using nlohmann::json;
 
 namespace {
 
-/// A block of three materials, two of them mixed with bulk moduli of their own, pressed on a plane.
+/// A block of three materials, two of them mixed with different bulk moduli, pressed on a plane.
 json block(const char* element) {
   json input = json::parse(R"({
     "mesh": {"box": {"size": [2, 1, 1], "cells": [6, 3, 3]}},

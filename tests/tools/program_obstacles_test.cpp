@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Obstacles as users have them: every kind run and verified from its files, surfaces and heights against what
-// they stand for, bad files.
+// Obstacles in whole runs: every kind solved and verified from its files, surfaces and height maps against
+// the shapes that they approximate, bad files.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -20,7 +20,7 @@ namespace {
 using Corner = std::array<double, 3>;
 using Triangle = std::array<Corner, 3>;
 
-/// A cap of the ball round (1, 0.5, −2) with the radius 2 about its highest point, in rings; outwards.
+/// A cap of the ball around (1, 0.5, −2) of radius 2 about its highest point, in rings, oriented outwards.
 std::vector<Triangle> cap(int rings) {
   const auto at = [&](int ring, int part) {
     const double far = 0.9 * ring / rings, turn = 2 * M_PI * part / (6.0 * rings);
@@ -74,7 +74,7 @@ std::string gmsh_facets(const std::vector<Triangle>& triangles) {
   std::size_t n = 0;
   for (const Triangle& t : triangles)
     for (const Corner& x : t) text << ++n << " " << x[0] << " " << x[1] << " " << x[2] << "\n";
-  // A facet of another group, in the way.
+  // A facet of another group, in front of the surface.
   text << n + 1 << " 0 0 1\n" << n + 2 << " 2 0 1\n" << n + 3 << " 1 1 1\n";
   text << "$EndNodes\n$Elements\n" << triangles.size() + 1 << "\n";
   for (std::size_t t = 0; t < triangles.size(); ++t)
@@ -83,7 +83,7 @@ std::string gmsh_facets(const std::vector<Triangle>& triangles) {
   return text.str();
 }
 
-/// A brick that comes down by a hundredth onto what is under it.
+/// A brick that is lowered by a hundredth onto the obstacle.
 nlohmann::json brick(const std::string& obstacle) {
   nlohmann::json brick = parsed(R"({
     "mesh": {"box": {"size": [2, 1, 0.5], "cells": [12, 6, 3], "element": "hex8"}},
@@ -172,7 +172,7 @@ TEST_CASE(
   const Outcome to_force = place.run("run brick.json --output out --set output.report=true");
   REQUIRE(to_force.exit_code == 0);
   CHECK(to_force.output.find("\ntool pushed by 0.0") != std::string::npos);
-  // Outer steps are counted on from place to place.
+  // Outer steps are numbered consecutively over the load steps.
   const std::string history = contents(place.path("out/history.csv"));
   CHECK(count_lines(history) == 1 + place.json("out/result.json").at("outer_iterations").get<std::size_t>());
   CHECK(history.rfind("\n1,") == history.find("\n1,"));
@@ -186,7 +186,7 @@ TEST_CASE(
   CHECK(from_parts.exit_code == 0);
   CHECK(force(place) == doctest::Approx(2.5).epsilon(1.1e-5));
 
-  // Cut in the middle of a search for the travel, it continues with the same numbers.
+  // Stopped during a search for the travel, the run continues with the same numbers.
   CHECK(place.run("run brick.json --output whole").exit_code == 0);
   CHECK(place.run("run brick.json --output cut --set solver.max_outer=2").exit_code == 1);
   CHECK(place.run("run brick.json --output cut --restart").exit_code == 0);
@@ -219,7 +219,7 @@ TEST_CASE(
 
 TEST_CASE("an edge in the plane of symmetry presses without a lateral force, and is verified") {
   const Workplace place;
-  // A blade that the middle of the upper side has gone 0.05 into, of two slopes up from the line x = 0.5.
+  // A blade of two slopes that rise from the line x = 0.5, pressed 0.05 into the middle of the upper side.
   const std::vector<Triangle> blade{{{{0.5, -1, 0.95}, {0.2, 2, 1.05}, {0.5, 2, 0.95}}},
                                     {{{0.5, -1, 0.95}, {0.2, -1, 1.05}, {0.2, 2, 1.05}}},
                                     {{{0.5, -1, 0.95}, {0.5, 2, 0.95}, {0.8, 2, 1.05}}},
@@ -251,7 +251,7 @@ TEST_CASE("an edge in the plane of symmetry presses without a lateral force, and
   };
   const double text = pressed(R"({"surface": {"file": "blade.stl"}})");
   CHECK(pressed(R"({"surface": {"file": "binary.stl"}})") == doctest::Approx(text).epsilon(1e-5));
-  // A box that stands on its edge, as steep on both sides, at rest and moved down from where it only touches.
+  // A box standing on its edge, symmetric, fixed, or moved down from its first contact.
   const auto box = [](double low) {
     const std::string from = std::to_string(low), to = std::to_string(low + 2);
     return R"({"box": {"lower": [0.5, -1, )" + from + R"(], "upper": [0.5, 2, )" + to +
@@ -286,7 +286,7 @@ TEST_CASE("a ball of triangles presses as a ball does, of second order in its fa
   place.put("ball.msh", gmsh_facets(cap(24)));
   CHECK(pressed(R"({"surface": {"file": "ball.msh", "group": "tool"}})") ==
         doctest::Approx(ascii).epsilon(1e-12));
-  // Heights that are those of the ball, seen upwards.
+  // A height map of the ball, seen from below.
   std::ostringstream heights;
   heights.precision(17);
   for (int row = 100; row >= 0; --row) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cases split once into files, by the real program: the same bits as without, on 1 to 8 ranks; bad files
-// refused on all ranks.
+// Cases partitioned once into files by the real program: bitwise the same results as without, on 1 to 8
+// ranks; all ranks reject bad files.
 #include <doctest/doctest.h>
 
 #include <set>
@@ -13,7 +13,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// A 3D beam with friction, where mesh nodes, facets and groups are renumbered for the boundary.
+/// A 3D beam with friction, whose mesh nodes, facets and groups are renumbered for the boundary.
 nlohmann::json solid_beam() {
   return parsed(R"({
     "mesh": {"box": {"size": [4, 1, 1], "cells": [8, 3, 3], "element": "tet4"}},
@@ -26,7 +26,7 @@ nlohmann::json solid_beam() {
   })");
 }
 
-/// A square of 4 × 4 cells, each two triangles, as Gmsh would write it; nodes are numbered in tens.
+/// A square of 4 × 4 cells of two triangles each, in Gmsh's format; node numbers are multiples of ten.
 std::string square_mesh() {
   std::string nodes, elements;
   for (int y = 0; y < 5; ++y)
@@ -49,7 +49,7 @@ std::string square_mesh() {
          elements + "$EndElements\n";
 }
 
-/// Numbers of a vector or of a list of vectors agree to the tolerance, relative to the largest.
+/// Checks that two vectors, or lists of vectors, agree to the tolerance relative to the largest entry.
 void check_close(const nlohmann::json& one, const nlohmann::json& other, double tolerance) {
   const nlohmann::json a = one.flatten(), b = other.flatten();
   REQUIRE(a.size() == b.size());
@@ -61,7 +61,7 @@ void check_close(const nlohmann::json& one, const nlohmann::json& other, double 
   }
 }
 
-/// Exit code 2 and one line, naming this.
+/// Checks for exit code 2 and one line that contains this text.
 void check_refused(const Outcome& outcome, const std::string& text) {
   INFO("error: ", outcome.error);
   CHECK(outcome.exit_code == 2);
@@ -113,7 +113,7 @@ TEST_CASE(
 TEST_CASE("parts are the same bytes every time") {
   const Workplace place;
   place.put_json("solid.json", solid_beam());
-  // Memory that other contents have passed through: what nobody sets would differ.
+  // Memory filled with different bytes: uninitialised values would differ.
   REQUIRE(place.run("partition solid.json --ranks 2 --output once", "MALLOC_PERTURB_=17").exit_code == 0);
   REQUIRE(place.run("partition solid.json --ranks 2 --output again", "MALLOC_PERTURB_=85").exit_code == 0);
   for (const std::string file : {"part_0.kacanov", "part_1.kacanov", "boundary.kacanov"}) {
@@ -175,7 +175,7 @@ TEST_CASE("a mesh file is read once: a run from parts does without it, but notic
   INFO("error: ", outcome.error);
   CHECK(outcome.exit_code == 0);
   place.put("square.msh", mesh + "\n");
-  // What differs: the length; nothing but a digit, as of a mesh made anew by another version of Gmsh.
+  // A different length; or one different digit, as from another version of Gmsh.
   std::string same_length = mesh;
   same_length[mesh.find("\n250 4 4 0") + 5] = '5';
   for (const std::string& other : {mesh + "\n", same_length}) {

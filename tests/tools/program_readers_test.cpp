@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Text files as they come: encodings, line ends, texts that a terminal would obey, files that are none of a
-// case.
+// Text files of every kind: encodings, line ends, control characters for terminals, files of other kinds.
 #include <algorithm>
 #include <cmath>
 #include <string_view>
@@ -11,7 +10,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// A cube of 1 with E = 1000, ν = 0.25, held below, with −2.5 at each of its upper nodes.
+/// A unit cube with E = 1000, ν = 0.25, fixed at its bottom, with −2.5 at each of its upper nodes.
 const std::string cube_mesh =
     "*NODE,NSET=NALL\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n"
     "*ELEMENT,TYPE=C3D8,ELSET=E\n1,1,2,3,4,5,6,7,8\n*NSET,NSET=BOT\n1,2,3,4\n*NSET,NSET=TOP\n5,6,7,8\n";
@@ -19,7 +18,7 @@ const std::string cube_material =
     "*MATERIAL,NAME=M\n*ELASTIC\n1000,0.25\n*SOLID SECTION,ELSET=E,MATERIAL=M\n";
 const std::string cube_step = "*STEP\n*STATIC\n*BOUNDARY\nBOT,1,3\n*CLOAD\nTOP,3,-2.5\n*END STEP\n";
 const std::string cube = cube_mesh + cube_material + cube_step;
-/// Its largest displacement: 1/600 outwards twice, 17/1800 down, which CalculiX has to its seven digits.
+/// Its largest displacement: 1/600 outwards twice, 17/1800 down, as computed by CalculiX to seven digits.
 const double sunk = std::sqrt(307.0) / 1800;
 
 const std::string cube_msh =
@@ -33,7 +32,7 @@ const char* const cube_case =
     "boundary": [{"on": {"box": [[0, 0, 0], [1, 1, 0]]}, "displacement": [0, 0, 0]},
                  {"on": {"box": [[0, 0, 1], [1, 1, 1]]}, "node_force": [0, 0, -2.5]}]})";
 
-/// With every line end a lone carriage return.
+/// Replaces every line end by a carriage return.
 std::string with_returns(std::string text) {
   std::replace(text.begin(), text.end(), '\n', '\r');
   return text;
@@ -41,7 +40,7 @@ std::string with_returns(std::string text) {
 
 std::string with_mark(const std::string& text) { return "\xef\xbb\xbf" + text; }
 
-/// In UTF-16 of either byte order.
+/// Encodes ASCII text as UTF-16 in either byte order.
 std::string wide(const std::string& text, bool mark, bool big) {
   std::string result = mark ? big ? "\xfe\xff" : "\xff\xfe" : "";
   for (const char c : text) result += big ? std::string{'\0', c} : std::string{c, '\0'};
@@ -55,7 +54,7 @@ double sunk_of(const Workplace& place, const std::string& command, const std::st
   return place.json(folder + "/result.json")["max_displacement"]["value"].get<double>();
 }
 
-/// Whether a terminal would show all of it as it is.
+/// Returns whether a terminal would show the text unchanged.
 bool is_tame(const std::string& text) {
   return std::none_of(text.begin(), text.end(),
                       [](char c) { return (c >= 0 && c < ' ' && c != '\n') || c == 0x7f; }) &&
@@ -90,7 +89,7 @@ TEST_CASE("meshes and cases of any line ends, with a byte order mark, are read a
     const Outcome verified = place.run("verify cube.json --output out --set solver.tolerance=1e-10");
     INFO(verified.error, verified.output);
     CHECK(verified.exit_code == 0);
-    // Two heights a line, two lines; two temperatures; a triangle.
+    // Two heights per line, two lines; two temperatures; a triangle.
     place.put("heights.csv", changed("2,2\n2,2\n"));
     place.put("warm.csv", changed("1, 10\n2, 20\n3, 10\n4, 10\n5, 10\n6, 10\n7, 10\n8, 10\n"));
     place.put(
@@ -183,7 +182,7 @@ TEST_CASE("names that a terminal would obey are refused, and reach no file and n
   place.put_json("case.json", input);
   CHECK(place.run("run case.json").error.find("boundary[0].name: expected a string in UTF-8 on one line") !=
         std::string::npos);
-  input["boundary"][0]["name"] = "Fuß ↓";  // which is tame
+  input["boundary"][0]["name"] = "Fuß ↓";  // printable characters
   place.put_json("case.json", input);
   CHECK(place.run("run case.json --output out").exit_code == 0);
 }
@@ -222,7 +221,7 @@ TEST_CASE("messages show no words of files outside of the case's folder") {
           CHECK((outcome.error + outcome.output).find(word) == std::string::npos);
       }
     }
-  // Within the folder the word is shown.
+  // The message quotes words of files inside the folder only.
   place.put("case/heights.csv", "1,2\n3,four\n");
   place.put("case/more.inp", "four\n");
   place.put("case/cube.inp",

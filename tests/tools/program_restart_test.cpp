@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Interrupted runs of the real program: what they leave, and going on from there.
+// Interrupted runs of the real program: the files they leave, and restarts from them.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -10,8 +10,8 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// Starts a program, waits for a file to appear, sends a signal, and leaves with the program's exit code:
-/// interrupt.sh SIGNAL FILE PROGRAM ARGUMENTS...
+/// interrupt.sh SIGNAL FILE PROGRAM ARGUMENTS... starts a program, sends it a signal once the file exists,
+/// and exits with the program's exit code.
 constexpr const char* interrupt_script = R"(signal=$1; file=$2; shift 2
 "$@" & program=$!
 while [ ! -e "$file" ] && kill -0 $program 2>/dev/null; do sleep 0.02; done
@@ -19,7 +19,7 @@ kill -s $signal $program
 wait $program
 )";
 
-/// With a penalty like this ADMM takes hours.
+/// With this penalty ADMM takes hours.
 const std::string stubborn =
     " --set solver.contact=admm --set solver.r=1e-6 --set solver.max_contact=2 --set "
     "solver.max_outer=100000000";
@@ -42,7 +42,7 @@ TEST_CASE(
   place.put_json("beam.json", beam);
   place.put("interrupt.sh", interrupt_script);
   REQUIRE(place.run("run beam.json --output whole").exit_code == 0);
-  CHECK_FALSE(place.has("whole/checkpoint.kacanov"));  // there is nothing to go on with
+  CHECK_FALSE(place.has("whole/checkpoint.kacanov"));  // nothing to continue
   const nlohmann::json whole = place.json("whole/result.json");
   struct Way {
     const char *signal, *first, *second;
@@ -121,7 +121,7 @@ TEST_CASE("without checkpoints there is none, and --restart says which file it e
           "kacanov: error: --restart: there is no checkpoint to go on from, expected the file "
           "out/checkpoint.kacanov\n");
   }
-  CHECK(place.json("out/result.json")["status"] == "not_converged");  // as it was
+  CHECK(place.json("out/result.json")["status"] == "not_converged");  // unchanged
 }
 
 TEST_CASE("a checkpoint of another case is refused with what differs; the same case in other words is not") {
@@ -187,7 +187,7 @@ TEST_CASE("where a checkpoint cannot be written the one before stays, with a war
   place.put_json("beam.json", beam);
   REQUIRE(place.run("run beam.json --output out --set solver.max_outer=3").exit_code == 1);
   const std::string before = contents(place.path("out/checkpoint.kacanov"));
-  // A limit on the size of files stands for the full disk; the run leaves no other files of that size.
+  // A limit on file sizes simulates a full disk; the run leaves no other files of that size.
   const Outcome outcome = place.run(
       "run beam.json --output out --restart --set solver.max_outer=2 --set output.fields=none --set "
       "output.report=false",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Runs the real program in a folder of its own and hands back what it said.
+// Runs the real program in a folder of its own and returns its output.
 #include "program_runner.hpp"
 
 #include <sys/wait.h>
@@ -50,7 +50,7 @@ bool Workplace::has(const std::string& name) const { return std::filesystem::exi
 nlohmann::json Workplace::json(const std::string& name) const { return parsed(contents(path(name))); }
 
 Outcome Workplace::run(const std::string& arguments, const std::string& before) const {
-  // The program keeps Open MPI's files of each run apart by itself.
+  // The program itself keeps Open MPI's files of each run apart.
   const std::string command = "unset OMPI_MCA_orte_tmpdir_base; cd '" + path("").string() + "' && " + before +
                               " '" KACANOV_PROGRAM "' " + arguments + " >output.txt 2>error.txt </dev/null";
   const int status = std::system(command.c_str());

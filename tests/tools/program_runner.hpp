@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Runs the real program in a folder of its own and hands back what it said.
+// Runs the real program in a folder of its own and returns its output.
 #pragma once
 
 #include <filesystem>
@@ -12,16 +12,16 @@ namespace kacanov::testing {
 
 struct Outcome {
   int exit_code = -1;
-  std::string output, error;  ///< lines that were broken to fit are whole again in `output`
-  std::string printed;        ///< as it came
+  std::string output, error;  ///< `output` has wrapped lines joined again
+  std::string printed;        ///< standard output, unchanged
 };
 
 std::string contents(const std::filesystem::path& file);
 std::size_t count_lines(const std::string& text);
-/// Here, not in the tests: what the parser takes to compile is paid once.
+/// Parses JSON; defined in a source file so that the parser is compiled once.
 nlohmann::json parsed(const std::string& text);
 
-/// A folder with case files in it, in which the program runs.
+/// A temporary folder with case files, in which the program runs.
 class Workplace {
  public:
   void put(const std::string& name, const std::string& text) const;
@@ -30,18 +30,18 @@ class Workplace {
   bool has(const std::string& name) const;
   nlohmann::json json(const std::string& name) const;
 
-  /// Runs "kacanov <arguments>", the words quoted for a shell where they need it. `before` comes in front.
+  /// Runs "kacanov <arguments>"; words that need it are quoted for the shell. `before` precedes the command.
   Outcome run(const std::string& arguments, const std::string& before = "") const;
 
  private:
   TemporaryFolder folder_;
 };
 
-/// What a script or a program that may hang is started with: then the test ends it and sees another exit
+/// Prefix for scripts and programs that may hang: kills them after 120 s, which the test sees as another exit
 /// code.
 inline const std::string patience = "timeout -s KILL 120";
 
-/// The paper's beam, coarse: 54 nodes in a plane, clamped at its left, resting on a plane.
+/// A coarse version of the paper's beam in 2D: 54 nodes, clamped at its left, resting on a plane.
 nlohmann::json small_beam();
 
 }  // namespace kacanov::testing

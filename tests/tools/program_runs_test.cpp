@@ -75,7 +75,7 @@ TEST_CASE("a run converges, says so, and writes every file and key") {
             applications["outer"].get<int>() ==
         result["operator_applications"].get<int>());
   CHECK(result["status"] == "converged");
-  // The paper's load is far beyond small strains, and its friction acts on open nodes too.
+  // The paper's load exceeds small strains by far, and its friction acts on open nodes too.
   REQUIRE(result["warnings"].size() == 3);
   CHECK(result["warnings"][0].get<std::string>().rfind("strains reach ", 0) == 0);
   CHECK(result["warnings"][2].get<std::string>().find("open") != std::string::npos);

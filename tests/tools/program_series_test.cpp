@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fields of every load step, and the series that ParaView plays of them.
+// Fields of every load step, and the series of them that ParaView plays.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -11,7 +11,7 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// What a start tag of a name has for its attributes, one text a tag.
+/// Returns the attributes of each start tag with this name, one string per tag.
 std::vector<std::string> tags(const std::string& xml, const std::string& name) {
   std::vector<std::string> found;
   for (std::size_t at = xml.find("<" + name + " "); at != std::string::npos;
@@ -25,7 +25,7 @@ std::string attribute(const std::string& tag, const std::string& name) {
   return tag.substr(from, tag.find('"', from) - from);
 }
 
-/// The times of the series, each file of which is there and has one piece.
+/// Returns the times of the series after checking that each file exists and has one piece.
 std::vector<double> times(const Workplace& place, const std::string& folder) {
   std::vector<double> found;
   for (const std::string& set : tags(contents(place.path(folder + "/result.pvd")), "DataSet")) {
@@ -68,7 +68,7 @@ TEST_CASE("the fields of a load step are those of a run that ends with it") {
   beam["steps"] = parsed(R"([{"time": 0.5, "factors": {"boundary[1]": 0.5}}])");
   place.put_json("half.json", beam);
   REQUIRE(place.run("run half.json --output half").exit_code == 0);
-  // Both come to it by the same steps.
+  // Both reach it by the same steps.
   CHECK(contents(place.path("steps/body_step_1.vtu")) == contents(place.path("half/body.vtu")));
   CHECK(contents(place.path("steps/contact_step_1.vtu")) == contents(place.path("half/contact.vtu")));
 }

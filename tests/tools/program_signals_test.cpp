@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Signals to a run: it stops in order whatever threads a library has started,
-// and a stop that is not obeyed is enforced.
+// Signals to a run: it stops in order whatever threads a library has started, and --stop-within enforces a
+// stop.
 #include <doctest/doctest.h>
 
 #include <chrono>
@@ -13,14 +13,14 @@ using namespace kacanov::testing;
 
 namespace {
 
-/// Goes on until it is asked to stop, with a checkpoint after every step.
+/// A run that continues until it is told to stop, with a checkpoint after every step.
 const std::string endless =
     "run beam.json --output out --set solver.contact=admm --set solver.r=1e-6 "
     "--set solver.max_contact=2 "
     "--set solver.max_outer=100000000 --ranks ";
 const std::string endless_ranks = endless + "2";
 
-/// Starts a program of several ranks in $program, and finds them in $ranks once there is a checkpoint.
+/// Starts a program of several ranks as $program, and finds them as $ranks once there is a checkpoint.
 const std::string start_ranks = R"("$@" & program=$!
 exec 2>/dev/null
 while [ ! -e out/checkpoint.kacanov ] && kill -0 $program; do sleep 0.02; done
@@ -29,8 +29,8 @@ ranks=$(cat /proc/$launcher/task/*/children)
 for rank in $ranks; do last=$rank; done
 )";
 
-/// Starts a program beside a thread that was there before its main(), sends it a signal after the file is
-/// there, and leaves with its exit code: early.sh SIGNAL FILE PROGRAM ARGUMENTS...
+/// early.sh SIGNAL FILE PROGRAM ARGUMENTS... starts a program with a thread older than its main(), sends it a
+/// signal once the file exists, and exits with its exit code.
 constexpr const char* early_script = R"(signal=$1; file=$2; shift 2
 LD_PRELOAD=')" KACANOV_EARLY_THREAD R"(' "$@" & program=$!
 exec 2>/dev/null
@@ -41,7 +41,7 @@ wait $program
 
 }  // namespace
 
-// The preloaded library and the sanitizers do not mix.
+// The preloaded library cannot be combined with the sanitizers.
 TEST_CASE("a signal that a thread from before main() receives stops a run in order" *
           doctest::skip(sanitized)) {
   const Workplace place;
@@ -73,7 +73,7 @@ TEST_CASE("a signal that a thread from before main() receives ends METIS' work" 
 TEST_CASE("a run that does not stop when asked to is ended after some seconds, by itself") {
   const Workplace place;
   place.put_json("beam.json", small_beam());
-  // The last rank hangs: the first one cannot come to where it would stop.
+  // The last rank hangs: the first one cannot reach the point where it would stop.
   place.put("hang.sh", start_ranks + "kill -s STOP $last\nkill -s TERM $program\nwait $program\n");
   const auto before = std::chrono::steady_clock::now();
   const Outcome outcome = place.run(endless_ranks + " --stop-within 1", patience + " sh hang.sh");

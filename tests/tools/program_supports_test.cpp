@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Supports off the axes: symmetry planes and rotated frames against what they are on the axes, and closed
-// solutions; on any ranks, each verified from its files; bad input.
+// Supports in oblique directions: symmetry planes and rotated frames against axis-aligned ones and
+// closed-form solutions, on any number of ranks, verified from the files; bad input.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -15,7 +15,7 @@ using nlohmann::json;
 
 namespace {
 
-/// A plastic block between three planes of symmetry, on springs beside, with an obstacle before its top.
+/// A plastic block between three symmetry planes, sheared, with an obstacle before its top.
 json block(const Point& shear, const Point& up, const Point& top) {
   json block = parsed(R"({
     "mesh": {"file": "body.msh"},
@@ -39,7 +39,7 @@ TEST_CASE("a body that is turned with its planes of symmetry answers as it did o
     const BoxSpec box{{1, 1.5, 1}, {3, 3, 3}, type};
     const Point shear{-0.3, 0.4, 0.1}, down{0, 0, -1}, top{1, 1.5, 1};
     put_mesh(place, box, [](const Point& x) { return x; });
-    // The floor goes up by 0.002, against its outer normal.
+    // The floor moves up by 0.002, against its outer normal.
     const json straight = solved(place, block(shear, down, top));
     CHECK(straight["plastic_elements"] > 0);
     put_mesh(place, box, turned);
@@ -96,7 +96,7 @@ TEST_CASE("displacements in a frame are those along its axes, and grow with load
   CHECK(0.6 * u[0] + 0.8 * u[2] == doctest::Approx(0.005).epsilon(1e-9));
   CHECK(force[0] / force[2] == doctest::Approx(0.75).epsilon(1e-6));
   CHECK(std::abs(force[1]) < 1e-7);
-  // Three directions are a place.
+  // Three directions fix the position.
   input["boundary"][1]["displacement"] = parsed("[0.01, 0, 0.02]");
   const Point fixed = point_of(solved(place, input)["probe"][0]);
   CHECK(distance(fixed, {0.5 * (0.006 - 0.016), 0, 0.5 * (0.008 + 0.012)}) < 1e-12);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Temperatures that differ from place to place: closed solutions, files of nodes, bad input.
+// Temperature fields: closed-form solutions, files of nodal values, bad input.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -15,8 +15,8 @@ namespace {
 
 constexpr double alpha = 1e-5, young = 200;
 
-/// A quarter of a plate of 8 × 4 × 1 that may bend freely, with probes in two corners; its temperature is
-/// boundary[3].
+/// A quarter of a plate of 8 × 4 × 1 that can bend freely, with probes in two corners; boundary[3] is its
+/// temperature.
 json plate(const std::string& element, double poisson) {
   json plate = parsed(R"({
     "mesh": {"box": {"size": [4, 2, 1], "cells": [4, 2, 2]}},
@@ -29,7 +29,7 @@ json plate(const std::string& element, double poisson) {
   return plate;
 }
 
-/// Numbers of the nodes of a box in rows along x, then y, then z, as make_box() has them.
+/// Returns the temperature file of a box: node numbers in rows along x, then y, then z, as in make_box().
 std::string lines_of_box(const std::array<int, 3>& cells, const std::array<double, 3>& size,
                          double (*rise)(double, double, double)) {
   std::string text = "# node, temperature\n";
@@ -60,7 +60,7 @@ void has(const std::string& text, const char* part) {
 }  // namespace
 
 TEST_CASE("warmth that grows over the thickness bends a plate without stress, exactly with tet10") {
-  const double rise = 100, curvature = alpha * rise;  // over a thickness of 1
+  const double rise = 100, curvature = alpha * rise;  // for thickness 1
   for (const char* ranks : {"1", "3"}) {
     json input = plate("tet10", 0.3);
     input["solver"]["tolerance"] = 1e-8;
@@ -93,8 +93,7 @@ TEST_CASE("between walls warmth presses by E α ΔT/(1 − 2ν), by its mean whe
     CHECK(number(even["reaction"]["top"]["force"][2]) == doctest::Approx(-8 * pressure).epsilon(1e-7));
     CHECK(number(even["reaction"]["right"]["force"][0]) == doctest::Approx(-2 * pressure).epsilon(1e-7));
     CHECK(walled(element, R"({"gradient": [0, 0, 0], "value": 100})")["reaction"] == even["reaction"]);
-    if (element == std::string("tet4"))
-      continue;  // its strain cannot follow: it is not one that depends on z alone
+    if (element == std::string("tet4")) continue;  // cannot represent a strain that depends on z alone
     const json rising = walled(element, R"({"gradient": [0, 0, 100], "value": 50})");
     CHECK(number(rising["reaction"]["top"]["force"][2]) == doctest::Approx(-8 * pressure).epsilon(1e-7));
     CHECK(number(rising["reaction"]["right"]["force"][0]) == doctest::Approx(-2 * pressure).epsilon(1e-7));
@@ -113,7 +112,7 @@ TEST_CASE("a file of nodes says what a linear field does, on any ranks, in steps
       input["steps"] =
           parsed(R"([{"time": 1, "factors": {"warmth": 2}}, {"time": 2, "factors": {"warmth": 0.5}}])");
       const json field = solved(place, input, ranks);
-      const int halves = element == std::string("tet10") ? 2 : 1;  // nodes in the middle are in the rows, too
+      const int halves = element == std::string("tet10") ? 2 : 1;  // rows include mid-side nodes
       place.put("warm.csv",
                 lines_of_box({4 * halves, 2 * halves, 2 * halves}, {4, 2, 1},
                              [](double x, double y, double z) { return 20 + 3 * x - 7 * y + 100 * z; }));
@@ -155,7 +154,7 @@ TEST_CASE("a mesh of a file may be refined, raised and adapted: its nodes' tempe
 }
 
 TEST_CASE("a strip of two metals bends as Timoshenko's does") {
-  // Plane strain: α is taken (1 + ν) times, E over 1 − ν². Both layers as thick and stiff: κ = 3 Δα ΔT/(2 h).
+  // Plane strain: replace α by (1 + ν) α and E by E/(1 − ν²). Equal thickness, stiffness: κ = 3 Δα ΔT/(2 h).
   const json input = parsed(R"({
     "mesh": {"box": {"size": [20, 1], "cells": [160, 16], "element": "quad4"}},
     "material": [{"on": {"box": [[0, 0], [20, 0.5]]}, "young": 200, "poisson": 0.25, "expansion": 1e-5, "bbar": true},
@@ -202,7 +201,7 @@ TEST_CASE("round an axis: a cylinder that is warmer within has Lamé's thermal s
   };
   CHECK(number(result["probe"][0][0]) == doctest::Approx(moved(a)).epsilon(1e-3));
   CHECK(number(result["probe"][1][0]) == doctest::Approx(moved(b)).epsilon(1e-3));
-  // Along the axis ε_zz = 0: σ_z = Eα/(1 − ν) (2ν/(b² − a²) ∫ T r dr − T), summed over the ring.
+  // Along the axis ε_zz = 0: σ_z = Eα/(1 − ν) (2ν/(b² − a²) ∫ T r dr − T), integrated over the ring.
   const double force = -2 * 3.14159265358979 * young * alpha * moment(b);
   CHECK(number(result["reaction"]["floor"]["force"][1]) == doctest::Approx(-force).epsilon(1e-3));
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The obstacle `box` turned together with the body, in space and in the plane, verified from its files; what
-// is wrong with its frame.
+// The obstacle `box` rotated together with the body, in 3D and 2D, verified from the files; invalid frames.
 #include <doctest/doctest.h>
 
 #include <functional>
@@ -17,7 +16,7 @@ namespace {
 
 using Turn = std::function<Point(const Point&)>;
 
-/// As many entries as the mesh has dimensions.
+/// Returns the first `dim` entries as JSON.
 json entries(const Point& x, std::size_t dim) {
   json all = json::array();
   for (std::size_t c = 0; c < dim; ++c) all.push_back(x[c]);
@@ -28,13 +27,13 @@ json frame_of(const Turn& turn, std::size_t dim) {
   json axes = json::array();
   for (std::size_t a = 0; a < dim; ++a) {
     Point axis{};
-    axis[a] = 1.0 + static_cast<double>(a);  // of any length
+    axis[a] = 1.0 + static_cast<double>(a);  // arbitrary length
     axes.push_back(entries(turn(axis), dim));
   }
   return axes;
 }
 
-/// A body pressed from above on to a punch, off its middle: contact with a face, and beyond its edges.
+/// A body pressed down on a punch off its centre: contact with a face and beyond its edges.
 json on_punch(const Turn& turn, std::size_t dim, bool with_frame) {
   json input = parsed(R"({
     "mesh": {"file": "body.msh"}, "material": [{"on": "all", "young": 200, "poisson": 0.3}],
@@ -103,7 +102,7 @@ TEST_CASE("what is wrong with a box's frame is said by its key") {
           ".frame[1]: expected an axis orthogonal to those before, got [1,1,0]");
   refused("[[0, 0, 0], [0, 1, 0], [0, 0, 1]]", ".frame[0]: expected a vector that is not zero, got [0,0,0]");
   refused("[[1, 0, 0], [0, 0, 1], [0, -1, \"z\"]]", ".frame[2][2]: expected a number, got \"z\"");
-  // Along the axis (-1, 1, 0) both corners are as high.
+  // Along the axis (-1, 1, 0) both corners have the same coordinate.
   refused("[[1, 1, 0], [-1, 1, 0], [0, 0, 1]]",
           ": expected a lower corner that is below the upper one in every direction of the frame, got "
           "[0,0,-2] and [1,1,0]");

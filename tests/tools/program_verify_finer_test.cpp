@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cases whose mesh is refined, or made quadratic, in the program: verified from the coarse file.
+// Cases whose mesh the program refines or makes quadratic: verified from the coarse file.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ using nlohmann::json;
 
 namespace {
 
-/// A bent brick on a sphere, held at its lower left edge by lines of nodes, too, and warm.
+/// A curved, heated brick on a sphere, also fixed at its lower left edge by groups of nodes.
 json brick_to_refine(std::size_t dim) {
   json brick = parsed(R"({
     "mesh": {"file": "body.msh"}, "material": [{"on": "all", "young": 200, "poisson": 0.3, "expansion": 1e-5}],

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// kacanov verify: right answers pass, whoever changed them; what was tampered with does not.
+// kacanov verify accepts correct answers, also in rewritten files, and rejects tampered ones.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ nlohmann::json cube(const std::string& element) {
   return cube;
 }
 
-/// A file of packed arrays as one of plain ones, as older versions wrote them.
+/// Returns a file of compressed arrays with plain ones, as older versions wrote them.
 std::string with_plain_arrays(std::string text) {
   const std::string compressor = " compressor=\"vtkZLibDataCompressor\"";
   REQUIRE(text.find(compressor) != std::string::npos);
@@ -65,7 +65,7 @@ std::string with_plain_arrays(std::string text) {
   return head + text.substr(done, data - done) + arrays + "\n</AppendedData>\n</VTKFile>\n";
 }
 
-/// Adds to the x component of one node in an array of doubles of a VTU file; arrays begin with their length.
+/// Adds to the x component of one node in an array of doubles of a VTU file; arrays start with their length.
 void change_array(const Workplace& place, const std::string& file, const std::string& name, double by,
                   std::size_t node = 2) {
   std::string text = with_plain_arrays(contents(place.path(file)));
@@ -102,7 +102,7 @@ TEST_CASE("what has converged is verified from its files, of every element, on o
         CHECK(outcome.output.find(name) != std::string::npos);
     }
   }
-  // A tolerance that the answer does not meet, of another case on the same mesh.
+  // A tolerance that the answer does not meet, and other cases on the same mesh.
   const Outcome outcome = place.run("verify cube.json --output out --set solver.tolerance=1e-15");
   CHECK(outcome.exit_code == 1);
   CHECK(outcome.output.find("does not meet its tolerance") != std::string::npos);
@@ -153,7 +153,7 @@ TEST_CASE("plane stress and bodies of revolution are verified from their files, 
         const double force = first["contact_force"][1];
         CHECK(result["contact_force"][1].get<double>() == doctest::Approx(force).epsilon(1e-5));
       }
-      // It would see the body as of plane strain.
+      // The verifier must not accept the body as plane strain.
       CHECK(place.run("verify flat.json --output out --set plane=strain").exit_code == 1);
     }
 }
@@ -200,8 +200,8 @@ TEST_CASE("what has been changed in the files is found") {
 
 TEST_CASE("elements have the numbers of their material and set, on one rank, on two, and from parts") {
   const Workplace place;
-  // Two rows of cubes along x: the upper one of another material; the last column in a set that begins no
-  // cube.
+  // Two rows of cubes along x: the upper one of another material; the last column forms a set in which no
+  // cube comes first.
   std::string mesh = "*NODE\n";
   int node = 0;
   for (int z = 0; z < 3; ++z)
@@ -240,12 +240,12 @@ TEST_CASE("elements have the numbers of their material and set, on one rank, on 
       const bool upper = elements[e] > 4, column = elements[e] % 4 == 0;
       const std::string name = names[static_cast<std::size_t>(sets[e]) - 1];
       CHECK(materials[e] == (upper ? 1 : 0));
-      // Of two sets it is the first.
+      // An element of two sets gets the first one.
       CHECK((name == (upper ? "Upper" : "Lower") || (column && name == "Column")));
       seen[static_cast<std::size_t>(elements[e]) - 1] = true;
     }
     CHECK(std::count(seen.begin(), seen.end(), true) == 8);
-    // Strain and stress are those of the same law.
+    // Strain and stress satisfy the same law.
     const auto stress = file.reals("CellData", "stress", 48), strain = file.reals("CellData", "strain", 48);
     for (std::size_t e = 0; e < 8; ++e) {
       const double shear = (materials[e] == 0 ? 200.0 : 100.0) / (2 * 1.3);
@@ -266,7 +266,7 @@ TEST_CASE("what older versions wrote is verified: plain arrays, the body in a pi
   std::filesystem::rename(place.path("out/body.vtu"), place.path("out/body_0.vtu"));
   place.put("out/body.pvtu", "<VTKFile>\n<Piece Source=\"body_0.vtu\"/>\n</VTKFile>\n");
   CHECK(place.run("verify beam.json --output out").exit_code == 0);
-  // A run on top of them takes them away.
+  // A new run in the folder removes them.
   REQUIRE(place.run("run beam.json --output out").exit_code == 0);
   CHECK_FALSE(place.has("out/body.pvtu"));
   CHECK_FALSE(place.has("out/body_0.vtu"));
@@ -294,7 +294,7 @@ TEST_CASE("files of fields that are damaged are refused by name, whatever is wro
     const std::string offset_of_first = whole.substr(first, whole.find('"', first) - first);
     for (const char* offset : {"x", "", "-1", "18446744073709551612", "99999999999999999999999", "1e9"})
       refused("offset=\"" + offset_of_first + "\"", std::string("offset=\"") + offset + "\"");
-    // Numbers of blocks, their length, that of the last one, their packed lengths; and what is packed.
+    // Number of blocks, block length, length of the last block, compressed lengths; then the compressed data.
     const std::size_t front = whole.find('_', whole.find("<AppendedData")) + 1 + std::stoul(offset_of_first);
     for (const std::size_t number : {0, 2, 3, 5}) {
       for (const char* instead : {"\xff\xff\xff\xff\xff\xff\xff\xff", "\x07\x01\x02\x00\x00\x00\x00\x00"}) {
@@ -324,7 +324,7 @@ TEST_CASE("an answer that has not converged is not verified, and its certificate
 TEST_CASE("numbers of a part of the load are recomputed at that part") {
   const Workplace place;
   nlohmann::json beam = small_beam();
-  // Softer and softer: from some load on there is no balance.
+  // A softening material: beyond some load no equilibrium exists.
   beam["mesh"]["box"] = {{"size", {4, 1}}, {"cells", {4, 1}}, {"element", "quad4"}};
   beam["material"][0]["law"] = {{"type", "logarithmic"}, {"argument", "squared"}, {"x0", 1e-6}};
   beam["boundary"][1] = {{"on", "top"}, {"traction", {0, -0.002}}};
@@ -362,7 +362,7 @@ TEST_CASE(
     "more") {
   const Workplace place;
   const BoxSpec box{{2, 1, 1}, {5, 3, 3}, ElementType::hex8};
-  // Turned by 0.5 about (1, 2, 2)/3; the second frame is the first but for a millionth.
+  // Rotated by 0.5 about (1, 2, 2)/3; the second frame differs from the first by a millionth.
   for (const double apart : {0.7, 1e-6}) {
     put_mesh(place, box, turned);
     const nlohmann::json x = list(turned({1, 0, 0})), y = list(turned({0, 1, 0})),
@@ -396,7 +396,7 @@ TEST_CASE(
       double along = 0;
       const Point normal = turned({1, 0, 0});
       for (std::size_t c = 0; c < 3; ++c) along += normal[c] * points[3 * n + c];
-      if (std::abs(along) > 1e-9) continue;  // on the left
+      if (std::abs(along) > 1e-9) continue;  // on the left side
       change_array(place, "out/body.vtu", "displacement", 1e-13 * most, n);
       break;
     }
@@ -408,7 +408,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a body far from the origin has the numbers of the same body at the origin") {
-  // Coordinates and their shift are multiples of 2^-20, so that both bodies are the same to the bit.
+  // Coordinates and their shift are multiples of 2^-20, so that both bodies are bitwise the same.
   const auto on_grid = [](double x) { return std::ldexp(std::round(std::ldexp(x, 20)), -20); };
   for (const ElementType type : {ElementType::tet10, ElementType::hex8, ElementType::quad4}) {
     INFO(static_cast<int>(type));
@@ -460,7 +460,7 @@ TEST_CASE("a body far from the origin has the numbers of the same body at the or
         CHECK(std::abs(result["probe"][0][c].get<double>() - at_origin["probe"][0][c].get<double>()) <=
               1e-10);
       }
-      // Places are the user's, to the bit.
+      // Positions are bitwise those of the user.
       const std::string bytes = contents(place.path("out/body.vtu"));
       const VtuFile file("body.vtu", bytes);
       const std::size_t nodes = result["mesh"]["nodes"];
@@ -524,7 +524,7 @@ TEST_CASE("every total of the result is recomputed: what has been changed in one
     place.put_json("out/result.json", changed);
     CHECK(place.run("verify cube.json --output out").exit_code == 1);
   }
-  // Half of the load is not the load.
+  // Half of the load must not pass as the full load.
   place.put_json("cube.json", input);
   REQUIRE(place.run("run cube.json --output out --set solver.load_steps=2").exit_code == 0);
   nlohmann::json half = place.json("out/result.json");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Temperature in plane stress: closed solutions, elastic and beyond yield, each verified from its files.
+// Temperature in plane stress: closed-form solutions, elastic and beyond yield, verified from the files.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -12,8 +12,8 @@ using nlohmann::json;
 
 namespace {
 
-/// A strip that is held at its left end; α ΔT = 0.003, which is three times the strain at yield. What holds
-/// it besides comes to its right end.
+/// A strip fixed at its left end; α ΔT = 0.003, three times the yield strain. Each test adds a support at its
+/// right end.
 json warm_strip(const std::string& element, double poisson, const char* law) {
   json strip = parsed(R"({
     "mesh": {"box": {"size": [4, 1], "cells": [8, 3]}}, "plane": "stress", "thickness": 0.5,
@@ -32,10 +32,10 @@ constexpr const char *elastic = "{}", *bilinear = R"({"yield_stress": 0.2, "tang
                      *steep = R"({"plastic": [[0.2, 0], [0.3, 0.001], [0.32, 0.01]]})",
                      *rounded = R"({"law": {"type": "ramberg_osgood", "sigma0": 0.2, "alpha": 0.5, "n": 8}})";
 
-/// The stress of the bar in tension at this strain.
+/// Returns the tensile stress at this strain.
 double in_tension(const std::string& law, double strain) {
   if (law == bilinear) return 0.2 + 20 * (strain - 0.001);
-  if (law == steep) {  // between its second row, at 0.3/200 + 0.001, and its third
+  if (law == steep) {  // between the second row, at 0.3/200 + 0.001, and the third
     const double from = 0.3 / 200 + 0.001, to = 0.32 / 200 + 0.01;
     return 0.3 + 0.02 * (strain - from) / (to - from);
   }
@@ -83,11 +83,11 @@ TEST_CASE(
         if (law == elastic && steps[1] != '}') continue;
         held["solver"].update(parsed(steps));
         const json result = solved(place, held, steps[1] == '}' ? "1" : "2");
-        // On the face of 1 × 0.5.
+        // On the end face of 1 × 0.5.
         CHECK(value(result["reaction"]["end"]["force"][0]) == doctest::Approx(0.5 * stress).epsilon(1e-6));
         CHECK(value(result["reaction"]["other"]["force"][0]) == doctest::Approx(-0.5 * stress).epsilon(1e-6));
         CHECK(value(result["max_von_mises"]) == doctest::Approx(stress).epsilon(1e-6));
-        // Across it gets wider by α ΔT and by what does not change the volume beyond yield.
+        // The width grows by α ΔT and by the incompressible part beyond yield.
         const double across = 0.003 + 0.003 / 2 - (1 - 2 * poisson) / 2 * stress / 200;
         CHECK(value(result["probe"][0][1]) == doctest::Approx(across).epsilon(1e-6));
       }
@@ -105,7 +105,7 @@ TEST_CASE("plane stress: warmth closes the gap before a wall and presses on, alo
         parsed(R"([{"time": 1, "factors": {"warmth": 0.2}}, {"time": 2, "factors": {"warmth": 1}}])");
     const json result = solved(place, strip, "2");
     CHECK(result["load_steps"][0]["active_nodes"] == 0);
-    // What is left of 0.012 is a strain of 0.002.
+    // The free elongation of 0.012 exceeds the gap by 0.008, a strain of 0.002.
     CHECK(value(result["contact"]["wall"]["force"][0]) ==
           doctest::Approx(-0.5 * in_tension(law, 0.002)).epsilon(1e-6));
     strip["steps"][1]["factors"]["warmth"] = 0.3;

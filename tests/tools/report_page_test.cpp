@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// report.html of bodies that are too large for a view, and of fields that do not fit.
+// report.html for bodies that are too large for a view, and for fields of the wrong length.
 #include <doctest/doctest.h>
 
 #include <nlohmann/json.hpp>

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Is report.html one whole page that needs nothing else, with the numbers of result.json?
+"""Checks that report.html is one complete, self-contained page with the numbers of result.json.
 
 usage: report_test.py PROGRAM [CHROMIUM]
 
 Runs a block on two ranks and a plane body on one, with names that look like markup; reads the page as HTML and
-compares the data in it with result.json. Then bodies under balls and moving planes, one that is plastic, one that does
-not converge, one that nothing touches. With a browser the pages are opened too, and have to draw the body.
+compares its data with result.json. Then bodies under balls and moving planes, a plastic one, one that does not
+converge, one without contact. With a browser it also opens the pages, which have to draw the body.
 """
 import base64
 import html.parser
@@ -34,14 +34,14 @@ PLATE = {
     "boundary": [{"on": "left", "displacement": [0, 0]}, {"on": "top", "pressure": 0.1, "name": ENTRY}],
     "contact": [{"on": "bottom", "obstacle": {"plane": {"point": [0, 0], "normal": [0, 1]}}}],
 }
-BALL = {  # beyond yield, under a ball that is seen from below
+BALL = {  # beyond yield, under a ball seen from below
     "output": {"quantity": "plastic", "view": [1, -2, 3]},
     "mesh": {"box": {"size": [2, 2, 1], "cells": [4, 4, 2], "element": "hex8"}},
     "material": [{"on": "all", "young": 200.0, "poisson": 0.3, "law": {"type": "power", "x0": 1e-3, "n": 0.5}}],
     "boundary": [{"on": "bottom", "displacement": [0, 0, 0]}],
     "contact": [{"on": "top", "obstacle": {"sphere": {"centre": [1, 1, 2.98], "radius": 2}}}],
 }
-PUSHED = {  # by a plane that moves
+PUSHED = {  # pressed by a moving plane
     "output": {"quantity": "contact_pressure"},
     "mesh": {"box": {"size": [2, 1], "cells": [8, 4], "element": "tri3"}},
     "material": [{"on": "all", "young": 200.0, "poisson": 0.3}],
@@ -49,14 +49,14 @@ PUSHED = {  # by a plane that moves
     "contact": [{"on": "top", "obstacle": {"plane": {"point": [0, 1], "normal": [0, -1]}},
                  "motion": {"path": [{"time": 1, "translation": [0, -0.01]}]}}],
 }
-LIFTED = {  # from what it might touch
+LIFTED = {  # moved away from its obstacle
     "output": {"quantity": "contact_pressure"},
     "mesh": {"box": {"size": [2, 1], "cells": [8, 4], "element": "tri3"}},
     "material": [{"on": "all", "young": 200.0, "poisson": 0.3}],
     "boundary": [{"on": "left", "displacement": [0, 0]}, {"on": "top", "pressure": -0.1}],
     "contact": [{"on": "bottom", "obstacle": {"plane": {"point": [0, 0], "normal": [0, 1]}}}],
 }
-DISC = {  # a ring, pressed on to a ball
+DISC = {  # a ring pressed onto a ball
     "plane": "axisymmetric",
     "mesh": {"file": "ring.msh"},
     "material": [{"on": "all", "young": 200.0, "poisson": 0.3}],
@@ -85,7 +85,7 @@ VOID = {"meta", "img"}
 
 
 class Page(html.parser.HTMLParser):
-    """Refuses tags that do not match and everything that would be fetched; keeps texts by tag and id."""
+    """Rejects unbalanced tags and external resources; stores texts by tag and id."""
 
     def __init__(self):
         super().__init__()
@@ -147,7 +147,7 @@ def check_page(folder):
     near("largest displacement", max(sum(c * c for c in u[i:i + 3]) ** 0.5 for i in range(0, len(u), 3)),
          result["max_displacement"]["value"])
     fields = {field["name"]: unpacked(field["values"], "f") for field in scene["fields"]}
-    # The corners of quadratic facets have no pressure of their own, and may lie above the largest of a node.
+    # Corners of quadratic facets have no pressure of their own; their values may exceed the largest nodal one.
     pressure = max(fields["contact pressure"])
     if scene["dim"] == 2:
         near("largest pressure", pressure, result["max_contact_pressure"])
@@ -160,7 +160,7 @@ def check_page(folder):
 
 
 def opened(browser, folder):
-    """The page as the browser has it once its script has run."""
+    """Returns the page as the browser has it after its script has run."""
     done = subprocess.run(
         [browser, "--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
          f"--user-data-dir={folder / 'profile'}", "--virtual-time-budget=5000", "--dump-dom",
@@ -175,7 +175,7 @@ def check_in_browser(browser, folder):
 
 
 def check_other(program, browser, folder):
-    """What is drawn, and what is said where there is nothing to draw."""
+    """Checks what the page draws, and its text where there is nothing to draw."""
     def run(case, *words, code=0):
         (folder / "case.json").write_text(json.dumps(case))
         done = subprocess.run([program, "run", "case.json", "--output", "out", *words], cwd=folder, capture_output=True,
@@ -196,7 +196,7 @@ def check_other(program, browser, folder):
     same("all shown", scene["not_shown"], [])
     corners = unpacked(scene["obstacles"], "f")
     same("obstacle", len(corners) > 0 and len(corners) % 9 == 0, True)
-    centre = (0, 0, 2.98 - 0.5)  # the page's origin is the middle of the body
+    centre = (0, 0, 2.98 - 0.5)  # the page's origin is the centre of the body
     for k in range(0, len(corners), 3):
         near("on the ball", sum((x - c) ** 2 for x, c in zip(corners[k:k + 3], centre)) ** 0.5, 2.0)
     for text in ("plastic<", "blue: held", "#dfe5e8"):
@@ -232,7 +232,7 @@ def check_other(program, browser, folder):
 
 
 def check_too_large(browser, folder):
-    """What a page says of a body that was left out: the data of one without it."""
+    """Checks the page's text for an omitted body, from data without the body."""
     file = folder / "out" / "report.html"
     text = file.read_text(encoding="utf-8")
     begin = text.index('id="scene">') + len('id="scene">')

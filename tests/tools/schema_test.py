@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The JSON schema of case files against the program, its reader, the documents and every case there is.
+"""Checks the JSON schema of case files against the program, its reader, the documents and all cases.
 
 usage: schema_test.py PROGRAM FOLDER-OF-THE-PROJECT
 
-What needs a validator of schemas is skipped where there is none (Debian: python3-jsonschema).
+Checks that need a schema validator are skipped if there is none (Debian: python3-jsonschema).
 """
 import copy
 import json
@@ -25,7 +25,7 @@ PROGRAM = sys.argv.pop()
 GUIDE = ROOT / "docs" / "user-guide" / "case-file.md"
 READERS = [ROOT / "tools" / "case" / f"case_{name}.cpp" for name in ("file", "material", "obstacle")]
 VECTOR = [0, 0, 1]
-# A case of every kind of entry; `kacanov check` takes it but for the files that are not there.
+# A case with every kind of entry; `kacanov check` accepts it except for the missing files.
 SAMPLE = {
     "title": "all keys", "$schema": "case.schema.json", "plane": "strain", "thickness": 1,
     "mesh": {"box": {"size": [2, 1, 1], "cells": [2, 1, 1], "element": "hex8"}, "refine": 0, "order": 1,
@@ -78,12 +78,12 @@ def without_comments(text):
     return re.sub(r'("(?:\\.|[^"\\])*")|//[^\n]*|/\*.*?\*/', lambda match: match[1] or "", text, flags=re.DOTALL)
 
 
-# Of what the sample has one of several forms.
+# Alternative forms of entries of which the sample has one.
 OTHERS = [{"on": "all", "temperature": {"file": "warm.csv", "otherwise": 20}}]
 
 
 def samples():
-    """The sample, and small ones with what it has no place for."""
+    """Yields the sample, and small cases for the alternatives that it cannot contain."""
     yield SAMPLE
     small = {key: SAMPLE[key] for key in ("mesh", "material")}
     for law in LAWS:
@@ -99,7 +99,7 @@ def samples():
 
 
 def named_schemas(schema=SCHEMA):
-    """(name, its schema) of each property, wherever it is."""
+    """Yields the name and the schema of each property at every level."""
     if isinstance(schema, dict):
         yield from schema.get("properties", {}).items()
         schema = list(schema.values())
@@ -127,7 +127,7 @@ def at(value, path):
 
 
 def shown(path):
-    """As messages name it."""
+    """Returns the path as messages show it."""
     text = ""
     for key in path:
         text += f"[{key}]" if isinstance(key, int) else ("." if text else "") + key
@@ -178,7 +178,7 @@ class Cases(unittest.TestCase):
         self.schema = Draft202012Validator(SCHEMA)
 
     def complaint(self, case):
-        """What `kacanov check` says of a case that it refuses."""
+        """Returns the message with which `kacanov check` rejects the case."""
         (self.folder / "case.json").write_text(json.dumps(case))
         outcome = run("check", str(self.folder / "case.json"))
         return outcome.stderr.removeprefix("kacanov: error: ") if outcome.returncode == 2 else ""
@@ -221,7 +221,7 @@ class Cases(unittest.TestCase):
         self.assertEqual(names() - seen, set())
 
     def test_the_program_takes_what_leaves_out_means(self):
-        """Defaults, written down, are what the program takes without them."""
+        """Default values written explicitly are accepted."""
         for part in ("solver", "output"):
             keys = SCHEMA["properties"][part]["properties"]
             written = {key: value["default"] for key, value in keys.items() if "default" in value}
@@ -229,7 +229,7 @@ class Cases(unittest.TestCase):
             self.assertNotIn("expected", self.complaint(case))
 
     def mutants(self, case):
-        """(path that a message has to name, what is wrong there)"""
+        """Yields pairs of the path that the message must name and the invalid case."""
         for path in paths(case):
             value = at(case, path)
             if isinstance(value, dict) and "factors" not in path[-1:]:
@@ -251,12 +251,12 @@ class Cases(unittest.TestCase):
             for path, mutant in list(self.mutants(case))[:: 13 if case is SAMPLE else 11]:
                 said = self.complaint(mutant)
                 if self.schema.is_valid(mutant):
-                    # What the program knows beyond the schema is said in other words than those of a range.
+                    # Errors beyond the schema have other messages than errors of keys and ranges.
                     taken += 1
                     self.assertNotRegex(said, r": (unknown key|expected a number [>≥])", mutant)
                 else:
                     refused += 1
-                    lines = [line.strip() for line in said.splitlines()]  # a line for each of several mistakes
+                    lines = [line.strip() for line in said.splitlines()]  # one line per error
                     self.assertTrue(any(line.startswith(shown(path)) for line in lines), f"{mutant}\n{said}")
         self.assertGreater(min(refused, taken), 20)
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The manual page and the completion for bash, against --help and against groff and bash themselves.
+"""Checks the manual page and the bash completion against --help, groff and bash.
 
 usage: shell_test.py PROGRAM
 """
@@ -54,7 +54,7 @@ class Completion(unittest.TestCase):
         (self.folder / "sub").mkdir()
 
     def completed(self, *words):
-        """What bash would offer for the last word."""
+        """Returns bash's completions of the last word."""
         script = ('source <("$1" completion); shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _kacanov; '
                   'printf "%s\\n" "${COMPREPLY[@]}"')
         run = subprocess.run(["bash", "-c", script, "bash", PROGRAM, "kacanov", *words], cwd=self.folder,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The front door in C in a host that has started MPI: on its communicator, and on one process of it alone.
+// The C solve interface in a host that has started MPI: on its communicator, and on one of its processes.
 #include <doctest/doctest.h>
 #include <kacanov/kacanov_solve.h>
 #include <mpi.h>

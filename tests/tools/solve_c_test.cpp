@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The front door in C: the program's numbers, its words, stops and starts, and what it leaves of the host.
+// The C solve interface: results and messages of the program, stops and restarts, no side effects on the
+// host.
 #include <doctest/doctest.h>
 #include <kacanov/kacanov_solve.h>
 #include <unistd.h>
@@ -63,7 +64,7 @@ std::span<const double> field(const Solved& run, kacanov_field which) {
   return {data, count};
 }
 
-/// All numbers are the same to 1e-12, but for what the machine and the clock say.
+/// Checks that all numbers agree to 1e-12, except times and machine data.
 void check_same(const nlohmann::json& a, const nlohmann::json& b, const std::string& path = "") {
   static const std::set<std::string> passing{"seconds", "peak_memory_bytes", "phases", "output"};
   INFO(path);
@@ -84,7 +85,7 @@ void check_same(const nlohmann::json& a, const nlohmann::json& b, const std::str
   }
 }
 
-/// The largest of the nodes' displacements.
+/// Returns the largest nodal displacement.
 double largest(std::span<const double> u, std::size_t dim) {
   double most = 0.0;
   for (std::size_t n = 0; n < u.size(); n += dim) {
@@ -212,7 +213,7 @@ TEST_CASE("relative paths start at the folder, and a mesh may be in memory") {
 
 namespace {
 
-/// A host that looks on, asks for a stop after some steps, and tries to solve from within.
+/// A host that records progress, requests a stop after some steps, and tries to solve from a callback.
 struct Watcher {
   std::vector<double> residuals;
   int last = 1 << 30, code_within = KACANOV_OK;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A folder for the files of a test, gone afterwards.
+// A folder for the files of a test, which the destructor removes.
 #pragma once
 
 #include <cstdlib>

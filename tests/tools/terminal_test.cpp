@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lines that fit, colours where they are wanted, steps for other programs.
+// Terminal output: lines wrapped to the width, colours on request, progress for other programs.
 #include "program/terminal.hpp"
 
 #include <doctest/doctest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Boxes that are turned or bent before they are written, and what is turned with them.
+// Boxes that are rotated or deformed before they are written, and helpers that rotate their data.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace kacanov::testing {
 
 using Point = std::array<double, 3>;
 
-/// A rotation by 0.5 about (1, 2, 2)/3.
+/// Rotates by 0.5 about (1, 2, 2)/3.
 inline Point turned(const Point& x) {
   const Point a{1.0 / 3, 2.0 / 3, 2.0 / 3};
   const double c = std::cos(0.5), s = std::sin(0.5), along = a[0] * x[0] + a[1] * x[1] + a[2] * x[2];
@@ -25,12 +25,12 @@ inline Point turned(const Point& x) {
   return y;
 }
 
-/// The same in the plane, by 0.5.
+/// Rotates by 0.5 in the plane.
 inline Point turned_in_plane(const Point& x) {
   return {std::cos(0.5) * x[0] - std::sin(0.5) * x[1], std::sin(0.5) * x[0] + std::cos(0.5) * x[1], x[2]};
 }
 
-/// Writes body.msh, a box with its nodes moved.
+/// Writes body.msh, a box with mapped nodes.
 inline void put_mesh(const Workplace& place, const BoxSpec& box,
                      const std::function<Point(const Point&)>& map) {
   Mesh mesh = make_box(box);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Runs a case that has to converge, and has the program's own verifier look at its files.
+// Runs a case that must converge and verifies its files with the program's own verifier.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -10,7 +10,7 @@
 
 namespace kacanov::testing {
 
-/// The result, once the case has converged and is verified.
+/// Returns the result of a case after checking that it converged and is verified.
 inline nlohmann::json solved(const Workplace& place, const nlohmann::json& input,
                              const std::string& ranks = "1") {
   place.put_json("case.json", input);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Grids of VTK files as meshes: every encoding, and what is said of one that cannot be used.
+// VTK files as meshes: every encoding, and the error messages for unusable files.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -46,7 +46,7 @@ std::string refusal(const std::string& bytes) {
   return "(accepted)";
 }
 
-// 0 0 0 1 0 0 0 1 0 0 0 1 in single precision as Python's base64 and zlib have them.
+// The numbers 0 0 0 1 0 0 0 1 0 0 0 1 in single precision, encoded by Python's base64 and zlib.
 const std::string plain = "MAAAAAAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAAAAAAAAACAPw==";
 const std::vector<std::string> packed{
     "AQAAAACAAAAwAAAAHAAAAA==eAEFwQEBAAAAgiCeea3pAQCwAIAFAKwDJ70CPg==",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The VTK files, read back by a small reader: what goes in comes out, in VTK's order and layout.
+// The VTK writer, checked with a small reader: data, order and layout.
 #include <doctest/doctest.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -30,7 +30,7 @@ namespace {
 struct Array {
   std::map<std::string, std::string> attributes;
   std::string bytes;
-  std::size_t offset = 0, end = 0;  ///< of its packed form, from the first array on
+  std::size_t offset = 0, end = 0;  ///< of its compressed form, from the start of the first array
 
   template <typename T>
   std::vector<T> values() const {
@@ -50,7 +50,7 @@ std::map<std::string, std::string> attributes(const std::string& element) {
   return result;
 }
 
-/// An array's bytes, unpacked block by block; `next` becomes the place behind it.
+/// Returns an array's bytes, decompressed block by block; `next` moves to the position behind it.
 std::string unpacked(const std::string& file, std::size_t& next) {
   const auto number = [&](std::size_t i) {
     std::uint64_t value = 0;
@@ -74,7 +74,7 @@ std::string unpacked(const std::string& file, std::size_t& next) {
   return all;
 }
 
-/// Arrays in the order of the XML.
+/// Returns the arrays in the order of the XML.
 std::vector<Array> arrays_in_order(const std::string& file) {
   const std::size_t appended = file.find("<AppendedData");
   REQUIRE(appended != std::string::npos);
@@ -89,7 +89,7 @@ std::vector<Array> arrays_in_order(const std::string& file) {
     array.end = next - data;
     result.push_back(array);
   }
-  // The arrays follow each other from the last to the first, without a byte between them.
+  // The arrays follow each other from the last to the first without gaps.
   std::size_t expected = 0;
   for (auto array = result.rbegin(); array != result.rend(); ++array) {
     CHECK(array->offset == expected);
@@ -99,15 +99,15 @@ std::vector<Array> arrays_in_order(const std::string& file) {
   return result;
 }
 
-/// Every array of a .vtu by name.
+/// Returns the arrays of a .vtu file by name.
 std::map<std::string, Array> arrays(const std::string& file) {
   std::map<std::string, Array> result;
   for (const Array& array : arrays_in_order(file)) result[array.attributes.at("Name")] = array;
   return result;
 }
 
-/// What meshio 5 does with a file of raw arrays: from front to back, it looks for the array of each offset,
-/// and puts in place of the offset the one that the array has in base64. Whether it finds the right ones.
+/// Simulates meshio 5 on a file of raw arrays: from front to back it searches the array of each offset and
+/// replaces the offset by that of the base64 form. Returns whether it finds the right arrays.
 bool meshio_finds(std::vector<Array> in_order) {
   std::vector<std::size_t> by_offset(in_order.size());
   std::iota(by_offset.begin(), by_offset.end(), std::size_t{0});
@@ -202,7 +202,7 @@ TEST_CASE("points, cells and fields of every element type come back") {
       CHECK(cells == mesh.elements);
       continue;
     }
-    // VTK: the midside nodes follow the edges 01 12 20 03 13 23.
+    // VTK: the mid-side nodes follow the edges 01 12 20 03 13 23.
     constexpr std::array<std::array<std::size_t, 2>, 6> edges{
         {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
     for (std::size_t e = 0; e < mesh.element_count(); ++e)
@@ -251,7 +251,7 @@ TEST_CASE("meshio finds every array, also where its offsets in base64 are those 
     write_vtu(folder.file("a.vtu"), grid);
     std::vector<Array> in_order = arrays_in_order(read_bytes(folder.file("a.vtu")));
     CHECK(meshio_finds(in_order));
-    // The same arrays as others order them, from the first to the last.
+    // The same arrays in the usual order, from the first to the last.
     std::size_t at = 0;
     for (Array& array : in_order) {
       const std::size_t length = array.end - array.offset;
@@ -260,14 +260,14 @@ TEST_CASE("meshio finds every array, also where its offsets in base64 are those 
     }
     if (!meshio_finds(in_order)) ++collisions;
   }
-  CHECK(collisions > 0);  // else this shows nothing
+  CHECK(collisions > 0);  // otherwise the test proves nothing
 }
 
 TEST_CASE("shares of any size make the file that one writer makes") {
   const TemporaryFolder folder;
   std::mt19937_64 random(3);
   for (const std::size_t count : {std::size_t{5}, std::size_t{8192}, std::size_t{40001}}) {
-    // A strip of lines: point i and i + 1.
+    // A chain of lines from point i to i + 1.
     const Cell& line = cell(ElementType::tri3).facet();
     std::vector<double> points(2 * (count + 1)), noise(count);
     for (std::size_t i = 0; i < points.size(); ++i) points[i] = static_cast<double>(i / 7);
@@ -294,7 +294,7 @@ TEST_CASE("shares of any size make the file that one writer makes") {
       grid.number_of_point = [](std::int32_t node) { return std::int64_t{node}; };
       grids.push_back(grid);
     }
-    // Where two shares end with the last cell, the first of them has the last point.
+    // If two shares end with the last cell, the first of them has the last point.
     bool given = false;
     for (Grid& grid : grids)
       if (grid.points.size() > grid.cells.size()) {
@@ -339,7 +339,7 @@ TEST_CASE("what cannot be written is reported with its name, and leaves nothing 
                 "gap has 5 values"));
   CHECK(folder.entries() == 0);
 
-  // A limit on the size of files stands for a full disk. The file that was there stays as it was.
+  // A limit on file sizes simulates a full disk. The existing file must not change.
   write_bytes(folder.file("a.vtu"), "before");
   rlimit old{};
   REQUIRE(::getrlimit(RLIMIT_FSIZE, &old) == 0);

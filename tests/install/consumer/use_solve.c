@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: BSD-3-Clause */
-/* A block pressed on a plane through the installed front door in C: the obstacle carries the load. */
+/* A block pressed onto a plane through the installed solve interface in C: the obstacle carries the load. */
 #include <kacanov/kacanov_solve.h>
 #include <math.h>
 #include <stdio.h>

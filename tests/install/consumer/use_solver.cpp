@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A block pressed on a plane through the installed solver: the obstacle carries the load.
+// A block pressed onto a plane through the installed solver: the obstacle carries the load.
 #include <mpi.h>
 #include <kacanov/solve.hpp>
 
