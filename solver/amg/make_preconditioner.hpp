@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The choice of a preconditioner.
+// Factory for the preconditioner selected in the options.
 #pragma once
 
 #include <memory>
@@ -11,11 +11,12 @@
 
 namespace kacanov {
 
-/// `multigrid`: Chebyshev on the matrix-free operator over grids or aggregates (Multigrid; theory:
-/// multigrid), with BoomerAMG from options.coarse_amg rows down (theory: coarse-amg). `elasticity`:
-/// unknown-based BoomerAMG on the assembled matrix, the yardstick (theory: elasticity-amg). Threads and
-/// instruction set are the operator's. `like`: an operator of the part's mesh and laws, whose division of the
-/// elements the multigrid takes over, or null. Collective; the part has to outlive it.
+/// `multigrid`: geometric (octree) or aggregation multigrid with Chebyshev smoothing on the matrix-free
+/// operator (Multigrid; theory: multigrid), with BoomerAMG below options.coarse_amg rows (theory:
+/// coarse-amg). `elasticity`: unknown-based BoomerAMG on the assembled matrix, as a reference for comparison
+/// (theory: elasticity-amg). Threads and instruction set are those of the operator. `like`: an operator with
+/// the part's mesh and laws, whose blocks of elements the multigrid reuses, or null. Collective; the part
+/// must outlive it.
 std::unique_ptr<Preconditioner> make_preconditioner(const SolverOptions& options, const Part& part,
                                                     int threads, const std::string& instruction_set,
                                                     const Operator* like = nullptr);
