@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far to go along a direction that lowers a convex function.
+// Line search along a descent direction of a convex function.
 #pragma once
 
 #include <algorithm>
@@ -8,16 +8,16 @@
 namespace kacanov {
 
 struct LineSearchOptions {
-  double steep = 0.5;  ///< share of the first slope that may be left falling ...
-  double past = 0.2;   ///< ... or rising, past the lowest point
+  double steep = 0.5;  ///< accepted remaining share of the initial slope while falling ...
+  double past = 0.2;   ///< ... or rising, beyond the minimum
   int most_trials = 20;
-  double longest = 1.0;  ///< where φ falls as steeply as that at 1, go on up to here
+  double longest = 1.0;  ///< extends the step up to this length while φ falls as steeply as at 1
 };
 
-/// t in (0, longest] where φ falls or rises by little, for convex φ with φ'(0) = `first` < 0: the longest
-/// where φ falls there. `slope(t)` gives φ'(t), and leaves its caller at t; the last t asked about is
-/// returned. Regula falsi (Illinois), so that slopes that grow by orders of magnitude along the way are found
-/// as well.
+/// Returns t in (0, longest] at which the slope of the convex φ, with φ'(0) = `first` < 0, is small;
+/// `longest` if φ still falls there. `slope(t)` returns φ'(t) and moves the caller's state to t; the last t
+/// evaluated is returned. Uses regula falsi (Illinois), which copes with slopes that grow by orders of
+/// magnitude.
 template <class Slope>
 double find_step(double first, const Slope& slope, const LineSearchOptions& options = {}) {
   double low = 0.0, high = 0.0, low_slope = first, high_slope = 0.0, t = 1.0;
