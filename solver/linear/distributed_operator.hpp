@@ -63,7 +63,7 @@ class DistributedOperator {
   /// Frees the tangent's memory until the next update_tangent().
   void forget_tangent() noexcept { local_.forget_tangent(); }
   void set_secant(std::span<const double> g) { local_.set_secant(g); }
-  /// Computes the internal force of the nonlinear law; counts as an application.
+  /// Computes the internal force of the nonlinear law; counts as one application.
   void residual(std::span<const double> u, std::span<double> f) {
     local_.residual(u, f);
     add_free_force(u, f);

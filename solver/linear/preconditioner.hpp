@@ -19,7 +19,7 @@ class Preconditioner {
   void setup(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space);
   /// Sets up for new blocks with the g of the last setup, much cheaper if few nodes change.
   void setup_again(std::span<const NodeBlock> blocks, const Space& space);
-  /// z ≈ A⁻¹ r (overwrites z). Requires a setup.
+  /// z ≈ A⁻¹ r (overwrites z). Call setup() first.
   virtual void apply(std::span<const double> r, std::span<double> z) = 0;
 
   /// Returns in `g` the g of the last setup, at least in single precision; μ before the first setup.

@@ -35,7 +35,7 @@ class CheckpointReader {
   std::size_t length(const std::string& name, std::int64_t most) const;
   /// Returns a number within these bounds.
   double within(const std::string& name, double least, double most) const;
-  /// Returns a vector that is the same on all ranks.
+  /// Returns the same vector on all ranks.
   std::vector<double> values(const std::string& name, std::size_t entries) const;
   /// These return this rank's entries of a field, all finite.
   std::vector<double> contact(const std::string& name, int components) const;

@@ -21,8 +21,8 @@ class PreconditionerSchedule {
  public:
   explicit PreconditionerSchedule(const Tuning& tuning) : tuning_(tuning) {}
 
-  /// Whether a setup is due in any case: there is none yet, or solving for this many more decimal digits
-  /// would lose more iterations than a setup costs.
+  /// Whether a setup is due in any case: for lack of a first one, or because solving for this many more
+  /// decimal digits would lose more iterations than a setup costs.
   bool stale(double digits = HUGE_VAL) const noexcept {
     return stale_ || (lost_per_digit_ > 0.0 && lost_per_digit_ * digits > tuning_.setup_worth);
   }
@@ -35,12 +35,12 @@ class PreconditionerSchedule {
   /// or whether some slip stiffness has changed too much. Every wrong node costs CG a few iterations.
   bool set_moved(const ActiveSet& set, double penalty = 0.0) const;
 
-  /// Records a setup with new g.
+  /// Records that it was set up with a new g.
   void built();
   void built_for(const Penalty& penalty);
   void built_for(const ActiveSet& set, double penalty = 0.0);
-  /// Records a solve: decimal digits gained, and CG iterations. The first solve after a setup sets the
-  /// reference; one that exceeds it by the cost of a setup marks the setup as stale.
+  /// Records the result of a solve: decimal digits gained, and CG iterations. The first solve after a setup
+  /// sets the reference; one that exceeds it by the cost of a setup marks the setup as stale.
   void watch(double digits, std::int64_t iterations);
 
   /// Visits the entries of a checkpoint; built_for() restores the set.
@@ -99,7 +99,8 @@ class ContactPreconditioner {
   /// Sets up before a step with penalties on the set's held rows if it pays off; `loose`: penalty on all
   /// rows.
   void prepare(const ActiveSet& set, double penalty, double loose);
-  /// Records a solve: decimal digits gained, and CG iterations. A very large number triggers factorise().
+  /// Records the result of a solve: decimal digits gained, and CG iterations. A very large number triggers
+  /// factorise().
   void watch(double digits, std::int64_t iterations);
   /// After a failed solve: replaces the preconditioner for good by a sparse factor if the body is small
   /// enough (theory: factorised). Returns whether it did so now; the factor is not set up yet.

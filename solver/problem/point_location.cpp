@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Search for the element that contains a point.
+// Locates points in the elements of a mesh.
 #include "problem/point_location.hpp"
 
 #include <Eigen/Dense>

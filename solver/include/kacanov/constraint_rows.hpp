@@ -58,7 +58,7 @@ class ConstraintRows {
   bool is_wide(std::size_t i) const noexcept { return start_[i + 1] - start_[i] > 1; }
   bool any_wide() const noexcept { return entries_.size() > points_.size(); }
 
-  /// Appends a point. Points of the same node must be consecutive; `entries` must not be empty.
+  /// Appends `point`. Points of the same node must be consecutive; `entries` must not be empty.
   void push_back(const ContactPoint& point, std::span<const RowEntry> entries) {
     points_.push_back(point);
     entries_.insert(entries_.end(), entries.begin(), entries.end());

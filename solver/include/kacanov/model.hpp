@@ -183,8 +183,8 @@ struct Model {
 bool any_moves(const Model& model);
 
 /// Throw InputError for the first invalid value, with its path in the case file: "solver.tolerance: expected
-/// a number above 0 and below 1, got 0". build_problem() checks everything that needs a mesh. validate(model)
-/// also validates the model's options.
+/// a number above 0 and below 1, got 0". build_problem() checks everything that depends on the mesh.
+/// validate(model) also validates the model's options.
 void validate(const SolverOptions& options);
 void validate(const Model& model);
 

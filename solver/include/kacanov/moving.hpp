@@ -19,7 +19,7 @@ Model with_curves(Model model);
 /// - model: the result of with_curves(); its obstacles' data are needed on rank 0 only.
 /// - run: as for solve(); a checkpoint contains the current solve and the completed load steps.
 /// Returns the same as solve(), with counts summed over all steps. Throws InputError on all ranks if an
-/// obstacle leaves a node without a contact direction. Collective.
+/// obstacle leaves any node without a contact direction. Collective.
 Solution solve_moving(Part& part, const Model& model, RunOptions run);
 
 }  // namespace kacanov
