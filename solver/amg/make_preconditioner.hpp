@@ -11,12 +11,9 @@
 
 namespace kacanov {
 
-/// `multigrid`: geometric (octree) or aggregation multigrid with Chebyshev smoothing on the matrix-free
-/// operator (Multigrid; theory: multigrid), with BoomerAMG below options.coarse_amg rows (theory:
-/// coarse-amg). `elasticity`: unknown-based BoomerAMG on the assembled matrix, as a reference for comparison
-/// (theory: elasticity-amg). Threads and instruction set are those of the operator. `like`: an operator with
-/// the part's mesh and laws, whose blocks of elements the multigrid reuses, or null. Collective; the part
-/// must outlive it.
+/// `multigrid`: octree or aggregation (theory: multigrid), BoomerAMG below options.coarse_amg rows (theory:
+/// coarse-amg); `elasticity`: unknown-based BoomerAMG (theory: elasticity-amg). `like`: operator with the
+/// part's mesh and laws whose blocks multigrid reuses, or null. The part must outlive it. Collective.
 std::unique_ptr<Preconditioner> make_preconditioner(const SolverOptions& options, const Part& part,
                                                     int threads, const std::string& instruction_set,
                                                     const Operator* like = nullptr);

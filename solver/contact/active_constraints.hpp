@@ -10,11 +10,9 @@
 
 namespace kacanov {
 
-/// Nodes with held rows. Several contact entries may meet at a node, as at the edge between a floor and a
-/// wall. Normals take precedence: friction acts only in directions that they leave free, so that no row is
-/// held twice; the entries share it in proportion to their bounds. The reaction of a point that slides under
-/// Coulomb friction acts along ν + μ ŝ. RowCluster handles nodes of multi-node points, and WideSliding their
-/// sliding friction.
+/// Nodes with held rows. Where several contact entries meet, normals take precedence: friction acts only in
+/// directions they leave free, shared in proportion to the bounds, so no row is held twice. Coulomb sliding
+/// makes a reaction oblique: ν + μ ŝ. RowCluster and WideSliding handle nodes of multi-node points.
 class HeldNodes {
  public:
   HeldNodes(const Part& part, const ActiveSet& set, const ContactState& state);

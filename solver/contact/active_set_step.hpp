@@ -26,9 +26,8 @@ struct ActiveSetStep {
 };
 
 /// Solves the linearised problem with the rows of `set` held: B δ + slip terms = F − R(u) − CᵀMλ, with Cu +
-/// Cδ on the obstacle or at rest. Closing gaps one point at a time strains adjacent elements strongly and
-/// inflates the first residual, so besides `relative` set options.most to the previous unbalanced force.
-/// Collective.
+/// Cδ on the obstacle or at rest. Points moved onto the obstacle inflate the first residual, so set
+/// options.most to the previous unbalanced force besides `relative`. Collective.
 ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, const ActiveSet& set,
                               const ContactState& state, CgOptions options, CgWork& work);
 

@@ -16,18 +16,15 @@
 
 namespace kacanov {
 
-/// Balance data of one iteration, for N and T: the largest open displacement at active rows A, and the norm
-/// of the force change at inactive rows I.
+/// Balance data of one iteration, for N and T: the largest open displacement at the held rows A (touching,
+/// sticking and, in 3D, across the slip), and the norm of the force change at the free rows I.
 struct BalanceSample {
   std::array<double, 2> held{}, moved{};
 };
 
-/// With A the held rows (touching, sticking and, in 3D, across its slip a slipping point) and I the free
-/// ones, an error at A decays by 1/(1 + r λ(K_AA)) per iteration, one at I by r λ(K_I|A)/(1 + r λ(K_I|A)): a
-/// larger r speeds up A and slows down I. Errors appear as a displacement at A and a force at I. The best r
-/// brings both to their tolerances together, so r is raised while A lags and lowered while I does, separately
-/// for N and T. With standard residual balancing (whole w − φ against whole r Δφ) over-relaxation mixes the
-/// two: 107 iterations instead of 52 (rocker, elastic, frictionless).
+/// A larger r speeds up errors at A (displacements, factor 1/(1 + r λ(K_AA)) per iteration) and slows down
+/// those at I (forces, r λ(K_I|A)/(1 + r λ(K_I|A))); the best r brings both to tolerance together. Balancing
+/// w − φ against r Δφ mixes them by over-relaxation: 107 iterations, not 52 (rocker, elastic, frictionless).
 class Balance {
  public:
   explicit Balance(std::size_t points) : free_(points), part_(points) {}

@@ -47,9 +47,8 @@ struct BodyForces {
 };
 
 /// Computes the residuals relative to scales of the state, per region and contact entry (theory: kkt,
-/// regions). If forces are negligible, the scale is a share of the stiffness of softer unknowns times u, so
-/// that a body moved without strain has small residuals instead of ratios of rounding errors (theory:
-/// rounding). Collective.
+/// regions). Without significant forces the scale is a share of the softer unknowns' stiffness times u, so
+/// that rigid motion gives small residuals, not ratios of rounding errors (theory: rounding). Collective.
 Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactState& state,
                         const BodyForces& forces);
 

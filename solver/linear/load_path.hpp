@@ -10,11 +10,9 @@
 
 namespace kacanov {
 
-/// Loads, prescribed displacements and gaps of a part at a share of the full load, or at a time if the part
-/// has load curves; the time then takes the place of the share everywhere (theory: load-path). Obstacles that
-/// indent the body at rest are withdrawn along their direction, per contact entry by the missing share of its
-/// largest indentation; open gaps of other entries and the friction bounds are constant. The part is not
-/// modified.
+/// Loads, prescribed displacements and gaps of a part at a share of the full load or, with load curves, at a
+/// time, which replaces the share (theory: load-path). Indenting obstacles are withdrawn per contact entry by
+/// the missing share of its largest indentation; other gaps, friction bounds and the part do not change.
 class LoadPath {
  public:
   /// Starts at the full load, or at the end of the curves. Collective. `part` must outlive it.

@@ -12,9 +12,8 @@
 namespace kacanov {
 
 /// The penalty adapts to the cost of rounds: a large one needs few rounds, a small one few Newton steps per
-/// round. A round maps multipliers, and the bounds from their pressure, to new ones. Anderson acceleration
-/// finds the fixed point of this map, including Coulomb friction, even if the map is no contraction (theory:
-/// augmented-newton).
+/// round. Anderson acceleration finds the fixed point of the map from the multipliers and bounds of one round
+/// to the next, Coulomb's included, even if it is no contraction (theory: augmented-newton).
 class AugmentedControl {
  public:
   explicit AugmentedControl(const Tuning& tuning) : tuning_(tuning) {}

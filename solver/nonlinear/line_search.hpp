@@ -14,10 +14,9 @@ struct LineSearchOptions {
   double longest = 1.0;  ///< extends the step up to this length while φ falls as steeply as at 1
 };
 
-/// Returns t in (0, longest] at which the slope of the convex φ, with φ'(0) = `first` < 0, is small;
-/// `longest` if φ still falls there. `slope(t)` returns φ'(t) and moves the caller's state to t; the last t
-/// evaluated is returned. Uses regula falsi (Illinois), which copes with slopes that grow by orders of
-/// magnitude.
+/// Returns t in (0, longest] at which the convex φ, with φ'(0) = `first` < 0, has a small slope, or `longest`
+/// if it still falls there. `slope(t)` returns φ'(t) and moves the caller's state to t; the last t evaluated
+/// is returned. Regula falsi (Illinois) copes with slopes that grow by orders of magnitude.
 template <class Slope>
 double find_step(double first, const Slope& slope, const LineSearchOptions& options = {}) {
   double low = 0.0, high = 0.0, low_slope = first, high_slope = 0.0, t = 1.0;
@@ -35,7 +34,7 @@ double find_step(double first, const Slope& slope, const LineSearchOptions& opti
       continue;
     }
     if (falls) {
-      // Illinois: a side that stays twice counts half.
+      // Illinois rule: halve the slope of an end that is kept a second time.
       if (low > 0.0 && high > 0.0) high_slope *= 0.5;
       low = t;
       low_slope = here;

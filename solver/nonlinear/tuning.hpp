@@ -17,10 +17,9 @@ struct Tuning {
   /// ADMM iterations of the first step if Newton steps follow: it only has to guess the contact set. A
   /// slender cantilever that just reaches its obstacle took 10,000 iterations for the same answer.
   int opening_iterations = 20;
-  /// Residual reduction in a semismooth Newton step. If the target is within a factor `last_reach` of
-  /// `last_share` times the tolerance, the solve continues to the latter: the step may be the last, and more
-  /// digits cost more in a separate step (87 cases: 8,071 applications and 554 steps instead of 8,448 and
-  /// 606).
+  /// Residual reduction of a Newton solve. If the target is within a factor `last_reach` of `last_share`
+  /// times the tolerance, the solve continues to the latter: the step may be the last, and digits cost more
+  /// in a separate step (87 cases: 8,071 applications and 554 steps instead of 8,448 and 606).
   double solve_reduction = 0.03;
   double last_reach = 100.0, last_share = 0.7;
   /// The linearisation error is evaluated once the residual is below this share of the first one and at least

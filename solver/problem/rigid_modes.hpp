@@ -11,10 +11,9 @@
 
 namespace kacanov {
 
-/// For every connected component of the mesh, throws InputError that names the rigid-body modes held neither
-/// by displacements nor by contact, and counts in problem.loose_modes those held by contact only, with a
-/// warning. If the loads of such a component can be in equilibrium (theory: rigid-balance), it sets
-/// problem.motions, otherwise problem.no_equilibrium.
+/// For every connected component of the mesh: throws InputError that names unconstrained rigid-body modes,
+/// and counts in problem.loose_modes those held by contact only, with a warning. Sets problem.motions if the
+/// loads of such a component can be in equilibrium (theory: rigid-balance), else problem.no_equilibrium.
 void check_rigid_modes(Problem& problem);
 
 /// Returns the displacements of these nodes by problem.motions (theory: rigid-start), nodes × dim; empty if

@@ -31,10 +31,9 @@ struct LanczosResult {
 /// y = K x on the entries this rank owns (possibly none). Collective.
 using Product = std::function<void(std::span<const double> x, std::span<double> y)>;
 
-/// Computes the largest eigenvalues of a symmetric operator, with bounds. `index` numbers this rank's entries
-/// globally, so that the start vector does not depend on the partition. Small operators (up to 24 rows in
-/// total) are formed column by column and solved densely, because ARPACK has too little room there and breaks
-/// down on K = c·I. Throws InternalError if ARPACK fails. Collective.
+/// Computes the largest eigenvalues of a symmetric operator, with bounds. `index`: global numbers of this
+/// rank's entries; the start vector depends on them, not on the partition. Up to 24 rows in total are solved
+/// densely: ARPACK has no room there and fails on K = c·I. Throws InternalError if ARPACK fails. Collective.
 LanczosResult largest_eigenvalues(const Product& product, std::span<const std::int64_t> index, MPI_Comm comm,
                                   const LanczosOptions& options);
 
