@@ -25,7 +25,7 @@ bool Fallback::after_newton(double worst, bool solved) {
   stalled_ = worst < tuning_.progress * best_ ? 0 : stalled_ + 1;
   best_ = std::min(best_, worst);
   if (solved && stalled_ < tuning_.patience && std::isfinite(worst)) return false;
-  // ADMM converges from any state; every retreat is longer than the last.
+  // The method of multipliers converges from any state; every retreat is longer than the last.
   stalled_ = 0;
   aim_ = std::isfinite(best_) ? tuning_.retreat_gain * best_ : 0.0;
   best_ = HUGE_VAL;

@@ -56,14 +56,14 @@ class ContactChanges {
   }
 };
 
-/// Detects stagnation of semismooth Newton steps, and then requests ADMM steps (a retreat): their number
-/// doubles with every retreat, and a retreat ends early at a tenth of the best residual before it (theory:
-/// active-set).
+/// Detects stagnation of semismooth Newton steps, and then requests steps of the method of multipliers (a
+/// retreat): their number doubles with every retreat, and a retreat ends early at a tenth of the best
+/// residual before it (theory: active-set, augmented-newton).
 class Fallback {
  public:
   explicit Fallback(const Tuning& tuning) : tuning_(tuning) {}
 
-  /// Whether ADMM takes the next step.
+  /// Whether the method of multipliers takes the next step.
   bool retreating() const noexcept { return steps_left_ > 0; }
   /// `worst`: largest KKT residual after the step; `solved`: whether its linear problems were solved.
   void after_admm(double worst, bool solved = true);
@@ -89,7 +89,7 @@ class Fallback {
   Tuning tuning_;
   double best_ = HUGE_VAL;  ///< smallest residual since the last retreat
   int stalled_ = 0;         ///< Newton steps without a new best residual
-  int steps_left_ = 0;      ///< remaining ADMM steps
+  int steps_left_ = 0;      ///< remaining steps of the retreat
   double aim_ = 0.0;        ///< residual at which they end early
   int retreats_ = 0;
   double lowest_ = HUGE_VAL;  ///< residual at the last significant gain

@@ -108,7 +108,7 @@ class OuterLoop {
   /// Takes the first step as from rest if the state is negligible relative to the motion of the obstacles,
   /// because such small forces and displacements give no scale for the accuracy of solves.
   void open_if_at_rest(const Residuals& residuals);
-  /// Takes the next step, by Newton's method or ADMM, and adds its counts.
+  /// Takes the next step, by Newton's method, ADMM or the method of multipliers, and adds its counts.
   StepOutcome take_step(bool newton, const Residuals& before, Result& result);
   /// Updates the controls from the residuals after the step; returns those of the state to continue from.
   Residuals learn(const StepOutcome& step, bool newton, const Residuals& before, const Residuals& after,

@@ -104,15 +104,15 @@ struct Tuning {
   double factor_iterations = 250.0, factor_unknowns = 2160.0, factor_growth = 1.64;
   std::int64_t most_factorised = 10'000;
 
-  // Return from Newton steps to ADMM (theory: active-set), and termination.
+  // Fallback from Newton steps to the method of multipliers (theory: active-set), and termination.
 
-  /// A Newton step below this share of the best residual is a new best; after `patience` steps without one
-  /// ADMM takes over.
+  /// A Newton step below this share of the best residual is a new best; after `patience` steps without one a
+  /// retreat begins.
   double progress = 0.7;
   int patience = 6;
-  /// ADMM returns early at this share of the best residual of the preceding Newton steps.
+  /// A retreat ends early at this share of the best residual of the preceding Newton steps.
   double retreat_gain = 0.1;
-  /// ADMM steps of the first retreat; each retreat is twice as long as the one before, for at most this many
+  /// Steps of the first retreat; each retreat is twice as long as the one before, for at most this many
   /// doublings.
   int first_retreat = 2, most_doublings = 6;
   /// The load step is cut after this many steps without a residual below `gain` times the lowest.

@@ -123,8 +123,8 @@ struct SolverOptions {
   /// Linearisation: the secant (theory: kacanov), the tangent (theory: newton), or first the secant and then
   /// the tangent.
   enum class Outer { automatic, kacanov, newton };
-  /// Contact algorithm: ADMM (theory: admm, dual-admm), semismooth Newton (theory: active-set), or semismooth
-  /// Newton with ADMM as first step and fallback.
+  /// Contact algorithm: ADMM (theory: admm, dual-admm), or semismooth Newton (theory: active-set) after an
+  /// ADMM step and with the method of multipliers as fallback (theory: augmented-newton).
   enum class Contact { automatic, admm, dual_admm, active_set };
   /// Penalty of ADMM: adapted during the run (theory: first-penalty, balance), r* (theory: r-star), or the
   /// given `r`.
