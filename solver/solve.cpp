@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The solver's front door: runs the loops, then certifies and collects the result.
+// The solver's main entry point: runs the loops, certifies the solution and collects the result.
 #include <kacanov/corner_dilatation.hpp>
 #include <kacanov/solve.hpp>
 
@@ -22,7 +22,7 @@
 namespace kacanov {
 namespace {
 
-/// Load steps of so many that the run to go on from has behind it, on all ranks.
+/// Returns the number of load steps, of `steps`, that the run to continue has completed, on all ranks.
 std::size_t steps_over(const Part& part, const RunOptions& run, std::size_t steps) {
   const bool here = part.node_map.rank == 0 && run.start != nullptr;
   const auto most = static_cast<std::int64_t>(steps) - 1;
@@ -34,7 +34,7 @@ void begin(const Part& part, const RunOptions& run, const char* phase) {
   if (run.phase && part.node_map.rank == 0) run.phase(phase);
 }
 
-/// Shares of the load one after the other; with load curves the times of their points.
+/// Returns the successive shares of the load, or with load curves the times of their points.
 std::vector<double> load_points(const Part& part, const SolverOptions& options) {
   if (part.steps.empty()) return options.load_steps.empty() ? std::vector{1.0} : options.load_steps;
   std::vector<double> times;
@@ -42,8 +42,8 @@ std::vector<double> load_points(const Part& part, const SolverOptions& options) 
   return times;
 }
 
-/// R(u) and the stored energy by the reference operator: the certificate does not trust the one the loop ran
-/// on.
+/// R(u) and stored energy by the reference operator, so that the certificate does not depend on the operator
+/// of the loop.
 struct Response {
   Vector internal;
   double energy = 0.0;
@@ -63,8 +63,8 @@ Response respond_independently(const StepContext& context, std::span<const doubl
   return response;
 }
 
-/// `gave_up`: the loop has found nothing more to gain. Where rounding alone is above the tolerance, that is
-/// why.
+/// Returns the status. If the loop made no further progress (`gave_up`) and rounding errors exceed the
+/// tolerance, they are the reason.
 Status status_of(const Certificate& certificate, double tolerance, bool gave_up) {
   const double unknown = certificate.rounding.worst();
   if (certificate.meets(tolerance)) return Status::converged;
@@ -103,7 +103,7 @@ std::string verdict(const Result& result, const SolverOptions& options) {
   return text.str();
 }
 
-/// Says in which load step a run has ended that did not come to the last; adds the last one's line.
+/// Adds the line of the last load step, and names the load step at which an incomplete run stopped.
 void end_load_steps(const std::vector<double>& shares, bool finished, Result& result) {
   const std::size_t over = result.load_steps.size();
   if (finished) result.load_steps.push_back(load_step_line(result, shares[over]));
@@ -111,7 +111,7 @@ void end_load_steps(const std::vector<double>& shares, bool finished, Result& re
   result.message = load_step_name(over, shares.size(), result.by_time, shares[over]) + ": " + result.message;
 }
 
-/// Shows the caller where the loop stands at the end of a load step.
+/// Passes the state at the end of a load step to the caller.
 void hand_out_step(const StepContext& context, const Result& result, const RunOptions& run,
                    Nondimensionalised& scaled) {
   Solution now;
@@ -194,13 +194,13 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   result.status = status_of(result.certificate, options.tolerance, loop.gave_up() && !loop.ran_away());
   if (result.status == Status::limited_by_rounding && !result.certificate.exhausted(options.tolerance) &&
       result.cg_iterations > 0)
-    result.message.clear();  // it is not the load that stops it
+    result.message.clear();  // the load step is not the cause
   result.load_factor = context.path.share();
   if (!part.no_equilibrium.empty()) result.status = Status::not_converged;
   if (context.path.share() != shares.back()) result.status = Status::not_converged;
   if (loop.gave_up() && loop.ran_away()) result.status = Status::not_converged;
   if (!finished) result.status = Status::interrupted;
-  // What has not converged can be continued with more steps; what has broken down cannot.
+  // An unconverged run can be continued with more steps; a breakdown cannot.
   const bool wanted = part.node_map.any(part.node_map.rank == 0 && run.checkpoint);
   if (wanted && part.no_equilibrium.empty() && result.status != Status::converged &&
       std::isfinite(result.certificate.worst())) {

@@ -19,7 +19,7 @@ void check(HYPRE_Int code, const char* what) {
   throw InternalError(std::string("hypre: ") + what + " failed: " + text.data());
 }
 
-/// hypre keeps global state; the first user starts it, and it lives as long as MPI.
+/// hypre keeps global state; the first user initialises it, and it lives as long as MPI.
 void start_hypre() {
   static const bool started = [] {
     check(HYPRE_Init(), "HYPRE_Init");
@@ -85,7 +85,7 @@ void BoomerAmg::add_row(HYPRE_BigInt row, std::span<HYPRE_BigInt> columns, std::
         "IJMatrixAddToValues");
 }
 
-/// Vectors and their list stay as long as the solver, which does not copy them.
+/// hypre does not copy the vectors or their list, so they must live as long as the solver.
 void BoomerAmg::reach(std::span<const std::vector<double>> smooth) {
   for (const std::vector<double>& values : smooth) {
     smooth_.push_back(nullptr);
@@ -95,7 +95,8 @@ void BoomerAmg::reach(std::span<const std::vector<double>> smooth) {
   check(HYPRE_BoomerAMGSetInterpVectors(solver_, static_cast<HYPRE_Int>(smooth_objects_.size()),
                                         smooth_objects_.data()),
         "SetInterpVectors");
-  check(HYPRE_BoomerAMGSetInterpVecVariant(solver_, 1), "SetInterpVecVariant");  // "GM1", on every level
+  // Variant GM1, on every level.
+  check(HYPRE_BoomerAMGSetInterpVecVariant(solver_, 1), "SetInterpVecVariant");
   check(HYPRE_BoomerAMGSetInterpVecQMax(solver_, 4), "SetInterpVecQMax");
 }
 
@@ -114,15 +115,15 @@ void BoomerAmg::finish(const BoomerAmgOptions& options, std::span<const std::vec
   check(HYPRE_BoomerAMGSetInterpType(solver_, 6), "SetInterpType");     // extended+i
   check(HYPRE_BoomerAMGSetPMaxElmts(solver_, 4), "SetPMaxElmts");
   check(HYPRE_BoomerAMGSetStrongThreshold(solver_, options.strong_threshold), "SetStrongThreshold");
-  // l1 Gauss–Seidel forward on the way down, backward on the way up: symmetric at half the cost of a
-  // symmetric sweep on both (404 CG steps against 385, 4.3 s against 5.1 s of CPU time, 3D beam, h = 1/16);
-  // Gaussian elimination at the end.
+  // l1 Gauss–Seidel forward on the way down, backward on the way up: symmetric at half the cost of symmetric
+  // sweeps in both branches (404 CG steps against 385, 4.3 s against 5.1 s of CPU time, 3D beam, h = 1/16);
+  // Gaussian elimination on the coarsest level.
   check(HYPRE_BoomerAMGSetCycleRelaxType(solver_, options.both_ways ? 8 : 13, 1), "SetCycleRelaxType");
   check(HYPRE_BoomerAMGSetCycleRelaxType(solver_, options.both_ways ? 8 : 14, 2), "SetCycleRelaxType");
   check(HYPRE_BoomerAMGSetCycleRelaxType(solver_, 9, 3), "SetCycleRelaxType");
   check(HYPRE_BoomerAMGSetAggNumLevels(solver_, options.aggressive_levels), "SetAggNumLevels");
   if (options.nodes_together) {
-    check(HYPRE_BoomerAMGSetNodal(solver_, 4), "SetNodal");  // by the row sums of a block's sizes
+    check(HYPRE_BoomerAMGSetNodal(solver_, 4), "SetNodal");  // by the row sums of block norms
     check(HYPRE_BoomerAMGSetNodalDiag(solver_, 1), "SetNodalDiag");
   }
   if (!smooth.empty()) reach(smooth);
@@ -151,7 +152,7 @@ void ElasticityAmg::build(std::span<const double> g, std::span<const NodeBlock> 
     double* to = &matrix[graph.position(b.node, b.node) * dim * dim];
     for (std::size_t k = 0; k < dim * dim; ++k) to[k] += b.value[k];
   }
-  Vector diagonal(part_.unknowns());  // summed over the ranks: what held components keep
+  Vector diagonal(part_.unknowns());  // summed over the ranks; kept on held components
   for (std::size_t n = 0; n < graph.rows(); ++n) {
     const double* block =
         &matrix[graph.position(static_cast<std::int32_t>(n), static_cast<std::int32_t>(n)) * dim * dim];

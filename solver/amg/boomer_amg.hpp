@@ -18,35 +18,37 @@ namespace kacanov {
 
 /// In hypre's words.
 struct BoomerAmgOptions {
-  int functions = 1;              ///< unknowns a node, interleaved
-  double strong_threshold = 0.5;  ///< couplings below this share of a row's largest are weak
-  int aggressive_levels = 0;      ///< the first of them are coarsened twice at once
-  bool nodes_together = false;    ///< coarsened by nodes, else each of their unknowns apart
-  /// Whether l1 Gauss–Seidel goes there and back on the way down and on the way up; otherwise forward on the
-  /// way down, backward on the way up, at half the cost.
+  int functions = 1;              ///< unknowns per node, interleaved
+  double strong_threshold = 0.5;  ///< couplings below this share of the row's largest are weak
+  int aggressive_levels = 0;      ///< number of finest levels with aggressive (double) coarsening
+  bool nodes_together = false;    ///< coarsens by nodes instead of each unknown separately
+  /// Whether l1 Gauss–Seidel sweeps are symmetric in both branches of the cycle. Otherwise they are forward
+  /// on the way down and backward on the way up, at half the cost.
   bool both_ways = false;
-  int cycles = 1;  ///< V-cycles an application
+  int cycles = 1;  ///< V-cycles per application
 };
 
-/// Filled row by row, then applied: V-cycles from zero. Contributions to rows of other ranks are sent to
-/// them. All is collective but add_row(); what hypre refuses is an InternalError with its words.
+/// A matrix that is filled row by row and then applied as V-cycles with zero initial guess. Contributions to
+/// rows of other ranks are sent to them. All members except add_row() are collective; hypre errors are thrown
+/// as InternalError with hypre's message.
 class BoomerAmg {
  public:
-  /// This rank owns the global rows first … first + count − 1 of `total`. Throws InputError where 32-bit
-  /// hypre cannot number as many.
+  /// This rank owns the global rows first … first + count − 1 of `total`. Throws InputError if hypre with
+  /// 32-bit indices cannot number them.
   BoomerAmg(MPI_Comm comm, std::int64_t first, std::int64_t count, std::int64_t total);
   ~BoomerAmg();
   BoomerAmg(const BoomerAmg&) = delete;
   BoomerAmg& operator=(const BoomerAmg&) = delete;
 
-  /// Drops the last matrix and starts a new one; upper bounds of the `count` owned rows' lengths.
+  /// Discards the last matrix and starts a new one; `row_sizes` are upper bounds of the lengths of the owned
+  /// rows.
   void begin(std::span<const HYPRE_Int> row_sizes);
-  /// Adds values at global columns, one each, to a row of any rank.
+  /// Adds values at global columns, one value per column, to a row of any rank.
   void add_row(HYPRE_BigInt row, std::span<HYPRE_BigInt> columns, std::span<double> values);
-  /// Assembles the matrix and sets the hierarchy up. `smooth`: vectors of `count` owned entries that the
-  /// interpolation should reach, besides those that are constant in one of a node's unknowns.
+  /// Assembles the matrix and sets up the hierarchy. `smooth`: vectors of `count` owned entries that the
+  /// interpolation should reproduce in addition to constants in each unknown.
   void finish(const BoomerAmgOptions& options, std::span<const std::vector<double>> smooth = {});
-  /// z = the V-cycles on r from zero; `count` owned entries each.
+  /// z = result of the V-cycles on r with zero initial guess; `count` owned entries each.
   void apply(const double* r, double* z);
 
  private:
@@ -65,11 +67,11 @@ class BoomerAmg {
   std::vector<HYPRE_ParVector> smooth_objects_;
 };
 
-/// One V-cycle of BoomerAMG, the components of a node apart from each other (theory: elasticity-amg), on
-/// B(g) + blocks with held components cut out. Directions that the space holds are left to the blocks.
+/// One V-cycle of unknown-based BoomerAMG (theory: elasticity-amg) on B(g) + blocks without the held
+/// components. Directions held by the space are represented by the blocks only.
 class ElasticityAmg final : public Preconditioner {
  public:
-  /// The part has to outlive it. Throws InputError where hypre cannot number the unknowns. Collective.
+  /// The part must outlive it. Throws InputError if hypre cannot number the unknowns. Collective.
   explicit ElasticityAmg(const Part& part);
   void apply(std::span<const double> r, std::span<double> z) override;
   void secant(std::span<double> g) const override;

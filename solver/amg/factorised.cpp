@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A sparse factor of the assembled secant stiffness: for small bodies that multigrid cannot precondition.
+// Sparse Cholesky factor of the assembled secant stiffness, for small bodies on which multigrid fails.
 #include "amg/factorised.hpp"
 
 #include <Eigen/SparseCholesky>
@@ -13,13 +13,14 @@ namespace {
 
 using Matrix = Eigen::SparseMatrix<double>;
 
-/// A block of the matrix as it travels; nodes by their numbers over all ranks.
+/// A matrix block as sent between ranks, with global node numbers.
 struct Travelling {
   std::int64_t row = 0, column = 0;
   std::array<double, 9> value{};
 };
 
-/// Free components of every node by its number over all ranks, held ones left empty. Collective.
+/// Assembles the free components of every node, in global numbering, with empty rows for held ones.
+/// Collective.
 Matrix assembled(const Part& part, const NodeGraph& graph, std::span<const double> g,
                  std::span<const NodeBlock> blocks) {
   const std::size_t dim = part.dim();
@@ -69,7 +70,7 @@ struct Factorised::Factor {
     analysed = true;
     for (Eigen::Index i = 0; i < matrix.rows(); ++i)
       if (diagonal[i] == 0.0) matrix.coeffRef(i, i) = largest;
-    // Motions that nothing holds get a shift far below anything that deforms.
+    // Unconstrained modes get a shift far below any deformation stiffness.
     for (double shift = 1e-14; shift < 1e-3; shift *= 100.0) {
       factor.setShift(shift * largest);
       factor.factorize(matrix);

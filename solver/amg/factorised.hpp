@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A sparse factor of the assembled secant stiffness: for small bodies that multigrid cannot precondition.
+// Sparse Cholesky factor of the assembled secant stiffness, for small bodies on which multigrid fails.
 #pragma once
 
 #include <memory>
@@ -9,12 +9,12 @@
 
 namespace kacanov {
 
-/// (B(g) + blocks)⁻¹ in double precision (theory: factorised), the same factor on every rank. Directions that
-/// the space holds are left to the blocks.
+/// (B(g) + blocks)⁻¹ in double precision (theory: factorised), with the same factor on every rank. Directions
+/// held by the space are represented by the blocks only.
 class Factorised final : public Preconditioner {
  public:
-  /// Nothing is set up yet. The part has to outlive it. A setup throws InternalError where the matrix is not
-  /// definite. Not collective.
+  /// Does not set up yet. The part must outlive it. A setup throws InternalError if the matrix is not
+  /// positive definite. Not collective.
   explicit Factorised(const Part& part);
   ~Factorised() override;
   void apply(std::span<const double> r, std::span<double> z) override;

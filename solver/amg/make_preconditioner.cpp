@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The choice of a preconditioner.
+// Factory for the preconditioner selected in the options.
 #include "amg/make_preconditioner.hpp"
 
 #include "amg/boomer_amg.hpp"

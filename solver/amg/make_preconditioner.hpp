@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The choice of a preconditioner.
+// Factory for the preconditioner selected in the options.
 #pragma once
 
 #include <memory>
@@ -11,11 +11,9 @@
 
 namespace kacanov {
 
-/// `multigrid`: Chebyshev on the matrix-free operator over grids or aggregates (Multigrid; theory:
-/// multigrid), with BoomerAMG from options.coarse_amg rows down (theory: coarse-amg). `elasticity`:
-/// unknown-based BoomerAMG on the assembled matrix, the yardstick (theory: elasticity-amg). Threads and
-/// instruction set are the operator's. `like`: an operator of the part's mesh and laws, whose division of the
-/// elements the multigrid takes over, or null. Collective; the part has to outlive it.
+/// `multigrid`: octree or aggregation (theory: multigrid), BoomerAMG below options.coarse_amg rows (theory:
+/// coarse-amg); `elasticity`: unknown-based BoomerAMG (theory: elasticity-amg). `like`: operator with the
+/// part's mesh and laws whose blocks multigrid reuses, or null. The part must outlive it. Collective.
 std::unique_ptr<Preconditioner> make_preconditioner(const SolverOptions& options, const Part& part,
                                                     int threads, const std::string& instruction_set,
                                                     const Operator* like = nullptr);

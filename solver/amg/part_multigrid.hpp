@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The kernels' multigrid as the preconditioner of a part.
+// Adapter of the kernels' multigrid to the Preconditioner interface for a part.
 #pragma once
 
 #include <kacanov/part.hpp>
@@ -8,15 +8,15 @@
 
 namespace kacanov {
 
-/// The part as the multigrid sees it; it has to outlive that.
+/// Returns the part in the form that the multigrid needs; the part must outlive it.
 inline MultigridBody multigrid_body(const Part& part, const Operator* like = nullptr) {
   return {part.body(), &part.node_map, part.held, like};
 }
 
 class PartMultigrid final : public Preconditioner {
  public:
-  /// Nothing is set up yet. The part has to outlive it. A setup throws InternalError where the coarsest
-  /// matrix is not definite.
+  /// Does not set up yet. The part must outlive it. A setup throws InternalError if the coarsest matrix is
+  /// not positive definite.
   PartMultigrid(const Part& part, const MultigridOptions& options, const Operator* like = nullptr)
       : multigrid_(multigrid_body(part, like), options) {}
   void apply(std::span<const double> r, std::span<double> z) override { multigrid_.apply(r, z); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The contact nodes of one active set: how they close, and which reactions a nodal force stands for.
+// Active constraints at the contact nodes: gap closing, and contact reactions from nodal forces.
 #include "contact/active_constraints.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Directions of less than this beside others held already are the same.
+/// A direction with a smaller component orthogonal to those already held depends on them.
 constexpr double dependent = 1e-8;
 
 Eigen::Vector3d to_eigen(const Vector3& v) { return {v[0], v[1], v[2]}; }
@@ -74,7 +74,7 @@ void HeldNodes::add_node(const ActiveSet& set, const ContactState& state, std::s
   const auto sticking = static_cast<Eigen::Index>(tangents.size());
   MatrixXd along(3, sticking);
   for (Eigen::Index k = 0; k < sticking; ++k) along.col(k) = tangents[k];
-  // An orthonormal basis of what sticks, and the share of each row in a force along it.
+  // Orthonormal basis of the sticking directions, and the share of each row in a force along it.
   const SymmetricEigen eigen = symmetric_eigen(along * along.transpose());
   Eigen::Index rank = 0;
   while (rank < 3 && eigen.values(2 - rank) > dependent) ++rank;

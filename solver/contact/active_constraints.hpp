@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The contact nodes of one active set: how they close, and which reactions a nodal force stands for.
+// Active constraints at the contact nodes: gap closing, and contact reactions from nodal forces.
 #pragma once
 
 #include <span>
@@ -10,25 +10,23 @@
 
 namespace kacanov {
 
-/// Nodes with held rows. Several contact entries may meet in a node, as in the edge between a floor and a
-/// wall. Normals come first: friction acts only in directions that they leave free, so that no row is held
-/// twice. What is left over is shared by the entries in proportion to what each can bear. The reaction of a
-/// point that slides under Coulomb friction acts along ν + μ ŝ. Nodes of wide points are left to RowCluster,
-/// and their sliding friction to WideSliding.
+/// Nodes with held rows. Where several contact entries meet, normals take precedence: friction acts only in
+/// directions they leave free, shared in proportion to the bounds, so no row is held twice. Coulomb sliding
+/// makes a reaction oblique: ν + μ ŝ. RowCluster and WideSliding handle nodes of multi-node points.
 class HeldNodes {
  public:
   HeldNodes(const Part& part, const ActiveSet& set, const ContactState& state);
 
-  /// Whether the reactions of any rank's node are oblique: the operator of the step is not symmetric then.
+  /// Whether the reactions at a node of any rank are oblique; the operator of the step is then nonsymmetric.
   bool oblique() const noexcept { return oblique_; }
-  /// The displacements of the nodes that close the gaps and undo the slip of held rows; the rest of `delta`
-  /// stays. Returns the largest component, over all ranks. Collective.
+  /// Sets in `delta` the nodal displacements that close the gaps and undo the slip of held rows; other
+  /// entries are unchanged. Returns the largest component over all ranks. Collective.
   double close(std::span<double> delta) const;
-  /// Takes from the nodal forces the sliding friction of the reactions they call for. What is left of them in
-  /// free directions is out of balance. Collective.
+  /// Subtracts from the nodal forces the sliding friction caused by their normal reactions. The remainder in
+  /// free directions is the unbalanced force. Collective.
   void subtract_sliding(std::span<double> force) const;
-  /// λ_n and λ_t of held rows for nodal forces, friction of those that slide under Coulomb's law included; at
-  /// wide points where any of them slides. Collective.
+  /// Computes λ_n and λ_t of held rows from nodal forces, including friction of rows that slide under
+  /// Coulomb's law; at multi-node points only if one of them slides. Collective.
   void reactions(std::span<const double> force, ContactValues& lambda) const;
 
  private:
@@ -38,7 +36,7 @@ class HeldNodes {
   };
   struct Node {
     std::int32_t node = 0;
-    std::size_t first = 0, last = 0;  ///< rows
+    std::size_t first = 0, last = 0;  ///< range of its rows
     bool slides = false;
     Vector3 closing{};
     std::array<Vector3, 3> sliding{};  ///< force − sliding force = (I − sliding) force, by rows

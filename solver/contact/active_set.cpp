@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which contact points touch, stick and slip in a primal–dual active set (semismooth Newton) step.
+// Decision of the active set of a primal–dual active set (semismooth Newton) step.
 #include "contact/active_set.hpp"
 
 #include <array>
@@ -10,20 +10,20 @@
 namespace kacanov {
 namespace {
 
-/// A point just at its bound would turn with a stiffness beyond any: k is at most this times c (1e8 takes as
-/// many steps, and more CG iterations each).
+/// Upper limit of k, in units of c, because k is unbounded at the friction bound (1e8 takes as many steps,
+/// with more CG iterations per step).
 constexpr double stiffest = 1e3;
-/// Held normals leave free what is less than this of them.
+/// Relative size below which the component of a vector that held normals leave free counts as zero.
 constexpr double free_direction = 1e-8;
-/// Motion along an obstacle, relative to the displacement about, that is more than rounding.
+/// Imposed motion along an obstacle, relative to the local displacement scale, that exceeds rounding.
 constexpr double imposed_slip = 1e-10;
 
-/// What the held normals of a node with several points leave of a tangential motion.
+/// Constraint of a tangential motion by several held normals of the node.
 struct Edge {
   bool any = false;                                    ///< several normals are held
-  Eigen::Matrix3d free = Eigen::Matrix3d::Identity();  ///< projector on what they leave
-  Eigen::Vector3d imposed = Eigen::Vector3d::Zero();   ///< displacement that they dictate
-  double scale = 0.0;                                  ///< largest displacement or gap about
+  Eigen::Matrix3d free = Eigen::Matrix3d::Identity();  ///< projector onto the directions left free
+  Eigen::Vector3d imposed = Eigen::Vector3d::Zero();   ///< displacement imposed by the normals
+  double scale = 0.0;                                  ///< largest displacement or gap at the node
 };
 
 Edge find_edge(const Traces& traces, const ContactState& state, const ActiveSet& set, std::size_t i) {
@@ -54,12 +54,13 @@ Edge find_edge(const Traces& traces, const ContactState& state, const ActiveSet&
   return edge;
 }
 
-/// What friction at a point answers to: λ_t + c Tu, of which held normals of its node leave a part.
+/// Trial traction of friction at a point: λ_t + c Tu, restricted to the directions that held normals leave
+/// free.
 struct Pull {
   std::array<double, 2> s{};
-  double bound = 0.0;   ///< that of the pressure to come
-  bool driven = false;  ///< it slips because other normals of its node move it
-  bool edge = false;    ///< several normals of its node are held
+  double bound = 0.0;   ///< bound for the predicted pressure
+  bool driven = false;  ///< whether other normals of its node force it to slip
+  bool edge = false;    ///< whether several normals of its node are held
 };
 
 /// `pushed`: λ_n + c(Nu − ρ).
@@ -78,13 +79,13 @@ Pull pull_of(const Traces& traces, const ContactState& state, double c, double p
   const auto& tangent = traces.entries(i)[0].tangent;
   const Eigen::Map<const Eigen::Vector3d> along(tangent[0].data()), across(tangent[1].data());
   Eigen::Vector2d moved(along.dot(edge.imposed), across.dot(edge.imposed));
-  if (!state.origin.empty()) {  // slip is counted from there
+  if (!state.origin.empty()) {  // slip is measured from this origin
     const Eigen::Vector3d from = state.origin[2 * i] * along + state.origin[2 * i + 1] * across;
     const Eigen::Vector3d dictated = from - edge.free * from;
     moved -= Eigen::Vector2d(along.dot(dictated), across.dot(dictated));
   }
   pull.driven = moved.norm() > imposed_slip * edge.scale;
-  // Otherwise those normals hold what they hold, and no friction besides.
+  // Otherwise the normals already constrain these directions, where no friction acts in addition.
   const Eigen::Vector3d left =
       edge.free * (pull.driven ? w[0] * along + w[1] * across : pull.s[0] * along + pull.s[1] * across);
   pull.s = {along.dot(left), across.dot(left)};
@@ -92,8 +93,8 @@ Pull pull_of(const Traces& traces, const ContactState& state, double c, double p
   return pull;
 }
 
-/// Points of one node that stick or slip together: in the direction that their normals leave free they share
-/// one force, however it is divided.
+/// Points of one node that stick or slip together: in the direction left free by their normals they share one
+/// force, however it is distributed.
 struct SharedPull {
   Eigen::Vector3d force = Eigen::Vector3d::Zero(), friction = Eigen::Vector3d::Zero();
   double bound = 0.0, mass = 0.0;
@@ -111,7 +112,8 @@ struct SharedPull {
   }
 };
 
-/// Stick, or slip and how, of the points first to last, which are those of one node. `pushed`: one a point.
+/// Decides stick or slip for the points first to last, which are all points of one node. `pushed`: one value
+/// per point.
 void decide_friction(const Traces& traces, const ContactState& state, double c, const Vector& pushed,
                      std::size_t first, std::size_t last, ActiveSet& set) {
   const auto points = traces.points();
@@ -134,8 +136,8 @@ void decide_friction(const Traces& traces, const ContactState& state, double c, 
     const double own = std::hypot(s[0], s[1]);
     const double length = together ? shared.force.norm() / shared.mass : own;
     const double most = together ? shared.bound / shared.mass : bound;
-    // What its friction has pushed back sticks before it may slip the other way: friction beyond what a
-    // yielding body carries would throw it to and fro.
+    // A point pushed back by its own friction sticks before it may slip the other way; otherwise friction
+    // beyond what a yielding body carries would make it oscillate.
     const bool turned =
         (together ? shared.force.dot(shared.friction) : lambda[0] * s[0] + lambda[1] * s[1]) < 0.0;
     set.held[i].tangential = most > 0.0 && !driven && (length <= most || turned);

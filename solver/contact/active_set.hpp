@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which contact points touch, stick and slip in a primal–dual active set (semismooth Newton) step.
+// The active set of a primal–dual active set (semismooth Newton) step: contact points that touch, stick or
+// slip.
 #pragma once
 
 #include "contact/admm.hpp"
@@ -7,15 +8,15 @@
 
 namespace kacanov {
 
-/// What each contact point does in the step: decided by λ + c(Cu − ρ), as in the projections of ADMM.
+/// State of each contact point in the step, decided from λ + c(Cu − ρ) as in the projections of ADMM.
 struct ActiveSet {
   std::vector<TraceChoice> held;  ///< normal: touches; tangential: sticks
-  Vector slip_force;              ///< points × 2: ψ ŝ where it slips, without what follows the pressure
-  Vector slip_stiffness;          ///< points: k of λ_t = (ψ + μ_f λ_n) ŝ + k (I − ŝŝᵀ) Tu, 0 in 2D
-  Vector slip_direction;          ///< points × 2: ŝ
-  Vector coulomb;                 ///< points: μ_f where it slips under pressure, else 0
+  Vector slip_force;      ///< points × 2: ψ ŝ at slipping points, without the pressure-dependent part
+  Vector slip_stiffness;  ///< points: k of λ_t = (ψ + μ_f λ_n) ŝ + k (I − ŝŝᵀ) Tu, 0 in 2D
+  Vector slip_direction;  ///< points × 2: ŝ
+  Vector coulomb;         ///< points: μ_f at points that slip under pressure, else 0
 
-  /// Nothing held, and nothing slips.
+  /// Empty active set: no row is held and no point slips.
   explicit ActiveSet(std::size_t points = 0)
       : held(points),
         slip_force(2 * points, 0.0),
@@ -24,7 +25,7 @@ struct ActiveSet {
         coulomb(points, 0.0) {}
 };
 
-/// c is a penalty like ADMM's; any positive value has the same fixed points.
+/// Decides the active set. c is a penalty as in ADMM; all positive values have the same fixed points.
 ActiveSet decide(const Traces& traces, const ContactState& state, double c);
 
 }  // namespace kacanov

@@ -13,24 +13,24 @@
 namespace kacanov {
 namespace {
 
-/// Where friction follows the pressure, solves begin with so many iterations that take a multigrid cycle each
-/// (200 random cases: 75 applications in the mean case; inner solves from the start take 97), ...
+/// With pressure-dependent friction, a solve first takes this many iterations with one multigrid cycle each
+/// (200 random cases: 75 applications in the median; with inner solves from the start 97), ...
 constexpr int direct_iterations = 15;
-/// ... and go on with so many that solve the symmetric part to this share each: bodies that yield all over
-/// want hundreds of CG iterations a solve.
+/// ... and then this many with inner solves of the symmetric part to this reduction: bodies that yield
+/// everywhere need hundreds of CG iterations per solve.
 constexpr int nested_iterations = 12;
 constexpr double nested_reduction = 0.3;
-/// What is left of the residual in a step that is taken all the same.
+/// Largest remaining share of the residual for a step that is still taken.
 constexpr double worth_taking = 0.5;
 
-/// k (I − ŝŝᵀ) w of a slipping point: what its friction resists turning with.
+/// Returns k (I − ŝŝᵀ) w of a slipping point: its resistance against turning of the slip direction.
 std::array<double, 2> turning_force(const ActiveSet& set, std::size_t i, const double* w) {
   const double* s = &set.slip_direction[2 * i];
   const double along = w[0] * s[0] + w[1] * s[1];
   return {set.slip_stiffness[i] * (w[0] - along * s[0]), set.slip_stiffness[i] * (w[1] - along * s[1])};
 }
 
-/// Force of the slipping points at the traces w: y −= Tᵀ M (ψŝ + k (I − ŝŝᵀ) w).
+/// Subtracts the force of the slipping points at the traces w: y −= Tᵀ M (ψŝ + k (I − ŝŝᵀ) w).
 void subtract_slip_force(const Traces& traces, const ActiveSet& set, const Vector& tangential,
                          std::span<double> y) {
   ContactValues force(traces.size());
@@ -41,7 +41,7 @@ void subtract_slip_force(const Traces& traces, const ActiveSet& set, const Vecto
   traces.add_force(force, -1.0, y);
 }
 
-/// y += Tᵀ M k (I − ŝŝᵀ) T x. Returns this rank's share of what xᵀ y grows by.
+/// y += Tᵀ M k (I − ŝŝᵀ) T x. Returns this rank's share of the increase of xᵀ y.
 double add_slip_stiffness(const Traces& traces, const ActiveSet& set, std::span<const double> x,
                           std::span<double> y) {
   ContactValues trace(traces.size());
@@ -58,8 +58,8 @@ double add_slip_stiffness(const Traces& traces, const ActiveSet& set, std::span<
   return share;
 }
 
-/// The smallest nodal displacement that closes the gaps and undoes the slip of held rows; the largest of
-/// either.
+/// Sets the smallest nodal displacement that closes the gaps and undoes the slip of held rows; returns the
+/// largest of these gaps and slips.
 double close_rows(const TraceRows& rows, const ActiveSet& set, const Traces& traces,
                   const ContactState& state, std::span<double> delta) {
   Vector closing(rows.local());
@@ -78,7 +78,7 @@ double close_rows(const TraceRows& rows, const ActiveSet& set, const Traces& tra
   return traces.ranks().max_all(furthest);
 }
 
-/// Multipliers of held rows for nodal forces.
+/// Computes the minimum-norm multipliers of held rows for nodal forces.
 void least_reactions(const TraceRows& rows, const ActiveSet& set, const Traces& traces,
                      std::span<const double> residual, ContactValues& lambda) {
   Vector force(rows.local());
@@ -94,17 +94,18 @@ void least_reactions(const TraceRows& rows, const ActiveSet& set, const Traces& 
   }
 }
 
-/// What a step solves where reactions are normal to what they hold.
+/// The symmetric problem of a step, with reactions along the held directions.
 struct SymmetricPart {
   const Space& space;
   std::function<double(std::span<const double>, std::span<double>)> apply;
   const std::function<void(std::span<const double>, std::span<double>)>& precondition;
-  /// The same with what keeps it definite where all that touches slides and nothing else holds the body.
+  /// The same, with a penalty that keeps it definite if all active points slide and nothing else holds the
+  /// body.
   std::function<double(std::span<const double>, std::span<double>)> definite;
 };
 
-/// conjugate_gradients for a step whose reactions are oblique (theory: coulomb-newton): GCR, first with a
-/// multigrid cycle an iteration, then with solves of the symmetric part.
+/// Replaces conjugate_gradients for a step with oblique reactions (theory: coulomb-newton): GCR, first with
+/// one multigrid cycle per iteration, then with inner solves of the symmetric part.
 CgResult solve_oblique(const SymmetricPart& part, const HeldNodes& nodes, std::span<double> delta,
                        CgWork& work, const CgOptions& options) {
   const Space& space = part.space;
@@ -191,7 +192,7 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
     subtract_slip_force(traces, set, state.trace.tangential, f);
   };
   pull(work.residual);
-  // The held rows first.
+  // First close the held rows.
   const double wide = part.wide_contact ? close_rows(rows, set, traces, state, delta) : 0.0;
   step.closing = std::max(wide, nodes.close(delta));
   double closed = 0.0;
@@ -227,7 +228,8 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
   }
   step.curvature = solve.energy;
   if (step.closing > 0.0) {
-    // δ = c + x, of what closes and what CG found, which lies in the space and has xᵀ(f − B c) = xᵀB x.
+    // δ = c + x, c the closing displacement and x the CG solution, which lies in the space and satisfies xᵀ(f
+    // − B c) = xᵀB x.
     pull(work.image);
     space.project(work.image);
     step.curvature += closed + 2.0 * (space.dot(delta, work.image) - solve.energy);
@@ -239,7 +241,7 @@ ActiveSetStep active_set_step(const LinearProblem& problem, const Part& part, co
 void recover_multipliers(const Part& part, const Traces& traces, const ActiveSet& set,
                          std::span<double> residual, ContactState& state) {
   const HeldNodes nodes(part, set, state);
-  // Forces at held rows are what is left once the slipping points have taken theirs.
+  // Forces at held rows are the remainder after those of slipping points.
   subtract_slip_force(traces, set, state.trace.tangential, residual);
   std::fill(state.lambda.normal.begin(), state.lambda.normal.end(), 0.0);
   std::fill(state.lambda.tangential.begin(), state.lambda.tangential.end(), 0.0);

@@ -19,10 +19,10 @@ struct StepNorm {
   }
 };
 
-/// What steps 2 and 3 leave behind besides φ and λ.
+/// Results of steps 2 and 3 besides φ and λ.
 struct PointwiseSteps {
-  ContactValues shift;  ///< r(φ₊ − φ) − (λ₊ − λ): what the input vector of step 1 changes by
-  ContactValues dual;   ///< r(φ − w) + λ₊ − λ: minus it is what the linear equilibrium is left with
+  ContactValues shift;  ///< r(φ₊ − φ) − (λ₊ − λ): the change of the right-hand side of step 1
+  ContactValues dual;  ///< r(φ − w) + λ₊ − λ: minus the remaining residual of the linear equilibrium
   Balance balance;
   StepNorm norm;                ///< of φ
   double trace_residual = 0.0;  ///< max |w − φ₊|
@@ -97,7 +97,7 @@ AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work,
   };
 
   PointwiseSteps steps(traces.size());
-  // The penalty's part of the residual, CᵀM r(φ − Cu), in (factor 1) or out (−1).
+  // Adds (factor 1) or removes (−1) the penalty's part of the residual, CᵀM r(φ − Cu).
   const auto add_penalty_residual = [&](double factor) {
     for (std::size_t i = 0; i < traces.size(); ++i) {
       steps.shift.normal[i] = options.r.normal * (state.phi.normal[i] - state.trace.normal[i]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The augmented Lagrangian of contact and friction, as a function of the traces alone.
+// The augmented Lagrangian of contact and friction as a function of the traces.
 #include "contact/augmented.hpp"
 
 #include <algorithm>

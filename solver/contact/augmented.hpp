@@ -1,32 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The augmented Lagrangian of contact and friction, as a function of the traces alone (theory:
-// augmented-newton).
+// The augmented Lagrangian of contact and friction as a function of the traces (theory: augmented-newton).
 #pragma once
 
 #include "contact/active_set.hpp"
 
 namespace kacanov {
 
-/// What contact adds to the energy of a body while multipliers λ, gaps and friction bounds stay what they
-/// are: convex, with a continuous derivative, and without it nothing but a penalty. A minimiser's new
-/// multipliers are those of the next round (method of multipliers), whatever r > 0 is.
+/// Contribution of contact to the energy at fixed multipliers λ, gaps and friction bounds: convex, with a
+/// continuous derivative; for λ = 0 a pure penalty. The multipliers at its minimiser start the next iteration
+/// of the method of multipliers, which converges for any r > 0.
 class AugmentedContact {
  public:
-  /// λ, gap and bound of `state`. `traces` and `state` have to outlive it.
+  /// Uses λ, gap and bound of `state`. `traces` and `state` must outlive it.
   AugmentedContact(const Traces& traces, const ContactState& state, double r);
 
   double penalty() const noexcept { return r_; }
-  /// Over all ranks. Collective.
+  /// Returns its value over all ranks. Collective.
   double value(const ContactValues& trace) const;
-  /// Its derivative with respect to the traces, by M: the multipliers of the next round.
+  /// Returns its derivative with respect to the traces, divided by M: the multipliers of the next iteration.
   ContactValues multipliers(const ContactValues& trace) const;
-  /// The derivative of those: stiffness r of rows that touch and stick, slip stiffness of others.
+  /// Returns their derivative: stiffness r of rows that touch or stick, slip stiffness of the others.
   ActiveSet derivative(const ContactValues& trace) const;
-  /// y += Cᵀ M D C x with that derivative. Returns this rank's share of what xᵀ y grows by. Collective.
+  /// y += Cᵀ M D C x with this derivative D. Returns this rank's share of the increase of xᵀ y. Collective.
   double add_stiffness(const ActiveSet& set, std::span<const double> x, std::span<double> y) const;
 
  private:
-  /// λ_t + r Tu of a point.
+  /// Returns λ_t + r Tu of a point.
   std::array<double, 2> pull(const ContactValues& trace, std::size_t i) const;
 
   const Traces* traces_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The KKT residuals of a state, relative to scales that the state itself sets.
+// KKT residuals of a state, relative to scales computed from that state.
 #include "contact/certificate.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace kacanov {
 
 namespace {
 
-/// The larger of the two; infinite where one is no number (std::max may lose it).
+/// The larger of the two; infinity if one is NaN, which std::max may drop.
 double larger(double a, double b) { return std::isnan(a) || std::isnan(b) ? HUGE_VAL : std::max(a, b); }
 
 }  // namespace
@@ -41,20 +41,21 @@ bool Certificate::exhausted(double tolerance) const noexcept {
 
 namespace {
 
-/// Forces below this share of the harmonic mean of D times ‖u‖ are none to measure others by: of that mean,
-/// because a part as stiff as rigid would else make any force look small.
+/// Smaller forces, relative to the harmonic mean of D times ‖u‖, do not serve as scale. The harmonic mean,
+/// because a nearly rigid part would otherwise make any force look small.
 constexpr double least_force = 3e-9;
-/// A quantity that is weak beside others is measured by the geometric mean of both, but by no less than this
+/// The scale of a quantity that is weak relative to others is the geometric mean of both, but at least this
 /// share of the strong one (theory: kkt).
 constexpr double least_share = 1e-3;
-/// Of the nodal forces of temperature, which balance themselves where a body expands freely: noise by which
-/// nothing else can be measured.
+/// Lower limit of the scale relative to the nodal forces of temperature, which balance each other in a freely
+/// expanding body and so are no scale themselves.
 constexpr double least_expansion = 1e-3;
-/// A region in which nothing acts is measured by its stiffness times this share of the largest displacement
-/// that the force on a region is over its stiffness.
+/// Lower limit of a region's force scale, where nothing acts on it: its stiffness times this share of the
+/// largest ratio force / stiffness, a displacement, over all regions.
 constexpr double least_displacement = 1e-8;
-/// Share of D∘u, and of u·(D∘u), that the rounding of R(u) may come to: nine units of it, because a row of B
-/// is a few times its diagonal (measured: up to 5.4e-16); and of traces and gaps, which are short sums.
+/// Rounding error of R(u) relative to D∘u, and of its work relative to u·(D∘u): nine units of rounding,
+/// because a row of B is a few times its diagonal (measured: up to 5.4e-16); and of traces and gaps, which
+/// are short sums.
 constexpr double rounding = 1e-15, rounding_of_traces = 3e-16;
 constexpr double tiny = 1e-300;
 
@@ -62,7 +63,7 @@ double weak_beside(double weak, double strong, double least = least_share) {
   return std::min(strong, std::max(std::sqrt(weak * strong), least * strong));
 }
 
-/// The structs as numbers, which travel together.
+/// The structs as numbers, for one joint reduction.
 template <class Struct>
 std::span<double> numbers(std::vector<Struct>& structs) {
   return {reinterpret_cast<double*>(structs.data()), structs.size() * sizeof(Struct) / sizeof(double)};
@@ -73,24 +74,24 @@ struct ContactSums {
   double products = 0.0;  // Σ M |λ_n (Nu − ρ)| + Σ M | ψ|Tu| − λ_t·Tu |
   double dual_work = 0.0;  // Σ M (λ_n (ρ − Nu) + ψ|Tu| − λ_t·Tu), the contact part of the duality gap
   double area = 0.0, square = 0.0;  // Σ M, Σ (M |λ|)²
-  double unknown_product = 0.0;     // what rounding leaves of Σ M λ times a gap
+  double unknown_product = 0.0;     // rounding error of Σ M λ times a gap
 };
 
-/// Largest values, likewise.
+/// Maxima over the points of one contact entry in one region.
 struct ContactPeaks {
   double penetration = 0.0, tension = 0.0, cone = 0.0, pressure = 0.0;
   double indentation = 0.0;    // M λ_n over the stiffness of the nodes
-  double unknown_trace = 0.0;  // what rounding leaves of a gap
+  double unknown_trace = 0.0;  // rounding error of a gap
 };
 
-/// Contact, by region and entry.
+/// Sums and maxima of contact, by region and entry.
 struct Contact {
   std::size_t entries = 0;
   std::vector<ContactSums> sums;
   std::vector<ContactPeaks> peaks;
 };
 
-/// The mean of D at the nodes of a point.
+/// Returns the mean of D at the nodes of a point.
 double stiffness_of(std::span<const RowEntry> entries, std::span<const float> diagonal, std::size_t dim) {
   double sum = 0.0;
   for (const RowEntry& entry : entries)
@@ -98,8 +99,8 @@ double stiffness_of(std::span<const RowEntry> entries, std::span<const float> di
   return sum / static_cast<double>(entries.size() * dim);
 }
 
-/// `displacement`: max |u|. A trace is known to the rounding of the displacements that it is taken of,
-/// however small it is beside them.
+/// `displacement`: max |u|. The rounding error of a trace is that of the displacements it is computed from,
+/// however small the trace is.
 Contact sum_contact(const Traces& traces, const ContactState& state, const BodyForces& forces,
                     const StiffnessRegions& regions, double displacement) {
   const auto points = traces.points().first(traces.owned());
@@ -130,7 +131,7 @@ Contact sum_contact(const Traces& traces, const ContactState& state, const BodyF
     peak.pressure = larger(peak.pressure, std::abs(lambda));
     peak.indentation =
         larger(peak.indentation, point.mass * std::abs(lambda) / stiffness_of(rows, forces.diagonal, dim));
-    // A point that is open by more than that is open, and not its own residual.
+    // A gap larger than its rounding error is open and does not count as a rounding error of penetration.
     const double unknown = rounding_of_traces * (displacement + std::abs(state.gap[i])) + point.unknown_gap;
     if (open <= unknown) peak.unknown_trace = larger(peak.unknown_trace, unknown);
     s.unknown_product += point.mass * std::abs(lambda) * unknown;
@@ -152,14 +153,14 @@ Contact sum_contact(const Traces& traces, const ContactState& state, const BodyF
 /// Sums over the unknowns of one region.
 struct RegionSums {
   Vector3 unbalanced{}, moment{};  // of the residual, about the origin
-  double residual = 0.0;           // squares of norms: of the residual, and of what acts,
-  double load = 0.0, reaction = 0.0, spring = 0.0, interface = 0.0;  // of the load but for temperature
-  double hold = 0.0;                            // Σ |force| of supports and obstacles, and
-  double all = 0.0;                             // of loads as well
-  double moved = 0.0, stiff = 0.0;              // |u|², |D∘u|²
-  double moved_all = 0.0, stiff_all = 0.0;      // Σ |u|, Σ |D∘u|
-  double softness = 0.0, unknowns = 0.0;        // Σ 1/D
-  double expansion = 0.0, expansion_all = 0.0;  // |F_T|², Σ |F_T|
+  double residual = 0.0;           // squares of norms: of the residual, and of the forces
+  double load = 0.0, reaction = 0.0, spring = 0.0, interface = 0.0;  // of the load without temperature
+  double hold = 0.0;                                                 // Σ |force| of supports and obstacles
+  double all = 0.0;                                                  // the same including loads
+  double moved = 0.0, stiff = 0.0;                                   // |u|², |D∘u|²
+  double moved_all = 0.0, stiff_all = 0.0;                           // Σ |u|, Σ |D∘u|
+  double softness = 0.0, unknowns = 0.0;                             // Σ 1/D
+  double expansion = 0.0, expansion_all = 0.0;                       // |F_T|², Σ |F_T|
 };
 
 /// Sums over the unknowns of the body.
@@ -170,14 +171,14 @@ struct WholeSums {
 
 struct BodySums {
   std::vector<RegionSums> of_region;
-  std::vector<double> largest;  ///< |u| of each region
+  std::vector<double> largest;  ///< max |u| of each region
   WholeSums whole;
-  /// Σ |force| that a region's stresses do to nodes of a stiffer one.
+  /// Σ |force| of a region's stresses on nodes of a stiffer one.
   std::map<std::array<std::int32_t, 2>, double> between;  ///< [stiffer, softer]
 };
 
-/// What supports along directions do to the body, one an unknown: the share of F − R − CᵀMλ along them, with
-/// its sign changed. Empty where there are none.
+/// Returns the reactions of supports along prescribed directions, one value per unknown: minus the component
+/// of F − R − CᵀMλ along them. Empty if there are none.
 Vector slanting_reactions(const Part& part, std::span<const double> contact, const BodyForces& forces) {
   Vector reaction;
   if (part.directions.empty()) return reaction;
@@ -194,12 +195,12 @@ Vector slanting_reactions(const Part& part, std::span<const double> contact, con
   return reaction;
 }
 
-/// Forces of springs on the nodes of a part, node after node.
+/// Spring forces on the nodes of a part, in node order.
 class SpringForces {
  public:
   SpringForces(const Part& part, std::span<const double> u)
       : part_(part), u_(u), next_(part.springs.begin()) {}
-  /// Of a node; nodes have to ascend.
+  /// Returns the force on a node; calls must be in ascending node order.
   Vector3 at(std::int32_t node) {
     Vector3 force{};
     for (; next_ != part_.springs.end() && next_->node == node; ++next_)
@@ -213,7 +214,7 @@ class SpringForces {
   std::vector<NodeSpring>::const_iterator next_;
 };
 
-/// Over all ranks; `contact` is CᵀMλ.
+/// Computes the sums over all ranks; `contact` is CᵀMλ.
 BodySums body_sums(const Part& part, const Vector& u, std::span<const double> contact,
                    const BodyForces& forces, const StiffnessRegions& regions) {
   const std::size_t dim = part.dim();
@@ -294,7 +295,7 @@ BodySums body_sums(const Part& part, const Vector& u, std::span<const double> co
   return out;
 }
 
-/// The residual that is worst together with what rounding may hide in it.
+/// The worst residual, counted with its rounding error.
 struct Worst {
   double residual = 0.0, unknown = 0.0;
   void take(double r, double rounding_of_it, double scale) {
@@ -304,8 +305,8 @@ struct Worst {
   }
 };
 
-/// Equilibrium, region by region. `elastic`: what temperature leaves stored in the body; 0 without. `idle`
-/// becomes the displacement that forces of regions in which nothing acts are measured by.
+/// Judges equilibrium per region. `elastic`: elastic energy stored because of temperature, 0 without; sets
+/// `idle` to the displacement that scales the forces of regions in which nothing acts.
 Worst judge_equilibrium(const BodySums& body, const Contact& contact, double elastic, Residuals& out,
                         double& idle) {
   Scales& scales = out.scales;
@@ -325,7 +326,7 @@ Worst judge_equilibrium(const BodySums& body, const Contact& contact, double ela
       if (sums.square > 0.0) weakest = std::min(weakest, std::sqrt(sums.square));
     }
     const double stiffness = s.softness > 0.0 ? s.unknowns / s.softness : 0.0;
-    // A body under stress of its own has no other force: where it is one region.
+    // A body of one region under thermal stress may have no other force.
     const double own = body.of_region.size() == 1 ? 2.0 * elastic * stiffness : 0.0;
     double force = std::sqrt(std::max({s.load, s.reaction, s.spring, s.interface, of_contact, own}));
     const double least =
@@ -340,7 +341,7 @@ Worst judge_equilibrium(const BodySums& body, const Contact& contact, double ela
   }
   for (std::size_t r = 0; r < scale.size(); ++r) {
     const RegionSums& s = body.of_region[r];
-    if (s.unknowns == 0.0) continue;  // stiffer regions have all of its nodes
+    if (s.unknowns == 0.0) continue;  // all of its nodes belong to stiffer regions
     scale[r] = std::max(scale[r], idle * s.unknowns / s.softness);
     worst.take(std::sqrt(s.residual), rounding * std::sqrt(s.stiff), std::max(scale[r], tiny));
     scales.force = std::min(scales.force, scale[r]);
@@ -353,7 +354,7 @@ Worst judge_equilibrium(const BodySums& body, const Contact& contact, double ela
   return worst;
 }
 
-/// The forces on each cluster, and their moments: what a cluster is left with pushes those that hold it.
+/// Judges the balance of forces and moments of each cluster: its remainder loads the parts that hold it.
 Worst judge_balance(const Part& part, const BodySums& body, const StiffnessRegions& regions, double idle) {
   Worst worst;
   const bool is_round = part.plane == PlaneState::axisymmetric;
@@ -382,18 +383,18 @@ Worst judge_balance(const Part& part, const BodySums& body, const StiffnessRegio
     const double least = std::max({least_force * stiffness * s.moved_all, least_expansion * s.expansion_all,
                                    stiffness * idle * std::sqrt(s.unknowns)});
     const double scale = std::max({weak_beside(s.hold, s.all), least, tiny});
-    // Round an axis the first component is in balance by itself, and so are moments.
+    // In axisymmetric bodies the first force component and the moments are balanced by themselves.
     if (is_round) s.unbalanced[0] = 0.0;
     const Vector3 moment = is_round ? Vector3{} : s.moment + (-1.0) * cross(cluster.centre, s.unbalanced);
-    // Equal elements that move alike are off alike: nothing averages out in a sum.
+    // Equal elements with equal motion have equal rounding errors, which do not average out in a sum.
     worst.take(norm(s.unbalanced), rounding * s.stiff_all, scale);
     worst.take(norm(moment), rounding * s.stiff_all * cluster.radius, std::max(scale * cluster.radius, tiny));
   }
   return worst;
 }
 
-/// The entries of contact, each entry of the case in each region by itself. `body`: forces and displacements
-/// beside which its own may be small.
+/// Judges the contact residuals, per contact entry and region. `body`: forces and displacements next to which
+/// those of the entry may be small.
 void judge_contact(const Contact& contact, const BodySums& body, Scales& scales, Certificate& c) {
   Worst penetration, tension, cone, complementarity;
   scales.trace = HUGE_VAL;
@@ -441,7 +442,7 @@ Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactS
   const WholeSums& whole = body.whole;
   const double no_energy = least_force / whole.softness * whole.moved;
   const double all = std::max(forces.energy, 0.5 * std::abs(whole.internal_work));
-  // Of a body that expands freely nothing is stored but what keeps it from doing so.
+  // A freely expanding body stores only the energy due to constraints on its expansion.
   const double elastic = forces.expansion.empty()
                              ? all
                              : std::max(forces.energy - whole.expansion_work + forces.expansion_energy, 0.0);
@@ -454,8 +455,8 @@ Residuals kkt_residuals(const Space& space, const Traces& traces, const ContactS
   c.force_balance = balance.residual, c.rounding.force_balance = balance.unknown;
   judge_contact(contact, body, scales, c);
 
-  // Primal minus dual energy. With τ = τ(u) the stored energies add up to R·u, and
-  // what is left is the work of the equilibrium residual and the contact products.
+  // Primal minus dual energy. With τ = τ(u) the stored energies add up to R·u; the remainder is the work of
+  // the equilibrium residual and the contact products.
   double dual_work = 0.0, unknown_product = 0.0;
   for (const ContactSums& sums : contact.sums) {
     dual_work += sums.dual_work;

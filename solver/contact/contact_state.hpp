@@ -1,30 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a contact problem's iterations work on.
+// State of the iterations on a contact problem.
 #pragma once
 
 #include "contact/traces.hpp"
 
 namespace kacanov {
 
-/// u with its auxiliary and multiplier fields; kept from one linearisation to the next.
+/// u with its auxiliary variables and multipliers; kept from one linearisation to the next.
 struct ContactState {
-  Vector u;             ///< takes prescribed components along
-  ContactValues trace;  ///< (Nu, Tu), the latter less `origin`: what friction acts on is slip
+  Vector u;             ///< including prescribed components
+  ContactValues trace;  ///< (Nu, Tu), with Tu relative to `origin`: friction acts on slip
   ContactValues phi, lambda;
-  Vector gap;    ///< ρ of each contact point, under the share of the load that the state belongs to
+  Vector gap;    ///< ρ of each contact point, at the state's share of the load
   Vector bound;  ///< ψ of each contact point
-  /// Points × 2: the Tu that slip is counted from (theory: slip-history); empty: rest.
+  /// Points × 2: the Tu from which slip is measured (theory: slip-history); empty: zero.
   Vector origin;
 
   /// Fills `trace` from `u`.
   void evaluate(const Traces& traces) { evaluate(traces, u, trace); }
-  /// Traces at another displacement.
+  /// Computes the traces at another displacement.
   void evaluate(const Traces& traces, std::span<const double> displacement, ContactValues& values) const {
     traces.evaluate(displacement, values);
     for (std::size_t k = 0; k < origin.size(); ++k) values.tangential[k] -= origin[k];
   }
-  /// From here on slip of the points that follow the load steps is counted from `u`, whose traces `trace`
-  /// holds.
+  /// Sets the reference of slip to `u`, whose traces `trace` holds, for points that measure slip per load
+  /// step.
   void count_slip_from_here(std::span<const ContactPoint> points) {
     origin.resize(2 * points.size(), 0.0);
     for (std::size_t i = 0; i < points.size(); ++i) {

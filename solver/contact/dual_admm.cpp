@@ -11,23 +11,23 @@
 namespace kacanov {
 namespace {
 
-/// λ₊ and λ₋ at every point, and how far both moved last.
+/// λ₊ and λ₋ at every point, and their last changes.
 struct Split {
   ContactValues plus, minus;
-  ContactValues minus_step;  ///< of λ₋, a force density
-  double plus_step = 0.0;  ///< the largest |λ₊ − λ₊ before| / r, which is what w − φ is in admm()
+  ContactValues minus_step;  ///< change of λ₋, a force density
+  double plus_step = 0.0;    ///< max |change of λ₊| / r, which is w − φ in admm()
   Balance balance;
 
   explicit Split(std::size_t points) : plus(points), minus(points), minus_step(points), balance(points) {}
 };
 
-/// Projects `lambda`. Collective.
+/// Projects `lambda`, and records the changes. Collective.
 void project(const Traces& traces, const Penalty& r, const Vector& bound, const ContactValues& lambda,
              Split& split) {
   auto& [plus, minus, minus_step, plus_step, balance] = split;
   plus_step = 0.0;
   const auto points = traces.points();
-  // What λ₊ moved by, now that it is `projected` of the `whole`.
+  // Stores the projection of `whole`; returns the change of λ₊.
   const auto set = [](double& of_plus, double& of_minus, double& step, double projected, double whole) {
     const double moved = projected - of_plus;
     step = (whole - projected) - of_minus;
@@ -65,13 +65,13 @@ void project(const Traces& traces, const Penalty& r, const Vector& bound, const 
   plus_step = traces.ranks().max_all(plus_step);
 }
 
-/// The owned unknowns of u, and how far they moved.
+/// The owned unknowns of u, and their last change.
 struct BodyStep {
   std::span<const double> moved, u;
 };
 
-/// Stop by steps (theory: step-stop): how far u (by the lumped volumes) and φ = ρ + λ₋/r moved, relative to
-/// what they are. Collective.
+/// Criterion by steps (theory: step-stop): relative change of u (by lumped volumes) and φ = ρ + λ₋/r.
+/// Collective.
 double relative_step(const Traces& traces, const AdmmOptions& options, const Split& split, const Vector& gap,
                      const BodyStep& body) {
   std::array<double, 2> sums{};
@@ -142,9 +142,9 @@ AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& 
       d.tangential[k] = parts.plus.tangential[k] - parts.minus.tangential[k];
   };
 
-  // The warm start: a = B_r⁻¹ (F + r NᵀMρ − CᵀM (λ₊ − λ₋)) with the multipliers there are, from u; the
-  // paper's a where there are none. v = B_r⁻¹ CᵀM Δ(λ₊ − λ₋) counts from them, and takes over what residual a
-  // is left with.
+  // Warm start: a = B_r⁻¹ (F + r NᵀMρ − CᵀM (λ₊ − λ₋)) with the initial multipliers, solved from u; the
+  // paper's a if there are none. v = B_r⁻¹ CᵀM Δ(λ₊ − λ₋) is relative to them, and takes over the remaining
+  // residual of a.
   traces.add_force(shift, 1.0, work.residual);
   Vector a = state.u, v(n, 0.0), moved(stop_by_step ? n : 0);
   ContactValues now(m), before(m), change(m);
@@ -167,7 +167,7 @@ AdmmResult dual_admm(const LinearProblem& problem, ContactState& state, CgWork& 
       for (std::size_t i = 0; i < moved.size(); ++i) moved[i] -= v[i];
     }
     traces.evaluate(v, trace);
-    // v lives in the free space; prescribed components are in a.
+    // v is in the free space; prescribed components are in a.
     for (std::size_t i = 0; i < m; ++i) {
       lambda.normal[i] =
           parts.plus.normal[i] + r.normal * (free_trace.normal[i] - trace.normal[i] - state.gap[i]);

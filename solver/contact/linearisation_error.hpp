@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far the linear problem of a Newton step is from the true one.
+// Linearisation error of a Newton step.
 #pragma once
 
 #include "contact/admm.hpp"
@@ -7,13 +7,13 @@
 
 namespace kacanov {
 
-/// The residual that the linear problem of a step from `state` leaves out, once CG has come to δ (theory:
-/// left-out). `subtract(trace, f)`: f −= contact forces at the traces there. Uses the image of `work`, and
-/// its residual is that of the linear problem. Collective.
+/// Returns the norm of the linearisation error: the nonlinear residual at state.u + δ minus that of the
+/// linear problem, for the current CG iterate δ (theory: left-out). `subtract(trace, f)`: f −= contact forces
+/// at these traces. Uses work.image; work.residual is that of the linear problem. Collective.
 template <class Subtract>
 double left_out(const LinearProblem& problem, const Space& space, const ContactState& state,
                 std::span<const double> delta, CgWork& work, const Subtract& subtract) {
-  Vector& there = work.image;  // A p and M⁻¹ r are wanted no more
+  Vector& there = work.image;  // A p and M⁻¹ r are no longer needed
   for (std::size_t i = 0; i < there.size(); ++i) there[i] = state.u[i] + delta[i];
   Vector rest(there.size());
   problem.unbalanced(there, rest);

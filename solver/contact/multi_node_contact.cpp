@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The nodes of wide contact points, whose forces have to be added up over the ranks.
+// Nodes of multi-node contact points, whose forces must be summed over the ranks.
 #include "contact/multi_node_contact.hpp"
 
 #include <algorithm>

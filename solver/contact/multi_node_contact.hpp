@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The nodes of wide contact points, whose forces have to be added up over the ranks.
+// Nodes of multi-node contact points, whose forces must be summed over the ranks.
 #pragma once
 
 #include <cstdint>
@@ -11,29 +11,30 @@
 
 namespace kacanov {
 
-/// Local nodes that wide points of any rank take part of, and the way to sum over the ranks what their
-/// owners, who alone have these points, do to them. Empty, and without messages, where no rank has any.
+/// Local nodes that belong to multi-node points of any rank, and the summation over ranks of the forces that
+/// the owners of these points compute. Empty, and without messages, if no rank has such points.
 class WideNodes {
  public:
-  /// Collective. The part has to outlive it.
+  /// Collective. The part must outlive it.
   explicit WideNodes(const Part& part);
 
   std::size_t size() const noexcept { return nodes_.size(); }
-  /// Where a node that is among them stands.
+  /// Returns the position of a node in the list, which must contain it.
   std::size_t position(std::int32_t node) const noexcept;
   bool contains(std::int32_t node) const noexcept;
 
-  /// A vector of zeros over them.
+  /// Returns a zero vector over these nodes.
   std::vector<double> zeros(std::size_t width) const { return std::vector<double>(nodes_.size() * width); }
-  /// y += the sum of `forces` (nodes × dim) over all ranks; consistent. `forces` is used up. Collective.
+  /// y += sum of `forces` (nodes × dim) over all ranks; consistent. `forces` is overwritten. Collective.
   void add(std::span<double> forces, std::span<double> y) const;
-  /// The sums of `blocks` (nodes × dim × dim) over all ranks, of the nodes this rank owns. Collective.
+  /// Returns the sums of `blocks` (nodes × dim × dim) over all ranks, for the nodes this rank owns.
+  /// Collective.
   std::vector<NodeBlock> summed(std::vector<double> blocks) const;
 
  private:
   const Part* part_;
   std::vector<std::int32_t> nodes_;  ///< ascending
-  IndexMap map_;                     ///< who shares them: lists of positions, for sums
+  IndexMap map_;                     ///< ranks that share them: lists of positions, for sums
 };
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coulomb friction of points that slide at the nodes of wide rows (theory: coulomb-newton).
+// Coulomb friction of sliding points at the nodes of multi-node rows (theory: coulomb-newton).
 #include "contact/multi_node_friction.hpp"
 
 #include <Eigen/Sparse>
@@ -20,7 +20,7 @@ struct TravellingPair {
 
 }  // namespace
 
-/// Of R Qᵀ with the rows of R scaled to length 1, a little shifted.
+/// Factor of R Qᵀ with the rows of R scaled to unit length, slightly shifted.
 struct WideSliding::Factor {
   Eigen::VectorXd scale;
   Eigen::SparseMatrix<double> matrix;
@@ -130,7 +130,7 @@ std::vector<double> WideSliding::solve(std::span<const double> force) const {
   std::vector<double> all(numbers_.size(), 0.0);
   for (const Row& row : rows_)
     if (row.owned) all[position(row.held.number)] = row.held.of(force, part_->dim());
-  part_->node_map.sum_all(all);  // every entry comes from one rank
+  part_->node_map.sum_all(all);  // each entry is nonzero on one rank only
   Eigen::Map<Eigen::VectorXd> values(all.data(), static_cast<Eigen::Index>(all.size()));
   values = factor_->solve(values);
   return all;

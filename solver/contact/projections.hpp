@@ -7,7 +7,7 @@
 
 namespace kacanov {
 
-/// φ_n and λ_n of one point: w = ν·u (over-relaxed), gap ρ.
+/// φ_n and λ_n of one point, with w = ν·u (over-relaxed) and gap ρ.
 struct NormalStep {
   double phi = 0.0, lambda = 0.0;
 };
@@ -16,7 +16,7 @@ inline NormalStep normal_step(double w, double lambda, double gap, double r) {
   return {w + (lambda - next) / r, next};
 }
 
-/// φ_t and λ_t of one point, two tangential components, |λ_t| ≤ ψ (a disc).
+/// φ_t and λ_t of one point with two tangential components and |λ_t| ≤ ψ (a disc).
 struct TangentialStep {
   double phi[2] = {0.0, 0.0}, lambda[2] = {0.0, 0.0};
 };

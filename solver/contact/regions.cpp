@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Regions of like stiffness, and the clusters that they form (theory: regions).
+// Regions of similar stiffness, and clusters of regions (theory: regions).
 #include "contact/regions.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace kacanov {
 namespace {
 
-/// Disjoint sets of the numbers 0 to n − 1; the smallest of a set stands for it.
+/// Disjoint sets of the numbers 0 to n − 1; the smallest member represents a set.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
@@ -35,8 +35,8 @@ class DisjointSets {
   std::vector<std::int32_t> parent_;
 };
 
-/// The bin of every law: how many factors of ten it is softer than the stiffest in use, the edges between
-/// bins a little off the powers of ten, which materials like to differ by.
+/// Returns the bin of every law: the number of factors of ten by which it is softer than the stiffest one in
+/// use. Bin edges are offset from powers of ten, which are common ratios between materials.
 std::vector<int> bins_of_laws(const Part& part) {
   constexpr double offset = 0.25;
   const Body body = part.body();
@@ -51,16 +51,16 @@ std::vector<int> bins_of_laws(const Part& part) {
   return bins;
 }
 
-/// A component of elements of one rank that lies at a node which other ranks have as well.
+/// A component of elements of one rank at a node that it shares with other ranks.
 struct Touch {
   std::int64_t node;
   std::int32_t bin, component;
 };
 
-/// Components of this rank's elements: connected by nodes, of one bin.
+/// Components of this rank's elements: connected by nodes, with the same bin.
 struct Components {
   std::vector<std::int32_t> of_element;
-  std::vector<std::int32_t> bin;  ///< of each
+  std::vector<std::int32_t> bin;  ///< of each component
 };
 
 Components components_of(const Part& part, const std::vector<int>& bins) {
@@ -146,7 +146,7 @@ StiffnessRegions::StiffnessRegions(const Part& part) : part_(&part) {
     of_node_.assign(part.nodes(), -1);
     shared_.assign(part.nodes(), 0);
     const auto visit = [&](const auto& look) {
-      std::map<std::int64_t, std::int32_t> local;  // of nodes that other ranks have too
+      std::map<std::int64_t, std::int32_t> local;  // nodes shared with other ranks
       for (const std::int32_t node : ranks.shared) local[ranks.number(node)] = node;
       for (const Touch& touch : touches)
         if (const auto found = local.find(touch.node); found != local.end())
@@ -163,7 +163,8 @@ StiffnessRegions::StiffnessRegions(const Part& part) : part_(&part) {
       pairs.insert({of_node_[node], r});
     });
     neighbours = gathered(std::vector(pairs.begin(), pairs.end()), ranks);
-    for (std::int32_t& r : of_node_) r = std::max(r, 0);  // of a wide contact point, of no element here
+    // Node of a multi-node contact point without an element here.
+    for (std::int32_t& r : of_node_) r = std::max(r, 0);
     find_interfaces(of_element);
   }
   find_clusters(std::move(neighbours));
@@ -211,7 +212,7 @@ void StiffnessRegions::find_interfaces(std::span<const std::int32_t> region_of_e
 void StiffnessRegions::find_clusters(std::vector<std::array<std::int32_t, 2>> neighbours) {
   const Part& part = *part_;
   const std::size_t dim = part.dim();
-  // Boxes of the nodes of each region, as maxima of x and −x.
+  // Bounding boxes of the nodes of each region, as maxima of x and −x.
   std::vector<double> reach(6 * count(), -std::numeric_limits<double>::max());
   for (std::size_t k = 0; k < static_cast<std::size_t>(part.owned_nodes()) * dim; ++k) {
     double* box = &reach[6 * of_node(k / dim)];
@@ -223,7 +224,7 @@ void StiffnessRegions::find_clusters(std::vector<std::array<std::int32_t, 2>> ne
   neighbours.erase(std::unique(neighbours.begin(), neighbours.end()), neighbours.end());
 
   DisjointSets sets(count());
-  std::map<std::int32_t, std::size_t> size_of;  // what a set had when it last was a cluster
+  std::map<std::int32_t, std::size_t> size_of;  // size of a set when it last was a cluster
   for (const int bin : std::set<int>(bin_.begin(), bin_.end())) {
     for (const auto& [a, b] : neighbours)
       if (std::max(bin_[a], bin_[b]) <= bin) sets.join(a, b);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows that share nodes: their pseudo-inverse, and the projection that holds them.
+// Rows that share nodes: their joint pseudo-inverse, and the projection that holds them.
 #include "contact/row_cluster.hpp"
 
 #include <Eigen/SparseCholesky>
@@ -14,7 +14,7 @@ namespace {
 
 using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-/// A share of a row as it travels.
+/// A row's share as sent between ranks.
 struct Travelling {
   std::int64_t row = 0, node = 0;
   Vector3 coefficient{};
@@ -22,9 +22,9 @@ struct Travelling {
 
 }  // namespace
 
-/// Of C Cᵀ with the rows scaled to length 1, a little shifted.
+/// Factor of C Cᵀ with the rows scaled to unit length, slightly shifted.
 struct RowCluster::Factor {
-  Eigen::VectorXd scale;  ///< one over the lengths of the rows
+  Eigen::VectorXd scale;  ///< 1 / length of each row
   Eigen::SparseMatrix<double> gram;
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> shifted;
 
@@ -89,7 +89,7 @@ std::size_t RowCluster::position(std::int64_t number) const noexcept {
 }
 
 void RowCluster::solve_gathered(Vector& b) const {
-  part_->node_map.sum_all(b);  // every entry comes from one rank
+  part_->node_map.sum_all(b);  // each entry is nonzero on one rank only
   Eigen::Map<Eigen::VectorXd> values(b.data(), static_cast<Eigen::Index>(b.size()));
   values = factor_->solve(values);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows that share nodes: their pseudo-inverse, and the projection that holds them.
+// Rows that share nodes: their joint pseudo-inverse, and the projection that holds them.
 #pragma once
 
 #include <cstdint>
@@ -18,11 +18,11 @@ struct ClusterRow {
     std::int32_t node = 0;
     Vector3 coefficient{};
   };
-  std::size_t row = 0;      ///< among the local rows of its TraceRows
-  std::int64_t number = 0;  ///< over all ranks
+  std::size_t row = 0;      ///< index in the local rows of its TraceRows
+  std::int64_t number = 0;  ///< global number
   std::vector<Share> shares;
 
-  /// Of a displacement.
+  /// Returns the row's value for a displacement.
   double of(std::span<const double> u, std::size_t dim) const {
     double sum = 0.0;
     for (const Share& share : shares)
@@ -32,20 +32,21 @@ struct ClusterRow {
   }
 };
 
-/// C⁺ = Cᵀ (C Cᵀ)⁺ for rows C, with the sparse factor of C Cᵀ on every rank: it is no larger than a contact
-/// surface. Rows may depend on each other.
+/// C⁺ = Cᵀ (C Cᵀ)⁺ for rows C, with the sparse factor of C Cᵀ, which is no larger than a contact surface, on
+/// every rank. Rows may be linearly dependent.
 class RowCluster final : public HeldRows {
  public:
-  /// Keeps the factor of dependent rows finite. What it falsifies of independent ones (this over the smallest
-  /// eigenvalue of the scaled C Cᵀ) is squared by a step of refinement.
+  /// Keeps the factor of dependent rows finite. Its relative error for independent rows (shift over the
+  /// smallest eigenvalue of the scaled C Cᵀ) is squared by one refinement step.
   static constexpr double shift = 1e-12;
 
-  /// `rows`: those this rank owns, at wide nodes only. Collective. The part has to outlive it.
+  /// `rows`: the rows this rank owns, at nodes of multi-node points only. Collective. The part must outlive
+  /// it.
   RowCluster(const Part& part, const WideNodes& nodes, std::vector<ClusterRow> rows);
   ~RowCluster() override;
 
   std::span<const ClusterRow> rows() const noexcept { return rows_; }
-  /// (C Cᵀ)⁺ b; b(row) is asked for the owned rows. The same bits on every rank. Collective.
+  /// Returns (C Cᵀ)⁺ b, with the same bits on every rank; calls b(row) for the owned rows. Collective.
   template <class Value>
   Vector solve(const Value& b) const {
     Vector all(numbers_.size(), 0.0);
@@ -53,9 +54,9 @@ class RowCluster final : public HeldRows {
     solve_gathered(all);
     return all;
   }
-  /// Where the row of that number stands in what solve() returns.
+  /// Returns the position of the row with this number in the result of solve().
   std::size_t position(std::int64_t number) const noexcept;
-  /// y += Cᵀ z, z from solve(); consistent. Collective.
+  /// y += Cᵀ z, with z from solve(); consistent. Collective.
   void add_transpose(std::span<const double> z, std::span<double> y) const;
   /// x −= C⁺ C x. Collective.
   void project(std::span<double> x) const override;
@@ -66,7 +67,7 @@ class RowCluster final : public HeldRows {
   const Part* part_;
   WideNodes nodes_;
   std::vector<ClusterRow> rows_;
-  std::vector<std::int64_t> numbers_;  ///< of the rows of all ranks, ascending
+  std::vector<std::int64_t> numbers_;  ///< rows of all ranks, ascending
   struct Factor;
   std::unique_ptr<const Factor> factor_;
 };

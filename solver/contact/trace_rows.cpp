@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A choice of contact rows, scaled by the roots of their masses: what is penalised, held or pinned.
+// A selection of contact rows scaled by √mass, to be penalised, held or pinned.
 #include "contact/trace_rows.hpp"
 
 #include <algorithm>
@@ -13,13 +13,13 @@
 namespace kacanov {
 namespace {
 
-/// How much stiffer than a node's own diagonal entry a pinned direction is.
+/// Stiffness of a pinned direction relative to the node's diagonal entry.
 constexpr double pinned_narrow = 1e3;
-/// The same at the nodes of wide rows, which may move as long as their sums do not: soft for one node,
-/// stiff for many together.
+/// The same at the nodes of multi-node rows, which may move as long as their sums do not: soft for a single
+/// node, stiff for many together.
 constexpr double pinned_wide = 1.0;
 
-/// y_node += Σ_k x_k row_k, and the transpose.
+/// y_node += Σ_k x_k row_k; take_rows() is the transpose.
 template <class Rows>
 void add_rows(const Rows& rows, std::size_t count, const double* x, double* y, std::size_t dim) {
   for (std::size_t k = 0; k < count; ++k)
@@ -34,7 +34,7 @@ void take_rows(const Rows& rows, std::size_t count, const double* y, double* x, 
   }
 }
 
-/// The blocks scaled so that each has the trace of `share` times the node's largest diagonal entry.
+/// Scales the blocks so that each has the trace `share` times the node's largest diagonal entry.
 void scale_to(std::vector<NodeBlock>& blocks, double share, std::span<const float> diagonal,
               std::size_t dim) {
   for (auto& block : blocks) {
@@ -89,7 +89,7 @@ TraceRows::TraceRows(const Part& part, std::span<const TraceChoice> choice) : pa
     for (Group& group : groups_) group.in_cluster = wide_.contains(group.node);
 }
 
-/// Rows of a narrow point, behind those of its node so far.
+/// Adds the rows of a single-node point after those of its node.
 void TraceRows::add_narrow(std::size_t point, std::span<const Vector3> rows) {
   const std::int32_t node = part_->contact.entries(point).front().node;
   const std::size_t first = index_.size() - rows.size();

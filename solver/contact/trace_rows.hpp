@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A choice of contact rows, scaled by the roots of their masses: what is penalised, held or pinned.
+// A selection of contact rows scaled by √mass, to be penalised, held or pinned.
 #pragma once
 
 #include <memory>
@@ -14,23 +14,23 @@
 
 namespace kacanov {
 
-/// Which traces of a contact point take part.
+/// The selected traces of a contact point.
 struct TraceChoice {
   bool normal = false, tangential = false;
   bool operator==(const TraceChoice&) const = default;
 };
 
-/// Rows of D^½ C for a choice of traces, over the local points, owned ones first. D is the lumped mass. Rows
-/// of one node alone have a pseudo-inverse of their own; wide rows, and what shares nodes with them, one
-/// together (RowCluster).
+/// Rows of D^½ C for a selection of traces over the local points, owned ones first; D is the lumped mass.
+/// Rows of a single node have their own pseudo-inverse; multi-node rows, and rows that share nodes with them,
+/// have a joint one (RowCluster).
 class TraceRows {
  public:
-  /// `choice` has one entry a point of part.contact. Throws InputError where a node has more than nine rows
-  /// of its own. Collective.
+  /// `choice` has one entry per point of part.contact. Throws InputError if a node has more than nine
+  /// single-node rows. Collective.
   TraceRows(const Part& part, std::span<const TraceChoice> choice);
 
   std::size_t owned() const noexcept { return owned_; }
-  /// Numbers of the owned rows over all ranks, the same on any partition.
+  /// Global numbers of the owned rows, independent of the partition.
   std::span<const std::int64_t> index() const noexcept { return std::span(index_).first(owned_); }
   std::int64_t total() const noexcept { return total_; }
   /// √mass of the owned rows.
@@ -44,20 +44,20 @@ class TraceRows {
   void apply(std::span<const double> y, std::span<double> x) const;
   /// y = (D^½ C)⁺ x; consistent. `x` holds the owned rows or all local ones. Collective.
   void lift(std::span<const double> x, std::span<double> y) const;
-  /// x = ((D^½ C)⁺)ᵀ y, as many rows as `x` has: the owned ones or all local ones. Collective.
+  /// x = ((D^½ C)⁺)ᵀ y, for as many rows as `x` has: the owned ones or all local ones. Collective.
   void lift_transpose(std::span<const double> y, std::span<double> x) const;
-  /// Rows of all local points: owned ones, then those of ghosts.
+  /// Number of rows of all local points: owned ones, then those of ghosts.
   std::size_t local() const noexcept { return index_.size(); }
-  /// Diagonal blocks of r CᵀDC, of owned nodes (theory: augmented-lagrangian). Collective.
+  /// Returns the diagonal blocks of r CᵀDC for owned nodes (theory: augmented-lagrangian). Collective.
   std::vector<NodeBlock> penalty_blocks(double r) const;
-  /// Blocks that pin the rows' directions for a preconditioner (theory: pinning); `diagonal` of the operator.
-  /// Collective.
+  /// Returns blocks that pin the rows' directions in a preconditioner (theory: pinning); `diagonal`: that of
+  /// the operator. Collective.
   std::vector<NodeBlock> pinning_blocks(std::span<const float> diagonal) const;
 
  private:
-  struct Group {  ///< narrow rows of one node
+  struct Group {  ///< single-node rows of one node
     std::int32_t node = 0;
-    std::size_t first = 0;  ///< its first row
+    std::size_t first = 0;  ///< index of its first row
     int rows = 0;
     std::array<Vector3, 9> row{};      ///< scaled by √mass
     std::array<Vector3, 9> inverse{};  ///< columns of the pseudo-inverse
@@ -65,8 +65,8 @@ class TraceRows {
   };
   void add_narrow(std::size_t point, std::span<const Vector3> rows);
   void invert(Group& group) const;
-  /// Wide rows and narrow ones at their nodes; null where no rank has wide rows. Made when first asked for:
-  /// blocks and products do without its factor. Collective.
+  /// Multi-node rows and the single-node rows at their nodes; null if no rank has multi-node rows. Created on
+  /// first use, because blocks and products do not need its factor. Collective.
   const std::shared_ptr<const RowCluster>& cluster() const;
   std::vector<NodeBlock> narrow_blocks(double r) const;
   std::vector<NodeBlock> wide_blocks(double r) const;
@@ -76,12 +76,12 @@ class TraceRows {
   std::vector<Group> groups_;  ///< owned first
   std::size_t owned_groups_ = 0, owned_ = 0;
   std::vector<ClusterRow> wide_rows_;  ///< owned
-  bool any_wide_ = false;              ///< some rank has wide rows
+  bool any_wide_ = false;              ///< whether any rank has multi-node rows
   mutable std::shared_ptr<const RowCluster> cluster_;
   std::vector<std::int64_t> index_;
   std::vector<double> root_mass_;
   std::int64_t total_ = 0;
-  std::string crowded_;  ///< what is wrong with a node of too many rows; empty
+  std::string crowded_;  ///< error message for a node with too many rows; otherwise empty
 };
 
 }  // namespace kacanov

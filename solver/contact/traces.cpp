@@ -85,7 +85,7 @@ double Traces::force_norm(const ContactValues& lambda) const {
     for (std::size_t i = 0; i < part_->owned_unknowns(); ++i) sum += force[i] * force[i];
     return std::sqrt(ranks().sum_all(sum));
   }
-  // Points of one node follow each other; their forces add up before the norm is taken.
+  // Points of one node are contiguous; their forces are summed before the norm is taken.
   const auto all = points().first(owned());
   Vector3 force{};
   for (std::size_t i = 0; i < all.size(); ++i) {

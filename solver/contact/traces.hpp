@@ -14,18 +14,18 @@ struct Penalty {
   double normal = 0.0, tangential = 0.0;
 };
 
-/// Values at the contact points of a part, ghosts included: every copy holds the same bits.
+/// Values at the contact points of a part, ghosts included; every copy has the same bits.
 struct ContactValues {
   Vector normal;      ///< points
   Vector tangential;  ///< points × 2; unused entries stay 0
   explicit ContactValues(std::size_t points = 0) : normal(points, 0.0), tangential(2 * points, 0.0) {}
 };
 
-/// C = [N; T] of all contact points, and its transpose (theory: traces). Forces of narrow points are worked
-/// out on every rank that has the node; those of wide points by their owners, and then they travel.
+/// C = [N; T] of all contact points, and its transpose (theory: traces). Every rank with the node computes
+/// forces of single-node points; owners compute those of multi-node points and send them.
 class Traces {
  public:
-  /// Collective. The part has to outlive it.
+  /// Collective. The part must outlive it.
   explicit Traces(const Part& part) : part_(&part), wide_(part) {}
 
   std::span<const ContactPoint> points() const noexcept { return part_->contact.points(); }
@@ -37,14 +37,14 @@ class Traces {
   const Communicator& ranks() const noexcept { return part_->node_map; }
   const Part& part() const noexcept { return *part_; }
 
-  /// values = (Nu, Tu) of the free components: what prescribed ones close is off the gap.
+  /// values = (Nu, Tu) of the free components; the gap already accounts for prescribed ones.
   void evaluate(std::span<const double> u, ContactValues& values) const;
   /// y += factor · (Nᵀ M λ_n + Tᵀ M λ_t), in free components. Collective.
   void add_force(const ContactValues& lambda, double factor, std::span<double> y) const;
-  /// y += (r_n NᵀMN + r_t TᵀMT) x for x in the space of free components. Returns this rank's share of what xᵀ
-  /// y grows by. Collective.
+  /// y += (r_n NᵀMN + r_t TᵀMT) x for x in the space of free components. Returns this rank's share of the
+  /// increase of xᵀ y. Collective.
   double add_penalty(const Penalty& r, std::span<const double> x, std::span<double> y) const;
-  /// ‖Nᵀ M λ_n + Tᵀ M λ_t‖ over all ranks (points of one node added up only where they share it). Collective.
+  /// Returns ‖Nᵀ M λ_n + Tᵀ M λ_t‖ over all ranks (points of the same node are summed first). Collective.
   double force_norm(const ContactValues& lambda) const;
 
  private:

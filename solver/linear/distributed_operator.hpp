@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The operator over all ranks: each applies its elements, and what they share is added up.
+// The operator over all ranks: each rank applies its elements, and shared entries are summed.
 #pragma once
 
 #include <cstdint>
@@ -17,13 +17,13 @@
 
 namespace kacanov {
 
-/// The operators of all ranks' elements, and the springs, as one. Vectors have the part's unknowns and are
-/// consistent (Part) on the way in and out; g has elements × points of the part. Units are the problem's.
-/// Members that are not const are collective, and so is diagonal().
+/// The operators of all ranks' elements plus the springs. Input and output vectors have the part's unknowns
+/// and are consistent (see Part); g has elements × points of the part. Units are those of the problem.
+/// Non-const members and diagonal() are collective.
 class DistributedOperator {
  public:
-  /// The elastic operator. Collective. `part` has to outlive it; threads and instruction set are
-  /// OperatorOptions'.
+  /// Sets up the elastic operator. Collective. `part` must outlive it; threads and instruction set as in
+  /// OperatorOptions.
   DistributedOperator(const Part& part, int threads, const std::string& instruction_set)
       : part_(&part),
         local_(part.body(), OperatorOptions{threads, instruction_set, part.node_map.shared}),
@@ -32,20 +32,22 @@ class DistributedOperator {
       local_.set_corner_sum(CornerSum<double>(corner_means(part.body()), part.node_map));
   }
 
-  /// y = B(g) x. What the ranks share travels while the rest is worked out. Returns this rank's share of xᵀ
-  /// y.
+  /// y = B(g) x. Communication of shared entries overlaps with the interior computation. Returns this rank's
+  /// share of xᵀ y.
   double apply(std::span<const double> x, std::span<double> y) {
     return apply_and_sum(x, y, [&](const WhenEarly& send) { return local_.apply_dot(x, y, send); });
   }
-  /// y = B_T x with the tangent frozen last, likewise.
+  /// y = B_T x with the last frozen tangent; otherwise like apply().
   double apply_tangent(std::span<const double> x, std::span<double> y) {
     return apply_and_sum(x, y, [&](const WhenEarly& send) { return local_.apply_tangent_dot(x, y, send); });
   }
-  /// Called after every application, on all ranks alike. It may throw to leave whatever loops go on.
+  /// Sets a callback that runs on all ranks after every application. It may throw to abort the enclosing
+  /// loops.
   void watch(std::function<void()> watcher) { watcher_ = std::move(watcher); }
 
-  /// Plane stress: what follows of a displacement knows that elements would be longer by so much; forces and
-  /// energy with what the elastic body makes of it, which the load has. Empty: by nothing.
+  /// Plane stress: sets the free (thermal) strain of each element for all quantities computed from a
+  /// displacement. Forces and energy then include the elastic thermal part, which the load also contains.
+  /// Empty: no free strain.
   void set_free_strain(std::span<const double> of_element) {
     if (of_element.empty() && free_force_.empty()) return;
     local_.set_free_strain(of_element);
@@ -58,10 +60,10 @@ class DistributedOperator {
   void update(std::span<const double> u) { local_.update(u); }
   /// Freezes the tangent, and g, at u.
   void update_tangent(std::span<const double> u) { local_.update_tangent(u); }
-  /// Gives the tangent's memory back until the next update_tangent().
+  /// Frees the tangent's memory until the next update_tangent().
   void forget_tangent() noexcept { local_.forget_tangent(); }
   void set_secant(std::span<const double> g) { local_.set_secant(g); }
-  /// Internal force of the true law; counts as an application.
+  /// Computes the internal force of the nonlinear law; counts as one application.
   void residual(std::span<const double> u, std::span<double> f) {
     local_.residual(u, f);
     add_free_force(u, f);
@@ -69,7 +71,7 @@ class DistributedOperator {
     add_spring_response(*part_, u, f);
     ++applications_;
   }
-  /// The same with the stored energy, which is returned, and g frozen at u, in one pass.
+  /// The same, and freezes g at u in the same pass. Returns the stored energy over all ranks.
   double residual_energy_update(std::span<const double> u, std::span<double> f) {
     double energy = local_.residual_energy_update(u, f) + spring_energy(*part_, u);
     energy += add_free_force(u, f);
@@ -82,7 +84,7 @@ class DistributedOperator {
     return part_->node_map.sum_all(local_.energy(u) + spring_energy(*part_, u) + add_free_force(u, {}));
   }
 
-  /// Diagonal of B(g), consistent: a measure of stiffness, so single precision does.
+  /// Returns the diagonal of B(g), consistent; it serves as a stiffness scale, so single precision suffices.
   std::vector<float> diagonal() const {
     std::vector<double> exact(local_.unknowns());
     local_.diagonal(exact);
@@ -95,7 +97,7 @@ class DistributedOperator {
   std::uint64_t applications() const noexcept { return applications_; }
 
  private:
-  /// Calls work(send), which calls `send` once what the ranks share is there, and adds that up in y.
+  /// Calls work(send), which calls `send` once shared entries are complete, and sums them in y.
   template <class Work>
   double apply_and_sum(std::span<const double> x, std::span<double> y, const Work& work) {
     WhenEarly send;
@@ -108,7 +110,8 @@ class DistributedOperator {
     return share;
   }
 
-  /// Of this rank's elements; returns what the energy gains. `f` may be empty.
+  /// Adds the free-strain force of this rank's elements to `f`, which may be empty; returns the energy
+  /// contribution.
   double add_free_force(std::span<const double> u, std::span<double> f) const {
     if (free_force_.empty()) return 0.0;
     for (std::size_t i = 0; i < f.size(); ++i) f[i] += free_force_[i];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Generalised conjugate residuals with inner solves: for operators near a symmetric one, as friction that
-// follows the pressure makes them.
+// Generalised conjugate residuals with inner solves, for operators that are nearly symmetric, such as with
+// pressure-dependent friction.
 #pragma once
 
 #include <algorithm>
@@ -22,9 +22,9 @@ struct GcrResult {
   bool converged = false;
 };
 
-/// Solves A x = b for A that need not be symmetric; on entry `residual` holds b − A x, in the space, on exit
-/// that of the new x. `inner(r, z)` gives z near A⁻¹ r, and whether it could; `apply(z, q)` gives q = A z in
-/// the space. Two vectors of the part's unknowns are kept an iteration. Collective.
+/// Solves A x = b for a possibly nonsymmetric A. `residual` holds b − A x, in the space, on entry and exit.
+/// `inner(r, z)` sets z ≈ A⁻¹ r and returns whether it succeeded; `apply(z, q)` sets q = A z in the space.
+/// Stores two vectors of the part's unknowns per iteration. Collective.
 template <class Apply, class Inner>
 GcrResult gcr(const Space& space, const Apply& apply, const Inner& inner, std::span<double> x,
               std::span<double> residual, const GcrOptions& options) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The way to the full load: what a share of it puts on the body.
+// The load path: loads, prescribed displacements and gaps at a share of the full load.
 #include "linear/load_path.hpp"
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 namespace kacanov {
 namespace {
 
-/// How much of a point's gap the prescribed components of its nodes close with these values (one each), and
-/// held directions with those that `along` gives.
+/// Returns the closure of a point's gap by the prescribed components of its nodes with these values (one
+/// each), and by prescribed directions with the values of `along`.
 template <class Along>
 double closed_by_prescription(const Part& part, std::span<const RowEntry> entries,
                               std::span<const Part::ComponentValue> prescribed, const Along& along) {
@@ -45,7 +45,7 @@ LoadPath::LoadPath(const Part& part) : part_(&part) {
                                              [](const HeldDirection& held) { return held.value; }));
     entries = std::max(entries, part.contact[i].entry + 1);
   }
-  // Largest indentation, one a contact entry.
+  // Largest indentation per contact entry.
   std::vector<double> depth(static_cast<std::size_t>(part.node_map.max_all(entries)), 0.0);
   for (std::size_t i = 0; i < gap_.size(); ++i) {
     double& deepest = depth[part.contact[i].entry];
@@ -82,7 +82,7 @@ std::vector<double> LoadPath::thermal_pressure() const {
   std::vector<double> sum(most, 0.0);
   for (const ThermalPressure& thermal : part_->thermal) {
     const double factor = factor_of(thermal.entry);
-    // What is the same all over an element is so at its corners.
+    // A uniform value also applies at the element's corners.
     const std::size_t each = most / std::max(thermal.of_element.size(), std::size_t{1});
     for (std::size_t k = 0; k < most; ++k) sum[k] += factor * thermal.of_element[k / each];
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The way to the full load: what a share of it puts on the body.
+// The load path: loads, prescribed displacements and gaps at a share of the full load.
 #pragma once
 
 #include <cstdint>
@@ -10,43 +10,41 @@
 
 namespace kacanov {
 
-/// Loads, prescribed displacements and gaps of a part at a share of the full load, or, where the part has
-/// load curves, at a time of theirs, which then stands for the share everywhere (theory: load-path).
-/// Obstacles that press into the body at rest are drawn back along their direction, each contact entry by the
-/// share still missing of its largest indentation; open gaps of other entries and the friction bounds stay
-/// what they are. The part itself does not change.
+/// Loads, prescribed displacements and gaps of a part at a share of the full load or, with load curves, at a
+/// time, which replaces the share (theory: load-path). Indenting obstacles are withdrawn per contact entry by
+/// the missing share of its largest indentation; other gaps, friction bounds and the part do not change.
 class LoadPath {
  public:
-  /// At the full load, or the end of the curves. Collective. `part` has to outlive it.
+  /// Starts at the full load, or at the end of the curves. Collective. `part` must outlive it.
   explicit LoadPath(const Part& part);
 
-  /// Any share > 0; with 1 everything is that of the part, to the bit.
+  /// Moves to any share > 0; share 1 reproduces the part's data bit for bit.
   void go_to(double share);
   double share() const noexcept { return share_; }
-  /// What the loads of a boundary entry are multiplied by.
+  /// Returns the current factor on the loads of a boundary entry.
   double factor_of(std::int32_t entry) const;
-  /// Whether no load, prescribed displacement, temperature or obstacle that presses in acts. Collective.
+  /// Whether no load, prescribed displacement, temperature or indenting obstacle acts. Collective.
   bool idle() const;
-  /// What the state is to be multiplied by to start at another share: with load curves 1, unless all that
-  /// acts grows in proportion.
+  /// Returns the factor by which to scale the state as initial guess at another share: 1 with load curves,
+  /// unless everything that acts grows proportionally.
   double growth_to(double share) const;
 
-  /// Entries of F that are not zero, ascending.
+  /// Nonzero entries of F, ascending.
   std::span<const Part::ComponentValue> load() const noexcept { return whole_ ? part_->load : load_; }
-  /// Of every constrained component, ascending.
+  /// One value per constrained component, ascending.
   std::span<const Part::ComponentValue> prescribed() const noexcept {
     return whole_ ? part_->prescribed : prescribed_;
   }
-  /// The pressures that temperature takes off, as ThermalPressure has them; empty where nothing is warmer.
+  /// Returns the thermal pressures, in the layout of ThermalPressure; empty if there is no temperature entry.
   std::vector<double> thermal_pressure() const;
-  /// One a contact point.
+  /// One gap per contact point.
   const std::vector<double>& gap() const noexcept { return gap_; }
 
   /// f += F.
   void add_load(std::span<double> f) const noexcept {
     for (const auto& entry : load()) f[entry.component] += entry.value;
   }
-  /// Sets the constrained components of u, and u along held directions.
+  /// Sets the constrained components of u, and its components along prescribed directions.
   void prescribe(std::span<double> u) const;
 
  private:
@@ -56,12 +54,13 @@ class LoadPath {
 
   const Part* part_;
   double share_ = 1.0;
-  bool whole_ = true;                                    ///< at the full load
+  bool whole_ = true;                                    ///< whether at the full load
   std::vector<Part::ComponentValue> load_, prescribed_;  ///< at the share; empty at the full load
-  /// At the share; how deep the entry's obstacle presses in; what the full prescribed displacements close.
+  /// Gap at the share; the entry's largest indentation; closure by the full prescribed displacements.
   std::vector<double> gap_, depth_, closed_;
-  std::vector<double> factors_;     ///< of boundary entries, with load curves
-  std::vector<std::uint8_t> acts_;  ///< boundary entries, then contact entries: whether any factor matters
+  std::vector<double> factors_;  ///< of boundary entries; only with load curves
+  /// Boundary entries, then contact entries: whether a factor has any effect.
+  std::vector<std::uint8_t> acts_;
 };
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The clock of a preconditioner's setups.
+// Setup of preconditioners: standing blocks and timing.
 #include "linear/preconditioner.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace kacanov {
 
 namespace {
 
-/// Beside the largest entry of the node's diagonal.
+/// Relative to the largest diagonal entry of the node.
 constexpr double pinned = 1e3;
 
 std::vector<NodeBlock> pinning_blocks(const Part& part) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the loops ask of a preconditioner for B + r CᵀMC.
+// The interface of preconditioners for B + r CᵀMC.
 #pragma once
 
 #include <span>
@@ -9,23 +9,23 @@
 
 namespace kacanov {
 
-/// z ≈ (B(g) + blocks)⁻¹ r: symmetric positive definite and fixed between two setups. Vectors have the part's
-/// unknowns and are consistent (Part). Calls are collective.
+/// z ≈ (B(g) + blocks)⁻¹ r: symmetric positive definite, and constant between two setups. Vectors have the
+/// part's unknowns and are consistent (see Part). Calls are collective.
 class Preconditioner {
  public:
   virtual ~Preconditioner() = default;
-  /// For frozen g (elements × points of this part), the blocks of *owned* nodes (several may name one) beside
-  /// the part's springs, and the space the solves live in.
+  /// Sets up for frozen g (elements × points of this part), the blocks of *owned* nodes (several may belong
+  /// to one node) in addition to the part's springs, and the space of the solves.
   void setup(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space);
-  /// The same with the g of the last setup, at a fraction of the cost where few nodes see a change.
+  /// Sets up for new blocks with the g of the last setup, much cheaper if few nodes change.
   void setup_again(std::span<const NodeBlock> blocks, const Space& space);
-  /// z ≈ A⁻¹ r (overwrites z). To be called after a setup.
+  /// z ≈ A⁻¹ r (overwrites z). Call setup() first.
   virtual void apply(std::span<const double> r, std::span<double> z) = 0;
 
-  /// The g of the last setup, in single precision at the least; mu before the first.
+  /// Returns in `g` the g of the last setup, at least in single precision; μ before the first setup.
   virtual void secant(std::span<double> g) const = 0;
 
-  /// Changes where a setup replaces the parts that later setups keep, such as aggregates.
+  /// Changes when a setup replaces data that later setups keep, such as aggregates.
   virtual int kind() const noexcept { return 0; }
 
   /// Wall time of all setups so far, on this rank.
@@ -34,7 +34,8 @@ class Preconditioner {
  private:
   virtual void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) = 0;
   virtual void rebuild(std::span<const NodeBlock> blocks, const Space& space) = 0;
-  /// `blocks`, those of springs, and stiff ones along the part's held directions (theory: pinning).
+  /// Returns `blocks`, those of springs, and stiff blocks along the part's prescribed directions (theory:
+  /// pinning).
   std::vector<NodeBlock> with_standing(const Part& part, std::span<const NodeBlock> blocks);
 
   std::vector<NodeBlock> pins_;

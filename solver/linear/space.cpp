@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The space a solve lives in: projection and inner products.
+// Projection and inner products of the space of a linear solve.
 #include "linear/space.hpp"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ HeldDirections& Space::directions_at(std::int32_t node) {
   const auto there = std::lower_bound(held.begin(), end, node,
                                       [](const HeldDirections& d, std::int32_t n) { return d.node < n; });
   if (there != end && there->node == node) return *there;
-  // Points of one node follow each other in Part::contact, so looking at the last entry is enough.
+  // Points of one node are contiguous in Part::contact, so checking the last entry suffices.
   if (held.size() == prescribed_ || held.back().node != node) held.push_back({node, 0, {}});
   return held.back();
 }
@@ -45,7 +45,7 @@ void Space::hold(std::int32_t node, const Vector3& direction) {
       for (std::size_t c = 0; c < 3; ++c) d[c] -= s * b[c];
     }
   const double rest = std::sqrt(inner(d, d));
-  if (rest <= 1e-8 * length || entry.count == 3) return;  // dependent on what is held already
+  if (rest <= 1e-8 * length || entry.count == 3) return;  // depends on directions that are held already
   for (double& c : d) c /= rest;
   entry.basis[entry.count++] = d;
 }

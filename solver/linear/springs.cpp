@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Free strains of a temperature, springs to the ground, dilatations at corners.
+// Free thermal strains, springs to the ground, and dilatations at corners.
 #include "linear/springs.hpp"
 
 #include <numeric>
@@ -92,7 +92,8 @@ std::vector<NodeBlock> with_springs(const Part& part, std::span<const NodeBlock>
 
 namespace {
 
-/// As reference::corner_changes(), which takes a Jacobian a point where straight sides need one an element.
+/// Same as reference::corner_changes(), with one Jacobian per element with straight sides instead of one per
+/// point.
 void sum_changes(const Body& body, const CornerMeans& means, std::span<const double> u,
                  std::span<double> change, std::span<double> volume) {
   elements::dispatch(body.mesh.type, [&]<class E>(E) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Refinement of some elements by bisection at their longest edges; groups and curved edges are kept.
+// Refinement of marked elements by longest-edge bisection, with groups and curved edges.
 #include <kacanov/bisect.hpp>
 
 #include <algorithm>
@@ -21,8 +21,8 @@ namespace {
 
 using Point = std::array<double, 3>;
 
-/// A simplex on its way to become elements, or a facet of one: its corners, and where they lie in the
-/// reference cell of the element that it is cut from.
+/// A simplex during bisection, or a facet of one: its corners, and their reference coordinates in the element
+/// that it is cut from.
 struct Piece {
   std::array<std::int32_t, 4> node{};
   std::array<Point, 4> xi{};
@@ -45,7 +45,7 @@ class Bisection {
     keep_middles();
     std::vector<std::uint8_t> generations(coarse_.element_count(), 0);
     for (const std::int32_t e : marked) generations[e] = static_cast<std::uint8_t>(type_.dim);
-    // A cut may ask for one in a neighbour, whose longest edge is another.
+    // A cut may require another one in a neighbour that has a different longest edge.
     for (std::size_t before = 1; halved_.size() != before;) {
       before = halved_.size();
       for (std::size_t e = 0; e < coarse_.element_count(); ++e)
@@ -84,7 +84,7 @@ class Bisection {
     return piece;
   }
 
-  /// Square of the straight line between two nodes; the same bits whichever is first.
+  /// Square of the straight distance between two nodes; the same bits for either order.
   double length(std::int32_t a, std::int32_t b) const {
     const auto low = static_cast<std::size_t>(std::min(a, b)),
                high = static_cast<std::size_t>(std::max(a, b));
@@ -96,14 +96,14 @@ class Bisection {
     return square;
   }
 
-  /// By an order of edges that all elements agree on.
+  /// Longest edge under a total order of edges on which all elements agree.
   Edge longest_edge(const Piece& piece, std::size_t corners) const {
     Edge longest{1, 0};
     double most = -1.0;
     for (std::size_t a = 0; a < corners; ++a)
       for (std::size_t b = 0; b < a; ++b) {
         const double here = length(piece.node[a], piece.node[b]);
-        // Lengths that differ by rounding are equal.
+        // Lengths that differ only by rounding count as equal.
         const bool equal = std::abs(here - most) <= 1e-12 * most;
         const bool first =
             pair_key(piece.node[a], piece.node[b]) < pair_key(piece.node[longest.a], piece.node[longest.b]);
@@ -134,7 +134,7 @@ class Bisection {
     return static_cast<std::int32_t>(node);
   }
 
-  /// Where the element's map takes a point of the reference cell.
+  /// Maps reference coordinates to space.
   Point position(std::span<const std::int32_t> of, const Point& xi) const {
     std::array<double, most_nodes> shape{};
     type_.values(xi.data(), shape.data());
@@ -156,7 +156,7 @@ class Bisection {
         between_.try_emplace(pair_key(nodes(e)[edge.a], nodes(e)[edge.b]), nodes(e)[edge.middle]);
   }
 
-  /// Makes the node in the middle of an edge of a piece of the element with nodes `of`.
+  /// Creates the node at the middle of an edge of `piece`; `of` are the nodes of its element.
   void halve(std::span<const std::int32_t> of, const Piece& piece, Edge edge) {
     const std::int32_t a = piece.node[edge.a], b = piece.node[edge.b];
     const auto there = between_.find(pair_key(a, b));
@@ -166,8 +166,9 @@ class Bisection {
                         : add(position(of, middle(piece.xi[edge.a], piece.xi[edge.b])), a, b));
   }
 
-  /// Cuts a piece of an element at its longest edge, so many times over and further where an edge is halved,
-  /// and calls emit(piece) for what is left. Calls halve(piece, edge) for edges that are not halved yet.
+  /// Bisects `piece` at its longest edge `generations` times, and further while one of its edges is halved,
+  /// and calls emit(piece) for the resulting pieces. Calls halve(piece, edge) for edges that are not halved
+  /// yet.
   template <class Halve, class Emit>
   void cut(const Piece& piece, int generations, const Halve& halve, const Emit& emit) const {
     if (generations <= 0 && !any_halved(piece)) return emit(piece);
@@ -199,7 +200,7 @@ class Bisection {
     }
   }
 
-  /// Numbers after the largest that the file has.
+  /// Numbers new nodes from the largest tag of the file plus 1.
   void number_new_nodes() {
     if (fine_.node_tags.empty()) return;
     std::int64_t next = *std::max_element(fine_.node_tags.begin(), fine_.node_tags.end());
@@ -221,8 +222,8 @@ class Bisection {
     fine_.groups.push_back(std::move(to));
   }
 
-  /// Fine facets inside the facets of a group. A facet is cut where an element is that has it, which is at
-  /// its own longest edge.
+  /// Appends the fine facets inside the facets of a group. A facet is cut when its element is cut, at the
+  /// facet's own longest edge.
   void facets_of(const Group& group, std::vector<std::int32_t>& members) {
     const std::size_t corners = type_.facet().corners;
     if (!facet_) facet_.emplace(fine_);
@@ -242,7 +243,8 @@ class Bisection {
     }
   }
 
-  /// Of a point its node; of a line also those in the middle of edges whose ends it has.
+  /// Members of a node group: a point keeps its node; a line also gets the midpoints of edges whose ends it
+  /// contains.
   void nodes_of(const Group& group, std::vector<std::int32_t>& members) const {
     members = group.members;
     if (group.dimension == 0) return;
@@ -253,7 +255,7 @@ class Bisection {
       in[node] = 1;
       members.push_back(node);
     };
-    // Halves of edges are halved in their turn.
+    // Halved edges may be halved again.
     for (std::size_t before = 0; members.size() != before;) {
       before = members.size();
       for (const auto& [pair, node] : halved_)
@@ -266,10 +268,10 @@ class Bisection {
   const Cell& type_;
   std::size_t corners_;
   Mesh fine_;
-  std::unordered_map<std::uint64_t, std::int32_t> halved_;   ///< edges: their middles
-  std::unordered_map<std::uint64_t, std::int32_t> between_;  ///< nodes in the middle of edges, old and new
-  std::vector<std::array<std::int32_t, 3>> new_middles_;     ///< ends and node
-  std::vector<std::int32_t> first_child_;                    ///< of each element, and one more
+  std::unordered_map<std::uint64_t, std::int32_t> halved_;   ///< edge key → midpoint node
+  std::unordered_map<std::uint64_t, std::int32_t> between_;  ///< edge key → mid-side node, old and new
+  std::vector<std::array<std::int32_t, 3>> new_middles_;     ///< two ends and the node
+  std::vector<std::int32_t> first_child_;                    ///< per element, plus the end
   std::optional<FacetIndex> facet_;
 };
 

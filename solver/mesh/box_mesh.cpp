@@ -15,7 +15,7 @@ using Index3 = std::array<int, 3>;
 /// A lattice of (cells · refinement + 1) points in each direction, x fastest.
 struct Lattice {
   std::array<double, 3> size;
-  Index3 cells;  ///< refined; 0 in directions that do not exist
+  Index3 cells;  ///< after refinement; 0 in directions that do not exist
 
   std::int32_t node(const Index3& at) const {
     return at[0] + (cells[0] + 1) * (at[1] + (cells[1] + 1) * at[2]);
@@ -33,7 +33,7 @@ void validate(const BoxSpec& spec) {
     nodes *= static_cast<double>(spec.cells[k]) * refinement + 1;
     cells *= spec.cells[k];
   }
-  // Unknowns, elements and the sides of all elements have to fit the indices used later.
+  // Unknowns, elements and the facets of all elements must fit the index types used later.
   const double per_cell = cell(spec.type).box_elements();
   const double sides = cells * per_cell * facets_per_element(spec.type);
   if (nodes * dim > std::numeric_limits<std::int32_t>::max() ||
@@ -64,7 +64,7 @@ void add_cell(const Lattice& lattice, const Index3& at, const Cell& type,
   const std::size_t corners = type.corners;
   for (std::size_t first = 0; first < type.box.size(); first += corners) {
     const auto corner = type.box.subspan(first, corners);
-    // Lattice points are half an edge apart where edges have nodes in their middles.
+    // With mid-side nodes, lattice points are half an edge apart.
     const auto node = [&](std::int8_t a, std::int8_t b) {
       Index3 place = at;
       for (std::size_t k = 0; k < 3; ++k) place[k] += type.order * (corner[a][k] + corner[b][k]) / 2;
@@ -89,7 +89,7 @@ void add_elements(const Lattice& lattice, const Index3& cells, ElementType type,
       for (int x = 0; x < cells[0]; ++x) add_cell(lattice, {x * step, y * step, z * step}, facts, elements);
 }
 
-/// The sides of boxes: low and high end of each direction.
+/// The two sides of the box in each direction: low end, high end.
 using Sides = std::vector<std::array<Group, 2>>;
 
 Sides named_sides(std::size_t dim) {
@@ -105,7 +105,7 @@ Sides named_sides(std::size_t dim) {
   return sides;
 }
 
-/// Adds the facets that elements of the box cell `at` have on the sides, as find_boundary() would.
+/// Adds the facets of the elements of box cell `at` that lie on the sides, as find_boundary() would.
 void add_facets(const Index3& cells, const Index3& at, Mesh& mesh, Sides& sides, std::size_t first_element) {
   const Cell& type = cell(mesh.type);
   const std::size_t facet_nodes = type.facet().nodes, facet_corners = type.facet().corners;

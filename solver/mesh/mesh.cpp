@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The boundary of a mesh, and what must hold before anything is computed on it.
+// Boundary extraction and mesh validation.
 #include <kacanov/mesh.hpp>
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 namespace kacanov {
 namespace {
 
-/// One facet of one element, among those of one lowest node: its other corners, ascending, unused ones −1 and
-/// last. In two numbers they compare twice as fast as in four.
+/// One facet of one element, within the bucket of its lowest node: the other corners, ascending, with −1 for
+/// unused ones at the end. Packed into two numbers, comparisons take half the time of four.
 struct FacetKey {
   std::uint64_t middle = 0;  ///< second and third
   std::uint32_t last = 0;    ///< fourth
@@ -29,8 +29,8 @@ struct FacetKey {
   }
 };
 
-/// The facets of all elements, ordered into sets of equal corners. Buckets by the lowest node keep the
-/// sort within a few dozen entries, and only the 4-byte ids are stored for the whole mesh.
+/// The facets of all elements, sorted so that equal corners are adjacent. Buckets by lowest node limit each
+/// sort to a few dozen entries, and only the 4-byte ids are stored for the whole mesh.
 class FacetSets {
  public:
   explicit FacetSets(const Mesh& mesh)
@@ -69,7 +69,7 @@ class FacetSets {
     }
   }
 
-  /// The nodes of one facet: a number is divided once for all of them.
+  /// The nodes of one facet; avoids dividing the facet id once per node.
   struct FacetNodes {
     const std::int32_t* element;
     const std::int8_t* local;
@@ -84,7 +84,7 @@ class FacetSets {
   std::size_t facet_nodes() const { return facet_nodes_; }
 
  private:
-  /// Calls visit(lowest node, id) for all facets, without a division for each.
+  /// Calls visit(lowest node, id) for all facets, without a division per facet.
   template <typename Visit>
   void for_each_lowest_node(const Visit& visit) const {
     std::uint32_t id = 0;
@@ -119,7 +119,7 @@ class FacetSets {
   std::vector<std::uint32_t> ids_;
 };
 
-/// Whether facet b lists the corners of facet a the other way round, as neighbours do.
+/// Whether facet b lists the corners of facet a in reverse orientation, as adjacent elements do.
 bool opposite(const FacetSets& sets, std::uint32_t a, std::uint32_t b) {
   const std::size_t n = sets.corners();
   const auto of_a = sets.nodes(a), of_b = sets.nodes(b);
@@ -132,7 +132,7 @@ bool opposite(const FacetSets& sets, std::uint32_t a, std::uint32_t b) {
   return true;
 }
 
-/// Whether two facets with the same corners have the same nodes on their edges, if any.
+/// Whether two facets with the same corners also have the same mid-side nodes.
 bool same_midsides(const FacetSets& sets, std::uint32_t a, std::uint32_t b) {
   if (sets.corners() == sets.facet_nodes()) return true;
   const auto of_a = sets.nodes(a), of_b = sets.nodes(b);
@@ -146,10 +146,10 @@ bool same_midsides(const FacetSets& sets, std::uint32_t a, std::uint32_t b) {
   return ma == mb;
 }
 
-/// What is checked of an element's shape.
+/// Shape measures of an element that check_mesh() tests.
 struct ElementShape {
   double volume = 0.0;    ///< signed
-  double smallest = 0.0;  ///< smallest Jacobian determinant times the sum of weights: a volume too
+  double smallest = 0.0;  ///< smallest Jacobian determinant times the sum of weights, i.e. a volume as well
   double longest_edge = 0.0;
   double scale = 0.0;  ///< longest edge to the power of the dimension
 };
@@ -198,7 +198,8 @@ std::string size_text(const Mesh& mesh, const ElementShape& shape) {
          ", longest edge " + number(shape.longest_edge) + ")";
 }
 
-/// Some places are known to be negative; of others it is only known that a quadrature point is not positive.
+/// A negative Jacobian is reported with its place if it is found; otherwise it is only known that the
+/// Jacobian at some quadrature point is not positive.
 [[noreturn]] void refuse_folded(const Mesh& mesh, std::size_t e, const ElementShape& shape) {
   std::string message = element_name(mesh, e) + " is folded: its Jacobian is not positive everywhere";
   if (const auto negative = find_negative_jacobian(mesh.view(), e)) {
@@ -213,7 +214,7 @@ std::string size_text(const Mesh& mesh, const ElementShape& shape) {
   throw InputError(message);
 }
 
-constexpr double smallest_volume = 1e-14;  // of the longest edge to the power of the dimension
+constexpr double smallest_volume = 1e-14;  // times the longest edge to the power of the dimension
 
 [[noreturn]] void refuse_element(const Mesh& mesh, std::size_t e, const ElementShape& shape) {
   const std::string size = size_text(mesh, shape);
@@ -236,7 +237,7 @@ constexpr double smallest_volume = 1e-14;  // of the longest edge to the power o
   throw InputError(message);
 }
 
-/// The diagonal of the box round the corners, no shorter than the longest edge: a third of its work.
+/// Diagonal of the bounding box of the corners, an upper bound of the longest edge at a third of its cost.
 double diagonal(const Mesh& mesh, std::size_t element) {
   const std::size_t corners = cell(mesh.type).corners, dim = mesh.dim();
   double square = 0.0;
@@ -253,7 +254,7 @@ double diagonal(const Mesh& mesh, std::size_t element) {
 }
 
 void check_shapes(const Mesh& mesh) {
-  // Written so that an overflow is refused as well.
+  // The comparisons are written so that overflow (NaN) also fails.
   const auto is_whole = [](double volume, double smallest, double scale) {
     return volume > smallest_volume * scale && smallest > smallest_volume * scale;
   };

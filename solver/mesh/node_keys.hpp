@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Edges and facets by their nodes, whatever the order of these: the way to find them again.
+// Hash keys for edges and facets that do not depend on node order.
 #pragma once
 
 #include <algorithm>
@@ -12,14 +12,14 @@
 
 namespace kacanov {
 
-/// Of two nodes: the lower one in the upper half.
+/// Key of an edge: the lower node number in the upper 32 bits.
 inline std::uint64_t pair_key(std::int32_t a, std::int32_t b) {
   const std::uint64_t low = static_cast<std::uint32_t>(std::min(a, b)),
                       high = static_cast<std::uint32_t>(std::max(a, b));
   return low << 32 | high;
 }
 
-/// What a new node has of the mesh's fields: the mean of those of the corners round it.
+/// Extends the node fields to a new node: appends the mean over the corners around it.
 inline void add_mean_of_fields(Mesh& mesh, std::span<const std::int32_t> corners) {
   for (NodeField& field : mesh.node_fields) {
     double sum = 0.0;
@@ -28,7 +28,7 @@ inline void add_mean_of_fields(Mesh& mesh, std::span<const std::int32_t> corners
   }
 }
 
-/// The boundary facets of a mesh by their corners, whatever their order. The mesh has to outlive it.
+/// Finds the boundary facets of a mesh by their corners, in any order. The mesh must outlive it.
 class FacetIndex {
  public:
   explicit FacetIndex(const Mesh& mesh) {
@@ -36,7 +36,7 @@ class FacetIndex {
     for (std::size_t f = 0; f < mesh.facet_count(); ++f)
       index_.emplace(key(mesh.facet(f).first(corners)), static_cast<std::int32_t>(f));
   }
-  /// −1 where there is none.
+  /// Returns the facet index, or −1 if there is no such facet.
   std::int32_t find(std::span<const std::int32_t> corners) const {
     const auto found = index_.find(key(corners));
     return found == index_.end() ? -1 : found->second;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Connected pieces of a mesh.
+// Connected components of a mesh.
 #include "mesh/pieces.hpp"
 
 #include <cstddef>

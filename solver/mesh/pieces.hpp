@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Connected pieces of a mesh.
+// Connected components of a mesh.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,10 @@
 
 namespace kacanov {
 
-/// Pieces whose elements share nodes, numbered in the order of their first elements.
+/// Components of elements connected by shared nodes, numbered in the order of their first elements.
 struct MeshPieces {
   std::int32_t count = 0;
-  std::vector<std::int32_t> of_node;  ///< −1: in no element
+  std::vector<std::int32_t> of_node;  ///< −1: node of no element
 };
 MeshPieces connected_pieces(const Mesh& mesh);
 

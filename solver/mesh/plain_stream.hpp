@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Streams whose numbers are the project's own in a host that has made a locale with commas global.
+// Streams with the classic locale, independent of a host program that sets a global locale with decimal
+// commas.
 #pragma once
 
 #include <fstream>
@@ -9,7 +10,7 @@
 
 namespace kacanov {
 
-/// A stream of the standard library that does not ask the global locale of C++.
+/// A standard stream that ignores the global C++ locale.
 template <class Stream>
 class Plain : public Stream {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Quadratic elements from linear ones.
+// Conversion of linear to quadratic elements.
 #include <kacanov/raise_order.hpp>
 
 #include <array>
@@ -14,7 +14,7 @@ namespace {
 
 using MiddleNodes = std::unordered_map<std::uint64_t, std::int32_t>;
 
-/// The node in the middle of the edge from a to b, made where it is new.
+/// Returns the mid-side node of the edge from a to b, and creates it if needed.
 std::int32_t middle(Mesh& mesh, MiddleNodes& middles, std::int32_t a, std::int32_t b) {
   const std::size_t dim = mesh.dim(), node = mesh.coordinates.size() / dim;
   const auto [place, fresh] = middles.try_emplace(pair_key(a, b), static_cast<std::int32_t>(node));
@@ -27,7 +27,7 @@ std::int32_t middle(Mesh& mesh, MiddleNodes& middles, std::int32_t a, std::int32
   return place->second;
 }
 
-/// The members of a group of the linear mesh in the quadratic one.
+/// Returns the members that a group of the linear mesh has in the quadratic mesh.
 std::vector<std::int32_t> members_of(const Group& group, const Mesh& linear, const FacetIndex& facets,
                                      const MiddleNodes& middles) {
   if (group.dimension == linear.dim() || group.dimension == 0) return group.members;

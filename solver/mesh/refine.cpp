@@ -17,14 +17,13 @@
 namespace kacanov {
 namespace {
 
-/// The middle of some corners of an element, as a set of bits.
+/// Bit set of corners of an element; it stands for their midpoint.
 using Corners = std::uint32_t;
 
 constexpr Corners bit(std::size_t corner) { return Corners{1} << corner; }
 
-/// Corners of the children of one element, children × corners. Of a tetrahedron's inner octahedron `diagonal`
-/// (1, 2, 3) says which of its diagonals the four inner children share: the one from the middle of edge
-/// 0–diagonal.
+/// Corners of the children of one element: children × corners. In a tetrahedron's inner octahedron the four
+/// inner children share the diagonal from the middle of edge 0–`diagonal` (1, 2, 3).
 std::vector<Corners> children_of(const Cell& type, std::size_t diagonal) {
   const std::size_t corners = type.corners;
   std::vector<Corners> children;
@@ -34,7 +33,7 @@ std::vector<Corners> children_of(const Cell& type, std::size_t diagonal) {
         children.push_back(bit(child) | bit(a));
         continue;
       }
-      Corners around = 0;  // those on every side that both corners are on
+      Corners around = 0;  // corners on every side that contains both corners
       for (std::size_t b = 0; b < corners; ++b) {
         bool in = true;
         for (std::size_t k = 0; k < static_cast<std::size_t>(type.dim); ++k)
@@ -86,8 +85,8 @@ class Refinement {
     return std::span(coarse_.elements).subspan(e * n, n);
   }
 
-  /// The node between two that share an edge, or across a quadrilateral: made at `at`, amid `around`, where
-  /// it is new.
+  /// Returns the node at the middle of an edge or of a quadrilateral's diagonal; creates it at `at` if
+  /// needed, with field values averaged over `around`.
   std::int32_t between(std::int32_t a, std::int32_t b, const std::array<double, 3>& at,
                        std::span<const std::int32_t> around) {
     const auto [place, fresh] = between_.try_emplace(pair_key(a, b), 0);
@@ -104,11 +103,12 @@ class Refinement {
     return static_cast<std::int32_t>(node);
   }
 
-  /// Where the element's map takes a point of the reference cell.
+  /// Maps reference coordinates to space.
   std::array<double, 3> position(std::span<const std::int32_t> of, const std::array<double, 3>& xi) const {
     std::array<double, most_nodes> shape{};
     type_.values(xi.data(), shape.data());
-    std::array<long double, 3> x{};  // rounded once, whatever the order
+    // Long double, rounded once, so that the result does not depend on the order of the sum.
+    std::array<long double, 3> x{};
     for (std::size_t a = 0; a < of.size(); ++a)
       for (std::size_t c = 0; c < dim(); ++c)
         x[c] += static_cast<long double>(shape[a]) *
@@ -128,7 +128,7 @@ class Refinement {
     return xi;
   }
 
-  /// The corner of a child that lies in the middle of these corners of its parent.
+  /// Returns the node of a child's corner, which is the midpoint of these corners of its parent.
   std::int32_t corner(std::span<const std::int32_t> of, Corners corners) {
     std::array<std::int32_t, 8> around{};
     std::array<std::size_t, 8> local{};
@@ -146,11 +146,11 @@ class Refinement {
         if (edge.middle >= 0 && corners == (bit(edge.a) | bit(edge.b))) return of[edge.middle];
       return between(around[0], around[1], position(of, xi), all);
     }
-    if (count == static_cast<std::size_t>(type_.corners)) {  // its own
+    if (count == static_cast<std::size_t>(type_.corners)) {  // the element's own centre
       if (inner_ < 0) inner_ = add(position(of, xi), all);
       return inner_;
     }
-    // A quadrilateral is known by its lowest node and the one across.
+    // The key of a quadrilateral is its lowest node and the opposite one.
     const auto lowest =
         static_cast<std::size_t>(std::min_element(around.begin(), around.begin() + 4) - around.begin());
     std::size_t across = lowest;
@@ -168,7 +168,7 @@ class Refinement {
     return square;
   }
 
-  /// The shortest diagonal of a tetrahedron's inner octahedron.
+  /// Returns the shortest diagonal of a tetrahedron's inner octahedron.
   std::size_t diagonal(std::span<const std::int32_t> of) const {
     if (type_.dim == 2 || !type_.simplex) return 1;
     std::size_t best = 1;
@@ -206,7 +206,7 @@ class Refinement {
     }
   }
 
-  /// Numbers after the largest that the file has.
+  /// Numbers new nodes from the largest tag of the file plus 1.
   void number_new_nodes() {
     if (fine_.node_tags.empty()) return;
     std::int64_t next = *std::max_element(fine_.node_tags.begin(), fine_.node_tags.end());
@@ -232,7 +232,7 @@ class Refinement {
       for (std::int32_t c = 0; c < children; ++c) members.push_back(e * children + c);
   }
 
-  /// Fine facets inside the facets of a group.
+  /// Appends the fine facets inside the facets of a group.
   void facets_of(const Group& group, std::vector<std::int32_t>& members) {
     const Cell& type = type_.facet();
     const std::size_t corners = type.corners;
@@ -279,7 +279,8 @@ class Refinement {
     return known(of[lowest], of[(lowest + 2) % 4]);
   }
 
-  /// Of a point its node; of a line also those in the middle of edges whose ends it has.
+  /// Members of a node group: a point keeps its node; a line also gets the midpoints of edges whose ends it
+  /// contains.
   void nodes_of(const Group& group, std::vector<std::int32_t>& members) const {
     members = group.members;
     if (group.dimension == 0) return;
@@ -292,10 +293,10 @@ class Refinement {
   const Mesh& coarse_;
   const Cell& type_;
   Mesh fine_;
-  std::array<std::vector<Corners>, 4> patterns_;  ///< by the diagonal, from 1
+  std::array<std::vector<Corners>, 4> patterns_;  ///< by diagonal, from 1
   std::unordered_map<std::uint64_t, std::int32_t> between_;
   std::optional<FacetIndex> facet_;
-  std::int32_t inner_ = -1;  ///< node in the middle of the element at hand
+  std::int32_t inner_ = -1;  ///< node at the centre of the current element
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Solving where obstacles move, are pushed by a force, or are faced anew at each load step.
+// Solver for obstacles that move, are pushed by a force, or are relinearised at each load step.
 #include <kacanov/moving.hpp>
 
 #include <algorithm>
@@ -22,29 +22,29 @@
 
 namespace kacanov {
 
-/// Puts the rows, gaps and slip origins of a part where its obstacles are at a time (theory:
-/// moving-obstacles). Everything is collective.
+/// Sets the rows, gaps and slip origins of a part for the position of its obstacles at a time (theory:
+/// moving-obstacles). All members are collective.
 class MovingContact {
  public:
-  /// `part` and `model` have to outlive it.
+  /// `part` and `model` must outlive it.
   MovingContact(Part& part, const Model& model);
 
-  /// At the end `time` of a load step that began at `before` with the displacement u. Entries that are pushed
-  /// stay where push() left them.
+  /// Sets the contact at the end `time` of a load step that began at `before` with the displacement u. Pushed
+  /// entries stay where push() left them.
   void face(double time, double before, std::span<const double> u);
-  /// Where an entry that is pushed has gone along its direction, counted from where the case has it.
+  /// Sets the travel of a pushed entry along its direction, relative to its position in the case file.
   void push(std::size_t entry, double travel);
-  /// Moves a pushed entry, whose force is 0 in this load step, out of the body's way. The next step counts
-  /// its travel from where the case has it.
+  /// Moves a pushed entry with zero force in this load step out of contact. The next step measures its travel
+  /// from the position in the case file.
   void withdraw(std::size_t entry);
-  /// The least travel with which a pushed entry, as it is faced, reaches a node at u = 0; 0 where none is in
-  /// its way.
+  /// Returns the smallest travel at which a pushed entry, as last linearised, reaches any node at u = 0; 0 if
+  /// no node is in its way.
   double touch(std::size_t entry) const;
 
   static Vector3 direction(const ContactEntry& entry);
 
-  /// For a checkpoint: how far each entry had been pushed when it was faced last, and its converse, for
-  /// face() to be called as it was then.
+  /// For a checkpoint: travel of each entry at the last call of face(); resume() restores it, so that face()
+  /// can be called in the same way.
   std::span<const double> faced_at() const noexcept { return faced_at_; }
   void resume(std::span<const double> faced_at) { travel_.assign(faced_at.begin(), faced_at.end()); }
 
@@ -52,10 +52,11 @@ class MovingContact {
   struct View;
   View view(const ContactEntry& entry, const SurfacePoint& at, const Vector3& u,
             const std::array<double, 2>& times, double travel) const;
-  /// Counts the slip of a point whose obstacle stays from u, the end of the load step before.
+  /// Measures the slip of a point with a fixed obstacle from u, the end of the previous load step.
   void count_from(std::size_t i, std::span<const double> u);
-  /// Turns a point to the obstacle and gives its row; nothing, and a gap out of reach, where the obstacle is
-  /// out of its way or the node can hardly move towards it: it keeps the row that it has in the case then.
+  /// Sets normal and gap of a point from the view of its obstacle, and returns its row. If the obstacle is
+  /// out of reach or the node can hardly move towards it, returns nothing and sets an unreachable gap; the
+  /// point then keeps its row of the case.
   std::optional<RowEntry> take(std::size_t i, const View& view, std::span<const double> u,
                                ContactPoint& point);
 
@@ -63,23 +64,24 @@ class MovingContact {
 
   Part& part_;
   const Model& model_;
-  const ConstraintRows there_;  ///< as the case has them
+  const ConstraintRows there_;  ///< as in the case file
   double far_;
-  std::vector<double> travel_, faced_at_;  ///< one an entry of the model: now, and when it was faced
-  std::vector<double> gap_;                ///< one a point: as it was faced
-  std::vector<Vector3> origin_;            ///< displacement that slip is counted from, as it was faced
+  /// Per entry of the model: current travel, and that at the last face().
+  std::vector<double> travel_, faced_at_;
+  std::vector<double> gap_;      ///< per point: at the last face()
+  std::vector<Vector3> origin_;  ///< displacement from which slip is measured, at the last face()
 };
 
-/// What double precision leaves of a sum of lengths.
+/// Relative rounding error of a sum of lengths.
 constexpr double some_roundings = 1e-15;
 
-/// How a node faces an obstacle that has moved.
+/// Projection of a node onto an obstacle that has moved.
 struct MovingContact::View {
   Vector3 normal{};
   double gap = 0.0;
-  Vector3 carried{}, step{};  ///< how far the touched point of the obstacle has come: in all, in this step
-  double unknown = 0.0;       ///< of the gap
-  double kind = 0.0;          ///< 0 faced, 1 out of its way, 2 undecided
+  Vector3 carried{}, step{};  ///< motion of the obstacle's touched point: in total, in this load step
+  double unknown = 0.0;       ///< rounding error of the gap
+  double kind = 0.0;          ///< 0 in contact range, 1 out of reach, 2 undecided
   static constexpr int numbers = 12;
 };
 
@@ -108,8 +110,8 @@ MovingContact::View MovingContact::view(const ContactEntry& entry, const Surface
   } else if (entry.force_controlled) {
     start.shift = now.shift = travel * direction(entry);
   }
-  // Faced anew, the node is where the step before has left it, and the obstacle where it is now; otherwise
-  // both are where the case has them, and the obstacle carries what the node has found there along.
+  // With relinearisation the node is where the previous step has left it, and the obstacle at its current
+  // position. Otherwise both are as in the case file, and the touched point moves with the obstacle.
   const Vector3 seen = entry.relinearise ? now.back(x + u) : x;
   const Vector3 outer = entry.relinearise ? now.turned(at.outer, -1.0) : at.outer;
   const Facing facing = std::visit(
@@ -150,7 +152,7 @@ void MovingContact::face(double time, double before, std::span<const double> u) 
     local.push_back(static_cast<double>(point.entry));
     local.insert(local.end(), x.begin(), x.end());
     local.insert(local.end(), moved.begin(), moved.end());
-    // Of two faces that are equally near, the one that the case has.
+    // If two faces are equally near, keep the one chosen in the case file.
     const Vector3& outer = there_[local.size() / numbers].normal;
     local.insert(local.end(), outer.begin(), outer.end());
   }
@@ -169,7 +171,7 @@ void MovingContact::face(double time, double before, std::span<const double> u) 
     views.insert(views.end(), {v.gap, v.unknown, v.kind});
   }
   views = scatter_contact(part_, views, View::numbers);
-  double lost = 0.0;  // a contact entry, from 1, one of whose nodes is lost
+  double lost = 0.0;  // contact entry, counted from 1, with a node that has no contact direction
   for (std::size_t i = 0; i < points; ++i)
     if (views[View::numbers * i + 11] == 2.0) lost = static_cast<double>(part_.contact[i].entry) + 1.0;
   lost = part_.node_map.max_all(lost);
@@ -177,7 +179,7 @@ void MovingContact::face(double time, double before, std::span<const double> u) 
     throw InputError("contact[" + std::to_string(static_cast<int>(lost) - 1) +
                      "].obstacle: a node has come to lie where no direction leads out of the obstacle");
   faced_at_ = travel_;
-  // Rows are built again: those that are there cannot be written.
+  // Rows are rebuilt because they cannot be modified in place.
   ConstraintRows rows;
   part_.slip_origin.assign(2 * points, 0.0);
   for (std::size_t i = 0; i < points; ++i) {
@@ -187,7 +189,7 @@ void MovingContact::face(double time, double before, std::span<const double> u) 
     const bool moves = model_.contact[point.entry].moves();
     if (!moves && point.since_step) count_from(i, u);
     const auto row = moves ? take(i, v, u, point) : std::nullopt;
-    if (moves) there.tresca = 0.0;  // out of reach there is no film either
+    if (moves) there.tresca = 0.0;  // out of reach, Tresca friction does not act either
     if (row)
       rows.push_back(point, {&*row, 1});
     else
@@ -280,7 +282,7 @@ double MovingContact::touch(std::size_t entry) const {
 
 namespace {
 
-/// Adds the counts and times of the solves before to those of one.
+/// Adds counts and times of the previous solves to those of one solve.
 void add(Result& result, const Result& before) {
   const auto add_all = [](auto& sum, const auto& more, auto... entries) {
     ((sum.*entries += more.*entries), ...);
@@ -303,7 +305,7 @@ void add(Result& result, const Result& before) {
     result.restarted_after = before.restarted_after;
 }
 
-/// Of the counts above, those of a checkpoint.
+/// Visits the counts that a checkpoint stores.
 template <class R, class Visitor>
 void visit_sums(R& result, Visitor&& entry) {
   entry("before_outer", result.outer_iterations);
@@ -316,7 +318,7 @@ void visit_sums(R& result, Visitor&& entry) {
   entry("before_contact_applications", result.contact_applications);
 }
 
-/// The solves of a run, each from the end of the one before.
+/// The sequence of solves of a run, each starting from the end of the previous one.
 class Chain {
  public:
   Chain(Part& part, const Model& model, const RunOptions& run)
@@ -343,7 +345,7 @@ class Chain {
     for (; step_ < curves_.size(); ++step_) {
       const std::size_t k = step_;
       const double time = curves_[k].time;
-      // Between the two the load is cut, where that has to be.
+      // The load may be cut between the two points.
       part_.steps = {still(curves_[k - 1]), still(curves_[k])};
       if (curves_.size() > 2)
         tell(load_step_name(k - 1, curves_.size() - 1, !model_.steps_are_factors, time));
@@ -368,7 +370,7 @@ class Chain {
       }
       if (arrived)
         reached_ = time;
-      else if (!pushes_ && result.load_reached > 0.0)  // by a part of the step
+      else if (!pushes_ && result.load_reached > 0.0)  // by part of the step
         reached_ = result.load_reached;
       if (!arrived) {
         end_early(k, time);
@@ -387,7 +389,7 @@ class Chain {
   }
 
  private:
-  /// Factors, but that obstacles which move are not drawn back by theirs.
+  /// Returns the factors with 1 for moving obstacles, which their factors do not withdraw.
   LoadFactors still(LoadFactors factors) const {
     for (std::size_t e = 0; e < factors.contact.size(); ++e)
       if (model_.contact[e].moves()) factors.contact[e] = 1.0;
@@ -398,9 +400,9 @@ class Chain {
     if (run_.stage && part_.node_map.rank == 0) run_.stage(stage);
   }
 
-  /// Solves from where the last solve has ended; counts, times and warnings go on.
+  /// Solves from the end of the last solve; counts, times and warnings accumulate.
   void solve_once() {
-    // After a restart the search begins again and is told what the solves before that have found.
+    // After a restart the search is repeated with the stored forces of the solves before it.
     if (told_ < forces_.size()) {
       ++told_;
       return;
@@ -440,8 +442,8 @@ class Chain {
     told_ = forces_.size();
   }
 
-  /// The load steps and solves behind the one under way, which follows those that `before` counts; on the
-  /// first rank. Collective.
+  /// Returns on the first rank the completed load steps and solves before the current one; `before` contains
+  /// their counts. Collective.
   Checkpoint checkpoint(const Result& before) const {
     Checkpoint out;
     const auto put = [&](const char* name, const auto& value) {
@@ -465,7 +467,7 @@ class Chain {
     return out;
   }
 
-  /// The converse. Collective.
+  /// Restores the state from a checkpoint. Collective.
   void resume() {
     const CheckpointReader get(part_, run_.start);
     Result& before = last_.result;
@@ -491,28 +493,29 @@ class Chain {
     u_ = get.nodal("moving_displacement");
   }
 
-  /// A contact entry that is pushed by a force, in this load step.
+  /// A force-controlled contact entry in the current load step.
   struct Pushed {
     std::size_t entry = 0;
     PushedObstacle search;
   };
 
-  /// By the last solve.
+  /// Returns the force on an entry in the last solve.
   double force_on(std::size_t entry) const {
     std::size_t i = 0;
     while (pushed_[i].entry != entry) ++i;
     return forces_[told_ - 1][i];
   }
 
-  /// Whether a next solve can start from the last one: its residuals meet the tolerance, or are rounding.
+  /// Whether the next solve can start from the last one: its residuals are within the tolerance or at
+  /// rounding level.
   bool settled() const {
     const Result& result = last_.result;
     return result.status == Status::converged || (result.status == Status::limited_by_rounding &&
                                                   result.certificate.exhausted(model_.solver.tolerance));
   }
 
-  /// One obstacle after the other, until all have their forces at once (theory: force-control). Whether they
-  /// have, and the last solve is settled.
+  /// Pushes one obstacle after the other until all bear their forces at the same time (theory:
+  /// force-control). Returns whether they do, with a settled last solve.
   bool push_all(const std::vector<double>& factors) {
     for (Pushed& pushed : pushed_) begin(pushed, factors[pushed.entry]);
     std::vector<Pushed*> acting;
@@ -539,14 +542,14 @@ class Chain {
     return false;
   }
 
-  /// Puts it where its search begins.
+  /// Moves the obstacle to the start of its search.
   void begin(Pushed& pushed, double factor) {
     const ContactEntry& entry = model_.contact[pushed.entry];
     PushedObstacle& search = pushed.search;
     search.force = entry.force_controlled->force * factor;
     search.tolerance = std::min(10.0 * model_.solver.tolerance, 0.1);
     search.touch = contact_.touch(pushed.entry);
-    // Not there yet, or no longer.
+    // The force does not act yet, or no longer.
     if (search.force <= 0.0) return contact_.withdraw(pushed.entry);
     search.scale = search.force / part_.laws[0].secant(0.0);
     search.scale /= part_.dim() == 3 || part_.plane == PlaneState::axisymmetric ? extent_ : part_.thickness;
@@ -554,8 +557,7 @@ class Chain {
     contact_.push(pushed.entry, search.travel);
   }
 
-  /// Solves for the travel of an obstacle that makes its force the one that is asked for. Whether that is
-  /// found.
+  /// Solves for the travel at which an obstacle bears its force; returns whether it was found.
   bool push(Pushed& pushed) {
     const PushOutcome outcome = find_travel(pushed.search, [&](double travel) -> std::optional<double> {
       contact_.push(pushed.entry, travel);
@@ -599,25 +601,25 @@ class Chain {
   Part& part_;
   const Model& model_;
   RunOptions run_;
-  bool checkpoints_ = false;  ///< are written
-  bool resumes_ = false;      ///< the next solve begins at a checkpoint
+  bool checkpoints_ = false;  ///< whether checkpoints are written
+  bool resumes_ = false;      ///< whether the next solve begins at a checkpoint
   MovingContact contact_;
   std::vector<LoadFactors> curves_;
   double extent_;  ///< of the body
   std::vector<Pushed> pushed_;
-  bool pushes_ = false;    ///< some of them in this load step
-  std::vector<double> u_;  ///< at the end of the load step before
+  bool pushes_ = false;    ///< whether some obstacle is pushed in this load step
+  std::vector<double> u_;  ///< at the end of the previous load step
   Start start_;
   decltype(RunOptions::load_step_over) over_;
-  std::size_t step_ = 1;         ///< under way; a place in curves_
-  std::vector<LoadStep> lines_;  ///< of those that are over
+  std::size_t step_ = 1;         ///< current load step, an index into curves_
+  std::vector<LoadStep> lines_;  ///< of completed load steps
   double reached_ = 0.0;
-  int outer_ = 0;  ///< iterations when it began
+  int outer_ = 0;  ///< iterations at its start
   std::int64_t cg_ = 0;
-  std::vector<double> searched_from_;        ///< travels of pushed_ then
-  std::vector<std::vector<double>> forces_;  ///< on pushed_, of each solve since
-  std::size_t told_ = 0;                     ///< of these; all but right after a restart
-  Solution last_;  ///< its counts, times and warnings are those of all solves so far
+  std::vector<double> searched_from_;        ///< travels of pushed_ at its start
+  std::vector<std::vector<double>> forces_;  ///< forces on pushed_ in each solve since then
+  std::size_t told_ = 0;  ///< number of those already replayed; all of them except right after a restart
+  Solution last_;         ///< its counts, times and warnings are those of all solves so far
 };
 
 }  // namespace

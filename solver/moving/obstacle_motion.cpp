@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far an obstacle has to be pushed for the body to bear a force (theory: force-control).
+// Travel of an obstacle at which the body bears a given force (theory: force-control).
 #include "moving/obstacle_motion.hpp"
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 namespace kacanov {
 namespace {
 
-/// A travel and what its force has too much.
+/// A travel, and the excess of its force over the target.
 struct Trial {
   double travel = 0.0, excess = 0.0;
 };
@@ -31,7 +31,7 @@ PushOutcome find_travel(const PushedObstacle& pushed,
     if (outcome.reached) return outcome;
     const bool above = here.excess > 0.0;
     (above ? high : low) = here;
-    // The end that stays a second time counts half (Illinois).
+    // Illinois rule: halve the value of an end that is kept a second time.
     std::optional<Trial>& other = above ? low : high;
     if (other && outcome.solves > 0 && above == was_above) other->excess *= 0.5;
     was_above = above;
@@ -43,8 +43,8 @@ PushOutcome find_travel(const PushedObstacle& pushed,
       const double growth = bears > 0.0 ? std::clamp(1.02 * pushed.force / bears, 1.05, 4.0) : 4.0;
       next = beyond > 0.0 ? pushed.touch + growth * beyond : pushed.touch + pushed.scale;
     } else {
-      // Where the body only touches it strains by rounding alone: not there, but short of it, or well before
-      // it.
+      // Near touch the force is dominated by rounding, so do not step exactly to touch, but beyond it, or
+      // well before it.
       const double beyond = high->travel - pushed.touch;
       if (beyond > 0.01 * back) {
         next = pushed.touch + std::clamp(0.98 * pushed.force / *force, 0.1, 0.9) * beyond;

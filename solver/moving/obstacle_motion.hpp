@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where an obstacle is: the pose that its motion gives it, or the travel at which it bears its force.
+// Position of an obstacle: the pose prescribed by its motion, or the travel at which it bears its force.
 #pragma once
 
 #include <cmath>
@@ -11,11 +11,11 @@
 
 namespace kacanov {
 
-/// x goes to c + R (x − c) + t (theory: moving-obstacles).
+/// The map x → c + R (x − c) + t (theory: moving-obstacles).
 struct RigidPose {
   Vector3 centre{}, shift{}, rotation{};
 
-  /// Of a motion at a time: linear between the points of its path.
+  /// Returns the pose of a motion at a time: linear between the points of its path.
   static RigidPose at(const Motion& motion, double time) {
     Motion::Pose before, after;
     for (const Motion::Pose& next : motion.path) {
@@ -29,7 +29,7 @@ struct RigidPose {
             before.rotation + share * (after.rotation - before.rotation)};
   }
 
-  /// Rodrigues' rotation.
+  /// Rotates v by Rodrigues' formula.
   Vector3 turned(const Vector3& v, double sign = 1.0) const {
     const double angle = norm(rotation);
     if (angle == 0.0) return v;
@@ -37,7 +37,7 @@ struct RigidPose {
     return std::cos(angle) * v + (sign * std::sin(angle)) * cross(axis, v) +
            ((1.0 - std::cos(angle)) * dot(axis, v)) * axis;
   }
-  /// By how much x moves, with digits where that is little.
+  /// Returns the displacement of x, accurate even if it is small.
   Vector3 carried(const Vector3& x) const {
     const double angle = norm(rotation);
     if (angle == 0.0) return shift;
@@ -50,11 +50,11 @@ struct RigidPose {
 
 struct PushedObstacle {
   double force = 0.0;        ///< ≥ 0
-  double tolerance = 1e-5;   ///< relative, on the force
-  double touch = 0.0;        ///< travel at which it reaches the undeformed body
-  double travel = HUGE_VAL;  ///< to begin with; none: beyond touch by `scale`
-  double scale = 0.0;        ///< of travels, > 0 unless force is 0
-  int most = 40;             ///< solves
+  double tolerance = 1e-5;   ///< relative tolerance on the force
+  double touch = 0.0;        ///< travel at which the obstacle reaches the undeformed body
+  double travel = HUGE_VAL;  ///< initial value; infinite: `touch` + `scale`
+  double scale = 0.0;        ///< scale of travels, > 0 unless force is 0
+  int most = 40;             ///< maximum number of solves
 
   bool meets(double found) const { return std::abs(found - force) <= tolerance * force; }
 };
@@ -65,9 +65,9 @@ struct PushOutcome {
   int solves = 0;
 };
 
-/// Finds the travel at which `force_at` is the force: grows or halves what is beyond touch until two travels
-/// enclose it, then by regula falsi with the Illinois rule. `force_at` does not fall with the travel; nothing
-/// from it ends the search. The last travel it was asked for is the outcome's.
+/// Finds the travel at which `force_at` equals the force: grows or halves the travel beyond touch until two
+/// travels bracket it, then uses regula falsi with the Illinois rule. `force_at` must not decrease with the
+/// travel; an empty result ends the search. The outcome contains the last travel evaluated.
 PushOutcome find_travel(const PushedObstacle& pushed,
                         const std::function<std::optional<double>(double)>& force_at);
 

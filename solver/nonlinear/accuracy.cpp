@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How exactly a step is solved, from the residuals it starts with.
+// Accuracy of each step's solve, from the residuals at its start.
 #include "nonlinear/accuracy.hpp"
 
 #include <algorithm>
@@ -22,13 +22,13 @@ AdmmOptions admm_accuracy(const SolverOptions& options, const Residuals& before,
     out.force_tolerance = 1e-2 * options.tolerance * scales.force;
     return out;
   }
-  // At rest, or where a rigid body has been put, displacements are no scale yet.
+  // At rest, or after a rigid placement, there is no displacement scale yet.
   const bool scaled = !first && scales.displacement > 0.0;
   const double worst = scaled ? std::min(before.certificate.worst(), 1.0) : 1.0;
   const double share = scaled ? gap_share(before.certificate) : 1.0;
   const double reach = std::max(0.5 * options.tolerance, tuning.inner_reduction * worst) * share;
   out.force_tolerance = reach * scales.force;
-  // With no displacement yet, any trace will do: the first step ends by its forces.
+  // Without a displacement scale any trace is acceptable: the first step stops by its forces.
   out.trace_tolerance = scaled ? reach * scales.trace : HUGE_VAL;
   out.force_reduction = scales.force > 0.0 ? 0.0 : tuning.inner_reduction;
   if (options.penalty == SolverOptions::Penalty::automatic && !first)
@@ -44,12 +44,12 @@ AdmmOptions admm_accuracy(const SolverOptions& options, const Residuals& before,
 
 namespace {
 
-/// ‖r‖ of a Newton step's solve that may be the last.
+/// Returns the target ‖r‖ of a Newton solve that may be the last.
 double last_residual(const SolverOptions& options, const Residuals& before, const Tuning& tuning) {
   return tuning.last_share * options.tolerance * gap_share(before.certificate) * before.scales.force;
 }
 
-/// What solves of Newton steps have in common.
+/// Returns the options that all Newton solves share.
 CgOptions step_accuracy(const SolverOptions& options, const Tuning& tuning) {
   CgOptions out;
   out.relative = tuning.solve_reduction;
@@ -67,7 +67,7 @@ CgOptions newton_accuracy(const SolverOptions& options, const Residuals& before,
   CgOptions out = step_accuracy(options, tuning);
   out.absolute = last_residual(options, before, tuning);
   out.reach = tuning.last_reach;
-  // The first residual alone says little: points moved onto the obstacle strain the elements beside them.
+  // The first residual is inflated: points moved onto the obstacle strain adjacent elements.
   out.most = std::min(worst, 1.0) * before.scales.force;
   return out;
 }

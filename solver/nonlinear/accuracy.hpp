@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How exactly a step is solved, from the residuals it starts with.
+// Accuracy of each step's solve, from the residuals at its start.
 #pragma once
 
 #include "contact/admm.hpp"
@@ -8,20 +8,20 @@
 
 namespace kacanov {
 
-/// Tolerances, relaxation and caps of the ADMM in a step (theory: inexact-solves, over-relaxation; step-stop
-/// with the paper's stop). Penalty and lumped volumes are left to the caller. `first`: the elastic step.
+/// Returns tolerances, relaxation and iteration limits for the ADMM of a step (theory: inexact-solves,
+/// over-relaxation; step-stop with the paper's criterion). The caller sets penalty and lumped volumes.
+/// `first`: the elastic step.
 AdmmOptions admm_accuracy(const SolverOptions& options, const Residuals& before, bool first,
                           const Tuning& tuning);
 
-/// Of the CG solve of a semismooth Newton step. What may be the last step is solved well below the tolerance,
-/// so that answers do not depend on ranks or threads to more than that.
+/// Returns the accuracy of the CG solve in a semismooth Newton step. A step that may be the last is solved
+/// well below the tolerance, so that results depend on ranks and threads by no more than that.
 CgOptions newton_accuracy(const SolverOptions& options, const Residuals& before, const Tuning& tuning);
 
-/// Decimal digits from the residuals of now to those that Newton steps end at.
+/// Returns the decimal digits between the current residuals and those at which Newton steps end.
 double digits_left(const SolverOptions& options, const Residuals& before, const Tuning& tuning);
 
-/// Of a step of the method of multipliers: the force that may be left unbalanced, and the CG solves on the
-/// way.
+/// Accuracy of a step of the method of multipliers: the unbalanced force that may remain, and its CG solves.
 struct AugmentedAccuracy {
   double force = 0.0;
   CgOptions solve;
@@ -29,9 +29,9 @@ struct AugmentedAccuracy {
 AugmentedAccuracy augmented_accuracy(const SolverOptions& options, const Residuals& before,
                                      const Tuning& tuning);
 
-/// How much further than the tolerance the residuals have to fall for the duality gap and the balance of
-/// forces to meet it, 1e-4 to 1. Where a body moves far and strains little, their work along the motion is
-/// large beside the stored energy; where little holds a body, their sum is large beside that.
+/// Returns the factor, 1e-4 to 1, by which residuals must be below the tolerance for the duality gap and the
+/// force balance to meet it. Work of residuals is large relative to stored energy for large motions with
+/// small strain; their sum is large relative to the support forces of weakly supported bodies.
 double gap_share(const Certificate& certificate);
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Penalty and multipliers of the method of multipliers, from one of its rounds to the next.
+// Penalty and multiplier updates of the method of multipliers.
 #include "nonlinear/augmented_control.hpp"
 
 #include <Eigen/Dense>
@@ -21,7 +21,7 @@ Vector difference(const Vector& a, const Vector& b) {
   return d;
 }
 
-/// Σ M a·b of this rank's own points.
+/// Returns Σ M a·b over this rank's own points.
 double product(const Traces& traces, const Vector& a, const Vector& b) {
   const std::size_t n = traces.size();
   double sum = 0.0;
@@ -31,7 +31,8 @@ double product(const Traces& traces, const Vector& a, const Vector& b) {
   return sum;
 }
 
-/// Pressures that are none, and friction beyond what they allow, are cut; bounds go with the pressure.
+/// Stores multipliers in the state: clips negative pressures, and friction beyond the bounds of these
+/// pressures.
 void put(const Traces& traces, const Vector& all, ContactState& state) {
   const std::size_t n = traces.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -61,7 +62,7 @@ void AugmentedControl::advance(const Traces& traces, ContactState& state) {
     const double size = traces.ranks().sum_all(product(traces, now.rest, now.rest));
     if (rounds_ > 1) {
       changes_.push_front({difference(now.rest, last_.rest), difference(now.image, last_.image)});
-      // A map that has changed this much is another one: other points touch or slip.
+      // After such a change the map itself has changed: other points touch or slip.
       if (size > 4.0 * last_size_) changes_.clear();
       if (changes_.size() > static_cast<std::size_t>(tuning_.augmented_memory)) changes_.pop_back();
     }
@@ -88,10 +89,10 @@ Vector AugmentedControl::mixed(const Traces& traces, const Round& now) const {
     sums.push_back(product(traces, a.rest, now.rest));
   }
   traces.ranks().sum_all(sums);
-  const Eigen::Map<const Eigen::MatrixXd> all(sums.data(), m + 1, m);  // a column for each change
+  const Eigen::Map<const Eigen::MatrixXd> all(sums.data(), m + 1, m);  // one column per difference
   const Eigen::VectorXd scale = all.topRows(m).diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   Eigen::MatrixXd gram = scale.asDiagonal() * all.topRows(m) * scale.asDiagonal();
-  gram.diagonal().array() += 1e-10;  // changes that say the same
+  gram.diagonal().array() += 1e-10;  // regularises linearly dependent differences
   const Eigen::VectorXd right = scale.cwiseProduct(all.row(m).transpose());
   const Eigen::VectorXd share = scale.cwiseProduct(gram.ldlt().solve(right));
   for (Eigen::Index k = 0; k < m; ++k)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Penalty and multipliers of the method of multipliers, from one of its rounds to the next.
+// Penalty and multiplier updates of the method of multipliers.
 #pragma once
 
 #include <algorithm>
@@ -11,26 +11,25 @@
 
 namespace kacanov {
 
-/// The penalty follows what rounds take: a stiff one leaves few rounds, a soft one few Newton steps in each.
-/// A round maps multipliers, with the bounds that their pressure gives, to others; Anderson's acceleration
-/// finds the fixed point of that map, Coulomb's included, also where the map itself does not contract
-/// (theory: augmented-newton).
+/// The penalty adapts to the cost of rounds: a large one needs few rounds, a small one few Newton steps per
+/// round. Anderson acceleration finds the fixed point of the map from the multipliers and bounds of one round
+/// to the next, Coulomb's included, even if it is no contraction (theory: augmented-newton).
 class AugmentedControl {
  public:
   explicit AugmentedControl(const Tuning& tuning) : tuning_(tuning) {}
 
-  /// For rounds from another state: `penalty` is that of ADMM; 0 where there is no contact.
+  /// Starts rounds from another state; `penalty` is that of ADMM, 0 without contact.
   void begin(double penalty, double lambda_min);
   bool begun() const noexcept { return penalty_ > 0.0; }
   double penalty() const noexcept { return penalty_; }
-  /// Puts the multipliers and bounds of the next round into the state, whose multipliers are what the last
-  /// one came to. Collective.
+  /// Sets the multipliers and bounds of the next round in the state, whose multipliers are the result of the
+  /// last round. Collective.
   void advance(const Traces& traces, ContactState& state);
-  /// Newton steps that the last round took.
+  /// Adapts the penalty to the number of Newton steps in the last round.
   void learn(int iterations);
 
-  /// Entries of a checkpoint: numbers, and multipliers as rounds have them, first the normal ones of all
-  /// points, then the tangential ones.
+  /// Visits the entries of a checkpoint: numbers, and multiplier vectors with the normal values of all points
+  /// before the tangential ones.
   template <class Numbers, class Multipliers>
   void visit(const Numbers& number, const Multipliers& multipliers) {
     number("augmented_penalty", penalty_);
@@ -55,16 +54,16 @@ class AugmentedControl {
  private:
   Tuning tuning_;
   double penalty_ = 0.0, most_ = 0.0;
-  /// What a round has made of its multipliers: the image of the map, and what that is off by.
+  /// Image of the multipliers under a round, and the residual: image minus start.
   struct Round {
     Vector rest, image;
   };
-  int rounds_ = 0;             ///< begun; the same on all ranks, of which some have no contact
-  Vector from_;                ///< multipliers that the last one began with
-  Round last_;                 ///< the one before
-  double last_size_ = 0.0;     ///< |rest|² of that
-  std::deque<Round> changes_;  ///< from round to round, the newest first
-  /// What the changes say about where nothing is off any more. Collective.
+  int rounds_ = 0;             ///< started; the same on all ranks, including those without contact
+  Vector from_;                ///< initial multipliers of the last round
+  Round last_;                 ///< the previous round
+  double last_size_ = 0.0;     ///< |rest|² of the previous round
+  std::deque<Round> changes_;  ///< differences between rounds, newest first
+  /// Returns the Anderson update: the combination of differences that minimises the residual. Collective.
   Vector mixed(const Traces& traces, const Round& now) const;
 };
 

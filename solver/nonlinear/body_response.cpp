@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Forces and energy of the body at a displacement, its secant or tangent.
+// Internal forces and energy of the body, and the frozen secant or tangent operator.
 #include "nonlinear/body_response.hpp"
 
 #include <malloc.h>
@@ -23,7 +23,7 @@ Vector lumped_volume(const Part& part) {
 }
 
 void refuse_beyond_floats(const Part& part, std::span<const float> diagonal) {
-  constexpr double most = 1e30, least = 1e-30;  // products of some eight digits more are to fit as well
+  constexpr double most = 1e30, least = 1e-30;  // leaves a margin of eight digits for products
   double stiffest = 0.0, softest = HUGE_VAL;
   for (const float d : diagonal) {
     stiffest = std::max(stiffest, static_cast<double>(d));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers, fields and the history of load steps of a checkpoint.
+// Reader for numbers, fields and load-step history of a checkpoint.
 #include "nonlinear/checkpoint_reader.hpp"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ void visit_load_step(LoadStep& step, Visitor&& entry) {
 CheckpointReader::CheckpointReader(const Part& part, const Checkpoint* from)
     : part_(part), from_(from), here_(part.node_map.rank == 0) {}
 
-/// `most`: of a count; 0: any number.
+/// `most`: limit of a count; 0: any number.
 double CheckpointReader::shared(const std::string& name, std::int64_t most) const {
   double number = 0.0;
   if (here_) number = most > 0 ? static_cast<double>(from_->count(name, most)) : from_->number(name);
@@ -63,7 +63,7 @@ std::vector<double> CheckpointReader::values(const std::string& name, std::size_
   return all;
 }
 
-/// On the first rank.
+/// Returns a field on the first rank after checking that all entries are finite.
 std::vector<double> CheckpointReader::finite(const std::string& name, std::size_t entries) const {
   if (!here_) return {};
   const std::vector<double>& field = from_->field(name, entries);

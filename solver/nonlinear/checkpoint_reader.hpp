@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers, fields and the history of load steps of a checkpoint.
+// Reader for numbers, fields and load-step history of a checkpoint.
 #pragma once
 
 #include <string>
@@ -12,16 +12,16 @@
 
 namespace kacanov {
 
-/// Hands what the first rank has in a checkpoint to all. What is missing there, or out of range, that rank
-/// throws as InputError. Members are collective.
+/// Distributes the first rank's checkpoint data to all ranks. Throws InputError on the first rank for entries
+/// that are missing or out of range. Members are collective.
 class CheckpointReader {
  public:
-  /// `from`: on the first rank.
+  /// `from`: the checkpoint on the first rank.
   CheckpointReader(const Part& part, const Checkpoint* from);
 
   template <class Value>
   void operator()(const std::string& name, Value& value) const {
-    // Counts beyond what the others hold could not be added to.
+    // The limit leaves room for further counting in the type.
     constexpr std::int64_t most = std::int64_t{1} << (sizeof(Value) == 4 ? 30 : sizeof(Value) == 1 ? 0 : 50);
     value = static_cast<Value>(shared(name, std::is_integral_v<Value> ? most : 0));
   }
@@ -31,17 +31,17 @@ class CheckpointReader {
     (*this)(name, value);
     return value;
   }
-  /// A whole number up to `most`.
+  /// Returns an integer from 0 to `most`.
   std::size_t length(const std::string& name, std::int64_t most) const;
-  /// A number within these bounds.
+  /// Returns a number within these bounds.
   double within(const std::string& name, double least, double most) const;
-  /// The same on all ranks.
+  /// Returns the same vector on all ranks.
   std::vector<double> values(const std::string& name, std::size_t entries) const;
-  /// This rank's entries; all are finite.
+  /// These return this rank's entries of a field, all finite.
   std::vector<double> contact(const std::string& name, int components) const;
   std::vector<double> nodal(const std::string& name) const;
   std::vector<double> elements(const std::string& name, int each) const;
-  /// `travels`: of pushed obstacles, per load step.
+  /// `travels`: number of pushed obstacles per load step.
   std::vector<LoadStep> load_steps(const std::string& name, std::size_t steps, std::size_t travels = 0) const;
 
  protected:
@@ -55,10 +55,10 @@ class CheckpointReader {
   bool here_;
 };
 
-/// The numbers of load steps in a row.
+/// Returns the numbers of load steps as one vector.
 std::vector<double> numbers_of(std::vector<LoadStep> steps);
 
-/// The counts of a result that go on after a restart.
+/// Visits the counts of a result that accumulate over a restart.
 template <class R, class Visitor>
 void visit_counts(R& result, Visitor&& entry) {
   entry("outer_iterations", result.outer_iterations);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The preconditioner of the systems with contact, and the schedule of its setups.
+// Preconditioner of linear systems with contact, and the schedule of its setups.
 #include "nonlinear/contact_preconditioner.hpp"
 
 #include <algorithm>
@@ -71,7 +71,7 @@ void ContactPreconditioner::prepare(const Penalty& penalty, bool first) {
 }
 
 void ContactPreconditioner::prepare(const ActiveSet& set, double digits) {
-  make_room(2 * sizeof(double) * part_->body().secant_count());  // g of now and then
+  make_room(2 * sizeof(double) * part_->body().secant_count());  // current and previous g
   const bool again = worn(digits);
   if (!again && !part_->node_map.any(schedule_.set_moved(set))) return;
   build(again, {PreconditionedRows::Kind::pinned, {}, set});
@@ -168,14 +168,14 @@ std::vector<NodeBlock> ContactPreconditioner::blocks_for(const PreconditionedRow
   return blocks;
 }
 
-/// As a checkpoint has it: a restart sets up with the same bits.
+/// Rounded as in a checkpoint, so that a restart sets up with the same bits.
 Vector ContactPreconditioner::single_precision_secant() const {
   Vector g = body_->secant();
   for (double& value : g) value = static_cast<double>(static_cast<float>(value));
   return g;
 }
 
-/// Collective.
+/// Returns g in single precision, or empty if it is the elastic one on all ranks. Collective.
 ContactPreconditioner::Secant ContactPreconditioner::kept(std::span<const double> g) const {
   if (body_->linear()) return {};
   const Vector elastic = full({});
@@ -229,7 +229,7 @@ ContactPreconditioner::Secant ContactPreconditioner::last_secant() const {
 }
 
 void ContactPreconditioner::repeat(Memory memory, const Secant& last) {
-  const bool to_come = memory.schedule.stale(0.0);  // whatever is done here, the next step sets it up
+  const bool to_come = memory.schedule.stale(0.0);  // the next step sets it up in any case
   if (memory.first && !(memory.first->empty() && body_->linear()))
     inner_->setup(full(*memory.first), {}, Space(*part_));
   memory_.first = memory.first;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The preconditioner of the systems with contact, and the schedule of its setups.
+// Preconditioner of linear systems with contact, and the schedule of its setups.
 #pragma once
 
 #include <cmath>
@@ -15,36 +15,35 @@
 
 namespace kacanov {
 
-/// What a preconditioner was set up for, how well it has served since, and whether another would pay. Knows
-/// nothing of the preconditioner itself; every question is about this rank.
+/// Records the state that a preconditioner was set up for and how well it works since, and decides whether a
+/// new setup pays off. Independent of the preconditioner itself; all decisions are local to this rank.
 class PreconditionerSchedule {
  public:
   explicit PreconditionerSchedule(const Tuning& tuning) : tuning_(tuning) {}
 
-  /// Whether it is due whatever else: there is none, or it has served its time, and what it would lose in so
-  /// many decimal digits more is worth a setup.
+  /// Whether a setup is due in any case: for lack of a first one, or because solving for this many more
+  /// decimal digits would lose more iterations than a setup costs.
   bool stale(double digits = HUGE_VAL) const noexcept {
     return stale_ || (lost_per_digit_ > 0.0 && lost_per_digit_ * digits > tuning_.setup_worth);
   }
   void mark_stale() noexcept { stale_ = true; }
-  /// Whether g is too far from that of the last setup: sums over all points of |g − g then| and of g then.
+  /// Whether g has changed too much since the last setup: sums over all points of |g − g then| and of g then.
   bool drifted(double change, double size) const noexcept { return change > tuning_.drift_worth * size; }
-  /// Whether it was built with penalties that are far from these.
+  /// Whether the last setup used penalties that differ too much from these.
   bool penalty_moved(const Penalty& now, bool friction) const;
-  /// Whether it holds other rows than the set, or none at all, or by another penalty (0: pins them), or
-  /// has a slip somewhere that is far stiffer or softer than now. Every node it gets wrong costs CG a few
-  /// iterations.
+  /// Whether the last setup used other rows than the set, no set at all, or another penalty (0: pinned rows),
+  /// or whether some slip stiffness has changed too much. Every wrong node costs CG a few iterations.
   bool set_moved(const ActiveSet& set, double penalty = 0.0) const;
 
-  /// It was set up with a new g.
+  /// Records that it was set up with a new g.
   void built();
   void built_for(const Penalty& penalty);
   void built_for(const ActiveSet& set, double penalty = 0.0);
-  /// Learns from a solve: decimal digits gained, CG iterations. The first one after a setup is what it can
-  /// do; one that needs more than that by what a setup is worth makes it stale.
+  /// Records the result of a solve: decimal digits gained, and CG iterations. The first solve after a setup
+  /// sets the reference; one that exceeds it by the cost of a setup marks the setup as stale.
   void watch(double digits, std::int64_t iterations);
 
-  /// Entries of a checkpoint; the set that it was built for is told by built_for().
+  /// Visits the entries of a checkpoint; built_for() restores the set.
   template <class Visitor>
   void visit(Visitor&& entry) {
     entry("setup_stale", stale_);
@@ -60,8 +59,8 @@ class PreconditionerSchedule {
 
   Tuning tuning_;
   bool stale_ = true;
-  double digits_per_cg_ = 0.0;  ///< right after the last setup; 0: not known
-  /// CG iterations that the last solve took beyond those, a digit; 0: not worth a setup.
+  double digits_per_cg_ = 0.0;  ///< right after the last setup; 0: unknown
+  /// CG iterations per digit of the last solve beyond that reference; 0: too few for a setup.
   double lost_per_digit_ = 0.0;
   Penalty penalty_;
   std::vector<TraceChoice> pinned_;
@@ -73,70 +72,75 @@ class PreconditionerSchedule {
 struct PreconditionedRows {
   enum class Kind { penalised_all, pinned, penalised };
   Kind kind = Kind::penalised_all;
-  /// Of all rows; where the rows of the set are penalised, theirs, and as `tangential` that of all.
+  /// Penalty of all rows; for `penalised`, normal is that of the set's rows and tangential that of all rows.
   Penalty penalty;
-  ActiveSet set;  ///< its held rows, slip stiffness and slip direction
+  ActiveSet set;  ///< only its held rows, slip stiffness and slip direction
 };
 
-/// For B + r CᵀMC of ADMM, or B with held rows pinned (theory: multigrid, pinning). Calls are collective.
+/// Preconditioner for B + r CᵀMC in ADMM, or B with held rows pinned (theory: multigrid, pinning). Calls are
+/// collective.
 class ContactPreconditioner {
  public:
-  /// `part` and `body` have to outlive it.
+  /// `part` and `body` must outlive it.
   ContactPreconditioner(const Part& part, const BodyResponse& body, std::unique_ptr<Preconditioner> inner,
                         const Tuning& tuning);
 
-  /// z ≈ A⁻¹ r with what it was set up for last.
+  /// z ≈ A⁻¹ r with the last setup.
   void apply(std::span<const double> r, std::span<double> z) { current().apply(r, z); }
 
-  /// With the g that is frozen in the body, whether it pays or not.
+  /// Sets up unconditionally with the frozen g of the body.
   void set_up(const Penalty& penalty);
-  /// Before an ADMM step, where it pays; `first`: the elastic one, for which g and penalties are what they
-  /// were.
+  /// Sets up before an ADMM step if it pays off; `first`: the elastic step, for which g and penalties are
+  /// unchanged.
   void prepare(const Penalty& penalty, bool first);
-  /// Before a semismooth Newton step with this set, where it pays; so many decimal digits are to be gained.
+  /// Sets up before a semismooth Newton step with this set if it pays off; `digits`: decimal digits still to
+  /// gain.
   void prepare(const ActiveSet& set, double digits);
-  /// Before a step that has penalties on the held rows of this set, where it pays; `loose` on all rows.
+  /// Sets up before a step with penalties on the set's held rows if it pays off; `loose`: penalty on all
+  /// rows.
   void prepare(const ActiveSet& set, double penalty, double loose);
-  /// Learns from a solve: decimal digits gained, CG iterations. One of very many ends in factorise().
+  /// Records the result of a solve: decimal digits gained, and CG iterations. A very large number triggers
+  /// factorise().
   void watch(double digits, std::int64_t iterations);
-  /// After a solve that has come to nothing: a factor takes over for good where the body is small enough
-  /// (theory: factorised). Whether it has, just now; it is still to be prepared.
+  /// After a failed solve: replaces the preconditioner for good by a sparse factor if the body is small
+  /// enough (theory: factorised). Returns whether it did so now; the factor is not set up yet.
   bool factorise();
   void mark_stale() noexcept { schedule_.mark_stale(); }
 
-  /// For what sets it up by itself, such as an estimate of the spectrum: it is stale then.
+  /// Returns the preconditioner to a caller that sets it up itself, such as a spectrum estimate; marks it as
+  /// stale.
   Preconditioner& lend();
-  /// As it stands.
+  /// Returns the preconditioner in its current state.
   Preconditioner& inner() noexcept { return *inner_; }
   double setup_seconds() const noexcept {
     return inner_->setup_seconds() + (factor_ ? factor_->setup_seconds() : 0.0);
   }
 
-  /// g of a setup, in single precision; of an elastic body empty.
+  /// g of a setup, in single precision; empty for an elastic body.
   using Secant = std::vector<float>;
-  /// The inputs of its setups, but for the g of the last one.
+  /// The inputs of its setups, except the g of the last one.
   struct Memory {
     PreconditionerSchedule schedule;
     /// Of the last setup with g, and of every change since.
     std::vector<std::shared_ptr<const PreconditionedRows>> rows;
-    std::shared_ptr<const Secant> first;  ///< the g that aggregates or grids are made of; null: none are
+    std::shared_ptr<const Secant> first;  ///< the g from which aggregates or grids were built; null: none yet
     bool factorised = false;
   };
-  /// Of now. roll_back() to it is possible until the next call.
+  /// Returns the current memory; roll_back() to it is possible until the next call.
   Memory memory();
-  /// Describes what it was; it is of no other use from then on.
+  /// Restores the description in `memory`; afterwards only describe() and last_secant() may be used.
   void roll_back(const Memory& memory);
-  /// For a checkpoint: memory() without leave to roll back, and the g of the last setup.
+  /// For a checkpoint: memory() without enabling roll_back(), and the g of the last setup.
   Memory describe() const;
   Secant last_secant() const;
-  /// Becomes what another one was that is described by these, on as many ranks to the bit. Before any other
-  /// call. Collective.
+  /// Reproduces the setups of the preconditioner that these describe, bit for bit on the same number of
+  /// ranks. Call it before any other member. Collective.
   void repeat(Memory memory, const Secant& last);
 
  private:
-  /// Whether the g of now, or how often rows have changed, pays for a new setup.
+  /// Whether the current g, or the number of row changes, justifies a new setup.
   bool worn(double digits = HUGE_VAL) const;
-  /// With the g of now if that of the last setup is worn, else with that.
+  /// Sets up with the current g if the last one is worn, else with that of the last setup.
   void build(bool worn, PreconditionedRows rows);
   void set_up_with(std::span<const double> g, const PreconditionedRows& rows);
   void change_to(const PreconditionedRows& rows);
@@ -151,16 +155,16 @@ class ContactPreconditioner {
   const Part* part_;
   const BodyResponse* body_;
   std::unique_ptr<Preconditioner> inner_;
-  std::unique_ptr<Preconditioner> factor_;  ///< in its place, once that has failed
+  std::unique_ptr<Preconditioner> factor_;  ///< replaces `inner_` after that has failed
   Tuning tuning_;
-  Memory memory_;  ///< but for its schedule and `factorised`
+  Memory memory_;  ///< except its schedule and `factorised`
   static constexpr int made_elsewhere = -1;
-  int kind_ = 0;  ///< of `inner_`, when `first` was taken
+  int kind_ = 0;  ///< kind() of `inner_` when `first` was taken
   PreconditionerSchedule schedule_;
   bool friction_;
   bool may_roll_back_ = false, had_factor_ = false;
-  std::optional<Secant> replaced_;  ///< the last g at the time of memory(),
-                                    ///< where there is another now
+  /// G of the last setup at the time of memory(), if another one has replaced it.
+  std::optional<Secant> replaced_;
 };
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What of a state keeps it from converging, in words.
+// Explains why a run did not converge.
 #include "nonlinear/convergence_diagnosis.hpp"
 
 #include "mesh/plain_stream.hpp"
@@ -9,7 +9,7 @@
 namespace kacanov {
 namespace {
 
-/// Changes in the window that are no way to a solution.
+/// Number of changes within the window that counts as oscillation.
 constexpr int to_and_fro = 4;
 
 const char* largest_residual(const Certificate& c) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What of a state keeps it from converging, in words.
+// Explains why a run did not converge.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace kacanov {
 
-/// The contact node that goes to and fro most, its place and how many others do; empty where none does.
-/// `length`: the unit of the part's coordinates. Collective.
+/// Describes the contact node that oscillates most, its position, and the number of other oscillating nodes;
+/// empty if there are none. `length`: unit of the part's coordinates. Collective.
 std::string who_cycles(const Part& part, const ContactChanges& changes, double length);
 
-/// Who cycles, or that nobody does and which residual is left; what to try. From where the loop stands and
-/// the steps that brought it there. Collective.
+/// Describes oscillating contact nodes, or else the largest residual, and suggests a remedy, from the loop's
+/// state and its last steps. Collective.
 std::string diagnose_convergence(const OuterLoop& loop);
 
 }  // namespace kacanov

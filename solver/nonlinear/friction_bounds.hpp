@@ -6,14 +6,14 @@
 
 namespace kacanov {
 
-/// Whether some point of some rank may slide with friction. Collective.
+/// Whether any point on any rank has friction. Collective.
 bool has_friction(const Part& part);
 
-/// Whether slip of some point of some rank is counted from the load step before. Collective.
+/// Whether any point on any rank measures slip from the previous load step. Collective.
 bool has_slip_history(const Part& part);
 
-/// ψ = Tresca's bound + μ_f λ_n for all points of this rank (theory: coulomb). Returns the largest change of
-/// `bound` over all ranks, relative to the largest pressure; 0 without pressure. Collective.
+/// Sets ψ = Tresca bound + μ_f λ_n for all points of this rank (theory: coulomb). Returns the largest change
+/// of `bound` over all ranks, relative to the largest pressure; 0 without pressure. Collective.
 double follow_pressure(const Part& part, const Vector& pressure, Vector& bound);
 
 }  // namespace kacanov

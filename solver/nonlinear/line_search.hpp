@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far to go along a direction that lowers a convex function.
+// Line search along a descent direction of a convex function.
 #pragma once
 
 #include <algorithm>
@@ -8,16 +8,15 @@
 namespace kacanov {
 
 struct LineSearchOptions {
-  double steep = 0.5;  ///< share of the first slope that may be left falling ...
-  double past = 0.2;   ///< ... or rising, past the lowest point
+  double steep = 0.5;  ///< accepted remaining share of the initial slope while falling ...
+  double past = 0.2;   ///< ... or rising, beyond the minimum
   int most_trials = 20;
-  double longest = 1.0;  ///< where φ falls as steeply as that at 1, go on up to here
+  double longest = 1.0;  ///< extends the step up to this length while φ falls as steeply as at 1
 };
 
-/// t in (0, longest] where φ falls or rises by little, for convex φ with φ'(0) = `first` < 0: the longest
-/// where φ falls there. `slope(t)` gives φ'(t), and leaves its caller at t; the last t asked about is
-/// returned. Regula falsi (Illinois), so that slopes that grow by orders of magnitude along the way are found
-/// as well.
+/// Returns t in (0, longest] at which the convex φ, with φ'(0) = `first` < 0, has a small slope, or `longest`
+/// if it still falls there. `slope(t)` returns φ'(t) and moves the caller's state to t; the last t evaluated
+/// is returned. Regula falsi (Illinois) copes with slopes that grow by orders of magnitude.
 template <class Slope>
 double find_step(double first, const Slope& slope, const LineSearchOptions& options = {}) {
   double low = 0.0, high = 0.0, low_slope = first, high_slope = 0.0, t = 1.0;
@@ -35,7 +34,7 @@ double find_step(double first, const Slope& slope, const LineSearchOptions& opti
       continue;
     }
     if (falls) {
-      // Illinois: a side that stays twice counts half.
+      // Illinois rule: halve the slope of an end that is kept a second time.
       if (low > 0.0 && high > 0.0) high_slope *= 0.5;
       low = t;
       low_slope = here;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From one share of the load to the next, and the history of what each came to.
+// Runs the load steps, and records their history.
 #include "nonlinear/load_steps.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace kacanov {
 namespace {
 
-/// The line in the middle of a run.
+/// Returns the history line of a load step in the middle of a run.
 LoadStep line_now(const OuterLoop& loop, double share, const Result& result) {
   const StepContext& context = loop.context();
   Solution now;
@@ -28,12 +28,12 @@ LoadStep line_now(const OuterLoop& loop, double share, const Result& result) {
   return line;
 }
 
-/// Largest displacement over the body, of a state at a share of the load, for a whole one.
+/// Returns the largest displacement of a state, divided by its share of the load.
 double stretched(const OuterLoop& loop, const OuterLoop::Place& place) {
   return loop.context().space.max_abs(place.state.u) / place.share;
 }
 
-/// What it means that nothing beyond `last` converges; `failed`: where the last attempt has left off.
+/// Explains why nothing beyond `last` converges; `failed`: end of the last attempt.
 std::string explain_stop(const OuterLoop& loop, const OuterLoop::Place& last, double target,
                          const OuterLoop::Place& failed, const std::string& why) {
   PlainText text;
@@ -55,7 +55,7 @@ std::string explain_stop(const OuterLoop& loop, const OuterLoop::Place& last, do
   return text.str();
 }
 
-/// Whether the next load step has something to start from.
+/// Whether the state is good enough to start the next load step from.
 bool worth_going_on(const OuterLoop& loop, const Result& result) {
   if (!result.message.empty()) return false;
   const SolverOptions& options = loop.context().options;
@@ -63,7 +63,7 @@ bool worth_going_on(const OuterLoop& loop, const Result& result) {
          loop.context().certify().certificate.exhausted(options.tolerance);
 }
 
-/// Runs where the loop stands, and says whether it has arrived.
+/// Runs the loop at its current load; returns whether it has converged there.
 bool arrives(OuterLoop& loop, bool& finished, Result& result) {
   finished = loop.run(result);
   const bool arrived = finished && result.message.empty() &&
@@ -72,14 +72,14 @@ bool arrives(OuterLoop& loop, bool& finished, Result& result) {
   return arrived;
 }
 
-/// Why it has not.
+/// Explains why it did not converge.
 std::string reason(const OuterLoop& loop, const Result& result) {
   return result.message.empty() ? diagnose_convergence(loop) : result.message;
 }
 
-/// Brings the loop, which stands at `target`, there; where it gives up, from loop.parts.start in parts: each
-/// is halved until it converges, and from the second that does what follows is twice as long. Continues a
-/// part that a restart has left. False: the run was asked to stop.
+/// Brings the loop, already set to `target`, to convergence; if it gives up, in parts from loop.parts.start:
+/// a part is halved until it converges, and doubled after the second convergence in a row. Continues a part
+/// after a restart. Returns false if the run was asked to stop.
 bool reach(OuterLoop& loop, double target, Result& result) {
   OuterLoop::StepParts& parts = loop.parts;
   bool finished = true, under_way = parts.cut;
@@ -109,7 +109,7 @@ bool reach(OuterLoop& loop, double target, Result& result) {
     while (parts.over < 1.0) {
       if (!under_way) {
         parts.next = std::min(parts.over + parts.part, 1.0);
-        parts.part = parts.next - parts.over;  // what fails is halved, not what it was meant to be
+        parts.part = parts.next - parts.over;  // the actual length, so that halving takes effect
         loop.go_from(parts.last, parts.next == 1.0 ? target : from + parts.next * (target - from), result);
       }
       under_way = false;
@@ -118,7 +118,7 @@ bool reach(OuterLoop& loop, double target, Result& result) {
       if (!arrived) break;
       parts.over = parts.next;
       parts.last = loop.place();
-      if (parts.again) parts.part *= 2.0;  // what has just been halved would fail once more
+      if (parts.again) parts.part *= 2.0;  // a length that was just halved would fail again if doubled
       parts.again = true;
     }
     if (parts.over == 1.0) break;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From one share of the load to the next, and the history of what each came to.
+// Runs the load steps, and records their history.
 #pragma once
 
 #include <functional>
@@ -10,24 +10,24 @@
 
 namespace kacanov {
 
-/// What a path asks of whom it is for; any may be empty.
+/// Callbacks of a load path; any may be empty.
 struct LoadStepCalls {
-  std::function<void(std::size_t)> begins = {};  ///< with the number of each step, from 0
-  std::function<void()> over = {};               ///< once a step but the last is over
-  std::function<Start(std::size_t)> coarse =
-      {};  ///< what a coarser mesh says at its end, in the loop's units
+  std::function<void(std::size_t)> begins = {};  ///< at the start of each step, with its number from 0
+  std::function<void()> over = {};               ///< at the end of each step but the last
+  /// Returns a coarser mesh's state at the end of a load step, in the loop's units.
+  std::function<Start(std::size_t)> coarse = {};
 };
 
-/// Runs the loop at the shares that result.load_steps does not have yet, each from the end of the one before,
-/// as long as each converges; adds the line of every share but the one it ends with. False: the run was asked
-/// to stop. Collective.
+/// Runs the loop at the shares that result.load_steps does not contain yet, each from the end of the previous
+/// one, as long as each converges; appends a line for every share but the last one reached. Returns false if
+/// the run was asked to stop. Collective.
 bool run_load_steps(OuterLoop& loop, std::span<const double> shares, Result& result,
                     const LoadStepCalls& calls);
 
-/// "load step 2 of 4 (factor 0.5)"; `number` from 0.
+/// Returns "load step 2 of 4 (factor 0.5)"; `number` counts from 0.
 std::string load_step_name(std::size_t number, std::size_t of, bool by_time, double at);
 
-/// The line of the history for a share whose totals `result` has, with the lines of those before.
+/// Returns the history line of a share from the totals in `result`, relative to the lines before.
 LoadStep load_step_line(const Result& result, double share);
 
 }  // namespace kacanov

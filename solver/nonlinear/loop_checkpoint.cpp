@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The outer loop's state on its way into a checkpoint and out of it.
+// Saves the state of the outer loop to a checkpoint and restores it.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -14,8 +14,8 @@
 namespace kacanov {
 namespace {
 
-/// Changes the entries that are in the user's units. Others are in the loop's, which follow from the problem;
-/// the history of load steps is in the user's as it is.
+/// Scales the entries stored in the user's units. The others are in the loop's units, which follow from the
+/// problem; the load-step history is already in the user's units.
 void scale(Checkpoint& checkpoint, const UnitSystem& factors) {
   const std::pair<const char*, double> numbers[] = {
       {"r_star", factors.penalty()},           {"r_active", factors.penalty()},
@@ -42,7 +42,7 @@ bool same(const ContactState& a, const ContactState& b) {
          a.phi.normal == b.phi.normal && a.phi.tangential == b.phi.tangential && a.bound == b.bound;
 }
 
-/// Multipliers of all points as AugmentedControl has them: the normal ones, then the tangential ones.
+/// Splits the vector of multipliers of AugmentedControl: normal values first, then tangential ones.
 ContactValues parted(const Vector& joined) {
   ContactValues values(joined.size() / 3);
   const auto middle = joined.begin() + static_cast<std::ptrdiff_t>(values.normal.size());
@@ -51,10 +51,10 @@ ContactValues parted(const Vector& joined) {
   return values;
 }
 
-/// Held rows take two bits per setup, and a number holds 53.
+/// Held rows take two bits per setup, and a double holds 53 bits exactly.
 constexpr std::size_t setups_in_a_number = 26;
 
-/// Puts what a rank has into a checkpoint on the first one. Collective.
+/// Collects the data of all ranks in a checkpoint on the first rank. Collective.
 class CheckpointWriter {
  public:
   CheckpointWriter(const Part& part, Checkpoint& out) : part_(part), out_(out) {}
@@ -90,7 +90,7 @@ class CheckpointWriter {
     if (!elastic) out_.fields[name] = gather_elements(part_, Vector(g.begin(), g.end()), each());
   }
   void preconditioner(ContactPreconditioner::Memory memory, const ContactPreconditioner::Secant& last) const {
-    // Where a setup is due the one before has no part in it.
+    // If a setup is due, the previous one is irrelevant.
     const bool due = memory.schedule.stale(0.0);
     if (due) memory.rows.clear();
     memory.schedule.visit(*this);
@@ -131,7 +131,7 @@ class CheckpointWriter {
   Checkpoint& out_;
 };
 
-/// The converse.
+/// Reads the loop's state from a checkpoint.
 class LoopReader : public CheckpointReader {
  public:
   using CheckpointReader::CheckpointReader;
@@ -145,7 +145,7 @@ class LoopReader : public CheckpointReader {
     state.phi.tangential = contact(prefix + "phi_tangential", 2);
     state.bound = contact(prefix + "bound", 1);
   }
-  /// `rest`: the place at rest, with its gaps and origins.
+  /// `rest`: the place at rest, with its gaps and slip origins.
   OuterLoop::Place place(const std::string& name, OuterLoop::Place rest) const {
     rest.share = within(name + "_share", 0.0, largest_share);
     (*this)(name + "_at_rest", rest.at_rest);
@@ -163,7 +163,7 @@ class LoopReader : public CheckpointReader {
     const Vector g = elements(name, each);
     return {g.begin(), g.end()};
   }
-  /// Of a schedule that is the memory's but for its numbers.
+  /// Reads the preconditioner's memory; the caller has constructed its schedule.
   void preconditioner(ContactPreconditioner::Memory& memory, ContactPreconditioner::Secant& last) const {
     memory.schedule.visit(*this);
     (*this)("setup_factorised", memory.factorised);
@@ -180,7 +180,7 @@ class LoopReader : public CheckpointReader {
   }
 
  private:
-  /// `held`: takes the bits of these rows off.
+  /// Reads the rows of one setup and removes their two bits from each entry of `held`.
   PreconditionedRows rows(const std::string& number, Vector& held) const {
     PreconditionedRows out;
     const std::size_t kind = length("setup_kind_" + number, 2);
@@ -307,7 +307,7 @@ void OuterLoop::restore(const Checkpoint* users, Result& result) {
   restore_penalty(get.number<double>("penalty_rule"),
                   {get.number<double>("penalty_normal"), get.number<double>("penalty_tangential")}, result);
   result.restarted_after = result.outer_iterations;
-  first_outer_ = result.outer_iterations;  // who asks for a restart asks for more steps
+  first_outer_ = result.outer_iterations;  // a restart allows max_outer further steps
   std::size_t steps = 0;
   get("load_steps_over", steps);
   result.load_steps = get.load_steps("load_steps", steps);
@@ -354,7 +354,7 @@ void OuterLoop::restore(const Checkpoint* users, Result& result) {
   resumes_ = true;
 }
 
-/// A penalty of another rule, or another one of the user, replaces that of the checkpoint.
+/// If the user has selected another rule or value, it replaces the penalty of the checkpoint.
 void OuterLoop::restore_penalty(double rule, Penalty penalty, const Result& result) {
   const bool by_user = options_.penalty == SolverOptions::Penalty::fixed;
   if (rule != static_cast<double>(options_.penalty) || (by_user && penalty.normal != options_.r))
@@ -362,7 +362,7 @@ void OuterLoop::restore_penalty(double rule, Penalty penalty, const Result& resu
   control_.penalty.restore(penalty, result.lambda_min);
 }
 
-/// The load is that of the part of the load step under way.
+/// Sets the load of the current part of the load step.
 void OuterLoop::stand_in_parts() {
   const double from = step_begin(), whole = context_.path.share();
   context_.path.go_to(parts.next == 1.0 ? whole : from + parts.next * (whole - from));

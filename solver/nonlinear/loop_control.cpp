@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What decides how the outer loop goes on: the linearisation, the penalty, the fallback.
+// Controls of the outer loop: linearisation, penalty, fallback.
 #include "nonlinear/loop_control.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ bool Fallback::after_newton(double worst, bool solved) {
   stalled_ = worst < tuning_.progress * best_ ? 0 : stalled_ + 1;
   best_ = std::min(best_, worst);
   if (solved && stalled_ < tuning_.patience && std::isfinite(worst)) return false;
-  // ADMM converges from anywhere; every retreat is longer than the last.
+  // The method of multipliers converges from any state; every retreat is longer than the last.
   stalled_ = 0;
   aim_ = std::isfinite(best_) ? tuning_.retreat_gain * best_ : 0.0;
   best_ = HUGE_VAL;
@@ -34,8 +34,8 @@ bool Fallback::after_newton(double worst, bool solved) {
 }
 
 double first_penalty(double lambda_min, std::int64_t nodes, int dim, const Tuning& tuning) {
-  // λ_max(K_I|A), the compliance of the part that lifts off, is to λ_min as its size to the mesh width: r_A
-  // goes with 1/λ_min and the root of that.
+  // λ_max(K_I|A), the compliance of the part that lifts off, relates to λ_min as its size to the mesh width;
+  // so r_A scales as 1/λ_min times the root of the relative mesh width.
   const double width = std::pow(static_cast<double>(nodes), -1.0 / (dim - 1));
   return lambda_min > 0.0 ? tuning.first_penalty * std::sqrt(width) / lambda_min : 1.0;
 }
@@ -63,7 +63,7 @@ void PenaltyControl::restore(const Penalty& value, double lambda_min) {
 bool PenaltyControl::balance(std::span<const BalanceSample> samples, const Scales& scales) {
   if (!moves()) return false;
   const double largest = tuning_.largest_penalty / lambda_min_;
-  // A step of few iterations says little.
+  // A step with few iterations is weak evidence.
   const double trust = std::min(1.0, static_cast<double>(samples.size()) / tuning_.trusted_iterations);
   const auto balanced = [&](double r, double behind) {
     const double factor = std::exp(std::clamp(0.5 * trust * behind, -1.0, 1.0));
@@ -91,8 +91,8 @@ void Linearisation::after_tangent(double before, double after, double length) {
 }
 
 std::optional<double> shorter_step(double t, double work, double curvature) {
-  // Along δ the energy of the linear model falls with slope −q (1 − t). A step is too long where the true
-  // force has grown past half of q more than the model says (unloading is stiffer than the tangent).
+  // Along δ the energy of the linear model has the slope −q (1 − t). A step is too long if the true force
+  // exceeds the model's by more than half of q (unloading is stiffer than the tangent).
   if (!std::isfinite(work)) return t * 0.1;
   if (work <= 1.5 * curvature) return std::nullopt;
   return t * std::clamp(curvature / work, 0.1, 0.7);

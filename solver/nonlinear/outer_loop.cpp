@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The outer loop: Kacanov's or Newton's method round a contact step, until the KKT residuals are small.
+// The outer loop: Kačanov's or Newton's method around a contact step, until the KKT residuals are small.
 #include "nonlinear/outer_loop.hpp"
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace kacanov {
 namespace {
 
-/// What penalties begin with where nobody names one.
+/// Returns the initial penalty if the user has set none.
 double own_first_penalty(const StepContext& context) {
   const Part& part = context.part;
   if (part.total_contact == 0) return 0.0;
@@ -25,7 +25,7 @@ double own_first_penalty(const StepContext& context) {
                        context.tuning);
 }
 
-/// The largest displacement that is prescribed, or that loose pieces begin with.
+/// Returns the largest displacement that is prescribed or used as start of loose pieces.
 double imposed(const Part& part) {
   double largest = 0.0;
   for (const auto& entry : part.prescribed) largest = std::max(largest, std::abs(entry.value));
@@ -34,11 +34,11 @@ double imposed(const Part& part) {
   return part.node_map.max_all(largest);
 }
 
-/// Without held rows, by the preconditioner as it stands.
+/// Returns λ_max without held rows, with the preconditioner in its current state.
 double rough_largest(StepContext& context) {
   const Part& part = context.part;
   const std::size_t points = part.contact.size();
-  // Friction has softer modes than a pressure makes: 1.15 (2D) and 1.3 times as soft on beams.
+  // Friction has modes 1.15 (2D) and 1.3 times softer, on beams, than those of pressure.
   constexpr double with_friction = 1.2;
   return (has_friction(part) ? with_friction : 1.0) *
          rough_lambda_max(part, context.body.op(), context.preconditioner.inner(),
@@ -81,8 +81,8 @@ void OuterLoop::take_load() {
   state.evaluate(context_.traces);
   for (std::size_t i = 0; i < state.gap.size(); ++i)
     state.phi.normal[i] = std::min(state.trace.normal[i], state.gap[i]);
-  // Points that an obstacle has gone past do not stick to it before they have touched: a step that did so
-  // would leave noise where nothing acts.
+  // Points that an obstacle has passed do not stick before they have touched: such a step would leave noise
+  // where nothing acts.
   if (opening_ && !context_.part.slip_origin.empty()) state.phi.tangential = state.trace.tangential;
   follow_pressure(context_.part, state.lambda.normal, state.bound);
 }
@@ -96,7 +96,7 @@ double OuterLoop::step_begin() const {
 OuterLoop::Place OuterLoop::rest() const {
   Place place{context_.state, step_begin(), true};
   put_to_rest(context_.part, place.state);
-  // After a restart that is where the step before has ended, which the part does not have.
+  // After a restart the origin is the end of the previous load step, which the part does not store.
   place.state.origin = context_.state.origin;
   return place;
 }
@@ -223,7 +223,7 @@ void OuterLoop::iterate(Result& result) {
       done = context_.body.linear() ||
              context_.space.norm(previous) <= options_.tolerance * context_.space.norm(state.u);
     } else {
-      // Far beyond the body's size reactions outweigh the loads, and anything is in balance beside them.
+      // Far beyond the body's size reactions exceed the loads, and relative residuals become meaningless.
       done = residuals.certificate.exhausted(options_.tolerance) && !ran_away(residuals);
       if (!done) residuals = learn(step, newton, before, residuals, result.lambda_min);
       gave_up_ = !done && may_newton && control_.fallback.stuck();
@@ -252,7 +252,7 @@ StepOutcome OuterLoop::take_step(bool newton, const Residuals& before, Result& r
 
 void OuterLoop::move_penalty(const StepOutcome& step, const Residuals& before, const Residuals& after,
                              Result& result) {
-  // Before the first step no displacement sets a scale.
+  // Before the first step there is no displacement scale.
   const bool first = opening_;
   const bool moved = step.arrived
                          ? control_.penalty.go_back_to_first()
@@ -265,7 +265,7 @@ Residuals OuterLoop::learn(const StepOutcome& step, bool newton, const Residuals
   const double worst = after.certificate.worst();
   keep_best(after, newton);
   if (!newton) {
-    // As after a Newton step that was not solved: the preconditioner is the first suspect.
+    // As after an unsolved Newton step, the preconditioner is the likely cause.
     if (!step.solved) context_.preconditioner.mark_stale();
     control_.fallback.after_admm(worst, step.solved);
     return after;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The outer loop: Kacanov's or Newton's method round a contact step, until the KKT residuals are small.
+// The outer loop: Kačanov's or Newton's method around a contact step, until the KKT residuals are small.
 #pragma once
 
 #include <optional>
@@ -14,77 +14,76 @@
 
 namespace kacanov {
 
-/// Solves at one share of the load after the other (theory: kacanov, newton). Everything is collective.
+/// Solves at successive shares of the load (theory: kacanov, newton). All members are collective.
 class OuterLoop {
  public:
-  /// At rest under `share` of the load. What is passed has to outlive the loop.
+  /// Starts at rest under `share` of the load. All arguments must outlive the loop.
   OuterLoop(const Part& part, const SolverOptions& options, const RunOptions& run, double share = 1.0,
             const Tuning& tuning = {});
 
-  /// The part's, where they are not the user's: what the loop hands out is in the user's. Before run() and
-  /// restore().
+  /// Sets the part's units if they are not the user's: the loop reports in the user's units. Call it before
+  /// run() and restore().
   void work_in(const UnitSystem& units) {
     extent_ *= units_.strain() / units.strain();
     units_ = units;
   }
   const UnitSystem& units() const noexcept { return units_; }
 
-  /// Runs until the KKT residuals meet the tolerance, or max_outer steps. Fills the loop's entries of the
-  /// result. Where the run is to stop, state and result are those after the last whole outer step, and false
-  /// is returned.
+  /// Runs until the KKT residuals meet the tolerance, or for max_outer steps. Fills the loop's entries of the
+  /// result. On a stop request returns false, with state and result after the last completed outer step.
   bool run(Result& result);
-  /// A state that the loop can start from. `at_rest`: u = 0, which is not in balance.
+  /// A state from which the loop can start. `at_rest`: u = 0, not in equilibrium.
   struct Place {
     ContactState state;
     double share = 0.0;
     bool at_rest = false;
   };
   Place place() const { return {context_.state, context_.path.share()}; }
-  /// Rest, where the load step begins; slip keeps its origin.
+  /// Returns the state of rest at the start of the load step; slip keeps its origin.
   Place rest() const;
-  /// The share of the load at which the load step under way begins.
+  /// Returns the share of the load at which the current load step begins.
   double step_begin() const;
-  /// Where the next load step begins: here, with its slip counted from here.
+  /// Returns the start of the next load step: the current state, with slip measured from it.
   Place next_start() const;
-  /// Another share of the load: starts from the same multiple of that state (theory: load-path), or, with
-  /// load curves or a slip history, from that state itself.
+  /// Moves to another share of the load: starts from `place` scaled in proportion (theory: load-path), or
+  /// unscaled with load curves or a slip history.
   void go_from(const Place& place, double share, const Result& result);
-  /// Just that state, at its share of the load.
+  /// Restores the state of `place` at its share of the load.
   void stand_at(const Place& place, const Result& result);
-  /// Whether the last run() ended because more steps promise nothing, and not for their number.
+  /// Whether the last run() stopped for lack of progress, not because of its number of steps.
   bool gave_up() const noexcept { return gave_up_; }
-  /// Whether the body has left for good, as one that its supports or its material do not hold.
+  /// Whether the body has moved away because supports or material do not hold it.
   bool ran_away() const { return ran_away(certify()); }
 
-  /// Starts from what a coarser mesh says (theory: nested). Penalties begin as from rest.
+  /// Starts from the solution of a coarser mesh (theory: nested). Penalties begin as from rest.
   void adopt(const Start& start);
-  /// Another share of the load: goes on from that place, its slip counted as there, with the state that a
-  /// coarser mesh has at that share.
+  /// Moves to another share of the load with the coarser mesh's state at that share; slip is measured as in
+  /// `place`.
   void go_along(const Place& place, double share, const Start& start, const Result& result);
-  /// Goes on from a checkpoint, which rank 0 has.
+  /// Continues from a checkpoint, which rank 0 has.
   void restore(const Checkpoint* from, Result& result);
-  /// What restore() needs, on rank 0.
+  /// Returns on rank 0 the checkpoint for restore().
   Checkpoint checkpoint(const Result& result) const;
 
-  /// How far a load step has come that may have to be taken in parts; whoever moves the load keeps it, and a
-  /// checkpoint has it.
+  /// Progress of a load step that may be cut into parts; maintained by the load-step driver and saved in
+  /// checkpoints.
   struct StepParts {
-    std::optional<Place> start = {};  ///< of the load step; none: rest
-    bool cut = false;                 ///< into parts: the rest has a meaning
-    Place last;                       ///< the end of the last part that has converged
-    Place whole;                      ///< where the attempt at the whole step has left off
-    double over = 0.0, part = 0.5;    ///< of the way from `start`: what lies behind, the part under way
-    double next = 0.5;                ///< the end of that
-    bool again = false;               ///< a part of this length has converged before
+    std::optional<Place> start = {};  ///< of the load step; empty: rest
+    bool cut = false;  ///< whether it is cut into parts; otherwise the following members are unused
+    Place last;        ///< end of the last converged part
+    Place whole;       ///< end of the attempt at the whole step
+    double over = 0.0, part = 0.5;  ///< fractions of the load step: completed, and length of the current part
+    double next = 0.5;              ///< end of the current part
+    bool again = false;             ///< whether a part of this length has converged before
   };
   StepParts parts;
 
   const StepContext& context() const noexcept { return context_; }
   const ContactState& state() const noexcept { return context_.state; }
-  /// Of the steps of the last run().
+  /// Contact changes in the steps of the last run().
   const ContactChanges& contact_changes() const noexcept { return changes_; }
   Residuals certify() const { return context_.certify(); }
-  /// Of the operator, those before a restart included.
+  /// Operator applications, including those before a restart.
   std::uint64_t applications() const noexcept {
     return earlier_applications_ + context_.body.op().applications();
   }
@@ -92,9 +91,9 @@ class OuterLoop {
   double checkpoint_seconds() const noexcept { return checkpoint_seconds_; }
 
  private:
-  struct Interrupted {};  ///< thrown through the loops, on all ranks alike
+  struct Interrupted {};  ///< thrown through nested loops, on all ranks
 
-  /// What decides how the loop goes on besides the state itself.
+  /// All that controls the further iterations, apart from the state.
   struct Control {
     PenaltyControl penalty;
     Linearisation linearisation;
@@ -103,30 +102,30 @@ class OuterLoop {
   };
 
   void iterate(Result& result);
-  /// Takes the state of rest where that solves the load there is, exactly: what the state before leaves of a
-  /// load that is gone sets no scale to converge by.
+  /// Takes the state of rest if it solves the current load exactly: the residual forces of a removed load
+  /// give no scale for convergence.
   void take_rest_if_solution();
-  /// Takes the first step as from rest where the state beside what obstacles have moved by is next to rest:
-  /// forces and displacements as small as those do not show how exactly to solve.
+  /// Takes the first step as from rest if the state is negligible relative to the motion of the obstacles,
+  /// because such small forces and displacements give no scale for the accuracy of solves.
   void open_if_at_rest(const Residuals& residuals);
-  /// The next step, by Newton's method or ADMM, and its counts.
+  /// Takes the next step, by Newton's method, ADMM or the method of multipliers, and adds its counts.
   StepOutcome take_step(bool newton, const Residuals& before, Result& result);
-  /// From the residuals after the step; those of the state to go on from are returned.
+  /// Updates the controls from the residuals after the step; returns those of the state to continue from.
   Residuals learn(const StepOutcome& step, bool newton, const Residuals& before, const Residuals& after,
                   double lambda_min);
-  /// Keeps the state if there has been no better.
+  /// Stores the state if it is the best so far.
   void keep_best(const Residuals& residuals, bool newton);
-  /// Goes back to it.
+  /// Restores the best state.
   Residuals go_back();
   bool ran_away(const Residuals& residuals) const;
-  /// Why nothing is to be hoped for; empty otherwise.
+  /// Explains why further steps are pointless; empty if they are not.
   std::string hopeless(const Residuals& residuals, bool newton) const;
   void report(const StepOutcome& step, const Residuals& residuals, const Result& result) const;
   void choose_first_penalty(Result& result);
   void move_penalty(const StepOutcome& step, const Residuals& before, const Residuals& after, Result& result);
-  /// In the loop's units; its penalties stay.
+  /// Sets the state, in the loop's units; penalties are unchanged.
   void take(const Start& start);
-  /// Prescribed components, gaps, traces and bounds of the load there is.
+  /// Applies prescribed components, gaps, traces and bounds of the current load.
   void take_load();
   void restore_penalty(double rule, Penalty penalty, const Result& result);
   void stand_in_parts();
@@ -138,18 +137,18 @@ class OuterLoop {
   double start_;
   StepContext context_;
   Control control_;
-  int first_outer_ = 0;             ///< outer steps before this load step, or before a restart
-  bool adopted_ = false;            ///< a coarser mesh has given the state
-  double coarse_lambda_max_ = 0.0;  ///< and this
-  bool opening_ = true;             ///< the next step is the first from rest
-  bool within_ = false;             ///< steps have been taken since run() began, before a restart or after
-  bool resumes_ = false;            ///< run() has not been called since restore()
+  int first_outer_ = 0;             ///< outer steps before this load step or a restart
+  bool adopted_ = false;            ///< whether the state comes from a coarser mesh
+  double coarse_lambda_max_ = 0.0;  ///< and its λ_max
+  bool opening_ = true;             ///< whether the next step is the first from rest
+  bool within_ = false;   ///< whether steps have been taken since run() began, before a restart or after
+  bool resumes_ = false;  ///< whether run() has not been called since restore()
   bool gave_up_ = false;
   bool friction_;
-  bool history_;            ///< slip of some point is counted from the load step before
-  bool stoppable_;          ///< some rank has something to ask whether to stop
-  double extent_;           ///< of the body, in the unit of displacements
-  double largest_imposed_;  ///< displacement
+  bool history_;            ///< whether slip of some point is measured from the previous load step
+  bool stoppable_;          ///< whether some rank has a stop callback
+  double extent_;           ///< of the body, in units of displacement
+  double largest_imposed_;  ///< largest imposed displacement
   UnitSystem units_;
   ContactChanges changes_;
   std::uint64_t earlier_applications_ = 0;
@@ -158,7 +157,7 @@ class OuterLoop {
   struct Best {
     ContactState state;
     double worst = HUGE_VAL;
-    bool by_multipliers = false;  ///< the end of a retreat so far
+    bool by_multipliers = false;  ///< whether it is the end of a retreat so far
   };
   Best best_;  ///< of this load step
 
@@ -172,7 +171,7 @@ class OuterLoop {
   };
   BodyResponse::Frozen frozen() const { return stopped_ ? kept_->frozen : context_.body.frozen(); }
   bool stopped_ = false;      ///< by a request; the state is that of kept_
-  std::optional<Kept> kept_;  ///< after the last whole outer step; only where a run may be stopped
+  std::optional<Kept> kept_;  ///< after the last completed outer step; only if a run may be stopped
 };
 
 }  // namespace kacanov

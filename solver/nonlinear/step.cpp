@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One step of the outer loop: ADMM on the secant, semismooth Newton, or its augmented form.
+// One step of the outer loop: ADMM with the secant, semismooth Newton, or the method of multipliers.
 #include "nonlinear/step.hpp"
 
 #include <algorithm>
@@ -24,17 +24,17 @@
 namespace kacanov {
 namespace {
 
-/// u += t δ, t as long as damping allows, or as the body wants it. Leaves R(u) and the frozen secant at the
-/// new u.
+/// u += t δ with t limited by damping, or extended by the line search. Leaves R(u) and the frozen secant at
+/// the new u.
 double take_damped(StepContext& c, const ActiveSetStep& step, const HeldNodes& nodes) {
   const Vector& delta = step.delta;
-  // The solve is over: its vectors are free.
+  // The solve is finished, so its work vectors are free.
   Vector &from = c.work.direction, &force = c.work.image, &u = c.state.u;
   from = u;
   force.assign(c.body.internal().begin(), c.body.internal().end());
   const auto go_to = [&](double t) {
     for (std::size_t i = 0; i < u.size(); ++i) u[i] = from[i] + t * delta[i];
-    c.path.prescribe(u);  // every iteration of the solve has added its rounding along held directions
+    c.path.prescribe(u);  // removes the rounding that the solve's iterations added along held directions
     c.body.evaluate_and_freeze(u);
   };
   double t = 1.0;
@@ -193,7 +193,7 @@ StepOutcome newton_step(StepContext& c, double penalty, bool tangent, const Resi
   const ActiveSet set = decide(c.traces, c.state, c.tuning.decision_share * penalty);
   const double digits = digits_left(c.options, before, c.tuning);
   c.preconditioner.prepare(set, digits);
-  // After the setup: the two do not have to fit into memory at once.
+  // After the setup, so that both need not fit into memory at the same time.
   if (tangent) c.body.freeze_tangent(c.state.u);
   const auto applied = c.body.op().applications();
   LinearProblem problem = tangent ? c.tangent : c.secant;
@@ -227,14 +227,14 @@ StepOutcome newton_step(StepContext& c, double penalty, bool tangent, const Resi
 
 namespace {
 
-/// One semismooth Newton step with a line search on the way to a minimiser.
+/// Semismooth Newton steps with a line search on the augmented Lagrangian.
 class Descent {
  public:
   Descent(StepContext& c, double r, double contact_weight)
       : c_(c), contact_(c.traces, c.state, r), contact_weight_(contact_weight), delta_(c.part.unknowns()) {}
 
-  /// Puts F − R(u) − CᵀMp into the residual. Returns its residual_norm; `moved`: that of CᵀM (p − λ),
-  /// likewise.
+  /// Sets work.residual to F − R(u) − CᵀMp and returns its residual_norm; `moved`: the same norm of CᵀM (p −
+  /// λ).
   double unbalanced(double& moved) {
     ContactValues p = contact_.multipliers(c_.state.trace);
     c_.body.unbalanced(c_.path, c_.work.residual);
@@ -246,7 +246,7 @@ class Descent {
     return c_.space.residual_norm(c_.work.residual);
   }
 
-  /// From the residual there is. Whether the solve gave a direction to go.
+  /// Solves from the current residual; returns whether that gave a descent direction.
   bool step(bool tangent, CgOptions options, StepOutcome& outcome) {
     const ActiveSet set = contact_.derivative(c_.state.trace);
     c_.preconditioner.prepare(set, contact_.penalty(), loose());
@@ -287,7 +287,8 @@ class Descent {
 
  private:
   double loose() const { return c_.part.loose_modes > 0 ? c_.tuning.loose_share * contact_.penalty() : 0.0; }
-  /// Where contact alone holds motions, points that slip leave nothing along their slip.
+  /// Keeps the operator definite if contact alone holds rigid-body modes: slipping points have no stiffness
+  /// along their slip.
   double hold_loosely(std::span<const double> p, std::span<double> q) const {
     const double r = loose();
     return r > 0.0 ? c_.traces.add_penalty({r, r}, p, q) : 0.0;

@@ -1,129 +1,132 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The numbers that steer the outer loop, each with what was measured for it.
+// Parameters of the outer loop, each with the measurement behind its value.
 #pragma once
 
 #include <cstdint>
 
 namespace kacanov {
 
-/// Nobody but tests and experiments changes them. Applications are those of the operator, over whole runs.
+/// Only tests and experiments change these values. "Applications" are operator applications of whole runs.
 struct Tuning {
-  // How exactly a step is solved.
+  // Accuracy of a step.
 
-  /// The contact loop of an ADMM step is taken this far below the residual of the step before; the first one,
-  /// which is elastic, as well. A half there leaves slip on fine meshes to Newton steps that move it on by a
-  /// few rows of nodes each, a tenth costs more than it saves.
+  /// The contact loop of an ADMM step, including the first, elastic one, stops at this share of the previous
+  /// residual. With 0.5, slip on fine meshes is left to Newton steps that advance it by a few rows of nodes
+  /// each; 0.1 costs more than it saves.
   double inner_reduction = 0.2;
-  /// ADMM iterations of the first step where Newton steps follow: it is to guess who touches. A slender
-  /// cantilever that just reaches its obstacle took 10,000 for the same answer.
+  /// ADMM iterations of the first step if Newton steps follow: it only has to guess the contact set. A
+  /// slender cantilever that just reaches its obstacle took 10,000 iterations for the same answer.
   int opening_iterations = 20;
-  /// Of the first residual of a semismooth Newton step. One that would end within `last_reach` of
-  /// `last_share` of the tolerance goes on to there: it may be the last then, and digits cost more in a step
-  /// of their own (87 cases: 8,071 applications and 554 steps in place of 8,448 and 606).
+  /// Residual reduction of a Newton solve. If the target is within a factor `last_reach` of `last_share`
+  /// times the tolerance, the solve continues to the latter: the step may be the last, and digits cost more
+  /// in a separate step (87 cases: 8,071 applications and 554 steps instead of 8,448 and 606).
   double solve_reduction = 0.03;
   double last_reach = 100.0, last_share = 0.7;
-  /// What a step leaves out is asked for at this share of its first residual, where that can save so many
-  /// iterations, and the solve stops at this share of it.
+  /// The linearisation error is evaluated once the residual is below this share of the first one and at least
+  /// this many iterations can be saved; the solve stops at this share of it.
   double left_out_asked = 0.2, left_out_worth = 2.0, left_out_share = 0.7;
 
   // Linearisation (theory: newton, damping).
 
-  /// Residual of equilibrium up to which steps take the tangent: that of a state further off sends them too
-  /// far, and contact and slip with them.
+  /// Largest equilibrium residual at which steps use the tangent: farther from equilibrium it overshoots,
+  /// with contact and slip.
   double first_reach = 0.3;
-  /// Where a tangent has gone too far the reach becomes this share of the residual it started from ...
+  /// After a tangent step that overshot, the reach becomes this share of the residual before it ...
   double reach_cut = 0.5;
-  /// ... but not less than this: below it is contact that goes to and fro, not the tangent.
+  /// ... but at least this value, below which contact oscillates and not the tangent.
   double least_reach = 0.003;
   int max_damping_trials = 6;
-  /// A step that leaves half of its slope is too short, and goes on up to so many times itself, where its
-  /// rows are closed but for this share of it: the secant of a body far beyond yield lags behind by orders of
+  /// A step that leaves half of its initial slope is too short and is extended up to this factor, if the rows
+  /// it closes are closed up to this share of it: far beyond yield the secant lags behind by orders of
   /// magnitude.
   double longest_step = 1e6, closed_rows = 1e-6;
-  /// A tangent step of which less was taken is followed by one of the secant.
+  /// After a tangent step shortened below this length, the next step uses the secant.
   double short_step = 0.1;
 
   // Penalties (theory: first-penalty, balance).
 
-  /// First one, times λ_min over the root of the mesh width relative to the contact surface. Three times as
-  /// much is as good for beams, and worse for the half ball; a third costs a few per cent more applications.
+  /// First penalty, relative to λ_min and the root of the mesh width relative to the contact surface. Three
+  /// times as much is equally good for beams and worse for the half ball; a third costs a few per cent more
+  /// applications.
   double first_penalty = 0.1;
-  /// CG iterations of a rough estimate of λ_max.
+  /// CG iterations for a rough estimate of λ_max.
   int rough_iterations = 2;
-  /// ADMM iterations between two looks at the balance (and, in Kacanov's method, at g) after the first step.
-  /// Ten take 6 % more of them; with three, penalties that follow Coulomb's bounds kept one beam from
-  /// converging.
+  /// ADMM iterations between two updates of the balance (and, in Kačanov's method, of g) after the first
+  /// step. Ten take 6 % more iterations; with three, penalties that follow Coulomb's bounds kept one beam
+  /// from converging.
   int balancing_iterations = 5;
-  /// A step of fewer iterations moves the penalties by less.
+  /// Steps with fewer iterations change the penalties less.
   double trusted_iterations = 4.0;
-  /// Penalties stay between this over λ_min, which contracts errors at held rows to a quarter (more costs CG
-  /// iterations), and that share of it.
+  /// Penalties are at most this over λ_min, which contracts errors at held rows to a quarter (more costs CG
+  /// iterations), and at least that share of it.
   double largest_penalty = 3.0, smallest_share = 1e-4;
-  /// Semismooth Newton decides by λ + c(w − ρ), c this share of ADMM's penalty. A whole penalty makes
-  /// slipping points flip on the half ball (338 applications instead of 145), a tenth costs steps on beams.
+  /// Semismooth Newton decides by λ + c(w − ρ), with c this share of ADMM's penalty. The whole penalty makes
+  /// slipping points flip on the half ball (338 applications instead of 145); a tenth costs steps on beams.
   double decision_share = 0.3;
 
-  // The method of multipliers (theory: augmented-newton).
+  // The method of multipliers (theory: augmented-newton); an outer iteration of it is called a round.
 
-  /// Largest penalty over 1/λ_min.
+  /// Largest penalty, times λ_min.
   double augmented_penalty = 10.0;
-  /// It grows by so much where a round takes so few Newton steps, and falls by it where it takes so many.
+  /// The penalty is multiplied by this after a round with at most `few` Newton steps, and divided by it after
+  /// one with at least `many`.
   double augmented_change = 3.0;
   int augmented_few = 3, augmented_many = 8;
-  /// How far the second round's multipliers follow the first's; from then on Anderson's acceleration knows.
+  /// Relaxation of the multiplier update before the second round; later rounds use Anderson acceleration.
   double augmented_following = 0.5;
-  /// Rounds that it remembers.
+  /// Depth of the Anderson acceleration.
   int augmented_memory = 6;
-  /// What is left unbalanced, as a share of the force that the multipliers move by.
+  /// Remaining unbalanced force of a round relative to the force change by the multiplier update.
   double augmented_balance = 0.03;
-  /// Newton steps between two moves of the multipliers.
+  /// Maximum number of Newton steps per round.
   int augmented_iterations = 10;
-  /// Share of the penalty on all rows where contact alone holds motions.
+  /// Share of the penalty applied to all rows if contact alone holds rigid-body modes.
   double loose_share = 1e-5;
 
-  // When a preconditioner is set up again.
+  // Conditions for a new setup of the preconditioner.
 
-  /// Once a step needs this many CG iterations more than it would have right after the last setup: half of
-  /// what a setup costs.
+  /// If a step needs this many CG iterations more than right after the last setup: half the cost of a setup.
   double setup_worth = 4.0;
-  /// Before a step where g has moved by this share in the mean.
+  /// If the mean relative change of g before a step exceeds this share.
   double drift_worth = 0.05;
-  /// Where a penalty, or how stiff a slip is, has moved by this factor (elastic beam, ADMM: 144 applications
+  /// If a penalty or a slip stiffness has changed by this factor (elastic beam, ADMM: 144 applications
   /// instead of 212).
   double penalty_worth = 3.0;
 
-  /// Changes of the held rows between two setups with g: what a restart repeats, and a checkpoint holds.
+  /// Changes of the held rows between two setups with new g; a restart repeats them, and a checkpoint stores
+  /// them.
   std::size_t most_changes = 64;
 
-  /// A solve of so many CG iterations asks for a factor, or of as many as a factor takes the time of:
-  /// `factor_iterations` for a body of `factor_unknowns`, growing with this power of them (3,000 for 9,800),
-  /// in a body of at most `most_factorised` unknowns.
+  /// A solve with more CG iterations than this triggers a sparse factor, or with more than take the time of a
+  /// factor: `factor_iterations` for `factor_unknowns` unknowns, growing with this power (3,000 for 9,800),
+  /// for bodies of at most `most_factorised` unknowns.
   double most_iterations = 500.0;
   double factor_iterations = 250.0, factor_unknowns = 2160.0, factor_growth = 1.64;
   std::int64_t most_factorised = 10'000;
 
-  // From Newton steps back to ADMM (theory: active-set), and giving up.
+  // Fallback from Newton steps to the method of multipliers (theory: active-set), and termination.
 
-  /// A Newton step below this share of the best residual is a new best; `patience` steps without one are
-  /// enough.
+  /// A Newton step below this share of the best residual is a new best; after `patience` steps without one a
+  /// retreat begins.
   double progress = 0.7;
   int patience = 6;
-  /// ADMM hands back early at this share of the best residual of the Newton steps before.
+  /// A retreat ends early at this share of the best residual of the preceding Newton steps.
   double retreat_gain = 0.1;
-  /// ADMM steps of the first retreat; each is twice as long as the one before, so many times.
+  /// Steps of the first retreat; each retreat is twice as long as the one before, for at most this many
+  /// doublings.
   int first_retreat = 2, most_doublings = 6;
-  /// After so many steps without a residual below this share of the lowest the load is cut.
+  /// The load step is cut after this many steps without a residual below `gain` times the lowest.
   int most_idle = 40;
   double gain = 0.7;
-  /// A step of a retreat whose linear problem has no solution counts for so many of those: the next starts
-  /// from the same state.
+  /// A retreat step with an unsolvable linear problem counts as this many of those steps, because the next
+  /// one starts from the same state.
   int unsolved_worth = 8;
-  /// The smallest part of a load step that is tried.
+  /// Smallest part of a load step that is attempted.
   double smallest_part = 1.0 / 64;
-  /// A displacement of this many body sizes is a run that goes nowhere.
+  /// A run with a displacement above this many body sizes is diverging.
   double most_displacement = 1e7;
 
-  /// Operator applications between two looks at whether the run is to stop, which cost a reduction.
+  /// Operator applications between two checks for a stop request, each of which costs a reduction.
   std::uint64_t applications_per_question = 4;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lengths, indices and orders of a part's fields, one after the other.
+// Checks the lengths, indices and order of each field of a part.
 #include "partition/check_part.hpp"
 
 #include <algorithm>
@@ -25,7 +25,7 @@ void expect_length(const char* field, std::size_t length, std::size_t expected) 
     refuse(field, "have " + std::to_string(length) + " entries, expected " + std::to_string(expected));
 }
 
-/// What a rank has of all ranks' things; a single rank has them all.
+/// Compares a local count with the total over all ranks; on a single rank they must be equal.
 void expect_total(const char* field, std::int64_t total, std::size_t here, int ranks) {
   const auto mine = static_cast<std::int64_t>(here);
   expect(ranks == 1 ? total == mine : total >= mine, field, "are more or fewer than all");
@@ -40,7 +40,7 @@ void expect_indices(const char* field, const Values& values, std::size_t count) 
   }
 }
 
-/// Every entry's component is below `count` and above the one before.
+/// Checks that the components are strictly ascending and below `count`.
 void expect_components(const char* field, const std::vector<Part::ComponentValue>& entries,
                        std::size_t count) {
   std::int64_t before = -1;
@@ -84,10 +84,10 @@ void check_element_index(const IndexRuns& index, std::size_t elements) {
   }
 }
 
-/// Beyond what a case file of the largest size can have.
+/// More than the largest possible case file can have.
 constexpr std::int32_t most_entries = 1 << 22;
 
-/// Factors of every entry at two times or more, and who they are for.
+/// Checks load curves: at least two times, with factors for every entry that is referenced.
 void check_steps(const Part& part, std::size_t unknowns) {
   if (part.steps.empty()) return;
   const std::size_t boundary = part.steps.front().boundary.size(),
@@ -108,7 +108,7 @@ void check_steps(const Part& part, std::size_t unknowns) {
     expect_indices("forces", std::array{force.entry}, boundary);
   }
   expect_length("entries of prescribed components", part.prescribed_by.size(), part.prescribed.size());
-  for (std::size_t k = 0; k < part.prescribed.size(); ++k)  // nodes on an axis are held by none
+  for (std::size_t k = 0; k < part.prescribed.size(); ++k)  // components on the axis have no entry
     if (part.prescribed_by[k] != -1 || part.prescribed[k].value != 0.0)
       expect_indices("entries of prescribed components", std::array{part.prescribed_by[k]}, boundary);
   for (const ContactPoint& point : part.contact)
@@ -135,7 +135,7 @@ void check_contact(const Part& part, std::size_t nodes, int ranks) {
   }
 }
 
-/// What each entry's totals are summed of.
+/// Checks the data behind the totals of entries.
 void check_entries(const Part& part) {
   const auto owned = static_cast<std::size_t>(part.owned_nodes()),
              axes = static_cast<std::size_t>(part.dim());

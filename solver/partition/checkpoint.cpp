@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a run needs to go on from the end of an outer step, in the user's numbering.
+// Checkpoint access and problem fingerprints.
 #include <kacanov/checkpoint.hpp>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ std::uint64_t mix(std::uint64_t h, std::uint64_t word) {
   return h ^ (h >> 29);
 }
 
-/// Chains the pieces of one section.
+/// Chains the hashes of the pieces of one section.
 class Hash {
  public:
   template <class T>
@@ -103,7 +103,7 @@ Fingerprint fingerprint(const Problem& problem) {
   print.sections["material"] = (Hash() << laws << problem.law_of_element).value();
   Hash boundary;
   boundary << problem.load << problem.held << problem.prescribed;
-  std::vector<double> springs;  // and what is held along directions
+  std::vector<double> springs;  // and prescribed directions
   for (const NodeSpring& spring : problem.springs) {
     springs.push_back(static_cast<double>(spring.node));
     for (const Vector3& row : spring.stiffness) springs.insert(springs.end(), row.begin(), row.end());

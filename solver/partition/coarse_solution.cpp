@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The solution of the same body on a coarser mesh, to start a finer one from.
+// The solution of the same body on a coarser mesh, used as initial guess on a finer one.
 #include <kacanov/coarse_solution.hpp>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace kacanov {
 namespace {
 
-/// Rank 0's entries to all.
+/// Broadcasts rank 0's entries.
 template <class T>
 void broadcast(std::vector<T>& values, const Communicator& ranks) {
   if (ranks.ranks == 1) return;
@@ -30,7 +30,7 @@ void broadcast(std::vector<T>& values, const Communicator& ranks) {
   }
 }
 
-/// Where a node of the finer mesh lies in the coarse one.
+/// Interpolation weights of a fine node in its coarse element.
 struct Weights {
   std::span<const std::int32_t> nodes;     ///< of the coarse element
   std::array<double, most_nodes> value{};  ///< of its shape functions
@@ -105,8 +105,8 @@ Start interpolate(const CoarseSolution& coarse, const Part& part) {
   for (std::size_t i = 0; i < part.contact.size(); ++i) {
     const ContactPoint& point = part.contact[i];
     const Weights weights = weights_at(coarse, locator, position(mesh, point.node));
-    // Nodes that bear no contact, as those that are held and corners of quadratic facets, say nothing; where
-    // all that count lie so, the others of the element do.
+    // Coarse nodes without contact points, such as constrained nodes and corners of quadratic facets, are
+    // skipped. If they carry almost all of the weight, the element's contact nodes count equally.
     double known = 0.0, pressure = 0.0;
     Vector3 friction{};
     for (const bool all : {false, true}) {

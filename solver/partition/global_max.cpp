@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The largest value over all ranks with the node or element that has it, and the extent of the body.
+// Maximum over all ranks with its node or element, and the extent of the body.
 #include "partition/global_max.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace kacanov {
 namespace {
 
-/// The mean of an element's nodes.
+/// Returns the mean of an element's nodes.
 Vector3 middle(const Part& part, std::size_t element) {
   const std::size_t nodes = nodes_per_element(part.type);
   Vector3 sum{};
@@ -18,7 +18,7 @@ Vector3 middle(const Part& part, std::size_t element) {
   return (1.0 / static_cast<double>(nodes)) * sum;
 }
 
-/// at(local) and tag(local) tell of the place, on the rank that has it.
+/// at(local) and tag(local) return position and tag; they are called on the rank that holds the maximum.
 template <class At, class Tag>
 Extreme agree(const Part& part, const GlobalMax& here, const At& at, const Tag& tag) {
   const IndexMap& node_map = part.node_map;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The largest value over all ranks with the node or element that has it, and the extent of the body.
+// Maximum over all ranks with its node or element, and the extent of the body.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@
 
 namespace kacanov {
 
-/// The largest value of a rank. Among equal ones that of the lowest index in the whole mesh is taken, so that
-/// the place does not depend on the partition.
+/// The local maximum of a rank. Ties go to the lowest index in the whole mesh, so that the position does not
+/// depend on the partition.
 struct GlobalMax {
   double value = -1.0;
   std::size_t local = 0;
@@ -26,7 +26,7 @@ struct GlobalMax {
   }
 };
 
-/// Undeformed; the third entry is 0 in 2D.
+/// Undeformed position of a node; the third component is 0 in 2D.
 inline Vector3 node_position(const Part& part, std::size_t node) {
   const std::size_t dim = part.dim();
   Vector3 x{};
@@ -34,11 +34,11 @@ inline Vector3 node_position(const Part& part, std::size_t node) {
   return x;
 }
 
-/// The largest of all ranks, of owned nodes or of elements. Collective.
+/// Returns the maximum over all ranks and its position, of owned nodes or of elements. Collective.
 Extreme agree_on_node(const Part& part, const GlobalMax& here);
 Extreme agree_on_element(const Part& part, const GlobalMax& here);
 
-/// Longest side of the body's bounding box, over all ranks. Collective.
+/// Returns the longest side of the body's bounding box, over all ranks. Collective.
 double body_extent(const Part& part);
 
 }  // namespace kacanov

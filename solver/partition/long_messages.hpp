@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Messages of any length: MPI counts are 32-bit.
+// MPI messages of any length, sent in pieces because MPI counts are 32-bit.
 #pragma once
 
 #include <mpi.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MPI as the transport between ranks.
+// MPI implementation of the transport between ranks.
 #include <kacanov/mpi_communicator.hpp>
 
 #include <numeric>
@@ -28,7 +28,7 @@ class MpiMessages final : public Messages {
   std::vector<MPI_Request> requests_;
 };
 
-/// Entries of so many bytes.
+/// MPI datatype of an entry with this many bytes.
 class Entries {
  public:
   explicit Entries(std::size_t width) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A part, a state and a result in the units of the loop and in those of the user.
+// Conversion of parts, states and results between the user's units and nondimensional ones.
 #include "partition/nondimensionalisation.hpp"
 
 #include <algorithm>
@@ -18,14 +18,14 @@ void scale(std::vector<double>& values, double factor) {
   for (double& value : values) value *= factor;
 }
 
-/// Parameters of a form in units of its argument and of moduli. One that is added says here what its own are.
+/// Scales the parameters of a law by the units of its argument and of moduli. New laws must be added here.
 template <class Form>
 void measure(Form& form, double argument, double modulus) {
   if constexpr (std::is_same_v<Form, laws::Table>) {
     scale(form.x, 1.0 / argument);
     scale(form.s, 1.0 / (modulus * argument));
   } else if constexpr (!std::is_same_v<Form, laws::Linear>) {
-    form.x0 /= argument;  // the others have none
+    form.x0 /= argument;  // the other parameters are dimensionless
   }
 }
 
@@ -37,7 +37,7 @@ void measure(Law& law, const UnitSystem& units) {
   std::visit([&](auto& form) { measure(form, argument, units.modulus); }, law.form);
 }
 
-/// Multiplies all that has a unit, but for the laws.
+/// Scales everything with a unit, except the laws.
 void scale(Part& part, const UnitSystem& factors) {
   scale(part.coordinates, factors.length);
   scale(part.start, factors.displacement);
@@ -108,7 +108,7 @@ void scale(Vector3& vector, double factor) {
   for (double& value : vector) value *= factor;
 }
 
-/// Of what a part has of forces: the whole thickness.
+/// Unit of forces on the whole thickness.
 double force_of(const UnitSystem& units) { return units.force() * units.thickness; }
 
 void scale(Resultant& resultant, const UnitSystem& units) {
@@ -139,7 +139,7 @@ void scale(BodySize& body, const UnitSystem& units) {
   body.volume *= units.dim == 2 ? length * length * units.thickness : length * length * length;
 }
 
-/// What boundary entries load the body with is in the user's units throughout, of a thickness of 1.
+/// Loads of boundary entries are stored in the user's units already, per unit thickness.
 void redimensionalise(Result& result, const UnitSystem& units) {
   for (ContactTotals& contact : result.contact) scale(contact, units);
   for (BoundaryTotals& reaction : result.reaction) scale(reaction.total, units);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Units in which lengths, forces and strains of a problem are about one, and the way there and back.
+// Nondimensionalisation: scales a problem so that lengths, forces and strains are of order one, and back.
 #pragma once
 
 #include <vector>
@@ -10,15 +10,16 @@
 
 namespace kacanov {
 
-/// Powers of two, measured in the user's units: numbers change their exponents and keep their digits (theory:
-/// units). All 1: the user's own.
+/// Units as powers of two, measured in the user's units: scaling changes exponents and keeps all digits
+/// (theory: units). All 1: the user's own units.
 struct UnitSystem {
-  int dim = 3;                ///< of volumes: 3 in axisymmetric bodies
-  double length = 1.0;        ///< of coordinates
-  double displacement = 1.0;  ///< of gaps, too: small strains set nothing of it against lengths
+  int dim = 3;          ///< dimension of volumes: 3 for axisymmetric bodies
+  double length = 1.0;  ///< of coordinates
+  /// Also of gaps; independent of `length`, because small strains never compare the two.
+  double displacement = 1.0;
   double modulus = 1.0;
-  double thickness =
-      1.0;  ///< of a plane body, in the user's units; forces of the part are of a thickness of 1
+  /// Of a plane body, in the user's units; forces of the part are per unit thickness.
+  double thickness = 1.0;
 
   double strain() const noexcept { return displacement / length; }
   double stress() const noexcept { return modulus * strain(); }
@@ -26,15 +27,17 @@ struct UnitSystem {
   double force() const noexcept { return stress() * area(); }
   double energy() const noexcept { return force() * displacement; }
   double penalty() const noexcept { return modulus / length; }  ///< stress over displacement
-  /// What takes numbers in the user's units to these by multiplication.
+  /// Returns the factors that convert from the user's units to these.
   UnitSystem inverse() const noexcept { return {dim, 1.0 / length, 1.0 / displacement, 1.0 / modulus}; }
 };
 
-/// The body's extent, the middle of its moduli, and the displacement that loads, prescribed displacements and
-/// indentations come to, each as the power of two below. The same on every rank. Collective.
+/// Computes the units: the body's extent, the middle of its moduli, and the displacement scale of loads,
+/// prescribed displacements and indentations, each rounded down to a power of two. The same on every rank.
+/// Collective.
 UnitSystem units_of(const Part& part);
 
-/// A part in its own units while this lives, and in the user's, to the bit, before and after.
+/// Scales a part to nondimensional units during the object's lifetime, and restores it bit for bit
+/// afterwards.
 class Nondimensionalised {
  public:
   /// Collective.
@@ -47,16 +50,16 @@ class Nondimensionalised {
 
  private:
   friend class Redimensionalised;
-  /// There and back; each swaps the laws.
+  /// Convert to and from the nondimensional units; both swap the laws.
   void enter();
   void leave();
 
   Part& part_;
   UnitSystem units_;
-  std::vector<Law> laws_;  ///< in the units that the part is not in
+  std::vector<Law> laws_;  ///< in the units that the part is currently not in
 };
 
-/// In between, the same part in its user's units.
+/// Restores the user's units temporarily, during the object's lifetime.
 class Redimensionalised {
  public:
   explicit Redimensionalised(Nondimensionalised& own) : own_(own) { own_.leave(); }
@@ -68,13 +71,12 @@ class Redimensionalised {
   Nondimensionalised& own_;
 };
 
-/// Multiplies by the units. Load steps in a result are left alone: each is in the user's units from its end
-/// on.
+/// Convert to the user's units. Load steps in a result are skipped: they are converted when each step ends.
 void redimensionalise(Solution& solution, const UnitSystem& units);
 void redimensionalise(LoadStep& step, const UnitSystem& units);
 void redimensionalise(SpectrumResult& spectrum, const UnitSystem& units);
 
-/// The other way: what a run starts from.
+/// Converts an initial guess from the user's units.
 void nondimensionalise(Start& start, const UnitSystem& units);
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fields of a part as one stream of bytes, the same for messages between ranks and for files.
+// Serialisation of a part as a stream of bytes, for messages between ranks and for files.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace kacanov {
 
-/// std::vector, std::string: entries one after another, resizable.
+/// std::vector, std::string: contiguous and resizable.
 template <class T>
 concept Sequence = requires(T values) {
   typename T::value_type;
@@ -19,15 +19,15 @@ concept Sequence = requires(T values) {
   values.resize(1);
 };
 
-/// Numbers, arrays of them and structs of integers, none with holes, whose bytes nobody sets.
+/// Numbers, arrays of numbers and structs of integers without padding, whose bytes would be indeterminate.
 template <class T>
 inline constexpr bool without_holes =
     std::is_arithmetic_v<T> || std::is_enum_v<T> || std::has_unique_object_representations_v<T>;
 template <class T, std::size_t n>
 inline constexpr bool without_holes<std::array<T, n>> = without_holes<T>;
 
-/// Writes values to a sink with `write(const void* data, std::size_t bytes)`. A sequence goes as its length,
-/// 8 bytes, and its entries; what is without holes as it lies in memory, so that equal values are equal
+/// Writes values to a sink with `write(const void* data, std::size_t bytes)`. A sequence is written as its
+/// length (8 bytes) and its entries; types without padding as in memory, so that equal values give equal
 /// bytes; everything else by its exchange_fields.
 template <class Sink>
 class FieldWriter {
@@ -55,9 +55,9 @@ class FieldWriter {
   Sink& sink_;
 };
 
-/// Reads what FieldWriter has written from a source with `read(void* data, std::size_t bytes)`. Before it
-/// takes memory for a sequence it asks `expect(std::uint64_t entries, std::size_t bytes_each)`, which throws
-/// where there cannot be as much.
+/// Reads the output of FieldWriter from a source with `read(void* data, std::size_t bytes)`. Before it
+/// allocates a sequence it calls `expect(std::uint64_t entries, std::size_t bytes_each)`, which throws if the
+/// source cannot contain that much.
 template <class Source>
 class FieldReader {
  public:
@@ -78,7 +78,7 @@ class FieldReader {
       else
         for (Entry& entry : value) (*this)(entry);
     } else if constexpr (std::is_same_v<T, bool>) {
-      std::uint8_t byte = 0;  // of a damaged file it may be any
+      std::uint8_t byte = 0;  // in a damaged file it may have any value
       source_.read(&byte, 1);
       value = byte != 0;
     } else if constexpr (without_holes<T>) {
@@ -92,13 +92,13 @@ class FieldReader {
   Source& source_;
 };
 
-// One list of fields serves both directions. A change to one of them, or to the order, is a new version of
-// the files in tools/part_files.cpp.
+// One list of fields serves both directions. Changing a list or its order requires a new version of the files
+// in tools/program/part_files.cpp.
 
 template <class T, class Struct>
 concept Either = std::is_same_v<std::remove_const_t<T>, Struct>;  ///< Struct or const Struct
 
-/// The form of this number in the variant.
+/// Returns a default form of the alternative with this index in the variant.
 template <std::size_t i = 0>
 Law::Form law_form(std::size_t number) {
   if constexpr (i + 1 < std::variant_size_v<Law::Form>)

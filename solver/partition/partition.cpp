@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Splits a problem and hands every rank its part.
+// Partitions a problem and sends every rank its part.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -26,12 +26,12 @@
 
 namespace kacanov {
 
-/// Which ranks have each node, ascending: by its elements (compressed rows), and a few by wide contact
-/// points.
+/// The ranks that have each node, ascending: through its elements (compressed rows), and for some nodes
+/// through multi-node contact points.
 struct Sharers {
   std::vector<std::size_t> start;
   std::vector<int> rank;
-  std::map<std::size_t, std::set<int>> more;  ///< ranks without an element there
+  std::map<std::size_t, std::set<int>> more;  ///< ranks that have the node without an element at it
   std::span<const int> by_elements(std::size_t node) const {
     return std::span(rank).subspan(start[node], start[node + 1] - start[node]);
   }
@@ -52,12 +52,12 @@ struct Sharers {
     const auto found = more.find(node);
     return found != more.end() && found->second.contains(who);
   }
-  /// Shared nodes are dealt out in turn, so that no rank owns a whole interface.
+  /// Shared nodes are assigned in turn, so that no rank owns a whole interface.
   int owner(std::size_t node) const {
     const auto s = by_elements(node);
     return s[node % s.size()];
   }
-  /// Every rank gets the nodes of the wide points it owns.
+  /// Adds the nodes of each multi-node point to the rank that owns the point.
   void widen(const ConstraintRows& contact) {
     for (std::size_t i = 0; i < contact.size(); ++i) {
       if (!contact.is_wide(i)) continue;
@@ -70,7 +70,7 @@ struct Sharers {
   }
 };
 
-/// Of elements that belong to these ranks.
+/// Computes the sharers of all nodes from the ranks of the elements.
 Sharers find_sharers(const Mesh& mesh, std::span<const std::uint16_t> part, int ranks);
 
 Sharers find_sharers(const Mesh& mesh, std::span<const std::uint16_t> part, int ranks) {
@@ -83,7 +83,8 @@ Sharers find_sharers(const Mesh& mesh, std::span<const std::uint16_t> part, int 
     sharers.rank.assign(nodes, 0);
     return sharers;
   }
-  // A first pass tells the inner nodes, which are most, by their only rank; the few others have lists.
+  // The first pass identifies the interior nodes, the vast majority, by their only rank; only the others need
+  // lists.
   constexpr int none = -1, several = -2;
   std::vector<int> only(nodes, none);
   for (std::size_t k = 0; k < mesh.elements.size(); ++k) {
@@ -111,7 +112,7 @@ namespace {
 
 using Index = std::int32_t;
 
-/// A rank as a sink, the first one as a source of fields.
+/// Another rank as a sink, and rank 0 as a source, of fields.
 struct OtherRank {
   int rank;
   MPI_Comm comm;
@@ -123,8 +124,9 @@ struct FirstRank {
   void read(void* data, std::size_t bytes) const { receive_bytes(data, bytes, 0, comm); }
 };
 
-/// Part of every element: the one most of its corners lie in, as METIS splits the nodes (in groups along
-/// `order`, so that its graph stays small beside the mesh). Equal shares go by turns.
+/// Returns the part of every element: the one that contains most of its corners, after METIS has partitioned
+/// the nodes (in groups along `order`, so that the graph is small relative to the mesh). Ties are resolved in
+/// rotation.
 std::vector<std::uint16_t> partition_elements(const Mesh& mesh, std::span<const Index> order, int ranks) {
   std::vector<std::uint16_t> part(mesh.element_count(), 0);
   if (ranks == 1) return part;
@@ -253,7 +255,7 @@ class Splitter {
                      [](const EntryForce& a, const EntryForce& b) { return a.component < b.component; });
   }
 
-  /// What nodes have, by local node.
+  /// Selects per-node data of the local nodes and renumbers them.
   template <class OfNode>
   std::vector<OfNode> of_local_nodes(const std::vector<OfNode>& all) const {
     std::vector<OfNode> mine;
@@ -307,7 +309,7 @@ class Splitter {
 
   void plan_scatters(Part& part, int rank) const {
     std::vector<IndexMap::Neighbour> all(ranks_);
-    // Both sides walk their nodes in the mesh's order, so the lists match.
+    // Both sides list their nodes in the order of the mesh, so the lists match.
     std::vector<Index> ascending = part.node_index;
     std::sort(ascending.begin(), ascending.end());
     for (const Index index : ascending) {
@@ -335,7 +337,7 @@ class Splitter {
     const ConstraintRows& contact = problem_.contact;
     part.total_contact = static_cast<std::int64_t>(contact.size());
     part.wide_contact = contact.any_wide();
-    // Points of one node are kept together: Traces and Space rely on it.
+    // Points of one node are contiguous: Traces and Space rely on it.
     std::vector<Index> order(contact.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(),
@@ -384,7 +386,7 @@ class Splitter {
 
   const Problem& problem_;
   int ranks_;
-  std::vector<Index> order_;  // neighbours close to each other
+  std::vector<Index> order_;  // nodes in an order of locality
   std::vector<std::uint16_t> part_of_;
   Sharers sharers_;
   std::vector<std::int64_t> first_, global_;

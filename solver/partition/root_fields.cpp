@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fields of the parts as one field of the problem on rank 0, and back.
+// Gathers fields of the parts into fields of the whole problem on rank 0, and scatters them.
 #include <algorithm>
 
 #include <kacanov/checkpoint.hpp>
@@ -11,7 +11,7 @@ namespace {
 
 using Index = std::int32_t;
 
-/// Which entries another rank has, as rank 0 gets to know it.
+/// Receives on rank 0 the list of another rank's entries.
 std::vector<Index> receive_list(int rank, MPI_Comm comm) {
   std::size_t n = 0;
   receive_bytes(&n, sizeof n, rank, comm);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The obstacle `box`, along the axes or turned (theory: traces).
+// The obstacle `box`: a block along the coordinate axes or rotated (theory: traces).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,11 +14,11 @@
 namespace kacanov {
 namespace {
 
-/// Of a box: through its lower or its upper corner.
+/// A face of the box, through its lower or upper corner.
 struct BoxFace {
   TrackedVector inwards{};
-  Tracked above;         ///< how far the point that looks is above it
-  double lengths = 0.0;  ///< of the case that this is a difference of
+  Tracked above;         ///< distance of the projected point above it
+  double lengths = 0.0;  ///< sum of the input lengths whose difference is `above`
 };
 
 BoxFace box_face(const Vector3& x, const Vector3& corner, const TrackedVector& inwards) {
@@ -39,7 +39,7 @@ void Block::check(const std::string& path) const {
   kacanov::check(path + ".upper", upper);
   if (frame) check_axes(path + ".frame", *frame);
   const Vector3 diagonal = upper - lower;
-  // Corners that lie at one height along an axis of a frame do so to rounding only.
+  // In a rotated frame, corners at the same height along an axis are so only up to rounding.
   const double least = frame ? 1e-12 * norm(diagonal) : 0.0;
   for (std::size_t c = 0; c < (flat() ? 2 : 3); ++c)
     if (!((frame ? dot(diagonal, (*frame)[c]) / norm((*frame)[c]) : diagonal[c]) > least))
@@ -58,7 +58,7 @@ Facing Block::project(const SurfacePoint& from) const {
     if (frame) axis = (*frame)[f / 2];
     faces[f] = box_face(from.x, f % 2 == 0 ? lower : upper, Tracked(f % 2 == 0 ? 1.0 : -1.0) * unit(axis));
   }
-  // Of points so close by, the way to an edge has no digits to tell a direction with.
+  // For closer points, the vector to an edge has no significant digits of direction.
   const double equal = 1e-9 * norm(upper - lower);
   TrackedVector offset{};
   double lengths = 0.0;
@@ -91,7 +91,7 @@ Facing Block::project(const SurfacePoint& from) const {
       sum = sum + candidates[k].inwards;
       longest = std::max(longest, candidates[k].lengths);
     }
-    // Along the mean of orthogonal normals the way to all of their faces is equally long.
+    // Along the mean of orthogonal normals, the distance to all their faces is the same.
     const TrackedVector mean = unit(sum);
     found = facing(mean, first.above / dot(mean, first.inwards), longest);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Materials, loads and given displacements: the entries of a model carried over to a mesh.
+// Resolves materials, loads and prescribed displacements of a model on a mesh.
 #include "problem/conditions.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@
 namespace kacanov {
 namespace {
 
-/// Puts the forces of one entry on the nodes, and adds them up.
+/// Adds the forces of one entry to the nodes, and accumulates their resultant.
 class LoadOfEntry {
  public:
   LoadOfEntry(Problem& problem, std::size_t entry) : problem_(problem) {
@@ -78,7 +78,7 @@ void add_body_force(const Mesh& mesh, const Vector3& force, std::span<const std:
   }
 }
 
-/// By how much each corner of an element is warmer.
+/// Temperature rise at each corner of an element.
 class CornerRise {
  public:
   CornerRise(const Mesh& mesh, const Temperature& rise, const std::string& path)
@@ -115,12 +115,12 @@ class CornerRise {
   std::array<double, most_nodes> here_{};
 };
 
-/// What the elements would push their nodes with if they could not expand.
+/// Adds the nodal forces of fully constrained thermal expansion.
 void add_temperature(Problem& problem, const Model& model, const Temperature& rise,
                      std::span<const std::int32_t> elements, LoadOfEntry& load, const std::string& path) {
   const Mesh& mesh = problem.mesh;
   const Cell& type = cell(mesh.type);
-  // The strain of linear elements cannot follow what changes within them: their mean is all they take.
+  // Strains of linear elements cannot follow a temperature gradient inside them, so only their mean counts.
   const bool differs = !rise.uniform() && type.order > 1;
   const std::size_t n = type.nodes, corners = type.corners, width = differs ? 1 + corners : 1;
   CornerRise corner_rise(mesh, rise, path);
@@ -146,7 +146,7 @@ void add_temperature(Problem& problem, const Model& model, const Temperature& ri
 
 namespace {
 
-/// Throws InputError where a formulation does not go with the elements, or with `bbar`.
+/// Throws InputError if a formulation does not fit the element type or contradicts `bbar`.
 void check_formulation(const MaterialEntry& entry, const Mesh& mesh, const std::string& path) {
   if (!entry.formulation) return;
   const bool mixed = entry.formulation == MaterialEntry::Formulation::mixed;
@@ -163,7 +163,7 @@ void check_formulation(const MaterialEntry& entry, const Mesh& mesh, const std::
 }  // namespace
 
 bool locks_without_bbar(const Law& law, ElementType type) {
-  // Worked back from the moduli, ν is off by a few of its last digits, one way or the other with the units.
+  // Recomputed from the moduli, ν has an error in its last digits that depends on the units.
   constexpr double nearly_incompressible = 0.45 * (1.0 + 1e-12);
   const double poisson = (3.0 * law.bulk - 2.0 * law.shear) / (2.0 * (3.0 * law.bulk + law.shear));
   return cell(type).mean_dilatation && (!law.linear() || poisson > nearly_incompressible);
@@ -213,7 +213,7 @@ void assign_materials(Problem& problem, const Model& model, const Selection& sel
 
 namespace {
 
-/// Moves what an entry has put on problem.load over to the forces entry by entry.
+/// Moves the forces of an entry from problem.load to the list of forces per entry.
 void keep_apart(Problem& problem, std::size_t entry) {
   for (std::size_t k = 0; k < problem.load.size(); ++k) {
     if (problem.load[k] == 0.0) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nodes against obstacles: one producer of constraint rows.
+// Generates constraint rows for nodes against obstacles.
 #include "problem/contact_points.hpp"
 
 #include <algorithm>
@@ -17,13 +17,13 @@
 namespace kacanov {
 namespace {
 
-/// In sizes of the body: the gap of a node that misses an obstacle which may come its way.
+/// In body sizes: gap of a node that currently misses an obstacle which may come into its way.
 constexpr double far_away = 10.0;
 
-/// Below this length a trace row cannot carry a contact force: its node is held in that direction.
+/// A shorter trace row cannot carry a contact force: its node is constrained in that direction.
 constexpr double negligible_trace = 1e-8;
 
-/// To three digits.
+/// Formats a value with three digits.
 std::string rough(double value) {
   PlainText text;
   text.precision(3);
@@ -31,7 +31,7 @@ std::string rough(double value) {
   return text.str();
 }
 
-/// Where a gap is unknown by as much as the body is large, there is nothing to solve.
+/// Throws if the error bound of a gap exceeds the size of the body.
 void refuse_unknown(const Facing& facing, double size, std::int64_t node_tag, const std::string& path) {
   if (facing.unknown < size) return;
   throw InputError(path + ": expected an obstacle not so large or so far away that the gap of node " +
@@ -39,10 +39,10 @@ void refuse_unknown(const Facing& facing, double size, std::int64_t node_tag, co
                    " only, where the size of the body is " + rough(size));
 }
 
-/// Of the body's size: by how much more the reading of an obstacle's numbers may move it without a warning.
+/// Relative to the body's size: displacement of the obstacle by input rounding that causes no warning.
 constexpr double read_to = 1e-9;
 
-/// Lengths of a case are read to double precision; where that is coarse beside the body, it is said.
+/// Warns if double precision, in which the case's lengths are read, is coarse relative to the body.
 void warn_of_reading(Problem& problem, double lengths, const std::string& path) {
   const double moved = 0x1p-53 * lengths, size = extent(problem.mesh).size;
   if (!(moved > read_to * size)) return;
@@ -62,7 +62,7 @@ NodeFreedom freedom_of(const Problem& problem, std::int32_t node) {
   return freedom;
 }
 
-/// What the prescribed components of a point's node close of its gap.
+/// Returns the closure of the gap by prescribed components of the point's node.
 double closed_by_prescription(const ContactPoint& point, const Problem& problem) {
   const std::size_t dim = problem.mesh.dim();
   double closed = 0.0;
@@ -78,9 +78,9 @@ bool different_reference(const ContactPoint& a, const ContactPoint& b) {
   return a.tangents > 0 && b.tangents > 0 && a.since_step != b.since_step;
 }
 
-/// Joins points of one node that face the same way at the same gap: masses add up, bounds are averaged by
-/// mass; the smaller gap counts, and by what they differ it is unknown. What was joined is in `shares`.
-/// Obstacles that move stay alone, and so do points whose slip is counted from different times.
+/// Merges points of one node with the same direction and gap: masses are added, bounds averaged by mass; the
+/// smaller gap is used, and the difference is added to its error bound. `shares` records merged points.
+/// Points of moving obstacles, and those whose slip has different reference times, are not merged.
 std::vector<ContactPoint> merge_equal(const std::vector<ContactPoint>& points, const Model& model,
                                       double size, std::vector<PointShare>& shares) {
   std::vector<ContactPoint> merged;
@@ -121,8 +121,8 @@ std::vector<ContactPoint> merge_equal(const std::vector<ContactPoint>& points, c
   return merged;
 }
 
-/// Corners of quadratic facets are no contact points: says so where one stands out towards the obstacle, from
-/// all mid-sides beside it, by this share of the way to them. Under a ball of radius R facets of 0.4 R do.
+/// Corners of quadratic facets are no contact points. Warns if one protrudes towards the obstacle beyond all
+/// adjacent mid-side nodes by this share of their distance, as with facets of 0.4 R under a ball of radius R.
 constexpr double stands_out = 0.1;
 
 void warn_of_corners(Problem& problem, const Faces& faces, std::span<const std::int32_t> facets,
@@ -131,7 +131,8 @@ void warn_of_corners(Problem& problem, const Faces& faces, std::span<const std::
   const Cell& type = cell(mesh.type).facet();
   if (type.order == 1) return;
   struct Corner {
-    double nearest = HUGE_VAL, length = 0.0;  ///< gap of the mid-sides beside it; the edge of that
+    /// Smallest gap of the adjacent mid-side nodes, and the distance to that node.
+    double nearest = HUGE_VAL, length = 0.0;
     Vector3 outer{};
   };
   std::map<std::int32_t, Corner> corners;
@@ -162,7 +163,7 @@ void warn_of_corners(Problem& problem, const Faces& faces, std::span<const std::
   }
 }
 
-/// Nodes at which the rule for equally near faces decides (theory: equal-distance).
+/// Warns about nodes at which the rule for equally near faces decides (theory: equal-distance).
 void warn_of_choices(Problem& problem, std::span<const std::int32_t> nodes, const std::string& path) {
   if (nodes.empty()) return;
   const Mesh& mesh = problem.mesh;
@@ -200,10 +201,10 @@ std::vector<ContactPoint> points_of_entry(Problem& problem, const ContactEntry& 
   double lengths = 0.0;
   const double size = extent(mesh).size;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
-    if (!(mass[k] > 0.0)) continue;  // corners of quadratic facets bear nothing
+    if (!(mass[k] > 0.0)) continue;  // corners of quadratic facets carry no force
     ++candidates;
     std::optional<Facing> facing = faces.at(nodes[k], outer[k]);
-    // What is missed now may be met later.
+    // A node that misses the obstacle now may meet it later.
     if (!facing && entry.relinearise && norm(outer[k]) > 0.0)
       facing = Facing{(1.0 / norm(outer[k])) * outer[k], far_away * size};
     if (!facing) continue;
@@ -243,7 +244,7 @@ std::optional<RowEntry> narrow_row(ContactPoint& point, const NodeFreedom& freed
   if (length < negligible_trace) return std::nullopt;
   point.tangents = 0;
   point.tangent = {};
-  // Gram–Schmidt of the free axes against the trace and each other, the least aligned axis first.
+  // Gram–Schmidt on the free axes against the trace and each other, least aligned axis first.
   std::array<std::size_t, 3> axes{0, 1, 2};
   std::sort(axes.begin(), axes.end(),
             [&](std::size_t a, std::size_t b) { return std::abs(trace[a]) < std::abs(trace[b]); });
@@ -258,7 +259,7 @@ std::optional<RowEntry> narrow_row(ContactPoint& point, const NodeFreedom& freed
       const Vector3& other = point.tangent[k];
       t = t - dot(t, other) * other;
     }
-    // The last free axis is spanned by the trace and the tangents so far.
+    // The last free axis depends on the trace and the tangents found so far.
     if (norm(t) < negligible_trace || point.tangents == 2) continue;
     point.tangent[point.tangents++] = (1.0 / norm(t)) * t;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nodes against obstacles: one producer of constraint rows.
+// Generates constraint rows for nodes against obstacles.
 #pragma once
 
 #include <array>
@@ -10,15 +10,15 @@
 
 namespace kacanov {
 
-/// Fills problem.contact with narrow points, ascending by node; needs held and prescribed. The gap is that of
-/// the undeformed node less what its prescribed components close, so that N·u ≤ ρ holds with the free
-/// components in N alone.
+/// Fills problem.contact with single-node points, ascending by node; needs held and prescribed. The gap is
+/// that of the undeformed node minus the closure by prescribed components, so that N·u ≤ ρ holds with only
+/// the free components in N.
 void find_contact_points(Problem& problem, const Model& model, const Selection& selection);
 
-/// Where a node can move.
+/// The directions in which a node can move.
 struct NodeFreedom {
-  std::array<bool, 3> free{};                ///< components
-  std::span<const HeldDirection> held = {};  ///< directions besides
+  std::array<bool, 3> free{};                ///< free components
+  std::span<const HeldDirection> held = {};  ///< other directions that are prescribed
 
   Vector3 project(Vector3 v) const {
     for (std::size_t c = 0; c < 3; ++c)
@@ -27,8 +27,8 @@ struct NodeFreedom {
   }
 };
 
-/// The row of a node against an obstacle, by the point's normal and where the node can move; fills the
-/// point's tangents where there is friction. Nothing where the node can hardly move along the normal.
+/// Returns the row of a node against an obstacle from the point's normal and the node's free directions; with
+/// friction, fills the point's tangents. Empty if the node can hardly move along the normal.
 std::optional<RowEntry> narrow_row(ContactPoint& point, const NodeFreedom& freedom, bool friction);
 
 }  // namespace kacanov

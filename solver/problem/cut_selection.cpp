@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether the box of an `on` cuts through facets or elements, of which it takes whole ones only.
+// Warns if the box of an `on` cuts through facets or elements, since a box selects whole ones only.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,10 +16,10 @@
 namespace kacanov::validity {
 namespace {
 
-/// Of a facet or element: less of it in the box is rounding.
+/// Share of a facet or element in the box below which the cut is due to rounding.
 constexpr double cut_share = 1e-3;
-/// Cosine of the angle between facets of one smooth face: a box that a face is selected with may well cut the
-/// facets beyond the edge of the body.
+/// Cosine of the angle between facets of one smooth face: a box that selects a face may cut facets beyond the
+/// body's edge without a warning.
 constexpr double smooth = 0.75;
 
 /// A segment, triangle or tetrahedron.
@@ -48,7 +48,7 @@ class ClippingBox {
     }
   }
 
-  /// Whether all lies beyond one side.
+  /// Whether all points lie beyond one side of the box.
   bool misses(std::span<const Vector3> points) const {
     for (std::size_t c = 0; c < dim_; ++c)
       if (std::all_of(points.begin(), points.end(), [&](const Vector3& x) { return x[c] <= lower_[c]; }) ||
@@ -60,7 +60,7 @@ class ClippingBox {
   double inside(const Simplex& simplex) const { return inside(simplex, 0); }
 
  private:
-  /// The part of a simplex behind all sides from the `side`-th on, of 2 dim.
+  /// Measure of the part of a simplex inside all sides from number `side` on, of 2 dim sides.
   double inside(const Simplex& simplex, std::size_t side) const {
     if (side == 2 * dim_) return simplex.measure(axisymmetric_);
     const std::size_t c = side / 2;
@@ -69,7 +69,7 @@ class ClippingBox {
       beyond[k] = side % 2 == 0 ? lower_[c] - simplex.x[k][c] : simplex.x[k][c] - upper_[c];
     return divided(simplex, beyond, side);
   }
-  /// Halves at an edge that goes through the plane until nothing does.
+  /// Bisects the simplex at edges that cross the plane until no part crosses it.
   double divided(const Simplex& simplex, const std::array<double, 4>& beyond, std::size_t side) const {
     const auto end = beyond.begin() + static_cast<std::ptrdiff_t>(simplex.corners);
     const auto in = std::find_if(beyond.begin(), end, [](double d) { return d < 0.0; });
@@ -95,7 +95,7 @@ class ClippingBox {
   Vector3 lower_{}, upper_{};
 };
 
-/// Facets or elements of a mesh as simplices; curved ones by their nodes.
+/// Facets or elements of a mesh as simplices; curved ones are divided at their nodes.
 class Cells {
  public:
   Cells(const Mesh& mesh, bool elements)
@@ -124,7 +124,7 @@ class Cells {
       return sum;
     }
     if (type_.simplex) return measure(Simplex{4, {x[0], x[1], x[2], x[3]}});
-    // Round the diagonal of a hexahedron.
+    // Tetrahedra around the diagonal of a hexahedron.
     constexpr std::array<std::size_t, 7> ring{1, 2, 3, 7, 4, 5, 1};
     for (std::size_t k = 0; k < 6; ++k) sum += measure(Simplex{4, {x[0], x[ring[k]], x[ring[k + 1]], x[6]}});
     return sum;
@@ -142,10 +142,11 @@ Vector3 unit_normal(const Mesh& mesh, std::size_t facet) {
   return norm(sum) > 0.0 ? (1.0 / norm(sum)) * sum : sum;
 }
 
-/// Those of the facets `cut` that continue the selected ones without a sharp edge between.
+/// Returns those of the facets `cut` that continue the selected ones without a sharp edge in between.
 std::vector<std::size_t> continued(const Mesh& mesh, const std::vector<std::size_t>& cut,
                                    std::span<const std::int32_t> selected) {
-  std::map<std::int32_t, std::vector<Vector3>> normals;  // at nodes of cut facets, of the smooth face
+  // At nodes of cut facets: normals of the selected facets there.
+  std::map<std::int32_t, std::vector<Vector3>> normals;
   for (const std::size_t f : cut)
     for (const std::int32_t node : mesh.facet(f)) normals[node];
   const auto add = [&](std::size_t f) {
@@ -181,7 +182,7 @@ std::vector<std::size_t> continued(const Mesh& mesh, const std::vector<std::size
   return found;
 }
 
-/// Two numbers with as many digits as it takes to tell them apart.
+/// Formats two numbers with as many digits as needed to distinguish them.
 std::array<std::string, 2> told_apart(double a, double b) {
   for (int digits = 3; digits < 17; ++digits) {
     const std::array<std::string, 2> text{rounded(a, digits), rounded(b, digits)};

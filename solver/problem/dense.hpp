@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Decompositions of small dense matrices, each of Eigen's compiled once for all rooms of the solver.
+// Decompositions of small dense matrices: compiles each Eigen decomposition once for the whole solver.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace kacanov {
 
-/// The Moore–Penrose inverse of `a` (any shape, empty ones too). Pivots below `threshold` times the largest
-/// are zero.
+/// Returns the Moore–Penrose inverse of `a` (any shape, also empty). Pivots below `threshold` times the
+/// largest count as zero.
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& a, double threshold);
 
 struct SymmetricEigen {
@@ -15,13 +15,13 @@ struct SymmetricEigen {
   Eigen::MatrixXd vectors;  ///< orthonormal columns, in the order of the values
 };
 
-/// Eigenvalues and eigenvectors of a symmetric matrix, of which the lower triangle is read.
+/// Returns eigenvalues and eigenvectors of a symmetric matrix; reads the lower triangle only.
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a);
 
-/// An orthonormal basis of what the columns of `a` span; they have to be independent.
+/// Returns an orthonormal basis of the column space of `a`; the columns must be linearly independent.
 Eigen::MatrixXd orthonormal_basis(const Eigen::MatrixXd& a);
 
-/// The inverse of a square matrix that has one.
+/// Returns the inverse of a regular square matrix.
 Eigen::MatrixXd inverse(const Eigen::MatrixXd& a);
 
 }  // namespace kacanov

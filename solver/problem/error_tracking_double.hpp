@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers of twice double precision that know how far rounding may have taken them (theory: gap-rounding).
+// Double-double arithmetic with running rounding-error bounds (theory: gap-rounding).
 #pragma once
 
 #include <algorithm>
@@ -11,13 +11,13 @@
 
 namespace kacanov {
 
-/// The unevaluated sum of two doubles, with a bound on its distance from what exact arithmetic makes of the
-/// same input.
+/// The unevaluated sum of two doubles, with a bound on its distance from the result of exact arithmetic on
+/// the same input.
 class Tracked {
  public:
   constexpr Tracked() = default;
   constexpr Tracked(double value) : high_(value) {}  // NOLINT: a double is exact
-  /// What a function of the standard library has made of numbers as near to their own.
+  /// The result of a standard library function, with its absolute error bound.
   static Tracked known_to(long double value, long double error) {
     const auto high = static_cast<double>(value);
     Tracked out(high, static_cast<double>(value - static_cast<long double>(high)));
@@ -54,7 +54,7 @@ class Tracked {
     const double least = std::abs(b.high_) - b.error_;
     return rounded(q, least > 0.0 ? (a.error_ + std::abs(q.high_) * b.error_) / least : HUGE_VAL);
   }
-  /// Of what is negative by rounding, 0.
+  /// Square root; 0 for values that rounding has made negative.
   friend Tracked sqrt(const Tracked& a) {
     if (!(a.high_ > 0.0)) return rounded({}, std::sqrt(a.error_ + std::max(-a.high_, 0.0)));
     const double near = std::sqrt(a.high_);
@@ -64,7 +64,7 @@ class Tracked {
   }
 
  private:
-  /// Above what each of these operations loses, 3 to 15 units of 2⁻¹⁰⁶ of its result.
+  /// Upper bound on the rounding error of each operation, which is 3 to 15 units of 2⁻¹⁰⁶ of its result.
   static constexpr double unit = 0x1p-102;
 
   constexpr Tracked(double high, double low) : high_(high), low_(low) {}
@@ -104,7 +104,7 @@ inline Tracked norm(const TrackedVector& v) { return sqrt(dot(v, v)); }
 inline TrackedVector unit(const TrackedVector& v) { return Tracked(1.0) / norm(v) * v; }
 inline TrackedVector unit(const Vector3& v) { return unit(tracked(v)); }
 
-/// `lengths`: those of the case that the gap is a difference of.
+/// `lengths`: sum of the input lengths whose difference is the gap.
 inline Facing facing(const TrackedVector& normal, const Tracked& gap, double lengths) {
   return {values(normal), gap.value(), gap.error(), lengths};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How an obstacle faces the nodes of a mesh, and what lies between them.
+// Projection of mesh nodes, and of points between them, onto an obstacle.
 #include "problem/faces.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace kacanov {
 namespace {
 
-/// Whether obstacles of this kind can be told from where they are met.
+/// Whether this kind of obstacle has a "direction" key that resolves ambiguity.
 template <class Kind>
 constexpr bool has_direction(const Kind&) {
   return requires(const Kind& kind) { kind.direction; };
@@ -57,15 +57,15 @@ std::optional<Facing> Faces::between(const SurfacePoint& point) const {
 
 namespace {
 
-/// Unit vectors and cosines as near to each other as this are the same.
+/// Unit vectors and cosines that differ by less count as equal.
 constexpr double same_direction = 1e-6;
-/// Cosine with the outer normal above which a face looks at the body: that of facet_orientation, the other
-/// way.
+/// Cosine with the outer normal above which a face faces the body: that of facet_orientation with the
+/// opposite sign.
 constexpr double looks_at_body = 0.05;
 
 bool same(const Vector3& a, const Vector3& b) { return norm(a - b) <= same_direction; }
 
-/// By their first components that differ.
+/// Lexicographic order, by the first components that differ.
 bool is_before(const Vector3& a, const Vector3& b) {
   for (std::size_t c = 0; c < 3; ++c)
     if (std::abs(a[c] - b[c]) > same_direction) return a[c] < b[c];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How an obstacle faces the nodes of a mesh, and what lies between them.
+// Projection of mesh nodes, and of points between them, onto an obstacle.
 #pragma once
 
 #include <optional>
@@ -12,18 +12,18 @@
 
 namespace kacanov {
 
-/// Throws InputError with the obstacle's path ("contact[0].obstacle.sphere") where mesh and obstacle do not
-/// go together or its data are not read yet. Both have to outlive it.
+/// Throws InputError with the obstacle's path ("contact[0].obstacle.sphere") if the obstacle does not fit the
+/// mesh or its data are not read yet. Both must outlive it.
 class Faces {
  public:
-  /// `path`: of the contact entry.
+  /// `path`: path of the contact entry.
   Faces(const Mesh& mesh, const Obstacle& obstacle, const std::string& path);
 
   const std::string& path() const noexcept { return path_; }
-  /// Of a node whose outer normal (of any length) is given; nothing where the obstacle is missed. Throws
-  /// InputError where no direction leads out of the obstacle.
+  /// Returns the contact direction and gap of a node with the given outer normal (of any length); empty if
+  /// the node misses the obstacle. Throws InputError if no direction leads out of the obstacle.
   std::optional<Facing> at(std::int32_t node, const Vector3& outer) const;
-  /// The same of a point between nodes, and nothing where no direction leads out.
+  /// The same for a point between nodes; also empty if no direction leads out.
   std::optional<Facing> between(const SurfacePoint& point) const;
 
  private:
@@ -32,15 +32,15 @@ class Faces {
   std::string path_;
 };
 
-/// The direction that is taken, as places in the list of candidates.
+/// The chosen direction, as indices into the list of candidates.
 struct FaceChoice {
-  std::vector<std::size_t> chosen;  ///< one direction, or several whose mean it is
-  bool decides = false;             ///< another choice would have faced the body as well
+  std::vector<std::size_t> chosen;  ///< one direction, or several whose mean is used
+  bool decides = false;             ///< whether another choice would also have faced the body
 };
 
-/// Of unit directions from a point towards its equally near faces: the one along the body's outer normal
-/// most; of those that are as much so all, to be averaged, or where they cancel the last in the order of
-/// their components.
+/// Chooses from the unit directions towards equally near faces the one closest to the body's outer normal. Of
+/// equally close ones it returns all, to be averaged, or, if they cancel, the last one in the order of their
+/// components.
 FaceChoice choose_face(std::span<const Vector3> directions, const Vector3& outer);
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Heights on a grid, bilinear in between.
+// Heights on a grid, with bilinear interpolation.
 #include <kacanov/height_field.hpp>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ std::optional<HeightField::Height> HeightField::at(double x, double y) const {
   const double high = (1 - share[0]) * value(i, j + 1) + share[0] * value(i + 1, j + 1);
   const auto [least, most] =
       std::minmax({value(i, j), value(i + 1, j), value(i, j + 1), value(i + 1, j + 1)});
-  // A place among n points is known to some n units of rounding.
+  // The position among n points has a rounding error of some n units.
   const auto widest = static_cast<double>(std::max(rows, columns));
   return Height{(1 - share[1]) * low + share[1] * high,
                 1e-15 * (std::max(std::abs(least), std::abs(most)) + widest * (most - least))};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Guesses what a mistyped word was meant to be.
+// Suggestions for mistyped words by edit distance.
 #include "problem/input_errors.hpp"
 
 #include <algorithm>
@@ -28,7 +28,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 std::string closest_word(const std::string& word, std::span<const std::string> candidates) {
   std::string best;
-  // Two edits at least, as a transposition counts two.
+  // At least two edits, because a transposition counts as two.
   std::size_t least = (word.size() > 2 ? std::max<std::size_t>(2, word.size() / 3) : 1) + 1;
   for (const std::string& candidate : candidates) {
     const std::size_t distance = edit_distance(word, candidate);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All that is wrong with an input, said in one go, and what a mistyped word was meant to be.
+// Reports all mistakes of an input in one error, and suggests corrections for mistyped words.
 #pragma once
 
 #include <span>
@@ -11,10 +11,10 @@
 
 namespace kacanov {
 
-/// Several mistakes: the message has a line for each of the first ten.
+/// Several mistakes; the message has one line for each of the first ten.
 class InputErrors : public InputError {
  public:
-  /// `where`: what has them, as a file's name.
+  /// `where`: the source of the mistakes, such as a file name.
   explicit InputErrors(std::vector<std::string> mistakes, const std::string& where = "the case")
       : InputError(text(mistakes, where)), mistakes_(std::move(mistakes)) {}
   const std::vector<std::string>& mistakes() const noexcept { return mistakes_; }
@@ -31,7 +31,7 @@ class InputErrors : public InputError {
   std::vector<std::string> mistakes_;
 };
 
-/// Checks go on where one of them throws an InputError.
+/// Collects mistakes, so that later checks still run after one throws an InputError.
 class Mistakes {
  public:
   template <class Check>
@@ -49,7 +49,7 @@ class Mistakes {
       if (other == mistake) return;
     all_.push_back(mistake);
   }
-  /// Throws an InputError where there is one, InputErrors where there are several.
+  /// Throws InputError for one mistake, InputErrors for several.
   void raise() const {
     if (all_.size() == 1) throw InputError(all_[0]);
     if (!all_.empty()) throw InputErrors(all_);
@@ -59,7 +59,7 @@ class Mistakes {
   std::vector<std::string> all_;
 };
 
-/// Several mistakes are those of this file.
+/// Runs `work` and attributes several mistakes to this file.
 template <class Work>
 void naming_file(const std::string& file, const Work& work) {
   try {
@@ -69,7 +69,7 @@ void naming_file(const std::string& file, const Work& work) {
   }
 }
 
-/// The candidate closest to a mistyped word, or an empty string when none is near.
+/// Returns the candidate closest to a mistyped word, or an empty string if none is close.
 std::string closest_word(const std::string& word, std::span<const std::string> candidates);
 
 }  // namespace kacanov

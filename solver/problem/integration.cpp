@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Integrals of shape functions over facets and elements: what loads and contact masses are made of.
+// Integrals of shape functions over facets and elements, for loads and contact mass.
 #include "problem/integration.hpp"
 
 #include <numbers>
@@ -25,7 +25,7 @@ constexpr std::array<std::array<double, 2>, 4> gauss4{{{-0.86113631159405257522,
                                                        {0.33998104358485626480, 0.65214515486254614263},
                                                        {0.86113631159405257522, 0.34785484513745385737}}};
 
-/// Products of two-point rules over a line, a square or a cube: degree 3 in each direction.
+/// Tensor product of two-point Gauss rules on a line, square or cube: degree 3 in each direction.
 std::vector<Point> tensor_rule(int dim) {
   std::vector<Point> rule{{{0.0, 0.0, 0.0}, 1.0}};
   for (std::size_t c = 0; c < static_cast<std::size_t>(dim); ++c) {
@@ -42,7 +42,7 @@ std::vector<Point> tensor_rule(int dim) {
   return rule;
 }
 
-/// The cube's four-point rules collapsed onto the unit simplex: degree 5 in 3D, 6 in 2D.
+/// Four-point Gauss rules of the cube collapsed onto the unit simplex: degree 5 in 3D, 6 in 2D.
 std::vector<Point> simplex_rule(int dim) {
   std::vector<Point> rule;
   for (const auto& [gu, wu] : gauss4) {
@@ -62,8 +62,8 @@ std::vector<Point> simplex_rule(int dim) {
   return rule;
 }
 
-/// A rule that is exact for loads of constant density on cells whose faces are flat. Linear simplices do
-/// with one point: there the mean stands for any rule.
+/// Returns a rule that is exact for loads of constant density on cells with flat faces. One point suffices
+/// for linear simplices, where the centroid value replaces any rule.
 const std::vector<Point>& rule_for(const Cell& cell, PlaneState plane) {
   static const std::vector<Point> tensor[] = {tensor_rule(1), tensor_rule(2), tensor_rule(3)};
   static const std::vector<Point> simplex[] = {simplex_rule(2), simplex_rule(3)};
@@ -74,7 +74,8 @@ const std::vector<Point>& rule_for(const Cell& cell, PlaneState plane) {
   return cell.order == 1 && plane != PlaneState::axisymmetric ? mean[dim - 2] : simplex[dim - 2];
 }
 
-/// What a point of the section stands for: in axisymmetric bodies a circle (theory: axisymmetry).
+/// Returns the length of the circle that a section point represents in axisymmetric bodies, else 1 (theory:
+/// axisymmetry).
 double circle(const Mesh& mesh, std::span<const std::int32_t> nodes, const Shapes& shapes) {
   if (mesh.plane != PlaneState::axisymmetric) return 1.0;
   double r = 0.0;
@@ -82,12 +83,12 @@ double circle(const Mesh& mesh, std::span<const std::int32_t> nodes, const Shape
   return 2.0 * std::numbers::pi * r;
 }
 
-/// Outer normal times the area of a flat triangle.
+/// Outer normal times area of a flat triangle.
 Vector3 area_vector(const Vector3& a, const Vector3& b, const Vector3& c) {
   return 0.5 * cross(b - a, c - a);
 }
 
-/// Outer normal of a facet times its area over that of the reference cell, at a point with these shapes.
+/// Outer normal of a facet times the area ratio to the reference cell, at a point with these shape functions.
 Vector3 normal_at(const Mesh& mesh, std::span<const std::int32_t> nodes, const Shapes& shapes) {
   Vector3 along{}, across{};
   for (std::size_t k = 1; k < nodes.size(); ++k) {
@@ -99,7 +100,7 @@ Vector3 normal_at(const Mesh& mesh, std::span<const std::int32_t> nodes, const S
   return mesh.dim() == 2 ? Vector3{along[1], -along[0], 0.0} : cross(along, across);
 }
 
-/// Derivatives of the position along the reference coordinates; across the plane 1.
+/// Derivatives of the position with respect to the reference coordinates; 1 across the plane.
 std::array<Vector3, 3> jacobian_at(const Mesh& mesh, std::span<const std::int32_t> nodes,
                                    const Shapes& shapes) {
   std::array<Vector3, 3> jacobian{};
@@ -125,7 +126,7 @@ FacetWeights consistent_weights(const Mesh& mesh, std::size_t facet) {
   FacetWeights weights;
   const auto nodes = mesh.facet(facet);
   const Cell& type = cell(mesh.type).facet();
-  if (type.simplex && type.order == 1) {  // triangles: by far the most frequent, and constant
+  if (type.simplex && type.order == 1) {  // by far the most frequent type, and constant
     const Vector3 third = (1.0 / 3.0) * area_vector(position(mesh, nodes[0]), position(mesh, nodes[1]),
                                                     position(mesh, nodes[2]));
     for (std::size_t k = 0; k < 3; ++k) {
@@ -148,7 +149,7 @@ FacetWeights consistent_weights(const Mesh& mesh, std::size_t facet) {
 FacetWeights lumped_weights(const Mesh& mesh, std::size_t facet) {
   const Cell& type = cell(mesh.type).facet();
   if (type.order == 1) return consistent_weights(mesh, facet);
-  // The rule of the mid-sides: exact for what is quadratic, so that each weighs what it does in an even load.
+  // Mid-side rule, exact for quadratic functions: each node gets its weight in a uniform load.
   FacetWeights weights;
   const auto nodes = mesh.facet(facet);
   for (const CellEdge& edge : type.edges) {
@@ -184,7 +185,7 @@ std::array<Vector3, most_nodes> gradient_weights(const Mesh& mesh, std::size_t e
     const Shapes shapes = shapes_at(type, at);
     const std::array<Vector3, 3> jacobian = jacobian_at(mesh, nodes, shapes);
     const double each = type.weight * (at_corners.empty() ? 1.0 : linear_between(type, at_corners, at));
-    // Gradients in space times the determinant.
+    // Spatial gradients times the determinant.
     const std::array<Vector3, 3> dual{cross(jacobian[1], jacobian[2]), cross(jacobian[2], jacobian[0]),
                                       cross(jacobian[0], jacobian[1])};
     const double weight = circle(mesh, nodes, shapes) * each;
@@ -192,7 +193,7 @@ std::array<Vector3, most_nodes> gradient_weights(const Mesh& mesh, std::size_t e
       for (std::size_t c = 0; c < static_cast<std::size_t>(type.dim); ++c)
         weights[k] = weights[k] + weight * shapes.gradient[k][c] * dual[c];
     if (mesh.plane != PlaneState::axisymmetric) continue;
-    // The hoop strain's part: N/r over the volume.
+    // Contribution of the hoop strain: N/r over the volume.
     const double area = 2.0 * std::numbers::pi * each * dot(jacobian[0], dual[0]);
     for (std::size_t k = 0; k < n; ++k) weights[k][0] += area * shapes.value[k];
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Integrals of shape functions over facets and elements: what loads and contact masses are made of.
+// Integrals of shape functions over facets and elements, for loads and contact mass.
 #pragma once
 
 #include <array>
@@ -10,31 +10,32 @@
 
 namespace kacanov {
 
-// Of axisymmetric meshes integrals go all round the axis (theory: axisymmetry), and those of ∇N are the
-// volume change of unit displacements.
+// On axisymmetric meshes all integrals cover the full revolution (theory: axisymmetry), and those of ∇N are
+// the volume change of unit displacements.
 
-/// One entry a node of a facet, in the facet's order; the rest is unused.
+/// One entry per node of a facet, in the facet's order; the other entries are unused.
 struct FacetWeights {
   std::array<double, most_facet_nodes> area{};     ///< ∫ Nᵢ dS (a length in 2D)
   std::array<Vector3, most_facet_nodes> normal{};  ///< ∫ Nᵢ n dS, n the outer normal
 };
 
-/// Consistent weights: exact for planar facets, and for `normal` on curved ones too.
+/// Returns consistent weights: exact for planar facets, and for `normal` also on curved facets.
 FacetWeights consistent_weights(const Mesh& mesh, std::size_t facet);
 
-/// Weights of the lumped contact mass (theory: contact-mass). For linear facets they are the consistent ones;
-/// of the six-node triangle the mid-sides have a third each, as in the consistent load, and the corners none.
+/// Returns the weights of the lumped contact mass (theory: contact-mass): the consistent ones for linear
+/// facets; for the six-node triangle a third of the area at each mid-side node and none at the corners, as in
+/// the consistent load.
 FacetWeights lumped_weights(const Mesh& mesh, std::size_t facet);
 
-/// ∫ f ∇Nᵢ dV by the points of the stiffness, one entry a node of the element; f is linear between its values
-/// at the corners, 1 where there are none.
+/// Returns ∫ f ∇Nᵢ dV with the quadrature points of the stiffness, one entry per node of the element. f is
+/// linear between its values at the corners, and 1 if none are given.
 std::array<Vector3, most_nodes> gradient_weights(const Mesh& mesh, std::size_t element,
                                                  std::span<const double> at_corners = {});
 
-/// The mean of f over the element by the same points.
+/// Returns the mean of f over the element with the same quadrature points.
 double mean_by_points(const Mesh& mesh, std::size_t element, std::span<const double> at_corners);
 
-/// ∫ Nᵢ dV (an area in 2D), one entry a node of the element.
+/// Returns ∫ Nᵢ dV (an area in 2D), one entry per node of the element.
 std::array<double, most_nodes> volume_weights(const Mesh& mesh, std::size_t element);
 
 }  // namespace kacanov

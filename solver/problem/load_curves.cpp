@@ -11,7 +11,7 @@
 namespace kacanov {
 namespace {
 
-/// The factor of the entry of that name, or at that place; null where there is none.
+/// Returns the factor of the entry with that name or place; null if no entry matches.
 double* factor_of(const Model& model, LoadFactors& factors, const std::string& name) {
   const auto in = [&](const auto& entries, auto unnamed, std::vector<double>& values) -> double* {
     for (std::size_t i = 0; i < values.size(); ++i)
@@ -22,7 +22,7 @@ double* factor_of(const Model& model, LoadFactors& factors, const std::string& n
   return in(model.contact, ContactEntry(), factors.contact);
 }
 
-/// Of an entry's factors over all steps those that rounding alone leaves, as of sin π, are made 0.
+/// Sets factors to 0 that are rounding errors relative to the entry's largest, such as that of sin π.
 template <class Entries>
 void clear_rounding(std::vector<LoadFactors>& curves, std::vector<double> LoadFactors::*values,
                     const Entries& entries) {

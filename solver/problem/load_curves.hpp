@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Load curves of a model, entry by entry.
+// Load curves of a model: the factor of each entry over time.
 #pragma once
 
 #include <string>
@@ -9,14 +9,15 @@
 
 namespace kacanov {
 
-/// The curves from the time 0, where the entries that some step names have the factor 0; empty without steps.
-/// Throws InputError for a name that no entry has, and where all factors of an entry are next to nothing.
+/// Returns the curves from time 0 on, where entries that any step names start at factor 0; empty without
+/// steps. Throws InputError for a name that no entry has, and if all factors of an entry are below 1e-15.
 std::vector<LoadFactors> load_curves(const Model& model);
 
-/// Factors between the points of the curves; before the first and behind the last, theirs.
+/// Returns the factors at `time`, linear between the points of the curves and constant before the first and
+/// after the last.
 LoadFactors factors_at(const std::vector<LoadFactors>& curves, double time);
 
-/// What a boundary entry is multiplied by has the same course as that of another.
+/// Whether two boundary entries have the same factors at all points of the curves.
 bool same_course(const std::vector<LoadFactors>& curves, std::size_t entry, std::size_t other);
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is wrong with a value of the model, said in the words of the case file.
+// Checks of single model values, with errors that cite their path in the case file.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace kacanov {
 
-/// The shortest text that is the same number.
+/// Returns the shortest text that reads back as the same number.
 inline std::string shown(double value) {
   std::array<char, 32> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
@@ -52,7 +52,7 @@ inline void check_direction(const std::string& path, const Vector3& v) {
   if (v == Vector3{}) refuse(path, "a vector that is not zero", shown_list(v));
 }
 
-/// Orthogonal axes of any length.
+/// Checks that the axes are orthogonal; they may have any length.
 inline void check_axes(const std::string& path, const std::array<Vector3, 3>& axes) {
   for (std::size_t a = 0; a < 3; ++a) {
     check_direction(at(path, a), axes[a]);

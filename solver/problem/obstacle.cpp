@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Obstacles in closed form: what is wrong with one, and how it is seen from a point (theory: traces).
+// Parameter checks and projections of obstacles in closed form (theory: traces).
 #include <kacanov/obstacle.hpp>
 
 #include <algorithm>
@@ -17,13 +17,13 @@
 namespace kacanov {
 namespace {
 
-/// What double precision leaves of a length that was computed from lengths as long as this, in some steps.
+/// Relative rounding error of a length computed in a few steps from lengths of this size.
 constexpr double some_roundings = 1e-15;
 
-/// Whether a vector of this length leads anywhere that can be told.
+/// Whether a vector of this length has a significant direction.
 bool leads_somewhere(const Tracked& length) { return length.value() > 1e12 * length.error(); }
 
-/// Of a round thing whose middle is `to_middle` away.
+/// Projects onto a sphere or circle whose centre is at `to_middle` from the point.
 Facing round(const TrackedVector& to_middle, double radius, bool inside) {
   const Tracked distance = norm(to_middle);
   if (!leads_somewhere(distance)) return Facing::from_everywhere();
@@ -31,30 +31,30 @@ Facing round(const TrackedVector& to_middle, double radius, bool inside) {
   return facing(side / distance * to_middle, side * (distance - radius), distance.value() + radius);
 }
 
-/// Of the extent of a surface. A point so close to it has no digits to tell a direction with.
+/// Relative to the extent of a surface: direction vectors of closer points have no significant digits.
 constexpr double on_surface = 1e-9;
-/// Faces whose distances differ by less are equally near: their corners are known no better in single
-/// precision.
+/// Relative to the extent: faces whose distances differ by less are equally near, because single-precision
+/// files resolve their corners no better.
 constexpr double equally_near = 1e-7;
 
-/// Directions and cosines that are nearer to each other are one.
+/// Directions and cosines that differ by less count as equal.
 constexpr double one_direction = 1e-6;
 
-/// How one triangle of a surface is seen.
+/// Projection onto one triangle of a surface.
 struct SeenTriangle {
   Facing facing;
   bool by_plane = false;  ///< along its normal
 };
 
-/// By the closest point or, of a point that is on the surface or above the inside of the triangle, by the
-/// plane.
+/// Projects onto the closest point, or onto the plane if the point is on the surface or above the inside of
+/// the triangle.
 std::optional<SeenTriangle> seen_triangle(const Surface::Closest& closest, bool touches) {
   const Vector3& offset = closest.way;
   const double above = -dot(offset, closest.face), distance = norm(offset);
   if (touches) return SeenTriangle{{-1.0 * closest.face, above}, true};
   if (closest.normal == Vector3{}) return std::nullopt;
   const double along = -dot(offset, closest.normal);
-  // Beyond the border of a surface that is open there is nothing to touch.
+  // Beyond the border of an open surface there is nothing to touch.
   if (closest.border && norm(offset + along * closest.normal) > one_direction * distance) return std::nullopt;
   const double side = along >= 0.0 ? 1.0 : -1.0;
   if (norm(offset + above * closest.face) <= one_direction * distance)
@@ -62,8 +62,8 @@ std::optional<SeenTriangle> seen_triangle(const Surface::Closest& closest, bool 
   return SeenTriangle{{side / distance * offset, side * distance}, false};
 }
 
-/// One of each direction, that with the least gap; along the mean of the planes' normals where there are
-/// some. Which of equal triangles comes first is an accident of rounding.
+/// Returns one projection per direction, that with the least gap; plane projections take the mean of their
+/// normals. The result does not depend on the order of equal triangles, which rounding decides.
 std::vector<Facing> one_of_each_direction(std::vector<SeenTriangle> seen) {
   std::stable_sort(seen.begin(), seen.end(),
                    [](const SeenTriangle& a, const SeenTriangle& b) { return a.facing.gap < b.facing.gap; });
@@ -94,8 +94,8 @@ std::vector<Facing> one_of_each_direction(std::vector<SeenTriangle> seen) {
   return out;
 }
 
-/// One way of several about equally long ones; along a mean of directions it is the way to the first of their
-/// faces' planes.
+/// Returns the chosen projection of several equally near ones; along a mean of directions it leads to the
+/// first of their faces' planes.
 Facing facing_of_choice(const std::vector<Facing>& equal, const FaceChoice& choice) {
   Facing found = equal[choice.chosen.front()];
   if (choice.chosen.size() > 1) {
@@ -119,7 +119,7 @@ void check_sides(const std::string& path, const std::optional<Vector3>& directio
     throw InputError(path + ".direction: expected no direction beside \"inside\": true");
 }
 
-/// Where a t² + 2 b t + c falls through zero, being negative within; nothing where it does not.
+/// Returns the first root of a t² + 2 b t + c, where it becomes negative; empty if it has none.
 std::optional<Tracked> first_root(const Tracked& a, const Tracked& b, const Tracked& c) {
   const Tracked inside = b * b - a * c;
   if (!(a.value() > 0.0) || inside.value() < 0.0) return std::nullopt;
@@ -182,7 +182,7 @@ void Cone::check(const std::string& path) const {
 }
 
 Facing Cone::project(const SurfacePoint& from) const {
-  // Sine and cosine are known to long double.
+  // Sine and cosine are accurate to long double.
   constexpr long double pi = 3.141592653589793238462643383279502884L;
   constexpr long double known = 4 * std::numeric_limits<long double>::epsilon();
   const long double angle = static_cast<long double>(half_angle) * pi / 180;
@@ -193,20 +193,22 @@ Facing Cone::project(const SurfacePoint& from) const {
   const TrackedVector out = x - height * along;
   const Tracked radius = norm(out);
   if (direction) {
-    // Within, cos²|y|² − (y·a)² is negative for y from the apex; so it is in the cone's mirror image.
+    // Inside the cone, and inside its mirror image, cos²|y|² − (y·a)² is negative for y measured from the
+    // apex.
     const TrackedVector way = unit(*direction);
     const Tracked steep = dot(way, along), cosine2 = cosine * cosine;
     const Tracked a = cosine2 - steep * steep, b = cosine2 * dot(x, way) - height * steep,
                   c = cosine2 * radius * radius - sine * sine * height * height;
     const Tracked within = b * b - a * c;
     if (within.value() < 0.0) return Facing::nothing();
-    // The root where it falls is where the ray enters, written so that nothing cancels and a may be 0.
+    // The root at which the sign becomes negative is the entry point; this form avoids cancellation and
+    // allows a = 0.
     const Tracked root = sqrt(within);
     const Tracked way_in = b.value() > 0.0 ? -(b + root) / a : c / (root - b);
     if (!std::isfinite(way_in.value()) || (height + way_in * steep).value() < 0.0) return Facing::nothing();
     return facing(way, way_in, norm(x).value());
   }
-  if ((height * cosine + radius * sine).value() <= 0.0) {  // nothing is nearer than the apex
+  if ((height * cosine + radius * sine).value() <= 0.0) {  // the apex is the nearest point
     const Tracked distance = norm(x);
     if (!(distance.value() > 0.0)) return facing(along, 0.0, 0.0);
     return facing(Tracked(-1.0) / distance * x, distance, 0.0);
@@ -247,7 +249,7 @@ Facing SurfaceObstacle::project(const SurfacePoint& from) const {
   for (const Surface::Closest& one : surface->within(from.x, reach)) {
     std::optional<SeenTriangle> triangle = seen_triangle(one, touches);
     if (!triangle) continue;
-    // The closest point is computed from corners that may be as far off as the surface is large.
+    // The closest point is computed from corners whose coordinates may be as large as the surface.
     triangle->facing.unknown = some_roundings * (norm(from.x) + norm(one.point) + extent);
     seen.push_back(*triangle);
   }

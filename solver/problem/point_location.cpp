@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Finds the element that a point lies in.
+// Locates points in the elements of a mesh.
 #include "problem/point_location.hpp"
 
 #include <Eigen/Dense>
@@ -17,11 +17,11 @@
 namespace kacanov {
 namespace {
 
-/// Rounding leaves points of shared facets this far outside of both elements, in reference coordinates.
+/// Rounding moves points of shared facets this far outside both elements, in reference coordinates.
 constexpr double rounding = 1e-9;
 
-/// How far all of an element reaches along axis c. Edges with a node in their middle are parabolas: what they
-/// bound lies within the convex hull of the corners and of the edges' Bézier points, 2 m − (a + b)/2.
+/// Returns bounds of an element along axis c. Edges with a mid-side node are parabolas: the element lies
+/// within the convex hull of the corners and the edges' Bézier points, 2 m − (a + b)/2.
 std::pair<double, double> reach(const MeshView& mesh, std::span<const std::int32_t> nodes, std::size_t c) {
   const Cell& type = cell(mesh.type);
   const std::size_t dim = type.dim;
@@ -38,7 +38,7 @@ std::pair<double, double> reach(const MeshView& mesh, std::span<const std::int32
   return {low - margin, high + margin};
 }
 
-/// Reference coordinates of x in the simplex of the element's corners.
+/// Returns the reference coordinates of x in the simplex of the element's corners.
 Vector3 by_corners(const MeshView& mesh, std::span<const std::int32_t> nodes, const Vector3& x) {
   const std::size_t dim = dimension(mesh.type);
   const Vector3 origin = position(mesh, nodes[0]), far = x - origin;
@@ -68,7 +68,7 @@ std::optional<Vector3> reference_point(const MeshView& mesh, std::span<const std
     Vector3 miss = far;
     for (std::size_t k = 1; k < nodes.size(); ++k)
       miss = miss - shapes.value[k] * (position(mesh, nodes[k]) - origin);
-    if (norm(miss) <= 1e-14 * length) return at;  // at once where all edges are straight
+    if (norm(miss) <= 1e-14 * length) return at;  // already in the first step if all edges are straight
     Eigen::Matrix3d jacobian = Eigen::Matrix3d::Zero();
     for (std::size_t k = 1; k < nodes.size(); ++k) {
       const Vector3 side = position(mesh, nodes[k]) - origin;
@@ -95,7 +95,7 @@ double outside(const Cell& type, const Vector3& at) {
 
 bool near_element(const MeshView& mesh, std::span<const std::int32_t> nodes, const Vector3& x) {
   for (std::size_t c = 0; c < static_cast<std::size_t>(dimension(mesh.type));
-       ++c)  // most are off in the first
+       ++c)  // most are outside in the first
     if (const auto [low, high] = reach(mesh, nodes, c); x[c] < low || x[c] > high) return false;
   return true;
 }
@@ -120,7 +120,7 @@ PointLocator::PointLocator(const MeshView& mesh) : mesh_(mesh) {
       all.high[c] = std::max(all.high[c], box.high[c]);
     }
   low_ = all.low;
-  // A box for four elements: an element then lies in eight boxes at most where all are alike.
+  // One box per four elements: in a uniform mesh an element then overlaps at most eight boxes.
   double volume = 1.0;
   for (std::size_t c = 0; c < dim; ++c) volume *= all.high[c] - all.low[c];
   const double width = std::pow(4.0 * volume / elements, 1.0 / static_cast<double>(dim));
@@ -167,7 +167,7 @@ PointLocator::Place PointLocator::find(const Vector3& x) const {
   for (std::int64_t ring = 0, last = rings; ring <= last && least > rounding; ++ring) {
     const bool had = best.has_value();
     search_ring(x, {ring, false}, least, best);
-    if (best && !had) last = std::min(rings, ring + 1);  // a nearer one may lie in the next
+    if (best && !had) last = std::min(rings, ring + 1);  // the next ring may contain a nearer one
   }
   return best ? *best : Place{};
 }
@@ -192,7 +192,7 @@ void PointLocator::search_ring(const Vector3& x, const Ring& where, double& leas
         for (std::int64_t m = start_[box]; m < start_[box + 1]; ++m) {
           const auto of = nodes(element_[m]);
           if (only_near && !bounds_[element_[m]].has(x, dimension(mesh_.type))) continue;
-          // What is far outside of the corners' simplex is not the nearest with its curves either.
+          // A point far outside the simplex of the corners is not nearest to the curved element either.
           if (!only_near && type.simplex && outside(type, by_corners(mesh_, of, x)) > 2.0 * least + 1.0)
             continue;
           const std::optional<Vector3> at = reference_point(mesh_, of, x);

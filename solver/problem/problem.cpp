@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Puts a model on a mesh, step by step, and checks that what results can be solved.
+// Builds a problem from mesh and model step by step, and checks that it can be solved.
 #include <kacanov/problem.hpp>
 
 #include <algorithm>
@@ -23,13 +23,13 @@
 
 namespace kacanov {
 
-/// One Probe a point of model.probes. Points off the body by less than 1e-6 of an element are taken to lie on
-/// its boundary; any other outside point is an InputError that names the nearest node.
+/// Returns one Probe per point of model.probes. Points outside the body by less than 1e-6 of an element count
+/// as on its boundary; for any other outside point throws InputError that names the nearest node.
 std::vector<Probe> locate_probes(const Mesh& mesh, const Model& model);
 
 namespace {
 
-/// How far outside its element a point may lie, in reference coordinates.
+/// Tolerance for points outside their element, in reference coordinates.
 constexpr double probe_slack = 1e-6;
 
 std::string outside_message(const Mesh& mesh, std::size_t index, const Vector3& x) {
@@ -81,7 +81,7 @@ std::vector<Probe> locate_probes(const Mesh& mesh, const Model& model) {
 
 namespace {
 
-/// Squares of forces and products of four lengths are to fit in a double, with the digits of a residual.
+/// Squares of forces and products of four lengths must fit in a double, with the digits of a residual.
 void refuse_out_of_range(const std::string& what, double value) {
   constexpr double least = 1e-45, most = 1e45;
   if (!std::isfinite(value) || (value >= least && value <= most)) return;
@@ -97,7 +97,7 @@ const char* name_of(PlaneState plane) {
                                              : "plane strain";
 }
 
-/// Puts the mesh under the model's plane; nodes next to the axis move onto it.
+/// Sets the mesh's plane state from the model; moves nodes next to the axis onto it.
 void set_plane(Mesh& mesh, const Model& model) {
   const PlaneState plane = model.plane;
   if (mesh.plane != PlaneState::strain && mesh.plane != plane)
@@ -127,7 +127,7 @@ void set_plane(Mesh& mesh, const Model& model) {
 
 namespace {
 
-/// Every `on` that selects nothing, as the first that does ends the building of a problem.
+/// Collects every `on` that selects nothing, because building the problem stops at the first one.
 void note_empty_selections(const Model& model, const Selection& selection, Mistakes& mistakes) {
   for (std::size_t i = 0; i < model.materials.size(); ++i)
     mistakes.in([&] { selection.elements(model.materials[i].on, at("material", i)); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which rigid motions nothing holds, and where contact brings such a body to rest.
+// Detection of unconstrained rigid-body modes, and rest positions of bodies held by contact only.
 #include "problem/rigid_modes.hpp"
 
 #include <Eigen/QR>
@@ -19,16 +19,16 @@ namespace {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-/// A mode is free when the constraints see less than this of it (the square root: singular values of the
-/// scaled rows).
+/// A mode is free if its constraint energy relative to the stiffest mode is below this (singular values of
+/// the scaled rows: below its square root).
 constexpr double free_below = 1e-12;
-/// A load that leaves less than this of its forces is in balance by itself, up to rounding.
+/// A load whose resultant is below this share of its forces is self-equilibrated, up to rounding.
 constexpr double rounded_load = 1e-11;
 
-/// Normals of supports of which less than this is left beside the others span nothing more.
+/// A support normal with a smaller independent component adds nothing to the span of the others.
 constexpr double dependent_normals = 1e-12;
 
-/// One piece of the mesh whose elements hang together through nodes.
+/// One connected component of the mesh: elements connected by nodes.
 struct Piece {
   std::int64_t nodes = 0, elements = 0;
   std::size_t first_element = 0;
@@ -38,8 +38,8 @@ struct Piece {
   Matrix6 by_contact = Matrix6::Zero();
 };
 
-/// What a force along `direction` at x does on the modes: rotations (about the piece's centre, scaled
-/// by its radius) first, so that reduction names them first, then translations.
+/// Work of a force along `direction` at x on the modes: rotations (about the piece's centre, scaled by its
+/// radius) come first, so that reduction names them first, then translations.
 Vector6 row(const Piece& piece, const Vector3& x, const Vector3& direction) {
   const Vector3 turn = (1.0 / piece.radius) * cross(x - piece.centre, direction);
   Vector6 values;
@@ -47,7 +47,7 @@ Vector6 row(const Piece& piece, const Vector3& x, const Vector3& direction) {
   return values;
 }
 
-/// Pieces, and the piece of every node.
+/// Returns the pieces, and the piece of every node.
 std::vector<Piece> find_pieces(const Mesh& mesh, std::vector<std::int32_t>& piece_of_node) {
   const MeshPieces found = connected_pieces(mesh);
   piece_of_node = found.of_node;
@@ -74,16 +74,16 @@ std::vector<Piece> find_pieces(const Mesh& mesh, std::vector<std::int32_t>& piec
 
 void add_row(Matrix6& gram, const Vector6& values) { gram.noalias() += values * values.transpose(); }
 
-/// What the normal and the tangents of a contact point do on the modes of its piece.
+/// Returns the work of a contact point's normal and tangents on the modes of its piece.
 std::array<Vector6, 3> point_rows(const Problem& problem, const Piece& piece, std::size_t i,
                                   std::span<const std::int32_t> piece_of_node) {
   const auto home = [&](std::int32_t node) { return piece_of_node[node]; };
   std::array<Vector6, 3> sums{Vector6::Zero(), Vector6::Zero(), Vector6::Zero()};
   for (const RowEntry& entry : problem.contact.entries(i)) {
-    // What another piece has of the row counts as standing still.
+    // Entries on nodes of another piece count as fixed.
     if (home(entry.node) != home(problem.contact[i].node)) continue;
     const Vector3 x = position(problem.mesh, entry.node);
-    // The whole normal: what is held of it is in the displacements' rows already.
+    // The whole normal: its prescribed components are also in the displacement rows.
     sums[0] += row(piece, x, entry.normal);
     for (std::size_t k = 0; k < 2; ++k) sums[k + 1] += row(piece, x, entry.tangent[k]);
   }
@@ -123,9 +123,10 @@ void collect_rows(const Problem& problem, std::vector<Piece>& pieces,
   }
 }
 
-/// Free modes as rows, in reduced echelon form: axis-aligned motions come out as such.
+/// Returns the free modes as rows in reduced echelon form, so that axis-aligned motions appear as such.
 Eigen::MatrixXd free_modes(const Matrix6& gram, const Mesh& mesh) {
-  // In the plane: rotation about z, translations along x and y; round an axis the one along it.
+  // In the plane: rotation about z, translations along x and y; axisymmetric: only the translation along the
+  // axis.
   const std::vector<Eigen::Index> kept = mesh.dim() == 3 ? std::vector<Eigen::Index>{0, 1, 2, 3, 4, 5}
                                          : mesh.plane == PlaneState::axisymmetric
                                              ? std::vector<Eigen::Index>{4}
@@ -157,7 +158,7 @@ Eigen::MatrixXd free_modes(const Matrix6& gram, const Mesh& mesh) {
   return modes;
 }
 
-/// "x", or "(0.6, 0.8, 0)" for a direction off the axes.
+/// Returns "x", or "(0.6, 0.8, 0)" for a direction not along an axis.
 std::string direction_name(Vector3 direction, int dim) {
   direction = (1.0 / norm(direction)) * direction;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -167,12 +168,13 @@ std::string direction_name(Vector3 direction, int dim) {
   return to_text(direction, dim);
 }
 
-/// The motion of one mode in words, with the axis through the point nearest to the centre.
+/// Describes the motion of a mode in words; the axis is given by its point nearest to the centre.
 std::string describe(const Piece& piece, const Eigen::VectorXd& mode, int dim) {
   const Vector3 turn{mode[0], mode[1], mode[2]};
   const Vector3 shift{mode[3] * piece.radius, mode[4] * piece.radius, mode[5] * piece.radius};
   if (norm(turn) < 1e-6) return "translation along " + direction_name(shift, dim);
-  constexpr double far_off = 100.0;  // of the piece's size: an axis there tells less than the way it goes
+  // In piece sizes: for an axis farther away the direction of motion is more informative.
+  constexpr double far_off = 100.0;
   if (norm(shift) > far_off * piece.radius * norm(turn))
     return "translation along " + direction_name(shift, dim) + " with next to no rotation";
   const double squared = dot(turn, turn);
@@ -193,14 +195,14 @@ std::string list_modes(const Piece& piece, const Eigen::MatrixXd& modes, int dim
   return text;
 }
 
-/// Contact points and load of one piece on an orthonormal basis of its loose motions (columns).
+/// Contact points and load of one piece, expressed in an orthonormal basis (columns) of its loose motions.
 struct RigidPiece {
   Eigen::MatrixXd basis;
   std::vector<RigidContact> points;
   Eigen::VectorXd load;
 };
 
-/// What a load does on the loose motions of a piece (columns of the basis).
+/// Returns the work of a load on the loose motions of a piece (columns of the basis).
 Eigen::VectorXd load_of(const Problem& problem, const Piece& piece, std::int32_t number,
                         std::span<const std::int32_t> piece_of_node, std::span<const double> load,
                         const Eigen::MatrixXd& basis) {
@@ -242,10 +244,11 @@ RigidPiece collect(const Problem& problem, const Piece& piece, std::int32_t numb
   return rigid;
 }
 
-/// Why the piece cannot stay where it is.
+/// Explains why the piece cannot be in equilibrium.
 std::string explain(const RigidPiece& rigid, const RigidBalance& failed, const Piece& piece,
                     const std::string& name, int dim) {
-  // Friction cones open: a body that slides is lifted a little, as the argument goes. That is not to be told.
+  // Friction cones are dilatant: sliding appears with a small lift-off, an artefact that is removed from the
+  // text.
   Eigen::MatrixXd normals(rigid.load.size(), static_cast<Eigen::Index>(failed.supports.size()));
   for (Eigen::Index k = 0; k < normals.cols(); ++k) normals.col(k) = rigid.points[failed.supports[k]].normal;
   Eigen::VectorXd motion = failed.motion;
@@ -286,7 +289,7 @@ std::string name_piece(const Piece& piece, const Mesh& mesh, std::size_t pieces)
          " elements; the mesh falls into " + std::to_string(pieces) + " pieces)";
 }
 
-/// Where the piece comes to rest, or why it does not.
+/// Computes where the piece comes to rest, or why it does not.
 void settle(Problem& problem, const Piece& piece, std::int32_t number, const RigidPiece& rigid,
             const std::string& name, std::span<const std::int32_t> piece_of_node) {
   const RigidBalance found = balance(rigid.points, rigid.load);
@@ -304,7 +307,7 @@ void settle(Problem& problem, const Piece& piece, std::int32_t number, const Rig
     place << " (load step " << step << ", time " << problem.steps[step].time << ")";
     problem.no_equilibrium = explain(later, then, piece, name, problem.mesh.dim()) + place.str();
   }
-  // A pressure p presses a body of this size in by about p over that.
+  // A pressure p indents a body of this size by about p divided by this stiffness.
   double bulk = 0.0;
   for (const Law& law : problem.laws) bulk = std::max(bulk, law.bulk);
   const Vector6 motion = rigid.basis * rest_on_springs(rigid.points, rigid.load, 3.0 * bulk / piece.radius);
@@ -368,13 +371,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Share of the load that a balance may miss. Well below what a friction coefficient wrong by 1e-6 leaves.
+/// Accepted relative residual of equilibrium, well below the effect of an error of 1e-6 in the friction
+/// coefficient.
 constexpr double balanced = 1e-10;
-/// Reactions that are tried; each lessens what is out of balance.
+/// Maximum number of reactions; each one reduces the unbalanced load.
 constexpr int most_reactions = 2000;
 
-/// Reactions that have been found so far, a column each, and how much of each there is. Those of Tresca's
-/// friction have a last entry: their shares may add up to one and no more.
+/// Reactions found so far, one column each, and their shares. The last row is nonzero for Tresca friction
+/// only: the sum of its shares is limited to one.
 struct Reactions {
   MatrixXd column;
   VectorXd share;
@@ -399,7 +403,7 @@ struct Reactions {
     share.conservativeResize(kept);
     point.resize(kept);
   }
-  /// Least squares with shares ≥ 0, from those there are (Lawson and Hanson's inner loop).
+  /// Non-negative least squares on the current columns (inner loop of Lawson and Hanson's method).
   void fit(const VectorXd& load) {
     while (share.size() > 0) {
       const VectorXd best = column.colPivHouseholderQr().solve(load);
@@ -408,7 +412,7 @@ struct Reactions {
         if (best(k) <= 0.0) step = std::min(step, share(k) / (share(k) - best(k) + 1e-300));
       share += step * (best - share);
       if (step == 1.0) return;
-      // Those that have run out go; the first of them does in any case.
+      // Remove the shares that have become zero; the smallest one is removed in any case.
       const double least = share.minCoeff();
       for (double& value : share)
         if (value <= std::max(least, 1e-14 * share.maxCoeff())) value = 0.0;
@@ -417,7 +421,7 @@ struct Reactions {
   }
 };
 
-/// The reaction of all points that works most against `motion`, of Coulomb's friction along its cone.
+/// Returns the point's reaction that does the most work on `motion`, with Coulomb friction on its cone.
 VectorXd strongest(const RigidContact& point, const VectorXd& motion, double friction, double& work) {
   VectorXd reaction = point.normal;
   if (point.coulomb > 0.0) {
@@ -516,7 +520,7 @@ double friction_needed(const std::vector<RigidContact>& points, const VectorXd& 
 
 VectorXd rest_on_springs(const std::vector<RigidContact>& points, const VectorXd& load, double stiffness) {
   const Index motions = load.size();
-  // Springs that hold what no contact does yet, too soft to matter beside those of the contact.
+  // Weak springs on motions that no contact resists yet, negligible beside those of the contact.
   constexpr double soft = 1e-9;
   constexpr int most_passes = 8, most_steps = 200;
   MatrixXd weak = MatrixXd::Zero(motions, motions);

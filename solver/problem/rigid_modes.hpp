@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which rigid motions nothing holds, found before the solver meets them, and where contact brings such a body
-// to rest.
+// Detects unconstrained rigid-body modes before the solve, and computes rest positions of bodies held by
+// contact only.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,40 +11,41 @@
 
 namespace kacanov {
 
-/// For every connected piece of the mesh: throws InputError naming the rigid motions that neither
-/// displacements nor contact hold; counts in problem.loose_modes those that the contact alone holds, with a
-/// warning.
-/// Where the loads of what contact alone holds can be in balance (theory: rigid-balance) it sets
-/// problem.motions, else problem.no_equilibrium.
+/// For every connected component of the mesh: throws InputError that names unconstrained rigid-body modes,
+/// and counts in problem.loose_modes those held by contact only, with a warning. Sets problem.motions if the
+/// loads of such a component can be in equilibrium (theory: rigid-balance), else problem.no_equilibrium.
 void check_rigid_modes(Problem& problem);
 
-/// Displacements of these nodes by problem.motions (theory: rigid-start), nodes × dim; empty without any.
+/// Returns the displacements of these nodes by problem.motions (theory: rigid-start), nodes × dim; empty if
+/// there are none.
 std::vector<double> rigid_start(const Problem& problem, std::span<const std::int32_t> nodes);
 
-/// What one contact point does on the motions of a rigid piece, as many rows as it has motions.
+/// Action of one contact point on the motions of a rigid piece: vectors with one entry per motion.
 struct RigidContact {
-  Eigen::VectorXd normal;                ///< ν at the point
-  std::vector<Eigen::VectorXd> tangent;  ///< orthonormal tangents; none without friction
+  Eigen::VectorXd normal;                ///< along ν at the point
+  std::vector<Eigen::VectorXd> tangent;  ///< along the orthonormal tangents; none without friction
   double gap = 0.0, mass = 0.0;          ///< mass: an area
   double coulomb = 0.0, tresca = 0.0;    ///< μ_f; ψ
 };
 
-/// theory: rigid-balance. Reactions of a piece's contact points in their friction cones against its load.
+/// Equilibrium of a piece's load with reactions in the friction cones of its contact points (theory:
+/// rigid-balance).
 struct RigidBalance {
   bool exists = true;
-  Eigen::VectorXd motion;  ///< where none exists: the motion that the load drives and no contact stops
-  std::vector<std::size_t> supports;  ///< points that react, of those that come nearest to a balance
+  Eigen::VectorXd motion;  ///< if no equilibrium exists: the motion that the load drives and no contact stops
+  std::vector<std::size_t> supports;  ///< indices of the reacting points in the state closest to equilibrium
 };
 
-/// `load`: the work of the load on each motion. `friction`: what every bound is multiplied by.
+/// Searches for an equilibrium. `load`: work of the load on each motion; `friction`: factor on every friction
+/// bound.
 RigidBalance balance(const std::vector<RigidContact>& points, const Eigen::VectorXd& load,
                      double friction = 1.0);
 
-/// What friction has to be multiplied by for a balance, to six digits; infinity where none is enough.
+/// Returns the factor on friction that an equilibrium needs, to six digits; infinity if none suffices.
 double friction_needed(const std::vector<RigidContact>& points, const Eigen::VectorXd& load);
 
-/// theory: rigid-start. The motion that brings the piece to rest on springs of `stiffness` (a pressure over a
-/// length) at its contact points, with what touches sticking. Only of use where a balance exists.
+/// Returns the motion that brings the piece to rest on springs of `stiffness` (pressure per length) at its
+/// contact points, with sticking contact (theory: rigid-start). Meaningful only if an equilibrium exists.
 Eigen::VectorXd rest_on_springs(const std::vector<RigidContact>& points, const Eigen::VectorXd& load,
                                 double stiffness);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the `on` of an entry means on a mesh.
+// Resolves the `on` selectors of a model on a mesh.
 #include "problem/selection.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shape functions of a cell at a point as vectors in space, from the table of cells.
+// Shape functions of a cell at a point, as spatial vectors, evaluated from the cell table.
 #include "problem/shapes.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shape functions of a cell at a point as vectors in space, from the table of cells.
+// Shape functions of a cell at a point, as spatial vectors, evaluated from the cell table.
 #pragma once
 
 #include <array>
@@ -9,16 +9,17 @@
 
 namespace kacanov {
 
-/// One entry a node; `gradient` holds derivatives along the reference coordinates. The rest is 0.
+/// One entry per node, the other entries are 0; `gradient` holds derivatives with respect to reference
+/// coordinates.
 struct Shapes {
   std::array<double, most_nodes> value{};
   std::array<Vector3, most_nodes> gradient{};
 };
 
-/// The linear cell of the same corners.
+/// Returns the linear cell with the same corners.
 const Cell& corner_cell(const Cell& cell);
 
-/// Shapes of a cell, of a body or of a facet, at a reference point.
+/// Evaluates the shape functions of a volume or facet cell at a reference point.
 Shapes shapes_at(const Cell& cell, const Vector3& at);
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Given displacements: the entries of a model carried over to a mesh, by component and along directions.
+// Prescribed displacements on the mesh, by component and along directions.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,12 +16,12 @@
 namespace kacanov {
 namespace {
 
-/// Facets whose normals differ by more are not flat; directions nearer to an axis are that axis.
+/// Facets whose normals differ by more are not flat; directions closer to an axis count as that axis.
 constexpr double flat_to = 1e-6, axis_to = 1e-12;
-/// What is left of a direction, where others hold its node, below which it is one of theirs.
+/// A direction whose component orthogonal to the node's other directions is smaller depends on them.
 constexpr double dependent = 1e-8;
 
-/// Of directions that are next to parallel a difference is left: it keeps more digits than a double has.
+/// Long double keeps the digits of small differences between nearly parallel directions.
 using LongVector = std::array<long double, 3>;
 
 long double long_dot(const LongVector& a, const LongVector& b) {
@@ -35,25 +35,25 @@ LongVector long_unit(const LongVector& v) {
   return {v[0] / length, v[1] / length, v[2] / length};
 }
 
-/// What an entry gives: u along a unit vector.
+/// A prescribed displacement along a unit vector.
 struct Given {
   LongVector direction{};
   double value = 0.0;
 };
 
-/// A direction and value given at a node; later their part across the others of the node.
+/// A direction and value prescribed at a node; later orthogonalised against the node's other directions.
 struct Slanting {
   std::int32_t node = 0, entry = 0;
   LongVector direction{};
   long double value = 0.0;
 };
 
-/// The one outer normal of a group of facets.
+/// Returns the common outer normal of a flat group of facets.
 LongVector normal_of(const Mesh& mesh, const std::vector<std::int32_t>& facets, const std::string& path) {
   LongVector sum{};
   std::vector<Vector3> normals;
   for (const std::int32_t f : facets) {
-    const FacetWeights weights = lumped_weights(mesh, f);  // of quadratic facets, those of the mid-sides
+    const FacetWeights weights = lumped_weights(mesh, f);  // for quadratic facets, of the mid-side nodes
     for (std::size_t k = 0; k < mesh.facet(f).size(); ++k) {
       const double length = norm(weights.normal[k]);
       if (length == 0.0) continue;
@@ -93,7 +93,7 @@ std::vector<Given> given_by(const BoundaryEntry& entry, const Mesh& mesh, const 
   return given;
 }
 
-/// The axis that a direction is, of either sign; none where it is off them.
+/// Returns the axis that a direction is parallel to, of either sign; empty if it is oblique.
 std::optional<std::size_t> axis_of(const LongVector& direction) {
   for (std::size_t c = 0; c < 3; ++c)
     if (std::abs(direction[c]) >= 1.0 - axis_to) return c;
@@ -122,7 +122,7 @@ class Holder {
     problem_.supports.push_back({node, static_cast<std::int32_t>(c), static_cast<std::int32_t>(entry)});
   }
 
-  /// No displacement away from the axis, by itself.
+  /// Constrains nodes on the axis of an axisymmetric body in radial direction.
   void hold_axis() {
     const Mesh& mesh = problem_.mesh;
     for (std::size_t node = 0; node < mesh.node_count(); ++node) {
@@ -139,7 +139,7 @@ class Holder {
     slanting_.push_back({node, static_cast<std::int32_t>(entry), given.direction, given.value});
   }
 
-  /// What slants, once all components are held: what is left of it in the free ones (theory:
+  /// Called after all components are set: restricts oblique directions to the free components (theory:
   /// held-directions).
   void finish() {
     std::stable_sort(slanting_.begin(), slanting_.end(),
@@ -167,7 +167,7 @@ class Holder {
       take_off(d.direction[c], problem_.prescribed[k], holder_[k]);
       d.direction[c] = 0.0;
     }
-    for (int pass = 0; pass < 2; ++pass)  // twice: orthogonal to the last digit
+    for (int pass = 0; pass < 2; ++pass)  // twice, for orthogonality to the last digit
       for (const Slanting& other : kept_) {
         const long double share = long_dot(d.direction, other.direction);
         size += std::abs(share * other.value);
@@ -201,7 +201,7 @@ class Holder {
   Problem& problem_;
   std::size_t dim_;
   std::vector<std::int32_t> holder_;
-  std::vector<Slanting> slanting_, kept_;  ///< all; of the node in hand what has been kept
+  std::vector<Slanting> slanting_, kept_;  ///< all; those kept at the current node
 };
 
 }  // namespace

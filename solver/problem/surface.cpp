@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A surface of triangles, with a tree that finds its closest point (theory: surface-distance).
+// A triangulated surface with a bounding-box tree for closest points (theory: surface-distance).
 #include <kacanov/surface.hpp>
 
 #include <algorithm>
@@ -14,16 +14,17 @@ namespace kacanov {
 namespace {
 
 constexpr std::int32_t leaf_size = 4;
-/// Of the extent: points so near are one. Files in single precision know them no better.
+/// Merging distance relative to the extent: the resolution of single-precision files.
 constexpr double joined = 1e-7;
 
-/// Beyond, products of four lengths overflow.
+/// Products of four larger lengths overflow.
 constexpr double largest_coordinate = 1e70;
 
-/// 0 where lengths are so small that nothing is left of their products.
+/// Returns 0 if `whole` has underflowed.
 double share(double part, double whole) { return whole > 0.0 ? part / whole : 0.0; }
 
-/// Ways to points close by are shorter than double's rounding of coordinates can tell the direction of.
+/// Long double differences: in double precision the rounding of coordinates hides the direction to close
+/// points.
 using Wide = std::array<long double, 3>;
 Wide difference(const Vector3& a, const Vector3& b) {
   return {static_cast<long double>(a[0]) - b[0], static_cast<long double>(a[1]) - b[1],
@@ -33,7 +34,7 @@ long double wide_dot(const Wide& a, const Wide& b) { return a[0] * b[0] + a[1] *
 Wide wide_cross(const Wide& a, const Wide& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-/// a + share b
+/// Returns a + share · b, rounded to double.
 Vector3 rounded_sum(const Wide& a, long double share, const Wide& b) {
   Vector3 sum;
   for (std::size_t c = 0; c < 3; ++c) sum[c] = static_cast<double>(a[c] + share * b[c]);
@@ -42,14 +43,14 @@ Vector3 rounded_sum(const Wide& a, long double share, const Wide& b) {
 
 double angle_between(const Vector3& a, const Vector3& b) { return std::atan2(norm(cross(a, b)), dot(a, b)); }
 
-/// Numbers points so that those within `reach` of an earlier one are that one.
+/// Numbers points and merges each one with an earlier one within `reach`.
 class PointIndex {
  public:
   PointIndex(std::vector<Vector3>& points, double reach)
       : points_(points), reach_(reach), cell_(1024 * reach) {}
 
   std::int32_t find(const Vector3& x) {
-    // Cells are so large that hardly any point is near a neighbour.
+    // Cells are so large that hardly any point is near a neighbouring cell.
     std::array<std::int64_t, 3> low{}, high{}, key{};
     for (std::size_t c = 0; c < 3; ++c) {
       low[c] = std::llround(std::floor((x[c] - reach_) / cell_));
@@ -76,7 +77,7 @@ class PointIndex {
   std::map<std::array<std::int64_t, 3>, std::vector<std::int32_t>> cells_;
 };
 
-/// Unit; zero where next to nothing is left of unit vectors that were added up.
+/// Normalises a sum of unit vectors; returns zero if they cancel.
 Vector3 mean_direction(const Vector3& sum) {
   const double length = norm(sum);
   return length > 1e-9 ? (1.0 / length) * sum : Vector3{};
@@ -199,7 +200,7 @@ std::int32_t Surface::build(std::int32_t first, std::int32_t last) {
 }
 
 Surface::Candidate Surface::closest_on(std::int32_t f, const Vector3& x) const {
-  // Which part of the triangle is nearest, by the regions of Ericson, Real-Time Collision Detection, 5.1.5.
+  // Closest feature of the triangle, by the Voronoi regions of Ericson, Real-Time Collision Detection, 5.1.5.
   const Face& face = faces_[f];
   const Vector3 &a = points_[face.corner[0]], &b = points_[face.corner[1]], &c = points_[face.corner[2]];
   const Vector3 ab = b - a, ac = c - a, ax = x - a, bx = x - b, cx = x - c;
@@ -224,7 +225,8 @@ Surface::Candidate Surface::closest_on(std::int32_t f, const Vector3& x) const {
     const double whole = va + vb + vc;
     point = a + share(vb, whole) * ab + share(vc, whole) * ac;
   }
-  // Rounding takes the point of a sliver out of it, and nearer to x than the tree's boxes say it can be.
+  // For slivers, rounding can place the point outside the triangle, and so closer to x than the box distance
+  // of the tree.
   for (std::size_t k = 0; k < 3; ++k)
     point[k] = std::clamp(point[k], std::min({a[k], b[k], c[k]}), std::max({a[k], b[k], c[k]}));
   return {dot(x - point, x - point), f, feature, point};
@@ -232,7 +234,7 @@ Surface::Candidate Surface::closest_on(std::int32_t f, const Vector3& x) const {
 
 void Surface::look_at(std::int32_t f, const Vector3& x, Candidate& best) const {
   const Candidate here = closest_on(f, x);
-  // Of equals the first in the order of the faces, whatever way the tree was searched.
+  // Ties go to the lowest face number, independent of the search order.
   if (best.face >= 0 && (here.squared > best.squared || (here.squared == best.squared && f > best.face)))
     return;
   best = here;

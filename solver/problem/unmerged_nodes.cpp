@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether boundary nodes lie at one place without being one node.
+// Finds coincident boundary nodes that are not merged.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -13,14 +13,14 @@
 namespace kacanov::validity {
 namespace {
 
-/// Of the size of the mesh, and of the shortest edge at a node: nodes nearer to each other are at one place.
-/// Files in single precision know coordinates to 1e-7.
+/// Nodes closer than these shares of the mesh size and of the shortest edge at a node coincide.
+/// Single-precision files resolve coordinates to 1e-7.
 constexpr double of_mesh = 1e-6, of_edge = 1e-2;
-/// Of the width of a cell of the hash grid: few nodes are so near to another cell.
+/// Reach relative to the cell width of the hash grid: few nodes are this close to another cell.
 constexpr double cells_reach = 1.0 / 64;
 
-/// Within which another node is at the place of a boundary node: a share of its shortest edge, `most` at the
-/// most.
+/// Returns the distance within which another node coincides with a boundary node: a share of its shortest
+/// edge, limited to `most`.
 std::vector<double> reach_of_nodes(const Mesh& mesh, double most) {
   std::vector<double> reach(mesh.node_count(), most);
   for (std::size_t f = 0; f < mesh.facet_count(); ++f) {
@@ -32,7 +32,7 @@ std::vector<double> reach_of_nodes(const Mesh& mesh, double most) {
   return reach;
 }
 
-/// Boundary nodes, sorted by the cells of a grid that they lie in.
+/// Boundary nodes, sorted by grid cell.
 class NodeGrid {
  public:
   NodeGrid(const Mesh& mesh, const Extent& box)
@@ -47,7 +47,8 @@ class NodeGrid {
     std::sort(entries_.begin(), entries_.end());
   }
 
-  /// Calls visit(node, other) for each node with another of a lower index at its place, the lowest one.
+  /// Calls visit(node, other) for each node that coincides with a node of lower index; `other` is the lowest
+  /// one.
   template <class Visit>
   void visit_repeated(const Visit& visit) const {
     const std::vector<double> reach = reach_of_nodes(mesh_, reach_);
@@ -77,7 +78,7 @@ class NodeGrid {
     for (std::size_t c = 0; c < 3; ++c) at[c] = std::llround(std::floor((x[c] - lower_[c] + shift) / width_));
     return at;
   }
-  /// Cells are fewer than 2²⁰ along each axis.
+  /// There are fewer than 2²⁰ cells along each axis.
   static std::uint64_t key(const Cell& at) {
     std::uint64_t sum = 0;
     for (const std::int64_t one : at) sum = sum << 21 | static_cast<std::uint64_t>(one + 1);
@@ -90,7 +91,7 @@ class NodeGrid {
   std::vector<std::pair<std::uint64_t, std::int32_t>> entries_;
 };
 
-/// Pairs of nodes at one place, and the first of them.
+/// Count of pairs of coincident nodes, and the first pair.
 struct Pairs {
   std::int64_t count = 0;
   std::int32_t first = 0, second = 0;
@@ -98,7 +99,7 @@ struct Pairs {
   void add(std::int32_t a, std::int32_t b) {
     if (count++ == 0 || std::pair{a, b} < std::pair{first, second}) first = a, second = b;
   }
-  /// "4 pairs of nodes lie at one place, the first nodes 5 and 9 at (0, 0, 1)".
+  /// Returns "4 pairs of nodes lie at one place, the first nodes 5 and 9 at (0, 0, 1)".
   std::string text(const Mesh& mesh) const {
     return std::to_string(count) + (count == 1 ? " pair" : " pairs") + " of nodes " +
            (count == 1 ? "lies" : "lie") + " at one place, the first nodes " +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether a model and its options make sense before there is a mesh, said in the words of the case file.
+// Validates a model and its options before a mesh exists, with errors in the terms of the case file.
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -96,7 +96,7 @@ void check_contact(const std::string& path, const ContactEntry& entry) {
   check(path + ".friction.coulomb", entry.friction->coulomb, not_negative);
 }
 
-/// What of a contact entry moves.
+/// Checks the motion of a contact entry.
 void check_moves(const std::string& path, const Model& model, const ContactEntry& entry) {
   if (!entry.moves()) return;
   const char* key = entry.motion ? "motion" : entry.force_controlled ? "force_controlled" : "relinearise";
@@ -133,7 +133,7 @@ void check_moves(const std::string& path, const Model& model, const ContactEntry
   check_direction(path + ".force_controlled.direction", entry.force_controlled->direction);
 }
 
-/// Results and load curves know entries by their names.
+/// Checks that entry names are unique, because results and load curves refer to entries by name.
 void check_names(const Model& model) {
   std::map<std::string, std::string> place;
   const auto check_list = [&](const std::string& list, const auto& entries) {
@@ -152,7 +152,7 @@ void check_names(const Model& model) {
   throw InputError(path + ": " + value + " is not available; use " + instead);
 }
 
-/// Semismooth Newton, under both of its names, has no use for ADMM's loop and the paper's stop.
+/// Semismooth Newton (either name of it) excludes options of the ADMM loop and the paper's stop.
 void check_combination(const SolverOptions& options) {
   using Options = SolverOptions;
   const bool by_step = options.stop == Options::Stop::paper;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Arithmetic on Vector3, for the set-up of a problem.
+// Vector3 arithmetic for problem setup.
 #pragma once
 
 #include <cmath>
@@ -24,7 +24,7 @@ inline Vector3 cross(const Vector3& a, const Vector3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// Position of a node; the third entry is 0 in 2D.
+/// Returns the position of a node; the third component is 0 in 2D.
 inline Vector3 position(const MeshView& mesh, std::int32_t node) {
   const std::size_t dim = dimension(mesh.type);
   const double* x = mesh.coordinates.data() + static_cast<std::size_t>(node) * dim;
@@ -32,7 +32,7 @@ inline Vector3 position(const MeshView& mesh, std::int32_t node) {
 }
 inline Vector3 position(const Mesh& mesh, std::int32_t node) { return position(mesh.view(), node); }
 
-/// "(1, 2)" or "(1, 2, 3)", for messages.
+/// Formats `v` for messages: "(1, 2)" or "(1, 2, 3)".
 std::string to_text(const Vector3& v, int dim);
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Warnings: what looks mistaken though it can be computed, before the solve and after it.
+// Warnings about input and results that can be computed but look mistaken, before and after the solve.
 #include <kacanov/validity.hpp>
 
 #include <algorithm>
@@ -42,15 +42,16 @@ void no_load(const Problem& problem, const Model& model, Warnings& warnings) {
 namespace kacanov::validity {
 namespace {
 
-// Metals and polymers yield at strains of 1e-4 to 0.1; a factor of 1000, as between MPa and GPa or Pa and
-// kPa, is beyond these.
+// Metals and polymers yield at strains of 1e-4 to 0.1. A factor of 1000, as between MPa and GPa or Pa and
+// kPa, leads out of this range.
 constexpr double least_yield_strain = 1e-5, most_yield_strain = 0.3;
-// Of Young's modulus: more crushes every body, less is a million times below what moves one.
+// Relative to Young's modulus: a larger load crushes any body, a smaller one is a millionth of a load that
+// has a visible effect.
 constexpr double least_load = 1e-9, most_load = 0.1;
-// Of the yield stress: kN for N, where loads come to 2 % of it and more.
+// Relative to the yield stress: detects kN given for N, for loads of at least 2 % of it.
 constexpr double most_over_yield = 20.0;
 
-/// In tension.
+/// Yield stress in tension.
 double yield_stress(const Law& law) {
   const double x = law.proof_strain();
   return std::sqrt(1.5) * 2.0 * law.secant(x) * x;
@@ -72,7 +73,7 @@ double area(const Mesh& mesh, const std::vector<std::int32_t>& facets) {
   return sum;
 }
 
-/// Of a load; 0 for a displacement. A body force presses with all that is above.
+/// Stress of a load; 0 for a displacement. For a body force, that of the weight of the whole body above.
 double stress_of(const BoundaryEntry& entry, std::size_t index, const Selection& selection, const Mesh& mesh,
                  double size) {
   if (entry.traction) return norm(*entry.traction);
@@ -124,12 +125,12 @@ void mixed_units(const Problem& problem, const Model& model, Warnings& warnings)
 namespace kacanov::validity {
 namespace {
 
-/// Cosine between outer normal and direction of contact below which a facet looks away: three degrees beyond
-/// a right angle.
+/// Cosine between outer normal and contact direction below which a facet faces away: three degrees beyond a
+/// right angle.
 constexpr double turned = -0.05;
 constexpr const char* look_away = "facets look away from the obstacle";
 
-/// Sum of the directions in which an entry's contact points at a facet's nodes look; zero without any.
+/// Sum of the contact directions of an entry's contact points at a facet's nodes; zero if it has none there.
 Vector3 direction_at(const ConstraintRows& contact, std::span<const std::int32_t> nodes, std::int32_t entry) {
   Vector3 sum{};
   for (const std::int32_t node : nodes) {
@@ -154,7 +155,8 @@ void facet_orientation(const Problem& problem, const Model& model, Warnings& war
   const Selection selection(mesh);
   for (std::size_t i = 0; i < model.contact.size(); ++i) {
     const ContactEntry& entry = model.contact[i];
-    // Who takes the whole boundary leaves it to the gap which of it can touch.
+    // An entry on the whole boundary includes facets that face away on purpose: the gap decides which can
+    // touch.
     if (entry.on.kind == Selector::Kind::all) continue;
     const std::string name = entry_name(entry, i);
     const std::vector<std::int32_t> facets = selection.facets(entry.on, name);
@@ -236,7 +238,7 @@ void thin_elements(const Problem& problem, Warnings& warnings) {
 namespace kacanov::validity {
 namespace {
 
-/// Share of an element's size that rounding its coordinates may move a node by.
+/// Maximum node displacement by coordinate rounding, relative to an element's size, that causes no warning.
 constexpr double unnoticed = 1e-9;
 
 double farthest_coordinate(const Mesh& mesh, std::size_t element) {
@@ -291,7 +293,7 @@ void locking(const Problem& problem, const Model& model, Warnings& warnings) {
 namespace kacanov::validity {
 namespace {
 
-/// Stress and equilibrium are then off by about as much.
+/// Larger strains or rotations cause errors of about their own size in stress and equilibrium.
 constexpr double small_enough = 0.05;
 
 std::string place(const Extreme& extreme, const Result& result) {
@@ -314,7 +316,7 @@ void large_strain(const Result& result, Warnings& warnings) {
 
 namespace kacanov::validity {
 
-/// From here on a beam of 421,443 unknowns is some percent too stiff, coarser ones more.
+/// Beyond this value a beam with 421,443 unknowns is a few per cent too stiff, and coarser ones more.
 constexpr double much_flow = 10.0;
 
 void tet4_locking(const Result& result, const Model& model, Warnings& warnings) {
@@ -336,7 +338,7 @@ void tet4_locking(const Result& result, const Model& model, Warnings& warnings) 
 namespace kacanov::validity {
 namespace {
 
-/// Of the body's size.
+/// Relative to the body's size.
 constexpr double large_share = 0.1;
 
 }  // namespace
@@ -355,7 +357,7 @@ void large_displacement(const Result& result, Warnings& warnings) {
 namespace kacanov::validity {
 namespace {
 
-/// Of the body's size: what touches at rest.
+/// Relative to the body's size: contact that is closed at rest.
 constexpr double closed = 1e-6;
 
 }  // namespace
@@ -381,9 +383,9 @@ void inactive_contact(const Result& result, const Model& model, Warnings& warnin
 namespace kacanov::validity {
 namespace {
 
-/// Nodes under a ball that is smaller than the facets round it; on lines the same by lines.
+/// Number of nodes under a ball that is smaller than the facets around it; in 2D the same for lines.
 constexpr std::int64_t few_in_space = 3, few_in_plane = 1;
-/// A face that touches with all it has is no matter of the mesh.
+/// A face that is completely in contact does not indicate a coarse mesh.
 constexpr std::int64_t many_open = 10;
 
 }  // namespace
@@ -407,7 +409,7 @@ void coarse_contact(const Result& result, const Model& model, Warnings& warnings
 namespace kacanov::validity {
 namespace {
 
-/// Share of an entry's friction that nobody would miss.
+/// Share of an entry's friction that is negligible.
 constexpr double little = 1e-3;
 
 }  // namespace

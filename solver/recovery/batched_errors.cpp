@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far strains are from smoother ones, some elements abreast.
+// Error of the strains relative to recovered ones, in batches of elements.
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -16,14 +16,14 @@
 namespace kacanov {
 namespace {
 
-/// The strains of elements in a row beside smoother ones.
+/// Compares the strains of a batch of elements with recovered ones.
 template <class Element>
 class ErrorRows {
  public:
   explicit ErrorRows(const Smoothing& of)
       : of_(of), body_(of.part.body()), points_(fine_points(cell(of.part.type))) {}
 
-  /// Of these elements: energy of each.
+  /// Computes the error energy of each element of the batch.
   void work_out(const ElementsAbreast& row, Lanes& energy) {
     gather(body_.mesh, row, body_.mesh.coordinates, x_);
     gather(body_.mesh, row, of_.state.u, moved_);
@@ -35,7 +35,7 @@ class ErrorRows {
     simd::RowStrain smooth;
     Lanes position[3], weight, g, smooth_g;
     for (const FinePoint& point : points_) {
-      const bool even = Element::nodes == 4 && &point != points_.data();  // as at the first point
+      const bool even = Element::nodes == 4 && &point != points_.data();  // the same as at the first point
       if (!even) {
         loops_.strain(point.gradient.data(), sides_, moved_sides_, here);
         put_means(point, here.strain.trace);
@@ -52,7 +52,7 @@ class ErrorRows {
  private:
   using Loops = simd::RowLoops<Element::nodes>;
 
-  /// What is known of an element goes to a lane.
+  /// Loads the data of an element into a lane.
   void take(std::size_t element, std::size_t lane) {
     law_[lane] = &body_.law(element);
     bulk_[lane] = law_[lane]->bulk;
@@ -73,7 +73,7 @@ class ErrorRows {
           at_corners ? of_.state.corner_dilatation[element * Loops::corners + a] : of_.mean_trace[element];
   }
 
-  /// Where laws see means of tr ε.
+  /// Replaces the trace by means of tr ε for laws that use them.
   void put_means(const FinePoint& point, Lanes& trace) const {
     for (std::size_t lane = 0; lane < abreast; ++lane) {
       if (!averaged_[lane]) continue;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far a solution is from that of a mesh without end: an estimate from the solution itself, and the stress
-// at nodes from the same polynomials.
+// Estimate of the discretisation error, and nodal stress from the same polynomials.
 #include <kacanov/discretisation.hpp>
 
 #include <algorithm>
@@ -31,12 +30,12 @@ DiscretisationError error_from(const Part& part, const BodyState& state, std::ve
   return error;
 }
 
-/// What to make of the polynomials round corners.
+/// Results to compute from the patch polynomials.
 struct Wanted {
   bool stress = false, error = false;
 };
 
-/// One batch of materials after the other: those of a batch meet at no node.
+/// Processes one batch of materials at a time; materials of a batch share no node.
 Recovered recover(const Part& part, const BodyState& state, Wanted wanted) {
   const Patches patches(part);
   const std::size_t elements = part.element_count(), points = points_per_element(part.type);
@@ -88,8 +87,8 @@ std::vector<double> DiscretisationError::shares() const {
 }
 
 std::optional<double> error_of_last(std::span<const double> values) {
-  // Errors fall to a quarter with the width where nothing is known: order 2, of a smooth solution on straight
-  // elements. Three numbers show how they fall; less than a half, or more than a sixteenth, is not believed.
+  // By default the error falls by a factor of 4 per halving (order 2, smooth solution, straight elements).
+  // Three values give the observed factor, which is limited to the range 2 to 16.
   const std::size_t n = values.size();
   if (n < 2) return std::nullopt;
   const double last = std::abs(values[n - 1] - values[n - 2]);

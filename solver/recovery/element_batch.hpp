@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Loops over elements that compute strains and stresses at points: one element after the other, or a batch at
-// once.
+// Loops over elements that compute strains and stresses at points, one element or one SIMD batch at a time.
 #pragma once
 
 #include <algorithm>
@@ -16,19 +15,19 @@
 namespace kacanov {
 
 constexpr std::size_t abreast = simd::row_lanes;
-/// One number of each of the elements. Loops over lanes have no branches and no calls, so that compilers make
-/// vectors of them.
+/// One number per element of a batch. Loops over lanes have no branches and no calls, so that compilers
+/// vectorise them.
 using Lanes = simd::RowLanes;
 using ElementsAbreast = std::array<std::size_t, abreast>;
 
-/// Elements from `first` on, the last one again where there are no more.
+/// Returns the indices of a batch that starts at `first`; the last element is repeated at the end.
 inline ElementsAbreast in_a_row(std::size_t first, std::size_t elements) {
   ElementsAbreast row;
   for (std::size_t lane = 0; lane < abreast; ++lane) row[lane] = std::min(first + lane, elements - 1);
   return row;
 }
 
-/// Of elements of so many nodes in space.
+/// Gathers nodal vectors for elements with this number of nodes, in 3D.
 template <std::size_t nodes>
 void gather(const MeshView& mesh, const ElementsAbreast& element, std::span<const double> values,
             Lanes (&out)[nodes][3]) {
@@ -41,7 +40,7 @@ void gather(const MeshView& mesh, const ElementsAbreast& element, std::span<cons
   }
 }
 
-/// ∂u_i/∂x_k from j = ∂x/∂ξ and d = ∂u/∂ξ; returns det j.
+/// Computes ∂u_i/∂x_k from j = ∂x/∂ξ and d = ∂u/∂ξ; returns det j.
 inline double map_gradient(const double (&j)[3][3], const double (&d)[3][3], double (&gradient)[3][3]) {
   double cofactor[3][3];
   for (std::size_t i = 0; i < 3; ++i)
@@ -65,7 +64,7 @@ inline reference::Gradient gradient_of(const Lanes (&gradient)[3][3], std::size_
   return h;
 }
 
-/// As the functions of these names in reference, to rounding.
+/// Same as the functions of these names in reference, up to rounding.
 struct FieldLoops {
   void (*fields)(const Body& body, std::span<const double> u, const reference::ElementFields& out);
   void (*point_fields)(const Body& body, std::span<const double> u, const reference::PointFields& out);
@@ -73,10 +72,10 @@ struct FieldLoops {
   void (*volumes)(const Body& body, std::span<double> volume);
 };
 
-/// Some elements abreast; Body::moduli is taken to be null.
+/// Loops in batches of elements; Body::moduli must be null.
 extern const FieldLoops tet4_loops, hex8_loops, tet10_loops;
 
-/// The fastest there are: the reference's for a type that has none of its own.
+/// Returns the fastest loops: those of the reference for types without batched ones.
 const FieldLoops& field_loops(ElementType type);
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Quadrature rules that integrate squared differences of strains.
+// Quadrature rules for squared strain differences.
 #include "recovery/error_quadrature.hpp"
 
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace kacanov {
 namespace {
 
-/// Gauss's three points along each axis of [−1, 1]^dim.
+/// Three-point Gauss rule along each axis of [−1, 1]^dim.
 std::vector<QuadraturePoint> gauss_3(int dim) {
   const double x = std::sqrt(0.6);
   const std::array<double, 3> place{-x, 0.0, x}, weight{5.0 / 9.0, 8.0 / 9.0, 5.0 / 9.0};
@@ -29,7 +29,7 @@ std::vector<QuadraturePoint> gauss_3(int dim) {
   return rule;
 }
 
-/// Barycentric coordinates (1 − dim a, a, ..., a) turned round.
+/// Adds all permutations of the barycentric coordinates (1 − dim a, a, ..., a).
 void add_towards_corners(double a, double weight, int dim, std::vector<QuadraturePoint>& rule) {
   for (int corner = 0; corner <= dim; ++corner) {
     QuadraturePoint point{{}, weight};
@@ -38,7 +38,7 @@ void add_towards_corners(double a, double weight, int dim, std::vector<Quadratur
   }
 }
 
-/// Barycentric coordinates (a, a, ½ − a, ½ − a) of a tetrahedron in all orders.
+/// Adds all permutations of the barycentric coordinates (a, a, ½ − a, ½ − a) of a tetrahedron.
 void add_towards_edges(double a, double weight, std::vector<QuadraturePoint>& rule) {
   for (std::size_t first = 0; first < 4; ++first)
     for (std::size_t second = 0; second < first; ++second) {
@@ -71,7 +71,7 @@ std::vector<QuadraturePoint> finer_rule(const Cell& type) {
 
 namespace {
 
-/// Of the cell with straight edges and the same corners.
+/// Returns the cell with straight edges and the same corners.
 const Cell& straight(const Cell& type) {
   for (const Cell& other : cells())
     if (other.dim == type.dim && other.corners == type.corners && other.order == 1) return other;

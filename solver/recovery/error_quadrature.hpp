@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Quadrature rules that integrate squared differences of strains: finer than those of the stiffness.
+// Quadrature rules for squared strain differences, of higher order than those of the stiffness.
 #pragma once
 
 #include <array>
@@ -10,20 +10,20 @@
 namespace kacanov {
 
 struct QuadraturePoint {
-  std::array<double, 3> xi{};  ///< reference coordinates, padded by zeros
-  double weight = 0.0;         ///< of the reference cell's volume or area
+  std::array<double, 3> xi{};  ///< reference coordinates, padded with zeros
+  double weight = 0.0;         ///< share of the reference cell's volume or area
 };
 
-/// Integrates squares of the strains of an element with straight edges exactly, of order twice the element's.
-/// An element's own points are where its strains are best: what is wrong with them does not show there.
-/// Weights are positive.
+/// Returns a rule of twice the element's order with positive weights that integrates squared strains of
+/// straight-edged elements exactly. The points of the stiffness are superconvergent, so the error does not
+/// show there.
 std::vector<QuadraturePoint> finer_rule(const Cell& type);
 
 struct FinePoint {
   double weight = 0.0;
-  std::vector<double> gradient;      ///< nodes × dim, along reference coordinates
+  std::vector<double> gradient;      ///< nodes × dim, with respect to reference coordinates
   std::vector<double> value;         ///< nodes
-  std::vector<double> corner_share;  ///< corners: of the straight cell
+  std::vector<double> corner_share;  ///< shape functions of the straight cell at its corners
 };
 
 std::vector<FinePoint> fine_points(const Cell& type);

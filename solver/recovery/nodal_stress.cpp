@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stress at nodes, from the polynomials round the corners.
+// Nodal stress from the patch polynomials of the corners.
 #include "recovery/spr_patches.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a solution lets the body go through an obstacle between its nodes (theory: bisection).
+// Finds facets that penetrate an obstacle between their nodes (theory: bisection).
 #include <algorithm>
 #include <cmath>
 
@@ -13,10 +13,10 @@
 namespace kacanov {
 namespace {
 
-/// Points along an edge of a facet, its ends included.
+/// Number of points along an edge of a facet, including its ends.
 constexpr int looks = 9;
 
-/// Points all over a facet.
+/// Returns points distributed over a facet.
 std::vector<Shapes> looks_on(const Cell& facet) {
   std::vector<Shapes> all;
   const auto along = [&](int i) {
@@ -29,8 +29,7 @@ std::vector<Shapes> looks_on(const Cell& facet) {
   return all;
 }
 
-/// By how much the facet, moved by u, lies in the obstacle where it does so most; not above 0 where it is
-/// outside.
+/// Returns the largest penetration of the facet, displaced by u; not positive if the facet is outside.
 double deepest(const Problem& problem, std::span<const double> u, std::size_t f, const Faces& faces,
                std::span<const Shapes> points) {
   const Mesh& mesh = problem.mesh;

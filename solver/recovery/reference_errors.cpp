@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far strains are from smoother ones, one point after the other.
+// Error of the strains relative to recovered ones, point by point.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,7 +16,7 @@
 namespace kacanov {
 namespace {
 
-/// Of a strain.
+/// Response of a law to a strain.
 struct StrainResponse {
   double trace = 0.0, g = 0.0;
   Patches::Values dev{};
@@ -34,8 +34,8 @@ StrainResponse respond(const Law& law, const Patches::Values& strain) {
   return r;
 }
 
-/// ½ (τ(a) − τ(b)) : (a − b), with what the law says of a; which is not negative where stress does not fall
-/// with strain.
+/// Returns ½ (τ(a) − τ(b)) : (a − b) from the response to a; nonnegative if stress does not decrease with
+/// strain.
 double energy_between(const Law& law, const StrainResponse& ra, const Patches::Values& b) {
   const StrainResponse rb = respond(law, b);
   const double trace = ra.trace - rb.trace;
@@ -52,7 +52,7 @@ struct Sample {
   double volume = 0.0;
 };
 
-/// An element with what its nodes move by. Loops over nodes are of known length.
+/// Coordinates and displacements of an element's nodes. Loops over nodes have constant length.
 template <class E>
 struct ElementAt {
   double x[E::nodes][3] = {}, u[E::nodes][3] = {};
@@ -97,7 +97,7 @@ struct ElementAt {
   }
 };
 
-/// The strains of a solution beside smoother ones.
+/// Compares the strains of a solution with recovered ones.
 class Comparison {
  public:
   explicit Comparison(const Smoothing& of)
@@ -137,8 +137,7 @@ class Comparison {
   }
 
  private:
-  /// Takes off what the element would be longer by, and adds the strain that leaves no stress across the
-  /// plane.
+  /// Subtracts the free strain of the element, and sets the transverse strain of plane stress.
   void relax(std::size_t element, Patches::Values& strain) const {
     const double longer = of_.free_strain.empty() ? 0.0 : of_.free_strain[element];
     strain[0] -= longer, strain[1] -= longer;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Superconvergent patch recovery: patches of elements, and the polynomials fitted to their strains.
+// Superconvergent patch recovery: patches of elements, and polynomials fitted to their strains.
 #include "recovery/spr_patches.hpp"
 
 #include <algorithm>
@@ -82,11 +82,12 @@ void Patches::solve(PatchFits& fits) const {
 
 namespace {
 
-// Added to the diagonal, in the weight of a sample. Linear terms are left alone. Quadratic ones of a patch at
-// the boundary, of a few elements, would extrapolate noise: 11 % too much at a hole with 1e-4, 1 % off so.
+// Regularisation added to the diagonal, in units of one sample's weight; negligible for linear terms.
+// Quadratic terms of boundary patches with few elements would extrapolate noise: 11 % too much stress at a
+// hole with 1e-4, a 1 % error with this value.
 constexpr double hold_linear = 1e-9, hold_quadratic = 0.1;
 
-/// Solves with both triangles for six sides at once.
+/// Solves with both triangular factors for six right-hand sides.
 template <std::size_t n>
 void substitute(const std::array<std::array<double, n>, n>& l, double* side) {
   constexpr std::size_t values = Samples::values;
@@ -150,7 +151,7 @@ void PatchFits::add(std::size_t i, const Vector3& at, double scale, const Linear
 
 template <std::size_t n>
 void PatchFits::add_of(double* sum, const Vector3& at, double scale, const Samples& samples) const {
-  constexpr std::size_t some = 8;  // samples at a time: sums are read and written once for all of them
+  constexpr std::size_t some = 8;  // block size in samples: sums are read and written once per block
   for (std::size_t first = 0; first < samples.position.size(); first += some) {
     const std::size_t count = std::min(some, samples.position.size() - first);
     std::array<std::array<double, Monomials::most>, some> p;
@@ -202,7 +203,7 @@ void PatchFits::solve_of() {
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = i; j < n; ++j) l[j][i] = *sum++;
     for (std::size_t i = 1; i < n; ++i) l[i][i] += i < monomials_.linear() ? hold_linear : hold_quadratic;
-    // Cholesky, then both triangles.
+    // Cholesky factorisation, then both triangular solves.
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j <= i; ++j) {
         double rest = l[i][j];
@@ -217,7 +218,7 @@ namespace {
 
 /// A law at a node.
 using At = std::pair<std::int32_t, std::uint16_t>;
-/// Laws that share a node, both ways round.
+/// Pairs of laws that share a node, in both orders.
 using Edge = std::pair<std::uint16_t, std::uint16_t>;
 
 template <class T>
@@ -226,7 +227,7 @@ void keep_each_once(std::vector<T>& values) {
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
-/// std::pair is none of the plain structs that travel.
+/// Gathers pairs packed into integers, because gathered() requires trivially copyable types.
 template <class Pair>
 std::vector<Pair> gathered_pairs(const std::vector<Pair>& mine, const Communicator& comm) {
   std::vector<std::int64_t> packed;
@@ -239,7 +240,8 @@ std::vector<Pair> gathered_pairs(const std::vector<Pair>& mine, const Communicat
   return all;
 }
 
-/// Of nodes that have several laws, and of those other ranks have too: the others set nothing apart.
+/// Returns the laws at nodes with several laws, and at nodes shared with other ranks; other nodes impose no
+/// separation.
 std::vector<At> laws_at_nodes(const Part& part) {
   constexpr std::int32_t none = -1;
   const std::size_t nodes = nodes_per_element(part.type);
@@ -269,7 +271,7 @@ void join(std::vector<Edge>& edges, const std::vector<At>& at) {
   keep_each_once(edges);
 }
 
-/// Laws at nodes of several ranks, by the nodes' numbers in the whole mesh.
+/// Returns the laws at nodes shared by ranks, with node numbers of the whole mesh.
 std::vector<At> laws_at_shared_nodes(const Part& part, const std::vector<At>& at) {
   std::vector<At> shared;
   for (const std::int32_t node : part.node_map.shared)
@@ -291,7 +293,7 @@ std::vector<std::int32_t> law_batches(const Part& part) {
     edges = gathered_pairs(edges, part.node_map);
   }
   std::vector<std::size_t> taken_for(batch.size() + 1,
-                                     batch.size());  // the law that last found a batch taken
+                                     batch.size());  // last law that found each batch taken
   auto edge = edges.begin();
   for (std::size_t law = 0; law < batch.size(); ++law) {
     for (; edge != edges.end() && edge->first == law; ++edge)

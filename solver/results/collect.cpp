@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a result has of the contact and of the whole body.
+// Collects contact fields and totals of the whole body in a result.
 #include "results/collect.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace kacanov {
 namespace {
 
-/// What the obstacle does to the body at a point by friction.
+/// Returns the friction traction of the obstacle on the body at a point.
 Vector3 traction_of(const ContactPoint& point, const double* friction) {
   Vector3 traction{};
   for (std::size_t k = 0; k < static_cast<std::size_t>(point.tangents); ++k)
@@ -25,8 +25,8 @@ Vector3 traction_of(const ContactPoint& point, const double* friction) {
 ContactStatus status_of(const ContactPoint& point, const ContactState& state, std::size_t i,
                         double least_slip) {
   const double *friction = &state.lambda.tangential[2 * i], *slip = &state.trace.tangential[2 * i];
-  // The projection leaves |λ_t| = ψ to rounding where it slips; Coulomb's ψ has moved on since by what the
-  // solver tolerates.
+  // The projection gives |λ_t| = ψ up to rounding at slipping points, but Coulomb's ψ has been updated since,
+  // within the solver's tolerance.
   const bool slips = point.tangents == 0 ||
                      std::hypot(friction[0], friction[1]) >= state.bound[i] * (1.0 - 1e-10) ||
                      std::hypot(slip[0], slip[1]) > least_slip;
@@ -110,7 +110,7 @@ Extreme largest_displacement(const Part& part, std::span<const double> u) {
 
 BodySize size_of_body(const Part& part, double volume) {
   constexpr double none = -std::numeric_limits<double>::max();
-  std::array<double, 6> reach{none, none, none, none, none, none};  // upper corner, lower corner negated
+  std::array<double, 6> reach{none, none, none, none, none, none};  // upper corner, negated lower corner
   for (std::size_t n = 0; n < part.nodes(); ++n) {
     const Vector3 x = node_position(part, n);
     for (std::size_t c = 0; c < 3; ++c) {

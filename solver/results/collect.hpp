@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a result has of the contact and of the whole body: forces, extremes, counts.
+// Collects contact fields and totals of the whole body in a result: forces, extremes, counts.
 #pragma once
 
 #include <span>
@@ -11,16 +11,17 @@
 
 namespace kacanov {
 
-/// Gap, pressure, traction and status of this rank's contact points. A tangential displacement beyond ten
-/// times the `tolerance` of the solve, relative to the largest displacement, is slip whatever rounding says
-/// of the bound. Collective.
+/// Fills gap, pressure, traction and status of this rank's contact points. A point whose slip exceeds ten
+/// times the solve's `tolerance`, relative to the largest displacement, counts as slipping even if |λ_t| is
+/// below its bound by rounding. Collective.
 void collect_contact(const Part& part, const ContactState& state, double tolerance, Solution& solution);
 
-/// Forces, counts, extremes and probes over all ranks; `solution` has its contact fields and its
-/// corner_dilatation. Collective.
+/// Fills forces, counts, extremes and probes over all ranks from the contact fields and corner_dilatation of
+/// `solution`. Collective.
 void collect_totals(const Part& part, const ContactState& state, Solution& solution);
 
-/// Extremes, plastic and softening elements, and the undeformed body, over all ranks. Collective.
+/// Fills extremes, plastic and softening elements, and the size of the undeformed body, over all ranks.
+/// Collective.
 void collect_body_totals(const Part& part, const BodyState& state, Result& result);
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What every entry of a model does to the body: forces, moments and states of contact.
+// Forces of every model entry on the body: reactions, loads and contact.
 #include "results/reactions.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace kacanov {
 namespace {
 
-/// Sums over the points of one contact entry, in one row so that they travel together.
+/// Sums over the points of one contact entry, contiguous for one joint reduction.
 struct ContactSums {
   Vector3 normal{}, friction{}, moment{};
   double area = 0.0, sticking = 0.0, slipping = 0.0, open = 0.0;
@@ -22,7 +22,7 @@ struct ContactSums {
 };
 static_assert(sizeof(ContactSums) == 15 * sizeof(double));
 
-/// Largest values, likewise: minima are there with their signs changed.
+/// Maxima for one joint reduction; minima are stored with reversed sign.
 struct ContactPeaks {
   double pressure = 0.0;
   double closed = -std::numeric_limits<double>::max(), first_closed = closed;
@@ -35,7 +35,7 @@ std::span<double> numbers(std::vector<Struct>& structs) {
   return {reinterpret_cast<double*>(structs.data()), structs.size() * sizeof(Struct) / sizeof(double)};
 }
 
-/// What the obstacle does to the body at one point.
+/// Returns the force of the obstacle on the body at one point.
 ContactSums force_of_point(const Part& part, const ContactState& state, std::size_t i) {
   const ContactPoint& point = part.contact[i];
   const double* friction = &state.lambda.tangential[2 * i];
@@ -114,13 +114,13 @@ void collect_contact(const Part& part, const ContactState& state, Solution& solu
   }
 }
 
-/// R − F at held components; the contact has no part in them.
+/// Returns R − F at held components, to which contact does not contribute.
 class Reactions {
  public:
   Reactions(std::span<const Part::ComponentValue> load, std::span<const double> internal)
       : load_(load), internal_(internal) {}
 
-  /// Components have to ascend from one call to the next.
+  /// Calls must be in ascending order of components.
   double at(std::int32_t component) {
     while (!load_.empty() && load_.front().component < component) load_ = load_.subspan(1);
     const bool loaded = !load_.empty() && load_.front().component == component;
@@ -132,7 +132,7 @@ class Reactions {
   std::span<const double> internal_;
 };
 
-/// Calls put(entry, node, force) for what supports along directions do to owned nodes.
+/// Calls put(entry, node, force) for the reactions of supports along prescribed directions at owned nodes.
 template <class Put>
 void visit_slanting(const Part& part, Reactions reactions, const Put& put) {
   const std::size_t dim = part.dim();
@@ -193,7 +193,7 @@ void collect_entries(const Part& part, const ContactState& state, const LoadPath
     solution.result.load.push_back({load.entry, {factor * load.total.force, factor * load.total.moment}});
   }
   if (part.plane != PlaneState::axisymmetric) return;
-  // Round the axis moments cancel.
+  // In axisymmetric bodies moments cancel.
   for (ContactTotals& entry : solution.result.contact) entry.total.moment = {};
   for (auto* list : {&solution.result.reaction, &solution.result.load})
     for (BoundaryTotals& entry : *list) entry.total.moment = {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What every entry of a model does to the body: forces, moments and states of contact.
+// Forces of every model entry on the body: reactions, loads and contact.
 #pragma once
 
 #include <span>
@@ -10,8 +10,8 @@
 
 namespace kacanov {
 
-/// Fills contact, reaction and load of solution.result (theory: entry-totals). `solution` has its contact
-/// fields; `internal`: R(u), consistent over ranks; `path`: the load that `state` belongs to. Collective.
+/// Fills contact, reaction and load of solution.result (theory: entry-totals) from its contact fields.
+/// `internal`: R(u), consistent over ranks; `path`: the load of `state`. Collective.
 void collect_entries(const Part& part, const ContactState& state, const LoadPath& path,
                      std::span<const double> internal, Solution& solution);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Largest eigenvalues of a distributed symmetric operator: ARPACK in reverse communication.
+// Largest eigenvalues of a distributed symmetric operator by ARPACK in reverse communication.
 #include "spectrum/lanczos.hpp"
 
 #include <parpack.h>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::int64_t dense_rows = 24;
 
-/// A number in (−1, 1) from a row's index: the same on any partition.
+/// Returns a number in (−1, 1) that depends on the row's index only, so not on the partition.
 double start_entry(std::int64_t index) {
   auto z = static_cast<std::uint64_t>(index) + 0x9e3779b97f4a7c15ULL;
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -67,12 +67,12 @@ LanczosResult largest_eigenvalues(const Product& product, std::span<const std::i
   if (rows == 0) return result;
   if (rows <= dense_rows) return dense(product, index, rows, ranks, options);
 
-  // PARPACK refuses a rank without rows: such a rank carries one row of zeros, which adds the eigenvalue 0.
+  // PARPACK rejects ranks without rows: such a rank gets one row of zeros, which adds the eigenvalue 0.
   const std::size_t own = index.size();
   const auto n = static_cast<a_int>(std::max<std::size_t>(own, 1));
   const std::size_t length = n;
   const a_int wanted = options.wanted;
-  // ARPACK looks at its values only when a whole basis stands: a loose tolerance wants a short one.
+  // ARPACK tests convergence only after a full basis, so a loose tolerance calls for a short one.
   const int extra = options.basis > 0 ? options.basis : options.tolerance >= 1e-3 ? 7 : 19;
   const a_int basis = std::min<a_int>(static_cast<a_int>(rows), wanted + extra);
   std::vector<double> residual(length, 0.0), v(length * static_cast<std::size_t>(basis)),
@@ -87,7 +87,7 @@ LanczosResult largest_eigenvalues(const Product& product, std::span<const std::i
   parameters[3] = 1;
   parameters[6] = 1;  // standard problem
   const MPI_Fint fortran_comm = MPI_Comm_c2f(comm);
-  a_int task = 0, info = 1;  // info 1: our start vector
+  a_int task = 0, info = 1;  // info 1: use our start vector
   while (true) {
     ranks.expect_all_here();
     pdsaupd_c(fortran_comm, &task, "I", n, "LA", wanted, options.tolerance, residual.data(), basis, v.data(),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lanczos estimates behind the penalty: r* and r_A of the active set, with bounds (theory: lanczos).
+// Lanczos estimates for the penalty: r*, and r_A of an active set, with bounds (theory: lanczos).
 #include "spectrum/spectrum.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 /// Rounding error of a product, relative to the eigenvalue.
 constexpr double rounded_product = 1e-12;
 
-/// Above the largest eigenvalue, which Ritz values come up to from below.
+/// Upper bound of the largest eigenvalue, which Ritz values approach from below.
 double bound_above(const LanczosResult& found) { return 1.2 * (found.values[0] + found.bounds[0]); }
 
 }  // namespace
@@ -48,7 +48,7 @@ CgResult Spectrum::solve_to(const System& system, std::span<double> x, CgWork& w
 }
 
 double Spectrum::solve(const System& system, std::span<double> x, CgWork& work, Accuracy accuracy) {
-  // A product is fifty times as accurate as the eigenvalue is to be.
+  // A product is fifty times as accurate as the required eigenvalue.
   const double relative = std::max(1e-13, 0.02 * options_.tolerance);
   if (accuracy == Accuracy::product) {
     solve_to(system, x, work, relative);
@@ -56,7 +56,7 @@ double Spectrum::solve(const System& system, std::span<double> x, CgWork& work, 
   }
   const Vector right = work.residual;
   solve_to(system, x, work, std::max(1e-13, 0.1 * relative));
-  // The change by further iterations measures the error before them, with the rounding of the residual.
+  // The change by further iterations bounds the previous error, including the rounding of the residual.
   apply(system, x, work.image);
   for (std::size_t i = 0; i < right.size(); ++i) work.residual[i] = right[i] - work.image[i];
   return std::sqrt(std::max(solve_to(system, x, work, 0.01).energy, 0.0));
@@ -119,17 +119,16 @@ Eigenvalue Spectrum::largest(const TraceRows& rows, const TraceRows& held, doubl
       largest_of([&](std::span<const double> x, std::span<double> y) { product(x, y, Accuracy::product); },
                  rows, options);
   if (found.values.empty()) return {};
-  // A product is C times a displacement, and no displacement of the energy norm 1 has a longer trace than
-  // this.
+  // A product is C times a displacement; this is the longest trace of a displacement of energy norm 1.
   const double gain = std::sqrt(bound_above(found));
   for (std::size_t i = 0; i < found.values.size(); ++i) {
-    if (loose && r0 * found.values[i] > 0.9999) continue;  // a rigid mode: λ is infinite
+    if (loose && r0 * found.values[i] > 0.9999) continue;  // a rigid-body mode: λ is infinite
     const Eigenvalue pair = bounded(
         found, i,
         [&](std::span<const double> x, std::span<double> y) { return product(x, y, Accuracy::bounded); },
         gain);
     if (!loose) return pair;
-    // λ = θ/(1 − r₀θ) grows with θ, faster and faster.
+    // λ = θ/(1 − r₀θ) is convex and increasing in θ.
     const double value = pair.value / (1.0 - r0 * pair.value), left = 1.0 - r0 * (pair.value + pair.bound);
     return {value, left > 0.0 ? (pair.value + pair.bound) / left - value : HUGE_VAL};
   }
@@ -145,7 +144,7 @@ Eigenvalue Spectrum::smallest(const TraceRows& rows) {
   work.resize(part_->unknowns());
   Vector u(part_->unknowns()), delta(part_->unknowns()), image(part_->unknowns());
   const System system{space};
-  // K⁻¹ x: the displacement with D^½ C u = x of least energy, and the force that holds it there.
+  // K⁻¹ x: the displacement with D^½ C u = x of minimum energy, and the force that holds it.
   const auto product = [&](std::span<const double> x, std::span<double> y, Accuracy accuracy) {
     rows.lift(x, u);
     op_->apply(u, image);
@@ -163,7 +162,7 @@ Eigenvalue Spectrum::smallest(const TraceRows& rows) {
       largest_of([&](std::span<const double> x, std::span<double> y) { product(x, y, Accuracy::product); },
                  rows, options);
   if (found.values.empty() || !(found.values[0] > 0.0)) return {};
-  // The traces put onto the contact nodes alone have the most energy that a trace of the length 1 can have.
+  // Traces lifted to the contact nodes alone have the largest energy that a trace of length 1 can have.
   options.tolerance = 0.1;
   const Product unrelaxed = [&](std::span<const double> x, std::span<double> y) {
     rows.lift(x, u);
@@ -192,7 +191,7 @@ double rough_lambda_min(const Part& part, std::span<const float> diagonal, bool 
           stiffness += weight * static_cast<double>(diagonal[static_cast<std::size_t>(entry.node) * dim + c]);
           square += weight;
         }
-      // What the row takes of displacements like itself.
+      // Ratio for a displacement proportional to the row.
       if (part.contact.is_wide(i)) stiffness /= square * square;
       stiffest = std::max(stiffest, stiffness / point.mass);
     };
@@ -201,7 +200,8 @@ double rough_lambda_min(const Part& part, std::span<const float> diagonal, bool 
       look([k](const RowEntry& entry) -> const Vector3& { return entry.tangent[k]; });
   }
   stiffest = part.node_map.max_all(stiffest);
-  // With tangents a mode that shears and presses at once is softer: 1.6 on structured and Gmsh meshes alike.
+  // With tangents, a mode that combines shear and pressure is softer: factor 1.6 on structured and Gmsh
+  // meshes alike.
   return stiffest > 0.0 ? 1.0 / (friction ? 1.6 * stiffest : stiffest) : 0.0;
 }
 
@@ -239,7 +239,7 @@ SpectrumResult estimate_spectrum(const Part& part, DistributedOperator& op, Prec
   result.friction = friction;
   result.traces = rows.total();
   const Eigenvalue low = spectrum.smallest(rows);
-  // r₀ λ_min = 0.01: compliances up to 10⁴ λ_min are told from the rigid modes.
+  // r₀ λ_min = 0.01 separates compliances up to 10⁴ λ_min from the rigid-body modes.
   const Eigenvalue high =
       spectrum.largest(rows, held, low.value > 0.0 ? 0.01 / low.value : 1.0, part.loose_modes > 0);
   result.lambda_min = low.value;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Refinement of some elements of a mesh.
+// Refinement of marked elements by bisection.
 #pragma once
 
 #include <cstdint>
@@ -10,19 +10,20 @@
 
 namespace kacanov {
 
-/// Whether bisect() cuts elements of this type: simplices.
+/// Whether bisect() supports elements of this type: simplices only.
 bool can_bisect(ElementType type);
-/// Throws InputError for one that it does not.
+/// Throws InputError if bisect() does not support this type.
 void refuse_to_bisect(ElementType type);
 
-/// Halves every edge of the `marked` elements (indices), and of their neighbours what keeps the mesh
-/// conforming and their shapes good (theory: bisection). Nodes keep their numbers and tags, new ones follow,
-/// but for those in the middle of edges with curves, which become corners. Groups become those of the
-/// children; element numbers of a file are lost. Throws InputError where nodes no longer fit 32-bit indices.
+/// Halves every edge of the `marked` elements (indices), and splits neighbours as far as needed to keep the
+/// mesh conforming and well shaped (theory: bisection). Nodes keep their numbers and tags, and new nodes
+/// follow, except that mid-side nodes of curved edges become corners. Groups then contain the children;
+/// element numbers of the mesh file are lost. Throws InputError if the number of nodes exceeds 32-bit
+/// indices.
 Mesh bisect(const Mesh& mesh, std::span<const std::int32_t> marked);
 
-/// The fewest elements that have `share` of the sum of `energy`, one number ≥ 0 an element, as of
-/// DiscretisationError (theory: bisection).
+/// Returns the smallest set of elements that holds `share` of the sum of `energy`, one number ≥ 0 per
+/// element, as in DiscretisationError (theory: bisection).
 std::vector<std::int32_t> worst_elements(std::span<const double> energy, double share);
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Means of the volume change round the corners of a part's elements.
+// Mean volume change around the corners of a part's elements.
 #pragma once
 
 #include <span>
@@ -9,8 +9,8 @@
 
 namespace kacanov {
 
-/// Means of tr ε(u) round the corners of every element, over all ranks: elements × 4, as
-/// Body::corner_dilatation has them; empty where no law asks for them. Collective.
+/// Returns the means of tr ε(u) around the corners of every element, taken over all ranks: elements × 4, as
+/// in Body::corner_dilatation; empty if no law needs them. Collective.
 std::vector<double> corner_dilatation(const Part& part, std::span<const double> u);
 
 }  // namespace kacanov

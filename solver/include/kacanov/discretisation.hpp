@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far a solution is from that of a mesh without end: an estimate from the solution itself.
+// Estimate of the discretisation error, computed from the solution itself.
 #pragma once
 
 #include <cstdint>
@@ -15,38 +15,39 @@
 
 namespace kacanov {
 
-/// theory: error-estimate
+/// Estimated error of a solution (theory: error-estimate).
 struct DiscretisationError {
-  /// Of every element: its share of `energy`, in the unit of energy.
+  /// Share of `energy` per element, in units of energy.
   std::vector<double> element;
-  double energy = 0.0;    ///< of the error, over all ranks: what the potential energy is above its minimum
+  double energy = 0.0;    ///< of the error, over all ranks: the potential energy above its minimum
   double stored = 0.0;    ///< energy of the solution itself, over all ranks
-  double relative = 0.0;  ///< √(energy / stored): in the energy norm, 0.05 for 5 %; 0 without any strain
+  double relative = 0.0;  ///< √(energy / stored), in the energy norm: 0.05 is 5 %; 0 without strain
 
-  /// Of every element: its part of `relative`; squares add up to its square.
+  /// Share of `relative` per element; the sum of squares is the square of `relative`.
   std::vector<double> shares() const;
 };
 
-/// By Zienkiewicz and Zhu: strains are compared with polynomials fitted round the corners of the elements.
-/// Memory while it works as of recover_stress(). Collective.
+/// Zienkiewicz–Zhu estimate: compares the strains with polynomials fitted around the corners of the elements.
+/// Memory during the call as for recover_stress(). Collective.
 DiscretisationError estimate_error(const Part& part, const BodyState& state);
 
 struct Recovered {
   NodalStress nodal;
   DiscretisationError error;
 };
-/// recover_stress() and estimate_error(), most of whose work is the same: 1.5 times their memory, two thirds
-/// of their time. Collective.
+/// recover_stress() and estimate_error(), which share most of their work: 1.5 times the memory and two thirds
+/// of the time of separate calls. Collective.
 Recovered recover_and_estimate(const Part& part, const BodyState& state);
 
-/// The same for a number that is known on meshes of falling width, each half the one before, coarsest first:
-/// how far the last is from that of a mesh without end. Nothing of fewer than two numbers.
+/// Extrapolates a value computed on a sequence of meshes, coarsest first, each with half the mesh width of
+/// the one before: returns the estimated distance of the last value from its limit. Empty for fewer than two
+/// values.
 std::optional<double> error_of_last(std::span<const double> values);
 
-/// Elements (ascending) with a facet of a contact entry that, moved by u, lies in its obstacle by more than
-/// `least` somewhere: nodes are kept out of obstacles, what lies between them is not (theory: bisection).
-/// Entries whose obstacle moves are passed over.
-/// - problem: of `model`, whole; model: with its obstacles' data.
+/// Returns, ascending, the elements with a facet of a contact entry of which, displaced by u, some point
+/// penetrates the obstacle by more than `least`: contact constrains only nodes, not the points between them
+/// (theory: bisection). Ignores entries whose obstacle moves.
+/// - problem: the complete problem, built from `model`; model: with its obstacles' data.
 /// - u: nodes × dim of problem.mesh; least: a length.
 /// Not collective.
 std::vector<std::int32_t> penetrated_elements(const Problem& problem, const Model& model,

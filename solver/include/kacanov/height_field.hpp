@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Heights on a grid, bilinear in between.
+// Heights on a grid, with bilinear interpolation.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace kacanov {
 
-/// `rows` × `columns` heights, at least 2 × 2, the first row along the largest y as in a picture; the corner
-/// values lie in the corners of [lower, upper].
+/// `rows` × `columns` heights, at least 2 × 2; the first row has the largest y, as in a picture. The corner
+/// values lie at the corners of [lower, upper].
 struct HeightField {
   std::size_t rows = 0, columns = 0;
   std::vector<double> height;
@@ -18,9 +18,9 @@ struct HeightField {
 
   struct Height {
     double value = 0.0;
-    double unknown = 0.0;  ///< what arithmetic may have left of it
+    double unknown = 0.0;  ///< bound on its rounding error
   };
-  /// Nothing beyond the grid, which 1e-9 of its size still belongs to.
+  /// Returns the interpolated height; empty outside the grid, with a tolerance of 1e-9 of its size.
   std::optional<Height> at(double x, double y) const;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ascending indices, most of them next to each other.
+// Ascending indices, most of them consecutive, stored as runs.
 #pragma once
 
 #include <algorithm>
@@ -9,18 +9,18 @@
 
 namespace kacanov {
 
-/// Kept as runs of consecutive ones: no more than eight bytes each, next to nothing where the elements of a
-/// part lie together in the mesh.
+/// Ascending indices stored as runs of consecutive ones: at most eight bytes per index, and almost nothing if
+/// the elements of a part are contiguous in the mesh.
 struct IndexRuns {
   struct Run {
     std::int32_t first = 0;     ///< index
-    std::int32_t position = 0;  ///< of it among all
+    std::int32_t position = 0;  ///< position of `first` in the list
   };
   std::vector<Run> runs;
   std::int32_t count = 0;
 
   std::size_t size() const noexcept { return static_cast<std::size_t>(count); }
-  /// `index` has to lie above all that are there.
+  /// Appends `index`, which must exceed all indices in the list.
   void push_back(std::int32_t index) {
     if (runs.empty() || index - runs.back().first != count - runs.back().position)
       runs.push_back({index, count});
@@ -34,7 +34,7 @@ struct IndexRuns {
                      1;
     return run->first + static_cast<std::int32_t>(position) - run->position;
   }
-  /// Where `index`, which has to be there, stands.
+  /// Returns the position of `index`, which must be in the list.
   std::int32_t position_of(std::int32_t index) const noexcept {
     const auto run = std::upper_bound(runs.begin(), runs.end(), index,
                                       [](std::int32_t i, const Run& r) { return i < r.first; }) -

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An owning mesh of one volume element type, with its boundary and its named parts.
+// An owning mesh of one volume element type, with its boundary and its named groups.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace kacanov {
 
-/// Nodes of a boundary facet.
+/// Number of nodes of a boundary facet.
 inline int nodes_per_facet(ElementType type) { return cell(type).facet().nodes; }
 inline int facets_per_element(ElementType type) { return cell(type).facets(); }
 
@@ -21,11 +21,11 @@ struct Group {
   std::string name;
   int dimension = 0;                  ///< dim: elements; dim − 1: facets; below: nodes
   std::vector<std::int32_t> members;  ///< indices of elements, of `facets`, or of nodes; ascending
-  std::int64_t inner = 0;             ///< facets it had besides, which are not on the boundary
+  std::int64_t inner = 0;  ///< number of its facets that are not on the boundary, dropped from `members`
 };
 
-/// A number at each node, which finer meshes take over: new nodes have the mean of the corners they lie
-/// between. NaN: not known.
+/// A scalar field at the nodes, which refinement interpolates: new nodes get the mean of the corners between
+/// which they lie. NaN: unknown.
 struct NodeField {
   std::string name;
   std::vector<double> values;
@@ -35,14 +35,14 @@ struct Mesh {
   ElementType type = ElementType::tet4;
   std::vector<double> coordinates;          ///< nodes × dim
   std::vector<std::int32_t> elements;       ///< elements × nodes_per_element, positively oriented
-  std::vector<std::int64_t> node_tags;      ///< the file's numbers; empty: index + 1
+  std::vector<std::int64_t> node_tags;      ///< node numbers of the file; empty: index + 1
   std::vector<std::int64_t> element_tags;   ///< likewise
   std::vector<std::int32_t> facets;         ///< the boundary: facets × nodes_per_facet, outwards
-  std::vector<std::int32_t> facet_element;  ///< the element each facet belongs to
+  std::vector<std::int32_t> facet_element;  ///< element of each facet
   std::vector<Group> groups;
   std::vector<NodeField> node_fields;
-  std::vector<std::string> warnings;      ///< what its reader left out
-  PlaneState plane = PlaneState::strain;  ///< that of the model it is put under
+  std::vector<std::string> warnings;      ///< what the mesh reader ignored
+  PlaneState plane = PlaneState::strain;  ///< set from the model
   double thickness = 1.0;                 ///< likewise
 
   int dim() const { return dimension(type); }
@@ -64,17 +64,17 @@ struct Mesh {
   }
 };
 
-/// Fills `facets` and `facet_element` from the elements: the facets that belong to one element only.
+/// Fills `facets` and `facet_element`: the facets that belong to exactly one element.
 void find_boundary(Mesh& mesh);
 
-/// Throws InputError naming the first inverted, folded (det J < 0 at some point), degenerate (volume ≤ 1e-14
-/// of its longest edge cubed, squared in 2D) or non-finite element, a facet shared by three elements, or an
-/// unreferenced node.
+/// Throws InputError that names the first inverted, folded (det J < 0 at some point), degenerate (volume ≤
+/// 1e-14 of its longest edge cubed, squared in 2D) or non-finite element, a facet shared by three elements,
+/// or an unreferenced node.
 void check_mesh(const Mesh& mesh);
 
-/// Generated box [0, size]. Triangles cut squares by the diagonal from lower left to upper right, tetrahedra
-/// cut cubes into six round the diagonal from the lowest to the highest corner. Sides are named left, right,
-/// front, back, bottom, top (in 2D left, right, bottom, top).
+/// A generated box [0, size]. Triangles split squares along the diagonal from lower left to upper right; six
+/// tetrahedra fill each cube around the diagonal from the lowest to the highest corner. Sides are named left,
+/// right, front, back, bottom, top (in 2D left, right, bottom, top).
 struct BoxSpec {
   std::array<double, 3> size{1, 1, 1};
   std::array<int, 3> cells{1, 1, 1};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is to be solved, in the terms of the case file, before it meets a mesh.
+// The model in the terms of the case file, independent of a mesh.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace kacanov {
 
-/// The `on` of an entry: facets (elements for a material or a body force).
+/// The `on` key of an entry: selects facets (elements for a material or a body force).
 struct Selector {
   enum class Kind { all, name, box };
   Kind kind = Kind::all;
@@ -26,43 +26,44 @@ struct Selector {
 struct MaterialEntry {
   Selector on;
   Law law;
-  /// B-bar (theory: b-bar). Unset: as the law has it, and wherever its elements have that form and lock
-  /// without: in plastic and in nearly incompressible bodies.
+  /// B-bar (theory: b-bar). Unset: as the law specifies, and also for plastic and nearly incompressible
+  /// materials whose elements have a B-bar form and lock without it.
   std::optional<bool> bbar = {};
-  /// Mixed: the pressure is a field of its own, by B-bar or, in tet10, by means round the corners (theory:
-  /// displacement-pressure). Unset: as `bbar` says.
+  /// Mixed: the pressure is a separate field, by B-bar or, for tet10, by means around the corners (theory:
+  /// displacement-pressure). Unset: determined by `bbar`.
   enum class Formulation : std::uint8_t { displacement, mixed };
   std::optional<Formulation> formulation = {};
-  double expansion = 0.0;  ///< linear thermal expansion: a strain over a temperature
+  double expansion = 0.0;  ///< linear thermal expansion: strain per temperature
 };
 
-/// By how much elements are warmer than where they are free of strain (theory: expansion): `value` at
-/// `point`, changing by `gradient` from there, or numbers at nodes.
+/// Temperature above the strain-free one (theory: expansion): `value` at `point`, varying with the constant
+/// `gradient`, or given at nodes.
 struct Temperature {
   double value = 0.0;
   Vector3 gradient{}, point{};
-  std::string nodes = {};  ///< not empty: a name among Mesh::node_fields, and the others say nothing
+  std::string nodes = {};  ///< if not empty, a name in Mesh::node_fields; the other members are then ignored
 
   Temperature() = default;
   Temperature(double everywhere) : value(everywhere) {}
   bool uniform() const { return nodes.empty() && gradient == Vector3{}; }
 };
 
-/// Exactly one of the optionals is set.
+/// A support, load, spring or temperature. Exactly one of the optionals is set (`frame` goes with
+/// `displacement`).
 struct BoundaryEntry {
   Selector on;
   std::optional<std::array<std::optional<double>, 3>> displacement;  ///< nullopt: component is free
-  std::optional<Vector3> traction;                                   ///< force an area
-  std::optional<Vector3> total_force;                                ///< spread evenly over the facets' area
-  std::optional<double> pressure;                                    ///< against the outer normal
-  std::optional<Vector3> body_force;                                 ///< force a volume
-  std::string name = {};                                             ///< see entry_name()
-  std::optional<Vector3> spring = {};        ///< elastic bed: stiffness an area, of each component
-  std::optional<double> normal_spring = {};  ///< the same along the facets' normals alone
+  std::optional<Vector3> traction;                                   ///< force per area
+  std::optional<Vector3> total_force;        ///< distributed uniformly over the facets' area
+  std::optional<double> pressure;            ///< acts against the outer normal
+  std::optional<Vector3> body_force;         ///< force per volume
+  std::string name = {};                     ///< see entry_name()
+  std::optional<Vector3> spring = {};        ///< elastic bed: stiffness per area, per component
+  std::optional<double> normal_spring = {};  ///< the same, along the facets' normals only
   std::optional<Vector3> node_spring = {};   ///< stiffness of each node
   std::optional<Vector3> node_force = {};    ///< on each node
   std::optional<double> normal = {};  ///< displacement along the outer normal of a flat group of facets
-  /// Axes, orthogonal, of any length, that `displacement` is told along; unset: those of the coordinates.
+  /// Orthogonal axes, of any length, for the components of `displacement`; unset: the coordinate axes.
   std::optional<std::array<Vector3, 3>> frame = {};
   std::optional<Temperature> temperature = {};
 
@@ -71,19 +72,19 @@ struct BoundaryEntry {
 };
 
 struct Friction {
-  /// What slip is counted from: the undeformed body, or the end of the load step before (theory:
-  /// slip-history).
+  /// Configuration from which slip is measured: the undeformed body, or the end of the previous load step
+  /// (theory: slip-history).
   enum class Reference { start, step };
-  double tresca = 0.0;   ///< bound psi on |tau_t|, a stress
-  double coulomb = 0.0;  ///< coefficient mu_f
+  double tresca = 0.0;   ///< bound ψ on |τ_t|, a stress
+  double coulomb = 0.0;  ///< coefficient μ_f
   Reference reference = Reference::start;
 };
 
-/// A rigid motion of an obstacle along the load steps (theory: moving-obstacles): where it has been taken to
-/// from where the case has it. Linear in between, from rest at the time 0 on; it stays in the last place.
+/// A rigid motion of an obstacle over the load steps (theory: moving-obstacles), relative to its position in
+/// the case file. Piecewise linear in time from rest at time 0; the obstacle stays in the last pose.
 struct Motion {
   struct Pose {
-    double time = 0.0;  ///< > 0, ascending: of load curves, or the factor of load steps
+    double time = 0.0;  ///< > 0, ascending: time of the load curves, or factor of the load steps
     Vector3 translation{};
     Vector3 rotation{};  ///< axis times angle in radians, counterclockwise, about `centre`
   };
@@ -91,10 +92,11 @@ struct Motion {
   std::vector<Pose> path;
 };
 
-/// An obstacle that is pushed, and moves along `direction` as far as it takes (theory: force-control).
+/// An obstacle pushed by a force; it moves along `direction` until the contact force balances it (theory:
+/// force-control).
 struct ForceControl {
-  double force = 0.0;   ///< > 0, that it does to the body along `direction`
-  Vector3 direction{};  ///< towards the body, any length
+  double force = 0.0;   ///< > 0, force on the body along `direction`
+  Vector3 direction{};  ///< towards the body, of any length
 };
 
 struct ContactEntry {
@@ -103,59 +105,61 @@ struct ContactEntry {
   std::optional<Friction> friction;
   std::string name = {};  ///< see entry_name()
   std::optional<Motion> motion = {};
-  /// Whether nodes face the obstacle anew at each load step, from where the step before has left them.
+  /// Whether contact directions and gaps are recomputed at each load step from the displaced nodes.
   bool relinearise = false;
   std::optional<ForceControl> force_controlled = {};
 
-  /// Whether how the nodes face it differs from load step to load step.
+  /// Whether normals or gaps change between load steps.
   bool moves() const noexcept { return motion || relinearise || force_controlled; }
 };
 
-/// What results and messages call an entry: its own name, or its place, "boundary[1]", "contact[0]".
+/// Returns the name of an entry in results and messages: its own name, or its place, "boundary[1]",
+/// "contact[0]".
 std::string entry_name(const BoundaryEntry& entry, std::size_t index);
 std::string entry_name(const ContactEntry& entry, std::size_t index);
 
-/// Every field is a key of the case file's `solver`, with the same name; `automatic` is "auto" there.
+/// Each field is a key of `solver` in the case file with the same name; `automatic` is spelled "auto" there.
 struct SolverOptions {
-  /// Linearisation: the secant (theory: kacanov), the tangent (theory: newton), or the one and then the
-  /// other.
+  /// Linearisation: the secant (theory: kacanov), the tangent (theory: newton), or first the secant and then
+  /// the tangent.
   enum class Outer { automatic, kacanov, newton };
-  /// Contact: ADMM (theory: admm, dual-admm), semismooth Newton (theory: active-set), or that with ADMM to
-  /// begin with and to fall back on.
+  /// Contact algorithm: ADMM (theory: admm, dual-admm), or semismooth Newton (theory: active-set) after an
+  /// ADMM step and with the method of multipliers as fallback (theory: augmented-newton).
   enum class Contact { automatic, admm, dual_admm, active_set };
-  /// The penalty of ADMM: balanced as it goes (theory: first-penalty, balance), r* (theory: r-star), or `r`.
+  /// Penalty of ADMM: adapted during the run (theory: first-penalty, balance), r* (theory: r-star), or the
+  /// given `r`.
   enum class Penalty { automatic, paper, fixed };
-  /// What ends a run: the KKT residuals (theory: kkt), or the size of a step (theory: step-stop).
+  /// Stopping criterion: the KKT residuals (theory: kkt), or the size of a step (theory: step-stop).
   enum class Stop { kkt, paper };
-  /// Rigid-body-mode multigrid (theory: multigrid) or BoomerAMG (theory: elasticity-amg).
+  /// Rigid-body-mode multigrid (theory: multigrid), or BoomerAMG (theory: elasticity-amg).
   enum class Preconditioner { multigrid, elasticity };
 
-  double tolerance = 1e-6;  ///< relative, on what `stop` looks at
+  double tolerance = 1e-6;  ///< relative tolerance of the `stop` criterion
   Outer outer = Outer::automatic;
   Contact contact = Contact::automatic;
   Penalty penalty = Penalty::automatic;  ///< the key is `r`
-  double r = 0.0;                        ///< with Penalty::fixed, > 0: stress over length
+  double r = 0.0;                        ///< > 0, with Penalty::fixed: stress per length
   Stop stop = Stop::kkt;
   Preconditioner preconditioner = Preconditioner::multigrid;
-  /// With the multigrid over aggregates: the first level of at most so many goes to BoomerAMG with all below
-  /// (theory: coarse-amg). 0: none does.
+  /// For aggregation multigrid: BoomerAMG replaces the first level with at most this many rows, and all
+  /// coarser levels (theory: coarse-amg). 0: never.
   int coarse_amg = 0;
-  int max_outer = 100;               ///< outer steps of a load step
-  int max_contact = 10000;           ///< contact iterations within an outer step
-  int max_cg = 2000;                 ///< CG iterations of one solve; what takes more has not converged
+  int max_outer = 100;      ///< outer steps per load step
+  int max_contact = 10000;  ///< contact iterations per outer step
+  int max_cg = 2000;        ///< CG iterations per solve; a solve that reaches the limit has not converged
   double spectrum_tolerance = 1e-2;  ///< relative, on λ_min and λ_max
-  /// Factors > 0 on loads, prescribed displacements and indentation, one after the other (theory: load-path);
-  /// the last is 1. Empty: at once.
+  /// Successive factors > 0 on loads, prescribed displacements and indentation (theory: load-path); the last
+  /// is 1. Empty: the full load in one step.
   std::vector<double> load_steps;
-  /// Whether coarser meshes are solved first where there are some (theory: nested).
+  /// Whether coarser meshes, if available, are solved first (theory: nested).
   bool nested = true;
-  /// Of ADMM, 1 ≤ α < 2 (theory: over-relaxation). Unset: 1 with Penalty::paper or Stop::paper, else 1.7.
+  /// Over-relaxation of ADMM, 1 ≤ α < 2 (theory: over-relaxation). Unset: 1 with Penalty::paper or
+  /// Stop::paper, otherwise 1.7.
   std::optional<double> relaxation;
 };
 
-/// A point of the load curves (theory: load-path): from here on the entries that are named have these
-/// factors, on loads, prescribed displacements or indentation; between two points they change linearly with
-/// time.
+/// A point of the load curves (theory: load-path). From its time on, the named entries have these factors on
+/// their loads, prescribed displacements or indentation; factors are linear in time between two points.
 struct LoadStage {
   double time = 0.0;                      ///< > 0, ascending
   std::map<std::string, double> factors;  ///< by entry_name() or place: "boundary[1]", "contact[0]"
@@ -163,24 +167,24 @@ struct LoadStage {
 
 struct Model {
   PlaneState plane = PlaneState::strain;  ///< of meshes in 2D
-  double thickness = 1.0;                 ///< of plane strain and plane stress: what all forces are of
+  double thickness = 1.0;                 ///< of plane strain and plane stress; all forces refer to it
   std::vector<MaterialEntry> materials;
   std::vector<BoundaryEntry> boundary;
   std::vector<ContactEntry> contact;
-  /// One load step each. Entries that none names have the factor 1, others 0 until they are named. Empty: all
-  /// loads go together, by SolverOptions::load_steps.
+  /// One load step per point. Entries named in no point have the factor 1; the others have 0 until first
+  /// named. Empty: all loads are scaled together by SolverOptions::load_steps.
   std::vector<LoadStage> steps;
-  bool steps_are_factors = false;  ///< with_curves() has made `steps` of SolverOptions::load_steps
+  bool steps_are_factors = false;  ///< whether with_curves() created `steps` from SolverOptions::load_steps
   std::vector<Vector3> probes;
   SolverOptions solver;
 };
 
-/// Whether an obstacle differs from load step to load step, so that solve_moving() is what the model needs.
+/// Whether the obstacle of any entry changes between load steps, so that the model needs solve_moving().
 bool any_moves(const Model& model);
 
-/// Throw InputError about the first thing that makes no sense, in the words and with the paths of the case
-/// file: "solver.tolerance: expected a number above 0 and below 1, got 0". What only a mesh can tell,
-/// build_problem() says. The options of a model are validated with it.
+/// Throw InputError for the first invalid value, with its path in the case file: "solver.tolerance: expected
+/// a number above 0 and below 1, got 0". build_problem() checks everything that depends on the mesh.
+/// validate(model) also validates the model's options.
 void validate(const SolverOptions& options);
 void validate(const Model& model);
 

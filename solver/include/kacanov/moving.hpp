@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Solving where obstacles move, are pushed by a force, or are faced anew at each load step.
+// Solver for obstacles that move, are pushed by a force, or are relinearised at each load step.
 #pragma once
 
 #include <kacanov/part.hpp>
@@ -8,18 +8,18 @@
 
 namespace kacanov {
 
-/// The model with its load steps as load curves, which is what obstacles that move are solved along; as it
-/// was where none moves.
+/// Returns the model with its load steps converted to load curves, which solve_moving() needs; unchanged if
+/// no obstacle moves.
 Model with_curves(Model model);
 
-/// Solves load step by load step, each by solve() from the end of the one before, with obstacles where they
-/// are by then (theory: moving-obstacles, force-control).
-/// - part: of the problem that build_problem() makes of with_curves(model). Its contact rows and load curves
-///   are left as the last load step had them.
-/// - model: with_curves() of it; its obstacles' data are needed on rank 0 alone.
-/// - run: as for solve(); a checkpoint holds the solve under way and the load steps before it.
-/// Returns what solve() does, with counts over all steps. Throws InputError where an obstacle leaves a node
-/// no direction, on all ranks alike. Collective.
+/// Solves one load step after the other, each with solve() starting from the end of the previous one, with
+/// the obstacles at their current positions (theory: moving-obstacles, force-control).
+/// - part: of the problem that build_problem() creates from with_curves(model). Its contact rows and load
+///   curves are left as in the last load step.
+/// - model: the result of with_curves(); its obstacles' data are needed on rank 0 only.
+/// - run: as for solve(); a checkpoint contains the current solve and the completed load steps.
+/// Returns the same as solve(), with counts summed over all steps. Throws InputError on all ranks if an
+/// obstacle leaves any node without a contact direction. Collective.
 Solution solve_moving(Part& part, const Model& model, RunOptions run);
 
 }  // namespace kacanov

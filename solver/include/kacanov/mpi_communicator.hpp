@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The ranks of an MPI communicator as the library knows them.
+// Adapter from an MPI communicator to the Communicator of the kernels.
 #pragma once
 
 #include <mpi.h>
@@ -8,10 +8,10 @@
 
 namespace kacanov {
 
-/// All ranks of `comm`, which has to outlive what is made.
+/// Returns the ranks of `comm` as a Communicator; `comm` must outlive it.
 Communicator mpi_communicator(MPI_Comm comm);
 
-/// The communicator it was made of; MPI_COMM_SELF where it was not.
+/// Returns the MPI communicator it was created from, or MPI_COMM_SELF if it was created otherwise.
 MPI_Comm mpi_of(const Communicator& communicator);
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One rank's share of a problem: its elements, all their nodes, and who shares them.
+// One rank's share of a problem: its elements, all their nodes, and the ranks that share them.
 #pragma once
 
 #include <mpi.h>
@@ -16,10 +16,10 @@
 
 namespace kacanov {
 
-/// Elements are split without overlap; a node lies on every rank that has one of its elements, or a wide
-/// contact point that takes part of it, and is owned by one of the former. Owned nodes come first, neighbours
-/// close to each other (node_order). Vectors over a part are consistent: every copy of a shared entry holds
-/// the same bits.
+/// Elements are partitioned without overlap. A node is present on every rank that has one of its elements, or
+/// a multi-node contact point that involves it; one of the ranks with its elements owns it. Owned nodes come
+/// first, numbered for locality (node_order). Vectors over a part are consistent: every copy of a shared
+/// entry holds the same bits.
 struct Part {
   struct ComponentValue {
     std::int32_t component = 0;  ///< node · dim + c
@@ -28,43 +28,44 @@ struct Part {
   };
   ElementType type = ElementType::tet4;
   PlaneState plane = PlaneState::strain;
-  double thickness = 1.0;           ///< as in Model; all loads here are of a thickness of 1
+  double thickness = 1.0;           ///< as in Model; all loads here are per unit thickness
   std::vector<double> coordinates;  ///< nodes × dim
   std::vector<std::int32_t> elements;
   std::vector<std::int32_t> node_index;               ///< index in Problem::mesh
-  IndexRuns element_index;                            ///< likewise
+  IndexRuns element_index;                            ///< likewise, in Problem::mesh
   std::vector<std::int64_t> node_tags, element_tags;  ///< the user's numbers; empty: index + 1
   IndexMap node_map;                                  ///< of the nodes
   std::int64_t total_elements = 0;
   std::vector<Law> laws;
-  std::vector<std::uint16_t> law_of_element;  ///< empty: all follow laws[0]
+  std::vector<std::uint16_t> law_of_element;  ///< empty: all elements follow laws[0]
   std::vector<ComponentValue> load;           ///< entries of F that are not zero, ascending; consistent
   std::vector<std::uint8_t> held;             ///< nodes × dim
-  std::vector<ComponentValue> prescribed;     ///< of every held component, ascending
+  std::vector<ComponentValue> prescribed;     ///< one per held component, ascending
   std::vector<LoadFactors> steps;             ///< as in Problem
-  std::vector<EntryForce> forces;             ///< likewise, by components of the part
-  std::vector<std::int32_t> prescribed_by;    ///< boundary entry of each of `prescribed`; with steps only
+  std::vector<EntryForce> forces;             ///< likewise, with component numbers of the part
+  std::vector<std::int32_t> prescribed_by;    ///< boundary entry of each of `prescribed`; only with `steps`
   std::vector<Support> supports;              ///< of owned nodes, by node and axis
   std::vector<AppliedLoad> applied;           ///< of the whole problem
   std::vector<HeldDirection> directions;      ///< of local nodes, owned ones first
   std::vector<NodeSpring> springs;            ///< of local nodes, owned ones first
   std::vector<ThermalPressure> thermal;       ///< of local elements
-  /// The points of owned nodes first, narrow ones of ghosts behind them. All nodes of an owned point are
-  /// local; wide points are with their owners only.
+  /// Points of owned nodes come first, followed by the narrow points of ghosts. All nodes of an owned point
+  /// are local; multi-node points are present on their owners only.
   ConstraintRows contact;
   std::int32_t owned_contact = 0;
   std::vector<PointShare> contact_shares;   ///< of owned points, by point
-  bool wide_contact = false;                ///< some rank has wide points
+  bool wide_contact = false;                ///< whether any rank has multi-node points
   std::vector<std::int32_t> contact_index;  ///< index in Problem::contact
   std::int64_t total_contact = 0;
-  std::vector<Probe> probes;  ///< those in this rank's elements
+  std::vector<Probe> probes;  ///< probes that lie in this rank's elements
   std::vector<std::int32_t> probe_index;
   std::int32_t total_probes = 0;
   int loose_modes = 0;
-  /// Points × 2: Tu of an obstacle that has moved, which slip is counted from; empty: none has. Not in files.
+  /// Points × 2: Tu of an obstacle that has moved, from which slip is measured; empty: none has moved. Not
+  /// saved to files.
   std::vector<double> slip_origin;
-  std::vector<double> start;                 ///< nodes × dim: displacement to start from; empty: none
-  std::vector<std::int64_t> pressure_patch;  ///< as in Body, since join(). Not in files
+  std::vector<double> start;                 ///< nodes × dim: initial displacement; empty: none
+  std::vector<std::int64_t> pressure_patch;  ///< as in Body, set by join(). Not saved to files
   std::string no_equilibrium;                ///< as in Problem
 
   int dim() const noexcept { return dimension(type); }
@@ -87,13 +88,13 @@ struct Part {
   void add_load(std::span<double> f) const noexcept {
     for (const auto& entry : load) f[entry.component] += entry.value;
   }
-  /// Place of a held component in `prescribed`.
+  /// Returns the position of a held component in `prescribed`.
   std::size_t prescribed_place(std::size_t component) const noexcept;
-  /// Sets held components of u.
+  /// Sets the held components of u to their prescribed values.
   void prescribe(std::span<double> u) const noexcept {
     for (const auto& p : prescribed) u[p.component] = p.value;
   }
-  /// On any rank: the same everywhere.
+  /// Whether any rank has pressure patches; the same result on all ranks.
   bool has_patches() const { return node_map.any(!pressure_patch.empty()); }
   Body body() const noexcept {
     Body whole{{type, coordinates, elements, plane}, laws, law_of_element};
@@ -102,23 +103,23 @@ struct Part {
   }
 };
 
-/// Splits the problem with METIS and hands out the parts one after another, so that only one lies beside the
-/// problem; that of rank 0 comes last. They have to join their ranks before they are used. Needs no MPI.
-/// Throws InputError where the mesh is too small for so many.
+/// Partitions the problem with METIS and passes the parts to `take` one after another, rank 0 last, so that
+/// only one part exists at a time beside the problem. Call join() on each before use. Needs no MPI. Throws
+/// InputError if the mesh is too small for this many ranks.
 void split(const Problem& problem, int ranks, const std::function<void(int rank, Part&& part)>& take);
 
-/// Ties the part of this rank to the ranks that `comm` has.
+/// Connects the part of this rank to the other ranks of `comm`.
 void join(Part& part, MPI_Comm comm);
 
-/// Splits the problem (given on rank 0 only, null elsewhere) over the ranks of `comm` with METIS and
-/// hands every rank its part. Collective.
+/// Partitions the problem (given on rank 0, null elsewhere) over the ranks of `comm` with METIS and returns
+/// each rank's part. Collective.
 Part distribute(const Problem* problem, MPI_Comm comm);
 
-/// Collects nodes × components (owned entries) on rank 0, in the numbering of Problem::mesh; empty elsewhere.
-/// Collective.
+/// Gathers nodes × components (owned entries) on rank 0, in the numbering of Problem::mesh; returns an empty
+/// vector elsewhere. Collective.
 std::vector<double> gather_nodal(const Part& part, std::span<const double> local, int components,
                                  CallSite at = CallSite());
-/// Contact points × components, in the numbering of Problem::contact.
+/// The same for contact points × components, in the numbering of Problem::contact.
 std::vector<double> gather_contact(const Part& part, std::span<const double> local, int components,
                                    CallSite at = CallSite());
 

@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Quadratic elements from linear ones.
+// Conversion of linear to quadratic elements.
 #pragma once
 
 #include <kacanov/mesh.hpp>
 
 namespace kacanov {
 
-/// tet10 of a tet4 mesh: a node in the middle of every edge, which stays straight. Elements keep their order
-/// and numbers, nodes theirs, new ones follow. Groups stay, of lines on which nodes lie with the nodes in the
-/// middle. Throws InputError for other elements, and where nodes no longer fit 32-bit indices.
+/// Returns the tet10 mesh of a tet4 mesh, with mid-side nodes on all edges; edges stay straight. Elements and
+/// nodes keep their order and numbers, and new nodes follow. Groups are kept; groups of nodes that cover
+/// edges also get the mid-side nodes. Throws InputError for other element types, and if the number of nodes
+/// exceeds 32-bit indices.
+/// of nodes exceeds 32-bit indices.
 Mesh raise_order(const Mesh& mesh);
 
-/// The element of which raise_order() makes meshes of this one. Throws InputError where there is none.
+/// Returns the element type that raise_order() converts `type` to. Throws InputError if there is no such
+/// type.
 ElementType raised(ElementType type);
 
 }  // namespace kacanov

@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the numbers of a model have to be, in words and as bounds: one place for validate(), for readers of
-// files and for what describes these files.
+// Valid ranges of the model's numbers, in words and as bounds: shared by validate(), the file readers and the
+// case schema.
 #pragma once
 
 #include <limits>
 
 namespace kacanov {
 
-/// A range of numbers. Of a bound that is not set nothing is asked.
+/// A range of numbers; infinite bounds impose nothing.
 struct NumberRule {
   static constexpr double none = std::numeric_limits<double>::infinity();
   const char* words;  ///< as in "solver.tolerance: expected a number above 0 and below 1, got 2"
-  double above = -none, least = -none;  ///< it is > above and ≥ least
-  double below = none, most = none;     ///< it is < below and ≤ most
+  double above = -none, least = -none;  ///< requires > above and ≥ least
+  double below = none, most = none;     ///< requires < below and ≤ most
 
   constexpr bool holds(double v) const noexcept { return v > above && v >= least && v < below && v <= most; }
 };
 
-/// Numbers beyond it would overflow when squared on the way.
+/// Squares of larger numbers may overflow.
 inline constexpr double largest_number = 1e100;
 
 inline constexpr NumberRule any_number{.words = "a number"};
@@ -31,13 +31,13 @@ inline constexpr NumberRule poisson_ratio{
 inline constexpr NumberRule cone_angle{
     .words = "an angle in degrees above 0 and below 90", .above = 0.0, .below = 90.0};
 inline constexpr NumberRule time_after_start{.words = "a time after 0", .above = 0.0};
-/// Below it the squares of forces and their digits leave single precision, which the preconditioner works in.
+/// With smaller factors, squared forces underflow in the preconditioner's single precision.
 inline constexpr double smallest_factor = 1e-15;
 inline constexpr NumberRule load_factor{.words = "a factor ≥ 1e-15", .least = smallest_factor};
 inline constexpr NumberRule over_relaxation{.words = "a number ≥ 1 and below 2", .least = 1.0, .below = 2.0};
 inline constexpr NumberRule penalty_number{.words = "\"auto\", \"paper\" or a number > 0", .above = 0.0};
 
-/// Of a list of load steps.
+/// Rule for a list of load steps.
 inline constexpr const char* last_factor = "factors on the load of which the last is 1";
 
 }  // namespace kacanov

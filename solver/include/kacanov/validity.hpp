@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What looks mistaken about a problem or its result, though it can be computed.
+// Warnings about a problem or its result that can be computed but look mistaken.
 #pragma once
 
 #include <string>
@@ -10,15 +10,16 @@
 
 namespace kacanov {
 
-/// Before it is solved: nothing that acts, units that do not go together, facets that look away from their
-/// obstacle or lie inside the body, thin elements, elements that lock. One sentence each, in the words of the
-/// case file; `problem` is whole (before keep_boundary) and made of `model`.
+/// Returns warnings before the solve: nothing acts on the body, inconsistent units, facets that face away
+/// from their obstacle or lie inside the body, thin elements, elements that lock. One sentence each, in the
+/// terms of the case file; `problem` is complete (before keep_boundary()) and built from `model`.
 std::vector<std::string> examine(const Problem& problem, const Model& model);
 
-/// Of those warnings what may be why a run does not converge; empty where none is.
+/// Returns those of the warnings that may explain why a run does not converge; empty if there are none.
 std::string likely_cause(const std::vector<std::string>& warnings);
 
-/// After: strains, rotations and displacements that are not small, contact that bears nothing. Likewise.
+/// Returns warnings after the solve, in the same form: large strains, rotations or displacements, contact
+/// that carries no load.
 std::vector<std::string> examine(const Result& result, const Model& model);
 
 }  // namespace kacanov
