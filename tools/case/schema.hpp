@@ -63,8 +63,7 @@ struct ListOf {
   Schema entry;
   std::string expected;  ///< expected text in messages, as in "a list of 2 or 3 numbers"
   std::size_t least = 0, most = any_number;
-  std::string words_below = {}, words_above = {};  ///< for lists that are too short or too long; empty:
-                                                   ///< `expected`
+  std::string words_below = {}, words_above = {};  ///< for lists of wrong length; empty: `expected`
 };
 
 /// A list with one schema per entry.
