@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// numpy arrays as they come: used where they lie, or refused with what was expected.
+// Checks numpy arrays and uses them without a copy, or rejects them with what was expected.
 #include "arrays.hpp"
 
 #include <algorithm>
