@@ -15,7 +15,7 @@ class Error(Exception):
 
 
 class InputError(Error, ValueError):
-    """Bad input: names the key, element, argument or file, and what was expected there."""
+    """Bad input: the message names the key, element, argument or file, and the expected value."""
 
 
 class StateError(Error, RuntimeError):

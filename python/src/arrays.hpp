@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Checks numpy arrays and uses them without a copy, or rejects them with what was expected.
+// Checks type, shape and layout of numpy arrays, and uses them without a copy.
 #pragma once
 
 #include <pybind11/numpy.h>

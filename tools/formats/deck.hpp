@@ -102,7 +102,7 @@ Mesh mesh_of(Deck deck);
 
 /// Returns the value of a number, also with a Fortran exponent (1.5D3).
 std::optional<double> deck_real(std::string_view word);
-/// Returns the number in a field; throws InputError with what was expected there.
+/// Returns the number in a field; throws InputError naming the expected value (`what`).
 double deck_number(const Deck& deck, const DeckRow& row, std::size_t field, const char* what);
 std::int64_t deck_integer(const Deck& deck, const DeckRow& row, std::size_t field, const char* what);
 

@@ -17,7 +17,7 @@ inline constexpr std::size_t block_bytes = std::size_t{1} << 16;
 class BlockSink {
  public:
   virtual ~BlockSink() = default;
-  /// Bytes of a block that is shared with what comes before or after; less than one block.
+  /// Part of a block that continues before or after this share; less than one block.
   virtual void loose(std::span<const unsigned char> bytes) = 0;
   /// Whole compressed blocks, contiguous, and the length of each.
   virtual void packed(std::span<const unsigned char> bytes, std::span<const std::uint64_t> lengths) = 0;

@@ -46,7 +46,7 @@ int open_locked(const fs::path& folder, bool lock_needed) {
   return -1;
 }
 
-/// Removes folders in `base` that nobody holds a lock on: their processes have ended.
+/// Removes unlocked folders in `base`: their processes have ended.
 void remove_left_over(const fs::path& base) {
   std::error_code error;
   std::vector<fs::path> found;
