@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Finds the boundary of a mesh, and the selection of an `on`.
+// Finds the boundary of a mesh, and the parts of it that `on` selects.
 #include "verify/mesh.hpp"
 
 #include <algorithm>
