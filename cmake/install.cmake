@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# What `cmake --install` puts where: libraries, headers, the package files of find_package and pkg-config.
+# Installation: libraries, headers, and package files for find_package and pkg-config.
 include(CMakePackageConfigHelpers)
 
 set(package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/kacanov")
 
-# All that is installed and nothing else, as tools/quickstart run builds it.
+# Everything that is installed; tools/quickstart run builds this target only.
 add_custom_target(kacanov_installed)
 
-# One export set a target, so that a consumer meets the dependencies of what it asks for and no others; what belongs
-# together is installed together: `cmake --install BUILD --component kernels|solve|solver|program`.
+# One export set per target, so that a consumer needs only the dependencies of the components it requests.
+# Components are installed separately: `cmake --install BUILD --component kernels|solve|solver|program`.
 function(kacanov_install_target name target component)
   add_dependencies(kacanov_installed ${target})
   install(TARGETS ${target} EXPORT kacanov-${name}
@@ -24,7 +24,7 @@ kacanov_install_target(c kacanov_c kernels)
 if(KACANOV_SOLVER)
   kacanov_install_target(solver kacanov_solver solver)
   install(DIRECTORY solver/include/ DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT solver)
-  # One library that brings the whole solver, for consumers that need none of what it is made of.
+  # One library that contains the whole solver, for consumers without its dependencies.
   kacanov_install_target(solve kacanov_solve solve)
   install(DIRECTORY tools/include/ DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT solve)
   install(FILES cmake/FindHYPRE.cmake cmake/FindPARPACK.cmake DESTINATION "${package_dir}" COMPONENT solver)
@@ -50,8 +50,8 @@ install(FILES
   cmake/FindMETIS.cmake
   DESTINATION "${package_dir}" COMPONENT kernels)
 
-# pkg-config files find their prefix by their own place, so that an installed tree may be moved; a folder that was
-# given as an absolute path is where it is.
+# pkg-config files find their prefix relative to their own location, so that an installed tree can be moved;
+# absolute install paths are kept.
 if(IS_ABSOLUTE "${CMAKE_INSTALL_LIBDIR}")
   set(pc_prefix "${CMAKE_INSTALL_PREFIX}")
   set(pc_libdir "${CMAKE_INSTALL_LIBDIR}")

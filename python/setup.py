@@ -15,7 +15,7 @@ VERSION = re.search(r"^project\(kacanov VERSION (\S+)", (ROOT / "CMakeLists.txt"
 
 
 class CMakeBuild(build_ext):
-    """Configures with the module and without what it does not need, builds it, and copies it to its place."""
+    """Configures the module without unneeded parts, builds it, and copies it to its place."""
 
     def build_extension(self, ext):
         given = os.environ.get("KACANOV_BUILD")

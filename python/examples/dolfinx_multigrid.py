@@ -3,8 +3,8 @@
 
 usage: dolfinx_multigrid.py [--cells 8] [--degree 2] [--threads 2] [--with-matrix]
 
---with-matrix assembles DOLFINx' own matrix beside it, for PETSc's Jacobi and GAMG with rigid-body modes. Seconds are those of
-the processor.
+--with-matrix also assembles DOLFINx' own matrix and solves with PETSc's Jacobi and GAMG with rigid-body modes. Times
+are processor seconds.
 """
 import argparse
 import gc
@@ -24,7 +24,7 @@ YOUNG, POISSON = 210e3, 0.3
 
 
 def solve(matrix, preconditioner, b, name):
-    """CG to 1e-8; preconditioner: a PC, or the name of one of PETSc's."""
+    """Solves by CG to 1e-8. preconditioner: a PC, or the name of one of PETSc's."""
     ksp = PETSc.KSP().create(MPI.COMM_SELF)
     start = time.process_time()
     ksp.setOperators(matrix)
@@ -44,7 +44,7 @@ def solve(matrix, preconditioner, b, name):
 
 
 def rigid_modes(space):
-    """The six of them, for GAMG, orthonormal."""
+    """Returns the six rigid-body modes for GAMG, orthonormal."""
     x = space.tabulate_dof_coordinates()
     modes = np.zeros((6, len(x), 3))
     for k in range(3):
@@ -102,5 +102,5 @@ def main():
 
 if __name__ == "__main__":
     code = main()
-    gc.collect()  # DOLFINx' meshes are rings of references: what they have of MPI has to go before MPI does
+    gc.collect()  # DOLFINx meshes are reference cycles: free their MPI objects before MPI is finalised
     sys.exit(code)

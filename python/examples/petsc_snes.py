@@ -3,9 +3,10 @@
 
 usage: petsc_snes.py [--cells 8] [--load 20] [--threads 2] [--with-matrix] [--displacement FILE]
 
-Newton's method, whose line search ends where the residual is orthogonal to the step ("cp": the energy's least, without its
-rounding), and CG that is as exact as each step deserves (Eisenstat and Walker). --with-matrix does the same with the tangent's matrix, assembled every step, and PETSc's Jacobi and GAMG with rigid-body modes. Seconds are
-those of the processor. --displacement writes what comes out, nodes × 3, for numpy.load.
+Newton's method with a line search that makes the residual orthogonal to the step ("cp": minimises the energy without
+its round-off), and inexact CG with the tolerances of Eisenstat and Walker. --with-matrix repeats the solve with an
+assembled tangent matrix and PETSc's Jacobi and GAMG with rigid-body modes. Times are processor seconds.
+--displacement writes the displacement, (nodes, 3), for numpy.load.
 """
 import argparse
 import json
@@ -20,9 +21,9 @@ STEEL = kc.Material(young=210e3, poisson=0.3, law=kc.Logarithmic(yield_stress=25
 
 
 def beam(n):
-    """4 x 1 x 1 of cubes, n across, in Gmsh's order; and what a force of one a volume is on each node."""
+    """Returns a 4 x 1 x 1 beam of cubes, n across, in Gmsh's order, and the nodal forces of a unit body force."""
     shape = np.array([n, n, 4 * n])
-    node = np.arange(np.prod(shape + 1)).reshape(shape + 1)  # by z, y, x
+    node = np.arange(np.prod(shape + 1)).reshape(shape + 1)  # indexed by z, y, x
     corners = [(0, 0, 0), (0, 0, 1), (0, 1, 1), (0, 1, 0), (1, 0, 0), (1, 0, 1), (1, 1, 1), (1, 1, 0)]
     cells = np.stack([node[z:z + n, y:y + n, x:x + 4 * n].ravel() for z, y, x in corners], axis=1)
     z, y, x = (axis.ravel() for axis in np.indices(shape + 1) / n)
@@ -30,7 +31,7 @@ def beam(n):
 
 
 class Body:
-    """What SNES asks for. Unknowns that are held are in all vectors, with equations of their own: u = 0."""
+    """Callbacks of SNES. Vectors include the constrained unknowns, whose equations are u = 0."""
 
     def __init__(self, options):
         start = time.process_time()
@@ -44,7 +45,7 @@ class Body:
         self.load.ravel()[self.held] = 0.0
         self.load = self.load.ravel()
         self.made_seconds = time.process_time() - start
-        self.setup_seconds = 0.0  # tangents and preconditioners
+        self.setup_seconds = 0.0  # of tangents and preconditioners
 
     def residual(self, _snes, x, f):
         u, out = x.getArray(readonly=True), f.getArray()
@@ -58,7 +59,7 @@ class Body:
 
 
 def with_operator(body, snes):
-    """The tangent stays a shell: nothing but what frozen moduli take is set up, and the aggregates of the first step last."""
+    """Uses the tangent as a shell: only the frozen moduli are updated; the aggregates of the first step are kept."""
     start = time.process_time()
     multigrid = body.op.multigrid()
     shell = body.op.tangent(np.zeros(body.op.shape[0])).petsc_mat()
@@ -69,7 +70,7 @@ def with_operator(body, snes):
         begin = time.process_time()
         matrix.getPythonContext().operator = body.op.tangent(x.getArray(readonly=True))
         multigrid.update()
-        matrix.assemble()  # tells PETSc that it has changed
+        matrix.assemble()  # notifies PETSc of the change
         body.setup_seconds += time.process_time() - begin
 
     snes.setJacobian(tangent, shell)
@@ -83,8 +84,8 @@ def with_matrix(body, snes, preconditioner):
     matrix.setNearNullSpace(body.rigid_modes())
     matrix.setOption(PETSc.Mat.Option.SPD, True)
     snes.getKSP().getPC().setType(preconditioner)
-    # GAMG keeps the aggregates of the first step, as our multigrid does, but left to itself also the bounds of the
-    # eigenvalues: too low beyond yield, so that its smoother is indefinite there and CG ends.
+    # GAMG keeps the aggregates of the first step, as our multigrid does. By default it also keeps the
+    # eigenvalue bounds, which are too low beyond yield: the smoother becomes indefinite and CG stops.
     PETSc.Options("beam_")["pc_gamg_use_sa_esteig"] = False
     body.setup_seconds += time.process_time() - start
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""kacanov: elastoplastic bodies in contact with rigid obstacles, solved in this process, and the operator beneath.
+"""kacanov: elastoplastic bodies in contact with rigid obstacles, solved in this process, and the underlying operator.
 
     import kacanov as kc
     case = kc.Case(kc.box((4, 1, 1), (16, 4, 4), "hex8"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Types of the compiled part. Arrays have to be of exactly the dtype and shape that the package's classes say."""
+"""Types of the compiled part. Arrays must have exactly the dtype and shape described in the package's classes."""
 from typing import Any
 
 import numpy as np

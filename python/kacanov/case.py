@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A case: the case file as a dict, words to put it together, and the solver in this process."""
+"""A case: the case file as a dict, methods that build it, and the solver in this process."""
 from __future__ import annotations
 
 import copy
@@ -20,11 +20,11 @@ Vector = Sequence[float]
 
 
 class Case:
-    """What a case file says: `document` is it, as a dict, and may be changed by hand.
+    """The content of a case file. `document` is the case file as a dict and may be edited directly.
 
-    Every key, and what was expected where one is wrong, is that of the case file (docs/user-guide/case-file.md).
-    `plane` is what a mesh in 2D is of: "strain", "stress" or "axisymmetric". Relative file names start at `folder`. A mesh that is arrays stands in `arrays`; the document then names the
-    file that `to_json` writes it to.
+    Keys and error messages are those of the case file (docs/user-guide/case-file.md). `plane`: "strain", "stress" or
+    "axisymmetric", for 2D meshes. Relative file names start at `folder`. A mesh given as arrays is in `arrays`; the
+    document then names the file that `to_json` writes it to.
     """
 
     def __init__(self, mesh: BoxMesh | MeshFile | Mesh | Mapping[str, Any] | None = None, *, order: int | None = None,
@@ -53,11 +53,11 @@ class Case:
             raise TypeError("mesh: expected kacanov.box, read or Mesh, or a dict as in a case file, "
                             f"got {type(mesh).__name__}")
 
-    # ---- from and to case files
+    # ---- reading and writing case files
 
     @classmethod
     def from_json(cls, path: str | os.PathLike[str]) -> Case:
-        """The case in a file."""
+        """Reads a case from a case file."""
         try:
             with open(path, encoding="utf-8") as file:
                 text = file.read()
@@ -65,22 +65,22 @@ class Case:
             raise InputError(f"{os.fspath(path)}: cannot be read: {error}") from error
         folder, name = os.path.split(os.path.abspath(path))
         case = cls(name=os.path.splitext(name)[0], folder=folder)
-        # Not by json.loads: repeated keys and the like are refused as the program does.
+        # Not json.loads: rejects repeated keys and the like, as the program does.
         case.document = json.loads(_kacanov.normal(text, os.fspath(path)))
         return case
 
     @classmethod
     def from_dict(cls, document: Mapping[str, Any], *, name: str = "case",
                   folder: str | os.PathLike[str] = ".") -> Case:
-        """The case of a dict with the keys of a case file."""
+        """Returns the case of a dict with the keys of a case file."""
         case = cls(name=name, folder=folder)
         case.document = plain(document)
         return case
 
     def to_json(self, path: str | os.PathLike[str] | None = None) -> str:
-        """The case file, as text; written to `path` where given, with a mesh of arrays beside it as a .msh.
+        """Returns the case file as text, and writes it to `path` if given, with a mesh of arrays beside it as a .msh.
 
-        Relative file names are made absolute where the file goes to another folder than the case's.
+        Relative file names become absolute if the file goes to another folder than the case's.
         """
         case = self.copy()
         if path is not None:
@@ -107,7 +107,7 @@ class Case:
                 holder["file"] = os.path.join(self.folder, holder["file"])
 
     def copy(self) -> Case:
-        """Another case with a document of its own."""
+        """Returns a copy with its own document."""
         other = copy.copy(self)
         other.document = copy.deepcopy(self.document)
         return other
@@ -115,7 +115,7 @@ class Case:
     def __repr__(self) -> str:
         return f"<kacanov.Case {self.name}: {', '.join(self.document)}>"
 
-    # ---- words
+    # ---- building a case
 
     def _add(self, list_: str, **entry: Any) -> Case:
         entries = self.document.setdefault(list_, [])
@@ -127,7 +127,7 @@ class Case:
                  plastic: Sequence[Vector] | None = None, yield_stress: float | None = None,
                  tangent_modulus: float | None = None, bbar: bool | None = None,
                  formulation: str | None = None, expansion: float | None = None) -> Case:
-        """Adds a material. As all words that add, returns the case."""
+        """Adds a material. Like all methods that add something, returns the case."""
         return self._add("material", on=on, young=young, poisson=poisson, law=law, plastic=plastic,
                          yield_stress=yield_stress, tangent_modulus=tangent_modulus, bbar=bbar,
                          formulation=formulation, expansion=expansion)
@@ -138,51 +138,51 @@ class Case:
         return self._add("boundary", on=on, displacement=displacement, frame=frame, name=name)
 
     def symmetry(self, on: On, normal: float = 0.0, *, name: str | None = None) -> Case:
-        """Prescribes the displacement along the outer normal of flat facets: 0 is a plane of symmetry."""
+        """Prescribes the displacement along the outward normal of flat facets: 0 is a plane of symmetry."""
         return self._add("boundary", on=on, normal=normal, name=name)
 
     def traction(self, traction: Vector, on: On, *, name: str | None = None) -> Case:
-        """A force an area."""
+        """Adds a force per area."""
         return self._add("boundary", on=on, traction=traction, name=name)
 
     def total_force(self, force: Vector, on: On, *, name: str | None = None) -> Case:
-        """A force, spread evenly over the facets."""
+        """Adds a total force, distributed evenly over the facets."""
         return self._add("boundary", on=on, total_force=force, name=name)
 
     def pressure(self, pressure: float, on: On, *, name: str | None = None) -> Case:
-        """Against the outer normal."""
+        """Adds a pressure, which acts against the outward normal."""
         return self._add("boundary", on=on, pressure=pressure, name=name)
 
     def body_force(self, force: Vector, on: On = "all", *, name: str | None = None) -> Case:
-        """A force a volume."""
+        """Adds a force per volume."""
         return self._add("boundary", on=on, body_force=force, name=name)
 
     def gravity(self, density: float, acceleration: Vector, on: On = "all", *, name: str | None = None) -> Case:
-        """A mass a volume and an acceleration."""
+        """Adds gravity, given by mass density and acceleration."""
         return self._add("boundary", on=on, density=density, acceleration=acceleration, name=name)
 
     def spring(self, stiffness: float | Vector, on: On, *, name: str | None = None) -> Case:
-        """An elastic bed under facets: a number along the normal, or one a component; stiffness an area."""
+        """Adds an elastic foundation under facets: stiffness per area, along the normal or one per component."""
         return self._add("boundary", on=on, spring=stiffness, name=name)
 
     def node_spring(self, stiffness: Vector, on: On, *, name: str | None = None) -> Case:
-        """A spring at each node, one stiffness a component."""
+        """Adds a spring at each node, with one stiffness per component."""
         return self._add("boundary", on=on, node_spring=stiffness, name=name)
 
     def node_force(self, force: Vector, on: On, *, name: str | None = None) -> Case:
-        """A force on each node of a selection."""
+        """Adds a force on each node of a selection."""
         return self._add("boundary", on=on, node_force=force, name=name)
 
     def temperature(self, difference: float | Mapping[str, Any], on: On = "all", *, name: str | None = None) -> Case:
-        """By how much elements are warmer than where they are free of strain: a number, or {"gradient", "value", "point"}
-        of a linear field, or {"file", "otherwise"} of a CSV file of nodes."""
+        """Sets the temperature rise of elements over the stress-free state: a number, {"gradient", "value", "point"} of
+        a linear field, or {"file", "otherwise"} of a CSV file of nodal values."""
         return self._add("boundary", on=on, temperature=difference, name=name)
 
     def contact(self, on: On, obstacle: Obstacle | Mapping[str, Any], *, coulomb: float | None = None,
                 tresca: float | None = None, reference: str | None = None, name: str | None = None,
                 motion: Mapping[str, Any] | None = None, relinearise: bool | None = None,
                 force_controlled: Mapping[str, Any] | None = None) -> Case:
-        """Contact with an obstacle, without friction unless `coulomb` or `tresca` is given."""
+        """Adds contact with an obstacle, frictionless unless `coulomb` or `tresca` is given."""
         words = {"coulomb": coulomb, "tresca": tresca, "reference": reference}
         friction = {key: value for key, value in words.items() if value is not None}
         return self._add("contact", on=on, obstacle=obstacle, friction=friction or None, name=name, motion=motion,
@@ -193,46 +193,46 @@ class Case:
         return self._add("steps", time=time, factors=factors)
 
     def probe(self, *points: Vector) -> Case:
-        """Points whose displacement is reported."""
+        """Adds points whose displacement is reported."""
         self.document.setdefault("probe", []).extend(plain(points, "probe"))
         return self
 
     def solver(self, **options: Any) -> Case:
-        """Sets options of the solver: tolerance=1e-8, load_steps=4."""
+        """Sets solver options: tolerance=1e-8, load_steps=4."""
         self.document.setdefault("solver", {}).update(plain(options, "solver"))
         return self
 
     def set(self, path: str, value: Any) -> Case:
-        """Sets what stands at a path of the document: set("contact[0].friction.coulomb", 0.2)."""
+        """Sets the value at a path of the document: set("contact[0].friction.coulomb", 0.2)."""
         assignment = f"{path}={json.dumps(plain(value, path))}"
         text = json.dumps(plain(self.document))
         self.document = json.loads(_kacanov.with_override(text, self.name, assignment))
         return self
 
-    # ---- the solver
+    # ---- solving
 
     def _text(self) -> tuple[str, str, bytes | None]:
         mesh = None if self.arrays is None else self.arrays.msh()
         return json.dumps(plain(self.document)), os.path.join(self.folder, self.name + ".json"), mesh
 
     def check(self) -> dict[str, Any]:
-        """Validates the case on its mesh, without solving: sizes, warnings, and the memory that a solve will take."""
+        """Validates the case on its mesh without solving; returns sizes, warnings, and the estimated memory."""
         return _kacanov.check(*self._text())
 
     def solve(self, *, progress: bool | Callable[[dict[str, Any]], object] = False, start: Solution | None = None,
               stop: Callable[[], bool] | None = None, threads: int | None = None, comm: Any = None,
               memory_check: bool = True) -> Solution:
-        """Solves the case in this process. Not converging is no error: look at the solution's `status`.
+        """Solves the case in this process. Not converging is no error: check the solution's `status`.
 
-        progress: True prints a line a step, a function is called with a dict of each.
-        start: a solution of the same body to start from, on any mesh; it saves work and changes nothing else.
-        stop: asked some fifty times a second; where it says True the solve ends as `interrupted`.
-        threads: None: one for small bodies, else as many as there are cores.
-        comm: of mpi4py: the solve is one of all its ranks. The case is that of the first, which has the progress and the
-        fields. Where one rank raises something all of them do: the others RankError, or Interrupted where it is Ctrl-C.
-        memory_check: refuse what does not fit into memory.
-        Ctrl-C ends the solve with the state after its last whole outer step, in Interrupted.solution and in
-        `self.solution`. What a callback raises ends it likewise, and is raised.
+        progress: True prints one line per step; a function is called with a dict for each step.
+        start: initial guess, a solution of the same body on any mesh; it saves work and changes nothing else.
+        stop: called up to fifty times per second; the solve ends as `interrupted` when it returns True.
+        threads: None: one for small bodies, else one per core.
+        comm: an mpi4py communicator: all its ranks solve together. The case is that of the first rank, which also gets
+        progress and fields. If one rank raises, all do: the others RankError, or Interrupted after Ctrl-C.
+        memory_check: refuse a case that does not fit into memory.
+        Ctrl-C ends the solve with the state after its last complete outer step, in Interrupted.solution and in
+        `self.solution`. An exception in a callback ends it likewise and is raised.
         """
         given: dict[str, Any] = {
             "progress": ProgressTable() if progress is True else progress or None, "stop": stop,
@@ -243,7 +243,7 @@ class Case:
         except BaseException as error:
             if comm is None:
                 raise
-            given["failed"] = error  # the other ranks have to know
+            given["failed"] = error  # report it to the other ranks
         solved, raised, elsewhere = _kacanov.solve(given)
         if solved is not None:
             self.solution = Solution(solved)
@@ -258,17 +258,17 @@ class Case:
 
 
 def _address_of(comm: Any) -> int:
-    """Where mpi4py keeps a communicator's handle; 0 without one."""
+    """Returns the address of mpi4py's communicator handle; 0 without a communicator."""
     if comm is None:
         return 0
-    from mpi4py import MPI  # what it has is what MPI is in this process
+    from mpi4py import MPI  # importing it tells which MPI this process uses
     if comm == MPI.COMM_NULL:
         raise InputError("comm: MPI.COMM_NULL")
     return MPI._addressof(comm)
 
 
 class ProgressTable:
-    """Prints a line an outer step, with headings before the first."""
+    """Prints one line per outer step, with a heading before the first."""
 
     def __init__(self, file: TextIO | None = None) -> None:
         self._headed = False

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Function spaces of DOLFINx as bodies, of one process or of several."""
+"""Function spaces of DOLFINx as bodies, on one process or several."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -13,10 +13,11 @@ from .mesh import ELEMENTS, Mesh
 
 Array = npt.NDArray[Any]
 
-# DOLFINx' cells with a Lagrange space of so many nodes on each.
+# Element type by DOLFINx cell and number of nodes of the Lagrange element.
 DOLFINX = {("triangle", 3): "tri3", ("quadrilateral", 4): "quad4", ("tetrahedron", 4): "tet4",
            ("tetrahedron", 10): "tet10", ("hexahedron", 8): "hex8"}
-# Our nodes of the mirrored element, and which three edges from the first node say whether it is one.
+# Node order of the mirrored element; AXES: end nodes of the edges from the first node that give the
+# orientation.
 MIRRORED = {"tri3": [0, 2, 1], "quad4": [0, 3, 2, 1], "tet4": [0, 2, 1, 3], "hex8": [0, 3, 2, 1, 4, 7, 6, 5],
             "tet10": [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]}
 AXES = {"tri3": [1, 2], "quad4": [1, 3], "tet4": [1, 2, 3], "tet10": [1, 2, 3], "hex8": [1, 3, 4]}
@@ -25,18 +26,19 @@ Named = Mapping[str, npt.ArrayLike] | None
 
 
 class DolfinxMesh(Mesh):
-    """The body of a space: on the first of its ranks all of it, on the others nothing; or a rank's own part."""
+    """The body of a function space: whole on the first rank and empty on the others, or each rank's own part."""
 
     def __init__(self, comm: Any, numbers: list[Array] | None, arrays: dict[str, Any]) -> None:
         super().__init__(order="basix", **arrays)
-        self._comm, self._numbers = comm, numbers  # of each rank's nodes, on the first rank
+        self._comm, self._numbers = comm, numbers  # node numbers of each rank, on the first rank
         corners = self.points[self.cells]
         wrong = np.linalg.det(corners[:, AXES[self.element]] - corners[:, :1]) < 0
         self.cells[wrong] = self.cells[wrong][:, MIRRORED[self.element]]
 
     def local(self, field: npt.ArrayLike) -> Array:
-        """What a field of all nodes (nodes, ...) on the first rank, as `sol.u`, is on each rank's nodes, those of others that
-        it knows included: u.x.array[:] = body.local(sol.u).ravel(). Collective; other ranks' `field` is not looked at."""
+        """Distributes a nodal field (nodes, ...) of the first rank, such as `sol.u`: returns its values at the nodes of
+        each rank, ghosts included: u.x.array[:] = body.local(sol.u).ravel(). `field` is ignored on other ranks.
+        Collective."""
         pieces, failed = None, None
         if self._comm.rank == 0:
             values = np.asarray(field)
@@ -51,16 +53,16 @@ class DolfinxMesh(Mesh):
 
 
 def from_dolfinx(space: Any, facets: Named = None, parts: Named = None, *, part: bool = False) -> DolfinxMesh:
-    """The nodes and cells of a DOLFINx function space of displacements.
+    """Returns the nodes and cells of a DOLFINx function space of displacements.
 
-    space: Lagrange of degree 1, or 2 on tetrahedra, with as many components as the mesh has dimensions. Nodes are
-    numbered as in the space: on one process `u.x.array.reshape(mesh.points.shape)` is a displacement here, and back.
-    `facets` and `parts` name facets and cells by DOLFINx' numbers of them, as MeshTags.find gives: every rank its own. Cells
-    the wrong way round are turned.
+    space: Lagrange of degree 1, or 2 on tetrahedra, with one component per dimension of the mesh. Nodes are numbered as
+    in the space: on one process `u.x.array.reshape(mesh.points.shape)` is a displacement here, and vice versa.
+    `facets` and `parts` name facets and cells by DOLFINx' indices, as MeshTags.find returns them, on each rank its own.
+    Inverted cells are reoriented.
 
-    On several processes the first one has the whole body, in DOLFINx' global numbering, for Case(...).solve(comm=...); `local`
-    hands fields back. `part`: each rank its own cells instead, in its own numbering, ghosts included; whatever is made
-    of them has to be summed over the ranks. Collective.
+    On several processes the first one gets the whole body, in DOLFINx' global numbering, for
+    Case(...).solve(comm=...); `local` returns fields to the ranks. `part`: each rank gets its own cells instead, in
+    local numbering including ghosts; results must then be summed over the ranks. Collective.
     """
     element = _element_of(space)
     comm = space.mesh.comm
@@ -93,7 +95,7 @@ def _element_of(space: Any) -> str:
 
 
 def _own(space: Any, element: str, facets: Named, parts: Named) -> dict[str, Any]:
-    """This rank's own cells, on its numbers of all nodes that it knows."""
+    """Returns this rank's own cells, numbered over all nodes that it stores."""
     topology, dofmap, dim = space.mesh.topology, space.dofmap, space.mesh.geometry.dim
     table = dofmap.list
     if not isinstance(table, np.ndarray):  # before 0.7
@@ -122,7 +124,7 @@ def _own(space: Any, element: str, facets: Named, parts: Named) -> dict[str, Any
 
 
 def _whole(space: Any, own: dict[str, Any], numbers: Array) -> DolfinxMesh:
-    """On the first rank: what all ranks have of their own, one after another, which is DOLFINx' global order."""
+    """Returns, on the first rank, the owned data of all ranks in rank order, which is DOLFINx' global order."""
     comm, dofmap = space.mesh.comm, space.dofmap
     first_cell = space.mesh.topology.index_map(space.mesh.geometry.dim).local_range[0]
     keys = [sorted(own[kind]) for kind in ("facets", "parts")]

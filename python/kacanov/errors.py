@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the package raises."""
+"""Exceptions of the package."""
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
@@ -9,25 +9,25 @@ if TYPE_CHECKING:
 
 
 class Error(Exception):
-    """Of the library. `code` is the kacanov_code of the C interface, 0 where the failure is not of a call of it."""
+    """Base of the exceptions. `code` is the kacanov_code of the C interface, 0 if no call of it has failed."""
 
     code: int = 0
 
 
 class InputError(Error, ValueError):
-    """Bad input: says which key, element, argument or file, and what was expected there."""
+    """Bad input: the message names the key, element, argument or file, and the expected value."""
 
 
 class StateError(Error, RuntimeError):
-    """A call is missing that has to come first, or another thread is at work on the object."""
+    """A required earlier call is missing, or another thread is using the object."""
 
 
 class InternalError(Error, RuntimeError):
-    """A library beneath has failed, or the library has a defect."""
+    """A library underneath has failed, or the library has a defect."""
 
 
 class RankError(Error, RuntimeError):
-    """Another rank of a solve of several has raised something, so that this one cannot go on. `rank`: which one."""
+    """Another rank of a joint solve has raised an exception, so this one cannot continue. `rank`: that rank."""
 
     def __init__(self, message: str, rank: int) -> None:
         super().__init__(message)
@@ -35,7 +35,7 @@ class RankError(Error, RuntimeError):
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C has ended a solve, on this rank or on another one. `solution` is the state after its last whole outer step; None where there is none yet."""
+    """Ctrl-C has ended a solve, on any rank. `solution`: state after the last complete outer step, or None."""
 
     def __init__(self, solution: Solution | None) -> None:
         super().__init__("interrupted" + ("" if solution is None else ": " + solution.message))

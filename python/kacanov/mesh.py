@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Meshes: generated boxes, files, and arrays, which reach the solver as the Gmsh file they would be."""
+"""Meshes: generated boxes, files, and arrays, which are passed to the solver as the content of a Gmsh file."""
 from __future__ import annotations
 
 import os
@@ -12,20 +12,20 @@ import numpy.typing as npt
 from .errors import InputError
 from .words import Word
 
-# Element, its dimension, Gmsh's numbers of it and of its facets by their number of nodes, and where its nodes
-# stand in other orders: node k of theirs is ours of number ORDERS[order][element][k].
+# By element: dimension, Gmsh type number, and Gmsh type of its facets by number of nodes. Node k in another
+# order is our node ORDERS[order][element][k].
 ELEMENTS = {"tri3": (2, 2, {2: 1}), "quad4": (2, 3, {2: 1}), "tet4": (3, 4, {3: 2}),
             "tet10": (3, 11, {3: 2, 6: 9}), "hex8": (3, 5, {4: 3})}
 NODES = {"tri3": 3, "quad4": 4, "tet4": 4, "tet10": 10, "hex8": 8}
 ORDERS: dict[str, dict[str, list[int]]] = {
     "gmsh": {}, "kacanov": {}, "vtk": {"tet10": [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]},
     "basix": {"quad4": [0, 1, 3, 2], "hex8": [0, 1, 3, 2, 4, 5, 7, 6], "tet10": [0, 1, 2, 3, 8, 9, 5, 7, 6, 4]}}
-# meshio's names of bodies and facets.
+# meshio cell names of bodies.
 MESHIO = {"triangle": "tri3", "quad": "quad4", "tetra": "tet4", "tetra10": "tet10", "hexahedron": "hex8"}
 
 
 class BoxMesh(Word):
-    """The body [0, size] cut into cells, with sides left, right, front, back, bottom and top."""
+    """The body [0, size] divided into cells, with the sides left, right, front, back, bottom and top."""
 
     def __init__(self, size: Sequence[float], cells: Sequence[int], element: str | None = None) -> None:
         self.size, self.cells, self.element = tuple(size), tuple(cells), element
@@ -46,11 +46,11 @@ class MeshFile(Word):
 
 
 class Mesh:
-    """A body of one element type as arrays.
+    """A body of one element type, given as arrays.
 
-    points: (nodes, 2 or 3); cells: (elements, nodes of an element), from 0; order: "gmsh", "kacanov" (the same),
-    "vtk" or "basix", of `cells`. `facets` names parts of the boundary, each as (count, nodes of a facet), of which the corners
-    come first and the order does not matter; `parts` names elements by their numbers, `nodes` names nodes.
+    points: (nodes, 2 or 3); cells: (elements, nodes per element), from 0; order: node order of `cells`, "gmsh",
+    "kacanov" (the same), "vtk" or "basix". `facets` names parts of the boundary, each as (count, nodes per facet) with
+    the corners first, in any order; `parts` names sets of element indices, `nodes` sets of nodes.
     """
 
     def __init__(self, points: npt.ArrayLike, cells: npt.ArrayLike, element: str, *, order: str = "gmsh",
@@ -87,7 +87,7 @@ class Mesh:
 
     @staticmethod
     def _indices(name: str, values: npt.ArrayLike, width: int, end: int) -> npt.NDArray[np.int32]:
-        """The values as int32; width 0: one a row."""
+        """Returns the values as int32; width 0: one per row."""
         array = np.asarray(values)
         if array.size and array.dtype.kind not in "iu":
             raise InputError(f"{name}: expected whole numbers, got {array.dtype}")
@@ -99,7 +99,7 @@ class Mesh:
         return np.ascontiguousarray(array, dtype=np.int32)
 
     def msh(self) -> bytes:
-        """The mesh as a binary Gmsh file of version 2.2, with the groups as physical names."""
+        """Returns the mesh as a binary Gmsh file of version 2.2, with the groups as physical names."""
         dim, own, facet_types = ELEMENTS[self.element]
         names = [(dim - 1, name) for name in self.facets] + [(dim, name) for name in self.parts]
         names += [(0, name) for name in self.nodes]
@@ -110,7 +110,7 @@ class Mesh:
         node["tag"] = np.arange(1, len(node) + 1)
         node["x"][:, :self.points.shape[1]] = self.points
         out += [f"$EndPhysicalNames\n$Nodes\n{len(node)}\n".encode(), node.tobytes(), b"\n$EndNodes\n$Elements\n"]
-        # An element has one group, so that those of further groups come once more, by themselves.
+        # Version 2.2 has one group per element, so elements are repeated for each further group.
         group_of = np.zeros(len(self.cells), dtype=np.int32)
         tag = len(self.facets)
         for members in self.parts.values():
@@ -137,19 +137,19 @@ class Mesh:
 
 
 def box(size: Sequence[float], cells: Sequence[int], element: str | None = None) -> BoxMesh:
-    """The generated box [0, size]; `element` left out: tri3 or tet4."""
+    """Returns the generated box [0, size]. Default element: tri3 or tet4."""
     return BoxMesh(size, cells, element)
 
 
 def read(path: str | os.PathLike[str]) -> MeshFile:
-    """A Gmsh .msh, of version 2.2 or 4.1."""
+    """Returns the mesh of a Gmsh .msh file, version 2.2 or 4.1."""
     if not os.path.isfile(path):
         raise InputError(f"{os.fspath(path)}: there is no such file")
     return MeshFile(path)
 
 
 def from_meshio(mesh: Any) -> Mesh:
-    """A meshio.Mesh: its cells of the highest dimension are the body; its cell sets, or Gmsh's physical groups, names."""
+    """Converts a meshio.Mesh: cells of the highest dimension form the body; cell sets or physical groups name parts."""
     dims = {kind: ELEMENTS[element][0] for kind, element in MESHIO.items()}
     bodies = [block for block in mesh.cells if block.type in dims]
     top = max((dims[block.type] for block in bodies), default=0)
@@ -181,7 +181,7 @@ def from_meshio(mesh: Any) -> Mesh:
 
 
 def _sets(mesh: Any) -> list[tuple[str, list[Any]]]:
-    """Names with the chosen cells of every block: cell sets, or else Gmsh's physical groups."""
+    """Returns, by name, the selected cells of every block: cell sets, or else Gmsh's physical groups."""
     if mesh.cell_sets:
         return [(name, members) for name, members in mesh.cell_sets.items() if not name.startswith("gmsh:")]
     groups = []

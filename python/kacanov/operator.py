@@ -19,7 +19,7 @@ Array = npt.NDArray[Any]
 
 
 class CgResult(NamedTuple):
-    """How conjugate gradients ended; residuals are 2-norms over the unknowns that are not constrained."""
+    """Result of conjugate gradients; residuals are 2-norms over the unconstrained unknowns."""
 
     iterations: int
     converged: bool
@@ -28,21 +28,21 @@ class CgResult(NamedTuple):
 
 
 class Symmetric:
-    """What scipy takes for a linear operator: scipy.sparse.linalg.cg(op, b, M=M) works as it is."""
+    """A symmetric linear operator with scipy's interface: scipy.sparse.linalg.cg(op, b, M=M) works directly."""
 
     dtype = np.dtype(np.float64)
     shape: tuple[int, int]
 
     def matvec(self, x: Array, out: Array | None = None) -> Array:
-        """The product, into `out` where given."""
+        """Returns the product, in `out` if given."""
         raise NotImplementedError
 
     def rmatvec(self, x: Array) -> Array:
-        """The same: it is symmetric."""
+        """Same as matvec: the operator is symmetric."""
         return self.matvec(x)
 
     def matmat(self, x: Array) -> Array:
-        """Of the columns of x, one by one."""
+        """Returns the products with the columns of x, one by one."""
         return np.stack([self.matvec(np.ascontiguousarray(column)) for column in x.T], axis=1)
 
     def __matmul__(self, x: Array) -> Array:
@@ -55,7 +55,7 @@ class Symmetric:
         return self @ x
 
     def petsc_mat(self, comm: Any = None) -> Any:
-        """A PETSc.Mat of type python that applies this operator; needs petsc4py. On one process."""
+        """Returns a PETSc.Mat of type python that applies this operator; needs petsc4py. On one process."""
         from petsc4py import PETSc
         _end_petsc_before_python()
         mat = PETSc.Mat().createPython((self.shape, self.shape), _PetscMat(self), comm=comm or PETSc.COMM_SELF)
@@ -67,12 +67,12 @@ class Symmetric:
 class Operator(Symmetric):
     """y = B(g) x, the matrix-free operator of a body, with g frozen at a displacement by `update`.
 
-    points: float64 (nodes, dim); cells: int32 (elements, nodes of an element), from 0, in the node order `order`
+    points: float64 (nodes, dim); cells: int32 (elements, nodes per element), from 0, in the node order `order`
     ("gmsh", the same as "kacanov", "vtk", "basix", "dealii"). law: a Material, a list of them with `law_of_element`
-    (uint16 an element), or a Law beside `young` and `poisson`; left out: linear. A law may be a function: see OwnLaw.
-    plane: what a mesh in 2D is of, "strain", "stress" or "axisymmetric".
+    (uint16 per element), or a Law with `young` and `poisson`; default: linear. A law may be a function: see OwnLaw.
+    plane: "strain", "stress" or "axisymmetric", for 2D meshes.
     Vectors are float64 and C-contiguous, of shape (n,) or (nodes, dim), with n = nodes × dim; nothing is copied.
-    Python's lock is let go in every call; one thread at a time may use an operator.
+    Every call releases the GIL; only one thread at a time may use an operator.
     """
 
     def __init__(self, points: Array, cells: Array, element: str, *, order: str = "gmsh",
@@ -95,29 +95,29 @@ class Operator(Symmetric):
 
     @property
     def info(self) -> dict[str, Any]:
-        """unknowns, threads, bytes, applications, instruction_set and so on, as they are now."""
+        """Current properties: unknowns, threads, bytes, applications, instruction_set and others."""
         return self._op.information()
 
-    # ---- applied
+    # ---- products
 
     def matvec(self, x: Array, out: Array | None = None) -> Array:
-        """B(g) x. float32 vectors need `single`."""
+        """Returns B(g) x. float32 vectors need `single`."""
         if self._single and isinstance(x, np.ndarray) and x.dtype == np.float32:
             return self._op.apply_float(x, out)
         return self._op.apply(x, out)
 
     def matmat(self, x: Array) -> Array:
-        """B(g) of the columns of x, all at once; no copy where x is in Fortran's order."""
+        """Returns B(g) times the columns of x, all at once; without a copy if x is in Fortran order."""
         return self._op.apply_many(np.ascontiguousarray(x.T)).T
 
     def tangent(self, u: Array) -> Tangent:
-        """The consistent tangent at u, which also freezes g there. It is the operator's only one: it is stale, and
-        refuses to be applied, from the next call on."""
+        """Returns the consistent tangent at u, and freezes g there. An operator has one tangent: the next call of this
+        method makes the earlier object stale, and applying that raises an error."""
         self._op.update_tangent(u)
         self._tangents += 1
         return Tangent(self, self._tangents)
 
-    # ---- the state
+    # ---- state
 
     def update(self, u: Array) -> None:
         """Freezes g at the displacement u."""
@@ -125,7 +125,7 @@ class Operator(Symmetric):
 
     @property
     def secant(self) -> Array:
-        """The frozen g, (elements, points of an element); may be set."""
+        """The frozen g, (elements, points per element); can be set."""
         return self._op.secant()
 
     @secant.setter
@@ -133,8 +133,8 @@ class Operator(Symmetric):
         self._op.set_secant(g)
 
     def constrain(self, unknowns: npt.ArrayLike) -> None:
-        """Makes rows and columns of these unknowns (node · dim + component) those of the identity, in everything but
-        residual, energy and stress. Replaces those given before. A mask of n entries will do as well."""
+        """Replaces rows and columns of these unknowns (node · dim + component) by those of the identity, except in
+        residual, energy and stress. Earlier constraints are dropped. Also accepts a mask of n entries."""
         array = np.asarray(unknowns)
         if array.dtype == np.bool_:
             if array.size != self.shape[0]:
@@ -148,13 +148,13 @@ class Operator(Symmetric):
         self._op.constrain(np.ascontiguousarray(array.ravel(), dtype=np.int32))
 
     def set_blocks(self, nodes: Array, blocks: Array) -> None:
-        """Adds to the diagonal block of each of these nodes (int32) a (dim, dim) block: penalties."""
+        """Adds a (dim, dim) block to the diagonal block of each of these nodes (int32), such as penalties."""
         self._op.set_blocks(nodes, blocks)
 
-    # ---- what else there is to know
+    # ---- further data
 
     def diagonal(self) -> Array:
-        """Of B(g), (n,)."""
+        """Diagonal of B(g), (n,)."""
         return self._op.diagonal()
 
     def blocks(self) -> Array:
@@ -162,30 +162,30 @@ class Operator(Symmetric):
         return self._op.blocks()
 
     def residual(self, u: Array, out: Array | None = None) -> Array:
-        """Internal force of the true law at u."""
+        """Internal force of the nonlinear law at u."""
         return self._op.residual(u, out)
 
     def energy(self, u: Array) -> float:
-        """Stored energy of the true law at u."""
+        """Stored energy of the nonlinear law at u."""
         return self._op.energy(u)
 
     def stress(self, u: Array) -> dict[str, Array]:
-        """Means over the elements at u: stress (elements, 6), von_mises, dev_strain, secant, plastic."""
+        """Element means at u: stress (elements, 6), von_mises, dev_strain, secant, plastic."""
         return self._op.stress(u)
 
     def matrix(self, u: Array | None = None) -> Any:
-        """B(g), or the tangent at u, as a scipy.sparse.csr_array: costs some hundred applications."""
+        """Returns B(g), or the tangent at u, as a scipy.sparse.csr_array; costs a few hundred applications."""
         from scipy.sparse import csr_array
         return csr_array(self._op.matrix(u), shape=self.shape)
 
     def locality_order(self) -> tuple[Array, Array]:
-        """The orders of nodes and of elements that the operator likes best."""
+        """Returns the orders of nodes and elements with the best memory locality for the operator."""
         return self._op.locality_order()
 
-    # ---- solved
+    # ---- solving
 
     def multigrid(self, aggregate: float = 0) -> Multigrid:
-        """A preconditioner: near the inverse of B(g) with its constraints. `aggregate`: nodes of an aggregate, 0: chosen."""
+        """Returns a preconditioner for B(g) with its constraints. `aggregate`: nodes per aggregate, 0: automatic."""
         return Multigrid(self, aggregate)
 
     def cg(self, b: Array, x0: Array | None = None, *, M: Multigrid | None = None, rtol: float = 1e-8,  # noqa: N803
@@ -201,7 +201,7 @@ class Operator(Symmetric):
         return x, CgResult(*self._op.cg(None if multigrid is None else multigrid._multigrid, b, x, options))
 
     def petsc_pc(self, comm: Any = None) -> Any:
-        """A PETSc.PC of the multigrid: op.multigrid().petsc_pc()."""
+        """Returns a PETSc.PC of the multigrid: op.multigrid().petsc_pc()."""
         return self.multigrid().petsc_pc(comm)
 
 
@@ -217,51 +217,51 @@ class Tangent(Symmetric):
         return self.operator._op
 
     def matvec(self, x: Array, out: Array | None = None) -> Array:
-        """B_T x"""
+        """Returns B_T x."""
         return self._raw().apply_tangent(x, out)
 
     def diagonal(self) -> Array:
-        """(n,)"""
+        """Diagonal of B_T, (n,)."""
         return self._raw().diagonal_tangent()
 
     def blocks(self) -> Array:
-        """Diagonal blocks, (nodes, dim, dim)."""
+        """Diagonal blocks of B_T, (nodes, dim, dim)."""
         return self._raw().blocks_tangent()
 
     def cg(self, b: Array, x0: Array | None = None, *, M: Multigrid | None = None, rtol: float = 1e-8,  # noqa: N803
            atol: float = 0.0, maxiter: int = 2000) -> tuple[Array, CgResult]:
-        """Solves B_T x = b as Operator.cg."""
+        """Solves B_T x = b, like Operator.cg."""
         self._raw()
         return self.operator._cg(b, x0, M, {"rtol": rtol, "atol": atol, "maxiter": maxiter, "tangent": True})
 
 
 class Multigrid(Symmetric):
-    """z = M r, the solver's multigrid over rigid-body modes; positive definite, so that any CG may have it."""
+    """z = M r, the solver's multigrid with rigid-body coarse spaces; positive definite, so it works with any CG."""
 
     def __init__(self, operator: Operator, aggregate: float = 0) -> None:
         self.operator, self.shape = operator, operator.shape
         self._multigrid = _kacanov.Multigrid(operator._op, aggregate)
 
     def matvec(self, x: Array, out: Array | None = None) -> Array:
-        """M x"""
+        """Returns M x."""
         return self._multigrid.apply(x, out)
 
     def update(self) -> None:
-        """After g, constraints or blocks of the operator have changed; the aggregates are kept."""
+        """Updates the multigrid after changes of g, constraints or blocks of the operator; keeps the aggregates."""
         self._multigrid.update()
 
     @property
     def levels(self) -> int:
-        """The body itself included."""
+        """Number of levels, including the finest."""
         return self._multigrid.information()[0]
 
     @property
     def bytes(self) -> int:
-        """What it holds, the operator's not counted."""
+        """Memory in bytes, without the operator."""
         return self._multigrid.information()[1]
 
     def petsc_pc(self, comm: Any = None) -> Any:
-        """A PETSc.PC of type python that applies it; needs petsc4py. On one process."""
+        """Returns a PETSc.PC of type python that applies it; needs petsc4py. On one process."""
         from petsc4py import PETSc
         pc = PETSc.PC().createPython(_PetscPc(self), comm=comm or PETSc.COMM_SELF)
         pc.setOperators(self.operator.petsc_mat(comm))
@@ -271,14 +271,14 @@ class Multigrid(Symmetric):
 
 @functools.cache
 def _end_petsc_before_python() -> None:
-    """petsc4py 3.18 ends PETSc after Python, and then crashes where objects of type python are left: end it before."""
+    """petsc4py 3.18 finalises PETSc after Python and crashes if python objects are left: finalise it earlier."""
     from petsc4py import PETSc
     if hasattr(PETSc, "_finalize"):
         atexit.register(PETSc._finalize)
 
 
 class _PetscMat:
-    """A context of petsc4py's Mat."""
+    """Context of a petsc4py Mat."""
 
     def __init__(self, operator: Symmetric) -> None:
         self.operator = operator
@@ -293,7 +293,7 @@ class _PetscMat:
 
 
 class _PetscPc:
-    """A context of petsc4py's PC."""
+    """Context of a petsc4py PC."""
 
     def __init__(self, multigrid: Multigrid) -> None:
         self.multigrid = multigrid
@@ -305,7 +305,7 @@ class _PetscPc:
 
 
 def _materials(law: Any, young: float | None, poisson: float | None) -> tuple[list[Any], list[tuple[int, OwnLaw]]]:
-    """Materials in the words of the case file, which has none for laws of one's own: these, by index."""
+    """Returns materials in case file syntax, and by index the user-defined laws, for which the syntax has no words."""
     words, own = [], []
     for index, material in enumerate(_listed(law, young, poisson)):
         if isinstance(material, Material):

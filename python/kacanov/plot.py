@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures of solutions: matplotlib in 2D, vtk in 3D where it is there, else the program's SVG."""
+"""Pictures of solutions: matplotlib in 2D, vtk in 3D if available, else the program's SVG."""
 from __future__ import annotations
 
 import importlib.util
@@ -17,13 +17,13 @@ TRIANGLES = {"tri3": [[0, 1, 2]], "quad4": [[0, 1, 2], [0, 2, 3]]}
 
 
 class Svg(str):
-    """A picture as text, which a notebook shows as a picture."""
+    """A picture as SVG text, which notebooks display."""
 
     def _repr_svg_(self) -> str:
         return str(self)
 
     def save(self, path: str) -> None:
-        """Writes it to a file."""
+        """Writes the picture to a file."""
         with open(path, "w", encoding="utf-8") as file:
             file.write(self)
 
@@ -37,7 +37,7 @@ def _values(solution: Solution, field: str) -> np.ndarray:
 
 
 def _scale(solution: Solution) -> float:
-    """Shows the largest displacement as a tenth of the body, but none smaller than it is."""
+    """Returns a scale that shows the largest displacement as a tenth of the body size, at least 1."""
     size = np.linalg.norm(np.ptp(solution.points, axis=0))
     largest = np.abs(solution.u).max()
     return float(max(1.0, 0.1 * size / largest)) if largest > 0 else 1.0
@@ -45,15 +45,15 @@ def _scale(solution: Solution) -> float:
 
 def plot(solution: Solution, field: str = "nodal_von_mises", *, scale: float | None = None, ax: Any = None,
          backend: str | None = None) -> Any:
-    """The deformed body coloured by a field: nodal_von_mises, von_mises, dev_strain, g, plastic or u.
+    """Draws the deformed body coloured by a field: nodal_von_mises, von_mises, dev_strain, g, plastic or u.
 
-    scale: of the displacement, None: chosen. backend: None for the best there is of "matplotlib" (2D; draws into
-    `ax`, returns the axes), "vtk" (3D, where there is a display; returns an image as an array, drawn off screen) and
-    "svg" (the program's picture, with a field and a scale of its own).
+    scale: displacement scale, None: automatic. backend: None for the best available one of "matplotlib" (2D; draws into
+    `ax` and returns the axes), "vtk" (3D, needs a display; renders off-screen and returns an image as an array) and
+    "svg" (the program's picture, with its own field and scale).
     """
     dim = solution.points.shape[1]
     best = "matplotlib" if dim == 2 else "vtk"
-    # Debian's vtk ends the process where it finds no display, also for what is drawn off screen.
+    # Debian's vtk aborts the process without a display, even for off-screen rendering.
     display = best != "vtk" or bool(os.environ.get("DISPLAY"))
     if backend is None:
         module = "vtkmodules" if best == "vtk" else best
@@ -88,7 +88,7 @@ def _matplotlib(solution: Solution, field: str, values: np.ndarray, scale: float
 
 
 def vtk_grid(solution: Solution) -> Any:
-    """The body as a vtkUnstructuredGrid with u, nodal_von_mises and von_mises."""
+    """Returns the body as a vtkUnstructuredGrid with u, nodal_von_mises and von_mises."""
     from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray
     from vtkmodules.vtkCommonCore import vtkPoints
     from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkUnstructuredGrid
@@ -112,7 +112,7 @@ def vtk_grid(solution: Solution) -> Any:
 
 
 def _vtk(solution: Solution, field: str, values: np.ndarray, scale: float) -> np.ndarray:
-    import vtkmodules.vtkRenderingOpenGL2  # noqa: F401, the renderer behind the classes below
+    import vtkmodules.vtkRenderingOpenGL2  # noqa: F401, registers the renderer of the classes below
     from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
     from vtkmodules.vtkCommonCore import vtkLookupTable
     from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
@@ -129,7 +129,7 @@ def _vtk(solution: Solution, field: str, values: np.ndarray, scale: float) -> np
     surface.SetInputData(grid)
     mapper.SetInputConnection(surface.GetOutputPort())
     colours = vtkLookupTable()
-    colours.SetHueRange(2 / 3, 0.0)  # from blue, low, to red
+    colours.SetHueRange(2 / 3, 0.0)  # from blue (low) to red
     mapper.SetLookupTable(colours)
     mapper.SetScalarRange(float(values.min()), float(values.max()))
     actor.SetMapper(mapper)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a solve has found: the numbers of result.json, and fields as arrays."""
+"""The solution of a case: the numbers of result.json, and fields as arrays."""
 from __future__ import annotations
 
 import functools
@@ -16,7 +16,7 @@ Array = npt.NDArray[Any]
 
 
 class ElementMeans:
-    """Means over the elements, made when the first is asked for."""
+    """Element means, computed when the first one is accessed."""
 
     @functools.cached_property
     def _elements(self) -> dict[str, Array]:
@@ -24,35 +24,35 @@ class ElementMeans:
 
     @property
     def stress(self) -> Array:
-        """Means over the elements, (elements, 6): xx yy zz xy yz zx."""
+        """Element means of the stress, (elements, 6): xx yy zz xy yz zx."""
         return self._elements["stress"]
 
     @property
     def von_mises(self) -> Array:
-        """Means over the elements, (elements,)."""
+        """Element means of the von Mises stress, (elements,)."""
         return self._elements["von_mises"]
 
     @property
     def dev_strain(self) -> Array:
-        """Norm of the strain deviator, means over the elements."""
+        """Element means of the norm of the strain deviator."""
         return self._elements["dev_strain"]
 
     @property
     def g(self) -> Array:
-        """Secant shear modulus, means over the elements."""
+        """Element means of the secant shear modulus."""
         return self._elements["g"]
 
     @property
     def plastic(self) -> Array:
-        """Whether any point of an element is beyond yield."""
+        """True for elements with any quadrature point beyond yield."""
         return self._elements["plastic"]
 
 
 class Step(ElementMeans):
-    """The end of a load step: its line of result["load_steps"], and fields in the shapes of Solution. Read-only.
+    """The end of a load step: its entry in result["load_steps"], and fields in the shapes of Solution. Read-only.
 
-    factor: what the loads are multiplied by; with `steps` of the case the time.
-    result: its numbers, as result["load_steps"] has them; empty where the run ended on the way to the next one.
+    factor: load factor; the time if the case has `steps`.
+    result: its numbers, as in result["load_steps"]; empty if the run ended before the next step was complete.
     u: displacement, (nodes, dim).
     """
 
@@ -67,7 +67,7 @@ class Step(ElementMeans):
 
     @functools.cached_property
     def contact(self) -> dict[str, Array]:
-        """By contact point, as Solution.contact."""
+        """Contact fields per contact point, as Solution.contact."""
         return self._make_contact()
 
     def __repr__(self) -> str:
@@ -75,7 +75,7 @@ class Step(ElementMeans):
 
 
 class Solution(ElementMeans):
-    """Numbers and fields of a solve. Arrays are read-only, in the numbering of the mesh, and made when asked for.
+    """Numbers and fields of a solve. Arrays are read-only, in the numbering of the mesh, and created on access.
 
     `result` has all numbers under the names of result.json (docs/user-guide/results.md).
     """
@@ -85,7 +85,7 @@ class Solution(ElementMeans):
 
     @functools.cached_property
     def result(self) -> dict[str, Any]:
-        """What result.json says."""
+        """Content of result.json."""
         return json.loads(self._solved.json)
 
     @property
@@ -95,32 +95,32 @@ class Solution(ElementMeans):
 
     @property
     def converged(self) -> bool:
-        """Whether all KKT residuals are within the tolerance."""
+        """True if all KKT residuals are within the tolerance."""
         return self.status == "converged"
 
     @property
     def message(self) -> str:
-        """The verdict in a sentence."""
+        """Reason why the run ended, in one sentence."""
         return self.result["message"]
 
     @property
     def warnings(self) -> list[str]:
-        """What may make the numbers less than they seem."""
+        """Warnings about possible errors in the case or the results."""
         return self.result["warnings"]
 
     @property
     def certificate(self) -> dict[str, Any]:
-        """The relative KKT residuals, and under `rounding` what can be known of each."""
+        """The relative KKT residuals, and under `rounding` the round-off of each."""
         return self.result["certificate"]
 
     @property
     def contact_force(self) -> Array:
-        """Sum of the normal forces that the obstacles do to the body."""
+        """Sum of the normal forces of the obstacles on the body."""
         return np.array(self.result["contact_force"], dtype=float)
 
     @property
     def friction_force(self) -> Array:
-        """The same of friction."""
+        """Sum of the friction forces of the obstacles on the body."""
         return np.array(self.result["friction_force"], dtype=float)
 
     @property
@@ -128,7 +128,7 @@ class Solution(ElementMeans):
         """Displacements at the probe points, (points, dim)."""
         return np.array(self.result["probe"], dtype=float)
 
-    # ---- the mesh as it was solved, raised and refined where the case says so
+    # ---- mesh of the solve, with the order and refinement of the case
 
     @functools.cached_property
     def _mesh(self) -> dict[str, Any]:
@@ -141,22 +141,22 @@ class Solution(ElementMeans):
 
     @property
     def points(self) -> Array:
-        """(nodes, dim)"""
+        """Node coordinates, (nodes, dim)."""
         return self._mesh["points"]
 
     @property
     def cells(self) -> Array:
-        """(elements, nodes of an element), from 0, in Gmsh's order."""
+        """(elements, nodes per element), from 0, in Gmsh's order."""
         return self._mesh["cells"]
 
     @property
     def node_id(self) -> Array:
-        """The mesh file's number of each node."""
+        """Number of each node in the mesh file."""
         return self._mesh["node_id"]
 
     @property
     def element_id(self) -> Array:
-        """The mesh file's number of each element."""
+        """Number of each element in the mesh file."""
         return self._mesh["element_id"]
 
     # ---- fields
@@ -181,25 +181,25 @@ class Solution(ElementMeans):
 
     @property
     def nodal_von_mises(self) -> Array:
-        """Of the recovered stress, (nodes,)."""
+        """Von Mises stress of the recovered stress, (nodes,)."""
         return self._nodal["nodal_von_mises"]
 
     @property
     def error(self) -> Array:
-        """Each element's part of the estimated error of the mesh, (elements,); squares add up to that of
+        """Contribution of each element to the estimated mesh error, (elements,); the squares sum to the square of
         result["discretisation"]["energy"]."""
         return self._solved.error()
 
     @functools.cached_property
     def contact(self) -> dict[str, Array]:
-        """By contact point: `node` and `entry` (indices from 0), `normal` towards the obstacle, `gap` that is open,
-        `pressure`, tangential `traction` that the obstacle does to the body, `status` (0 open, 1 stick, 2 slip)."""
+        """Contact fields per contact point: `node` and `entry` (indices from 0), `normal` towards the obstacle, `gap`,
+        `pressure`, tangential `traction` on the body, `status` (0 open, 1 stick, 2 slip)."""
         return self._solved.contact_fields()
 
     @functools.cached_property
     def steps(self) -> tuple[Step, ...]:
-        """The ends of the load steps that have converged, and the end of the run, which is the last one: the series that
-        the program writes. Of a case with one load step, or whose `output.steps` is false, the end alone."""
+        """The ends of the converged load steps, and last the end of the run: the series that the program writes. Only
+        the end if the case has one load step, or if its `output.steps` is false."""
         lines = self.result.get("load_steps", [])
 
         def factor(line: dict[str, Any]) -> float:
@@ -213,10 +213,10 @@ class Solution(ElementMeans):
         last = lines[-1] if lines and factor(lines[-1]) == end else {}
         return (*before, Step(end, last, self.u, lambda: self._elements, lambda: self.contact))
 
-    # ---- for people
+    # ---- output
 
     def summary(self) -> str:
-        """Status, residual, sizes, forces and warnings in some lines."""
+        """Status, residual, sizes, forces and warnings in a few lines."""
         result = self.result
         worst = max((abs(v) for k, v in self.certificate.items() if isinstance(v, float)), default=float("nan"))
         lines = [f"{self.status}: {self.message}",

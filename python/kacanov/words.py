@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Laws, obstacles and selections: small objects that know their words in the case file."""
+"""Laws, obstacles and selections: small objects that convert to entries of the case file."""
 from __future__ import annotations
 
 import math
@@ -19,9 +19,9 @@ Evaluate = Callable[[Array, Array, Array], tuple[Array, Array | None, Array | No
 
 
 def plain(value: Any, path: str = "") -> Any:
-    """The value as JSON has it: arrays as lists, numpy's numbers as numbers, words as what they stand for.
+    """Converts a value to JSON types: arrays to lists, numpy numbers to numbers, words to their entries.
 
-    Raises InputError with the path of what JSON cannot say.
+    Raises InputError with the path of a value that JSON cannot represent.
     """
     if isinstance(value, Word):
         return plain(value.json(), path)
@@ -41,19 +41,19 @@ def plain(value: Any, path: str = "") -> Any:
 
 
 class Word:
-    """Something that a case file has a word for."""
+    """An object that converts to an entry of the case file."""
 
     def json(self) -> Any:
         raise NotImplementedError
 
 
 def _given(word: Any) -> dict[str, Any]:
-    """Its fields but for those left out."""
+    """Returns the fields that are not None."""
     return {f.name: getattr(word, f.name) for f in fields(word) if getattr(word, f.name) is not None}
 
 
 class Law(Word):
-    """`law` of a material: what follows beyond yield. `yield_stress` may stand for `x0`."""
+    """`law` of a material: the behaviour beyond yield. `yield_stress` can replace `x0`."""
 
     type: str
 
@@ -118,13 +118,13 @@ class RambergOsgood(Law):
 
 @dataclass(frozen=True)
 class OwnLaw:
-    """A law of your own, for operators: no case file has a word for it.
+    """A user-defined law, for operators only: the case file has no entry for it.
 
-    evaluate(x, element, point) is given some thousand points at once, as arrays of one length: x = |dev eps| (float64),
-    and of each the element and its point there (int32, from 0). It returns (g, slope, energy): the secant shear modulus
-    g > 0, dg/dx, and the integral of g(s) s ds from 0 to x. None may stand for slope where no tangent is wanted, and for
-    energy where no energy is.
-    yield_strain: the x beyond which `stress` says plastic; 0: never.
+    evaluate(x, element, point) gets a few thousand points at once, as arrays of equal length: x = |dev eps| (float64),
+    and for each the element and its quadrature point (int32, from 0). It returns (g, slope, energy): the secant shear
+    modulus g > 0, dg/dx, and the integral of g(s) s ds from 0 to x. slope may be None if no tangent is needed, energy
+    if no energy is needed.
+    yield_strain: the x above which `stress` reports plastic; 0: never.
     """
 
     evaluate: Evaluate
@@ -133,11 +133,11 @@ class OwnLaw:
 
 @dataclass(frozen=True)
 class Material(Word):
-    """An elastic body that may yield: by a `law`, by a test in tension (`plastic`), or bilinear (`tangent_modulus`)."""
+    """An elastic material that can yield: by a `law`, a tensile test (`plastic`), or bilinear (`tangent_modulus`)."""
 
     young: float
     poisson: float
-    law: Law | OwnLaw | Evaluate | Mapping[str, Any] | None = None  # the second and third for operators
+    law: Law | OwnLaw | Evaluate | Mapping[str, Any] | None = None  # the second and third for operators only
     plastic: Sequence[Sequence[float]] | None = None
     yield_stress: float | None = None
     tangent_modulus: float | None = None
@@ -149,7 +149,7 @@ class Material(Word):
 
 @dataclass(frozen=True)
 class Box(Word):
-    """Selects the facets, or elements, that lie in the closed box."""
+    """Selects the facets or elements that lie in the closed box."""
 
     lower: Sequence[float]
     upper: Sequence[float]
@@ -213,7 +213,7 @@ class Torus(Obstacle):
 
 @dataclass(frozen=True)
 class Block(Obstacle):
-    """The case file's obstacle `box`."""
+    """The obstacle `box` of the case file."""
 
     key = "box"
     lower: Sequence[float]
@@ -241,7 +241,7 @@ class HeightMap(Obstacle):
 
 @dataclass(frozen=True)
 class Gap(Obstacle):
-    """A constant gap along the body's outer normal."""
+    """A constant gap along the body's outward normal."""
 
     gap: float
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// numpy arrays as they come: used where they lie, or refused with what was expected.
+// Checks type, shape and layout of numpy arrays, and uses them without a copy.
 #include "arrays.hpp"
 
 #include <algorithm>

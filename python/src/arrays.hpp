@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// numpy arrays as they come: used where they lie, or refused with what was expected.
+// Checks type, shape and layout of numpy arrays, and uses them without a copy.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -15,25 +15,25 @@
 
 namespace kacanov::python {
 
-/// What an array has to be; extents of −1 may be any.
+/// Requirements on an array; an extent of −1 is arbitrary.
 struct Wanted {
-  const char* name;                              ///< of the argument
-  std::vector<std::vector<std::ptrdiff_t>> any;  ///< shapes of which it has to have one
-  bool contiguous = true;                        ///< C-contiguous
+  const char* name;                              ///< name of the argument
+  std::vector<std::vector<std::ptrdiff_t>> any;  ///< allowed shapes
+  bool contiguous = true;                        ///< must be C-contiguous
   bool writable = false;
 };
 
-/// "float64", "float32", "int32", "uint16": of what the library takes.
+/// "float64", "float32", "int32", "uint16": numpy name of a type that the library takes.
 template <class T>
 const char* type_name();
 
-/// The object as an array of T in the machine's byte order, without a copy. Throws WrongType where it is
-/// no array of that type, InputError where its shape or layout is another: "x: expected a C-contiguous
-/// float64 array of shape (81,), got float64 of shape (80,)".
+/// Returns the object as an array of T in native byte order, without a copy. Throws WrongType if it is not an
+/// array of that type, InputError for another shape or layout: "x: expected a C-contiguous float64 array of
+/// shape (81,), got float64 of shape (80,)".
 template <class T>
 pybind11::array wanted_array(pybind11::handle object, const Wanted& wanted);
 
-/// Its entries.
+/// Entries of the array.
 template <class T>
 std::span<const T> entries(const pybind11::array& array) {
   return {static_cast<const T*>(array.data()), static_cast<std::size_t>(array.size())};
@@ -43,7 +43,7 @@ std::span<T> entries(pybind11::array& array) {
   return {static_cast<T*>(array.mutable_data()), static_cast<std::size_t>(array.size())};
 }
 
-/// A new array of this shape with undefined entries.
+/// Returns a new array of this shape with uninitialised entries.
 template <class T>
 pybind11::array new_array(const std::vector<std::ptrdiff_t>& shape) {
   return pybind11::array(pybind11::dtype::of<T>(), shape);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Operator and multigrid as classes of the module.
+// Python bindings of the operator and the multigrid.
 #include <pybind11/stl.h>
 
 #include "module.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cases that are solved in this process, and what comes out.
+// Python bindings of cases and their solutions.
 #include <pybind11/stl.h>
 
 #include "arrays.hpp"
@@ -16,7 +16,7 @@ namespace py = pybind11;
 namespace kacanov::python {
 namespace {
 
-/// What `kacanov check` finds, without MPI.
+/// Returns the sizes, memory estimate and warnings of `kacanov check`, without MPI.
 py::dict check_case(const std::string& text, const std::string& path,
                     const std::optional<std::string>& mesh) {
   std::vector<std::string> warnings;
@@ -44,7 +44,7 @@ py::dict check_case(const std::string& text, const std::string& path,
   return found;
 }
 
-/// The document as JSON without what only a reader of files takes, such as comments and repeated keys.
+/// Returns the document as strict JSON: parse_json() drops comments and rejects repeated keys.
 std::string normal(const std::string& text, const std::string& path) { return parse_json(text, path).dump(); }
 
 std::string with_override(const std::string& text, const std::string& path, const std::string& assignment) {
@@ -53,7 +53,7 @@ std::string with_override(const std::string& text, const std::string& path, cons
   return document.dump();
 }
 
-/// A view of an array that `owner` keeps, read-only.
+/// Returns a read-only view of an array that `owner` keeps alive.
 template <class T>
 py::array view(const py::object& owner, std::span<const T> values, std::ptrdiff_t width = 1) {
   const auto count = static_cast<std::ptrdiff_t>(values.size());
@@ -64,7 +64,7 @@ py::array view(const py::object& owner, std::span<const T> values, std::ptrdiff_
   return array;
 }
 
-/// The user's numbers of nodes or elements.
+/// Returns the user's numbers of nodes or elements.
 py::array numbers(const py::object& owner, const std::vector<std::int64_t>& tags, std::size_t count) {
   if (!tags.empty()) return view<std::int64_t>(owner, tags);
   return py::module_::import("numpy").attr("arange")(1, count + 1, py::arg("dtype") = "int64");
@@ -93,7 +93,7 @@ py::dict nodal_fields(const py::object& self) {
   return all;
 }
 
-/// One of the load steps that are kept, or null for none: the end of the run.
+/// Returns one of the stored load steps; null for the end of the run.
 const StepFields* step_of(const SolvedCase& solved, std::optional<std::size_t> step) {
   return step ? &solved.steps.at(*step) : nullptr;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From the library's failures to Python's exceptions, which kacanov/errors.py has.
+// Converts errors of the library to the Python exceptions of kacanov/errors.py.
 #include "errors.hpp"
 
 #include <new>

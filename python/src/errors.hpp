@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From the library's failures to Python's exceptions, which kacanov/errors.py has.
+// Converts errors of the library to the Python exceptions of kacanov/errors.py.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -11,13 +11,13 @@
 
 namespace kacanov::python {
 
-/// An argument of another kind than expected: TypeError.
+/// An argument of the wrong type: becomes TypeError.
 class WrongType : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// What a call of the C interface has returned, with the handle's words.
+/// Error code returned by the C interface, with the message of the handle.
 class CodeError : public std::runtime_error {
  public:
   CodeError(kacanov_code code, const std::string& message) : std::runtime_error(message), code_(code) {}
@@ -30,7 +30,7 @@ class CodeError : public std::runtime_error {
 /// Throws CodeError unless `code` is KACANOV_OK.
 void check(int code, const char* message);
 
-/// Tells pybind11 which exception of Python each of these, InputError, InternalError and bad_alloc is.
+/// Registers the Python exceptions of these errors, InputError, InternalError and bad_alloc with pybind11.
 void register_errors();
 
 }  // namespace kacanov::python

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Python while a case is solved: its callbacks, its signals, its threads.
+// Connects a running solve to Python: callbacks, signals, threads.
 #include "host.hpp"
 
 #include "errors.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Python while a case is solved: its callbacks, its signals, its threads.
+// Connects a running solve to Python: callbacks, signals, threads.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -14,19 +14,19 @@
 
 namespace kacanov::python {
 
-/// Asks and tells Python on a run's way. What is raised there, by callbacks or a signal, is kept, and stops
-/// the run at its next question.
+/// Calls the Python callbacks of a run. Stores an exception raised by a callback or a signal, which stops the
+/// run at its next wants_stop().
 class Host {
  public:
   Host(pybind11::object progress, pybind11::object stop, const PlainLocale& locale)
       : progress_(std::move(progress)), stop_(std::move(stop)), locale_(locale) {}
 
   void tell(const ProgressStep& step);
-  /// Python's lock has to be waited for, so that it is asked no more than fifty times a second.
+  /// Polls Python at most fifty times per second, because acquiring the GIL takes time.
   bool wants_stop();
-  /// A signal that came after the run's last question is one of the run still. With Python's lock.
+  /// Handles a signal that arrived after the last wants_stop() of the run. Requires the GIL.
   void look_once_more();
-  /// What was raised; null: nothing.
+  /// The stored exception; null: none.
   const std::exception_ptr& raised() const noexcept { return raised_; }
 
  private:
@@ -40,10 +40,10 @@ class Host {
   std::chrono::steady_clock::time_point asked_{};
 };
 
-/// Throws StateError where this thread is at a solve already, whose callback asks for another one.
+/// Throws StateError if this thread is already in a solve, that is, in one of its callbacks.
 void refuse_within_callback();
 
-/// Waits until nobody else is at a run, and may be interrupted meanwhile. With Python's lock, which is let go
+/// Waits until no other thread is in a run; signals can interrupt the wait. Requires the GIL, and releases it
 /// while waiting.
 std::unique_lock<RunMutex> begin_run();
 

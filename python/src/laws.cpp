@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Materials in the words of the case file, as laws of the C interface.
+// Converts materials in case file syntax to laws of the C interface.
 #include "laws.hpp"
 
 #include <nlohmann/json.hpp>
@@ -17,7 +17,7 @@ Law parse(const Node& node) {
   static const Schema schema = material_law_keys();
   check(node, schema);
   const Object material(node);
-  std::vector<std::string> warnings;  // of tables whose first slope is not that of the elastic constants
+  std::vector<std::string> warnings;  // for tables whose first slope does not match the elastic constants
   Law law = parse_material_law(material, warnings);
   if (const auto bbar = material.optional("bbar")) law.mean_dilatation = bbar->boolean();
   return law;

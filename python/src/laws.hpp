@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Materials in the words of the case file, as laws of the C interface.
+// Converts materials in case file syntax to laws of the C interface.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@
 
 namespace kacanov::python {
 
-/// Laws and the tables that they point to.
+/// Laws, and the tables they point to.
 class CLaws {
  public:
-  /// A JSON list of materials, each with the keys of one in a case file but `on`. Throws InputError with
-  /// the path of the key: "law[0].young: expected a number > 0, got 0".
+  /// Parses a JSON list of materials, with the keys of a case file except `on`. Throws InputError with the
+  /// path of the key: "law[0].young: expected a number > 0, got 0".
   explicit CLaws(const std::string& json);
   CLaws(const CLaws&) = delete;
   CLaws& operator=(const CLaws&) = delete;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The module _kacanov: what the package's Python files stand on.
+// The extension module _kacanov, on which the package's Python files are based.
 #include "module.hpp"
 
 #include <kacanov/kacanov.h>

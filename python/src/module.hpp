@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the module _kacanov is put together of.
+// Parts of the extension module _kacanov.
 #pragma once
 
 #include <pybind11/pybind11.h>

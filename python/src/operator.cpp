@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The C interface's handles as objects that take numpy arrays.
+// Python classes for the handles of the C interface, with numpy arrays.
 #include "operator.hpp"
 
 #include <array>
@@ -14,8 +14,8 @@ namespace py = pybind11;
 namespace kacanov::python {
 namespace {
 
-/// A stride in entries of T, 0 along an axis without a second one, where numpy's means nothing. Throws
-/// InputError for one that is not a whole number of them, or negative.
+/// Returns the stride in entries of T; 0 along an axis with fewer than two entries, where numpy's is
+/// meaningless. Throws InputError if it is negative or not a multiple of the entry size.
 template <class T>
 std::size_t stride(const py::array& array, int axis, const char* name) {
   if (array.shape(axis) < 2) return 0;

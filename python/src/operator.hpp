@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The C interface's handles as objects that take numpy arrays.
+// Python classes for the handles of the C interface, with numpy arrays.
 #pragma once
 
 #include "arrays.hpp"
@@ -16,13 +16,13 @@
 
 namespace kacanov::python {
 
-/// Everything of a kacanov_description in Python's terms.
+/// Python equivalent of kacanov_description.
 struct Description {
   pybind11::object points, cells;
   std::string element;
   std::string order = "gmsh";
   std::string laws;                                                ///< JSON, see CLaws
-  std::vector<std::pair<std::size_t, pybind11::object>> own_laws;  ///< kacanov.OwnLaw in the place of others
+  std::vector<std::pair<std::size_t, pybind11::object>> own_laws;  ///< kacanov.OwnLaw by index of the law
   pybind11::object law_of_element = pybind11::none();
   int threads = 1;
   bool single = false, turn_inverted = false;
@@ -30,7 +30,7 @@ struct Description {
   std::optional<std::string> instruction_set;
 };
 
-/// Whether a handle is at work; the second thread that comes is refused in words.
+/// Guards a handle against concurrent use: a second thread gets a StateError.
 class InUse {
  public:
   explicit InUse(std::atomic<bool>& flag) : flag_(flag) {
@@ -45,7 +45,7 @@ class InUse {
 };
 
 /// A kacanov_operator. Vectors are C-contiguous arrays of shape (n,), (n, 1) or (nodes, dim), with n = nodes
-/// × dim; what comes out has the shape of what went in. Python's lock is let go while a call is at work.
+/// × dim; results have the shape of the input. Calls release the GIL.
 class Operator {
  public:
   explicit Operator(const Description& description);
@@ -56,7 +56,7 @@ class Operator {
   kacanov_operator* handle() const noexcept { return handle_; }
   std::atomic<bool>& busy() noexcept { return busy_; }
   const kacanov_information& size() const noexcept { return size_; }
-  /// As it is now: with `applications` and `bytes`.
+  /// Current information, including `applications` and `bytes`.
   kacanov_information information();
 
   Wanted vector(const char* name) const;
@@ -65,16 +65,16 @@ class Operator {
   template <class Real>
   using Mapping = int (*)(kacanov_operator*, std::size_t, const Real*, Real*);
   using Call = Mapping<double>;
-  /// y = call(x), into `out` where that is not None.
+  /// Computes y = call(x), into `out` unless it is None.
   pybind11::array map(Call call, const pybind11::object& x, const pybind11::object& out);
   pybind11::array map_float(const pybind11::object& x, const pybind11::object& out);
-  /// (k, n) arrays: an input vector a row.
+  /// (k, n) arrays: one input vector per row.
   pybind11::array map_many(const pybind11::object& x);
-  /// Calls that take a vector and give a number, or nothing.
+  /// Wraps calls that take a vector and return a number, or nothing.
   double measure(int (*call)(kacanov_operator*, std::size_t, const double*, double*),
                  const pybind11::object& u);
   void freeze(int (*call)(kacanov_operator*, std::size_t, const double*), const pybind11::object& u);
-  /// Calls that fill an array of this shape.
+  /// Wraps calls that fill an array of this shape.
   pybind11::array read(int (*call)(kacanov_operator*, std::size_t, double*),
                        const std::vector<std::ptrdiff_t>& shape);
   void set_secant(const pybind11::object& g);
@@ -88,7 +88,7 @@ class Operator {
   template <class Real>
   pybind11::array map_in(Mapping<Real> call, const pybind11::object& x, const pybind11::object& out);
 
-  /// One call without Python's lock.
+  /// Runs one call without the GIL.
   template <class Work>
   void run(const Work& work) {
     int code = KACANOV_OK;
@@ -108,7 +108,7 @@ class Operator {
   std::atomic<bool> busy_ = false;
 };
 
-/// A kacanov_multigrid, which keeps its operator.
+/// A kacanov_multigrid, which keeps its operator alive.
 class Multigrid {
  public:
   Multigrid(std::shared_ptr<Operator> op, double aggregate);
@@ -133,7 +133,7 @@ struct CgOptions {
   int most_iterations = 0;
   bool tangent = false;
 };
-/// Solves into `x`, which is overwritten; returns what kacanov_cg says.
+/// Solves into `x`, which is overwritten; returns the result of kacanov_cg().
 kacanov_cg_result solve_cg(Operator& op, Multigrid* multigrid, const CgOptions& options,
                            const pybind11::object& b, const pybind11::object& x);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A law of the caller's own that a Python function says.
+// A material law defined by a Python function.
 #include "own_law.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace py = pybind11;
 namespace kacanov::python {
 namespace {
 
-/// The function may keep what it is given, and the library's arrays go.
+/// Copies the values: the function may keep its arguments, but the library's arrays are temporary.
 template <class T>
 py::array copied(const T* values, std::size_t count) {
   py::array array = new_array<T>({static_cast<std::ptrdiff_t>(count)});
@@ -34,7 +34,7 @@ void OwnLaw::enter(kacanov_law& law) {
   law.x0 = yield_strain_;
   law.evaluate = &OwnLaw::evaluate;
   law.data = this;
-  law.parallel = 0;  // Python would let one thread in at a time
+  law.parallel = 0;  // the GIL would serialise the threads
 }
 
 void OwnLaw::raise() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A law of the caller's own that a Python function says.
+// A material law defined by a Python function.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -11,18 +11,18 @@
 
 namespace kacanov::python {
 
-/// The library's callback for a kacanov.OwnLaw. The Python object that asks keeps the law: held from here, a
-/// law that knows its operator would never be collected.
+/// Callback of the library for a kacanov.OwnLaw. The Python operator object holds the law: a reference from
+/// here would form a cycle that is never collected if the law refers to its operator.
 class OwnLaw {
  public:
-  /// `index`: of the law among the operator's, for messages. With Python's lock.
+  /// `index`: index of the law in the operator, for messages. Requires the GIL.
   OwnLaw(const pybind11::object& law, std::size_t index);
   OwnLaw(const OwnLaw&) = delete;
   OwnLaw& operator=(const OwnLaw&) = delete;
 
-  /// Makes it the law's, which keeps its moduli. It has to live as long as operators with that law do.
+  /// Installs the callback in the law, which keeps its moduli. Must outlive operators with that law.
   void enter(kacanov_law& law);
-  /// Throws what came up in the function since this was asked last; with Python's lock.
+  /// Throws an exception raised by the function since the last call; requires the GIL.
   void raise();
 
  private:

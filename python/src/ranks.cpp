@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What ranks that solve a case together tell each other of exceptions, so that none waits for one that has
-// left.
+// Shares exceptions among the ranks of a solve, so that no rank waits for one that has left.
 #include "ranks.hpp"
 
 namespace py = pybind11;
@@ -8,13 +7,13 @@ namespace py = pybind11;
 namespace kacanov::python {
 namespace {
 
-/// Type and message. With Python's lock.
+/// Returns type and message. Requires the GIL.
 std::string words_of(const py::error_already_set& error) {
   std::string text = py::str(error.type().attr("__name__"));
   try {
     const std::string message = py::str(error.value());
     if (!message.empty()) text += ": " + message;
-  } catch (const py::error_already_set&) {  // its __str__ raises as well
+  } catch (const py::error_already_set&) {  // its __str__ raises too
   }
   return text;
 }

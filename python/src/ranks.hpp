@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What ranks that solve a case together tell each other of exceptions, so that none waits for one that has
-// left.
+// Shares exceptions among the ranks of a solve, so that no rank waits for one that has left.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -12,18 +11,18 @@
 
 namespace kacanov::python {
 
-/// The first of the ranks that have raised something; those that Ctrl-C has come to count before others.
+/// The first rank with an exception; KeyboardInterrupt takes precedence.
 struct Elsewhere {
-  int rank = -1;           ///< none where negative
+  int rank = -1;           ///< negative: none
   bool interrupt = false;  ///< a KeyboardInterrupt
   std::string text;        ///< type and message
 };
 
-/// Whose exceptions are to be known: `raised` is this rank's, or null. Collective; with Python's lock, which
-/// is let go while ranks wait for each other.
+/// Returns the exception to report. `raised`: exception of this rank, or null. Requires the GIL, and releases
+/// it while ranks wait for each other. Collective.
 Elsewhere agree_on_exceptions(const MpiSession& mpi, const std::exception_ptr& raised);
 
-/// Does `work`, which must not communicate. Returns what it throws, or null. With Python's lock.
+/// Runs `work`, which must not communicate. Returns the exception it throws, or null. Requires the GIL.
 template <class Work>
 std::exception_ptr caught(const Work& work) {
   try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A solve within the process of Python, of its own or with the other ranks of a communicator.
+// Solves a case inside a Python process, alone or with the other ranks of a communicator.
 #include "run_case.hpp"
 
 #include <pybind11/stl.h>
@@ -23,7 +23,7 @@ namespace {
 
 using Solved = std::shared_ptr<const SolvedCase>;
 
-/// mpi4py tells where it keeps a communicator's handle; 0: this process alone.
+/// Returns the communicator whose handle mpi4py stores at this address; 0: this process alone.
 MPI_Comm communicator_at(std::uintptr_t address) {
   return address == 0 ? MPI_COMM_SELF : *reinterpret_cast<const MPI_Comm*>(address);
 }
@@ -32,7 +32,7 @@ int threads_for(const Case& input, const std::optional<int>& asked) {
   return asked ? *asked : estimate_unknowns(input.mesh) < small_problem ? 1 : usable_cores();
 }
 
-/// What a rank gives of itself, before anybody has communicated.
+/// Input of one rank, before any communication.
 struct Given {
   std::string text, path;
   std::optional<std::string> mesh;
@@ -58,7 +58,7 @@ Given read(const py::dict& given) {
   return out;
 }
 
-/// The case, and what else has to be the same on all ranks, is the first one's. Collective.
+/// Parses the case of the first rank on all ranks. Collective.
 Case share_case(Given& given, const MpiSession& mpi) {
   if (mpi.ranks() > 1) {
     broadcast(mpi, given.text);
@@ -81,7 +81,7 @@ Solved solve(Given& given, const MpiSession& mpi, Host& host) {
   return std::make_shared<SolvedCase>(solve_case(input, mpi, run));
 }
 
-/// An exception of Python as an object, or None where there is none; others are thrown. With Python's lock.
+/// Returns a Python exception as an object, or None if there is none; rethrows others. Requires the GIL.
 py::object as_object(const std::exception_ptr& raised) {
   if (!raised) return py::none();
   try {
@@ -99,7 +99,7 @@ py::tuple outcome(Solved solved, const std::exception_ptr& raised, const Elsewhe
   return py::make_tuple(py::cast(std::move(solved)), as_object(raised), there);
 }
 
-/// Memory that has ended on one rank in the midst of what all of them do: nobody would answer.
+/// Returns whether this rank ran out of memory inside a collective operation: other ranks would not answer.
 bool is_alone(const std::exception_ptr& raised) {
   try {
     if (raised) std::rethrow_exception(raised);
@@ -120,7 +120,8 @@ Case read_case(const std::string& text, const std::string& path, std::optional<s
 }
 
 py::tuple run_case(const py::dict& arguments) {
-  // The other ranks of the solve that has called back are within it: nobody would answer.
+  // A call from a callback must not communicate: the other ranks are still inside the solve and would not
+  // answer.
   refuse_within_callback();
   const auto address = arguments["comm"].cast<std::uintptr_t>();
   const PlainLocale locale;
@@ -132,7 +133,7 @@ py::tuple run_case(const py::dict& arguments) {
     alone = begin_run();
   });
   if (address == 0 && raised) std::rethrow_exception(raised);
-  // Not ended by atexit, which comes before what PETSc, started later, does at its end.
+  // Py_AtExit runs after Python's atexit, by when PETSc, which may start later, has been finalised.
   if (start_host_mpi()) Py_AtExit(&end_host_mpi);
   const MpiSession mpi(communicator_at(address));
   Elsewhere elsewhere = agree_on_exceptions(mpi, raised);

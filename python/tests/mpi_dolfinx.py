@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Function spaces of DOLFINx on several ranks: mpiexec -n 2 python3 mpi_dolfinx.py. Not a part of discovery: it needs mpiexec."""
+"""Function spaces of DOLFINx on several ranks: mpiexec -n 2 python3 mpi_dolfinx.py. Not run by discovery."""
 import faulthandler
 import unittest
 
@@ -15,7 +15,7 @@ from petsc4py import PETSc
 WORLD = MPI.COMM_WORLD
 LAST = WORLD.size - 1
 YOUNG, POISSON = 210e3, 0.3
-DX = ufl.dx(metadata={"quadrature_degree": 3})  # two points an axis of hexahedra, as ours; exact on tetrahedra
+DX = ufl.dx(metadata={"quadrature_degree": 3})  # two points per axis on hexahedra; exact on tetrahedra
 KINDS = [(dmesh.CellType.tetrahedron, 1), (dmesh.CellType.tetrahedron, 2), (dmesh.CellType.hexahedron, 1)]
 GHOSTS = [cpp.mesh.GhostMode.none, cpp.mesh.GhostMode.shared_facet]
 
@@ -94,5 +94,5 @@ class Ranks(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    faulthandler.dump_traceback_later(600, exit=True)  # whoever hangs says where, and the job ends
+    faulthandler.dump_traceback_later(600, exit=True)  # a hanging rank prints its stack, and the job ends
     unittest.main(verbosity=0)

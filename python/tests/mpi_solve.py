@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A solve of several ranks through mpi4py: mpiexec -n 2 python3 mpi_solve.py. Not a part of discovery: it needs mpiexec."""
+"""A solve on several ranks with mpi4py: mpiexec -n 2 python3 mpi_solve.py. Not run by discovery."""
 import faulthandler
 import os
 import signal
@@ -17,7 +17,7 @@ LAST = WORLD.size - 1
 
 class Together(unittest.TestCase):
     def test_all_ranks_solve_one_case(self):
-        alone = pressed_beam().solve(threads=1)  # every rank its own
+        alone = pressed_beam().solve(threads=1)  # every rank by itself
         sol = pressed_beam().solve(threads=1, comm=WORLD)
         self.assertEqual((alone.result["ranks"], sol.result["ranks"]), (1, WORLD.size))
         self.assertTrue(sol.converged)
@@ -57,7 +57,7 @@ class Together(unittest.TestCase):
 
 
 class Raised(unittest.TestCase):
-    """What one rank raises ends the solve of all, which can go on together: none is left waiting."""
+    """An exception on one rank ends the solve on all; no rank is left waiting, and they can solve again together."""
 
     def tearDown(self):
         self.assertEqual(WORLD.allreduce(1), WORLD.size)
@@ -67,7 +67,7 @@ class Raised(unittest.TestCase):
         return pressed_beam().solver(load_steps=1000)
 
     def assert_raised_by(self, rank, error, words):
-        """A context in which that rank raises the error, and the others say so."""
+        """Context in which the given rank raises the error, and the others report it."""
         if WORLD.rank == rank:
             return self.assertRaisesRegex(error, words)
         return self.assertRaisesRegex(kc.RankError, f"rank {rank}: .*{words}")
@@ -171,5 +171,5 @@ class Raised(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    faulthandler.dump_traceback_later(600, exit=True)  # whoever hangs says where, and the job ends
+    faulthandler.dump_traceback_later(600, exit=True)  # a hanging rank prints its stack, and the job ends
     unittest.main(verbosity=0)

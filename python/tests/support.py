@@ -24,7 +24,7 @@ def pressed_beam(element="hex8", cells=(8, 2, 2), **options):
 
 
 def hexahedra(n):
-    """The unit cube of n³ hexahedra in the order of Gmsh: points and cells."""
+    """Returns the unit cube of n³ hexahedra in Gmsh's order: points and cells."""
     grid = np.linspace(0.0, 1.0, n + 1)
     points = np.array([(x, y, z) for z in grid for y in grid for x in grid])
     number = lambda i, j, k: i + (n + 1) * (j + (n + 1) * k)  # noqa: E731
@@ -35,21 +35,21 @@ def hexahedra(n):
 
 
 def program_result(case_file, folder):
-    """What the program's result.json says of a case on one rank."""
+    """Returns the result.json of the program for a case on one rank."""
     run = subprocess.run([PROGRAM, "run", case_file, "--ranks", "1", "--output", folder],
                          capture_output=True, text=True, check=False)
     return run, json.loads(pathlib.Path(folder, "result.json").read_text("utf-8"))
 
 
 def temporary_folder(test):
-    """A folder that goes with the test."""
+    """Returns a folder that is removed after the test."""
     folder = tempfile.TemporaryDirectory()
     test.addCleanup(folder.cleanup)
     return pathlib.Path(folder.name)
 
 
 def use_german_locale(test):
-    """Sets one until the test ends: that of the system, or one made by localedef; skips the test without either."""
+    """Sets a German locale until the test ends, the system's or one made by localedef; else skips the test."""
     name, folder = "de_DE.UTF-8", temporary_folder(test)
     test.addCleanup(locale.setlocale, locale.LC_ALL, locale.setlocale(locale.LC_ALL))
     try:

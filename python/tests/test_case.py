@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Cases from Python: what they say, what the solver in this process makes of them beside the program, and what is
-refused."""
+"""Cases from Python: their documents, solutions in this process compared with those of the program, and rejected
+input."""
 import json
 import locale
 import math
@@ -14,12 +14,12 @@ import kacanov as kc
 import numpy as np
 from support import PROGRAM, hexahedra, pressed_beam, program_result, temporary_folder, use_german_locale
 
-# Of result.json: what is not a number of the solution.
+# Entries of result.json that do not describe the solution.
 OF_THE_RUN = {"seconds", "peak_memory_bytes", "case"}
 
 
 def differences(ours, theirs, path=""):
-    """Where two JSON values are not the same, numbers to 1e-12 of their size."""
+    """Returns the differences between two JSON values, numbers relative to 1e-12 of their size."""
     if isinstance(ours, dict) and isinstance(theirs, dict) and ours.keys() == theirs.keys():
         return [d for key in ours for d in differences(ours[key], theirs[key], f"{path}.{key}")
                 if key not in OF_THE_RUN]
@@ -169,7 +169,7 @@ class Solutions(unittest.TestCase):
     def test_warmth_that_grows_along_a_bar(self):
         case = kc.Case(kc.box((2, 1, 1), (4, 1, 1), "hex8")).material(210e3, 0.3, expansion=1e-5)
         sol = case.temperature({"gradient": (50, 0, 0), "value": 10}).fix("all").solve()
-        warmer = 10 + 50 * (np.arange(4) + 0.5) / 2  # no node moves
+        warmer = 10 + 50 * (np.arange(4) + 0.5) / 2  # supports keep every node from moving
         np.testing.assert_allclose(sol.stress[:, 0], -210e3 * 1e-5 * warmer / 0.4, rtol=1e-9)
 
     def test_warmth_between_walls_presses(self):
@@ -202,7 +202,7 @@ class Solutions(unittest.TestCase):
 
         sol = pulled("stress")
         np.testing.assert_allclose(sol.u[:, :2], sol.points[:, :2] * [1 / 200, -0.3 / 200], atol=1e-7)
-        # A disc that is pulled at its rim: (1 − ν)/E in the plane, −2ν/E along the axis.
+        # Radial tension on a disc: (1 − ν)/E in the plane, −2ν/E along the axis.
         sol = pulled("axisymmetric")
         np.testing.assert_allclose(sol.u[:, :2], sol.points[:, :2] * [0.7 / 200, -0.6 / 200], atol=1e-7)
         with self.assertRaisesRegex(kc.InputError, "plane: expected"):
@@ -218,12 +218,12 @@ class Solutions(unittest.TestCase):
 
 class Stops(unittest.TestCase):
     def setUp(self):
-        # A shell ignores SIGINT for what it starts in the background, and so would solve().
+        # A shell ignores SIGINT in background processes, and solve() would inherit that.
         before = signal.signal(signal.SIGINT, signal.default_int_handler)
         self.addCleanup(signal.signal, signal.SIGINT, before)
 
     def long(self):
-        """A minute of work, and many outer steps."""
+        """Returns a case that takes a minute and many outer steps."""
         return pressed_beam("hex8", (24, 8, 8)).solver(load_steps=1000, tolerance=1e-9)
 
     def test_control_c_keeps_the_state(self):
@@ -380,7 +380,7 @@ class AsAGuest(unittest.TestCase):
             return [sol.message, sol.warnings, sol.contact_force.tolist(), sol.u.tolist(), sol.svg(), str(refused.exception),
                     from_file.solve().points.tolist()]
 
-        file = temporary_folder(self) / "tiny.msh"  # a number that no double holds has a way of its own
+        file = temporary_folder(self) / "tiny.msh"  # out of range of double: a separate code path
         file.write_text("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 1.5e-400 0 0\n2 1.5 0 0\n3 0 1.5 0\n$EndNodes\n"
                         "$Elements\n1\n1 2 2 1 1 1 2 3\n$EndElements\n", "utf-8")
         from_file = kc.Case(kc.read(file)).material(young=1.5, poisson=0.3).fix("all")

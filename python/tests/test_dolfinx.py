@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Function spaces of DOLFINx as bodies: its own matrix beside our operator. Skipped where DOLFINx is not there."""
+"""Function spaces of DOLFINx as bodies: its own matrix against our operator. Skipped without DOLFINx."""
 import importlib.util
 import unittest
 
@@ -25,7 +25,7 @@ def at_x(space, x):
 class Spaces(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        """Not before the others' turn: it starts MPI, in whose absence some of them are interested."""
+        """Imports late: it starts MPI, and some other tests need a process without MPI."""
         global dmesh, fem, MPI, ufl
         import dolfinx.fem.petsc
         import ufl

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The notebooks run from their first cell to their last, and are committed without what they have printed."""
+"""The notebooks run from the first cell to the last, and are committed without outputs."""
 import contextlib
 import importlib.util
 import io
@@ -11,14 +11,14 @@ NOTEBOOKS = pathlib.Path(__file__).resolve().parent.parent / "notebooks"
 
 
 def cells(name):
-    """The code of a notebook's cells."""
+    """Returns the code of a notebook's cells."""
     book = json.loads((NOTEBOOKS / name).read_text("utf-8"))
     return [(cell, "".join(cell["source"])) for cell in book["cells"] if cell["cell_type"] == "code"]
 
 
 class Notebooks(unittest.TestCase):
     def run_notebook(self, name, *modules):
-        """Without Jupyter, which is fifty packages: there is nothing in the cells but Python."""
+        """Runs the cells without Jupyter, which needs fifty packages: they contain only Python."""
         for module in modules:
             if not importlib.util.find_spec(module):
                 self.skipTest(f"no {module}")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The operator from numpy: against its own matrix and differences, with scipy and petsc4py where they are, and what is
-refused."""
+"""The operator from numpy: against its own matrix and differences, with scipy and petsc4py if available, and rejected
+input."""
 import importlib.util
 import pathlib
 import subprocess

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Laws that are functions: beside the built-in one of the same formula, on one thread and two, and what they may not do."""
+"""User-defined laws: compared with the built-in law of the same formula, on one thread and two; rejected results."""
 import gc
 import threading
 import unittest
@@ -138,11 +138,11 @@ class WhatGoesWrong(Body):
                 with self.assertRaisesRegex(error, words):
                     op.tangent(self.u)
         op = self.operator(lambda x, element, point: (good[0], None, None))
-        op.update(self.u)  # asks for g alone
+        op.update(self.u)  # needs g only
         with self.assertRaisesRegex(TypeError, "energy: expected"):
             op.energy(self.u)
         both = np.stack([good[0], good[0]], axis=1)
-        self.operator(lambda x, element, point: (both[:, 1], good[1], good[2])).tangent(self.u)  # any strides
+        self.operator(lambda x, element, point: (both[:, 1], good[1], good[2])).tangent(self.u)  # any stride is allowed
 
     def test_where_it_does_not_belong(self):
         with self.assertRaisesRegex(kc.InputError, "law: expected what a case file can say, got function"):
@@ -190,7 +190,7 @@ class WhatGoesWrong(Body):
         del steel
         gc.collect()
         multigrid.update()
-        self.assertIsNotNone(gone())  # the multigrid keeps its operator, and that its law
+        self.assertIsNotNone(gone())  # the multigrid keeps its operator, which keeps the law
         del multigrid
         gc.collect()
         self.assertIsNone(gone())

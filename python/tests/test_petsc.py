@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The example of PETSc's SNES beside a solve of the same case. Skipped where petsc4py is not there."""
+"""PETSc's SNES example compared with a solve of the same case. Skipped without petsc4py."""
 import importlib.util
 import json
 import pathlib
@@ -34,7 +34,7 @@ class Newton(unittest.TestCase):
 
         case = kc.Case(kc.box((4, 1, 1), (16, 4, 4), "hex8")).fix("left").body_force((0, 0, -20))
         sol = case.material(210e3, 0.3, law=kc.Logarithmic(yield_stress=250)).solver(tolerance=1e-9).solve()
-        grid = np.indices((5, 5, 17)) / 4  # z, y, x of the example
+        grid = np.indices((5, 5, 17)) / 4  # z, y, x as in the example
         points = np.stack([axis.ravel() for axis in grid[::-1]], axis=1)
         theirs = sorted_by_place(points, np.load(field))
         self.assertTrue(sol.converged)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures: that they are drawn of what is there, with what is installed, and what is refused."""
+"""Pictures: drawn with the installed backends, and rejected arguments."""
 import importlib.util
 import os
 import unittest

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The fields of load steps: those of runs that end there, and what there is of a run that does not come to its end."""
+"""Fields of load steps: compared with runs that end there, and those of a run that does not reach its end."""
 import unittest
 
 import kacanov as kc

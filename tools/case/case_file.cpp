@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The case file: one JSON object that says what to solve.
+// Parses a case file, one JSON object, into a Case.
 #include "case/case_file.hpp"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace {
 constexpr int most_cells = 1 << 30;
 constexpr std::size_t largest_case = std::size_t{64} << 20;
 
-/// Reads the parts of a case that is as described in case_schema.cpp, noting every vector on the way.
+/// Reads a case that satisfies case_schema(), and records every vector for check_dimension().
 class CaseParser {
  public:
   explicit CaseParser(std::string folder) : folder_(std::move(folder)) {}
@@ -50,7 +50,7 @@ class CaseParser {
   }
 
  private:
-  /// Entries of a vector of 2 or 3, the third set to null or 0 where it is not there.
+  /// Returns the entries of a vector, which is 2 or 3 long, and records it.
   std::vector<Node> vector_entries(const Node& node) {
     std::vector<Node> entries = node.entries();
     const auto is_zero = [](const nlohmann::json& v) {
@@ -68,7 +68,7 @@ class CaseParser {
     return v;
   }
 
-  /// A path, relative ones taken from the case file's folder.
+  /// Returns the path, with relative ones starting at the folder of the case file.
   std::string in_folder(const std::string& name) const {
     const std::filesystem::path file = name;
     return file.is_absolute() ? file.string() : (std::filesystem::path(folder_) / file).string();
@@ -321,7 +321,7 @@ CaseText read_case_text(const std::string& path) {
     throw InputError(path + ": " +
                      (std::filesystem::exists(path) ? "cannot be read" : "there is no such file"));
   }
-  // A pipe has no size to ask for, so the text is counted as it comes.
+  // A pipe has no size that could be queried, so count the text while it is read.
   CaseText read{path, {}};
   for (std::string piece(std::size_t{1} << 16, '\0'); stream;) {
     stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
@@ -352,7 +352,7 @@ Case parse_case(const CaseText& text, std::span<const std::string> overrides) {
   naming_file(text.path, [&] { input = parse_case(document, file.parent_path().string()); });
   input.file = text.path;
   input.name = file.stem().string();
-  // Results go to a folder of this name: not to the one above ("...json").
+  // Results go into a folder of this name; ".." would be the parent folder (file name "...json").
   if (input.name.empty() || input.name == "." || input.name == "..") input.name = "case";
   input.document = std::move(document);
   return input;

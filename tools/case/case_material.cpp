@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The `material` entries of a case: elastic constants and laws.
+// Parses the `material` entries of a case: elastic constants and laws.
 #include "case/case_material.hpp"
 
 #include <array>
@@ -15,7 +15,7 @@
 namespace kacanov {
 namespace {
 
-/// x0, or the yield stress it follows from: 2 mu x0 = sqrt(2/3) sigma_y for the norm.
+/// Returns x0, given or from the yield stress: 2 mu x0 = sqrt(2/3) sigma_y for the norm.
 double yield_strain(const Object& object, const Law& law) {
   if (const auto x0 = object.optional("x0")) return x0->number();
   const double stress = object.required("yield_stress").number();
@@ -33,7 +33,7 @@ laws::Table parse_table(const Object& object) {
   return table;
 }
 
-/// The keys of each form beside `type`, and how it is read.
+/// A form of law: its keys beside `type`, and its parser.
 struct LawEntry {
   std::string_view name;
   KeySet (*keys)();
@@ -45,7 +45,7 @@ Key argument_key() {
              word_of(Law().argument, words::argument));
 }
 
-/// Of a form that starts at x0.
+/// Keys of a form that starts at x0.
 KeySet from_x0(std::vector<Key> more = {}) {
   KeySet set{{argument_key(), may("x0", Number{positive}, "‖dev ε‖ up to which the body is elastic"),
               may("yield_stress", Number{positive}, "the yield stress in tension, in place of x0")},
@@ -118,7 +118,7 @@ void compare_slopes(const Node& node, const Law& law, std::vector<std::string>& 
   warnings.push_back(text.str());
 }
 
-/// Strains beyond 1, which the theory of small strains does not have, are mostly per cent.
+/// Strains above 1 violate the small-strain assumption and are usually percentages.
 void ask_for_per_cent(const std::string& path, double strain, std::vector<std::string>& warnings) {
   if (!(strain > 1.0)) return;
   PlainText text;

@@ -10,18 +10,19 @@
 
 namespace kacanov {
 
-/// The law of a material from its elastic constants and its `law` object. Adds to `warnings` what is
-/// allowed but looks mistaken.
+/// Returns the law given by elastic constants and a `law` object. Adds a warning for values that are allowed
+/// but probably wrong.
 Law parse_law(double young, double poisson, const Node& node, std::vector<std::string>& warnings);
 
-/// The law of `plastic`: rows of uniaxial true stress and equivalent plastic strain (theory: uniaxial).
+/// Returns the law of a `plastic` table: rows of uniaxial true stress and equivalent plastic strain (theory:
+/// uniaxial).
 Law parse_plastic(double young, double poisson, const Node& node);
 
-/// The law of a material's `yield_stress` and `tangent_modulus`.
+/// Returns the bilinear law of `yield_stress` and `tangent_modulus`.
 Law parse_bilinear(double young, double poisson, const Object& material);
 
-/// The law of a whole material, by its elastic constants and those of the keys above that it has. Adds to
-/// `warnings` likewise.
+/// Returns the law of a `material` entry: elastic constants and `law`, `plastic` or `tangent_modulus`, if
+/// any. Adds warnings as parse_law() does.
 Law parse_material_law(const Object& material, std::vector<std::string>& warnings);
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The obstacle of a contact entry.
+// Parses the obstacle of a contact entry.
 #include "case/case_obstacle.hpp"
 
 #include <array>
@@ -12,18 +12,18 @@
 namespace kacanov {
 namespace {
 
-/// What reads obstacles is handed.
+/// Arguments of the obstacle parsers.
 struct Source {
   const ReadVector& vector;
   std::optional<ObstacleFile>& file;
-  std::string path;  ///< of the obstacle
+  std::string path;  ///< path of the obstacle in the case
 
   Vector3 required(const Object& parts, const char* key) const { return vector(parts.required(key)); }
   std::optional<Vector3> direction(const Object& parts) const {
     const auto way = parts.optional("direction");
     return way ? std::optional(vector(*way)) : std::nullopt;
   }
-  /// Of what a body may touch from outside or inside.
+  /// Reads a sphere or cylinder, which the body may touch from outside or from inside.
   template <class Round>
   void take_round(const Object& parts, Round& round) const {
     round.radius = parts.required("radius").number();
@@ -31,7 +31,7 @@ struct Source {
     const auto inside = parts.optional("inside");
     round.inside = inside && inside->boolean();
   }
-  /// The file that an obstacle's data come from.
+  /// Sets the file that the obstacle's geometry comes from.
   ObstacleFile& new_file(const Object& parts) const {
     ObstacleFile& made = file.emplace();
     made.path = path;
@@ -109,7 +109,7 @@ Key radius_key() { return must("radius", Number{positive}, "a length"); }
 
 Key inside_key(bool fallback) { return may("inside", Flag{}, "whether the body is within", fallback); }
 
-/// Lower and upper corner in the plane of x and y.
+/// Lower or upper corner in the x-y plane.
 Schema plane_corner() {
   const char* expected = "a list of two numbers, x and y";
   return ListOf{Number{}, expected, 2, 2};
@@ -223,7 +223,7 @@ Motion parse_motion(const Node& node, const ReadVector& vector) {
     pose.time = place.required("time").number();
     if (const auto translation = place.optional("translation")) pose.translation = vector(*translation);
     if (const auto rotation = place.optional("rotation")) {
-      // In the plane a turn is a number: its axis is z.
+      // In 2D the rotation is one number, about z.
       if (rotation->value().is_number())
         pose.rotation[2] = rotation->number();
       else

@@ -13,11 +13,11 @@ namespace {
 using nlohmann::json;
 
 struct Step {
-  std::string key;        ///< of an object, or empty:
-  std::size_t index = 0;  ///< of an array
+  std::string key;        ///< member of an object, or empty:
+  std::size_t index = 0;  ///< entry of an array
 };
 
-/// Splits "contact[0].friction.tresca"; empty where it is no such path.
+/// Splits "contact[0].friction.tresca" into steps; empty if it is not a path.
 std::vector<Step> split(const std::string& path) {
   std::vector<Step> steps;
   std::size_t at = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every key of the case file but those of materials and obstacles.
+// Schema of every case key except those of materials and obstacles.
 #include "case/case_schema.hpp"
 
 #include <kacanov/cells.hpp>
@@ -14,7 +14,7 @@ constexpr int most_load_steps = 10000;
 
 Schema vector_not_negative() { return ListOf{Number{not_negative}, "a list of 2 or 3 numbers", 2, 3}; }
 
-/// The `on` of an entry.
+/// Schema of `on`, which selects part of the mesh.
 Schema selector() {
   const Schema corners = ListOf{vector_schema(),
                                 "two corners",

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every key of the case file: what it may be, its default, and a line about it.
+// Schema of the case file: type, default and one line of help for every key.
 #pragma once
 
 #include "case/schema.hpp"
 
 namespace kacanov {
 
-/// A whole case file.
+/// Schema of a whole case file.
 const Schema& case_schema();
-/// The elastic constants and the law of a material, without where it is.
+/// Keys of a material's elastic constants and law, without `on`.
 KeySet material_law_keys();
-/// The schema of case files, which `kacanov schema` prints.
+/// JSON schema of case files, as `kacanov schema` prints it.
 nlohmann::ordered_json case_json_schema();
 
-/// A key that has to be there, and one that may be left out.
+/// A required key (must) and an optional key (may).
 inline Key must(const char* name, Schema schema, const char* help) {
   return {name, std::move(schema), help, true, {}};
 }
@@ -21,7 +21,7 @@ inline Key may(const char* name, Schema schema, const char* help, nlohmann::json
   return {name, std::move(schema), help, false, std::move(fallback)};
 }
 
-// Parts that have files of their own.
+// Sub-schemas that are defined in files of their own.
 Schema vector_schema();
 Schema axes_schema();
 Schema obstacle_schema();

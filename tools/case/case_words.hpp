@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The words that a case file has choices of, and what they stand for.
+// Enumerated words of the case file and the values they stand for.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace kacanov {
 template <class Value, std::size_t count>
 using Words = std::array<std::pair<std::string_view, Value>, count>;
 
-/// What the word at a node stands for.
+/// Returns the value of the word at a node; throws InputError for any other word.
 template <class Value, std::size_t count>
 Value value_of(const Node& node, const Words<Value, count>& words) {
   std::vector<std::string_view> list;
@@ -23,7 +23,7 @@ Value value_of(const Node& node, const Words<Value, count>& words) {
   return words[node.choice(list)].second;
 }
 
-/// The word of a value.
+/// Returns the word of a value.
 template <class Value, std::size_t count>
 std::string word_of(Value value, const Words<Value, count>& words) {
   for (const auto& word : words)
@@ -31,7 +31,7 @@ std::string word_of(Value value, const Words<Value, count>& words) {
   return {};
 }
 
-/// One of the words.
+/// Returns the schema of a key that takes one of the words.
 template <class Value, std::size_t count>
 Word one_of(const Words<Value, count>& words) {
   Word schema;

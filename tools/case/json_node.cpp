@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A JSON value that knows its path, so that whatever is wrong with it can be said in the user's terms.
+// A JSON value with its path in the document, so that error messages can name the key.
 #include "case/json_node.hpp"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-/// A case has some five levels; what is made of thousands would end the stack.
+/// A case has about five levels; recursion through thousands of levels would overflow the stack.
 constexpr std::size_t deepest = 64;
 
 std::string shown(const json& value) {
@@ -26,13 +26,13 @@ std::string shown(const json& value) {
   return text;
 }
 
-/// "line:column" of a byte offset.
+/// Returns "line:column" of a byte offset.
 std::string place(const std::string& text, std::size_t byte) {
   const std::size_t end = std::min(byte, text.size());
   std::size_t line = 1, start = 0;
   for (std::size_t i = 0; i < end; ++i) {
     if (text[i] != '\n') continue;
-    // The parser counts the byte it stumbled over: a newline still belongs to the line it ends.
+    // The parser counts the offending byte: a newline belongs to the line that it ends.
     if (i + 1 == end) break;
     ++line;
     start = i + 1;
@@ -40,7 +40,7 @@ std::string place(const std::string& text, std::size_t byte) {
   return std::to_string(line) + ":" + std::to_string(std::max<std::size_t>(1, end - start));
 }
 
-/// What nlohmann's message says after its own idea of the place.
+/// Returns nlohmann's message without its own line and column.
 std::string reason(const std::string& what) {
   for (const char* mark : {"parsing value - ", "parsing object key - ", "parsing object - ",
                            "parsing array - ", "syntax error while parsing ", "parse error"}) {
@@ -50,7 +50,7 @@ std::string reason(const std::string& what) {
   return what;
 }
 
-/// Walks the text once without building anything: finds repeated keys, numbers out of range and syntax
+/// Scans the text once without building a document: finds repeated keys, numbers out of range and syntax
 /// errors.
 class Scanner : public nlohmann::json_sax<json> {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A JSON value that knows its path, so that whatever is wrong with it can be said in the user's terms.
+// A JSON value with its path in the document, so that error messages can name the key.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,12 +12,12 @@
 
 namespace kacanov {
 
-/// Parses one JSON object, refusing repeated keys; comments, // and /* */, are passed over. `label` (the
-/// file's name) starts every message: InputError "label:line:column: ..." for text that is no JSON.
+/// Parses one JSON object and rejects repeated keys; comments, // and /* */, are skipped. `label` (the file
+/// name) starts every message: InputError "label:line:column: ..." for text that is not JSON.
 nlohmann::json parse_json(const std::string& bytes, const std::string& label);
 
 /// A value and its path ("contact[0].friction.tresca"). The value must outlive the node. Every accessor
-/// throws InputError "path: expected ..., got ..." when the value is something else.
+/// throws InputError "path: expected ..., got ..." if the value has another type or is out of range.
 class Node {
  public:
   Node(const nlohmann::json& value, std::string path) : value_(&value), path_(std::move(path)) {}
@@ -26,12 +26,12 @@ class Node {
   const nlohmann::json& value() const noexcept { return *value_; }
 
   double number(const NumberRule& rule = any_number) const;
-  int integer(int least) const;  ///< a whole number ≥ least, also when written 1e4
+  int integer(int least) const;  ///< integer ≥ least; 1e4 is accepted
   bool boolean() const;
-  std::string text() const;                                   ///< a string that is not empty
+  std::string text() const;                                   ///< non-empty string
   std::vector<Node> list(const std::string& expected) const;  ///< the entries of an array
   std::vector<Node> entries() const { return list("a list"); }
-  /// A string out of a few; returns its place among them.
+  /// Returns the index of the string in `words`.
   std::size_t choice(const std::vector<std::string_view>& words) const;
 
   [[noreturn]] void expected(const std::string& what) const;
@@ -41,7 +41,7 @@ class Node {
   std::string path_;
 };
 
-/// An object, whose keys have been checked or are about to be (schema.hpp).
+/// A JSON object. Its keys are checked against the schema before or after (schema.hpp).
 class Object {
  public:
   explicit Object(Node node) : node_(std::move(node)) {}

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a value of the case file may be, described once: the check before a case is read and the JSON schema
-// both come from it.
+// Schema of the case file: one description from which both input checks and the JSON schema are derived.
 #pragma once
 
 #include <cstddef>
@@ -19,13 +18,13 @@ namespace kacanov {
 
 struct AnyForm;
 
-/// What a value may be: one of the structs below, which copies share.
+/// Type of a value: one of the structs below. Copies share it.
 class Schema {
  public:
   template <class Form>
   Schema(Form form);
   const AnyForm& form() const noexcept { return *form_; }
-  /// The same with a name: in the schema it is a definition of its own, referred to where it is used.
+  /// Returns a named copy: the JSON schema puts it under $defs and refers to it.
   Schema named(std::string name) const;
   const std::string& name() const noexcept { return name_; }
 
@@ -34,11 +33,11 @@ class Schema {
   std::string name_;
 };
 
-/// A string that is not empty, on one line and without control characters; line ends and tabs where `lines`.
+/// A non-empty string without control characters, on one line; `lines`: line feeds and tabs are allowed.
 struct Text {
   bool lines = false;
 };
-/// true or false.
+/// A boolean.
 struct Flag {};
 struct Null {};
 
@@ -46,28 +45,28 @@ struct Number {
   NumberRule rule = kacanov::any_number;
 };
 
-/// A whole number.
+/// An integer.
 struct Whole {
   int least = 0, most = std::numeric_limits<int>::max();
-  std::string words_above = {};  ///< what was expected instead of more than `most`
+  std::string words_above = {};  ///< expected text in the message for values above `most`
 };
 
-/// A string out of a few.
+/// A string from a fixed list.
 struct Word {
   std::vector<std::string> words;
-  std::string expected = {};  ///< in messages; empty: the words
+  std::string expected = {};  ///< expected text in messages; empty: the list of words
 };
 
-/// Entries that are all alike.
+/// A list whose entries have the same schema.
 struct ListOf {
   static constexpr std::size_t any_number = std::numeric_limits<std::size_t>::max();
   Schema entry;
-  std::string expected;  ///< in messages, as in "a list of 2 or 3 numbers"
+  std::string expected;  ///< expected text in messages, as in "a list of 2 or 3 numbers"
   std::size_t least = 0, most = any_number;
-  std::string words_below = {}, words_above = {};  ///< of lists of another length; empty: `expected`
+  std::string words_below = {}, words_above = {};  ///< for lists of wrong length; empty: `expected`
 };
 
-/// Each entry as its place has it.
+/// A list with one schema per entry.
 struct Tuple {
   std::vector<Schema> entries;
   std::string expected;
@@ -76,43 +75,43 @@ struct Tuple {
 struct Key {
   std::string name;
   Schema value;
-  std::string help;  ///< a line for people who write a case
+  std::string help;  ///< one line of help for users
   bool required = false;
-  nlohmann::json fallback = {};  ///< what leaving it out stands for; null: nothing that could be written
+  nlohmann::json fallback = {};  ///< default value; null: no value can express the default
 };
 
-/// Of these keys one is there, or at most one.
+/// Exactly one of these keys is present; not `required`: at most one.
 struct OneOf {
   std::vector<std::string> keys;
   bool required = true;
 };
 
-/// `key` is there with `main` alone; `both`: and `main` with `key` alone.
+/// `key` requires `main`; `both`: `main` also requires `key`.
 struct Beside {
   std::string key, main;
   bool both = false;
 };
 
-/// An object of these keys and no others.
+/// An object with a fixed set of keys.
 struct KeySet {
   std::vector<Key> keys;
   std::vector<OneOf> one_of = {};
   std::vector<Beside> beside = {};
 };
 
-/// An object with any keys.
+/// An object with arbitrary keys.
 struct MapOf {
   Schema entry;
   std::string expected;
 };
 
-/// An object whose other keys depend on the word that is at one of them.
+/// An object whose set of keys depends on the word at the key `tag`.
 struct Kinds {
   std::string tag;
-  std::vector<std::pair<std::string, KeySet>> kinds;  ///< the tag is among the keys of each
+  std::vector<std::pair<std::string, KeySet>> kinds;  ///< each set includes the tag
 };
 
-/// They differ in their type of JSON, by which it is told which one is meant.
+/// Alternatives with different JSON types; the type of the value selects one.
 struct Either {
   std::vector<Schema> choices;
   std::string expected;
@@ -125,11 +124,11 @@ struct AnyForm {
 template <class Form>
 Schema::Schema(Form form) : form_(std::make_shared<const AnyForm>(AnyForm{std::move(form)})) {}
 
-/// Throws InputError about all that is not as described: an unknown key, with the closest that is
-/// known, a missing one, a wrong type, a number out of range; named by its path, with what was expected.
+/// Throws InputError listing every violation with its path and what was expected: unknown keys (with the
+/// closest known one), missing keys, wrong types, numbers out of range.
 void check(const Node& node, const Schema& schema);
 
-/// The same as a JSON schema, draft 2020-12, its definitions included; `heading` comes first in it.
+/// Returns the JSON schema (draft 2020-12), including its definitions, with the entries of `heading` first.
 nlohmann::ordered_json json_schema(const Schema& schema, nlohmann::ordered_json heading);
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether a value is as described, and in words what is not.
+// Checks a value against its schema and collects error messages.
 #include <algorithm>
 #include <string_view>
 
@@ -23,7 +23,7 @@ std::vector<std::string> names(const KeySet& set) {
   return list;
 }
 
-/// Whether the JSON type of a value is one that a form is made of.
+/// Returns whether the JSON type of a value matches a form.
 struct HasType {
   const nlohmann::json& value;
   bool operator()(const Text&) const { return value.is_string(); }
@@ -40,7 +40,7 @@ struct HasType {
   bool operator()(const Either&) const { return false; }
 };
 
-/// Throws about the value itself, and leaves what is wrong within it with `mistakes`.
+/// Throws for the value itself, and collects errors of its parts in `mistakes`.
 struct Check {
   const Node& node;
   Mistakes& mistakes;
@@ -82,7 +82,7 @@ struct Check {
       } catch (const InputError& error) {
         wrong.emplace_back(error.what());
       }
-    // Where none is what was expected, as in a point in place of a list of points, that is one mistake.
+    // If every entry is wrong, as when one point is given for a list of points, report one error only.
     if (wrong.size() == entries.size()) wrong.resize(std::min<std::size_t>(wrong.size(), 1));
     for (const std::string& mistake : wrong) mistakes.note(mistake);
   }
@@ -98,7 +98,7 @@ struct Check {
   }
   void operator()(const Kinds& form) const {
     if (!node.value().is_object()) node.expected("an object with the keys " + joined(all_keys(form)));
-    // The kind first: a wrong one is not to be told by keys that do not go with it.
+    // Check the tag first: a wrong tag must not show up as keys that do not belong to it.
     std::vector<std::string_view> kinds;
     for (const auto& kind : form.kinds) kinds.push_back(kind.first);
     (*this)(form.kinds[Object(node).required(form.tag).choice(kinds)].second);
@@ -144,7 +144,7 @@ struct Check {
         if (std::find(list.begin(), list.end(), key.name) == list.end()) list.push_back(key.name);
     return list;
   }
-  /// Returns the keys that they may stand for: these are not missed as well.
+  /// Reports unknown keys. Returns the keys that were probably meant, which are not reported as missing too.
   std::vector<std::string> note_unknown(const KeySet& set) const {
     const std::vector<std::string> known = names(set);
     std::vector<std::string> meant;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A described value as a JSON schema, draft 2020-12.
+// Converts a schema to a JSON schema, draft 2020-12.
 #include <algorithm>
 
 #include "case/schema.hpp"
@@ -21,7 +21,7 @@ class SchemaWriter {
     }
     return {{"$ref", "#/$defs/" + schema.name()}};
   }
-  /// After all has been written.
+  /// Valid once all schemas have been written.
   const ordered_json& definitions() const { return definitions_; }
 
   ordered_json operator()(const Text& text) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a solve takes care of in a process that is not its own: one run at a time, MPI.
+// Guards for a solve inside a host process: one run at a time, and the life of MPI.
 #include "embedding/host_guards.hpp"
 
 #include <mpi.h>
@@ -13,7 +13,7 @@
 namespace kacanov::embedding {
 namespace {
 
-/// At the process's end; a run that another thread is still at would lose MPI beneath its feet.
+/// Runs at process exit. Leaves MPI alone while another thread is in a run.
 void end_mpi() {
   const std::unique_lock alone(one_run, std::try_to_lock);
   if (alone) end_host_mpi();

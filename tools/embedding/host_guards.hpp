@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a solve takes care of in a process that is not its own: one run at a time, MPI.
+// Guards for a solve inside a host process: one run at a time, and the life of MPI.
 #pragma once
 
 #include <mutex>
@@ -8,10 +8,10 @@
 
 namespace kacanov::embedding {
 
-/// Waits until nobody else is at a run. Throws Fault where this thread is at one.
+/// Waits until no other thread is in a run. Throws Fault if this thread is already in one.
 std::unique_lock<RunMutex> begin_run();
 
-/// Starts MPI unless it is there. Throws Fault where it has been ended, or not for this thread.
+/// Starts MPI unless it is initialised. Throws Fault if MPI was finalised or may not be used by this thread.
 void require_mpi();
 
 }  // namespace kacanov::embedding

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The handle of a solved case, and its arrays.
+// The C handle of a solved case and its arrays.
 #include "embedding/solution.hpp"
 
 #include <cstddef>
@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t information_bytes =
     offsetof(kacanov_solution_information, message) + sizeof(const char*);
 
-/// The mesh file's numbers; without any they count from 1.
+/// Returns the numbers of the mesh file, or 1, 2, ... if it has none.
 std::vector<std::int64_t> numbers(const std::vector<std::int64_t>& tags, std::size_t count) {
   if (!tags.empty()) return tags;
   std::vector<std::int64_t> all(count);
@@ -92,7 +92,7 @@ std::span<const std::int32_t> indices_of(const kacanov_solution& solution, std::
   }
 }
 
-/// Hands an array out; none where there is no memory to make it, or nothing in it.
+/// Returns the array; null if it is empty or cannot be allocated.
 template <class T, class Find>
 const T* handed_out(const kacanov_solution* solution, std::size_t* count, const Find& find) noexcept {
   std::span<const T> array;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The handle of a solved case, and its arrays.
+// The C handle of a solved case and its arrays.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,13 @@
 
 namespace kacanov::embedding {
 
-/// Means over the elements, made when they are first asked for.
+/// Element means, computed at the first request.
 struct ElementArrays {
   std::vector<double> stress, von_mises, dev_strain, secant;
   std::vector<std::int32_t> plastic;
 };
 
-/// Of the contact points, as C has them.
+/// Arrays of the contact points in the layout of the C interface.
 struct ContactArrays {
   std::vector<std::int32_t> node, entry, status;
   std::vector<double> normal;
@@ -26,7 +26,7 @@ struct ContactArrays {
 
 }  // namespace kacanov::embedding
 
-/// Everything belongs to the first process; others have the result and its text.
+/// All arrays are on the first rank; other ranks have only the result and its JSON.
 struct kacanov_solution {
   kacanov::SolvedCase solved;
   std::string json;

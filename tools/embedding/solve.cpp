@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// kacanov_solve: a case from the text of its file, in a host's process.
+// kacanov_solve(): solves a case given as text inside a host process.
 #include <kacanov/kacanov_solve.h>
 
 #include <filesystem>
@@ -37,7 +37,7 @@ kacanov_solve_options checked(const kacanov_solve_options* given) {
   return options;
 }
 
-/// The case on every process, read from the first one's text. Collective.
+/// Parses the text of the first rank on every rank. Collective.
 Case read_case(std::string text, const kacanov_solve_options& options, const MpiSession& mpi) {
   if (mpi.ranks() > 1) broadcast(mpi, text);
   Case input;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Written beside its place, flushed and renamed, so that a crash leaves the old file or the new one.
+// Writes a temporary file beside the target, flushes and renames it, so that a crash leaves the old file or
+// the new one.
 #include "formats/atomic_file.hpp"
 
 #include <fcntl.h>
@@ -16,8 +17,8 @@ namespace kacanov {
 
 AtomicFile::AtomicFile(std::string path)
     : path_(std::move(path)), temporary_(path_ + ".part" + std::to_string(::getpid())) {
-  // What stands there is of a process that is gone (its number has come round), or somebody's trap: it goes,
-  // and nothing is ever written through a link.
+  // A file of this name belongs to a process that has ended (its number was reused), or is someone's trap:
+  // remove it, and never write through a link.
   std::remove(temporary_.c_str());
   const int handle = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (handle < 0) fail(errno);
@@ -50,7 +51,7 @@ void AtomicFile::write_over(std::uint64_t place, const void* data, std::size_t b
 }
 
 void AtomicFile::commit(Durable durable) {
-  // What is still buffered meets a full disk here.
+  // A full disk shows here, when buffered data are flushed.
   if (std::fflush(file_) != 0) fail(errno);
   if (durable == Durable::yes && ::fsync(::fileno(file_)) != 0) fail(errno);
   const bool closed = std::fclose(std::exchange(file_, nullptr)) == 0;
@@ -60,8 +61,8 @@ void AtomicFile::commit(Durable durable) {
     fail(error);
   }
   if (durable == Durable::no) return;
-  // The new name is on the disk with its folder. Not all file systems can do that; the file is whole in any
-  // case.
+  // Syncing the folder puts the new name on disk. Some file systems cannot do that; the file is complete in
+  // any case.
   const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
   const int handle = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_CLOEXEC);
   if (handle < 0) return;
@@ -72,7 +73,7 @@ void AtomicFile::commit(Durable durable) {
 void sync_file(const std::string& path) {
   const int handle = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   const bool done = handle >= 0 && ::fsync(handle) == 0;
-  // Some file systems know no such thing for folders.
+  // Some file systems do not support it for folders.
   const int error = errno == EINVAL ? 0 : errno;
   if (handle >= 0) ::close(handle);
   if (!done && error != 0) throw InternalError(path + ": cannot be put on the disk: " + std::strerror(error));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes a file under a temporary name and gives it its own only when it is whole.
+// Writes a file under a temporary name and renames it once it is complete.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace kacanov {
 
-/// Every function throws InternalError naming the file where the system refuses. Without commit() nothing
-/// stays.
+/// Every function throws InternalError naming the file if the system call fails. Without commit() no file is
+/// left.
 class AtomicFile {
  public:
   explicit AtomicFile(std::string path);
@@ -21,10 +21,10 @@ class AtomicFile {
 
   void write(const void* data, std::size_t bytes);
   void write(std::string_view text) { write(text.data(), text.size()); }
-  /// Puts other bytes in place of some that are written; goes on at the end.
+  /// Overwrites bytes that were written before; the next write() appends at the end.
   void write_over(std::uint64_t place, const void* data, std::size_t bytes);
-  /// Closes the file and renames it; to be called last. A durable one is on the disk before it takes the
-  /// place of the one before it, and survives a power cut.
+  /// Closes the file and renames it; the last call. With Durable::yes the data are synced to disk before the
+  /// rename, so that the file survives a power failure.
   enum class Durable { no, yes };
   void commit(Durable durable = Durable::no);
 
@@ -35,10 +35,10 @@ class AtomicFile {
   std::FILE* file_ = nullptr;
 };
 
-/// Puts a file, or the names in a folder, on the disk, so that they survive a power cut.
+/// Syncs a file, or the directory entries of a folder, to disk, so that they survive a power failure.
 void sync_file(const std::string& path);
 
-/// The whole of a small file at once.
+/// Writes a small file in one call.
 void write_file(const std::string& path, std::string_view text);
 
 }  // namespace kacanov

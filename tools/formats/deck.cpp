@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What names and numbers in a deck mean.
+// Resolves names and numbers in a deck.
 #include "formats/deck.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace kacanov {
 namespace {
 
-/// The set of a name; names of Abaqus' one instance may stand before it.
+/// Finds the set with a name; the name of Abaqus' instance may precede it.
 template <typename Set>
 const Set* find(const std::vector<Set>& sets, const std::string& instance, std::string_view name,
                 bool in_part) {
@@ -67,7 +67,7 @@ const DeckSurface* Deck::surface(std::string_view name, bool in_part) const {
 
 namespace {
 
-/// The nodes or elements that a field of a data line names: one number, or a set.
+/// Nodes or elements selected by a field of a data line: one number or a set.
 struct Reference {
   const Deck& deck;
   const char* kind;  ///< node or element

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An Abaqus or CalculiX deck: its nodes, elements, sets and surfaces, and its other keywords as they stand.
+// An Abaqus or CalculiX deck: nodes, elements, sets and surfaces, and all other keywords as text.
 #pragma once
 
 #include <memory>
@@ -17,7 +17,7 @@
 
 namespace kacanov {
 
-/// A keyword with its lines of data.
+/// A keyword with its data lines.
 struct DeckBlock {
   DeckKeyword keyword;
   std::vector<DeckRow> rows;
@@ -28,12 +28,12 @@ struct DeckBlock {
 /// A set of nodes or elements.
 struct DeckSet {
   std::string name;
-  std::vector<std::int32_t> members;  ///< ascending: indices of nodes, or into Deck::elements
-  bool internal = false;              ///< Abaqus' own, which no group is made of
+  std::vector<std::int32_t> members;  ///< ascending: node indices, or indices into Deck::elements
+  bool internal = false;              ///< internal to Abaqus; becomes no group
   bool in_part = false;
 };
 
-/// A side of an element: S1 or P1 is 0.
+/// A side of an element; S1 or P1 has index 0.
 struct DeckSide {
   std::int32_t element;
   std::int32_t side;
@@ -42,65 +42,67 @@ struct DeckSide {
 struct DeckSurface {
   std::string name;
   std::vector<DeckSide> sides;
-  std::vector<std::int32_t> nodes;  ///< of one of TYPE=NODE
+  std::vector<std::int32_t> nodes;  ///< for TYPE=NODE
   bool internal = false;
   bool in_part = false;
 };
 
 struct Deck {
   struct Element {
-    std::int32_t cell;   ///< among cells()
-    std::int32_t place;  ///< in the content's list of its type
+    std::int32_t cell;   ///< index into cells()
+    std::int32_t place;  ///< index into the list of its type in `content`
   };
 
   std::vector<SourceFile> files;
-  std::vector<std::shared_ptr<const void>> bytes;  ///< what the blocks' fields lie in
+  std::vector<std::shared_ptr<const void>> bytes;  ///< memory that the fields of `blocks` refer to
   std::string title;
-  std::string instance;  ///< of Abaqus' one part, in upper case; names may begin with it and a dot
+  std::string instance;  ///< name of Abaqus' only instance, in upper case; names may start with it and a dot
   MeshContent content;   ///< without groups
   std::vector<Element> elements;
   std::vector<std::int64_t> element_tags;
   NodeIndex node_index, element_index;
   std::vector<DeckSet> node_sets, element_sets;
   std::vector<DeckSurface> surfaces;
-  PlaneState plane = PlaneState::strain;  ///< what elements in 2D are of
-  std::vector<DeckBlock> blocks;  ///< all but nodes, elements, sets and surfaces, in the order of the deck
-  std::optional<DeckPlace> open_step;  ///< of a *STEP without *END STEP
+  PlaneState plane = PlaneState::strain;  ///< plane state of 2D elements
+  std::vector<DeckBlock> blocks;  ///< all keywords except nodes, elements, sets and surfaces, in deck order
+  std::optional<DeckPlace> open_step;  ///< place of a *STEP that has no *END STEP
   std::vector<std::string> warnings;
 
   [[noreturn]] void fail(DeckPlace place, const std::string& message) const;
-  /// "part.inp: line 12".
+  /// Returns "part.inp: line 12".
   std::string place_text(DeckPlace place) const;
-  /// A word of the file at that place for a message.
+  /// Returns a word of the file at that place as messages may quote it.
   std::string quoted(DeckPlace place, std::string_view word) const { return files[place.file].quoted(word); }
-  /// Throws InputError for a row that has more than `most` fields, other than empty ones; `what` names them.
+  /// Throws InputError if the row has more than `most` fields, not counting empty ones; `what` describes the
+  /// fields.
   void expect_fields(const DeckRow& row, std::size_t most, const std::string& what) const;
 
-  /// The set or surface that a name means there; null where there is none.
+  /// Returns the set or surface with that name; null if there is none.
   const DeckSet* node_set(std::string_view name, bool in_part) const;
   const DeckSet* element_set(std::string_view name, bool in_part) const;
   const DeckSurface* surface(std::string_view name, bool in_part) const;
 
-  /// The members that a field names by a number or the name of a set; throws InputError for an unknown name
-  /// and an empty set.
+  /// Returns the members that a field selects by number or set name; throws InputError for an unknown name or
+  /// an empty set.
   std::vector<std::int32_t> nodes_of(std::string_view field, DeckPlace place, bool in_part) const;
   std::vector<std::int32_t> elements_of(std::string_view field, DeckPlace place, bool in_part) const;
-  /// The side that "S3" or "P3" says of an element, which has to have one; its nodes in our order.
+  /// Returns the nodes of an element side ("S3" or "P3") in our order; throws InputError if the element has
+  /// no such side.
   std::vector<std::int32_t> side_nodes(DeckSide side, DeckPlace place) const;
 };
 
-/// Reads a deck from a file, or from the bytes of one; then it may include no others. Throws InputError
-/// "path: line N: ...".
+/// Reads a deck from a file or from memory; a deck in memory cannot include files. Throws InputError "path:
+/// line N: ...".
 Deck read_deck(const SourceFile& source);
 Deck read_deck(const SourceFile& name, std::string_view bytes);
 
-/// The mesh of a deck: sets and surfaces are its groups. Keywords that are no part of a mesh are told in a
-/// warning, with their lines.
+/// Returns the mesh of a deck, with sets and surfaces as groups. A warning lists the keywords that are not
+/// part of a mesh, with their lines.
 Mesh mesh_of(Deck deck);
 
-/// The number that a word is, with Fortran's exponents too.
+/// Returns the value of a number, also with a Fortran exponent (1.5D3).
 std::optional<double> deck_real(std::string_view word);
-/// The number in a field; throws InputError saying what was expected there.
+/// Returns the number in a field; throws InputError naming the expected value (`what`).
 double deck_number(const Deck& deck, const DeckRow& row, std::size_t field, const char* what);
 std::int64_t deck_integer(const Deck& deck, const DeckRow& row, std::size_t field, const char* what);
 

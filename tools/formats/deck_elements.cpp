@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The names of Abaqus' and CalculiX' elements: which cell each is, and what is to be said of it.
+// Element types of Abaqus and CalculiX: the cell of each, and remarks about differences.
 #include "formats/deck_elements.hpp"
 
 #include <algorithm>
@@ -48,7 +48,7 @@ constexpr auto entries = std::to_array<Entry>({
     {"CPE4IH", {"quad4", incompatible, ""}},
     {"CPE4R", {"quad4", reduced, ""}},
     {"CPE4RH", {"quad4", reduced, ""}},
-    // What mesh generators write for the facets of a body, and what bodies cannot be made of.
+    // Types that mesh generators write for the facets of a body, and types that bodies cannot consist of.
     {"CPE6", {"tri6", "", tri6}},
     {"CPS3", {"tri3", "", "", stress}},
     {"CPS4", {"quad4", "", "", stress}},
@@ -90,7 +90,7 @@ constexpr auto entries = std::to_array<Entry>({
 
 using Corners = std::array<std::int8_t, 4>;
 
-/// The manual's faces of each body, by corners; −1 where there are fewer.
+/// Faces of each element as in Abaqus' manual, by corner; −1 pads shorter ones.
 constexpr std::array<Corners, 3> triangle{{{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 0, -1, -1}}};
 constexpr std::array<Corners, 4> quadrilateral{
     {{0, 1, -1, -1}, {1, 2, -1, -1}, {2, 3, -1, -1}, {3, 0, -1, -1}}};

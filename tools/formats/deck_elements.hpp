@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The names of Abaqus' and CalculiX' elements: which cell each is, and what is to be said of it.
+// Element types of Abaqus and CalculiX: the cell of each, and remarks about differences.
 #pragma once
 
 #include <cstddef>
@@ -13,23 +13,23 @@
 namespace kacanov {
 
 struct DeckElementType {
-  std::string_view cell;                  ///< name among cells()
-  std::string_view remark;                ///< how the element of a body differs here; empty where it does not
-  std::string_view refusal;               ///< why a body cannot be made of it; empty where it can
-  PlaneState plane = PlaneState::strain;  ///< of a body in 2D
+  std::string_view cell;                  ///< name of the cell in cells()
+  std::string_view remark;                ///< difference to the element here, for a warning; empty: none
+  std::string_view refusal;               ///< reason why bodies of it are not supported; empty: supported
+  PlaneState plane = PlaneState::strain;  ///< for 2D elements
 };
 
-/// What an element of this type, in upper case, is taken for. Nothing for one that is not known.
+/// Returns the entry of an element type, given in upper case; nothing if it is unknown.
 std::optional<DeckElementType> deck_element_type(std::string_view type);
 
-/// Why an element that deck_element_type() does not know cannot be read, and what to do.
+/// Explains why an element type unknown to deck_element_type() cannot be read, and what to use.
 std::string_view why_not_known(std::string_view type);
 
-/// The nodes of facet `side` (S1 is 0) of a body's cell, in our order and places of the element's nodes;
-/// empty where there is no such side. `cell` is a place among cells().
+/// Returns the nodes of facet `side` (S1 is 0) as node places within the element, in our order; empty if
+/// there is no such side. `cell` is an index into cells().
 std::span<const std::int8_t> deck_side(std::size_t cell, std::size_t side);
 
-/// How many sides have numbers.
+/// Number of numbered sides.
 std::size_t deck_sides(std::size_t cell);
 
 }  // namespace kacanov

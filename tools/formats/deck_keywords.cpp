@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The keywords of a deck that are read: where each stands, and the parameters that it may have.
+// Supported keywords of a deck: where each may stand, and which parameters it takes.
 #include "formats/deck_keywords.hpp"
 
 #include <algorithm>
@@ -40,7 +40,7 @@ constexpr auto rules = std::to_array<DeckKeywordRule>({
     {"PLASTIC", model, "HARDENING="},
     {"SOLIDSECTION", model, "ELSET= MATERIAL= ORIENTATION= OFFSET=0|0.|0.0"},
     {"STATIC", step, "DIRECT? SOLVER= TIMERESET TOTALTIMEATSTART= RIKS?"},
-    // How a step goes about its end does not change what is there.
+    // How a step is incremented does not change the solution at its end.
     {"STEP", any, "NAME= INC= AMPLITUDE=RAMP|STEP CONVERTSDI= EXTRAPOLATION= UNSYMM= NLGEOM? PERTURBATION"},
     {"SURFACE", any, "NAME= TYPE=ELEMENT|NODE INTERNAL"},
     {"TEMPERATURE", step, "OP=MOD|NEW"},
@@ -83,7 +83,7 @@ bool has_value(std::string_view values, std::string_view value) {
   return false;
 }
 
-/// "TYPE, ELSET" of "TYPE= ELSET=".
+/// Returns "TYPE, ELSET" for "TYPE= ELSET=".
 std::string names_of(std::string_view parameters) {
   std::string list;
   for (auto word = take_word(parameters, " "); !word.empty(); word = take_word(parameters, " "))

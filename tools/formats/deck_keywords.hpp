@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The keywords of a deck that are read: where each stands, and the parameters that it may have.
+// Supported keywords of a deck: where each may stand, and which parameters it takes.
 #pragma once
 
 #include <string>
@@ -10,36 +10,35 @@
 
 namespace kacanov {
 
-/// Where in a deck a keyword stands, or may stand.
+/// Place of a keyword in a deck.
 enum class DeckLevel {
   model,   ///< before the first *STEP
   step,    ///< between *STEP and *END STEP
-  behind,  ///< behind *END STEP
+  behind,  ///< after *END STEP
   any      ///< in the model or in a step
 };
 
 struct DeckKeywordRule {
   std::string_view name;
   DeckLevel level;
-  /// "GENERATE" has no value, "NSET=" any, "OP=MOD|NEW" one of these, "NLGEOM?" any or none.
+  /// "GENERATE" takes no value, "NSET=" any value, "OP=MOD|NEW" one of these, "NLGEOM?" any value or none.
   std::string_view parameters;
 };
 
-/// The rule of a keyword that is read; null for all others.
+/// Returns the rule of a supported keyword; null for all others.
 const DeckKeywordRule* deck_rule(std::string_view keyword);
 
-/// A keyword that does not change the answer: output, control, definitions that nothing uses.
+/// Returns whether the keyword leaves the solution unchanged: output, solver control, unused definitions.
 bool is_harmless(std::string_view keyword);
 
-/// Whether a line continues the parameters of the keyword and is not data: it begins with NAME=, or with a
-/// parameter of the keyword.
+/// Returns whether the line continues the parameters of the keyword, rather than being data: it starts with
+/// NAME= or with a parameter of the keyword.
 bool continues_parameters(std::string_view keyword, std::string_view line);
 
-/// Describes each parameter of the keyword that is not read or has a value that is not; empty if all are
-/// read.
+/// Describes each parameter that is unsupported or has an unsupported value; empty if there is none.
 std::vector<std::string> parameter_faults(const DeckKeyword& keyword);
 
-/// Describes why a keyword cannot stand there; empty if it can.
+/// Describes why the keyword is not allowed there; empty if it is.
 std::string level_fault(const DeckKeywordRule& rule, DeckLevel stands);
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The lines of an Abaqus or CalculiX deck and of the files that it includes, taken apart.
+// Splits an Abaqus or CalculiX deck and its included files into keywords and data lines.
 #include "formats/deck_lines.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ std::string_view unquoted(std::string_view text) {
                                                                        : text;
 }
 
-/// What is before the next comma outside of quotes; goes, with the comma.
+/// Removes the text up to the next comma outside quotes, with the comma, and returns it.
 std::string_view take_field(std::string_view& text) {
   bool in_quotes = false;
   std::size_t end = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The lines of an Abaqus or CalculiX deck and of the files that it includes, taken apart.
+// Splits an Abaqus or CalculiX deck and its included files into keywords and data lines.
 #pragma once
 
 #include <cstdint>
@@ -19,50 +19,50 @@ struct DeckPlace {
   std::int64_t line = 0;  ///< from 1
 };
 
-/// A line of data: what stands between its commas, blanks around removed.
+/// A data line: its comma-separated fields, without surrounding blanks.
 struct DeckRow {
   DeckPlace place;
   std::vector<std::string_view> fields;
-  bool goes_on = false;  ///< ends with a comma
+  bool goes_on = false;  ///< ends with a comma: the next line continues it
 };
 
-/// A line *KEYWORD, NAME=VALUE, NAME.
+/// A keyword line: *KEYWORD, NAME=VALUE, NAME.
 struct DeckKeyword {
   DeckPlace place;
-  std::string name;   ///< upper case, without blanks and star
-  std::string shown;  ///< as it is written, for messages
+  std::string name;   ///< upper case, without blanks and the asterisk
+  std::string shown;  ///< as written, for messages
   using Parameter = std::pair<std::string, std::string>;
-  std::vector<Parameter> parameters;  ///< names upper case without blanks
-  bool quotable = true;               ///< messages may show words of its file
+  std::vector<Parameter> parameters;  ///< names in upper case without blanks
+  bool quotable = true;               ///< messages may quote words of its file
 
-  /// The value of a parameter, empty for one without; nothing where it is not there.
+  /// Returns the value of a parameter, empty if it has none; null if the parameter is absent.
   const std::string* parameter(std::string_view wanted) const;
-  /// NAME=VALUE, for messages.
+  /// Returns NAME=VALUE for messages.
   std::string written(const Parameter& parameter) const;
 };
 
-/// The text in upper case.
+/// Returns the text in upper case.
 std::string upper_case(std::string_view text);
 std::string without_blanks(std::string_view text);
 
-/// Reads forward through a deck without comments and empty lines, following *INCLUDE. A keyword continues on
-/// the line behind its last comma if that line has parameters and not data. Throws InputError
-/// "path: line N: ..." for other text.
+/// Reads a deck forward, skips comments and empty lines, and follows *INCLUDE. If a keyword line ends with a
+/// comma and parameters follow on the next line, they belong to the keyword. Throws InputError "path: line N:
+/// ..." on other text.
 class DeckLines {
  public:
-  /// Gives the bytes of an included file, which have to stay while the deck is read.
+  /// Returns the bytes of an included file, which must stay valid while the deck is read.
   using Open = std::function<std::string_view(const std::string& path)>;
 
   DeckLines(const SourceFile& source, std::string_view bytes, Open open);
 
-  /// The next keyword. Nothing at the end. Throws InputError for data that is left before it.
+  /// Returns the next keyword, or nothing at the end. Throws InputError if data lines are left before it.
   std::optional<DeckKeyword> keyword();
-  /// The next line of data of the keyword; false where there is none left.
+  /// Reads the next data line of the keyword; false if there is none left.
   bool data(DeckRow& row);
 
   const std::vector<SourceFile>& files() const noexcept { return files_; }
   [[noreturn]] void fail(DeckPlace place, const std::string& message) const;
-  /// A word of the file at that place for a message.
+  /// Returns a word of the file at that place as messages may quote it.
   std::string quoted(DeckPlace place, std::string_view word) const { return files_[place.file].quoted(word); }
 
  private:
@@ -72,18 +72,18 @@ class DeckLines {
     std::string_view rest;
   };
 
-  /// The next line that is no comment; false at the end.
+  /// Moves to the next line that is not a comment; false at the end.
   bool peek();
-  /// Leaves the line of peek() to the file that it is in.
+  /// Returns the line of peek() to its file.
   void put_back();
   void take_keyword_line(DeckKeyword& keyword);
   void include(const DeckKeyword& keyword);
 
   Open open_;
   std::vector<SourceFile> files_;
-  std::vector<Source> sources_;  ///< the file that is read, last
-  std::string_view line_;        ///< of peek(), without blanks at its ends
-  std::string_view before_;      ///< what the file had left before it
+  std::vector<Source> sources_;  ///< the last one is being read
+  std::string_view line_;        ///< line of peek(), trimmed
+  std::string_view before_;      ///< rest of the file before that line was taken
   DeckPlace place_;
   bool have_ = false;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The mesh of a deck: its sets and surfaces become groups.
+// Builds the mesh of a deck: sets and surfaces become groups.
 #include <algorithm>
 #include <map>
 
@@ -9,14 +9,14 @@
 namespace kacanov {
 namespace {
 
-/// Collects who belongs to which group, and writes it down as a file with groups would have it.
+/// Collects group memberships and stores them as a mesh file with groups would.
 class Grouping {
  public:
   explicit Grouping(MeshContent& content) : content_(content), members_(cells().size()) {}
 
   void add(std::size_t cell, std::int32_t element, int group) { members_[cell].emplace_back(element, group); }
 
-  /// A facet or point of its own, for a group.
+  /// Adds a facet or point of its own to a group.
   void append(std::size_t cell, const std::vector<std::int32_t>& nodes, int group) {
     ElementList& list = content_.elements[cell];
     add(cell, static_cast<std::int32_t>(list.count()), group);
@@ -30,7 +30,7 @@ class Grouping {
       auto& pairs = members_[c];
       std::sort(pairs.begin(), pairs.end());
       pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-      std::int32_t next = 0;  // of whom no group is known yet
+      std::int32_t next = 0;  // first element not yet in a run
       for (std::size_t i = 0; i < pairs.size();) {
         const std::int32_t element = pairs[i].first;
         std::vector<int> groups;
@@ -52,13 +52,12 @@ class Grouping {
   }
 
   MeshContent& content_;
-  std::vector<std::vector<std::pair<std::int32_t, int>>> members_;  ///< by cell: element, group
+  std::vector<std::vector<std::pair<std::int32_t, int>>> members_;  ///< by cell type: (element, group)
 };
 
 std::size_t place_of(const Cell& cell) { return static_cast<std::size_t>(&cell - cells().data()); }
 
-/// What a set is called among the groups: with the instance before it where a set outside of the part has
-/// its name too.
+/// Group name of a set; prefixed with the instance if a set outside the part has the same name.
 template <typename Set>
 std::string group_name(const std::vector<Set>& sets, const Set& set, const std::string& instance) {
   const std::string wanted = upper_case(set.name);
@@ -68,7 +67,7 @@ std::string group_name(const std::vector<Set>& sets, const Set& set, const std::
   return twice && set.in_part ? instance + "." + set.name : set.name;
 }
 
-/// Says in one sentence what of the deck is no mesh.
+/// Adds one warning listing the parts of the deck that are not mesh.
 void tell_what_is_left_out(Deck& deck) {
   std::string list;
   std::size_t count = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Names of a deck's sets and surfaces that stand for one thing alone.
+// Finds unique names for sets and surfaces of a deck.
 #include "formats/deck_names.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Names of a deck's sets and surfaces that stand for one thing alone.
+// Finds unique names for sets and surfaces of a deck.
 #pragma once
 
 #include <map>
@@ -10,23 +10,24 @@
 
 namespace kacanov {
 
-/// Finds names for what a case refers to; where none will do, a set or surface of a new one is added to the
-/// deck.
+/// Finds names that a case can refer to; adds a set or surface with a new name to the deck if no existing one
+/// fits.
 class DeckNames {
  public:
   explicit DeckNames(Deck& deck) : deck_(deck) {}
 
-  /// Of one of `sets`, which are of the deck, with these members and a name that nothing else has.
+  /// Returns the unique name of a set in `sets` (node or element sets of the deck) that has exactly these
+  /// members.
   std::string of(std::vector<DeckSet>& sets, std::vector<std::int32_t> members, const char* base);
   std::string of_sides(const std::vector<DeckSide>& sides);
 
  private:
-  /// How many sets and surfaces have the name; "all" has a meaning of its own.
+  /// Number of sets and surfaces with the name; "all" is reserved.
   std::size_t owners(const std::string& name) const;
   std::string new_name(const std::string& base);
 
   Deck& deck_;
-  std::map<std::string, int> last_;  ///< numbers of new names
+  std::map<std::string, int> last_;  ///< last number used in new names
 };
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads a deck: nodes and elements as they come, sets and surfaces once all of these are there.
+// Reads a deck: nodes and elements directly, sets and surfaces once all of them are known.
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -14,11 +14,11 @@
 namespace kacanov {
 namespace {
 
-/// Keywords that make nodes and elements of others, or move them.
+/// Keywords that generate or move nodes and elements.
 constexpr std::array generators{"NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "SUBMODEL"};
 constexpr std::array brackets{"PART",     "ENDPART",     "INSTANCE", "ENDINSTANCE",
                               "ASSEMBLY", "ENDASSEMBLY", "ENDSTEP"};
-/// No element that is known has more nodes, with its number.
+/// Node count of the largest supported element, plus its number.
 constexpr std::size_t most_fields = most_nodes + 1;
 
 class Reader {
@@ -62,7 +62,7 @@ class Reader {
     }
   }
 
-  /// Where a keyword that is read for the mesh stands, and its parameters.
+  /// Checks the place and the parameters of a keyword that belongs to the mesh.
   void check(const DeckKeyword& keyword) const {
     std::vector<std::string> faults = parameter_faults(keyword);
     if (const std::string fault = level_fault(*deck_rule(keyword.name), level_); !fault.empty())
@@ -94,7 +94,7 @@ class Reader {
   }
 
   /// Begins or ends a part, its instance or the assembly, or ends a step. Abaqus/CAE writes each body as one
-  /// part with one instance, where it was drawn.
+  /// part with one instance in its original position.
   void take_bracket(const DeckKeyword& keyword) {
     const std::string& name = keyword.name;
     if (DeckRow row; in_.data(row))
@@ -124,9 +124,9 @@ class Reader {
     }
   }
 
-  /// The deck so far, which reads numbers of a row and names its place.
+  /// Returns the deck so far, which converts the numbers of a row and names its place.
   const Deck& deck() {
-    if (deck_.files.size() != in_.files().size()) deck_.files = in_.files();  // one more is included
+    if (deck_.files.size() != in_.files().size()) deck_.files = in_.files();  // a file was included
     return deck_;
   }
 
@@ -202,7 +202,7 @@ class Reader {
     element_places_.push_back(place);
   }
 
-  /// Where a number that occurs twice does so the second time.
+  /// Index of the second occurrence of a duplicate number.
   static std::size_t second(const std::vector<std::int64_t>& tags, std::int64_t twice) {
     const auto first = std::find(tags.begin(), tags.end(), twice);
     return static_cast<std::size_t>(std::find(first + 1, tags.end(), twice) - tags.begin());
@@ -231,14 +231,14 @@ class Reader {
           in_.fail(element_places_[e], "element " + std::to_string(deck_.element_tags[e]) +
                                            " refers to node " + std::to_string(tag) +
                                            ", which no *NODE gives");
-        // Tetrahedra have their mid-sides as in VTK.
+        // Mid-edge nodes of tetrahedra are in VTK's order.
         nodes[first + (cell.vtk_order.empty() ? k : cell.vtk_order[k])] = node;
       }
     }
     check_types();
   }
 
-  /// What a body is made of has to be known as such, and may want a word.
+  /// Checks that the element types of the body are supported, and adds their remarks as warnings.
   void check_types() {
     int dim = 0;
     for (const Type& type : types_) dim = std::max(dim, cells()[type.cell].dim);

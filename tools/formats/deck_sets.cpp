@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The sets and surfaces of a deck, whose lines may name nodes, elements and sets before them.
+// Resolves sets and surfaces of a deck; their lines may name nodes, elements and earlier sets.
 #include "formats/deck_sets.hpp"
 
 #include <algorithm>
@@ -37,7 +37,7 @@ class Resolver {
       std::iota(set.members.begin() + static_cast<std::ptrdiff_t>(before), set.members.end(),
                 static_cast<std::int32_t>(source.first));
     } else {
-      // The set may be named in its own lines, and vectors move as sets are added.
+      // Evaluate first: the set may appear in its own lines, and adding sets reallocates the vector.
       Members found = members(source.block, nodes);
       set.members.insert(set.members.end(), found.begin(), found.end());
     }
@@ -69,7 +69,7 @@ class Resolver {
     return set;
   }
 
-  /// There is one instance of the part, if any.
+  /// Checks INSTANCE, if given, against the only instance.
   void check_instance(const DeckKeyword& keyword) const {
     const std::string* name = keyword.parameter("INSTANCE");
     if (name != nullptr && upper_case(printable(*name)) != deck_.instance)
@@ -109,7 +109,7 @@ class Resolver {
     return found;
   }
 
-  /// Numbers that a range skips over are not asked for, but some have to be there.
+  /// Numbers missing from a range are allowed, but the range must contain at least one.
   void add_range(const DeckRow& row, bool nodes, Members& found) {
     deck_.expect_fields(row, 3, "the first and last number of a range, and its step");
     const std::int64_t first = deck_integer(deck_, row, 0, "the first number of a range"),
@@ -146,7 +146,7 @@ class Resolver {
     for (const DeckRow& row : block.rows) {
       if (row.fields[0].empty()) deck_.fail(row.place, "expected a set or a number");
       if (kind == "NODE") {
-        // The area that belongs to each node, which only contact asks for.
+        // The second field is an area per node, which matters for contact only.
         deck_.expect_fields(row, 2, "a node or set and an area");
         if (row.fields.size() > 1 && !row.fields[1].empty()) deck_number(deck_, row, 1, "an area");
         const Members some = deck_.nodes_of(row.fields[0], row.place, block.in_part);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The sets and surfaces of a deck, whose lines may name nodes, elements and sets before them.
+// Resolves sets and surfaces of a deck; their lines may name nodes, elements and earlier sets.
 #pragma once
 
 #include <vector>
@@ -8,13 +8,13 @@
 
 namespace kacanov {
 
-/// Where a set comes from: a keyword of its own, or what *NODE or *ELEMENT has put into it.
+/// Source of a set: its own keyword, or a *NODE or *ELEMENT that adds to it.
 struct DeckSetSource {
   DeckBlock block;
-  std::size_t first, last;  ///< of *NODE and *ELEMENT: those from first to before last
+  std::size_t first, last;  ///< for *NODE and *ELEMENT: range [first, last) of their nodes or elements
 };
 
-/// Fills the deck's sets and surfaces, once its nodes and elements are there.
+/// Fills the sets and surfaces of the deck after all nodes and elements are read.
 void resolve_sets(Deck& deck, std::vector<DeckSetSource> sources);
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The temperatures of a deck's nodes, and what they are warmer by than at the start.
+// Nodal temperatures of a deck, and their rise over the initial temperature.
 #include "formats/deck_temperatures.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The temperatures of a deck's nodes, and what they are warmer by than at the start.
+// Nodal temperatures of a deck, and their rise over the initial temperature.
 #pragma once
 
 #include <cstdint>
@@ -14,20 +14,20 @@ namespace kacanov {
 
 struct DeckTemperatures {
   const Deck& deck;
-  std::vector<double> at_start = {}, at_end = {};  ///< by node; NaN, or empty: nothing is said
+  std::vector<double> at_start = {}, at_end = {};  ///< one per node; NaN, or empty: not given
 
   explicit DeckTemperatures(const Deck& of) : deck(of) {}
 
-  /// The rows of *TEMPERATURE or *INITIAL CONDITIONS, into one of these.
+  /// Reads the rows of *TEMPERATURE or *INITIAL CONDITIONS into one of these arrays.
   void take(const DeckBlock& block, std::vector<double>& of_node) const;
-  /// By the numbers of the nodes that are wanted. Of which none is said, at the start are at 0, and stay as
-  /// they are there. Empty where the step says of none.
+  /// Returns the temperature rise by number of the wanted nodes. Without an initial temperature a node starts
+  /// at 0; without a step temperature its rise is 0. Empty if the step sets no temperature.
   std::map<std::int64_t, double> rise(const std::vector<bool>& wanted) const;
 };
 
-/// What all have, 0 of none; nothing where they differ.
+/// Returns the common value of all nodes, 0 if there are none; nothing if they differ.
 std::optional<double> one_value(const std::map<std::int64_t, double>& rise);
-/// A file of nodes for the key "temperature" of a case.
+/// Returns the content of a nodal file for the case key "temperature".
 std::string lines_of(const std::map<std::int64_t, double>& rise);
 
 }  // namespace kacanov

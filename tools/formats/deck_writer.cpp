@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nodes, elements, sets and surfaces as a deck of Abaqus and CalculiX.
+// Writes nodes, elements, sets and surfaces as a deck for Abaqus and CalculiX.
 #include <algorithm>
 
 #include "formats/deck_elements.hpp"
@@ -9,7 +9,7 @@
 namespace kacanov {
 namespace {
 
-/// The side of the facet's element that has its corners, from 1.
+/// Returns the side, from 1, of the facet's element that has the facet's corners.
 std::int64_t side_of(const Mesh& mesh, std::size_t facet) {
   const auto type = static_cast<std::size_t>(mesh.type);
   const std::size_t n = nodes_per_element(mesh.type), corners = cell(mesh.type).facet().corners;
@@ -26,7 +26,7 @@ std::int64_t side_of(const Mesh& mesh, std::size_t facet) {
   return 0;
 }
 
-/// Abaqus takes any name in quotes, CalculiX plain ones alone.
+/// Abaqus accepts any name in quotes, CalculiX plain names only.
 std::string in_a_deck(const std::string& name) {
   const bool plain = std::all_of(name.begin(), name.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';

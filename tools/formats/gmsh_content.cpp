@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Gmsh's element numbers and their names.
+// Gmsh's element type numbers and names.
 #include "formats/gmsh_content.hpp"
 
 #include <kacanov/cells.hpp>
@@ -8,7 +8,7 @@ namespace kacanov {
 
 std::string_view gmsh_type_name(std::int64_t type) {
   if (const auto known = gmsh_cell(type)) return cells()[*known].name;
-  switch (type) {  // those that are not supported
+  switch (type) {  // unsupported types
     case 6: return "prism6";
     case 7: return "pyramid5";
     case 10: return "quad9";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Gmsh's element numbers and their names.
+// Gmsh's element type numbers and names.
 #pragma once
 
 #include <cstddef>
@@ -9,10 +9,10 @@
 
 namespace kacanov {
 
-/// The cell with this number in Gmsh among cells(), the element types that can be a body or a part of its
-/// boundary; nothing for others.
+/// Returns the index into cells() of a Gmsh element type that can be part of a body or its boundary; nothing
+/// for other types.
 std::optional<std::size_t> gmsh_cell(std::int64_t type);
-/// Name of an element type of Gmsh, supported or not; empty for an unknown one.
+/// Returns the name of a Gmsh element type, supported or not; empty if the number is unknown.
 std::string_view gmsh_type_name(std::int64_t type);
 
 }  // namespace kacanov

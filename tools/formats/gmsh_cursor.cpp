@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers, words and raw values, and messages with the line or byte they are about.
+// Reads numbers, words and raw values; messages name the line or byte.
 #include "formats/gmsh_cursor.hpp"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ std::string_view without_carriage_return(std::string_view line) {
   return line;
 }
 
-/// Whether the head of the file tells that numbers are bytes.
+/// Returns whether the header of the file declares binary data.
 bool is_binary(std::string_view bytes) {
   constexpr std::string_view blanks = " \t\r\n";
   std::string_view rest = bytes.substr(std::min(bytes.find("$MeshFormat"), bytes.size()));
@@ -92,7 +92,7 @@ double GmshCursor::text_real(const char* what) {
   skip_blanks();
   double value = 0;
   const auto [end, error] = std::from_chars(data_.data() + position_, data_.data() + data_.size(), value);
-  // What is out of range is either far below every length in the mesh, and 0, or too large.
+  // An out-of-range number is either far below every length in the mesh, and becomes 0, or too large.
   if (error == std::errc::result_out_of_range)
     value = std::strtod(std::string(data_.data() + position_, end).c_str(), nullptr);
   else if (error != std::errc{})
@@ -157,7 +157,7 @@ void GmshCursor::end_section(std::string_view section) {
 }
 
 void GmshCursor::skip_section(std::string_view section) {
-  // From the line end before the section's content on, so that an empty section is found too.
+  // Search from the line end before the section's content, so that an empty section is found too.
   const std::string end = "\n$End" + std::string(section);
   const std::size_t start = last_;
   std::size_t found = position_ == 0 ? 0 : position_ - 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads lines, numbers and raw values from the bytes of a Gmsh file, and says where something is wrong.
+// Reads lines, numbers and raw values from the bytes of a Gmsh file, and reports where an error is.
 #pragma once
 
 #include <cstddef>
@@ -14,9 +14,9 @@
 
 namespace kacanov {
 
-/// A place in the file. `tag`, `size` and `real` read a word of text or a raw value, as the file's encoding
-/// has it; the `text_` functions always read text. Every function throws InputError naming the line (ASCII)
-/// or the byte (binary) at which something else was found.
+/// A read position in the file. `tag`, `size` and `real` read a text word or a raw value, depending on the
+/// encoding of the file; the `text_` functions always read text. Every function throws InputError naming the
+/// line (ASCII) or byte (binary) where something else was found.
 class GmshCursor {
  public:
   GmshCursor(SourceFile source, std::string_view data);
@@ -25,39 +25,41 @@ class GmshCursor {
   bool binary() const noexcept { return binary_; }
   std::size_t remaining() const noexcept { return data_.size() - position_; }
 
-  /// The next line without its end; moves behind it.
+  /// Returns the next line without its end and moves past it.
   std::string_view line();
-  /// Moves over blank lines; false at the end of the file.
+  /// Skips blank lines; false at the end of the file.
   bool skip_blank_lines();
   std::int64_t text_integer(const char* what);
   double text_real(const char* what);
-  /// Nothing but blanks may follow on this line; moves behind it.
+  /// Moves past the line end; only blanks may precede it.
   void text_end_of_line();
-  /// The rest of the line without its end, blanks in front removed; moves behind it.
+  /// Returns the rest of the line without its end and leading blanks, and moves past it.
   std::string_view text_rest();
-  /// A name in double quotes, without them: the rest of the line. `of`: what it names, for messages.
+  /// Returns the rest of the line, a name in double quotes, without the quotes. `of`: the named object, for
+  /// messages.
   std::string_view text_name(const std::string& of);
 
-  /// An `int`: 32 bits in a binary file.
+  /// Reads an `int`: 32 bits in a binary file.
   std::int32_t tag(const char* what);
-  /// A `size_t`: 64 bits in a binary file.
+  /// Reads a `size_t`: 64 bits in a binary file.
   std::int64_t size(const char* what);
   double real(const char* what);
-  /// Ends a line of text; nothing in a binary file.
+  /// Moves past the line end; does nothing in a binary file.
   void end_record() {
     if (!binary_) text_end_of_line();
   }
 
-  /// Throws unless `count` is ≥ 0 and as many records of at least `bytes` bytes each can still follow.
+  /// Throws unless `count` ≥ 0 and the rest of the file has room for that many records of at least `bytes`
+  /// bytes each.
   void expect_room(std::int64_t count, std::size_t bytes, const char* what) const;
-  /// Moves behind the line `$End<section>`, which must be next.
+  /// Moves past the line `$End<section>`, which must be next.
   void end_section(std::string_view section);
-  /// Moves behind the next line `$End<section>`, wherever it is.
+  /// Moves past the next line `$End<section>`, wherever it is.
   void skip_section(std::string_view section);
 
-  /// A word of the file for a message.
+  /// Returns a word of the file as messages may quote it.
   std::string quoted(std::string_view word) const { return source_.quoted(word); }
-  /// Throws InputError at the place of the value read last.
+  /// Throws InputError at the position of the last value read.
   [[noreturn]] void fail(const std::string& message) const;
   [[noreturn]] void fail_at(std::size_t position, const std::string& message) const;
 
@@ -80,10 +82,10 @@ class GmshCursor {
   void finish_word(const char* end, const char* expected, const char* what);
 
   SourceFile source_;
-  std::unique_ptr<const TextBytes> text_;  // of an ASCII file
+  std::unique_ptr<const TextBytes> text_;  // for an ASCII file
   std::string_view data_;
   std::size_t position_ = 0;
-  std::size_t last_ = 0;  // where the value read last begins
+  std::size_t last_ = 0;  // start of the last value read
   bool binary_ = false;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The sections of a Gmsh file, each in its two versions.
+// Parses the sections of a Gmsh file, each in both versions.
 #include "formats/gmsh_parser.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace kacanov {
 namespace {
 
-/// Of one element; every set that comes to pass is kept.
+/// Limit per element, because every combination of groups that occurs is stored.
 constexpr std::int64_t most_groups = 256;
 
 class Parser {
@@ -117,7 +117,7 @@ class Parser {
     }
   }
 
-  // Format 4.1: entities carry the physical groups.
+  // Format 4.1: entities have the physical groups.
 
   void entities() {
     std::array<std::int64_t, 4> counts{};
@@ -150,7 +150,7 @@ class Parser {
                " is listed twice");
   }
 
-  /// Gmsh marks a reversed orientation by a minus sign.
+  /// A minus sign marks reversed orientation in Gmsh.
   int physical(std::int32_t tag) {
     if (tag == std::numeric_limits<std::int32_t>::min()) in_.fail("number of a physical group: out of range");
     return std::abs(tag);
@@ -318,7 +318,7 @@ class Parser {
       add(*shape, tag, set);
       return;
     }
-    // Gmsh writes an element that belongs to several physical groups once for each of them, in a row.
+    // In format 2.2 Gmsh writes an element with several physical groups once per group, consecutively.
     ElementList& list = content_.elements[*shape];
     list.nodes.resize(list.nodes.size() - static_cast<std::size_t>(cells()[*shape].nodes));
     std::vector<int> both = content_.physicals[list.runs.back().set];
@@ -333,7 +333,7 @@ class Parser {
     return list.count() > 0 && std::equal(list.nodes.end() - n, list.nodes.end(), list.nodes.end() - 2 * n);
   }
 
-  // Common to both formats.
+  // Used by both formats.
 
   [[noreturn]] void refuse_groups(const char* what, std::int64_t tag) const {
     in_.fail(what + (" " + std::to_string(tag)) + " belongs to more than " + std::to_string(most_groups) +
@@ -381,9 +381,9 @@ class Parser {
   GmshCursor in_;
   MeshContent content_;
   NodeIndex index_;
-  std::map<std::pair<int, int>, std::size_t> entities_;  // set of (dimension, number)
+  std::map<std::pair<int, int>, std::size_t> entities_;  // group set by (dimension, number)
   std::map<std::vector<int>, std::size_t> sets_{{{}, 0}};
-  int last_group_ = 0;  // of format 2.2, with its set: the same for most elements in a row
+  int last_group_ = 0;  // format 2.2: group of the previous element, and its set; often the same again
   std::size_t last_set_ = 0;
   bool new_format_ = false;
   bool have_entities_ = false, have_nodes_ = false, have_elements_ = false;

@@ -17,7 +17,7 @@ MeshContent parse_file(const SourceFile& source) {
     file.check_unchanged();
     return content;
   } catch (const InputError&) {
-    file.check_unchanged();  // then that is what is wrong
+    file.check_unchanged();  // a file that changed explains the error
     throw;
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Gmsh's format 4.1: what belongs to the same groups is one entity.
+// Writes Gmsh format 4.1: members with the same groups form one entity.
 #include <algorithm>
 #include <array>
 #include <map>
@@ -12,20 +12,21 @@ namespace {
 
 constexpr int point_type = 15;
 
-/// Members of one dimension that have the same groups: elements, facets or nodes.
+/// Elements, facets or nodes that belong to the same groups.
 struct Entity {
   int dimension = 0;
-  std::vector<int> groups;  ///< numbers of groups, from 1
+  std::vector<int> groups;  ///< group numbers, from 1
   std::vector<std::int32_t> members;
 };
 
-/// How many members there may be of a dimension.
+/// Number of possible members of a dimension.
 std::size_t member_count(const Mesh& mesh, int dimension) {
   if (dimension == mesh.dim()) return mesh.element_count();
   return dimension == mesh.dim() - 1 ? mesh.facet_count() : mesh.node_count();
 }
 
-/// All elements, and what else is in a group. Nodes of groups of whatever dimension are points.
+/// Entities of all elements, and of the facets and nodes in groups. Members of node groups of any dimension
+/// become points.
 std::vector<Entity> entities_of(const Mesh& mesh) {
   std::vector<Entity> entities;
   for (const int dimension : {0, mesh.dim() - 1, mesh.dim()}) {
@@ -135,7 +136,7 @@ class Writer {
     out_.text("$Nodes\n");
     row({1, count, low, high});
     out_.text("\n");
-    // All belong to the body's last entity; each is of its elements', which is what Gmsh goes by.
+    // All nodes are written under the last entity of the body; Gmsh assigns them by their elements.
     row({mesh_.dim(), static_cast<std::int64_t>(entities_.size()), 0, count});
     out_.text("\n");
     for (std::size_t i = 0; i < mesh_.node_count(); ++i) {

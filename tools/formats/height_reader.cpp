@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Height maps: numbers on a grid from CSV, PBM, PGM and PNG files.
+// Reads height maps, numbers on a grid, from CSV, PBM, PGM and PNG files.
 #include "formats/height_reader.hpp"
 
 #include <charconv>
@@ -59,7 +59,7 @@ class CsvText {
   NumberGrid grid_;
 };
 
-/// PBM and PGM, their numbers as text or as bytes.
+/// PBM and PGM pictures with values as text or bytes.
 class NetPicture {
  public:
   NetPicture(const SourceFile& source, std::string_view bytes) : source_(source), bytes_(bytes) {}
@@ -72,14 +72,14 @@ class NetPicture {
     grid.columns = number("the width");
     grid.rows = number("the height");
     const auto values = static_cast<std::int64_t>(grid.columns) * static_cast<std::int64_t>(grid.rows);
-    // Said of rows without columns before any is looked for: there may be two thousand million.
+    // Check the size before looping over rows: a header may declare 2·10⁹ rows without columns.
     if (grid.rows < 2 || grid.columns < 2) too_few(source_, grid);
     if (values > NumberGrid::most_values) fail("expected at most 2^28 values, got " + std::to_string(values));
     const int most = bits ? 1 : number("the largest value");
     if (most < 1 || most > 65535)
       fail("expected a largest value from 1 to 65535, got " + std::to_string(most));
     if (!text) ++place_;  // one blank ends the header
-    // As text the file is at least as long as it has values, so that nothing is asked for that is not there.
+    // A text file has at least one byte per value, so a false size in the header allocates nothing.
     if (text && static_cast<std::int64_t>(bytes_.size() - place_) < values) ends_early();
     for (std::size_t row = 0; row < grid.rows; ++row) {
       if (text)
@@ -123,7 +123,7 @@ class NetPicture {
     return value;
   }
 
-  /// Digits of P1 need no blanks between them.
+  /// Digits of P1 may follow each other without blanks.
   int digit() {
     skip_blanks();
     if (place_ == bytes_.size()) ends_early();

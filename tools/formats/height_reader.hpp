@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Height maps: numbers on a grid from CSV, PBM, PGM and PNG files.
+// Reads height maps, numbers on a grid, from CSV, PBM, PGM and PNG files.
 #pragma once
 
 #include <string_view>
@@ -9,10 +9,10 @@
 
 namespace kacanov {
 
-/// `bytes` is the whole file, `path` its name in messages. CSV: numbers as they are, between commas,
-/// semicolons or blanks; lines that begin with # do not count. PGM (P2, P5): 0 black to 1 white. PBM (P1,
-/// P4): its digits, 1 for black. PNG: as parse_png. Throws InputError naming the line, or the place of the
-/// value, of what is wrong.
+/// `bytes` is the whole file; `source` names it in messages. CSV: numbers separated by commas, semicolons or
+/// blanks; lines that begin with # are skipped. PGM (P2, P5): 0 black to 1 white. PBM (P1, P4): its digits, 1
+/// for black. PNG: see parse_png(). Throws InputError naming the line, or the position of the value, of an
+/// error.
 NumberGrid parse_heights(const SourceFile& source, std::string_view bytes);
 NumberGrid read_heights(const SourceFile& source);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Unpacks zlib's streams (RFC 1950, 1951): the compressed blocks of VTK files, the pixels of PNG.
+// Decompresses zlib streams (RFC 1950, 1951): the blocks of VTK files and the pixels of PNG.
 #pragma once
 
 #include <span>
@@ -7,8 +7,8 @@
 
 namespace kacanov {
 
-/// Unpacks a whole stream into `out`, which it has to fill. Returns false where it is damaged, cut short, of
-/// another length, or not what its checksum says.
+/// Decompresses a whole stream into `out`, which it must fill exactly. Returns false if the stream is
+/// damaged, truncated, of another length, or fails its checksum.
 bool inflate_zlib(std::string_view packed, std::span<unsigned char> out);
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mapping that survives its file's being shortened.
+// A file mapping that survives truncation of the file.
 #include "formats/mapped_file.hpp"
 
 #include <fcntl.h>
@@ -17,11 +17,11 @@
 namespace kacanov {
 namespace {
 
-/// The one range in which a bus error is answered; others are what they always were.
+/// The only range in which bus errors are handled; elsewhere the earlier handler applies.
 std::atomic<const char*> guarded_begin = nullptr, guarded_end = nullptr;
-struct sigaction earlier {};  // what the process did about them
+struct sigaction earlier {};  // earlier handler of the process
 
-/// Puts a page of zeros where the file has none any more; the read that failed is tried again and goes on.
+/// Maps a page of zeros where the file no longer has data; the read that faulted is retried.
 void put_zeros(int, siginfo_t* info, void*) {
   const auto* at = static_cast<const char*>(info->si_addr);
   const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
@@ -31,7 +31,7 @@ void put_zeros(int, siginfo_t* info, void*) {
     sigaction(SIGBUS, &earlier, nullptr);
 }
 
-/// From now on; an empty range ends it.
+/// Starts handling bus errors in the range; an empty range stops it.
 void guard(const char* data, std::size_t size) {
   const bool guards = guarded_begin.load() != nullptr;
   guarded_begin = data;

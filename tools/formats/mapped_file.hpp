@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A file as one range of bytes: the system pages it in, nothing is copied.
+// Memory-mapped file, read as one range of bytes without a copy.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,8 @@
 
 namespace kacanov {
 
-/// A file that somebody shortens or rewrites in the meantime has no bytes where they are asked for: they read
-/// as zeros then (no SIGBUS), and check_unchanged() says so. One thread at a time may read mapped files.
+/// If another process truncates or rewrites the file, missing pages read as zeros (no SIGBUS), and
+/// check_unchanged() throws. Only one thread at a time may read mapped files.
 class MappedFile {
  public:
   /// Throws InputError if the file is missing, unreadable, empty or not a regular file.
@@ -20,8 +20,8 @@ class MappedFile {
   MappedFile& operator=(const MappedFile&) = delete;
 
   std::string_view bytes() const noexcept { return {data_, size_}; }
-  /// To be asked once all is read, and before anything that was read is complained of. Throws InputError if
-  /// the file has another length or another time of modification than when it was opened.
+  /// Call it after reading, and before reporting an error in the content. Throws InputError if the length or
+  /// the modification time of the file has changed since it was opened.
   void check_unchanged() const;
 
  private:

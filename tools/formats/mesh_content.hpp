@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a mesh file says, before it is made into a mesh.
+// Content of a mesh file before it is converted to a Mesh.
 #pragma once
 
 #include <cstddef>
@@ -13,9 +13,9 @@
 
 namespace kacanov {
 
-/// All elements of one type, in the order of the file.
+/// All elements of one type, in file order.
 struct ElementList {
-  /// From element `first` on, the elements belong to the physical groups `MeshContent::physicals[set]`.
+  /// Elements from `first` on belong to the physical groups `MeshContent::physicals[set]`.
   struct Run {
     std::size_t first;
     std::size_t set;
@@ -25,14 +25,14 @@ struct ElementList {
   std::vector<Run> runs;
 
   std::size_t count() const noexcept { return tags.size(); }
-  /// Notes the groups of the element whose tag was appended last.
+  /// Records the groups of the element whose tag was appended last.
   void assign_last(std::size_t set);
 };
 
 struct MeshContent {
   std::vector<double> coordinates;  ///< nodes × 3
   std::vector<std::int64_t> node_tags;
-  std::vector<ElementList> elements = std::vector<ElementList>(cells().size());  ///< as cells()
+  std::vector<ElementList> elements = std::vector<ElementList>(cells().size());  ///< by cell type
   std::vector<std::vector<int>> physicals{{}};       ///< sets of physical tags; set 0 is empty
   std::map<std::pair<int, int>, std::string> names;  ///< by (dimension, physical tag)
 };

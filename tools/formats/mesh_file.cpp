@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads a mesh of whatever format its file is in.
+// Reads a mesh file of any supported format.
 #include "formats/mesh_file.hpp"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ MeshFormat format_of(const std::string& path, std::string_view bytes) {
     refuse("this is a geometry, not yet a mesh: gmsh -3 makes the mesh of it (-2 in the plane), a .msh");
   if (bytes.starts_with('*')) return MeshFormat::deck;
   if (bytes.starts_with('<')) return MeshFormat::vtu;
-  // Fluent writes its sections as lists in brackets, Mechanical APDL as commands.
+  // ANSYS Fluent writes sections as parenthesised lists, Mechanical APDL as commands.
   if (bytes.starts_with('('))
     refuse(
         "this is an ANSYS Fluent mesh, not one of Gmsh: export the mesh as Abaqus .inp, or translate it with "
@@ -41,7 +41,7 @@ Mesh read_mesh(const SourceFile& source) {
         file.check_unchanged();
         return mesh;
       } catch (const InputError&) {
-        file.check_unchanged();  // then that is what is wrong
+        file.check_unchanged();  // a file that changed explains the error
         throw;
       }
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads a mesh of whatever format its file is in.
+// Reads a mesh file of any supported format.
 #pragma once
 
 #include <string>
@@ -10,16 +10,17 @@
 
 namespace kacanov {
 
-/// Formats of mesh files, told apart by what is in them.
+/// Mesh file formats, recognised by content.
 enum class MeshFormat { gmsh, deck, vtu };
 
-/// Throws InputError saying what the file seems to be, where it is of a format that is known and not read.
+/// Returns the format of a file. Throws InputError naming the apparent format if it is known but not
+/// supported.
 MeshFormat format_of(const std::string& path, std::string_view bytes);
 
 /// Reads a Gmsh mesh, the mesh of an Abaqus or CalculiX deck, or the grid of a VTK file (.vtu). Throws
-/// InputError naming the file and the place in it. Elements are not yet checked: see check_mesh.
+/// InputError naming the file and the place in it. Elements are not checked yet: see check_mesh().
 Mesh read_mesh(const SourceFile& source);
-/// The same from the bytes of a file; a deck may include no others then.
+/// Parses the bytes of a file; a deck in memory cannot include files.
 Mesh read_mesh(const SourceFile& name, std::string_view bytes);
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From the content of a mesh file to a mesh: which elements are the body, and what its groups name.
+// Converts file content to a mesh: selects the elements of the body and resolves its groups.
 #include "formats/mesh_maker.hpp"
 
 #include <algorithm>
@@ -21,13 +21,13 @@ namespace {
 
 int dimension_of(std::size_t type) { return cells()[type].dim; }
 
-/// Names of the elements for bodies of the dimension.
+/// Lists the element types for bodies of the dimension.
 std::string bodies_of(int dimension) {
   return element_names(dimension == 2 ? [](const Cell& c) { return c.dim == 2; }
                                       : [](const Cell& c) { return c.dim == 3; });
 }
 
-/// The one type that the body is made of, by its place among cells().
+/// Returns the only element type of the body as an index into cells().
 std::size_t body_cell(const std::string& path, const MeshContent& content) {
   std::vector<std::size_t> top;
   for (std::size_t c = 0; c < cells().size(); ++c) {
@@ -52,8 +52,8 @@ std::size_t body_cell(const std::string& path, const MeshContent& content) {
   return top[0];
 }
 
-/// Drops nodes that no element of the body has, with a warning: geometry's points, other bodies' leftovers.
-/// What refers to them refers to −1 from then on.
+/// Drops nodes that no element of the body uses, with a warning: points of the geometry, rests of other
+/// bodies. References to them become −1.
 void drop_unused_nodes(const std::string& path, MeshContent& content, Mesh& mesh) {
   const std::size_t nodes = content.node_tags.size();
   std::vector<std::int32_t> place(nodes, -1);
@@ -80,7 +80,7 @@ void drop_unused_nodes(const std::string& path, MeshContent& content, Mesh& mesh
   for (ElementList& list : content.elements) std::for_each(list.nodes.begin(), list.nodes.end(), renumber);
 }
 
-/// Takes over the coordinates; in 2D drops z, which has to be the same everywhere.
+/// Moves the coordinates into the mesh; in 2D drops z, which must be constant.
 void take_coordinates(const std::string& path, MeshContent& content, Mesh& mesh) {
   mesh.coordinates = std::move(content.coordinates);
   if (mesh.dim() == 3) return;
@@ -116,7 +116,7 @@ class FacetIndex {
     std::sort(entries_.begin(), entries_.end());
   }
 
-  /// The facet with these corners, −1 if it is not on the boundary.
+  /// Returns the facet with these corners; −1 if it is not on the boundary.
   std::int32_t find(std::span<const std::int32_t> corners) const {
     const Key wanted = key(corners);
     const auto place = std::lower_bound(entries_.begin(), entries_.end(), Entry{wanted, -1});
@@ -137,7 +137,7 @@ class FacetIndex {
 
 class Groups {
  public:
-  /// Of one group; `inner` counts facets that are not on the boundary.
+  /// Members of one group; `inner` counts facets that are not on the boundary.
   struct Members {
     std::vector<std::int32_t> list;
     std::int64_t inner = 0;
@@ -148,7 +148,7 @@ class Groups {
       if (key.first <= dim) members_.try_emplace(key);
   }
 
-  /// Appends what `member(element)` gives for the elements of one type, in all groups they belong to.
+  /// Calls member(element, members) for all elements of one type in each of their groups.
   template <typename Member>
   void add(std::size_t type, Member&& member) {
     const ElementList& list = content_.elements[type];
@@ -161,7 +161,7 @@ class Groups {
     }
   }
 
-  /// One group for every name and dimension.
+  /// Returns one group per name and dimension.
   std::vector<Group> finish() {
     std::vector<Group> groups;
     for (auto& [key, found] : members_) {
@@ -226,7 +226,7 @@ std::vector<Group> find_groups(const MeshContent& content, std::size_t body, con
   return groups.finish();
 }
 
-/// Whether the numbers are 1, 2, 3 …, which a mesh need not store.
+/// Returns whether the numbers are 1, 2, 3 …, which a mesh need not store.
 bool plain_numbers(const std::vector<std::int64_t>& tags) {
   for (std::size_t i = 0; i < tags.size(); ++i)
     if (tags[i] != static_cast<std::int64_t>(i) + 1) return false;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Makes a mesh of what its file says: the elements of highest dimension are the body, groups its named parts.
+// Converts file content to a mesh: the elements of the highest dimension form the body, groups its named
+// parts.
 #pragma once
 
 #include <string>
@@ -9,8 +10,8 @@
 
 namespace kacanov {
 
-/// `path` is the file's name in messages. Throws InputError naming the element or node that cannot be part of
-/// a body. Elements are not yet checked: see check_mesh.
+/// `path` names the file in messages. Throws InputError naming the element or node that cannot be part of a
+/// body. Elements are not checked yet: see check_mesh().
 Mesh make_mesh(const std::string& path, MeshContent content);
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes a mesh with its groups, as Gmsh or as Abaqus and CalculiX read it.
+// Writes a mesh with its groups as a Gmsh file or as a deck for Abaqus and CalculiX.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace kacanov {
 
-/// A Gmsh file of format 4.1, ASCII, with the numbers of nodes and elements and all groups. Throws
-/// InternalError where it cannot be written.
+/// Writes a Gmsh file of format 4.1, ASCII, with node and element numbers and all groups. Throws
+/// InternalError if writing fails.
 void write_gmsh(const std::string& path, const Mesh& mesh);
 
-/// The nodes and elements of a deck; groups are element sets, surfaces, and node sets. Throws InternalError
-/// likewise.
+/// Writes the nodes and elements of a deck; groups become element sets, surfaces and node sets. Throws
+/// InternalError if writing fails.
 void write_deck(const std::string& path, const Mesh& mesh);
 
 }  // namespace kacanov

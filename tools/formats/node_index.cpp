@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A table where the numbers are dense, a sorted list where they are not.
+// Maps node numbers by a table if they are dense, by a sorted list otherwise.
 #include "formats/node_index.hpp"
 
 #include <algorithm>

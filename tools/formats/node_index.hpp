@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From the node numbers of a file, which may be sparse and unordered, to indices.
+// Maps the node numbers of a file, which may be sparse and unordered, to indices.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace kacanov {
 
-/// Nothing is stored where the numbers are consecutive, a table where they are dense, else a sorted list.
+/// Stores nothing for consecutive numbers, a table for dense ones, and a sorted list otherwise.
 class NodeIndex {
  public:
-  /// Takes the number of every node, in order; returns a number that occurs twice, if any.
+  /// Takes the numbers of all nodes, in order; returns a duplicate number, if any.
   std::optional<std::int64_t> assign(std::span<const std::int64_t> tags);
 
-  /// Index of the node with this number, −1 if there is none.
+  /// Returns the index of the node with this number; −1 if there is none.
   std::int32_t find(std::int64_t tag) const {
     if (tag < first_ || tag > last_) return -1;
     if (!table_.empty()) return table_[tag - first_];

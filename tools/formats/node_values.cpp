@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers at the nodes of a mesh, as temperatures, from a CSV file.
+// Reads nodal values, such as temperatures, from a CSV file.
 #include "formats/node_values.hpp"
 
 #include <charconv>

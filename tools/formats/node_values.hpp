@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers at the nodes of a mesh, as temperatures, from a CSV file.
+// Reads nodal values, such as temperatures, from a CSV file.
 #pragma once
 
 #include <optional>
@@ -11,12 +11,12 @@
 
 namespace kacanov {
 
-/// One number a node of `mesh`. `bytes` is the whole file, `source` its name in messages: a line each of the
-/// number of a node, or the name of a group, whose nodes are meant, and a value, between them a comma, a
-/// semicolon or blanks; a later line takes the place of an earlier one, and those that begin with # or ** do
-/// not count. Nodes of which none speaks have `otherwise`, or NaN. Nodes in the middle of edges have the mean
-/// of the edge's ends, whatever the file says. Lines of nodes that the mesh does not have give a warning of
-/// the mesh. Throws InputError naming the line of what is wrong.
+/// Returns one value per node of `mesh`. `bytes` is the whole file; `source` names it in messages. Each line
+/// has a node number, or a group name for all nodes of the group, and a value, separated by a comma, a
+/// semicolon or blanks. A later line overrides an earlier one; lines that begin with # or ** are skipped.
+/// Nodes without a line get `otherwise`, or NaN. Mid-edge nodes get the mean of the edge's end nodes,
+/// whatever the file contains. Lines for nodes that are not in the mesh add a warning to the mesh. Throws
+/// InputError naming the line of an error.
 std::vector<double> parse_node_values(const SourceFile& source, std::string_view bytes,
                                       std::optional<double> otherwise, Mesh& mesh);
 std::vector<double> read_node_values(const SourceFile& source, std::optional<double> otherwise, Mesh& mesh);

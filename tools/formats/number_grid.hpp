@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers on a grid, as a height map has them.
+// A grid of numbers, such as a height map.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace kacanov {
 
-/// The first row is the upper one of a picture.
+/// Row-major; the first row is the top row of a picture.
 struct NumberGrid {
   static constexpr std::int64_t most_values = std::int64_t{1} << 28;
 

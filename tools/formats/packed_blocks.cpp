@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Arrays cut into blocks of one length, each packed by zlib by itself, as VTK keeps them.
+// Splits arrays into blocks of equal length, each compressed by zlib on its own, as VTK stores them.
 #include "formats/packed_blocks.hpp"
 
 #include <zlib.h>
@@ -35,10 +35,10 @@ std::span<const unsigned char> BlockDeflater::shortened(std::span<const unsigned
 }
 
 std::size_t BlockDeflater::pack(std::span<const unsigned char> block, std::vector<unsigned char>& out) {
-  // Fields that are the same everywhere give the same block again and again.
+  // Constant fields repeat the same block.
   const bool again = std::equal(block.begin(), block.end(), last_.begin(), last_.end());
   if (!again) {
-    // A part from its middle tells what the whole would come to.
+    // A sample from the middle predicts the compression ratio of the block.
     constexpr std::size_t sample = 2048;
     if (block.size() >= 8 * sample &&
         shortened(block.subspan(block.size() / 2, sample)).size() * 10 > sample * 7)
@@ -52,7 +52,7 @@ std::size_t BlockDeflater::pack(std::span<const unsigned char> block, std::vecto
 }
 
 std::size_t wrap_as_it_is(std::span<const unsigned char> block, std::vector<unsigned char>& out) {
-  constexpr std::size_t longest = 65535;  // of a piece of the stream (RFC 1951, 3.2.4)
+  constexpr std::size_t longest = 65535;  // longest stored block (RFC 1951, 3.2.4)
   const std::size_t before = out.size();
   const auto put = [&](auto... byte) { out.insert(out.end(), {static_cast<unsigned char>(byte)...}); };
   put(0x78, 0x01);

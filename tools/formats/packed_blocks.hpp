@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Arrays cut into blocks of one length, each packed by zlib by itself, as VTK keeps them.
+// Splits arrays into blocks of equal length, each compressed by zlib on its own, as VTK stores them.
 #pragma once
 
 #include <cstddef>
@@ -10,26 +10,26 @@
 
 namespace kacanov {
 
-/// Of all blocks but an array's last, unpacked.
+/// Uncompressed size of every block except the last of an array.
 inline constexpr std::size_t block_bytes = std::size_t{1} << 16;
 
-/// Takes an array from front to back.
+/// Receives an array from front to back.
 class BlockSink {
  public:
   virtual ~BlockSink() = default;
-  /// Bytes that fill a block only with what comes before or behind them; fewer than a block has.
+  /// Part of a block that continues before or after this share; less than one block.
   virtual void loose(std::span<const unsigned char> bytes) = 0;
-  /// Whole blocks, packed, one behind the other, and the length of each.
+  /// Whole compressed blocks, contiguous, and the length of each.
   virtual void packed(std::span<const unsigned char> bytes, std::span<const std::uint64_t> lengths) = 0;
 };
 
-/// Packs blocks one after the other; zlib's tables are set up once for all of them.
+/// Compresses blocks one after the other and reuses zlib's tables.
 class BlockDeflater {
  public:
   BlockDeflater();
   ~BlockDeflater();
-  /// Adds a block, packed, to `out`, and returns its length there. What zlib would hardly shorten is wrapped
-  /// as it is: the digits of fields are noise to it, and trying costs ten times as long as writing them.
+  /// Appends the compressed block to `out` and returns its length there. Blocks that zlib would hardly shrink
+  /// are stored: the digits of fields look like noise, and trying costs ten times as long as writing them.
   std::size_t pack(std::span<const unsigned char> block, std::vector<unsigned char>& out);
 
  private:
@@ -37,22 +37,22 @@ class BlockDeflater {
   std::span<const unsigned char> shortened(std::span<const unsigned char> block);
 
   std::unique_ptr<Stream> stream_;
-  std::vector<unsigned char> room_, last_, last_packed_;  ///< last_: of those that zlib has shortened
+  std::vector<unsigned char> room_, last_, last_packed_;  ///< last_: last block that was compressed
 };
 
-/// The same of any block, by hand: zlib takes five times as long to leave bytes as they are.
+/// Appends any block as a stored stream, built by hand: zlib takes five times as long to store bytes.
 std::size_t wrap_as_it_is(std::span<const unsigned char> block, std::vector<unsigned char>& out);
 
-/// Cuts a share of an array, which lies anywhere in it, at the ends of the array's blocks.
+/// Splits a share of an array, at any position in it, at the block boundaries of the array.
 class BlockPacker {
  public:
-  /// No call of BlockSink::packed has more bytes than this.
+  /// Largest number of bytes per call of BlockSink::packed().
   static constexpr std::size_t most = std::size_t{5} << 18;
 
-  /// `before`: bytes of the array ahead of the share.
+  /// `before`: bytes of the array before the share.
   BlockPacker(std::uint64_t before, BlockSink& sink);
   void write(const void* data, std::size_t bytes);
-  /// To be called last.
+  /// The last call.
   void finish();
 
  private:
@@ -61,7 +61,7 @@ class BlockPacker {
 
   BlockSink& sink_;
   BlockDeflater deflater_;
-  std::size_t head_;  ///< bytes that are missing to the end of the block that the share begins in
+  std::size_t head_;  ///< bytes from the start of the share to the end of the block it starts in
   std::vector<unsigned char> block_, packed_;
   std::vector<std::uint64_t> lengths_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Height maps from PNG files (ISO/IEC 15948).
+// Reads height maps from PNG files (ISO/IEC 15948).
 #include "formats/png_heights.hpp"
 
 #include <zlib.h>
@@ -17,14 +17,13 @@ namespace {
 
 constexpr std::string_view png_signature = "\x89PNG\r\n\x1a\n";
 
-/// Of grey, colours, grey and opacity, colours and opacity; 0 for what is no colour type, or a palette.
+/// Samples per pixel: grey, RGB, grey with alpha, RGB with alpha; 0 for an invalid colour type or a palette.
 std::size_t samples_of(unsigned colour_type) {
   constexpr std::size_t samples[] = {1, 0, 3, 0, 2, 0, 4};
   return colour_type < std::size(samples) ? samples[colour_type] : 0;
 }
 
-/// What a byte of a row is the difference to: of left, above and the one between them the closest to
-/// left + above − between.
+/// Paeth predictor: the one of left, above and upper left that is closest to left + above − upper left.
 unsigned paeth(unsigned left, unsigned above, unsigned between) {
   const auto far = [&](unsigned x) {
     return std::abs(static_cast<int>(left + above) - static_cast<int>(between) - static_cast<int>(x));
@@ -71,7 +70,7 @@ class PngPicture {
     return value;
   }
 
-  /// Its length, name, data and the checksum of both.
+  /// A chunk consists of length, name, data, and a checksum of name and data.
   Chunk take_chunk() {
     const std::string_view rest = bytes_.substr(place_);
     if (rest.size() < 12) fail("the file ends before the chunk IEND");
@@ -106,9 +105,9 @@ class PngPicture {
 
   std::size_t row_bytes() const { return (width_ * samples_ * bits_ + 7) / 8; }
 
-  /// Rows of a filter and its bytes, out of the differences that were packed.
+  /// Decompresses the rows, each a filter type and filtered bytes, and reverses the filters.
   void unpack(const std::string& packed) {
-    constexpr std::size_t most_packed = 1040;  // times its length may a stream of zlib get longer
+    constexpr std::size_t most_packed = 1040;  // greatest compression ratio of a zlib stream
     const std::size_t length = row_bytes(), size = height_ * (length + 1);
     if (size / most_packed > packed.size()) refuse("the chunks IDAT are too short for the picture");
     rows_.resize(size);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Height maps from PNG files (ISO/IEC 15948).
+// Reads height maps from PNG files (ISO/IEC 15948).
 #pragma once
 
 #include <string_view>
@@ -10,9 +10,9 @@
 namespace kacanov {
 
 bool is_png(std::string_view bytes);
-/// Grey values from 0 black to 1 white, of 1 to 16 bits; of a picture in colours only where all its pixels
-/// are grey. Transparency does not count. `bytes` is the whole file, `source` its name in messages. Throws
-/// InputError: no grey, interlaced, or damaged or cut short at which byte.
+/// Returns grey values from 0 black to 1 white, 1 to 16 bits deep; colour pictures are accepted only if all
+/// pixels are grey. Alpha is ignored. `bytes` is the whole file; `source` names it in messages. Throws
+/// InputError if the picture is not grey, is interlaced, or is damaged or truncated, with the byte.
 NumberGrid parse_png(const SourceFile& source, std::string_view bytes);
 
 }  // namespace kacanov

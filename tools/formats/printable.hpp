@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Texts from files on their way to a terminal, a page or a message: what would move a cursor, turn the
-// direction of writing, or is no UTF-8, is shown by number.
+// Makes text from files safe to print: control characters, direction marks and invalid UTF-8 are shown as
+// numbers.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace kacanov {
 
-/// Bytes of the UTF-8 character that `text` begins with, 1 to 4; 0 where none is there.
+/// Returns the length, 1 to 4, of the UTF-8 character at the start of `text`; 0 if it is invalid.
 inline std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
   const unsigned first = byte(0);
@@ -20,14 +20,14 @@ inline std::size_t utf8_length(std::string_view text) {
                                              : 0;
   for (std::size_t i = 1; i < length; ++i)
     if ((byte(i) & 0xc0) != 0x80) return 0;
-  // Longer forms than need be, surrogates, and what is beyond the last character.
+  // Overlong forms, surrogates and values above the last character.
   if ((first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) >= 0xa0) ||
       (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) >= 0x90))
     return 0;
   return length;
 }
 
-/// Whether a character of three bytes ends a line, or turns the direction of what follows: separators,
+/// Returns whether a three-byte character ends a line or changes the writing direction: separators,
 /// embeddings, overrides, isolates.
 inline bool changes_line(std::string_view text) {
   if (text[0] != '\xe2') return false;
@@ -36,9 +36,9 @@ inline bool changes_line(std::string_view text) {
          (text[1] == '\x81' && last >= 0xa6 && last <= 0xa9);
 }
 
-/// The text with control characters other than line feeds, what changes_line(), and bytes that are no UTF-8,
-/// as \x1b. Every text from a file goes through here on its way to a terminal, a message, a summary, a page
-/// or XML.
+/// Returns the text with control characters except line feeds, characters of changes_line(), and invalid
+/// UTF-8 shown as \x1b. Every text from a file passes through here before it reaches a terminal, message,
+/// summary, page or XML.
 inline std::string printable(std::string_view text) {
   std::string result;
   while (!text.empty()) {
@@ -60,12 +60,12 @@ inline std::string printable(std::string_view text) {
   return result;
 }
 
-/// Whether a text is one line that any terminal and page shows as it is: what printable() leaves alone.
+/// Returns whether the text is one line that printable() leaves unchanged.
 inline bool is_plain_line(std::string_view text) {
   return text.find('\n') == std::string_view::npos && printable(text) == text;
 }
 
-/// The text up to its character that begins within `bytes`: no character is cut.
+/// Returns at most `bytes` bytes of the text, without splitting a character.
 inline std::string_view shortened(std::string_view text, std::size_t bytes) {
   if (text.size() <= bytes) return text;
   // A character has at most four bytes, all but the first of the form 10xxxxxx.
@@ -73,7 +73,7 @@ inline std::string_view shortened(std::string_view text, std::size_t bytes) {
   return text.substr(0, bytes);
 }
 
-/// `text` shortened and freed of all but ASCII, in quotes, for a message.
+/// Returns `text` shortened, without non-ASCII characters and in quotes, for a message.
 inline std::string in_quotes(std::string_view text) {
   constexpr std::size_t longest = 40;
   std::string result = "\"";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether a file lies in a folder.
+// Checks whether a file lies in a folder.
 #include "formats/source_file.hpp"
 
 #include <algorithm>

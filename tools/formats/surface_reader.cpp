@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Surfaces of obstacles: STL, ASCII and binary, and the facets of Gmsh files.
+// Reads obstacle surfaces: STL, ASCII and binary, and the facets of Gmsh files.
 #include "formats/surface_reader.hpp"
 
 #include <algorithm>
@@ -20,12 +20,12 @@ namespace {
 
 constexpr std::size_t stl_header = 84, stl_record = 50;
 
-/// The words of an ASCII file, line by line.
+/// Words of an ASCII file, line by line.
 class StlText {
  public:
   StlText(const SourceFile& source, std::string_view bytes) : source_(source), rest_(bytes) {}
 
-  /// Words of the next line that has some; empty at the end.
+  /// Returns the words of the next non-empty line; empty at the end.
   std::vector<std::string_view> line() {
     std::vector<std::string_view> words;
     while (words.empty() && !rest_.empty()) {
@@ -100,7 +100,7 @@ TriangleList parse_ascii_stl(const SourceFile& source, std::string_view bytes) {
 
 bool is_ascii_stl(std::string_view text) { return text.starts_with("solid") || text.starts_with("SOLID"); }
 
-/// Behind a byte order mark too, which is no reason to look at the rest of what may be a binary STL.
+/// Accepts a byte order mark too, but does not inspect the rest, as the file may be a binary STL.
 bool is_gmsh(std::string_view bytes) { return bytes.starts_with("$") || bytes.starts_with("\xef\xbb\xbf$"); }
 
 TriangleList parse_binary_stl(std::string_view bytes, std::size_t count) {
@@ -116,7 +116,7 @@ TriangleList parse_binary_stl(std::string_view bytes, std::size_t count) {
   return list;
 }
 
-/// The number that a file gives to a group of facets.
+/// Returns the number of a group of facets in the file.
 int number_of_group(const SourceFile& source, const MeshContent& content, const std::string& group) {
   std::string known;
   for (const auto& [key, name] : content.names) {
@@ -159,7 +159,7 @@ TriangleList facets_of_gmsh(const SourceFile& source, MeshContent content, const
 }  // namespace
 
 TriangleList parse_stl(const SourceFile& source, std::string_view bytes) {
-  // Binary files may begin with "solid" too; their length is what tells.
+  // A binary file may begin with "solid" too; its length decides.
   std::uint32_t count = 0;
   if (bytes.size() >= stl_header) std::memcpy(&count, bytes.data() + stl_header - sizeof count, sizeof count);
   const std::size_t expected = stl_header + std::size_t{count} * stl_record;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Surfaces of obstacles: STL, ASCII and binary, and the facets of Gmsh files.
+// Reads obstacle surfaces: STL, ASCII and binary, and the facets of Gmsh files.
 #pragma once
 
 #include <string>
@@ -11,20 +11,19 @@
 
 namespace kacanov {
 
-/// Corners of triangles, outer normals by the right-hand rule.
+/// Triangles by corner indices; outward normals follow the right-hand rule.
 struct TriangleList {
   std::vector<Vector3> points;
   std::vector<Surface::Triangle> triangles;
 };
 
-/// `bytes` is the whole file, `path` its name in messages. What the file says of normals is not read: the
-/// order of the corners counts. Throws InputError naming the line (ASCII) or triangle (binary) of what is
-/// wrong.
+/// `bytes` is the whole file; `source` names it in messages. Normals in the file are ignored: the order of
+/// the corners counts. Throws InputError naming the line (ASCII) or triangle (binary) of an error.
 TriangleList parse_stl(const SourceFile& source, std::string_view bytes);
 
-/// An STL or Gmsh file, told apart by how it begins. `group`: the physical group of a Gmsh file whose facets
-/// are meant; empty: all there are. Facets of four nodes are cut in two; middle nodes cut those of six in
-/// four. Throws InputError naming the file.
+/// Reads an STL or Gmsh file, recognised by its first bytes. `group`: physical group of a Gmsh file; empty:
+/// all facets. Four-node facets are split into two triangles, six-node facets into four. Throws InputError
+/// naming the file.
 Surface read_surface(const SourceFile& source, const std::string& group);
 
 }  // namespace kacanov

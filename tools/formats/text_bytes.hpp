@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The text in the bytes of a file: no byte order mark, line feeds at the ends of lines.
+// Normalises the text of a file: no byte order mark, line feeds at line ends.
 #pragma once
 
 #include <algorithm>
@@ -10,11 +10,11 @@
 
 namespace kacanov {
 
-/// The encoding that text in UTF-16 or UTF-32 begins like, with a byte order mark or without; empty for
-/// others.
+/// Returns the encoding if the text starts like UTF-16 or UTF-32, with or without a byte order mark; else
+/// empty.
 inline std::string_view wide_encoding(std::string_view bytes) {
   using namespace std::string_view_literals;
-  // The mark of UTF-32 begins with that of UTF-16.
+  // The mark of UTF-32 starts with that of UTF-16, so test it first.
   if (bytes.starts_with("\xff\xfe\0\0"sv) || bytes.starts_with("\0\0\xfe\xff"sv)) return "UTF-32";
   if (bytes.starts_with("\xff\xfe"sv) || bytes.starts_with("\xfe\xff"sv)) return "UTF-16";
   if (bytes.size() < 4) return {};
@@ -24,8 +24,8 @@ inline std::string_view wide_encoding(std::string_view bytes) {
   return zeros == "x000" || zeros == "000x" ? "UTF-32" : std::string_view();
 }
 
-/// The bytes behind a byte order mark of UTF-8. Throws InputError for text in UTF-16 or UTF-32. Every reader
-/// of a format that begins with text takes its bytes through here.
+/// Returns the bytes after a UTF-8 byte order mark. Throws InputError for UTF-16 or UTF-32. All readers of
+/// formats that begin with text use it.
 inline std::string_view text_start(const std::string& path, std::string_view bytes) {
   if (const std::string_view encoding = wide_encoding(bytes); !encoding.empty())
     throw InputError(path + ": the text is in " + std::string(encoding) +
@@ -33,8 +33,8 @@ inline std::string_view text_start(const std::string& path, std::string_view byt
   return bytes.starts_with("\xef\xbb\xbf") ? bytes.substr(3) : bytes;
 }
 
-/// The text of a file, all of which is text: a carriage return without a line feed ends a line, too. The
-/// bytes have to stay; they are copied only where such carriage returns are.
+/// Content of a text file; a carriage return without a line feed also ends a line. The bytes must stay valid;
+/// they are copied only if there are such carriage returns.
 class TextBytes {
  public:
   TextBytes(const std::string& path, std::string_view bytes) : text_(text_start(path, bytes)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A text file that is written piece by piece and appears when it is whole.
+// A text file that is written in pieces and appears under its name once it is complete.
 #pragma once
 
 #include <charconv>
@@ -20,7 +20,7 @@ class TextFile {
     if (text_.size() > most) flush();
   }
   void number(std::int64_t value) { text(std::to_string(value)); }
-  /// As many digits as the number needs to be read as the same.
+  /// Writes as few digits as are needed to read back the same number.
   void number(double value) {
     char digits[32];
     text({digits,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The arrays of a VTK file of an unstructured grid (.vtu): ASCII, base64 or raw, plain or compressed by zlib.
+// Arrays of a VTK unstructured grid file (.vtu): ASCII, base64 or raw, uncompressed or compressed by zlib.
 #include "formats/vtu_arrays.hpp"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::string_view white_space = " \t\r\n";
 
-/// No stream of zlib's is packed tighter.
+/// Above the greatest compression ratio of zlib.
 constexpr std::size_t most_packed = 1100;
 
 std::optional<std::size_t> to_size(std::string_view text) {
@@ -33,8 +33,8 @@ std::optional<std::size_t> to_size(std::string_view text) {
              : std::nullopt;
 }
 
-/// The first `count` bytes of a text in base64, or as many as there are. Streams may follow each other, each
-/// with its own padding.
+/// Decodes the first `count` bytes of base64 text, or as many as there are. Several encoded streams may
+/// follow each other, each with its own padding.
 std::string from_base64(std::string_view text, std::size_t count) {
   std::string bytes;
   std::uint32_t group = 0;
@@ -67,7 +67,7 @@ std::string from_base64(std::string_view text, std::size_t count) {
   return bytes;
 }
 
-/// Attributes of an element whose name has been taken; what is no attribute ends them.
+/// Parses the attributes after an element's name; stops at anything else.
 XmlAttributes attributes_of(std::string_view text) {
   XmlAttributes found;
   for (;;) {
@@ -200,7 +200,7 @@ std::string VtuFile::unpacked(const Array& array, std::string_view data, std::si
     std::memcpy(&value, header.data() + i * width, width);
     return static_cast<std::size_t>(value);
   };
-  // Number of blocks, their length, that of the last if it is another; the packed length of each.
+  // Header: number of blocks, block length, length of a shorter last block or 0; then the compressed lengths.
   const std::string front = piece(3 * width);
   const std::size_t blocks = number(front, 0), length = number(front, 1), last = number(front, 2);
   if (blocks > data.size() || (blocks > 0 && length == 0)) damaged();
@@ -239,7 +239,7 @@ std::vector<T> VtuFile::values(const Array& array, std::size_t count) const {
     for (std::string_view word = take_word(text, white_space); !word.empty();
          word = take_word(text, white_space)) {
       const std::optional<double> value = to_number(word);
-      constexpr double most = 9e15;  // whole numbers beyond are not told apart
+      constexpr double most = 9e15;  // larger integers are not exact in double
       if (!value || (std::is_integral_v<T> && !(std::abs(*value) < most)))
         fail("the array " + source_.quoted(array.name) + ": expected a number, got " + source_.quoted(word));
       if (result.size() == count)
@@ -253,7 +253,7 @@ std::vector<T> VtuFile::values(const Array& array, std::size_t count) const {
     return result;
   }
   const auto convert = [&]<typename From>(From) {
-    // What cannot be there is not asked for.
+    // Do not allocate for values that the file is too short to hold.
     if (count * sizeof(From) / most_packed > array.inline_data.size() + appended_.size())
       fail("the array " + source_.quoted(array.name) + " is damaged or cut short");
     const std::string bytes = decoded(array, count * sizeof(From));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The arrays of a VTK file of an unstructured grid (.vtu): ASCII, base64 or raw, plain or compressed by zlib.
+// Arrays of a VTK unstructured grid file (.vtu): ASCII, base64 or raw, uncompressed or compressed by zlib.
 #pragma once
 
 #include <cstdint>
@@ -12,24 +12,23 @@
 
 namespace kacanov {
 
-/// The words of an XML element: NAME="value".
+/// Attributes of an XML element: NAME="value".
 using XmlAttributes = std::map<std::string, std::string, std::less<>>;
 
 class VtuFile {
  public:
-  /// Takes the file apart without decoding arrays. `bytes` have to stay. Throws InputError naming the file
-  /// for what is no such file, and for those that are not read: several pieces, another byte order or
-  /// compression.
+  /// Parses the file without decoding arrays. `bytes` must stay valid. Throws InputError naming the file if
+  /// it is not an unstructured grid, or has several pieces or an unsupported byte order or compression.
   VtuFile(SourceFile source, std::string_view bytes);
 
   std::size_t points() const noexcept { return points_; }
   std::size_t cells() const noexcept { return cells_; }
-  /// Whether there is an array of that name in a section: "Points", "Cells", "PointData", "CellData".
+  /// Returns whether a section ("Points", "Cells", "PointData", "CellData") has an array of that name.
   bool has(std::string_view section, std::string_view name) const;
 
-  /// The numbers of an array, of which there have to be `count`. The array of points may have any name.
+  /// Returns the values of an array, which must have `count` of them. The array of points may have any name.
   std::vector<double> reals(std::string_view section, std::string_view name, std::size_t count) const;
-  /// The same of whole numbers.
+  /// The same for integers.
   std::vector<std::int64_t> integers(std::string_view section, std::string_view name,
                                      std::size_t count) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads the mesh of a VTK file: its grid, and the numbers and groups that its arrays tell.
+// Reads the mesh of a VTK file: its grid, and the numbers and groups stored in arrays.
 #include "formats/vtu_reader.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace kacanov {
 namespace {
 
-/// Numbers of points or cells; from 1 where the file has none.
+/// Returns the numbers of points or cells; 1, 2, ... if the file has none.
 std::vector<std::int64_t> numbers(const VtuFile& file, const char* section, const char* name,
                                   std::size_t count) {
   std::vector<std::int64_t> tags(count);

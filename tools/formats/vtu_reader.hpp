@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads the mesh of a VTK file: its grid, and the numbers and groups that its arrays tell.
+// Reads the mesh of a VTK file: its grid, and the numbers and groups stored in arrays.
 #pragma once
 
 #include <string_view>
@@ -9,9 +9,9 @@
 
 namespace kacanov {
 
-/// The whole numbers `node_id` of points and `element_id` of cells, as body.vtu has them, are those of the
-/// mesh; cells' `gmsh:physical`, as meshio writes it, numbers their groups, which are named by that number.
-/// `name` is the file's in messages. Throws InputError naming it and what of it is wrong.
+/// The integer arrays `node_id` of points and `element_id` of cells, as in body.vtu, become the numbers of
+/// the mesh. The cell array `gmsh:physical`, as written by meshio, gives the groups, named by number. `name`
+/// names the file in messages. Throws InputError naming the file and the error.
 Mesh read_vtu(const SourceFile& name, std::string_view bytes);
 
 }  // namespace kacanov

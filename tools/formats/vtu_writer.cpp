@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The XML around the arrays, and the arrays themselves, packed, at the end.
+// Writes the XML header and appends the compressed arrays.
 #include "formats/vtu_writer.hpp"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ std::string header(const char* type, const char* more = "") {
          "\" version=\"1.0\" byte_order=\"" + byte_order + "\" header_type=\"UInt64\"" + more + ">\n";
 }
 
-/// Components as written: two become three in 2D.
+/// Number of components in the file: in 2D two become three.
 std::size_t written_components(const Grid& grid, const Field& field) {
   return grid.dim == 2 && field.components == 2 ? 3 : static_cast<std::size_t>(field.components);
 }
@@ -47,7 +47,7 @@ std::string array_attributes(const Grid& grid, const Field& field) {
   return text;
 }
 
-/// Converted values, handed over some thousand at a time.
+/// Converts values and passes them on a few thousand at a time.
 template <typename T>
 class Buffer {
  public:
@@ -71,7 +71,7 @@ class Buffer {
 
 constexpr std::size_t entries_at_a_time = 4096;
 
-/// Entries of `from` components, written with `to`.
+/// Writes entries of `from` components as entries of `to` components, padded with zeros.
 template <typename T, typename Take>
 void visit_padded(const Values<T>& values, std::size_t from, std::size_t to, const Take& take) {
   Buffer<T> buffer(take);
@@ -90,7 +90,7 @@ constexpr const char* point_data = "PointData";
 constexpr const char* cell_data = "CellData";
 constexpr std::array<const char*, 4> sections{point_data, cell_data, "Points", "Cells"};
 
-/// As long as an offset can be.
+/// Longest offset, as a placeholder in the header.
 constexpr std::uint64_t longest_offset = std::numeric_limits<std::uint64_t>::max();
 
 }  // namespace
@@ -186,7 +186,7 @@ std::string VtuFileWriter::head() const {
   }
   text += "</Piece>\n</UnstructuredGrid>\n";
   const std::string last = "<AppendedData encoding=\"raw\">\n_";
-  // Readers take an offset by its letters: what is left of the room stands between elements.
+  // Readers accept blanks between elements, so pad the reserved room.
   if (room_ > text.size() + last.size()) text.append(room_ - text.size() - last.size(), ' ');
   return text + last;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lines, words and numbers of text files.
+// Splits text into lines, words and numbers.
 #include "formats/words.hpp"
 
 #include <algorithm>

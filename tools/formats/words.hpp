@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lines, words and numbers of text files.
+// Splits text into lines, words and numbers.
 #pragma once
 
 #include <optional>
@@ -7,16 +7,16 @@
 
 namespace kacanov {
 
-/// Takes the next line off a text: what is before its end, which goes too.
+/// Removes the first line from a text, with its line end, and returns it without the end.
 std::string_view take_line(std::string_view& text);
 
-/// Takes the next word off a line, and what is between words before it; empty where there is none.
+/// Removes the next word from a line, with the separators before it, and returns it; empty if there is none.
 std::string_view take_word(std::string_view& line, std::string_view between);
 
-/// A text without blanks, tabs and carriage returns before and behind it.
+/// Returns the text without leading and trailing blanks, tabs and carriage returns.
 std::string_view trimmed(std::string_view text);
 
-/// The finite number that a word is; a + may stand before it.
+/// Returns the finite number that the word spells; a leading + is allowed.
 std::optional<double> to_number(std::string_view word);
 
 }  // namespace kacanov

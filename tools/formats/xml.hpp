@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Text inside XML.
+// Escapes text for XML.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace kacanov {
 
-/// `text` as printable() shows it, on one line, with the characters escaped that XML reserves.
+/// Returns printable(text) on one line, with XML's reserved characters escaped.
 inline std::string xml_escape(std::string_view text) {
   std::string result;
   for (const char c : printable(text)) {

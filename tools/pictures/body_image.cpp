@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A surface as an image with a depth buffer.
+// Rasterises a surface with a depth buffer.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,7 +12,7 @@
 namespace kacanov {
 namespace {
 
-constexpr double pixels = 2;  // of the image to one of the picture
+constexpr double pixels = 2;  // image pixels per SVG pixel, in each direction
 
 class Image {
  public:
@@ -35,7 +35,7 @@ class Image {
       for (int x = first(left); x <= last(right, width_); ++x) {
         const std::array<double, 2> at{x + 0.5, y + 0.5};
         const double a = cross(p[1], p[2], at) / area, b = cross(p[2], p[0], at) / area, c = 1 - a - b;
-        constexpr double edge = -1e-9;  // of a pixel on a side, one of the neighbours has to be sure
+        constexpr double edge = -1e-9;  // no gap along a side that two triangles share
         if (a < edge || b < edge || c < edge) continue;
         const double depth = a * face.corners[0][2] + b * face.corners[1][2] + c * face.corners[2][2];
         const double value = a * face.values[0] + b * face.values[1] + c * face.values[2];
@@ -43,7 +43,7 @@ class Image {
       }
   }
 
-  /// A dark line, a little nearer than the faces it bounds.
+  /// Draws a dark line, slightly in front of the faces that it bounds.
   void paint(const Segment& s) {
     const auto a = place(s.from), b = place(s.to);
     const int steps = 1 + static_cast<int>(std::max(std::abs(b[0] - a[0]), std::abs(b[1] - a[1])));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A surface as SVG paths, painted from back to front.
+// Draws a surface as SVG paths with the painter's algorithm, back to front.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -10,15 +10,15 @@
 namespace kacanov {
 namespace {
 
-constexpr std::size_t most_edged_faces = 5000;  // in 3D: beyond, their lines would double the file
+constexpr std::size_t most_edged_faces = 5000;  // 3D: above this, edges would double the file size
 constexpr double brightest = shades - 1;
 
-/// A corner of a polygon: pixel and value.
+/// A polygon corner: position in pixels, and value.
 struct Corner {
   double x, y, value;
 };
 
-/// Appends the part of `polygon` whose value is ≥ `limit` (≤, if not `above`) to `part`.
+/// Clips `polygon` to the values ≥ `limit` (≤ if not `above`) and appends the result to `part`.
 void clip(const std::vector<Corner>& polygon, double limit, bool above, std::vector<Corner>& part) {
   part.clear();
   const auto inside = [&](const Corner& c) { return above ? c.value >= limit : c.value <= limit; };
@@ -32,7 +32,7 @@ void clip(const std::vector<Corner>& polygon, double limit, bool above, std::vec
   }
 }
 
-/// To a tenth of a pixel: no more is seen.
+/// Rounds to a tenth of a pixel; finer steps are invisible.
 void append_point(std::string& path, char command, double x, double y) {
   path += command;
   append_svg_number(path, std::round(x * 10) / 10);
@@ -45,7 +45,7 @@ class Painter {
   Painter(const VisibleSurface& surface, const ColourScale& colours, const Frame& frame)
       : surface_(surface), colours_(colours), frame_(frame) {}
 
-  /// All polygons of a band as one path.
+  /// All polygons of a band form one path.
   std::string flat() {
     std::vector<std::string> bands(colours_.bands());
     std::string edges;
@@ -69,7 +69,7 @@ class Painter {
            outline + "\"/>\n";
   }
 
-  /// Faces and outlines in the order of their depth.
+  /// Draws faces and outlines in order of depth.
   std::string layered() {
     std::string text = style();
     for (const std::size_t item : order()) {
@@ -108,7 +108,8 @@ class Painter {
            "<g stroke-width=\"0.5\" stroke-linejoin=\"round\">\n";
   }
 
-  /// Indices of faces, then of outlines, the farthest first. An outline comes after the faces it bounds.
+  /// Returns the indices of faces, then of outlines, sorted farthest first. An outline follows the faces it
+  /// bounds.
   std::vector<std::size_t> order() const {
     std::vector<double> depth;
     double size = 0;
@@ -126,7 +127,7 @@ class Painter {
     return result;
   }
 
-  /// Neighbours of one class share an element.
+  /// Adjacent paths of the same class share an element.
   void put(std::string& text, const std::string& style_class, const std::string& path) {
     if (style_class != pending_class_) {
       flush(text);
@@ -140,7 +141,7 @@ class Painter {
     pending_.clear();
   }
 
-  /// Calls visit(band, polygon) for every band that the face reaches into.
+  /// Calls visit(band, polygon) for every band that the face intersects.
   template <typename Visit>
   void polygons(const Face& face, Visit&& visit) {
     whole_.clear();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The colours of the scale, and the round numbers at which its bands end.
+// The viridis colour map, and band limits at round numbers.
 #include "pictures/colour_scale.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace kacanov {
 namespace {
 
-/// Eleven points of the colour map viridis (Smith, van der Walt, Firing; CC0).
+/// Eleven samples of the colour map viridis (Smith, van der Walt, Firing; CC0).
 constexpr std::array<Rgb, 11> viridis{{{0x44, 0x01, 0x54},
                                        {0x48, 0x24, 0x75},
                                        {0x41, 0x44, 0x87},
@@ -46,7 +46,8 @@ ColourScale::ColourScale(std::span<const double> values) {
     high = usual;
     open_ = true;
   }
-  // A uniform field is one colour on a scale from zero, not its rounding errors magnified.
+  // A uniform field gets one colour on a scale from zero; otherwise the scale would magnify its rounding
+  // errors.
   if (high - low <= 1e-6 * std::abs(high)) low = 0;
   if (high <= low) high = low + 1;
   step_ = nice_below((high - low) / 7);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Values to bands of colour, perceptually uniform.
+// Maps values to bands of a perceptually uniform colour map.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@ namespace kacanov {
 using Rgb = std::array<std::uint8_t, 3>;
 std::string hex(const Rgb& colour);
 
-/// Bands of equal, round width. Where a few values stand out far above all others (a stress at a corner), the
-/// last band is open and takes them all.
+/// Bands of equal width, a round number. If a few values far exceed all others (a stress at a corner), the
+/// last band is open-ended and contains them.
 class ColourScale {
  public:
   explicit ColourScale(std::span<const double> values);
@@ -23,7 +23,7 @@ class ColourScale {
   /// Lower end of a band; edge(bands()) is the upper end of the last.
   double edge(int band) const noexcept { return low_ + step_ * band; }
   int band(double value) const noexcept;
-  /// `light` from 0 to 1: how much of the colour is lit.
+  /// `light`: brightness factor from 0 to 1.
   Rgb colour(int band, double light) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The picture of a deformed body: layout, obstacles, colour bar, captions.
+// Picture of a deformed body: layout, obstacles, colour bar, captions.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -20,7 +20,7 @@ using Vector = std::array<double, 3>;
 constexpr double width = 960, margin = 36, bar_space = 120, top = 64, bottom = 64;
 constexpr double least_height = 240, most_height = 640;
 
-/// What is finite stays, the rest becomes 0: a run that broke down has a picture too.
+/// Replaces non-finite values by 0, so that a diverged run can be drawn too.
 std::vector<double> finite_or_zero(std::span<const double> values) {
   std::vector<double> result(values.begin(), values.end());
   for (double& v : result)
@@ -68,19 +68,21 @@ Box body_box(const Mesh& mesh) {
   return box;
 }
 
-/// 1 where that can be seen, else a round factor that makes the largest displacement some 5 % of the body.
+/// Returns 1 if the displacement is visible at that scale, else a round factor that makes the largest
+/// displacement about 5 % of the body size.
 double fitting_scale(double largest, double size) {
   if (largest <= 0 || largest >= 0.015 * size) return 1;
   return nice_below(0.06 * size / largest);
 }
 
-/// The part of an obstacle's plane that faces the body: two points in 2D, four in 3D; none if it is far away.
+/// Returns the part of an obstacle plane near the body: two points in 2D, four in 3D; none if the plane is
+/// far away.
 std::vector<Vector> obstacle_patch(const DeformedPicture::Plane& plane, const Box& box, int dim) {
   const auto dot = [](const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; };
   const double length = std::sqrt(dot(plane.normal, plane.normal));
   if (!(length > 0)) return {};
   const Vector n{plane.normal[0] / length, plane.normal[1] / length, plane.normal[2] / length};
-  // Tangents: in 2D one, in 3D those nearest to two of the axes.
+  // Tangents: one in 2D; in 3D the ones closest to two of the axes.
   Vector s{-n[1], n[0], 0}, t{};
   if (dim == 3) {
     const std::size_t axis = std::abs(n[0]) < 0.7 ? 0 : 1;
@@ -150,7 +152,7 @@ class Drawing {
   }
 
  private:
-  /// Fits everything that is drawn into the frame.
+  /// Fits all drawn parts into the frame.
   void fit() {
     Box seen = Box::empty();
     for (const Face& f : surface_.faces)
@@ -190,7 +192,8 @@ class Drawing {
     }
   }
 
-  /// A chain line over the whole height. Where it is farther from the body than that is wide it is left out.
+  /// Draws the axis as a chain line over the whole height, unless it is farther from the body than the body
+  /// is wide.
   void axis_of_revolution(SvgCanvas& canvas) const {
     const double x = frame_.pixel({0, 0, 0})[0];
     canvas.line(x, top - 12, x, top + frame_.height + 12,
@@ -201,13 +204,13 @@ class Drawing {
 
   std::size_t corners_of_facet() const { return static_cast<std::size_t>(dim_); }
 
-  /// What of obstacles that are no flat ones faces the body.
+  /// Draws the facets of curved obstacles that face the body.
   void obstacle_facets(SvgCanvas& canvas) const {
     std::string data;
     for (const auto& facet : picture_.obstacles) {
       if (dim_ == 2) {
         auto a = frame_.pixel(project(facet.corners[0])), b = frame_.pixel(project(facet.corners[1]));
-        // hatched() has the body to the left of a → b, in pixels.
+        // hatched() expects the body on the side (−y, x) of a → b = (x, y), in pixels.
         if ((b[1] - a[1]) * facet.normal[0] + (b[0] - a[0]) * facet.normal[1] < 0) std::swap(a, b);
         hatched(canvas, a, b);
         continue;
@@ -222,7 +225,7 @@ class Drawing {
       canvas.path(data, "fill=\"#dfe5e8\" stroke=\"#b0b8bd\" stroke-width=\"0.4\"");
   }
 
-  /// Nodes that a side turned towards the eye has; in 2D all of them.
+  /// Marks the nodes of sides that face the eye; all nodes in 2D.
   std::vector<bool> seen_nodes() const {
     std::vector<bool> seen(mesh_.node_count(), dim_ == 2);
     if (dim_ == 2) return seen;
@@ -234,7 +237,7 @@ class Drawing {
     return seen;
   }
 
-  /// A node of the deformed body in the plane of the picture.
+  /// Position of a node of the deformed body in the picture plane.
   Vector drawn(std::int32_t node) const {
     Vector at{};
     const std::size_t n = static_cast<std::size_t>(node), dim = static_cast<std::size_t>(dim_);
@@ -243,7 +246,7 @@ class Drawing {
     return project(at);
   }
 
-  /// Triangles at what is held, arrows at what is loaded; one in each square of some pixels.
+  /// Draws triangles at supports and arrows at loads; at most one per square of a few pixels.
   void marks(SvgCanvas& canvas) const {
     if (picture_.marks.empty()) return;
     const std::vector<bool> seen = seen_nodes();
@@ -268,7 +271,7 @@ class Drawing {
     }
   }
 
-  /// Ends at `at`; where it would point into the picture or out of it, or nowhere, a square.
+  /// An arrow that ends at `at`; a square if the direction is normal to the picture or unknown.
   static std::string arrow(const std::array<double, 2>& at, const Vector& along) {
     const double length = std::hypot(along[0], along[1]), whole = std::hypot(length, along[2]);
     const auto point = [](double x, double y) { return svg_number(x) + " " + svg_number(y); };
@@ -280,11 +283,11 @@ class Drawing {
            point(neck_x + 3 * y, neck_y - 3 * x) + "L" + point(neck_x, neck_y) + "Z";
   }
 
-  /// A line with short strokes on the side away from the body.
+  /// Draws a line with short strokes on the side away from the body.
   static void hatched(SvgCanvas& canvas, const std::array<double, 2>& a, const std::array<double, 2>& b) {
     canvas.line(a[0], a[1], b[0], b[1], "stroke=\"#555\" stroke-width=\"1.2\"");
     const double x = b[0] - a[0], y = b[1] - a[1], length = std::hypot(x, y);
-    // The body lies where the normal points: turned left from the direction a → b, which in pixels is −y.
+    // The normal (−y, x) of a → b = (x, y), in pixels, points to the body.
     const double nx = -y / length, ny = x / length, tx = x / length, ty = y / length;
     std::string data;
     for (double s = 9; s < length; s += 9) {
@@ -301,7 +304,7 @@ class Drawing {
       const auto a = frame_.pixel(s.from), b = frame_.pixel(s.to);
       data +=
           "M" + svg_number(a[0]) + " " + svg_number(a[1]) + "L" + svg_number(b[0]) + " " + svg_number(b[1]);
-      if (data.size() > most_outline) return;  // a body as rough as that has no outline worth drawing
+      if (data.size() > most_outline) return;  // the outline of such a rough body is not worth drawing
     }
     canvas.path(data, "fill=\"none\" stroke=\"#9a9a9a\" stroke-width=\"0.9\"");
   }
@@ -331,7 +334,7 @@ class Drawing {
     }
   }
 
-  /// Edges are sums of steps: a zero among them has to read 0.
+  /// Band limits are sums of steps: round-off next to zero must print as 0.
   double rounded(double edge) const {
     const double step = colours_.edge(1) - colours_.edge(0);
     return std::abs(edge) < 1e-9 * step ? 0 : edge;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The chunks of a PNG file with their checksums, and a small compression of its rows.
+// PNG chunks with checksums, and a small deflate encoder for their rows.
 #include "pictures/png.hpp"
 
 #include <algorithm>
@@ -38,8 +38,8 @@ std::uint32_t adler32(std::span<const std::uint8_t> bytes) {
   return b << 16 | a;
 }
 
-/// Deflate (RFC 1951) with the fixed code. Matches are sought in two places only, the pixel before and the
-/// row above: areas of one colour need no more.
+/// Deflate (RFC 1951) with the fixed code. Matches are searched at two distances only, the previous pixel and
+/// the row above, which suffices for areas of one colour.
 class Deflate {
  public:
   std::string compress(std::span<const std::uint8_t> bytes, std::size_t row) {
@@ -61,7 +61,7 @@ class Deflate {
       }
     }
     literal(256);
-    bits(0, 7);  // fills the last byte
+    bits(0, 7);  // pads the last byte
     return std::move(out_);
   }
 
@@ -84,7 +84,7 @@ class Deflate {
     }
   }
 
-  /// Codes go in from their highest bit on.
+  /// Codes are written from the highest bit.
   void code(std::uint32_t value, int count) {
     for (int k = count - 1; k >= 0; --k) bits(value >> k & 1, 1);
   }
@@ -108,7 +108,7 @@ class Deflate {
     literal(257 + static_cast<std::uint32_t>(l));
     const int length_bits = l < 8 || l == 28 ? 0 : static_cast<int>(l / 4) - 1;
     bits(static_cast<std::uint32_t>(length - lengths[l]), length_bits);
-    // The distance codes: two for every power of two.
+    // Distance codes: two per power of two.
     std::uint32_t symbol = 0, base = 1;
     int extra = 0;
     while (base + (1U << extra) <= distance) {
@@ -135,7 +135,7 @@ std::string chunk(std::string_view type, std::string_view data) {
 std::string encode_png(std::size_t width, std::span<const std::uint8_t> pixels,
                        std::span<const Rgb> palette) {
   const std::size_t height = pixels.size() / width;
-  std::vector<std::uint8_t> rows;  // each led by its filter type, 0: none
+  std::vector<std::uint8_t> rows;  // each row starts with its filter type, 0: none
   rows.reserve(height * (width + 1));
   for (std::size_t y = 0; y < height; ++y) {
     rows.push_back(0);

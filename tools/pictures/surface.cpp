@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Triangles of the boundary and their outlines, projected.
+// Extracts boundary triangles and outlines, and projects them.
 #include "pictures/surface.hpp"
 
 #include <algorithm>
@@ -21,13 +21,13 @@ Vector unit(const Vector& a) {
   return length > 0 ? Vector{a[0] / length, a[1] / length, a[2] / length} : a;
 }
 
-/// A triangle of the surface by nodes; bit k of `edges` as in Face.
+/// Surface triangle by node numbers; bit k of `edges` as in Face.
 struct Triangle {
   std::array<std::int32_t, 3> nodes{};
   std::uint8_t edges = 0;
 };
 
-/// The triangles of one flat cell, their sides marked that lie on its edges.
+/// Returns the triangles of one face cell; `edges` marks the sides that are element edges.
 std::vector<Triangle> triangles_of(const Cell& flat) {
   std::vector<Triangle> result;
   for (const auto& corners : flat.triangles) {
@@ -46,7 +46,7 @@ std::vector<Triangle> triangles_of(const Cell& flat) {
   return result;
 }
 
-/// The triangles to draw: all of them in 2D, those of the boundary in 3D.
+/// Returns the triangles to draw: all in 2D, those of the boundary in 3D.
 std::vector<Triangle> triangles(const Mesh& mesh) {
   const bool whole = mesh.dim() == 2;
   const Cell& flat = whole ? cell(mesh.type) : cell(mesh.type).facet();
@@ -62,7 +62,7 @@ std::vector<Triangle> triangles(const Mesh& mesh) {
   return result;
 }
 
-/// Positions of the nodes in the picture, and the normals of triangles there.
+/// Projected node positions, and triangle normals in the projection.
 class Shape {
  public:
   Shape(const Mesh& mesh, const View& view, std::span<const double> displacement, double scale) {
@@ -84,7 +84,7 @@ class Shape {
   std::vector<Vector> points_;
 };
 
-/// A side of a drawn triangle, to be matched with the same side of its neighbour.
+/// A side of a drawn triangle, to be matched with the same side of a neighbour.
 struct Side {
   std::int32_t low, high;
   std::uint32_t triangle;
@@ -103,7 +103,8 @@ std::vector<Side> sorted_sides(const std::vector<Triangle>& triangles) {
   return sides;
 }
 
-/// Sides of one triangle only, between a visible and a hidden one, or at a sharp edge that is seen.
+/// Outline: sides with one triangle only, sides between a visible and a hidden triangle, and visible sharp
+/// edges.
 std::vector<Segment> outline(const std::vector<Triangle>& triangles, const std::vector<Side>& sides,
                              const Shape& shape) {
   constexpr double sharp = 0.77;  // cosine of 40°
@@ -152,7 +153,7 @@ View View::of(const Mesh& mesh, const std::array<double, 3>& towards) {
       high[k] = std::max(high[k], mesh.coordinates[i]);
     }
   }
-  // The eye turned 30° from the normal of the longer side, and 25° above it.
+  // The eye is 30° off the normal of the longer side and 25° above the horizontal.
   constexpr double s = 0.5, c = 0.8660254037844386, below = 0.42261826174069944, level = 0.9063077870366499;
   if (high[0] - low[0] >= high[1] - low[1]) return look_from({level * s, -level * c, below});
   return look_from({level * c, level * s, below});

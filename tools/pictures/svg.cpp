@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The text of an SVG file, element by element.
+// Writes the text of an SVG file element by element.
 #include "pictures/svg.hpp"
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The picture of a sweep: two panels over one logarithmic axis of r.
+// Picture of a sweep: two panels over one logarithmic axis of r.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -19,14 +19,14 @@ constexpr const char* failed_colour = "#c0392b";
 
 struct Tick {
   double value;
-  std::string label;  ///< empty: a minor tick
+  std::string label;  ///< empty: minor tick
 };
 
 /// A logarithmic axis from pixel `begin` to pixel `end`.
 class LogAxis {
  public:
   LogAxis(double low, double high, double begin, double end) : begin_(begin), end_(end) {
-    // At least half a decade, so that a single value has an axis too; some room beyond the data.
+    // At least half a decade, so that a single value has an axis too; plus a margin around the data.
     const double a = std::log10(low), b = std::log10(high);
     const double room = std::max(0.07 * (b - a), 0.25 - 0.5 * std::min(b - a, 0.5));
     low_ = a - room;
@@ -37,7 +37,7 @@ class LogAxis {
     return begin_ + (std::log10(value) - low_) / (high_ - low_) * (end_ - begin_);
   }
 
-  /// Powers of ten; where there are few of them, their multiples are labelled too.
+  /// Ticks at powers of ten; if there are few, their multiples are labelled too.
   std::vector<Tick> ticks() const {
     const double decades = high_ - low_;
     const int first = static_cast<int>(std::floor(low_)), last = static_cast<int>(std::ceil(high_));
@@ -63,7 +63,7 @@ class LogAxis {
 };
 
 LogAxis axis_of(const std::vector<double>& values, double begin, double end) {
-  // Zeros (a run without iterations, a clock too coarse) are drawn at the low end.
+  // Zeros (a run without iterations, a clock too coarse) are drawn at the lower end.
   double low = 0, high = 0;
   for (const double v : values)
     if (v > 0 && std::isfinite(v)) {
@@ -177,7 +177,7 @@ class Drawing {
                    "text-anchor=\"middle\" font-size=\"14\"");
   }
 
-  /// Vertical lines through both panels, their labels above in as many rows as they need.
+  /// Draws vertical lines through both panels; the labels above use as many rows as needed.
   void marks() {
     const double base = top + 2 * panel_height + between;
     std::vector<SweepPicture::Mark> sorted;
@@ -208,7 +208,7 @@ class Drawing {
            "</tspan><tspan dy=\"-3\">&#8203;</tspan>";
   }
 
-  /// A ring round the converged run with the smallest value.
+  /// Draws a ring around the converged run with the smallest value.
   void best(const Panel& p) {
     std::size_t found = picture_.r.size();
     for (const std::size_t i : order_)
@@ -220,7 +220,7 @@ class Drawing {
     canvas_.circle(x, y, 7, "fill=\"none\" stroke=\"#d35400\" stroke-width=\"2\"");
     const std::string label = short_number(p.values[found]) + " at r = " + short_number(picture_.r[found]);
     const bool to_left = x > width / 2;
-    // Beside the ring, above it where it sits on the lower edge.
+    // Label beside the ring, or above it if the ring is on the lower edge.
     canvas_.text(
         to_left ? x - 12 : x + 12, std::min(y + 16, base - 6), label,
         std::string(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Refines the mesh of a case where its solution asks for it.
+// Adaptive mesh refinement of a case, driven by its error estimate.
 #include "program/adaptive_run.hpp"
 
 #include <algorithm>
@@ -20,12 +20,12 @@
 namespace kacanov {
 namespace {
 
-/// Elements with so much of the error's energy are refined, or with less where that is enough for the aim:
-/// half as wide they keep a 4⁻ᵖ of theirs.
+/// Fraction of the squared error in the elements to refine; less if that reaches the target: halving an
+/// element leaves a fraction 4⁻ᵖ of its squared error.
 constexpr double most_refined = 0.5, least_refined = 0.1;
 
-/// Of the largest displacement: as deep as the body may lie in an obstacle between its nodes. Corners of
-/// quadratic facets, which bear nothing, go through by a little on any mesh.
+/// Tolerated penetration between nodes, as a fraction of the largest displacement. Corners of quadratic
+/// facets carry no contact force and penetrate slightly on any mesh.
 constexpr double entered_at_most = 0.05;
 
 double share_to_refine(double error, double aim, int order) {
@@ -63,7 +63,7 @@ class Adaptation {
   }
 
  private:
-  /// Solves on the mesh as it stands; the energy of each element's error.
+  /// Solves on the current mesh; returns the error energy of each element.
   std::vector<double> solve_on_it() {
     const double began = MPI_Wtime();
     std::optional<Problem> problem;
@@ -78,7 +78,7 @@ class Adaptation {
     Part part = distribute(problem ? &*problem : nullptr, mpi_.comm());
     const Problem* whole = problem ? &*problem : nullptr;
     std::vector<CoarseSolution> before;
-    // Obstacles that move lead every mesh all the way by themselves.
+    // With moving obstacles, every mesh follows the whole path by itself.
     const Solution solution =
         any_moves(input_.model)
             ? solve_part(input_, part, mpi_, silent(options_))
@@ -96,7 +96,7 @@ class Adaptation {
     return all;
   }
 
-  /// `u`: of the whole mesh, on the first rank as the problem is.
+  /// Finds elements that penetrate an obstacle. `u`: on the whole mesh; on the first rank, as the problem.
   void find_penetrated(const Problem* problem, const std::vector<double>& u) {
     together(mpi_, [&] {
       if (problem == nullptr) return;
@@ -109,11 +109,10 @@ class Adaptation {
     MPI_Bcast(&entered_count_, 1, MPI_INT64_T, 0, mpi_.comm());
   }
 
-  /// Whether the body goes through an obstacle between its nodes, as a mesh that is too coarse to see it lets
-  /// it.
+  /// Returns whether the body penetrates an obstacle between its nodes, which a mesh too coarse there allows.
   bool enters() const { return entered_count_ > 0; }
 
-  /// Whether the next mesh is within the limit.
+  /// Refines the mesh; returns whether the new one is within the limit.
   bool refine(const std::vector<double>& error) {
     int fits = 0;
     together(mpi_, [&] {
@@ -149,7 +148,7 @@ class Adaptation {
   const Adaptivity aim_;
   CoarseRun run_;
   std::vector<std::int32_t> entered_;  ///< elements, on the first rank
-  std::int64_t entered_count_ = 0;     ///< on all
+  std::int64_t entered_count_ = 0;     ///< on all ranks
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Refines the mesh of a case where its solution asks for it.
+// Adaptive mesh refinement of a case, driven by its error estimate.
 #pragma once
 
 #include <kacanov/run_options.hpp>
@@ -9,11 +9,11 @@
 
 namespace kacanov {
 
-/// With mesh.adapt: solves the case on its mesh, refines that where the estimated error is (theory:
-/// bisection), solves again from there, and so on, until the error is small enough or a limit is met. Then
-/// input.mesh.adapted is the last mesh, on the first rank, with a warning in `input` of a limit that was met,
-/// and the solution on it is what the run starts from. Prints a line a mesh, but in a host's process. Throws
-/// InputError where the case does not fit its mesh. Collective.
+/// With mesh.adapt: solves the case on its mesh, refines the elements with the largest estimated error
+/// (theory: bisection), and solves again from there, until the error is small enough or a limit is reached.
+/// On return input.mesh.adapted is the last mesh (on the first rank), a warning in `input` names the limit
+/// that was reached, and the result is the initial solution of the run. Prints one line per mesh, except in a
+/// host process. Throws InputError if the case does not fit its mesh. Collective.
 CoarseRun adapt(Case& input, const MpiSession& mpi, const RunOptions& options);
 
 }  // namespace kacanov

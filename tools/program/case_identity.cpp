@@ -7,7 +7,7 @@
 namespace kacanov {
 namespace {
 
-/// "/material/0/young" as material[0].young.
+/// Converts "/material/0/young" to material[0].young.
 std::string key_path(const std::string& pointer) {
   std::string path, word;
   PlainWords words(pointer);
@@ -26,7 +26,7 @@ std::string value_at(const nlohmann::json& document, const std::string& pointer)
   return text.size() <= 40 ? text : text.substr(0, 37) + "...";
 }
 
-/// The first keys of a section that differ, in the words of the case files.
+/// Returns the first differing keys of a section, with both values.
 std::string differing_keys(const nlohmann::json& there, const nlohmann::json& here,
                            const std::string& section) {
   constexpr int most = 3;

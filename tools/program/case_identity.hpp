@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether a file that holds results of a case, or its parts, belongs to the case at hand, and what differs.
+// Checks whether a file with results or parts belongs to the case at hand, and describes the differences.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,20 +11,20 @@
 
 namespace kacanov {
 
-/// The named sections of a case file, those that are there.
+/// Returns those of the named sections that the case file has.
 nlohmann::json case_sections(const nlohmann::json& document, std::span<const char* const> sections);
 
-/// Those of the sections that are not equal in two documents.
+/// Returns the sections that differ between two documents.
 std::vector<std::string> differing_sections(const nlohmann::json& there, const nlohmann::json& here,
                                             std::span<const char* const> sections);
 
-/// What is said of sections that differ: "material differs (material[0].young: 1.0 there, 2.0 here); ...",
-/// with the first keys of each.
+/// Returns "material differs (material[0].young: 1.0 there, 2.0 here); ...", with the first differing keys of
+/// each section.
 std::string describe_differences(const nlohmann::json& there, const nlohmann::json& here,
                                  std::span<const std::string> sections);
 
 nlohmann::json fingerprint_json(const Fingerprint& print);
-/// The converse.
+/// Inverse of fingerprint_json().
 Fingerprint parse_fingerprint(const nlohmann::json& json);
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cases as people like to read them, for the commands that write some.
+// Formats case files for people, for the commands that write them.
 #include "program/case_text.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace kacanov {
 namespace {
 
-/// On one line, with a blank behind commas and colons.
+/// Writes the value on one line, with a blank after commas and colons.
 std::string in_a_row(const nlohmann::ordered_json& value) {
   std::string text;
   if (value.is_object()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cases as people like to read them, for the commands that write some.
+// Formats case files for people, for the commands that write them.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,13 +8,13 @@
 
 namespace kacanov {
 
-/// A case with every entry on a line of its own, below comments of a line each.
+/// Returns a case with each entry on its own line, below one-line comments.
 std::string case_text(const nlohmann::ordered_json& document, std::span<const std::string> comments);
 
-/// What a comment may hold: no line ends, nothing that a terminal would obey.
+/// Returns the text made safe for a comment: no line ends or control characters.
 std::string comment_text(const std::string& text);
 
-/// Throws InputError where there is such a file and `force` is not set.
+/// Throws InputError if the file exists and `force` is not set.
 void refuse_existing(const std::string& path, bool force);
 
 }  // namespace kacanov

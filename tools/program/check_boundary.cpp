@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether the boundary that was read from a file has what the rest of a run looks up in it.
+// Validates the boundary data that were read from a file.
 #include "program/check_boundary.hpp"
 
 #include <algorithm>
@@ -54,7 +54,7 @@ void check_boundary(const Problem& problem, std::span<const std::int32_t> nodes,
   expect_below("elements", mesh.elements, count);
   expect(mesh.element_tags.empty() || mesh.element_tags.size() == mesh.element_count(),
          "element numbers are not one an element");
-  // In 3D nothing is kept of elements, and nothing asks for them.
+  // In 3D the boundary has no elements, and none are needed.
   expect(mesh.facet_element.empty() || mesh.facet_element.size() == mesh.facet_count(),
          "elements of facets are not one a facet");
   expect_below("elements of facets", mesh.facet_element, static_cast<std::int64_t>(mesh.element_count()));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether the boundary that was read from a file has what the rest of a run looks up in it.
+// Validates the boundary data that were read from a file.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace kacanov {
 
-/// Throws InputError naming the first array of what keep_boundary() leaves that has a wrong length or an
-/// index of something that is not there. `nodes`: their numbers in the whole body; part: any of its parts.
+/// Throws InputError naming the first array of the boundary data (see keep_boundary()) that has a wrong
+/// length or an index out of range. `nodes`: node numbers in the whole body; `part`: any of its parts.
 void check_boundary(const Problem& problem, std::span<const std::int32_t> nodes, const Part& part);
 
 }  // namespace kacanov

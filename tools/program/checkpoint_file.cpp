@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The file of a checkpoint: a header with the names and lengths of the fields, and the fields.
+// Checkpoint file: a header with names and lengths of the fields, then the fields.
 #include "program/checkpoint_file.hpp"
 
 #include <bit>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::string_view magic = "kacanov checkpoint 5\n";
 constexpr double share_of_time = 0.02;
-/// The sections of a case that have to be the same; solver options may change, but for the path of the load.
+/// Sections of a case that must agree; solver options may change, except for the load path.
 constexpr const char* sections[] = {"plane", "thickness", "mesh", "material", "boundary", "contact", "steps"};
 
 }  // namespace
@@ -64,7 +64,7 @@ void CheckpointFile::write(const Checkpoint& checkpoint) {
   header["load_steps"] = input_->model.solver.load_steps;
   header["case"] = case_sections(input_->document, sections);
   header["numbers"] = header["fields"] = nlohmann::json::object();
-  // As bits: JSON has no infinity.
+  // Stored as bits, because JSON has no infinity.
   for (const auto& [name, value] : checkpoint.numbers)
     header["numbers"][name] = std::bit_cast<std::uint64_t>(value);
   for (const auto& [name, values] : checkpoint.fields) header["fields"][name] = values.size();
@@ -75,7 +75,7 @@ void CheckpointFile::write(const Checkpoint& checkpoint) {
     file.commit();
     written_ = true;
   } catch (const InternalError& refusal) {
-    // A run of hours does not end because its disk is full now.
+    // A full disk must not end a run that has taken hours.
     if (warned_ != refusal.what()) {
       std::cerr << "kacanov: warning: " + printable(refusal.what()) +
                        (std::filesystem::exists(path_) ? "; the checkpoint before it stays\n"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The file of a checkpoint: written often, whole or not at all, read only for the case it belongs to.
+// Checkpoint file: written often, always complete, and read only for the case it belongs to.
 #pragma once
 
 #include <chrono>
@@ -16,21 +16,20 @@ namespace kacanov {
 /// Name of the file in the output folder.
 constexpr const char* checkpoint_name = "checkpoint.kacanov";
 
-/// The checkpoint of one run, of a problem with this fingerprint. Everything happens on the first rank. The
-/// case has to outlive it.
+/// Checkpoint of one run of a problem with this fingerprint. Reads and writes on the first rank only. The
+/// case must outlive it.
 class CheckpointFile {
  public:
   CheckpointFile(const std::filesystem::path& folder, const Case& input, Fingerprint print)
       : path_(folder / checkpoint_name), input_(&input), print_(std::move(print)) {}
 
-  /// Throws InputError: no such file, not a checkpoint, cut short, damaged, or of another case, with what
-  /// differs.
+  /// Throws InputError if there is no such file, it is not a checkpoint, is truncated or damaged, or belongs
+  /// to another case, with the differences.
   Checkpoint read() const;
 
-  /// Whether a checkpoint is worth its time: the last one took less than a fiftieth of the time since then.
+  /// Returns whether a checkpoint is cheap enough: the last one took less than 1/50 of the time since then.
   bool due() const;
-  /// Replaces the file. Where the system refuses, the one before stays, and a warning is printed (once for
-  /// each reason).
+  /// Replaces the file. On a system error the previous one stays and a warning is printed, once per reason.
   void write(const Checkpoint& checkpoint);
   void remove() const;
 
@@ -46,7 +45,7 @@ class CheckpointFile {
   const Case* input_;
   Fingerprint print_;
   Clock::time_point last_ = Clock::now();
-  std::chrono::duration<double> cost_{2e-3};  // a guess, until there is one
+  std::chrono::duration<double> cost_{2e-3};  // initial guess
   bool written_ = false;
   std::string warned_;
 };

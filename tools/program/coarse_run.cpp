@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Solves a case on coarser meshes first, each from the one before.
+// Nested iteration: solves a case on coarser meshes first, each from the one before.
 #include "program/coarse_run.hpp"
 
 #include <algorithm>
@@ -19,9 +19,9 @@
 namespace kacanov {
 namespace {
 
-/// Below this a mesh is solved at once: a coarser one costs as much as it saves.
+/// Meshes with fewer unknowns are solved directly: a coarser one would cost as much as it saves.
 constexpr std::int64_t least_fine = 1000, least_coarse = 100;
-/// What a start has to be known to: interpolation adds more than that.
+/// Tolerance on coarser meshes: interpolation adds a larger error.
 constexpr double coarse_tolerance = 1e-3;
 
 std::int64_t unknowns_of(const BoxSpec& box) {
@@ -32,14 +32,14 @@ std::int64_t unknowns_of(const BoxSpec& box) {
   return nodes * dim;
 }
 
-/// What makes a coarser mesh, on the first rank.
+/// Generator of a coarser mesh, called on the first rank.
 struct Coarser {
   std::function<Mesh()> make;
-  bool halves = true;      ///< the mesh before it in half: its edges are those of the one before, halved
-  std::string named = {};  ///< by this key of the case; empty where the program makes it by itself
+  bool halves = true;      ///< it has the edges of the previous mesh halved
+  std::string named = {};  ///< case key of its file; empty if the program generates it
 };
 
-/// Half as many cells along each axis, coarsest first.
+/// Returns boxes with half the cells per axis each time, coarsest first.
 std::vector<BoxSpec> coarser_boxes(const BoxSpec& fine) {
   std::vector<BoxSpec> boxes;
   if (unknowns_of(fine) < least_fine) return boxes;
@@ -55,7 +55,7 @@ std::vector<BoxSpec> coarser_boxes(const BoxSpec& fine) {
   return boxes;
 }
 
-/// Coarsest first.
+/// Returns the coarser meshes of a case, coarsest first.
 std::vector<Coarser> coarser_meshes(const MeshSource& mesh) {
   std::vector<Coarser> meshes;
   if (mesh.box)
@@ -73,7 +73,7 @@ std::vector<Coarser> coarser_meshes(const MeshSource& mesh) {
   return meshes;
 }
 
-/// The case on this mesh, without probes where one lies outside.
+/// Applies the case to this mesh, without probes if one lies outside.
 Problem put_on(const Case& input, Mesh mesh) {
   Model model = model_with_files(input);
   if (!model.probes.empty()) try {
@@ -84,7 +84,7 @@ Problem put_on(const Case& input, Mesh mesh) {
   return build_problem(std::move(mesh), model);
 }
 
-/// Throws InputError where a file that the case names is no mesh of a body in so many dimensions.
+/// Throws InputError if a file named in the case is not a mesh of a body of this dimension.
 Mesh load_coarser(const Coarser& coarser, std::size_t dim) try {
   Mesh mesh = coarser.make();
   if (static_cast<std::size_t>(mesh.dim()) != dim)
@@ -95,7 +95,8 @@ Mesh load_coarser(const Coarser& coarser, std::size_t dim) try {
   throw InputError(coarser.named + ": " + error.what());
 }
 
-/// The case on a coarser mesh; nothing where it does not fit, which is said of files that the case names.
+/// Applies the case to a coarser mesh; nothing if it does not fit, with a warning for files named in the
+/// case.
 std::optional<Problem> coarse_problem(Case& input, std::size_t dim, const Coarser& coarser) {
   Mesh mesh = load_coarser(coarser, dim);
   try {
@@ -108,16 +109,16 @@ std::optional<Problem> coarse_problem(Case& input, std::size_t dim, const Coarse
   }
 }
 
-/// Takes u on to what halving the mesh once more may be expected to give: errors of order p + 1 fall to
-/// 2⁻⁽ᵖ⁺¹⁾ each time, and so do the differences of levels (Richardson).
+/// Extrapolates u to the next halved mesh: errors of order p + 1, and so the differences between levels,
+/// shrink by 2⁻⁽ᵖ⁺¹⁾ per halving (Richardson).
 void extrapolate(const CoarseSolution& before, const Part& part, std::span<double> u) {
   const std::vector<double> from = interpolate(before, part).displacement;
   const double share = std::ldexp(1.0, -(cell(part.type).order + 1));
   for (std::size_t i = 0; i < u.size(); ++i) u[i] += share * (u[i] - from[i]);
 }
 
-/// Solves on one mesh, from `run.solution` where there is one, and puts what comes out there.
-/// - halves: whether the next mesh is this one halved.
+/// Solves on one mesh, starting from `run.solutions` if not empty, and adds the result to `run`.
+/// - halved: the next mesh is this one halved.
 void solve_level(Case& input, std::size_t dim, const Coarser& coarser, bool halved, const MpiSession& mpi,
                  const RunOptions& options, CoarseRun& run) {
   const double start = MPI_Wtime();
@@ -132,7 +133,7 @@ void solve_level(Case& input, std::size_t dim, const Coarser& coarser, bool halv
   if (fits == 0) return;
   Part part = distribute(problem ? &*problem : nullptr, mpi.comm());
   const Problem* whole = problem ? &*problem : nullptr;
-  // Where this mesh and the next one are the one before halved.
+  // Extrapolate if this mesh and the next one are both halvings of the previous one.
   const auto taken_on = [&](Solution solution, std::size_t step) {
     if (step < run.solutions.size() && coarser.halves && halved && run.levels.back().converged)
       extrapolate(run.solutions[step], part, solution.displacement);
@@ -199,7 +200,7 @@ void CoarseRun::take(const Solution& of, std::vector<CoarseSolution> before, con
 void note_discretisation(const DiscretisationError& error, const CoarseRun& coarse, Result& result) {
   Discretisation& out = result.discretisation;
   out.energy = error.relative;
-  // Of the meshes in a row that end with this one.
+  // The uninterrupted sequence of halved meshes that ends with this one.
   std::vector<const CoarseLevel*> levels;
   for (const CoarseLevel& level : coarse.levels) {
     const bool knows = level.converged && level.halved && level.probe.size() == result.probe.size();
@@ -236,7 +237,7 @@ CoarseRun solve_coarser(Case& input, std::size_t dim, const MpiSession& mpi, con
     if (mpi.first() && options.phase) options.phase("solving on a coarser mesh");
     if (stop_wanted(mpi, options)) break;
     const std::size_t before = run.levels.size();
-    // The case's own mesh is the last one halved, but for one that mesh.files names before it.
+    // The case's own mesh is the last one halved, unless mesh.files names the last one.
     const bool halved = k + 1 < meshes.size() ? meshes[k + 1].halves : meshes[k].named.empty();
     solve_level(input, dim, meshes[k], halved, mpi, coarse, run);
     if (mpi.first() && !mpi.hosted() && options.progress && run.levels.size() > before)

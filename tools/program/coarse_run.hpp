@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Solves a case on coarser meshes first, each from the one before.
+// Nested iteration: solves a case on coarser meshes first, each from the one before.
 #pragma once
 
 #include <functional>
@@ -17,35 +17,37 @@ namespace kacanov {
 
 struct CoarseRun {
   std::vector<CoarseLevel> levels;        ///< coarsest first
-  std::vector<CoarseSolution> solutions;  ///< of the finest of them that has converged, one a load step
+  std::vector<CoarseSolution> solutions;  ///< one per load step, from the finest mesh that converged
 
-  /// Takes up what has come out on one more mesh, with the ends of the load steps before the last. `problem`:
-  /// on the first rank. Collective. `halved`: whether the next mesh has its edges halved.
+  /// Adds the solution on one more mesh, and those at the ends of earlier load steps (`before`). `problem`:
+  /// on the first rank. `halved`: the next mesh has the edges of this one halved. Collective.
   void take(const Solution& of, std::vector<CoarseSolution> before, const Part& part, const Problem* problem,
             double began, bool halved = false);
 };
 
-/// One line for people.
+/// Returns one line for the output of a run.
 std::string level_line(const CoarseLevel& level);
-/// For runs before the run: nothing is reported or saved.
+/// Returns options for a preliminary run: no reports and no checkpoints.
 RunOptions silent(const RunOptions& options);
-/// Whether any rank has been asked to stop. Collective.
+/// Returns whether any rank was asked to stop. Collective.
 bool stop_wanted(const MpiSession& mpi, const RunOptions& options);
-/// To a thousandth, from the solutions before. `step_over` as RunOptions::load_step_over. Collective.
+/// Solves to a tolerance of 1e-3, starting from earlier solutions. `step_over` as RunOptions::load_step_over.
+/// Collective.
 Solution solve_roughly(const Case& input, Part& part, RunOptions options, const CoarseRun& before,
                        std::function<void(const Part&, const Solution&)> step_over);
 
-/// The coarser meshes of a case, one after the other, to a thousandth: of a large enough box those with half
-/// the cells, of a file that is refined those before, and those that mesh.files names. One that the case does
-/// not fit, or that does not converge, is passed over: it is only to start from; of a file that was named, a
-/// warning of the case says why. None where obstacles move, or where solver.nested says so.
-/// - dim: of the case's own mesh.
-/// Prints a line a mesh, but in a host's process. Throws InputError for a named file that is no mesh, on all
-/// ranks alike. Collective.
+/// Solves the coarser meshes of a case one after the other to a tolerance of 1e-3: for a large enough box,
+/// those with half the cells per axis; for a file with mesh.refine, those before each refinement; and those
+/// named in mesh.files. A mesh that the case does not fit, or on which it does not converge, is skipped, as
+/// it only provides an initial guess; for a named file a warning gives the reason. Returns no levels if
+/// obstacles move or solver.nested is false.
+/// - dim: dimension of the case's own mesh.
+/// Prints one line per mesh, except in a host process. Throws InputError on all ranks for a named file that
+/// is not a mesh. Collective.
 CoarseRun solve_coarser(Case& input, std::size_t dim, const MpiSession& mpi, const RunOptions& options);
 
-/// Fills in result.discretisation: the estimate of the strains, and what the coarser meshes tell of probes
-/// and the contact force.
+/// Fills result.discretisation: the energy error estimate, and the errors of probes and contact force from
+/// the coarser meshes.
 void note_discretisation(const DiscretisationError& error, const CoarseRun& coarse, Result& result);
 
 }  // namespace kacanov

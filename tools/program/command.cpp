@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a command line asks for.
+// Parses the command line.
 #include "program/command.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ std::vector<std::string> command_names(const CLI::App& app) {
   return names;
 }
 
-/// What is wrong with a first word that is no command.
+/// Error message for a first word that is not a command.
 std::string no_command(const std::string& word, const std::vector<std::string>& names) {
   const std::string guess = closest_word(word, names);
   std::string list;
@@ -32,7 +32,7 @@ std::string no_command(const std::string& word, const std::vector<std::string>& 
                      (guess.empty() ? "" : " (did you mean \"" + guess + "\"?)") + "; there are: " + list);
 }
 
-/// Of the commands that print a text and are done; empty for others.
+/// Output of the commands that only print a text; empty for others.
 std::string printed(const CLI::App& app) {
   if (app.got_subcommand("schema")) return case_json_schema().dump(2) + "\n";
   if (app.got_subcommand("man")) return manual_page(app);
@@ -72,7 +72,7 @@ ParsedCommand parse_command(int argc, const char* const* argv) {
     }
   } catch (const CLI::ParseError& error) {
     PlainText output, message;
-    if (app->exit(error, output, message) == 0) {  // --help and --version end the parsing, too
+    if (app->exit(error, output, message) == 0) {  // --help and --version end parsing too
       parsed.output = output.str();
       return parsed;
     }

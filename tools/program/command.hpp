@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The command line of the program.
+// Parsed command line of the program.
 #pragma once
 
 #include <optional>
@@ -13,26 +13,26 @@ struct Command {
   Kind kind = Kind::run;
   std::string case_file;
   std::string output;                   ///< folder; empty: results/<case name>
-  std::string parts;                    ///< run: folder that `partition` has written; empty: none
-  std::optional<int> ranks, threads;    ///< of partition: `ranks` is the number of parts, and always there
+  std::string parts;                    ///< run: folder written by `partition`; empty: none
+  std::optional<int> ranks, threads;    ///< partition: `ranks` is the number of parts, always set
   std::vector<std::string> overrides;   ///< --set
-  std::optional<double> tolerance;      ///< spectrum: relative, on λ_min and λ_max
-  bool restart = false;                 ///< run: go on from the checkpoint in the folder
-  bool memory_check = true;             ///< run: refuse what does not fit
-  bool quiet = false, verbose = false;  ///< run: errors and warnings alone; every phase
-  double stop_within = 30.0;            ///< run: seconds from a signal until it is ended all the same
+  std::optional<double> tolerance;      ///< spectrum: relative tolerance for λ_min and λ_max
+  bool restart = false;                 ///< run: continue from the checkpoint in the folder
+  bool memory_check = true;             ///< run: refuse a run that does not fit into memory
+  bool quiet = false, verbose = false;  ///< run: print errors and warnings only; print every phase
+  double stop_within = 30.0;            ///< run: seconds after a stop signal until the process is ended
   bool json = false;                    ///< spectrum: print JSON
   std::optional<double> r_min, r_max;   ///< sweep
   int points = 21;                      ///< sweep
   std::string from, to;                 ///< convert, init: files; `to` may be empty
-  bool leave_out = false;               ///< convert, run of a deck: makes a case without what is not known
-  bool force = false;                   ///< convert, init: writes over files that are there
+  bool leave_out = false;               ///< convert, run of a deck: skip unsupported keywords
+  bool force = false;                   ///< convert, init: overwrite existing files
 
-  /// Whether there is no case to be read.
+  /// Returns whether the command reads no case.
   bool without_case() const noexcept { return kind == Kind::convert || kind == Kind::init; }
 };
 
-/// What the command line asks for, or a text to print and the exit code to leave with.
+/// The parsed command, or a text to print and the exit code.
 struct ParsedCommand {
   std::optional<Command> command;
   std::string output, error;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// kacanov check: validates a case, shows what it selects and estimates what it costs.
+// kacanov check: validates a case, prints its selections and estimates its cost.
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
@@ -92,8 +92,7 @@ void print_contact_gaps(const Problem& problem) {
   print_range("initial gap", low->gap, high->gap);
 }
 
-// A rough model of the time, fitted to runs of the beam in 2D and 3D: seconds of a core an unknown. The case
-// decides more.
+// Rough time model, fitted to runs of the beam in 2D and 3D: core seconds per unknown. The case matters more.
 constexpr double seconds_elastic = 1e-5, seconds_plastic = 2.5e-5;
 
 void print_estimate(const Problem& problem, const Case& input, int ranks) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// kacanov convert: a case and its mesh of a deck, or another format of a mesh.
+// kacanov convert: converts a deck to a case and its mesh, or a mesh to another format.
 #include <filesystem>
 #include <iostream>
 #include <numeric>
@@ -37,7 +37,7 @@ void write_mesh_as_vtu(const std::string& path, const Mesh& mesh) {
   write_vtu(path, grid);
 }
 
-/// Groups of a mesh, in a sentence.
+/// Lists the groups of a mesh in a sentence.
 std::string groups_text(const Mesh& mesh) {
   std::string text;
   for (const Group& group : mesh.groups) text += (text.empty() ? "" : ", ") + group.name;
@@ -64,7 +64,7 @@ void convert_mesh(const Command& command, const std::string& kind) {
   say_what_was_written(command.to, mesh);
 }
 
-/// A case that a deck comes to, and where its files go.
+/// A case converted from a deck, and the paths of its files.
 struct MadeCase {
   DeckCase made;
   std::filesystem::path to, mesh, temperatures;
@@ -88,7 +88,7 @@ MadeCase case_of_deck(const Command& command, const std::filesystem::path& to) {
         {{"on", "all"}, {"temperature", {{"file", result.temperatures.filename().string()}}}});
   }
   made.document["mesh"] = {{"file", result.mesh.filename().string()}};
-  try {  // what the deck's keywords come to has to be a case
+  try {  // the converted keywords must form a valid case
     const Case input = parse_case(nlohmann::json(made.document), to.parent_path().string());
     for (const std::string& warning : input.warnings) made.remarks.push_back(made.with_line(warning));
   } catch (const InputError& error) {
@@ -103,7 +103,7 @@ MadeCase case_of_deck(const Command& command, const std::filesystem::path& to) {
   return result;
 }
 
-/// All of its files or, where one cannot be written, none of those that were not there before.
+/// Writes all files; if one cannot be written, removes those that did not exist before.
 void write_case(const MadeCase& result) {
   std::vector<std::filesystem::path> written;
   const auto write = [&](const std::filesystem::path& path, const auto& writer) {
@@ -145,7 +145,7 @@ Command with_case_of_deck(Command command) {
                      "expected another name, or a case that kacanov convert makes");
   Command convert = command;
   convert.from = command.case_file;
-  convert.force = true;  // what an earlier run made of the deck
+  convert.force = true;  // overwrite the files of an earlier run of the deck
   const MadeCase made = case_of_deck(convert, to);
   std::error_code error;
   std::filesystem::create_directories(folder, error);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// kacanov init: a case to start from, with the groups of its mesh and what may be said of them.
+// kacanov init: writes a starting case for a mesh, with its groups and comments.
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -16,10 +16,10 @@
 namespace kacanov {
 namespace {
 
-/// A string of JSON.
+/// Returns the name as a JSON string.
 std::string shown(const std::string& name) { return nlohmann::json(name).dump(); }
 
-/// Groups of a dimension that have members, for a comment.
+/// Lists the non-empty groups of the given dimensions, for a comment.
 std::string list_of(const Mesh& mesh, int lowest, int highest, const std::string& what) {
   std::string text;
   for (const Group& group : mesh.groups)
@@ -29,13 +29,13 @@ std::string list_of(const Mesh& mesh, int lowest, int highest, const std::string
   return what + ": " + (text.empty() ? "none has a name" : comment_text(text));
 }
 
-/// A vector with as many entries as the mesh has dimensions.
+/// Returns a vector with one entry per dimension of the mesh.
 std::string along(const Mesh& mesh, const char* last) {
   return std::string(mesh.dim() == 3 ? "[0, 0, " : "[0, ") + last + "]";
 }
 
-/// What holds the body and what is loaded: the first two groups of facets, or the ends of the box round the
-/// mesh where there are none.
+/// Returns selectors of a supported and a loaded side: the first two facet groups, or two ends of the
+/// bounding box if there are none.
 std::array<std::string, 2> two_sides(const Mesh& mesh) {
   std::vector<std::string> names;
   for (const Group& group : mesh.groups)
@@ -109,7 +109,7 @@ int init_command(const Command& command) {
   check_mesh(mesh);
   for (const std::string& warning : mesh.warnings)
     std::cerr << "kacanov: warning: " + printable(warning) + "\n";
-  // Relative to the case, as the case file means it.
+  // Relative to the folder of the case, as paths in a case are.
   const auto folder = std::filesystem::absolute(to).parent_path();
   const auto relative = std::filesystem::absolute(from).lexically_relative(folder);
   const std::string file = from.is_absolute() || relative.empty() ? from.string() : relative.string();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Commands and options of the program, with a line of help each.
+// Commands and options of the program, each with one line of help.
 #include "program/command_line.hpp"
 
 #include <CLI/Config.hpp>

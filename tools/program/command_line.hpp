@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Commands and options, from which come parsing, --help, the manual page and the completion of shells.
+// Commands and options: the one source of parsing, --help, the manual page and shell completion.
 #pragma once
 
 #include <CLI/App.hpp>
@@ -11,7 +11,7 @@
 
 namespace kacanov {
 
-/// The command line of the program; parsing it fills in `command`, all but its kind.
+/// Returns the command line parser, which fills `command` except for its kind.
 std::unique_ptr<CLI::App> make_command_line(Command& command);
 
 inline constexpr const char* what_it_does = "elastoplastic bodies in contact with rigid obstacles";
@@ -32,9 +32,9 @@ inline constexpr Meaning environment[] = {
 std::vector<const CLI::App*> commands_of(const CLI::App& app);
 std::vector<const CLI::Option*> options_of(const CLI::App& app);
 
-/// The page that `man kacanov` shows, for groff.
+/// Returns the manual page in groff format, as `man kacanov` shows it.
 std::string manual_page(const CLI::App& app);
-/// A script that makes bash complete commands, options, files and keys of --set.
+/// Returns a bash script that completes commands, options, files and the keys of --set.
 std::string bash_completion(const CLI::App& app);
 
 }  // namespace kacanov

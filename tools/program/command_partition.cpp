@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// kacanov partition: splits a case once into files that the ranks of later runs read on their own.
+// kacanov partition: partitions a case once into files that the ranks of later runs read separately.
 #include <iostream>
 
 #include <kacanov/error.hpp>

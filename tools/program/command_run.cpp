@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// kacanov run: solves a case and writes everything about it.
+// kacanov run: solves a case and writes all results.
 #include <functional>
 #include <iomanip>
 #include <iostream>
@@ -37,10 +37,11 @@
 namespace kacanov {
 namespace {
 
-/// In the output folder: the mesh that mesh.adapt has made.
+/// File in the output folder with the mesh of mesh.adapt.
 constexpr const char* adapted_mesh_file = "mesh.msh";
 
-/// Whether a run writes files of this name, or has left it unfinished. A whole checkpoint is none: it stays.
+/// Returns whether a run writes files of this name, complete or unfinished. A complete checkpoint is
+/// excluded: it stays.
 bool is_output(std::string_view name) {
   const std::string_view whole = without_number(name, ".part");
   if (whole == "checkpoint.kacanov") return whole != name;
@@ -50,8 +51,8 @@ bool is_output(std::string_view name) {
   return is_field_file(whole);
 }
 
-/// Takes away what an earlier run left under names that this one may not write again, and what it was writing
-/// when it was killed. A run that goes on keeps the fields of the load steps behind it.
+/// Removes files of an earlier run that this one may not overwrite, and unfinished ones of a killed run. With
+/// `goes_on`, a restart, fields of earlier load steps are kept.
 void clear_folder(const std::filesystem::path& folder, bool goes_on) {
   std::vector<std::filesystem::path> old;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
@@ -66,12 +67,12 @@ void clear_folder(const std::filesystem::path& folder, bool goes_on) {
 }
 
 void write_json(const std::filesystem::path& file, const nlohmann::ordered_json& json) {
-  // A message may quote what is no UTF-8, such as the name of a file.
+  // A message may quote invalid UTF-8, such as a file name.
   using Handler = nlohmann::ordered_json::error_handler_t;
   write_file(file.string(), json.dump(2, ' ', false, Handler::replace) + "\n");
 }
 
-/// Values of some nodes; of none where there are no values.
+/// Returns the values of some nodes; empty if `nodes` is empty.
 std::vector<double> picked(std::span<const double> all, std::span<const std::int32_t> nodes, int components) {
   const std::size_t width = components;
   std::vector<double> some;
@@ -83,10 +84,10 @@ std::vector<double> picked(std::span<const double> all, std::span<const std::int
   return some;
 }
 
-/// Tells what a run is at, where that takes long enough to be asked for; on the first rank.
+/// Returns a function that prints the current phase, if the run is long enough; on the first rank.
 std::function<void(const std::string&)> tell_phases(const Command& command, const Case& input,
                                                     const Terminal& terminal, double start) {
-  constexpr std::int64_t soon = 100'000;  // unknowns: all is over within a second or two
+  constexpr std::int64_t soon = 100'000;  // unknowns; smaller runs take a second or two
   if (command.quiet || (!command.verbose && command.parts.empty() && estimate_unknowns(input.mesh) < soon))
     return {};
   return [terminal, start](const std::string& phase) {
@@ -108,8 +109,7 @@ LoadedCase load(const Command& command, const Case& input, const MpiSession& mpi
   return loaded;
 }
 
-/// The solve; what is wrong with the checkpoint it starts from, in the file of this name, is said of that
-/// file.
+/// Solves; an error in the checkpoint of a restart is reported with its file name.
 Solution solve_from(const Case& input, Part& part, const MpiSession& mpi, const RunOptions& options,
                     const std::string& checkpoint) {
   try {
@@ -126,12 +126,12 @@ std::string checkpoint_line(const CheckpointFile& file) {
                         : "";
 }
 
-/// A nodal field at the nodes of the boundary, on the first rank. Collective.
+/// Returns a nodal field at the boundary nodes, on the first rank. Collective.
 std::vector<double> at_boundary(const LoadedCase& loaded, std::span<const double> local, int components) {
   return picked(gather_nodal(loaded.part, local, components), loaded.boundary_nodes, components);
 }
 
-/// Writes the fields of a load step that is over. Collective.
+/// Writes the fields of a completed load step. Collective.
 void write_step(const FieldPlace& place, const LoadedCase& loaded, const Model& model, const MpiSession& mpi,
                 const Solution& solution) {
   ContactFields contact = gather_contact_fields(loaded.part, solution);
@@ -145,7 +145,7 @@ void write_step(const FieldPlace& place, const LoadedCase& loaded, const Model& 
   });
 }
 
-/// What failed after the solve does not take its numbers away: they stay beside the status and the message.
+/// A failure after the solve keeps the numbers: adds status and message to the existing result.json.
 void note_failure(const std::filesystem::path& folder, const std::string& text) {
   const std::filesystem::path file = folder / "result.json";
   if (!std::filesystem::exists(file)) return write_json(file, failure_json(text));
@@ -156,7 +156,7 @@ void note_failure(const std::filesystem::path& folder, const std::string& text) 
   write_json(file, json);
 }
 
-/// Pictures and texts for people cannot fail a run whose numbers are written.
+/// An error in pictures and texts must not fail a run whose numbers are written.
 void try_to_show(const std::function<void()>& work) {
   try {
     work();
@@ -165,7 +165,7 @@ void try_to_show(const std::function<void()>& work) {
   }
 }
 
-/// The mesh that mesh.adapt makes, or that the run to go on from has made. Collective.
+/// Adapts the mesh, or reads the adapted mesh of the run to be continued. Collective.
 CoarseRun adapt_or_read(const Command& command, Case& input, const MpiSession& mpi,
                         const std::function<void(const std::string&)>& phase) {
   if (!command.parts.empty()) throw InputError("--parts: a mesh that is adapted has none yet (mesh.adapt)");
@@ -201,7 +201,7 @@ void ResultMark::leave(const std::string& text) const {
     const OutputFolder held(folder_);
     if (written() == before_) std::filesystem::remove(folder_ / "result.json");
     note_failure(folder_, text);
-  } catch (...) {  // the message on the standard error is all there is
+  } catch (...) {  // the message on standard error must suffice
   }
 }
 
@@ -220,7 +220,7 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
   CoarseRun coarse;
   if (given.mesh.adapt) coarse = adapt_or_read(command, input, mpi, phase);
   LoadedCase loaded = load(command, input, mpi, phase);
-  std::shared_ptr<OutputFolder> held;  // on the first rank, as what follows
+  std::shared_ptr<OutputFolder> held;  // on the first rank, like the following
   std::optional<CheckpointFile> file;
   std::optional<Checkpoint> left;
   together(mpi, [&] {
@@ -235,8 +235,8 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
     input.mesh.adapted.reset();
   });
 
-  // The folder is that of all ranks, and whichever fails first can say so there. The session keeps the folder
-  // held until then.
+  // The output folder is shared by all ranks, and the first one to fail records it there. The session keeps
+  // the folder locked until then.
   mpi.when_failing([folder, held](const Failure& failure) { note_failure(folder, failure.text); });
 
   RunOptions options;
@@ -254,8 +254,8 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
     if (!command.quiet) table(step);
   };
   if (!command.quiet) options.stage = [&](const std::string& name) { table.stage(name); };
-  // A run that was stopped before its first step starts again. Load steps to come start from the coarser
-  // meshes after other restarts too.
+  // A run that was stopped before its first step starts from the beginning. Later load steps start from the
+  // coarser meshes after other restarts too.
   const bool begins = !loaded.part.node_map.any(left && left->begun());
   if (begins) left.reset();
   options.start = left ? &*left : nullptr;
@@ -299,7 +299,7 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
     von_mises = at_boundary(loaded, means.von_mises, 1);
   }
   if (phase && mpi.first()) phase("writing to " + printable(folder.string()));
-  // The numbers first: whatever fails after them, they are there.
+  // Write the numbers first, so that a later failure cannot lose them.
   figures.read = loaded.read_seconds;
   figures.distribute = loaded.distribute_seconds;
   figures.total = solved - start;
@@ -307,7 +307,7 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
     if (mpi.first())
       write_json(folder / "result.json", result_json(result, figures, input, loaded.problem->mesh));
   });
-  // Where a checkpoint goes, what takes its place is on the disk first.
+  // Before a checkpoint is removed, the files that replace it are synced to disk.
   const bool replaced = loaded.part.node_map.any(mpi.first() && result.status == Status::converged &&
                                                  std::filesystem::exists(file->path()));
   if (input.output.fields) write_body({folder}, loaded.part, solution, fields, mpi);
@@ -327,7 +327,7 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
     const double end = MPI_Wtime();
     figures.total = end - start;
     figures.output = end - solved;
-    // Once more, now that it is known what the output took.
+    // Again, now that the time for output is known.
     const nlohmann::ordered_json json = result_json(result, figures, input, loaded.problem->mesh);
     write_json(folder / "result.json", json);
     const std::string text = summary(result, figures, input.model, dim) +

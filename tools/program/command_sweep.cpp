@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// kacanov sweep: iterations and time against fixed penalties.
+// kacanov sweep: iterations and time over fixed penalties.
 #include <cmath>
 #include <cstdio>
 #include <iostream>
@@ -18,7 +18,7 @@
 namespace kacanov {
 namespace {
 
-/// What the sweep is compared with: r* of the elastic body and r_A of the solution.
+/// Reference values in the plot: r* of the elastic body and r_A of the solution.
 struct Landmarks {
   double r_star = 0.0, r_active = 0.0;
 };
@@ -74,7 +74,7 @@ int sweep_command(const Command& command, const Case& input, const MpiSession& m
   RunOptions options;
   options.threads = threads_of(command);
   SolverOptions solver = input.model.solver;
-  // A Newton step hardly knows r: what is swept is ADMM, unless the case names another one.
+  // A Newton step hardly depends on r: sweep over ADMM unless the case selects another method.
   if (solver.contact == SolverOptions::Contact::automatic) {
     solver.contact = SolverOptions::Contact::admm;
     solver.outer = SolverOptions::Outer::automatic;

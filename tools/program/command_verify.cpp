@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// kacanov verify: recomputes what a run says of its answer, from its files alone.
+// kacanov verify: recomputes the certificate of a run from its files alone.
 #include <iostream>
 
 #include <kacanov/error.hpp>
@@ -18,7 +18,7 @@ int verify_command(const Command& command, const Case& input) {
     return verdict.fulfilled ? exit_converged : exit_not_converged;
   } catch (const verify::Failure& failure) {
     throw InputError(failure.what());
-  } catch (const std::logic_error& failure) {  // something is not where it belongs
+  } catch (const std::logic_error& failure) {  // a file has unexpected content
     throw InputError("the mesh or the files of the run are not what the verifier expects: " +
                      std::string(failure.what()));
   } catch (const nlohmann::json::exception& failure) {

@@ -12,16 +12,16 @@
 namespace kacanov {
 
 int run_command(const Command& command, const Case& input, MpiSession& mpi);
-/// Writes into the output folder, made if missing, a result.json with why a run broke down, unless another
-/// run is writing there. For what happens before run_command() has the folder to itself.
+/// Writes a result.json with the reason of a failure into the output folder, which is created if missing,
+/// unless another run is writing there. For failures before run_command() has locked the folder.
 void leave_failure(const Command& command, const Case& input, const std::string& text);
 
-/// The result.json there is before a run.
+/// Remembers the result.json that existed before a run.
 class ResultMark {
  public:
   ResultMark(const Command& command, const Case& input);
-  /// The same as leave_failure(), for a run of which no process is left: the numbers that it has written stay
-  /// beside the message, those of a run before it do not.
+  /// Like leave_failure(), for a run whose processes have all ended: numbers that the run has written stay
+  /// beside the message, numbers of an earlier run do not.
   void leave(const std::string& text) const;
 
  private:
@@ -32,21 +32,21 @@ class ResultMark {
 };
 
 int spectrum_command(const Command& command, const Case& input, const MpiSession& mpi);
-/// Not converged means here that no penalty led to convergence.
+/// Not converged: the run converged for no penalty.
 int sweep_command(const Command& command, const Case& input, const MpiSession& mpi);
-/// The rest needs no MPI: everything happens on one rank. `ranks`: those of the run to be foreseen.
+/// The commands below need no MPI and use one rank. `ranks`: number of ranks of the planned run.
 int check_command(const Case& input, int ranks);
 int partition_command(const Command& command, const Case& input);
-/// Not converged means here that the answer does not fulfil its tolerance, or is not what the result says.
+/// Not converged: the solution exceeds its tolerance or differs from the numbers in the result.
 int verify_command(const Command& command, const Case& input);
 
-/// These two make a case or a mesh, and read none.
+/// These two create a case or a mesh and read none.
 int convert_command(const Command& command);
 int init_command(const Command& command);
 
-/// Whether the name is that of a deck, and not of a case.
+/// Returns whether the name is that of a deck rather than a case.
 bool names_deck(const std::string& path);
-/// For a run of a deck: makes its case and mesh in the folder of the run, as convert_command does, and
+/// For a run of a deck: writes its case and mesh into the folder of the run, as convert_command() does, and
 /// returns the command for that case.
 Command with_case_of_deck(Command command);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What makes bash complete a command line, made of the same commands and options as --help.
+// Bash completion, generated from the same commands and options as --help.
 #include "case/case_schema.hpp"
 #include "program/command_line.hpp"
 
@@ -32,13 +32,13 @@ void add_word(std::string& list, const std::string& word, const char* between = 
   list += (list.empty() ? "" : between) + word;
 }
 
-/// "-o" and "--output".
+/// Adds "-o" and "--output".
 void add_names(std::string& list, const CLI::Option& option, const char* between = " ") {
   for (const std::string& name : option.get_snames()) add_word(list, "-" + name, between);
   for (const std::string& name : option.get_lnames()) add_word(list, "--" + name, between);
 }
 
-/// Keys that lie one level deep: those of lists have a place, which only the case knows.
+/// Returns keys at depth one; keys in lists need an index, which depends on the case.
 std::string keys_to_set() {
   std::string list;
   for (const Key& part : std::get<KeySet>(case_schema().form().form).keys)
@@ -47,7 +47,7 @@ std::string keys_to_set() {
   return list;
 }
 
-/// What the options take that a value follows.
+/// Completes the values of options.
 std::string values_of(const CLI::App& app) {
   std::string folders, others;
   for (const CLI::App* command : commands_of(app))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reads the files in which Linux tells the limits of control groups.
+// Reads the limits of Linux control groups.
 #include "program/control_group.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The first number in a file; none without one ("max").
+/// Returns the first number in a file; nothing if there is none ("max").
 std::optional<double> number_in(const fs::path& file) {
   PlainFile stream(file);
   double value = 0.0;
@@ -20,7 +20,7 @@ std::optional<double> number_in(const fs::path& file) {
   return std::nullopt;
 }
 
-/// The number behind a word in a file of such pairs, 0 without it.
+/// Returns the number after a word in a file of word-number pairs; 0 if it is missing.
 double number_behind(const std::string& word, const fs::path& file) {
   PlainFile stream(file);
   std::string key;
@@ -41,7 +41,7 @@ void limit_cores(ControlGroupLimits& limits, std::optional<double> quota, std::o
     limits.cores = std::min(limits.cores, *quota / *period);
 }
 
-/// Both of a group of version 2.
+/// Applies both limits of a version 2 group.
 void look_at_unified(ControlGroupLimits& limits, const fs::path& group) {
   PlainFile cpu(group / "cpu.max");
   double quota = 0.0, period = 0.0;
@@ -59,8 +59,8 @@ void look_at_memory(ControlGroupLimits& limits, const fs::path& group) {
                number_behind("total_inactive_file", group / "memory.stat"));
 }
 
-/// The group and all above it. A container may see its own group as the root: what is not there is passed
-/// over.
+/// Visits the group and its parents. A container may see its own group as the root, so missing folders are
+/// skipped.
 template <class Look>
 void climb(ControlGroupLimits& limits, const fs::path& hierarchy, const std::string& group, Look&& look) {
   std::error_code ignored;
@@ -84,7 +84,7 @@ ControlGroupLimits control_group_limits(std::istream& membership, const fs::path
                       group = line.substr(second + 1);
     if (controllers.empty()) {
       climb(limits, mounted, group, look_at_unified);
-      climb(limits, mounted / "unified", group, look_at_unified);  // beside version 1
+      climb(limits, mounted / "unified", group, look_at_unified);  // version 2 mounted beside version 1
       continue;
     }
     PlainWords words(controllers);

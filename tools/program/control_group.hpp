@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the control groups of this process leave it of the machine, in versions 1 and 2, nested ones included.
+// Limits of Linux control groups on this process, versions 1 and 2, including parent groups.
 #pragma once
 
 #include <cmath>
@@ -8,17 +8,17 @@
 
 namespace kacanov {
 
-/// Infinite where nothing is limited.
+/// Infinite if there is no limit.
 struct ControlGroupLimits {
-  double cores = HUGE_VAL;   ///< processor time a time
-  double memory = HUGE_VAL;  ///< bytes that are left: the limit less what is in use and cannot be reclaimed
+  double cores = HUGE_VAL;   ///< processor seconds per second
+  double memory = HUGE_VAL;  ///< free bytes: the limit minus memory in use that cannot be reclaimed
 };
 
-/// The narrowest limits of the groups that `membership` (a /proc/PID/cgroup) names and of all those above
-/// them. `mounted` is where the hierarchies are mounted; what is not there limits nothing.
+/// Returns the tightest limits of the groups listed in `membership` (a /proc/PID/cgroup) and of their
+/// parents. `mounted` is where the hierarchies are mounted; missing files count as no limit.
 ControlGroupLimits control_group_limits(std::istream& membership, const std::filesystem::path& mounted);
 
-/// Those of this process.
+/// Limits of this process.
 ControlGroupLimits control_group_limits();
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From a whole Abaqus or CalculiX deck to a case and its mesh.
+// Converts an Abaqus or CalculiX deck to a case and its mesh.
 #include "program/deck_case.hpp"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ class Converter {
     const std::string& path = deck_.files[0].path;
     if (!step_) throw InputError(path + ": expected a step, *STEP: this deck is a mesh alone");
     if (deck_.open_step) deck_.fail(*deck_.open_step, "this *STEP has no *END STEP: is the deck cut off?");
-    // --leave-out may have left out another procedure, such as *HEAT TRANSFER.
+    // With --leave-out another procedure, such as *HEAT TRANSFER, may have been skipped.
     if (!have_static_ && !leave_out_) deck_.fail(*step_, "expected *STATIC in this step");
     if (materials_.sections().empty()) throw InputError(path + ": expected a *SOLID SECTION");
     nlohmann::ordered_json document;
@@ -87,7 +87,7 @@ class Converter {
     if (!materials_.take(block)) conditions_.take(block);
   }
 
-  /// For what would give another answer if it were left out.
+  /// Reports input that would change the solution if it were skipped.
   void change(const DeckBlock& block, const std::string& why) {
     const std::string text = block.keyword.shown + " changes the answer: " + why;
     if (!leave_out_)
@@ -108,7 +108,7 @@ class Converter {
       change(block, "PERTURBATION: nothing comes before");
   }
 
-  /// Increments, which do not change the answer.
+  /// *STATIC sets increments, which do not change the solution.
   void note_static(const DeckBlock& block) {
     if (std::exchange(have_static_, true))
       deck_.fail(block.keyword.place, "a second " + block.keyword.shown + " in this step");
@@ -123,7 +123,7 @@ class Converter {
     }
   }
 
-  // What the case says.
+  // Building the case document.
 
   nlohmann::ordered_json materials() {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
@@ -174,7 +174,7 @@ class Converter {
     return list;
   }
 
-  /// One entry for all nodes that have the same values.
+  /// Adds one entry for all nodes with the same values.
   void add_node_entries(const std::vector<Triple>& values, const char* key, const char* base,
                         nlohmann::ordered_json& list) {
     std::map<std::array<std::pair<bool, double>, 3>, std::vector<std::int32_t>> groups;
@@ -231,7 +231,7 @@ class Converter {
     }
   }
 
-  /// An entry where all nodes are warmer by the same, else lines for a file.
+  /// Adds one entry if all nodes have the same temperature rise; else returns lines for a nodal file.
   std::string add_temperatures(nlohmann::ordered_json& document) const {
     const auto& list = materials_.sections();
     const bool expands = std::any_of(list.begin(), list.end(), [&](const DeckSection& section) {
@@ -262,7 +262,7 @@ class Converter {
   DeckMaterials materials_;
   DeckConditions conditions_;
   int dim_;
-  std::vector<std::pair<std::string, std::string>> pressed_names_;  ///< with their places
+  std::vector<std::pair<std::string, std::string>> pressed_names_;  ///< with their places in the deck
   std::vector<std::pair<std::string, std::string>> places_;
   DeckNames names_;
   std::vector<std::string> remarks_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From a whole Abaqus or CalculiX deck to a case and its mesh.
+// Converts an Abaqus or CalculiX deck to a case and its mesh.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,19 +13,20 @@ namespace kacanov {
 
 struct DeckCase {
   nlohmann::ordered_json document;   ///< without its mesh
-  Mesh mesh;                         ///< with a group for everything that the document names
-  std::string temperatures;          ///< lines of a file of nodes that "temperature" of an entry is to name
-  std::vector<std::string> remarks;  ///< what was left out, or means something else here; a sentence each
-  /// "material[0].plastic[1]" and the line of the deck that it comes from, "part.inp: line 12".
+  Mesh mesh;                         ///< with a group for every selection in the document
+  std::string temperatures;          ///< content of the nodal file for the key "temperature"; empty: none
+  std::vector<std::string> remarks;  ///< sentences: what was skipped, or has another meaning here
+  /// Pairs of a case key, "material[0].plastic[1]", and the line of the deck it comes from, "part.inp: line
+  /// 12".
   std::vector<std::pair<std::string, std::string>> places;
 
-  /// A message about the case, which begins with the path of a key, with the line of the deck before it.
+  /// Prefixes a message that begins with a case key with the line of the deck.
   std::string with_line(const std::string& message) const;
 };
 
-/// Makes a case of a deck of one static step. Throws InputError "path: line N: ..." for what cannot be part
-/// of one. Keywords that change the answer and are not known are refused too; with `leave_out` they are named
-/// in the remarks instead.
+/// Converts a deck with one static step to a case. Throws InputError "path: line N: ..." for unsupported
+/// input, including unknown keywords that change the solution; with `leave_out` the latter are listed in the
+/// remarks instead.
 DeckCase case_of(Deck deck, bool leave_out);
 
 }  // namespace kacanov

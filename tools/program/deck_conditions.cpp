@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Displacements, forces, pressures, gravity and temperatures of a deck at the nodes, sides and elements of
-// its body.
+// Boundary conditions of a deck: displacements, forces, pressures, gravity and temperatures.
 #include "program/deck_conditions.hpp"
 
 #include <algorithm>
@@ -43,7 +42,7 @@ bool DeckConditions::take(const DeckBlock& block) {
 }
 
 void DeckConditions::take_boundary(const DeckBlock& block) {
-  // OP=NEW removes the conditions before it; without any it has no effect.
+  // OP=NEW removes earlier conditions; without any it has no effect.
   const std::string* op = block.keyword.parameter("OP");
   if (op != nullptr && upper_case(*op) == "NEW" && !held_.empty())
     change_(block, "OP=NEW removes conditions that were given before, which is not known here");
@@ -75,7 +74,7 @@ void DeckConditions::take_boundary(const DeckBlock& block) {
   }
 }
 
-/// A later line takes the place of an earlier one.
+/// A later line overrides an earlier one.
 void DeckConditions::hold(const std::vector<std::int32_t>& nodes, std::pair<int, int> directions,
                           double value) {
   for (const std::int32_t node : nodes)
@@ -83,7 +82,7 @@ void DeckConditions::hold(const std::vector<std::int32_t>& nodes, std::pair<int,
       held_[node][static_cast<std::size_t>(c) - 1] = value;
 }
 
-/// Loads of a step add up, as in CalculiX.
+/// Loads of a step are summed, as in CalculiX.
 void DeckConditions::take_point_load(const DeckRow& row, bool in_part) {
   forces_.resize(deck_.content.node_tags.size(), Triple{});
   deck_.expect_fields(row, 3, "a node or set, a degree of freedom and a force");
@@ -149,7 +148,7 @@ void DeckConditions::press(DeckSide side, DeckPlace place, double value) {
   if (cells()[deck_.elements[side.element].cell].dim != dim_)
     deck_.fail(place, "element " + std::to_string(deck_.element_tags[side.element]) +
                           " is pressed and is no " + "element of the body");
-  deck_.side_nodes(side, place);  // throws for a side that the element does not have
+  deck_.side_nodes(side, place);  // throws if the element has no such side
   Pressure& there = pressures_[{side.element, side.side}];
   there.value += value;
   there.place = place;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Displacements, forces, pressures, gravity and temperatures of a deck at the nodes, sides and elements of
-// its body.
+// Boundary conditions of a deck: displacements, forces, pressures, gravity and temperatures.
 #pragma once
 
 #include <array>
@@ -16,11 +15,11 @@
 
 namespace kacanov {
 
-/// Takes *BOUNDARY, *CLOAD, *DLOAD, *DSLOAD, *TEMPERATURE and *INITIAL CONDITIONS.
+/// Reads *BOUNDARY, *CLOAD, *DLOAD, *DSLOAD, *TEMPERATURE and *INITIAL CONDITIONS.
 class DeckConditions {
  public:
   using Triple = std::array<double, 3>;
-  /// Called for what would change the answer if it were left out, with the reason why it is not read.
+  /// Called for an unsupported condition that would change the solution, with the reason.
   using Change = std::function<void(const DeckBlock& block, const std::string& why)>;
 
   static constexpr double is_free = std::numeric_limits<double>::quiet_NaN();
@@ -37,19 +36,19 @@ class DeckConditions {
 
   DeckConditions(const Deck& deck, Change change);
 
-  /// Whether the keyword is one of these; then it is taken.
+  /// Reads the keyword and returns true if it is one of these.
   bool take(const DeckBlock& block);
 
   int dimension() const noexcept { return dim_; }
-  /// Displacements and forces by node; empty where there are none.
+  /// Displacements and forces per node; empty if there are none.
   const std::vector<Triple>& held() const noexcept { return held_; }
   const std::vector<Triple>& forces() const noexcept { return forces_; }
-  /// By element and side.
+  /// Pressures by element and side.
   const std::map<std::pair<std::int32_t, std::int32_t>, Pressure>& pressures() const noexcept {
     return pressures_;
   }
   const std::vector<Gravity>& gravity() const noexcept { return gravity_; }
-  /// By how much the body's nodes are warmer than at the start.
+  /// Temperature rise of the body's nodes over the initial temperature, by node number.
   std::map<std::int64_t, double> temperature_rise() const { return temperatures_.rise(in_body_); }
 
  private:
@@ -63,7 +62,7 @@ class DeckConditions {
   const Deck& deck_;
   Change change_;
   int dim_ = 2;
-  std::vector<bool> in_body_;  ///< by node
+  std::vector<bool> in_body_;  ///< one per node
   std::vector<Triple> held_, forces_;
   std::map<std::pair<std::int32_t, std::int32_t>, Pressure> pressures_;
   std::vector<Gravity> gravity_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The materials and sections of a deck as entries of a case.
+// Converts materials and sections of a deck to `material` entries of a case.
 #include "program/deck_materials.hpp"
 
 namespace kacanov {
@@ -59,14 +59,14 @@ void DeckMaterials::take_elastic(const DeckBlock& block, DeckMaterial& material)
   material.elastic_row = block.rows[0].place;
 }
 
-/// A temperature may stand behind the constants; one row holds for all temperatures.
+/// A temperature may follow the constants; a single row applies to all temperatures.
 void DeckMaterials::expect_constants(const DeckRow& row, std::size_t count, const std::string& what) const {
   deck_.expect_fields(row, count + 1, what + " and a temperature");
   if (row.fields.size() > count && !row.fields[count].empty())
     deck_number(deck_, row, count, "a temperature");
 }
 
-/// With one coefficient it does not matter what temperature ZERO it is told from.
+/// With a single coefficient the reference temperature ZERO does not matter.
 void DeckMaterials::take_expansion(const DeckBlock& block, DeckMaterial& material) {
   const std::string* type = block.keyword.parameter("TYPE");
   const std::string kind = type == nullptr ? "ISO" : upper_case(*type);
@@ -87,7 +87,7 @@ void DeckMaterials::take_expansion(const DeckBlock& block, DeckMaterial& materia
 void DeckMaterials::take_plastic(const DeckBlock& block, DeckMaterial& material) {
   const std::string* hardening = block.keyword.parameter("HARDENING");
   const std::string kind = hardening == nullptr ? "ISOTROPIC" : upper_case(*hardening);
-  // Under loads that only grow the two are the same.
+  // The two are equivalent under monotonic loading.
   if (kind != "ISOTROPIC" && kind != "KINEMATIC")
     deck_.fail(block.keyword.place, block.keyword.shown +
                                         ": expected HARDENING=ISOTROPIC or KINEMATIC, got " +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The materials and sections of a deck as entries of a case.
+// Converts materials and sections of a deck to `material` entries of a case.
 #pragma once
 
 #include <map>
@@ -14,7 +14,7 @@ namespace kacanov {
 
 struct DeckMaterial {
   DeckPlace place;
-  std::string shown;                             ///< its name as the deck has it
+  std::string shown;                             ///< name as written in the deck
   std::optional<std::array<double, 2>> elastic;  ///< Young's modulus and Poisson's ratio
   std::vector<std::array<double, 2>> plastic;    ///< stress and plastic strain
   std::optional<double> density, expansion;
@@ -24,23 +24,23 @@ struct DeckMaterial {
 
 struct DeckSection {
   DeckPlace place;
-  std::string elements;  ///< name of the set
+  std::string elements;  ///< name of the element set
   std::string material;  ///< in upper case
   double thickness = 1.0;
   bool in_part = false;
 };
 
-/// Takes *MATERIAL and what follows it, and *SOLID SECTION.
+/// Reads *MATERIAL with its subordinate keywords, and *SOLID SECTION.
 class DeckMaterials {
  public:
   explicit DeckMaterials(const Deck& deck) : deck_(deck) {}
 
-  /// Whether the keyword is one of these; then it is taken.
+  /// Reads the keyword and returns true if it is one of these.
   bool take(const DeckBlock& block);
-  /// The material of a section; throws InputError where there is none, or no elastic constants.
+  /// Returns the material of a section; throws InputError if it does not exist or has no elastic constants.
   const DeckMaterial& of(const DeckSection& section) const;
   const std::vector<DeckSection>& sections() const noexcept { return sections_; }
-  /// The entry of a case without its `on`.
+  /// Returns the `material` entry of a case, without `on`.
   nlohmann::ordered_json entry(const DeckSection& section) const;
 
  private:
@@ -51,7 +51,7 @@ class DeckMaterials {
   void take_section(const DeckBlock& block);
 
   const Deck& deck_;
-  std::map<std::string, DeckMaterial> materials_;  ///< by name in upper case
+  std::map<std::string, DeckMaterial> materials_;  ///< by upper-case name
   std::string current_;
   std::vector<DeckSection> sections_;
 };

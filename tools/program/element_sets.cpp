@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which set of the mesh an element belongs to, for the fields of a run.
+// Element sets of the mesh, numbered for the fields of a run.
 #include "program/element_sets.hpp"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which set of the mesh an element belongs to, for the fields of a run.
+// Element sets of the mesh, numbered for the fields of a run.
 #pragma once
 
 #include <cstdint>
@@ -12,20 +12,20 @@
 
 namespace kacanov {
 
-/// Set numbers of elements: 0 for none, else the place, from 1, in ElementSets::names. One for all where all
-/// have the same; empty: the mesh has no sets of elements.
+/// Set number per element: 0 for none, else index + 1 into ElementSets::names. One entry if all elements have
+/// the same; empty: the mesh has no element sets.
 using SetNumbers = std::vector<std::uint16_t>;
 
 struct ElementSets {
-  std::vector<std::string> names;  ///< of groups of elements, in the mesh's order; 65,535 at the most
-  SetNumbers of_element;           ///< of the whole mesh, one each; of several the first
+  std::vector<std::string> names;  ///< names of element groups in mesh order, at most 65,535
+  SetNumbers of_element;           ///< per element of the whole mesh; the first of several sets
 };
 ElementSets element_sets(const Mesh& mesh);
 
-/// Those of a part's elements.
+/// Returns the set numbers of a part's elements.
 SetNumbers sets_of_part(const ElementSets& sets, const Part& part);
 
-/// The same for every rank's part; `sets` are known to the first rank. Collective.
+/// Returns the set numbers of every rank's part; `sets` is used on the first rank. Collective.
 SetNumbers distribute_sets(const ElementSets& sets, const Part& part, const MpiSession& mpi);
 
 }  // namespace kacanov

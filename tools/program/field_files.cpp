@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fields of a solution as files for ParaView: the body, and the contact surface.
+// Writes solution fields for ParaView: the body and the contact surface.
 #include "program/field_files.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 std::string step_mark(std::size_t step) { return step == 0 ? "" : "_step_" + std::to_string(step); }
 std::string surface_file(std::size_t step) { return "contact" + step_mark(step) + ".vtu"; }
 
-/// Without the ending of a file of fields; empty where it has none.
+/// Returns the name without the extension of a field file; empty if it has none.
 std::string_view stem(std::string_view name) {
   for (const std::string_view ending : {".vtu", ".pvtu"})
     if (name.ends_with(ending)) return name.substr(0, name.size() - ending.size());
@@ -52,7 +52,7 @@ bool is_field_file(std::string_view name) {
 
 namespace {
 
-/// The user's numbers, worked out while they are written.
+/// The user's numbers, computed while they are written.
 template <typename Tag>
 Values<std::int64_t> tags(std::size_t count, const Tag& tag) {
   return {count, [tag](std::size_t first, std::span<std::int64_t> out) {
@@ -60,19 +60,20 @@ Values<std::int64_t> tags(std::size_t count, const Tag& tag) {
           }};
 }
 
-/// The facets of one contact entry with values at their nodes.
+/// Facets of one contact entry with nodal values.
 struct DrawnSurface {
   std::vector<double> points, gap, pressure, traction, normal, displacement;
-  std::vector<std::int32_t> cells, nodes;  ///< `nodes` of the mesh, in the order of the points
+  std::vector<std::int32_t> cells, nodes;  ///< `nodes`: mesh node of each point
   std::vector<std::int64_t> status, entry, node_id;
 };
 
-/// Nodes that are no contact points (held, or missing the obstacle) have this status and zero fields.
+/// Status of nodes that are not contact points (supported, or not facing the obstacle); their fields are
+/// zero.
 constexpr std::int64_t no_contact_point = -1;
 
-/// Corners of quadratic facets are no contact points (theory: contact-mass): values run on linearly from the
-/// three mid-sides of each facet, the mean of the facets round a corner is taken, and the status that most of
-/// the mid-sides beside it have. `entry`: the facets of an entry in places of the surface.
+/// Corners of quadratic facets are not contact points (theory: contact-mass): their values are extrapolated
+/// linearly from the mid-side nodes and averaged over the facets, and the status is the most frequent one of
+/// the adjacent mid-side nodes. `entry`: facets of an entry as point indices of the surface.
 class CornerValues {
  public:
   explicit CornerValues(DrawnSurface& surface) : surface_(surface) {}
@@ -91,7 +92,7 @@ class CornerValues {
     int facets = 0;
     double gap = 0.0, pressure = 0.0;
     Vector3 traction{}, normal{};
-    std::array<int, 3> status{};  ///< how many mid-sides beside it are open, stick, slip
+    std::array<int, 3> status{};  ///< number of adjacent mid-side nodes that are open, stick, slip
   };
 
   void add(std::span<const std::int32_t> facet, const Cell& type, std::int8_t corner) {
@@ -133,7 +134,7 @@ class CornerValues {
   std::map<std::int32_t, Sums> corners_;
 };
 
-/// Whether a contact point is one of the entry, alone or with others.
+/// Returns whether a contact point belongs to the entry, alone or merged with others.
 bool is_of(const Problem& problem, std::ptrdiff_t point, std::size_t entry) {
   const auto index = static_cast<std::int32_t>(point), number = static_cast<std::int32_t>(entry);
   if (problem.contact[static_cast<std::size_t>(point)].entry == number) return true;
@@ -162,7 +163,7 @@ DrawnSurface contact_surface(const Problem& problem, const Model& model, const C
       surface.nodes.push_back(node);
       surface.node_id.push_back(mesh.node_tag(node));
       while (point != problem.contact.end() && point->node < node) ++point;
-      // The entry's own point, or the one it was merged with.
+      // The point of this entry, or the one it was merged with.
       auto chosen = problem.contact.end();
       for (auto p = point; p != problem.contact.end() && p->node == node; ++p) {
         if (chosen == problem.contact.end() || is_of(problem, p - problem.contact.begin(), entry)) chosen = p;

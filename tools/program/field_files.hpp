@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fields of a solution as files for ParaView: the body, and the contact surface.
+// Writes solution fields for ParaView: the body and the contact surface.
 #pragma once
 
 #include <filesystem>
@@ -17,57 +17,57 @@
 
 namespace kacanov {
 
-/// Contact fields gathered on the first rank, in the numbering of Problem::contact.
+/// Contact fields gathered on the first rank, numbered as Problem::contact.
 struct ContactFields {
   std::vector<double> gap, pressure, status;
   std::vector<double> traction;      ///< × 3
-  std::vector<double> displacement;  ///< nodes × dim, of the boundary's nodes; by the caller
+  std::vector<double> displacement;  ///< boundary nodes × dim; set by the caller
 };
-/// Collective; empty on other ranks. Without displacement.
+/// Returns the fields without displacement; empty on other ranks. Collective.
 ContactFields gather_contact_fields(const Part& part, const Solution& solution);
 
-/// Where fields are written: the folder, and the load step they are the end of; 0: the end of the run.
+/// Where fields are written: the folder, and the load step that has ended; 0: the end of the run.
 struct FieldPlace {
   std::filesystem::path folder;
   std::size_t step = 0;
 };
 
-/// Name of the body's file: body.vtu; body_step_<step>.vtu of a load step.
+/// File name of the body: body.vtu, or body_step_<step>.vtu for a load step.
 std::string body_file(std::size_t step = 0);
-/// `name` without a number at its end that follows `mark`; the same where it does not end so.
+/// Returns `name` without a trailing number that follows `mark`; unchanged if there is none.
 std::string_view without_number(std::string_view name, std::string_view mark);
-/// Whether a run writes fields under this name, or one of a version did that wrote a piece a rank.
+/// Returns whether runs write fields under this name, including older versions with one piece per rank.
 bool is_field_file(std::string_view name);
-/// Whether it does so for a load step before the last.
+/// Returns whether the file holds fields of a load step before the last.
 bool is_step_file(std::string_view name);
 
-/// What its fields are besides those of a Solution.
+/// Body fields that are not part of a Solution.
 struct BodyFields {
   NodalStress nodal;  ///< recover_stress()
   ElementNumbers numbers;
-  std::vector<double> error;                 ///< elements: shares() of estimate_error()
-  std::span<const std::uint16_t> sets = {};  ///< elements: SetNumbers
+  std::vector<double> error;                 ///< per element: shares() of estimate_error()
+  std::span<const std::uint16_t> sets = {};  ///< per element: SetNumbers
 };
 
-/// Writes the body, whole whatever the ranks. Collective; what fails ends as together() says.
+/// Writes the whole body from all ranks. Errors are handled as in together(). Collective.
 void write_body(const FieldPlace& place, const Part& part, const Solution& solution, const BodyFields& fields,
                 const MpiSession& mpi);
 
-/// Writes the contact surface where there is one; on the first rank.
+/// Writes the contact surface, if there is one; on the first rank.
 void write_surface(const FieldPlace& place, const Problem& problem, const Model& model,
                    const ContactFields& contact);
 
-/// Contact pressure at the nodes of the mesh, 0 where there is no contact; as in contact.vtu. Of nodes of
-/// several entries it is the last one's. On the first rank.
+/// Returns the contact pressure at the mesh nodes, 0 where there is no contact, as in contact.vtu. If a node
+/// belongs to several entries, the last one counts. On the first rank.
 std::vector<double> nodal_pressure(const Problem& problem, const Model& model, const ContactFields& contact);
 
-/// What of the obstacles that no Plane at rest stands for faces the body: its contact facets, moved along ν
-/// by the gap. `missing`: entries of which no facet faces the obstacle. On the first rank; `contact` with
-/// displacement.
+/// Returns the contact facets moved along ν by the gap, which shows the facing part of every obstacle except
+/// planes at rest. `missing`: number of entries without a facet that faces the obstacle. On the first rank;
+/// `contact` must include displacement.
 std::vector<DeformedPicture::ObstacleFacet> obstacle_facets(const Problem& problem, const Model& model,
                                                             const ContactFields& contact, int& missing);
 
-/// The series for ParaView: the load steps that fields are there of, and the end of the run.
+/// Writes the ParaView series (.pvd): the load steps with fields, and the end of the run.
 void write_series(const std::filesystem::path& folder, const Problem& problem, const Result& result);
 
 }  // namespace kacanov

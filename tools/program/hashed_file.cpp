@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes and checks the pieces and their hashes.
+// Writes and verifies pieces and their hashes.
 #include "program/hashed_file.hpp"
 
 #include <filesystem>
@@ -33,7 +33,7 @@ void HashedWriter::commit() {
 HashedReader::HashedReader(const std::string& path, std::string_view magic, const std::string& kind)
     : path_(path), kind_(kind) {
   std::error_code error;
-  // What waits for a writer would wait for ever.
+  // Opening a pipe without a writer would block forever.
   if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
     throw InputError(path + ": is not a regular file");
   stream_.open(path, std::ios::binary);
@@ -57,7 +57,7 @@ HashedReader::HashedReader(const std::string& path, std::string_view magic, cons
   take(front.data() + front.size() - length, length);
   hash_ = hash_bytes(front.data(), front.size(), hash_);
   check_hash();
-  constexpr int most_levels = 64;  // as in a case
+  constexpr int most_levels = 64;  // same limit as for cases
   const auto watch = [&](int depth, nlohmann::json::parse_event_t, const nlohmann::json&) {
     if (depth > most_levels) fail("has a header with more than 64 levels of brackets");
     return true;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Binary files that are whole or refused. Layout: a line with name and version; the length of the header, 8
-// bytes; the header, JSON; a hash of all this, 8 bytes; the content, piece after piece; the hash chained
-// through the pieces, 8 bytes. Numbers in the machine's byte order.
+// Binary files with checksums, which are read completely or rejected. Layout: a line with name and version;
+// the length of the header, 8 bytes; the header, JSON; a hash of all this, 8 bytes; the content, piece by
+// piece; the hash chained over the pieces, 8 bytes. Numbers are in machine byte order.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,12 @@
 
 namespace kacanov {
 
-/// Throws InternalError naming the file where the system refuses. Without commit() nothing stays.
+/// Throws InternalError naming the file if a system call fails. Without commit() no file is left.
 class HashedWriter {
  public:
-  /// `magic` is the first line, its end included.
+  /// `magic` is the first line, with its line end.
   HashedWriter(const std::string& path, std::string_view magic, const nlohmann::json& header);
-  /// One piece.
+  /// Writes one piece.
   void write(const void* data, std::size_t bytes);
   void commit();
 
@@ -29,15 +29,15 @@ class HashedWriter {
   std::uint64_t hash_ = 0;
 };
 
-/// Throws InputError naming the file: not there, of another kind or version, cut short, or damaged.
+/// Throws InputError naming the file if it is missing, of another kind or version, truncated, or damaged.
 class HashedReader {
  public:
-  /// Reads and proves the header. `kind` is what messages call the file.
+  /// Reads and verifies the header. `kind` names the type of file in messages.
   HashedReader(const std::string& path, std::string_view magic, const std::string& kind);
   const nlohmann::json& header() const noexcept { return header_; }
-  /// Throws where that much content cannot be left.
+  /// Throws if the file is too short for that much content.
   void expect(std::uint64_t entries, std::size_t bytes_each) const;
-  /// One piece, as it was written. What it holds is proven only by finish().
+  /// Reads one piece with the size it was written with. Only finish() verifies its content.
   void read(void* data, std::size_t bytes);
   void finish();
 
@@ -52,7 +52,7 @@ class HashedReader {
   nlohmann::json header_;
 };
 
-/// Does work that looks into a header: what it misses there is the file's fault, an InputError naming it.
+/// Runs `work`, which parses a header; a missing or invalid entry becomes an InputError naming the file.
 template <class Work>
 decltype(auto) reading_header(const std::string& path, Work&& work) {
   try {

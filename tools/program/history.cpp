@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes the steps of a run as comma-separated values.
+// Writes the outer steps of a run as comma-separated values.
 #include "program/history.hpp"
 
 #include <limits>

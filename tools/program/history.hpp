@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The steps of a run as a table for other programs: history.csv.
+// History of the outer steps of a run, as history.csv.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 
 namespace kacanov {
 
-/// Outer steps as they were made, those of the load steps one after the other.
+/// Outer steps in order, across all load steps.
 class History {
  public:
   void add(const ProgressStep& step) { steps_.push_back(step); }
-  /// A heading and a line a step, all numbers to the last bit.
+  /// Returns a header line and one line per step; numbers have all digits.
   std::string csv() const;
 
  private:

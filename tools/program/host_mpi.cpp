@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MPI within a process that others have started and that goes on after a solve.
+// MPI inside a host process, which continues after a solve.
 #include "program/host_mpi.hpp"
 
 #include <mpi.h>
@@ -29,7 +29,8 @@ std::set<std::string> variables() {
   return names;
 }
 
-/// What the process does about every signal; put back at the end: Open MPI traces crashes of its hosts.
+/// Saves all signal actions and restores them at the end: Open MPI installs handlers that print traces of
+/// crashes.
 class KeptSignals {
  public:
   KeptSignals() : actions_(static_cast<std::size_t>(SIGRTMAX) + 1) {
@@ -54,8 +55,8 @@ class KeptSignals {
   std::vector<std::optional<struct sigaction>> actions_;
 };
 
-pid_t started_in = 0;                 // by us; 0: not
-MpiFolder* session_folder = nullptr;  // not of a child after fork(), which ends as well
+pid_t started_in = 0;                 // process in which we started MPI; 0: none
+MpiFolder* session_folder = nullptr;  // never deleted in a child after fork(), which exits too
 
 }  // namespace
 
@@ -67,7 +68,7 @@ bool start_host_mpi() {
     throw InternalError("MPI was started before fork(); a child process cannot solve");
   MPI_Initialized(&started);
   if (started != 0) return false;
-  // What MPI and its settings leave there would be taken by the host's children for their own.
+  // Remove variables set by MPI: children of the host would take them for their own.
   const std::set<std::string> before = variables();
   const KeptSignals signals;
   session_folder = new MpiFolder;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MPI within a process that others have started and that goes on after a solve.
+// MPI inside a host process, which continues after a solve.
 #pragma once
 
 namespace kacanov {
 
-/// Starts MPI in this process alone unless somebody has already. Environment and signal handlers are as
-/// before afterwards. True where this call has started it: then end_host_mpi() is due at the process's end.
-/// One call at a time. Throws InternalError where MPI has been ended, or was started in a parent process.
+/// Starts MPI for this process alone unless it is already initialised, and restores environment variables and
+/// signal handlers. Returns true if this call started it: call end_host_mpi() at process exit. Not
+/// thread-safe. Throws InternalError if MPI was finalised, or was started in a parent process.
 bool start_host_mpi();
 
-/// Ends MPI if start_host_mpi() has started it in this very process and nobody has ended it since.
+/// Finalises MPI if start_host_mpi() started it in this process and it is not finalised yet.
 void end_host_mpi();
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Signals that ask a run to stop.
+// Signals that stop a run.
 #include "program/interrupt.hpp"
 
 #include <atomic>
@@ -17,7 +17,7 @@ std::atomic<double> seconds_to_stop = 0.0;
 void catch_stop_signals() { catch_signals({SIGINT, SIGTERM, SIGHUP}, {stop_signal}); }
 
 void watch_for_signals() {
-  constexpr int a_while = 200;  // milliseconds between two looks at the clock
+  constexpr int a_while = 200;  // milliseconds between checks of the clock
   timespec first{}, asked{};
   for (int last = 0;;) {
     const int signal = next_signal(last == 0 ? -1 : a_while);
@@ -36,13 +36,13 @@ void watch_for_signals() {
 void take_signals() {
   catch_stop_signals();
   std::thread([] {
-    catch_stop_signals();  // unblocked here, if nowhere else
+    catch_stop_signals();  // unblocks the signals in this thread at least
     watch_for_signals();
   }).detach();
 }
 
 void listen_for_interrupts(double patience) {
-  catch_stop_signals();  // what MPI may have set in between
+  catch_stop_signals();  // MPI may have replaced the handlers
   seconds_to_stop = patience;
   listening = true;
 }

@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Signals that ask a run to stop.
+// Signals that stop a run.
 #pragma once
 
 #include <csignal>
 
 namespace kacanov {
 
-/// What the starting process sends through mpiexec, which passes it on to every rank, instead of the signals
-/// that would make mpiexec kill them.
+/// Signal that the starting process sends through mpiexec to every rank, because the usual ones would make
+/// mpiexec kill the ranks.
 constexpr int stop_signal = SIGUSR1;
 
-/// From now on a thread watches for SIGINT, SIGTERM, SIGHUP (unless they are ignored) and stop_signal, and
-/// ends the process by the first one.
+/// Starts a thread that watches for SIGINT, SIGTERM, SIGHUP (unless ignored) and stop_signal, and ends the
+/// process at the first one.
 void take_signals();
 
-/// From now on they only ask for a stop. One more than a second later, stop_signal apart, ends the process
-/// all the same; and so does the first one where nobody has called stop_came_in_time() within `patience`
-/// seconds: a rank that hangs keeps all others from stopping, and their end is that of the whole run.
+/// From now on the first signal only requests a stop. Another one more than a second later (except
+/// stop_signal) ends the process, as does the first if stop_came_in_time() is not called within `patience`
+/// seconds: a rank that hangs keeps the others from stopping, and its end stops the whole run.
 void listen_for_interrupts(double patience);
 
-/// What may take long is over: from now on there is output to write, and only a second signal ends that.
+/// Marks the end of the computation: what remains is output, which only a second signal ends.
 void stop_came_in_time() noexcept;
 
-/// Whether one has come.
+/// Returns whether a signal has arrived.
 bool interrupt_came() noexcept;
 
 }  // namespace kacanov

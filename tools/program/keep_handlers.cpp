@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// signal() of this program for the libraries it loads: it replaces no handler
-// of catch_signals().
+// Replaces signal() for the libraries of this program, so that they keep the handlers of catch_signals().
 //
-// METIS sets a handler of SIGTERM while it works and makes a failure of its own of the signal; a thread that
-// METIS does not know cannot run that handler. Linked into the program alone, never into a library.
+// METIS installs a handler of SIGTERM while it works and treats the signal as a failure of its own; that
+// handler cannot run in a thread unknown to METIS. Linked into the program only, never into a library.
 #include <csignal>
 
 #include "program/signal_pipe.hpp"
@@ -28,7 +27,7 @@ sighandler_t signal(int number, sighandler_t handler) noexcept {
   return set_unless_caught(number, handler, SA_RESTART);
 }
 
-/// What signal() is to sources compiled for POSIX alone, as those of METIS.
+/// The symbol behind signal() in sources compiled for strict POSIX, such as METIS.
 sighandler_t __sysv_signal(int number, sighandler_t handler) noexcept {
   return set_unless_caught(number, handler, static_cast<int>(SA_RESETHAND | SA_NODEFER));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How many processes and threads a run gets, and starting it under mpiexec.
+// Chooses the number of processes and threads of a run, and starts it under mpiexec.
 #include "program/launch.hpp"
 
 #include <fcntl.h>
@@ -41,12 +41,12 @@
 namespace kacanov {
 namespace {
 
-/// Marks a process that run_under_mpiexec started.
+/// Marks a process that run_under_mpiexec() started.
 constexpr const char* started_mark = "KACANOV_STARTED_BY_ITSELF";
-/// Added to exit codes other than 0 on the way through mpiexec.
+/// Added to non-zero exit codes that pass through mpiexec.
 constexpr int code_offset = 80;
 
-/// Passes the signals that come while mpiexec runs on to it, in a thread of its own.
+/// Forwards signals to mpiexec while it runs, in a thread of its own.
 class PassedSignals {
  public:
   static std::shared_ptr<PassedSignals> to(pid_t mpiexec) {
@@ -56,7 +56,7 @@ class PassedSignals {
     return passed;
   }
 
-  /// mpiexec has ended. The last signal that asked for an end; 0: none.
+  /// Called when mpiexec has ended. Returns the last signal that requested an end; 0: none.
   int finish() {
     const std::lock_guard<std::mutex> lock(mutex_);
     mpiexec_ = 0;
@@ -65,7 +65,7 @@ class PassedSignals {
 
  private:
   void watch() {
-    constexpr int a_while = 200;  // milliseconds between two looks at the clock
+    constexpr int a_while = 200;  // milliseconds between checks of the clock
     for (bool asked = false;;) {
       const int signal = next_signal(asked ? a_while : -1);
       const std::lock_guard<std::mutex> lock(mutex_);
@@ -77,7 +77,7 @@ class PassedSignals {
 
   void take(int signal) {
     if (signal == SIGTSTP || signal == SIGCONT) {
-      // mpiexec is not of the terminal's foreground group: its ranks stop first, then this process.
+      // mpiexec is not in the terminal's foreground process group: stop its ranks first, then this process.
       if (mpiexec_ != 0) kill(mpiexec_, signal);
       if (signal == SIGTSTP) raise(SIGSTOP);
       return;
@@ -88,8 +88,8 @@ class PassedSignals {
     send();
   }
 
-  /// Once more after each second: mpiexec or the ranks may not listen yet. Where mpiexec has not ended within
-  /// some seconds of a second request, it is killed, and the ranks with it.
+  /// Repeats the signal every second, as mpiexec or the ranks may not listen yet. If mpiexec is still running
+  /// a few seconds after a second request, it is killed together with the ranks.
   void repeat() {
     if (seconds_since(sent_) < 1.0) return;
     if (insisting_ > 0) ++insisting_;
@@ -109,9 +109,9 @@ class PassedSignals {
   timespec first_{}, sent_{};
 };
 
-/// Open MPI that cannot map its libraries and shared memory crashes with a trace, or hangs.
+/// If Open MPI cannot map its libraries and shared memory, it crashes with a trace or hangs.
 void refuse_narrow_limit() {
-  constexpr rlim_t megabyte = 1 << 20, least = 512;  // mpiexec and one rank have 200 to 300
+  constexpr rlim_t megabyte = 1 << 20, least = 512;  // mpiexec and one rank use 200 to 300
   const std::optional<std::uintmax_t> limit = address_space_limit();
   if (!limit || *limit >= least * megabyte) return;
   throw InputError("several ranks cannot be started: the address space of a process is limited to " +
@@ -119,7 +119,7 @@ void refuse_narrow_limit() {
                    std::to_string(least));
 }
 
-/// A file without a name that holds `text`, to be read from its beginning.
+/// Returns an anonymous file that contains `text`, positioned at its start.
 int nameless_file(const std::string& text) {
   const int file = memfd_create("kacanov-case", MFD_CLOEXEC);
   std::size_t written = 0;
@@ -133,8 +133,8 @@ int nameless_file(const std::string& text) {
   return file;
 }
 
-/// Copies what is there to the standard output; false at the end. What nobody takes is read all the same:
-/// mpiexec ends a run whose output it cannot write.
+/// Copies available output to standard output; returns false at the end. Reads even if the copy fails,
+/// because mpiexec ends a run whose output it cannot write.
 bool pass_output_on(int from) {
   std::array<char, 4096> piece{};
   const ssize_t size = read(from, piece.data(), piece.size());
@@ -147,26 +147,26 @@ bool pass_output_on(int from) {
   return size > 0;
 }
 
-/// Passes the output of a process on until it has ended; its status.
+/// Forwards the output of a process until it has ended; returns its status.
 int wait_and_pass_on(pid_t child, int output) {
-  constexpr int patience = 100;  // milliseconds between two looks at the process, where it says nothing
+  constexpr int patience = 100;  // milliseconds between checks of a silent process
   pollfd channel{output, POLLIN, 0};
   int status = 0;
   bool open = true, running = true;
   while (running) {
     running = waitpid(child, &status, open ? WNOHANG : 0) != child;
-    // What it has left behind is taken, but who else holds its end is not waited for.
+    // After the end, copy the remaining output, but do not wait for other holders of the pipe.
     while (open && poll(&channel, 1, running ? patience : 0) > 0) open = pass_output_on(output);
   }
   return status;
 }
 
 [[noreturn]] void become_mpiexec(const std::vector<std::string>& words, int input, int output) {
-  // Its own group, so that an interrupt from the keyboard comes once, through pass_on; and no orphan if this
-  // program is killed outright.
+  // A process group of its own, so that a keyboard interrupt arrives once, through PassedSignals; the death
+  // signal avoids an orphan if this program is killed.
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGTERM);
-  std::signal(stop_signal, SIG_IGN);  // until mpiexec listens to it
+  std::signal(stop_signal, SIG_IGN);  // until mpiexec handles it
   dup2(input, STDIN_FILENO);
   dup2(output, STDOUT_FILENO);
   std::vector<char*> pointers;
@@ -184,7 +184,7 @@ bool started_by_mpi() {
   for (const char* mark : marks) {
     if (std::getenv(mark) != nullptr) return true;
   }
-  // Within a batch script alone, SLURM_STEP_ID is not set: only srun makes steps of several tasks.
+  // Inside a batch script SLURM_STEP_ID is not set: only srun creates steps with several tasks.
   return std::getenv("SLURM_STEP_ID") != nullptr && std::getenv("SLURM_STEP_NUM_TASKS") != nullptr;
 }
 
@@ -192,7 +192,7 @@ int usable_cores() {
   cpu_set_t set;
   CPU_ZERO(&set);
   if (sched_getaffinity(0, sizeof set, &set) != 0) return 1;
-  std::set<std::string> cores;  // hardware threads of one core share their list of siblings
+  std::set<std::string> cores;  // hardware threads of one core have the same list of siblings
   for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
     if (!CPU_ISSET(cpu, &set)) continue;
     PlainFile file("/sys/devices/system/cpu/cpu" + std::to_string(cpu) + "/topology/thread_siblings_list");
@@ -213,14 +213,13 @@ std::int64_t estimate_unknowns(const MeshSource& mesh) {
       nodes *= 1.0 + order * static_cast<double>(mesh.box->cells[c]);
     return static_cast<std::int64_t>(std::min(nodes * dim, 9e18));
   }
-  // A node of a tetrahedral mesh brings five and a half elements: some 240 bytes as text for its three
-  // unknowns.
+  // A tetrahedral mesh has 5.5 elements per node: about 240 bytes of text for three unknowns.
   constexpr std::int64_t bytes_per_unknown = 80;
   std::error_code error;
   const auto bytes = mesh.content ? mesh.content->size() : std::filesystem::file_size(*mesh.file, error);
   if (error) return 0;
-  // Every refinement has eight times as many unknowns, quadratic tetrahedra some seven times those of linear
-  // ones.
+  // Each refinement has eight times as many unknowns; quadratic tetrahedra have about seven times those of
+  // linear ones.
   const double more = std::ldexp(mesh.order == 2 ? 7.0 : 1.0, 3 * mesh.refine);
   return static_cast<std::int64_t>(std::min(more * static_cast<double>(bytes) / bytes_per_unknown, 9e18));
 }
@@ -254,23 +253,22 @@ void set_mpi_environment() {
   constexpr const char* settings[][2] = {
       {"OMPI_ALLOW_RUN_AS_ROOT", "1"},
       {"OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1"},
-      // Containers forbid the system call behind single copies; shared memory alone does.
+      // Containers forbid the system call for single copies; plain shared memory suffices.
       {"OMPI_MCA_btl_vader_single_copy_mechanism", "none"},
       {"OMPI_MCA_btl", "self,vader"},
-      // Without these, even one process looks for ssh and starts a daemon.
+      // Without these, even a single process searches for ssh and starts a daemon.
       {"OMPI_MCA_plm", "isolated"},
       {"OMPI_MCA_ess_singleton_isolated", "1"},
       {"OMPI_MCA_pml", "ob1"},
       {"OMPI_MCA_btl_base_warn_component_unused", "0"},
-      // Waiting ranks let others work: on a busy machine spinning ones hold up the run.
+      // Waiting ranks yield the processor: on a busy machine, spinning ranks slow down the run.
       {"OMPI_MCA_mpi_yield_when_idle", "1"},
-      // mpiexec passes SIGTSTP and SIGCONT on to the ranks.
+      // mpiexec forwards SIGTSTP and SIGCONT to the ranks.
       {"OMPI_MCA_orte_forward_job_control", "1"},
-      // Where a rank ends with a code, what is left of the others has nothing to do: no second is waited for
-      // them.
+      // If one rank exits with an error code, the others are killed at once instead of after a second.
       {"OMPI_MCA_odls_base_sigkill_timeout", "0"},
       {"HWLOC_HIDE_ERRORS", "2"},
-      // Devices do not matter to a run, and looking at all of them takes a third of a small one.
+      // Runs use no devices, and scanning all of them takes a third of the time of a small run.
       {"HWLOC_COMPONENTS", "-pci,-linuxio"},
   };
   for (const auto& [name, value] : settings) setenv(name, value, 0);
@@ -320,7 +318,7 @@ int run_under_mpiexec(const std::string& mpiexec, Shape shape, const HandedDown&
   const pid_t child = fork();
   if (child < 0) throw InternalError(std::string("cannot start mpiexec: ") + std::strerror(errno));
   if (child == 0) {
-    folder->hand_down();  // the ranks may outlive this process by some seconds
+    folder->hand_down();  // the ranks may outlive this process by a few seconds
     become_mpiexec(words, input, channel[1]);
   }
   close(input);
@@ -332,7 +330,7 @@ int run_under_mpiexec(const std::string& mpiexec, Shape shape, const HandedDown&
   const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   if (code == 0) return 0;
   if (code > code_offset && code <= code_offset + exit_failure) return code - code_offset;
-  if (signal != 0) {  // it came when there was nothing yet to stop in order
+  if (signal != 0) {  // it arrived before there was anything to stop properly
     folder.reset();
     end_by(signal);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From a case and its mesh to a problem on the first rank and parts on all.
+// Reads a case and its mesh into a problem on the first rank and parts on all ranks.
 #include "program/loaded_case.hpp"
 
 #include <malloc.h>
@@ -35,7 +35,7 @@ Mesh load_mesh(const MeshSource& source) {
     }
   if (source.box) return mesh;
   const std::vector<std::string> warnings = mesh.warnings;
-  if (source.refine > 0) check_mesh(mesh);  // while its elements have the numbers of the file
+  if (source.refine > 0) check_mesh(mesh);  // while elements still have the numbers of the file
   for (int times = 0; times < source.refine; ++times) mesh = refine(mesh);
   if (source.order > cell(mesh.type).order) mesh = raise_order(mesh);
   mesh.warnings = warnings;
@@ -81,7 +81,7 @@ LoadedCase load_case(const Case& input, const MpiSession& mpi, bool memory_check
   LoadedCase loaded;
   RankCount ranks{mpi.ranks(), 0};
   {
-    // On all ranks, whatever a host has told each; the first one's word counts.
+    // On all ranks, whatever options a host has given to each; those of the first rank count.
     mpi.expect_all_here();
     MPI_Comm machine;
     MPI_Comm_split_type(mpi.comm(), MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
@@ -112,7 +112,7 @@ void keep_boundary(LoadedCase& loaded) {
     loaded.print = fingerprint(*loaded.problem);
     loaded.boundary_nodes = keep_boundary(*loaded.problem);
   }
-  malloc_trim(0);  // back to the system, before the solver asks for more
+  malloc_trim(0);  // return memory to the system before the solver allocates
 }
 
 int threads_of(const Command& command) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The manual page, made of the same commands and options as --help.
+// Manual page, generated from the same commands and options as --help.
 #include "program/command_line.hpp"
 
 namespace kacanov {
 namespace {
 
-/// Text as groff takes it literally.
+/// Escapes text for groff.
 std::string literal(const std::string& text) {
   std::string escaped;
   bool line_begins = true;
@@ -20,7 +20,7 @@ std::string literal(const std::string& text) {
 std::string bold(const std::string& text) { return "\\fB" + literal(text) + "\\fR"; }
 std::string italic(const std::string& text) { return "\\fI" + literal(text) + "\\fR"; }
 
-/// "-o, --output DIR", or a positional argument's name.
+/// Returns "-o, --output DIR", or the name of a positional argument.
 std::string heading(const CLI::Option& option) {
   if (option.get_positional()) return italic(option.get_name());
   std::string text;

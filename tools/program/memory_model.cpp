@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How much memory a run takes, from what its arrays hold; and how much there is.
+// Estimates the memory of a run from its arrays, and reads the available memory.
 #include "program/memory_model.hpp"
 
 #include <algorithm>
@@ -15,17 +15,17 @@ namespace kacanov {
 namespace {
 
 constexpr double bytes_alone = 20e6,
-                 bytes_in_company = 32e6;          // of a process: the program, MPI and its shared memory
-constexpr double bytes_per_contact_point = 1.8e3;  // rows of traces, their spaces and blocks
-constexpr double lanes_filled = 1.07;              // slots of the operators an element
-constexpr double nodes_of_blocks = 1.25;           // nodes of the operators' blocks a node
+                 bytes_in_company = 32e6;          // per process: program, MPI and its shared memory
+constexpr double bytes_per_contact_point = 1.8e3;  // trace rows, their search spaces and blocks
+constexpr double lanes_filled = 1.07;              // operator slots per element
+constexpr double nodes_of_blocks = 1.25;           // block nodes of the operators per mesh node
 constexpr double overhead = 1.03;                  // of the allocator
-// A node, measured on boxes of 1 million unknowns, tet10 up to 50 million: grids over what modes of
-// aggregates hold; pressures: means and their places, S, grids of four fields.
+// Bytes per node, measured on boxes of 1 million unknowns, tet10 up to 50 million. grids: in addition to the
+// aggregate modes; pressures: means and their indices, S, grids of four fields.
 constexpr double bytes_of_grids = 105, bytes_of_pressures_tet4 = 500, bytes_of_pressures_tet10 = 220,
                  bytes_of_pressures_hex8 = 600;
 
-/// The number behind a word at the beginning of a line, 0 where there is none.
+/// Returns the number after a word at the start of a line; 0 if there is none.
 double number_after(const std::string& path, const std::string& word) {
   PlainFile file(path);
   for (std::string line; std::getline(file, line);) {
@@ -37,13 +37,13 @@ double number_after(const std::string& path, const std::string& word) {
   return 0.0;
 }
 
-/// Whether some material has another law than the linear one.
+/// Returns whether a material has a nonlinear law.
 bool nonlinear(const Model& model) {
   return std::any_of(model.materials.begin(), model.materials.end(),
                      [](const MaterialEntry& entry) { return !entry.law.linear(); });
 }
 
-/// Whether some material's pressure is a field of its own, which has a multigrid of its own.
+/// Returns whether a material has an independent pressure field, which has its own multigrid.
 bool with_pressures(const Model& model, ElementType type) {
   return cell(type).corner_dilatation &&
          std::any_of(model.materials.begin(), model.materials.end(), [](const MaterialEntry& entry) {
@@ -51,7 +51,7 @@ bool with_pressures(const Model& model, ElementType type) {
          });
 }
 
-/// Whether some material yields whose hexahedra average their volume change.
+/// Returns whether a material can yield and its hexahedra average the dilatation.
 bool averages_and_yields(const Model& model, ElementType type) {
   return dimension(type) == 3 && cell(type).mean_dilatation &&
          std::any_of(model.materials.begin(), model.materials.end(), [](const MaterialEntry& entry) {
@@ -111,22 +111,22 @@ MemoryShares memory_shares(const ProblemSize& size) {
                points = points_per_element(size.type);
   const auto bytes = [&](double node, double element) { return node * size.nodes + element * size.elements; };
   const double slots = points * lanes_filled;
-  // Local numbers of a unit's nodes, two bytes each: fans of six tetrahedra have eight.
+  // Local node numbers per work item, two bytes each: a fan of six tetrahedra has eight nodes.
   const double index = size.type == ElementType::tet4 ? 2.7 : 2.0 * npe;
   const double modes = dim == 3 ? 6 : 3,
-               neighbours = dim == 3 ? 8 : 4;  // half the couplings of an aggregate of 48 nodes
+               neighbours = dim == 3 ? 8 : 4;  // half the neighbours of an aggregate of 48 nodes
   const double rows =
-      neighbours * modes * modes * 8 / 48.0 * 1.4;  // levels below, inverse diagonals, vectors
+      neighbours * modes * modes * 8 / 48.0 * 1.4;  // coarser levels, inverse diagonals, vectors
   MemoryShares shares;
   shares.mesh = bytes(8 * dim, 4 * npe);
   shares.problem = bytes(17 * dim, 2);              // load, prescribed, held; law
   shares.part = bytes(8 * dim + 4 + dim, 4 * npe);  // coordinates, index, held; corners
   shares.operators = bytes(nodes_of_blocks * (32 + 4 + 16 + 4), slots * (8 + 4 + 4 + 4) + 2 * index);
-  shares.loops = bytes(8 * dim * 6 + 4 * dim, 0);  // u, kept u, R(u), three vectors of CG; diagonal
+  shares.loops = bytes(8 * dim * 6 + 4 * dim, 0);  // u, stored u, R(u), three CG vectors; diagonal
   shares.multigrid = bytes(16 * dim + 4 * dim * (dim + 1) / 2 + 4 + rows, 0);
   if (dim == 3) shares.multigrid += bytes(bytes_of_grids, 0);
   if (size.pressures) shares.multigrid += bytes(bytes_of_pressures(size.type), 0);
-  shares.setup = bytes(8 + 1.15 * rows, 8 * points);  // aggregates, sums of blocks; g
+  shares.setup = bytes(8 + 1.15 * rows, 8 * points);  // aggregates, block sums; g
   shares.step = bytes(8 * dim, 0);
   shares.tangent = size.nonlinear ? bytes(0, 20 * slots) : 0.0;
   return shares;
@@ -138,7 +138,7 @@ double estimated_memory(const ProblemSize& size, int ranks) {
                        std::max(shares.setup, shares.step + shares.tangent);
   const double solving = (loops + bytes_per_contact_point * size.contact_points) / ranks;
   const double handed_in = shares.mesh + shares.problem;
-  // While boundary and neighbours are sought; orders, ranks and new numbers of the split.
+  // While finding boundary and neighbours; orders, ranks and new numbers of the partition.
   const double sides = 8 * size.nodes + 4.0 * facets_per_element(size.type) * size.elements,
                splitting = 28 * size.nodes + 4 * size.elements;
   const double first = std::max({handed_in + sides, handed_in + splitting + shares.part / ranks, solving});

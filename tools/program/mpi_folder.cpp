@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where Open MPI keeps what it needs while a run lasts.
+// Session folder of Open MPI during a run.
 #include "program/mpi_folder.hpp"
 
 #include <fcntl.h>
@@ -24,19 +24,20 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* tmpdir_variable = "OMPI_MCA_orte_tmpdir_base";
-/// Not the names of version 0.2, whose folders have no lock.
+/// Differs from the names of version 0.2, whose folders have no lock.
 constexpr const char* first_letters = "kacanov-mpi-locked-";
-/// A session of eight ranks has 200 kB here; shared memory is in /dev/shm.
+/// A session of eight ranks needs 200 kB here; shared memory is in /dev/shm.
 constexpr std::uintmax_t least_room = 1 << 20;
 
-/// Opens and locks a folder; -1 where another process holds it, or where it is no folder of this user.
+/// Opens and locks a folder; returns -1 if another process holds the lock, or if it is not a folder of this
+/// user.
 int open_locked(const fs::path& folder, bool lock_needed) {
   const int handle = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
   if (handle < 0) return -1;
   struct stat opened {
   }, named{};
   const bool locked = ::flock(handle, LOCK_EX | LOCK_NB) == 0;
-  // File systems that know no locks have to do without.
+  // Without lock support in the file system, continue without a lock.
   const bool usable = locked || (!lock_needed && errno != EWOULDBLOCK);
   if (usable && ::fstat(handle, &opened) == 0 && ::stat(folder.c_str(), &named) == 0 &&
       opened.st_ino == named.st_ino && opened.st_dev == named.st_dev && opened.st_uid == ::geteuid())
@@ -45,7 +46,7 @@ int open_locked(const fs::path& folder, bool lock_needed) {
   return -1;
 }
 
-/// Removes the folders in `base` that nobody has locked: their processes are gone.
+/// Removes unlocked folders in `base`: their processes have ended.
 void remove_left_over(const fs::path& base) {
   std::error_code error;
   std::vector<fs::path> found;
@@ -106,7 +107,7 @@ LockedFolder::~LockedFolder() {
 MpiFolder::MpiFolder(const fs::path& last_resort) {
   if (started_by_mpi()) return;
   if (const char* given = std::getenv(tmpdir_variable)) {
-    // Open MPI that cannot make a folder there ends the process with a code of its own.
+    // If Open MPI cannot create a folder there, it exits with a code of its own, so try it first.
     const std::array only{fs::path(given)};
     const LockedFolder trial(only);
     return;

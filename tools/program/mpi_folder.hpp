@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where Open MPI keeps what it needs while a run lasts.
+// Session folder of Open MPI during a run.
 #pragma once
 
 #include <filesystem>
@@ -8,14 +8,14 @@
 
 namespace kacanov {
 
-/// A new folder that is locked while its process, or one that has inherited handle(), lives. Making one
-/// removes those that killed processes of this user have left beside it.
+/// Creates a folder that stays locked while its process, or one that has inherited handle(), lives. The
+/// constructor also removes folders that killed processes of this user have left beside it.
 class LockedFolder {
  public:
-  /// In the first of `bases` that lets a folder be made and has some room. Throws InternalError, with the
-  /// reason for each, where none does.
+  /// Uses the first of `bases` in which a folder can be created and which has enough space. Throws
+  /// InternalError with the reason for each if none qualifies.
   explicit LockedFolder(std::span<const std::filesystem::path> bases);
-  /// Removes it.
+  /// Removes the folder.
   ~LockedFolder();
   LockedFolder(const LockedFolder&) = delete;
   LockedFolder& operator=(const LockedFolder&) = delete;
@@ -28,21 +28,20 @@ class LockedFolder {
   int handle_ = -1;  ///< closed by exec()
 };
 
-/// A folder of this process's own for Open MPI's session, named in its environment. Otherwise all programs of
-/// a user share one, remove it as they end, and others that start just then fail (open-mpi/ompi issue 8510).
-/// There is none where the user has said where (OMPI_MCA_orte_tmpdir_base), or where another process has
-/// started this one as a rank.
+/// Open MPI's session folder of this process, set in its environment. By default all programs of a user share
+/// one and remove it at their end, which breaks programs that are starting (open-mpi/ompi issue 8510). None
+/// is created if the user sets OMPI_MCA_orte_tmpdir_base, or if another process started this one as a rank.
 class MpiFolder {
  public:
-  /// Before MPI_Init or mpiexec. In TMPDIR, /tmp or /dev/shm, or else in `last_resort`, which is made. Throws
-  /// InternalError where no folder can be made.
+  /// Call it before MPI_Init or mpiexec. Uses TMPDIR, /tmp or /dev/shm, else creates `last_resort`. Throws
+  /// InternalError if no folder can be created.
   explicit MpiFolder(const std::filesystem::path& last_resort = {});
-  /// Removes it: after MPI_Finalize or the end of mpiexec.
+  /// Removes the folder; call it after MPI_Finalize or the end of mpiexec.
   ~MpiFolder();
   MpiFolder(const MpiFolder&) = delete;
   MpiFolder& operator=(const MpiFolder&) = delete;
 
-  /// In a child of this process: what it becomes by exec() holds the lock as well.
+  /// Call it in a child of this process: the program it starts by exec() holds the lock too.
   void hand_down() const noexcept;
 
  private:

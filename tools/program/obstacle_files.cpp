@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Obstacles that are in files of their own.
+// Reads obstacles from files of their own.
 #include "program/obstacle_files.hpp"
 
 #include <kacanov/error.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One solve at a time in a process that others have started.
+// Allows one solve at a time in a host process.
 #pragma once
 
 #include <atomic>
@@ -9,7 +9,7 @@
 
 namespace kacanov {
 
-/// A mutex of std's that can tell the thread that holds it: there a callback asks for another run.
+/// A timed mutex that can identify the thread that holds it, to detect a solve called from a callback.
 class RunMutex {
  public:
   void lock() {
@@ -34,7 +34,7 @@ class RunMutex {
   std::atomic<std::thread::id> holder_;
 };
 
-/// The libraries beneath know one run a process: who solves holds this meanwhile.
+/// Held during a solve, because the libraries underneath support one run per process.
 inline RunMutex one_run;
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The folder a command writes to.
+// Output folder of a command.
 #include "program/output_folder.hpp"
 
 #include <fcntl.h>
@@ -21,7 +21,7 @@ namespace {
   throw InputError("--output: the folder " + folder.string() + " cannot be " + why);
 }
 
-/// The process that a lock file names, for a message; empty where it names none.
+/// Returns the process named in a lock file, for a message; empty if there is none.
 std::string holder(int lock) {
   std::array<char, 24> number{};
   const ssize_t size = ::pread(lock, number.data(), number.size() - 1, 0);
@@ -29,7 +29,8 @@ std::string holder(int lock) {
   return text.empty() ? std::string() : " (process " + text + ")";
 }
 
-/// Whether the open file is still the one under this name, and not one that its last holder has taken away.
+/// Returns whether the open file is still the one with this name, and not one that its last holder has
+/// removed.
 bool still_there(int handle, const std::filesystem::path& path) {
   struct stat open {
   }, named{};
@@ -52,7 +53,7 @@ OutputFolder::OutputFolder(const std::filesystem::path& folder) : lock_(folder /
   while (handle_ < 0) {
     const int handle = ::open(lock_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (handle < 0) refuse(folder, std::string("written to: ") + std::strerror(errno));
-    // File systems that know no locks have to do without.
+    // Without lock support in the file system, continue without a lock.
     if (::flock(handle, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       const std::string who = holder(handle);
       ::close(handle);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The folder a command writes to.
+// Output folder of a command.
 #pragma once
 
 #include <filesystem>
@@ -10,15 +10,15 @@
 
 namespace kacanov {
 
-/// The folder of a command: as given, else results/<case name>.
+/// Returns the folder given on the command line, else results/<case name>.
 std::filesystem::path output_folder(const Command& command, const Case& input);
 
-/// A folder that one command writes to, from when it is prepared until it is let go: two runs into one folder
-/// would mix their files. The mark is the file `.lock`; it goes with the process, however that ends.
+/// Locks the output folder for one command: two runs into one folder would mix their files. The lock is on
+/// the file `.lock` and ends with the process, however that ends.
 class OutputFolder {
  public:
-  /// Makes the folder where it is missing and proves that files can be written to it. Throws InputError,
-  /// naming the process at work there where there is one.
+  /// Creates the folder if it is missing and checks that files can be written to it. Throws InputError,
+  /// naming the process that holds the lock, if there is one.
   explicit OutputFolder(const std::filesystem::path& folder);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MPI from start to end of the program, and failures that all ranks learn of.
+// MPI session of the program, and failures reported to all ranks.
 #include "program/parallel.hpp"
 
 #include <chrono>
@@ -30,7 +30,7 @@ MpiSession::MpiSession(MPI_Comm comm) : comm_(comm), hosted_(true), all_(mpi_com
 
 MpiSession::~MpiSession() {
   if (hosted_) return;
-  // mpiexec may end this process as soon as another one has left.
+  // mpiexec may end this process as soon as another one has exited.
   std::cout.flush();
   std::cerr.flush();
   MPI_Finalize();
@@ -40,7 +40,7 @@ void MpiSession::report(const Failure& failure) const {
   print_failure(failure);
   try {
     if (when_failing_) when_failing_(failure);
-  } catch (...) {  // with a full disk, or no memory, there is no more to be done
+  } catch (...) {  // with a full disk or no memory nothing more can be done
   }
 }
 
@@ -62,7 +62,7 @@ void print_failure(const Failure& failure) {
 
 namespace {
 
-/// The failure of rank `speaker`, thrown on all.
+/// Throws the failure of rank `speaker` on all ranks.
 [[noreturn]] void throw_everywhere(const MpiSession& mpi, int speaker, int exit_code, std::string cause) {
   broadcast(mpi, cause, speaker);
   if (exit_code == exit_bad_input) throw InputError(cause);
@@ -76,7 +76,7 @@ void together(const MpiSession& mpi, const std::function<void()>& work, CallSite
   try {
     work();
   } catch (const std::bad_alloc&) {
-    if (mpi.hosted() && mpi.ranks() == 1) throw;  // hosts have a word of their own for it
+    if (mpi.hosted() && mpi.ranks() == 1) throw;  // host interfaces have their own error code for it
     failure = current_failure();
   } catch (...) {
     failure = current_failure();
@@ -108,7 +108,7 @@ void collectively(const MpiSession& mpi, const std::function<void()>& work) {
     throw;
   } catch (...) {
     const Failure failure = current_failure();
-    // Where all ranks fail alike, the first one speaks and ends the job before the others wake up.
+    // If all ranks fail alike, the first one reports and aborts the job before the others wake up.
     if (!mpi.first()) std::this_thread::sleep_for(std::chrono::seconds(1));
     mpi.report(failure);
     if (mpi.ranks() > 1) MPI_Abort(mpi.comm(), coded_exit(failure.exit_code));

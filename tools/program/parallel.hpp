@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MPI from start to end of the program, and failures that all ranks learn of.
+// MPI session of the program, and failures reported to all ranks.
 #pragma once
 
 #include <mpi.h>
@@ -12,24 +12,24 @@
 
 namespace kacanov {
 
-/// Exit code and text of the exception being handled: 2 for InputError, else 3.
+/// Exit code and text of the current exception: 2 for InputError, else 3.
 struct Failure {
   int exit_code = 0;
   std::string text;
-  std::string cause = {};  ///< the same without "error: " and the like
+  std::string cause = {};  ///< the text without a prefix such as "error: "
 };
 Failure current_failure();
 
-/// "kacanov: error: ..." on standard error.
+/// Prints "kacanov: error: ..." to standard error.
 void print_failure(const Failure& failure);
 
-/// MPI_Init to MPI_Finalize; or, within a host that sees to these itself, some ranks of its own.
+/// An MPI session from MPI_Init to MPI_Finalize; or, inside a host process, a communicator of the host.
 class MpiSession {
  public:
-  /// `when_failing` as below.
+  /// `when_failing`: see below.
   explicit MpiSession(std::function<void(const Failure&)> when_failing = {});
-  /// Of a host's process: whoever is handed the session prints nothing, and together() throws on every rank
-  /// what went wrong on one.
+  /// Session inside a host process: functions that take it print nothing, and together() throws the error of
+  /// one rank on every rank.
   explicit MpiSession(MPI_Comm comm);
   ~MpiSession();
   MpiSession(const MpiSession&) = delete;
@@ -40,13 +40,13 @@ class MpiSession {
   int rank() const noexcept { return rank_; }
   int ranks() const noexcept { return ranks_; }
   bool first() const noexcept { return rank_ == 0; }
-  /// Precedes calls of MPI by hand (Communicator::expect_all_here).
+  /// Call it before direct MPI calls (Communicator::expect_all_here).
   void expect_all_here(CallSite at = CallSite()) const { all_.expect_all_here(at); }
 
-  /// What else is to be done about a failure, on the rank that prints it. It must not communicate; what it
-  /// throws is lost.
+  /// Sets an extra action after a failure, on the rank that prints it. It must not communicate; its
+  /// exceptions are ignored.
   void when_failing(std::function<void(const Failure&)> work) { when_failing_ = std::move(work); }
-  /// Prints a failure and does that.
+  /// Prints a failure and runs the extra action.
   void report(const Failure& failure) const;
 
  private:
@@ -62,15 +62,15 @@ struct ReportedFailure {
   int exit_code;
 };
 
-/// Does `work`, which must not communicate, on every rank; where it throws on any, one message is printed and
-/// every rank throws ReportedFailure; in a host's process InputError or InternalError instead. Collective.
+/// Runs `work`, which must not communicate, on every rank. If it throws on any rank, one message is printed
+/// and every rank throws ReportedFailure; in a host process, InputError or InternalError instead. Collective.
 void together(const MpiSession& mpi, const std::function<void()>& work, CallSite at = CallSite());
 
-/// Hands the text of one rank to all. Collective.
+/// Broadcasts the text of rank `from` to all. Collective.
 void broadcast(const MpiSession& mpi, std::string& text, int from = 0, CallSite at = CallSite());
 
-/// Does `work`, which communicates. Where it throws, the message is printed; with several ranks the rest
-/// cannot be waited for, and the whole job ends there with its exit code.
+/// Runs `work`, which communicates. If it throws, the message is printed; with several ranks the others
+/// cannot be waited for, and the whole job is aborted with the exit code.
 void collectively(const MpiSession& mpi, const std::function<void()>& work);
 
 }  // namespace kacanov

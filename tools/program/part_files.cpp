@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fields of a part and of the boundary as the pieces of a hashed file.
+// Stores the fields of a part and of the boundary as pieces of a hashed file.
 #include "program/part_files.hpp"
 
 #include <utility>
@@ -19,7 +19,7 @@ void exchange_fields(Either<Group> auto& group, const auto& stream) {
   stream(group.name, group.dimension, group.members);
 }
 
-/// What keep_boundary leaves.
+/// The data that keep_boundary() leaves.
 void exchange_fields(Either<Problem> auto& problem, const auto& stream) {
   auto& mesh = problem.mesh;
   stream(mesh.type, mesh.coordinates, mesh.elements, mesh.node_tags, mesh.element_tags, mesh.facets,
@@ -29,7 +29,7 @@ void exchange_fields(Either<Problem> auto& problem, const auto& stream) {
 namespace {
 
 constexpr std::string_view part_magic = "kacanov part 13\n", boundary_magic = "kacanov boundary 6\n";
-/// The sections of a case that parts are made of.
+/// Sections of a case that the parts depend on.
 constexpr const char* sections[] = {"plane",    "thickness", "mesh",  "material",
                                     "boundary", "contact",   "steps", "probe"};
 
@@ -41,7 +41,7 @@ std::filesystem::path boundary_file(const std::filesystem::path& folder) {
   return folder / "boundary.kacanov";
 }
 
-/// Length and hash of the mesh file; null where there is none, as on a machine that has the parts only.
+/// Length and hash of the mesh file; null if the file is missing, as on a machine that has only the parts.
 nlohmann::json mesh_identity(const Case& input) {
   PlainFile file;
   if (input.mesh.file) file.open(*input.mesh.file, std::ios::binary);
@@ -71,7 +71,7 @@ HashedReader open_boundary(const std::filesystem::path& folder) {
   return open_file(boundary_file(folder), boundary_magic, "boundary");
 }
 
-/// Throws InputError where the parts were made of a case with another text.
+/// Throws InputError if the parts were made from a different case.
 void check_case(const nlohmann::json& header, const Case& input, const std::string& file) {
   const nlohmann::json& there = header.at("case");
   const std::string text =
@@ -79,8 +79,8 @@ void check_case(const nlohmann::json& header, const Case& input, const std::stri
   if (!text.empty()) throw InputError("--parts: " + file + " belongs to another case: " + text);
 }
 
-/// Throws InputError where the mesh file is at hand and is not the one that the parts were made of. It is
-/// hashed, not parsed.
+/// Throws InputError if the mesh file exists and is not the one that the parts were made from. It is hashed,
+/// not parsed.
 void check_mesh(const nlohmann::json& header, const Case& input, const std::string& file) {
   const nlohmann::json &there = header.at("mesh_file"), here = mesh_identity(input);
   if (here.is_null() || here == there) return;
@@ -93,7 +93,7 @@ void check_mesh(const nlohmann::json& header, const Case& input, const std::stri
                    text(there) + ", and now has " + text(here));
 }
 
-/// Throws InputError where a part names entries that the case does not have.
+/// Throws InputError if a part refers to entries that the case does not have.
 void check_entries(const Part& part, const Model& model) {
   const auto below = [](std::int32_t entry, std::size_t count) {
     return static_cast<std::size_t>(entry) < count;
@@ -106,7 +106,7 @@ void check_entries(const Part& part, const Model& model) {
   if (!fits) throw InputError("the part names an entry that the case does not have");
 }
 
-/// Throws InputError unless this is the header of the part of a rank, for this case and as many ranks.
+/// Throws InputError unless this is the header of this rank's part, for this case and this number of ranks.
 void check_part(const nlohmann::json& header, const Case& input, const MpiSession& mpi,
                 const std::string& file) {
   check_case(header, input, file);
@@ -120,14 +120,15 @@ void check_part(const nlohmann::json& header, const Case& input, const MpiSessio
                      std::to_string(part));
 }
 
-/// Whether this is a name of a file of a split, or of one that was being written.
+/// Returns whether the name is that of a partition file, complete or unfinished.
 bool is_own_file(const std::string& name) {
   return (name.starts_with("part_") || name.starts_with("boundary.")) &&
          name.find(".kacanov") != std::string::npos;
 }
 
-/// A folder for files until all of them are whole; with it goes what is still there, and what an attempt that
-/// was killed has left. Throws InputError where a folder of this name has anything else in it.
+/// A folder for files until all of them are complete. The destructor removes it with all files left; the
+/// constructor removes the rest of a killed attempt. Throws InputError if a folder of this name contains
+/// anything else.
 class Staging {
  public:
   explicit Staging(std::filesystem::path folder) : folder_(std::move(folder)) {
@@ -156,7 +157,7 @@ class Staging {
   std::filesystem::path folder_;
 };
 
-/// What all files of one split have in common.
+/// Identifier that all files of one partition share.
 std::uint64_t split_identity(nlohmann::json header) {
   header.erase("part");
   const std::string text = header.dump();

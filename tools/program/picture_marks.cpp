@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a body is held and loaded, for its picture.
+// Marks of supports and loads in the picture of a body.
 #include "program/picture_marks.hpp"
 
 #include <kacanov/error.hpp>
@@ -11,7 +11,7 @@ namespace {
 
 using Mark = DeformedPicture::Mark;
 
-/// The outer normal of a facet, by its corners, of the length of twice its area or of its own.
+/// Outward normal of a facet, from its corners; its length is twice the area in 3D and the edge length in 2D.
 Vector3 outwards(const Mesh& mesh, std::size_t facet) {
   const auto nodes = mesh.facet(facet);
   const std::size_t dim = mesh.dim();
@@ -28,7 +28,7 @@ Vector3 outwards(const Mesh& mesh, std::size_t facet) {
   return cross(corner(1) - corner(0), corner(2) - corner(0));
 }
 
-/// What a load does to each node of `nodes`, as far as its direction goes.
+/// Direction of a load at each node of `nodes`.
 std::vector<Vector3> directions(const BoundaryEntry& entry, const Mesh& mesh, const Selection& selection,
                                 const std::string& name, const std::vector<std::int32_t>& nodes) {
   Vector3 same{};
@@ -67,7 +67,7 @@ std::vector<Mark> picture_marks(const Case& input, const Mesh& mesh) {
       std::vector<Vector3> along(nodes.size());
       if (kind == Mark::Kind::load) along = directions(entry, mesh, selection, name, nodes);
       for (std::size_t k = 0; k < nodes.size(); ++k) marks.push_back({kind, nodes[k], along[k]});
-    } catch (const InputError&) {  // inner nodes, of which there are none here
+    } catch (const InputError&) {  // inner nodes, which the boundary does not have
     }
   }
   return marks;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a body is held and loaded, for its picture.
+// Marks of supports and loads in the picture of a body.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace kacanov {
 
-/// The nodes of supports, springs and loads, with the directions of the latter. Of `mesh` 3D needs the
-/// boundary only; entries of inner nodes and what acts in the volume have no marks.
+/// Returns the nodes of supports, springs and loads, the latter with directions. In 3D `mesh` needs the
+/// boundary only; inner nodes and volume loads have no marks.
 std::vector<DeformedPicture::Mark> picture_marks(const Case& input, const Mesh& mesh);
 
 }  // namespace kacanov

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers with a point in a thread of a host whose locale has commas.
+// Selects the decimal point in a thread of a host process whose locale may use a comma.
 #pragma once
 
 #include <locale.h>
@@ -8,8 +8,8 @@
 
 namespace kacanov {
 
-/// The C library reads and writes this thread's numbers with a point as long as it lives. Throws bad_alloc.
-/// Streams of C++ have their own: Plain.
+/// Sets the "C" locale for this thread during its lifetime, so that the C library reads and writes a decimal
+/// point. Throws bad_alloc. C++ streams have their own: Plain.
 class PlainLocale {
  public:
   PlainLocale() : plain_(newlocale(LC_ALL_MASK, "C", nullptr)) {
@@ -23,7 +23,7 @@ class PlainLocale {
   PlainLocale(const PlainLocale&) = delete;
   PlainLocale& operator=(const PlainLocale&) = delete;
 
-  /// Does `work` in the host's locale.
+  /// Runs `work` in the host's locale.
   template <class Work>
   auto in_hosts(const Work& work) const {
     uselocale(hosts_);

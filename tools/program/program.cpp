@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The program kacanov: reads the command line, sees to its processes and hands over to a subcommand.
+// Entry point of the program: parses the command line, starts its processes and calls a subcommand.
 #include <unistd.h>
 
 #include <algorithm>
@@ -28,13 +28,13 @@ namespace {
 
 using namespace kacanov;
 
-/// Whether everything happens on one rank, without MPI.
+/// Returns whether the command runs on one rank, without MPI.
 bool needs_one(const Command& command) {
   return command.kind == Command::Kind::check || command.kind == Command::Kind::partition ||
          command.kind == Command::Kind::verify;
 }
 
-/// `ranks`: those that a run would have here.
+/// `ranks`: number of ranks that a run would have here.
 int command_on_one(const Command& command, const Case& input, int ranks) {
   if (command.kind == Command::Kind::check) return check_command(input, command.ranks.value_or(ranks));
   return command.kind == Command::Kind::verify ? verify_command(command, input)
@@ -61,7 +61,7 @@ int dispatch(const Command& command, const Case& input, MpiSession& mpi) {
   return code;
 }
 
-/// Within MPI, with the ranks there are.
+/// Runs under MPI with the existing ranks.
 int run_here(const Command& command, const std::optional<Case>& known) {
   take_signals();
   std::optional<Case> input = known;
@@ -76,7 +76,7 @@ int run_here(const Command& command, const std::optional<Case>& known) {
         throw InputError("--ranks: " + std::to_string(*command.ranks) + " asked for, but " +
                          std::to_string(mpi.ranks()) + " were started");
       }
-      // Read once, by the first: a file that changes meanwhile would set the ranks on different cases.
+      // Only the first rank reads the file: if it changed meanwhile, the ranks would have different cases.
       if (!input && mpi.first()) text = case_text_handed_down(command.case_file);
     });
     if (!input) {
@@ -95,7 +95,7 @@ int command_without_case(const Command& command) {
   return command.kind == Command::Kind::convert ? convert_command(command) : init_command(command);
 }
 
-/// The same on the first of the ranks there are.
+/// Runs a command without a case on the first of the existing ranks.
 int first_without_case(const Command& command) {
   const MpiSession mpi;
   int code = exit_converged;
@@ -109,7 +109,7 @@ int first_without_case(const Command& command) {
   return code;
 }
 
-/// Those of the command line, or as many as there are parts.
+/// Number of ranks on the command line, or the number of parts.
 std::optional<int> ranks_asked_for(const Command& command, const Case& input) {
   if (command.parts.empty()) return command.ranks;
   const int parts = count_parts(command.parts, input);
@@ -120,7 +120,7 @@ std::optional<int> ranks_asked_for(const Command& command, const Case& input) {
   return parts;
 }
 
-/// Alone or under mpiexec, on as many ranks as the case and the command line ask for.
+/// Runs alone or under mpiexec, on as many ranks as the case and the command line require.
 int run_on_ranks(const Command& command, const Case& input, const CaseText& text,
                  std::span<const char* const> words) {
   const Shape shape = choose_shape(input, ranks_asked_for(command, input), command.threads, usable_cores());
@@ -137,7 +137,7 @@ int run_on_ranks(const Command& command, const Case& input, const CaseText& text
   return run_here(command, input);
 }
 
-/// Started by hand: validates what is quickly validated, then goes on alone or under mpiexec.
+/// Started by hand: runs the quick checks, then continues alone or under mpiexec.
 int run_alone(const Command& given, int argc, const char* const* argv) {
   if (given.without_case()) return command_without_case(given);
   Command command = given;
@@ -161,14 +161,14 @@ int run_alone(const Command& given, int argc, const char* const* argv) {
   try {
     return run_on_ranks(command, input, text, words);
   } catch (...) {
-    // Where a process was killed, the others went with it, and only this one can still write why.
+    // If a process was killed, the others ended too, and only this one can still record the reason.
     const Failure failure = current_failure();
     if (failure.exit_code == exit_failure) before.leave(failure.text);
     throw;
   }
 }
 
-/// Whether what it has to say goes to files, and to the standard output only beside them.
+/// Returns whether the command writes its results to files, with standard output as an addition.
 bool writes_files(const std::optional<Command>& command) {
   return command && command->kind != Command::Kind::check && command->kind != Command::Kind::spectrum &&
          command->kind != Command::Kind::verify;
@@ -181,8 +181,8 @@ std::atomic<bool> out_of_memory = false;
   throw std::bad_alloc();
 }
 
-/// The last way out: where memory ends, even taking a JSON document apart may ask for some, and throw where
-/// nothing may be thrown. Allocates nothing.
+/// Last resort: without memory, even destroying a JSON document may allocate, and throw where nothing may
+/// throw. Allocates nothing.
 [[noreturn]] void end_at_once() {
   const char* what = out_of_memory ? "out of memory" : "a failure of a failure";
   try {
@@ -207,8 +207,8 @@ int say(const ParsedCommand& parsed) {
 int run_program(int argc, char** argv) {
   std::set_terminate(end_at_once);
   std::set_new_handler(note_lack_of_memory);
-  // A file beyond the limit of its size is an error like a full disk; who no longer reads what is printed
-  // does not end a run whose results go to files.
+  // Exceeding the file size limit is an error like a full disk; a closed output pipe does not stop a run
+  // whose results go to files.
   for (const int signal : {SIGXFSZ, SIGPIPE}) std::signal(signal, SIG_IGN);
   const ParsedCommand parsed = parse_command(argc, argv);
   try {
@@ -234,7 +234,7 @@ int run_program(int argc, char** argv) {
 int main(int argc, char** argv) {
   const int code = run_program(argc, argv);
   if (!address_space_limit()) return code;
-  // Threads of OpenBLAS that find no room try again for ever, and exit() waits for them.
+  // If threads of OpenBLAS cannot allocate memory, they retry forever, and exit() would wait for them.
   std::cout.flush();
   std::fflush(nullptr);
   std::_Exit(code);

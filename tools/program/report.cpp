@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a run tells people: a line a step while it goes, a summary when it is done.
+// Terminal output of a run: one line per step and a summary.
 #include "program/report.hpp"
 
 #include <algorithm>
@@ -21,10 +21,10 @@ std::string format(const char* pattern, Arguments... arguments) {
   return buffer.data();
 }
 
-/// Of what is large where a number stands: what is smaller is left by rounding.
+/// Relative to the largest number printed beside it, smaller values are round-off.
 constexpr double rounding = 1e-12;
 
-/// What rounding leaves of a component is 0, beside the vector itself and `scale`.
+/// Components that are round-off, relative to the vector itself and `scale`, print as 0.
 std::string vector_text(const Vector3& v, int dim, double scale = 0.0) {
   const double least = rounding * std::max(norm(v), scale);
   std::string text = "(";
@@ -33,19 +33,19 @@ std::string vector_text(const Vector3& v, int dim, double scale = 0.0) {
   return text + ")";
 }
 
-/// Of a moment: a number in 2D.
+/// Formats a moment: one number in 2D.
 std::string moment_text(const Vector3& v, int dim, double scale) {
   if (dim == 2) return format("%.6g", std::abs(v[2]) > rounding * scale ? v[2] : 0.0);
   return vector_text(v, dim, scale);
 }
 
-/// 0 for what is nothing in any respect, such as 3.6e-228.
+/// Prints negligible values, such as 3.6e-228, as 0.
 std::string residual_text(double value) {
   constexpr double nothing = 1e-30;
   return std::abs(value) < nothing ? "0" : format("%.1e", value);
 }
 
-/// Sizes beside which a component of a force or a moment is 0.
+/// Magnitudes relative to which a component of a force or a moment counts as 0.
 struct Scales {
   double force = 0.0, moment = 0.0;
 };
@@ -65,7 +65,7 @@ Scales scales_of(const Result& result) {
 
 std::string count(std::int64_t n) { return std::to_string(n); }
 
-/// The summary lists no more entries of a kind; result.json has all.
+/// Limit of entries per kind in the summary; result.json has all.
 constexpr std::size_t most_lines = 8;
 
 template <class Totals, class Line>
@@ -101,7 +101,7 @@ std::string place_text(const Extreme& extreme, int dim) {
   return format("%.4g at ", extreme.value) + vector_text(extreme.at, dim);
 }
 
-/// Estimates, as shares of what they are errors of.
+/// Error estimates, relative to the estimated quantities.
 std::string discretisation_line(const Result& result) {
   const Discretisation& error = result.discretisation;
   std::string text = format("  mesh error    about %.2g %% in the energy norm", 100.0 * error.energy);
@@ -150,10 +150,10 @@ void ProgressTable::operator()(const ProgressStep& step) {
   seconds_ = step.seconds;
 }
 
-/// The time to the tolerance if the residual goes on to fall as it did in this step.
+/// Estimates the time until the tolerance is reached if the residual continues to fall as in this step.
 std::string ProgressTable::left(const ProgressStep& step) const {
   const double worst = step.certificate.worst(), gained = std::log(worst_ / worst);
-  constexpr double least = 0.1;  // of e: a step that gained less tells nothing
+  constexpr double least = 0.1;  // natural logarithm; a smaller reduction gives no useful estimate
   if (!(worst > tolerance_ && gained > least)) return "";
   const double seconds = (step.seconds - seconds_) * std::log(worst / tolerance_) / gained;
   return seconds < 1.0 ? "" : readable_seconds(seconds);

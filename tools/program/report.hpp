@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a run tells people: a line a step while it goes, a summary when it is done.
+// Terminal output of a run: one line per step and a summary.
 #pragma once
 
 #include <string>
@@ -11,13 +11,13 @@
 
 namespace kacanov {
 
-/// Prints progress as an aligned table on standard output; its headings come with the first step. 80 columns
-/// are enough for it, with more it has some more.
+/// Prints progress as an aligned table to standard output, with a heading at the first step. It fits 80
+/// columns; wider terminals get more columns.
 class ProgressTable {
  public:
   ProgressTable(const Terminal& terminal, double tolerance) : terminal_(terminal), tolerance_(tolerance) {}
   void operator()(const ProgressStep& step);
-  /// As RunOptions::stage.
+  /// See RunOptions::stage.
   void stage(const std::string& name);
 
  private:
@@ -26,21 +26,21 @@ class ProgressTable {
 
   Terminal terminal_;
   double tolerance_;
-  double worst_ = 0.0, seconds_ = 0.0;  ///< of the step before
+  double worst_ = 0.0, seconds_ = 0.0;  ///< of the previous step
   bool headed_ = false;
 };
 
-/// "12.3 MB" and the like.
+/// Returns a text such as "12.3 MB".
 std::string readable_bytes(double bytes);
-/// "3.4 %" and the like.
+/// Returns a text such as "3.4 %".
 std::string readable_share(double share);
-/// "0.12 s", "12 min" and the like.
+/// Returns a text such as "0.12 s" or "12 min".
 std::string readable_seconds(double seconds);
 
-/// The summary at the end of a run, several lines of any length. Takes names of probes from the model.
+/// Returns the summary of a run, several lines of any length. The model provides the names of probes.
 std::string summary(const Result& result, const RunFigures& figures, const Model& model, int dim);
 
-/// A summary as a terminal shows it: lines that fit, colours where it has them.
+/// Returns a summary formatted for a terminal: wrapped lines, and colours if supported.
 std::string shown(const Terminal& terminal, Status status, const std::string& summary);
 
 }  // namespace kacanov

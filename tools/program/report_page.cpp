@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The data of report.html, and the frame they stand in.
+// Embeds the data of a run in report.html.
 #include "program/report_page.hpp"
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// JSON that no "</script>" in a name can end.
+/// JSON in which no name can contain "</script>".
 std::string embedded(const ordered_json& json) {
   std::string text;
   for (const char c : json.dump(-1, ' ', false, ordered_json::error_handler_t::replace))
@@ -33,7 +33,7 @@ std::string packed(const std::vector<T>& values) {
   return base64({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)});
 }
 
-/// Single precision; what is not finite becomes 0, as in the picture.
+/// Converts to single precision; non-finite values become 0, as in the picture.
 float shown_value(double value) { return std::isfinite(value) ? static_cast<float>(value) : 0.0F; }
 
 std::string packed_values(std::span<const double> values) {
@@ -43,7 +43,7 @@ std::string packed_values(std::span<const double> values) {
   return packed(single);
 }
 
-/// Three entries a node, about `centre`.
+/// Three entries per node, relative to `centre`.
 std::string packed_vectors(std::span<const double> values, std::size_t dim, const Vector3& centre) {
   std::vector<float> single;
   for (std::size_t i = 0; i < values.size(); i += dim)
@@ -56,7 +56,7 @@ const char* kind_of(const BoundaryEntry& entry) {
   return entry.is_support() ? "support" : entry.is_spring() ? "spring" : "load";
 }
 
-/// Nodes of the entries, to be marked; what acts in the volume or is not on the boundary has none.
+/// Nodes of the entries to be marked; volume loads and inner nodes have no marks.
 ordered_json marks_json(const ReportPage& page) {
   const Selection selection(*page.mesh);
   const Model& model = page.input->model;
@@ -65,7 +65,7 @@ ordered_json marks_json(const ReportPage& page) {
     ordered_json mark{{"name", name}, {"kind", kind}, {"nodes", nullptr}};
     try {
       mark["nodes"] = packed(selection.nodes(on, name));
-    } catch (const InputError&) {  // made of inner nodes, of which there are none here: the page says so
+    } catch (const InputError&) {  // inner nodes are not in the boundary mesh; the page mentions it
     }
     marks.push_back(mark);
   };
@@ -83,7 +83,7 @@ ordered_json vector_json(const Vector3& v, const Vector3& origin) {
   return {v[0] - origin[0], v[1] - origin[1], v[2] - origin[2]};
 }
 
-/// Planes that stay.
+/// Planes at rest.
 ordered_json planes_json(const Model& model, const Vector3& centre) {
   ordered_json planes = ordered_json::array();
   for (const ContactEntry& entry : model.contact) {
@@ -95,7 +95,7 @@ ordered_json planes_json(const Model& model, const Vector3& centre) {
   return planes;
 }
 
-/// Corners of triangles, in 2D ends of lines.
+/// Corners of triangles; end points of segments in 2D.
 std::string packed_obstacles(const std::vector<DeformedPicture::ObstacleFacet>& facets, std::size_t dim,
                              const Vector3& centre) {
   std::vector<float> all;
@@ -123,7 +123,7 @@ ordered_json scene_json(const ReportPage& page) {
   Vector3 centre{};
   for (std::size_t k = 0; k < dim; ++k) centre[k] = (box.lower[k] + box.upper[k]) / 2;
   scene["size"] = box.size;
-  // As in the picture: where it is farther away than the body is wide it is left out.
+  // As in the picture, the axis is omitted if it is farther from the body than the body is wide.
   if (mesh.plane == PlaneState::axisymmetric && box.lower[0] < box.upper[0] - box.lower[0])
     scene["axis"] = {{"x", -centre[0]}, {"reach", 0.6 * (box.upper[1] - box.lower[1])}};
   scene["scale"] = page.input->output.scale;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Style and script of report.html. Texts reach the page as text nodes only, so that nothing in them is
-// markup.
+// Style and script of report.html. All texts enter the page as text nodes, so none is interpreted as markup.
 #include "program/report_page.hpp"
 
 namespace kacanov {

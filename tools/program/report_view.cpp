@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The part of report.html's script that draws the body with WebGL 2, and what starts all parts.
+// The part of report.html's script that draws the body with WebGL 2, and the start of all parts.
 #include "program/report_page.hpp"
 
 namespace kacanov {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// result.json: the numbers of a run.
+// Writes result.json, the numbers of a run.
 #include "program/result_json.hpp"
 
 namespace kacanov {
@@ -76,7 +76,7 @@ ordered_json estimate_json(const SpectrumResult& result) {
           {"seconds", result.seconds}};
 }
 
-/// Nothing of what one mesh alone does not tell.
+/// Omits the quantities that need more than one mesh.
 ordered_json discretisation_json(const Discretisation& error, int dim) {
   ordered_json json{{"energy", error.energy}, {"meshes", error.meshes}};
   if (!error.probe.empty()) json["probe"] = ordered_json::array();

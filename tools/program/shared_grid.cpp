@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One file of a grid of which every rank has a share.
+// Writes one VTK file of a grid that is distributed over the ranks.
 #include "program/shared_grid.hpp"
 
 #include <array>
@@ -19,21 +19,21 @@ GridPlace place_of(const Grid& share, const MpiSession& mpi) {
   mpi.expect_all_here();
   MPI_Allreduce(here.data(), all.data(), 2, MPI_UINT64_T, MPI_SUM, mpi.comm());
   MPI_Exscan(here.data(), before.data(), 2, MPI_UINT64_T, MPI_SUM, mpi.comm());
-  if (mpi.first()) before = {};  // MPI leaves it open there
+  if (mpi.first()) before = {};  // MPI_Exscan leaves it undefined on the first rank
   return {all[0], all[1], before[0], before[1]};
 }
 
 enum class Kind : std::uint64_t { loose, packed, end, failed };
 
-/// What goes ahead of the lengths and the bytes of a message.
+/// Header of a message: its kind, and the sizes of bytes and lengths.
 struct Front {
   Kind kind = Kind::end;
   std::uint64_t bytes = 0, lengths = 0;
 };
 
-/// Sends blocks to the first rank, and goes on while that packs its own; at an array's end it waits until all
-/// are taken. MPI may move bytes while both ranks are within it alone: of ranks that went on to the next
-/// array the first one waited for theirs to get through, a third of the time that a file took.
+/// Sends blocks to the first rank without waiting while that compresses its own; at the end of an array it
+/// waits until all are received. MPI may transfer data only while both ranks are inside it: when ranks went
+/// on to the next array, the first one waited for their data, a third of the time of a file.
 class Sender : public BlockSink {
  public:
   explicit Sender(MPI_Comm comm) : comm_(comm) {}
@@ -60,7 +60,7 @@ class Sender : public BlockSink {
     if (!bytes.empty()) start(message.bytes.data(), bytes.size(), message.requests[2]);
     if (kind == Kind::end) wait_for_all();
   }
-  /// Needs no memory: it may be that which is missing.
+  /// Needs no memory, which may be what has run out.
   void give_up() {
     wait_for_all();
     const Front front{Kind::failed, 0, 0};
@@ -81,10 +81,10 @@ class Sender : public BlockSink {
   }
 
   MPI_Comm comm_;
-  std::deque<Message> waiting_;  ///< of one array
+  std::deque<Message> waiting_;  ///< messages of one array
 };
 
-/// Sends all arrays; where that fails, says so and sends no more.
+/// Sends all arrays; after an error, reports it and sends nothing more.
 void send_share(const VtuShare& share, const MpiSession& mpi) {
   Sender sender(mpi.comm());
   try {
@@ -98,13 +98,13 @@ void send_share(const VtuShare& share, const MpiSession& mpi) {
   }
 }
 
-/// Writes on the first rank. Messages are taken whatever fails, so that nobody waits.
+/// Writes on the first rank. Receives all messages even after an error, so that no sender blocks.
 class Collector {
  public:
   Collector(const std::string& path, const VtuShare& share, const MpiSession& mpi)
       : share_(share), comm_(mpi.comm()), failed_(static_cast<std::size_t>(mpi.ranks()), false) {
     bytes_.resize(BlockPacker::most);
-    lengths_.resize(BlockPacker::most / 16);  // the packed length of a whole block is far above 16
+    lengths_.resize(BlockPacker::most / 16);  // a whole compressed block is much longer than 16 bytes
     attempt([&] { file_.emplace(path, share); });
   }
 
@@ -137,7 +137,7 @@ class Collector {
     }
   }
 
-  /// A rank's share of an array; false: the rank has failed.
+  /// Receives a rank's share of an array; false: the rank has failed.
   bool take_share(int rank) {
     while (true) {
       Front front;
@@ -160,7 +160,7 @@ class Collector {
   const VtuShare& share_;
   MPI_Comm comm_;
   std::optional<VtuFileWriter> file_;
-  std::vector<bool> failed_;  ///< ranks that send no more
+  std::vector<bool> failed_;  ///< ranks that send nothing more
   std::vector<unsigned char> bytes_;
   std::vector<std::uint64_t> lengths_;
   std::exception_ptr error_;

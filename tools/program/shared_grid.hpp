@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One file of a grid of which every rank has a share.
+// Writes one VTK file of a grid that is distributed over the ranks.
 #pragma once
 
 #include <string>
@@ -9,10 +9,9 @@
 
 namespace kacanov {
 
-/// Writes the shares of all ranks as one grid, in the order of the ranks. The first rank writes; others send
-/// it blocks that they have packed, some megabyte at a time, so that no rank ever holds more than that of
-/// another. Field names and types have to be the same everywhere. What fails ends as together() says, with no
-/// file of that name. Collective.
+/// Writes the shares of all ranks as one grid, in rank order. The first rank writes; the others send it
+/// compressed blocks, so that it holds a few megabytes of another rank at most. All ranks need the same field
+/// names and types. Errors are handled as in together() and leave no file of that name. Collective.
 void write_shared_vtu(const std::string& path, const Grid& share, const MpiSession& mpi);
 
 }  // namespace kacanov

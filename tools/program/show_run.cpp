@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What there is to see of a run: fields over the boundary, pictures, obstacles, and why some are not there.
+// Visible output of a run: boundary fields, pictures and obstacles, with reasons for missing ones.
 #include "program/show_run.hpp"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace kacanov {
 namespace {
 
-/// Lengths of vectors of `dim` entries.
+/// Euclidean lengths of vectors with `dim` entries.
 std::vector<double> lengths(const std::vector<double>& vectors, std::size_t dim) {
   std::vector<double> all;
   for (std::size_t i = 0; i < vectors.size(); i += dim) {
@@ -22,7 +22,7 @@ std::vector<double> lengths(const std::vector<double>& vectors, std::size_t dim)
   return all;
 }
 
-/// From where the side that touches is seen: against the obstacles, a little from one side and from above.
+/// View direction onto the contact surface: from the obstacle side, slightly oblique and from above.
 Vector3 towards_contact(const Problem& problem) {
   Vector3 sum{};
   for (const ContactPoint& point : problem.contact) sum = sum + point.mass * point.normal;

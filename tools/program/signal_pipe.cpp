@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Signals of this process as bytes in a pipe (self-pipe).
+// Delivers signals of this process as bytes in a pipe (self-pipe).
 #include "program/signal_pipe.hpp"
 
 #include <fcntl.h>
@@ -18,9 +18,9 @@ namespace kacanov {
 namespace {
 
 std::atomic<int> reading_end = -1, writing_end = -1;
-static_assert(std::atomic<int>::is_always_lock_free);  // for the handler
+static_assert(std::atomic<int>::is_always_lock_free);  // required in a signal handler
 
-/// A full pipe holds thousands of requests already: one more may be lost.
+/// If the pipe is full, it already holds thousands of requests, so one more may be lost.
 extern "C" void write_to_pipe(int signal) {
   const int error = errno;
   const auto byte = static_cast<unsigned char>(signal);
@@ -28,7 +28,8 @@ extern "C" void write_to_pipe(int signal) {
   errno = error;
 }
 
-/// A process that was started with the signal blocked, or whose threads are, gets it in this thread.
+/// Ensures that this thread receives the signal, even if the process was started with it blocked or other
+/// threads block it.
 void unblock(int signal) noexcept {
   sigset_t one;
   sigemptyset(&one);
@@ -82,7 +83,7 @@ void end_by(int signal) noexcept {
   sigaction(signal, &action, nullptr);
   unblock(signal);
   raise(signal);
-  _exit(128 + signal);  // the first process of a container
+  _exit(128 + signal);  // reached only by the first process of a container
 }
 
 bool asks_again(timespec& first) noexcept {

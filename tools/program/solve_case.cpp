@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A case from its file to its numbers, for commands and for programs that have the solver within them.
+// Solves a case from its file to its numbers, for commands and for host programs.
 #include "program/solve_case.hpp"
 
 #include <kacanov/discretisation.hpp>
@@ -20,7 +20,7 @@
 namespace kacanov {
 namespace {
 
-/// The solution of another run as one to start from; the same on every rank. Collective.
+/// Converts a solution of another run to an initial guess; the same on every rank. Collective.
 CoarseSolution start_of(const SolvedCase& from, int dim, const MpiSession& mpi) {
   CoarseSolution start;
   together(mpi, [&] {
@@ -41,8 +41,8 @@ CoarseSolution start_of(const SolvedCase& from, int dim, const MpiSession& mpi) 
   return start;
 }
 
-/// So many numbers an element, of all ranks, in the numbering of the whole mesh; empty where there are none.
-/// Collective.
+/// Gathers element values of all ranks, any number per element, in the numbering of the whole mesh; empty if
+/// there are none. Collective.
 std::vector<double> gather_elements(const Part& part, const std::vector<double>& local) {
   const std::size_t here = local.empty() ? 0 : local.size() / part.element_count();
   const auto width = static_cast<std::size_t>(part.node_map.max_all(static_cast<double>(here)));
@@ -56,7 +56,7 @@ std::vector<double> gather_elements(const Part& part, const std::vector<double>&
   return all;
 }
 
-/// Of all nodes on the first rank; empty where there are none. Collective.
+/// Gathers the patch numbers of all nodes on the first rank; empty if there are none. Collective.
 std::vector<std::int64_t> gather_patches(const Part& part) {
   if (!part.has_patches()) return {};
   const std::vector<double> local(part.pressure_patch.begin(), part.pressure_patch.end());
@@ -83,7 +83,7 @@ StepFields step_fields(const Part& part, const Solution& now) {
 Solution solve_part(const Case& input, Part& part, const MpiSession& mpi, const RunOptions& options) {
   if (!any_moves(input.model)) return solve(part, input.model.solver, options);
   Model model = with_curves(input.model);
-  together(mpi, [&] {  // obstacles are known to the first rank
+  together(mpi, [&] {  // obstacles are known on the first rank
     if (mpi.first()) model = with_curves(model_with_files(input));
   });
   return solve_moving(part, model, options);

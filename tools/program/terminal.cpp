@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Asks the system about the standard output, and breaks lines.
+// Queries the terminal behind standard output, and wraps lines.
 #include "program/terminal.hpp"
 
 #include <sys/ioctl.h>
@@ -12,7 +12,7 @@
 namespace kacanov {
 namespace {
 
-/// "WIDTH COLOUR", for the ranks of this program's own mpiexec.
+/// "WIDTH COLOUR", set for the ranks that this program starts under mpiexec.
 constexpr const char* handed_down = "KACANOV_TERMINAL";
 constexpr int narrowest = 40, widest = 400;
 
@@ -21,7 +21,7 @@ bool is_set(const char* variable) {
   return value != nullptr && *value != '\0';
 }
 
-/// Columns of a text: bytes of UTF-8 that begin a character.
+/// Columns of a text: the number of UTF-8 characters.
 std::size_t columns(std::string_view text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
@@ -57,8 +57,8 @@ std::string wrapped(std::string_view text, int width, int indent) {
     std::string_view rest = line;
     std::string start;
     while (columns(start) + columns(rest) > room) {
-      // The last blank that is no part of the indentation and leaves what is before it short enough; else the
-      // next.
+      // Cut at the last blank after the indentation that leaves a short enough line; if there is none, at the
+      // first blank.
       std::size_t cut = std::string_view::npos;
       for (std::size_t at = rest.find(' ', rest.find_first_not_of(' ')); at != std::string_view::npos;
            at = rest.find(' ', at + 1)) {

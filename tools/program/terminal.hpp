@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How wide what a run prints may be, and whether in colour.
+// Width and colour support of the terminal.
 #pragma once
 
 #include <string>
@@ -7,21 +7,21 @@
 
 namespace kacanov {
 
-/// What the standard output goes to.
+/// Properties of standard output.
 struct Terminal {
-  int width = 80;       ///< columns; 80 where it is no terminal
-  bool colour = false;  ///< on a terminal without NO_COLOR only
+  int width = 80;       ///< columns; 80 if it is not a terminal
+  bool colour = false;  ///< true only on a terminal without NO_COLOR
 };
 
-/// That of this process, or of the one that started it under mpiexec (hand_terminal_down).
+/// Returns the terminal of this process, or of the one that started it under mpiexec (hand_terminal_down).
 Terminal terminal_of_output();
-/// Leaves word of the terminal in the environment, for ranks whose output goes through a pipe.
+/// Describes the terminal in the environment, for ranks whose output goes through a pipe.
 void hand_terminal_down();
 
-/// Lines longer than `width` go on below, behind `indent` blanks; words stay whole, whatever their length.
+/// Wraps lines longer than `width`; continuation lines start with `indent` blanks. Words are never split.
 std::string wrapped(std::string_view text, int width, int indent);
 
-/// An attribute of ANSI terminals round a text; the text alone without colour.
+/// Wraps the text in an ANSI colour; unchanged if the terminal has no colour.
 enum class Colour { green = 32, red = 31, yellow = 33, grey = 90 };
 std::string coloured(const Terminal& terminal, Colour colour, std::string_view text);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Internal force, stored energy and the elastic diagonal, element by element in long double.
+// Computes internal force, stored energy and the elastic diagonal element by element in long double.
 #include "verify/body.hpp"
 
 #include <map>
@@ -12,10 +12,10 @@ using Tensor = std::array<Vec, 3>;
 
 struct Point {
   Real volume = 0;
-  std::vector<Vec> gradient;  ///< of every shape function, in space
-  std::vector<Real> hoop;     ///< N/r round an axis, else 0: the strain zz that u_x means
+  std::vector<Vec> gradient;  ///< spatial gradient of every shape function
+  std::vector<Real> hoop;     ///< N/r in axisymmetry, else 0: strain zz per unit u_x
 
-  /// tr ε of unit displacements of a node.
+  /// Returns tr ε for unit displacements of a node.
   Vec divergence(std::size_t a) const { return {gradient[a][0] + hoop[a], gradient[a][1], gradient[a][2]}; }
 };
 
@@ -42,7 +42,7 @@ Point point_at(const Mesh& mesh, const Indices& element, const QuadraturePoint& 
   return point;
 }
 
-/// Means of the gradients over the element, which the trace is made of with B-bar.
+/// Element means of the divergence, from which B-bar computes the trace.
 std::vector<Vec> mean_gradients(const std::vector<Point>& points) {
   std::vector<Vec> mean(points[0].gradient.size());
   Real volume = 0;
@@ -75,8 +75,8 @@ Tensor deviator_of(Tensor e) {
 
 Real norm_of(const Tensor& e) { return std::sqrt(dot(e[0], e[0]) + dot(e[1], e[1]) + dot(e[2], e[2])); }
 
-/// The strain across the plane that leaves no stress there (theory: plane-stress), by halving: it takes back
-/// a part of the trace that grows from that of the elastic answer to all of it.
+/// Returns the out-of-plane strain with zero stress (theory: plane-stress) by bisection between the elastic
+/// value and the one that makes the trace zero.
 Real strain_across(const Law& law, Tensor e) {
   const Real plane = e[0][0] + e[1][1], lame = law.bulk - 2 * law.secant(0) / 3;
   Real nearest = -lame / (lame + 2 * law.secant(0)) * plane, farthest = -plane;
@@ -89,7 +89,7 @@ Real strain_across(const Law& law, Tensor e) {
   return e[2][2];
 }
 
-/// Of the elastic B, of a node's displacement along i at a point.
+/// Returns the diagonal entry of the elastic stiffness for displacement component i of a node at a point.
 Real elastic_entry(const Mesh& mesh, const Law& law, const Point& point, std::size_t a, std::size_t i,
                    Real divergence) {
   const Real mu = law.secant(0), lame = law.bulk - 2 * mu / 3, n = point.gradient[a][i];
@@ -99,8 +99,8 @@ Real elastic_entry(const Mesh& mesh, const Law& law, const Point& point, std::si
   return shears - 2 * mu / 3 * (n + hoop) * (n + hoop) + law.bulk * divergence * divergence;
 }
 
-/// The volume and its change that belong to corners, or to patches of them, where materials average there: by
-/// corner or patch and bulk modulus, as pressure jumps where that does.
+/// Volumes and volume changes of corners, or of patches of corners, for materials that average them. Keyed by
+/// corner or patch and by bulk modulus, because the pressure jumps where the modulus does.
 class CornerVolumes {
  public:
   CornerVolumes(const Problem& problem, const std::vector<Vec>& u) : problem_(problem) {
@@ -120,9 +120,9 @@ class CornerVolumes {
       }
     }
   }
-  /// Whether the elements of this law average.
+  /// Returns whether elements with this law average the volume change.
   bool count(const Law& law) const { return law.mixed && !corners_.empty(); }
-  /// Of the means round the element's corners, their linear interpolation, or that of their squares.
+  /// Interpolates the means around the element's corners, or their squares, linearly to a point.
   Real mean(const Indices& element, const Law& law, const QuadraturePoint& q, bool squared) const {
     Real sum = 0;
     for (std::size_t c = 0; c < 4; ++c) {
@@ -147,7 +147,7 @@ class CornerVolumes {
   std::map<std::pair<std::int64_t, Real>, At> corners_;
 };
 
-/// Of a region, at a node.
+/// Returns the force of a region on a node.
 Vec& force_of(BodyResponse& out, Index node, std::size_t region) {
   auto& list = out.of_region[node];
   for (auto& [number, force] : list)
@@ -155,7 +155,7 @@ Vec& force_of(BodyResponse& out, Index node, std::size_t region) {
   return list.emplace_back(region, Vec{}).second;
 }
 
-/// Adds what one element of a region does.
+/// Adds the contribution of one element of a region.
 void add_element(const Problem& problem, std::size_t e, std::size_t region, const std::vector<Vec>& u,
                  const CornerVolumes& corners, BodyResponse& out) {
   const Mesh& mesh = problem.mesh;
@@ -163,7 +163,7 @@ void add_element(const Problem& problem, std::size_t e, std::size_t region, cons
   const Law& law = problem.laws[problem.law_of_element[e]];
   const auto dim = static_cast<std::size_t>(mesh.dim());
   const Real longer = problem.free_strain.empty() ? 0 : problem.free_strain[e];
-  const Real warm = longer != 0 ? longer * expansion_stress(law) : 0;  // what the load has of it
+  const Real warm = longer != 0 ? longer * expansion_stress(law) : 0;  // part of the load
   std::vector<Point> points;
   const auto rule = stiffness_rule(mesh.shape);
   for (const QuadraturePoint& q : rule) points.push_back(point_at(mesh, element, q));

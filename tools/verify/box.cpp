@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Boxes: nodes on a lattice, x fastest, and the cells cut as the user guide says.
+// Generates boxes: nodes on a lattice, x fastest, and cells split as the user guide describes.
 #include <algorithm>
 
 #include "verify/mesh.hpp"
@@ -21,7 +21,7 @@ Shape shape_of(const nlohmann::json& box) {
   throw Failure("mesh.box.element: the verifier knows no " + name);
 }
 
-/// Corners of the unit cell, element by element.
+/// Corners of the elements in the unit cell.
 std::vector<std::vector<Triple>> elements_of_cell(Shape shape) {
   const std::vector<Triple> square{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   if (shape == Shape::quad4) return {square};
@@ -31,7 +31,7 @@ std::vector<std::vector<Triple>> elements_of_cell(Shape shape) {
     for (Triple corner : square) cube.push_back({corner[0], corner[1], 1});
     return {cube};
   }
-  // Round the diagonal: one tetrahedron for each order in which the axes are walked.
+  // Six tetrahedra around the diagonal: one per permutation of the axes.
   std::vector<std::vector<Triple>> six;
   Triple axes{0, 1, 2};
   do {
@@ -78,7 +78,7 @@ Mesh make_box(const nlohmann::json& box) {
       for (int x = 0; x < points[0]; ++x) {
         const Triple at{x, y, z};
         Vec node{};
-        // As doubles, which is what the program has.
+        // Rounded to double as in the program.
         for (std::size_t c = 0; c < dim; ++c)
           node[c] = static_cast<double>(Real(size[c]) * at[c] / (points[c] - 1));
         mesh.nodes.push_back(node);

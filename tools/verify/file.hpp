@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Opens what the verifier reads.
+// Opens and reads input files of the verifier.
 #pragma once
 
 #include <cstring>
@@ -12,7 +12,7 @@
 
 namespace kacanov::verify {
 
-/// Opens a file behind its byte order mark of UTF-8, if any; throws Failure for anything but a regular file.
+/// Opens a file after its UTF-8 byte order mark, if any; throws Failure for anything but a regular file.
 inline std::ifstream open_file(const std::filesystem::path& file) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored))
@@ -27,7 +27,7 @@ inline std::ifstream open_file(const std::filesystem::path& file) {
   return stream;
 }
 
-/// Carriage returns without a line feed, which end lines as well, as line feeds.
+/// Replaces carriage returns that no line feed follows, which also end lines, by line feeds.
 inline std::string with_line_feeds(std::string text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] != '\r') continue;
@@ -37,7 +37,7 @@ inline std::string with_line_feeds(std::string text) {
   return text;
 }
 
-/// All that is in it.
+/// Returns the whole content.
 inline std::string whole(const std::filesystem::path& file) {
   const std::ifstream stream = open_file(file);
   std::ostringstream text;

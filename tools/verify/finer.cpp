@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Finer meshes of a file's: every edge halved, and a node in the middle of every straight edge (user guide:
-// refine, order).
+// Refines the mesh of a file: halves every edge, or adds a node at the middle of every straight edge (user
+// guide: refine, order).
 #include "verify/finer.hpp"
 
 #include <algorithm>
@@ -11,10 +11,10 @@
 namespace kacanov::verify {
 namespace {
 
-/// Places of corners in an element.
+/// Corner places within an element.
 using Places = std::vector<std::size_t>;
 
-/// Corners of the reference cell, and the middle of some of them.
+/// Midpoint of some corners of the reference cell.
 Vec middle_of(Shape shape, const Places& places) {
   static const Vec simplex[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   static const Vec product[] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
@@ -27,7 +27,7 @@ Vec middle_of(Shape shape, const Places& places) {
   return middle;
 }
 
-/// Finer elements of one: in the middle of which of its corners each corner lies.
+/// Child elements: each corner of a child is given by the parent corners whose midpoint it is.
 std::vector<std::vector<Places>> children(Shape shape, std::size_t diagonal) {
   const std::vector<std::vector<int>> sides = facets(corner_shape(shape));
   const auto corners = static_cast<std::size_t>(corner_count(shape));
@@ -35,7 +35,7 @@ std::vector<std::vector<Places>> children(Shape shape, std::size_t diagonal) {
   for (std::size_t child = 0; child < corners; ++child) {
     std::vector<Places> of;
     for (std::size_t a = 0; a < corners; ++a) {
-      std::set<std::size_t> around;  // on all sides that both are on
+      std::set<std::size_t> around;  // corners on all sides that contain both
       for (std::size_t b = 0; b < corners; ++b) around.insert(b);
       if (shape == Shape::quad4 || shape == Shape::hex8) {
         for (const std::vector<int>& side : sides) {
@@ -54,7 +54,8 @@ std::vector<std::vector<Places>> children(Shape shape, std::size_t diagonal) {
   }
   if (corner_shape(shape) == Shape::tri3) all.push_back({{0, 1}, {1, 2}, {0, 2}});
   if (corner_shape(shape) != Shape::tet4) return all;
-  // The inner octahedron, about the diagonal from the middle of edge 0–i to that of the edge across.
+  // The inner octahedron is split along the diagonal from the midpoint of edge 0–i to that of the opposite
+  // edge.
   const std::size_t i = diagonal, j = i % 3 + 1, k = j % 3 + 1;
   const std::vector<Places> ring{{0, j}, {0, k}, {i, k}, {i, j}};
   for (std::size_t t = 0; t < 4; ++t) all.push_back({{0, i}, {j, k}, ring[t], ring[(t + 1) % 4]});
@@ -113,7 +114,7 @@ class Finer {
   }
 
  private:
-  /// As the program has it.
+  /// Rounded to double as in the program.
   static Vec in_double(Vec x) {
     for (Real& component : x) component = static_cast<double>(component);
     return x;
@@ -149,7 +150,7 @@ class Finer {
     return between(parents, place(element, middle_of(coarse_.shape, places)));
   }
 
-  /// The shortest of the inner octahedron.
+  /// Returns the shortest diagonal of the inner octahedron.
   std::size_t diagonal(const Indices& element) const {
     std::size_t best = 1;
     Real least = HUGE_VALL;
@@ -178,7 +179,7 @@ class Finer {
     }
   }
 
-  /// Corners of the finer facets; nothing of what is no facet of an element.
+  /// Appends the corners of the child facets; nothing if the facet belongs to no element.
   void split_facet(const Indices& facet, std::vector<Indices>& cells) const {
     const bool quadratic = coarse_.shape == Shape::tet10;
     const std::size_t corners = quadratic ? 3 : facet.size();
@@ -206,7 +207,7 @@ class Finer {
     if (corners == 3) cells.push_back(middle);
   }
 
-  /// Of lines the nodes in the middle of edges that have both ends in the group.
+  /// Adds to a line group the mid-edge nodes of edges with both ends in the group.
   void add_middles(NamedGroup& group) const {
     std::set<Index> nodes;
     for (const Indices& cell : group.cells) nodes.insert(cell.begin(), cell.end());

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Finer meshes of a file's: every edge halved, and a node in the middle of every straight edge (user guide:
-// refine, order).
+// Refines the mesh of a file: halves every edge, or adds a node at the middle of every straight edge (user
+// guide: refine, order).
 #pragma once
 
 #include "verify/mesh.hpp"
 
 namespace kacanov::verify {
 
-/// New nodes are numbered after the largest number, as they are met: element by element, child by child,
-/// corner by corner, those of a child's edges last. Facets are left to be found.
+/// Returns the uniformly refined mesh. New nodes are numbered from the largest number on, in the order in
+/// which they appear: by element, child and corner; nodes on a child's edges come last. Facets are not set.
 Mesh halved(const Mesh& mesh);
-/// tet10 of tet4, with straight edges.
+/// Returns the tet10 mesh of a tet4 mesh, with straight edges.
 Mesh raised(const Mesh& mesh);
 
 }  // namespace kacanov::verify

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Gmsh's formats 2.2 and 4.1, ASCII and binary, as Gmsh's manual has them.
+// Reads Gmsh's formats 2.2 and 4.1, ASCII and binary, as described in Gmsh's manual.
 #include <cstring>
 #include <fstream>
 #include <map>
@@ -16,7 +16,7 @@ namespace {
 struct GmshType {
   int nodes, dimension;
 };
-/// Types of elements by their number.
+/// Element types by Gmsh number.
 const std::map<int, GmshType>& types() {
   static const std::map<int, GmshType> table{{15, {1, 0}}, {1, {2, 1}},   {8, {3, 1}},
                                              {2, {3, 2}},  {9, {6, 2}},   {3, {4, 2}},
@@ -24,7 +24,7 @@ const std::map<int, GmshType>& types() {
   return table;
 }
 
-/// Numbers one after another, as text or as bytes.
+/// Reads consecutive numbers, as text or binary.
 class Numbers {
  public:
   explicit Numbers(const std::filesystem::path& file) : file_(file.string()), in_(open_file(file)) {
@@ -72,7 +72,7 @@ class Numbers {
     if (!in_.read(reinterpret_cast<char*>(&value), sizeof value)) fail("ends early");
     return value;
   }
-  /// Where both formats have a size or tag as 8 bytes, and as int.
+  /// Reads a size or tag, which has 8 bytes in a binary file.
   std::int64_t size() {
     return binary_ ? static_cast<std::int64_t>(take<std::uint64_t>()) : text<std::int64_t>();
   }
@@ -145,7 +145,7 @@ class Reader {
     }
   }
 
-  /// Numbers at the head of a section stand on a line of their own, whatever the format.
+  /// Numbers at the start of a section are on a line of their own in both encodings.
   void start_bytes() {
     if (in_.binary()) in_.end_of_line();
   }
@@ -246,7 +246,7 @@ class Reader {
           if (k == 0 && value != 0) next.physicals.insert(std::abs(value));
         }
         for (int k = 0; k < types().at(type).nodes; ++k) next.nodes.push_back(in_.take<std::int32_t>());
-        // Written once for each group it belongs to, in a row.
+        // Format 2.2 repeats an element once per group, consecutively.
         const auto same = elements_.size() >= 2 ? elements_.end() - 2 : elements_.end();
         if (same == elements_.end() || same->type != type || same->nodes != next.nodes) continue;
         same->physicals.insert(next.physicals.begin(), next.physicals.end());
@@ -287,7 +287,7 @@ class Reader {
     return std::move(mesh_);
   }
 
-  /// Nodes of no element of the body, and the facets that they belong to.
+  /// Drops nodes that no element of the body uses, and the facets that contain them.
   void drop_unreferenced_nodes() {
     std::vector<Index> place(mesh_.nodes.size(), -1);
     for (const Indices& element : mesh_.elements)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files of obstacles: height maps and STL.
+// Reads obstacles from files: height maps, and triangles of STL and Gmsh.
 #include "verify/height_map.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace kacanov::verify {
 namespace {
 
-/// Rows of numbers, the upper one first.
+/// Rows of numbers, top row first.
 using Rows = std::vector<std::vector<Real>>;
 
 Rows comma_separated(const std::string& text) {

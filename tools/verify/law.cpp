@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Hencky's laws by their formulas, and their energy by quadrature (theory: laws, energy).
+// Hencky laws by formula, and their energy by quadrature (theory: laws, energy).
 #include "verify/law.hpp"
 
 #include <algorithm>
@@ -14,8 +14,8 @@ Real table_stress(const Law& law, Real a) {
   return law.s[end - 1] + slope * (a - law.x[end - 1]);
 }
 
-/// The y that y (1 + share (y x / x0)^(n − 1)) = 1 has, which is the elastic share of the strain x, by
-/// Newton's steps from above, down to where a convex function that grows is zero.
+/// Returns the elastic share y of the strain x, the root of y (1 + share (y x / x0)^(n − 1)) = 1, by Newton's
+/// method from above, which decreases monotonically for an increasing convex function.
 Real elastic_share(const Law& law, Real x) {
   Real y = 1;
   for (int step = 0; step < 1000; ++step) {
@@ -29,8 +29,8 @@ Real elastic_share(const Law& law, Real x) {
 
 Real deviator(Real stress) { return std::sqrt(Real(2) / 3) * stress; }
 
-/// Rows of stress and plastic strain in tension (theory: uniaxial); where the stress stays, it grows by a ten
-/// thousandth of the elastic slope.
+/// Reads rows of uniaxial stress and plastic strain (theory: uniaxial). Each stress rises with at least 1e-4
+/// of the elastic slope.
 void read_plastic(const nlohmann::json& rows, Law& law) {
   law.form = Law::Form::table;
   law.x = law.s = {0};
@@ -46,7 +46,7 @@ void read_plastic(const nlohmann::json& rows, Law& law) {
   law.s.push_back(law.s.back() + slope * law.x[1]);
 }
 
-/// ∫ g(s) s ds from a to b by five Gauss points, where the law has no kink between.
+/// Returns ∫ g(s) s ds from a to b with five Gauss points; the law is smooth between a and b.
 Real piece(const Law& law, Real a, Real b) {
   static const Real inner = std::sqrt(5 - 2 * std::sqrt(Real(10) / 7)) / 3,
                     outer = std::sqrt(5 + 2 * std::sqrt(Real(10) / 7)) / 3, root = 13 * std::sqrt(Real(70));
@@ -101,7 +101,7 @@ Real Law::energy(Real strain) const {
 
 namespace {
 
-/// As read_law, but for B-bar.
+/// Reads a law without its B-bar setting.
 Law read_form(const nlohmann::json& entry) {
   Law law;
   const Real young = entry.at("young").get<double>(), poisson = entry.at("poisson").get<double>();

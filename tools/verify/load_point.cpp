@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where along the load steps of a case a state is, and what the step before has left.
+// The point of the load path that a state belongs to, with the history from the previous load step.
 #include "verify/load_point.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Ends of the load steps: times of the load curves, or factors.
+/// Returns the ends of the load steps: times of the load curves, or factors.
 std::vector<Real> ends_of_steps(const json& document) {
   std::vector<Real> ends;
   for (const json& step : document.value("steps", json::array()))
@@ -24,7 +24,7 @@ std::vector<Real> ends_of_steps(const json& document) {
   return ends;
 }
 
-/// Travels of the entries that are pushed. `object`: what has the travel of an entry by its name.
+/// Returns the travel of force-controlled entries. `travel`: function of an entry's name.
 template <class Travel>
 std::vector<Real> travels(const json& document, const Travel& travel) {
   std::vector<Real> all;
@@ -41,7 +41,7 @@ std::vector<Real> travels(const json& document, const Travel& travel) {
 std::vector<LoadPoint> load_points(const json& document, const json& result) {
   const std::vector<Real> ends = ends_of_steps(document);
   const json lines = result.value("load_steps", json::array());
-  // A run that was interrupted has no line for the step that it has not finished.
+  // An interrupted run has no line for its unfinished step.
   const bool open = lines.empty() || result.value("status", "") == "interrupted";
   const std::size_t steps = lines.size() + (open ? 1 : 0);
   if (steps > ends.size())
@@ -58,7 +58,7 @@ std::vector<LoadPoint> load_points(const json& document, const json& result) {
     point.travel = travels(document, [&](const std::string& name) -> Real {
       if (last) return result.at("contact").at(name).at("travel").get<double>();
       const json travel = lines[k].value("travel", json::object());
-      if (!travel.contains(name) && !has_history(document)) return 0;  // of an older version
+      if (!travel.contains(name) && !has_history(document)) return 0;  // result of an older version
       if (!travel.contains(name))
         throw Failure("result.json: expected load_steps[" + std::to_string(k) + "].travel." + name);
       return travel.at(name).get<double>();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The boundary of a mesh, and what an `on` selects there.
+// Finds the boundary of a mesh, and the parts of it that `on` selects.
 #include "verify/mesh.hpp"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ Indices sorted_corners(const Indices& cell, int corners) {
 void find_boundary(Mesh& mesh) {
   const std::vector<std::vector<int>> sides = facets(mesh.shape);
   const int corners = corner_count(facet_shape(mesh.shape));
-  std::map<Indices, Indices> once;  // corners of a facet, the facet
+  std::map<Indices, Indices> once;  // facets by their sorted corners
   for (const Indices& element : mesh.elements)
     for (const std::vector<int>& side : sides) {
       Indices facet;
@@ -36,7 +36,7 @@ const std::string* name_of(const nlohmann::json& on) {
   return on.is_string() ? &on.get_ref<const std::string&>() : nullptr;
 }
 
-/// Which of the cells lie in the closed box with all their nodes.
+/// Returns the cells that lie in the closed box with all their nodes.
 std::vector<std::size_t> in_box(const Mesh& mesh, const nlohmann::json& on,
                                 const std::vector<Indices>& cells) {
   const nlohmann::json& corners = on.at("box");
@@ -85,7 +85,7 @@ Mesh load_mesh(const nlohmann::json& source, const std::filesystem::path& folder
     if (order > 1) box["element"] = "tet10";
     mesh = make_box(box);
   } else if (read) {
-    // Of several, the others are only to start from.
+    // With several files, the last is the mesh; the others only provide initial guesses.
     const std::string file = (one ? source.at("file") : source.at("files").back()).get<std::string>();
     if (file.ends_with(".inp") || file.ends_with(".vtu"))
       throw Failure("mesh.file: the verifier reads Gmsh files: kacanov convert makes one of it");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A file of temperatures at nodes.
+// Reads a file of nodal temperatures.
 #include "verify/node_values.hpp"
 
 #include <algorithm>

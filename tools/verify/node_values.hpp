@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A file of temperatures at nodes.
+// Reads a file of nodal temperatures.
 #pragma once
 
 #include "verify/mesh.hpp"
 
 namespace kacanov::verify {
 
-/// Of the CSV file of an object with `otherwise` (user guide: temperature), one a node.
+/// Reads the CSV file of an object with `otherwise` (user guide: temperature); returns one value per node.
 std::vector<Real> read_node_values(const std::filesystem::path& file, const nlohmann::json& given,
                                    const Mesh& mesh);
 

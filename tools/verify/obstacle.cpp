@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How a node faces an obstacle (theory: traces, surface-distance).
+// Gap and normal between a node and an obstacle (theory: traces, surface-distance).
 #include "verify/obstacle.hpp"
 
 #include <algorithm>
@@ -15,8 +15,8 @@ namespace {
 using nlohmann::json;
 
 constexpr Real unsure = 1e-13L;
-/// What is left of a gap by the arithmetic that it is computed in, here and by the program, in shares of the
-/// lengths it is a difference of: closed forms, sines in long double, the program's double.
+/// Relative round-off of a gap, here and in the program, per length it is a difference of: for closed forms,
+/// for sines in long double, for the program's double precision.
 constexpr Real closed = some_wide_roundings, with_sines = 1e-18L, in_double = 1e-15L;
 
 Vec unit(const Vec& v) { return 1 / norm(v) * v; }
@@ -30,7 +30,7 @@ Facing point_like(const WideVec& to_middle, Real radius, bool inside) {
   return facing(scaled(side / far, to_middle), side * (far - radius));
 }
 
-/// The way along `direction` to where a t² + 2 b t + c falls to zero.
+/// Distance along `direction` to the first zero of a t² + 2 b t + c.
 Facing along_ray(const WideVec& direction, Wide a, Wide b, Wide c, Wide scale) {
   const Wide inside = b * b - a * c, least = unsure * scale, base = root(inside);
   Facing found = facing(direction, b > 0 ? -(b + base) / a : c / (base - b));
@@ -39,15 +39,16 @@ Facing along_ray(const WideVec& direction, Wide a, Wide b, Wide c, Wide scale) {
   return found;
 }
 
-/// Directions that are nearer to each other are one.
+/// Directions that differ by less count as equal.
 constexpr Real one_direction = 1e-6L;
 
-/// One of several faces that are equally near.
+/// One of several equally near faces.
 struct NearFace : Facing {
-  bool plane = false;  ///< the direction is the normal of a plane, and not the way to a point
+  bool plane = false;  ///< the direction is a plane normal rather than the direction to a point
 };
 
-/// One of each direction, with its least gap; along the mean of its planes' normals where there are some.
+/// Merges equal directions, keeping the least gap. The merged direction is the mean of the plane normals, if
+/// there are any.
 std::vector<Facing> by_direction(std::vector<NearFace> faces) {
   std::stable_sort(faces.begin(), faces.end(),
                    [](const Facing& a, const Facing& b) { return a.gap < b.gap; });
@@ -70,8 +71,8 @@ std::vector<Facing> by_direction(std::vector<NearFace> faces) {
   return {kept.begin(), kept.end()};
 }
 
-/// Of faces that are equally near the one whose direction is along the outer normal most; of several that
-/// are, the mean, up to the first of their planes; of directions that cancel the last by their components
+/// Selects among equally near faces the one most aligned with the outward normal; of several such, their
+/// mean, up to the first of their planes; if the mean cancels, the last one in the order of components
 /// (theory: equal-distance).
 Facing most_opposed(std::vector<NearFace> faces, const Vec& outer) {
   constexpr Real same = one_direction;
@@ -114,7 +115,7 @@ Face plane(const json& given) {
   };
 }
 
-/// A sphere, or a cylinder about its axis.
+/// A sphere, or a cylinder around its axis.
 Face round_thing(const json& given, const char* middle, const WideVec& axis) {
   const WideVec centre = wide_vector(given.at(middle));
   const Real radius = number(given, "radius");
@@ -150,7 +151,7 @@ Face cone(const json& given) {
       found.grazing = found.grazing || std::abs(height) <= unsure * static_cast<Real>(root(size));
       return found;
     }
-    // The nearest point of the mantle's generator in the half-plane of the axis and x is the apex, or within.
+    // The nearest point of the generator, in the half-plane of the axis and x, is the apex or an inner point.
     if (up * c + radius * s > 0)
       return facing(scaled(s, axis) - scaled(c / radius, out), radius * c - up * s);
     const Wide away = length(v);
@@ -176,7 +177,7 @@ Face block(const json& given) {
   const bool flat = lower[2] == upper[2] && axes[2][0] == 0 && axes[2][1] == 0;
   const Real close = 1e-9L * static_cast<Real>(length(upper - lower));
   return [=](const Vec& x, const Vec& outer) {
-    std::vector<NearFace> faces;  // along each face's inner normal, negative below the face
+    std::vector<NearFace> faces;  // one per face, along its inward normal; the gap is negative inside
     Real highest = -HUGE_VALL, unknown = 0;
     WideVec way{};
     for (std::size_t a = 0; a < (flat ? 2 : 3); ++a)
@@ -203,7 +204,7 @@ Face block(const json& given) {
   };
 }
 
-/// Triangles looked at one by one, those far away by a ball round them only.
+/// Tests every triangle, distant ones by their bounding sphere only.
 class Facets {
  public:
   explicit Facets(std::vector<Triangle> triangles) {
@@ -283,7 +284,7 @@ class Facets {
     Vec point{}, normal{};
     bool border = false;
   };
-  /// Gives corners that are nearer than 1e-7 of the extent the coordinates of the first of them.
+  /// Merges corners closer than 1e-7 of the extent: all get the coordinates of the first.
   void join(std::vector<Triangle>& triangles) {
     std::vector<Vec*> corners;
     for (Triangle& t : triangles)
@@ -305,7 +306,8 @@ class Facets {
   }
   static std::pair<Vec, Vec> key(const Vec& a, const Vec& b) { return {std::min(a, b), std::max(a, b)}; }
 
-  /// The foot of the perpendicular where it is within, else the nearest of the edges, else of the corners.
+  /// Returns the foot of the perpendicular if it is inside, else the nearest point on the edges, else the
+  /// nearest corner.
   Closest closest_on(const Facet& facet, const Vec& x) const {
     const Triangle& t = facet.corner;
     const Vec foot = x - dot(x - t[0], facet.normal) * facet.normal;
@@ -349,7 +351,7 @@ Face surface(const json& given, const std::filesystem::path& folder) {
 Face read_obstacle(const json& obstacle, const std::filesystem::path& folder) {
   const std::string kind = obstacle.items().begin().key();
   const json& given = obstacle.at(kind);
-  // The gap is a difference of the way to some point of the obstacle and some size of it.
+  // The gap is a difference between the distance to some point of the obstacle and some size of it.
   const auto measured = [](Face face, const Vec& about, Real size, Real share) -> Face {
     return [=](const Vec& x, const Vec& outer) {
       Facing found = face(x, outer);

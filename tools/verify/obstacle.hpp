@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How a node faces an obstacle (theory: traces, surface-distance).
+// Gap and normal between a node and an obstacle (theory: traces, surface-distance).
 #pragma once
 
 #include <filesystem>
@@ -14,20 +14,20 @@ struct Facing {
   Vec normal{};  ///< ν
   Real gap = 0;
   bool missed = false;
-  bool grazing = false;  ///< whether it is met is a matter of rounding
-  Real unknown = 0;      ///< what arithmetic leaves of the gap
+  bool grazing = false;  ///< round-off decides whether the obstacle is hit
+  Real unknown = 0;      ///< round-off of the gap
 };
 
-/// Of a node at x with the body's outer normal (of any length) there.
+/// Returns the gap and normal for a node at x, given the body's outward normal there, of any length.
 using Face = std::function<Facing(const Vec& x, const Vec& outer)>;
 
-/// Of an `obstacle` of a case; its file is read. Throws Failure.
+/// Reads an `obstacle` of a case, including its file. Throws Failure.
 Face read_obstacle(const nlohmann::json& obstacle, const std::filesystem::path& folder);
 
-/// Corners of the triangles of an STL file.
+/// Returns the corners of the triangles of an STL file.
 using Triangle = std::array<Vec, 3>;
 std::vector<Triangle> read_stl(const std::filesystem::path& file);
-/// Of the facets of a Gmsh file, those of one group or, where it is empty, all.
+/// Returns the facets of a Gmsh file as triangles: those of `group`, or all if it is empty.
 std::vector<Triangle> read_gmsh_facets(const std::filesystem::path& file, const std::string& group);
 
 }  // namespace kacanov::verify

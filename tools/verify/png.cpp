@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Grey values of a PNG: bytes of all rows out of zlib, then one after the other out of their differences.
+// Reads grey values from PNG files: decompresses all rows with zlib, then reverses the row filters.
 #include "verify/png.hpp"
 
 #include <zlib.h>
@@ -34,7 +34,7 @@ std::vector<std::vector<Real>> png_rows(const std::string& file) {
     throw Failure("a height map: the PNG cannot be unpacked");
 
   std::vector<std::vector<Real>> rows(height, std::vector<Real>(width));
-  std::vector<int> upper(stride + back), line(stride + back);  // zeros in front
+  std::vector<int> upper(stride + back), line(stride + back);  // zeros to the left
   for (std::size_t y = 0; y < height; ++y, upper.swap(line)) {
     const unsigned char* in = &bytes[y * (stride + 1)];
     for (std::size_t x = back; x < stride + back; ++x) {

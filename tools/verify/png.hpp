@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Grey values of a PNG.
+// Reads grey values from PNG files.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace kacanov::verify {
 
-/// The rows of a whole file, the upper one first, from 0 black to 1 white; the first sample of every pixel.
-/// Throws Failure where it cannot be unpacked.
+/// Returns the rows of a file from top to bottom, values from 0 black to 1 white; only the first sample of
+/// every pixel counts. Throws Failure if the file cannot be decompressed.
 std::vector<std::vector<Real>> png_rows(const std::string& file);
 
 }  // namespace kacanov::verify

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Laws, loads and supports of a case.
+// Reads laws, loads and supports of a case.
 #include "verify/problem.hpp"
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace kacanov::verify {
 namespace {
 
-/// What the case's mesh in 2D is of.
+/// Reads plane state and thickness of a 2D mesh.
 void read_plane(const nlohmann::json& document, Mesh& mesh) {
   const std::string plane = document.value("plane", "strain");
   if (plane != "strain" && plane != "stress" && plane != "axisymmetric")
@@ -22,9 +22,9 @@ void read_plane(const nlohmann::json& document, Mesh& mesh) {
     if (mesh.is_round && std::abs(x[0]) <= reach) x[0] = 0;
 }
 
-constexpr std::size_t no_entry = static_cast<std::size_t>(-1);  // the axis itself
+constexpr std::size_t no_entry = static_cast<std::size_t>(-1);  // for supports on the axis
 
-/// Nodes on the axis stay there.
+/// Fixes the radial displacement of nodes on the axis.
 void hold_axis(Problem& problem) {
   for (std::size_t n = 0; n < problem.mesh.nodes.size() && problem.mesh.is_round; ++n)
     if (problem.mesh.nodes[n][0] == 0) {
@@ -53,7 +53,7 @@ void add_surface_load(Problem& problem, const nlohmann::json& entry, Real factor
   }
 }
 
-/// Derivatives of the position along the reference coordinates; across a plane 1.
+/// Derivatives of the position with respect to the reference coordinates; in 2D the third is the unit normal.
 std::array<Vec, 3> along_at(const Mesh& mesh, const Indices& element, const Functions& f) {
   const auto dim = static_cast<std::size_t>(mesh.dim());
   std::array<Vec, 3> along{};
@@ -84,7 +84,7 @@ void add_body_force(Problem& problem, const nlohmann::json& entry, Real factor) 
     }
 }
 
-/// Springs, those of a bed by the weights of contact (theory: springs).
+/// Adds springs; elastic foundations use the contact weights (theory: springs).
 void add_spring(Problem& problem, const nlohmann::json& entry, std::size_t number) {
   const auto dim = static_cast<std::size_t>(problem.mesh.dim());
   const auto put = [&](Index node, Real weight, const nlohmann::json& stiffness) {
@@ -124,7 +124,7 @@ Real expansion_stress(const Law& law) {
 
 namespace {
 
-/// ΔT at the corners of elements.
+/// Temperature rise ΔT at the corners of elements.
 class Warmth {
  public:
   Warmth(const Mesh& mesh, const nlohmann::json& given, const std::filesystem::path& folder)
@@ -143,7 +143,7 @@ class Warmth {
     return Real(given_.value("value", 0.0)) +
            dot(read_vector(given_.at("gradient")), mesh_.nodes[node] - from);
   }
-  /// Linear between the element's corners.
+  /// Interpolates linearly between the element's corners.
   Real at(const Indices& element, const Vec& xi) const {
     const Functions f = functions(corner_shape(mesh_.shape), xi);
     Real sum = 0;
@@ -157,8 +157,8 @@ class Warmth {
   std::vector<Real> nodes_;
 };
 
-/// −3 k₀ α ΔT div v, put on as a load (theory: expansion); in plane stress E/(1 − ν) α ΔT div v, beside the
-/// strain itself (theory: expansion-in-plane).
+/// Applies the term −3 k₀ α ΔT div v as a load (theory: expansion); in plane stress E/(1 − ν) α ΔT div v, in
+/// addition to the strain itself (theory: expansion-in-plane).
 void add_temperature(Problem& problem, const nlohmann::json& document, const nlohmann::json& entry,
                      Real factor, const std::filesystem::path& folder) {
   const Mesh& mesh = problem.mesh;
@@ -199,7 +199,7 @@ void add_temperature(Problem& problem, const nlohmann::json& document, const nlo
         Vec& load = problem.load[element[a]];
         for (std::size_t k = 0; k < dim; ++k)
           load = load + mesh.depth(element, f) * point.weight * pressure * f.gradient[a][k] * dual[k];
-        // u/r goes round with 2π r.
+        // The hoop term u/r has the weight 2π r.
         if (mesh.is_round)
           load[0] += 2 * std::acos(Real(-1)) * point.weight * pressure * f.value[a] * dot(along[0], dual[0]);
       }
@@ -207,8 +207,8 @@ void add_temperature(Problem& problem, const nlohmann::json& document, const nlo
   }
 }
 
-/// What an entry is multiplied by: the load factor, or what the load curves have for it at that time, linear
-/// between their steps, 0 before the first that names it and 1 where none does (user guide: steps).
+/// Returns the load factor of an entry, or its load curve at that time: linear between steps, 0 before the
+/// first step that names it, and 1 if no step names it (user guide: steps).
 Factor factor_at(Real load, const nlohmann::json& document, const std::string& list, std::size_t index) {
   const auto steps = document.value("steps", nlohmann::json::array());
   if (steps.empty()) return {load, std::abs(load)};
@@ -218,7 +218,7 @@ Factor factor_at(Real load, const nlohmann::json& document, const std::string& l
     return step.at("factors").contains(name) || step.at("factors").contains(place);
   };
   if (std::none_of(steps.begin(), steps.end(), names_it)) return {};
-  std::vector<std::pair<Real, Real>> curve{{0, 0}};  // times and factors
+  std::vector<std::pair<Real, Real>> curve{{0, 0}};  // (time, factor)
   Real largest = 0;
   for (const auto& step : steps) {
     const auto before = static_cast<double>(curve.back().second);

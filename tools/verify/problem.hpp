@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a case asks for on its mesh: loads, supports, laws, contact rows.
+// The problem that a case defines on its mesh: loads, supports, laws, contact rows.
 #pragma once
 
 #include <map>
@@ -11,59 +11,59 @@
 
 namespace kacanov::verify {
 
-/// Rows of a contact point (theory: traces): N·u ≤ gap, T·u the part of u that is free and orthogonal to it.
+/// Rows of a contact point (theory: traces): N·u ≤ gap; T·u is the part of u that is free and orthogonal to
+/// the normal.
 struct ContactRow {
   struct Share {
     Index node = 0;
     Vec normal{};  ///< coefficients of N in free components
   };
   std::vector<Share> shares;
-  Index node = 0;                    ///< that it stands for in contact.vtu
-  std::vector<std::size_t> written;  ///< its places in contact.vtu: one an entry that has a part in it
-  std::vector<std::pair<std::size_t, Real>> parts;  ///< these entries, and the mass of each
+  Index node = 0;                    ///< node of the row in contact.vtu
+  std::vector<std::size_t> written;  ///< indices into contact.vtu: one per entry that contributes
+  std::vector<std::pair<std::size_t, Real>> parts;  ///< contributing entries, and the mass of each
   Vec normal{};                                     ///< ν
-  std::size_t entry = 0;                            ///< of `contact`
+  std::size_t entry = 0;                            ///< index into `contact`
   Real gap = 0, mass = 0, tresca = 0, coulomb = 0;
-  Real closed = 0;       ///< by prescribed components, and off the gap
-  Real unknown_gap = 0;  ///< what arithmetic leaves of it
-  Vec slip_origin{};     ///< displacement that slip is counted from (theory: slip-history, moving-obstacles)
+  Real closed = 0;       ///< part of the gap closed by prescribed components
+  Real unknown_gap = 0;  ///< round-off of the gap
+  Vec slip_origin{};     ///< displacement from which slip is counted (theory: slip-history, moving-obstacles)
   bool friction = false;
-  bool since_step = false;  ///< that includes the displacement at the end of the load step before
-  bool alone = false;       ///< an obstacle that moves is joined to none
-  bool grazing = false;     ///< whether it meets the sphere is a matter of rounding
+  bool since_step = false;  ///< slip_origin includes the displacement at the end of the previous load step
+  bool alone = false;       ///< rows of a moving obstacle are never joined
+  bool grazing = false;     ///< round-off decides whether the obstacle is hit
 };
 
-/// u along a unit vector, as it is given.
+/// Prescribed displacement along a unit vector.
 struct GivenDirection {
   Vec direction{};
   Real value = 0;
-  std::size_t entry = 0;  ///< of `boundary`
-  Real condition = 1;     ///< by which rounding is enlarged where others of the node are next to parallel
+  std::size_t entry = 0;  ///< index into `boundary`
+  Real condition = 1;     ///< factor on round-off if other directions of the node are nearly parallel
 };
 
-/// The direction and value of an entry, before others of its node are taken off them.
+/// Direction and value of a boundary entry before orthogonalisation against others of its node.
 struct GivenSupport {
   Vec direction{};
   std::size_t entry = 0;
-  Real value = 0, largest = 0;  ///< `largest`: the value at the largest factor of the load curve
-  bool axis = false;            ///< held as a component
-  Real condition = 1;           ///< its rounding over that of long double
-  bool dependent = false;       ///< others of the node give it already
+  Real value = 0, largest = 0;  ///< `largest`: value at the largest factor of the load curve
+  bool axis = false;            ///< prescribed as a component
+  Real condition = 1;           ///< its round-off relative to that of long double
+  bool dependent = false;       ///< already determined by other supports of the node
 };
 
-/// What keeps an elastic body in plane stress from getting longer, over the strain that it would have: E/(1 −
-/// ν).
+/// Stress per constrained in-plane strain of an elastic body in plane stress: E/(1 − ν).
 Real expansion_stress(const Law& law);
 
-/// Between a node and the ground.
+/// A spring between a node and the ground.
 struct Spring {
   Index node = 0;
   std::size_t entry = 0;
   std::array<Vec, 3> stiffness{};
 };
 
-/// A force on the body and its moment about the origin, the sums of magnitudes that they are made of, and of
-/// how many nodes.
+/// Resultant force and moment about the origin; `size` and `arms` sum the magnitudes of their terms, `nodes`
+/// counts the nodes.
 struct Resultant {
   Vec force{}, moment{};
   Real size = 0, arms = 0, nodes = 0;
@@ -73,66 +73,67 @@ struct Problem {
   Mesh mesh;
   std::vector<Law> laws;
   std::vector<std::size_t> law_of_element;
-  std::vector<Vec> load;            ///< F, one a node
-  std::vector<std::int64_t> patch;  ///< of each node, where the result has that; else empty
+  std::vector<Vec> load;            ///< F, one per node
+  std::vector<std::int64_t> patch;  ///< patch of each node, if the result has patches; else empty
   std::vector<Real> free_strain;    ///< α ΔT of each element in plane stress; empty: none
-  /// Pressure of constrained thermal expansion at the points of the stiffness, of each element; empty where
-  /// it is not warmer.
+  /// Pressure of constrained thermal expansion at the stiffness quadrature points, per element; empty: no
+  /// temperature change.
   std::vector<std::vector<Real>> expansion;
   std::vector<std::array<bool, 3>> held;  ///< components with a prescribed displacement
   std::vector<Vec> prescribed;
   std::map<Index, std::vector<GivenSupport>> supports;  ///< by node, in the order of the entries
-  /// Off the axes, by node: orthonormal, in free components (theory: held-directions).
+  /// Prescribed directions that are not axes, by node: orthonormal, in free components (theory:
+  /// held-directions).
   std::map<Index, std::vector<GivenDirection>> directions;
   std::vector<std::array<Vec, 3>> springs;  ///< stiffness between each node and the ground; empty: none
   std::vector<Spring> each_spring;          ///< the same, one by one
   std::vector<Resultant> applied;           ///< loads of each boundary entry
   std::vector<Real> contact_factor;         ///< of each contact entry
-  Real time = 1;  ///< that the state has reached: of the load curves, or the load factor
+  Real time = 1;                            ///< reached by the state: time of the load curves, or load factor
   LoadPoint point;
   std::vector<ContactRow> rows;
-  std::vector<std::int64_t> surface_tags;  ///< numbers of the nodes in contact.vtu, in its order
+  std::vector<std::int64_t> surface_tags;  ///< node numbers in contact.vtu, in its order
   std::vector<Vec> probes;
   Real tolerance = 1e-6L;
 };
 
-/// Of a case that the program has accepted, at the end of a load step; throws Failure for what the verifier
-/// does not know. `folder`: where relative paths start. find_rows() adds the contact rows.
+/// Reads a case that the program has accepted, at the end of a load step; throws Failure for unsupported
+/// features. `folder`: where relative paths start. find_rows() adds the contact rows.
 Problem read_problem(const nlohmann::json& document, const std::filesystem::path& folder,
                      const LoadPoint& point);
 
-/// The factor of an entry, and the largest one of its load curve.
+/// Load factor of an entry, and the largest one of its load curve.
 struct Factor {
   Real value = 1, largest = 1;
 };
-/// Puts an entry with a displacement, of components or along directions, on its nodes.
+/// Applies an entry with prescribed displacement, by component or along directions, to its nodes.
 void hold(Problem& problem, const nlohmann::json& entry, std::size_t number, const Factor& factor);
-/// Once all entries are held: leaves of each direction what others of its node do not give.
+/// Call it after hold() for all entries: orthogonalises the directions of each node against its other
+/// supports.
 void find_directions(Problem& problem);
-/// How far a node is from where its supports have it, beyond what rounding leaves (theory:
-/// support-rounding). `most`: the largest displacement.
+/// Returns the distance of a node from its prescribed position beyond round-off (theory: support-rounding).
+/// `most`: the largest displacement.
 Real off_supports(const std::vector<GivenSupport>& supports, const Vec& u, Real most);
-/// `v` of a node without what is given there.
+/// Returns the part of `v` in the free directions of a node.
 Vec free_part(const Problem& problem, Index node, Vec v);
 
-/// Finds the contact rows of a problem whose supports and load point are known.
+/// Finds the contact rows of a problem whose supports and load point are set.
 void find_rows(const nlohmann::json& contact, const std::filesystem::path& folder, Problem& problem);
 
-/// ∫ Nᵢ dS and ∫ Nᵢ n dS of a facet, one a node (theory: loads).
+/// ∫ Nᵢ dS and ∫ Nᵢ n dS of a facet, one per node (theory: loads).
 struct FacetIntegrals {
   std::vector<Real> area;
   std::vector<Vec> normal;
 };
 FacetIntegrals consistent(const Mesh& mesh, const Indices& facet);
-/// The lumped mass of a facet's nodes and their share of its normal: the rule that turns a facet's
-/// multipliers, and beds of springs, into forces. Six-node facets have the rule of their mid-sides, and
-/// corners bear nothing.
+/// Lumped masses and normals of a facet's nodes: the quadrature that turns multipliers and elastic
+/// foundations into forces. On six-node facets only the mid-side nodes have weight.
 FacetIntegrals contact_weights(const Mesh& mesh, const Indices& facet);
-/// Outer normal times the area over that of the reference cell, at a point with these functions.
+/// Outward normal at a point, scaled by the area relative to the reference cell.
 Vec normal_at(const Mesh& mesh, const Indices& facet, const Functions& at);
 
 Vec read_vector(const nlohmann::json& list);
-/// Adds a force at a place, of terms of this size.
+/// Adds a force at a point; `size`: magnitude of its terms.
 void add_force(Resultant& sum, const Vec& at, const Vec& force, Real size);
 
 }  // namespace kacanov::verify

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The arithmetic of the verifier: long double throughout, and vectors of three.
+// Arithmetic of the verifier: long double throughout, and vectors of three.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace kacanov::verify {
 using Real = long double;
 using Vec = std::array<Real, 3>;  ///< in 2D the third entry is 0
 
-/// A file that cannot be made sense of: the message names the file or the key.
+/// An unusable file: the message names the file or the key.
 class Failure : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -28,7 +28,7 @@ inline Real norm(const Vec& a) { return std::sqrt(dot(a, a)); }
 inline Vec cross(const Vec& a, const Vec& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-/// The larger of the two; infinite where one is no number.
+/// Returns the larger of the two; infinity if one is NaN.
 inline Real larger(Real a, Real b) { return std::isnan(a) || std::isnan(b) ? HUGE_VALL : a < b ? b : a; }
 
 }  // namespace kacanov::verify

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Regions of like stiffness and the clusters that they form (theory: regions).
+// Regions of similar stiffness and the clusters they form (theory: regions).
 #include "verify/regions.hpp"
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 namespace kacanov::verify {
 namespace {
 
-/// Numbers each set of elements that neighbours join: by elements, the number of their set, in the order of
-/// their first elements. `together(a, b)`: whether elements with a common node are neighbours.
+/// Numbers the connected sets of elements in the order of their first elements; returns the set of each
+/// element. `counts(e)`: e belongs to a set; `together(a, b)`: elements that share a node are connected.
 std::vector<std::size_t> connected(const Mesh& mesh, const std::function<bool(std::size_t)>& counts,
                                    const std::function<bool(std::size_t, std::size_t)>& together) {
   std::vector<std::vector<std::size_t>> at(mesh.nodes.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Regions of like stiffness and the clusters that they form (theory: regions).
+// Regions of similar stiffness and the clusters they form (theory: regions).
 #pragma once
 
 #include <vector>
@@ -9,16 +9,16 @@
 namespace kacanov::verify {
 
 struct Regions {
-  /// A connected part of the body that is as stiff as `bin` or stiffer.
+  /// A connected part of the body whose regions have a bin of at most `bin`.
   struct Cluster {
-    std::vector<bool> has;  ///< of each region
+    std::vector<bool> has;  ///< one flag per region
     int bin = 0;
     Vec centre{};
     Real radius = 0;
   };
-  std::vector<int> bin;  ///< of each region: how many factors of ten it is softer than the stiffest
+  std::vector<int> bin;  ///< of each region: decades by which it is softer than the stiffest
   std::vector<std::size_t> of_element;
-  std::vector<std::size_t> of_node;  ///< the stiffest of a node's elements
+  std::vector<std::size_t> of_node;  ///< region of the stiffest element at each node
   std::vector<Cluster> clusters;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The entries of the certificate (theory: kkt, duality-gap, rounding), and the forces, of an answer.
+// Recomputes the certificate (theory: kkt, duality-gap, rounding) and the contact forces of a solution.
 #include "verify/residuals.hpp"
 
 #include <algorithm>
@@ -12,23 +12,22 @@ namespace {
 constexpr Real tiny = 1e-300L, least_force = 3e-9L, least_share = 1e-3L, least_expansion = 1e-3L,
                least_displacement = 1e-8L, delta = 1e-15L, delta_of_traces = 3e-16L;
 
-/// Slip: u, less what it is counted from, in the directions that are free and orthogonal to the row's
-/// normal.
+/// Returns the slip: u minus its origin, in the free directions orthogonal to the row's normal.
 Vec tangential(const Problem& problem, const ContactRow& row, const std::vector<Vec>& u) {
   Vec sum{};
   for (const ContactRow::Share& share : row.shares) {
     const auto node = static_cast<std::size_t>(share.node);
     const Vec free = free_part(problem, share.node, u[node] - row.slip_origin);
     const Vec along = 1 / norm(share.normal) * share.normal;
-    // The weight of a node in a row of several is the length of its normal among theirs.
+    // In a row of several nodes, the weight of a node is the length of its normal.
     const Real weight = row.shares.size() == 1 ? Real(1) : norm(share.normal);
     sum = sum + weight * (free - dot(free, along) * along);
   }
   return sum;
 }
 
-/// A quantity that is weak beside others is measured by the geometric mean of both, but by no less than a
-/// share of the strong one.
+/// Reference for a quantity that is weak beside others: the geometric mean of both, at least a share of the
+/// strong one.
 Real weak_beside(Real weak, Real strong, Real least) {
   return std::min(strong, larger(std::sqrt(weak * strong), least * strong));
 }
@@ -42,10 +41,10 @@ struct Group {
 struct Contact {
   std::map<std::pair<std::size_t, std::size_t>, Group> groups;  ///< by region, then entry
   Real work = 0, unknown_product = 0;
-  std::vector<Vec> force;  ///< CᵀMλ, one a node
+  std::vector<Vec> force;  ///< CᵀMλ, one per node
 };
 
-/// The mean of D at the nodes of a row.
+/// Returns the mean of D over the nodes of a row.
 Real stiffness_of(const Problem& problem, const BodyResponse& body, const ContactRow& row) {
   const auto dim = static_cast<std::size_t>(problem.mesh.dim());
   Real sum = 0;
@@ -177,7 +176,7 @@ BodySums sum_body(const Problem& problem, const Regions& regions, const Answer& 
   return sums;
 }
 
-/// The entry that is worst together with what rounding may hide in it.
+/// The entry with the largest sum of residual and possible round-off.
 struct Worst {
   Real residual = 0, rounding = 0;
   void take(Real r, Real unknown, Real scale) {
@@ -240,7 +239,7 @@ Worst judge_balance(const Problem& problem, const Regions& regions, const BodySu
                         larger(least_stiffness(s) * s.moved_all, least_expansion * s.expansion_all));
     scale = larger(scale, idle * std::sqrt(s.unknowns) * s.unknowns / s.softness);
     Vec moment = s.moment - cross(cluster.centre, s.unbalanced);
-    // Away from an axis all is in balance by itself.
+    // In axisymmetry the radial force and the moment balance by themselves.
     if (problem.mesh.is_round) s.unbalanced[0] = 0, moment = {};
     worst.take(norm(s.unbalanced), delta * s.stiff_all, scale);
     worst.take(norm(moment), delta * s.stiff_all * cluster.radius, scale * cluster.radius);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Contact rows: who faces an obstacle, along which direction, at what distance (theory: traces,
-// contact-mass).
+// Builds contact rows: nodes that face an obstacle, with normal, gap and mass (theory: traces, contact-mass).
 #include <algorithm>
 #include <map>
 
@@ -24,26 +23,26 @@ FacetIntegrals contact_weights(const Mesh& mesh, const Indices& facet) {
 
 namespace {
 
-/// Where a rigid obstacle has been moved to (theory: moving-obstacles).
+/// Pose of a moved rigid obstacle (theory: moving-obstacles).
 struct Pose {
   Vec centre{}, shift{}, turn{};
 
-  /// (R − 1) v.
+  /// Returns (R − 1) v.
   Vec swept(const Vec& v, Real sign = 1) const {
     const Real angle = norm(turn);
     if (!(angle > 0)) return {};
     const Vec axis = 1 / angle * turn, across = cross(axis, v);
     return sign * std::sin(angle) * across + (1 - std::cos(angle)) * cross(axis, across);
   }
-  /// How far a point of the obstacle has come.
+  /// Displacement of a point of the obstacle.
   Vec carried(const Vec& point) const { return shift + swept(point - centre); }
   Vec turned(const Vec& v) const { return v + swept(v); }
   Vec turned_back(const Vec& v) const { return v + swept(v, -1); }
-  /// Where the point of the obstacle that is at y now is in its own place.
+  /// Maps a point y of the moved obstacle back to its initial position.
   Vec back(const Vec& y) const { return centre + turned_back(y - shift - centre); }
 };
 
-/// Of a motion at a time; at rest without one.
+/// Returns the pose of a motion at a time; at rest without a motion.
 Pose pose_at(const nlohmann::json& entry, Real time) {
   if (!entry.contains("motion")) return {};
   const nlohmann::json& motion = entry.at("motion");
@@ -68,7 +67,7 @@ Pose pose_at(const nlohmann::json& entry, Real time) {
   return pose;
 }
 
-/// Joins a row to one of the same node that faces the same way at the same gap.
+/// Joins a row to one of the same node with the same normal and gap.
 bool joined(std::vector<ContactRow>& rows, const ContactRow& row, Real size) {
   for (ContactRow& twin : rows) {
     if (twin.alone || (twin.friction && row.friction && twin.since_step != row.since_step)) continue;
@@ -91,7 +90,7 @@ bool joined(std::vector<ContactRow>& rows, const ContactRow& row, Real size) {
   return false;
 }
 
-/// One contact entry: its obstacle, where that is at the end of the load step, and where it began.
+/// A contact entry: its obstacle, with the poses at the start and end of the load step.
 struct Obstacle {
   Obstacle(const nlohmann::json& contact, std::size_t number, const std::filesystem::path& folder,
            const Problem& problem)
@@ -115,11 +114,11 @@ struct Obstacle {
   Face face;
   bool pushed, anew, withdrawn, since_step;
   Pose start, now;
-  Vec further{};  ///< pushed on in this load step
+  Vec further{};  ///< additional travel in this load step
 };
 
-/// Turns a row, which faces the obstacle as the case has it, to where that is now, from where the load step
-/// before has left the node. False: the obstacle is out of its way.
+/// Updates a row from the obstacle's initial position to its current one, with the node where the previous
+/// load step left it. Returns false if the node does not face the obstacle.
 bool follow(const Obstacle& obstacle, Facing facing, const Vec& x, const Vec& before, ContactRow& row) {
   if (obstacle.withdrawn) return false;
   Vec seen = x;
@@ -146,7 +145,7 @@ bool follow(const Obstacle& obstacle, Facing facing, const Vec& x, const Vec& be
   return true;
 }
 
-/// The longest side of the box around the nodes.
+/// Longest side of the bounding box of the nodes.
 Real longest_side(const Mesh& mesh) {
   Vec low = mesh.nodes.at(0), high = low;
   Real longest = 0;
@@ -160,8 +159,8 @@ Real longest_side(const Mesh& mesh) {
   return longest;
 }
 
-/// Leaves the free components in the row and takes from the gap what prescribed ones close; false where none
-/// are left.
+/// Restricts the row to free components, and records the part of the gap closed by prescribed ones; false if
+/// none are free.
 bool restrict_to_free(const Problem& problem, ContactRow& row) {
   const auto node = static_cast<std::size_t>(row.node);
   row.closed = 0;
@@ -206,7 +205,7 @@ void find_rows(const nlohmann::json& contact, const std::filesystem::path& folde
       if (!(sum.mass > 0)) continue;
       const Vec before = problem.point.before.empty() ? Vec{} : problem.point.before[node];
       const Facing facing = obstacle.face(mesh.nodes[node], sum.outer);
-      // A later load step may meet an obstacle that the node misses in the case.
+      // A node that misses the obstacle initially may face it in a later load step.
       if (facing.missed && !(obstacle.anew && norm(sum.outer) > 0)) continue;
       row.normal = facing.missed ? 1 / norm(sum.outer) * sum.outer : facing.normal;
       row.gap = facing.gap;
@@ -233,7 +232,7 @@ void find_rows(const nlohmann::json& contact, const std::filesystem::path& folde
       if (row.alone || !joined(rows[node], row, size)) rows[node].push_back(row);
     }
   }
-  // Where an obstacle presses in, the share of its deepest indentation that is lacking.
+  // With a contact factor below 1, add the missing share of the deepest initial penetration to the gap.
   std::vector<Real> depth(problem.contact_factor.size());
   for (auto& [node, of_node] : rows)
     for (ContactRow& row : of_node) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shape functions, quadrature rules and facets of the elements, as theory: elements and loads have them.
+// Shape functions, quadrature rules and facets of the elements (theory: elements, loads).
 #include "verify/shape.hpp"
 
 #include <map>
@@ -16,7 +16,7 @@ const Corners& corners(Shape shape) {
   return shape == Shape::line2 ? line : shape == Shape::quad4 ? quad : hex;
 }
 
-/// Ends of the edges of quadratic simplices, in the order of their middle nodes.
+/// Ends of the edges of quadratic simplices, in the order of their mid-edge nodes.
 using Edges = std::vector<std::pair<int, int>>;
 const Edges& edges(Shape shape) {
   static const Edges tri{{0, 1}, {1, 2}, {2, 0}}, tet{{0, 1}, {1, 2}, {2, 0}, {3, 0}, {3, 2}, {3, 1}};
@@ -75,7 +75,7 @@ Functions simplex_functions(Shape shape, const Vec& at) {
   return f;
 }
 
-/// Gauss–Legendre on [−1, 1] with 2 or 4 points.
+/// Gauss–Legendre rule on [−1, 1] with 2 or 4 points.
 std::vector<std::pair<Real, Real>> gauss(int points) {
   if (points == 2) return {{-1 / std::sqrt(Real(3)), 1}, {1 / std::sqrt(Real(3)), 1}};
   const Real root = 2 * std::sqrt(Real(6) / 5) / 7, wide = std::sqrt(Real(3) / 7 + root),
@@ -100,7 +100,7 @@ std::vector<QuadraturePoint> product_rule(std::size_t dim) {
   return rule;
 }
 
-/// The 4 × 4 (× 4) rule collapsed onto the simplex.
+/// Gauss rule with 4 points per direction, collapsed onto the simplex.
 std::vector<QuadraturePoint> collapsed_rule(int dim) {
   std::vector<QuadraturePoint> rule;
   for (const auto& [a, wa] : gauss(4))
@@ -119,7 +119,7 @@ std::vector<QuadraturePoint> collapsed_rule(int dim) {
   return rule;
 }
 
-/// One point: exact for linear functions.
+/// One-point rule, exact for linear functions.
 std::vector<QuadraturePoint> mean_rule(int dim) {
   if (dim == 2) return {{{Real(1) / 3, Real(1) / 3, 0}, Real(1) / 2}};
   return {{{Real(1) / 4, Real(1) / 4, Real(1) / 4}, Real(1) / 6}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shape functions, quadrature rules and facets of the elements, as theory: elements and loads have them.
+// Shape functions, quadrature rules and facets of the elements (theory: elements, loads).
 #pragma once
 
 #include <string>
@@ -15,8 +15,8 @@ int dimension(Shape shape);
 int node_count(Shape shape);
 int corner_count(Shape shape);
 
-/// Value and gradient in reference coordinates of every shape function at a point. Simplices have the corners
-/// 0 and the unit points, the others ±1.
+/// Values and reference gradients of all shape functions at a point. Corners: the origin and unit points for
+/// simplices, ±1 for the others.
 struct Functions {
   std::vector<Real> value;
   std::vector<Vec> gradient;
@@ -27,16 +27,16 @@ struct QuadraturePoint {
   Vec at{};
   Real weight = 0;
 };
-/// The rule that stiffness is integrated with (theory: elements).
+/// Returns the quadrature rule of the stiffness (theory: elements).
 std::vector<QuadraturePoint> stiffness_rule(Shape shape);
-/// The rule that loads and areas are integrated with (theory: loads).
-/// `finer`: of products with a linear function.
+/// Returns the quadrature rule of loads and areas (theory: loads). `finer`: exact also after multiplication
+/// by a linear function.
 std::vector<QuadraturePoint> load_rule(Shape shape, bool finer = false);
 
-/// The linear shape of the same corners.
+/// Returns the linear shape with the same corners.
 Shape corner_shape(Shape shape);
 
-/// What the facets of a body's element are, and the places of their nodes in the element; outwards.
+/// Returns the shape of a body element's facets, and their node places within the element, oriented outwards.
 Shape facet_shape(Shape body);
 std::vector<std::vector<int>> facets(Shape body);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Given displacements, by component and along directions.
+// Prescribed displacements, by component and along directions.
 #include <limits>
 
 #include "verify/problem.hpp"
@@ -7,7 +7,7 @@
 namespace kacanov::verify {
 namespace {
 
-/// A direction of which less is left across the others of its node is one of theirs.
+/// A direction with a smaller component orthogonal to the others of its node counts as dependent on them.
 constexpr Real dependent_below = 1e-8L;
 
 void hold_along(Problem& problem, Index node, GivenSupport given) {
@@ -31,7 +31,7 @@ void hold(Problem& problem, const nlohmann::json& entry, std::size_t number, con
   std::vector<GivenSupport> given;
   const auto give = [&](const Vec& direction, Real value) {
     given.push_back({direction, number, factor.value * value, factor.largest * std::abs(value)});
-    // The program takes normals from facets in double.
+    // The program computes facet normals in double precision.
     if (entry.contains("normal"))
       given.back().condition =
           16 * std::numeric_limits<double>::epsilon() / std::numeric_limits<Real>::epsilon();
@@ -89,7 +89,7 @@ void find_directions(Problem& problem) {
 Real off_supports(const std::vector<GivenSupport>& supports, const Vec& u, Real most) {
   constexpr Real epsilon = std::numeric_limits<double>::epsilon() / 2;
   const auto count = static_cast<Real>(supports.size());
-  // A step of the solve that is set right has left less than the last term along the directions.
+  // A correction step of the solver leaves an error along the directions that is below the last term.
   const Real moved = norm(u) + std::sqrt(epsilon) * most;
   Real farthest = 0;
   for (const GivenSupport& given : supports) {

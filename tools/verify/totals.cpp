@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compares the totals of a result: forces, moments and contact states of entries, displacements of probes.
+// Compares totals of a result: forces, moments and contact states of entries, displacements of probes.
 #include "verify/totals.hpp"
 
 #include <algorithm>
@@ -11,9 +11,9 @@ namespace {
 
 using nlohmann::json;
 
-/// Of the terms of a sum, what rounding in double may come to (theory: rounding).
+/// Bound on the round-off of a sum in double, relative to its terms (theory: rounding).
 constexpr Real share_of_terms = 4e-15L;
-/// Most terms that a node adds to a sum: elements of tet4 around it.
+/// Largest number of terms per node in a sum: tet4 elements around it.
 constexpr Real elements_of_node = 32;
 constexpr Real epsilon_of_doubles = std::numeric_limits<double>::epsilon();
 
@@ -21,7 +21,7 @@ std::string name_of_entry(const json& document, const char* list, std::size_t nu
   return document.at(list).at(number).value("name", std::string(list) + "[" + std::to_string(number) + "]");
 }
 
-/// Notes what differs of the members of one object of the result.
+/// Collects differences between the members of one object of the result and the recomputed values.
 class Notes {
  public:
   Notes(const json& object, std::string prefix, std::vector<Difference>& out)
@@ -64,7 +64,7 @@ Real largest_of(const std::vector<Vec>& u) {
   return most;
 }
 
-/// Forces of an obstacle on the body, and the states of its nodes.
+/// Forces of an obstacle on the body, and the contact states of its nodes.
 struct ContactTotal {
   Resultant normal, friction;
   Real area = 0, whole = 0, pressure = 0;
@@ -103,7 +103,7 @@ std::vector<ContactTotal> contact_totals(const Problem& problem, const Answer& a
 void compare_contact(const json& document, const json& result, const Problem& problem, const Answer& answer,
                      std::vector<Difference>& out) {
   const std::vector<ContactTotal> totals = contact_totals(problem, answer);
-  // Masses and normals are sums over facets, and normals of joined points are alike to this.
+  // Masses and normals are sums over facets, and normals of joined points agree to this accuracy.
   constexpr Real share = 1e-9L;
   for (std::size_t e = 0; e < totals.size(); ++e) {
     const ContactTotal& total = totals[e];
@@ -126,7 +126,7 @@ void compare_contact(const json& document, const json& result, const Problem& pr
   }
 }
 
-/// Directions in which a node may move, the normal of its contact row not among them.
+/// Number of free directions of a node other than the normal of its contact row.
 std::size_t free_tangents(const Problem& problem, Index node) {
   const auto& held = problem.held[static_cast<std::size_t>(node)];
   auto given = static_cast<std::size_t>(std::count(held.begin(), held.end(), true));
@@ -151,7 +151,7 @@ void compare_counts(const json& result, const Problem& problem, const Answer& an
   notes.number("slip_nodes", static_cast<Real>(slip), 0);
 }
 
-/// Forces of each boundary entry that holds the body; none where it holds no node.
+/// Returns the reaction of each boundary entry with supports; nothing if it supports no node.
 std::vector<std::optional<Resultant>> reactions(const Problem& problem, const Answer& answer,
                                                 const BodyResponse& body) {
   std::vector<std::optional<Resultant>> sums(problem.applied.size());
@@ -164,7 +164,8 @@ std::vector<std::optional<Resultant>> reactions(const Problem& problem, const An
     const auto n = static_cast<std::size_t>(node);
     const Vec all = body.internal[n] - problem.load[n];
     const Real size = body.size[n] + norm(problem.load[n]);
-    // Several entries bear a component in equal parts; the axis of a body of revolution bears none.
+    // Entries that prescribe the same component share the reaction equally; the axis of revolution takes
+    // none.
     for (const GivenSupport& one : supports) {
       if (!one.axis) continue;
       const auto same = std::count_if(supports.begin(), supports.end(), [&](const GivenSupport& other) {
@@ -208,7 +209,8 @@ void compare_boundary(const json& document, const json& result, const Problem& p
   }
 }
 
-/// Reference coordinates of a point in an element, by Newton's steps; none where they do not settle.
+/// Returns the reference coordinates of a point in an element by Newton's method; nothing if it does not
+/// converge.
 std::optional<Vec> reference_place(const Mesh& mesh, const Indices& element, const Vec& x) {
   const auto dim = static_cast<std::size_t>(mesh.dim());
   const Vec& origin = mesh.nodes[element[0]];
@@ -236,7 +238,7 @@ std::optional<Vec> reference_place(const Mesh& mesh, const Indices& element, con
   return std::nullopt;
 }
 
-/// How far outside the reference cell a point lies; negative inside.
+/// Distance of a point from the reference cell; negative inside.
 Real outside(Shape shape, const Vec& at) {
   const auto dim = static_cast<std::size_t>(dimension(shape));
   Real most = -1, rest = 1, least = 1;
@@ -248,7 +250,7 @@ Real outside(Shape shape, const Vec& at) {
   return shape == Shape::quad4 || shape == Shape::hex8 ? most : -std::min(least, rest);
 }
 
-/// Whether a point lies in the box around an element, with half its size to spare.
+/// Returns whether a point lies in the element's bounding box, enlarged by half its size on each side.
 bool is_near(const Mesh& mesh, const Indices& element, const Vec& x) {
   for (std::size_t c = 0; c < static_cast<std::size_t>(mesh.dim()); ++c) {
     Real low = HUGE_VALL, high = -HUGE_VALL;
@@ -262,7 +264,7 @@ bool is_near(const Mesh& mesh, const Indices& element, const Vec& x) {
   return true;
 }
 
-/// Compares the displacements at points of the body.
+/// Compares the displacements at the probes.
 void compare_probes(const json& result, const Problem& problem, const Answer& answer,
                     std::vector<Difference>& out) {
   const Mesh& mesh = problem.mesh;
@@ -289,7 +291,7 @@ void compare_probes(const json& result, const Problem& problem, const Answer& an
         most = larger(most, norm(u));
         strained = larger(strained, norm(u - answer.u[element[0]]));
       }
-      // The program's place is known to 1e-12; just outside the body several elements may be meant.
+      // The program locates the point to 1e-12; just outside the body it may have chosen another element.
       unknown = (1e-11L + 20 * beyond) * strained + 20 * epsilon_of_doubles * most;
       if (beyond == 0) break;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Compares the totals of a result: forces, moments and contact states of entries, displacements of probes.
+// Compares totals of a result: forces, moments and contact states of entries, displacements of probes.
 #pragma once
 
 #include <string>
@@ -9,14 +9,14 @@
 
 namespace kacanov::verify {
 
-/// One number of the result that is not what is found.
+/// A number of the result that differs from the recomputed one.
 struct Difference {
   std::string name;
   Real said = 0, found = 0, rounding = 0;
 };
 
 /// Compares `contact`, `reaction`, `load`, `probe`, `max_displacement`, `active_nodes` and `slip_nodes` of
-/// the result with those of the answer (theory: verified-totals). Throws Failure where one is missing.
+/// the result with the recomputed values (theory: verified-totals). Throws Failure if one is missing.
 std::vector<Difference> differing_totals(const nlohmann::json& document, const nlohmann::json& result,
                                          const Problem& problem, const Answer& answer,
                                          const BodyResponse& body);

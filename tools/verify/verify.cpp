@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The front of the verifier: reads the answer, examines it, and compares with what the result says.
+// Reads the solution of a run, recomputes its certificate, and compares both with the result.
 #include "verify/verify.hpp"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ const Array& array_of(const std::map<std::string, Array>& arrays, const std::str
   return found->second;
 }
 
-/// Of as many entries as there are numbers of nodes.
+/// Returns an array that must have one entry per node number.
 const Array& array_of(const std::map<std::string, Array>& arrays, const std::string& name, std::size_t width,
                       const std::string& file, const Array& ids) {
   const Array& array = array_of(arrays, name, width, file);
@@ -48,7 +48,7 @@ Vec triple(const Array& array, std::size_t i) {
   return {array.values.at(3 * i), array.values.at(3 * i + 1), array.values.at(3 * i + 2)};
 }
 
-/// Whether the nodes of every patch hang together by elements.
+/// Returns whether the nodes of every patch are connected through elements.
 bool hang_together(const Mesh& mesh, const std::vector<std::int64_t>& patch) {
   std::vector<std::size_t> above(patch.size());
   std::iota(above.begin(), above.end(), std::size_t{0});
@@ -66,16 +66,16 @@ bool hang_together(const Mesh& mesh, const std::vector<std::int64_t>& patch) {
   return true;
 }
 
-/// The files of fields of the end of a load step.
+/// Field files of the end of a load step.
 struct FieldFiles {
   std::filesystem::path folder;
-  std::string mark;  ///< behind "body" and "contact"; empty: the end of the run
+  std::string mark;  ///< suffix after "body" and "contact"; empty: the end of the run
 
   std::filesystem::path named(const char* field) const { return folder / (field + mark + ".vtu"); }
 };
 
-/// The displacement of every node, from all pieces; copies have to agree. `patch`: the patches of nodes,
-/// where the file has those.
+/// Reads the displacement of every node from all pieces; duplicates must agree. `patch`: patch of each node,
+/// if the file has patches.
 std::vector<Vec> read_displacement(const FieldFiles& files, const Mesh& mesh,
                                    std::vector<std::int64_t>& patch) {
   std::map<std::int64_t, std::size_t> index;
@@ -83,7 +83,7 @@ std::vector<Vec> read_displacement(const FieldFiles& files, const Mesh& mesh,
   const std::string file = files.named("body").string();
   std::vector<Vec> u(mesh.nodes.size());
   std::vector<bool> known(u.size(), false);
-  // Places are those that were read; new ones of a finer mesh may be rounded otherwise.
+  // File nodes have exactly the coordinates read; new ones of a finer mesh may be rounded differently.
   Real far = 0;
   for (const Vec& x : mesh.nodes) far = larger(far, norm(x));
   const Real slack = 1e-14L * mesh.size() + 4 * std::numeric_limits<double>::epsilon() * far;
@@ -150,7 +150,8 @@ void read_multipliers(const FieldFiles& files, Problem& problem, Answer& answer)
   }
 }
 
-/// What an entry that is pushed by a force does to the body along its way, over what it ought to do.
+/// Returns the force of a force-controlled entry on the body along its direction, divided by the prescribed
+/// force.
 Real share_of_force(const Problem& problem, const Answer& answer, const json& entry, std::size_t index) {
   const Vec way = read_vector(entry.at("force_controlled").at("direction"));
   Vec force{};
@@ -163,7 +164,7 @@ Real share_of_force(const Problem& problem, const Answer& answer, const json& en
          (problem.contact_factor[index] * Real(entry.at("force_controlled").at("force").get<double>()));
 }
 
-/// The largest relative error of the forces of entries that are pushed.
+/// Returns the largest relative error of the force-controlled entries.
 Real off_forces(const Problem& problem, const Answer& answer, const json& contact) {
   Real worst = 0;
   for (std::size_t i = 0; i < contact.size(); ++i)
@@ -172,7 +173,7 @@ Real off_forces(const Problem& problem, const Answer& answer, const json& contac
   return worst;
 }
 
-/// The table, and whether what the result says is what is found.
+/// Builds the table, and records whether the result agrees with the recomputed values.
 class Comparison {
  public:
   Comparison(const json& result, Real tolerance) : result_(result), tolerance_(tolerance) {
@@ -182,7 +183,7 @@ class Comparison {
   void entry(const Entry& entry) {
     const json& says = result_.at("certificate").at(entry.name);
     const Real said = says.is_number() ? Real(says.get<double>()) : HUGE_VALL;
-    // Beside rounding, both are the same sums of the same numbers.
+    // Apart from round-off, both are the same sums of the same numbers.
     const bool agrees = std::abs(said - entry.residual) <= 1e-3L * larger(said, entry.residual) +
                                                                2 * entry.rounding + 1e-14L +
                                                                1e-6L * tolerance_;
@@ -226,7 +227,7 @@ class Comparison {
     agrees_ = agrees_ && agrees;
   }
 
-  const json& result_;  ///< or a line of its `load_steps`
+  const json& result_;  ///< result.json, or a line of its `load_steps`
   Real tolerance_;      ///< of the run
   std::string text_;
   bool agrees_ = true;
@@ -238,7 +239,7 @@ std::string scientific(Real value) {
   return text.data();
 }
 
-/// The state at the end of a load step, as its files have it.
+/// State at the end of a load step, as read from its files.
 struct State {
   Problem problem;
   Answer answer;
@@ -257,7 +258,7 @@ State read_state(const json& document, const std::filesystem::path& folder, cons
   return state;
 }
 
-/// Describes the fault of a load step before the last; empty without one. `line`: of the result's
+/// Describes the fault of a load step before the last; empty if there is none. `line`: its entry in
 /// `load_steps`.
 std::string fault_of_step(const State& state, const json& document, const json& line, std::string& table) {
   const Problem& problem = state.problem;
@@ -266,7 +267,7 @@ std::string fault_of_step(const State& state, const json& document, const json& 
   bool small = true;
   for (const Entry& entry : found.entries) {
     worst = larger(worst, entry.residual);
-    // The run continues after a step whose residuals are rounding.
+    // The run also accepts a step whose residuals are round-off.
     small = small && (entry.residual <= problem.tolerance || entry.residual <= entry.rounding);
   }
   Comparison comparison(line, problem.tolerance);
@@ -293,8 +294,8 @@ std::string fault_of_step(const State& state, const json& document, const json& 
   return fault.empty() ? fault : name + ": " + fault;
 }
 
-/// Verifies the load steps before the last, each from the one before it, and gives each point the
-/// displacement before it. Returns the first fault: the steps after it cannot be verified.
+/// Verifies the load steps before the last in order, and stores each displacement in the next point. Returns
+/// the first fault; later steps cannot be verified then.
 std::string verify_history(const json& document, const std::filesystem::path& folder,
                            const std::filesystem::path& output, std::vector<LoadPoint>& points,
                            std::string& table) {
@@ -318,7 +319,7 @@ std::string verify_history(const json& document, const std::filesystem::path& fo
 
 Verdict verify(json document, const std::filesystem::path& folder, const std::filesystem::path& output) {
   const json result = read_result(output / "result.json");
-  // A mesh that the run has adapted is beside its fields.
+  // A mesh adapted by the run is in the output folder.
   if (document.at("mesh").contains("adapt"))
     document["mesh"] = {{"file", std::filesystem::absolute(output / "mesh.msh").string()}};
   Verdict verdict;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The front of the verifier: from the case and the files of a run to what is true of its answer.
+// Entry point of the verifier: reads the case and the files of a run and recomputes the certificate.
 #pragma once
 
 #include <filesystem>
@@ -11,16 +11,16 @@
 namespace kacanov::verify {
 
 struct Verdict {
-  bool fulfilled = false;  ///< the answer meets its tolerance, and the result says nothing else than is found
-  std::string table;  ///< a line an entry: what the result says, what is found, what rounding leaves unknown
-  std::string sentence;  ///< what it comes to
+  bool fulfilled = false;  ///< the solution meets its tolerance, and the result is what was recomputed
+  std::string table;       ///< one line per entry: value in the result, recomputed value, round-off
+  std::string sentence;    ///< the conclusion
 };
 
 /// Recomputes the certificate of a run from its case and its files alone, in long double.
 /// - document: the case, which the program has accepted; folder: where its relative paths start.
 /// - output: the folder of the run, with result.json, body.vtu (or body.pvtu of an older version) and, with
-/// contact, contact.vtu. Throws Failure where a file is missing, damaged or of another mesh, or the case has
-/// what the verifier does not know.
+///   contact, contact.vtu.
+/// Throws Failure if a file is missing, damaged or of another mesh, or the case has unsupported features.
 Verdict verify(nlohmann::json document, const std::filesystem::path& folder,
                const std::filesystem::path& output);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fields of a .vtu file with raw appended arrays, packed by zlib or not, and of the pieces of a .pvtu.
+// Reads fields of .vtu files with raw appended arrays, compressed by zlib or not, and of the pieces of a
+// .pvtu.
 #include "verify/vtu.hpp"
 
 #include <zlib.h>
@@ -15,7 +16,7 @@
 namespace kacanov::verify {
 namespace {
 
-/// The value of an attribute of a tag; empty where there is none.
+/// Returns the value of an attribute of a tag; empty if it is missing.
 std::string attribute(const std::string& tag, const std::string& name) {
   const std::size_t at = tag.find(" " + name + "=\"");
   if (at == std::string::npos) return {};
@@ -23,7 +24,7 @@ std::string attribute(const std::string& tag, const std::string& name) {
   return tag.substr(from, tag.find('"', from) - from);
 }
 
-/// Calls visit(tag) for every <name ...> of the text.
+/// Calls visit(tag) for every <name ...> in the text.
 template <class Visit>
 void for_tags(const std::string& text, const std::string& name, const Visit& visit) {
   for (std::size_t at = text.find("<" + name + " "); at != std::string::npos;
@@ -37,7 +38,7 @@ std::string between(const std::string& text, const std::string& from, const std:
   return text.substr(begin, text.find(to, begin) - begin);
 }
 
-/// A whole number that an attribute has.
+/// Parses an integer attribute.
 std::size_t number(const std::string& text, const std::filesystem::path& file) {
   std::size_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -55,7 +56,7 @@ void append(const char* data, std::size_t bytes, std::vector<double>& out) {
   }
 }
 
-/// A number of the front of an array.
+/// Reads a number of an array header.
 std::uint64_t front_number(const std::string& text, std::size_t at, const std::filesystem::path& file) {
   std::uint64_t value = 0;
   if (at > text.size() || text.size() - at < sizeof value) throw Failure(file.string() + ": is cut short");
@@ -63,15 +64,15 @@ std::uint64_t front_number(const std::string& text, std::size_t at, const std::f
   return value;
 }
 
-/// The bytes of an array that begins at `at` with its length.
+/// Returns the bytes of an uncompressed array that starts with its length at `at`.
 std::string plain_array(const std::string& text, std::size_t at, const std::filesystem::path& file) {
   const std::uint64_t bytes = front_number(text, at, file);
   if (bytes > text.size() - at - sizeof bytes) throw Failure(file.string() + ": is cut short");
   return text.substr(at + sizeof bytes, bytes);
 }
 
-/// The bytes of an array that begins at `at` with how many blocks it has, their length, that of the last one
-/// if it is shorter, and their packed lengths.
+/// Decompresses the array at `at`. Its header holds the number of blocks, their length, the length of a
+/// shorter last block, and the compressed lengths.
 std::string packed_array(const std::string& text, std::size_t at, const std::filesystem::path& file) {
   const std::uint64_t blocks = front_number(text, at, file), length = front_number(text, at + 8, file),
                       last = front_number(text, at + 16, file);

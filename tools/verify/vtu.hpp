@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fields of a .vtu file with raw appended arrays, packed by zlib or not, and of the pieces of a .pvtu.
+// Reads fields of .vtu files with raw appended arrays, compressed by zlib or not, and of the pieces of a
+// .pvtu.
 #pragma once
 
 #include <filesystem>
@@ -11,14 +12,14 @@ namespace kacanov::verify {
 
 struct Array {
   std::size_t components = 1;
-  std::vector<double> values;  ///< numbers of nodes up to 2^53 are exact
+  std::vector<double> values;  ///< node numbers up to 2^53 are exact
 };
 
-/// Point data by name, and the points themselves as "Points". Throws Failure for a file that is none.
+/// Returns the point data by name, with the points as "Points". Throws Failure if the file is not a .vtu.
 std::map<std::string, Array> read_point_data(const std::filesystem::path& file);
 
-/// Those of body.vtu, or of all pieces that body.pvtu names, which older versions left. `mark`: of a load
-/// step, behind "body".
+/// Returns the point data of body.vtu, or of all pieces of body.pvtu, which older versions wrote. `mark`:
+/// suffix of a load step after "body".
 std::vector<std::map<std::string, Array>> read_body(const std::filesystem::path& folder,
                                                     const std::string& mark);
 

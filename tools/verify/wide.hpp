@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The arithmetic of gaps, which are differences of lengths that may be large: four times single precision.
+// Quadruple precision arithmetic for gaps, which are differences of possibly large lengths.
 #pragma once
 
 #include <limits>
@@ -12,10 +12,10 @@ namespace kacanov::verify {
 using Wide = __float128;
 constexpr Real some_wide_roundings = 1e-33L;
 #else
-using Wide = long double;  // what there is: as wide on 64-bit ARM
+using Wide = long double;  // quadruple precision too on 64-bit ARM
 constexpr Real some_wide_roundings = 10 * std::numeric_limits<long double>::epsilon();
 #endif
-/// A type of its own, so that it is none with Vec where Wide is Real.
+/// A distinct type, so that its operators do not clash with those of Vec where Wide is Real.
 struct WideVec : std::array<Wide, 3> {};
 
 inline WideVec wide(const Vec& v) { return {v[0], v[1], v[2]}; }
@@ -27,7 +27,7 @@ inline WideVec operator-(const WideVec& a, const WideVec& b) {
 }
 inline WideVec scaled(Wide s, const WideVec& v) { return {s * v[0], s * v[1], s * v[2]}; }
 inline Wide inner(const WideVec& a, const WideVec& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-/// Newton's steps from the root in long double; 0 of what is negative.
+/// Square root by Newton iteration from the long double root; 0 for negative arguments.
 inline Wide root(Wide square) {
   if (!(square > 0)) return 0;
   Wide near = std::sqrt(static_cast<Real>(square));

@@ -1,10 +1,9 @@
-// A quarter of a steel block, lengths in mm, whose top a ball touches at the origin; x = 0 and y = 0 are its planes of
-// symmetry.
+// A quarter of a steel block, lengths in mm; a ball touches its top at the origin; x = 0 and y = 0 are symmetry planes.
 // gmsh -3 -order 2 -format msh41 -bin ball.geo -o ball.msh
-size = 10;     // of the quarter
-fine = 0.25;   // of elements under the ball
-contact = 1.5; // how far that goes
-far = 3;       // of elements elsewhere
+size = 10;     // edge length of the quarter
+fine = 0.25;   // element size under the ball
+contact = 1.5; // radius of the fine region
+far = 3;       // element size elsewhere
 
 Point(1) = {0, 0, 0, fine};
 Point(2) = {size, 0, 0, far};

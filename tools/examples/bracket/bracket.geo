@@ -1,14 +1,14 @@
-// An angle bracket of steel, lengths in mm: a leg up the wall, a leg out from it, a fillet between them.
+// A steel angle bracket, lengths in mm: one leg on the wall, one leg out from it, and a fillet between them.
 // gmsh -3 -order 2 -format msh22 bracket.geo -o bracket.msh
-size = 5;     // of elements
-fine = 2;     // at the fillet
+size = 5;     // element size
+fine = 2;     // element size at the fillet
 width = 20;   // along y
 thick = 5;
-high = 40;    // of the leg on the wall, x from 0 to thick
-far = 50;     // of the leg out from it, z from 0 to thick
-bolted = 24;  // above it the wall holds the bracket
+high = 40;    // length of the leg on the wall, x from 0 to thick
+far = 50;     // length of the leg out from it, z from 0 to thick
+bolted = 24;  // the wall supports the bracket above this height
 fillet = 4;
-seat = 32;    // beyond it the ball presses
+seat = 32;    // the ball presses beyond this distance
 
 Point(1) = {0, 0, 0, size};
 Point(2) = {seat, 0, 0, size};
@@ -36,7 +36,7 @@ Curve Loop(1) = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
 Plane Surface(1) = {1};
 out[] = Extrude {0, width, 0} { Surface{1}; };
 
-// out[0] is the surface at the end, out[1] the volume, out[2...] the sides in the order of the lines.
+// out[0] is the end surface, out[1] the volume, out[2...] the sides in the order of the lines.
 Physical Volume("bracket") = {out[1]};
 Physical Surface("seat") = {out[5]};
 Physical Surface("bolts") = {out[10]};
