@@ -438,7 +438,7 @@ TEST_CASE("a body far from the origin has the numbers of the same body at the or
         input["boundary"][2]["body_force"] = {0.05, -0.1};
       }
       input["contact"][0]["obstacle"] = {{"sphere", {{"centre", below}, {"radius", 3}}}};
-      input["probe"] = {point};
+      input["probe"] = nlohmann::json::array({point});
       place.put_json("case.json", input);
       const Outcome run = place.run("run case.json --output out");
       INFO(shift, run.error, run.output);
