@@ -45,9 +45,11 @@ std::vector<int> bins_of_laws(const Part& part) {
     stiffest = std::max(stiffest, body.law(e).secant(0.0));
   stiffest = part.node_map.max_all(stiffest);
   std::vector<int> bins;
-  for (const Law& law : part.laws)
-    bins.push_back(
-        static_cast<int>(std::floor(std::log10(std::max(stiffest / law.secant(0.0), 1.0)) + offset)));
+  for (const Law& law : part.laws) {
+    // Moduli that are next to 0 or infinite, in the units of the loop, have no ratio.
+    const double ratio = std::min(std::max(1.0, stiffest / law.secant(0.0)), 1e300);
+    bins.push_back(static_cast<int>(std::floor(std::log10(ratio) + offset)));
+  }
   return bins;
 }
 
