@@ -57,13 +57,9 @@ std::optional<Facing> Faces::between(const SurfacePoint& point) const {
 
 namespace {
 
-/// Unit vectors and cosines that differ by less count as equal.
-constexpr double same_direction = 1e-6;
 /// Cosine with the outer normal above which a face faces the body: that of facet_orientation with the
 /// opposite sign.
 constexpr double looks_at_body = 0.05;
-
-bool same(const Vector3& a, const Vector3& b) { return norm(a - b) <= same_direction; }
 
 /// Lexicographic order, by the first components that differ.
 bool is_before(const Vector3& a, const Vector3& b) {
@@ -83,9 +79,6 @@ FaceChoice choose_face(std::span<const Vector3> directions, const Vector3& outer
   Vector3 sum{};
   for (std::size_t k = 0; k < directions.size(); ++k) {
     const Vector3& nu = directions[k];
-    const bool is_known = std::any_of(choice.chosen.begin(), choice.chosen.end(),
-                                      [&](std::size_t other) { return same(directions[other], nu); });
-    if (is_known) continue;
     if (cosine(nu) < most - same_direction) {
       choice.decides = choice.decides || (cosine(nu) > looks_at_body && most < 1.0 - same_direction);
       continue;

@@ -32,15 +32,18 @@ class Faces {
   std::string path_;
 };
 
+/// Unit vectors and cosines that differ by less count as equal.
+constexpr double same_direction = 1e-6;
+
 /// The chosen direction, as indices into the list of candidates.
 struct FaceChoice {
   std::vector<std::size_t> chosen;  ///< one direction, or several whose mean is used
   bool decides = false;             ///< whether another choice would also have faced the body
 };
 
-/// Chooses from the unit directions towards equally near faces the one closest to the body's outer normal. Of
-/// equally close ones it returns all, to be averaged, or, if they cancel, the last one in the order of their
-/// components.
+/// Chooses from the unit directions towards equally near faces, all of which differ, the one closest to the
+/// body's outer normal. Of equally close ones it returns all, to be averaged, or, if they cancel, the last
+/// one in the order of their components.
 FaceChoice choose_face(std::span<const Vector3> directions, const Vector3& outer);
 
 }  // namespace kacanov

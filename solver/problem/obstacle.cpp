@@ -37,9 +37,6 @@ constexpr double on_surface = 1e-9;
 /// files resolve their corners no better.
 constexpr double equally_near = 1e-7;
 
-/// Directions and cosines that differ by less count as equal.
-constexpr double one_direction = 1e-6;
-
 /// Projection onto one triangle of a surface.
 struct SeenTriangle {
   Facing facing;
@@ -55,9 +52,10 @@ std::optional<SeenTriangle> seen_triangle(const Surface::Closest& closest, bool 
   if (closest.normal == Vector3{}) return std::nullopt;
   const double along = -dot(offset, closest.normal);
   // Beyond the border of an open surface there is nothing to touch.
-  if (closest.border && norm(offset + along * closest.normal) > one_direction * distance) return std::nullopt;
+  if (closest.border && norm(offset + along * closest.normal) > same_direction * distance)
+    return std::nullopt;
   const double side = along >= 0.0 ? 1.0 : -1.0;
-  if (norm(offset + above * closest.face) <= one_direction * distance)
+  if (norm(offset + above * closest.face) <= same_direction * distance)
     return SeenTriangle{{(above >= 0.0 ? -side : side) * closest.face, side * distance}, true};
   return SeenTriangle{{side / distance * offset, side * distance}, false};
 }
@@ -75,7 +73,7 @@ std::vector<Facing> one_of_each_direction(std::vector<SeenTriangle> seen) {
   for (const SeenTriangle& one : seen) {
     const Vector3& normal = one.facing.normal;
     const auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& other) {
-      return norm(other.first.facing.normal - normal) <= one_direction;
+      return norm(other.first.facing.normal - normal) <= same_direction;
     });
     if (group == groups.end()) {
       groups.push_back({one, normal});
