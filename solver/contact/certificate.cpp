@@ -267,9 +267,12 @@ BodySums body_sums(const Part& part, const Vector& u, std::span<const double> co
     s.moment = s.moment + cross(position, residual);
     for (; side != forces.interface.end() && side->node == n; ++side) {
       out.of_region[side->region].interface += dot(side->force, side->force);
-      if (side->region != region)
-        between[{region, side->region}] +=
-            std::abs(side->force[0]) + std::abs(side->force[1]) + std::abs(side->force[2]);
+      if (side->region == region) continue;
+      for (std::size_t c = 0; c < dim; ++c) {
+        between[{region, side->region}] += std::abs(side->force[c]);
+        s.stiff += side->stiff[c] * side->stiff[c];
+        s.stiff_all += side->stiff[c];
+      }
     }
   }
   const IndexMap& ranks = part.node_map;

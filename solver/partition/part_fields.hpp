@@ -122,7 +122,7 @@ void exchange_fields(Either<IndexMap> auto& map, const auto& stream) {
 }
 
 void exchange_fields(Either<ContactPoint> auto& point, const auto& stream) {
-  stream(point.node, point.entry, point.normal, point.tangent, point.tangents, point.gap, point.unknown_gap,
+  stream(point.node, point.entry, point.normal, point.outer, point.tangent, point.tangents, point.gap, point.unknown_gap,
          point.mass, point.tresca, point.coulomb, point.since_step);
 }
 

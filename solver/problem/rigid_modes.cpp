@@ -289,6 +289,19 @@ std::string name_piece(const Piece& piece, const Mesh& mesh, std::size_t pieces)
          " elements; the mesh falls into " + std::to_string(pieces) + " pieces)";
 }
 
+/// Warns of load steps in which nothing presses the piece onto what alone holds it. `unpressed`: their
+/// numbers.
+void warn_unpressed(Problem& problem, std::span<const std::size_t> unpressed, const std::string& name) {
+  if (unpressed.empty()) return;
+  PlainText text;
+  if (problem.steps.size() > 2)
+    text << "load step " << unpressed.front() << " (time " << problem.steps[unpressed.front()].time << ")"
+         << (unpressed.size() > 1 ? " and others" : "") << ": ";
+  text << "no load presses " << name << " onto the contact that alone holds it. Forces and stresses are "
+       << "right. The place where it rests is one of many, unless something else presses it";
+  problem.warnings.push_back(text.str());
+}
+
 /// Computes where the piece comes to rest, or why it does not.
 void settle(Problem& problem, const Piece& piece, std::int32_t number, const RigidPiece& rigid,
             const std::string& name, std::span<const std::int32_t> piece_of_node) {
@@ -298,15 +311,19 @@ void settle(Problem& problem, const Piece& piece, std::int32_t number, const Rig
       problem.no_equilibrium = explain(rigid, found, piece, name, problem.mesh.dim());
     return;
   }
+  std::vector<std::size_t> unpressed;
+  if (rigid.load.isZero(0.0)) unpressed.push_back(1);
   RigidPiece later = rigid;
   for (std::size_t step = 2; step < problem.steps.size() && problem.no_equilibrium.empty(); ++step) {
     later.load = load_of(problem, piece, number, piece_of_node, load_at(problem, step), rigid.basis);
+    if (later.load.isZero(0.0)) unpressed.push_back(step);
     const RigidBalance then = balance(later.points, later.load);
     if (then.exists) continue;
     PlainText place;
     place << " (load step " << step << ", time " << problem.steps[step].time << ")";
     problem.no_equilibrium = explain(later, then, piece, name, problem.mesh.dim()) + place.str();
   }
+  warn_unpressed(problem, unpressed, name);
   // A pressure p indents a body of this size by about p divided by this stiffness.
   double bulk = 0.0;
   for (const Law& law : problem.laws) bulk = std::max(bulk, law.bulk);
