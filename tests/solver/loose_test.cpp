@@ -91,6 +91,22 @@ TEST_CASE("a pull off the only contact ends the run before it begins") {
   CHECK(mentions(run.result().message, "translation along z"));
 }
 
+TEST_CASE("load steps in which nothing presses a loose body are named") {
+  const Mesh mesh = box_mesh(ElementType::tet4);
+  const auto unpressed = [&](std::vector<double> factors) {
+    Model model = block_under({1e-4, 0, -1e-3}, 0.5);
+    double time = 0.0;
+    for (const double factor : factors) model.steps.push_back({time += 1.0, {{"boundary[0]", factor}}});
+    std::string found;
+    for (const std::string& warning : build_problem(mesh, model).warnings)
+      if (mentions(warning, "no load presses")) found += warning;
+    return found;
+  };
+  CHECK(unpressed({0.5, 1.0, 0.25}) == "");
+  CHECK(mentions(unpressed({1.0, 0.5, 0.0}), "load step 3 (time 3): no load presses the body"));
+  CHECK(mentions(unpressed({0.0, 1.0, 0.0}), "load step 1 (time 1) and others: no load presses the body"));
+}
+
 TEST_CASE("a gap costs a falling body no steps") {
   const Mesh mesh = make_box({{1, 1, 1}, {3, 3, 3}, ElementType::hex8});
   int fewest = 1000, most = 0;
