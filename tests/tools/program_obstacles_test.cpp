@@ -142,6 +142,25 @@ TEST_CASE("every kind of obstacle: run on one rank or two, and verified") {
   }
 }
 
+TEST_CASE("adapted meshes follow obstacles from files") {
+  const Workplace place;
+  place.put("ball.stl", ascii_stl(cap(6)));
+  place.put("heights.csv", "0.00, -0.01, 0\n0, 0.002, 0.001\n-1e-3; 0; 0.001\n");
+  for (const char* obstacle :
+       {R"({"surface": {"file": "ball.stl"}})",
+        R"({"height_map": {"file": "heights.csv", "lower": [0, 0], "upper": [2, 1]}})"}) {
+    INFO(obstacle);
+    nlohmann::json adapted = brick(obstacle);
+    adapted["mesh"]["box"]["element"] = "tet4";
+    adapted["mesh"]["adapt"] = {{"error", 0.3}, {"most_meshes", 2}};
+    place.put_json("brick.json", adapted);
+    const Outcome run = place.run("run brick.json --output out");
+    INFO(run.error);
+    REQUIRE(run.exit_code == 0);
+    CHECK(force(place) > 0);
+  }
+}
+
 TEST_CASE(
     "obstacles that move and that are pushed: run on one rank and two, verified, honest about what is not "
     "there") {

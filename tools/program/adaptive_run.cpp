@@ -14,6 +14,7 @@
 #include <kacanov/error.hpp>
 #include <kacanov/moving.hpp>
 #include "program/loaded_case.hpp"
+#include "program/obstacle_files.hpp"
 #include "program/report.hpp"
 #include "program/solve_case.hpp"
 
@@ -102,7 +103,7 @@ class Adaptation {
       if (problem == nullptr) return;
       double largest = 0.0;
       for (const double component : u) largest = std::max(largest, std::abs(component));
-      entered_ = penetrated_elements(*problem, input_.model, u, entered_at_most * largest);
+      entered_ = penetrated_elements(*problem, model_with_files(input_), u, entered_at_most * largest);
     });
     entered_count_ = static_cast<std::int64_t>(entered_.size());
     mpi_.expect_all_here();
