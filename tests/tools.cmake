@@ -47,35 +47,7 @@ target_compile_definitions(test_program PRIVATE
   KACANOV_HARD_CASES="${PROJECT_SOURCE_DIR}/tests/cases/hard")
 add_dependencies(test_program kacanov kacanov_early_thread)
 
-# Small random cases, each verified from its files; perf/verify_answers draws 500 by default.
 find_package(Python3 COMPONENTS Interpreter)
-if(Python3_FOUND)
-  if(NOT KACANOV_SANITIZE)  # under the sanitizers verified_conditions covers this
-    add_test(NAME verified_answers
-      COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/perf/verify_answers" $<TARGET_FILE:kacanov> --count 60)
-    kacanov_test_properties(verified_answers 1)
-  endif()
-  add_test(NAME verified_conditions
-    COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/perf/verify_answers" $<TARGET_FILE:kacanov>
-      --count $<IF:$<BOOL:${KACANOV_SANITIZE}>,12,30> --conditions)
-  kacanov_test_properties(verified_conditions 1)
-  add_test(NAME verified_history
-    COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/perf/verify_answers" $<TARGET_FILE:kacanov>
-      --count $<IF:$<BOOL:${KACANOV_SANITIZE}>,12,40> --history)
-  kacanov_test_properties(verified_history 1)
-endif()
-
-# Small runs with failing files, memory or power, or killed: at few places here, at every place with perf/endure. The
-# preloaded library cannot be combined with the sanitizers.
-add_library(kacanov_faults MODULE tools/faults.cpp)
-target_link_libraries(kacanov_faults PRIVATE ${CMAKE_DL_LIBS} kacanov_warnings)
-target_compile_features(kacanov_faults PRIVATE cxx_std_20)
-if(Python3_FOUND AND NOT KACANOV_SANITIZE)
-  add_test(NAME endured_faults
-    COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/perf/endure" $<TARGET_FILE:kacanov>
-      $<TARGET_FILE:kacanov_faults> --every 61 --kills 3)
-  kacanov_test_properties(endured_faults 1)
-endif()
 
 # The solve interface in C; its C client is also the one that consumes an installation.
 kacanov_test(solve_c SOURCES tools/solve_c_test.cpp LIBRARIES kacanov_program_runner kacanov_solve)

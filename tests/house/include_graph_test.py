@@ -23,8 +23,8 @@ class Arrows(unittest.TestCase):
             "solver/amg/level.cpp": '#include "linear/space.hpp"\n#include "amg/level.hpp"\n#include <kacanov/law.hpp>\n',
             "solver/amg/level.hpp": "",
             "solver/linear/space.hpp": "#include <vector>\n",
-            "tests/solver/level_test.cpp": '#include "amg/level.hpp"\n#include "../../perf/meshes.hpp"\n',
-            "perf/meshes.hpp": "",
+            "tests/solver/level_test.cpp": '#include "amg/level.hpp"\n#include "../../perf/benchmarks/meshes.hpp"\n',
+            "perf/benchmarks/meshes.hpp": "",
         }))
 
     def test_up_runs_back(self):

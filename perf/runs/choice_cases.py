@@ -3,7 +3,7 @@
 import math
 import pathlib
 
-EXAMPLES = pathlib.Path(__file__).resolve().parent.parent / "tools" / "examples"
+EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "tools" / "examples"
 
 
 def law(kind, x0):
