@@ -9,8 +9,10 @@
 #include <functional>
 #include <iostream>
 #include <limits>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -20,17 +22,90 @@
 #ifdef KACANOV_BENCH_GMSH
 #include "formats/gmsh_reader.hpp"
 #endif
+#include <kacanov/kacanov.h>
 #include <kacanov/locality.hpp>
 #include <kacanov/operator.hpp>
 #include "machine.hpp"
 #include "matrices.hpp"
 #include "meshes.hpp"
-#include "own_law.hpp"
 
 using namespace kacanov;
 using nlohmann::json;
 
 namespace {
+
+/// A power law on handles of the C interface, built in or as a callback: a body whose points are all beyond
+/// yield at displacements of the size of an element.
+class PowerLawBody {
+ public:
+  /// `mesh` must outlive this object. With `own` the law is a callback, which all threads may call.
+  PowerLawBody(const meshes::OwnedMesh& mesh, bool own, int threads);
+  void residual(std::span<const double> u, std::span<double> f);
+  void update_tangent(std::span<const double> u);
+
+ private:
+  struct Destroy {
+    void operator()(kacanov_operator* op) const { kacanov_destroy(op); }
+  };
+  std::unique_ptr<kacanov_operator, Destroy> op_;
+};
+
+constexpr double power_shear = 1.0, power_yield = 1e-3, power_exponent = 0.2;
+
+int evaluate_power_law(void*, const kacanov_law_points* points) {
+  for (std::size_t i = 0; i < points->count; ++i) {
+    const double x = points->x[i];
+    const bool elastic = x <= power_yield;
+    const double g = elastic ? power_shear : power_shear * std::pow(x / power_yield, power_exponent - 1.0);
+    points->g[i] = g;
+    if (points->slope != nullptr) points->slope[i] = elastic ? 0.0 : (power_exponent - 1.0) * g / x;
+    if (points->energy != nullptr)
+      points->energy[i] = elastic
+                              ? 0.5 * g * x * x
+                              : g * x * x / (power_exponent + 1.0) + power_shear * power_yield * power_yield *
+                                                                         (0.5 - 1.0 / (power_exponent + 1.0));
+  }
+  return 0;
+}
+
+void check_call(int code, const char* message) {
+  if (code != KACANOV_OK) throw std::runtime_error(message);
+}
+
+PowerLawBody::PowerLawBody(const meshes::OwnedMesh& mesh, bool own, int threads) {
+  kacanov_law law{};
+  law.struct_size = sizeof law;
+  law.kind = own ? KACANOV_USER : KACANOV_POWER;
+  law.bulk = 2.0;
+  law.shear = power_shear;
+  law.x0 = power_yield;
+  law.n = power_exponent;
+  if (own) law.evaluate = evaluate_power_law;
+  law.parallel = own ? 1 : 0;
+  kacanov_description body{};
+  body.struct_size = sizeof body;
+  body.element = static_cast<std::int32_t>(mesh.type);
+  body.threads = threads;
+  body.nodes = mesh.view().node_count();
+  body.coordinates = mesh.coordinates.data();
+  body.elements = mesh.view().element_count();
+  body.connectivity = mesh.connectivity.data();
+  body.borrow = 1;
+  body.laws = 1;
+  body.law = &law;
+  kacanov_operator* op = nullptr;
+  char message[256];
+  check_call(kacanov_create(&body, &op, message, sizeof message), message);
+  op_.reset(op);
+}
+
+void PowerLawBody::residual(std::span<const double> u, std::span<double> f) {
+  check_call(kacanov_residual(op_.get(), u.size(), u.data(), f.data()), kacanov_message(op_.get()));
+}
+
+void PowerLawBody::update_tangent(std::span<const double> u) {
+  check_call(kacanov_update_tangent(op_.get(), u.size(), u.data()), kacanov_message(op_.get()));
+}
 
 struct Settings {
   std::vector<std::string> elements;
@@ -165,8 +240,8 @@ json measure(const meshes::OwnedMesh& mesh, const std::string& kind, const Setti
   timed.push_back({[&] { op.apply_many(std::span(x4).first(2 * n), std::span(y4).first(2 * n), 2); }});
   timed.push_back({[&] { op.apply_many(x4, y4, 4); }});
   timed.push_back({[&] { op.residual(x, y); }});
-  perf::PowerLawBody built_in(mesh, false, most), own(mesh, true, most);
-  for (perf::PowerLawBody* law : {&built_in, &own}) {
+  PowerLawBody built_in(mesh, false, most), own(mesh, true, most);
+  for (PowerLawBody* law : {&built_in, &own}) {
     timed.push_back({[&x, &y, law] { law->residual(x, y); }});
     timed.push_back({[&x, law] { law->update_tangent(x); }});
   }

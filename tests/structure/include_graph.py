@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Computes the include graph of the source folders ("rooms") and fails where an include points upwards.
+"""Computes the include graph of the source folders and fails where an include points upwards.
 
-usage: include_graph.py ROOT [--dot FILE]
+usage: include_graph.py ROOT [--dot FILE] [--short]
 
-A room may include itself and the rooms of the levels before its own. Also checks, file by file: that public
-headers include public headers only, that included files exist, the SPDX line, the sentence that describes the
-file, the number of lines, and that streams in code loaded by a host do not depend on the host's locale.
+Each folder is a room: it may include itself and the rooms of the levels before its own. Also checks, file by file: that
+public headers include public headers only, that included files exist, the SPDX line, the sentence that describes the
+file, the number of lines, that solver/ has no loose code, and that streams in code loaded by a host do not depend on
+the host's locale. Files below 50 lines need a reason (short_files.txt); --short prints those that have none.
 """
 import argparse
+import collections
 import pathlib
 import posixpath
 import re
@@ -40,12 +42,18 @@ LEVELS = [
     ["tools/pictures"],
     ["tools/program"],
     ["tools/embedding"],
-    ["perf", "python"],
-    ["tests"],
+    ["perf/benchmarks", "python/src"],
+    ["tests"],  # what test programs share
+    ["tests/kernels", "tests/embedding"],
+    ["tests/solver"],
+    ["tests/tools", "tests/cases", "tests/campaigns", "tests/install/consumer"],
+    ["tests/fuzz"],
 ]
+# The first folder counts too: what stands further right includes what stands further left.
+TOPS = ["kernels", "solver", "tools", ("perf", "python"), "tests"]
 PUBLIC = ["kernels/include/kacanov", "solver/include/kacanov", "tools/include/kacanov"]
 # Folders searched for "room/file.hpp", after the including file's own folder.
-INCLUDE_FOLDERS = ["kernels", "solver", "tools", "tests/solver"]
+INCLUDE_FOLDERS = ["kernels", "solver", "tools", "tests", "tests/solver"]
 
 # A public header belongs to the room of the source file with its name; these have none, or one of another name.
 HEADER_ROOMS = {
@@ -67,10 +75,19 @@ HEADER_ROOMS = {
     "run_options.hpp": "solver/nonlinear",
 }
 
+SHORT_FILES = "tests/structure/short_files.txt"
+TO_MERGE = "to merge"  # short files of the past; no new ones
+
 PLAIN_STREAMS = "solver/mesh/plain_stream.hpp"
 MOST_LINES = 800
-# Files above the limit on lines, with the reason. An unnecessary entry is an error.
-LONGER = {}
+LEAST_LINES = 50
+# Reasons for files below LEAST_LINES; all others are listed in short_files.txt.
+SHORT_CLASSES = {
+    "public header": lambda path, lengths: str(pathlib.PurePath(path).parent) in [*PUBLIC, "kernels/include"],
+    "instruction set": lambda path, lengths: re.fullmatch(r"kernels/simd/\w+_(avx2|avx512|plain)\.cpp", path),
+    "header of a source file": lambda path, lengths: path.endswith(".hpp") and
+        lengths.get(path, 0) + lengths.get(path[:-4] + ".cpp", 0) >= 150,
+}
 # Upward includes that still exist: (room, included room). An unnecessary entry is an error.
 KNOWN_BACKWARD = set()
 
@@ -95,11 +112,9 @@ def source_files(root):
 def room_of(path):
     """Returns the room of a file from its path relative to the root."""
     parts = path.split("/")
-    if parts[0] in ("perf", "python", "tests"):
-        return parts[0]
-    if parts[0] == "solver" and len(parts) == 2:
+    if path == "solver/solve.cpp":
         return "solver/solve"
-    return "/".join(parts[:2])
+    return "/".join(parts[:-1])
 
 
 def rooms_of_files(files):
@@ -139,6 +154,12 @@ def included_files(path, text, files):
         yield name, next((c for c in candidates if c in files), None)
 
 
+def top_of(room):
+    """Returns the place of a room's first folder in TOPS."""
+    first = room.split("/")[0]
+    return next(number for number, top in enumerate(TOPS) if first == top or (isinstance(top, tuple) and first in top))
+
+
 def draw(texts):
     """Returns arrows between rooms, each with the includes behind it, and complaints; `texts` maps paths to
     contents."""
@@ -164,7 +185,7 @@ def backward(arrows):
     for (room, target), includes in arrows.items():
         unknown = [r for r in (room, target) if r not in level_of]
         complaints += [f"{r}: no such room in LEVELS: {includes[0]}" for r in unknown]
-        if unknown or room == target or level_of[target] < level_of[room]:
+        if unknown or room == target or (level_of[target] < level_of[room] and top_of(target) <= top_of(room)):
             continue
         met.add((room, target))
         if (room, target) not in KNOWN_BACKWARD:
@@ -194,14 +215,30 @@ def file_complaints(path, text):
         yield f"{path}: no SPDX line at its top"
     elif not re.search(r"\w+ .*[\w)][.:;]", opening(text)):
         yield f"{path}: no sentence below the SPDX line that says what it is for"
-    if len(lines) > MOST_LINES and path not in LONGER:
-        yield f"{path}: {len(lines)} lines, more than {MOST_LINES}: split it, or say in LONGER why not"
-    if len(lines) <= MOST_LINES and path in LONGER:
-        yield f"LONGER: {path} has {len(lines)} lines: strike it"
+    if len(lines) > MOST_LINES:
+        yield f"{path}: {len(lines)} lines, more than {MOST_LINES}: it holds two subjects"
+    if re.fullmatch(r"solver/[^/]+\.[ch](pp)?", path) and path != "solver/solve.cpp":
+        yield f"{path}: loose code in solver/: put it into a folder"
     if path.startswith(("solver/", "tools/")) and not path.startswith("tools/verify/") and path != PLAIN_STREAMS:
         for number, line in enumerate(lines, 1):
             if found := re.search(r"std::[io]?(string|f)stream\b", line):
                 yield f"{path}:{number}: {found[0]} writes as the host's locale says: take one of {PLAIN_STREAMS}"
+
+
+def reasons_of_short_files(text):
+    """Returns a dictionary from path to reason of the lines `PATH: REASON` of short_files.txt."""
+    return dict(line.split(": ", 1) for line in text.splitlines() if line and not line.startswith("#"))
+
+
+def short_files(texts, reasons):
+    """Returns a dictionary from each code file below LEAST_LINES to its reason, None if it has none."""
+    lengths = {path: len(text.splitlines()) for path, text in texts.items() if pathlib.PurePath(path).suffix in CODE}
+    found = {}
+    for path, length in lengths.items():
+        if length < LEAST_LINES:
+            of_class = next((name for name, fits in SHORT_CLASSES.items() if fits(path, lengths)), None)
+            found[path] = of_class or reasons.get(path)
+    return found
 
 
 def print_drawing(arrows):
@@ -222,6 +259,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("root", type=pathlib.Path)
     parser.add_argument("--dot", type=pathlib.Path, metavar="FILE", help="write the drawing for Graphviz")
+    parser.add_argument("--short", action="store_true", help="print only the short files without a reason")
     arguments = parser.parse_args()
     texts = {path.relative_to(arguments.root).as_posix(): path.read_text(encoding="utf-8")
              for path in source_files(arguments.root)}
@@ -229,6 +267,15 @@ def main():
     complaints += backward(arrows)
     for path, text in texts.items():
         complaints += file_complaints(path, text)
+    reasons = reasons_of_short_files((arguments.root / SHORT_FILES).read_text(encoding="utf-8"))
+    short = short_files(texts, reasons)
+    without = [path for path, reason in short.items() if reason is None]
+    if arguments.short:
+        print("\n".join(without))
+        return 1 if without else 0
+    complaints += [f"{path}: below {LEAST_LINES} lines: merge it, or add it with a reason to {SHORT_FILES}" for path in without]
+    complaints += [f"{SHORT_FILES}: {path} is not short, or its reason is a class: strike it" for path in reasons
+                   if reasons[path] != TO_MERGE and reasons[path] != short.get(path)]
 
     print_drawing(arrows)
     if arguments.dot:
@@ -239,6 +286,8 @@ def main():
           f"median {statistics.median(lengths.values()):g}, "
           f"90th percentile {statistics.quantiles(lengths.values(), n=10)[-1]:g}, "
           f"largest {largest} with {lengths[largest]}")
+    counts = collections.Counter(reason if reason in (*SHORT_CLASSES, TO_MERGE) else "other reasons" for reason in short.values())
+    print(f"{len(short)} files below {LEAST_LINES} lines: " + ", ".join(f"{reason} {n}" for reason, n in counts.most_common()))
     for complaint in complaints:
         print(complaint, file=sys.stderr)
     return 1 if complaints else 0
