@@ -20,6 +20,9 @@ endforeach()
 kacanov_test(program_warm_plate IN program
   SOURCES tools/program_warm_plate_test.cpp LIBRARIES kacanov_program_runner)
 target_link_libraries(test_program PRIVATE kacanov_png_writer)
+if(KACANOV_SANITIZE)  # half of the time of all tests; the tests of the solver, tests/fuzz and the other areas cover the same code
+  kacanov_slow(program_conditions program_history program_mixed program_obstacles program_partition)
+endif()
 kacanov_test(program_crafted IN program
   SOURCES tools/program_crafted_test.cpp
   LIBRARIES kacanov_program_runner kacanov_program kacanov_solver_internal)
@@ -123,6 +126,7 @@ if(Python3_FOUND)
         "${KACANOV_CHROMIUM}")
     kacanov_test_properties(report_in_browser 1)
     set_tests_properties(report_in_browser PROPERTIES COST 2)  # the longest test starts early
+    kacanov_slow(report_in_browser)
   endif()
 endif()
 if(Python3_FOUND AND NOT KACANOV_SANITIZE)  # a test of accuracy

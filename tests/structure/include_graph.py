@@ -97,7 +97,7 @@ CODE = {".cpp", ".hpp", ".h", ".c", ".py"}
 def source_files(root):
     """Returns the project's source files: everything that is compiled, build files and scripts."""
     tops = sorted({room.split("/")[0] for level in LEVELS for room in level})
-    found = [root / "CMakeLists.txt", root / ".ci/run"]
+    found = [root / "CMakeLists.txt", root / ".ci/full", root / ".ci/run"]
     for top in tops:
         for path in sorted((root / top).rglob("*")):
             if not path.is_file() or "build" in path.parts or "__pycache__" in path.parts:
