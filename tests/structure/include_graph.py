@@ -85,6 +85,7 @@ LEAST_LINES = 50
 SHORT_CLASSES = {
     "public header": lambda path, lengths: str(pathlib.PurePath(path).parent) in [*PUBLIC, "kernels/include"],
     "instruction set": lambda path, lengths: re.fullmatch(r"kernels/simd/\w+_(avx2|avx512|plain)\.cpp", path),
+    "fuzz target": lambda path, lengths: re.fullmatch(r"tests/fuzz/\w+_fuzz\.cpp", path),
     "header of a source file": lambda path, lengths: path.endswith(".hpp") and
         lengths.get(path, 0) + lengths.get(path[:-4] + ".cpp", 0) >= 150,
 }
@@ -233,11 +234,13 @@ def reasons_of_short_files(text):
 def short_files(texts, reasons):
     """Returns a dictionary from each code file below LEAST_LINES to its reason, None if it has none."""
     lengths = {path: len(text.splitlines()) for path, text in texts.items() if pathlib.PurePath(path).suffix in CODE}
+    moved = {pathlib.PurePath(path).name for path in reasons if reasons[path] == TO_MERGE and path not in texts}
     found = {}
     for path, length in lengths.items():
         if length < LEAST_LINES:
             of_class = next((name for name, fits in SHORT_CLASSES.items() if fits(path, lengths)), None)
-            found[path] = of_class or reasons.get(path)
+            kept = TO_MERGE if pathlib.PurePath(path).name in moved else None  # it moved to another folder
+            found[path] = of_class or reasons.get(path) or kept
     return found
 
 

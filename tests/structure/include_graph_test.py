@@ -31,6 +31,14 @@ class Arrows(unittest.TestCase):
         found = complaints({"solver/linear/space.hpp": '#include "amg/level.hpp"\n', "solver/amg/level.hpp": ""})
         self.assertEqual(["solver/linear → solver/amg runs back: solver/linear/space.hpp includes amg/level.hpp"], found)
 
+    def test_top_folders_have_an_order_of_their_own(self):
+        found = complaints({"kernels/law/a.hpp": '#include "verify/b.hpp"\n', "tools/verify/b.hpp": ""})
+        self.assertEqual(["kernels/law → tools/verify runs back: kernels/law/a.hpp includes verify/b.hpp"], found)
+
+    def test_every_subfolder_is_a_room(self):
+        files = {"kernels/law/deep/a.hpp": '#include "../b.hpp"\n', "kernels/law/b.hpp": ""}
+        self.assertIn("kernels/law/deep: no such room", complaints(files)[0])
+
     def test_rooms_of_one_level_do_not_know_each_other(self):
         self.assertEqual(1, len(complaints({"solver/contact/a.hpp": '#include "amg/b.hpp"\n', "solver/amg/b.hpp": ""})))
 
@@ -73,6 +81,23 @@ class Files(unittest.TestCase):
         self.check(said + "std::ostringstream text;\n", 1)
         self.check(said + "std::ifstream in(path);\nstd::stringstream both;\n", 2)
         self.check(said + "PlainText text;\nstd::ostream& out;\n", 0)
+
+    def test_loose_code(self):
+        text = self.head + "// Adds what is there.\n"
+        self.assertEqual([], list(graph.file_complaints("solver/solve.cpp", text)))
+        self.assertEqual(1, len(list(graph.file_complaints("solver/more.cpp", text))))
+
+    def test_short_files(self):
+        short, long = "int a;\n" * 10, "int a;\n" * 200
+        texts = {"solver/amg/a.hpp": short, "solver/amg/a.cpp": long, "solver/amg/b.hpp": short, "solver/amg/b.cpp": short,
+                 "kernels/include/kacanov/c.hpp": short, "kernels/simd/d_avx2.cpp": short, "solver/amg/CMakeLists.txt": short,
+                 "solver/mesh/e.cpp": short, "solver/mesh/f.cpp": short}
+        reasons = graph.reasons_of_short_files("# comment\nsolver/amg/b.hpp: a reason\nsolver/old/e.cpp: to merge\n")
+        found = graph.short_files(texts, reasons)
+        self.assertEqual({"solver/amg/a.hpp": "header of a source file", "solver/amg/b.hpp": "a reason",
+                          "solver/amg/b.cpp": None, "kernels/include/kacanov/c.hpp": "public header",
+                          "kernels/simd/d_avx2.cpp": "instruction set", "solver/mesh/e.cpp": "to merge",
+                          "solver/mesh/f.cpp": None}, found)
 
     def test_length(self):
         self.check(self.head + "// Adds what is there.\n" + "int a;\n" * (graph.MOST_LINES - 2), 0)
