@@ -172,23 +172,6 @@ TEST_CASE(
   }
 }
 
-namespace {
-
-/// A block fixed at its left end with its right end displaced downwards, so that the energy is the strain
-/// energy alone.
-Model bent_model(int dim, const Law& law) {
-  Model model;
-  model.materials.push_back({everything(), law});
-  model.boundary.push_back(moved(named("left"), dim));
-  Vector3 down{};
-  down[static_cast<std::size_t>(dim) - 1] = -0.02;
-  model.boundary.push_back(moved(named("right"), dim, down));
-  model.solver.tolerance = 1e-8;
-  return model;
-}
-
-}  // namespace
-
 TEST_CASE("the finer rules integrate what they should") {
   for (const ElementType type : element_types()) {
     CAPTURE(cell(type).name);

@@ -53,7 +53,7 @@ LEVELS = [
 TOPS = ["kernels", "solver", "tools", ("perf", "python"), "tests"]
 PUBLIC = ["kernels/include/kacanov", "solver/include/kacanov", "tools/include/kacanov"]
 # Folders searched for "room/file.hpp", after the including file's own folder.
-INCLUDE_FOLDERS = ["kernels", "solver", "tools", "tests", "tests/solver"]
+INCLUDE_FOLDERS = ["kernels", "solver", "tools", "tests/solver"]
 
 # A public header belongs to the room of the source file with its name; these have none, or one of another name.
 HEADER_ROOMS = {
