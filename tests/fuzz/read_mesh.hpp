@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What every reader of meshes must do with any input: refuse it with a message, or return a mesh of valid
+// Checks that readers of meshes refuse an input with a message, or return a mesh of valid indices.
 // indices.
 #pragma once
 

@@ -278,7 +278,7 @@ std::vector<NamedProblem> problems() {
   all.back().model.contact[0].friction = Friction{0.0, 0.2};
   all.back().model.solver.load_steps = {0.5, 1.0, 2.0};
   all.push_back(all.back());
-  all.back().name = "an obstacle faced anew";
+  all.back().name = "a new obstacle";
   all.back().model.contact[0].relinearise = true;
   all.push_back(slab_over_ball());
   all.back().name = "an obstacle that is pushed";

@@ -396,7 +396,7 @@ TEST_CASE(
   CHECK(schedule.stale(0.0));
 }
 
-TEST_CASE("preconditioner: what it was built for, and what has moved since") {
+TEST_CASE("preconditioner: the penalty and the active set of its setup, and their change since") {
   const Tuning defaults;
   PreconditionerSchedule schedule(defaults);
   schedule.built_for(Penalty{2.0, 1.0});

@@ -355,12 +355,12 @@ void compare_with_reference(ElementType type, bool mean_dilatation) {
 
 }  // namespace
 
-TEST_CASE("elements abreast have the fields of the reference") {
+TEST_CASE("batched elements have the fields of the reference") {
   for (const ElementType type : types_abreast) compare_with_reference(type, false);
   for (const ElementType type : types_abreast) compare_with_reference(type, true);
 }
 
-TEST_CASE("fields that nobody asked for are left alone") {
+TEST_CASE("fields that are not requested stay unchanged") {
   for (const ElementType type : types_abreast) {
     const FieldLoops& fast = field_loops(type);
     CAPTURE(cell(type).name);
@@ -405,7 +405,7 @@ std::vector<double> wavy(const Part& part) {
 
 }  // namespace
 
-TEST_CASE("errors of elements abreast are those of the plain loop") {
+TEST_CASE("batched errors equal those of the reference loop") {
   for (const ElementType type : {ElementType::tet4, ElementType::tet10, ElementType::hex8})
     for (const bool means : {false, true}) {
       CAPTURE(cell(type).name);

@@ -77,7 +77,7 @@ class Files(unittest.TestCase):
         self.check("// Adds what is there.\n", 1)
 
     def test_streams_of_the_hosts_locale(self):
-        said = self.head + "// Says what is there.\n"
+        said = self.head + "// Describes what is there.\n"
         self.check(said + "std::ostringstream text;\n", 1)
         self.check(said + "std::ifstream in(path);\nstd::stringstream both;\n", 2)
         self.check(said + "PlainText text;\nstd::ostream& out;\n", 0)
