@@ -8,7 +8,6 @@
 
 #include <kacanov/reference.hpp>
 #include "c_example.hpp"
-#include "multigrid_example.hpp"
 
 TEST_CASE("every element type gives the numbers of the reference") {
   for (const std::int32_t element :
