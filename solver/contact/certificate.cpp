@@ -49,7 +49,7 @@ constexpr double least_force = 3e-9;
 constexpr double least_share = 1e-3;
 /// Lower limit of the scale relative to the nodal forces of temperature, which balance each other in a freely
 /// expanding body and so are no scale themselves.
-constexpr double least_expansion = 1e-3;
+constexpr double least_expansion = 1e-7;
 /// Lower limit of a region's force scale, where nothing acts on it: its stiffness times this share of the
 /// largest ratio force / stiffness, a displacement, over all regions.
 constexpr double least_displacement = 1e-8;
@@ -267,9 +267,12 @@ BodySums body_sums(const Part& part, const Vector& u, std::span<const double> co
     s.moment = s.moment + cross(position, residual);
     for (; side != forces.interface.end() && side->node == n; ++side) {
       out.of_region[side->region].interface += dot(side->force, side->force);
-      if (side->region != region)
-        between[{region, side->region}] +=
-            std::abs(side->force[0]) + std::abs(side->force[1]) + std::abs(side->force[2]);
+      if (side->region == region) continue;
+      for (std::size_t c = 0; c < dim; ++c) {
+        between[{region, side->region}] += std::abs(side->force[c]);
+        s.stiff += side->stiff[c] * side->stiff[c];
+        s.stiff_all += side->stiff[c];
+      }
     }
   }
   const IndexMap& ranks = part.node_map;

@@ -18,6 +18,21 @@
 namespace kacanov {
 namespace {
 
+/// Returns, for each node of a body, the largest |u| of its elements.
+std::vector<double> largest_of_elements(const Body& body, std::span<const double> u) {
+  const std::size_t npe = nodes_per_element(body.mesh.type);
+  const std::size_t dim = u.size() / std::max(body.mesh.node_count(), std::size_t{1});
+  std::vector<double> largest(body.mesh.node_count(), 0.0);
+  for (std::size_t e = 0; e < body.mesh.element_count(); ++e) {
+    const auto nodes = body.mesh.connectivity.subspan(e * npe, npe);
+    double most = 0.0;
+    for (const std::int32_t n : nodes)
+      for (std::size_t c = 0; c < dim; ++c) most = std::max(most, std::abs(u[n * dim + c]));
+    for (const std::int32_t n : nodes) largest[n] = std::max(largest[n], most);
+  }
+  return largest;
+}
+
 /// Disjoint sets of the numbers 0 to n − 1; the smallest member represents a set.
 class DisjointSets {
  public:
@@ -207,6 +222,12 @@ void StiffnessRegions::find_interfaces(std::span<const std::int32_t> region_of_e
       side.coordinates.insert(side.coordinates.end(), &part.coordinates[n * dim],
                               &part.coordinates[n * dim] + dim);
     side.elements = std::move(list);
+    const Body body_of_side{
+        {part.type, side.coordinates, side.connectivity, part.plane}, part.laws, side.laws};
+    std::vector<double> at_rest(side.coordinates.size()), g(body_of_side.secant_count());
+    side.diagonal.resize(side.coordinates.size());
+    reference::secant(body_of_side, at_rest, g);
+    reference::diagonal(body_of_side, g, side.diagonal);
     interfaces_.push_back(std::move(side));
   }
 }
@@ -267,7 +288,7 @@ std::vector<InterfaceForce> StiffnessRegions::interface_forces(std::span<const d
   struct Sent {
     std::int64_t node;
     std::int32_t region, empty;
-    Vector3 force;
+    Vector3 force, stiff;
   };
   std::vector<Sent> sent;
   std::vector<std::uint8_t> common(part.nodes(), 0);
@@ -290,26 +311,32 @@ std::vector<InterfaceForce> StiffnessRegions::interface_forces(std::span<const d
     for (const std::int32_t n : side.nodes) moved.insert(moved.end(), &u[n * dim], &u[n * dim] + dim);
     reference::residual(body, moved, force);
     if (!pressure.empty() && strain.empty()) reference::expansion_force(body, pressure, expansion);
+    const std::vector<double> largest = largest_of_elements(body, moved);
     for (std::size_t k = 0; k < side.nodes.size(); ++k) {
       const std::int32_t node = side.nodes[k];
       if (!shared_[node]) continue;
-      Vector3 f{};
-      for (std::size_t c = 0; c < dim; ++c) f[c] = force[k * dim + c] - expansion[k * dim + c];
+      Vector3 f{}, stiff{};
+      for (std::size_t c = 0; c < dim; ++c) {
+        f[c] = force[k * dim + c] - expansion[k * dim + c];
+        stiff[c] = side.diagonal[k * dim + c] * largest[k];
+      }
       if (common[node])
-        sent.push_back({ranks.number(node), side.region, 0, f});
+        sent.push_back({ranks.number(node), side.region, 0, f, stiff});
       else
-        forces.push_back({node, side.region, f});
+        forces.push_back({node, side.region, f, stiff});
     }
   }
-  std::map<std::array<std::int64_t, 2>, Vector3> sums;
+  std::map<std::array<std::int64_t, 2>, std::array<Vector3, 2>> sums;
   for (const Sent& one : gathered(sent, ranks)) {
     const std::int64_t local = one.node - ranks.first();
     if (local < 0 || local >= ranks.owned) continue;
-    Vector3& sum = sums[{local, one.region}];
-    sum = sum + one.force;
+    auto& [force, stiff] = sums[{local, one.region}];
+    force = force + one.force;
+    stiff = stiff + one.stiff;
   }
   for (const auto& [place, sum] : sums)
-    forces.push_back({static_cast<std::int32_t>(place[0]), static_cast<std::int32_t>(place[1]), sum});
+    forces.push_back(
+        {static_cast<std::int32_t>(place[0]), static_cast<std::int32_t>(place[1]), sum[0], sum[1]});
   std::sort(forces.begin(), forces.end(), [](const InterfaceForce& a, const InterfaceForce& b) {
     return std::tie(a.node, a.region) < std::tie(b.node, b.region);
   });

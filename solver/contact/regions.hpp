@@ -15,6 +15,8 @@ namespace kacanov {
 struct InterfaceForce {
   std::int32_t node = 0, region = 0;
   Vector3 force{};
+  Vector3 stiff{};  ///< size of the terms of the force: D of the region times the largest |u| of its elements
+                    ///< there
 };
 
 /// Temperature at the current load: the thermal pressure of each constrained element, as
@@ -61,6 +63,7 @@ class StiffnessRegions {
     std::vector<std::int32_t> nodes, elements;  ///< of the part
     std::vector<std::int32_t> connectivity;
     std::vector<double> coordinates;
+    std::vector<double> diagonal;  ///< of the elastic stiffness of these elements
     std::vector<std::uint16_t> laws;
   };
 

@@ -152,8 +152,9 @@ void MovingContact::face(double time, double before, std::span<const double> u) 
     local.push_back(static_cast<double>(point.entry));
     local.insert(local.end(), x.begin(), x.end());
     local.insert(local.end(), moved.begin(), moved.end());
-    // If two faces are equally near, keep the one chosen in the case file.
-    const Vector3& outer = there_[local.size() / numbers].normal;
+    const ContactPoint& there = there_[local.size() / numbers];
+    // Of equally near faces, one that follows the body keeps its direction; else the choice is that at rest.
+    const Vector3& outer = model_.contact[point.entry].relinearise ? there.normal : there.outer;
     local.insert(local.end(), outer.begin(), outer.end());
   }
   const std::vector<double> all = gather_contact(part_, local, numbers);

@@ -214,6 +214,7 @@ std::vector<ContactPoint> points_of_entry(Problem& problem, const ContactEntry& 
     point.node = nodes[k];
     point.entry = static_cast<std::int32_t>(index);
     point.normal = facing->normal;
+    point.outer = outer[k];
     point.gap = facing->gap;
     point.unknown_gap = facing->unknown;
     point.mass = mass[k];

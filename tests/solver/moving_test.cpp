@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include <kacanov/moving.hpp>
+#include <kacanov/surface.hpp>
 #include "half_space.hpp"
 #include "moving/obstacle_motion.hpp"
 
@@ -236,6 +237,33 @@ TEST_CASE("a ball that is pushed goes as deep as Hertz says of its force, and be
   CHECK(travel == doctest::Approx(depth).epsilon(0.12));
   CHECK(travel < depth);
   agree(pushed, run_still(space.quarter(), pressed_ball(law, radius, travel)), 1e-5);
+}
+
+TEST_CASE("an obstacle that is pushed keeps the face that its nodes have at rest") {
+  // A roof with slopes of 2e-4, whose ridge runs below the middle of a slab with a bottom tilted by a
+  // hundredth.
+  const double slope = 2e-4;
+  const std::vector<Vector3> points{
+      {-5, -5, -0.1 - 5.5 * slope}, {5, -5, -0.1 - 5.5 * slope}, {-5, 0.5, -0.1}, {5, 0.5, -0.1},
+      {-5, 6, -0.1 - 5.5 * slope},  {5, 6, -0.1 - 5.5 * slope}};
+  const SurfaceObstacle roof{
+      std::make_shared<const Surface>(Surface(points, {{0, 1, 3}, {0, 3, 2}, {2, 3, 5}, {2, 5, 4}}))};
+  Mesh tilted = make_box({{2, 1, 0.5}, {6, 4, 2}, ElementType::hex8});
+  for (std::size_t n = 0; n < tilted.node_count(); ++n)
+    tilted.coordinates[3 * n + 2] += 0.01 * tilted.coordinates[3 * n + 1];
+  Model model = over(roof);
+  model.contact[0].force_controlled = ForceControl{0.01, {0, 0, 1}};
+  const Run pushed = run_moving(tilted, model);
+  REQUIRE(pushed.result().status == Status::converged);
+  int ridge = 0;
+  for (std::size_t i = 0; i < pushed.part.contact.size(); ++i) {
+    const double y = node_of(pushed, i)[1];
+    const Vector3& normal = pushed.part.contact[i].normal;
+    ridge += y == 0.5 ? 1 : 0;
+    // On the ridge the bottom's outer normal (0, 0.01, −1) selects the face below y < 0.5.
+    CHECK(normal[1] == doctest::Approx(y <= 0.5 ? slope : -slope).epsilon(1e-6));
+  }
+  if (pushed.part.node_map.ranks == 1) CHECK(ridge == 7);
 }
 
 TEST_CASE("pushed in steps, by a force that grows; in the plane, with a load beside it") {

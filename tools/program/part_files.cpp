@@ -28,7 +28,7 @@ void exchange_fields(Either<Problem> auto& problem, const auto& stream) {
 
 namespace {
 
-constexpr std::string_view part_magic = "kacanov part 13\n", boundary_magic = "kacanov boundary 6\n";
+constexpr std::string_view part_magic = "kacanov part 14\n", boundary_magic = "kacanov boundary 6\n";
 /// Sections of a case that the parts depend on.
 constexpr const char* sections[] = {"plane",    "thickness", "mesh",  "material",
                                     "boundary", "contact",   "steps", "probe"};

@@ -147,12 +147,12 @@ class CornerVolumes {
   std::map<std::pair<std::int64_t, Real>, At> corners_;
 };
 
-/// Returns the force of a region on a node.
-Vec& force_of(BodyResponse& out, Index node, std::size_t region) {
-  auto& list = out.of_region[node];
-  for (auto& [number, force] : list)
-    if (number == region) return force;
-  return list.emplace_back(region, Vec{}).second;
+RegionForce& region_at(BodyResponse& out, Index node, std::size_t region) {
+  std::vector<RegionForce>& list = out.of_region[node];
+  for (RegionForce& one : list)
+    if (one.region == region) return one;
+  list.push_back({region});
+  return list.back();
 }
 
 /// Adds the contribution of one element of a region.
@@ -200,7 +200,7 @@ void add_element(const Problem& problem, std::size_t e, std::size_t region, cons
     for (std::size_t a = 0; a < element.size(); ++a) {
       const Vec &n = point.gradient[a], &d = divergence[a];
       const auto node = static_cast<std::size_t>(element[a]);
-      Vec& of_region = force_of(out, element[a], region);
+      RegionForce& of_region = region_at(out, element[a], region);
       const Real terms = (law.bulk + 2 * g) * moved + std::abs(warm);
       out.size[node] += point.volume * terms * (norm(n) + point.hoop[a]);
       for (std::size_t i = 0; i < dim; ++i) {
@@ -210,13 +210,22 @@ void add_element(const Problem& problem, std::size_t e, std::size_t region, cons
         const Real expands = point.volume * expansion * point.divergence(a)[i];
         out.internal[node][i] += force;
         out.expansion[node][i] += expands;
-        of_region[i] += force - expands;
+        const Real stiffness = point.volume * elastic_entry(mesh, law, point, a, i, d[i]);
+        of_region.force[i] += force - expands;
+        of_region.diagonal[i] += stiffness;
         out.energy += point.volume * warm * n[i] * u[node][i];
-        out.diagonal[node][i] += point.volume * elastic_entry(mesh, law, point, a, i, d[i]);
+        out.diagonal[node][i] += stiffness;
       }
     }
   }
   out.most_von_mises = larger(out.most_von_mises, von_mises / volume);
+  Real largest = 0;
+  for (const Index n : element)
+    for (std::size_t c = 0; c < dim; ++c) largest = larger(largest, std::abs(u[n][c]));
+  for (const Index n : element) {
+    RegionForce& of_region = region_at(out, n, region);
+    of_region.largest = larger(of_region.largest, largest);
+  }
 }
 
 }  // namespace

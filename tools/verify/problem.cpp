@@ -311,8 +311,10 @@ Problem read_problem(const nlohmann::json& document, const std::filesystem::path
         problem.load[node] = problem.load[node] + factor * read_vector(entry.at("node_force"));
     if (entry.contains("body_force") || entry.contains("density")) add_body_force(problem, entry, factor);
     Resultant& applied = problem.applied.emplace_back();
+    // Between two steps a factor may be a difference of larger ones and has their rounding error.
+    const Real terms = factor != 0 ? whole.largest / std::abs(factor) : Real(1);
     for (std::size_t n = 0; n < nodes; ++n) {
-      add_force(applied, problem.mesh.nodes[n], problem.load[n], norm(problem.load[n]));
+      add_force(applied, problem.mesh.nodes[n], problem.load[n], terms * norm(problem.load[n]));
       all[n] = all[n] + problem.load[n];
     }
     problem.load.assign(nodes, {});

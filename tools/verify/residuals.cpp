@@ -9,7 +9,7 @@
 namespace kacanov::verify {
 namespace {
 
-constexpr Real tiny = 1e-300L, least_force = 3e-9L, least_share = 1e-3L, least_expansion = 1e-3L,
+constexpr Real tiny = 1e-300L, least_force = 3e-9L, least_share = 1e-3L, least_expansion = 1e-7L,
                least_displacement = 1e-8L, delta = 1e-15L, delta_of_traces = 3e-16L;
 
 /// Returns the slip: u minus its origin, in the free directions orthogonal to the row's normal.
@@ -163,11 +163,15 @@ BodySums sum_body(const Problem& problem, const Regions& regions, const Answer& 
     Vec place = problem.mesh.nodes[n], residual = left;
     for (std::size_t c = dim; c < 3; ++c) place[c] = residual[c] = 0;
     s.moment = s.moment + cross(place, residual);
-    for (const auto& [other, force] : body.of_region[n]) {
+    for (const RegionForce& other : body.of_region[n]) {
       if (body.of_region[n].size() == 1) break;
       for (std::size_t c = 0; c < dim; ++c) {
-        sums.of_region[other].interface += force[c] * force[c];
-        if (other != region) sums.between[{region, other}] += std::abs(force[c]);
+        sums.of_region[other.region].interface += other.force[c] * other.force[c];
+        if (other.region == region) continue;
+        sums.between[{region, other.region}] += std::abs(other.force[c]);
+        const Real stiff = other.diagonal[c] * other.largest;
+        s.stiff += stiff * stiff;
+        s.stiff_all += stiff;
       }
     }
   }
