@@ -7,15 +7,15 @@
 #include <stdexcept>
 #include <vector>
 
-#include "cells/dispatch.hpp"
+#include "cells/elements.hpp"
 #include "cells/parallelepiped.hpp"
 #include "cells/point.hpp"
 #include "cells/straight.hpp"
 #include "law/plane_stress.hpp"
 #include "operator/checks.hpp"
-#include "operator/passes.hpp"
+#include "operator/threaded_loops.hpp"
 #include "operator/threads.hpp"
-#include "operator/units.hpp"
+#include "operator/work_items.hpp"
 
 namespace kacanov {
 
@@ -28,7 +28,7 @@ void BasicOperator<Real>::Data::visit_elements(const BlockRange& range, const si
                                                std::span<const char> wanted, const Visit& visit) const {
   using elements::Point;
   const std::size_t lanes = layout.lanes;
-  const Units units{type, {}, {}, {}};
+  const WorkItems units{type, {}, {}, {}};
   const std::uint32_t nodes = units.nodes_of(group.shape, group.length),
                       count = units.points_of(group.shape, group.length);  // number of points
   const std::uint16_t* index = layout.index.data() + range.first_index + group.first_index;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The operator's members: they check the arguments and call the passes.
+// The operator's members: they check the arguments and call the threaded loops.
 #include <kacanov/operator.hpp>
 
 #include <stdexcept>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "operator/checks.hpp"
-#include "operator/passes.hpp"
+#include "operator/threaded_loops.hpp"
 
 namespace kacanov {
 namespace {
@@ -102,20 +102,21 @@ void BasicOperator<Real>::set_secant(std::span<const double> g) {
 }
 
 template <class Real>
-void BasicOperator<Real>::apply(std::span<const Real> x, std::span<Real> y, const WhenEarly& when_early) {
+void BasicOperator<Real>::apply(std::span<const Real> x, std::span<Real> y,
+                                const OnInterfaceReady& on_interface_ready) {
   expect_size(x.size(), unknowns(), "x");
   expect_size(y.size(), unknowns(), "y");
   ++data_->applications;
-  data_->apply(x.data(), y.data(), 1, false, when_early);
+  data_->apply(x.data(), y.data(), 1, false, on_interface_ready);
 }
 
 template <class Real>
 double BasicOperator<Real>::apply_dot(std::span<const Real> x, std::span<Real> y,
-                                      const WhenEarly& when_early) {
+                                      const OnInterfaceReady& on_interface_ready) {
   expect_size(x.size(), unknowns(), "x");
   expect_size(y.size(), unknowns(), "y");
   ++data_->applications;
-  return data_->apply(x.data(), y.data(), 1, true, when_early);
+  return data_->apply(x.data(), y.data(), 1, true, on_interface_ready);
 }
 
 template <class Real>
@@ -153,22 +154,22 @@ void BasicOperator<Real>::update_tangent(std::span<const Real> u) {
 
 template <class Real>
 void BasicOperator<Real>::apply_tangent(std::span<const Real> x, std::span<Real> y,
-                                        const WhenEarly& when_early) {
+                                        const OnInterfaceReady& on_interface_ready) {
   if (!data_->has_tangent) throw std::logic_error("apply_tangent before update_tangent");
   expect_size(x.size(), unknowns(), "x");
   expect_size(y.size(), unknowns(), "y");
   ++data_->applications;
-  data_->apply_tangent(x.data(), y.data(), 1, false, when_early);
+  data_->apply_tangent(x.data(), y.data(), 1, false, on_interface_ready);
 }
 
 template <class Real>
 double BasicOperator<Real>::apply_tangent_dot(std::span<const Real> x, std::span<Real> y,
-                                              const WhenEarly& when_early) {
+                                              const OnInterfaceReady& on_interface_ready) {
   if (!data_->has_tangent) throw std::logic_error("apply_tangent_dot before update_tangent");
   expect_size(x.size(), unknowns(), "x");
   expect_size(y.size(), unknowns(), "y");
   ++data_->applications;
-  return data_->apply_tangent(x.data(), y.data(), 1, true, when_early);
+  return data_->apply_tangent(x.data(), y.data(), 1, true, on_interface_ready);
 }
 
 template <class Real>

@@ -261,7 +261,7 @@ void recover_multipliers(const Part& part, const Traces& traces, const ActiveSet
                       set.slip_stiffness[i] * (w[k] - along * s[k]);
       const double length = std::hypot(friction[0], friction[1]);
       const double bound = set.coulomb[i] > 0.0
-                               ? point.tresca + set.coulomb[i] * pressure
+                               ? point.friction_bound(pressure)
                                : std::hypot(set.slip_force[2 * i], set.slip_force[2 * i + 1]);
       if (length > bound)
         for (std::size_t k = 0; k < 2; ++k) friction[k] *= bound / length;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Refinement of marked elements by longest-edge bisection, with groups and curved edges.
-#include <kacanov/bisect.hpp>
+#include <kacanov/refine.hpp>
 
 #include <algorithm>
 #include <array>

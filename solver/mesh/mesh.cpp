@@ -10,7 +10,6 @@
 
 #include <kacanov/error.hpp>
 #include "operator/element_maps.hpp"
-#include "operator/jacobian_sign.hpp"
 
 namespace kacanov {
 namespace {

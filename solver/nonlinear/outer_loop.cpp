@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 #include "nonlinear/body_response.hpp"
 #include "nonlinear/friction_bounds.hpp"
 #include "nonlinear/step.hpp"

@@ -37,7 +37,7 @@ struct Elements {
 
 }  // namespace
 
-TEST_CASE("maps abreast are those of one element after the other") {
+TEST_CASE("batched maps are those of one element after the other") {
   for (const ElementType type : every_type)
     for (const std::size_t count : {std::size_t{1}, std::size_t{16}, std::size_t{37}}) {
       CAPTURE(cell(type).name);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Detection of folded elements: the sign of det J over the whole element, compared with many samples.
-#include "operator/jacobian_sign.hpp"
+#include "operator/element_maps.hpp"
 
 #include <doctest/doctest.h>
 
@@ -11,7 +11,6 @@
 #include <vector>
 
 #include <kacanov/cells.hpp>
-#include "operator/element_maps.hpp"
 
 using namespace kacanov;
 

@@ -5,7 +5,7 @@
 #include "bodies.hpp"
 #include "cells/parallelepiped.hpp"
 #include "cells/straight.hpp"
-#include "operator/corners.hpp"
+#include "operator/nodal_pressure.hpp"
 
 using namespace kacanov;
 using elements::StraightSides;

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include <kacanov/corner_dilatation.hpp>
+#include <kacanov/part.hpp>
 #include <kacanov/discretisation.hpp>
 #include "recovery/spr_patches.hpp"
 #include "support.hpp"
@@ -38,7 +38,7 @@ std::vector<double> wavy(const Part& part) {
 
 }  // namespace
 
-TEST_CASE("errors of elements abreast are those of the plain loop") {
+TEST_CASE("batched errors are those of the reference loop") {
   for (const ElementType type : {ElementType::tet4, ElementType::tet10, ElementType::hex8})
     for (const bool means : {false, true}) {
       CAPTURE(cell(type).name);

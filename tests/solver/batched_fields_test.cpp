@@ -47,7 +47,7 @@ struct Points {
   reference::PointFields all() { return {position, stress, strain, volume}; }
 };
 
-constexpr ElementType types_abreast[] = {ElementType::tet4, ElementType::tet10, ElementType::hex8};
+constexpr ElementType batched_types[] = {ElementType::tet4, ElementType::tet10, ElementType::hex8};
 
 void compare_with_reference(ElementType type, bool mean_dilatation) {
   const FieldLoops& fast = field_loops(type);
@@ -106,13 +106,13 @@ void compare_with_reference(ElementType type, bool mean_dilatation) {
 
 }  // namespace
 
-TEST_CASE("elements abreast have the fields of the reference") {
-  for (const ElementType type : types_abreast) compare_with_reference(type, false);
-  for (const ElementType type : types_abreast) compare_with_reference(type, true);
+TEST_CASE("batches of elements have the fields of the reference") {
+  for (const ElementType type : batched_types) compare_with_reference(type, false);
+  for (const ElementType type : batched_types) compare_with_reference(type, true);
 }
 
 TEST_CASE("fields that nobody asked for are left alone") {
-  for (const ElementType type : types_abreast) {
+  for (const ElementType type : batched_types) {
     const FieldLoops& fast = field_loops(type);
     CAPTURE(cell(type).name);
     const Mesh mesh = box_mesh(type, {1.0, 1.0, 1.0}, 1);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Local refinement by bisection: conforming meshes, bounded element quality, preserved groups and curved
 // boundaries, refinement at marked elements.
-#include <kacanov/bisect.hpp>
+#include <kacanov/refine.hpp>
 
 #include <doctest/doctest.h>
 
@@ -12,7 +12,6 @@
 
 #include <kacanov/discretisation.hpp>
 #include <kacanov/error.hpp>
-#include <kacanov/raise_order.hpp>
 #include "facet_measure.hpp"
 #include "problem/vector3.hpp"
 #include "problem_models.hpp"

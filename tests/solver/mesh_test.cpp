@@ -12,7 +12,7 @@
 #include <string>
 
 #include <kacanov/error.hpp>
-#include <kacanov/index_runs.hpp>
+#include <kacanov/part.hpp>
 
 #include <kacanov/mesh.hpp>
 #include <kacanov/vector3.hpp>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Recovered nodal stress: exact for the polynomials of the fit, accurate at a notch, independent of the
 // number of ranks.
-#include <kacanov/nodal_stress.hpp>
+#include <kacanov/discretisation.hpp>
 
 #include <doctest/doctest.h>
 

@@ -6,8 +6,6 @@
 #include <array>
 #include <cmath>
 
-#include <kacanov/bisect.hpp>
-#include <kacanov/raise_order.hpp>
 #include <kacanov/refine.hpp>
 #include "problem/vector3.hpp"
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <random>
 
-#include <kacanov/height_field.hpp>
+#include <kacanov/obstacle.hpp>
 #include <kacanov/surface.hpp>
 #include "problem/error_tracking_double.hpp"
 #include "problem/vector3.hpp"

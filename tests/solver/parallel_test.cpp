@@ -12,8 +12,8 @@
 #include <kacanov/error.hpp>
 #include <kacanov/scatterer.hpp>
 #include "../sanitized.hpp"
-#include "distributed/exchange.hpp"
 #include "linear/space.hpp"
+#include "parallel/exchange.hpp"
 #include "preconditioners.hpp"
 #include "support.hpp"
 

@@ -9,7 +9,6 @@
 #include <set>
 
 #include <kacanov/error.hpp>
-#include <kacanov/raise_order.hpp>
 #include <kacanov/refine.hpp>
 #include "facet_measure.hpp"
 #include "problem/vector3.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Units of work of a SIMD lane: a fan of tetrahedra around an edge, or one element.
+// Work items of a SIMD lane: a fan of tetrahedra around an edge, or one element.
 #pragma once
 
 #include <cstddef>
@@ -15,20 +15,20 @@ namespace kacanov {
 /// Converts a number of the mesh to an index.
 constexpr std::size_t at(std::int32_t i) noexcept { return static_cast<std::size_t>(i); }
 
-struct Unit {
+struct WorkItem {
   simd::Shape shape;
   std::uint8_t length;  ///< number of tetrahedra of a fan; 1 for an element
   std::uint16_t law;
-  std::uint32_t first_node;     ///< index into Units::nodes
-  std::uint32_t first_element;  ///< index into Units::elements
+  std::uint32_t first_node;     ///< index into WorkItems::nodes
+  std::uint32_t first_element;  ///< index into WorkItems::elements
 };
 
 /// Nodes of a fan: p, q, then the ring; its elements in ring order. Element i of a fan is the tetrahedron (p,
 /// q, ring i, ring i+1). Fans of tet10 are always open, with their mid-side nodes in between, see
 /// simd/tet10.hpp; a closed ring repeats its first node at the end.
-struct Units {
+struct WorkItems {
   ElementType type = ElementType::tet4;
-  std::vector<Unit> units;
+  std::vector<WorkItem> units;
   std::vector<std::int32_t> nodes, elements;
 
   /// Number of nodes and points of a unit with this shape and length.
@@ -50,6 +50,9 @@ struct Units {
 /// of the midpoint, relative to the edge length): greedily, first the edge with most uncovered tetrahedra
 /// around it, which are split into chains. Other elements: one by one; a hex8 that is a parallelepiped
 /// (corners within 1e-13 of its extent along each axis) has its own shape.
-Units make_units(const Body& body);
+WorkItems make_work_items(const Body& body);
+
+/// Each element that is not in `left_out` is in exactly one fan; the elements of a fan share one law.
+WorkItems cover_by_fans(const Body& body, std::vector<bool> left_out);
 
 }  // namespace kacanov

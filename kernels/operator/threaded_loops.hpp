@@ -1,20 +1,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The operator's data, and the passes of its threads over the blocks: each thread does its share, with
-// private sums at nodes of several threads, always in the same order.
+// The operator's data, and its loops over blocks: a share of the blocks per thread.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <new>
 #include <span>
 #include <vector>
 
 #include <kacanov/operator.hpp>
-#include "operator/aligned.hpp"
-#include "operator/corners.hpp"
 #include "operator/layout.hpp"
+#include "operator/nodal_pressure.hpp"
 #include "simd/instruction_set.hpp"
 
 namespace kacanov {
+
+template <class T>
+struct CacheLineAllocator {
+  using value_type = T;
+  static constexpr std::align_val_t line{64};
+
+  CacheLineAllocator() = default;
+  template <class U>
+  CacheLineAllocator(const CacheLineAllocator<U>&) noexcept {}
+  T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), line)); }
+  void deallocate(T* p, std::size_t) noexcept { ::operator delete(p, line); }
+  template <class U>
+  bool operator==(const CacheLineAllocator<U>&) const noexcept {
+    return true;
+  }
+};
+
+template <class T>
+using Aligned = std::vector<T, CacheLineAllocator<T>>;
 
 /// Vectors are nodes × dim in the caller's numbering. Nothing is checked here: see checks.hpp and
 /// operator.cpp.
@@ -42,8 +60,10 @@ struct BasicOperator<Real>::Data {
 
   /// y_v = B x_v for `count` vectors (1, 2 or 4), one after another in x and y. Returns Σ x_vᵀ y_v if
   /// `with_dot`, else 0.
-  double apply(const Real* x, Real* y, int count, bool with_dot, const WhenEarly& when_early = {});
-  double apply_tangent(const Real* x, Real* y, int count, bool with_dot, const WhenEarly& when_early = {});
+  double apply(const Real* x, Real* y, int count, bool with_dot,
+               const OnInterfaceReady& on_interface_ready = {});
+  double apply_tangent(const Real* x, Real* y, int count, bool with_dot,
+                       const OnInterfaceReady& on_interface_ready = {});
   /// Σ x_vᵀ y_v over the block.
   double dots(const simd::Block<Real>& at, const simd::Vectors<Real>& vectors);
   /// Internal force at u into f, unless that is null; `keep` selects the outputs. Returns the energy if it is
@@ -59,9 +79,9 @@ struct BasicOperator<Real>::Data {
   /// entries.
   void find_changes(const Real* x, int count);
   /// y = A x (theory: displacement-pressure).
-  void apply_deviator(const Real* x, Real* y, const WhenEarly& when_early);
+  void apply_deviator(const Real* x, Real* y, const OnInterfaceReady& on_interface_ready);
   /// y = A x + Bᵀ p, or Bᵀ p if x is null (theory: displacement-pressure).
-  void apply_pressure(const Real* x, const Real* p, Real* y, const WhenEarly& when_early);
+  void apply_pressure(const Real* x, const Real* p, Real* y, const OnInterfaceReady& on_interface_ready);
   /// Computes the averages of tr ε(x_v) around the corners over all processes into `mean`. Returns this
   /// process's part of the energy that k0 stores in those of the first vector.
   double find_means(const Real* x, int count);
@@ -72,7 +92,7 @@ struct BasicOperator<Real>::Data {
   /// `averaged`: find_means() has computed the averages of x. If x is null, the records of u hold only
   /// averages.
   template <class LoopsOnBlock>
-  double pass(const Real* x, Real* y, int count, bool averaged, const WhenEarly& when_early,
+  double pass(const Real* x, Real* y, int count, bool averaged, const OnInterfaceReady& on_interface_ready,
               LoopsOnBlock&& loops);
   void add_interface(Real* y, int count, std::size_t begin, std::size_t end);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Passes over the blocks: a share per thread, private sums at shared nodes, always in the same order.
-#include "operator/passes.hpp"
+#include "operator/threaded_loops.hpp"
 
 #include <algorithm>
 
@@ -43,8 +43,8 @@ BasicOperator<Real>::Data::Data(const Body& body, const OperatorOptions& options
       points(body.secant_count()),
       laws(body.laws.begin(), body.laws.end()),
       layout(make_layout(body,
-                         like != nullptr ? divided_as(*like, body, sizeof(double) / sizeof(Real))
-                                         : divide(body, threads, 4 * sizeof(Real)),
+                         like != nullptr ? partition_as(*like, body, sizeof(double) / sizeof(Real))
+                                         : partition(body, threads, 4 * sizeof(Real)),
                          kernels.lanes, threads, options.early)) {
   for (const Law& law : laws)
     views.push_back(
@@ -137,7 +137,7 @@ void BasicOperator<Real>::Data::add_interface(Real* y, int vectors, std::size_t 
 template <class Real>
 template <class LoopsOnBlock>
 double BasicOperator<Real>::Data::pass(const Real* x, Real* y, int vectors, bool averaged,
-                                       const WhenEarly& when_early, LoopsOnBlock&& loops) {
+                                       const OnInterfaceReady& on_interface_ready, LoopsOnBlock&& loops) {
   reserve_scratch(vectors);
   const std::size_t stride = 4 * std::size_t{layout.largest};
   const std::size_t count = vectors;
@@ -147,7 +147,7 @@ double BasicOperator<Real>::Data::pass(const Real* x, Real* y, int vectors, bool
     std::fill_n(scratch[t].sums.begin(), 3 * static_cast<std::size_t>(layout.slots_of_thread[t]) * count,
                 Real(0));
     for (std::size_t v = 0; t == 0 && y != nullptr && v < count; ++v)
-      for (const std::int32_t node : layout.lonely)
+      for (const std::int32_t node : layout.unreferenced_nodes)
         std::fill_n(y + v * unknowns + node * dim(), dim(), Real(0));
   };
   const auto run = [&](std::size_t t, std::size_t begin, std::size_t end) {
@@ -176,11 +176,11 @@ double BasicOperator<Real>::Data::pass(const Real* x, Real* y, int vectors, bool
   };
   // The blocks have the same order with and without the early step: the results have the same bits.
   const std::size_t interface_size = layout.interface_node.size();
-  if (when_early) {
+  if (on_interface_ready) {
     in_parallel(
         threads, [&](std::size_t t) { prepare(t), run(t, layout.share[t], layout.early[t]); },
         [&](std::size_t t) { finish(t, 0, layout.early_interface); });
-    when_early();
+    on_interface_ready();
     in_parallel(
         threads, [&](std::size_t t) { run(t, layout.early[t], layout.share[t + 1]); },
         [&](std::size_t t) { finish(t, layout.early_interface, interface_size); });
@@ -231,8 +231,9 @@ void BasicOperator<Real>::Data::find_changes(const Real* x, int vectors) {
 }
 
 template <class Real>
-void BasicOperator<Real>::Data::apply_deviator(const Real* x, Real* y, const WhenEarly& when_early) {
-  pass(x, y, 1, false, when_early,
+void BasicOperator<Real>::Data::apply_deviator(const Real* x, Real* y,
+                                               const OnInterfaceReady& on_interface_ready) {
+  pass(x, y, 1, false, on_interface_ready,
        [&](const simd::Block<Real>& at, const Real* u, Real* f, std::size_t stride) {
          kernels.apply(at, {u, f, 1, stride});  // gather sets the averages to zero
          return 0.0;
@@ -241,11 +242,11 @@ void BasicOperator<Real>::Data::apply_deviator(const Real* x, Real* y, const Whe
 
 template <class Real>
 void BasicOperator<Real>::Data::apply_pressure(const Real* x, const Real* p, Real* y,
-                                               const WhenEarly& when_early) {
+                                               const OnInterfaceReady& on_interface_ready) {
   mean.assign(p, p + corners.entries);
   // The loops over displacements multiply averages by k0.
   for (std::size_t i = 0; x != nullptr && i < mean.size(); ++i) mean[i] /= static_cast<Real>(corner_bulk[i]);
-  pass(x, y, 1, corners.entries > 0, when_early,
+  pass(x, y, 1, corners.entries > 0, on_interface_ready,
        [&](const simd::Block<Real>& at, const Real* u, Real* f, std::size_t stride) {
          if (x != nullptr)
            kernels.apply(at, {u, f, 1, stride});
@@ -283,9 +284,9 @@ double BasicOperator<Real>::Data::dots(const simd::Block<Real>& at, const simd::
 
 template <class Real>
 double BasicOperator<Real>::Data::apply(const Real* x, Real* y, int vectors, bool with_dot,
-                                        const WhenEarly& when_early) {
+                                        const OnInterfaceReady& on_interface_ready) {
   if (averages()) find_means(x, vectors);
-  return pass(x, y, vectors, corners.entries > 0, when_early,
+  return pass(x, y, vectors, corners.entries > 0, on_interface_ready,
               [&](const simd::Block<Real>& at, const Real* u, Real* f, std::size_t stride) {
                 kernels.apply(at, {u, f, vectors, stride});
                 return with_dot ? dots(at, {u, f, vectors, stride}) : 0.0;
@@ -294,9 +295,9 @@ double BasicOperator<Real>::Data::apply(const Real* x, Real* y, int vectors, boo
 
 template <class Real>
 double BasicOperator<Real>::Data::apply_tangent(const Real* x, Real* y, int vectors, bool with_dot,
-                                                const WhenEarly& when_early) {
+                                                const OnInterfaceReady& on_interface_ready) {
   if (averages()) find_means(x, vectors);
-  return pass(x, y, vectors, corners.entries > 0, when_early,
+  return pass(x, y, vectors, corners.entries > 0, on_interface_ready,
               [&](simd::Block<Real> at, const Real* u, Real* f, std::size_t stride) {
                 if (!tangent_secant.empty()) at.secant = tangent_secant.data() + (at.secant - secant.data());
                 kernels.apply_tangent(at, {u, f, vectors, stride});
