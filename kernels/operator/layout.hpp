@@ -66,6 +66,13 @@ struct Layout {
   std::vector<std::int32_t> slots_of_thread;
   std::vector<std::int32_t> unreferenced_nodes;  ///< nodes that belong to no element
 
+  /// Calls visit(slot, point) for every slot that is not idle.
+  template <class Visit>
+  void for_each_point(const Visit& visit) const {
+    for (std::size_t slot = 0; slot < element_point.size(); ++slot)
+      if (const std::int32_t point = element_point[slot]; point >= 0)
+        visit(slot, static_cast<std::size_t>(point));
+  }
   std::size_t records() const noexcept;  ///< in all blocks
   std::size_t bytes() const noexcept;
 };

@@ -259,7 +259,7 @@ void expect_pressures(bool averages, const char* member) {
 
 template <class Real>
 std::size_t BasicOperator<Real>::pressures() const noexcept {
-  return data_->corners.entries;
+  return data_->nodal.corners.entries;
 }
 
 template <class Real>
@@ -289,7 +289,7 @@ void BasicOperator<Real>::volume_change(std::span<const Real> x, std::span<Real>
   expect_size(x.size(), unknowns(), "x");
   expect_size(q.size(), pressures(), "q");
   data_->find_changes(x.data(), 1);
-  std::copy_n(data_->change.begin(), q.size(), q.begin());
+  std::copy_n(data_->nodal.change.begin(), q.size(), q.begin());
 }
 
 template std::size_t BasicOperator<double>::pressures() const noexcept;
