@@ -156,10 +156,14 @@ void check(const Batch& batch, std::size_t law, const PointValues& wanted) {
   }
 }
 
-/// Calls the callback for the points begin … end − 1 of its law.
-void ask(const OwnLaw& own, std::size_t law, const PointsOfLaw& points, std::size_t begin, std::size_t end,
+struct PointRange {
+  std::size_t begin, count;
+};
+
+/// Calls the callback of a law for a range of its points.
+void ask(const OwnLaw& own, std::size_t law, const PointsOfLaw& points, PointRange range,
          PointValues& values) {
-  const std::size_t count = end - begin;
+  const auto [begin, count] = range;
   Batch batch;
   for (auto* array : {&batch.x, &batch.g}) array->resize(count);
   batch.element.resize(count), batch.point.resize(count);
@@ -195,7 +199,8 @@ void ask_own(const kacanov_operator& op, std::size_t law, const PointsOfLaw& poi
   const std::size_t batches = (points.size() + most_points - 1) / most_points;
   const auto ask_some = [&](std::size_t first, std::size_t last) {
     for (std::size_t b = first; b < last; ++b)
-      ask(own, law, points, b * most_points, std::min((b + 1) * most_points, points.size()), values);
+      ask(own, law, points, {b * most_points, std::min(most_points, points.size() - b * most_points)},
+          values);
   };
   const std::size_t threads = op.options.threads;
   if (!own.parallel || threads == 1 || batches < 2) return ask_some(0, batches);

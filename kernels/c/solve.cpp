@@ -341,8 +341,8 @@ std::vector<double> inverse_diagonal(const kacanov_operator& op, bool tangent) {
   return d;
 }
 
-void solve(kacanov_operator& op, kacanov_multigrid* multigrid, std::span<const double> b, std::span<double> x,
-           const Wanted& wanted, kacanov_cg_result& found) {
+kacanov_cg_result solve(kacanov_operator& op, kacanov_multigrid* multigrid, std::span<const double> b,
+                        std::span<double> x, const Wanted& wanted) {
   k::Operator& fast = *op.fast;
   const auto product = [&](std::span<const double> from, std::span<double> to) {
     return wanted.tangent ? fast.apply_tangent_dot(from, to) : fast.apply_dot(from, to);
@@ -367,11 +367,11 @@ void solve(kacanov_operator& op, kacanov_multigrid* multigrid, std::span<const d
     for (std::size_t i = 0; i < r.size(); ++i) z[i] = scale[i] * r[i];
   };
   const k::CgResult cg = k::conjugate_gradients(space, apply, precondition, x, work, wanted.cg);
-  found = {.struct_size = sizeof(kacanov_cg_result),
-           .iterations = cg.iterations,
-           .converged = cg.converged ? 1 : 0,
-           .first_residual = cg.first_residual,
-           .residual = cg.residual};
+  return {.struct_size = sizeof(kacanov_cg_result),
+          .iterations = cg.iterations,
+          .converged = cg.converged ? 1 : 0,
+          .first_residual = cg.first_residual,
+          .residual = cg.residual};
 }
 
 }  // namespace
@@ -395,9 +395,9 @@ int kacanov_cg(kacanov_operator* op, kacanov_multigrid* multigrid, const kacanov
     kacanov_cg_result found{};
     int code = KACANOV_OK;
     if (multigrid == nullptr)
-      solve(*op, nullptr, in, out, wanted, found);
+      found = solve(*op, nullptr, in, out, wanted);
     else
-      code = alone(multigrid, [&] { solve(*op, multigrid, in, out, wanted, found); });
+      code = alone(multigrid, [&] { found = solve(*op, multigrid, in, out, wanted); });
     if (code == KACANOV_ERROR_STATE && multigrid->cycle)
       throw Fault(KACANOV_ERROR_STATE, "multigrid: is in use by another thread");
     if (code != KACANOV_OK) throw Fault(static_cast<kacanov_code>(code), multigrid->message);

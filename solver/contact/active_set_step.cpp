@@ -133,8 +133,9 @@ CgResult solve_oblique(const SymmetricPart& part, const HeldNodes& nodes, std::s
     result.iterations += found.iterations;
     return found.converged;
   };
-  GcrResult found = gcr(space, oblique, cycle, delta, residual, {target, direct_iterations});
-  if (!found.converged) found = gcr(space, oblique, symmetric, delta, residual, {target, nested_iterations});
+  GcrResult found = gcr(space, oblique, cycle, {delta, residual}, {target, direct_iterations});
+  if (!found.converged)
+    found = gcr(space, oblique, symmetric, {delta, residual}, {target, nested_iterations});
   result.residual = found.residual;
   result.converged = found.converged;
   return result;
