@@ -20,7 +20,6 @@
 #include <kacanov/mesh.hpp>
 #include <kacanov/pressure_patches.hpp>
 #include "parallel/exchange.hpp"
-#include "partition/long_messages.hpp"
 #include "partition/part_fields.hpp"
 #include "problem/rigid_modes.hpp"
 

@@ -8,7 +8,6 @@
 
 #include <kacanov/error.hpp>
 #include "mesh/classic_locale_stream.hpp"
-#include "mesh/pieces.hpp"
 #include "problem/conditions.hpp"
 #include "problem/dense.hpp"
 #include "problem/vector3.hpp"
