@@ -17,7 +17,7 @@
 namespace kacanov {
 namespace {
 
-/// What rotations of the whole body about its middle are on the owned rows. Collective.
+/// Returns the rotations of the whole body about its centre, on the owned rows. Collective.
 template <int M>
 std::vector<std::vector<double>> rotations(const CoarseMatrix& matrix) {
   std::array<double, 4> sum{};
