@@ -40,16 +40,16 @@ void BasicOperator<Real>::Data::visit_elements(const BlockRange& range, const si
                                                std::span<const char> wanted, const Visit& visit) const {
   using elements::Point;
   const std::size_t lanes = layout.lanes;
-  const WorkItems units{mesh.type, {}, {}, {}};
-  const std::uint32_t nodes = units.nodes_of(group.shape, group.length),
-                      count = units.points_of(group.shape, group.length);  // number of points
+  const WorkItems items{mesh.type, {}, {}, {}};
+  const std::uint32_t nodes = items.nodes_of(group.shape, group.length),
+                      count = items.points_of(group.shape, group.length);  // number of points
   const std::uint16_t* index = layout.index.data() + range.first_index + group.first_index;
   const Real* records = coordinates.data() + 4 * range.first_record;
   const Law& law = materials.laws[group.law];
-  std::vector<std::uint32_t> node_of;  // nodes of a unit, element by element
+  std::vector<std::uint32_t> node_of;  // nodes of an item, element by element
   for (std::uint32_t p = 0; p < count; p += E::points)
     for (std::uint32_t a = 0; a < E::nodes; ++a)
-      node_of.push_back(units.node_of(group.shape, group.length, p / E::points, a));
+      node_of.push_back(items.node_of(group.shape, group.length, p / E::points, a));
   for (std::size_t batch = 0; batch < group.batches; ++batch)
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       std::array<std::int32_t, E::nodes> id{};

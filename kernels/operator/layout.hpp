@@ -18,8 +18,8 @@ struct Layout;
 
 /// The part of the layout that does not depend on the number of lanes, and little on the precision.
 struct Partitioning {
-  WorkItems units;
-  std::vector<std::vector<std::uint32_t>> blocks;  ///< units of each block, in locality order
+  WorkItems items;
+  std::vector<std::vector<std::uint32_t>> blocks;  ///< work items of each block, in locality order
   std::vector<std::int32_t> rank;                  ///< per node: locality number, close for close nodes
 };
 
@@ -31,7 +31,8 @@ Partitioning partition(const Body& body, int threads, std::size_t record_bytes);
 /// blocks into one. Skips the fan cover, METIS and the Hilbert curve, which take four fifths of the time.
 Partitioning partition_as(const Layout& like, const Body& body, std::size_t joined);
 
-/// A block: units whose node records fit in a core's second-level cache. Ranges refer to Layout's arrays.
+/// A block: work items whose node records fit in a core's second-level cache. Ranges refer to Layout's
+/// arrays.
 struct BlockRange {
   std::size_t first_group, group_count;
   std::size_t first_index, first_slot;

@@ -31,14 +31,14 @@ CornerLayout make_corner_layout(const Body& body, const CornerMeans& means, cons
   const Cell& type = cell(body.mesh.type);
   const std::size_t lanes = layout.lanes, corners = type.corners, element_nodes = type.nodes,
                     element_points = type.points.size();
-  const WorkItems units{body.mesh.type, {}, {}, {}};
+  const WorkItems items{body.mesh.type, {}, {}, {}};
   std::vector<std::int32_t> entry(layout.largest, -1);  // per local node of a block
   out.first.push_back(0);
   for (const BlockRange& range : layout.blocks) {
     for (std::size_t i = 0; i < range.group_count; ++i) {
       const simd::Group& group = layout.groups[range.first_group + i];
-      const std::size_t nodes = units.nodes_of(group.shape, group.length),
-                        points = units.points_of(group.shape, group.length);
+      const std::size_t nodes = items.nodes_of(group.shape, group.length),
+                        points = items.points_of(group.shape, group.length);
       const std::int32_t* point = &layout.element_point[range.first_slot + group.first_slot];
       const std::uint16_t* index = &layout.index[range.first_index + group.first_index];
       for (std::size_t k = 0; k < group.batches * points * lanes; ++k) {
@@ -47,11 +47,11 @@ CornerLayout make_corner_layout(const Body& body, const CornerMeans& means, cons
         const std::size_t element = at(point[k]) / element_points;
         const std::int32_t* of = &means.of_element[element * corners];
         if (of[0] < 0) continue;
-        // A unit reorders its elements' nodes: the mesh defines the corner of a node.
+        // An item reorders its elements' nodes: the mesh defines the corner of a node.
         const std::int32_t* first = &body.mesh.connectivity[element * element_nodes];
         for (std::uint32_t a = 0; a < corners; ++a) {
           const std::size_t node =
-              units.node_of(group.shape, group.length, static_cast<std::uint32_t>(p / element_points), a);
+              items.node_of(group.shape, group.length, static_cast<std::uint32_t>(p / element_points), a);
           const std::size_t local = index[(batch * nodes + node) * lanes + lane] / 4U;
           entry[local] =
               of[std::find(first, first + corners, layout.nodes[range.first_node + local]) - first];
@@ -119,8 +119,8 @@ std::vector<double> corner_volumes(const Body& body, const CornerMeans& means) {
 void separate_moduli(const Body& body, Partitioning& partitioning) {
   const std::vector<double> moduli = corner_moduli(body);
   if (moduli.size() < 2) return;
-  const auto kind = [&](std::uint32_t unit) {
-    const Law& law = body.laws[partitioning.units.units[unit].law];
+  const auto kind = [&](std::uint32_t item) {
+    const Law& law = body.laws[partitioning.items.list[item].law];
     if (!averages_at_corners(law, body.mesh.type)) return std::ptrdiff_t{0};
     return std::lower_bound(moduli.begin(), moduli.end(), law.bulk) - moduli.begin();
   };
@@ -129,7 +129,7 @@ void separate_moduli(const Body& body, Partitioning& partitioning) {
     for (std::ptrdiff_t k = 0; k < static_cast<std::ptrdiff_t>(moduli.size()); ++k) {
       std::vector<std::uint32_t> same;
       std::copy_if(members.begin(), members.end(), std::back_inserter(same),
-                   [&](std::uint32_t unit) { return kind(unit) == k; });
+                   [&](std::uint32_t item) { return kind(item) == k; });
       if (!same.empty()) apart.push_back(std::move(same));
     }
   partitioning.blocks = std::move(apart);

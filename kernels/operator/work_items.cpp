@@ -86,9 +86,9 @@ WorkItems make_work_items(const Body& body) {
   for (std::uint32_t e = 0; e < single.size(); ++e) {
     if (!single[e]) continue;
     const bool affine = mesh.type == ElementType::hex8 && parallelepiped(mesh, first_node(e));
-    result.units.push_back({affine ? simd::Shape::affine : simd::Shape::general, 1, body.law_index(e),
-                            static_cast<std::uint32_t>(result.nodes.size()),
-                            static_cast<std::uint32_t>(result.elements.size())});
+    result.list.push_back({affine ? simd::Shape::affine : simd::Shape::general, 1, body.law_index(e),
+                           static_cast<std::uint32_t>(result.nodes.size()),
+                           static_cast<std::uint32_t>(result.elements.size())});
     result.nodes.insert(result.nodes.end(), first_node(e), first_node(e) + nodes);
     result.elements.push_back(static_cast<std::int32_t>(e));
   }
@@ -210,10 +210,10 @@ struct Cover {
       add_fan(false, p, q, chain.subspan(longest));
       return;
     }
-    result.units.push_back({closed ? simd::Shape::closed_fan : simd::Shape::open_fan,
-                            static_cast<std::uint8_t>(chain.size()), chain[0].law,
-                            static_cast<std::uint32_t>(result.nodes.size()),
-                            static_cast<std::uint32_t>(result.elements.size())});
+    result.list.push_back({closed ? simd::Shape::closed_fan : simd::Shape::open_fan,
+                           static_cast<std::uint8_t>(chain.size()), chain[0].law,
+                           static_cast<std::uint32_t>(result.nodes.size()),
+                           static_cast<std::uint32_t>(result.elements.size())});
     for (const Arc& arc : chain) result.elements.push_back(arc.element);
     if (mesh.type == ElementType::tet10) return add_quadratic_nodes(p, q, chain);
     result.nodes.insert(result.nodes.end(), {p, q, chain[0].a});
