@@ -167,6 +167,11 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   if (restart) loop.restore(run.start, result);
   result.message = part.no_equilibrium;
   begin(part, run, "solving");
+  FreeMotions free_motions;
+  const auto look = [&](const std::string& place) {
+    const Redimensionalised back(scaled);
+    free_motions.look(part, context.state, options.tolerance, place);
+  };
   LoadStepCalls calls;
   calls.begins = [&](std::size_t step) {
     if (run.stage && shares.size() > 1 && part.node_map.rank == 0)
@@ -174,6 +179,8 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   };
   calls.over = [&] {
     if (run.load_step_over) hand_out_step(context, result, run, scaled);
+    const std::size_t over = result.load_steps.size();
+    look(load_step_name(over - 1, shares.size(), result.by_time, shares[over - 1]));
   };
   if (shares.size() > 1 && run.coarse.size() == shares.size())
     calls.coarse = [&](std::size_t step) {
@@ -222,6 +229,8 @@ Solution solve(Part& part, const SolverOptions& users_options, const RunOptions&
   }
   if (shares.size() > 1 || result.by_time) end_load_steps(shares, finished, result);
   if (result.softening_elements > 0) result.message += softening_message(result.softening_elements);
+  if (result.status == Status::converged) look("");
+  for (const std::string& warning : free_motions.warnings()) result.warnings.push_back(warning);
   if (result.unsolved_steps > 0) result.warnings.push_back(unsolved_message(result, options));
   result.unknowns = part.total_nodes() * part.dim();
   result.elements = part.total_elements;

@@ -49,7 +49,7 @@ constexpr double least_force = 3e-9;
 constexpr double least_share = 1e-3;
 /// Lower limit of the scale relative to the nodal forces of temperature, which balance each other in a freely
 /// expanding body and so are no scale themselves.
-constexpr double least_expansion = 1e-3;
+constexpr double least_expansion = 1e-7;
 /// Lower limit of a region's force scale, where nothing acts on it: its stiffness times this share of the
 /// largest ratio force / stiffness, a displacement, over all regions.
 constexpr double least_displacement = 1e-8;

@@ -127,6 +127,8 @@ void check_contact(const Part& part, std::size_t nodes, int ranks) {
   for (std::size_t i = 0; i < contact.size(); ++i) {
     const ContactPoint& point = contact[i];
     expect_indices("contact points", std::array{point.node}, nodes);
+    expect(point.loose_piece >= -1 && point.loose_piece < std::ssize(part.loose_pieces), "contact points",
+           "belong to a piece that is not there");
     expect(
         point.entry >= 0 && point.entry < most_entries && point.tangents >= 0 && point.tangents < part.dim(),
         "contact points", "have tangents or an entry that cannot be");

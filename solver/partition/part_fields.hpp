@@ -141,8 +141,8 @@ void exchange_fields(Either<IndexMap> auto& map, const auto& stream) {
 }
 
 void exchange_fields(Either<ContactPoint> auto& point, const auto& stream) {
-  stream(point.node, point.entry, point.normal, point.outer, point.tangent, point.tangents, point.gap,
-         point.unknown_gap, point.mass, point.tresca, point.coulomb, point.since_step);
+  stream(point.node, point.entry, point.loose_piece, point.normal, point.outer, point.tangent, point.tangents,
+         point.gap, point.unknown_gap, point.mass, point.tresca, point.coulomb, point.since_step);
 }
 
 void exchange_fields(Either<RowEntry> auto& entry, const auto& stream) {
@@ -185,6 +185,10 @@ void exchange_fields(Either<NodeSpring> auto& spring, const auto& stream) {
   stream(spring.node, spring.entry, spring.stiffness);
 }
 
+void exchange_fields(Either<LoosePiece> auto& piece, const auto& stream) {
+  stream(piece.name, piece.centre, piece.radius, piece.by_displacement);
+}
+
 void exchange_fields(Either<ThermalPressure> auto& thermal, const auto& stream) {
   stream(thermal.entry, thermal.of_element);
 }
@@ -199,7 +203,8 @@ void exchange_fields(Either<Part> auto& part, const auto& stream) {
          part.law_of_element, part.load, part.prescribed, part.steps, part.forces, part.prescribed_by,
          part.held, part.supports, part.applied, part.directions, part.springs, part.thermal, part.contact,
          part.owned_contact, part.contact_shares, part.wide_contact, part.contact_index, part.total_contact,
-         part.probes, part.probe_index, part.total_probes, part.loose_modes, part.start, part.no_equilibrium);
+         part.probes, part.probe_index, part.total_probes, part.loose_modes, part.loose_pieces, part.start,
+         part.no_equilibrium);
 }
 
 }  // namespace kacanov

@@ -186,6 +186,7 @@ class Splitter {
     part.steps = problem_.steps;
     part.applied = problem_.applied;
     part.loose_modes = problem_.loose_modes;
+    part.loose_pieces = problem_.loose_pieces;
     part.no_equilibrium = problem_.no_equilibrium;
     part.start = rigid_start(problem_, part.node_index);
     for (const Index n : part.node_index) local_[n] = -1;

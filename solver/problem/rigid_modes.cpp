@@ -28,18 +28,22 @@ constexpr double rounded_load = 1e-11;
 constexpr double dependent_normals = 1e-12;
 
 /// One connected component of the mesh: elements connected by nodes.
-struct Piece {
+struct Piece : LoosePiece {
   std::int64_t nodes = 0, elements = 0;
   std::size_t first_element = 0;
-  Vector3 centre{};
-  double radius = 0.0;
-  Matrix6 by_displacement = Matrix6::Zero();  ///< Gram matrices of the constraint rows
-  Matrix6 by_contact = Matrix6::Zero();
+  Matrix6 by_contact = Matrix6::Zero();  ///< Gram matrix of its contact rows
 };
 
-/// Work of a force along `direction` at x on the modes: rotations (about the piece's centre, scaled by its
-/// radius) come first, so that reduction names them first, then translations.
-Vector6 row(const Piece& piece, const Vector3& x, const Vector3& direction) {
+Eigen::Map<Matrix6> gram_of_supports(LoosePiece& piece) {
+  return Eigen::Map<Matrix6>(piece.by_displacement.data());
+}
+Eigen::Map<const Matrix6> gram_of_supports(const LoosePiece& piece) {
+  return Eigen::Map<const Matrix6>(piece.by_displacement.data());
+}
+
+/// Work of a force along `direction` at x on the modes: rotations come first, so that reduction names them
+/// first.
+Vector6 row(const LoosePiece& piece, const Vector3& x, const Vector3& direction) {
   const Vector3 turn = (1.0 / piece.radius) * cross(x - piece.centre, direction);
   Vector6 values;
   values << turn[0], turn[1], turn[2], direction[0], direction[1], direction[2];
@@ -71,7 +75,9 @@ std::vector<Piece> find_pieces(const Mesh& mesh, std::vector<std::int32_t>& piec
   return pieces;
 }
 
-void add_row(Matrix6& gram, const Vector6& values) { gram.noalias() += values * values.transpose(); }
+void add_row(Eigen::Ref<Matrix6> gram, const Vector6& values) {
+  gram.noalias() += values * values.transpose();
+}
 
 /// Returns the work of a contact point's normal and tangents on the modes of its piece.
 std::array<Vector6, 3> point_rows(const Problem& problem, const Piece& piece, std::size_t i,
@@ -99,11 +105,11 @@ void collect_rows(const Problem& problem, std::vector<Piece>& pieces,
     Piece& piece = pieces[piece_of_node[node]];
     Vector3 axis{};
     axis[k % dim] = 1.0;
-    add_row(piece.by_displacement, row(piece, position(mesh, static_cast<std::int32_t>(node)), axis));
+    add_row(gram_of_supports(piece), row(piece, position(mesh, static_cast<std::int32_t>(node)), axis));
   }
   for (const HeldDirection& held : problem.directions) {
     Piece& piece = pieces[piece_of_node[held.node]];
-    add_row(piece.by_displacement, row(piece, position(mesh, held.node), held.direction));
+    add_row(gram_of_supports(piece), row(piece, position(mesh, held.node), held.direction));
   }
   for (const NodeSpring& spring : problem.springs) {
     Piece& piece = pieces[piece_of_node[spring.node]];
@@ -111,7 +117,7 @@ void collect_rows(const Problem& problem, std::vector<Piece>& pieces,
     for (const Vector3& r : spring.stiffness) size = std::max(size, norm(r));
     if (size == 0.0) continue;
     for (const Vector3& r : spring.stiffness)
-      add_row(piece.by_displacement, row(piece, position(mesh, spring.node), (1.0 / size) * r));
+      add_row(gram_of_supports(piece), row(piece, position(mesh, spring.node), (1.0 / size) * r));
   }
   for (std::size_t i = 0; i < problem.contact.size(); ++i) {
     const ContactPoint& point = problem.contact[i];
@@ -123,16 +129,16 @@ void collect_rows(const Problem& problem, std::vector<Piece>& pieces,
 }
 
 /// Returns the free modes as rows in reduced echelon form, so that axis-aligned motions appear as such.
-Eigen::MatrixXd free_modes(const Matrix6& gram, const Mesh& mesh) {
+Eigen::MatrixXd free_modes(const Matrix6& gram, int dim, PlaneState plane) {
   // In the plane: rotation about z, translations along x and y; axisymmetric: only the translation along the
   // axis.
-  const std::vector<Eigen::Index> kept = mesh.dim() == 3 ? std::vector<Eigen::Index>{0, 1, 2, 3, 4, 5}
-                                         : mesh.plane == PlaneState::axisymmetric
+  const std::vector<Eigen::Index> kept = dim == 3 ? std::vector<Eigen::Index>{0, 1, 2, 3, 4, 5}
+                                         : plane == PlaneState::axisymmetric
                                              ? std::vector<Eigen::Index>{4}
                                              : std::vector<Eigen::Index>{2, 3, 4};
   const Eigen::MatrixXd reduced = gram(kept, kept);
   const SymmetricEigen eigen = symmetric_eigen(reduced);
-  const double others = mesh.plane == PlaneState::axisymmetric ? gram(3, 3) : 0.0;
+  const double others = plane == PlaneState::axisymmetric ? gram(3, 3) : 0.0;
   const double scale = std::max({eigen.values.maxCoeff(), others, 1e-300});
   Eigen::Index count = 0;
   while (count < eigen.values.size() && eigen.values[count] <= free_below * scale) ++count;
@@ -168,7 +174,7 @@ std::string direction_name(Vector3 direction, int dim) {
 }
 
 /// Describes the motion of a mode in words; the axis is given by its point nearest to the centre.
-std::string describe(const Piece& piece, const Eigen::VectorXd& mode, int dim) {
+std::string describe(const LoosePiece& piece, const Eigen::VectorXd& mode, int dim) {
   const Vector3 turn{mode[0], mode[1], mode[2]};
   const Vector3 shift{mode[3] * piece.radius, mode[4] * piece.radius, mode[5] * piece.radius};
   if (norm(turn) < 1e-6) return "translation along " + direction_name(shift, dim);
@@ -186,7 +192,7 @@ std::string describe(const Piece& piece, const Eigen::VectorXd& mode, int dim) {
   return text;
 }
 
-std::string list_modes(const Piece& piece, const Eigen::MatrixXd& modes, int dim) {
+std::string list_modes(const LoosePiece& piece, const Eigen::MatrixXd& modes, int dim) {
   std::string text;
   for (Eigen::Index m = 0; m < modes.rows(); ++m) {
     text += (m > 0 ? ", " : "") + describe(piece, modes.row(m), dim);
@@ -288,19 +294,6 @@ std::string name_piece(const Piece& piece, const Mesh& mesh, std::size_t pieces)
          " elements; the mesh falls into " + std::to_string(pieces) + " pieces)";
 }
 
-/// Warns of load steps in which nothing presses the piece onto what alone holds it. `unpressed`: their
-/// numbers.
-void warn_unpressed(Problem& problem, std::span<const std::size_t> unpressed, const std::string& name) {
-  if (unpressed.empty()) return;
-  PlainText text;
-  if (problem.steps.size() > 2)
-    text << "load step " << unpressed.front() << " (time " << problem.steps[unpressed.front()].time << ")"
-         << (unpressed.size() > 1 ? " and others" : "") << ": ";
-  text << "no load presses " << name << " onto the contact that alone holds it. Forces and stresses are "
-       << "right. The place where it rests is one of many, unless something else presses it";
-  problem.warnings.push_back(text.str());
-}
-
 /// Computes where the piece comes to rest, or why it does not.
 void settle(Problem& problem, const Piece& piece, std::int32_t number, const RigidPiece& rigid,
             const std::string& name, std::span<const std::int32_t> piece_of_node) {
@@ -310,19 +303,15 @@ void settle(Problem& problem, const Piece& piece, std::int32_t number, const Rig
       problem.no_equilibrium = explain(rigid, found, piece, name, problem.mesh.dim());
     return;
   }
-  std::vector<std::size_t> unpressed;
-  if (rigid.load.isZero(0.0)) unpressed.push_back(1);
   RigidPiece later = rigid;
   for (std::size_t step = 2; step < problem.steps.size() && problem.no_equilibrium.empty(); ++step) {
     later.load = load_of(problem, piece, number, piece_of_node, load_at(problem, step), rigid.basis);
-    if (later.load.isZero(0.0)) unpressed.push_back(step);
     const RigidBalance then = balance(later.points, later.load);
     if (then.exists) continue;
     PlainText place;
     place << " (load step " << step << ", time " << problem.steps[step].time << ")";
     problem.no_equilibrium = explain(later, then, piece, name, problem.mesh.dim()) + place.str();
   }
-  warn_unpressed(problem, unpressed, name);
   // A pressure p indents a body of this size by about p divided by this stiffness.
   double bulk = 0.0;
   for (const Law& law : problem.laws) bulk = std::max(bulk, law.bulk);
@@ -348,22 +337,38 @@ void check_rigid_modes(Problem& problem) {
   const Mesh& mesh = problem.mesh;
   const int dim = mesh.dim();
   for (std::int32_t number = 0; number < static_cast<std::int32_t>(pieces.size()); ++number) {
-    const Piece& piece = pieces[number];
-    const Eigen::MatrixXd loose = free_modes(piece.by_displacement, mesh);
+    Piece& piece = pieces[number];
+    const Eigen::MatrixXd loose = free_modes(gram_of_supports(piece), dim, mesh.plane);
     if (loose.rows() == 0) continue;
     const std::string name = name_piece(piece, problem.mesh, pieces.size());
-    const Eigen::MatrixXd free = free_modes(piece.by_displacement + piece.by_contact, mesh);
+    const Eigen::MatrixXd free = free_modes(gram_of_supports(piece) + piece.by_contact, dim, mesh.plane);
     if (free.rows() > 0) {
       throw InputError("boundary: nothing holds " + name + " against " + list_modes(piece, free, dim) +
                        "; add displacements (or contact) that do");
     }
     problem.loose_modes += static_cast<int>(loose.rows());
+    piece.name = name;
+    for (std::size_t i = 0; i < problem.contact.size(); ++i)
+      if (piece_of_node[problem.contact[i].node] == number)
+        problem.contact[i].loose_piece = static_cast<std::int32_t>(problem.loose_pieces.size());
+    problem.loose_pieces.push_back(piece);
     problem.warnings.push_back("only the contact holds " + name + " against " +
                                list_modes(piece, loose, dim) +
                                "; there is a solution only if the loads press it on");
     settle(problem, piece, number, collect(problem, piece, number, piece_of_node, loose), name,
            piece_of_node);
   }
+}
+
+RigidRow rigid_row(const LoosePiece& piece, const Vector3& x, const Vector3& direction) {
+  RigidRow values;
+  Eigen::Map<Vector6>(values.data()) = row(piece, x, direction);
+  return values;
+}
+
+std::string free_motions(const LoosePiece& piece, const RigidGram& by_contact, int dim, PlaneState plane) {
+  const Matrix6 all = gram_of_supports(piece) + Eigen::Map<const Matrix6>(by_contact.data());
+  return list_modes(piece, free_modes(all, dim, plane), dim);
 }
 
 std::vector<double> rigid_start(const Problem& problem, std::span<const std::int32_t> nodes) {

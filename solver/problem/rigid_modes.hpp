@@ -4,7 +4,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <kacanov/problem.hpp>
@@ -15,6 +17,18 @@ namespace kacanov {
 /// and counts in problem.loose_modes those held by contact only, with a warning. Sets problem.motions if the
 /// loads of such a component can be in equilibrium (theory: rigid-balance), else problem.no_equilibrium.
 void check_rigid_modes(Problem& problem);
+
+/// Work of a force on the six rigid motions of a piece, in the order of LoosePiece::by_displacement; and the
+/// Gram matrix of such rows.
+using RigidRow = std::array<double, 6>;
+using RigidGram = std::array<double, 36>;
+
+/// Returns the work of a unit force along `direction` at x.
+RigidRow rigid_row(const LoosePiece& piece, const Vector3& x, const Vector3& direction);
+
+/// Returns, in words, the motions of a piece that neither its supports nor contact with this Gram matrix
+/// prevent; empty if there are none.
+std::string free_motions(const LoosePiece& piece, const RigidGram& by_contact, int dim, PlaneState plane);
 
 /// Returns the displacements of these nodes by problem.motions (theory: rigid-start), nodes × dim; empty if
 /// there are none.

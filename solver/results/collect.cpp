@@ -9,6 +9,7 @@
 
 #include <kacanov/element_fields.hpp>
 #include "partition/global_max.hpp"
+#include "problem/rigid_modes.hpp"
 #include "problem/vector3.hpp"
 
 namespace kacanov {
@@ -87,6 +88,55 @@ void collect_contact(const Part& part, const ContactState& state, double toleran
     solution.traction.push_back(traction_of(part.contact[i], &state.lambda.tangential[2 * i]));
     solution.contact_status.push_back(status_of(part.contact[i], state, i, least_slip));
   }
+}
+
+void FreeMotions::look(const Part& part, const ContactState& state, double tolerance,
+                       const std::string& place) {
+  const std::vector<LoosePiece>& pieces = part.loose_pieces;
+  if (pieces.empty()) return;
+  largest_.resize(pieces.size());
+  first_.resize(pieces.size());
+  const auto points = static_cast<std::size_t>(part.owned_contact);
+  const auto piece_of = [&](std::size_t i) { return part.contact[i].loose_piece; };
+  for (std::size_t i = 0; i < points; ++i)
+    if (piece_of(i) >= 0)
+      largest_[piece_of(i)] = std::max(largest_[piece_of(i)], part.contact[i].mass * state.lambda.normal[i]);
+  part.node_map.max_all(largest_);
+  std::vector<RigidGram> grams(pieces.size());
+  for (std::size_t i = 0; i < points; ++i) {
+    if (piece_of(i) < 0) continue;
+    const double force = part.contact[i].mass * state.lambda.normal[i];
+    const bool presses = force > tolerance * largest_[piece_of(i)];
+    const auto add = [&](const auto& direction) {
+      RigidRow sum{};
+      for (const RowEntry& entry : part.contact.entries(i)) {
+        const RigidRow row =
+            rigid_row(pieces[piece_of(i)], node_position(part, entry.node), direction(entry));
+        for (std::size_t m = 0; m < 6; ++m) sum[m] += row[m];
+      }
+      for (std::size_t m = 0; m < 36; ++m) grams[piece_of(i)][m] += sum[m / 6] * sum[m % 6];
+    };
+    if (presses) add([](const RowEntry& entry) -> const Vector3& { return entry.normal; });
+    for (std::size_t k = 0; k < static_cast<std::size_t>(part.contact[i].tangents); ++k)
+      if (presses || part.contact[i].tresca > 0.0)
+        add([k](const RowEntry& entry) -> const Vector3& { return entry.tangent[k]; });
+  }
+  part.node_map.sum_all(std::span(grams.front().data(), 36 * grams.size()));
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    if (!first_[k].empty()) continue;
+    const std::string motions = free_motions(pieces[k], grams[k], part.dim(), part.plane);
+    if (motions.empty()) continue;
+    first_[k] = (place.empty() ? "" : place + ": ") + "the contact that holds " + pieces[k].name +
+                " leaves it free to move (" + motions +
+                "). Forces and stresses are right. The place where it rests is one of many";
+  }
+}
+
+std::vector<std::string> FreeMotions::warnings() const {
+  std::vector<std::string> all;
+  for (const std::string& warning : first_)
+    if (!warning.empty()) all.push_back(warning);
+  return all;
 }
 
 void collect_totals(const Part& part, const ContactState& state, Solution& solution) {

@@ -42,10 +42,11 @@ def members(session):
 
 
 def starved(session, limit):
-    """Returns whether the session lacks CPU time: stopped, or ready to run with less than half of `limit` used."""
+    """Returns whether the session lacks CPU time: stopped, or ready to run with less than half of what it could use."""
     found = list(members(session))
-    states = {state for _, state, _ in found}
-    return "T" in states or ("R" in states and sum(seconds for *_, seconds in found) < limit / 2)
+    states = [state for _, state, _ in found]
+    cores = min(states.count("R"), os.cpu_count())
+    return "T" in states or sum(seconds for *_, seconds in found) < cores * limit / 2
 
 
 def end(process):

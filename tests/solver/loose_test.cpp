@@ -39,6 +39,16 @@ Model guided_cube(double gap, double push) {
   return model;
 }
 
+/// Returns the warnings of a run that a piece is free to move.
+std::string free_to_move(const Mesh& mesh, const Model& model) {
+  const Run run = run_alone(mesh, model);
+  CHECK(run.result().status == Status::converged);
+  std::string found;
+  for (const std::string& warning : run.result().warnings)
+    if (mentions(warning, "free to move")) found += warning;
+  return found;
+}
+
 }  // namespace
 
 TEST_CASE("a block on an incline slides as soon as the slope is beyond its friction coefficient") {
@@ -89,6 +99,31 @@ TEST_CASE("a pull off the only contact ends the run before it begins") {
   CHECK(run.result().operator_applications == 0);
   CHECK(mentions(run.result().message, "no equilibrium: the load lifts the body off"));
   CHECK(mentions(run.result().message, "translation along z"));
+}
+
+TEST_CASE("a block on one node can tip over") {
+  // The resultant of the load passes through the only node that reaches the needle.
+  Model model = elastic_model();
+  model.boundary.push_back(body_force(everything(), {0, 0, -1e-3}));
+  const Mesh mesh = make_box({{2, 1, 0.5}, {2, 2, 1}, ElementType::hex8});
+  model.contact.push_back({named("bottom"), Sphere{{1, 0.5, -1}, 1.0, {}}, Friction{0.0, 0.5}});
+  const std::string found = free_to_move(mesh, model);
+  CHECK(mentions(found, "(rotation about x through (1, 0.5, 0), rotation about y through (1, 0.5, 0), "));
+  CHECK(!mentions(found, "translation"));
+}
+
+TEST_CASE("load steps in which nothing presses a loose body are named") {
+  const Mesh mesh = box_mesh(ElementType::tet4);
+  const auto unpressed = [&](std::vector<double> factors) {
+    Model model = block_under({1e-4, 0, -1e-3}, 0.5);
+    double time = 0.0;
+    for (const double factor : factors) model.steps.push_back({time += 1.0, {{"boundary[0]", factor}}});
+    return free_to_move(mesh, model);
+  };
+  CHECK(unpressed({0.5, 1.0, 0.25}) == "");
+  const std::string end = unpressed({1.0, 0.5, 0.0});
+  CHECK(mentions(end, "the contact that holds the body leaves it free to move (rotation about x, "));
+  CHECK(mentions(unpressed({1.0, 0.0, 0.5}), "load step 2 of 3 (time 2): the contact that holds the body"));
 }
 
 TEST_CASE("a gap costs a falling body no steps") {

@@ -9,7 +9,7 @@
 namespace kacanov::verify {
 namespace {
 
-constexpr Real tiny = 1e-300L, least_force = 3e-9L, least_share = 1e-3L, least_expansion = 1e-3L,
+constexpr Real tiny = 1e-300L, least_force = 3e-9L, least_share = 1e-3L, least_expansion = 1e-7L,
                least_displacement = 1e-8L, delta = 1e-15L, delta_of_traces = 3e-16L;
 
 /// Returns the slip: u minus its origin, in the free directions orthogonal to the row's normal.

@@ -25,6 +25,7 @@ struct RowEntry {
 struct ContactPoint {
   std::int32_t node = 0;             ///< represents the point in output and messages; its owner owns the rows
   std::int32_t entry = 0;            ///< index into Model::contact
+  std::int32_t loose_piece = -1;     ///< index into Problem::loose_pieces of the node's piece, −1: none
   Vector3 normal{};                  ///< ν, unit, from the body towards the obstacle
   Vector3 outer{};                   ///< the body's outer normal, of any length; for obstacles that move
   std::array<Vector3, 2> tangent{};  ///< orthonormal directions of the tangential traction

@@ -96,6 +96,7 @@ struct Part {
   std::vector<std::int32_t> probe_index;
   std::int32_t total_probes = 0;
   int loose_modes = 0;
+  std::vector<LoosePiece> loose_pieces;  ///< as in Problem
   /// Points × 2: Tu of an obstacle that has moved, from which slip is measured; empty: none has moved. Not
   /// saved to files.
   std::vector<double> slip_origin;

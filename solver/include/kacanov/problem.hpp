@@ -26,6 +26,16 @@ struct PieceMotion {
   Vector3 centre{}, turn{}, shift{};
 };
 
+/// A piece of the mesh with rigid-body modes that only contact constrains (theory: loose-modes).
+struct LoosePiece {
+  std::string name;  ///< as messages call it
+  Vector3 centre{};
+  double radius = 0.0;
+  /// 6 × 6 Gram matrix of the constraint rows of its supports: rotations about the centre in units of the
+  /// radius, then translations.
+  std::array<double, 36> by_displacement{};
+};
+
 /// A point of the load curves: the factor of each entry.
 struct LoadFactors {
   double time = 0.0;
@@ -108,6 +118,7 @@ struct Problem {
   std::vector<PointShare> contact_shares;  ///< of points that merge several entries, sorted by point
   std::vector<Probe> probes;
   int loose_modes = 0;  ///< number of rigid-body modes constrained by contact only
+  std::vector<LoosePiece> loose_pieces;
   /// Rest positions, as rigid bodies, of pieces held by contact only; used as initial guess.
   std::vector<PieceMotion> motions;
   /// Index into motions, −1 for none; empty: all nodes move by motions[0].
