@@ -15,7 +15,6 @@
 
 #include <kacanov/cells.hpp>
 #include "operator/element_maps.hpp"
-#include "operator/jacobian_sign.hpp"
 
 using namespace kacanov;
 
@@ -271,7 +270,7 @@ struct Elements {
 
 }  // namespace
 
-TEST_CASE("batched element maps equal those of single elements") {
+TEST_CASE("batched maps are those of one element after the other") {
   for (const ElementType type : every_type)
     for (const std::size_t count : {std::size_t{1}, std::size_t{16}, std::size_t{37}}) {
       CAPTURE(cell(type).name);

@@ -333,7 +333,7 @@ TEST_CASE("early nodes are done when they are said to be, and nothing else chang
       single.set_secant(g);
       const auto check = [&](auto& y, const auto& apply) {
         using Values = std::remove_reference_t<decltype(y)>;
-        apply(WhenEarly{});
+        apply(OnInterfaceReady{});
         const Values whole = y;
         Values seen;
         std::fill(y.begin(), y.end(), 99);
@@ -359,13 +359,13 @@ TEST_CASE("early nodes are done when they are said to be, and nothing else chang
       std::vector<double> y(x.size());
       std::vector<float> yf(x.size());
       double dot = 0.0;
-      check(y, [&](const WhenEarly& ready) { dot = op.apply_dot(x, y, ready); });
+      check(y, [&](const OnInterfaceReady& ready) { dot = op.apply_dot(x, y, ready); });
       CHECK(dot == doctest::Approx(test::dot(x, expected)).epsilon(1e-12));
       op.apply(x, y);
       CHECK(difference(y, expected) < 1e-13);
-      check(yf, [&](const WhenEarly& ready) { single.apply(xf, yf, ready); });
+      check(yf, [&](const OnInterfaceReady& ready) { single.apply(xf, yf, ready); });
       op.update_tangent(u);
-      check(y, [&](const WhenEarly& ready) { dot = op.apply_tangent_dot(x, y, ready); });
+      check(y, [&](const OnInterfaceReady& ready) { dot = op.apply_tangent_dot(x, y, ready); });
       op.apply_tangent(x, y);
       CHECK(dot == doctest::Approx(test::dot(x, y)).epsilon(1e-12));
     }

@@ -10,7 +10,7 @@
 #include "bodies.hpp"
 #include "cells/parallelepiped.hpp"
 #include "cells/straight.hpp"
-#include "operator/corners.hpp"
+#include "operator/nodal_pressure.hpp"
 #include "simd/row_points.hpp"
 
 using namespace kacanov::simd;

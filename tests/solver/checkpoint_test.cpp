@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include <kacanov/moving.hpp>
+#include <kacanov/solve.hpp>
 #include "support.hpp"
 
 using namespace kacanov::testing;

@@ -12,11 +12,9 @@
 #include <set>
 #include <string>
 
-#include <kacanov/bisect.hpp>
 #include <kacanov/error.hpp>
-#include <kacanov/index_runs.hpp>
 #include <kacanov/mesh.hpp>
-#include <kacanov/raise_order.hpp>
+#include <kacanov/part.hpp>
 #include <kacanov/refine.hpp>
 #include <kacanov/vector3.hpp>
 #include "problem/vector3.hpp"

@@ -112,7 +112,7 @@ TEST_CASE("fallback: a stall, a failed solve and a breakdown retreat, each time 
   int expected = usual.first_retreat;
   for (const double worst : {0.5, 0.5, HUGE_VAL}) {
     int steps = 0;
-    for (; fallback.retreating(); ++steps) fallback.after_admm(1e3);
+    for (; fallback.retreating(); ++steps) fallback.after_fallback_step(1e3);
     CHECK(steps == expected);
     expected *= 2;
     CHECK(fallback.after_newton(worst, std::isinf(worst)));
@@ -120,7 +120,7 @@ TEST_CASE("fallback: a stall, a failed solve and a breakdown retreat, each time 
   // The longest retreat.
   for (int i = 0; i < 20; ++i) fallback.after_newton(1.0, false);
   int steps = 0;
-  for (; fallback.retreating(); ++steps) fallback.after_admm(1e3);
+  for (; fallback.retreating(); ++steps) fallback.after_fallback_step(1e3);
   CHECK(steps == usual.first_retreat << usual.most_doublings);
 }
 
@@ -129,7 +129,7 @@ TEST_CASE("fallback: steps without a gain are counted, and those without a solut
     Fallback fallback(usual);
     fallback.after_newton(1.0, false);
     int steps = 0;
-    for (; !fallback.stuck(); ++steps) fallback.after_admm(1.0, solved);
+    for (; !fallback.stuck(); ++steps) fallback.after_fallback_step(1.0, solved);
     CHECK(steps == usual.most_idle / (solved ? 1 : usual.unsolved_worth));
   }
 }
@@ -141,9 +141,9 @@ TEST_CASE("fallback: ADMM hands back once it is well below the best Newton step"
   REQUIRE(fallback.retreating());
   Fallback copy = copied_by_visit(fallback, Fallback(usual));
   for (Fallback* each : {&fallback, &copy}) {
-    each->after_admm(0.5 * 0.4);
+    each->after_fallback_step(0.5 * 0.4);
     CHECK(each->retreating());
-    each->after_admm(0.99 * usual.retreat_gain * 0.4);
+    each->after_fallback_step(0.99 * usual.retreat_gain * 0.4);
     CHECK(!each->retreating());
   }
 }

@@ -10,7 +10,6 @@
 #include <random>
 #include <vector>
 
-#include <kacanov/height_field.hpp>
 #include <kacanov/obstacle.hpp>
 #include <kacanov/surface.hpp>
 #include "problem/error_tracking_double.hpp"

@@ -14,8 +14,8 @@
 #include <kacanov/error.hpp>
 #include <kacanov/scatterer.hpp>
 #include "../sanitized.hpp"
-#include "distributed/exchange.hpp"
 #include "linear/space.hpp"
+#include "parallel/exchange.hpp"
 #include "partition/check_part.hpp"
 #include "preconditioners.hpp"
 #include "support.hpp"

@@ -7,9 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include <kacanov/corner_dilatation.hpp>
 #include <kacanov/discretisation.hpp>
-#include <kacanov/nodal_stress.hpp>
+#include <kacanov/part.hpp>
 #include "recovery/element_batch.hpp"
 #include "recovery/error_quadrature.hpp"
 #include "recovery/spr_patches.hpp"
@@ -180,7 +179,7 @@ TEST_CASE("the finer rules integrate what they should") {
     // ∫ x^p over the reference cell: p! dim!/(p + dim)! of a simplex's volume; by axes for a cube.
     for (int p = 0; p <= degree; ++p) {
       double sum = 0.0, expected = 1.0;
-      for (const QuadraturePoint& point : finer_rule(shape)) {
+      for (const QuadraturePoint& point : error_quadrature(shape)) {
         CHECK(point.weight > 0.0);
         sum += point.weight * std::pow(point.xi[0], p);
       }
@@ -296,7 +295,7 @@ struct Points {
   reference::PointFields all() { return {position, stress, strain, volume}; }
 };
 
-constexpr ElementType types_abreast[] = {ElementType::tet4, ElementType::tet10, ElementType::hex8};
+constexpr ElementType batched_types[] = {ElementType::tet4, ElementType::tet10, ElementType::hex8};
 
 void compare_with_reference(ElementType type, bool mean_dilatation) {
   const FieldLoops& fast = field_loops(type);
@@ -355,13 +354,13 @@ void compare_with_reference(ElementType type, bool mean_dilatation) {
 
 }  // namespace
 
-TEST_CASE("batched elements have the fields of the reference") {
-  for (const ElementType type : types_abreast) compare_with_reference(type, false);
-  for (const ElementType type : types_abreast) compare_with_reference(type, true);
+TEST_CASE("batches of elements have the fields of the reference") {
+  for (const ElementType type : batched_types) compare_with_reference(type, false);
+  for (const ElementType type : batched_types) compare_with_reference(type, true);
 }
 
 TEST_CASE("fields that are not requested stay unchanged") {
-  for (const ElementType type : types_abreast) {
+  for (const ElementType type : batched_types) {
     const FieldLoops& fast = field_loops(type);
     CAPTURE(cell(type).name);
     const Mesh mesh = box_mesh(type, {1.0, 1.0, 1.0}, 1);
@@ -405,7 +404,7 @@ std::vector<double> wavy(const Part& part) {
 
 }  // namespace
 
-TEST_CASE("batched errors equal those of the reference loop") {
+TEST_CASE("batched errors are those of the reference loop") {
   for (const ElementType type : {ElementType::tet4, ElementType::tet10, ElementType::hex8})
     for (const bool means : {false, true}) {
       CAPTURE(cell(type).name);

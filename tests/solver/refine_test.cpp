@@ -10,10 +10,8 @@
 #include <random>
 #include <set>
 
-#include <kacanov/bisect.hpp>
 #include <kacanov/discretisation.hpp>
 #include <kacanov/error.hpp>
-#include <kacanov/raise_order.hpp>
 #include <kacanov/refine.hpp>
 #include "problem/vector3.hpp"
 #include "problem_models.hpp"

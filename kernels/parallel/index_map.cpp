@@ -6,7 +6,7 @@
 #include <utility>
 
 #include <kacanov/scatterer.hpp>
-#include "distributed/exchange.hpp"
+#include "parallel/exchange.hpp"
 
 namespace kacanov {
 
