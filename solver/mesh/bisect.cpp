@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Refinement of marked elements by longest-edge bisection, with groups and curved edges.
-#include <kacanov/bisect.hpp>
+#include <kacanov/refine.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <unordered_map>
@@ -14,7 +13,7 @@
 #include <vector>
 
 #include <kacanov/error.hpp>
-#include "mesh/node_keys.hpp"
+#include "mesh/new_nodes.hpp"
 
 namespace kacanov {
 namespace {
@@ -38,10 +37,7 @@ class Bisection {
       : coarse_(coarse), type_(cell(coarse.type)), corners_(static_cast<std::size_t>(type_.corners)) {}
 
   Mesh done(std::span<const std::int32_t> marked) {
-    fine_.type = coarse_.type;
-    fine_.coordinates = coarse_.coordinates;
-    fine_.node_tags = coarse_.node_tags;
-    fine_.node_fields = coarse_.node_fields;
+    fine_ = with_nodes_of(coarse_, coarse_.type);
     keep_middles();
     std::vector<std::uint8_t> generations(coarse_.element_count(), 0);
     for (const std::int32_t e : marked) generations[e] = static_cast<std::uint8_t>(type_.dim);
@@ -61,7 +57,7 @@ class Bisection {
           [&](const Piece& piece) { emit(nodes(e), piece); });
     }
     first_child_.push_back(static_cast<std::int32_t>(fine_.element_count()));
-    number_new_nodes();
+    number_new_nodes(fine_);
     find_boundary(fine_);
     for (const Group& group : coarse_.groups) take_over(group);
     return std::move(fine_);
@@ -126,12 +122,8 @@ class Bisection {
   }
 
   std::int32_t add(const Point& at, std::int32_t a, std::int32_t b) {
-    const std::size_t node = fine_.node_count();
-    if ((node + 1) * dim() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
-      throw InputError("mesh.adapt: so fine a mesh has more unknowns than 32-bit indices can number");
-    fine_.coordinates.insert(fine_.coordinates.end(), at.begin(), at.begin() + type_.dim);
-    add_mean_of_fields(fine_, std::array{a, b});
-    return static_cast<std::int32_t>(node);
+    return add_node(fine_, at, std::array{a, b},
+                    "mesh.adapt: so fine a mesh has more unknowns than 32-bit indices can number");
   }
 
   /// Maps reference coordinates to space.
@@ -200,14 +192,6 @@ class Bisection {
     }
   }
 
-  /// Numbers new nodes from the largest tag of the file plus 1.
-  void number_new_nodes() {
-    if (fine_.node_tags.empty()) return;
-    std::int64_t next = *std::max_element(fine_.node_tags.begin(), fine_.node_tags.end());
-    fine_.node_tags.reserve(fine_.node_count());
-    while (fine_.node_tags.size() < fine_.node_count()) fine_.node_tags.push_back(++next);
-  }
-
   void take_over(const Group& group) {
     Group to{group.name, group.dimension, {}, group.inner};
     if (group.dimension == type_.dim) {
@@ -268,10 +252,10 @@ class Bisection {
   const Cell& type_;
   std::size_t corners_;
   Mesh fine_;
-  std::unordered_map<std::uint64_t, std::int32_t> halved_;   ///< edge key → midpoint node
-  std::unordered_map<std::uint64_t, std::int32_t> between_;  ///< edge key → mid-side node, old and new
-  std::vector<std::array<std::int32_t, 3>> new_middles_;     ///< two ends and the node
-  std::vector<std::int32_t> first_child_;                    ///< per element, plus the end
+  MiddleNodes halved_;                                    ///< midpoints of halved edges
+  MiddleNodes between_;                                   ///< mid-side nodes, old and new
+  std::vector<std::array<std::int32_t, 3>> new_middles_;  ///< two ends and the node
+  std::vector<std::int32_t> first_child_;                 ///< per element, plus the end
   std::optional<FacetIndex> facet_;
 };
 

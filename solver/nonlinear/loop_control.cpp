@@ -14,7 +14,7 @@ void Fallback::count(double worst) {
   idle_ = 0;
 }
 
-void Fallback::after_admm(double worst, bool solved) {
+void Fallback::after_fallback_step(double worst, bool solved) {
   count(worst);
   if (!solved && idle_ > 0) idle_ += tuning_.unsolved_worth - 1;
   steps_left_ = worst <= aim_ ? 0 : std::max(0, steps_left_ - 1);

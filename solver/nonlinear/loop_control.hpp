@@ -66,7 +66,7 @@ class Fallback {
   /// Whether the method of multipliers takes the next step.
   bool retreating() const noexcept { return steps_left_ > 0; }
   /// `worst`: largest KKT residual after the step; `solved`: whether its linear problems were solved.
-  void after_admm(double worst, bool solved = true);
+  void after_fallback_step(double worst, bool solved = true);
   /// The same for a Newton step. Returns whether a retreat begins.
   bool after_newton(double worst, bool solved);
   /// Whether there has been no progress for so long that the loop should stop.

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 #include "nonlinear/body_response.hpp"
 #include "nonlinear/friction_bounds.hpp"
 #include "nonlinear/step.hpp"
@@ -267,7 +267,7 @@ Residuals OuterLoop::learn(const StepOutcome& step, bool newton, const Residuals
   if (!newton) {
     // As after an unsolved Newton step, the preconditioner is the likely cause.
     if (!step.solved) context_.preconditioner.mark_stale();
-    control_.fallback.after_admm(worst, step.solved);
+    control_.fallback.after_fallback_step(worst, step.solved);
     return after;
   }
   if (step.tangent)

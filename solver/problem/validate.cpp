@@ -7,7 +7,6 @@
 
 #include <kacanov/error.hpp>
 #include <kacanov/model.hpp>
-#include <kacanov/rules.hpp>
 #include "problem/input_errors.hpp"
 #include "problem/load_curves.hpp"
 #include "problem/model_checks.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "distributed/exchange.hpp"
+#include "parallel/exchange.hpp"
 #include "partition/global_max.hpp"
 #include "problem/vector3.hpp"
 #include "recovery/element_batch.hpp"

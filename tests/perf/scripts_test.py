@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Tests compare_builds, roofline, bench_choices and bench_run on made-up results.
 
-usage: scripts_test.py FOLDER-OF-THE-SCRIPTS
+usage: scripts_test.py ROOT
 """
 import json
 import pathlib
@@ -13,7 +13,7 @@ import tempfile
 import unittest
 import xml.etree.ElementTree
 
-SCRIPTS = pathlib.Path(sys.argv.pop(1))
+ROOT = pathlib.Path(sys.argv.pop(1))
 
 
 def entry(**changes):
@@ -26,7 +26,7 @@ def result(*entries):
 
 
 def run(name, *arguments, text=None):
-    return subprocess.run([sys.executable, SCRIPTS / name, *map(str, arguments)], input=text, text=True,
+    return subprocess.run([sys.executable, ROOT / name, *map(str, arguments)], input=text, text=True,
                           capture_output=True, check=False)
 
 
@@ -58,7 +58,7 @@ print(json.dumps(first))
         drift = [1.5 if i > rounds / 2 else 1.0 for i in range(rounds)]
         speeds = [[[entry(unknowns_per_second=1e8 * f * d * (1 + noise * rng.uniform(-1, 1)))] for d in drift]
                   for f in (1.0, factor)]
-        done = run("compare_builds", self.build("old", speeds[0]), self.build("new", speeds[1]), "--rounds", rounds, "--json")
+        done = run("perf/compare_builds", self.build("old", speeds[0]), self.build("new", speeds[1]), "--rounds", rounds, "--json")
         self.assertIn(done.returncode, (0, 1), done.stderr)
         (only,) = json.loads(done.stdout).values()
         self.assertEqual(done.returncode, 1 if only["verdict"] == "worse" else 0)
@@ -83,30 +83,30 @@ print(json.dumps(first))
     def test_nothing_in_common(self):
         old = self.build("old", [[entry()]] * 6)
         new = self.build("new", [[entry(element="hex8")]] * 6)
-        done = run("compare_builds", old, new, "--rounds", 6)
+        done = run("perf/compare_builds", old, new, "--rounds", 6)
         self.assertEqual(done.returncode, 2)
         self.assertIn("in common", done.stderr)
 
     def test_missing_build_and_too_few_rounds(self):
-        self.assertEqual(run("compare_builds", "nowhere", "nowhere").returncode, 2)
-        self.assertEqual(run("compare_builds", "nowhere", "nowhere", "--rounds", 5).returncode, 2)
+        self.assertEqual(run("perf/compare_builds", "nowhere", "nowhere").returncode, 2)
+        self.assertEqual(run("perf/compare_builds", "nowhere", "nowhere", "--rounds", 5).returncode, 2)
 
 
 class Roofline(unittest.TestCase):
     def test_every_entry_wanted_is_drawn(self):
         entries = [entry(), entry(precision="float"), entry(form="csr"), entry(form="tangent"), entry(threads=1)]
-        done = run("roofline", text=json.dumps(result(*entries)))
+        done = run("perf/roofline", text=json.dumps(result(*entries)))
         self.assertEqual(done.returncode, 0, done.stderr)
         picture = xml.etree.ElementTree.fromstring(done.stdout)
         titles = [t.text for t in picture.iter("{http://www.w3.org/2000/svg}title")]
         self.assertEqual(len(titles), 3)
         self.assertTrue(any(t.startswith("tet4 csr box") for t in titles), titles)
-        everything = run("roofline", "--form", "all", text=json.dumps(result(*entries)))
+        everything = run("perf/roofline", "--form", "all", text=json.dumps(result(*entries)))
         self.assertEqual(everything.stdout.count("<title>"), 4)
 
     def test_a_point_on_the_roof_lies_on_the_roof(self):
         # At the peak and at the ridge's intensity, the marker lies where the two parts of the roof meet.
-        done = run("roofline", text=json.dumps(result(entry(share_of_triad=1.0, share_of_fma_peak=1.0))))
+        done = run("perf/roofline", text=json.dumps(result(entry(share_of_triad=1.0, share_of_fma_peak=1.0))))
         picture = xml.etree.ElementTree.fromstring(done.stdout)
         marker = next(picture.iter("{http://www.w3.org/2000/svg}circle"))
         roof = [x for x in picture.iter("{http://www.w3.org/2000/svg}line") if x.get("stroke-width") == "2"]
@@ -114,10 +114,10 @@ class Roofline(unittest.TestCase):
 
     def test_bad_input(self):
         for text in ("", "{}", "[]", json.dumps(result()), json.dumps(result(entry(share_of_triad=0)))):
-            done = run("roofline", text=text)
+            done = run("perf/roofline", text=text)
             self.assertEqual(done.returncode, 2, text)
             self.assertTrue(done.stderr.startswith("roofline: "), done.stderr)
-        self.assertEqual(run("roofline", "/nonexistent/result.json").returncode, 2)
+        self.assertEqual(run("perf/roofline", "/nonexistent/result.json").returncode, 2)
 
 
 class Choices(unittest.TestCase):
@@ -145,7 +145,7 @@ if isinstance(r, float):  # a sweep
             program, results = pathlib.Path(folder) / "kacanov", pathlib.Path(folder) / "results.json"
             program.write_text(self.PROGRAM.format(python=sys.executable))
             program.chmod(0o755)
-            done = run("bench_choices", program, "--case", "beam2d 16 gap 0 smooth *", "--sweep", 7, "--json", results)
+            done = run("perf/runs/bench_choices", program, "--case", "beam2d 16 gap 0 smooth *", "--sweep", 7, "--json", results)
             entries = json.loads(results.read_text()) if results.exists() else self.fail(done.stderr)
         self.assertEqual(done.returncode, 1, done.stderr)  # dual_admm failed
         self.assertEqual(set(entries), {"beam2d 16 gap 0 smooth linear", "beam2d 16 gap 0 smooth log"})
@@ -162,8 +162,8 @@ if isinstance(r, float):  # a sweep
         self.assertIn(["beam2d 16 gap 0 smooth log", "40", "32", "6.32", "1.25", "1.33"], cells)
 
     def test_bad_usage(self):
-        self.assertEqual(run("bench_choices", "nowhere").returncode, 2)
-        done = run("bench_choices", "nowhere", "--case", "no such case")
+        self.assertEqual(run("perf/runs/bench_choices", "nowhere").returncode, 2)
+        done = run("perf/runs/bench_choices", "nowhere", "--case", "no such case")
         self.assertEqual(done.returncode, 2)
         self.assertIn("--list", done.stderr)
 
@@ -193,7 +193,7 @@ else:
             program, results = pathlib.Path(folder) / "kacanov", pathlib.Path(folder) / "results.json"
             program.write_text(self.PROGRAM.format(python=sys.executable))
             program.chmod(0o755)
-            done = run("bench_run", program, "--problem", "beam3d", "--problem", "beam3d-linear", "--unknowns", 20000,
+            done = run("perf/runs/bench_run", program, "--problem", "beam3d", "--problem", "beam3d-linear", "--unknowns", 20000,
                        "--unknowns", 100000, "--json", results, "--output", pathlib.Path(folder) / "out")
             entries = json.loads(results.read_text())["entries"] if results.exists() else self.fail(done.stderr)
             self.assertTrue((pathlib.Path(folder) / "out/beam3d-20000/log.txt").exists())
@@ -210,17 +210,17 @@ else:
         self.assertEqual([phases[k] for k in ("read", "coarser meshes", "solve", "setups in it")], ["0.00", "0.30", "1.00", "0.50"])
 
     def test_bad_usage(self):
-        self.assertEqual(run("bench_run", "nowhere").returncode, 2)
-        self.assertEqual(run("bench_run", "nowhere", "--problem", "cake").returncode, 2)
+        self.assertEqual(run("perf/runs/bench_run", "nowhere").returncode, 2)
+        self.assertEqual(run("perf/runs/bench_run", "nowhere", "--problem", "cake").returncode, 2)
 
 
 class HardCases(unittest.TestCase):
     def test_list_and_bad_usage(self):
-        names = run("hard_cases", "--list").stdout.splitlines()
+        names = run("tests/campaigns/hard_cases", "--list").stdout.splitlines()
         self.assertEqual((len(names), len(set(names))), (216, 216))
-        self.assertEqual(run("hard_cases", "nowhere").returncode, 2)
+        self.assertEqual(run("tests/campaigns/hard_cases", "nowhere").returncode, 2)
         with tempfile.NamedTemporaryFile() as program:
-            done = run("hard_cases", program.name, "--case", "no such case")
+            done = run("tests/campaigns/hard_cases", program.name, "--case", "no such case")
         self.assertEqual(done.returncode, 2)
         self.assertIn("no case", done.stderr)
 
@@ -236,7 +236,7 @@ linear = case["material"][0]["law"]["type"] == "linear"
     outer_iterations=3, operator_applications=20, unknowns=600)))
 """.format(python=sys.executable))
             program.chmod(0o755)
-            done = run("hard_cases", program, "--case", "drag smooth *")
+            done = run("tests/campaigns/hard_cases", program, "--case", "drag smooth *")
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertEqual(done.stdout.count("so it goes"), 5)
         self.assertIn("1 of 6 converged, 18 outer steps, 120 operator applications", done.stdout)

@@ -6,14 +6,14 @@
 #include <filesystem>
 
 #include <kacanov/error.hpp>
-#include <kacanov/raise_order.hpp>
+#include <kacanov/refine.hpp>
 #include "case/case_material.hpp"
 #include "case/case_obstacle.hpp"
 #include "case/case_schema.hpp"
 #include "case/case_words.hpp"
 #include "case/json_node.hpp"
 #include "formats/text_bytes.hpp"
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 #include "problem/input_errors.hpp"
 
 namespace kacanov {

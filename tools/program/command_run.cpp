@@ -9,12 +9,11 @@
 #include <kacanov/discretisation.hpp>
 #include <kacanov/element_fields.hpp>
 #include <kacanov/error.hpp>
-#include <kacanov/nodal_stress.hpp>
 #include "formats/atomic_file.hpp"
 #include "formats/mesh_file.hpp"
 #include "formats/mesh_writer.hpp"
 #include "formats/printable.hpp"
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 #include "program/adaptive_run.hpp"
 #include "program/checkpoint_file.hpp"
 #include "program/coarse_run.hpp"

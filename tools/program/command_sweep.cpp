@@ -8,7 +8,7 @@
 #include <kacanov/solve.hpp>
 #include "formats/atomic_file.hpp"
 #include "formats/printable.hpp"
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 #include "pictures/picture.hpp"
 #include "program/commands.hpp"
 #include "program/loaded_case.hpp"

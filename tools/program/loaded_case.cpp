@@ -9,8 +9,7 @@
 #include <iostream>
 
 #include <kacanov/error.hpp>
-#include <kacanov/moving.hpp>
-#include <kacanov/raise_order.hpp>
+#include <kacanov/solve.hpp>
 #include <kacanov/refine.hpp>
 #include <kacanov/validity.hpp>
 #include "formats/mesh_file.hpp"
