@@ -109,6 +109,12 @@ if(Python3_FOUND)
   add_test(NAME shell
     COMMAND "${python}" -B "${CMAKE_CURRENT_SOURCE_DIR}/tools/shell_test.py" $<TARGET_FILE:kacanov>)
   kacanov_test_properties(shell 1)
+  if(NOT KACANOV_SANITIZE)  # whole solves with many small steps
+    add_test(NAME presets
+      COMMAND "${Python3_EXECUTABLE}" -B "${CMAKE_CURRENT_SOURCE_DIR}/tools/presets_test.py" $<TARGET_FILE:kacanov>
+        "${PROJECT_SOURCE_DIR}")
+    kacanov_test_properties(presets 2)
+  endif()
 endif()
 
 kacanov_test(report_data SOURCES tools/report_page_test.cpp LIBRARIES kacanov_program)

@@ -5,6 +5,7 @@
 #include <kacanov/cells.hpp>
 #include "case/case_file.hpp"
 #include "case/case_words.hpp"
+#include "case/preset.hpp"
 
 namespace kacanov {
 namespace {
@@ -169,8 +170,13 @@ Schema penalty() {
 
 KeySet solver() {
   const SolverOptions standard;
+  Word preset;
+  for (const Preset& one : presets()) preset.words.push_back(one.name);
   return {
-      {may("tolerance", Number{below_one}, "relative, on every entry of the certificate", standard.tolerance),
+      {may("preset", preset,
+           "a name for values of the other keys, which overrule it: paper is the paper's route",
+           presets().front().name),
+       may("tolerance", Number{below_one}, "relative, on every entry of the certificate", standard.tolerance),
        may("outer", one_of(words::outer), "the linearisation", word_of(standard.outer, words::outer)),
        may("contact", one_of(words::contact), "the method for contact",
            word_of(standard.contact, words::contact)),

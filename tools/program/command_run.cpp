@@ -125,6 +125,11 @@ std::string checkpoint_line(const CheckpointFile& file) {
                         : "";
 }
 
+std::string preset_line(const Case& input) {
+  const std::string text = input.preset.text();
+  return text.empty() ? text : "  preset        " + printable(text) + "\n";
+}
+
 /// Returns a nodal field at the boundary nodes, on the first rank. Collective.
 std::vector<double> at_boundary(const LoadedCase& loaded, std::span<const double> local, int components) {
   return picked(gather_nodal(loaded.part, local, components), loaded.boundary_nodes, components);
@@ -329,7 +334,7 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
     // Again, now that the time for output is known.
     const nlohmann::ordered_json json = result_json(result, figures, input, loaded.problem->mesh);
     write_json(folder / "result.json", json);
-    const std::string text = summary(result, figures, input.model, dim) +
+    const std::string text = summary(result, figures, input.model, dim) + preset_line(input) +
                              (result.status == Status::converged ? "" : checkpoint_line(*file));
     if (input.output.report)
       try_to_show([&] {
