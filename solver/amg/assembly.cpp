@@ -83,7 +83,7 @@ namespace {
 using Matrix = Eigen::SparseMatrix<double>;
 
 /// A matrix block as sent between ranks, with global node numbers.
-struct Travelling {
+struct SentBlock {
   std::int64_t row = 0, column = 0;
   std::array<double, 9> value{};
 };
@@ -94,11 +94,11 @@ Matrix assembled(const Part& part, const NodeGraph& graph, std::span<const doubl
                  std::span<const NodeBlock> blocks) {
   const std::size_t dim = part.dim();
   const std::vector<double> matrix = assemble_blocks(part.body(), g, graph);
-  std::vector<Travelling> all;
+  std::vector<SentBlock> all;
   for (std::size_t n = 0; n < graph.rows(); ++n)
     for (auto k = graph.start[n]; k < graph.start[n + 1]; ++k) {
       const std::size_t m = graph.column[k];
-      Travelling entry{part.node_number(n), part.node_number(m), {}};
+      SentBlock entry{part.node_number(n), part.node_number(m), {}};
       for (std::size_t i = 0; i < dim; ++i)
         for (std::size_t j = 0; j < dim; ++j)
           if (!part.held[n * dim + i] && !part.held[m * dim + j])
@@ -106,7 +106,7 @@ Matrix assembled(const Part& part, const NodeGraph& graph, std::span<const doubl
       all.push_back(entry);
     }
   for (const NodeBlock& block : blocks) {
-    Travelling entry{part.node_number(block.node), part.node_number(block.node), {}};
+    SentBlock entry{part.node_number(block.node), part.node_number(block.node), {}};
     for (std::size_t i = 0; i < dim; ++i)
       for (std::size_t j = 0; j < dim; ++j)
         if (!part.held[block.node * dim + i] && !part.held[block.node * dim + j])
@@ -117,7 +117,7 @@ Matrix assembled(const Part& part, const NodeGraph& graph, std::span<const doubl
   const auto size = static_cast<Eigen::Index>(part.total_nodes()) * static_cast<Eigen::Index>(dim);
   std::vector<Eigen::Triplet<double>> triplets;
   triplets.reserve(all.size() * dim * dim);
-  for (const Travelling& entry : all)
+  for (const SentBlock& entry : all)
     for (std::size_t i = 0; i < dim; ++i)
       for (std::size_t j = 0; j < dim; ++j)
         triplets.emplace_back(entry.row * dim + i, entry.column * dim + j, entry.value[i * dim + j]);

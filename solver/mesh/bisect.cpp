@@ -22,12 +22,12 @@ using Point = std::array<double, 3>;
 
 /// A simplex during bisection, or a facet of one: its corners, and their reference coordinates in the element
 /// that it is cut from.
-struct Piece {
+struct CutPiece {
   std::array<std::int32_t, 4> node{};
   std::array<Point, 4> xi{};
 };
 
-struct Edge {
+struct CutEdge {
   std::size_t a = 0, b = 0;  ///< corners
 };
 
@@ -46,15 +46,16 @@ class Bisection {
       before = halved_.size();
       for (std::size_t e = 0; e < coarse_.element_count(); ++e)
         cut(
-            whole(e), generations[e], [&](const Piece& piece, Edge edge) { halve(nodes(e), piece, edge); },
-            [](const Piece&) {});
+            whole(e), generations[e],
+            [&](const CutPiece& piece, CutEdge edge) { halve(nodes(e), piece, edge); },
+            [](const CutPiece&) {});
     }
     first_child_.reserve(coarse_.element_count() + 1);
     for (std::size_t e = 0; e < coarse_.element_count(); ++e) {
       first_child_.push_back(static_cast<std::int32_t>(fine_.element_count()));
       cut(
-          whole(e), generations[e], [](const Piece&, Edge) {},
-          [&](const Piece& piece) { emit(nodes(e), piece); });
+          whole(e), generations[e], [](const CutPiece&, CutEdge) {},
+          [&](const CutPiece& piece) { emit(nodes(e), piece); });
     }
     first_child_.push_back(static_cast<std::int32_t>(fine_.element_count()));
     number_new_nodes(fine_);
@@ -71,8 +72,8 @@ class Bisection {
     return std::span(coarse_.elements).subspan(e * n, n);
   }
 
-  Piece whole(std::size_t e) const {
-    Piece piece;
+  CutPiece whole(std::size_t e) const {
+    CutPiece piece;
     for (std::size_t a = 0; a < corners_; ++a) {
       piece.node[a] = nodes(e)[a];
       piece.xi[a] = type_.reference[a];
@@ -93,8 +94,8 @@ class Bisection {
   }
 
   /// Longest edge under a total order of edges on which all elements agree.
-  Edge longest_edge(const Piece& piece, std::size_t corners) const {
-    Edge longest{1, 0};
+  CutEdge longest_edge(const CutPiece& piece, std::size_t corners) const {
+    CutEdge longest{1, 0};
     double most = -1.0;
     for (std::size_t a = 0; a < corners; ++a)
       for (std::size_t b = 0; b < a; ++b) {
@@ -111,10 +112,10 @@ class Bisection {
     return longest;
   }
 
-  bool is_halved(const Piece& piece, Edge edge) const {
+  bool is_halved(const CutPiece& piece, CutEdge edge) const {
     return halved_.contains(pair_key(piece.node[edge.a], piece.node[edge.b]));
   }
-  bool any_halved(const Piece& piece) const {
+  bool any_halved(const CutPiece& piece) const {
     for (std::size_t a = 0; a < corners_; ++a)
       for (std::size_t b = 0; b < a; ++b)
         if (is_halved(piece, {a, b})) return true;
@@ -149,7 +150,7 @@ class Bisection {
   }
 
   /// Creates the node at the middle of an edge of `piece`; `of` are the nodes of its element.
-  void halve(std::span<const std::int32_t> of, const Piece& piece, Edge edge) {
+  void halve(std::span<const std::int32_t> of, const CutPiece& piece, CutEdge edge) {
     const std::int32_t a = piece.node[edge.a], b = piece.node[edge.b];
     const auto there = between_.find(pair_key(a, b));
     halved_.emplace(pair_key(a, b),
@@ -162,22 +163,22 @@ class Bisection {
   /// and calls emit(piece) for the resulting pieces. Calls halve(piece, edge) for edges that are not halved
   /// yet.
   template <class Halve, class Emit>
-  void cut(const Piece& piece, int generations, const Halve& halve, const Emit& emit) const {
+  void cut(const CutPiece& piece, int generations, const Halve& halve, const Emit& emit) const {
     if (generations <= 0 && !any_halved(piece)) return emit(piece);
-    const Edge edge = longest_edge(piece, corners_);
+    const CutEdge edge = longest_edge(piece, corners_);
     if (!is_halved(piece, edge)) halve(piece, edge);
-    for (const Piece& half : halves(piece, edge)) cut(half, generations - 1, halve, emit);
+    for (const CutPiece& half : halves(piece, edge)) cut(half, generations - 1, halve, emit);
   }
 
-  std::array<Piece, 2> halves(const Piece& piece, Edge edge) const {
+  std::array<CutPiece, 2> halves(const CutPiece& piece, CutEdge edge) const {
     const std::int32_t node = halved_.at(pair_key(piece.node[edge.a], piece.node[edge.b]));
-    std::array<Piece, 2> both{piece, piece};
+    std::array<CutPiece, 2> both{piece, piece};
     both[0].node[edge.a] = both[1].node[edge.b] = node;
     both[0].xi[edge.a] = both[1].xi[edge.b] = middle(piece.xi[edge.a], piece.xi[edge.b]);
     return both;
   }
 
-  void emit(std::span<const std::int32_t> of, const Piece& piece) {
+  void emit(std::span<const std::int32_t> of, const CutPiece& piece) {
     fine_.elements.insert(fine_.elements.end(), piece.node.begin(),
                           piece.node.begin() + static_cast<std::ptrdiff_t>(corners_));
     for (const CellEdge& edge : type_.edges) {
@@ -212,16 +213,16 @@ class Bisection {
     const std::size_t corners = type_.facet().corners;
     if (!facet_) facet_.emplace(fine_);
     for (const std::int32_t f : group.members) {
-      Piece facet;
+      CutPiece facet;
       std::copy_n(coarse_.facet(f).begin(), corners, facet.node.begin());
       find_pieces(facet, corners, members);
     }
   }
 
-  void find_pieces(const Piece& facet, std::size_t corners, std::vector<std::int32_t>& members) const {
-    const Edge edge = longest_edge(facet, corners);
+  void find_pieces(const CutPiece& facet, std::size_t corners, std::vector<std::int32_t>& members) const {
+    const CutEdge edge = longest_edge(facet, corners);
     if (is_halved(facet, edge)) {
-      for (const Piece& half : halves(facet, edge)) find_pieces(half, corners, members);
+      for (const CutPiece& half : halves(facet, edge)) find_pieces(half, corners, members);
     } else if (const std::int32_t found = facet_->find(std::span(facet.node).first(corners)); found >= 0) {
       members.push_back(found);
     }

@@ -26,6 +26,7 @@ struct OperatorOptions {
 /// so that these values can be sent meanwhile. Runs on the calling thread and may change y there. y has the
 /// same bits with and without it.
 using OnInterfaceReady = std::function<void()>;
+using WhenEarly = OnInterfaceReady;  ///< old name, for one release
 
 /// y = B(g) x and the operations that a solver needs with it (theory: operator), in the precision of `Real`.
 /// The constructor copies what it needs of the body's arrays; they need not outlive it.
