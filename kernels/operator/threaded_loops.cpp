@@ -324,7 +324,7 @@ const Real* BasicOperator<Real>::Data::by_slot(std::span<const double> of_point,
 }
 
 template <class Real>
-double BasicOperator<Real>::Data::nonlinear(const Real* u, Real* f, simd::Nonlinear keep,
+double BasicOperator<Real>::Data::nonlinear(const Real* u, Real* f, const simd::Nonlinear& keep,
                                             const simd::Outside<Real>& outside) {
   if (keep.keep_tangent) {
     tangent.present = true;

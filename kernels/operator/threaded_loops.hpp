@@ -110,7 +110,8 @@ struct BasicOperator<Real>::Data {
   double dots(const simd::Block<Real>& at, const simd::Vectors<Real>& vectors);
   /// Internal force at u into f, unless that is null; `keep` selects the outputs. Returns the energy if it is
   /// summed.
-  double nonlinear(const Real* u, Real* f, simd::Nonlinear keep, const simd::Outside<Real>& outside = {});
+  double nonlinear(const Real* u, Real* f, const simd::Nonlinear& keep,
+                   const simd::Outside<Real>& outside = {});
   /// Copies caller values (elements × points) to slots, with 0 in idle lanes; null if `of_point` is empty.
   const Real* by_slot(std::span<const double> of_point, Aligned<Real>& slots) const;
 

@@ -9,9 +9,9 @@
 #include <optional>
 #include <string>
 
-#include <kacanov/refine.hpp>
 #include <kacanov/discretisation.hpp>
 #include <kacanov/error.hpp>
+#include <kacanov/refine.hpp>
 #include <kacanov/solve.hpp>
 #include "program/loaded_case.hpp"
 #include "program/obstacle_files.hpp"

@@ -9,8 +9,8 @@
 #include <iostream>
 
 #include <kacanov/error.hpp>
-#include <kacanov/solve.hpp>
 #include <kacanov/refine.hpp>
+#include <kacanov/solve.hpp>
 #include <kacanov/validity.hpp>
 #include "formats/mesh_file.hpp"
 #include "formats/node_values.hpp"
