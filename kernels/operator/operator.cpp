@@ -87,8 +87,9 @@ template <class Real>
 void BasicOperator<Real>::secant(std::span<double> g) const {
   const Data& data = *data_;
   expect_size(g.size(), data.mesh.points, "g");
-  data.layout.for_each_point(
-      [&](std::size_t slot, std::size_t point) { g[point] = static_cast<double>(data.values.secant[slot]); });
+  data.layout.for_each_point([g, from = data.values.secant.data()](std::size_t slot, std::size_t point) {
+    g[point] = static_cast<double>(from[slot]);
+  });
 }
 
 template <class Real>
@@ -96,8 +97,9 @@ void BasicOperator<Real>::set_secant(std::span<const double> g) {
   Data& data = *data_;
   expect_size(g.size(), data.mesh.points, "g");
   data.detach_tangent();
-  data.layout.for_each_point(
-      [&](std::size_t slot, std::size_t point) { data.values.secant[slot] = static_cast<Real>(g[point]); });
+  data.layout.for_each_point([g, to = data.values.secant.data()](std::size_t slot, std::size_t point) {
+    to[slot] = static_cast<Real>(g[point]);
+  });
 }
 
 template <class Real>
@@ -231,8 +233,9 @@ void BasicOperator<Real>::strain(std::span<const Real> u, std::span<double> x) {
   expect_size(x.size(), data.mesh.points, "x");
   data.values.strain.resize(data.values.secant.size());
   data.nonlinear(u.data(), nullptr, {}, {.strain = data.values.strain.data()});
-  data.layout.for_each_point(
-      [&](std::size_t slot, std::size_t point) { x[point] = static_cast<double>(data.values.strain[slot]); });
+  data.layout.for_each_point([x, from = data.values.strain.data()](std::size_t slot, std::size_t point) {
+    x[point] = static_cast<double>(from[slot]);
+  });
 }
 
 template <class Real>

@@ -318,8 +318,9 @@ template <class Real>
 const Real* BasicOperator<Real>::Data::by_slot(std::span<const double> of_point, Aligned<Real>& slots) const {
   if (of_point.empty()) return nullptr;
   slots.resize(layout.element_point.size());  // idle lanes stay zero
-  layout.for_each_point(
-      [&](std::size_t slot, std::size_t point) { slots[slot] = static_cast<Real>(of_point[point]); });
+  layout.for_each_point([of_point, to = slots.data()](std::size_t slot, std::size_t point) {
+    to[slot] = static_cast<Real>(of_point[point]);
+  });
   return slots.data();
 }
 
