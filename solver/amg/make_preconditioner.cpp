@@ -4,6 +4,7 @@
 
 #include "amg/boomer_amg.hpp"
 #include "amg/coarse_amg.hpp"
+#include "amg/factorised.hpp"
 #include "amg/part_multigrid.hpp"
 
 namespace kacanov {
@@ -13,6 +14,8 @@ std::unique_ptr<Preconditioner> make_preconditioner(const SolverOptions& options
                                                     const Operator* like) {
   if (options.preconditioner == SolverOptions::Preconditioner::elasticity)
     return std::make_unique<ElasticityAmg>(part);
+  if (options.preconditioner == SolverOptions::Preconditioner::cholesky)
+    return std::make_unique<Factorised>(part);
   MultigridOptions multigrid;
   multigrid.threads = threads;
   multigrid.instruction_set = instruction_set;

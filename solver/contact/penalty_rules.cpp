@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Published rules for one penalty of ADMM, to compare the balance with (theory: penalty-rules).
+#include "contact/penalty_rules.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace kacanov {
+namespace {
+
+/// Returns a − b.
+ContactValues difference(const ContactValues& a, const ContactValues& b) {
+  ContactValues out = a;
+  for (std::size_t i = 0; i < out.normal.size(); ++i) out.normal[i] -= b.normal[i];
+  for (std::size_t k = 0; k < out.tangential.size(); ++k) out.tangential[k] -= b.tangential[k];
+  return out;
+}
+
+/// Returns this rank's share of aᵀ M b over both traces.
+double share(const Traces& traces, const ContactValues& a, const ContactValues& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < traces.owned(); ++i)
+    sum += traces.points()[i].mass * (a.normal[i] * b.normal[i] + a.tangential[2 * i] * b.tangential[2 * i] +
+                                      a.tangential[2 * i + 1] * b.tangential[2 * i + 1]);
+  return sum;
+}
+
+/// Norms of the residuals w − φ and λ − (λ + r(w − φ)), and of what they are compared with.
+struct Norms {
+  double primal = 0.0, dual = 0.0, trace = 0.0, force = 0.0;
+
+  Norms(const PenaltyEvidence& now, const Traces& traces) {
+    const ContactValues open = difference(now.trace, now.phi), left = difference(now.lambda, now.answered);
+    std::array<double, 5> sums{share(traces, open, open), share(traces, left, left),
+                               share(traces, now.trace, now.trace), share(traces, now.phi, now.phi),
+                               share(traces, now.lambda, now.lambda)};
+    traces.ranks().sum_all(sums);
+    primal = std::sqrt(sums[0]);
+    dual = std::sqrt(sums[1]);
+    trace = std::sqrt(std::max(sums[2], sums[3]));
+    force = std::sqrt(sums[4]);
+  }
+  /// Returns primal over dual, each relative to its size; 1 without data.
+  double relative() const {
+    const double ratio = (primal * force) / (dual * trace);
+    return std::isfinite(ratio) && ratio > 0.0 ? ratio : 1.0;
+  }
+};
+
+/// Residual balancing: twice the penalty if the primal residual is more than ten times the dual one, half of
+/// it in the opposite case [HYW]; `relative`: residuals relative to their sizes [Wo].
+class ResidualBalancing final : public PenaltyRule {
+ public:
+  explicit ResidualBalancing(bool relative) : relative_(relative) {}
+  double next(double r, const PenaltyEvidence& now, const Traces& traces) override {
+    constexpr double most = 10.0, factor = 2.0;
+    const Norms norms(now, traces);
+    const double primal = relative_ ? norms.relative() : norms.primal, dual = relative_ ? 1.0 : norms.dual;
+    if (primal > most * dual) return r * factor;
+    return dual > most * primal ? r / factor : r;
+  }
+
+ private:
+  bool relative_;
+};
+
+/// OSQP: r times the root of the ratio of the relative residuals, if that is more than a factor of 5 [OSQP].
+class Osqp final : public PenaltyRule {
+ public:
+  double next(double r, const PenaltyEvidence& now, const Traces& traces) override {
+    constexpr double least_change = 5.0;
+    const double factor = std::sqrt(Norms(now, traces).relative());
+    return factor > least_change || factor < 1.0 / least_change ? r * factor : r;
+  }
+};
+
+/// Adaptive ADMM: spectral (Barzilai–Borwein) estimates of the curvature of both halves since the last step,
+/// each used where its changes correlate [XFG].
+class Spectral final : public PenaltyRule {
+ public:
+  double next(double r, const PenaltyEvidence& now, const Traces& traces) override {
+    double chosen = r;
+    if (last_) {
+      // The body: w moves against the force that it answers. The contact: φ moves along λ.
+      const ContactValues force = difference(last_->answered, now.answered),
+                          moved = difference(now.trace, last_->trace),
+                          pressed = difference(now.lambda, last_->lambda),
+                          opened = difference(now.phi, last_->phi);
+      std::array<double, 6> sums{share(traces, force, force),    share(traces, moved, force),
+                                 share(traces, moved, moved),    share(traces, pressed, pressed),
+                                 share(traces, opened, pressed), share(traces, opened, opened)};
+      traces.ranks().sum_all(sums);
+      const auto body = curvature(sums[0], sums[1], sums[2]), contact = curvature(sums[3], sums[4], sums[5]);
+      if (body && contact)
+        chosen = std::sqrt(*body * *contact);
+      else if (body || contact)
+        chosen = body ? *body : *contact;
+    }
+    last_ = now;
+    return std::isfinite(chosen) && chosen > 0.0 ? chosen : r;
+  }
+
+ private:
+  std::optional<PenaltyEvidence> last_;
+
+  /// Returns the hybrid step size from ‖f‖², f·w and ‖w‖², if f and w correlate.
+  static std::optional<double> curvature(double ff, double fw, double ww) {
+    constexpr double least_correlation = 0.2;
+    if (!(fw > least_correlation * std::sqrt(ff * ww))) return std::nullopt;
+    const double steepest = ff / fw, least_gradient = fw / ww;
+    return 2.0 * least_gradient > steepest ? least_gradient : steepest - 0.5 * least_gradient;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<PenaltyRule> make_penalty_rule(SolverOptions::Penalty penalty) {
+  switch (penalty) {
+    case SolverOptions::Penalty::residuals: return std::make_unique<ResidualBalancing>(false);
+    case SolverOptions::Penalty::relative_residuals: return std::make_unique<ResidualBalancing>(true);
+    case SolverOptions::Penalty::osqp: return std::make_unique<Osqp>();
+    case SolverOptions::Penalty::spectral: return std::make_unique<Spectral>();
+    case SolverOptions::Penalty::automatic:
+    case SolverOptions::Penalty::paper:
+    case SolverOptions::Penalty::fixed: break;
+  }
+  return nullptr;
+}
+
+}  // namespace kacanov
