@@ -27,7 +27,7 @@ double share(const Traces& traces, const ContactValues& a, const ContactValues& 
   return sum;
 }
 
-/// Norms of the residuals w − φ and λ − (λ + r(w − φ)), and of what they are compared with.
+/// Norms of the residuals w − φ and λ − (λ + r(w − φ)), and of the traces and forces for relative ones.
 struct Norms {
   double primal = 0.0, dual = 0.0, trace = 0.0, force = 0.0;
 
