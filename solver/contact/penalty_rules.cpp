@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Published rules for one penalty of ADMM, to compare the balance with (theory: penalty-rules).
+// Published rules for one penalty of ADMM, as rivals of the balance (theory: penalty-rules).
 #include "contact/penalty_rules.hpp"
 
 #include <algorithm>
@@ -50,83 +50,60 @@ struct Norms {
 };
 
 /// Residual balancing: twice the penalty if the primal residual is more than ten times the dual one, half of
-/// it in the opposite case [HYW]; `relative`: residuals relative to their sizes [Wo].
-class ResidualBalancing final : public PenaltyRule {
- public:
-  explicit ResidualBalancing(bool relative) : relative_(relative) {}
-  double next(double r, const PenaltyEvidence& now, const Traces& traces) override {
-    constexpr double most = 10.0, factor = 2.0;
-    const Norms norms(now, traces);
-    const double primal = relative_ ? norms.relative() : norms.primal, dual = relative_ ? 1.0 : norms.dual;
-    if (primal > most * dual) return r * factor;
-    return dual > most * primal ? r / factor : r;
-  }
+/// it in the opposite case [HYW].
+double balance_residuals(double r, double primal, double dual) {
+  constexpr double most = 10.0, factor = 2.0;
+  if (primal > most * dual) return r * factor;
+  return dual > most * primal ? r / factor : r;
+}
 
- private:
-  bool relative_;
-};
+/// OSQP: r times the root of the ratio of the relative residuals, if that is more than a factor of 5 [O].
+double osqp(double r, double relative) {
+  constexpr double least_change = 5.0;
+  const double factor = std::sqrt(relative);
+  return factor > least_change || factor < 1.0 / least_change ? r * factor : r;
+}
 
-/// OSQP: r times the root of the ratio of the relative residuals, if that is more than a factor of 5 [OSQP].
-class Osqp final : public PenaltyRule {
- public:
-  double next(double r, const PenaltyEvidence& now, const Traces& traces) override {
-    constexpr double least_change = 5.0;
-    const double factor = std::sqrt(Norms(now, traces).relative());
-    return factor > least_change || factor < 1.0 / least_change ? r * factor : r;
-  }
-};
+/// Returns the hybrid Barzilai–Borwein step size from ‖f‖², f·w and ‖w‖², if f and w correlate.
+std::optional<double> curvature(double ff, double fw, double ww) {
+  constexpr double least_correlation = 0.2;
+  if (!(fw > least_correlation * std::sqrt(ff * ww))) return std::nullopt;
+  const double steepest = ff / fw, least_gradient = fw / ww;
+  return 2.0 * least_gradient > steepest ? least_gradient : steepest - 0.5 * least_gradient;
+}
 
-/// Adaptive ADMM: spectral (Barzilai–Borwein) estimates of the curvature of both halves since the last step,
-/// each used where its changes correlate [XFG].
-class Spectral final : public PenaltyRule {
- public:
-  double next(double r, const PenaltyEvidence& now, const Traces& traces) override {
-    double chosen = r;
-    if (last_) {
-      // The body: w moves against the force that it answers. The contact: φ moves along λ.
-      const ContactValues force = difference(last_->answered, now.answered),
-                          moved = difference(now.trace, last_->trace),
-                          pressed = difference(now.lambda, last_->lambda),
-                          opened = difference(now.phi, last_->phi);
-      std::array<double, 6> sums{share(traces, force, force),    share(traces, moved, force),
-                                 share(traces, moved, moved),    share(traces, pressed, pressed),
-                                 share(traces, opened, pressed), share(traces, opened, opened)};
-      traces.ranks().sum_all(sums);
-      const auto body = curvature(sums[0], sums[1], sums[2]), contact = curvature(sums[3], sums[4], sums[5]);
-      if (body && contact)
-        chosen = std::sqrt(*body * *contact);
-      else if (body || contact)
-        chosen = body ? *body : *contact;
-    }
-    last_ = now;
-    return std::isfinite(chosen) && chosen > 0.0 ? chosen : r;
-  }
-
- private:
-  std::optional<PenaltyEvidence> last_;
-
-  /// Returns the hybrid step size from ‖f‖², f·w and ‖w‖², if f and w correlate.
-  static std::optional<double> curvature(double ff, double fw, double ww) {
-    constexpr double least_correlation = 0.2;
-    if (!(fw > least_correlation * std::sqrt(ff * ww))) return std::nullopt;
-    const double steepest = ff / fw, least_gradient = fw / ww;
-    return 2.0 * least_gradient > steepest ? least_gradient : steepest - 0.5 * least_gradient;
-  }
-};
+/// Adaptive ADMM: spectral estimates of the curvature of both halves since the step before, each used where
+/// its changes correlate [XFG].
+double spectral(double r, const PenaltyEvidence& now, const PenaltyEvidence& before, const Traces& traces) {
+  // The body: w moves against the force that it answers. The contact: φ moves along λ.
+  const ContactValues force = difference(before.answered, now.answered),
+                      moved = difference(now.trace, before.trace),
+                      pressed = difference(now.lambda, before.lambda),
+                      opened = difference(now.phi, before.phi);
+  std::array<double, 6> sums{share(traces, force, force),    share(traces, moved, force),
+                             share(traces, moved, moved),    share(traces, pressed, pressed),
+                             share(traces, opened, pressed), share(traces, opened, opened)};
+  traces.ranks().sum_all(sums);
+  const auto body = curvature(sums[0], sums[1], sums[2]), contact = curvature(sums[3], sums[4], sums[5]);
+  if (body && contact) return std::sqrt(*body * *contact);
+  return body ? *body : contact ? *contact : r;
+}
 
 }  // namespace
 
-std::unique_ptr<PenaltyRule> make_penalty_rule(SolverOptions::Penalty penalty) {
-  switch (penalty) {
-    case SolverOptions::Penalty::residuals: return std::make_unique<ResidualBalancing>(false);
-    case SolverOptions::Penalty::relative_residuals: return std::make_unique<ResidualBalancing>(true);
-    case SolverOptions::Penalty::osqp: return std::make_unique<Osqp>();
-    case SolverOptions::Penalty::spectral: return std::make_unique<Spectral>();
-    case SolverOptions::Penalty::automatic:
-    case SolverOptions::Penalty::paper:
-    case SolverOptions::Penalty::fixed: break;
+double next_penalty(SolverOptions::Penalty rule, double r, const PenaltyEvidence& now,
+                    const PenaltyEvidence* before, const Traces& traces) {
+  double next = r;
+  if (rule == SolverOptions::Penalty::spectral) {
+    if (before) next = spectral(r, now, *before, traces);
+  } else {
+    const Norms norms(now, traces);
+    if (rule == SolverOptions::Penalty::residuals) next = balance_residuals(r, norms.primal, norms.dual);
+    if (rule == SolverOptions::Penalty::relative_residuals)
+      next = balance_residuals(r, norms.relative(), 1.0);
+    if (rule == SolverOptions::Penalty::osqp) next = osqp(r, norms.relative());
   }
-  return nullptr;
+  return std::isfinite(next) && next > 0.0 ? next : r;
 }
 
 }  // namespace kacanov

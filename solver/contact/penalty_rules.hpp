@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Published rules for one penalty of ADMM, to compare the balance with (theory: penalty-rules).
+// Published rules for one penalty of ADMM, as rivals of the balance (theory: penalty-rules).
 #pragma once
-
-#include <memory>
 
 #include <kacanov/model.hpp>
 #include "contact/traces.hpp"
@@ -15,15 +13,14 @@ struct PenaltyEvidence {
   ContactValues answered;  ///< λ + r (w − φ) before the projections: the force that w answers
 };
 
-class PenaltyRule {
- public:
-  virtual ~PenaltyRule() = default;
-  /// Returns the penalty of the next step. Collective.
-  virtual double next(double r, const PenaltyEvidence& now, const Traces& traces) = 0;
-};
+/// Whether the penalty follows a published rule, and not the balance.
+constexpr bool follows_rule(SolverOptions::Penalty penalty) {
+  return adapts(penalty) && penalty != SolverOptions::Penalty::automatic;
+}
 
-/// Returns the rule, or null if the penalty is fixed or balanced. Rules remember earlier steps, which
-/// checkpoints do not hold.
-std::unique_ptr<PenaltyRule> make_penalty_rule(SolverOptions::Penalty penalty);
+/// Returns the penalty of the next step by the rule. `before`: the evidence of the step before, or null.
+/// Collective.
+double next_penalty(SolverOptions::Penalty rule, double r, const PenaltyEvidence& now,
+                    const PenaltyEvidence* before, const Traces& traces);
 
 }  // namespace kacanov

@@ -16,7 +16,7 @@ AdmmOptions admm_accuracy(const SolverOptions& options, const Residuals& before,
   out.relaxation = options.relaxation.value_or(as_printed ? 1.0 : 1.7);
   out.max_iterations = options.max_contact;
   out.max_cg = options.max_cg;
-  out.collect_evidence = adapts(options.penalty) && options.penalty != SolverOptions::Penalty::automatic;
+  out.collect_evidence = follows_rule(options.penalty);
   out.contact_weight = scales.contact_weight();
   if (by_step) {
     out.step_tolerance = options.tolerance;

@@ -46,9 +46,8 @@ PenaltyControl::PenaltyControl(const SolverOptions& options, double first, const
                  options.stop != SolverOptions::Stop::paper),
       rule_(options.penalty),
       r_(options.r),
-      first_(adapts(options.penalty) && options.r > 0.0 ? options.r : first) {
-  if (options.stop != SolverOptions::Stop::paper) published_ = make_penalty_rule(options.penalty);
-}
+      first_(adapts(options.penalty) && options.r > 0.0 ? options.r : first),
+      published_(follows_rule(options.penalty) && options.stop != SolverOptions::Stop::paper) {}
 
 void PenaltyControl::choose(double r_star, double lambda_min) {
   const double r = adapts(rule_) ? first_ : rule_ == SolverOptions::Penalty::paper ? r_star : r_;
@@ -75,8 +74,9 @@ bool PenaltyControl::balance(std::span<const BalanceSample> samples, const Scale
 }
 
 void PenaltyControl::follow_rule(const PenaltyEvidence& evidence, const Traces& traces) {
-  const double r = published_->next(value_.normal, evidence, traces);
+  const double r = next_penalty(rule_, value_.normal, evidence, evidence_.get(), traces);
   value_ = {r, r};
+  evidence_ = std::make_shared<PenaltyEvidence>(evidence);
 }
 
 bool PenaltyControl::go_back_to_first() {

@@ -121,7 +121,7 @@ class PenaltyControl {
   /// balance). Returns whether the rule changes penalties at all.
   bool balance(std::span<const BalanceSample> samples, const Scales& scales);
   /// Whether a published rule takes the place of the balance.
-  bool has_rule() const noexcept { return published_ != nullptr; }
+  bool has_rule() const noexcept { return published_; }
   /// Moves both penalties by that rule. Collective.
   void follow_rule(const PenaltyEvidence& evidence, const Traces& traces);
   /// Call it instead after the step that brought the first contact, if others without any came before:
@@ -138,7 +138,9 @@ class PenaltyControl {
   double r_, first_;
   Penalty value_;
   double lambda_min_ = 0.0;
-  std::unique_ptr<PenaltyRule> published_;
+  bool published_;  ///< a published rule is chosen, and the stop is not by steps
+  /// Of the last step, for that rule; not in checkpoints.
+  std::shared_ptr<const PenaltyEvidence> evidence_;
 };
 
 /// Chooses the linearisation of semismooth Newton steps (theory: newton): the secant far from equilibrium,
