@@ -311,14 +311,14 @@ count = {{"auto": 10, "osqp": 20, 4.5: 5}}.get(r, 40)
             program = pathlib.Path(folder) / "kacanov"
             program.write_text(self.PROGRAM.format(python=sys.executable))
             program.chmod(0o755)
-            done = run("penalties/run", program, "--case", "*beam2d 16 gap 0 *", "--tolerance", "1e-6")
+            done = run("penalties/run", program, "--case", "*beam2d 16 gap 0 smooth linear", "--tolerance", "1e-6")
         self.assertEqual(done.returncode, 0, done.stderr)
         rows = {c[2]: c for line in done.stdout.splitlines() if line.startswith("|")
                 for c in [[c.strip() for c in line.split("|")[1:-1]]]}
-        self.assertEqual(rows["balanced"][3:], ["4", "4", "1.00", "1.00", "2.00", "4"])
-        self.assertEqual(rows["OSQP"][3:], ["4", "4", "2.00", "2.00", "4.00", "4"])
-        self.assertEqual(rows["r_A of the solution"][3:], ["4", "4", "0.50", "0.50", "1.00", "0"])
-        self.assertEqual(rows["residuals"][3:], ["4", "0", "", "", "", "0"])
+        self.assertEqual(rows["balanced"][3:], ["1", "1", "1.00", "1.00", "2.00", "1"])
+        self.assertEqual(rows["OSQP"][3:], ["1", "1", "2.00", "2.00", "4.00", "1"])
+        self.assertEqual(rows["r_A of the solution"][3:], ["1", "1", "0.50", "0.50", "1.00", "0"])
+        self.assertEqual(rows["residuals"][3:], ["1", "0", "", "", "", "0"])
 
     def test_bad_usage(self):
         self.assertEqual(run("penalties/run", "/nonexistent").returncode, 2)
