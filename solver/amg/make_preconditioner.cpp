@@ -12,6 +12,7 @@
 
 #include <kacanov/part.hpp>
 #include "amg/boomer_amg.hpp"
+#include "amg/assembly.hpp"
 #include "multigrid/rigid_motion.hpp"
 
 namespace kacanov {
@@ -106,6 +107,8 @@ std::unique_ptr<Preconditioner> make_preconditioner(const SolverOptions& options
                                                     const Operator* like) {
   if (options.preconditioner == SolverOptions::Preconditioner::elasticity)
     return std::make_unique<ElasticityAmg>(part);
+  if (options.preconditioner == SolverOptions::Preconditioner::cholesky)
+    return std::make_unique<Factorised>(part);
   MultigridOptions multigrid;
   multigrid.threads = threads;
   multigrid.instruction_set = instruction_set;

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -119,6 +120,10 @@ class PenaltyControl {
   /// Raises the penalty where held rows lag behind free ones, and lowers it in the opposite case (theory:
   /// balance). Returns whether the rule changes penalties at all.
   bool balance(std::span<const BalanceSample> samples, const Scales& scales);
+  /// Whether a published rule takes the place of the balance.
+  bool has_rule() const noexcept { return published_; }
+  /// Moves both penalties by that rule. Collective.
+  void follow_rule(const PenaltyEvidence& evidence, const Traces& traces);
   /// Call it instead after the step that brought the first contact, if others without any came before:
   /// without contact, balancing sees only motion and lowers the penalties too far (42 iterations instead of
   /// 55, 52 instead of 57 on half balls 0.3 away).
@@ -133,6 +138,9 @@ class PenaltyControl {
   double r_, first_;
   Penalty value_;
   double lambda_min_ = 0.0;
+  bool published_;  ///< a published rule is chosen, and the stop is not by steps
+  /// Of the last step, for that rule; not in checkpoints.
+  std::shared_ptr<const PenaltyEvidence> evidence_;
 };
 
 /// Chooses the linearisation of semismooth Newton steps (theory: newton): the secant far from equilibrium,

@@ -252,6 +252,11 @@ StepOutcome OuterLoop::take_step(bool newton, const Residuals& before, Result& r
 
 void OuterLoop::move_penalty(const StepOutcome& step, const Residuals& before, const Residuals& after,
                              Result& result) {
+  if (control_.penalty.has_rule()) {
+    control_.penalty.follow_rule(step.evidence, context_.traces);
+    result.r_active = control_.penalty.value().normal;
+    return;
+  }
   // Before the first step there is no displacement scale.
   const bool first = opening_;
   const bool moved = step.arrived

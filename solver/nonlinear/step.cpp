@@ -184,6 +184,7 @@ StepOutcome admm_step(StepContext& c, const Penalty& penalty, const Residuals& b
   outcome.solved = step.solves_converged;
   outcome.arrived = !first && !touched && touches(c);
   outcome.balance = step.balance;
+  outcome.evidence = step.evidence;
   return outcome;
 }
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests compare_builds, roofline, bench_choices and bench_run on made-up results.
+"""Tests the scripts of perf/ on made-up results.
 
 usage: scripts_test.py ROOT
 """
@@ -240,6 +240,88 @@ linear = case["material"][0]["law"]["type"] == "linear"
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertEqual(done.stdout.count("so it goes"), 5)
         self.assertIn("1 of 6 converged, 18 outer steps, 120 operator applications", done.stdout)
+
+
+class Paper(unittest.TestCase):
+    """paper/run --check with a stub of the program that knows the committed figures."""
+
+    PROGRAM = """#!{python}
+import json, pathlib, sys
+command, path, *options = sys.argv[1:]
+case = json.loads(pathlib.Path(path).read_text())
+load, friction = -case["boundary"][1]["traction"][1], "Tresca" if "friction" in case["contact"][0] else "none"
+results = pathlib.Path({scripts!r}) / "paper" / "results"
+rows = [row for n in (1, 2) for row in json.loads((results / f"paper-table-{{n}}.json").read_text())["rows"]]
+row = next(r for r in rows if (r["load"], r["friction"], r["h"]) == (load, friction, "1/16"))
+if command == "spectrum":
+    print(json.dumps(dict(r_star={r_star} * row["r_star"])))
+    sys.exit()
+printed = case["solver"]["r"] == row["printed_r"]
+output = pathlib.Path(options[options.index("--output") + 1])
+output.mkdir()
+(output / "result.json").write_text(json.dumps(dict(status="not_converged", outer_iterations=row["outer"], operator_applications=9,
+    contact_iterations=row["iterations_at_printed" if printed else "iterations"] + {more}, certificate=dict(tension=1e-4), r=[1.0],
+    r_active=0.0)))
+sys.exit(1)
+"""
+
+    def check(self, **figures):
+        with tempfile.TemporaryDirectory() as folder:
+            program = pathlib.Path(folder) / "kacanov"
+            program.write_text(self.PROGRAM.format(python=sys.executable, scripts=str(SCRIPTS.resolve()), **figures))
+            program.chmod(0o755)
+            return run("paper/run", program, "--check")
+
+    def test_the_committed_figures_agree_with_themselves(self):
+        done = self.check(r_star=1.005, more=1)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(done.stdout.count("iterations_at_printed"), 3)
+
+    def test_other_figures_are_named(self):
+        done = self.check(r_star=1.02, more=0)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("16 tresca 0.05: r_star is", done.stderr)
+        done = self.check(r_star=1, more=-2)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("16 smooth 0.005: iterations is", done.stderr)
+
+    def test_bad_usage(self):
+        self.assertEqual(run("paper/run", "/nonexistent").returncode, 2)
+
+
+class PenaltyRules(unittest.TestCase):
+    """penalties/run with a stub: the balanced penalties take 10 iterations, OSQP 20, residual balancing fails."""
+
+    PROGRAM = """#!{python}
+import json, pathlib, sys
+command, path, *options = sys.argv[1:]
+r = json.loads(pathlib.Path(path).read_text())["solver"].get("r")
+if command == "sweep":
+    print("r* = 1, r_A = 4.5\\n")
+    sys.exit()
+output = pathlib.Path(options[options.index("--output") + 1])
+output.mkdir()
+count = {{"auto": 10, "osqp": 20, 4.5: 5}}.get(r, 40)
+(output / "result.json").write_text(json.dumps(dict(status="not_converged" if r == "residual_balancing" else "converged",
+    contact_iterations=count, operator_applications=3 * count, r=[2.0])))
+"""
+
+    def test_rules_are_compared_with_the_balanced_one(self):
+        with tempfile.TemporaryDirectory() as folder:
+            program = pathlib.Path(folder) / "kacanov"
+            program.write_text(self.PROGRAM.format(python=sys.executable))
+            program.chmod(0o755)
+            done = run("penalties/run", program, "--case", "*beam2d 16 gap 0 smooth linear", "--tolerance", "1e-6")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rows = {c[2]: c for line in done.stdout.splitlines() if line.startswith("|")
+                for c in [[c.strip() for c in line.split("|")[1:-1]]]}
+        self.assertEqual(rows["balanced"][3:], ["1", "1", "1.00", "1.00", "2.00", "1"])
+        self.assertEqual(rows["OSQP"][3:], ["1", "1", "2.00", "2.00", "4.00", "1"])
+        self.assertEqual(rows["r_A of the solution"][3:], ["1", "1", "0.50", "0.50", "1.00", "0"])
+        self.assertEqual(rows["residuals"][3:], ["1", "0", "", "", "", "0"])
+
+    def test_bad_usage(self):
+        self.assertEqual(run("penalties/run", "/nonexistent").returncode, 2)
 
 
 if __name__ == "__main__":

@@ -94,6 +94,8 @@ def samples():
         yield {**small, "boundary": [entry]}
     for steps in (3, [0.5, 1]):
         yield {**small, "solver": {"load_steps": steps, "r": "paper"}}
+    for rule in ("residual_balancing", "relative_balancing", "osqp", "spectral"):
+        yield {**small, "solver": {"contact": "admm", "r": rule, "first_r": 1, "preconditioner": "cholesky"}}
     yield {**small, "mesh": {"file": "a.msh"}}
     yield {**small, "mesh": {"files": ["coarse.msh", "a.msh"]}}
 

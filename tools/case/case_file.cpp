@@ -270,6 +270,10 @@ class CaseParser {
     if (const auto v = object.optional("contact")) options.contact = value_of(*v, words::contact);
     if (const auto v = object.optional("stop")) options.stop = value_of(*v, words::stop);
     if (const auto v = object.optional("r")) parse_penalty(*v);
+    if (const auto v = object.optional("first_r")) {
+      if (!adapts(options.penalty)) v->expected("no first_r with an r that does not change");
+      options.r = v->number();
+    }
     if (const auto v = object.optional("preconditioner"))
       options.preconditioner = value_of(*v, words::preconditioner);
     if (const auto v = object.optional("coarse_amg")) options.coarse_amg = v->integer(0);

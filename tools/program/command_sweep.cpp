@@ -88,6 +88,7 @@ int sweep_command(const Command& command, const Case& input, const MpiSession& m
     const SpectrumResult elastic = analyse_spectrum(loaded.part, solver, options).back();
     landmarks.r_star = elastic.r_star;
     solver.penalty = SolverOptions::Penalty::automatic;
+    solver.r = 0.0;
     const ActivePenalty active =
         active_penalty(loaded.part, solve(loaded.part, solver, options), solver, options);
     landmarks.r_active = active.r;

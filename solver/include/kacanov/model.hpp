@@ -127,19 +127,22 @@ struct SolverOptions {
   /// Contact algorithm: ADMM (theory: admm, dual-admm), or semismooth Newton (theory: active-set) after an
   /// ADMM step and with the method of multipliers as fallback (theory: augmented-newton).
   enum class Contact { automatic, admm, dual_admm, active_set };
-  /// Penalty of ADMM: adapted during the run (theory: first-penalty, balance), r* (theory: r-star), or the
-  /// given `r`.
-  enum class Penalty { automatic, paper, fixed };
+  /// Penalty of ADMM: adapted during the run (theory: first-penalty, balance), r* (theory: r-star), the given
+  /// `r`, or adapted by a published rule, for comparison (theory: penalty-rules).
+  enum class Penalty { automatic, paper, fixed, residuals, relative_residuals, osqp, spectral };
   /// Stopping criterion: the KKT residuals (theory: kkt), or the size of a step (theory: step-stop).
   enum class Stop { kkt, paper };
-  /// Rigid-body-mode multigrid (theory: multigrid), or BoomerAMG (theory: elasticity-amg).
-  enum class Preconditioner { multigrid, elasticity };
+  /// Rigid-body-mode multigrid (theory: multigrid), BoomerAMG (theory: elasticity-amg), or a sparse Cholesky
+  /// factor for small bodies (theory: factorised).
+  enum class Preconditioner { multigrid, elasticity, cholesky };
 
   double tolerance = 1e-6;  ///< relative tolerance of the `stop` criterion
   Outer outer = Outer::automatic;
   Contact contact = Contact::automatic;
   Penalty penalty = Penalty::automatic;  ///< the key is `r`
-  double r = 0.0;                        ///< > 0, with Penalty::fixed: stress per length
+  /// Stress per length. With Penalty::fixed: the penalty; with one that adapts: the first one (the key is
+  /// `first_r`), 0 for the solver's own.
+  double r = 0.0;
   Stop stop = Stop::kkt;
   Preconditioner preconditioner = Preconditioner::multigrid;
   /// For aggregation multigrid: BoomerAMG replaces the first level with at most this many rows, and all
@@ -158,6 +161,11 @@ struct SolverOptions {
   /// Stop::paper, otherwise 1.7.
   std::optional<double> relaxation;
 };
+
+/// Whether the penalty changes during a run.
+constexpr bool adapts(SolverOptions::Penalty penalty) {
+  return penalty != SolverOptions::Penalty::fixed && penalty != SolverOptions::Penalty::paper;
+}
 
 /// A point of the load curves (theory: load-path). From its time on, the named entries have these factors on
 /// their loads, prescribed displacements or indentation; factors are linear in time between two points.
