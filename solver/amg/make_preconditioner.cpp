@@ -11,8 +11,8 @@
 #include <vector>
 
 #include <kacanov/part.hpp>
-#include "amg/boomer_amg.hpp"
 #include "amg/assembly.hpp"
+#include "amg/boomer_amg.hpp"
 #include "multigrid/rigid_motion.hpp"
 
 namespace kacanov {

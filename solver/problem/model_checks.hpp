@@ -8,8 +8,8 @@
 #include <string>
 
 #include <kacanov/error.hpp>
-#include <kacanov/obstacle.hpp>
 #include <kacanov/model.hpp>
+#include <kacanov/obstacle.hpp>
 #include "problem/vector3.hpp"
 
 namespace kacanov {

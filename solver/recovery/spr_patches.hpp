@@ -10,9 +10,9 @@
 #include <type_traits>
 #include <vector>
 
+#include <kacanov/discretisation.hpp>
 #include <kacanov/element_fields.hpp>
 #include <kacanov/model.hpp>
-#include <kacanov/discretisation.hpp>
 #include <kacanov/part.hpp>
 
 namespace kacanov {

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include <kacanov/element_fields.hpp>
 #include <kacanov/discretisation.hpp>
+#include <kacanov/element_fields.hpp>
 #include <kacanov/part.hpp>
 #include <kacanov/problem.hpp>
 #include <kacanov/result.hpp>
