@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The solver's main entry point: runs the loops, certifies the solution and collects the result.
-#include <kacanov/corner_dilatation.hpp>
+#include <kacanov/part.hpp>
 #include <kacanov/solve.hpp>
 
 #include <algorithm>
@@ -9,8 +9,9 @@
 #include <string>
 
 #include "amg/make_preconditioner.hpp"
+#include "linear/reference_response.hpp"
 #include "linear/springs.hpp"
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 #include "nonlinear/convergence_diagnosis.hpp"
 #include "nonlinear/friction_bounds.hpp"
 #include "nonlinear/load_steps.hpp"

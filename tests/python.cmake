@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Tests of the Python package in the build folder: ctest -L python. CI runs them on a wheel.
+# Tests of the Python package in the build folder: ctest -L python. CI runs those labelled wheel on a wheel instead.
 file(GLOB petsc4py "/usr/lib/petscdir/*/*-real/lib/python3/dist-packages")  # Debian's place without the -dev package
 if(petsc4py)
   list(GET petsc4py 0 petsc4py)
@@ -9,7 +9,7 @@ foreach(area case dolfinx notebooks operator own_law petsc plot steps)
     WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}/python/tests")
   kacanov_test_properties(python_${area} 1)
   get_test_property(python_${area} ENVIRONMENT environment)
-  set_tests_properties(python_${area} PROPERTIES LABELS python
+  set_tests_properties(python_${area} PROPERTIES LABELS "python;wheel"
     ENVIRONMENT "${environment};PYTHONPATH=${PROJECT_BINARY_DIR}/python:${petsc4py};KACANOV_PROGRAM=$<TARGET_FILE:kacanov>")
 endforeach()
 

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Tests of the solver: one program per module, and whole solves.
 kacanov_test(problem IN solver
-  MPI SOURCES solver/obstacles_test.cpp solver/equal_faces_test.cpp solver/problem_contact_test.cpp solver/problem_loads_test.cpp
-          solver/problem_rigid_modes_test.cpp solver/problem_validate_test.cpp
+  MPI SOURCES solver/obstacles_test.cpp solver/problem_test.cpp solver/problem_validate_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 find_package(Eigen3 3.4 REQUIRED)
@@ -25,12 +24,12 @@ kacanov_test(lanczos IN solver
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal kacanov_dense_algebra
   RANKS 1 2 3)
 kacanov_test(parallel IN solver
-  MPI SOURCES solver/parallel_test.cpp solver/check_part_test.cpp
+  MPI SOURCES solver/partition_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal
   RANKS 1 2 3 4)
 
 kacanov_test(checkpoint IN solver
-  MPI SOURCES solver/checkpoint_test.cpp solver/restart_test.cpp
+  MPI SOURCES solver/checkpoint_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal
   RANKS 1 2)
 
@@ -39,7 +38,7 @@ kacanov_test(coarse_start IN numbers
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 kacanov_test(load_steps IN solver
-  MPI SOURCES solver/load_steps_test.cpp solver/convergence_diagnosis_test.cpp
+  MPI SOURCES solver/load_steps_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 kacanov_test(entry_totals IN solver
@@ -52,12 +51,12 @@ kacanov_test(validity IN solver
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 kacanov_test(nodal_stress IN solver
-  MPI SOURCES solver/nodal_stress_test.cpp solver/discretisation_test.cpp solver/batched_fields_test.cpp solver/batched_errors_test.cpp
+  MPI SOURCES solver/recovery_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal
   RANKS 1 2 3)
 
 # The dense reference solver, independent of the solver under test.
-add_library(kacanov_dense_solver STATIC solver/dense_body.cpp solver/dense_laws.cpp solver/dense_solver.cpp)
+add_library(kacanov_dense_solver STATIC solver/dense_solver.cpp)
 target_link_libraries(kacanov_dense_solver PUBLIC kacanov_solver_internal kacanov_kernels_internal Eigen3::Eigen
   PRIVATE kacanov_warnings)
 target_compile_features(kacanov_dense_solver PUBLIC cxx_std_20)
@@ -98,11 +97,11 @@ kacanov_test(closed_friction IN numbers
   RANKS 1 2 4)
 
 kacanov_test(mesh IN solver
-  MPI SOURCES solver/mesh_test.cpp solver/node_fields_test.cpp solver/refine_test.cpp solver/bisect_test.cpp
+  MPI SOURCES solver/mesh_test.cpp solver/refine_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 
 kacanov_test(closed_solutions IN numbers
-  MPI NUMBERS SOURCES solver/closed_test.cpp solver/plane_state_test.cpp solver/radial_test.cpp solver/effectivity_test.cpp
+  MPI NUMBERS SOURCES solver/closed_test.cpp solver/plane_state_test.cpp solver/radial_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 kacanov_test(contact IN solver
   MPI SOURCES solver/contact_test.cpp
@@ -131,7 +130,7 @@ kacanov_test(outer IN numbers
   MPI NUMBERS SOURCES solver/outer_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 kacanov_test(nonlinear IN solver
-  MPI SOURCES solver/nonlinear_test.cpp solver/preconditioner_schedule_test.cpp solver/augmented_test.cpp
+  MPI SOURCES solver/nonlinear_test.cpp
   LIBRARIES kacanov_solver_internal kacanov_kernels_internal)
 kacanov_test(pressure_multigrid IN solver
   MPI SOURCES solver/element_pressures_test.cpp solver/pressure_multigrid_test.cpp solver/pressure_schur_test.cpp

@@ -20,6 +20,9 @@ endforeach()
 kacanov_test(program_warm_plate IN program
   SOURCES tools/program_warm_plate_test.cpp LIBRARIES kacanov_program_runner)
 target_link_libraries(test_program PRIVATE kacanov_png_writer)
+if(KACANOV_SANITIZE)  # half of the time of all tests; the tests of the solver, tests/fuzz and the other areas cover the same code
+  kacanov_slow(program_conditions program_history program_mixed program_obstacles program_partition)
+endif()
 kacanov_test(program_crafted IN program
   SOURCES tools/program_crafted_test.cpp
   LIBRARIES kacanov_program_runner kacanov_program kacanov_solver_internal)
@@ -47,35 +50,7 @@ target_compile_definitions(test_program PRIVATE
   KACANOV_HARD_CASES="${PROJECT_SOURCE_DIR}/tests/cases/hard")
 add_dependencies(test_program kacanov kacanov_early_thread)
 
-# Small random cases, each verified from its files; perf/verify_answers draws 500 by default.
 find_package(Python3 COMPONENTS Interpreter)
-if(Python3_FOUND)
-  if(NOT KACANOV_SANITIZE)  # under the sanitizers verified_conditions covers this
-    add_test(NAME verified_answers
-      COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/perf/verify_answers" $<TARGET_FILE:kacanov> --count 60)
-    kacanov_test_properties(verified_answers 1)
-  endif()
-  add_test(NAME verified_conditions
-    COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/perf/verify_answers" $<TARGET_FILE:kacanov>
-      --count $<IF:$<BOOL:${KACANOV_SANITIZE}>,12,30> --conditions)
-  kacanov_test_properties(verified_conditions 1)
-  add_test(NAME verified_history
-    COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/perf/verify_answers" $<TARGET_FILE:kacanov>
-      --count $<IF:$<BOOL:${KACANOV_SANITIZE}>,12,40> --history)
-  kacanov_test_properties(verified_history 1)
-endif()
-
-# Small runs with failing files, memory or power, or killed: at few places here, at every place with perf/endure. The
-# preloaded library cannot be combined with the sanitizers.
-add_library(kacanov_faults MODULE tools/faults.cpp)
-target_link_libraries(kacanov_faults PRIVATE ${CMAKE_DL_LIBS} kacanov_warnings)
-target_compile_features(kacanov_faults PRIVATE cxx_std_20)
-if(Python3_FOUND AND NOT KACANOV_SANITIZE)
-  add_test(NAME endured_faults
-    COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/perf/endure" $<TARGET_FILE:kacanov>
-      $<TARGET_FILE:kacanov_faults> --every 61 --kills 3)
-  kacanov_test_properties(endured_faults 1)
-endif()
 
 # The solve interface in C; its C client is also the one that consumes an installation.
 kacanov_test(solve_c SOURCES tools/solve_c_test.cpp LIBRARIES kacanov_program_runner kacanov_solve)
@@ -134,6 +109,12 @@ if(Python3_FOUND)
   add_test(NAME shell
     COMMAND "${python}" -B "${CMAKE_CURRENT_SOURCE_DIR}/tools/shell_test.py" $<TARGET_FILE:kacanov>)
   kacanov_test_properties(shell 1)
+  if(NOT KACANOV_SANITIZE)  # whole solves with many small steps
+    add_test(NAME presets
+      COMMAND "${Python3_EXECUTABLE}" -B "${CMAKE_CURRENT_SOURCE_DIR}/tools/presets_test.py" $<TARGET_FILE:kacanov>
+        "${PROJECT_SOURCE_DIR}")
+    kacanov_test_properties(presets 2)
+  endif()
 endif()
 
 kacanov_test(report_data SOURCES tools/report_page_test.cpp LIBRARIES kacanov_program)
@@ -151,6 +132,7 @@ if(Python3_FOUND)
         "${KACANOV_CHROMIUM}")
     kacanov_test_properties(report_in_browser 1)
     set_tests_properties(report_in_browser PROPERTIES COST 2)  # the longest test starts early
+    kacanov_slow(report_in_browser)
   endif()
 endif()
 if(Python3_FOUND AND NOT KACANOV_SANITIZE)  # a test of accuracy

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Checks laws of the C interface and converts them to Law.
+// Laws of the C interface: checks, conversion to Law, and values of user-defined ones from their callbacks.
 #pragma once
 
 #include <cstddef>
@@ -11,6 +11,7 @@
 
 #include <kacanov/kacanov.h>
 #include <kacanov/law.hpp>
+#include <kacanov/reference.hpp>
 
 namespace kacanov::c_api {
 
@@ -41,5 +42,25 @@ std::vector<OwnLaw> own_laws(std::size_t count, const kacanov_law* laws);
 
 /// Throws Fault for the first element with an invalid law.
 void check_law_of_element(std::span<const std::uint16_t> law_of_element, std::size_t laws);
+
+}  // namespace kacanov::c_api
+
+struct kacanov_operator;
+
+namespace kacanov::c_api {
+
+/// Values of the laws at a displacement, elements × points.
+struct PointValues {
+  std::vector<double> x, secant, derivative, energy;
+  PointModuli moduli() const { return {secant, derivative, energy}; }
+};
+
+struct WantedValues {
+  bool derivative = false, energy = false;
+};
+
+/// Evaluates every law, user-defined or not, at u. Throws Fault if a callback returns an error or an invalid
+/// modulus.
+PointValues ask_laws(kacanov_operator& op, std::span<const double> u, WantedValues wanted);
 
 }  // namespace kacanov::c_api

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "c/own_law.hpp"
+#include "c/laws.hpp"
 #include "c/rows.hpp"
 #include "c/vectors.hpp"
 

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "c/handle.hpp"
-#include "c/own_law.hpp"
+#include "c/laws.hpp"
 #include "c/sized.hpp"
 #include "c/vectors.hpp"
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "cells/dispatch.hpp"
+#include "cells/elements.hpp"
 
 namespace kacanov {
 namespace {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-#include "cells/hex8.hpp"
+#include "cells/elements.hpp"
 
 namespace kacanov::elements {
 

@@ -8,8 +8,8 @@
 #include <cstddef>
 #include <limits>
 
+#include "cells/elements.hpp"
 #include "cells/point.hpp"
-#include "cells/tet10.hpp"
 
 namespace kacanov::elements {
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <numeric>
 
-#include "cells/hex8.hpp"
+#include "cells/elements.hpp"
 #include "cells/point.hpp"
 #include "operator/threads.hpp"
 

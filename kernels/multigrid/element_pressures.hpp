@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <kacanov/corner_means.hpp>
-#include "operator/corner_rows.hpp"
+#include "operator/nodal_pressure.hpp"
 
 namespace kacanov {
 

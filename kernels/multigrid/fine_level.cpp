@@ -10,7 +10,7 @@
 #include "multigrid/largest_eigenvalue.hpp"
 #include "multigrid/multigrid.hpp"
 #include "multigrid/softened_laws.hpp"
-#include "operator/corner_sum.hpp"
+#include "operator/nodal_pressure.hpp"
 #include "operator/threads.hpp"
 #include "simd/node_blocks.hpp"
 
@@ -147,7 +147,7 @@ void FineLevel::add_blocks(std::span<const NodeBlock> blocks, std::span<const fl
   }
 }
 
-/// y = result of apply(when_early) plus the blocks' forces, over all ranks; without x no blocks.
+/// y = result of apply(on_interface_ready) plus the blocks' forces, over all ranks; without x no blocks.
 template <class Apply>
 void FineLevel::product(const Apply& apply, std::span<const float> x, std::span<float> y) {
   const auto blocks = x.empty() ? std::span<NodeBlock>() : std::span(blocks_);
@@ -160,7 +160,7 @@ void FineLevel::product(const Apply& apply, std::span<const float> x, std::span<
     add_blocks(blocks.subspan(shared), x, y);
     sum_.finish_sum(y);
   } else {
-    apply(WhenEarly());
+    apply(OnInterfaceReady());
     add_blocks(blocks, x, y);
   }
   hold(y);
@@ -168,12 +168,12 @@ void FineLevel::product(const Apply& apply, std::span<const float> x, std::span<
 
 void FineLevel::multiply(std::span<const float> x, std::span<float> y) {
   if (part_ == FinePart::deviator) return multiply(x, {}, y);
-  product([&](const WhenEarly& early) { op_.apply(x, y, early); }, x, y);
+  product([&](const OnInterfaceReady& early) { op_.apply(x, y, early); }, x, y);
 }
 
 void FineLevel::multiply(std::span<const float> x, std::span<const float> p, std::span<float> y) {
   product(
-      [&](const WhenEarly& early) {
+      [&](const OnInterfaceReady& early) {
         if (!of_elements_) return op_.apply_deviator(x, p, y, early);
         op_.apply(x, y);
         if (!p.empty()) of_elements_->add_force(p, y);
@@ -189,7 +189,7 @@ void FineLevel::volume_change(std::span<const float> x, std::span<float> q) {
 
 void FineLevel::pressure_force(std::span<const float> p, std::span<float> y) {
   product(
-      [&](const WhenEarly& early) {
+      [&](const OnInterfaceReady& early) {
         if (!of_elements_) return op_.pressure_force(p, y, early);
         std::fill(y.begin(), y.end(), 0.0F);
         of_elements_->add_force(p, y);

@@ -4,30 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <vector>
 
-#include "distributed/exchange.hpp"
+#include "parallel/disjoint_sets.hpp"
+#include "parallel/exchange.hpp"
 
 namespace kacanov {
 namespace {
-
-/// Disjoint sets of indices (union–find).
-class Joined {
- public:
-  explicit Joined(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
-  std::int32_t root(std::int32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::int32_t i, std::int32_t j) {
-    i = root(i), j = root(j);
-    parent_[std::max(i, j)] = std::min(i, j);
-  }
-
- private:
-  std::vector<std::int32_t> parent_;
-};
 
 using Pair = std::array<std::int32_t, 2>;
 
@@ -44,7 +27,7 @@ Fragments fragments_of(std::span<const std::int32_t> cell, const MultigridBody& 
   const MeshView& mesh = body.body.mesh;
   const std::size_t npe = nodes_per_element(mesh.type);
   const auto node_of = [&](std::size_t e, std::size_t a) { return mesh.connectivity[e * npe + a]; };
-  Joined sets(cell.size());
+  DisjointSets sets(cell.size());
   for (std::size_t e = 0; e < mesh.element_count(); ++e)
     for (std::size_t a = 1; a < npe; ++a)
       for (std::size_t b = 0; b < a; ++b)
@@ -56,7 +39,7 @@ Fragments fragments_of(std::span<const std::int32_t> cell, const MultigridBody& 
   std::vector<std::int32_t> leaf;
   std::vector<double> nodes;
   for (std::size_t n = 0; n < cell.size(); ++n) {
-    const auto root = static_cast<std::size_t>(sets.root(static_cast<std::int32_t>(n)));
+    const auto root = static_cast<std::size_t>(sets.find(static_cast<std::int32_t>(n)));
     if (root == n) {
       fragment[n] = static_cast<std::int32_t>(leaf.size());
       leaf.push_back(cell[n]), nodes.push_back(0.0);
@@ -94,7 +77,7 @@ Fragments fragments_of(std::span<const std::int32_t> cell, const MultigridBody& 
 
 /// Number of nodes of a function with these fragments, and number of those outside its largest piece.
 std::array<double, 2> pieces(const Fragments& fragments, std::span<const std::int32_t> of) {
-  Joined sets(of.size());
+  DisjointSets sets(of.size());
   for (std::size_t i = 0; i < of.size(); ++i) {
     const auto begin = std::lower_bound(fragments.joined.begin(), fragments.joined.end(), Pair{of[i], 0});
     for (auto at = begin; at != fragments.joined.end() && (*at)[0] == of[i]; ++at) {
@@ -106,7 +89,7 @@ std::array<double, 2> pieces(const Fragments& fragments, std::span<const std::in
   std::vector<double> nodes(of.size(), 0.0);
   double total = 0.0;
   for (std::size_t i = 0; i < of.size(); ++i) {
-    nodes[sets.root(static_cast<std::int32_t>(i))] += fragments.nodes[of[i]];
+    nodes[sets.find(static_cast<std::int32_t>(i))] += fragments.nodes[of[i]];
     total += fragments.nodes[of[i]];
   }
   return {total, total - *std::max_element(nodes.begin(), nodes.end())};

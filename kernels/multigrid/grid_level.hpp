@@ -11,7 +11,7 @@
 #include "multigrid/leaf_form.hpp"
 #include "multigrid/pressure_steps.hpp"
 #include "multigrid/summed_pattern.hpp"
-#include "simd/grid_rows.hpp"
+#include "simd/node_blocks.hpp"
 
 namespace kacanov {
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "operator/threads.hpp"
-#include "simd/grid_rows.hpp"
+#include "simd/node_blocks.hpp"
 
 namespace kacanov {
 namespace {

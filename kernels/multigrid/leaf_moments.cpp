@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include <kacanov/corner_means.hpp>
-#include "cells/dispatch.hpp"
+#include "cells/elements.hpp"
 #include "cells/point.hpp"
 #include "cells/straight.hpp"
 #include "operator/threads.hpp"

@@ -7,7 +7,7 @@
 #include <limits>
 #include <unordered_map>
 
-#include "cells/dispatch.hpp"
+#include "cells/elements.hpp"
 #include "cells/point.hpp"
 #include "law/plane_stress.hpp"
 #include "multigrid/aggregates.hpp"

@@ -7,15 +7,15 @@
 #include <cstddef>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
 #include <kacanov/corner_means.hpp>
 #include <kacanov/vector3.hpp>
-#include "distributed/exchange.hpp"
 #include "multigrid/grid_tree.hpp"
 #include "multigrid/node_spacing.hpp"
+#include "parallel/disjoint_sets.hpp"
+#include "parallel/exchange.hpp"
 
 namespace kacanov {
 namespace {
@@ -87,18 +87,12 @@ class PatchMaker {
 
   /// Connected pieces of this rank's nodes within a cube: all nodes of a piece follow the same head.
   void find_pieces() {
-    piece_.resize(head_.size());
-    std::iota(piece_.begin(), piece_.end(), std::size_t{0});
-    const auto root_of = [&](std::size_t n) {
-      while (piece_[n] != n) n = piece_[n] = piece_[piece_[n]];
-      return n;
-    };
+    DisjointSets sets(head_.size());
     for_each_edge([&](std::size_t a, std::size_t b) {
-      if (cube_[a] != cube_[b]) return;
-      const std::size_t one = root_of(a), other = root_of(b);
-      piece_[std::max(one, other)] = std::min(one, other);
+      if (cube_[a] == cube_[b]) sets.join(static_cast<std::int32_t>(a), static_cast<std::int32_t>(b));
     });
-    for (std::size_t n = 0; n < piece_.size(); ++n) piece_[n] = root_of(n);
+    piece_.resize(head_.size());
+    for (std::size_t n = 0; n < piece_.size(); ++n) piece_[n] = sets.find(static_cast<std::int32_t>(n));
   }
 
   /// Gives each piece the best head of its nodes.

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "multigrid/element_pressures.hpp"
-#include "operator/corners.hpp"
+#include "operator/nodal_pressure.hpp"
 
 namespace kacanov {
 namespace {

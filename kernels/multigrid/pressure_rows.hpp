@@ -10,7 +10,7 @@
 #include <kacanov/corner_means.hpp>
 #include <kacanov/scatterer.hpp>
 #include "multigrid/multigrid_body.hpp"
-#include "operator/corner_rows.hpp"
+#include "operator/nodal_pressure.hpp"
 
 namespace kacanov {
 

@@ -8,7 +8,7 @@
 #include "multigrid/largest_eigenvalue.hpp"
 #include "multigrid/sums.hpp"
 #include "operator/threads.hpp"
-#include "simd/grid_rows.hpp"
+#include "simd/node_blocks.hpp"
 
 namespace kacanov {
 namespace {

@@ -8,10 +8,10 @@
 #include <numeric>
 #include <utility>
 
-#include "distributed/exchange.hpp"
 #include "multigrid/largest_eigenvalue.hpp"
 #include "multigrid/rigid_blocks.hpp"
 #include "operator/threads.hpp"
+#include "parallel/exchange.hpp"
 
 namespace kacanov {
 

@@ -6,8 +6,8 @@
 #include <numeric>
 #include <utility>
 
-#include "distributed/exchange.hpp"
 #include "operator/threads.hpp"
+#include "parallel/exchange.hpp"
 
 namespace kacanov {
 namespace {

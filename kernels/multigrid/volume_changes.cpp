@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "cells/dispatch.hpp"
+#include "cells/elements.hpp"
 #include "cells/straight.hpp"
 #include "multigrid/summed_pattern.hpp"
 

@@ -7,17 +7,29 @@
 #include <stdexcept>
 #include <vector>
 
-#include "cells/dispatch.hpp"
+#include "cells/elements.hpp"
 #include "cells/parallelepiped.hpp"
 #include "cells/point.hpp"
 #include "cells/straight.hpp"
 #include "law/plane_stress.hpp"
 #include "operator/checks.hpp"
-#include "operator/passes.hpp"
+#include "operator/threaded_loops.hpp"
 #include "operator/threads.hpp"
-#include "operator/units.hpp"
+#include "operator/work_items.hpp"
 
 namespace kacanov {
+namespace {
+
+/// An element in the batches: its nodal coordinates, and the slot of its first point.
+template <class E>
+struct SlotElement {
+  const elements::Nodal<E>& x;
+  bool affine;
+  const Law& law;
+  std::size_t slot;
+};
+
+}  // namespace
 
 /// Reconstructs the elements from the slots of the batches. Calls visit(nodal coordinates, the caller's
 /// nodes, law, slot of the first point) for each element with a wanted node; slots of an element's points are
@@ -28,16 +40,16 @@ void BasicOperator<Real>::Data::visit_elements(const BlockRange& range, const si
                                                std::span<const char> wanted, const Visit& visit) const {
   using elements::Point;
   const std::size_t lanes = layout.lanes;
-  const Units units{type, {}, {}, {}};
-  const std::uint32_t nodes = units.nodes_of(group.shape, group.length),
-                      count = units.points_of(group.shape, group.length);  // number of points
+  const WorkItems items{mesh.type, {}, {}, {}};
+  const std::uint32_t nodes = items.nodes_of(group.shape, group.length),
+                      count = items.points_of(group.shape, group.length);  // number of points
   const std::uint16_t* index = layout.index.data() + range.first_index + group.first_index;
   const Real* records = coordinates.data() + 4 * range.first_record;
-  const Law& law = laws[group.law];
-  std::vector<std::uint32_t> node_of;  // nodes of a unit, element by element
+  const Law& law = materials.laws[group.law];
+  std::vector<std::uint32_t> node_of;  // nodes of an item, element by element
   for (std::uint32_t p = 0; p < count; p += E::points)
     for (std::uint32_t a = 0; a < E::nodes; ++a)
-      node_of.push_back(units.node_of(group.shape, group.length, p / E::points, a));
+      node_of.push_back(items.node_of(group.shape, group.length, p / E::points, a));
   for (std::size_t batch = 0; batch < group.batches; ++batch)
     for (std::size_t lane = 0; lane < lanes; ++lane) {
       std::array<std::int32_t, E::nodes> id{};
@@ -57,7 +69,7 @@ void BasicOperator<Real>::Data::visit_elements(const BlockRange& range, const si
           const std::size_t record = at[static_cast<std::size_t>(a)];
           for (int c = 0; c < E::dim; ++c) x[Point<E>::at(a, c)] = static_cast<double>(records[record + c]);
           // Radii are absolute, not relative to the centre of the block.
-          if (plane == PlaneState::axisymmetric)
+          if (mesh.plane == PlaneState::axisymmetric)
             x[Point<E>::at(a, 0)] = static_cast<double>(records[record + 2]);
         }
         visit(x, id, law, slot);
@@ -65,22 +77,21 @@ void BasicOperator<Real>::Data::visit_elements(const BlockRange& range, const si
     }
 }
 
-/// Sums blocks: add(type, nodal coordinates, whether the map is affine, law, slot of its first point, blocks)
-/// adds those of one element's nodes. Threads have private sums for shared nodes, which are added in thread
-/// order.
+/// Sums blocks: add(SlotElement, blocks) adds those of one element's nodes. Threads have private sums for
+/// shared nodes, which are added in thread order.
 template <class Real>
 template <class Add>
 void BasicOperator<Real>::Data::sum_blocks(std::span<Real> blocks, std::span<const char> wanted,
                                            const Add& add) const {
-  expect_size(blocks.size(), unknowns * dim(), "blocks");
-  if (!wanted.empty()) expect_size(wanted.size(), unknowns / dim(), "wanted");
+  expect_size(blocks.size(), mesh.unknowns * dim(), "blocks");
+  if (!wanted.empty()) expect_size(wanted.size(), mesh.unknowns / dim(), "wanted");
   const std::size_t size = dim() * dim(), interface_size = layout.interface_node.size();
-  std::vector<std::int32_t> place(unknowns / dim(), -1);
+  std::vector<std::int32_t> place(mesh.unknowns / dim(), -1);
   for (std::size_t i = 0; i < interface_size; ++i)
     place[layout.interface_node[i]] = static_cast<std::int32_t>(i);
   std::fill(blocks.begin(), blocks.end(), Real(0));
-  std::vector<std::vector<Real>> sums(threads);
-  in_team(threads, [&](int t) {
+  std::vector<std::vector<Real>> sums(machine.threads);
+  in_team(machine.threads, [&](int t) {
     std::vector<Real>& mine = sums[t];
     mine.assign(interface_size * size, Real(0));
     const auto block_of = [&](std::int32_t node) {
@@ -89,13 +100,13 @@ void BasicOperator<Real>::Data::sum_blocks(std::span<Real> blocks, std::span<con
     };
     for (std::size_t b = layout.share[t]; b < layout.share[static_cast<std::size_t>(t) + 1]; ++b)
       for (std::size_t i = 0; i < layout.blocks[b].group_count; ++i)
-        elements::dispatch(type, [&]<class E>(E element) {
+        elements::dispatch(mesh.type, [&]<class E>(E) {
           const simd::Group& group = layout.groups[layout.blocks[b].first_group + i];
           const bool affine = group.shape != simd::Shape::general;
           visit_elements<E>(layout.blocks[b], group, wanted,
                             [&](const auto& x, const auto& node, const Law& law, std::size_t slot) {
                               double here[E::nodes][E::dim * E::dim] = {};
-                              add(element, x, affine, law, slot, here);
+                              add(SlotElement<E>{x, affine, law, slot}, here);
                               for (int a = 0; a < E::nodes; ++a) {
                                 Real* block = block_of(node[a]);
                                 for (int k = 0; k < E::dim * E::dim; ++k)
@@ -134,28 +145,30 @@ template <class Bulk>
 void BasicOperator<Real>::Data::sum_secant_blocks(std::span<Real> blocks, std::span<const char> wanted,
                                                   const Bulk& bulk) const {
   const std::size_t lanes = layout.lanes;
-  sum_blocks(blocks, wanted,
-             [&]<class E>(E, const elements::Nodal<E>& x, bool affine, const Law& law, std::size_t slot,
-                          auto& here) {
-               const auto g = [&](std::size_t at) { return static_cast<double>(secant[at]); };
-               if constexpr (E::type == ElementType::hex8)
-                 if (affine) {
-                   std::array<double, E::points> at;
-                   for (std::size_t q = 0; q < E::points; ++q) at[q] = g(slot + q * lanes);
-                   return elements::Parallelepiped(x.data()).add_diagonal_blocks(
-                       bulk(law, at[0]), law.mean_dilatation, at, here);
-                 }
-               if constexpr (E::simplex && E::dim == 3)
-                 if (affine) {
-                   std::array<double, E::points> at;
-                   for (std::size_t q = 0; q < E::points; ++q) at[q] = g(slot + q * lanes);
-                   return elements::StraightSides(x.data()).add_diagonal_blocks(bulk(law, at[0]), at, here);
-                 }
-               over_points<E>(elements::points_of<E>(x, law.mean_dilatation, plane), slot, lanes, here,
-                              [&](const auto& point, int a, std::size_t at, double* block) {
-                                point.add_diagonal_block(a, bulk(law, g(at)), g(at), block);
-                              });
-             });
+  sum_blocks(blocks, wanted, [&]<class E>(const SlotElement<E>& of, auto& here) {
+    const elements::Nodal<E>& x = of.x;
+    const Law& law = of.law;
+    const bool affine = of.affine;
+    const std::size_t slot = of.slot;
+    const auto g = [&](std::size_t at) { return static_cast<double>(values.secant[at]); };
+    if constexpr (E::type == ElementType::hex8)
+      if (affine) {
+        std::array<double, E::points> at;
+        for (std::size_t q = 0; q < E::points; ++q) at[q] = g(slot + q * lanes);
+        return elements::Parallelepiped(x.data()).add_diagonal_blocks(bulk(law, at[0]), law.mean_dilatation,
+                                                                      at, here);
+      }
+    if constexpr (E::simplex && E::dim == 3)
+      if (affine) {
+        std::array<double, E::points> at;
+        for (std::size_t q = 0; q < E::points; ++q) at[q] = g(slot + q * lanes);
+        return elements::StraightSides(x.data()).add_diagonal_blocks(bulk(law, at[0]), at, here);
+      }
+    over_points<E>(elements::points_of<E>(x, law.mean_dilatation, mesh.plane), slot, lanes, here,
+                   [&](const auto& point, int a, std::size_t at, double* block) {
+                     point.add_diagonal_block(a, bulk(law, g(at)), g(at), block);
+                   });
+  });
 }
 
 template <class Real>
@@ -182,25 +195,23 @@ void BasicOperator<Real>::diagonal(std::span<Real> d) const {
 template <class Real>
 void BasicOperator<Real>::block_diagonal_tangent(std::span<Real> blocks) const {
   const Data& data = *data_;
-  if (!data.has_tangent) throw std::logic_error("block_diagonal_tangent before update_tangent");
-  const Aligned<Real>& g = data.tangent_secant.empty() ? data.secant : data.tangent_secant;
+  if (!data.tangent.present) throw std::logic_error("block_diagonal_tangent before update_tangent");
+  const Aligned<Real>& g = data.tangent.secant.empty() ? data.values.secant : data.tangent.secant;
   const std::size_t lanes = data.layout.lanes;
-  data.sum_blocks(
-      blocks, {},
-      [&]<class E>(E, const elements::Nodal<E>& x, bool, const Law& law, std::size_t slot, auto& here) {
-        over_points<E>(elements::points_of<E>(x, law.mean_dilatation, data.plane), slot, lanes, here,
-                       [&](const auto& point, int a, std::size_t at, double* block) {
-                         const auto secant = static_cast<double>(g[at]);
-                         point.add_diagonal_block(a, data.bulk_at(law, secant), secant, block);
-                         // √|2 g'/x| dev ε, components strided by the lanes; see material.hpp.
-                         const std::size_t lane = at % lanes;
-                         const float* t = data.tangent.data() + simd::tangent_floats * (at - lane) + lane;
-                         const auto kept = [&](std::size_t k) { return static_cast<double>(t[k * lanes]); };
-                         const std::array<double, 6> d{kept(0), kept(1), -(kept(0) + kept(1)),
-                                                       kept(2), kept(3), kept(4)};
-                         point.add_rank_one_block(a, std::signbit(t[0]) ? 1.0 : -1.0, d, block);
-                       });
-      });
+  data.sum_blocks(blocks, {}, [&]<class E>(const SlotElement<E>& of, auto& here) {
+    over_points<E>(elements::points_of<E>(of.x, of.law.mean_dilatation, data.mesh.plane), of.slot, lanes,
+                   here, [&](const auto& point, int a, std::size_t at, double* block) {
+                     const auto secant = static_cast<double>(g[at]);
+                     point.add_diagonal_block(a, data.bulk_at(of.law, secant), secant, block);
+                     // √|2 g'/x| dev ε, components strided by the lanes; see material.hpp.
+                     const std::size_t lane = at % lanes;
+                     const float* t = data.tangent.floats.data() + simd::tangent_floats * (at - lane) + lane;
+                     const auto kept = [&](std::size_t k) { return static_cast<double>(t[k * lanes]); };
+                     const std::array<double, 6> d{kept(0), kept(1), -(kept(0) + kept(1)),
+                                                   kept(2), kept(3), kept(4)};
+                     point.add_rank_one_block(a, std::signbit(t[0]) ? 1.0 : -1.0, d, block);
+                   });
+  });
 }
 
 template <class Real>

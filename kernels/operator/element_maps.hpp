@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Properties of the maps from the reference element to mesh elements, at the quadrature points.
+// Maps from the reference element to mesh elements: their properties at the quadrature points, and whether
+// det J is positive in the whole element.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 
 #include <kacanov/mesh_view.hpp>
@@ -27,5 +30,16 @@ ElementMap element_map(const MeshView& mesh, std::size_t element);
 /// vectorised: 60 ns per hex8 instead of 300.
 void visit_element_maps(const MeshView& mesh,
                         const std::function<void(std::size_t, std::span<const ElementMap>)>& visit);
+
+/// A point of the reference element where det J is negative.
+struct NegativeJacobian {
+  double det = 0.0;
+  std::size_t nearest_corner = 0;
+};
+
+/// Returns such a point for an element whose map is not affine; empty if det J ≥ 0 everywhere, up to the
+/// rounding of coordinates in files (theory: folded-elements). Indices must have been checked, coordinates
+/// must be finite.
+std::optional<NegativeJacobian> find_negative_jacobian(const MeshView& mesh, std::size_t element);
 
 }  // namespace kacanov

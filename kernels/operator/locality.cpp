@@ -14,7 +14,7 @@
 #include <string>
 #include <utility>
 
-#include "cells/dispatch.hpp"
+#include "cells/elements.hpp"
 
 namespace kacanov {
 namespace {

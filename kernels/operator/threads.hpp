@@ -8,9 +8,9 @@
 
 namespace kacanov {
 
-/// Starts the calling thread's team of `threads` threads, so that passes find it running. The threads are the
-/// library's own, or OpenMP's if the environment variable KACANOV_THREADS is "openmp"; the choice then holds
-/// for the whole process. Throws std::invalid_argument for values other than "openmp" and "own",
+/// Starts the calling thread's team of `threads` threads, so that the loops find it running. The threads are
+/// the library's own, or OpenMP's if the environment variable KACANOV_THREADS is "openmp"; the choice then
+/// holds for the whole process. Throws std::invalid_argument for values other than "openmp" and "own",
 /// std::system_error if the system does not grant this many threads.
 void start_team(int threads);
 

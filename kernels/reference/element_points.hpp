@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <kacanov/reference.hpp>
-#include "cells/dispatch.hpp"
+#include "cells/elements.hpp"
 #include "cells/point.hpp"
 #include "law/plane_stress.hpp"
 #include "reference/point_strain.hpp"

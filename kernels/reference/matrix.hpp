@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The operator as a matrix in compressed row storage, assembled element by element.
+// The operator as a matrix in compressed row storage, and element stiffness matrices in closed form.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -30,3 +31,14 @@ void assemble(const Body& body, const NodeGraph& graph, std::span<const double> 
               const MatrixRows& rows);
 
 }  // namespace kacanov::reference
+
+namespace kacanov {
+
+/// The matrix of reference::element_matrix, computed block by block instead of column by column: K_ab = Σ
+/// volume [(k0 − 2g/3) ∇φ_a ⊗ ∇φ_b + g ∇φ_b ⊗ ∇φ_a + g (∇φ_a·∇φ_b) I], with the element's average gradients
+/// for k0 if the law has mean_dilatation. `g`: one value per point of the element. `matrix`: (nodes·dim)²
+/// entries, row-major, the components of a node contiguous.
+void element_stiffness(const Body& body, std::size_t element, std::span<const double> g,
+                       std::span<double> matrix);
+
+}  // namespace kacanov

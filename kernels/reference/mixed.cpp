@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The displacement–pressure form: linear pressure with linear or quadratic displacements.
-#include "reference/mixed.hpp"
+#include <kacanov/reference.hpp>
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "cells/dispatch.hpp"
+#include "cells/elements.hpp"
 #include "cells/point.hpp"
 
 namespace kacanov::reference {

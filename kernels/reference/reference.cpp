@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "reference/element_points.hpp"
-#include "reference/expansion.hpp"
 
 namespace kacanov::reference {
 namespace {

@@ -10,8 +10,8 @@
 
 namespace kacanov::simd {
 
-/// The unit in a lane: an open or closed fan of tetrahedra, or one element, which may be an affine image of
-/// the reference element (a tet10 with straight edges, a hex8 that is a parallelepiped) or not.
+/// The work item in a lane: an open or closed fan of tetrahedra, or one element, which may be an affine image
+/// of the reference element (a tet10 with straight edges, a hex8 that is a parallelepiped) or not.
 enum class Shape : std::uint8_t { open_fan, closed_fan, affine, general };
 
 /// The law of a group: the part that the loops evaluate themselves, and callbacks for the rest.
@@ -27,7 +27,7 @@ struct LawView {
   double (*across)(const void* law, double xx, double yy, double xy);
 };
 
-/// Batches of one shape, length and law, with one unit per lane.
+/// Batches of one shape, length and law, with one work item per lane.
 struct Group {
   ElementType type;
   Shape shape;
@@ -78,7 +78,7 @@ struct Block {
   std::uint32_t again;         ///< [first, again): used before; [again, count): shared with other threads
   std::uint32_t count;
   std::uint32_t placed[3];  ///< nodes at the start of each of the three ranges whose coordinates are read
-  std::uint32_t padding;    ///< records behind `count` for lanes without a unit
+  std::uint32_t padding;    ///< records behind `count` for lanes without a work item
   PlaneState plane = PlaneState::strain;
   const Real* free_strain = nullptr;  ///< like `secant`, in plane stress; null: 0
   Outside<Real> outside = {};

@@ -3,8 +3,7 @@
 // has it.
 #pragma once
 
-#include "cells/tet10.hpp"
-#include "cells/tri3.hpp"
+#include "cells/elements.hpp"
 #include "simd/fan.hpp"
 
 namespace {

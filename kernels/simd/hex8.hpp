@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "cells/hex8.hpp"
+#include "cells/elements.hpp"
 #include "simd/fan.hpp"
 
 namespace {

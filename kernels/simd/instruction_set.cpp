@@ -6,6 +6,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "simd/motion_products.hpp"
+#include "simd/row_points.hpp"
+
 namespace kacanov::simd {
 namespace {
 
@@ -60,5 +63,62 @@ const Kernels<Real>& kernels(InstructionSet set) noexcept {
 
 template const Kernels<double>& kernels<double>(InstructionSet) noexcept;
 template const Kernels<float>& kernels<float>(InstructionSet) noexcept;
+
+}  // namespace kacanov::simd
+
+namespace kacanov::simd {
+namespace {
+
+MotionLoops loops([[maybe_unused]] InstructionSet set) {
+#ifdef KACANOV_X86_KERNELS
+  if (set == InstructionSet::avx512) return motions_avx512();
+  if (set == InstructionSet::avx2) return motions_avx2();
+#endif
+  return motions_plain();
+}
+
+}  // namespace
+
+template <int M>
+AddMotionProducts<M> motion_products(std::string_view instruction_set) {
+  const MotionLoops found = loops(choose_instruction_set(instruction_set));
+  if constexpr (M == 3)
+    return found.plane;
+  else
+    return found.space;
+}
+
+template AddMotionProducts<3> motion_products<3>(std::string_view);
+template AddMotionProducts<6> motion_products<6>(std::string_view);
+
+}  // namespace kacanov::simd
+
+namespace kacanov::simd {
+namespace {
+
+const AllRowLoops& all_loops([[maybe_unused]] InstructionSet set) {
+#ifdef KACANOV_X86_KERNELS
+  if (set == InstructionSet::avx512) return rows_avx512();
+  if (set == InstructionSet::avx2) return rows_avx2();
+#endif
+  return rows_plain();
+}
+
+}  // namespace
+
+template <std::size_t nodes>
+const RowLoops<nodes>& row_loops(std::string_view instruction_set) {
+  const AllRowLoops& all = all_loops(choose_instruction_set(instruction_set));
+  if constexpr (nodes == 4)
+    return all.tet4;
+  else if constexpr (nodes == 8)
+    return all.hex8;
+  else
+    return all.tet10;
+}
+
+template const RowLoops<4>& row_loops<4>(std::string_view);
+template const RowLoops<8>& row_loops<8>(std::string_view);
+template const RowLoops<10>& row_loops<10>(std::string_view);
 
 }  // namespace kacanov::simd

@@ -1,10 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Choice of the loops' instruction set at run time.
+// The tables of loops, one per instruction set, and the choice between them at run time.
 #pragma once
 
 #include <string_view>
 
-#include "simd/kernels.hpp"
+#include "simd/block.hpp"
+
+namespace kacanov::simd {
+
+// The argument only selects the precision.
+const Kernels<double>& kernels_plain(double);
+const Kernels<float>& kernels_plain(float);
+const Kernels<double>& kernels_avx2(double);
+const Kernels<float>& kernels_avx2(float);
+const Kernels<double>& kernels_avx512(double);
+const Kernels<float>& kernels_avx512(float);
+
+}  // namespace kacanov::simd
 
 namespace kacanov::simd {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The element loops built for AVX2 with FMA.
-#include "simd/kernels.hpp"
+#include "simd/instruction_set.hpp"
 #include "simd/vector_avx2.hpp"
 
 #include "simd/loops.hpp"

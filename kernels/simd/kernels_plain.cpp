@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The element loops built for the compiler's baseline.
-#include "simd/kernels.hpp"
+#include "simd/instruction_set.hpp"
 #include "simd/vector_plain.hpp"
 
 #include "simd/loops.hpp"

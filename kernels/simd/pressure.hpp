@@ -2,7 +2,7 @@
 // Forces of pressures at the corners of tetrahedra: linear and quadratic fans, curved elements.
 #pragma once
 
-#include "cells/tet10.hpp"
+#include "cells/elements.hpp"
 #include "simd/element.hpp"
 #include "simd/fan.hpp"
 #include "simd/tet10.hpp"

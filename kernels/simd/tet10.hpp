@@ -3,7 +3,7 @@
 // given by its vertex values.
 #pragma once
 
-#include "cells/tet10.hpp"
+#include "cells/elements.hpp"
 #include "simd/fan.hpp"
 
 namespace {

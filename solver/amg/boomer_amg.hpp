@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include <kacanov/mpi_communicator.hpp>
+#include <kacanov/part.hpp>
 #include "amg/assembly.hpp"
 #include "linear/preconditioner.hpp"
 

@@ -71,7 +71,7 @@ Pull pull_of(const Traces& traces, const ContactState& state, double c, double p
   const double* w = &state.trace.tangential[2 * i];
   Pull pull;
   pull.s = {lambda[0] + c * w[0], lambda[1] + c * w[1]};
-  pull.bound = point.coulomb > 0.0 ? point.tresca + point.coulomb * std::max(pushed, 0.0) : state.bound[i];
+  pull.bound = point.coulomb > 0.0 ? point.friction_bound(std::max(pushed, 0.0)) : state.bound[i];
   if (traces.entries(i).size() > 1) return pull;
   const Edge edge = find_edge(traces, state, set, i);
   pull.edge = edge.any;

@@ -133,8 +133,9 @@ CgResult solve_oblique(const SymmetricPart& part, const HeldNodes& nodes, std::s
     result.iterations += found.iterations;
     return found.converged;
   };
-  GcrResult found = gcr(space, oblique, cycle, delta, residual, {target, direct_iterations});
-  if (!found.converged) found = gcr(space, oblique, symmetric, delta, residual, {target, nested_iterations});
+  GcrResult found = gcr(space, oblique, cycle, {delta, residual}, {target, direct_iterations});
+  if (!found.converged)
+    found = gcr(space, oblique, symmetric, {delta, residual}, {target, nested_iterations});
   result.residual = found.residual;
   result.converged = found.converged;
   return result;
@@ -261,7 +262,7 @@ void recover_multipliers(const Part& part, const Traces& traces, const ActiveSet
                       set.slip_stiffness[i] * (w[k] - along * s[k]);
       const double length = std::hypot(friction[0], friction[1]);
       const double bound = set.coulomb[i] > 0.0
-                               ? point.tresca + set.coulomb[i] * pressure
+                               ? point.friction_bound(pressure)
                                : std::hypot(set.slip_force[2 * i], set.slip_force[2 * i + 1]);
       if (length > bound)
         for (std::size_t k = 0; k < 2; ++k) friction[k] *= bound / length;

@@ -141,6 +141,12 @@ AdmmResult admm(const LinearProblem& problem, ContactState& state, CgWork& work,
   }
   add_penalty_residual(-1.0);
   result.balance = steps.balance.samples();
+  if (options.collect_evidence) {
+    result.evidence = {state.trace, state.phi, state.lambda, state.lambda};
+    ContactValues& answered = result.evidence.answered;
+    for (std::size_t i = 0; i < traces.size(); ++i) answered.normal[i] -= steps.dual.normal[i];
+    for (std::size_t k = 0; k < 2 * traces.size(); ++k) answered.tangential[k] -= steps.dual.tangential[k];
+  }
   return result;
 }
 

@@ -11,6 +11,7 @@
 
 #include <kacanov/model.hpp>
 #include "contact/contact_state.hpp"
+#include "contact/penalty_rules.hpp"
 #include "contact/traces.hpp"
 #include "multigrid/cg.hpp"
 
@@ -113,6 +114,7 @@ struct AdmmOptions {
   bool sticking = false;
   /// If ε > 0, stops by the size of steps (theory: step-stop), with solves to the tolerances above.
   double step_tolerance = 0.0;
+  bool collect_evidence = false;   ///< whether the result holds what penalty rules need
   std::span<const double> volume;  ///< lumped volume of each node, for the L² norm of that criterion
 };
 
@@ -123,6 +125,7 @@ struct AdmmResult {
   double force_residual = 0.0;         ///< residual norm of the linear equilibrium with the new multipliers
   double trace_residual = 0.0;         ///< max |Cu − φ|
   std::vector<BalanceSample> balance;  ///< one per iteration
+  PenaltyEvidence evidence;            ///< of the last iteration, if collected
   double step = 0.0;                   ///< ‖change‖ / ‖state‖ of the criterion by steps
   bool converged = false;
   bool solves_converged = true;

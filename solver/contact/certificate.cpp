@@ -7,8 +7,8 @@
 #include <map>
 #include <optional>
 
-#include "distributed/exchange.hpp"
 #include "linear/springs.hpp"
+#include "parallel/exchange.hpp"
 #include "problem/vector3.hpp"
 
 namespace kacanov {

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include <kacanov/error.hpp>
-#include "distributed/exchange.hpp"
+#include "parallel/exchange.hpp"
 
 namespace kacanov {
 namespace {

@@ -6,14 +6,13 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <set>
 #include <tuple>
 
 #include <kacanov/reference.hpp>
-#include "distributed/exchange.hpp"
+#include "parallel/disjoint_sets.hpp"
+#include "parallel/exchange.hpp"
 #include "problem/vector3.hpp"
-#include "reference/expansion.hpp"
 
 namespace kacanov {
 namespace {
@@ -33,36 +32,19 @@ std::vector<double> largest_of_elements(const Body& body, std::span<const double
   return largest;
 }
 
-/// Disjoint sets of the numbers 0 to n − 1; the smallest member represents a set.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }
-  std::int32_t find(std::int32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::int32_t a, std::int32_t b) {
-    a = find(a), b = find(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::int32_t> parent_;
-};
-
-/// Returns the bin of every law: the number of factors of ten by which it is softer than the stiffest one in
-/// use. Bin edges are offset from powers of ten, which are common ratios between materials.
+/// Returns the bin of every law: the number of factors of ten by which it is softer than the stiffest one
+/// in use. Bin edges are offset from powers of ten, which are common ratios between materials.
 std::vector<int> bins_of_laws(const Part& part) {
   constexpr double offset = 0.25;
   const Body body = part.body();
-  double stiffest = 0.0;
+  double largest_modulus = 0.0;
   for (std::size_t e = 0; e < part.element_count(); ++e)
-    stiffest = std::max(stiffest, body.law(e).secant(0.0));
-  stiffest = part.node_map.max_all(stiffest);
+    largest_modulus = std::max(largest_modulus, body.law(e).secant(0.0));
+  largest_modulus = part.node_map.max_all(largest_modulus);
   std::vector<int> bins;
   for (const Law& law : part.laws) {
     // Moduli that are next to 0 or infinite, in the units of the loop, have no ratio.
-    const double ratio = std::min(std::max(1.0, stiffest / law.secant(0.0)), 1e300);
+    const double ratio = std::min(std::max(1.0, largest_modulus / law.secant(0.0)), 1e300);
     bins.push_back(static_cast<int>(std::floor(std::log10(ratio) + offset)));
   }
   return bins;

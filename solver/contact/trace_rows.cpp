@@ -7,7 +7,7 @@
 #include <string>
 
 #include <kacanov/error.hpp>
-#include "distributed/exchange.hpp"
+#include "parallel/exchange.hpp"
 #include "problem/dense.hpp"
 
 namespace kacanov {

@@ -13,7 +13,7 @@
 #include <kacanov/part.hpp>
 #include <kacanov/scatterer.hpp>
 #include "linear/springs.hpp"
-#include "operator/corner_sum.hpp"
+#include "operator/nodal_pressure.hpp"
 
 namespace kacanov {
 
@@ -35,11 +35,12 @@ class DistributedOperator {
   /// y = B(g) x. Communication of shared entries overlaps with the interior computation. Returns this rank's
   /// share of xᵀ y.
   double apply(std::span<const double> x, std::span<double> y) {
-    return apply_and_sum(x, y, [&](const WhenEarly& send) { return local_.apply_dot(x, y, send); });
+    return apply_and_sum(x, y, [&](const OnInterfaceReady& send) { return local_.apply_dot(x, y, send); });
   }
   /// y = B_T x with the last frozen tangent; otherwise like apply().
   double apply_tangent(std::span<const double> x, std::span<double> y) {
-    return apply_and_sum(x, y, [&](const WhenEarly& send) { return local_.apply_tangent_dot(x, y, send); });
+    return apply_and_sum(x, y,
+                         [&](const OnInterfaceReady& send) { return local_.apply_tangent_dot(x, y, send); });
   }
   /// Sets a callback that runs on all ranks after every application. It may throw to abort the enclosing
   /// loops.
@@ -100,7 +101,7 @@ class DistributedOperator {
   /// Calls work(send), which calls `send` once shared entries are complete, and sums them in y.
   template <class Work>
   double apply_and_sum(std::span<const double> x, std::span<double> y, const Work& work) {
-    WhenEarly send;
+    OnInterfaceReady send;
     if (part_->node_map.ranks > 1) send = [&, this] { sum_.start_sum(y); };
     double share = work(send);
     sum_.finish_sum(y);

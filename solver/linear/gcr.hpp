@@ -22,12 +22,18 @@ struct GcrResult {
   bool converged = false;
 };
 
-/// Solves A x = b for a possibly nonsymmetric A. `residual` holds b − A x, in the space, on entry and exit.
+/// The solution, and `residual` = b − A x in the space.
+struct GcrVectors {
+  std::span<double> x, residual;
+};
+
+/// Solves A x = b for a possibly nonsymmetric A. Updates both vectors.
 /// `inner(r, z)` sets z ≈ A⁻¹ r and returns whether it succeeded; `apply(z, q)` sets q = A z in the space.
 /// Stores two vectors of the part's unknowns per iteration. Collective.
 template <class Apply, class Inner>
-GcrResult gcr(const Space& space, const Apply& apply, const Inner& inner, std::span<double> x,
-              std::span<double> residual, const GcrOptions& options) {
+GcrResult gcr(const Space& space, const Apply& apply, const Inner& inner, const GcrVectors& vectors,
+              const GcrOptions& options) {
+  const auto& [x, residual] = vectors;
   struct Direction {
     Vector z, q;
     double square = 0.0;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Refinement of marked elements by longest-edge bisection, with groups and curved edges.
-#include <kacanov/bisect.hpp>
+#include <kacanov/refine.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numeric>
 #include <optional>
 #include <unordered_map>
@@ -14,7 +13,7 @@
 #include <vector>
 
 #include <kacanov/error.hpp>
-#include "mesh/node_keys.hpp"
+#include "mesh/new_nodes.hpp"
 
 namespace kacanov {
 namespace {
@@ -23,12 +22,12 @@ using Point = std::array<double, 3>;
 
 /// A simplex during bisection, or a facet of one: its corners, and their reference coordinates in the element
 /// that it is cut from.
-struct Piece {
+struct CutPiece {
   std::array<std::int32_t, 4> node{};
   std::array<Point, 4> xi{};
 };
 
-struct Edge {
+struct CutEdge {
   std::size_t a = 0, b = 0;  ///< corners
 };
 
@@ -38,10 +37,7 @@ class Bisection {
       : coarse_(coarse), type_(cell(coarse.type)), corners_(static_cast<std::size_t>(type_.corners)) {}
 
   Mesh done(std::span<const std::int32_t> marked) {
-    fine_.type = coarse_.type;
-    fine_.coordinates = coarse_.coordinates;
-    fine_.node_tags = coarse_.node_tags;
-    fine_.node_fields = coarse_.node_fields;
+    fine_ = with_nodes_of(coarse_, coarse_.type);
     keep_middles();
     std::vector<std::uint8_t> generations(coarse_.element_count(), 0);
     for (const std::int32_t e : marked) generations[e] = static_cast<std::uint8_t>(type_.dim);
@@ -50,18 +46,19 @@ class Bisection {
       before = halved_.size();
       for (std::size_t e = 0; e < coarse_.element_count(); ++e)
         cut(
-            whole(e), generations[e], [&](const Piece& piece, Edge edge) { halve(nodes(e), piece, edge); },
-            [](const Piece&) {});
+            whole(e), generations[e],
+            [&](const CutPiece& piece, CutEdge edge) { halve(nodes(e), piece, edge); },
+            [](const CutPiece&) {});
     }
     first_child_.reserve(coarse_.element_count() + 1);
     for (std::size_t e = 0; e < coarse_.element_count(); ++e) {
       first_child_.push_back(static_cast<std::int32_t>(fine_.element_count()));
       cut(
-          whole(e), generations[e], [](const Piece&, Edge) {},
-          [&](const Piece& piece) { emit(nodes(e), piece); });
+          whole(e), generations[e], [](const CutPiece&, CutEdge) {},
+          [&](const CutPiece& piece) { emit(nodes(e), piece); });
     }
     first_child_.push_back(static_cast<std::int32_t>(fine_.element_count()));
-    number_new_nodes();
+    number_new_nodes(fine_);
     find_boundary(fine_);
     for (const Group& group : coarse_.groups) take_over(group);
     return std::move(fine_);
@@ -75,8 +72,8 @@ class Bisection {
     return std::span(coarse_.elements).subspan(e * n, n);
   }
 
-  Piece whole(std::size_t e) const {
-    Piece piece;
+  CutPiece whole(std::size_t e) const {
+    CutPiece piece;
     for (std::size_t a = 0; a < corners_; ++a) {
       piece.node[a] = nodes(e)[a];
       piece.xi[a] = type_.reference[a];
@@ -97,8 +94,8 @@ class Bisection {
   }
 
   /// Longest edge under a total order of edges on which all elements agree.
-  Edge longest_edge(const Piece& piece, std::size_t corners) const {
-    Edge longest{1, 0};
+  CutEdge longest_edge(const CutPiece& piece, std::size_t corners) const {
+    CutEdge longest{1, 0};
     double most = -1.0;
     for (std::size_t a = 0; a < corners; ++a)
       for (std::size_t b = 0; b < a; ++b) {
@@ -115,10 +112,10 @@ class Bisection {
     return longest;
   }
 
-  bool is_halved(const Piece& piece, Edge edge) const {
+  bool is_halved(const CutPiece& piece, CutEdge edge) const {
     return halved_.contains(pair_key(piece.node[edge.a], piece.node[edge.b]));
   }
-  bool any_halved(const Piece& piece) const {
+  bool any_halved(const CutPiece& piece) const {
     for (std::size_t a = 0; a < corners_; ++a)
       for (std::size_t b = 0; b < a; ++b)
         if (is_halved(piece, {a, b})) return true;
@@ -126,12 +123,8 @@ class Bisection {
   }
 
   std::int32_t add(const Point& at, std::int32_t a, std::int32_t b) {
-    const std::size_t node = fine_.node_count();
-    if ((node + 1) * dim() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
-      throw InputError("mesh.adapt: so fine a mesh has more unknowns than 32-bit indices can number");
-    fine_.coordinates.insert(fine_.coordinates.end(), at.begin(), at.begin() + type_.dim);
-    add_mean_of_fields(fine_, std::array{a, b});
-    return static_cast<std::int32_t>(node);
+    return add_node(fine_, at, std::array{a, b},
+                    "mesh.adapt: so fine a mesh has more unknowns than 32-bit indices can number");
   }
 
   /// Maps reference coordinates to space.
@@ -157,7 +150,7 @@ class Bisection {
   }
 
   /// Creates the node at the middle of an edge of `piece`; `of` are the nodes of its element.
-  void halve(std::span<const std::int32_t> of, const Piece& piece, Edge edge) {
+  void halve(std::span<const std::int32_t> of, const CutPiece& piece, CutEdge edge) {
     const std::int32_t a = piece.node[edge.a], b = piece.node[edge.b];
     const auto there = between_.find(pair_key(a, b));
     halved_.emplace(pair_key(a, b),
@@ -170,22 +163,22 @@ class Bisection {
   /// and calls emit(piece) for the resulting pieces. Calls halve(piece, edge) for edges that are not halved
   /// yet.
   template <class Halve, class Emit>
-  void cut(const Piece& piece, int generations, const Halve& halve, const Emit& emit) const {
+  void cut(const CutPiece& piece, int generations, const Halve& halve, const Emit& emit) const {
     if (generations <= 0 && !any_halved(piece)) return emit(piece);
-    const Edge edge = longest_edge(piece, corners_);
+    const CutEdge edge = longest_edge(piece, corners_);
     if (!is_halved(piece, edge)) halve(piece, edge);
-    for (const Piece& half : halves(piece, edge)) cut(half, generations - 1, halve, emit);
+    for (const CutPiece& half : halves(piece, edge)) cut(half, generations - 1, halve, emit);
   }
 
-  std::array<Piece, 2> halves(const Piece& piece, Edge edge) const {
+  std::array<CutPiece, 2> halves(const CutPiece& piece, CutEdge edge) const {
     const std::int32_t node = halved_.at(pair_key(piece.node[edge.a], piece.node[edge.b]));
-    std::array<Piece, 2> both{piece, piece};
+    std::array<CutPiece, 2> both{piece, piece};
     both[0].node[edge.a] = both[1].node[edge.b] = node;
     both[0].xi[edge.a] = both[1].xi[edge.b] = middle(piece.xi[edge.a], piece.xi[edge.b]);
     return both;
   }
 
-  void emit(std::span<const std::int32_t> of, const Piece& piece) {
+  void emit(std::span<const std::int32_t> of, const CutPiece& piece) {
     fine_.elements.insert(fine_.elements.end(), piece.node.begin(),
                           piece.node.begin() + static_cast<std::ptrdiff_t>(corners_));
     for (const CellEdge& edge : type_.edges) {
@@ -198,14 +191,6 @@ class Bisection {
       }
       fine_.elements.push_back(place->second);
     }
-  }
-
-  /// Numbers new nodes from the largest tag of the file plus 1.
-  void number_new_nodes() {
-    if (fine_.node_tags.empty()) return;
-    std::int64_t next = *std::max_element(fine_.node_tags.begin(), fine_.node_tags.end());
-    fine_.node_tags.reserve(fine_.node_count());
-    while (fine_.node_tags.size() < fine_.node_count()) fine_.node_tags.push_back(++next);
   }
 
   void take_over(const Group& group) {
@@ -228,16 +213,16 @@ class Bisection {
     const std::size_t corners = type_.facet().corners;
     if (!facet_) facet_.emplace(fine_);
     for (const std::int32_t f : group.members) {
-      Piece facet;
+      CutPiece facet;
       std::copy_n(coarse_.facet(f).begin(), corners, facet.node.begin());
       find_pieces(facet, corners, members);
     }
   }
 
-  void find_pieces(const Piece& facet, std::size_t corners, std::vector<std::int32_t>& members) const {
-    const Edge edge = longest_edge(facet, corners);
+  void find_pieces(const CutPiece& facet, std::size_t corners, std::vector<std::int32_t>& members) const {
+    const CutEdge edge = longest_edge(facet, corners);
     if (is_halved(facet, edge)) {
-      for (const Piece& half : halves(facet, edge)) find_pieces(half, corners, members);
+      for (const CutPiece& half : halves(facet, edge)) find_pieces(half, corners, members);
     } else if (const std::int32_t found = facet_->find(std::span(facet.node).first(corners)); found >= 0) {
       members.push_back(found);
     }
@@ -268,10 +253,10 @@ class Bisection {
   const Cell& type_;
   std::size_t corners_;
   Mesh fine_;
-  std::unordered_map<std::uint64_t, std::int32_t> halved_;   ///< edge key → midpoint node
-  std::unordered_map<std::uint64_t, std::int32_t> between_;  ///< edge key → mid-side node, old and new
-  std::vector<std::array<std::int32_t, 3>> new_middles_;     ///< two ends and the node
-  std::vector<std::int32_t> first_child_;                    ///< per element, plus the end
+  MiddleNodes halved_;                                    ///< midpoints of halved edges
+  MiddleNodes between_;                                   ///< mid-side nodes, old and new
+  std::vector<std::array<std::int32_t, 3>> new_middles_;  ///< two ends and the node
+  std::vector<std::int32_t> first_child_;                 ///< per element, plus the end
   std::optional<FacetIndex> facet_;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Uniform refinement: every edge is halved, groups and curved edges are kept.
+// Uniform refinement, which halves every edge and keeps groups and curved edges; and conversion of linear to
+// quadratic elements.
 #include <kacanov/refine.hpp>
 
 #include <algorithm>
@@ -7,12 +8,13 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include <kacanov/error.hpp>
-#include "mesh/node_keys.hpp"
+#include "mesh/new_nodes.hpp"
 
 namespace kacanov {
 namespace {
@@ -64,14 +66,11 @@ class Refinement {
   explicit Refinement(const Mesh& coarse) : coarse_(coarse), type_(cell(coarse.type)) {}
 
   Mesh done() {
-    fine_.type = coarse_.type;
-    fine_.coordinates = coarse_.coordinates;
-    fine_.node_tags = coarse_.node_tags;
-    fine_.node_fields = coarse_.node_fields;
+    fine_ = with_nodes_of(coarse_, coarse_.type);
     for (std::size_t d = 1; d < patterns_.size(); ++d) patterns_[d] = children_of(type_, d);
     fine_.elements.reserve(coarse_.elements.size() * children_count(type_));
     for (std::size_t e = 0; e < coarse_.element_count(); ++e) split(e);
-    number_new_nodes();
+    number_new_nodes(fine_);
     find_boundary(fine_);
     for (const Group& group : coarse_.groups) take_over(group);
     return std::move(fine_);
@@ -95,12 +94,8 @@ class Refinement {
   }
 
   std::int32_t add(const std::array<double, 3>& at, std::span<const std::int32_t> around) {
-    const std::size_t node = fine_.node_count();
-    if ((node + 1) * dim() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()))
-      throw InputError("mesh.refine: so fine a mesh has more unknowns than 32-bit indices can number");
-    fine_.coordinates.insert(fine_.coordinates.end(), at.begin(), at.begin() + type_.dim);
-    add_mean_of_fields(fine_, around);
-    return static_cast<std::int32_t>(node);
+    return add_node(fine_, at, around,
+                    "mesh.refine: so fine a mesh has more unknowns than 32-bit indices can number");
   }
 
   /// Maps reference coordinates to space.
@@ -206,14 +201,6 @@ class Refinement {
     }
   }
 
-  /// Numbers new nodes from the largest tag of the file plus 1.
-  void number_new_nodes() {
-    if (fine_.node_tags.empty()) return;
-    std::int64_t next = *std::max_element(fine_.node_tags.begin(), fine_.node_tags.end());
-    fine_.node_tags.reserve(fine_.node_count());
-    while (fine_.node_tags.size() < fine_.node_count()) fine_.node_tags.push_back(++next);
-  }
-
   void take_over(const Group& group) {
     Group to{group.name, group.dimension, {}};
     if (group.dimension == type_.dim)
@@ -221,7 +208,7 @@ class Refinement {
     else if (group.dimension == type_.dim - 1)
       facets_of(group, to.members);
     else
-      nodes_of(group, to.members);
+      to.members = with_middles(group, fine_.node_count(), between_);
     std::sort(to.members.begin(), to.members.end());
     fine_.groups.push_back(std::move(to));
   }
@@ -279,22 +266,11 @@ class Refinement {
     return known(of[lowest], of[(lowest + 2) % 4]);
   }
 
-  /// Members of a node group: a point keeps its node; a line also gets the midpoints of edges whose ends it
-  /// contains.
-  void nodes_of(const Group& group, std::vector<std::int32_t>& members) const {
-    members = group.members;
-    if (group.dimension == 0) return;
-    std::vector<char> in(fine_.node_count(), 0);
-    for (const std::int32_t n : group.members) in[n] = 1;
-    for (const auto& [pair, node] : between_)
-      if (in[pair >> 32] != 0 && in[pair & 0xffffffffU] != 0) members.push_back(node);
-  }
-
   const Mesh& coarse_;
   const Cell& type_;
   Mesh fine_;
   std::array<std::vector<Corners>, 4> patterns_;  ///< by diagonal, from 1
-  std::unordered_map<std::uint64_t, std::int32_t> between_;
+  MiddleNodes between_;
   std::optional<FacetIndex> facet_;
   std::int32_t inner_ = -1;  ///< node at the centre of the current element
 };
@@ -302,5 +278,62 @@ class Refinement {
 }  // namespace
 
 Mesh refine(const Mesh& mesh) { return Refinement(mesh).done(); }
+
+namespace {
+
+/// Returns the mid-side node of the edge from a to b, and creates it if needed.
+std::int32_t middle(Mesh& mesh, MiddleNodes& middles, std::int32_t a, std::int32_t b) {
+  const auto [place, fresh] = middles.try_emplace(pair_key(a, b), 0);
+  if (!fresh) return place->second;
+  const std::size_t dim = mesh.dim();
+  std::array<double, 3> at{};
+  for (std::size_t c = 0; c < dim; ++c)
+    at[c] = 0.5 * (mesh.coordinates[a * dim + c] + mesh.coordinates[b * dim + c]);
+  place->second = add_node(mesh, at, std::array{a, b},
+                           "mesh.order: so many nodes have more unknowns than 32-bit indices can number");
+  return place->second;
+}
+
+/// Returns the members that a group of the linear mesh has in the quadratic mesh.
+std::vector<std::int32_t> members_of(const Group& group, const Mesh& linear, const FacetIndex& facets,
+                                     const MiddleNodes& middles) {
+  if (group.dimension == linear.dim() || group.dimension == 0) return group.members;
+  std::vector<std::int32_t> members;
+  if (group.dimension == linear.dim() - 1) {
+    for (const std::int32_t f : group.members) members.push_back(facets.find(linear.facet(f)));
+  } else {
+    members = with_middles(group, linear.node_count(), middles);
+  }
+  std::sort(members.begin(), members.end());
+  return members;
+}
+
+}  // namespace
+
+ElementType raised(ElementType type) {
+  if (type == ElementType::tet4) return ElementType::tet10;
+  throw InputError("mesh.order: 2 makes tet10 of tet4, and the mesh is of " + std::string(cell(type).name));
+}
+
+Mesh raise_order(const Mesh& linear) {
+  Mesh mesh = with_nodes_of(linear, raised(linear.type));
+  mesh.element_tags = linear.element_tags;
+  const Cell& type = cell(mesh.type);
+  const std::size_t corners = type.corners;
+  mesh.elements.reserve(linear.element_count() * static_cast<std::size_t>(type.nodes));
+  MiddleNodes middles;
+  for (std::size_t e = 0; e < linear.element_count(); ++e) {
+    const auto of = std::span(linear.elements).subspan(e * corners, corners);
+    mesh.elements.insert(mesh.elements.end(), of.begin(), of.end());
+    for (const CellEdge& edge : type.edges)
+      mesh.elements.push_back(middle(mesh, middles, of[edge.a], of[edge.b]));
+  }
+  number_new_nodes(mesh);
+  find_boundary(mesh);
+  const FacetIndex facets(mesh);
+  for (const Group& group : linear.groups)
+    mesh.groups.push_back({group.name, group.dimension, members_of(group, linear, facets, middles)});
+  return mesh;
+}
 
 }  // namespace kacanov

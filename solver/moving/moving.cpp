@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Solver for obstacles that move, are pushed by a force, or are relinearised at each load step.
-#include <kacanov/moving.hpp>
+#include <kacanov/solve.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +11,7 @@
 
 #include <kacanov/error.hpp>
 #include <kacanov/part.hpp>
-#include <kacanov/solve.hpp>
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 #include "moving/obstacle_motion.hpp"
 #include "nonlinear/checkpoint_reader.hpp"
 #include "nonlinear/load_steps.hpp"

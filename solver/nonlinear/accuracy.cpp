@@ -16,6 +16,7 @@ AdmmOptions admm_accuracy(const SolverOptions& options, const Residuals& before,
   out.relaxation = options.relaxation.value_or(as_printed ? 1.0 : 1.7);
   out.max_iterations = options.max_contact;
   out.max_cg = options.max_cg;
+  out.collect_evidence = follows_rule(options.penalty);
   out.contact_weight = scales.contact_weight();
   if (by_step) {
     out.step_tolerance = options.tolerance;
@@ -31,7 +32,9 @@ AdmmOptions admm_accuracy(const SolverOptions& options, const Residuals& before,
   // Without a displacement scale any trace is acceptable: the first step stops by its forces.
   out.trace_tolerance = scaled ? reach * scales.trace : HUGE_VAL;
   out.force_reduction = scales.force > 0.0 ? 0.0 : tuning.inner_reduction;
-  if (options.penalty == SolverOptions::Penalty::automatic && !first)
+  const bool balanced = options.penalty == SolverOptions::Penalty::automatic;
+  // A first penalty of the user's may be far off, so that the first step must not wait for it.
+  if (adapts(options.penalty) && (!first || !balanced || options.r > 0.0))
     out.max_iterations = std::min(tuning.balancing_iterations, options.max_contact);
   const bool newton_follows = options.contact == SolverOptions::Contact::automatic ||
                               options.contact == SolverOptions::Contact::active_set;

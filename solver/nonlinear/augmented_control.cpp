@@ -38,7 +38,7 @@ void put(const Traces& traces, const Vector& all, ContactState& state) {
   for (std::size_t i = 0; i < n; ++i) {
     const ContactPoint& point = traces.points()[i];
     const double pressure = state.lambda.normal[i] = std::max(all[i], 0.0);
-    state.bound[i] = point.tresca + point.coulomb * pressure;
+    state.bound[i] = point.friction_bound(pressure);
     const double length = std::hypot(all[n + 2 * i], all[n + 2 * i + 1]);
     const double share = length > state.bound[i] ? state.bound[i] / length : 1.0;
     for (std::size_t k = 0; k < 2; ++k) state.lambda.tangential[2 * i + k] = share * all[n + 2 * i + k];

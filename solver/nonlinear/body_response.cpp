@@ -8,7 +8,7 @@
 #include <string>
 
 #include <kacanov/error.hpp>
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 
 namespace kacanov {
 

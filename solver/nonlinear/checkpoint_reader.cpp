@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include <kacanov/error.hpp>
-#include <kacanov/mpi_communicator.hpp>
+#include <kacanov/part.hpp>
 
 namespace kacanov {
 namespace {

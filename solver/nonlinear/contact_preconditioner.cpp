@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "amg/factorised.hpp"
+#include "amg/assembly.hpp"
 #include "contact/active_set_step.hpp"
 #include "nonlinear/friction_bounds.hpp"
 

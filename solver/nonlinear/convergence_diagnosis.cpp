@@ -2,7 +2,7 @@
 // Explains why a run did not converge.
 #include "nonlinear/convergence_diagnosis.hpp"
 
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 #include "partition/global_max.hpp"
 #include "problem/vector3.hpp"
 

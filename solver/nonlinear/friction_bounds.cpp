@@ -20,7 +20,7 @@ bool has_slip_history(const Part& part) {
 double follow_pressure(const Part& part, const Vector& pressure, Vector& bound) {
   double change = 0.0, largest = 0.0;
   for (std::size_t i = 0; i < part.contact.size(); ++i) {
-    const double now = part.contact[i].tresca + part.contact[i].coulomb * pressure[i];
+    const double now = part.contact[i].friction_bound(pressure[i]);
     change = std::max(change, std::abs(now - bound[i]));
     largest = std::max(largest, pressure[i]);
     bound[i] = now;

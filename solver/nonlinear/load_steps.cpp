@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <string>
 
-#include <kacanov/corner_dilatation.hpp>
-#include "mesh/plain_stream.hpp"
+#include <kacanov/part.hpp>
+#include "mesh/classic_locale_stream.hpp"
 #include "nonlinear/convergence_diagnosis.hpp"
 #include "partition/nondimensionalisation.hpp"
 #include "results/collect.hpp"

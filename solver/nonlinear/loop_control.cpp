@@ -14,7 +14,7 @@ void Fallback::count(double worst) {
   idle_ = 0;
 }
 
-void Fallback::after_admm(double worst, bool solved) {
+void Fallback::after_fallback_step(double worst, bool solved) {
   count(worst);
   if (!solved && idle_ > 0) idle_ += tuning_.unsolved_worth - 1;
   steps_left_ = worst <= aim_ ? 0 : std::max(0, steps_left_ - 1);
@@ -46,12 +46,11 @@ PenaltyControl::PenaltyControl(const SolverOptions& options, double first, const
                  options.stop != SolverOptions::Stop::paper),
       rule_(options.penalty),
       r_(options.r),
-      first_(first) {}
+      first_(adapts(options.penalty) && options.r > 0.0 ? options.r : first),
+      published_(follows_rule(options.penalty) && options.stop != SolverOptions::Stop::paper) {}
 
 void PenaltyControl::choose(double r_star, double lambda_min) {
-  const double r = rule_ == SolverOptions::Penalty::paper       ? r_star
-                   : rule_ == SolverOptions::Penalty::automatic ? first_
-                                                                : r_;
+  const double r = adapts(rule_) ? first_ : rule_ == SolverOptions::Penalty::paper ? r_star : r_;
   restore({r, r}, lambda_min);
 }
 
@@ -72,6 +71,12 @@ bool PenaltyControl::balance(std::span<const BalanceSample> samples, const Scale
   const auto behind = mean_behind(samples, scales.trace, scales.contact_force);
   value_ = {balanced(value_.normal, behind[0]), balanced(value_.tangential, behind[1])};
   return true;
+}
+
+void PenaltyControl::follow_rule(const PenaltyEvidence& evidence, const Traces& traces) {
+  const double r = next_penalty(rule_, value_.normal, evidence, evidence_.get(), traces);
+  value_ = {r, r};
+  evidence_ = std::make_shared<PenaltyEvidence>(evidence);
 }
 
 bool PenaltyControl::go_back_to_first() {

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -66,7 +67,7 @@ class Fallback {
   /// Whether the method of multipliers takes the next step.
   bool retreating() const noexcept { return steps_left_ > 0; }
   /// `worst`: largest KKT residual after the step; `solved`: whether its linear problems were solved.
-  void after_admm(double worst, bool solved = true);
+  void after_fallback_step(double worst, bool solved = true);
   /// The same for a Newton step. Returns whether a retreat begins.
   bool after_newton(double worst, bool solved);
   /// Whether there has been no progress for so long that the loop should stop.
@@ -119,6 +120,10 @@ class PenaltyControl {
   /// Raises the penalty where held rows lag behind free ones, and lowers it in the opposite case (theory:
   /// balance). Returns whether the rule changes penalties at all.
   bool balance(std::span<const BalanceSample> samples, const Scales& scales);
+  /// Whether a published rule takes the place of the balance.
+  bool has_rule() const noexcept { return published_; }
+  /// Moves both penalties by that rule. Collective.
+  void follow_rule(const PenaltyEvidence& evidence, const Traces& traces);
   /// Call it instead after the step that brought the first contact, if others without any came before:
   /// without contact, balancing sees only motion and lowers the penalties too far (42 iterations instead of
   /// 55, 52 instead of 57 on half balls 0.3 away).
@@ -133,6 +138,9 @@ class PenaltyControl {
   double r_, first_;
   Penalty value_;
   double lambda_min_ = 0.0;
+  bool published_;  ///< a published rule is chosen, and the stop is not by steps
+  /// Of the last step, for that rule; not in checkpoints.
+  std::shared_ptr<const PenaltyEvidence> evidence_;
 };
 
 /// Chooses the linearisation of semismooth Newton steps (theory: newton): the secant far from equilibrium,

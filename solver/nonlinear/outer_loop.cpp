@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 #include "nonlinear/body_response.hpp"
 #include "nonlinear/friction_bounds.hpp"
 #include "nonlinear/step.hpp"
@@ -252,6 +252,11 @@ StepOutcome OuterLoop::take_step(bool newton, const Residuals& before, Result& r
 
 void OuterLoop::move_penalty(const StepOutcome& step, const Residuals& before, const Residuals& after,
                              Result& result) {
+  if (control_.penalty.has_rule()) {
+    control_.penalty.follow_rule(step.evidence, context_.traces);
+    result.r_active = control_.penalty.value().normal;
+    return;
+  }
   // Before the first step there is no displacement scale.
   const bool first = opening_;
   const bool moved = step.arrived
@@ -267,7 +272,7 @@ Residuals OuterLoop::learn(const StepOutcome& step, bool newton, const Residuals
   if (!newton) {
     // As after an unsolved Newton step, the preconditioner is the likely cause.
     if (!step.solved) context_.preconditioner.mark_stale();
-    control_.fallback.after_admm(worst, step.solved);
+    control_.fallback.after_fallback_step(worst, step.solved);
     return after;
   }
   if (step.tangent)

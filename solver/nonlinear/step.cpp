@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include <kacanov/corner_dilatation.hpp>
+#include <kacanov/part.hpp>
 #include <kacanov/reference.hpp>
 #include "amg/make_preconditioner.hpp"
 #include "contact/active_constraints.hpp"
@@ -14,12 +14,11 @@
 #include "contact/augmented.hpp"
 #include "contact/dual_admm.hpp"
 #include "contact/linearisation_error.hpp"
-#include "linear/springs.hpp"
+#include "linear/reference_response.hpp"
 #include "nonlinear/accuracy.hpp"
 #include "nonlinear/body_response.hpp"
 #include "nonlinear/line_search.hpp"
 #include "nonlinear/loop_control.hpp"
-#include "reference/expansion.hpp"
 
 namespace kacanov {
 namespace {
@@ -185,6 +184,7 @@ StepOutcome admm_step(StepContext& c, const Penalty& penalty, const Residuals& b
   outcome.solved = step.solves_converged;
   outcome.arrived = !first && !touched && touches(c);
   outcome.balance = step.balance;
+  outcome.evidence = step.evidence;
   return outcome;
 }
 

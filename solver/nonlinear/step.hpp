@@ -60,6 +60,7 @@ struct StepOutcome {
   bool tangent = false;            ///< whether a Newton step used the tangent, not the secant
   bool arrived = false;            ///< whether an ADMM step other than the first brought the first pressure
   std::vector<BalanceSample> balance;  ///< of an ADMM step, one entry per iteration
+  PenaltyEvidence evidence;            ///< of an ADMM step, if a published rule chooses the penalty
 };
 
 /// Kačanov's step (theory: kacanov): freezes the secant and runs the contact loop to a limited accuracy

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "partition/long_messages.hpp"
+#include "partition/part_fields.hpp"
 #include "problem/point_location.hpp"
 #include "problem/shapes.hpp"
 #include "problem/vector3.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // MPI implementation of the transport between ranks.
-#include <kacanov/mpi_communicator.hpp>
+#include <kacanov/part.hpp>
 
 #include <numeric>
 #include <vector>

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Serialisation of a part as a stream of bytes, for messages between ranks and for files.
+// Serialisation of a part as a stream of bytes, for messages between ranks and for files; and MPI messages of
+// any length, sent in pieces because MPI counts are 32-bit.
 #pragma once
 
+#include <mpi.h>
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <type_traits>
 #include <variant>
@@ -10,6 +14,21 @@
 #include <kacanov/part.hpp>
 
 namespace kacanov {
+
+inline constexpr std::size_t longest_message = std::size_t{1} << 30;
+
+inline void send_bytes(const void* data, std::size_t bytes, int to, MPI_Comm comm) {
+  const char* p = static_cast<const char*>(data);
+  for (std::size_t at = 0; at < bytes; at += longest_message)
+    MPI_Send(p + at, static_cast<int>(std::min(longest_message, bytes - at)), MPI_BYTE, to, 1, comm);
+}
+
+inline void receive_bytes(void* data, std::size_t bytes, int from, MPI_Comm comm) {
+  char* p = static_cast<char*>(data);
+  for (std::size_t at = 0; at < bytes; at += longest_message)
+    MPI_Recv(p + at, static_cast<int>(std::min(longest_message, bytes - at)), MPI_BYTE, from, 1, comm,
+             MPI_STATUS_IGNORE);
+}
 
 /// std::vector, std::string: contiguous and resizable.
 template <class T>
@@ -122,8 +141,8 @@ void exchange_fields(Either<IndexMap> auto& map, const auto& stream) {
 }
 
 void exchange_fields(Either<ContactPoint> auto& point, const auto& stream) {
-  stream(point.node, point.entry, point.loose_piece, point.normal, point.outer, point.tangent, point.tangents, point.gap, point.unknown_gap,
-         point.mass, point.tresca, point.coulomb, point.since_step);
+  stream(point.node, point.entry, point.loose_piece, point.normal, point.outer, point.tangent, point.tangents,
+         point.gap, point.unknown_gap, point.mass, point.tresca, point.coulomb, point.since_step);
 }
 
 void exchange_fields(Either<RowEntry> auto& entry, const auto& stream) {
@@ -184,7 +203,8 @@ void exchange_fields(Either<Part> auto& part, const auto& stream) {
          part.law_of_element, part.load, part.prescribed, part.steps, part.forces, part.prescribed_by,
          part.held, part.supports, part.applied, part.directions, part.springs, part.thermal, part.contact,
          part.owned_contact, part.contact_shares, part.wide_contact, part.contact_index, part.total_contact,
-         part.probes, part.probe_index, part.total_probes, part.loose_modes, part.loose_pieces, part.start, part.no_equilibrium);
+         part.probes, part.probe_index, part.total_probes, part.loose_modes, part.loose_pieces, part.start,
+         part.no_equilibrium);
 }
 
 }  // namespace kacanov

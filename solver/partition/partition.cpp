@@ -19,8 +19,7 @@
 #include <kacanov/locality.hpp>
 #include <kacanov/mesh.hpp>
 #include <kacanov/pressure_patches.hpp>
-#include "distributed/exchange.hpp"
-#include "partition/long_messages.hpp"
+#include "parallel/exchange.hpp"
 #include "partition/part_fields.hpp"
 #include "problem/rigid_modes.hpp"
 

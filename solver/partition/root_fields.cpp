@@ -4,7 +4,7 @@
 
 #include <kacanov/checkpoint.hpp>
 #include <kacanov/part.hpp>
-#include "partition/long_messages.hpp"
+#include "partition/part_fields.hpp"
 
 namespace kacanov {
 namespace {

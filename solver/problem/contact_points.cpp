@@ -9,7 +9,7 @@
 #include <tuple>
 
 #include <kacanov/error.hpp>
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 #include "problem/faces.hpp"
 #include "problem/integration.hpp"
 #include "problem/vector3.hpp"

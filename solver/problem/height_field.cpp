@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Heights on a grid, with bilinear interpolation.
-#include <kacanov/height_field.hpp>
+#include <kacanov/obstacle.hpp>
 
 #include <algorithm>
 #include <cmath>

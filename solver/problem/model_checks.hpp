@@ -9,7 +9,7 @@
 
 #include <kacanov/error.hpp>
 #include <kacanov/obstacle.hpp>
-#include <kacanov/rules.hpp>
+#include <kacanov/model.hpp>
 #include "problem/vector3.hpp"
 
 namespace kacanov {

@@ -7,7 +7,6 @@
 #include <limits>
 #include <vector>
 
-#include <kacanov/height_field.hpp>
 #include <kacanov/surface.hpp>
 #include "problem/error_tracking_double.hpp"
 #include "problem/faces.hpp"

@@ -10,7 +10,7 @@
 #include <type_traits>
 
 #include <kacanov/error.hpp>
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 #include "problem/conditions.hpp"
 #include "problem/contact_points.hpp"
 #include "problem/input_errors.hpp"

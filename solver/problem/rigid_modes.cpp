@@ -7,8 +7,7 @@
 #include <cmath>
 
 #include <kacanov/error.hpp>
-#include "mesh/pieces.hpp"
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 #include "problem/conditions.hpp"
 #include "problem/dense.hpp"
 #include "problem/vector3.hpp"

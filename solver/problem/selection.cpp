@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include <kacanov/error.hpp>
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 #include "problem/input_errors.hpp"
 #include "problem/vector3.hpp"
 

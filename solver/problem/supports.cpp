@@ -6,7 +6,7 @@
 #include <optional>
 
 #include <kacanov/error.hpp>
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 #include "problem/conditions.hpp"
 #include "problem/integration.hpp"
 #include "problem/load_curves.hpp"

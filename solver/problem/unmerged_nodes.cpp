@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <utility>
 
-#include "mesh/pieces.hpp"
 #include "problem/selection.hpp"
 #include "problem/vector3.hpp"
 #include "problem/warnings.hpp"

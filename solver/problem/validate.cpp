@@ -7,7 +7,6 @@
 
 #include <kacanov/error.hpp>
 #include <kacanov/model.hpp>
-#include <kacanov/rules.hpp>
 #include "problem/input_errors.hpp"
 #include "problem/load_curves.hpp"
 #include "problem/model_checks.hpp"
@@ -164,6 +163,9 @@ void check_combination(const SolverOptions& options) {
     const char* other = by_step ? "the stop \"paper\"" : "this value of solver.contact";
     unavailable("solver.outer", std::string("\"newton\" together with ") + other, "\"auto\" or \"kacanov\"");
   }
+  const bool published = adapts(options.penalty) && options.penalty != Options::Penalty::automatic;
+  if (published && options.contact == Options::Contact::dual_admm)
+    unavailable("solver.contact", "\"dual_admm\" together with this value of solver.r", "\"admm\"");
 }
 
 }  // namespace
@@ -221,6 +223,7 @@ void validate(const SolverOptions& options) {
   check("solver.tolerance", options.tolerance, below_one);
   check("solver.spectrum_tolerance", options.spectrum_tolerance, below_one);
   if (options.penalty == SolverOptions::Penalty::fixed) check("solver.r", options.r, penalty_number);
+  if (adapts(options.penalty) && options.r != 0.0) check("solver.first_r", options.r, positive);
   check_count("solver.max_outer", options.max_outer);
   check_count("solver.max_contact", options.max_contact);
   check_count("solver.max_cg", options.max_cg);

@@ -7,7 +7,7 @@
 #include <limits>
 #include <span>
 
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 #include "operator/element_maps.hpp"
 #include "problem/conditions.hpp"
 #include "problem/integration.hpp"

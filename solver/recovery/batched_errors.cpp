@@ -7,8 +7,7 @@
 #include <vector>
 
 #include <kacanov/corner_means.hpp>
-#include "cells/hex8.hpp"
-#include "cells/tet10.hpp"
+#include "cells/elements.hpp"
 #include "recovery/element_batch.hpp"
 #include "recovery/error_quadrature.hpp"
 #include "recovery/spr_patches.hpp"
@@ -21,20 +20,20 @@ template <class Element>
 class ErrorRows {
  public:
   explicit ErrorRows(const Smoothing& of)
-      : of_(of), body_(of.part.body()), points_(fine_points(cell(of.part.type))) {}
+      : of_(of), body_(of.part.body()), points_(error_quadrature_points(cell(of.part.type))) {}
 
   /// Computes the error energy of each element of the batch.
-  void work_out(const ElementsAbreast& row, Lanes& energy) {
+  void work_out(const ElementBatch& row, Lanes& energy) {
     gather(body_.mesh, row, body_.mesh.coordinates, x_);
     gather(body_.mesh, row, of_.state.u, moved_);
     loops_.take_sides(x_, sides_);
     loops_.take_sides(moved_, moved_sides_);
-    for (std::size_t lane = 0; lane < abreast; ++lane) take(row[lane], lane);
+    for (std::size_t lane = 0; lane < batch_size; ++lane) take(row[lane], lane);
     energy.fill(0.0);
     simd::RowPoint here;
     simd::RowStrain smooth;
     Lanes position[3], weight, g, smooth_g;
-    for (const FinePoint& point : points_) {
+    for (const ErrorQuadraturePoint& point : points_) {
       const bool even = Element::nodes == 4 && &point != points_.data();  // the same as at the first point
       if (!even) {
         loops_.strain(point.gradient.data(), sides_, moved_sides_, here);
@@ -44,7 +43,7 @@ class ErrorRows {
       loops_.position(point.value.data(), x_, position);
       loops_.smooth(point.corner_share.data(), polynomial_, position, smooth);
       find_secants(smooth.norm, smooth_g);
-      for (std::size_t lane = 0; lane < abreast; ++lane) weight[lane] = point.weight * here.det[lane];
+      for (std::size_t lane = 0; lane < batch_size; ++lane) weight[lane] = point.weight * here.det[lane];
       loops_.add_work({here.strain, smooth, g, smooth_g, bulk_}, weight, energy);
     }
   }
@@ -74,8 +73,8 @@ class ErrorRows {
   }
 
   /// Replaces the trace by means of tr ε for laws that use them.
-  void put_means(const FinePoint& point, Lanes& trace) const {
-    for (std::size_t lane = 0; lane < abreast; ++lane) {
+  void put_means(const ErrorQuadraturePoint& point, Lanes& trace) const {
+    for (std::size_t lane = 0; lane < batch_size; ++lane) {
       if (!averaged_[lane]) continue;
       trace[lane] = 0.0;
       for (std::size_t a = 0; a < Loops::corners; ++a) trace[lane] += point.corner_share[a] * trace_[a][lane];
@@ -83,24 +82,24 @@ class ErrorRows {
   }
 
   void find_secants(const Lanes& norm, Lanes& g) const {
-    for (std::size_t lane = 0; lane < abreast; ++lane) g[lane] = law_[lane]->secant(norm[lane]);
+    for (std::size_t lane = 0; lane < batch_size; ++lane) g[lane] = law_[lane]->secant(norm[lane]);
   }
 
   const Smoothing& of_;
   Body body_;
-  std::vector<FinePoint> points_;
+  std::vector<ErrorQuadraturePoint> points_;
   const Loops& loops_ = simd::row_loops<Element::nodes>({});
   Lanes x_[Element::nodes][3], moved_[Element::nodes][3], bulk_, trace_[Loops::corners];
   typename Loops::Sides sides_, moved_sides_;
-  std::array<const Law*, abreast> law_;
-  std::array<bool, abreast> averaged_;
+  std::array<const Law*, batch_size> law_;
+  std::array<bool, batch_size> averaged_;
   typename Loops::Polynomials polynomial_;
 };
 
 template <class Element>
 void errors_of(const Smoothing& of, std::int32_t batch, std::span<double> energy) {
   ErrorRows<Element> rows(of);
-  ElementsAbreast row;
+  ElementBatch row;
   std::size_t count = 0;
   const auto finish = [&] {
     if (count == 0) return;
@@ -113,7 +112,7 @@ void errors_of(const Smoothing& of, std::int32_t batch, std::span<double> energy
   for (std::size_t e = 0; e < energy.size(); ++e) {
     if (!of.patches.is_in(e, batch)) continue;
     row[count++] = e;
-    if (count == abreast) finish();
+    if (count == batch_size) finish();
   }
   finish();
 }
@@ -125,7 +124,7 @@ void batched_errors(const Smoothing& of, std::int32_t batch, std::span<double> e
     case ElementType::tet4: return errors_of<elements::Tet4>(of, batch, energy);
     case ElementType::tet10: return errors_of<elements::Tet10>(of, batch, energy);
     case ElementType::hex8: return errors_of<elements::Hex8>(of, batch, energy);
-    default: throw std::logic_error("no loop abreast for " + std::string(cell(of.part.type).name));
+    default: throw std::logic_error("no batched loop for " + std::string(cell(of.part.type).name));
   }
 }
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "linear/springs.hpp"
+#include "linear/reference_response.hpp"
 #include "recovery/spr_patches.hpp"
 
 namespace kacanov {

@@ -14,24 +14,24 @@
 
 namespace kacanov {
 
-constexpr std::size_t abreast = simd::row_lanes;
+constexpr std::size_t batch_size = simd::row_lanes;
 /// One number per element of a batch. Loops over lanes have no branches and no calls, so that compilers
 /// vectorise them.
 using Lanes = simd::RowLanes;
-using ElementsAbreast = std::array<std::size_t, abreast>;
+using ElementBatch = std::array<std::size_t, batch_size>;
 
 /// Returns the indices of a batch that starts at `first`; the last element is repeated at the end.
-inline ElementsAbreast in_a_row(std::size_t first, std::size_t elements) {
-  ElementsAbreast row;
-  for (std::size_t lane = 0; lane < abreast; ++lane) row[lane] = std::min(first + lane, elements - 1);
+inline ElementBatch in_a_row(std::size_t first, std::size_t elements) {
+  ElementBatch row;
+  for (std::size_t lane = 0; lane < batch_size; ++lane) row[lane] = std::min(first + lane, elements - 1);
   return row;
 }
 
 /// Gathers nodal vectors for elements with this number of nodes, in 3D.
 template <std::size_t nodes>
-void gather(const MeshView& mesh, const ElementsAbreast& element, std::span<const double> values,
+void gather(const MeshView& mesh, const ElementBatch& element, std::span<const double> values,
             Lanes (&out)[nodes][3]) {
-  for (std::size_t lane = 0; lane < abreast; ++lane) {
+  for (std::size_t lane = 0; lane < batch_size; ++lane) {
     const std::int32_t* node = &mesh.connectivity[nodes * element[lane]];
     for (std::size_t a = 0; a < nodes; ++a) {
       const std::size_t from = 3 * static_cast<std::size_t>(node[a]);

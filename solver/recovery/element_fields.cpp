@@ -10,10 +10,8 @@
 
 #include <kacanov/corner_means.hpp>
 #include <kacanov/vector3.hpp>
-#include "cells/hex8.hpp"
-#include "cells/tet10.hpp"
-#include "cells/tet4.hpp"
-#include "linear/springs.hpp"
+#include "cells/elements.hpp"
+#include "linear/reference_response.hpp"
 #include "problem/shapes.hpp"
 #include "recovery/element_batch.hpp"
 #include "reference/element_points.hpp"
@@ -217,19 +215,19 @@ namespace kacanov::tet4 {
 namespace {
 
 /// A batch of tet4 elements: 30 ns per element against 100 ns in the reference.
-struct Abreast {
+struct BatchState {
   Lanes x[4][3], moved[4][3];
   Lanes gradient[3][3];  ///< ∂u_i/∂x_k
   Lanes volume;
 
   void gather(const Body& body, std::span<const double> u, std::size_t first) {
-    const ElementsAbreast row = in_a_row(first, body.mesh.element_count());
+    const ElementBatch row = in_a_row(first, body.mesh.element_count());
     kacanov::gather(body.mesh, row, body.mesh.coordinates, x);
     kacanov::gather(body.mesh, row, u, moved);
   }
 
   void work_out() {
-    for (std::size_t lane = 0; lane < abreast; ++lane) {
+    for (std::size_t lane = 0; lane < batch_size; ++lane) {
       double j[3][3], d[3][3], h[3][3];  // j, d: along the edges from the first corner
       for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t k = 0; k < 3; ++k) {
@@ -284,11 +282,11 @@ class Strains {
 template <class Visit>
 void for_each_element(const Body& body, std::span<const double> u, const Visit& visit) {
   const std::size_t elements = body.mesh.element_count();
-  Abreast some;
-  for (std::size_t first = 0; first < elements; first += abreast) {
+  BatchState some;
+  for (std::size_t first = 0; first < elements; first += batch_size) {
     some.gather(body, u, first);
     some.work_out();
-    const std::size_t count = std::min(abreast, elements - first);
+    const std::size_t count = std::min(batch_size, elements - first);
     for (std::size_t lane = 0; lane < count; ++lane) visit(first + lane, some, lane);
   }
 }
@@ -296,7 +294,7 @@ void for_each_element(const Body& body, std::span<const double> u, const Visit& 
 void fields(const Body& body, std::span<const double> u, const reference::ElementFields& out) {
   const bool moduli = !out.stress.empty() || !out.von_mises.empty() || !out.secant.empty();
   const Strains strains(body, u);
-  for_each_element(body, u, [&](std::size_t e, const Abreast& some, std::size_t lane) {
+  for_each_element(body, u, [&](std::size_t e, const BatchState& some, std::size_t lane) {
     const reference::Gradient h = gradient_of(some.gradient, lane);
     const reference::Strain strain = strains(e, h);
     const Law& law = body.law(e);
@@ -317,7 +315,7 @@ void fields(const Body& body, std::span<const double> u, const reference::Elemen
 
 void point_fields(const Body& body, std::span<const double> u, const reference::PointFields& out) {
   const Strains strains(body, u);
-  for_each_element(body, u, [&](std::size_t e, const Abreast& some, std::size_t lane) {
+  for_each_element(body, u, [&](std::size_t e, const BatchState& some, std::size_t lane) {
     const reference::Strain strain = strains(e, gradient_of(some.gradient, lane));
     if (!out.stress.empty()) {
       const Law& law = body.law(e);
@@ -334,7 +332,7 @@ void point_fields(const Body& body, std::span<const double> u, const reference::
 double energy(const Body& body, std::span<const double> u) {
   double sum = 0.0;
   const Strains strains(body, u);
-  for_each_element(body, u, [&](std::size_t e, const Abreast& some, std::size_t lane) {
+  for_each_element(body, u, [&](std::size_t e, const BatchState& some, std::size_t lane) {
     const reference::Strain strain = strains(e, gradient_of(some.gradient, lane));
     const Law& law = body.law(e);
     sum += some.volume[lane] * (0.5 * law.bulk * strain.square + 2.0 * law.energy(strain.norm()));
@@ -343,7 +341,7 @@ double energy(const Body& body, std::span<const double> u) {
 }
 
 void volumes(const Body& body, std::span<double> volume) {
-  for_each_element(body, body.mesh.coordinates, [&](std::size_t e, const Abreast& some, std::size_t lane) {
+  for_each_element(body, body.mesh.coordinates, [&](std::size_t e, const BatchState& some, std::size_t lane) {
     volume[e] = some.volume[lane];
   });
 }
@@ -369,16 +367,16 @@ struct Row {
   Lanes weight[Element::points];  ///< volumes of the points
   Lanes square[Element::points];  ///< of the trace, as used in the energy
   Lanes volume;
-  const Law* law[abreast];
+  const Law* law[batch_size];
   const simd::RowLoops<Element::nodes>& loops = simd::row_loops<Element::nodes>({});
 
   /// `means`: null if strains are not needed.
   void work_out(const Body& body, std::span<const double> u, const CornerDilatation* means) {
     const std::size_t elements = body.mesh.element_count();
-    const ElementsAbreast row = in_a_row(first, elements);
-    count = std::min(abreast, elements - first);
+    const ElementBatch row = in_a_row(first, elements);
+    count = std::min(batch_size, elements - first);
     bool mean_dilatation = false;
-    for (std::size_t lane = 0; lane < abreast; ++lane) {
+    for (std::size_t lane = 0; lane < batch_size; ++lane) {
       law[lane] = &body.law(row[lane]);
       mean_dilatation = mean_dilatation || law[lane]->mean_dilatation;
     }
@@ -389,7 +387,7 @@ struct Row {
     volume.fill(0.0);
     for (std::size_t q = 0; q < Element::points; ++q) {
       loops.strain(Element::gradients(Element::point[q].data()).data(), sides_, moved_sides_, at[q]);
-      for (std::size_t lane = 0; lane < abreast; ++lane) {
+      for (std::size_t lane = 0; lane < batch_size; ++lane) {
         weight[q][lane] = Element::weight * at[q].det[lane];
         volume[lane] += weight[q][lane];
       }
@@ -397,7 +395,7 @@ struct Row {
     if (means == nullptr) return;
     if (mean_dilatation && Element::mean_dilatation) average_traces();
     for (std::size_t q = 0; q < Element::points; ++q)
-      for (std::size_t lane = 0; lane < abreast; ++lane)
+      for (std::size_t lane = 0; lane < batch_size; ++lane)
         square[q][lane] = at[q].strain.trace[lane] * at[q].strain.trace[lane];
     if (mean_dilatation && Element::corner_dilatation) put_means(row, *means);
   }
@@ -406,15 +404,15 @@ struct Row {
   void average_traces() {
     Lanes mean{};
     for (std::size_t q = 0; q < Element::points; ++q)
-      for (std::size_t lane = 0; lane < abreast; ++lane)
+      for (std::size_t lane = 0; lane < batch_size; ++lane)
         mean[lane] += weight[q][lane] * at[q].strain.trace[lane];
-    for (std::size_t lane = 0; lane < abreast; ++lane)
+    for (std::size_t lane = 0; lane < batch_size; ++lane)
       if (law[lane]->mean_dilatation)
         for (RowPoint& point : at) point.strain.trace[lane] = mean[lane] / volume[lane];
   }
 
-  void put_means(const ElementsAbreast& row, const CornerDilatation& means) {
-    for (std::size_t lane = 0; lane < abreast; ++lane) {
+  void put_means(const ElementBatch& row, const CornerDilatation& means) {
+    for (std::size_t lane = 0; lane < batch_size; ++lane) {
       if (!law[lane]->mean_dilatation) continue;
       for (std::size_t q = 0; q < Element::points; ++q) {
         reference::Strain at_point;
@@ -434,7 +432,7 @@ template <class Element, class Visit>
 void for_each_row(const Body& body, std::span<const double> u, const CornerDilatation* means,
                   const Visit& visit) {
   Row<Element> row;
-  for (; row.first < body.mesh.element_count(); row.first += abreast) {
+  for (; row.first < body.mesh.element_count(); row.first += batch_size) {
     row.work_out(body, u, means);
     visit(row);
   }
@@ -448,12 +446,12 @@ void for_each_row(const Body& body, std::span<const double> u, const Visit& visi
 template <class Element>
 Lanes secants(const Row<Element>& row, const Lanes& norm) {
   Lanes g;
-  for (std::size_t lane = 0; lane < abreast; ++lane) g[lane] = row.law[lane]->secant(norm[lane]);
+  for (std::size_t lane = 0; lane < batch_size; ++lane) g[lane] = row.law[lane]->secant(norm[lane]);
   return g;
 }
 
 void add(Lanes& sum, const Lanes& weight, const Lanes& value) {
-  for (std::size_t lane = 0; lane < abreast; ++lane) sum[lane] += weight[lane] * value[lane];
+  for (std::size_t lane = 0; lane < batch_size; ++lane) sum[lane] += weight[lane] * value[lane];
 }
 
 template <class Element>
@@ -474,7 +472,7 @@ void put_stress(const Row<Element>& row, const reference::ElementFields& out) {
     const Lanes g = secants(row, strain.norm);
     add(secant, volume, g);
     add(trace, volume, strain.trace);
-    for (std::size_t lane = 0; lane < abreast; ++lane) {
+    for (std::size_t lane = 0; lane < batch_size; ++lane) {
       const double twice = 2.0 * volume[lane] * g[lane];
       von_mises[lane] += twice * strain.norm[lane];
       for (std::size_t c = 0; c < 6; ++c) stress[c][lane] += twice * strain.dev[c][lane];
@@ -507,7 +505,7 @@ void fields(const Body& body, std::span<const double> u, const reference::Elemen
     Lanes dev_strain{}, largest{};
     for (std::size_t q = 0; q < Element::points; ++q) {
       add(dev_strain, row.weight[q], row.at[q].strain.norm);
-      for (std::size_t lane = 0; lane < abreast; ++lane)
+      for (std::size_t lane = 0; lane < batch_size; ++lane)
         largest[lane] = std::max(largest[lane], row.at[q].strain.norm[lane]);
     }
     put(row, dev_strain, out.dev_strain);

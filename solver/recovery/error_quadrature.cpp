@@ -51,7 +51,7 @@ void add_towards_edges(double a, double weight, std::vector<QuadraturePoint>& ru
 
 }  // namespace
 
-std::vector<QuadraturePoint> finer_rule(const Cell& type) {
+std::vector<QuadraturePoint> error_quadrature(const Cell& type) {
   if (!type.simplex && type.order == 1) return gauss_3(type.dim);
   std::vector<QuadraturePoint> rule;
   if (type.order == 1) {
@@ -80,12 +80,13 @@ const Cell& straight(const Cell& type) {
 
 }  // namespace
 
-std::vector<FinePoint> fine_points(const Cell& type) {
-  std::vector<FinePoint> all;
-  for (const QuadraturePoint& point : finer_rule(type)) {
-    FinePoint one{point.weight, std::vector<double>(static_cast<std::size_t>(type.nodes * type.dim)),
-                  std::vector<double>(static_cast<std::size_t>(type.nodes)),
-                  std::vector<double>(static_cast<std::size_t>(type.corners))};
+std::vector<ErrorQuadraturePoint> error_quadrature_points(const Cell& type) {
+  std::vector<ErrorQuadraturePoint> all;
+  for (const QuadraturePoint& point : error_quadrature(type)) {
+    ErrorQuadraturePoint one{point.weight,
+                             std::vector<double>(static_cast<std::size_t>(type.nodes * type.dim)),
+                             std::vector<double>(static_cast<std::size_t>(type.nodes)),
+                             std::vector<double>(static_cast<std::size_t>(type.corners))};
     type.gradients(point.xi.data(), one.gradient.data());
     type.values(point.xi.data(), one.value.data());
     straight(type).values(point.xi.data(), one.corner_share.data());

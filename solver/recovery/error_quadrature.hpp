@@ -17,15 +17,15 @@ struct QuadraturePoint {
 /// Returns a rule of twice the element's order with positive weights that integrates squared strains of
 /// straight-edged elements exactly. The points of the stiffness are superconvergent, so the error does not
 /// show there.
-std::vector<QuadraturePoint> finer_rule(const Cell& type);
+std::vector<QuadraturePoint> error_quadrature(const Cell& type);
 
-struct FinePoint {
+struct ErrorQuadraturePoint {
   double weight = 0.0;
   std::vector<double> gradient;      ///< nodes × dim, with respect to reference coordinates
   std::vector<double> value;         ///< nodes
   std::vector<double> corner_share;  ///< shape functions of the straight cell at its corners
 };
 
-std::vector<FinePoint> fine_points(const Cell& type);
+std::vector<ErrorQuadraturePoint> error_quadrature_points(const Cell& type);
 
 }  // namespace kacanov

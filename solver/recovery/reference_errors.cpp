@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <kacanov/corner_means.hpp>
-#include "cells/dispatch.hpp"
+#include "cells/elements.hpp"
 #include "law/plane_stress.hpp"
 #include "recovery/element_batch.hpp"
 #include "recovery/error_quadrature.hpp"
@@ -67,7 +67,7 @@ struct ElementAt {
     }
   }
 
-  Sample sample(const FinePoint& point, PlaneState plane) const {
+  Sample sample(const ErrorQuadraturePoint& point, PlaneState plane) const {
     Sample out;
     double jacobian[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, along[3][3] = {}, h[3][3];
     for (std::size_t i = 0; i < E::dim; ++i) {
@@ -101,7 +101,7 @@ struct ElementAt {
 class Comparison {
  public:
   explicit Comparison(const Smoothing& of)
-      : of_(of), body_(of.part.body()), points_(fine_points(cell(of.part.type))) {}
+      : of_(of), body_(of.part.body()), points_(error_quadrature_points(cell(of.part.type))) {}
 
   template <class E>
   double energy_in(std::size_t element, double mean_trace) const {
@@ -113,7 +113,7 @@ class Comparison {
     for (std::size_t a = 0; a < corners; ++a)
       of_corner[a] = of_.patches.polynomial(of_.fits, of_.set, static_cast<std::size_t>(node[a]));
     double energy = 0.0;
-    for (const FinePoint& point : points_) {
+    for (const ErrorQuadraturePoint& point : points_) {
       Sample here = moved.sample(point, of_.part.plane);
       if (law.mean_dilatation) {
         double trace = mean_trace;
@@ -146,7 +146,7 @@ class Comparison {
 
   const Smoothing& of_;
   Body body_;
-  std::vector<FinePoint> points_;
+  std::vector<ErrorQuadraturePoint> points_;
 };
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "distributed/exchange.hpp"
+#include "parallel/exchange.hpp"
 #include "partition/global_max.hpp"
 #include "problem/vector3.hpp"
 #include "recovery/element_batch.hpp"
@@ -219,7 +219,7 @@ namespace {
 /// A law at a node.
 using At = std::pair<std::int32_t, std::uint16_t>;
 /// Pairs of laws that share a node, in both orders.
-using Edge = std::pair<std::uint16_t, std::uint16_t>;
+using CornerPair = std::pair<std::uint16_t, std::uint16_t>;
 
 template <class T>
 void keep_each_once(std::vector<T>& values) {
@@ -259,7 +259,7 @@ std::vector<At> laws_at_nodes(const Part& part) {
   return at;
 }
 
-void join(std::vector<Edge>& edges, const std::vector<At>& at) {
+void join(std::vector<CornerPair>& edges, const std::vector<At>& at) {
   for (auto first = at.begin(); first != at.end();) {
     const auto last =
         std::find_if(first, at.end(), [&](const At& other) { return other.first != first->first; });
@@ -286,7 +286,7 @@ std::vector<std::int32_t> law_batches(const Part& part) {
   std::vector<std::int32_t> batch(part.laws.size(), -1);
   if (part.laws.size() == 1) return {0};
   const std::vector<At> at = laws_at_nodes(part);
-  std::vector<Edge> edges;
+  std::vector<CornerPair> edges;
   join(edges, at);
   if (part.node_map.ranks > 1) {
     join(edges, laws_at_shared_nodes(part, at));

@@ -12,7 +12,7 @@
 
 #include <kacanov/element_fields.hpp>
 #include <kacanov/model.hpp>
-#include <kacanov/nodal_stress.hpp>
+#include <kacanov/discretisation.hpp>
 #include <kacanov/part.hpp>
 
 namespace kacanov {

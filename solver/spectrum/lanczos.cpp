@@ -12,7 +12,7 @@
 #include <string>
 
 #include <kacanov/error.hpp>
-#include <kacanov/mpi_communicator.hpp>
+#include <kacanov/part.hpp>
 
 namespace kacanov {
 namespace {

@@ -6,8 +6,8 @@ import pathlib
 import sys
 from dataclasses import dataclass, field
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "perf"))
-from random_bodies import CUBE, KINDS, TET_EDGES, lattice  # noqa: E402
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "perf" / "runs"))
+from lattice_mesh import CUBE, KINDS, TET_EDGES, lattice  # noqa: E402
 
 POINT = 15  # Gmsh's number of the element that is a node
 FLAT = ("tri3", "quad4")

@@ -11,7 +11,7 @@
 
 #include <kacanov/pressure_patches.hpp>
 #include <kacanov/reference.hpp>
-#include "../../perf/meshes.hpp"
+#include "../../perf/benchmarks/meshes.hpp"
 
 namespace kacanov::test {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The displacement–pressure formulation: matrices computed by hand, the displacement form, the inf-sup
 // condition.
-#include "reference/mixed.hpp"
+#include <kacanov/reference.hpp>
 
 #include <doctest/doctest.h>
 

@@ -13,7 +13,7 @@
 
 #include "bodies.hpp"
 #include "law/plane_stress.hpp"
-#include "reference/element_stiffness.hpp"
+#include "reference/matrix.hpp"
 
 using namespace kacanov;
 using test::difference;

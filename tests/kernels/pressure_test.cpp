@@ -6,8 +6,8 @@
 
 #include <kacanov/corner_means.hpp>
 #include <kacanov/operator.hpp>
+#include <kacanov/reference.hpp>
 #include "bodies.hpp"
-#include "reference/mixed.hpp"
 
 using namespace kacanov;
 using test::difference;

@@ -9,8 +9,8 @@
 #include <numeric>
 
 #include "bodies.hpp"
-#include "cells/dispatch.hpp"
-#include "reference/element_stiffness.hpp"
+#include "cells/elements.hpp"
+#include "reference/matrix.hpp"
 
 using namespace kacanov;
 using test::difference;

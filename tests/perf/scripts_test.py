@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tests compare_builds, roofline, bench_choices and bench_run on made-up results.
+"""Tests the scripts of perf/ on made-up results.
 
-usage: scripts_test.py FOLDER-OF-THE-SCRIPTS
+usage: scripts_test.py ROOT
 """
 import json
 import pathlib
@@ -13,7 +13,7 @@ import tempfile
 import unittest
 import xml.etree.ElementTree
 
-SCRIPTS = pathlib.Path(sys.argv.pop(1))
+ROOT = pathlib.Path(sys.argv.pop(1))
 
 
 def entry(**changes):
@@ -26,7 +26,7 @@ def result(*entries):
 
 
 def run(name, *arguments, text=None):
-    return subprocess.run([sys.executable, SCRIPTS / name, *map(str, arguments)], input=text, text=True,
+    return subprocess.run([sys.executable, ROOT / name, *map(str, arguments)], input=text, text=True,
                           capture_output=True, check=False)
 
 
@@ -58,7 +58,7 @@ print(json.dumps(first))
         drift = [1.5 if i > rounds / 2 else 1.0 for i in range(rounds)]
         speeds = [[[entry(unknowns_per_second=1e8 * f * d * (1 + noise * rng.uniform(-1, 1)))] for d in drift]
                   for f in (1.0, factor)]
-        done = run("compare_builds", self.build("old", speeds[0]), self.build("new", speeds[1]), "--rounds", rounds, "--json")
+        done = run("perf/compare_builds", self.build("old", speeds[0]), self.build("new", speeds[1]), "--rounds", rounds, "--json")
         self.assertIn(done.returncode, (0, 1), done.stderr)
         (only,) = json.loads(done.stdout).values()
         self.assertEqual(done.returncode, 1 if only["verdict"] == "worse" else 0)
@@ -83,30 +83,30 @@ print(json.dumps(first))
     def test_nothing_in_common(self):
         old = self.build("old", [[entry()]] * 6)
         new = self.build("new", [[entry(element="hex8")]] * 6)
-        done = run("compare_builds", old, new, "--rounds", 6)
+        done = run("perf/compare_builds", old, new, "--rounds", 6)
         self.assertEqual(done.returncode, 2)
         self.assertIn("in common", done.stderr)
 
     def test_missing_build_and_too_few_rounds(self):
-        self.assertEqual(run("compare_builds", "nowhere", "nowhere").returncode, 2)
-        self.assertEqual(run("compare_builds", "nowhere", "nowhere", "--rounds", 5).returncode, 2)
+        self.assertEqual(run("perf/compare_builds", "nowhere", "nowhere").returncode, 2)
+        self.assertEqual(run("perf/compare_builds", "nowhere", "nowhere", "--rounds", 5).returncode, 2)
 
 
 class Roofline(unittest.TestCase):
     def test_every_entry_wanted_is_drawn(self):
         entries = [entry(), entry(precision="float"), entry(form="csr"), entry(form="tangent"), entry(threads=1)]
-        done = run("roofline", text=json.dumps(result(*entries)))
+        done = run("perf/roofline", text=json.dumps(result(*entries)))
         self.assertEqual(done.returncode, 0, done.stderr)
         picture = xml.etree.ElementTree.fromstring(done.stdout)
         titles = [t.text for t in picture.iter("{http://www.w3.org/2000/svg}title")]
         self.assertEqual(len(titles), 3)
         self.assertTrue(any(t.startswith("tet4 csr box") for t in titles), titles)
-        everything = run("roofline", "--form", "all", text=json.dumps(result(*entries)))
+        everything = run("perf/roofline", "--form", "all", text=json.dumps(result(*entries)))
         self.assertEqual(everything.stdout.count("<title>"), 4)
 
     def test_a_point_on_the_roof_lies_on_the_roof(self):
         # At the peak and at the ridge's intensity, the marker lies where the two parts of the roof meet.
-        done = run("roofline", text=json.dumps(result(entry(share_of_triad=1.0, share_of_fma_peak=1.0))))
+        done = run("perf/roofline", text=json.dumps(result(entry(share_of_triad=1.0, share_of_fma_peak=1.0))))
         picture = xml.etree.ElementTree.fromstring(done.stdout)
         marker = next(picture.iter("{http://www.w3.org/2000/svg}circle"))
         roof = [x for x in picture.iter("{http://www.w3.org/2000/svg}line") if x.get("stroke-width") == "2"]
@@ -114,10 +114,10 @@ class Roofline(unittest.TestCase):
 
     def test_bad_input(self):
         for text in ("", "{}", "[]", json.dumps(result()), json.dumps(result(entry(share_of_triad=0)))):
-            done = run("roofline", text=text)
+            done = run("perf/roofline", text=text)
             self.assertEqual(done.returncode, 2, text)
             self.assertTrue(done.stderr.startswith("roofline: "), done.stderr)
-        self.assertEqual(run("roofline", "/nonexistent/result.json").returncode, 2)
+        self.assertEqual(run("perf/roofline", "/nonexistent/result.json").returncode, 2)
 
 
 class Choices(unittest.TestCase):
@@ -145,7 +145,7 @@ if isinstance(r, float):  # a sweep
             program, results = pathlib.Path(folder) / "kacanov", pathlib.Path(folder) / "results.json"
             program.write_text(self.PROGRAM.format(python=sys.executable))
             program.chmod(0o755)
-            done = run("bench_choices", program, "--case", "beam2d 16 gap 0 smooth *", "--sweep", 7, "--json", results)
+            done = run("perf/runs/bench_choices", program, "--case", "beam2d 16 gap 0 smooth *", "--sweep", 7, "--json", results)
             entries = json.loads(results.read_text()) if results.exists() else self.fail(done.stderr)
         self.assertEqual(done.returncode, 1, done.stderr)  # dual_admm failed
         self.assertEqual(set(entries), {"beam2d 16 gap 0 smooth linear", "beam2d 16 gap 0 smooth log"})
@@ -162,8 +162,8 @@ if isinstance(r, float):  # a sweep
         self.assertIn(["beam2d 16 gap 0 smooth log", "40", "32", "6.32", "1.25", "1.33"], cells)
 
     def test_bad_usage(self):
-        self.assertEqual(run("bench_choices", "nowhere").returncode, 2)
-        done = run("bench_choices", "nowhere", "--case", "no such case")
+        self.assertEqual(run("perf/runs/bench_choices", "nowhere").returncode, 2)
+        done = run("perf/runs/bench_choices", "nowhere", "--case", "no such case")
         self.assertEqual(done.returncode, 2)
         self.assertIn("--list", done.stderr)
 
@@ -193,7 +193,7 @@ else:
             program, results = pathlib.Path(folder) / "kacanov", pathlib.Path(folder) / "results.json"
             program.write_text(self.PROGRAM.format(python=sys.executable))
             program.chmod(0o755)
-            done = run("bench_run", program, "--problem", "beam3d", "--problem", "beam3d-linear", "--unknowns", 20000,
+            done = run("perf/runs/bench_run", program, "--problem", "beam3d", "--problem", "beam3d-linear", "--unknowns", 20000,
                        "--unknowns", 100000, "--json", results, "--output", pathlib.Path(folder) / "out")
             entries = json.loads(results.read_text())["entries"] if results.exists() else self.fail(done.stderr)
             self.assertTrue((pathlib.Path(folder) / "out/beam3d-20000/log.txt").exists())
@@ -210,17 +210,17 @@ else:
         self.assertEqual([phases[k] for k in ("read", "coarser meshes", "solve", "setups in it")], ["0.00", "0.30", "1.00", "0.50"])
 
     def test_bad_usage(self):
-        self.assertEqual(run("bench_run", "nowhere").returncode, 2)
-        self.assertEqual(run("bench_run", "nowhere", "--problem", "cake").returncode, 2)
+        self.assertEqual(run("perf/runs/bench_run", "nowhere").returncode, 2)
+        self.assertEqual(run("perf/runs/bench_run", "nowhere", "--problem", "cake").returncode, 2)
 
 
 class HardCases(unittest.TestCase):
     def test_list_and_bad_usage(self):
-        names = run("hard_cases", "--list").stdout.splitlines()
+        names = run("tests/campaigns/hard_cases", "--list").stdout.splitlines()
         self.assertEqual((len(names), len(set(names))), (216, 216))
-        self.assertEqual(run("hard_cases", "nowhere").returncode, 2)
+        self.assertEqual(run("tests/campaigns/hard_cases", "nowhere").returncode, 2)
         with tempfile.NamedTemporaryFile() as program:
-            done = run("hard_cases", program.name, "--case", "no such case")
+            done = run("tests/campaigns/hard_cases", program.name, "--case", "no such case")
         self.assertEqual(done.returncode, 2)
         self.assertIn("no case", done.stderr)
 
@@ -236,10 +236,92 @@ linear = case["material"][0]["law"]["type"] == "linear"
     outer_iterations=3, operator_applications=20, unknowns=600)))
 """.format(python=sys.executable))
             program.chmod(0o755)
-            done = run("hard_cases", program, "--case", "drag smooth *")
+            done = run("tests/campaigns/hard_cases", program, "--case", "drag smooth *")
         self.assertEqual(done.returncode, 1, done.stderr)
         self.assertEqual(done.stdout.count("so it goes"), 5)
         self.assertIn("1 of 6 converged, 18 outer steps, 120 operator applications", done.stdout)
+
+
+class Paper(unittest.TestCase):
+    """paper/run --check with a stub of the program that knows the committed figures."""
+
+    PROGRAM = """#!{python}
+import json, pathlib, sys
+command, path, *options = sys.argv[1:]
+case = json.loads(pathlib.Path(path).read_text())
+load, friction = -case["boundary"][1]["traction"][1], "Tresca" if "friction" in case["contact"][0] else "none"
+results = pathlib.Path({scripts!r}) / "paper" / "results"
+rows = [row for n in (1, 2) for row in json.loads((results / f"paper-table-{{n}}.json").read_text())["rows"]]
+row = next(r for r in rows if (r["load"], r["friction"], r["h"]) == (load, friction, "1/16"))
+if command == "spectrum":
+    print(json.dumps(dict(r_star={r_star} * row["r_star"])))
+    sys.exit()
+printed = case["solver"]["r"] == row["printed_r"]
+output = pathlib.Path(options[options.index("--output") + 1])
+output.mkdir()
+(output / "result.json").write_text(json.dumps(dict(status="not_converged", outer_iterations=row["outer"], operator_applications=9,
+    contact_iterations=row["iterations_at_printed" if printed else "iterations"] + {more}, certificate=dict(tension=1e-4), r=[1.0],
+    r_active=0.0)))
+sys.exit(1)
+"""
+
+    def check(self, **figures):
+        with tempfile.TemporaryDirectory() as folder:
+            program = pathlib.Path(folder) / "kacanov"
+            program.write_text(self.PROGRAM.format(python=sys.executable, scripts=str(SCRIPTS.resolve()), **figures))
+            program.chmod(0o755)
+            return run("paper/run", program, "--check")
+
+    def test_the_committed_figures_agree_with_themselves(self):
+        done = self.check(r_star=1.005, more=1)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(done.stdout.count("iterations_at_printed"), 3)
+
+    def test_other_figures_are_named(self):
+        done = self.check(r_star=1.02, more=0)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("16 tresca 0.05: r_star is", done.stderr)
+        done = self.check(r_star=1, more=-2)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("16 smooth 0.005: iterations is", done.stderr)
+
+    def test_bad_usage(self):
+        self.assertEqual(run("paper/run", "/nonexistent").returncode, 2)
+
+
+class PenaltyRules(unittest.TestCase):
+    """penalties/run with a stub: the balanced penalties take 10 iterations, OSQP 20, residual balancing fails."""
+
+    PROGRAM = """#!{python}
+import json, pathlib, sys
+command, path, *options = sys.argv[1:]
+r = json.loads(pathlib.Path(path).read_text())["solver"].get("r")
+if command == "sweep":
+    print("r* = 1, r_A = 4.5\\n")
+    sys.exit()
+output = pathlib.Path(options[options.index("--output") + 1])
+output.mkdir()
+count = {{"auto": 10, "osqp": 20, 4.5: 5}}.get(r, 40)
+(output / "result.json").write_text(json.dumps(dict(status="not_converged" if r == "residual_balancing" else "converged",
+    contact_iterations=count, operator_applications=3 * count, r=[2.0])))
+"""
+
+    def test_rules_are_compared_with_the_balanced_one(self):
+        with tempfile.TemporaryDirectory() as folder:
+            program = pathlib.Path(folder) / "kacanov"
+            program.write_text(self.PROGRAM.format(python=sys.executable))
+            program.chmod(0o755)
+            done = run("penalties/run", program, "--case", "*beam2d 16 gap 0 smooth linear", "--tolerance", "1e-6")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rows = {c[2]: c for line in done.stdout.splitlines() if line.startswith("|")
+                for c in [[c.strip() for c in line.split("|")[1:-1]]]}
+        self.assertEqual(rows["balanced"][3:], ["1", "1", "1.00", "1.00", "2.00", "1"])
+        self.assertEqual(rows["OSQP"][3:], ["1", "1", "2.00", "2.00", "4.00", "1"])
+        self.assertEqual(rows["r_A of the solution"][3:], ["1", "1", "0.50", "0.50", "1.00", "0"])
+        self.assertEqual(rows["residuals"][3:], ["1", "0", "", "", "", "0"])
+
+    def test_bad_usage(self):
+        self.assertEqual(run("penalties/run", "/nonexistent").returncode, 2)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <kacanov/mpi_communicator.hpp>
+#include <kacanov/part.hpp>
 #include "multigrid/rigid_level.hpp"
 
 namespace kacanov::testing {

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Problems with closed-form solutions.
+// Problems with closed-form solutions, and the effectivity of the error estimate on them.
 #include <doctest/doctest.h>
 
 #include <algorithm>
 
+#include <kacanov/discretisation.hpp>
 #include <kacanov/element_fields.hpp>
 #include "support.hpp"
 
-using namespace kacanov;
 using namespace kacanov::testing;
+using namespace kacanov;
 
 namespace {
 
@@ -246,5 +247,41 @@ TEST_CASE("no contact: even tension, and a stretched bar") {
         for (std::size_t e = 0; e < fields.von_mises.size(); ++e)
           CHECK(fields.stress[6 * e] == doctest::Approx(0.02).epsilon(1e-6));
       });
+    }
+}
+
+namespace {
+
+Run bent(ElementType type, int cells, const Law& law) {
+  const int dim = dimension(type);
+  return run_alone(make_box({{2.0, 1.0, 1.0}, {2 * cells, cells, dim == 3 ? cells : 1}, type}),
+                   bent_model(dim, law));
+}
+
+double stored_energy(const Run& run) { return reference::energy(run.part.body(), run.solution.displacement); }
+
+}  // namespace
+
+TEST_CASE("the estimate is the error, within a half and twice, elastic and beyond yield") {
+  for (const Law& law : {elastic_law(1.0, 0.3), logarithmic_law(0.002)})
+    for (const int dim : {2, 3}) {
+      // Richardson extrapolation of the energies of finer meshes of the best element.
+      const ElementType best = dim == 2 ? ElementType::quad4 : ElementType::tet10;
+      const int fine = dim == 2 ? 64 : 8;
+      const double half = stored_energy(bent(best, fine / 2, law)),
+                   whole = stored_energy(bent(best, fine, law));
+      const double exact = whole - (half - whole) / 2.0;
+      for (const ElementType type : element_types()) {
+        if (dimension(type) != dim) continue;
+        CAPTURE(cell(type).name);
+        CAPTURE(law.linear());
+        const Run run = bent(type, cell(type).order == 1 ? 8 : 4, law);
+        REQUIRE(run.result().status == Status::converged);
+        const DiscretisationError error = estimate_error(run.part, run.solution);
+        const double effectivity = std::sqrt(error.energy / (stored_energy(run) - exact));
+        INFO("effectivity " << effectivity << " at " << error.relative);
+        CHECK(effectivity > 0.5);
+        CHECK(effectivity < 2.0);
+      }
     }
 }

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "amg/coarse_amg.hpp"
-#include "amg/part_multigrid.hpp"
+#include "amg/make_preconditioner.hpp"
 #include "chain.hpp"
 #include "linear/distributed_operator.hpp"
 #include "multigrid/cg.hpp"

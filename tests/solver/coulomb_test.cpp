@@ -82,13 +82,13 @@ TEST_CASE("gcr solves what is not symmetric, with as good a preconditioner as th
     std::copy(r.begin(), r.end(), z.begin());
     return true;
   };
-  const GcrResult result = gcr(space, apply, inner, x, residual, {1e-10, 200});
+  const GcrResult result = gcr(space, apply, inner, {x, residual}, {1e-10, 200});
   CHECK(result.converged);
   CHECK(result.iterations > 3);
   CHECK((Eigen::Map<Eigen::VectorXd>(x.data(), n) - wanted).norm() < 1e-8);
   const auto refuses = [](std::span<const double>, std::span<double>) { return false; };
   Vector other(part.unknowns(), 0.0), rest(right.data(), right.data() + n);
-  CHECK_FALSE(gcr(space, apply, refuses, other, rest, {1e-10, 200}).converged);
+  CHECK_FALSE(gcr(space, apply, refuses, {other, rest}, {1e-10, 200}).converged);
 }
 
 TEST_CASE(

@@ -1,16 +1,51 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Dense reference solver for small problems, which shares only the lists of loads and contact points with the
-// solver. It assembles its own matrices and solves quadratic programs with an energy line search, their duals
-// by projected Gauss–Seidel on the dense compliance of the contact points (Jean and Moreau).
+// A small dense solver of the same problems, independent of the solver under test: body, laws, and solution.
 #pragma once
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <vector>
 
-#include "dense_body.hpp"
+#include <kacanov/law.hpp>
+#include <kacanov/problem.hpp>
 
 namespace kacanov::testing {
+
+class DenseBody {
+ public:
+  using Matrix = Eigen::MatrixXd;
+  using Vector = Eigen::VectorXd;
+
+  /// `problem` must outlive this object.
+  explicit DenseBody(const Problem& problem);
+
+  double stored_energy(const Vector& u) const;
+  /// Computes internal forces and tangent; with `elastic`, those of the body with g = μ.
+  void linearise(const Vector& u, bool elastic, Vector& force, Matrix& tangent) const;
+
+ private:
+  struct Point {
+    double weight = 0.0;
+    std::size_t element = 0;
+    Matrix b;  ///< 6 × (nodes · dim): strain in Mandel notation
+  };
+  /// B-bar: replaces the trace at each of the last `count` points by their mean.
+  void take_mean_dilatation(std::ptrdiff_t count);
+  const Law& law(std::size_t element) const { return problem_.laws[problem_.law_of_element[element]]; }
+
+  const Problem& problem_;
+  int dim_;
+  std::vector<Point> points_;
+  std::vector<std::vector<Eigen::Index>> unknowns_;  ///< per element
+};
+
+/// g, dg/dx and ∫ g s ds of a law, from the formulas in the documentation of case files.
+struct LawValues {
+  double g, slope, energy;
+};
+
+/// Evaluates the law at the strain x = ‖dev ε‖.
+LawValues evaluate_law(const Law& law, double x);
 
 class DenseSolver {
  public:

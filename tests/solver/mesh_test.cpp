@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Boundary, checks and generated boxes: closed surfaces, volumes by the divergence theorem, errors that name
-// the elements.
+// the elements; nodal fields given as numbers.
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -12,10 +13,11 @@
 #include <string>
 
 #include <kacanov/error.hpp>
-#include <kacanov/index_runs.hpp>
-
 #include <kacanov/mesh.hpp>
+#include <kacanov/part.hpp>
+#include <kacanov/refine.hpp>
 #include <kacanov/vector3.hpp>
+#include "problem/vector3.hpp"
 
 using namespace kacanov;
 
@@ -320,4 +322,27 @@ TEST_CASE("impossible boxes are refused before anything is allocated") {
   CHECK(refused({{1, 1, 1}, {2000, 2000, 2000}, ElementType::tet4}, "32-bit"));
   CHECK(refused({{1, 1, 1}, {2147483647, 2147483647, 2147483647}, ElementType::tet10}, "32-bit"));
   CHECK(make_box({{1, 1, 0}, {1, 1, 0}, ElementType::tri3}).element_count() == 2);  // third entry ignored
+}
+
+TEST_CASE("numbers at nodes are taken over: what is linear stays so") {
+  const auto field = [](const Vector3& x) { return 3.0 + x[0] - 2.0 * x[1] + 5.0 * x[2]; };
+  const auto is_linear = [&](const Mesh& mesh) {
+    REQUIRE(mesh.node_fields.size() == 1);
+    REQUIRE(mesh.node_fields[0].values.size() == mesh.node_count());
+    double off = 0.0;
+    for (std::size_t n = 0; n < mesh.node_count(); ++n)
+      off = std::max(
+          off, std::abs(mesh.node_fields[0].values[n] - field(position(mesh, static_cast<std::int32_t>(n)))));
+    CHECK(off < 1e-13);
+  };
+  for (const ElementType type : element_types()) {
+    CAPTURE(cell(type).name);
+    Mesh mesh = make_box({{2, 1, 1.5}, {2, 2, 2}, type});
+    NodeField& values = mesh.node_fields.emplace_back();
+    for (std::size_t n = 0; n < mesh.node_count(); ++n)
+      values.values.push_back(field(position(mesh, static_cast<std::int32_t>(n))));
+    is_linear(refine(refine(mesh)));
+    if (can_bisect(type)) is_linear(bisect(bisect(mesh, std::array{0, 3}), std::array{1, 2}));
+    if (type == ElementType::tet4) is_linear(raise_order(mesh));
+  }
 }

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include <kacanov/moving.hpp>
+#include <kacanov/solve.hpp>
 #include <kacanov/surface.hpp>
 #include "half_space.hpp"
 #include "moving/obstacle_motion.hpp"

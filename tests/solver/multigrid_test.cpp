@@ -7,7 +7,7 @@
 
 #include <kacanov/operator.hpp>
 #include "../sanitized.hpp"
-#include "amg/part_multigrid.hpp"
+#include "amg/make_preconditioner.hpp"
 #include "chain.hpp"
 #include "multigrid/aggregate_motions.hpp"
 #include "multigrid/aggregation.hpp"

@@ -1,18 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parts of the outer loop, each alone with made-up numbers: no body, no solve.
+// The parts of the outer loop, each alone with made-up numbers; the schedule of preconditioners; the
+// augmented Lagrangian method.
 #include <doctest/doctest.h>
 
 #include <array>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <random>
 #include <string>
+#include <vector>
 
+#include "contact/augmented.hpp"
 #include "linear/load_path.hpp"
 #include "nonlinear/accuracy.hpp"
+#include "nonlinear/contact_preconditioner.hpp"
 #include "nonlinear/friction_bounds.hpp"
+#include "nonlinear/line_search.hpp"
 #include "nonlinear/loop_control.hpp"
+#include "nonlinear/outer_loop.hpp"
+#include "support.hpp"
 
+using namespace kacanov::testing;
 using namespace kacanov;
 
 namespace {
@@ -103,7 +112,7 @@ TEST_CASE("fallback: a stall, a failed solve and a breakdown retreat, each time 
   int expected = usual.first_retreat;
   for (const double worst : {0.5, 0.5, HUGE_VAL}) {
     int steps = 0;
-    for (; fallback.retreating(); ++steps) fallback.after_admm(1e3);
+    for (; fallback.retreating(); ++steps) fallback.after_fallback_step(1e3);
     CHECK(steps == expected);
     expected *= 2;
     CHECK(fallback.after_newton(worst, std::isinf(worst)));
@@ -111,7 +120,7 @@ TEST_CASE("fallback: a stall, a failed solve and a breakdown retreat, each time 
   // The longest retreat.
   for (int i = 0; i < 20; ++i) fallback.after_newton(1.0, false);
   int steps = 0;
-  for (; fallback.retreating(); ++steps) fallback.after_admm(1e3);
+  for (; fallback.retreating(); ++steps) fallback.after_fallback_step(1e3);
   CHECK(steps == usual.first_retreat << usual.most_doublings);
 }
 
@@ -120,7 +129,7 @@ TEST_CASE("fallback: steps without a gain are counted, and those without a solut
     Fallback fallback(usual);
     fallback.after_newton(1.0, false);
     int steps = 0;
-    for (; !fallback.stuck(); ++steps) fallback.after_admm(1.0, solved);
+    for (; !fallback.stuck(); ++steps) fallback.after_fallback_step(1.0, solved);
     CHECK(steps == usual.most_idle / (solved ? 1 : usual.unsolved_worth));
   }
 }
@@ -132,9 +141,9 @@ TEST_CASE("fallback: ADMM hands back once it is well below the best Newton step"
   REQUIRE(fallback.retreating());
   Fallback copy = copied_by_visit(fallback, Fallback(usual));
   for (Fallback* each : {&fallback, &copy}) {
-    each->after_admm(0.5 * 0.4);
+    each->after_fallback_step(0.5 * 0.4);
     CHECK(each->retreating());
-    each->after_admm(0.99 * usual.retreat_gain * 0.4);
+    each->after_fallback_step(0.99 * usual.retreat_gain * 0.4);
     CHECK(!each->retreating());
   }
 }
@@ -362,4 +371,178 @@ TEST_CASE("friction bounds follow the pressure, and say by how much") {
   Part smooth = part;
   for (ContactPoint& point : smooth.contact) point.tangents = 0;
   CHECK(!has_friction(smooth));
+}
+
+TEST_CASE(
+    "preconditioner: stale without one, fresh after a setup, stale once a step costs what a setup does") {
+  const Tuning defaults;
+  PreconditionerSchedule schedule(defaults);
+  CHECK(schedule.stale());
+  schedule.built();
+  CHECK(!schedule.stale());
+  schedule.watch(2.0, 20);  // the reference: ten iterations per digit
+  CHECK(!schedule.stale());
+  schedule.watch(0.0, 0);
+  schedule.watch(2.0, 20 + static_cast<int>(defaults.setup_worth));
+  CHECK(!schedule.stale());
+  schedule.watch(1.0, 11 + static_cast<int>(defaults.setup_worth));
+  CHECK(schedule.stale());
+  CHECK(schedule.stale(1.0));
+  CHECK(!schedule.stale(0.9 * defaults.setup_worth / (defaults.setup_worth + 1.0)));  // too little to gain
+  schedule.built();
+  schedule.watch(2.0, 40);  // a new reference
+  CHECK(!schedule.stale());
+  schedule.mark_stale();
+  CHECK(schedule.stale(0.0));
+}
+
+TEST_CASE("preconditioner: the penalty and the active set of its setup, and their change since") {
+  const Tuning defaults;
+  PreconditionerSchedule schedule(defaults);
+  schedule.built_for(Penalty{2.0, 1.0});
+  CHECK(!schedule.penalty_moved({2.9 / 3.0 * 2.0, 1.0}, true));
+  CHECK(schedule.penalty_moved({2.0 * 1.01 * defaults.penalty_worth, 1.0}, false));
+  CHECK(schedule.penalty_moved({2.0, 0.99 / defaults.penalty_worth}, true));
+  CHECK(!schedule.penalty_moved({2.0, 0.99 / defaults.penalty_worth}, false));
+  ActiveSet set(2);
+  set.held[0] = {true, false};
+  set.slip_stiffness[0] = 4.0;
+  CHECK(schedule.set_moved(set));
+  schedule.built_for(set);
+  CHECK(!schedule.set_moved(set));
+  CHECK(schedule.set_moved(set, 1.0));
+  ActiveSet other = set;
+  other.held[0].tangential = true;
+  CHECK(schedule.set_moved(other));
+  other = set;
+  for (const double factor : {0.99, 1.01}) {
+    other.slip_stiffness[0] = 4.0 * factor * defaults.penalty_worth;
+    CHECK(schedule.set_moved(other) == (factor > 1.0));
+    other.slip_stiffness[0] = 4.0 / (factor * defaults.penalty_worth);
+    CHECK(schedule.set_moved(other) == (factor > 1.0));
+  }
+  other = set;
+  other.slip_stiffness[1] = 0.1;
+  CHECK(schedule.set_moved(other));
+  schedule.built_for(Penalty{2.0, 1.0});  // sets a penalty, no active set
+  CHECK(schedule.set_moved(set));
+  CHECK(!schedule.drifted(0.9 * defaults.drift_worth * 8.0, 8.0));
+  CHECK(schedule.drifted(1.1 * defaults.drift_worth * 8.0, 8.0));
+}
+
+namespace {
+
+/// A state with open, closed, sticking and slipping points, the same on every call.
+ContactState some_state(const Part& part) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> value(-1, 1);
+  ContactState state;
+  const std::size_t points = part.contact.size();
+  state.lambda = state.trace = ContactValues(points);
+  for (std::size_t i = 0; i < points; ++i) {
+    state.lambda.normal[i] = std::max(value(random), 0.0);
+    state.trace.normal[i] = value(random);
+    for (std::size_t k = 0; k < 2; ++k) {
+      state.lambda.tangential[2 * i + k] = 0.3 * value(random);
+      state.trace.tangential[2 * i + k] = value(random);
+    }
+    state.gap.push_back(0.1 * value(random));
+    state.bound.push_back(1.0 + value(random));
+  }
+  return state;
+}
+
+}  // namespace
+
+TEST_CASE("multipliers are the derivative of what contact adds, and the stiffness theirs") {
+  Model model = elastic_model();
+  model.contact.push_back(on_plane(named("bottom"), {}, {0, 0, 1}, 0.5));
+  const Problem problem = build_problem(box_mesh(ElementType::tet4), model);
+  const Part part = distribute(&problem, MPI_COMM_SELF);
+  const Traces traces(part);
+  const ContactState state = some_state(part);
+  const AugmentedContact contact(traces, state, 1.7);
+  const ContactValues at = contact.multipliers(state.trace);
+  const ActiveSet set = contact.derivative(state.trace);
+  constexpr double h = 1e-6;
+  for (std::size_t i = 0; i < part.contact.size(); ++i) {
+    const double mass = part.contact[i].mass;
+    ContactValues more = state.trace, less = state.trace;
+    more.normal[i] += h;
+    less.normal[i] -= h;
+    CHECK((contact.value(more) - contact.value(less)) / (2 * h) ==
+          doctest::Approx(mass * at.normal[i]).scale(1.0).epsilon(1e-7));
+    const double stiff =
+        (contact.multipliers(more).normal[i] - contact.multipliers(less).normal[i]) / (2 * h);
+    CHECK(stiff == doctest::Approx(set.held[i].normal ? contact.penalty() : 0.0).scale(1.0).epsilon(1e-7));
+    for (std::size_t k = 0; k < 2; ++k) {
+      more = less = state.trace;
+      more.tangential[2 * i + k] += h;
+      less.tangential[2 * i + k] -= h;
+      CHECK((contact.value(more) - contact.value(less)) / (2 * h) ==
+            doctest::Approx(mass * at.tangential[2 * i + k]).scale(1.0).epsilon(1e-7));
+      const double along = set.slip_direction[2 * i + k];
+      const double turning =
+          set.held[i].tangential ? contact.penalty() : set.slip_stiffness[i] * (1.0 - along * along);
+      const double found = (contact.multipliers(more).tangential[2 * i + k] -
+                            contact.multipliers(less).tangential[2 * i + k]) /
+                           (2 * h);
+      CHECK(found == doctest::Approx(turning).scale(1.0).epsilon(1e-6));
+    }
+  }
+}
+
+TEST_CASE("a step is found where the slope of a convex function is gone, whatever its scales") {
+  // Slopes that vanish at `wall` and rise a million times as steeply beyond; below, slopes that follow a
+  // power.
+  for (const double wall : {0.9, 0.1, 1e-3}) {
+    CAPTURE(wall);
+    int asked = 0;
+    const auto slope = [&](double t) {
+      ++asked;
+      return t < wall ? t / wall - 1.0 : 1e6 * (t - wall);
+    };
+    const double t = find_step(-1.0, slope);
+    CHECK(t == doctest::Approx(wall).epsilon(0.6));
+    CHECK(std::abs(slope(t)) <= 0.5);
+    CHECK(asked <= 21);
+  }
+  CHECK(find_step(-1.0, [](double t) { return std::pow(t, 0.02) - 1.5; }) == 1.0);
+  CHECK(find_step(-1.0, [](double t) { return 0.1 * t; }) == 1.0);
+  // Extrapolation reaches `longest` at most, and goes no further than the slope requires.
+  CHECK(find_step(-1.0, [](double t) { return std::pow(t, 0.02) - 1.9; }, {.longest = 100.0}) == 100.0);
+  for (const double far : {3.0, 50.0, 7e3}) {
+    CAPTURE(far);
+    const auto slope = [&](double t) { return std::pow(t / far, 0.1) - 1.0; };
+    CHECK(std::abs(slope(find_step(-1.0, slope, {.longest = 1e6}))) <= 0.5);
+  }
+}
+
+TEST_CASE("the method of multipliers alone comes to the answer of the others") {
+  for (const double coulomb : {0.0, 0.4}) {
+    CAPTURE(coulomb);
+    Model model = beam(3, logarithmic_law(0.01), 0.02, coulomb > 0.0 ? 0.0 : 0.01);
+    if (coulomb > 0.0) model.contact[0].friction = Friction{0.0, coulomb};
+    model.solver.tolerance = 1e-7;
+    const Run other = run_alone(beam_mesh(3, 2), model);
+    REQUIRE(other.result().status == Status::converged);
+    Tuning tuning;  // every Newton step counts as a stall, and no retreat ends
+    tuning.patience = 1;
+    tuning.progress = 0.0;
+    tuning.retreat_gain = 0.0;
+    tuning.first_retreat = 100;
+    const RunOptions run;
+    OuterLoop loop(other.part, model.solver, run, 1.0, tuning);
+    Result result;
+    CHECK(loop.run(result));
+    CHECK(loop.certify().certificate.worst() <= model.solver.tolerance);
+    CHECK_FALSE(loop.gave_up());
+    CHECK(result.outer_iterations <= 40);
+    double most = 0.0, size = 0.0;
+    for (std::size_t i = 0; i < loop.state().u.size(); ++i) {
+      most = std::max(most, std::abs(loop.state().u[i] - other.solution.displacement[i]));
+      size = std::max(size, std::abs(other.solution.displacement[i]));
+    }
+    CHECK(most < 1e-5 * size);
+  }
 }

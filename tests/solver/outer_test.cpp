@@ -233,6 +233,43 @@ TEST_CASE("iterations hardly grow with the mesh, and are few beside ADMM with r*
   }
 }
 
+TEST_CASE("published rules for the penalty lead to the same answer, also from a first one that is far off") {
+  using Penalty = SolverOptions::Penalty;
+  Model model = beam(2, logarithmic_law(0.01), 0.05, 0.01);
+  model.solver.outer = SolverOptions::Outer::kacanov;
+  model.solver.contact = SolverOptions::Contact::admm;
+  model.solver.max_outer = 2000;
+  const Run balanced = run_alone(beam_mesh(2, 4), model);
+  for (const auto penalty : {Penalty::automatic, Penalty::residuals, Penalty::relative_residuals,
+                             Penalty::osqp, Penalty::spectral})
+    for (const double first : {0.0, 0.03, 30.0}) {
+      CAPTURE(static_cast<int>(penalty));
+      CAPTURE(first);
+      model.solver.penalty = penalty;
+      model.solver.r = first;
+      const Run run = run_alone(beam_mesh(2, 4), model);
+      CHECK(run.result().status == Status::converged);
+      if (first > 0.0) CHECK(run.result().r[0] == doctest::Approx(first));
+      CHECK(run.result().contact_force[1] ==
+            doctest::Approx(balanced.result().contact_force[1]).epsilon(1e-4));
+    }
+  model.solver.contact = SolverOptions::Contact::dual_admm;
+  CHECK_THROWS_AS(run_alone(beam_mesh(2, 4), model), InputError);
+}
+
+TEST_CASE("with a Cholesky factor a solve of ADMM takes one or two iterations") {
+  Model model = beam(2, elastic_law(1.0, 0.3), 0.05, 0.0);
+  model.solver.outer = SolverOptions::Outer::kacanov;
+  model.solver.contact = SolverOptions::Contact::admm;
+  model.solver.stop = SolverOptions::Stop::paper;
+  model.solver.penalty = SolverOptions::Penalty::fixed;
+  model.solver.r = 3.0;
+  model.solver.preconditioner = SolverOptions::Preconditioner::cholesky;
+  const Run run = run_alone(beam_mesh(2, 4), model);
+  CHECK(run.result().contact_iterations > 5);
+  CHECK(run.result().cg_iterations <= 2 * run.result().contact_iterations);
+}
+
 TEST_CASE("solves that are cut short are counted and said, whatever the loop makes of them") {
   using Options = SolverOptions;
   Model model = beam(2, logarithmic_law(0.01), 0.05, 0.01);

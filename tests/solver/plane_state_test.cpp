@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <kacanov/nodal_stress.hpp>
+#include <kacanov/discretisation.hpp>
 #include "half_space.hpp"
 #include "support.hpp"
 

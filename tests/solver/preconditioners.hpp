@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "amg/factorised.hpp"
+#include "amg/assembly.hpp"
 #include "amg/make_preconditioner.hpp"
 
 namespace kacanov::testing {

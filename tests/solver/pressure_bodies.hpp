@@ -9,9 +9,9 @@
 #include <cstddef>
 
 #include <kacanov/operator.hpp>
-#include "amg/part_multigrid.hpp"
+#include "amg/make_preconditioner.hpp"
 #include "multigrid/cg.hpp"
-#include "operator/corner_sum.hpp"
+#include "operator/nodal_pressure.hpp"
 #include "support.hpp"
 
 namespace kacanov::testing {

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "../sanitized.hpp"
-#include "amg/part_multigrid.hpp"
+#include "amg/make_preconditioner.hpp"
 #include "multigrid/fine_level.hpp"
 #include "multigrid/grid_fit.hpp"
 #include "multigrid/grid_level.hpp"

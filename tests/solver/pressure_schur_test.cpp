@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "amg/part_multigrid.hpp"
+#include "amg/make_preconditioner.hpp"
 #include "multigrid/fine_level.hpp"
 #include "multigrid/pressure_schur.hpp"
 #include "multigrid/summed_pattern.hpp"

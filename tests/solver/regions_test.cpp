@@ -9,11 +9,11 @@
 #include <cmath>
 #include <random>
 
-#include <kacanov/corner_dilatation.hpp>
+#include <kacanov/part.hpp>
+#include <kacanov/reference.hpp>
 #include "linear/load_path.hpp"
-#include "linear/springs.hpp"
+#include "linear/reference_response.hpp"
 #include "problem/vector3.hpp"
-#include "reference/expansion.hpp"
 #include "support.hpp"
 
 using namespace kacanov;

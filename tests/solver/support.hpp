@@ -162,4 +162,17 @@ inline double distance(const Vector3& a, const Vector3& b) {
 }
 inline double length(const Vector3& a) { return distance(a, {}); }
 
+/// A block fixed at its left end with its right end displaced downwards, so that the energy is the strain
+/// energy alone.
+inline Model bent_model(int dim, const Law& law) {
+  Model model;
+  model.materials.push_back({everything(), law});
+  model.boundary.push_back(moved(named("left"), dim));
+  Vector3 down{};
+  down[static_cast<std::size_t>(dim) - 1] = -0.02;
+  model.boundary.push_back(moved(named("right"), dim, down));
+  model.solver.tolerance = 1e-8;
+  return model;
+}
+
 }  // namespace kacanov::testing

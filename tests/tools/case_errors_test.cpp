@@ -111,6 +111,7 @@ TEST_CASE("one mistake, one message: path, what was expected, what was there") {
       {"solver.relaxation=2", "solver.relaxation: expected a number ≥ 1 and below 2, got 2"},
       {"solver.r=-1", "solver.r: expected \"auto\", \"paper\" or a number > 0, got -1"},
       {"solver.r=best", "solver.r: expected \"auto\", \"paper\" or a number > 0, got \"best\""},
+      {"solver.first_r=0", "solver.first_r: expected a number > 0, got 0"},
       {"solver.outer=kakanov",
        "solver.outer: expected \"auto\", \"kacanov\" or \"newton\", got \"kakanov\" (did you mean "
        "\"kacanov\"?)"},

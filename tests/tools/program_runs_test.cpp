@@ -39,6 +39,7 @@ TEST_CASE("a run converges, says so, and writes every file and key") {
                           "lambda_min",
                           "lambda_max",
                           "r_star",
+                          "r_star_estimated",
                           "contact_force",
                           "friction_force",
                           "max_contact_pressure",

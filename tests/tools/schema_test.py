@@ -50,7 +50,7 @@ SAMPLE = {
                  "motion": {"path": [{"time": 1, "translation": VECTOR, "rotation": 0}], "centre": VECTOR}},
                 {"on": "front", "obstacle": {"gap": 0.1}}],
     "steps": [{"time": 1, "factors": {"wall": 1}}],
-    "solver": {"tolerance": 1e-6, "outer": "auto", "contact": "auto", "r": 1, "stop": "kkt", "max_outer": 100,
+    "solver": {"preset": "paper", "tolerance": 1e-6, "outer": "auto", "contact": "auto", "r": 1, "stop": "kkt", "max_outer": 100,
                "max_contact": 100, "max_cg": 100, "coarse_amg": 5000, "spectrum_tolerance": 0.01, "relaxation": 1.5,
                "preconditioner": "multigrid", "nested": True},
     "probe": [[1, 0.5, 1]],
@@ -94,6 +94,8 @@ def samples():
         yield {**small, "boundary": [entry]}
     for steps in (3, [0.5, 1]):
         yield {**small, "solver": {"load_steps": steps, "r": "paper"}}
+    for rule in ("residual_balancing", "relative_balancing", "osqp", "spectral"):
+        yield {**small, "solver": {"contact": "admm", "r": rule, "first_r": 1, "preconditioner": "cholesky"}}
     yield {**small, "mesh": {"file": "a.msh"}}
     yield {**small, "mesh": {"files": ["coarse.msh", "a.msh"]}}
 

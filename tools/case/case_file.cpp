@@ -6,14 +6,14 @@
 #include <filesystem>
 
 #include <kacanov/error.hpp>
-#include <kacanov/raise_order.hpp>
+#include <kacanov/refine.hpp>
 #include "case/case_material.hpp"
 #include "case/case_obstacle.hpp"
 #include "case/case_schema.hpp"
 #include "case/case_words.hpp"
 #include "case/json_node.hpp"
 #include "formats/text_bytes.hpp"
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 #include "problem/input_errors.hpp"
 
 namespace kacanov {
@@ -45,7 +45,7 @@ class CaseParser {
     if (const auto list = top.optional("probe"))
       for (const Node& node : list->entries()) result_.model.probes.push_back(vector(node));
     if (const auto node = top.optional("output")) parse_output(*node);
-    validate(result_.model);
+    validate_model();
     return std::move(result_);
   }
 
@@ -249,8 +249,20 @@ class CaseParser {
     }
   }
 
+  /// A refusal of solver keys also says which of them a preset has set.
+  void validate_model() const {
+    try {
+      validate(result_.model);
+    } catch (const InputError& error) {
+      const std::string text = error.what();
+      if (result_.preset.values.empty() || text.find("solver.") == std::string::npos) throw;
+      throw InputError(text + "; solver.preset is " + result_.preset.text());
+    }
+  }
+
   void parse_solver(const Node& node) {
-    const Object object(node);
+    const nlohmann::json values = with_preset(node.value(), result_.preset);
+    const Object object(Node(values, node.path()));
     SolverOptions& options = result_.model.solver;
     if (const auto v = object.optional("tolerance")) options.tolerance = v->number();
     if (const auto v = object.optional("spectrum_tolerance")) options.spectrum_tolerance = v->number();
@@ -258,6 +270,10 @@ class CaseParser {
     if (const auto v = object.optional("contact")) options.contact = value_of(*v, words::contact);
     if (const auto v = object.optional("stop")) options.stop = value_of(*v, words::stop);
     if (const auto v = object.optional("r")) parse_penalty(*v);
+    if (const auto v = object.optional("first_r")) {
+      if (!adapts(options.penalty)) v->expected("no first_r with an r that does not change");
+      options.r = v->number();
+    }
     if (const auto v = object.optional("preconditioner"))
       options.preconditioner = value_of(*v, words::preconditioner);
     if (const auto v = object.optional("coarse_amg")) options.coarse_amg = v->integer(0);

@@ -11,6 +11,7 @@
 
 #include <kacanov/mesh.hpp>
 #include <kacanov/model.hpp>
+#include "case/preset.hpp"
 
 namespace kacanov {
 
@@ -82,6 +83,7 @@ struct Case {
   MeshSource mesh;
   Model model;
   OutputOptions output;
+  ChosenPreset preset;
   std::vector<ObstacleFile> obstacle_files;
   std::vector<VectorEntry> vectors;
   std::vector<std::string> warnings;

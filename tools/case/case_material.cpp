@@ -7,10 +7,10 @@
 #include <utility>
 
 #include <kacanov/error.hpp>
-#include <kacanov/rules.hpp>
+#include <kacanov/model.hpp>
 #include "case/case_schema.hpp"
 #include "case/case_words.hpp"
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 
 namespace kacanov {
 namespace {

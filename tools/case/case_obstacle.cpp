@@ -5,7 +5,7 @@
 #include <array>
 #include <variant>
 
-#include <kacanov/rules.hpp>
+#include <kacanov/model.hpp>
 #include "case/case_schema.hpp"
 #include "case/case_words.hpp"
 

@@ -5,6 +5,7 @@
 #include <kacanov/cells.hpp>
 #include "case/case_file.hpp"
 #include "case/case_words.hpp"
+#include "case/preset.hpp"
 
 namespace kacanov {
 namespace {
@@ -169,13 +170,19 @@ Schema penalty() {
 
 KeySet solver() {
   const SolverOptions standard;
+  Word preset;
+  for (const Preset& one : presets()) preset.words.push_back(one.name);
   return {
-      {may("tolerance", Number{below_one}, "relative, on every entry of the certificate", standard.tolerance),
+      {may("preset", preset,
+           "a name for values of the other keys, which overrule it: paper is the paper's route",
+           presets().front().name),
+       may("tolerance", Number{below_one}, "relative, on every entry of the certificate", standard.tolerance),
        may("outer", one_of(words::outer), "the linearisation", word_of(standard.outer, words::outer)),
        may("contact", one_of(words::contact), "the method for contact",
            word_of(standard.contact, words::contact)),
-       may("r", penalty(), "the penalty, stress over length: balanced, r*, or a number",
+       may("r", penalty(), "the penalty, stress over length: balanced, r*, a number, or a published rule",
            word_of(standard.penalty, words::penalty)),
+       may("first_r", Number{positive}, "the first penalty, where r names a rule that changes it"),
        may("stop", one_of(words::stop), "what ends a run: KKT residuals or the paper's size of a step",
            word_of(standard.stop, words::stop)),
        may("max_outer", Whole{1}, "outer steps of a load step, or of a part of one", standard.max_outer),

@@ -49,11 +49,18 @@ inline constexpr Words<Options::Contact, 4> contact{{{"auto", Options::Contact::
                                                      {"admm", Options::Contact::admm},
                                                      {"dual_admm", Options::Contact::dual_admm},
                                                      {"active_set", Options::Contact::active_set}}};
-inline constexpr Words<Options::Penalty, 2> penalty{
-    {{"auto", Options::Penalty::automatic}, {"paper", Options::Penalty::paper}}};
+inline constexpr Words<Options::Penalty, 6> penalty{
+    {{"auto", Options::Penalty::automatic},
+     {"paper", Options::Penalty::paper},
+     {"residual_balancing", Options::Penalty::residuals},
+     {"relative_balancing", Options::Penalty::relative_residuals},
+     {"osqp", Options::Penalty::osqp},
+     {"spectral", Options::Penalty::spectral}}};
 inline constexpr Words<Options::Stop, 2> stop{{{"kkt", Options::Stop::kkt}, {"paper", Options::Stop::paper}}};
-inline constexpr Words<Options::Preconditioner, 2> preconditioner{
-    {{"multigrid", Options::Preconditioner::multigrid}, {"elasticity", Options::Preconditioner::elasticity}}};
+inline constexpr Words<Options::Preconditioner, 3> preconditioner{
+    {{"multigrid", Options::Preconditioner::multigrid},
+     {"elasticity", Options::Preconditioner::elasticity},
+     {"cholesky", Options::Preconditioner::cholesky}}};
 inline constexpr Words<Friction::Reference, 2> reference{
     {{"start", Friction::Reference::start}, {"step", Friction::Reference::step}}};
 inline constexpr Words<Law::Argument, 2> argument{

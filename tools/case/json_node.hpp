@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include <kacanov/rules.hpp>
+#include <kacanov/model.hpp>
 
 namespace kacanov {
 

@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include <kacanov/rules.hpp>
+#include <kacanov/model.hpp>
 #include "case/json_node.hpp"
 
 namespace kacanov {

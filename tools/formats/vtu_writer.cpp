@@ -9,7 +9,7 @@
 
 #include <kacanov/error.hpp>
 #include "formats/xml.hpp"
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 
 namespace kacanov {
 namespace {

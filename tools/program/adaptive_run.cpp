@@ -9,10 +9,10 @@
 #include <optional>
 #include <string>
 
-#include <kacanov/bisect.hpp>
 #include <kacanov/discretisation.hpp>
 #include <kacanov/error.hpp>
-#include <kacanov/moving.hpp>
+#include <kacanov/refine.hpp>
+#include <kacanov/solve.hpp>
 #include "program/loaded_case.hpp"
 #include "program/obstacle_files.hpp"
 #include "program/report.hpp"

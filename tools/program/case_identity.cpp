@@ -2,7 +2,7 @@
 // Compares two case files section by section and names the keys that differ.
 #include "program/case_identity.hpp"
 
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 
 namespace kacanov {
 namespace {

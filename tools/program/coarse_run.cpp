@@ -10,7 +10,6 @@
 
 #include <kacanov/discretisation.hpp>
 #include <kacanov/error.hpp>
-#include <kacanov/moving.hpp>
 #include <kacanov/solve.hpp>
 #include "program/loaded_case.hpp"
 #include "program/obstacle_files.hpp"

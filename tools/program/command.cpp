@@ -6,7 +6,7 @@
 
 #include "case/case_schema.hpp"
 #include "formats/printable.hpp"
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 #include "problem/input_errors.hpp"
 #include "program/command_line.hpp"
 

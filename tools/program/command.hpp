@@ -15,6 +15,7 @@ struct Command {
   std::string output;                   ///< folder; empty: results/<case name>
   std::string parts;                    ///< run: folder written by `partition`; empty: none
   std::optional<int> ranks, threads;    ///< partition: `ranks` is the number of parts, always set
+  std::string preset;                   ///< --preset; empty: as the case says
   std::vector<std::string> overrides;   ///< --set
   std::optional<double> tolerance;      ///< spectrum: relative tolerance for λ_min and λ_max
   bool restart = false;                 ///< run: continue from the checkpoint in the folder
@@ -28,6 +29,13 @@ struct Command {
   bool leave_out = false;               ///< convert, run of a deck: skip unsupported keywords
   bool force = false;                   ///< convert, init: overwrite existing files
 
+  /// Returns the changes to the case: --preset first, so that --set overrules it.
+  std::vector<std::string> changes() const {
+    std::vector<std::string> all;
+    if (!preset.empty()) all.push_back("solver.preset=" + preset);
+    all.insert(all.end(), overrides.begin(), overrides.end());
+    return all;
+  }
   /// Returns whether the command reads no case.
   bool without_case() const noexcept { return kind == Kind::convert || kind == Kind::init; }
 };

@@ -137,6 +137,8 @@ int check_command(const Case& input, int ranks) {
                 to_text(problem.probes[i].point, dim).c_str(),
                 static_cast<long long>(mesh.element_tag(element)));
   }
+  if (!input.preset.name.empty())
+    std::printf("  %-14s %s\n", "preset", printable(input.preset.text()).c_str());
   print_estimate(problem, input, ranks);
   std::fflush(stdout);
   return exit_converged;

@@ -5,6 +5,8 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
+#include "case/preset.hpp"
+
 namespace kacanov {
 namespace {
 
@@ -17,6 +19,11 @@ std::string footer() {
 
 void add_common(CLI::App& app, Command& command) {
   app.add_option("CASE.json", command.case_file, "the case file")->required();
+  std::vector<std::string> names;
+  for (const Preset& preset : presets()) names.push_back(preset.name);
+  app.add_option("--preset", command.preset, "solver.preset of the case: paper, dual or default")
+      ->check(CLI::IsMember(names).description(""))
+      ->type_name("NAME");
   app.add_option("--set", command.overrides, "change a value of the case: solver.tolerance=1e-8 (repeatable)")
       ->type_name("KEY=VALUE")
       ->expected(1)

@@ -9,12 +9,11 @@
 #include <kacanov/discretisation.hpp>
 #include <kacanov/element_fields.hpp>
 #include <kacanov/error.hpp>
-#include <kacanov/nodal_stress.hpp>
 #include "formats/atomic_file.hpp"
 #include "formats/mesh_file.hpp"
 #include "formats/mesh_writer.hpp"
 #include "formats/printable.hpp"
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 #include "program/adaptive_run.hpp"
 #include "program/checkpoint_file.hpp"
 #include "program/coarse_run.hpp"
@@ -124,6 +123,11 @@ std::string checkpoint_line(const CheckpointFile& file) {
   return file.written() ? "  checkpoint    " + printable(file.path().string()) +
                               "; the option --restart goes on from there\n"
                         : "";
+}
+
+std::string preset_line(const Case& input) {
+  const std::string text = input.preset.text();
+  return text.empty() ? text : "  preset        " + printable(text) + "\n";
 }
 
 /// Returns a nodal field at the boundary nodes, on the first rank. Collective.
@@ -330,7 +334,7 @@ int run_command(const Command& command, const Case& given, MpiSession& mpi) {
     // Again, now that the time for output is known.
     const nlohmann::ordered_json json = result_json(result, figures, input, loaded.problem->mesh);
     write_json(folder / "result.json", json);
-    const std::string text = summary(result, figures, input.model, dim) +
+    const std::string text = summary(result, figures, input.model, dim) + preset_line(input) +
                              (result.status == Status::converged ? "" : checkpoint_line(*file));
     if (input.output.report)
       try_to_show([&] {

@@ -8,7 +8,7 @@
 #include <kacanov/solve.hpp>
 #include "formats/atomic_file.hpp"
 #include "formats/printable.hpp"
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 #include "pictures/picture.hpp"
 #include "program/commands.hpp"
 #include "program/loaded_case.hpp"
@@ -88,6 +88,7 @@ int sweep_command(const Command& command, const Case& input, const MpiSession& m
     const SpectrumResult elastic = analyse_spectrum(loaded.part, solver, options).back();
     landmarks.r_star = elastic.r_star;
     solver.penalty = SolverOptions::Penalty::automatic;
+    solver.r = 0.0;
     const ActivePenalty active =
         active_penalty(loaded.part, solve(loaded.part, solver, options), solver, options);
     landmarks.r_active = active.r;

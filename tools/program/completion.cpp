@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Bash completion, generated from the same commands and options as --help.
 #include "case/case_schema.hpp"
+#include "case/preset.hpp"
 #include "program/command_line.hpp"
 
 namespace kacanov {
@@ -47,6 +48,12 @@ std::string keys_to_set() {
   return list;
 }
 
+std::string preset_names() {
+  std::string list;
+  for (const Preset& preset : presets()) add_word(list, preset.name);
+  return list;
+}
+
 /// Completes the values of options.
 std::string values_of(const CLI::App& app) {
   std::string folders, others;
@@ -56,13 +63,16 @@ std::string values_of(const CLI::App& app) {
       std::string& list = option->get_type_name() == "DIR" ? folders : others;
       std::string names;
       add_names(names, *option, " | ");
-      if (names != "--set" && list.find(names) == std::string::npos) add_word(list, names, " | ");
+      if (names != "--set" && names != "--preset" && list.find(names) == std::string::npos)
+        add_word(list, names, " | ");
     }
   return "  case $previous in\n    " + folders +
          ")\n      compopt -o filenames 2>/dev/null\n"
          "      mapfile -t COMPREPLY < <(compgen -d -- \"$current\")\n      return ;;\n    --set)\n"
          "      compopt -o nospace 2>/dev/null\n      mapfile -t COMPREPLY < <(compgen -W '" +
-         keys_to_set() + "' -- \"$current\")\n      return ;;\n    " + others + ") return ;;\n  esac\n";
+         keys_to_set() +
+         "' -- \"$current\")\n      return ;;\n    --preset)\n      mapfile -t COMPREPLY < <(compgen -W '" +
+         preset_names() + "' -- \"$current\")\n      return ;;\n    " + others + ") return ;;\n  esac\n";
 }
 
 std::string words_of(const CLI::App& app) {

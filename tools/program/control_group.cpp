@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 #include <string>
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 
 namespace kacanov {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "partition/long_messages.hpp"
+#include "partition/part_fields.hpp"
 
 namespace kacanov {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include <kacanov/element_fields.hpp>
-#include <kacanov/nodal_stress.hpp>
+#include <kacanov/discretisation.hpp>
 #include <kacanov/part.hpp>
 #include <kacanov/problem.hpp>
 #include <kacanov/result.hpp>

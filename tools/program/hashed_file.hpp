@@ -11,7 +11,7 @@
 
 #include <kacanov/error.hpp>
 #include "formats/atomic_file.hpp"
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 
 namespace kacanov {
 

@@ -3,7 +3,7 @@
 #include "program/history.hpp"
 
 #include <limits>
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 
 namespace kacanov {
 

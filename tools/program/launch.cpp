@@ -30,7 +30,7 @@
 #include <vector>
 
 #include <kacanov/error.hpp>
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 #include "program/command.hpp"
 #include "program/control_group.hpp"
 #include "program/interrupt.hpp"

@@ -9,9 +9,8 @@
 #include <iostream>
 
 #include <kacanov/error.hpp>
-#include <kacanov/moving.hpp>
-#include <kacanov/raise_order.hpp>
 #include <kacanov/refine.hpp>
+#include <kacanov/solve.hpp>
 #include <kacanov/validity.hpp>
 #include "formats/mesh_file.hpp"
 #include "formats/node_values.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include <kacanov/error.hpp>
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 #include "program/control_group.hpp"
 #include "program/report.hpp"
 

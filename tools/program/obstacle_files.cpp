@@ -3,7 +3,7 @@
 #include "program/obstacle_files.hpp"
 
 #include <kacanov/error.hpp>
-#include <kacanov/height_field.hpp>
+#include <kacanov/obstacle.hpp>
 #include <kacanov/surface.hpp>
 #include "formats/height_reader.hpp"
 #include "formats/surface_reader.hpp"

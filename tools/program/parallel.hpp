@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include <kacanov/mpi_communicator.hpp>
+#include <kacanov/part.hpp>
 
 namespace kacanov {
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include <kacanov/error.hpp>
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 #include "partition/check_part.hpp"
 #include "partition/part_fields.hpp"
 #include "program/case_identity.hpp"

@@ -81,7 +81,7 @@ int run_here(const Command& command, const std::optional<Case>& known) {
     });
     if (!input) {
       broadcast(mpi, text.text);
-      together(mpi, [&] { input = parse_case(text, command.overrides); });
+      together(mpi, [&] { input = parse_case(text, command.changes()); });
     }
     int code = exit_converged;
     collectively(mpi, [&] { code = dispatch(command, *input, mpi); });
@@ -150,7 +150,7 @@ int run_alone(const Command& given, int argc, const char* const* argv) {
     if (given.output.empty()) words.insert(words.end(), {"--output", command.output.c_str()});
   }
   const CaseText text = read_case_text(command.case_file);
-  const Case input = parse_case(text, command.overrides);
+  const Case input = parse_case(text, command.changes());
   if (needs_one(command)) {
     take_signals();
     const Shape shape = choose_shape(input, command.ranks, command.threads, usable_cores());

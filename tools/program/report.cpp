@@ -213,7 +213,8 @@ std::string summary(const Result& result, const RunFigures& figures, const Model
     if (result.r_star > 0.0)
       text += format("  penalty       r* = %.3g", result.r_star) +
               (result.r_active > 0.0 ? format(", adapted %.3g", result.r_active) : "") +
-              format(" (rough lambda %.4g to %.4g)\n", result.lambda_min, result.lambda_max);
+              (model.solver.penalty == SolverOptions::Penalty::paper ? " (" : " (estimated, ") +
+              format("lambda %.4g to %.4g)\n", result.lambda_min, result.lambda_max);
   }
   if (result.load_cuts > 0)
     text += format("  load          reached the factor %.4g, ", result.load_reached) +

@@ -122,6 +122,7 @@ ordered_json result_json(const Result& result, const RunFigures& figures, const 
   json["lambda_min"] = result.lambda_min;
   json["lambda_max"] = result.lambda_max;
   json["r_star"] = result.r_star;
+  json["r_star_estimated"] = input.model.solver.penalty != SolverOptions::Penalty::paper;
   json["r_active"] = result.r_active;
   json["contact_force"] = entries(result.contact_force, dim);
   json["friction_force"] = entries(result.friction_force, dim);

@@ -7,7 +7,7 @@
 #include <exception>
 #include <optional>
 
-#include "partition/long_messages.hpp"
+#include "partition/part_fields.hpp"
 
 namespace kacanov {
 namespace {

@@ -5,7 +5,6 @@
 #include <kacanov/discretisation.hpp>
 #include <kacanov/element_fields.hpp>
 #include <kacanov/error.hpp>
-#include <kacanov/moving.hpp>
 #include <kacanov/solve.hpp>
 #include <kacanov/validity.hpp>
 #include "pictures/picture.hpp"

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include "mesh/plain_stream.hpp"
+#include "mesh/classic_locale_stream.hpp"
 
 namespace kacanov {
 namespace {

@@ -17,14 +17,16 @@ struct OperatorOptions {
   int threads = 1;  ///< threads of this operator, ≥ 1
   /// "avx512", "avx2" or "plain"; empty: KACANOV_INSTRUCTION_SET, or else the best that the machine supports
   std::string_view instruction_set;
-  /// Nodes whose values are needed first, such as interface nodes shared with other processes; see WhenEarly.
+  /// Nodes whose values are needed first, such as interface nodes shared with other processes; see
+  /// OnInterfaceReady.
   std::span<const std::int32_t> early = {};
 };
 
 /// Callback for the time when y has its final values at the early nodes and the rest is still being computed,
 /// so that these values can be sent meanwhile. Runs on the calling thread and may change y there. y has the
 /// same bits with and without it.
-using WhenEarly = std::function<void()>;
+using OnInterfaceReady = std::function<void()>;
+using WhenEarly = OnInterfaceReady;  ///< old name, for one release
 
 /// y = B(g) x and the operations that a solver needs with it (theory: operator), in the precision of `Real`.
 /// The constructor copies what it needs of the body's arrays; they need not outlive it.
@@ -67,9 +69,10 @@ class BasicOperator {
   void secant(std::span<double> g) const;
   void set_secant(std::span<const double> g);
   /// y = B(g) x (overwrites y).
-  void apply(std::span<const Real> x, std::span<Real> y, const WhenEarly& when_early = {});
-  /// y = B(g) x; returns xᵀ y, without any change that `when_early` makes.
-  double apply_dot(std::span<const Real> x, std::span<Real> y, const WhenEarly& when_early = {});
+  void apply(std::span<const Real> x, std::span<Real> y, const OnInterfaceReady& on_interface_ready = {});
+  /// y = B(g) x; returns xᵀ y, without any change that `on_interface_ready` makes.
+  double apply_dot(std::span<const Real> x, std::span<Real> y,
+                   const OnInterfaceReady& on_interface_ready = {});
   /// y_v = B(g) x_v for `vectors` ≥ 1 input vectors, stored one after another; the element geometry is
   /// computed once for up to four of them.
   void apply_many(std::span<const Real> x, std::span<Real> y, int vectors);
@@ -88,9 +91,10 @@ class BasicOperator {
   std::size_t pressures() const noexcept;
   /// y = A x + Bᵀ p; y = A x if p is empty.
   void apply_deviator(std::span<const Real> x, std::span<const Real> p, std::span<Real> y,
-                      const WhenEarly& when_early = {});
+                      const OnInterfaceReady& on_interface_ready = {});
   /// y = Bᵀ p.
-  void pressure_force(std::span<const Real> p, std::span<Real> y, const WhenEarly& when_early = {});
+  void pressure_force(std::span<const Real> p, std::span<Real> y,
+                      const OnInterfaceReady& on_interface_ready = {});
   /// q = B x, the contribution of this process.
   void volume_change(std::span<const Real> x, std::span<Real> q);
   /// Diagonal blocks of A; arguments as in block_diagonal().
@@ -101,9 +105,11 @@ class BasicOperator {
   /// y = B_T x with the tangent frozen last, even if g has changed since. The direction of dev ε in its
   /// rank-one term is stored in single precision (relative error 1e-7 of that term). Throws std::logic_error
   /// before the first update_tangent.
-  void apply_tangent(std::span<const Real> x, std::span<Real> y, const WhenEarly& when_early = {});
+  void apply_tangent(std::span<const Real> x, std::span<Real> y,
+                     const OnInterfaceReady& on_interface_ready = {});
   /// y = B_T x; returns xᵀ y as apply_dot() does.
-  double apply_tangent_dot(std::span<const Real> x, std::span<Real> y, const WhenEarly& when_early = {});
+  double apply_tangent_dot(std::span<const Real> x, std::span<Real> y,
+                           const OnInterfaceReady& on_interface_ready = {});
   /// The tangent version of apply_many().
   void apply_tangent_many(std::span<const Real> x, std::span<Real> y, int vectors);
   /// Diagonal and diagonal blocks of B_T, like those of B(g). Throw std::logic_error before update_tangent.

@@ -74,6 +74,10 @@ void residual(const Body& body, std::span<const double> u, std::span<double> f);
 /// Nodal forces of the elastic body if its free strain were an elastic strain (overwrites f). Returns the
 /// energy of that strain.
 double free_force(const Body& body, std::span<double> f);
+/// Nodal forces ∫ p div v of a pressure (overwrites f): one value per element, or 1 + corners of them, of
+/// which only those at the corners are used, with linear interpolation (theory: expansion). Returns the
+/// energy that the elastic body stores if it cannot expand.
+double expansion_force(const Body& body, std::span<const double> pressure, std::span<double> f);
 /// Stored energy ∫ k0/2 tr² + 2 G(x) at u.
 double energy(const Body& body, std::span<const double> u);
 /// residual() and energy() in one pass over the elements; returns the energy.
@@ -85,6 +89,18 @@ void element_matrix(const Body& body, std::size_t element, std::span<const doubl
 /// Tangent stiffness of one element at u, a vector of the whole body; `matrix` as in element_matrix().
 void element_tangent(const Body& body, std::size_t element, std::span<const double> u,
                      std::span<double> matrix);
+/// Displacements and pressures, or forces and volume changes. `u` has nodes × dim entries, interleaved, `p`
+/// one per node; entries of p at mid-side nodes are unused.
+template <class Real>
+struct DisplacementPressure {
+  std::span<Real> u, p;
+};
+/// y = K(g) x with K = [A Bᵀ; B −C] (theory: displacement-pressure; overwrites y, with 0 for p at mid-side
+/// nodes): A is the deviatoric part of the operator, B the volume change at every corner, C the lumped
+/// mass/k0 and, for linear displacements, the stabilisation. p is the mean stress k0 tr ε, in the unit of g;
+/// `g` as in `apply`. Throws std::invalid_argument for elements that are not simplices.
+void apply_mixed(const Body& body, std::span<const double> g, const DisplacementPressure<const double>& x,
+                 const DisplacementPressure<double>& y);
 /// Volumes (areas in 2D) of the elements, one entry per element; not positive for inverted or degenerate
 /// elements.
 void volumes(const Body& body, std::span<double> volume);

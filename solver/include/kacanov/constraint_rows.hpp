@@ -33,9 +33,12 @@ struct ContactPoint {
   double gap = 0.0;                  ///< ρ
   double unknown_gap = 0.0;          ///< bound on the rounding error of the gap (theory: gap-rounding)
   double mass = 0.0;                 ///< lumped contact mass M, an area (a length in 2D)
-  double tresca = 0.0;               ///< ψ
+  double tresca = 0.0;               ///< ψ without pressure
   double coulomb = 0.0;              ///< μ_f
   bool since_step = false;           ///< slip is measured from the end of the previous load step
+
+  /// The friction bound ψ under this pressure ≥ 0 (theory: coulomb).
+  double friction_bound(double pressure) const noexcept { return tresca + coulomb * pressure; }
 };
 
 /// Contact points and their entries in compressed rows. A point with one entry is *narrow* (a node against an

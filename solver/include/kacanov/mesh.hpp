@@ -72,6 +72,13 @@ void find_boundary(Mesh& mesh);
 /// or an unreferenced node.
 void check_mesh(const Mesh& mesh);
 
+/// Components of elements connected by shared nodes, numbered in the order of their first elements.
+struct MeshPieces {
+  std::int32_t count = 0;
+  std::vector<std::int32_t> of_node;  ///< −1: node of no element
+};
+MeshPieces connected_pieces(const Mesh& mesh);
+
 /// A generated box [0, size]. Triangles split squares along the diagonal from lower left to upper right; six
 /// tetrahedra fill each cube around the diagonal from the lowest to the highest corner. Sides are named left,
 /// right, front, back, bottom, top (in 2D left, right, bottom, top).

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -126,19 +127,22 @@ struct SolverOptions {
   /// Contact algorithm: ADMM (theory: admm, dual-admm), or semismooth Newton (theory: active-set) after an
   /// ADMM step and with the method of multipliers as fallback (theory: augmented-newton).
   enum class Contact { automatic, admm, dual_admm, active_set };
-  /// Penalty of ADMM: adapted during the run (theory: first-penalty, balance), r* (theory: r-star), or the
-  /// given `r`.
-  enum class Penalty { automatic, paper, fixed };
+  /// Penalty of ADMM: adapted during the run (theory: first-penalty, balance), r* (theory: r-star), the given
+  /// `r`, or adapted by a published rule, for comparison (theory: penalty-rules).
+  enum class Penalty { automatic, paper, fixed, residuals, relative_residuals, osqp, spectral };
   /// Stopping criterion: the KKT residuals (theory: kkt), or the size of a step (theory: step-stop).
   enum class Stop { kkt, paper };
-  /// Rigid-body-mode multigrid (theory: multigrid), or BoomerAMG (theory: elasticity-amg).
-  enum class Preconditioner { multigrid, elasticity };
+  /// Rigid-body-mode multigrid (theory: multigrid), BoomerAMG (theory: elasticity-amg), or a sparse Cholesky
+  /// factor for small bodies (theory: factorised).
+  enum class Preconditioner { multigrid, elasticity, cholesky };
 
   double tolerance = 1e-6;  ///< relative tolerance of the `stop` criterion
   Outer outer = Outer::automatic;
   Contact contact = Contact::automatic;
   Penalty penalty = Penalty::automatic;  ///< the key is `r`
-  double r = 0.0;                        ///< > 0, with Penalty::fixed: stress per length
+  /// Stress per length. With Penalty::fixed: the penalty; with one that adapts: the first one (the key is
+  /// `first_r`), 0 for the solver's own.
+  double r = 0.0;
   Stop stop = Stop::kkt;
   Preconditioner preconditioner = Preconditioner::multigrid;
   /// For aggregation multigrid: BoomerAMG replaces the first level with at most this many rows, and all
@@ -157,6 +161,11 @@ struct SolverOptions {
   /// Stop::paper, otherwise 1.7.
   std::optional<double> relaxation;
 };
+
+/// Whether the penalty changes during a run.
+constexpr bool adapts(SolverOptions::Penalty penalty) {
+  return penalty != SolverOptions::Penalty::fixed && penalty != SolverOptions::Penalty::paper;
+}
 
 /// A point of the load curves (theory: load-path). From its time on, the named entries have these factors on
 /// their loads, prescribed displacements or indentation; factors are linear in time between two points.
@@ -187,5 +196,38 @@ bool any_moves(const Model& model);
 /// validate(model) also validates the model's options.
 void validate(const SolverOptions& options);
 void validate(const Model& model);
+
+/// A range of numbers; infinite bounds impose nothing.
+struct NumberRule {
+  static constexpr double none = std::numeric_limits<double>::infinity();
+  const char* words;  ///< as in "solver.tolerance: expected a number above 0 and below 1, got 2"
+  double above = -none, least = -none;  ///< requires > above and ≥ least
+  double below = none, most = none;     ///< requires < below and ≤ most
+
+  constexpr bool holds(double v) const noexcept { return v > above && v >= least && v < below && v <= most; }
+};
+
+/// Squares of larger numbers may overflow.
+inline constexpr double largest_number = 1e100;
+
+inline constexpr NumberRule any_number{.words = "a number"};
+inline constexpr NumberRule positive{.words = "a number > 0", .above = 0.0};
+inline constexpr NumberRule not_negative{.words = "a number ≥ 0", .least = 0.0};
+inline constexpr NumberRule above_one{.words = "a number > 1", .above = 1.0};
+inline constexpr NumberRule up_to_one{.words = "a number > 0 and ≤ 1", .above = 0.0, .most = 1.0};
+inline constexpr NumberRule below_one{.words = "a number above 0 and below 1", .above = 0.0, .below = 1.0};
+inline constexpr NumberRule poisson_ratio{
+    .words = "a number above -1 and below 0.5", .above = -1.0, .below = 0.5};
+inline constexpr NumberRule cone_angle{
+    .words = "an angle in degrees above 0 and below 90", .above = 0.0, .below = 90.0};
+inline constexpr NumberRule time_after_start{.words = "a time after 0", .above = 0.0};
+/// With smaller factors, squared forces underflow in the preconditioner's single precision.
+inline constexpr double smallest_factor = 1e-15;
+inline constexpr NumberRule load_factor{.words = "a factor ≥ 1e-15", .least = smallest_factor};
+inline constexpr NumberRule over_relaxation{.words = "a number ≥ 1 and below 2", .least = 1.0, .below = 2.0};
+inline constexpr NumberRule penalty_number{.words = "\"auto\", \"paper\" or a number > 0", .above = 0.0};
+
+/// Rule for a list of load steps.
+inline constexpr const char* last_factor = "factors on the load of which the last is 1";
 
 }  // namespace kacanov

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include <kacanov/vector3.hpp>
 
@@ -126,5 +127,20 @@ struct ConstantGap {
 /// A new obstacle needs its place in this variant and its entry in the case file.
 using Obstacle =
     std::variant<Plane, Sphere, Cylinder, Cone, Torus, Block, SurfaceObstacle, HeightMap, ConstantGap>;
+
+/// `rows` × `columns` heights, at least 2 × 2; the first row has the largest y, as in a picture. The corner
+/// values lie at the corners of [lower, upper].
+struct HeightField {
+  std::size_t rows = 0, columns = 0;
+  std::vector<double> height;
+  std::array<double, 2> lower{}, upper{};
+
+  struct Height {
+    double value = 0.0;
+    double unknown = 0.0;  ///< bound on its rounding error
+  };
+  /// Returns the interpolated height; empty outside the grid, with a tolerance of 1e-9 of its size.
+  std::optional<Height> at(double x, double y) const;
+};
 
 }  // namespace kacanov

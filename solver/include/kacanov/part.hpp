@@ -3,18 +3,53 @@
 #pragma once
 
 #include <mpi.h>
-
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
+#include <kacanov/communicator.hpp>
 #include <kacanov/index_map.hpp>
-#include <kacanov/index_runs.hpp>
-#include <kacanov/mpi_communicator.hpp>
 #include <kacanov/problem.hpp>
 #include <kacanov/reference.hpp>
 
 namespace kacanov {
+
+/// Ascending indices stored as runs of consecutive ones: at most eight bytes per index, and almost nothing if
+/// the elements of a part are contiguous in the mesh.
+struct IndexRuns {
+  struct Run {
+    std::int32_t first = 0;     ///< index
+    std::int32_t position = 0;  ///< position of `first` in the list
+  };
+  std::vector<Run> runs;
+  std::int32_t count = 0;
+
+  std::size_t size() const noexcept { return static_cast<std::size_t>(count); }
+  /// Appends `index`, which must exceed all indices in the list.
+  void push_back(std::int32_t index) {
+    if (runs.empty() || index - runs.back().first != count - runs.back().position)
+      runs.push_back({index, count});
+    ++count;
+  }
+  std::int32_t operator[](std::size_t position) const noexcept {
+    const auto run = std::upper_bound(runs.begin(), runs.end(), position,
+                                      [](std::size_t p, const Run& r) {
+                                        return p < static_cast<std::size_t>(r.position);
+                                      }) -
+                     1;
+    return run->first + static_cast<std::int32_t>(position) - run->position;
+  }
+  /// Returns the position of `index`, which must be in the list.
+  std::int32_t position_of(std::int32_t index) const noexcept {
+    const auto run = std::upper_bound(runs.begin(), runs.end(), index,
+                                      [](std::int32_t i, const Run& r) { return i < r.first; }) -
+                     1;
+    return run->position + index - run->first;
+  }
+};
 
 /// Elements are partitioned without overlap. A node is present on every rank that has one of its elements, or
 /// a multi-node contact point that involves it; one of the ranks with its elements owns it. Owned nodes come
@@ -123,5 +158,15 @@ std::vector<double> gather_nodal(const Part& part, std::span<const double> local
 /// The same for contact points × components, in the numbering of Problem::contact.
 std::vector<double> gather_contact(const Part& part, std::span<const double> local, int components,
                                    CallSite at = CallSite());
+
+/// Returns the ranks of `comm` as a Communicator; `comm` must outlive it.
+Communicator mpi_communicator(MPI_Comm comm);
+
+/// Returns the MPI communicator it was created from, or MPI_COMM_SELF if it was created otherwise.
+MPI_Comm mpi_of(const Communicator& communicator);
+
+/// Returns the means of tr ε(u) around the corners of every element, taken over all ranks: elements × 4, as
+/// in Body::corner_dilatation; empty if no law needs them. Collective.
+std::vector<double> corner_dilatation(const Part& part, std::span<const double> u);
 
 }  // namespace kacanov
