@@ -57,7 +57,7 @@ class Case:
 
     @classmethod
     def from_json(cls, path: str | os.PathLike[str]) -> Case:
-        """Reads a case from a case file."""
+        """Returns the case described by a case file."""
         try:
             with open(path, encoding="utf-8") as file:
                 text = file.read()
@@ -127,7 +127,7 @@ class Case:
                  plastic: Sequence[Vector] | None = None, yield_stress: float | None = None,
                  tangent_modulus: float | None = None, bbar: bool | None = None,
                  formulation: str | None = None, expansion: float | None = None) -> Case:
-        """Adds a material. Like all methods that add something, returns the case."""
+        """Adds one material and returns the case, as all methods that add something do."""
         return self._add("material", on=on, young=young, poisson=poisson, law=law, plastic=plastic,
                          yield_stress=yield_stress, tangent_modulus=tangent_modulus, bbar=bbar,
                          formulation=formulation, expansion=expansion)
@@ -261,7 +261,7 @@ def _address_of(comm: Any) -> int:
     """Returns the address of mpi4py's communicator handle; 0 without a communicator."""
     if comm is None:
         return 0
-    from mpi4py import MPI  # importing it tells which MPI this process uses
+    from mpi4py import MPI  # importing it determines which MPI this process uses
     if comm == MPI.COMM_NULL:
         raise InputError("comm: MPI.COMM_NULL")
     return MPI._addressof(comm)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Solves a case inside a Python process, alone or with the other ranks of a communicator.
+// Solves cases inside a Python process, alone or with the other ranks of a communicator.
 #include "run_case.hpp"
 
 #include <pybind11/stl.h>
@@ -81,7 +81,7 @@ Solved solve(Given& given, const MpiSession& mpi, Host& host) {
   return std::make_shared<SolvedCase>(solve_case(input, mpi, run));
 }
 
-/// Returns a Python exception as an object, or None if there is none; rethrows others. Requires the GIL.
+/// Returns the Python exception as an object, None without one; rethrows others. Requires the GIL.
 py::object as_object(const std::exception_ptr& raised) {
   if (!raised) return py::none();
   try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Solves a case inside a Python process, alone or with the other ranks of a communicator.
+// Solves cases inside a Python process, alone or with the other ranks of a communicator.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -11,7 +11,7 @@
 
 namespace kacanov::python {
 
-/// Parses a case; `mesh`: content of its mesh, if it is not in a file.
+/// Parses the text of a case; `mesh`: content of its mesh, if it is not in a file.
 Case read_case(const std::string& text, const std::string& path, std::optional<std::string> mesh);
 
 /// Implements Case.solve of kacanov/case.py. Returns the solution or None, the exception of this rank or

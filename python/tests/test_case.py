@@ -223,7 +223,7 @@ class Stops(unittest.TestCase):
         self.addCleanup(signal.signal, signal.SIGINT, before)
 
     def long(self):
-        """Returns a case that takes a minute and many outer steps."""
+        """Returns the case of a long run: one minute, many outer steps."""
         return pressed_beam("hex8", (24, 8, 8)).solver(load_steps=1000, tolerance=1e-9)
 
     def test_control_c_keeps_the_state(self):
