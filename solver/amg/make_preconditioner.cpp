@@ -12,7 +12,7 @@
 
 #include <kacanov/part.hpp>
 #include "amg/boomer_amg.hpp"
-#include "multigrid/rigid_motion.hpp"
+#include "multigrid/aggregation/block_matrix.hpp"
 
 namespace kacanov {
 namespace {
