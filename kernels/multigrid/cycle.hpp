@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What all levels share: Chebyshev smoothing, the largest eigenvalue that it needs, solves with the Schur
-// complement of pressures, and the cycle.
+// The multigrid cycle, and the parts of all levels: Chebyshev smoothing, the largest eigenvalue that it needs, and
+// solves with the Schur complement of pressures.
 #pragma once
 
 #include <Eigen/Eigenvalues>
