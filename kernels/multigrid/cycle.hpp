@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The multigrid cycle, and the parts of all levels: Chebyshev smoothing, the largest eigenvalue that it needs, and
-// solves with the Schur complement of pressures.
+// The multigrid cycle, and the parts of all levels: Chebyshev smoothing, the largest eigenvalue that it
+// needs, and solves with the Schur complement of pressures.
 #pragma once
 
 #include <Eigen/Eigenvalues>

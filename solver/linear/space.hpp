@@ -10,8 +10,8 @@
 #include <vector>
 
 #include <kacanov/part.hpp>
-#include "multigrid/multigrid_body.hpp"
 #include "multigrid/cg.hpp"
+#include "multigrid/multigrid_body.hpp"
 
 namespace kacanov {
 

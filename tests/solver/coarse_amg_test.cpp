@@ -9,6 +9,7 @@
 #include "amg/make_preconditioner.hpp"
 #include "chain.hpp"
 #include "linear/distributed_operator.hpp"
+#include "multigrid/aggregation/coarse_space.hpp"
 #include "multigrid/cg.hpp"
 #include "support.hpp"
 

@@ -8,8 +8,8 @@
 
 #include "../sanitized.hpp"
 #include "multigrid/fine_level.hpp"
-#include "multigrid/pressure_rows.hpp"
 #include "multigrid/multigrid.hpp"
+#include "multigrid/pressure_rows.hpp"
 #include "pressure_bodies.hpp"
 
 using namespace kacanov;

@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "multigrid/cg.hpp"
