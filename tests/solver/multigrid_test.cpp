@@ -268,9 +268,9 @@ TEST_CASE("a fine level with other blocks is as one made anew") {
       return all;
     };
     FineLevel changed(multigrid_body(part), {}), anew(multigrid_body(part), {});
-    changed.setup(g, blocks(4), space.held());
-    changed.update(blocks(6), space.held());
-    anew.setup(g, blocks(6), space.held());
+    changed.setup(g, {blocks(4), space.held()});
+    changed.update({blocks(6), space.held()});
+    anew.setup(g, {blocks(6), space.held()});
     const auto same = [](std::span<const float> x, std::span<const float> y) {
       return std::equal(x.begin(), x.end(), y.begin(), y.end());
     };
