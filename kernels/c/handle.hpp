@@ -20,7 +20,7 @@
 #include <kacanov/operator.hpp>
 #include <kacanov/reference.hpp>
 #include "c/laws.hpp"
-#include "multigrid/node_block.hpp"
+#include "multigrid/multigrid_body.hpp"
 #include "reference/matrix.hpp"
 
 /// The contents of a handle. It keeps the mesh for the recovery of stress and for new laws.

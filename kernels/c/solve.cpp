@@ -141,7 +141,7 @@ void set_up(kacanov_multigrid& multigrid) {
   op.fast->secant(g);
   for (double& v : g) v /= multigrid.unit;
   try {
-    multigrid.cycle->build(g, blocks, {});
+    multigrid.cycle->setup(g, blocks, {});
   } catch (const k::InternalError&) {
     multigrid.cycle.reset();
     throw Fault(

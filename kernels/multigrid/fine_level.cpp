@@ -7,9 +7,9 @@
 #include <array>
 #include <utility>
 
-#include "multigrid/largest_eigenvalue.hpp"
+#include "multigrid/cycle.hpp"
 #include "multigrid/multigrid.hpp"
-#include "multigrid/softened_laws.hpp"
+#include "multigrid/multigrid_body.hpp"
 #include "operator/nodal_pressure.hpp"
 #include "operator/threads.hpp"
 #include "simd/node_blocks.hpp"
@@ -48,9 +48,9 @@ FineLevel::FineLevel(const MultigridBody& body, const MultigridOptions& options,
     op_.set_corner_sum(CornerSum<float>(means != nullptr ? *means : corner_means(body.body), *body.node_map));
 }
 
-void FineLevel::build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space) {
+void FineLevel::setup(std::span<const double> g, const NodeSupports& supports) {
   op_.set_secant(g);
-  take_blocks(blocks, space);
+  take_supports(supports);
   held_.clear();
   for (std::size_t i = 0; i < body_.held.size(); ++i)
     if (body_.held[i] != 0) held_.push_back(static_cast<std::int32_t>(i));
@@ -61,13 +61,15 @@ void FineLevel::build(std::span<const double> g, std::span<const NodeBlock> bloc
   take_diagonal(diagonal, {});
 }
 
-void FineLevel::rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space) {
-  std::vector<NodeBlock> both = std::move(blocks_);
-  both.insert(both.end(), blocks.begin(), blocks.end());
+std::pair<std::vector<NodeBlock>, ConstrainedSpace> FineLevel::update(const NodeSupports& supports) {
+  std::pair before(std::move(blocks_), std::move(space_));
+  std::vector<NodeBlock> both = before.first;
+  both.insert(both.end(), supports.blocks.begin(), supports.blocks.end());
   const std::vector<char> touched = touched_by(both);
-  take_blocks(blocks, space);
+  take_supports(supports);
   std::vector<float> diagonal = node_blocks(touched);
   take_diagonal(diagonal, touched);
+  return before;
 }
 
 /// One flag per node, on every rank that has the node.
@@ -78,9 +80,9 @@ std::vector<char> FineLevel::touched_by(std::span<const NodeBlock> blocks) const
   return {flag.begin(), flag.end()};
 }
 
-void FineLevel::take_blocks(std::span<const NodeBlock> blocks, const HeldSpace& space) {
-  space_ = space;
-  blocks_.assign(blocks.begin(), blocks.end());
+void FineLevel::take_supports(const NodeSupports& supports) {
+  space_ = supports.space;
+  blocks_.assign(supports.blocks.begin(), supports.blocks.end());
   std::vector<char> is_shared(body_.nodes(), 0);
   for (const std::int32_t node : body_.node_map->shared) is_shared[node] = 1;
   const auto rest = std::stable_partition(blocks_.begin(), blocks_.end(),
@@ -237,6 +239,38 @@ void FineLevel::relax(const ChebyshevStep<float>& weights, std::span<const float
   });
 }
 
+void FineLevel::smooth(bool from_zero, const SmootherVectors<float>& on) {
+  smoother_.smooth<float>(
+      from_zero, on, [this](std::span<const float> x, std::span<float> y) { multiply(x, y); },
+      [this](const ChebyshevStep<float>& weights, std::span<const float> b, std::span<const float> image,
+             std::span<float> step, std::span<float> x) { relax(weights, b, image, step, x); });
+}
+
+void FineLevel::residual(std::span<const float> b, std::span<const float> x, std::span<const float> p,
+                         std::span<float> r) {
+  if (p.empty())
+    multiply(x, r);
+  else
+    multiply(x, p, r);
+  each_in_shares(threads_, r.size(), [&](std::size_t i) { r[i] = b[i] - r[i]; });
+  project(r);
+}
+
+void FineLevel::add_correction(std::span<float> u, std::span<float> x) const {
+  body_.node_map->forward(u, static_cast<int>(body_.dim()));
+  project(u);
+  each_in_shares(threads_, x.size(), [&](std::size_t i) { x[i] += u[i]; });
+}
+
+void FineLevel::load(double factor, std::span<const double> r, std::span<float> b) const {
+  each_in_shares(threads_, r.size(), [&](std::size_t i) { b[i] = static_cast<float>(factor * r[i]); });
+  hold(b);
+}
+
+void FineLevel::store(double factor, std::span<const float> x, std::span<double> z) const {
+  each_in_shares(threads_, z.size(), [&](std::size_t i) { z[i] = factor * static_cast<double>(x[i]); });
+}
+
 void FineLevel::hold(std::span<float> x) const {
   for (const std::int32_t component : held_) x[component] = 0.0F;
 }
@@ -265,6 +299,36 @@ void FineLevel::choose_smoother(int degree, double range) {
         return body_.node_map->sum_all(sum);
       });
   smoother_ = {degree, largest / range, largest};
+}
+
+namespace {
+
+template <class S>
+void project_out(std::span<const HeldDirections> held, std::size_t dim, std::span<S> x) {
+  for (const HeldDirections& entry : held) {
+    S* u = x.data() + static_cast<std::size_t>(entry.node) * dim;
+    for (int k = 0; k < entry.count; ++k) {
+      const auto& b = entry.basis[k];
+      double s = 0.0;
+      for (std::size_t c = 0; c < dim; ++c) s += b[c] * static_cast<double>(u[c]);
+      for (std::size_t c = 0; c < dim; ++c) u[c] = static_cast<S>(static_cast<double>(u[c]) - s * b[c]);
+    }
+  }
+}
+
+}  // namespace
+
+void ConstrainedSpace::project(std::size_t dim, std::span<double> x) const {
+  project_out(std::span(directions), dim, x);
+  if (rows) rows->project(x);
+}
+
+void ConstrainedSpace::project(std::size_t dim, std::span<float> x) const {
+  project_out(std::span(directions), dim, x);
+  if (!rows) return;
+  std::vector<double> exact(x.begin(), x.end());
+  rows->project(exact);
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = static_cast<float>(exact[i]);
 }
 
 }  // namespace kacanov

@@ -5,16 +5,15 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <kacanov/corner_means.hpp>
 #include <kacanov/operator.hpp>
 #include <kacanov/scatterer.hpp>
-#include "multigrid/chebyshev.hpp"
-#include "multigrid/element_pressures.hpp"
-#include "multigrid/held_space.hpp"
+#include "multigrid/cycle.hpp"
 #include "multigrid/multigrid_body.hpp"
-#include "multigrid/node_block.hpp"
+#include "multigrid/pressure_rows.hpp"
 
 namespace kacanov {
 
@@ -27,21 +26,22 @@ enum class FinePart { whole, deviator };
 /// A = B(g) + blocks on free components, matrix-free in single precision. Directions that the setup's space
 /// holds are held by stiff blocks here, so that the smoother stays definite in the spaces of later solves;
 /// coarse corrections are projected. Vectors have the body's unknowns and are consistent; blocks belong to
-/// owned nodes; g has elements × points entries, stresses. build, rebuild, multiply, project and
+/// owned nodes; g has elements × points entries, stresses. setup, update, multiply, project and
 /// choose_smoother are collective.
 class FineLevel {
  public:
-  /// g = μ and no blocks until build(). The arrays that the body points to must outlive it. `means`: those of
+  /// g = μ and no blocks until setup(). The arrays that the body points to must outlive it. `means`: those of
   /// the body's PressureRows; may be null except for the deviator of elements that average over themselves.
   FineLevel(const MultigridBody& body, const MultigridOptions& options, FinePart part = FinePart::whole,
             const CornerMeans* means = nullptr);
-  /// Freezes g, copies the blocks and the space, and updates D.
-  void build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space);
-  /// Keeps g and the held components of the last build; updates D at nodes that have or had blocks.
-  void rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space);
-  /// Inputs of the last build or rebuild.
+  /// Freezes g, copies the blocks and the space, and computes D.
+  void setup(std::span<const double> g, const NodeSupports& supports);
+  /// Keeps g and the held components of the last setup; updates D at nodes that have or had blocks. Returns
+  /// the previous blocks and space.
+  std::pair<std::vector<NodeBlock>, ConstrainedSpace> update(const NodeSupports& supports);
+  /// Inputs of the last setup or update.
   std::span<const NodeBlock> blocks() const noexcept { return blocks_; }
-  const HeldSpace& space() const noexcept { return space_; }
+  const ConstrainedSpace& space() const noexcept { return space_; }
   /// g as stored, in single precision.
   void secant(std::span<double> g) const { op_.secant(g); }
   /// y = A x for x that is zero in held components.
@@ -49,6 +49,17 @@ class FineLevel {
   /// The step of Chebyshev::smooth, with D the dim × dim diagonal blocks of A.
   void relax(const ChebyshevStep<float>& weights, std::span<const float> b, std::span<const float> image,
              std::span<float> step, std::span<float> x) const;
+  /// Chebyshev smoothing with choose_smoother()'s polynomial; from zero if asked. Collective.
+  void smooth(bool from_zero, const SmootherVectors<float>& on);
+  /// r = b − A x − Bᵀ p, projected; without p if it is empty. Collective.
+  void residual(std::span<const float> b, std::span<const float> x, std::span<const float> p,
+                std::span<float> r);
+  /// Completes and projects the correction u of the owned nodes, and adds it to x. Collective.
+  void add_correction(std::span<float> u, std::span<float> x) const;
+  /// b = factor r, zero in held components.
+  void load(double factor, std::span<const double> r, std::span<float> b) const;
+  /// z = factor x.
+  void store(double factor, std::span<const float> x, std::span<double> z) const;
   /// x += factor D⁻¹ (b − image), or, without an image, x += factor D⁻¹ b.
   void add_scaled(float factor, std::span<const float> b, std::span<const float> image,
                   std::span<float> x) const;
@@ -87,7 +98,7 @@ class FineLevel {
   void product(const Apply& apply, std::span<const float> x, std::span<float> y);
   std::vector<float> node_blocks(std::span<const char> wanted) const;
   std::vector<char> touched_by(std::span<const NodeBlock> blocks) const;
-  void take_blocks(std::span<const NodeBlock> blocks, const HeldSpace& space);
+  void take_supports(const NodeSupports& supports);
   void take_own_stiffness(std::span<const float> blocks);
   void take_diagonal(std::span<float> blocks, std::span<const char> renewed);
   void add_blocks(std::span<const NodeBlock> blocks, std::span<const float> x, std::span<float> y) const;
@@ -101,7 +112,7 @@ class FineLevel {
   Scatterer<float> sum_;
   std::vector<std::int32_t> held_;  ///< components
   std::vector<float> held_stiffness_, own_stiffness_;
-  HeldSpace space_;
+  ConstrainedSpace space_;
   std::vector<NodeBlock> blocks_;
   std::size_t shared_blocks_ = 0;  ///< number of leading blocks of nodes shared with other ranks
   std::vector<float> inverse_;  ///< nodes × 6 (3 in 2D): the upper triangles of the inverse blocks, by rows

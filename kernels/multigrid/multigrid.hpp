@@ -1,20 +1,44 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Matrix-free multigrid with background grids, rigid motions of aggregates, or grids with pressures below.
-// pressures below.
+// Matrix-free multigrid: smoothing by Chebyshev iteration or by Braess–Sarazin steps; coarsening by
+// aggregation or on an octree; a direct solve or an external solver at the end.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
-#include "multigrid/coarse_solver.hpp"
-#include "multigrid/held_space.hpp"
+#include <kacanov/index_map.hpp>
+#include <kacanov/vector3.hpp>
 #include "multigrid/multigrid_body.hpp"
-#include "multigrid/node_block.hpp"
 
 namespace kacanov {
+
+/// The symmetric matrix of a level of rigid motions, as a list of blocks. Rows of motions that move no node
+/// are zero.
+struct CoarseMatrix {
+  int motions = 6;                        ///< per row: translations, then rotations; 3 in 2D
+  const IndexMap* map = nullptr;          ///< of the rows; this rank provides the owned ones
+  std::span<const Vector3> centres;       ///< of the owned rows' aggregates
+  double length = 1.0;                    ///< a rotation θ moves x by θ × (x − centre) / length
+  std::vector<std::int64_t> row, column;  ///< of each block, global numbers; all blocks of the owned rows
+  std::vector<double> block;              ///< motions × motions entries per block, row-major
+};
+
+/// Replaces the levels below the one whose matrix it was made from.
+class CoarseSolver {
+ public:
+  virtual ~CoarseSolver() = default;
+  /// x ≈ A⁻¹ b on owned rows, `motions` entries per row: symmetric, positive definite, constant, and not
+  /// longer than A⁻¹ b in the energy norm of A. Collective.
+  virtual void solve(std::span<const double> b, std::span<double> x) = 0;
+};
+
+/// Creates a solver from a matrix, of which only map and centres outlive the call. Collective.
+using MakeCoarseSolver = std::function<std::unique_ptr<CoarseSolver>(const CoarseMatrix&)>;
 
 /// Options of the hierarchy. The defaults were measured with perf/bench_solve; iterations are those of a beam
 /// of 811,923 unknowns to 1e-8.
@@ -63,29 +87,59 @@ class Multigrid {
 
   /// Sets up for frozen g (elements × points), blocks of *owned* nodes (several per node are allowed), and
   /// the space of the solves. Keeps the aggregates and grids of the first call. Throws InternalError if the
-  /// coarsest matrix is not definite.
-  void build(std::span<const double> g, std::span<const NodeBlock> blocks, const HeldSpace& space);
-  /// Sets up with the g of the last build, at a fraction of the cost if few nodes change.
-  void rebuild(std::span<const NodeBlock> blocks, const HeldSpace& space);
+  /// coarsest matrix has no factor.
+  void setup(std::span<const double> g, std::span<const NodeBlock> blocks, const ConstrainedSpace& space);
+  /// Sets up with the g of the last setup, at a fraction of the cost if few nodes change.
+  void update(std::span<const NodeBlock> blocks, const ConstrainedSpace& space);
   /// Factors of r before and of z after the cycle in single precision.
   struct Factors {
     double in = 1.0, out = 1.0;
   };
-  /// z ≈ A⁻¹ r (overwrites z) times the factors. Needs a build first.
+  /// z ≈ A⁻¹ r (overwrites z) times the factors. Needs a setup first.
   void apply(std::span<const double> r, std::span<double> z, const Factors& factors = {1.0, 1.0});
-  /// The g of the last build, in single precision; μ before the first.
+  /// The g of the last setup, in single precision; μ before the first.
   void secant(std::span<double> g) const;
 
-  /// Kind of hierarchy: changes when a build replaces the levels that later builds keep, depending on its g.
-  int kind() const noexcept;
+  /// Kind of hierarchy: changes when a setup replaces the levels that later setups keep, depending on its g.
+  int kind() const noexcept { return static_cast<int>(kind_); }
   /// Number of levels, the fine level included.
   int levels() const noexcept;
   std::size_t bytes() const noexcept;
 
-  struct Hierarchy;  ///< for three or six rigid motions
+  /// A fine level and the coarse spaces below it.
+  class Hierarchy {
+   public:
+    virtual ~Hierarchy() = default;
+    virtual void setup(std::span<const double> g, const NodeSupports& supports) = 0;
+    virtual void update(const NodeSupports& supports) = 0;
+    virtual void apply(std::span<const double> r, std::span<double> z, const Factors& factors) = 0;
+    virtual void secant(std::span<double> g) const = 0;
+    virtual int levels() const noexcept = 0;
+    virtual std::size_t bytes() const noexcept = 0;
+  };
 
  private:
+  enum class Kind { none, grids, modes, pressures };
+  enum class Averages { none, round_corners, over_elements };
+  void choose(std::span<const double> g);
+  bool pressures_pay(double contrast, bool flows) const;
+  void give_up_pressures();
+  bool take(Kind kind, std::unique_ptr<Hierarchy> hierarchy);
+
+  MultigridBody body_;
+  MultigridOptions options_;
+  Averages averages_ = Averages::none;
+  Kind kind_ = Kind::none;  ///< in 2D always none: there is no choice
   std::unique_ptr<Hierarchy> hierarchy_;
 };
+
+/// A cycle on displacements and pressures that returns the displacements (theory: pressure-multigrid). Null
+/// if elements average over themselves and the first grid does not fit the body. For bodies in 3D with a law
+/// that averages. Collective.
+std::unique_ptr<Multigrid::Hierarchy> make_mixed_multigrid(const MultigridBody& body,
+                                                           const MultigridOptions& options);
+
+/// Largest k0/g of elements that average; `g`: elements × points. Collective.
+double pressure_contrast(const MultigridBody& body, std::span<const double> g);
 
 }  // namespace kacanov

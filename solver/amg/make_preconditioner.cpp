@@ -13,7 +13,7 @@
 #include <kacanov/part.hpp>
 #include "amg/assembly.hpp"
 #include "amg/boomer_amg.hpp"
-#include "multigrid/rigid_motion.hpp"
+#include "multigrid/aggregation/block_matrix.hpp"
 
 namespace kacanov {
 namespace {

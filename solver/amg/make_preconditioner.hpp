@@ -10,7 +10,6 @@
 #include <kacanov/operator.hpp>
 #include <kacanov/part.hpp>
 #include "linear/preconditioner.hpp"
-#include "multigrid/coarse_solver.hpp"
 #include "multigrid/multigrid.hpp"
 
 namespace kacanov {
@@ -37,10 +36,10 @@ class PartMultigrid final : public Preconditioner {
 
  private:
   void build(std::span<const double> g, std::span<const NodeBlock> blocks, const Space& space) override {
-    multigrid_.build(g, blocks, space.held());
+    multigrid_.setup(g, blocks, space.held());
   }
   void rebuild(std::span<const NodeBlock> blocks, const Space& space) override {
-    multigrid_.rebuild(blocks, space.held());
+    multigrid_.update(blocks, space.held());
   }
 
   Multigrid multigrid_;

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "linear/space.hpp"
-#include "multigrid/node_block.hpp"
+#include "multigrid/multigrid_body.hpp"
 
 namespace kacanov {
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include <kacanov/part.hpp>
-#include "multigrid/held_space.hpp"
-#include "multigrid/sums.hpp"
+#include "multigrid/cg.hpp"
+#include "multigrid/multigrid_body.hpp"
 
 namespace kacanov {
 
@@ -41,7 +41,7 @@ class Space {
   const std::shared_ptr<const ResidualWeights>& weights() const noexcept { return weights_; }
 
   /// Everything that is held besides held components.
-  const HeldSpace& held() const noexcept { return held_; }
+  const ConstrainedSpace& held() const noexcept { return held_; }
 
   std::size_t size() const noexcept { return part_->unknowns(); }
   const Part& part() const noexcept { return *part_; }
@@ -73,7 +73,7 @@ class Space {
 
   const Part* part_;
   std::shared_ptr<const ResidualWeights> weights_;
-  HeldSpace held_;
+  ConstrainedSpace held_;
   std::size_t prescribed_ = 0;  ///< number of directions prescribed by the part; they come first, by node
 };
 

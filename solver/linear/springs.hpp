@@ -6,7 +6,7 @@
 #include <vector>
 
 #include <kacanov/part.hpp>
-#include "multigrid/node_block.hpp"
+#include "multigrid/multigrid_body.hpp"
 
 namespace kacanov {
 

@@ -10,13 +10,13 @@
 #include <vector>
 
 #include <kacanov/part.hpp>
-#include "multigrid/rigid_level.hpp"
+#include "multigrid/aggregation/block_matrix.hpp"
 
 namespace kacanov::testing {
 
 /// A chain of springs with `rows` rows per rank, connected across the ranks; each block is 6 × 6 and positive
 /// definite.
-inline RigidLevel<6> chain(std::int32_t rows) {
+inline BlockMatrix<6> chain(std::int32_t rows) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   MPI_Comm_size(MPI_COMM_WORLD, &ranks);
@@ -47,7 +47,7 @@ inline double dot(const std::vector<double>& x, const std::vector<double>& y, st
 }
 
 template <int M>
-std::vector<double> wave(const RigidLevel<M>& level, double frequency) {
+std::vector<double> wave(const BlockMatrix<M>& level, double frequency) {
   std::vector<double> x(level.size(), 0.0);
   for (std::size_t i = 0; i < level.owned_size(); ++i)
     x[i] = std::sin(frequency * static_cast<double>(level.first() * M + static_cast<std::int64_t>(i)) + 0.3);

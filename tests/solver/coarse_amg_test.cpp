@@ -9,6 +9,7 @@
 #include "amg/make_preconditioner.hpp"
 #include "chain.hpp"
 #include "linear/distributed_operator.hpp"
+#include "multigrid/aggregation/coarse_space.hpp"
 #include "multigrid/cg.hpp"
 #include "support.hpp"
 
@@ -71,7 +72,7 @@ int iterations(const Part& part, const Space& space, const Vector& g, PartMultig
 }  // namespace
 
 TEST_CASE("a level's matrix is handed over whole") {
-  RigidLevel<6> level = chain(9);
+  BlockMatrix<6> level = chain(9);
   const CoarseMatrix matrix = coarse_matrix(level, 0.8);
   CHECK(matrix.motions == 6);
   CHECK(matrix.length == 0.8);
@@ -89,7 +90,7 @@ TEST_CASE("a level's matrix is handed over whole") {
 }
 
 TEST_CASE("BoomerAMG on a level is symmetric, definite and a contraction") {
-  RigidLevel<6> level = chain(300);
+  BlockMatrix<6> level = chain(300);
   const auto amg = make_coarse_amg(coarse_matrix(level, 1.0));
   const std::size_t size = level.owned_size();
   Vector e = wave(level, 0.7), f = wave(level, 0.11), ae(size), af(size), x(level.size()), z(size), ax(size);

@@ -56,7 +56,7 @@ TEST_CASE("of elements that average over themselves A and the pressures of B u m
     MultigridOptions options;
     options.threads = threads;
     FineLevel fine(body, options, FinePart::deviator, &pressures.means());
-    fine.build(g, {}, HeldSpace());
+    fine.setup(g, {{}, ConstrainedSpace()});
     std::vector<float> entries(pressures.means().size()), sum(x.size());
     fine.volume_change(single, entries);
     Vector p(pressures.rows());
@@ -98,7 +98,7 @@ TEST_CASE("elements longer than cubes keep the modes of aggregates" * doctest::s
     options.element_contrast = 1e9;
     Multigrid modes(multigrid_body(part), options);
     const Vector g(part.body().secant_count(), 1e-3);
-    for (Multigrid* one : {&chosen, &modes}) one->build(g, {}, HeldSpace());
+    for (Multigrid* one : {&chosen, &modes}) one->setup(g, {}, ConstrainedSpace());
     CHECK((chosen.bytes() == modes.bytes()) == long_ones);
   }
 }

@@ -9,11 +9,11 @@
 #include "../sanitized.hpp"
 #include "amg/make_preconditioner.hpp"
 #include "chain.hpp"
-#include "multigrid/aggregate_motions.hpp"
-#include "multigrid/aggregation.hpp"
+#include "multigrid/aggregation/aggregates.hpp"
+#include "multigrid/aggregation/block_matrix.hpp"
+#include "multigrid/aggregation/coarse_space.hpp"
 #include "multigrid/cg.hpp"
 #include "multigrid/fine_level.hpp"
-#include "multigrid/rigid_level.hpp"
 #include "preconditioners.hpp"
 #include "support.hpp"
 
@@ -70,7 +70,7 @@ namespace {
 /// where Z prolongs rigid-body motions into the constrained space.
 template <int M>
 void check_galerkin(const Part& part, std::span<const double> g, std::span<const NodeBlock> blocks,
-                    const Space& space, const AggregateMotions<M>& motions, RigidLevel<M>& level) {
+                    const Space& space, const AggregateMotions<M>& motions, BlockMatrix<M>& level) {
   const std::size_t dim = part.dim();
   const auto random = [&](double seed) {
     Vector x(level.size());
@@ -117,9 +117,9 @@ TEST_CASE("the first coarse matrix is Galerkin's, summed once or again") {
     Vector g(part.body().secant_count(), 1.0);
     const auto check = [&]<int M>(std::integral_constant<int, M>) {
       AggregateMotions<M> motions(multigrid_body(part), g, {.instruction_set = set, .fine_size = 8.0});
-      RigidLevel<M> level = motions.make_level();
+      BlockMatrix<M> level = motions.make_level();
       const Space free(part);
-      motions.sum(g, {{}, free.held()}, level);
+      motions.setup(g, {{}, free.held()}, level);
       check_galerkin<M>(part, g, {}, free, motions, level);
       // Other moduli, a constrained direction at some nodes, and penalty blocks.
       for (std::size_t e = 0; e < g.size(); ++e) g[e] = 0.2 + static_cast<double>(e % 5);
@@ -132,7 +132,7 @@ TEST_CASE("the first coarse matrix is Galerkin's, summed once or again") {
         for (std::size_t c = 0; c < dim; ++c) block.value[c * dim + c] = 1.0 + static_cast<double>(c);
         blocks.push_back(block);
       }
-      motions.sum(g, {blocks, space.held()}, level);
+      motions.setup(g, {blocks, space.held()}, level);
       check_galerkin<M>(part, g, blocks, space, motions, level);
       // Release some constraints and add others: the update gives the same matrix as a new sum.
       Space later(part);
@@ -144,11 +144,11 @@ TEST_CASE("the first coarse matrix is Galerkin's, summed once or again") {
       }
       const std::vector<NodeBlock> fewer(blocks.begin(),
                                          blocks.begin() + static_cast<std::ptrdiff_t>(blocks.size() / 2));
-      motions.change(g, {blocks, space.held()}, {fewer, later.held()}, level);
+      motions.update(g, {blocks, space.held()}, {fewer, later.held()}, level);
       auto x = wave(level, 0.7);
       Vector changed(level.owned_size()), summed(changed);
       level.multiply(x, changed);
-      motions.sum(g, {fewer, later.held()}, level);
+      motions.setup(g, {fewer, later.held()}, level);
       level.multiply(x, summed);
       for (std::size_t i = 0; i < summed.size(); ++i)
         CHECK(changed[i] == doctest::Approx(summed[i]).epsilon(1e-10).scale(10.0));
@@ -268,9 +268,9 @@ TEST_CASE("a fine level with other blocks is as one made anew") {
       return all;
     };
     FineLevel changed(multigrid_body(part), {}), anew(multigrid_body(part), {});
-    changed.build(g, blocks(4), space.held());
-    changed.rebuild(blocks(6), space.held());
-    anew.build(g, blocks(6), space.held());
+    changed.setup(g, {blocks(4), space.held()});
+    changed.update({blocks(6), space.held()});
+    anew.setup(g, {blocks(6), space.held()});
     const auto same = [](std::span<const float> x, std::span<const float> y) {
       return std::equal(x.begin(), x.end(), y.begin(), y.end());
     };

@@ -10,12 +10,10 @@
 #include "../sanitized.hpp"
 #include "amg/make_preconditioner.hpp"
 #include "multigrid/fine_level.hpp"
-#include "multigrid/grid_fit.hpp"
-#include "multigrid/grid_level.hpp"
-#include "multigrid/grid_stiffness.hpp"
-#include "multigrid/grid_transfer.hpp"
 #include "multigrid/multigrid.hpp"
-#include "multigrid/node_spacing.hpp"
+#include "multigrid/octree/coarse_space.hpp"
+#include "multigrid/octree/level.hpp"
+#include "multigrid/octree/octree.hpp"
 #include "pressure_bodies.hpp"
 
 using namespace kacanov;
@@ -25,14 +23,14 @@ namespace {
 
 struct Grids {
   Vector spacing;
-  GridTree tree;
+  Octree tree;
   explicit Grids(const Part& part)
       : spacing(node_spacings(part.body(), part.node_map)), tree(nodes(part), 2.6, part.node_map) {}
-  GridTree::Nodes nodes(const Part& part) const {
+  Octree::Nodes nodes(const Part& part) const {
     return {part.body().mesh.coordinates, spacing, static_cast<std::size_t>(part.owned_nodes())};
   }
-  std::vector<GridTransfer::Place> places(const Part& part) const {
-    std::vector<GridTransfer::Place> all;
+  std::vector<OctreeTransfer::Place> places(const Part& part) const {
+    std::vector<OctreeTransfer::Place> all;
     for (std::size_t n = 0; n < static_cast<std::size_t>(part.owned_nodes()); ++n) {
       const double* x = &part.body().mesh.coordinates[3 * n];
       const std::int32_t leaf = tree.leaf_of(x, 0);
@@ -56,7 +54,7 @@ TEST_CASE("trees have cells as large as the spacing of nodes asks for, round eve
   for (const bool graded : {false, true}) {
     const Part part = bar(4, graded);
     const Grids grids(part);
-    int smallest = 0, largest = GridTree::deepest;
+    int smallest = 0, largest = Octree::deepest;
     for (std::size_t n = 0; n < part.nodes(); ++n) {
       const std::int32_t leaf = grids.tree.leaf_of(&part.body().mesh.coordinates[3 * n], 0);
       REQUIRE(leaf >= 0);
@@ -73,7 +71,7 @@ TEST_CASE("trees have cells as large as the spacing of nodes asks for, round eve
 TEST_CASE("points next to a side of a cell but for rounding are on it") {
   const Part part = bar(3, true);
   const Grids grids(part);
-  for (const GridTree::Cell& cell : grids.tree.cells()) {
+  for (const Octree::Cell& cell : grids.tree.cells()) {
     const Vector3 corner = grids.tree.point(cell.origin);
     const double length = grids.tree.length(cell);
     const Vector3 beside{corner[0] + 1e-9 * length, corner[1] - 1e-9 * length, corner[2] + 0.25 * length};
@@ -91,14 +89,14 @@ TEST_CASE("trilinear functions are linear ones' exactly, next to larger cells an
     const Grids grids(part);
     const int rank = part.node_map.rank;
     for (int level = 0; level <= grids.tree.last_level(); ++level) {
-      const GridVertices vertices(grids.tree, level, part.node_map.ranks);
+      const OctreeVertices vertices(grids.tree, level, part.node_map.ranks);
       auto places = grids.places(part);
       for (std::size_t n = 0; n < places.size(); ++n) {
         const double* x = &part.body().mesh.coordinates[3 * n];
         places[n].leaf = grids.tree.leaf_of(x, level);
         places[n].within = grids.tree.within(grids.tree.cells()[places[n].leaf], x);
       }
-      GridTransfer transfer(vertices, places, part.node_map, 1);
+      OctreeTransfer transfer(vertices, places, part.node_map, 1);
       std::vector<float> rows;
       for (std::int64_t r = vertices.starts()[rank]; r < vertices.starts()[rank + 1]; ++r)
         rows.push_back(
@@ -153,14 +151,14 @@ TEST_CASE("grids' matrices are blind to rigid motions, have uniform strain's ene
           CAPTURE(threads);
           CAPTURE(held);
           CAPTURE(k);
-          const GridVertices vertices(grids.tree, k, part.node_map.ranks);
+          const OctreeVertices vertices(grids.tree, k, part.node_map.ranks);
           if (k > 0) {
             moments = raised(grids.tree, leaves[k - 1], leaves[k], moments);
             stiffness = raised(grids.tree, leaves[k - 1], leaves[k], stiffness);
           }
-          GridLevel level(vertices, leaves[k], part.node_map, threads);
-          level.build(grids.tree, leaves[k], moments);
-          if (changed) level.change(grids.tree, leaves[k], stiffness);
+          OctreeLevel level(vertices, leaves[k], part.node_map, threads);
+          level.setup(grids.tree, leaves[k], moments);
+          if (changed) level.update(grids.tree, leaves[k], stiffness);
           const auto residual = [&](const auto& displacement, double pressure) {
             std::vector<float> b(grid_width * level.map().size(), 0.0F), x = b, r = b;
             for (std::size_t i = 0; i < level.rows(); ++i) {
@@ -206,7 +204,7 @@ TEST_CASE(
   const Part part = bar(2, false);
   FineLevel fine(multigrid_body(part), {}, FinePart::deviator);
   const Vector3 held{0.6, 0.0, 0.8}, along{0.8, 0.0, -0.6};
-  HeldSpace space;
+  ConstrainedSpace space;
   std::vector<NodeBlock> blocks;
   for (std::int32_t n = 0; n < part.owned_nodes(); ++n) {
     if (part.held[3 * static_cast<std::size_t>(n)] != 0) continue;
@@ -217,7 +215,7 @@ TEST_CASE(
       for (std::size_t c = 0; c < 3; ++c)
         block.value[3 * r + c] = 1e4 * held[r] * held[c] + 7.0 * along[r] * along[c] + (r == c ? 2.0 : 0.0);
   }
-  fine.build(bent(part, 10.0), blocks, space);
+  fine.setup(bent(part, 10.0), {blocks, space});
   std::vector<std::array<double, 9>> sum(part.nodes());
   for (const NodeBlock& block : grid_stiffnesses(fine, part.owned_nodes()))
     for (std::size_t k = 0; k < 9; ++k) sum[block.node][k] += block.value[k];
@@ -274,12 +272,13 @@ TEST_CASE(
     }
     const Part part = distribute(rank == 0 ? &problem : nullptr, MPI_COMM_WORLD);
     const Vector spacing = node_spacings(part.body(), part.node_map);
-    const GridTree tree({part.body().mesh.coordinates, spacing, static_cast<std::size_t>(part.owned_nodes())},
-                        3.0, part.node_map);
+    const Octree tree({part.body().mesh.coordinates, spacing, static_cast<std::size_t>(part.owned_nodes())},
+                      3.0, part.node_map);
     std::vector<std::int32_t> cell;
     for (std::size_t n = 0; n < part.nodes(); ++n)
       cell.push_back(tree.leaf_of(&part.body().mesh.coordinates[3 * n], 0));
-    const GridFit fit = grid_fit(GridVertices(tree, 0, part.node_map.ranks), cell, multigrid_body(part));
+    const OctreeFit fit =
+        octree_fit(OctreeVertices(tree, 0, part.node_map.ranks), cell, multigrid_body(part));
     CHECK((fit.cut_off > 0.03) == (kind == Kind::slot));
     CHECK((fit.apart > 0.01) == (kind == Kind::stretched));
     if (kind == Kind::solid) CHECK(fit.cut_off == 0.0);

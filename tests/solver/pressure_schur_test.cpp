@@ -8,8 +8,8 @@
 
 #include "amg/make_preconditioner.hpp"
 #include "multigrid/fine_level.hpp"
-#include "multigrid/pressure_schur.hpp"
-#include "multigrid/summed_pattern.hpp"
+#include "multigrid/mixed/schur_complement.hpp"
+#include "multigrid/sparsity_pattern.hpp"
 #include "pressure_bodies.hpp"
 
 using namespace kacanov;
@@ -39,8 +39,8 @@ TEST_CASE("matrices summed of small ones have whole rows on their ranks, whoever
     for (std::size_t k = 0; k < 2; ++k) column.push_back(static_cast<std::int32_t>((m + k) % columns));
     first_row.push_back(row.size()), first_column.push_back(column.size());
   }
-  const SummedPattern pattern({row_starts, row_number, row, first_row},
-                              {column_starts, column_number, column, first_column}, part.node_map, 2);
+  const SparsityPattern pattern({row_starts, row_number, row, first_row},
+                                {column_starts, column_number, column, first_column}, part.node_map, 2);
   std::vector<float> values(2 * pattern.entries(), 0.0F);
   Vector whole(2 * rows * columns, 0.0);
   for (std::size_t m = 0; m < 9; ++m)
@@ -87,18 +87,18 @@ TEST_CASE(
       springs.push_back({n, {4e3, 0.0, 0.0, 0.0, 2.0, 1.0, 0.0, 1.0, 3.0}});
     for (const int threads : {1, 2})
       for (const std::int64_t nodes_at_once : {10, 1 << 15}) {
-        fine.build(bent(part, 100.0), {}, HeldSpace());
-        PressureSchur schur(body, pressures, threads, nodes_at_once);
-        schur.build(fine.inverse(), factor);
+        fine.setup(bent(part, 100.0), {{}, ConstrainedSpace()});
+        SchurComplement schur(body, pressures, threads, nodes_at_once);
+        schur.setup(fine.inverse(), factor);
         // Without springs, with springs, and without them again.
         for (const bool sprung : {false, true, false}) {
           CAPTURE(threads);
           CAPTURE(nodes_at_once);
           CAPTURE(sprung);
           const std::vector<float> before(fine.inverse().begin(), fine.inverse().end());
-          fine.rebuild(sprung ? std::span<const NodeBlock>(springs) : std::span<const NodeBlock>(),
-                       HeldSpace());
-          schur.change(before, fine.inverse());
+          fine.update({sprung ? std::span<const NodeBlock>(springs) : std::span<const NodeBlock>(),
+                       ConstrainedSpace()});
+          schur.update(before, fine.inverse());
           Vector p(schur.size()), of_matrix(pressures.rows()), by_sweeps(pressures.rows());
           for (std::size_t r = 0; r < pressures.rows(); ++r)
             p[r] = std::sin(0.7 * static_cast<double>(part.node_index[pressures.node(r)]));

@@ -24,6 +24,9 @@ LEVELS = [
     ["kernels/reference", "kernels/simd", "kernels/parallel"],
     ["kernels/operator"],
     ["kernels/multigrid"],
+    ["kernels/multigrid/aggregation", "kernels/multigrid/octree"],
+    ["kernels/multigrid/mixed"],
+    ["kernels/multigrid/choice"],
     ["kernels/c"],
     ["kernels/examples"],
     ["solver/mesh"],
@@ -116,6 +119,8 @@ def room_of(path):
     parts = path.split("/")
     if path == "solver/solve.cpp":
         return "solver/solve"
+    if path == "kernels/multigrid/multigrid.cpp":
+        return "kernels/multigrid/choice"  # of the hierarchy: the only one to know all
     return "/".join(parts[:-1])
 
 
